@@ -30,6 +30,7 @@ from diorama_core.io.bounded import read_json
 ABOUT = """Photos of rooms become 3D scenes. Send a photo to `/v1/jobs`, ask for the job until its state is `done`, and
 fetch its scene, a picture or a file for other programs. Lengths are metres and +Z is up, if a format does not say
 otherwise. Every error is `{"error": "one line"}`."""
+BINARY = {"schema": {"type": "string", "format": "binary"}}
 MAX_AT_ONCE = 2
 """Scenes that are drawn or exported at a time; others wait."""
 MAX_WAIT_S = 60.0
@@ -185,7 +186,7 @@ def get_scene(request: Request, job_id: str) -> dict[str, Any]:
     "/jobs/{job_id}/picture",
     operation_id="get_picture",
     response_class=Response,
-    responses={200: {"content": {"image/png": {}}, "description": "The picture."}, **_errors(404, 422, 500)},
+    responses={200: {"content": {"image/png": BINARY}, "description": "The picture."}, **_errors(404, 422, 500)},
 )
 def get_picture(
     request: Request,
@@ -208,7 +209,7 @@ def get_picture(
     operation_id="export_scene",
     response_class=Response,
     responses={
-        200: {"content": {"application/octet-stream": {}}, "description": "The file."},
+        200: {"content": {"application/octet-stream": BINARY}, "description": "The file."},
         **_errors(404, 422, 500, 501),
     },
 )
@@ -247,12 +248,24 @@ def create_app(queue: JobQueue, visitors: Visitors) -> FastAPI:
     """
     # No pages with documentation: those that FastAPI offers load their scripts from other servers.
     app = FastAPI(title="Diorama", version="1", description=ABOUT, docs_url=None, redoc_url=None)
+    described = app.openapi
+    app.openapi = lambda: _with_files(described())
     app.state.queue = queue
     app.include_router(router)
     app.add_middleware(Guard, visitors=visitors)
     for kind in (DioramaError, RequestValidationError, StarletteHTTPException):
         app.add_exception_handler(kind, _told)
     return app
+
+
+def _with_files(document: dict[str, Any]) -> dict[str, Any]:
+    """The document; files say `format: binary`, too: without it generators of clients take them for text."""
+    for form in document["components"]["schemas"].values():
+        for field in form.get("properties", {}).values():
+            for kind in (field, *field.get("anyOf", ())):
+                if "contentMediaType" in kind:
+                    kind["format"] = "binary"
+    return document
 
 
 def _told(request: Request, error: Exception) -> Response:

@@ -28,7 +28,7 @@ from diorama_app.reconstruction.networks import (
     missing_networks,
 )
 from diorama_app.reconstruction.object_correction import add_from_photo
-from diorama_app.reconstruction.photo_joining import join_photo
+from diorama_app.reconstruction.photo_joining import awaits_photo, join_photo
 from diorama_app.reconstruction.text_to_scene import describe_room, how_pictures_come
 from diorama_app.session.client import Client
 from diorama_app.viewport.annotation_canvas import (
@@ -112,7 +112,7 @@ class PhotoPanel:
         self._invitation.show(self._introduction(inputs))
         show_if(inputs is not None, self._draw, self._find)
         show_if(inputs is not None and further is None, self._more, self._build)
-        show_if(further is not None, self._join)
+        show_if(further is not None or (inputs is not None and awaits_photo(self._session.scene)), self._join)
         enable(self._join, idle)
         show_if(further is None, self._words, self._describe)
         self._drawn_by.show(f'<p class="dim">{text(how_pictures_come())}</p>' if self._words.value.strip() else "")

@@ -12,7 +12,7 @@ from PIL import Image
 
 from diorama_app.commands.camera_presets import Views
 from diorama_app.projects.uploads import Upload
-from diorama_app.reconstruction.photo_joining import take_out, take_photo
+from diorama_app.reconstruction.photo_joining import awaits_photo, take_out, take_photo
 from diorama_app.session.client import Client
 from diorama_app.viewport.mesh_assets import reduced
 from diorama_app.web.html import Action, LiveHtml, button, text
@@ -25,7 +25,7 @@ KEPT = 128
 
 
 class PhotoStrip:
-    """Shown once a scene was built from a photo."""
+    """Shown once a scene was built from a photo, and for scans, which a photo may join."""
 
     def __init__(self, gui: viser.GuiApi, client: Client, views: Views) -> None:
         self._client, self._views = client, views
@@ -47,7 +47,7 @@ class PhotoStrip:
         """Draw the photos."""
         session, client = self._client.session, self._client
         inputs, camera = session.inputs, session.scene.camera
-        shown = inputs is not None and camera is not None
+        shown = (inputs is not None and camera is not None) or awaits_photo(session.scene)
         if self._upload.visible != shown:
             self._upload.visible = shown
         if inputs is None or camera is None or not session.further_photos:

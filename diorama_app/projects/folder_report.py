@@ -69,7 +69,8 @@ def _scene(result: PhotoResult, folder: Path) -> str:
     counts = Counter(str(o["category"]) for o in report["objects"])
     contents = ", ".join(name if n == 1 else f"{n} × {name}" for name, n in sorted(counts.items())) or "no objects"
     walls = sum(p["role"] == "wall" for p in report["planes"])
-    when = "finished before" if result.kept else f"{result.seconds:.0f} s" + (", second try" * (result.tries > 1))
+    when = f"{report.get('seconds', result.seconds):.0f} s"
+    when += ", in an earlier run" if result.kept else ", second try" * (result.tries > 1)
     where = html.escape(result.project.relative_to(folder).as_posix(), quote=True)
     lines = "".join(f"<li>{html.escape(str(note))}</li>" for note in report["notes"])
     notes = f'<details class="dim"><summary>Notes ({len(report["notes"])})</summary><ul>{lines}</ul></details>'

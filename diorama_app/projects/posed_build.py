@@ -101,9 +101,9 @@ def _paired(photos: Sequence[FolderPhoto], poses: Poses) -> tuple[list[tuple[Fol
     pairs, without = [], []
     for photo in photos:
         posed = by_name.get(photo.photo.name) or by_stem.get(photo.photo.stem)
-        if posed is None:
+        if posed is None and photo.photo.name not in poses.left_out:
             without.append(photo.photo.name)
-        else:
+        elif posed is not None:
             pairs.append((photo, posed))
     if not pairs:
         raise InputError("none of the photos has a camera of its name in the poses")

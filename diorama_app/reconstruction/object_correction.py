@@ -13,7 +13,7 @@ from diorama_core.artefacts import Box, Inputs, LabelledBox
 from diorama_core.editing.input_corrections import given_outline, with_correction
 from diorama_core.editing.reconstructed import inserted, renamed, replaced
 from diorama_core.errors import EditRefused
-from diorama_core.library.taxonomy import resolve
+from diorama_core.library.labels import understand_label
 from diorama_core.progress import Progress
 from diorama_core.scene import edits
 from diorama_core.scene.types import Scene, SceneObject
@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 def add_from_photo(client: Client, box: Box, label: str) -> None:
     """Segment, retrieve, pose and place the object in a box of the photo; nothing else changes."""
     session = client.session
-    new_id = edits.fresh_id(session.scene, resolve(label).category.name)
+    new_id = edits.fresh_id(session.scene, understand_label(label).category.name)
 
     def put(scene: Scene, found: Found) -> Scene:
         return inserted(scene, found, session.library)
@@ -127,7 +127,7 @@ def _replaced(client: Client, object_id: str) -> Callable[[Scene, Found], Scene]
 
 
 def _labelled(box: Box, label: str) -> LabelledBox:
-    return LabelledBox(box, resolve(label).category.name, label)
+    return LabelledBox(box, understand_label(label).category.name, label)
 
 
 def _inputs(client: Client) -> Inputs:

@@ -20,9 +20,11 @@ from diorama_core.project.storage import Project
 from diorama_core.scene.types import Scene
 
 if TYPE_CHECKING:
+    from diorama_core.importing.opening import Opened
     from diorama_core.multiview.adding import Added  # the whole pipeline; opening a project does without it
 
-SCENES_OWN = "the scene's own photo"
+MIN_SAME = 3
+"""Objects of a scene without a photo among which one finds its place (`multiview.camera_in_room`)."""
 
 
 def take_photo(client: Client, file_name: str, inputs: Inputs) -> None:
@@ -32,16 +34,29 @@ def take_photo(client: Client, file_name: str, inputs: Inputs) -> None:
         EditRefused: the scene has no photo to join, or as many photos as it can have.
     """
     session = client.session
+    if awaits_photo(session.scene):
+        session.annotate(f"add the photo {inputs.photo.name}", inputs, by=client)
+        _to_be_marked(client, None)
+        return
     need_joinable(session.scene, session.inputs)
     photos = session.further_photos
     if len(photos) >= MAX_PHOTOS:
         raise EditRefused(f"a room takes {MAX_PHOTOS} further photos; take one out first")
     name = fresh_name(file_name, [p.name for p in photos])
     session.annotate_further(f"add the photo {name}", (*photos, FurtherPhoto(name, inputs)), by=client)
+    _to_be_marked(client, name)
+
+
+def _to_be_marked(client: Client, name: str | None) -> None:
     client.choose_photo(name)
     client.open_tab("Photo")
     client.open_board()
     client.refresh()
+
+
+def awaits_photo(scene: Scene) -> bool:
+    """Whether a scene without a photo has enough in it to tell where one was taken, as scans have."""
+    return scene.camera is None and len(scene.objects) >= MIN_SAME and bool(scene.architecture.planes)
 
 
 def need_joinable(scene: Scene, inputs: Inputs | None) -> None:
@@ -67,6 +82,9 @@ def take_out(client: Client, name: str) -> None:
 def join_photo(client: Client) -> None:
     """Find the camera of the chosen photo, and bring what it shows into the scene, as one undo step."""
     session, photo = client.session, client.further_photo
+    if photo is None and session.inputs is not None and awaits_photo(session.scene):
+        _join_first(client, session.inputs)
+        return
     if photo is None:
         raise InputError("choose a photo that was added first")
     session.need_writable()
@@ -83,6 +101,47 @@ def join_photo(client: Client) -> None:
         client.post(lambda: _show(client, project, scene, photo, added))
 
     session.jobs.start("join", f"Adding {photo.name} to the scene", work)
+
+
+def _join_first(client: Client, inputs: Inputs) -> None:
+    """Find where the first photo of a scanned room was taken, and bring what it shows into the scene."""
+    session = client.session
+    session.need_writable()
+    project, scene, library = session.project, session.scene, session.library
+    if project is None:
+        raise EditRefused("no project is open")
+    client.view.canvas.close()
+
+    def work(progress: Progress) -> None:
+        from diorama_core.importing.opening import Opened
+        from diorama_core.importing.photo_of_scan import with_photo_of_scan
+        from diorama_core.layout.recipes import recipe
+        from diorama_core.pipeline.presets import stages_for
+
+        session.autosave.flush()
+        found = with_photo_of_scan(
+            Opened(scene),
+            inputs,
+            library,
+            lambda given: stages_for("auto", given, library),
+            lambda free: recipe("feasible", library, free, depth_measured=True),
+            progress,
+        )
+        client.post(lambda: _show_first(client, project, scene, inputs, found))
+
+    session.jobs.start("join", f"Adding {inputs.photo.name} to the scene", work)
+
+
+def _show_first(client: Client, project: Project, before: Scene, inputs: Inputs, found: Opened) -> None:
+    session = client.session
+    if session.project != project:
+        return  # another project was opened here meanwhile
+    if session.scene is not before or session.inputs is not inputs:
+        raise EditRefused("the scene was changed while the photo was added, so it stays as it is; add the photo again")
+    session.add_textures(dict(found.textures))
+    session.commit(f"add what {inputs.photo.name} shows", found.scene, by=client, selection=(), inputs=found.inputs)
+    session.view.show_whole_room()
+    session.notice_all(f"{found.changes[-1]}.", "good")
 
 
 def _joined(

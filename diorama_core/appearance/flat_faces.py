@@ -24,15 +24,18 @@ from diorama_core.scene.types import Camera, SceneObject, TextureLayout
 MAIN = "main"
 FACES: Mapping[str, tuple[tuple[str, ...], TextureLayout]] = {
     **dict.fromkeys(("picture", "photo frame"), (("picture",), "front")),
-    **dict.fromkeys(("television", "monitor", "laptop", "tablet"), (("screen",), "front")),
+    **dict.fromkeys(("television", "monitor", "laptop", "tablet"), (("screen", "picture"), "front")),
     **dict.fromkeys(("clock", "mantel clock", "grandfather clock"), (("dial",), "front")),
     **dict.fromkeys(("whiteboard", "bulletin board", "curtain", "blinds"), ((MAIN,), "front")),
     "pillow": ((MAIN,), "front"),
     **dict.fromkeys(("rug", "bath mat", "yoga mat"), ((MAIN,), "top")),
-    "door": ((MAIN, "pane"), "front"),
+    "door": ((MAIN, "pane", "metal"), "front"),
     "window": (("pane",), "front"),
 }
-"""By category: roles of the slots that have the face (or the main slot), and which way it faces."""
+"""By category: roles of the slots that have the face (or the main slot), and which way it faces.
+
+A door's handle wears what the photo shows in its place, or there would be two: one in the picture and one before it.
+"""
 NOT_RECTANGULAR = frozenset({"pillow"})
 """Of their rectangle only what their mask holds is theirs."""
 COVERS = ("leather", "paint", "fabric", "paper", "material")
@@ -51,6 +54,8 @@ MIN_IN_MASK = 0.4
 MIN_BOX_IOU = 0.5
 """Boxes that overlap less tell nothing of where exactly the face is."""
 SURE_MASK = 0.95
+DARK_SIDE_PX = 8
+"""A screen that is off is of one colour, whatever is mirrored in it."""
 _FAR_PX = 20_000.0
 LIT_L, LIT_SPREAD_L = 30.0, 12.0
 """A screen is on when its typical lightness, or its lightness' deviation, is at least this."""
@@ -132,10 +137,12 @@ def _face(
     picture = rectified(rgb, unseen, corners)
     if picture is None or picture.seen.mean() < MIN_SEEN:
         return None
-    if slot.role == "screen" and not is_lit(picture):
-        return None
+    roughness = ROUGHNESS.get(slot.role, OTHER_ROUGHNESS)
+    if "screen" in FACES.get(item.category, ((), ""))[0] and not is_lit(picture):
+        dark = np.median(picture.colours[picture.seen], axis=0).clip(0, 255).astype(np.uint8)
+        return Face(slot, layout, np.broadcast_to(dark, (DARK_SIDE_PX, DARK_SIDE_PX, 3)).copy(), roughness)
     pixel_m = float(np.linalg.norm(rectangle.across * item.pose.scale)) / picture.seen.shape[1]
-    return Face(slot, layout, completed_picture(picture, pixel_m), ROUGHNESS.get(slot.role, OTHER_ROUGHNESS))
+    return Face(slot, layout, completed_picture(picture, pixel_m), roughness)
 
 
 def _share_in_mask(

@@ -10,6 +10,7 @@ import cv2
 import numpy as np
 from jaxtyping import Float32
 
+from diorama_core.io.srgb import luminance
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.render.lighting import Effort
 from diorama_core.render.picture import scene_lighting
@@ -23,10 +24,14 @@ EFFORT = Effort(window_rays=2, sky_rays=3)
 DARKEST, BRIGHTEST = 0.45, 1.6
 """The scene is not exactly the room: deeper shade than this is not believed."""
 UNKNOWN = 0.9
+MOST_TINTED = 1.5
+"""A channel of the light is at most so many times stronger or weaker than its luminance."""
 
 
-def irradiance_map(scene: Scene, camera: Camera, library: ShapeLibrary) -> Float32[np.ndarray, "h w"]:
-    """Luminance of the light on what each pixel of the photo sees; 1 lights a white surface white.
+def irradiance_map(scene: Scene, camera: Camera, library: ShapeLibrary) -> Float32[np.ndarray, "h w 3"]:
+    """The light on what each pixel of the photo sees; 1 lights a white surface white.
+
+    It has the colours of what is beside: a tan sofa on orange boards looks more orange than its leather is.
 
     Args:
         scene: With its light, in the poses in which the photo shows it.
@@ -41,6 +46,8 @@ def irradiance_map(scene: Scene, camera: Camera, library: ShapeLibrary) -> Float
     count = len(scene.objects)
     blockers = world.shadow_caster(without=range(count, count + len(scene.architecture.planes)))
     light = light_map(world, blockers, view, scene_lighting(scene, world, view), EFFORT)
-    grey = light @ np.array([0.2126, 0.7152, 0.0722], np.float32)
-    grey = np.where(grey > 0, np.clip(grey, DARKEST, BRIGHTEST), np.float32(UNKNOWN))
-    return np.asarray(cv2.resize(grey.astype(np.float32), (k.width, k.height), interpolation=cv2.INTER_LINEAR))
+    grey = luminance(light)
+    level = np.where(grey > 0, np.clip(grey, DARKEST, BRIGHTEST), np.float32(UNKNOWN))
+    tint = np.where(grey[..., None] > 0, light / np.maximum(grey, 1e-6)[..., None], 1.0)
+    whole = (level[..., None] * np.clip(tint, 1.0 / MOST_TINTED, MOST_TINTED)).astype(np.float32)
+    return np.asarray(cv2.resize(whole, (k.width, k.height), interpolation=cv2.INTER_LINEAR))

@@ -15,11 +15,17 @@ from scipy.optimize import least_squares
 
 from diorama_core.scene.types import RoomLight
 
-USUAL = np.array([0.0, 0.0, 0.25])
+USUAL = np.array([0.0, 0.0, 0.3])
 """Light in rooms comes more from above than from below."""
-PRIOR_WEIGHT = 0.6
+LEVEL_SIGMA, UPRIGHT_SIGMA = 0.25, 0.1
+"""How far it differs from that along the floor, where rooms differ most, and upward: shadows below things, which look
+like light from below, are no evidence."""
+FROM_WINDOW = 0.35
+"""How much of it comes from the side of a window that is seen."""
+OF_WALLS = 4.0
+"""What walls say beside one material of an object, as a factor of deviations: they are large, flat and even."""
 MAX_LENGTH = 0.85
-ROBUST = 0.15
+ROBUST = 0.25
 """Differences of log luminance beyond about this are shadows and other materials."""
 MIN_SAMPLES = 3
 SHINING = 190
@@ -36,22 +42,31 @@ class Shade:
     weight: Float[np.ndarray, "n"]
 
 
-def estimated_light(shades: Sequence[Shade]) -> RoomLight:
-    """The light that explains all materials' shades best; the usual one where they say nothing."""
-    shades = [s for s in shades if len(s.luminance) >= 2]
-    if sum(len(s.luminance) for s in shades) < MIN_SAMPLES:
+def estimated_light(
+    shades: Sequence[Shade], walls: Shade | None = None, to_window: Float[np.ndarray, "3"] | None = None
+) -> RoomLight:
+    """The light that explains all materials' shades best; the usual one where nothing is known.
+
+    Args:
+        shades: Of the objects' materials.
+        walls: Those of one paint.
+        to_window: Unit vector from what stands in the room to where daylight comes in.
+    """
+    told = [(s, 1.0) for s in shades if len(s.luminance) >= 2] + ([] if walls is None else [(walls, OF_WALLS)])
+    usual = USUAL if to_window is None else USUAL + FROM_WINDOW * np.array([*to_window[:2], 0.0])
+    if sum(len(s.luminance) for s, _ in told) < MIN_SAMPLES and walls is None and to_window is None:
         return RoomLight()
 
     def residuals(b: Float[np.ndarray, "3"]) -> Float[np.ndarray, "m"]:
-        out = [PRIOR_WEIGHT * (b - USUAL)]
-        for shade in shades:
+        out = [(b - usual) / (LEVEL_SIGMA, LEVEL_SIGMA, UPRIGHT_SIGMA)]
+        for shade, factor in told:
             light = np.maximum(1.0 + shade.normals_world @ b, 1.0 - MAX_LENGTH)
             albedo = np.log(shade.luminance / light)
             off = albedo - np.average(albedo, weights=shade.weight)
-            out.append(np.sqrt(shade.weight) * off / ROBUST)
+            out.append(factor * np.sqrt(shade.weight) * off / ROBUST)
         return np.concatenate(out)
 
-    found = least_squares(residuals, USUAL, loss="soft_l1").x
+    found = least_squares(residuals, usual, loss="soft_l1").x
     length = float(np.linalg.norm(found))
     x, y, z = (float(v) for v in found / max(length, 1e-9))
     return RoomLight((x, y, z), min(length, MAX_LENGTH)) if length > 1e-3 else RoomLight()

@@ -15,13 +15,15 @@ from jaxtyping import Bool, Float32, UInt8
 from diorama_core.appearance.flat_faces import Face, faces_of
 from diorama_core.appearance.irradiance import irradiance_map
 from diorama_core.appearance.light import SHINING, estimated_light
+from diorama_core.appearance.room_cues import toward_window, wall_shade
 from diorama_core.appearance.sets import SETS, shared_materials
 from diorama_core.appearance.surface_materials import ROUGHNESS, SlotPixels, appearance_of, shade_of, slot_pixels
 from diorama_core.appearance.surface_view import SurfaceView, surface_view
 from diorama_core.artefacts import DetectedObject
 from diorama_core.library.furniture.measures import MARK
+from diorama_core.library.paint import physically_based
 from diorama_core.library.record import ShapeLibrary
-from diorama_core.library.slots import slots_of
+from diorama_core.library.slots import Slot, slots_of
 from diorama_core.library.stretch import relative_scale, stretched_parts
 from diorama_core.library.taxonomy import LAMPS
 from diorama_core.render.grid import each
@@ -56,6 +58,8 @@ class _Seen:
     faces: tuple[Face, ...]
     view: SurfaceView | None
     pixels: tuple[SlotPixels, ...]
+    weaves: Mapping[str, Picture]
+    """Textures that the slots have in the library, by the names of those that have one."""
 
 
 def photo_appearance(
@@ -82,7 +86,8 @@ def photo_appearance(
         lambda item: _seen(item, _parts(library, item), rgb, found[item.id], objects, camera),
         [item for item in scene.objects if item.id in found],
     )
-    light = estimated_light([shade_of(s.view, p, rgb) for s in seen if s.view is not None for p in s.pixels])
+    shades = [shade_of(s.view, p, rgb) for s in seen if s.view is not None for p in s.pixels]
+    light = estimated_light(shades, wall_shade(rgb, objects, scene), toward_window(rgb, objects, scene))
     red, green, blue = (float(c) / max(illuminant_rgb) for c in illuminant_rgb)
     light = replace(light, colour=(red, green, blue))
     falls = irradiance_map(replace(scene, light=light), scene.camera, library)
@@ -135,9 +140,18 @@ def _seen(
     unhidden = visible if found.mask_confidence >= 1.0 else _in_box(found) & ~hidden
     view = surface_view(parts, slots, item.pose, camera, visible | unhidden)
     taken = {face.slot.name for face in faces}
-    pixels = () if view is None else slot_pixels(view, slots, rgb, visible, unhidden)
+    behind = _in_box(found) & ~found.mask & ~hiding(found, objects, smaller_only=True)
+    pixels = () if view is None else slot_pixels(view, slots, rgb, visible, unhidden, behind)
     read = (p for p in pixels if p.slot.name not in taken)
-    return _Seen(item, faces, view, tuple(p for p in read if view is not None and not _shines(item, p, view, rgb)))
+    own = tuple(p for p in read if view is not None and not _shines(item, p, view, rgb))
+    weaves = {p.slot.name: _weave(parts, p.slot) for p in own}
+    return _Seen(item, faces, view, own, {name: weave for name, weave in weaves.items() if weave is not None})
+
+
+def _weave(parts: trimesh.Scene, slot: Slot) -> Picture | None:
+    """The texture that a slot has in the library."""
+    texture = physically_based(parts.geometry[slot.geometry[0]]).baseColorTexture
+    return None if texture is None else np.asarray(texture.convert("RGB"))
 
 
 def _shines(item: SceneObject, pixels: SlotPixels, view: SurfaceView, rgb: UInt8[np.ndarray, "h w 3"]) -> bool:
@@ -155,13 +169,13 @@ def _in_box(found: DetectedObject) -> Bool[np.ndarray, "h w"]:
 
 
 def _surfaces(
-    seen: _Seen, rgb: UInt8[np.ndarray, "h w 3"], light: Float32[np.ndarray, "h w"]
+    seen: _Seen, rgb: UInt8[np.ndarray, "h w 3"], light: Float32[np.ndarray, "h w 3"]
 ) -> list[tuple[PhotoMaterial, Picture | None]]:
     made: list[tuple[PhotoMaterial, Picture | None]] = []
     if seen.view is None:
         return made
     for pixels in seen.pixels:
-        found = appearance_of(seen.view, pixels, rgb, light)
+        found = appearance_of(seen.view, pixels, rgb, light, seen.weaves.get(pixels.slot.name))
         roughness, metallic = ROUGHNESS[found.slot.role]
         name = None if found.texture is None else texture_name(seen.item.id, found.slot.name, found.texture)
         material = PhotoMaterial(
@@ -177,12 +191,18 @@ def _surfaces(
     return made
 
 
-def hiding(found: DetectedObject, objects: tuple[DetectedObject, ...]) -> Bool[np.ndarray, "h w"]:
-    """Where other objects stand before one: smaller ones wherever they are, larger ones beside its own mask."""
+def hiding(
+    found: DetectedObject, objects: tuple[DetectedObject, ...], *, smaller_only: bool = False
+) -> Bool[np.ndarray, "h w"]:
+    """Where other objects stand before one: smaller ones wherever they are, larger ones beside its own mask.
+
+    Without the larger ones, which may as well lie below or stand behind it, it is where something surely does.
+    """
     hidden, area = np.zeros(found.mask.shape, dtype=bool), np.count_nonzero(found.mask)
     for other in objects:
-        if other.id != found.id:
-            hidden |= other.mask if np.count_nonzero(other.mask) < area else other.mask & ~found.mask
+        smaller = np.count_nonzero(other.mask) < area
+        if other.id != found.id and (smaller or not smaller_only):
+            hidden |= other.mask if smaller else other.mask & ~found.mask
     radius = max(1, round(MASK_MARGIN * max(hidden.shape)))
     return cv2.dilate(hidden.astype(np.uint8), np.ones((2 * radius + 1,) * 2, np.uint8)).astype(bool)
 

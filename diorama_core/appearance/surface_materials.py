@@ -10,9 +10,10 @@ import numpy as np
 from jaxtyping import Bool, Float, Float32, UInt8
 
 from diorama_core.appearance.light import Shade
+from diorama_core.appearance.plainness import shows_plain
 from diorama_core.appearance.surface_view import SurfaceView
 from diorama_core.appearance.texture_example import Example, best_example, tileable
-from diorama_core.io.srgb import linear_to_srgb, srgb_to_linear
+from diorama_core.io.srgb import linear_to_srgb, luminance, srgb_to_linear
 from diorama_core.library.slots import Role, Slot
 
 READ_ROLES: frozenset[Role] = frozenset(
@@ -20,6 +21,10 @@ READ_ROLES: frozenset[Role] = frozenset(
 )
 PATTERNED_ROLES = READ_ROLES - {"metal", "leaf"}
 """Of which a texture is taken: what metal mirrors and how leaves lie is no pattern."""
+WOVEN_ROLES: frozenset[Role] = frozenset({"fabric", "leather", "paper", "material"})
+"""Of which the library's own texture gives way to a plain colour where the photo shows none; wood keeps its grain."""
+PLAIN_PX = 4
+"""Sides of the picture of a plain surface."""
 ROUGHNESS: Mapping[str, tuple[float, float]] = {
     "fabric": (0.92, 0.0), "leather": (0.45, 0.0), "wood": (0.55, 0.0), "metal": (0.35, 0.45), "stone": (0.4, 0.0),
     "paint": (0.55, 0.0), "wicker": (0.85, 0.0), "paper": (0.9, 0.0), "leaf": (0.55, 0.0), "material": (0.7, 0.0),
@@ -34,6 +39,11 @@ part of the object (white bedding on a dark bed), and the slot is read where the
 the whole, mask and pose do not belong together, and the mask alone counts."""
 MIN_VISIBLE = 0.015
 """And from at least this share of all that is seen of its object: a pose a little off misses smaller ones."""
+BESIDE = 1.3
+"""A colour is rather that of what is behind when it covers so many times more of that: much of a room is grey."""
+COLOURED, CROSSED = 25.0, 4.0
+"""Another material than its neighbour's of one vivid colour (chroma) with a neighbour of so many times its pixels is
+not read: a metal arm that crosses a red back in the picture is not red."""
 BIN_LAB = np.array([40.0, 20.0, 20.0])
 NEAR_LAB = 20.0
 NORMAL_CELL = 0.35
@@ -71,6 +81,7 @@ def slot_pixels(
     rgb: UInt8[np.ndarray, "h w 3"],
     visible: Bool[np.ndarray, "h w"],
     unhidden: Bool[np.ndarray, "h w"],
+    background: Bool[np.ndarray, "h w"],
 ) -> tuple[SlotPixels, ...]:
     """The slots that are seen well enough, with the pixels of their main colours.
 
@@ -80,6 +91,7 @@ def slot_pixels(
         rgb: The photo.
         visible: The object's inner pixels, without what stands before it.
         unhidden: Pixels in the object's box that nothing else hides; of use where the mask is doubtful.
+        background: Pixels in its box that show what is behind or below it.
     """
     seen, colours = view.of(visible) & (view.slot >= 0), view.of(rgb)
     shown = view.of(unhidden) & (cv2.erode((view.slot >= 0).astype(np.uint8), np.ones((5, 5), np.uint8)) > 0)
@@ -94,13 +106,17 @@ def slot_pixels(
         read = slot.role in READ_ROLES or (slot.main and slot.role == "glass")
         if read and count * view.step**2 >= MIN_PIXELS and count >= MIN_VISIBLE * max(seen.sum(), shown.sum()):
             of_slots[index] = mine
-    beside = view.of(unhidden) & ~view.of(visible) & (view.slot < 0)
+    beside = view.of(background) & (view.slot < 0)
     seeds = _own_colours(lab, of_slots, beside)
     found = []
+    near = {index: mine & _alike(lab, seeds[index]) for index, mine in of_slots.items()}
     for index, mine in of_slots.items():
-        near = mine & _alike(lab, seeds[index])
-        if near.sum() >= MIN_SHARE * mine.sum():
-            found.append(SlotPixels(slots[index], index, near, mine))
+        unlike = [k for k in of_slots if slots[k].role != slots[index].role and _is_near(seeds[k] - seeds[index])]
+        crossed = np.hypot(*seeds[index][1:]) >= COLOURED and any(
+            near[k].sum() >= CROSSED * near[index].sum() for k in unlike
+        )
+        if near[index].sum() >= MIN_SHARE * mine.sum() and not crossed:
+            found.append(SlotPixels(slots[index], index, near[index], mine))
     return tuple(found)
 
 
@@ -112,19 +128,22 @@ def _own_colours(
     """The colour of every slot: of those that cover much of it, the first that is not rather its neighbour's.
 
     A pose a little off, a duvet that hangs over its bed, and the floor between legs put other colours on a slot. Such
-    a colour covers more of another slot, or of what is `beside` the object; where a slot has no other it keeps it.
+    a colour covers more of another slot, in share and in pixels, or of what is `beside` the object; where all of a
+    slot's colours do, the one of which that is least true is taken. A large slot does not give up its colour because a
+    small one that crosses it is all of it.
     """
     options = {index: _colours_of(lab, mine) for index, mine in of_slots.items()}
     seeds = {index: own[0] for index, own in options.items()}
     for index, mine in of_slots.items():
         others = [(of_slots[k], seeds[k]) for k in of_slots if k != index]
+        own = []
         for seed in options[index]:
-            share = _share(lab, mine, seed)
-            elsewhere = [_share(lab, where, seed) for where, main in others if _is_near(main - seed)]
-            elsewhere += [_share(lab, beside, seed)] if beside.sum() >= MIN_PIXELS else []
-            if share >= max(elsewhere, default=0.0):
-                seeds[index] = seed
-                break
+            share, pixels = _share(lab, mine, seed), float(_alike(lab, seed)[mine].sum())
+            alike = [where for where, main in others if _is_near(main - seed)]
+            elsewhere = [_share(lab, w, seed) for w in alike if float(_alike(lab, seed)[w].sum()) >= pixels]
+            elsewhere += [_share(lab, beside, seed) / BESIDE] if beside.sum() >= MIN_PIXELS else []
+            own.append(share / max([share, *elsewhere, 1e-9]))
+        seeds[index] = options[index][int(np.argmax(own))]
     return seeds
 
 
@@ -152,22 +171,23 @@ def _is_near(difference: np.ndarray) -> np.ndarray:
 
 def shade_of(view: SurfaceView, pixels: SlotPixels, rgb: UInt8[np.ndarray, "h w 3"]) -> Shade:
     """How bright the slot is at each of its normals."""
-    linear = srgb_to_linear(view.of(rgb)[pixels.near] / 255.0) @ np.array([0.2126, 0.7152, 0.0722])
+    linear = luminance(srgb_to_linear(view.of(rgb)[pixels.near] / 255.0))
     cells, label = np.unique(np.round(view.normals_world[pixels.near] / NORMAL_CELL), axis=0, return_inverse=True)
     count = np.bincount(label.ravel(), minlength=len(cells))
     chosen = [k for k in range(len(cells)) if count[k] >= MIN_FACE_PIXELS]
     of = [label.ravel() == k for k in chosen]
     normals = np.array([view.normals_world[pixels.near][m].mean(axis=0) for m in of]).reshape(-1, 3)
-    luminance = np.array([max(float(np.median(linear[m])), 1e-4) for m in of])
+    brightness = np.array([max(float(np.median(linear[m])), 1e-4) for m in of])
     weight = np.array([float(m.mean()) for m in of])
-    return Shade(normals, luminance, weight)
+    return Shade(normals, brightness, weight)
 
 
 def appearance_of(
     view: SurfaceView,
     pixels: SlotPixels,
     rgb: UInt8[np.ndarray, "h w 3"],
-    light: Float32[np.ndarray, "h w"],
+    light: Float32[np.ndarray, "h w 3"],
+    weave: UInt8[np.ndarray, "th tw 3"] | None = None,
 ) -> SlotAppearance:
     """The slot's material under a light.
 
@@ -176,9 +196,10 @@ def appearance_of(
         pixels: Those of the slot.
         rgb: The photo.
         light: How much falls on every pixel of the photo.
+        weave: The texture that the slot has in the library; it gives way to a plain one where the photo shows none.
     """
     linear = srgb_to_linear(view.of(rgb)[pixels.near] / 255.0)
-    lit = view.of(light)[pixels.near][:, None]
+    lit = view.of(light)[pixels.near]
     albedo = np.median(linear / lit, axis=0)
     albedo *= min(1.0, MAX_LINEAR / max(float(albedo.max()), 1e-6))  # not channel by channel: the hue stays
     red, green, blue = (float(c) for c in linear_to_srgb(albedo))
@@ -186,7 +207,11 @@ def appearance_of(
     if pixels.slot.role in PATTERNED_ROLES:
         example = best_example(view, pixels.mine, pixels.near, rgb)
     if example is None:
-        return SlotAppearance(pixels.slot, (red, green, blue), None, 1.0)
+        tile_m = pixels.slot.tile_m if pixels.slot.role in WOVEN_ROLES else None
+        if weave is None or tile_m is None or not shows_plain(view, pixels.near, rgb, weave, tile_m):
+            return SlotAppearance(pixels.slot, (red, green, blue), None, 1.0)
+        plain = np.rint(255 * np.clip([red, green, blue], 0, 1)).astype(np.uint8)
+        return SlotAppearance(pixels.slot, (red, green, blue), np.tile(plain, (PLAIN_PX, PLAIN_PX, 1)), tile_m)
     texture = tileable(_in_albedo(example, albedo))
     return SlotAppearance(pixels.slot, (red, green, blue), texture, example.texel_m * texture.shape[0])
 

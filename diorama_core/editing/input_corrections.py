@@ -11,7 +11,7 @@ from jaxtyping import Bool
 
 from diorama_core.artefacts import Box, Inputs, LabelledBox, Photo
 from diorama_core.geometry.projection import box_iou
-from diorama_core.library.taxonomy import resolve
+from diorama_core.library.labels import understand_label
 
 SAME_BOX_IOU = 0.98
 """Boxes that overlap so much are the same one, written with fewer digits."""
@@ -80,7 +80,7 @@ def same_object(boxes: Sequence[LabelledBox], box: Box) -> int | None:
 
 def labelled_box(box: Box, label: str) -> LabelledBox:
     """A box with a name as it was typed, and the category that it means."""
-    return LabelledBox(box, resolve(label).category.name, label)
+    return LabelledBox(box, understand_label(label).category.name, label)
 
 
 def boxes_json(boxes: Sequence[LabelledBox], photo: Photo) -> bytes:

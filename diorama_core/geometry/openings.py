@@ -57,13 +57,27 @@ def with_openings(scene: Scene) -> Scene:
 
 def cut_wall(wall: Plane, fills: Collection[SceneObject]) -> Plane:
     """A wall without what doors and windows cover; whole where nothing or no single piece would be left."""
+    return _without(wall, [item.corners_world for item in fills], FRAME_M)
+
+
+def with_hole(wall: Plane, corners: Float[np.ndarray, "n 3"]) -> Plane:
+    """A wall with a passage or a hatch that nothing fills; whole where nothing or no single piece would be left.
+
+    Args:
+        wall: the wall.
+        corners: of the upright rectangle that is open, before or behind the wall.
+    """
+    return _without(wall, [corners], 0.0)
+
+
+def _without(wall: Plane, covered: Sequence[Float[np.ndarray, "_ 3"]], frame_m: float) -> Plane:
     axes = np.stack(plane_axes(wall.normal), axis=1)
     outline = wall.polygon @ axes
     foot = float(outline[:, 1].min())
     rest = manifold3d.CrossSection([outline], manifold3d.FillRule.NonZero)
     whole = rest.area()
-    for item in fills:
-        rest -= _covered(item.corners_world @ axes, foot)
+    for corners in covered:
+        rest -= _covered(corners @ axes, foot, frame_m)
     if rest.area() < 1e-4 or rest.area() > whole - 1e-6 or len(rest.decompose()) != 1:
         return wall
     contours = [np.asarray(c, dtype=np.float64) for c in rest.to_polygons()]
@@ -80,10 +94,10 @@ def _beside(item: SceneObject, wall: Plane) -> bool:
     return turned and float(ends.min()) <= along <= float(ends.max())
 
 
-def _covered(corners: Contour, foot: float) -> manifold3d.CrossSection:
-    """The rectangle that a door or window covers on its wall, a little smaller; down to the floor where it stands."""
-    (left, low), (right, high) = corners.min(axis=0) + FRAME_M, corners.max(axis=0) - FRAME_M
-    if low - FRAME_M < foot + FOOT_M:
+def _covered(corners: Contour, foot: float, frame_m: float) -> manifold3d.CrossSection:
+    """The rectangle that a door or window covers on its wall, less its frame; down to the floor where it stands."""
+    (left, low), (right, high) = corners.min(axis=0) + frame_m, corners.max(axis=0) - frame_m
+    if low - frame_m < foot + FOOT_M:
         low = foot - 1.0
     if right - left < MIN_SIDE_M or high - low < MIN_SIDE_M:
         return manifold3d.CrossSection()

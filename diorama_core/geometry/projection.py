@@ -101,7 +101,8 @@ def _clipped_bounds(
     a, b = _edges().T
     low, high = _segment_bounds(points[:, a], points[:, b], slack[:, a], slack[:, b], k)
     outside = slack < 0
-    near, (left, right, top, bottom) = slack[0], outside[1:].any(axis=1)
+    near = slack[0]
+    left, right, top, bottom = np.any(outside[1:], axis=1)
     straddling = np.flatnonzero(outside[0].any(axis=0) & (near > 0).any(axis=0))
     if len(straddling):
         cut_low, cut_high = _near_cut_bounds(points.take(straddling, axis=-1), near.take(straddling, axis=-1), k)

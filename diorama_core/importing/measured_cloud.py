@@ -17,6 +17,7 @@ import cv2
 import numpy as np
 from jaxtyping import Float
 from scipy import ndimage
+from scipy.spatial import cKDTree
 from shapely.geometry import MultiPolygon, Polygon, box
 from shapely.ops import unary_union
 
@@ -34,6 +35,10 @@ LEVEL_M = 0.02
 """Of the histogram of heights."""
 LEVEL_SHARE = 0.3
 """Of the densest level that another one has to be a floor or a ceiling."""
+LEVEL_PEAK = 1.5
+"""As many points as at most heights are on a floor or a ceiling."""
+BEYOND_SHARE = 0.1
+"""Of all points that may lie below the floor, or above the ceiling."""
 LOWEST_ROOM_M = 1.8
 LINE_M = 0.03
 """Of the histograms across walls."""
@@ -52,6 +57,8 @@ OFF_M = 0.06
 """Points nearer to floor, ceiling or walls are theirs."""
 CELL_M = 0.06
 """Things are apart where so much is free between them."""
+SPARSE = 2.0
+"""As many distances between points must be free in a thin scan."""
 MIN_SIZE_M, MIN_CELLS = 0.15, 12
 MIN_TOP_M = 0.12
 """Of what lies on something."""
@@ -87,24 +94,27 @@ def measured_cloud(cloud: PointCloud) -> MeasuredRoom:
     Raises:
         InputError: there is no floor in it.
     """
+    _check_extent(cloud.points)
     T = np.eye(4)
     T[:3, :3] = _upright_axes(cloud)
     points = _thinned(cloud.points @ T[:3, :3].T)
-    floor_m, top_m, closed = _levels(points[:, 2])
+    levels = _levels(points[:, 2])
+    floor_m, top_m = levels.floor_m, levels.top_m - levels.floor_m
     points = points - [0.0, 0.0, floor_m]
-    top_m -= floor_m
     turn = yaw_rotation(-_heading(points, top_m))
     points = points @ turn.T
     T[2, 3] = -floor_m
     T[:3] = turn @ T[:3]
-    outline = _outline(points, top_m)
+    outline = _outline(points, top_m, walls_alone=not (levels.floored or levels.closed))
     room = _Room(outline, 0.0, top_m)
     walls, ring = _walls(room), np.asarray(outline.exterior.coords)[:-1]
     openings = scanned_openings(points, walls, ring)
     boxes, left_out = _boxes(points, room)
     boxes = tuple(b for b in boxes if not any(_is_part(b, o) for o in openings))
     notes = [*cloud.notes, "kinds of things are guessed; correct them where they are wrong"]
-    if not closed:
+    if not levels.floored:
+        notes.append("no floor was scanned; it is where points begin")
+    if not levels.closed:
         notes.append("no ceiling was scanned; walls end where points end")
     if left_out:
         notes.append(f"{left_out} smaller things were left out")
@@ -131,11 +141,15 @@ def _sharpness(values: Float[np.ndarray, "n"], step: float) -> float:
     return float((counts.astype(float) ** 2).sum()) / max(len(values), 1) ** 2
 
 
-def _thinned(points: Float[np.ndarray, "n 3"]) -> Float[np.ndarray, "m 3"]:
-    """One point for each occupied voxel, so that what was scanned from near does not outweigh the rest."""
+def _check_extent(points: Float[np.ndarray, "n 3"]) -> None:
     low, high = np.quantile(points, [0.001, 0.999], axis=0)
     if not (high - low < 60.0).all():
         raise InputError("the points reach over more than 60 m; cut out one room, in metres")
+
+
+def _thinned(points: Float[np.ndarray, "n 3"]) -> Float[np.ndarray, "m 3"]:
+    """One point for each occupied voxel, so that what was scanned from near does not outweigh the rest."""
+    low, high = np.quantile(points, [0.001, 0.999], axis=0)
     points = points[((points > low - 0.5) & (points < high + 0.5)).all(axis=1)]
     cells = np.floor((points - points.min(axis=0)) / VOXEL_M).astype(np.int64)
     counts = cells.max(axis=0) + 1
@@ -146,21 +160,35 @@ def _thinned(points: Float[np.ndarray, "n 3"]) -> Float[np.ndarray, "m 3"]:
     return sums / np.diff(np.append(starts, len(points)))[:, None]
 
 
-def _levels(heights: Float[np.ndarray, "n"]) -> tuple[float, float, bool]:
-    """Heights of the floor and the room's top, and whether that is a ceiling."""
+@dataclass(frozen=True)
+class _Levels:
+    """Heights of the floor and of the room's top."""
+
+    floor_m: float
+    top_m: float
+    floored: bool
+    """Whether the floor was scanned."""
+    closed: bool
+    """Whether the top is a ceiling."""
+
+
+def _levels(heights: Float[np.ndarray, "n"]) -> _Levels:
     low, high = float(heights.min()), float(heights.max())
-    counts, edges = np.histogram(heights, np.arange(low, high + 2 * LEVEL_M, LEVEL_M))
-    smooth = np.convolve(counts, [1, 1, 1], "same")
-    strong = np.flatnonzero(smooth >= LEVEL_SHARE * smooth.max())
-    floor_bin = int(strong[0])
-    floor_m = _at(heights, float(edges[floor_bin]), 2.5 * LEVEL_M)
-    above = [int(b) for b in strong if edges[b] > floor_m + LOWEST_ROOM_M]
-    if above:
-        return floor_m, _at(heights, float(edges[above[-1]]), 2.5 * LEVEL_M), True
-    top = float(np.quantile(heights, 0.999))
-    if top < floor_m + 0.5:
+    counts, edges = np.histogram(heights, np.arange(low, max(high, low + LEVEL_M) + 2 * LEVEL_M, LEVEL_M))
+    smooth = np.convolve(counts, [1, 1, 1], "same")[: len(counts)]
+    walls = float(np.median(smooth[smooth > 0]))  # are in every level
+    strong = np.flatnonzero((smooth >= LEVEL_SHARE * smooth.max()) & (smooth > LEVEL_PEAK * walls))
+    # A table is the lowest level where nobody scanned the floor: walls go on below it.
+    floors = [b for b in strong[:1] if (heights < edges[b] - LEVEL_M).mean() < BEYOND_SHARE]
+    floored, closed = bool(floors), False
+    floor_m = _at(heights, float(edges[floors[0]]), 2.5 * LEVEL_M) if floored else float(np.quantile(heights, 0.005))
+    top_m = float(np.quantile(heights, 0.999))
+    for b in strong[-1:]:
+        closed = bool(edges[b] > floor_m + LOWEST_ROOM_M and (heights > edges[b] + 2 * LEVEL_M).mean() < BEYOND_SHARE)
+        top_m = _at(heights, float(edges[b]), 2.5 * LEVEL_M) if closed else top_m
+    if top_m < floor_m + 0.5:
         raise InputError("there is no room in the points: nothing rises from their lowest level; check that up is up")
-    return floor_m, top, False
+    return _Levels(floor_m, top_m, floored, closed)
 
 
 def _at(values: Float[np.ndarray, "n"], near: float, within: float) -> float:
@@ -185,8 +213,14 @@ def _band(points: Float[np.ndarray, "n 3"], top_m: float) -> Float[np.ndarray, "
     return points[inside] if inside.sum() >= 200 else points
 
 
-def _outline(points: Float[np.ndarray, "n 3"], top_m: float) -> Polygon:
-    """The room seen from above: cells between wall lines that were scanned."""
+def _outline(points: Float[np.ndarray, "n 3"], top_m: float, *, walls_alone: bool) -> Polygon:
+    """The room seen from above: cells between wall lines that were scanned.
+
+    Args:
+        points: the floor at 0.
+        top_m: height of the room.
+        walls_alone: whether neither floor nor ceiling were scanned: all cells are of the room then.
+    """
     lines = [_lines(points, top_m, axis) for axis in (0, 1)]
     plan = points[:, :2]
     cells = []
@@ -194,7 +228,7 @@ def _outline(points: Float[np.ndarray, "n 3"], top_m: float) -> Polygon:
         for y0, y1 in zip(lines[1][:-1], lines[1][1:], strict=True):
             inside = plan[((plan > [x0, y0]) & (plan < [x1, y1])).all(axis=1)]
             grid = np.unique(np.floor((inside - [x0, y0]) / SPAN_M).astype(int), axis=0)
-            if len(grid) * SPAN_M**2 >= SCANNED_SHARE * (x1 - x0) * (y1 - y0):
+            if walls_alone or len(grid) * SPAN_M**2 >= SCANNED_SHARE * (x1 - x0) * (y1 - y0):
                 cells.append(box(x0, y0, x1, y1))
     whole = unary_union(cells)
     largest = max(whole.geoms, key=lambda p: p.area) if isinstance(whole, MultiPolygon) else whole
@@ -252,7 +286,7 @@ def _boxes(points: Float[np.ndarray, "n 3"], room: _Room) -> tuple[tuple[Measure
     if not len(left):
         return (), 0
     low = left.min(axis=0)
-    cells = np.floor((left - low) / CELL_M).astype(int)
+    cells = np.floor((left - low) / max(CELL_M, SPARSE * _spacing(left))).astype(int)
     grid = np.zeros(cells.max(axis=0) + 1, bool)
     grid[tuple(cells.T)] = True
     labels, count = ndimage.label(grid, np.ones((3, 3, 3)))
@@ -270,6 +304,15 @@ def _boxes(points: Float[np.ndarray, "n 3"], room: _Room) -> tuple[tuple[Measure
         found.append(around)
         found += [replace(_box(top, room), kinds=_kinds("surface")) for top in on_it if _is_thing(top)]
     return tuple(found[:MAX_BOXES]), max(0, len(found) - MAX_BOXES)
+
+
+def _spacing(points: Float[np.ndarray, "n 3"]) -> float:
+    """Usual distance from a point to the next one."""
+    if len(points) < 2:
+        return 0.0
+    asked = points[:: max(1, len(points) // 2000)]
+    distances, _ = cKDTree(points).query(asked, k=[2])
+    return float(np.median(distances))
 
 
 def _middle_extent(points: Float[np.ndarray, "n 3"]) -> float:

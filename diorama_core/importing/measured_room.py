@@ -14,7 +14,7 @@ from jaxtyping import Float
 from shapely.geometry import MultiPoint, MultiPolygon, Point, Polygon
 from shapely.ops import polygonize, snap, unary_union
 
-from diorama_core.geometry.openings import STANDS_OUT_M
+from diorama_core.geometry.openings import STANDS_OUT_M, with_hole
 from diorama_core.importing.opening import Opened
 from diorama_core.importing.point_files import ScanPhoto
 from diorama_core.library.record import Shape, ShapeLibrary
@@ -104,6 +104,7 @@ def opened_room(room: MeasuredRoom, library: ShapeLibrary) -> Opened:
     floor_m = _floor_height(room)
     outline = _outline(room)
     walls = tuple(_wall(w, outline) for w in room.walls)
+    walls, unused = _with_passages(walls, room.openings)
     planes = (*_floor(outline, floor_m), *walls, *_ceiling(outline, walls))
     boxes = [_facing_the_room(_resting(b, floor_m), walls) for b in room.boxes]
     names = _Names()
@@ -114,9 +115,10 @@ def opened_room(room: MeasuredRoom, library: ShapeLibrary) -> Opened:
     notes = list(room.notes)
     for opening in room.openings:
         wall = _wall_of(opening, walls)
-        if opening.kind == "opening" or wall is None:
-            reason = "is not in the scene" if wall is not None else "has no wall and was left out"
+        if wall is None or opening in unused:
+            reason = "has no wall and was left out" if wall is None else "would leave nothing of its wall"
             notes.append(f"{opening.kind} of {opening.width_m:.2f} x {opening.height_m:.2f} m {reason}")
+        if wall is None or opening.kind == "opening":
             continue
         item = _hung(names, opening, wall, library)
         objects.append(item)
@@ -338,6 +340,25 @@ def _wall_of(opening: MeasuredOpening, walls: Sequence[Plane]) -> Plane | None:
         (abs(float(w.normal @ opening.centre) - w.offset), w.id, w) for w in walls if _beside(w, opening.centre, 0.0)
     ]
     return min(near)[2] if near and min(near)[0] < AT_WALL_M else None
+
+
+def _with_passages(
+    walls: tuple[Plane, ...], openings: Sequence[MeasuredOpening]
+) -> tuple[tuple[Plane, ...], list[MeasuredOpening]]:
+    """The walls with the openings that have neither a door nor a window, and those for which a wall is too small."""
+    cut, unused = {w.id: w for w in walls}, []
+    for opening in openings:
+        wall = _wall_of(opening, walls)
+        if opening.kind != "opening" or wall is None:
+            continue
+        side = np.cross([0.0, 0.0, 1.0], wall.normal) * opening.width_m / 2
+        up = np.array([0.0, 0.0, opening.height_m / 2])
+        corners = opening.centre + np.array([a * side + b * up for a in (-1, 1) for b in (-1, 1)])
+        there = with_hole(cut[wall.id], corners)
+        if there is cut[wall.id]:
+            unused.append(opening)
+        cut[wall.id] = there
+    return tuple(cut.values()), unused
 
 
 def _hung(names: _Names, opening: MeasuredOpening, wall: Plane, library: ShapeLibrary) -> SceneObject:

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from jaxtyping import UInt8
 
-from diorama_core.artefacts import Inputs, Photo
+from diorama_core.artefacts import Inputs, LabelledBox, Photo
 from diorama_core.errors import InputError
 from diorama_core.importing.marked import MarkedFile
 from diorama_core.importing.point_files import CLOUD_SUFFIXES
@@ -41,6 +41,8 @@ class Opened:
     """Where the scene came from, as the file says."""
     photo: Photo | None = None
     """The photo, where the file holds it."""
+    boxes: tuple[LabelledBox, ...] = ()
+    """What is marked in the photo."""
 
     @property
     def inputs(self) -> Inputs | None:
@@ -48,7 +50,7 @@ class Opened:
         if self.photo is None:
             return None
         camera = self.scene.camera
-        return Inputs(photo=self.photo, intrinsics=None if camera is None else camera.intrinsics)
+        return Inputs(self.photo, self.boxes, intrinsics=None if camera is None else camera.intrinsics)
 
 
 def marked_file(path: Path) -> MarkedFile | None:

@@ -18,6 +18,7 @@ from jaxtyping import Float
 from PIL import Image
 
 from diorama_core.errors import DioramaError, InputError, UnavailableError
+from diorama_core.importing.cloud_units import Unit, likely_unit
 from diorama_core.io.bounded import megabytes, shortened
 from diorama_core.multiview.posed_photos import PosedPhoto, read_poses
 from diorama_core.scene.types import Camera
@@ -102,7 +103,26 @@ def _readers() -> Mapping[str, Callable[[Path], PointCloud]]:
 
 def _from_ply(path: Path) -> PointCloud:
     loaded = trimesh.load(path, process=False)
-    return PointCloud(_points_of(loaded), None)
+    if isinstance(loaded, trimesh.Trimesh) and len(loaded.vertices):  # points are spread by square metres
+        unit = likely_unit(np.asarray(loaded.vertices, np.float64), None)
+        loaded.apply_scale(unit.metres)
+        return PointCloud(_points_of(loaded), None, _unit_note(unit))
+    return _in_metres(PointCloud(_points_of(loaded), None))
+
+
+def _in_metres(cloud: PointCloud) -> PointCloud:
+    """The cloud of a format that does not say its unit."""
+    finite = cloud.points[np.isfinite(cloud.points).all(axis=1)]
+    if not len(finite):
+        return cloud
+    unit = likely_unit(finite, cloud.up)
+    return replace(cloud, points=cloud.points * unit.metres, notes=(*cloud.notes, *_unit_note(unit)))
+
+
+def _unit_note(unit: Unit) -> tuple[str, ...]:
+    if unit.metres == 1.0:
+        return ()
+    return (f"lengths were taken for {unit.name}: only so the points are about as large as a room",)
 
 
 def _points_of(loaded: object) -> Float[np.ndarray, "n 3"]:
@@ -126,7 +146,7 @@ def _from_las(path: Path) -> PointCloud:
         for chunk in reader.chunk_iterator(2_000_000):
             rows.append(np.column_stack([chunk.x, chunk.y, chunk.z])[::step])
     points = np.vstack(rows).astype(np.float64)
-    return PointCloud(points - np.append(np.median(points[:, :2], axis=0), 0.0), np.array([0.0, 0.0, 1.0]))
+    return _in_metres(PointCloud(points - np.append(np.median(points[:, :2], axis=0), 0.0), np.array([0.0, 0.0, 1.0])))
 
 
 def _from_e57(path: Path) -> PointCloud:

@@ -7,7 +7,7 @@ https://developer.apple.com/documentation/roomplan/capturedroom
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Literal, cast
@@ -21,9 +21,13 @@ from diorama_core.errors import InputError
 from diorama_core.importing.gltf import Z_UP
 from diorama_core.importing.measured_room import MeasuredBox, MeasuredOpening, MeasuredRoom, MeasuredWall
 from diorama_core.io.bounded import read_json, shortened
+from diorama_core.library.hyponyms import meanings
+from diorama_core.library.taxonomy import UNKNOWN, resolve
 
 MAX_JSON_BYTES = 64_000_000
 REACH_M = 10_000.0
+MIN_SIDE_M = 0.01
+"""Of the second longest side of a thing."""
 MAX_PARTS = 5_000
 """Walls, openings and objects of one scan."""
 BOX_FROM_SURFACE = np.array([[0.0, 1.0, 0.0], [0.0, 0.0, 1.0], [1.0, 0.0, 0.0]])
@@ -121,7 +125,7 @@ def _from_json(path: Path) -> MeasuredRoom | None:
         walls = tuple(_json_wall(row, number) for number, row in enumerate(names["walls"], 1))
         ids = {str(row.get("identifier")): wall.id for row, wall in zip(names["walls"], walls, strict=True)}
         openings = tuple(_json_opening(row, kind, ids) for key, kind in _SURFACES.items() for row in names[key])
-        boxes = tuple(_json_box(row) for row in names["objects"])
+        boxes, left_out = _upright(_json_box(row) for row in names["objects"])
         floors = [_json_outline(row) for row in names["floors"]]
     except (LookupError, TypeError, ValueError, AttributeError, ArithmeticError) as error:
         raise InputError(
@@ -129,8 +133,10 @@ def _from_json(path: Path) -> MeasuredRoom | None:
         ) from error
     outline, floor_m = _joined([Polygon(f[:, :2]) for f in floors], [float(f[:, 2].mean()) for f in floors])
     unsure = sum(box.confidence < CONFIDENCE["medium"] for box in boxes)
-    notes = (f"RoomPlan was unsure of {unsure} of {len(boxes)} objects",) if unsure else ()
-    return MeasuredRoom(walls, boxes, openings, outline, floor_m, notes)
+    curved = sum(row.get("curve") is not None for row in names["walls"])
+    notes = [f"RoomPlan was unsure of {unsure} of {len(boxes)} objects"] if unsure else []
+    notes += [f"{curved} curved walls are flat from end to end"] if curved else []
+    return MeasuredRoom(walls, boxes, openings, outline, floor_m, (*notes, *left_out))
 
 
 def _matrix(row: Mapping[str, Any]) -> Float[np.ndarray, "4 4"]:
@@ -169,7 +175,16 @@ def _json_opening(
     return MeasuredOpening(kind, _matrix(row)[:3, 3], float(size[0]), float(size[1]), wall)
 
 
-def _json_box(row: Mapping[str, Any]) -> MeasuredBox:
+def _upright(rows: Iterable[MeasuredBox | str]) -> tuple[tuple[MeasuredBox, ...], tuple[str, ...]]:
+    """The boxes, and a line for each that is none."""
+    made = list(rows)
+    lines = tuple(
+        f"a {word} lies on its side or has no size, and was left out" for word in made if isinstance(word, str)
+    )
+    return tuple(box for box in made if isinstance(box, MeasuredBox)), lines
+
+
+def _json_box(row: Mapping[str, Any]) -> MeasuredBox | str:
     attributes = row.get("attributes") or {}
     values = attributes.values() if isinstance(attributes, dict) else attributes
     kinds = _kinds(_word(row["category"]), tuple(_word(v) for v in values))
@@ -187,26 +202,35 @@ def _json_outline(row: Mapping[str, Any]) -> Float[np.ndarray, "n 3"]:
     return _moved(M, local)
 
 
+def kinds_of_label(label: str) -> frozenset[str]:
+    """What a thing may be that a scan calls so; nothing where RoomPlan has no such word."""
+    return frozenset(next((kinds for word, kinds in KINDS.items() if _spoken(word) == label), ()))
+
+
+def _spoken(word: str) -> str:
+    return re.sub(r"(?<=[a-z])(?=[A-Z])", " ", word).lower()
+
+
 def _kinds(word: str, attributes: tuple[str, ...] = ()) -> Mapping[str, float]:
-    kinds = KINDS.get(word, {"object": 1.0})
+    found = resolve(_spoken(word))
+    kinds = KINDS.get(word) or (meanings(_spoken(word), found.category.name) if found.exact else {UNKNOWN.name: 1.0})
     named = [kind for a in attributes for end, kind in ATTRIBUTES.items() if kind and a.lower().endswith(end.lower())]
     return {named[0]: 1.0} if named else kinds
 
 
 def _box(
     word: str, kinds: Mapping[str, float], M: Float[np.ndarray, "4 4"], size: Float[np.ndarray, "3"], confidence: float
-) -> MeasuredBox:
-    """A box in our axes, upright: x is RoomPlan's z, and z its y."""
+) -> MeasuredBox | str:
+    """A box in our axes, upright: x is RoomPlan's z, and z its y; its word where it lies on its side or is empty."""
     front = M[:3, 2].copy()
     front[2] = 0.0
     length = float(np.linalg.norm(front))
-    if length < 0.5:
-        raise ValueError(f"a {word} lies on its side")
+    if length < 0.5 or np.sort(size)[1] < MIN_SIDE_M:
+        return shortened(_spoken(word) or "thing")
     front /= length
     up = np.array([0.0, 0.0, 1.0])
     R = np.stack([front, np.cross(up, front), up], axis=1)
-    label = re.sub(r"(?<=[a-z])(?=[A-Z])", " ", word).lower()
-    return MeasuredBox(label, kinds, R, M[:3, 3].copy(), np.maximum(size[[2, 0, 1]], 0.01), confidence)
+    return MeasuredBox(_spoken(word), kinds, R, M[:3, 3].copy(), np.maximum(size[[2, 0, 1]], 0.01), confidence)
 
 
 def _moved(M: Float[np.ndarray, "4 4"], points: Float[np.ndarray, "*n 3"]) -> Float[np.ndarray, "*n 3"]:
@@ -242,7 +266,7 @@ def _from_stage(stage: Any, path: Path) -> MeasuredRoom | None:
     known = {name.lower(): name for name in KINDS}
     walls: list[MeasuredWall] = []
     openings: list[MeasuredOpening] = []
-    boxes: list[MeasuredBox] = []
+    boxes: list[MeasuredBox | str] = []
     floors = [mesh for mesh in meshes if mesh.word == "Floor"]
     for mesh in meshes:
         word = mesh.word.lower()
@@ -256,7 +280,8 @@ def _from_stage(stage: Any, path: Path) -> MeasuredRoom | None:
         elif word in known:
             boxes.append(_box(known[word], KINDS[known[word]], at, size, 1.0))
     outline, floor_m = _joined([f.outline for f in floors], [f.top_m for f in floors])
-    return MeasuredRoom(tuple(walls), tuple(boxes), tuple(openings), outline, floor_m)
+    upright, left_out = _upright(boxes)
+    return MeasuredRoom(tuple(walls), upright, tuple(openings), outline, floor_m, left_out)
 
 
 def _usd_wall(at: Float[np.ndarray, "4 4"], size: Float[np.ndarray, "3"], number: int) -> MeasuredWall:

@@ -25,6 +25,7 @@ from diorama_core.layout.problem.supports import (
     surfaces_below,
 )
 from diorama_core.library import taxonomy
+from diorama_core.library.company import SELDOM_CARRIED, often_carried
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.scene import edits
 from diorama_core.scene.frames import UP_WORLD
@@ -38,6 +39,8 @@ _NEVER_HANGS = taxonomy.with_kin(
     *("chair", "office chair", "armchair", "stool", "bench", "sofa", "ottoman", "bed", "dresser", "wardrobe"),
     *("table", "coffee table", "side table", "desk", "floor lamp", "refrigerator", "washing machine", "stove"),
 )
+_WALKED_ON = taxonomy.with_kin("rug")
+"""What furniture stands on and is on the floor nevertheless."""
 _SOMETIMES_HANGS = frozenset({"television", "monitor", "lamp", "clock", "speaker", "plant", "towel", "utensils"})
 """Of the kinds that are set down on things."""
 BEHIND = 0.9
@@ -45,7 +48,11 @@ BEHIND = 0.9
 UPRIGHT = 0.98
 """Surfaces whose normals have a smaller z carry nothing."""
 UNUSUAL_M = 0.3
-"""Objects that people put on surfaces hang on a wall only where nothing is below them: this is added to their gap."""
+"""Objects that people put on surfaces hang on a wall only where nothing is below them: this is added to their gap.
+
+Where distances are reasoned, it is added to the gap to what hardly ever carries their kind, too: a vase is on the
+night stand beside the bed.
+"""
 
 
 def checked_supports(
@@ -212,9 +219,10 @@ def _better(
     contradicted = gap > _tolerance(scene, item, edge, noise) or unusual
     options = []
     for other in _candidates(scene, library, item):
+        odd = 0.0 if noise.measured else UNUSUAL_M * _is_odd_company(scene, item, other)
         if other.parent == edge.parent or closes_cycle({s.child: s for s in scene.supports}, item.id, other.parent):
             continue
-        cost, limit = _gap(scene, library, item, other), _tolerance(scene, item, other, noise)
+        cost, limit = _gap(scene, library, item, other) + odd, _tolerance(scene, item, other, noise)
         beneath = scene.support_of(other.parent)
         between = beneath is not None and beneath.parent == edge.parent and _is_thin(scene, other.parent, limit)
         between = between and edge.relation == "placed on" and _carries(scene, other.parent)
@@ -242,6 +250,8 @@ def _candidates(scene: Scene, library: ShapeLibrary, item: SceneObject) -> list[
     ]
     if mount in ("surface", "wall") or (mount == "floor" and item.category not in _NEVER_HANGS):
         for other in scene.objects:
+            if mount == "floor" and other.category in _WALKED_ON:
+                continue
             edge, shape = Support(item.id, other.id), library.shape(other.shape_id)
             if surfaces_below(item, other, shape, under=1.0) and is_wide_enough(item, edge, other, shape):
                 found.append(edge)
@@ -269,6 +279,13 @@ def _is_unusual(scene: Scene, item: SceneObject, edge: Support) -> bool:
     return on_wall and taxonomy.resolve(item.category).category.mount == "surface"
 
 
+def _is_odd_company(scene: Scene, item: SceneObject, edge: Support) -> bool:
+    """Whether an edge puts an object on what hardly ever carries its kind."""
+    if not scene.has_object(edge.parent):
+        return False
+    return often_carried(item.category, scene.object(edge.parent).category) <= SELDOM_CARRIED
+
+
 def _carries(scene: Scene, object_id: str) -> bool:
     return taxonomy.resolve(scene.object(object_id).category).category.supports_objects
 
@@ -281,7 +298,8 @@ def _inside_m(scene: Scene, library: ShapeLibrary, item: SceneObject, edge: Supp
         (
             _overlap_m(item, other)
             for other in scene.objects
-            if surfaces_below(item, other, library.shape(other.shape_id), under=1.0)
+            if other.category not in _WALKED_ON
+            and surfaces_below(item, other, library.shape(other.shape_id), under=1.0)
             and is_wide_enough(item, Support(item.id, other.id), other, library.shape(other.shape_id))
         ),
         default=0.0,

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from diorama_core.library.taxonomy import with_kin
+from diorama_core.library.taxonomy import PORTABLE, UNKNOWN, category, with_kin
 
 
 @dataclass(frozen=True)
@@ -70,6 +70,16 @@ CARRIED_KINDS: frozenset[str] = frozenset(kind for row in CARRIED for kind in ro
 
 SELDOM_CARRIED, HARDLY_CARRIED = 0.3, 0.08
 """The same of kinds that lie on things and are not named, and of those that stand on floors or hang."""
+
+
+def often_carried(kind: str, carrier: str) -> float:
+    """How many times more often a kind lies on a carrier than it is met at all; 1 where nothing is known of either."""
+    row = next((row for row in CARRIED if carrier in row.carriers), None)
+    if row is None or kind == UNKNOWN.name:
+        return 1.0
+    lies = category(kind).mount == "surface" or kind in PORTABLE
+    return row.kinds.get(kind, SELDOM_CARRIED if lies else HARDLY_CARRIED)
+
 
 ROOMS: Mapping[str, frozenset[str]] = {
     "bedroom": frozenset({

@@ -107,16 +107,20 @@ _NEAR: dict[str, str] = {
     ),
     "cup": (
         "beaker, chalice, pencil holder, pen holder, toothbrush holder, soap dish, soap, egg cup, shot glass, "
-        "candle holder, salt shaker, pepper mill, thermos, can, tin can"
+        "candle holder, salt shaker, pepper mill, can, tin can"
     ),
-    "bottle": "flagon, water bottle, soap dispenser, shampoo, lotion, spray, beer bottle, perfume, ketchup, jerrycan",
+    "bottle": (
+        "flagon, thermos, vacuum flask, water bottle, soap dispenser, shampoo, lotion, spray, beer bottle, perfume, "
+        "ketchup, jerrycan"
+    ),
     "clock": (
         "timepiece, wristwatch, watch, thermostat, smoke detector, cuckoo clock, sundial, metronome, dartboard, "
         "light switch, switch, socket, power outlet, outlet, fire alarm, wall plaque"
     ),
     "box": (
         "parcel, package, bin box, cooler box, crate box, toolbox, briefcase, handbag, shopping bag, sack, packet, "
-        "tissue box, shoebox, tote, cat carrier, litter box, jewelry box, drawer box, block, cube, concrete block"
+        "tissue box, shoebox, tote, cat carrier, litter box, jewelry box, drawer box, block, cube, concrete block, "
+        "stapler, shoe, boot, slipper, sandal, trainer"
     ),
     "basket": (
         "laundry hamper, laundry bin, picnic basket, bread basket, bucket, pail, umbrella stand, creel, pram, "

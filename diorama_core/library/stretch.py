@@ -1,9 +1,8 @@
 """Shapes stretched by structure: legs, frames, boards and handles keep their thickness, only what lies between grows.
 
-Along each axis the shape is cut at the planes between which solid matter is thin: slabs, found from the areas of faces
-that face backward and forward along the axis, and narrow bodies such as round legs. Those intervals keep their
-thickness, the stretches between them take up the rest (as in non-homogeneous resizing, Kraevoy et al. 2008). Bodies
-that are small every way, such as handles and knobs, keep their form and follow what they sit on.
+Each axis is cut where matter is thin along it (`thin_matter`), whatever meshes and bodies the shape is made of. What is
+thin keeps its thickness, the rest takes up the change in proportion (as in non-homogeneous resizing, Kraevoy et al.
+2008). Bodies that are small every way, such as handles and knobs, keep their form and follow what they sit on.
 
 The result is a shape of the same bounding box, to be scaled as before: poses, collisions and files know one scale.
 """
@@ -19,25 +18,21 @@ from scipy.sparse import coo_matrix
 from scipy.sparse.csgraph import connected_components
 
 from diorama_core.library.slots import placed_vertices, transform_of
+from diorama_core.library.thin_matter import thin_matter
 
 Scale = tuple[float, float, float]
 EVEN: Scale = (1.0, 1.0, 1.0)
-STEP, MIN_UNEVEN = 0.1, 0.22
+STEP, MIN_UNEVEN = 0.02, 0.15
 """Scales are told apart in such steps of their logarithm, from such a difference on: nearly equal ones share."""
-THIN = 0.14
-"""An interval is thin below this share of the shape's extent."""
 SMALL = 0.22
 """A body is small when it is below this share of the extent along every axis."""
-MIN_FACE_SHARE = 0.004
-"""Of the shape's cross-section: faces of less area together bound nothing."""
-BINS = 400
-FACING = 0.9
-MOST_RIGID = 0.6
-"""Of an extent; where more is thin, the thickest intervals are stretched like the rest."""
+PLIABLE = 0.005
+"""How much of a change thin matter takes up against the rest: legs give a little where nothing else is left."""
 MIN_SLOPE, MAX_SLOPE = 0.25, 4.0
-"""Of what lies between, against an even stretch."""
+"""Of what lies between, against how large it was and against an even stretch."""
+_ROUNDS = 60
 END = 0.02
-"""Intervals that begin within this share of the extent from an end stay at that end."""
+"""Bodies that begin within this share of the height from the bottom are feet."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -78,8 +73,9 @@ def stretched_parts(parts: trimesh.Scene, scale: Scale) -> trimesh.Scene:
     names = [str(n) for n, m in parts.geometry.items() if isinstance(m, trimesh.Trimesh) and len(m.faces)]
     whole = trimesh.util.concatenate([_placed(parts, n) for n in names])
     bodies = _bodies(whole)
-    maps = [axis_map(whole, bodies, axis, scale[axis]) for axis in range(3)]
-    moved = _moved(np.asarray(whole.vertices), bodies, maps, scale, np.ptp(whole.bounds, axis=0))
+    vertices, faces = np.asarray(whole.vertices), np.asarray(whole.faces)
+    maps = [axis_map(vertices, faces, axis, scale[axis]) for axis in range(3)]
+    moved = _moved(vertices, bodies, maps, scale, np.ptp(whole.bounds, axis=0))
     scene, start = parts.copy(), 0
     for name in names:
         mesh = scene.geometry[name]
@@ -100,97 +96,41 @@ def stretched_parts(parts: trimesh.Scene, scale: Scale) -> trimesh.Scene:
     return scene
 
 
-def axis_map(whole: trimesh.Trimesh, bodies: Int[np.ndarray, "n"], axis: int, factor: float) -> AxisMap:
-    """The map of one axis that keeps thin intervals as thick as they are once it is scaled by `factor`.
+def axis_map(vertices: Float[np.ndarray, "n 3"], faces: Int[np.ndarray, "m 3"], axis: int, factor: float) -> AxisMap:
+    """The map of one axis that keeps what is thin as thick as it is once it is scaled by `factor`.
 
     Args:
-        whole: The shape.
-        bodies: The connected body that each vertex belongs to.
+        vertices: Of the shape.
+        faces: Of the shape.
         axis: 0, 1 or 2.
         factor: Scale of that axis.
     """
-    low, high = (float(v) for v in whole.bounds[:, axis])
-    extent = high - low
-    ends = AxisMap(np.array([low, high]), np.array([low, high]))
-    if abs(factor - 1.0) < 1e-6 or extent < 1e-6:
-        return ends
-    intervals = _merged([*_slabs(whole, axis), *_narrow_bodies(whole, bodies, axis)], extent)
-    if not intervals:
-        return ends
-    for keep in (1.0, 0.75, 0.5, 0.25):
-        found = _map(intervals, low, high, 1.0 + keep * (1.0 / factor - 1.0))
-        if found is not None:
-            return found
-    return ends
+    low, high = float(vertices[:, axis].min()), float(vertices[:, axis].max())
+    if abs(factor - 1.0) < 1e-6 or high - low < 1e-6:
+        return AxisMap(np.array([low, high]), np.array([low, high]))
+    grown = local_growth(thin_matter(vertices, faces, axis), factor)
+    values = np.concatenate([[0.0], np.cumsum(grown)]) / float(grown.sum())
+    changes = np.flatnonzero(np.abs(np.diff(grown)) > 1e-9) + 1
+    knots = np.concatenate([[0], changes, [len(grown)]])
+    return AxisMap(low + (high - low) * knots / len(grown), low + (high - low) * values[knots])
 
 
-def _map(intervals: list[tuple[float, float]], low: float, high: float, shrink: float) -> AxisMap | None:
-    """Intervals made `shrink` times as thick about their outer edge or their middle; None where no room is left."""
-    knots, values, near = [low], [low], END * (high - low)
-    for left, right in intervals:
-        at = low if left - low < near else high if high - right < near else (left + right) / 2
-        knots += [left, right]
-        values += [at + (left - at) * shrink, at + (right - at) * shrink]
-    knots.append(high)
-    values.append(high)
-    x, y = np.array(knots), np.array(values)
-    own = np.diff(x) > 1e-9
-    slopes = np.diff(y)[own] / np.diff(x)[own]
-    if (np.diff(y) < -1e-12).any() or slopes.min() < MIN_SLOPE or slopes.max() > MAX_SLOPE:
-        return None
-    retained = np.concatenate([[True], own])
-    return AxisMap(x[retained], y[retained])
+def local_growth(thin: Float[np.ndarray, " bins"], factor: float) -> Float[np.ndarray, " bins"]:
+    """By how much each slice grows when the whole grows by `factor`: hardly where matter is thin, the more elsewhere.
 
-
-def _slabs(whole: trimesh.Trimesh, axis: int) -> list[tuple[float, float]]:
-    """Thin solid matter between faces that face backward and the next ones that face forward."""
-    low, high = whole.bounds[:, axis]
-    extents = np.ptp(whole.bounds, axis=0)
-    section = float(np.prod(np.delete(extents, axis)))
-    normal = whole.face_normals[:, axis]
-    at = whole.triangles_center[:, axis]
-    bin_of = np.clip(((at - low) / (high - low) * BINS).astype(int), 0, BINS - 1)
-    backward, forward = (
-        np.bincount(bin_of[side], whole.area_faces[side], minlength=BINS)
-        for side in (normal < -FACING, normal > FACING)
-    )
-    starts = np.flatnonzero(backward > MIN_FACE_SHARE * section)
-    ends = np.flatnonzero(forward > MIN_FACE_SHARE * section)
-    found = []
-    for start in starts:
-        after = ends[ends >= start]
-        between = starts[(starts > start) & (starts < (after[0] if len(after) else 0))]
-        if len(after) and not len(between) and after[0] - start < THIN * BINS:
-            left = float(at[(bin_of == start) & (normal < -FACING)].min())
-            right = float(at[(bin_of == after[0]) & (normal > FACING)].max())
-            found.append((left, right))
-    return [(left, right) for left, right in found if right > left]
-
-
-def _narrow_bodies(whole: trimesh.Trimesh, bodies: Int[np.ndarray, "n"], axis: int) -> list[tuple[float, float]]:
-    """Intervals of bodies that are narrow along the axis and long along another: legs, rails, posts."""
-    extents = np.maximum(np.ptp(whole.bounds, axis=0), 1e-9)
-    low, high = _bounds(np.asarray(whole.vertices), bodies)
-    share = (high - low) / extents
-    narrow = (share[:, axis] < THIN) & (np.delete(share, axis, axis=1).max(axis=1) >= SMALL)
-    return [(float(a), float(b)) for a, b in zip(low[narrow, axis], high[narrow, axis], strict=True)]
-
-
-def _merged(intervals: list[tuple[float, float]], extent: float) -> list[tuple[float, float]]:
-    """Apart from one another, in order; where they would cover too much, thick ones are left out."""
-    chosen = sorted(intervals, key=lambda i: i[1] - i[0])
-    while chosen:
-        joined: list[tuple[float, float]] = []
-        for left, right in sorted(chosen):
-            if joined and left <= joined[-1][1] + 1e-6:
-                joined[-1] = (joined[-1][0], max(joined[-1][1], right))
-            else:
-                joined.append((left, right))
-        thin = [i for i in joined if i[1] - i[0] < 2 * THIN * extent]
-        if len(thin) == len(joined) and sum(b - a for a, b in joined) <= MOST_RIGID * extent:
-            return joined
-        chosen = chosen[:-1]
-    return []
+    Args:
+        thin: 0 to 1 by slice (`thin_matter`).
+        factor: Positive.
+    """
+    least, most = min(1.0, factor) * MIN_SLOPE, max(1.0, factor) * MAX_SLOPE
+    gives = 1.0 / (thin + PLIABLE)
+    # The growth of the whole rises with what every slice is asked for, so bisection finds it.
+    low, high = sorted((0.0, (most if factor > 1.0 else least - 1.0) / float(gives.min())))
+    for _ in range(_ROUNDS):
+        asked = (low + high) / 2
+        whole = float(np.clip(1.0 + asked * gives, least, most).mean())
+        low, high = (asked, high) if whole < factor else (low, asked)
+    return np.clip(1.0 + (low + high) / 2 * gives, least, most)
 
 
 def _moved(

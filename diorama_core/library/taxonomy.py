@@ -160,7 +160,7 @@ CATEGORIES: tuple[Category, ...] = (
     _c("pillow", (0.38, 0.48, 0.2), (0.2, 0.2, 0.3), "surface", synonyms="cushion, throw pillow, bolster", soft=True),
     _c("books", (0.15, 0.4, 0.3), (0.5, 0.4, 0.4), "surface", synonyms="book, book stack, stack of books, magazine, papers, paper, pile of books"),
     _c("plant", (0.9, 0.5, 0.5), (0.5, 0.4, 0.4), "floor", synonyms="potted plant, houseplant, pot plant, flower, flowers, tree, pottedplant, succulent", quarter_turns_free=True),
-    _c("vase", (0.3, 0.18, 0.18), (0.3, 0.3, 0.3), "surface", synonyms="urn, jug, pitcher, flower vase"),
+    _c("vase", (0.3, 0.18, 0.18), (0.3, 0.3, 0.3), "surface", synonyms="urn, jug, pitcher, flower vase", modes=((0.55, 0.32, 0.32, 0.3, 0.35, 0.35),)),
     _c("bowl", (0.1, 0.24, 0.24), (0.3, 0.25, 0.25), "surface"),
     _c("cup", (0.1, 0.1, 0.09), (0.2, 0.2, 0.2), "surface", synonyms="mug, coffee cup, teacup"),
     _c("bottle", (0.27, 0.08, 0.08), (0.2, 0.2, 0.2), "surface", synonyms="wine bottle, flask"),

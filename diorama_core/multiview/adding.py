@@ -7,7 +7,7 @@ fitted to all photos that show them; what a person moved stays.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -36,6 +36,7 @@ from diorama_core.multiview.rooms import (
     shown,
     track_name,
 )
+from diorama_core.pipeline.given_stages import GivenRoom
 from diorama_core.pipeline.stages import Stages
 from diorama_core.progress import Progress
 from diorama_core.protocols import LayoutStage
@@ -79,13 +80,16 @@ def with_photo(
     choose: Callable[[Inputs], Stages],
     layout: Callable[[frozenset[str]], LayoutStage],
     progress: Progress | None = None,
+    *,
+    measured_room: bool = False,
 ) -> Added:
     """The scene with one more photo whose camera is known.
 
     Args:
         scene: as it is now, floor at 0.
         known: photos of the scene with their cameras, and which objects are seen in them.
-        new: the photo; where nothing is marked in it, what a detector finds counts.
+        new: the photo; where nothing is marked in it, what a detector finds counts. Objects that it is known to show
+            keep their boxes; the others are found.
         movable: ids of objects and walls that may be put elsewhere, and of planes that may get new pictures: those
             where the program had put them.
         changeable: ids of objects that may get another shape and other colours: those that have what the program gave
@@ -94,6 +98,7 @@ def with_photo(
         choose: the stages for a photo.
         layout: the optimiser, given the ids that are free to move.
         progress: reports and cancellation.
+        measured_room: whether walls are where they were measured: new things have to fit in.
 
     Raises:
         InputError: nothing is marked in the photo or found in it.
@@ -115,7 +120,14 @@ def with_photo(
     ]
     sightings = {o.id: _boxes_of(o.id, others) for o in scene.objects}
     objects = [o for o in scene.objects if not o.hidden]
-    claimed = _claimed(objects, sightings, [photo for _, _, photo in others], own, movable)
+    told = {
+        box: item
+        for item in objects
+        for name, at in new.seen
+        if name == item.id and (box := _same(at, read)) is not None
+    }
+    rest = [o for o in objects if o not in told.values()]
+    claimed = told | _claimed(rest, sightings, [photo for _, _, photo in others], own, movable, set(told))
     progress.report(0.35, "joining objects")
     if len(others) == 1:
         pairs = [(sightings[item.id][0][1], box) for box, item in claimed.items() if sightings[item.id]]
@@ -138,9 +150,10 @@ def with_photo(
         for box, item in claimed.items()
         if item.id in changeable and (share := _share_of_new(sightings[item.id], others, own, box)) is not None
     }
-    scene, names, textures = _with_new(scene, read, own, claimed, shares, library, progress.part(0.4, 0.8))
+    room = _room_of(scene, read) if measured_room else None
+    scene, names, textures = _with_new(scene, read, own, claimed, shares, library, progress.part(0.4, 0.8), room)
     ids = {**{box: item.id for box, item in claimed.items()}, **names}
-    if names:
+    if names and not measured_room:
         scene = containing_room(scene)
     free = (movable & {o.id for o in scene.objects}) | frozenset(names.values())
     if free:
@@ -157,6 +170,11 @@ def with_photo(
     photo = replace(new, inputs=inputs, camera=read.posed.camera, seen=seen)
     joined = tuple(item.id for item in claimed.values())
     return Added(scene, photo, tuple(names.values()), joined, textures)
+
+
+def _room_of(scene: Scene, read: ReadPhoto) -> GivenRoom:
+    world = moved_to_room(Scene(architecture=scene.architecture), np.linalg.inv(read.T_room_photo))
+    return GivenRoom(world.architecture)
 
 
 def _hangs(item: SceneObject, scene: Scene) -> bool:
@@ -238,7 +256,12 @@ def _share_of_new(
     own: RoomPhoto,
     box: int,
 ) -> float | None:
-    """How much a new photo counts for what an object is; None where a known one shows it about as well."""
+    """How much a new photo counts for what an object is; None where a known one shows it about as well.
+
+    What no photo has shown before is as the first one shows it.
+    """
+    if not sightings:
+        return 1.0
     known = max((shown(others[number][2], index) for number, index in sightings), default=0.0)
     new = shown(own, box)
     return new / (new + known) if known > 0.0 and new > CLEARLY_BETTER * known else None
@@ -250,15 +273,16 @@ def _claimed(
     others: Sequence[RoomPhoto],
     own: RoomPhoto,
     movable: frozenset[str],
+    told: Collection[int],
 ) -> dict[int, SceneObject]:
-    """By box of the new photo, the object of the scene that it shows."""
+    """By box of the new photo, the object of the scene that it shows; not for boxes of which that was told."""
     shared = np.zeros((len(objects), len(own.alone)))
     for k, item in enumerate(objects):
         seen = sightings[item.id]
         only = (others[seen[0][0]], seen[0][1]) if len(seen) == 1 and item.id in movable else None
         cuboid = JointCuboid(_middle(item), item.pose.yaw_rad, item.size_m, 0.0)
         for box, one in enumerate(own.alone):
-            if broad(item.category) == broad(one.kind.name):
+            if box not in told and broad(item.category) == broad(one.kind.name):
                 shared[k, box] = overlap(cuboid, only, own, box)
     return {box: objects[k] for box, k in claims(shared).items()}
 
@@ -276,6 +300,7 @@ def _with_new(
     shares: Mapping[int, float],
     library: ShapeLibrary,
     progress: Progress,
+    room: GivenRoom | None,
 ) -> tuple[Scene, dict[int, str], dict[str, UInt8[np.ndarray, "_ _ 3"]]]:
     """The scene with the objects of boxes that nobody claims, and those better that the photo shows better.
 
@@ -287,6 +312,7 @@ def _with_new(
         shares: how much the photo counts for those that it shows better, by box.
         library: where shapes come from.
         progress: reports and cancellation.
+        room: the scene's, in the photo's own world, where it was measured; otherwise the photo tells one.
 
     Returns:
         The scene, ids of new objects by box, and the pictures that new and better seen objects name.
@@ -296,7 +322,7 @@ def _with_new(
         return scene, {}, {}
     there_now = {box: scene.object(item.id) for box, item in claimed.items()}
     tracks = [_track(k, one, there_now.get(k)) for k, one in enumerate(own.alone)]
-    built = built_alone(read, 0, tracks, library, progress)
+    built = built_alone(read, 0, tracks, library, progress, room=room)
     there = moved_to_room(built.scene, read.T_room_photo)
     ids: dict[str, str] = {track_name(k): item.id for k, item in claimed.items()}
     names: dict[int, str] = {}

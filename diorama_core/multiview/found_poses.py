@@ -77,11 +77,25 @@ def find_poses(photos: Sequence[UnposedPhoto], progress: Progress | None = None)
         model.mkdir()
         models[best].write(str(model))
         poses = read_poses(model)
+        groups = [frozenset(names[m.image(i).name] for i in m.reg_image_ids()) for m in models.values()]
     joined = {names[p.name]: p for p in poses.photos}
-    apart = [p.name for p in photos if p.name not in joined]
-    note = (f"{', '.join(apart)}: too little in common with the other photos to find the camera; left out",)
+    left_out = [p.name for p in photos if p.name not in joined]
+    notes = _left_out(left_out, groups)
     placed = tuple(replace(joined[p.name], name=p.name) for p in photos if p.name in joined)
-    return replace(poses, photos=placed, notes=(*poses.notes, *(note if apart else ())))
+    return replace(poses, photos=placed, notes=(*poses.notes, *notes), left_out=tuple(left_out))
+
+
+def _left_out(names: Sequence[str], groups: Sequence[frozenset[str]]) -> tuple[str, ...]:
+    """A line for photos that join one another, and one for those that join none."""
+    rest, lines = list(names), []
+    for group in sorted(groups, key=lambda g: (-len(g), sorted(g))):
+        alike = [name for name in rest if name in group]
+        if len(alike) > 1:
+            lines.append(f"{', '.join(alike)}: join one another only, as photos of another room do; left out")
+            rest = [name for name in rest if name not in group]
+    if rest:
+        lines.append(f"{', '.join(rest)}: too little in common with the other photos to find the camera; left out")
+    return tuple(lines)
 
 
 def common_points(

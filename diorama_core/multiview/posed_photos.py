@@ -62,6 +62,8 @@ class Poses:
     up: Float[np.ndarray, "3"] | None
     """Direction against gravity, where the format says it."""
     notes: tuple[str, ...] = ()
+    left_out: tuple[str, ...] = ()
+    """Photos that were looked at and have no camera; the notes say why."""
 
 
 def read_poses(path: Path) -> Poses:

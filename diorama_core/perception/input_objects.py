@@ -14,7 +14,8 @@ from diorama_core.artefacts import Box, LabelledBox
 from diorama_core.errors import InputError
 from diorama_core.geometry.projection import box_iou
 from diorama_core.io.bounded import megabytes, parse_json, shortened
-from diorama_core.library.taxonomy import ARCHITECTURE_WORDS, UNKNOWN, resolve
+from diorama_core.library.labels import understand_label
+from diorama_core.library.taxonomy import ARCHITECTURE_WORDS, UNKNOWN
 from diorama_core.perception.input_depth import check_same_proportions
 from diorama_core.perception.input_photo import Source, load_pixels, open_picture
 
@@ -75,7 +76,7 @@ def read_boxes(
 
 def understood(word: str) -> tuple[str, str, str]:
     """Category, label and a note for the user, of a word that was given as a class."""
-    found = resolve(word)
+    found = understand_label(word)
     label = UNKNOWN.name if found.exact and found.category is UNKNOWN else word
     return found.category.name, label, found.note
 

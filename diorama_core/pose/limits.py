@@ -12,6 +12,7 @@ from diorama_core.library.taxonomy import UNKNOWN, SizePrior, category, with_kin
 _SIGMAS = 2.3
 _STRETCH_SHAPED = float(np.log(1.28))
 _STRETCH_BOXY = float(np.log(1.75))
+_STRETCH_FLAT = float(np.log(3.0))
 _THIN_M = 0.08
 _THIN_SHARE = 0.1
 """Of the largest extent: frames, panels and rugs come in any thickness."""
@@ -27,6 +28,9 @@ BOXY = with_kin(
     *("picture", "mirror", "curtain", "window", "door"),
 )
 """Categories that come in all proportions; the others keep theirs more strictly."""
+
+FLAT = with_kin("picture", "mirror", "window", "curtain", "rug")
+"""Categories of one flat piece that is made in any proportions: a tall narrow picture is no row of small ones."""
 
 _HARD_LIMITS_M: dict[str, tuple[int, float, float]] = {
     "chair": (2, 0.7, 1.2),
@@ -50,6 +54,8 @@ class SizeLimits:
     max_m: Float[np.ndarray, "3"]
     stretch_log: float
     """How far the logarithm of one axis' scale may be from the mean of the three."""
+    any_proportions: bool = False
+    """Whether things of its category come in all proportions, so that stretching says nothing against a shape."""
 
     @classmethod
     def of(
@@ -68,8 +74,9 @@ class SizeLimits:
         least, most = _category_range(category_name, observed_m, own)
         if measured:
             most[2] = max(most[2], observed_m[2])
-        stretch = _STRETCH_BOXY if category_name in BOXY else _STRETCH_SHAPED
-        return cls(own, least, most, stretch)
+        flat = category_name in FLAT and not measured  # measured proportions tell which frame it is
+        stretch = _STRETCH_FLAT if flat else _STRETCH_BOXY if category_name in BOXY else _STRETCH_SHAPED
+        return cls(own, least, most, stretch, flat)
 
     @property
     def thin(self) -> Bool[np.ndarray, "3"]:

@@ -3,7 +3,8 @@
 Retrieval gives the nearest design of the library. Here its parameters (`library.furniture.measures`: heights of bases
 and seats, forms of backs and legs, numbers of drawers, doors, boards, cushions and panes) are changed one after the
 other, and a change is kept where outline, measured depth and inner edges agree clearly better with it. Objects that
-share shape and size are fitted together and stay alike.
+share shape and size are fitted together and stay alike. Where the nearest design fits badly even at its best, the next
+ones are fitted as well and the best of them is taken, unless depth was measured.
 """
 
 from __future__ import annotations
@@ -51,10 +52,17 @@ SIZE_LOSS = 0.1
 """A shape stretched unevenly is rather built at that size, unless it agrees worse by so much."""
 PASSES, MAX_VARIANTS = 2, 32
 """Times that all parameters are gone through, since one may hide another, and shapes built for one object or set."""
+POOR_FIT = 0.2
+"""Disagreement from which on the designs that were ranked next are fitted, too."""
+COMPARED = 3
+"""Designs that are then compared after they were fitted."""
+OF_RANK, OF_FIT = 0.3, 3.0
+"""What the ranks from before the fit and the fits themselves say of them, as factors of logarithms."""
 MAX_TRIANGLES = 20_000
 """Designs of more triangles, such as plants, are not built again and again."""
 MIN_PIXELS = 900
 """Of objects of fewer pixels only place and size are fitted: their parts are a pixel or two."""
+_NO_SCORE = 1e-9
 MIN_CELLS = 100.0
 """Objects of which fewer cells are seen tell nothing of their parts."""
 
@@ -112,9 +120,43 @@ class MadeToMeasure:
         """The candidates with the first of each made to measure, where the picture tells how."""
         seen = _seen(posed, inputs, objects, geometry, depth)
         progress.report(0.0, "Making shapes to measure")
+        chosen = {
+            p.object_id: p for of_set in each(lambda s: self._best_fitting(s, seen), _sets(posed)) for p in of_set
+        }
+        posed = tuple(chosen.get(p.object_id, p) for p in posed)
+        seen = {i: replace(one, pose=chosen[i].candidates[0].pose) for i, one in seen.items()}
         made = each(lambda members: self._of_set(members, seen), _sets(posed), progress, "Making shapes to measure")
         found = {object_id: candidate for of_set in made for object_id, candidate in of_set.items()}
         return tuple(_with_first(p, found[p.object_id]) if p.object_id in found else p for p in posed)
+
+    def _best_fitting(self, members: Sequence[PosedCandidates], seen: Mapping[str, _Seen]) -> Sequence[PosedCandidates]:
+        """One object with the candidate first that fits best, where its first one fits badly.
+
+        Sets stay as they agreed, and measured objects too: their shapes were refined one by one before ranking.
+        """
+        one = members[0]
+        evidence = seen[one.object_id].evidence if one.object_id in seen else None
+        if len(members) > 1 or evidence is None or evidence.surface is not None:
+            return members
+        first = self._fit_error(evidence, one.candidates[0])
+        if first < POOR_FIT:
+            return members
+        tried = one.candidates[:COMPARED]
+        errors = [first, *(self._fit_error(evidence, c) for c in tried[1:])]
+        scores = [
+            OF_RANK * np.log(max(c.score, _NO_SCORE)) - OF_FIT * np.log(e + NOISE_FLOOR)
+            for c, e in zip(tried, errors, strict=True)
+        ]
+        best = int(np.argmax(scores))
+        others = (*one.candidates[:best], *one.candidates[best + 1 :])
+        return [replace(one, candidates=(one.candidates[best], *others))]
+
+    def _fit_error(self, evidence: Evidence, candidate: Candidate) -> float:
+        """How much a shape disagrees with the picture at the best pose near its own, 0 to 1."""
+        caster = ShapeCaster(self.library.mesh(candidate.shape_id))
+        pose = fitted_pose(evidence, caster, candidate.pose, np.asarray(candidate.shape_size_m), resize=True)
+        batch = PoseBatch(pose.R_world_object[None], pose.position[None], pose.scale[None])
+        return float(evidence.errors(caster, batch)[0])
 
     def _of_set(self, members: Sequence[PosedCandidates], seen: Mapping[str, _Seen]) -> dict[str, Candidate]:
         """The first candidates of objects of one shape and size; none where none of them is seen well enough."""

@@ -27,7 +27,7 @@ _OF_SURE_MASK = 0.8
 _NOISE_FLOOR = 0.03
 """Error below which two poses count as equal: the resolution of the silhouettes."""
 _FACING_STRENGTH = 0.7
-_STRETCH_SIGMA = 0.3
+_STRETCH_SIGMA, _STRETCH_SIGMA_OF_FLAT = 0.3, 1.0
 _ENLARGED_SIGMA = 0.2
 _ENLARGED_SIGMA_REASONED = 0.5
 """The same where sizes follow from a photo alone, and are those of the kind as much as of the thing."""
@@ -96,7 +96,8 @@ class Evidence:
 
     def habit_cost(self, poses: PoseBatch, limits: SizeLimits) -> Float[np.ndarray, "p"]:
         """What speaks against poses whatever the picture shows: unusual headings and uneven stretching."""
-        stretched = 0.5 * (limits.stretch(poses.scale) / _STRETCH_SIGMA) ** 2
+        sigma = _STRETCH_SIGMA_OF_FLAT if limits.any_proportions else _STRETCH_SIGMA
+        stretched = 0.5 * (limits.stretch(poses.scale) / sigma) ** 2
         return _FACING_STRENGTH * self.facing.cost(poses.R) + stretched
 
     def enlarged_cost(self, scale: Float[np.ndarray, "3"], limits: SizeLimits) -> float:
@@ -110,10 +111,13 @@ class Evidence:
     def log_likelihood(self, error: float, scale: Float[np.ndarray, "3"], limits: SizeLimits) -> float:
         """How well one shape at its best pose explains the object, to compare shapes where depth was measured.
 
-        Shapes are made in metres: the right one fits without being enlarged or stretched much.
+        Shapes are made in metres: the very one fits without being enlarged or stretched much. Where the library has
+        none of that size, how much exactly one that is like it was changed says little: the tails are those of a Cauchy
+        distribution.
         """
         logs = np.log(scale[~limits.thin]) if not limits.thin.all() else np.log(scale)
-        cost = 0.5 * (float(logs.mean()) / _ENLARGED_SIGMA) ** 2 + 0.5 * (float(logs.std()) / _LIKELIHOOD_SIGMA) ** 2
+        deviations = np.array([float(logs.mean()) / _ENLARGED_SIGMA, float(logs.std()) / _LIKELIHOOD_SIGMA])
+        cost = 0.5 * float(np.log1p(deviations**2).sum())
         return -_STRENGTH_WITH_DEPTH * float(np.log(error + _LIKELIHOOD_FLOOR)) - cost
 
     def confidence(self, error: float, cuboid_confidence: float) -> float:

@@ -43,7 +43,7 @@ from diorama_core.scene.types import Candidate, Pose
 
 _POWERS = (1.5, 0.6)
 """How much retrieval and pose say about which shape is best: the picture's outline alone would ignore colours."""
-_RETRIEVAL_WITH_DEPTH = 0.7
+_RETRIEVAL_WITH_DEPTH = 4.0
 """What retrieval says beside `Evidence.log_likelihood` where depth was measured: that tells shapes apart."""
 _MAX_THREADS = 4
 """Objects posed side by side: casting and array work let go of the interpreter, the rest of it does not."""

@@ -9,6 +9,7 @@ every object and the corners that it gave every plane: an object at another pose
 from __future__ import annotations
 
 import json
+import logging
 from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import Any
@@ -18,10 +19,12 @@ import numpy as np
 from diorama_core.artefacts import FurtherPhoto
 from diorama_core.errors import ProjectError
 from diorama_core.io.atomic import write_atomically
-from diorama_core.io.bounded import read_bytes, read_json
+from diorama_core.io.bounded import read_bytes, read_json, shortened
 from diorama_core.pipeline import codec
 from diorama_core.project.storage import Project, jpeg
 from diorama_core.scene.types import Plane, Pose, Scene, SceneObject
+
+log = logging.getLogger(__name__)
 
 MAX_PHOTOS = 64
 MAX_POSES = 8
@@ -56,7 +59,10 @@ def load_photos(project: Project) -> tuple[tuple[FurtherPhoto, ...], tuple[str, 
     for name in names[:MAX_PHOTOS] if isinstance(names, list) else []:
         path = project.folder / "photos" / f"{Path(str(name)).name}.zip"
         try:
-            found.append(codec.load(read_bytes(path, codec.MAX_BYTES, ProjectError), FurtherPhoto))
+            photo: FurtherPhoto = codec.load(read_bytes(path, codec.MAX_BYTES, ProjectError), FurtherPhoto)
+            if photo.name != path.stem:  # which names the files that are written
+                raise ProjectError(f"it is the photo {shortened(photo.name)!r}")
+            found.append(photo)
         except ProjectError as error:
             damage.append(f"{path}: this photo cannot be read back ({error}); add it again")
     return tuple(found), tuple(damage)
@@ -94,11 +100,17 @@ def still_made(project: Project, scene: Scene) -> frozenset[str]:
 
 
 def _noted(project: Project, name: str) -> dict[str, list[list[Any]]]:
+    """What was noted, by id; nothing where the file is damaged: then everything is as a person left it, and stays."""
     path = project.stages_folder / name
     if not path.exists():
         return {}
-    document = read_json(path, ProjectError, most=32_000_000, advice="build the scene again")
-    return document if isinstance(document, dict) else {}
+    try:
+        document = read_json(path, ProjectError, most=32_000_000)
+    except ProjectError as error:
+        log.warning("%s; nothing is moved that was built before", error)
+        return {}
+    noted = document.items() if isinstance(document, dict) else ()
+    return {id: [row for row in rows if isinstance(row, list)] for id, rows in noted if isinstance(rows, list)}
 
 
 def _look(item: SceneObject) -> list[str]:
@@ -126,10 +138,11 @@ def _with(row: list[Any], rows: list[list[Any]]) -> list[list[Any]]:
     return [row, *(r for r in rows if r != row)][:MAX_POSES]
 
 
-def _is_at(row_now: list[float], rows: Iterable[object]) -> bool:
-    own = np.array(row_now)
-    for row in rows:
-        there = np.array(row, dtype=float) if isinstance(row, list) else np.zeros(0)
-        if there.shape == own.shape and np.abs(there - own).max() < SAME_M:
-            return True
-    return False
+def _is_at(row_now: list[float], rows: Iterable[list[Any]]) -> bool:
+    return any(
+        len(row) == len(row_now) and all(_is_near(a, b) for a, b in zip(row, row_now, strict=True)) for row in rows
+    )
+
+
+def _is_near(noted: object, now: float) -> bool:
+    return isinstance(noted, float | int) and now - SAME_M < noted < now + SAME_M

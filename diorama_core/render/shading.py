@@ -89,7 +89,8 @@ def _first_sight(world: World, view: View, rows: slice) -> _Band:
     rays = view.rays(pixel_centres(view.width, rows.stop)[rows])
     hits = world.caster.first_hits(rays)
     found = hits.found
-    places = world.places(rays[found], hits.chosen(found))
+    footprint_m = pixel_footprint(view, np.where(found, hits.distance, 0).astype(np.float32))[found]
+    places = world.places(rays[found], hits.chosen(found), footprint_m)
     return _Band(found, rays[found], places, np.where(found, hits.distance, 0).astype(np.float32))
 
 
@@ -216,7 +217,8 @@ def _seen_again(
     rays = view.rays((pixels[:, None, ::-1] + 0.5 + _SUBPIXELS).reshape(-1, 2))
     hits = world.caster.first_hits(rays)
     found = np.flatnonzero(hits.found)
-    places = world.places(rays[found], hits.chosen(found))
+    chosen = hits.chosen(found)
+    places = world.places(rays[found], chosen, pixel_footprint(view, chosen.distance[:, None])[:, 0])
     borrowed = _borrowed(places, np.repeat(pixels, count, axis=0)[found], grid, fallen)
     seen = np.zeros((len(rays), 3), np.float32)
     seen[found] = np.minimum(_seen(world, places, rays[found], borrowed, light), BRIGHTEST)

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from jaxtyping import Bool, Float, Float32, Int, Int32, UInt8
 
-from diorama_core.geometry.vectors import face_normals, facing, unit
+from diorama_core.geometry.vectors import dot, face_normals, facing, unit
 from diorama_core.io.srgb import srgb_to_linear
 from diorama_core.library.opening import OpenedShapes
 from diorama_core.library.record import ShapeLibrary
@@ -21,6 +21,8 @@ from diorama_core.scene.types import Scene
 
 CLEAR = 0.6
 """Surfaces of less opacity cast no shadow."""
+MIN_SLANT = 0.1
+"""Surfaces seen more edge-on are blurred no further: along them pictures keep some detail."""
 MEAN_STEP = 3
 """Every third texel each way tells a picture's mean colour."""
 
@@ -95,15 +97,24 @@ class World:
             return np.array([[-0.5, -0.5, 0.0], [0.5, 0.5, 1.0]])
         return np.stack([self.vertices.min(axis=0), self.vertices.max(axis=0)]).astype(np.float64)
 
-    def places(self, rays: RayArray, hits: Hits) -> Places:
-        """What the rays see; every ray must have met something."""
+    def places(self, rays: RayArray, hits: Hits, footprint_m: Float32[np.ndarray, "n"] | None = None) -> Places:
+        """What the rays see; every ray must have met something.
+
+        Args:
+            rays: Where they come from and go.
+            hits: What they meet.
+            footprint_m: Width of what each ray stands for where it meets something, seen head-on: pictures are as
+                blurred as that; None takes them as sharp as they are.
+        """
         triangle, direction = hits.triangle, rays[:, 3:]
         w = np.concatenate([1 - hits.barycentric.sum(axis=1, keepdims=True), hits.barycentric], axis=1)
         corners = self._faces.take(triangle, axis=0)
         flat = facing(self._face_normals.take(triangle, axis=0), direction)
         smooth = -facing(unit(_mixed(self._normals, corners, w)), flat)
         surface = self._surface_of_face.take(triangle)
-        albedo, alpha = self._materials.colour(surface, _mixed(self._uv, corners, w))
+        uv = _mixed(self._uv, corners, w)
+        spread = None if footprint_m is None else self._spread_uv(triangle, corners, flat, direction, footprint_m)
+        albedo, alpha = self._materials.colour(surface, uv, spread)
         if self._colours is not None:
             albedo *= _mixed(self._colours, corners, w)
         table = self._materials
@@ -119,6 +130,23 @@ class World:
             instance=self._instance_of_face.take(triangle),
             photographed=table.photographed.take(surface),
         )
+
+    def _spread_uv(
+        self,
+        triangle: Int[np.ndarray, "n"],
+        corners: Int32[np.ndarray, "n 3"],
+        flat: Float32[np.ndarray, "n 3"],
+        direction: Float32[np.ndarray, "n 3"],
+        footprint_m: Float32[np.ndarray, "n"],
+    ) -> Float32[np.ndarray, "n"]:
+        """Width in texture coordinates of what rays stand for: the side of a square of the same area."""
+        a, b, c = (self.vertices.take(corners[:, k], axis=0) for k in range(3))
+        area = np.linalg.norm(np.cross(b - a, c - a), axis=1)
+        p, q, r = (self._uv.take(corners[:, k], axis=0) for k in range(3))
+        in_uv = np.abs((q - p)[:, 0] * (r - p)[:, 1] - (q - p)[:, 1] * (r - p)[:, 0])
+        slant = np.maximum(np.abs(dot(unit(direction), flat)), MIN_SLANT)
+        per_metre = np.sqrt(in_uv / np.maximum(area, 1e-12) / slant)
+        return (footprint_m * per_metre).astype(np.float32)
 
     def instances(self, triangle: Int[np.ndarray, "n"]) -> Int32[np.ndarray, "n"]:
         """The instances that triangles are of."""
@@ -214,8 +242,8 @@ class _MaterialTable:
         self._colour = np.array([m.colour for m in materials], dtype=np.float32).reshape(-1, 3)
         self.photographed = np.array([m.photographed for m in materials], dtype=bool)
         self.opacity = np.array([m.alpha for m in materials], dtype=np.float32)
-        self._pictures: list[tuple[Float32[np.ndarray, "h w c"], bool]] = []
-        """Linear texels, and whether they repeat."""
+        self._pictures: list[tuple[Pyramid, bool]] = []
+        """Linear texels, ever more reduced, and whether they repeat."""
         self._picture_of = np.full(len(surfaces), -1, dtype=np.int32)
         known: dict[tuple[int, bool], int] = {}
         for row, surface in enumerate(surfaces):
@@ -223,23 +251,27 @@ class _MaterialTable:
                 key = (id(surface.material.texture), _leaves_unit_square(surface.uv))
                 if key not in known:
                     known[key] = len(self._pictures)
-                    self._pictures.append((_linear(surface.material.texture), key[1]))
+                    self._pictures.append((_pyramid(_linear(surface.material.texture)), key[1]))
                 self._picture_of[row] = known[key]
-        means = [texels[::MEAN_STEP, ::MEAN_STEP, :3].mean(axis=(0, 1)) for texels, _ in self._pictures]
+        means = [levels[0][::MEAN_STEP, ::MEAN_STEP, :3].mean(axis=(0, 1)) for levels, _ in self._pictures]
         self.mean_colour = self._colour * np.array([*means, np.ones(3)], dtype=np.float32)[self._picture_of]
 
     def colour(
-        self, surface: Int32[np.ndarray, "n"], uv: Float32[np.ndarray, "n 2"]
+        self,
+        surface: Int32[np.ndarray, "n"],
+        uv: Float32[np.ndarray, "n 2"],
+        spread_uv: Float32[np.ndarray, "n"] | None = None,
     ) -> tuple[Float32[np.ndarray, "n 3"], Float32[np.ndarray, "n"]]:
-        """Linear base colour and opacity at texture coordinates (bilinear)."""
+        """Linear base colour and opacity at texture coordinates (bilinear), over so wide a place around them."""
         colour, alpha = self._colour.take(surface, axis=0), self.opacity.take(surface)
         picture = self._picture_of.take(surface)
         order = np.argsort(picture, kind="stable")
         bounds = np.searchsorted(picture[order], np.arange(len(self._pictures) + 1))
-        for (texels, repeat), start, stop in zip(self._pictures, bounds[:-1], bounds[1:], strict=True):
+        for (levels, repeat), start, stop in zip(self._pictures, bounds[:-1], bounds[1:], strict=True):
             if start < stop:
                 chosen = order[start:stop]
-                texel = _bilinear(texels, uv.take(chosen, axis=0), repeat=repeat)
+                spread = None if spread_uv is None else spread_uv.take(chosen)
+                texel = _filtered(levels, uv.take(chosen, axis=0), spread, repeat=repeat)
                 colour[chosen] *= texel[:, :3]
                 if texel.shape[1] == 4:
                     clear = alpha[chosen] < 1
@@ -260,6 +292,40 @@ def _linear(picture: UInt8[np.ndarray, "h w c"]) -> Float32[np.ndarray, "h w c"]
 def _leaves_unit_square(uv: Float32[np.ndarray, "n 2"] | None) -> bool:
     """Whether a picture is tiled over its surface; otherwise its opposite borders must not bleed into each other."""
     return uv is not None and bool((np.abs(uv - 0.5) > 0.501).any())
+
+
+Pyramid = tuple[Float32[np.ndarray, "_ _ c"], ...]
+"""A picture and its reductions, each half as large (Williams, Pyramidal parametrics, 1983)."""
+
+
+def _pyramid(picture: Float32[np.ndarray, "h w c"]) -> Pyramid:
+    levels = [picture]
+    while min(levels[-1].shape[:2]) > 1:
+        last = levels[-1]
+        height, width = (n // 2 * 2 for n in last.shape[:2])
+        halves = last[:height, :width].reshape(height // 2, 2, width // 2, 2, -1)
+        levels.append(np.ascontiguousarray(halves.mean(axis=(1, 3), dtype=np.float32)))
+    return tuple(levels)
+
+
+def _filtered(
+    levels: Pyramid, uv: Float32[np.ndarray, "n 2"], spread_uv: Float32[np.ndarray, "n"] | None, *, repeat: bool
+) -> Float32[np.ndarray, "n c"]:
+    """Texels, mixed from the two levels whose texels are nearest to so wide (trilinear)."""
+    if spread_uv is None or not len(uv):
+        return _bilinear(levels[0], uv, repeat=repeat)
+    height, width = levels[0].shape[:2]
+    level = np.log2(np.maximum(spread_uv * float(np.sqrt(height * width)), 1.0)).clip(0, len(levels) - 1)
+    lower = np.floor(level).astype(int)
+    out = np.empty((len(uv), levels[0].shape[2]), np.float32)
+    for k in np.unique(lower):
+        here = np.flatnonzero(lower == k)
+        texel = _bilinear(levels[k], uv.take(here, axis=0), repeat=repeat)
+        between = (level[here] - k)[:, None].astype(np.float32)
+        if between.any():
+            texel = texel + between * (_bilinear(levels[k + 1], uv.take(here, axis=0), repeat=repeat) - texel)
+        out[here] = texel
+    return out
 
 
 def _bilinear(

@@ -11,7 +11,7 @@ from collections.abc import Callable, Mapping
 
 import cv2
 import numpy as np
-from jaxtyping import UInt8
+from jaxtyping import Int32, UInt8
 
 from diorama_core.geometry.shape_appearance import ShapeAppearance
 from diorama_core.library.form import FULL_RECTANGLE
@@ -37,8 +37,11 @@ _BASES: tuple[tuple[frozenset[str], Mapping[str, float]], ...] = (
 _TOPS: Mapping[str, float] = {"rectangular": 0.6, "square": 0.6, "round": 0.25, "oval": 0.1}
 _TABLES = with_kin("table", "desk", "coffee table", "side table", "console table", "night stand")
 _FLAT = {"rectangular": 0.93, "other": 0.07}
-"""Of what hangs flat on walls or stands in frames: round, oval and free outlines, and several in a row."""
-_FLAT_KINDS = with_kin("picture", "window") | {"mirror", "floor mirror"}
+"""Of what hangs flat on walls or stands in frames: round, oval and free outlines, several in a row, panes."""
+_MIRRORS = frozenset({"mirror", "floor mirror"})
+_FLAT_KINDS = with_kin("picture", "window") | _MIRRORS
+_MIN_PANE = 0.02
+"""Share of the outline that a pane of a mirror has at least."""
 _SIDES: tuple[tuple[frozenset[str], Mapping[str, float]], ...] = (
     (with_kin("sofa", "sectional sofa"), {"closed": 0.88, "open": 0.12}),
     (with_kin("armchair"), {"closed": 0.65, "open": 0.35}),
@@ -51,7 +54,7 @@ _RARE = 0.02
 _SAYS = 0.08
 """Power of the share that multiplies a retrieval score: scores of shapes that fit well and badly differ little."""
 
-OUTLINE_FEATURES, SIDE_FEATURES = "outline-1", "side-1"
+OUTLINE_FEATURES, SIDE_FEATURES = "outline-2", "side-1"
 """Cache keys; to be changed with what is measured under them."""
 
 
@@ -79,12 +82,13 @@ def _form(shape: Shape, appearance: ShapeAppearance) -> tuple[str, str]:
 
 
 def _outline(shape: Shape, appearance: ShapeAppearance) -> str:
-    """From the front: whether it is one piece that fills the rectangle around it."""
+    """From the front: whether it is one piece, and one pane, that fills the rectangle around it."""
 
     def is_rectangular() -> bool:
         outline = cv2.convexHull(np.ascontiguousarray(appearance.vertices[:, 1:], np.float32))
         around = max(float(np.prod(np.ptp(outline[:, 0], axis=0))), 1e-9)
-        return cv2.contourArea(outline) >= FULL_RECTANGLE * around and _pieces(appearance) == 1
+        whole = _pieces(appearance) == 1 and (shape.category not in _MIRRORS or _panes(appearance) <= 1)
+        return whole and cv2.contourArea(outline) >= FULL_RECTANGLE * around
 
     return "rectangular" if _kept(OUTLINE_FEATURES, shape, is_rectangular) else "other"
 
@@ -110,11 +114,29 @@ def _pieces(appearance: ShapeAppearance) -> int:
     return int(cv2.connectedComponents(_drawn(appearance, [1, 2]))[0]) - 1
 
 
+def _panes(appearance: ShapeAppearance) -> int:
+    """How many large regions the colour has that covers most of the front: bars cut a mirror into panes."""
+    colours = np.unique(appearance.face_rgba, axis=0, return_inverse=True)[1].ravel() + 1
+    back_to_front = np.argsort(appearance.vertices[appearance.faces][:, :, 0].mean(axis=1), kind="stable")
+    drawn = np.zeros((_DRAWN_PX, _DRAWN_PX), np.int32)
+    triangles = _triangles_px(appearance, [1, 2])
+    for face in back_to_front:
+        cv2.fillConvexPoly(drawn, triangles[face], int(colours[face]))
+    most = np.argmax(np.bincount(drawn[drawn > 0], minlength=2))
+    areas = cv2.connectedComponentsWithStats((drawn == most).astype(np.uint8), connectivity=4)[2][1:, cv2.CC_STAT_AREA]
+    return int((areas >= _MIN_PANE * (drawn > 0).sum()).sum())
+
+
 def _drawn(appearance: ShapeAppearance, axes: list[int]) -> UInt8[np.ndarray, "p p"]:
     """The outline along the remaining axis, 1 where there is something, stretched to a square."""
-    flat = appearance.vertices[:, axes]
     drawn = np.zeros((_DRAWN_PX, _DRAWN_PX), np.uint8)
-    at = (flat - flat.min(axis=0)) / np.maximum(np.ptp(flat, axis=0), 1e-9) * (_DRAWN_PX - 1)
-    for triangle in np.rint(at[appearance.faces]).astype(np.int32):
+    for triangle in _triangles_px(appearance, axes):
         cv2.fillConvexPoly(drawn, triangle, 1)
     return drawn
+
+
+def _triangles_px(appearance: ShapeAppearance, axes: list[int]) -> Int32[np.ndarray, "f 3 2"]:
+    """The triangles along the remaining axis, in pixels of the square to which the shape is stretched."""
+    flat = appearance.vertices[:, axes]
+    at = (flat - flat.min(axis=0)) / np.maximum(np.ptp(flat, axis=0), 1e-9) * (_DRAWN_PX - 1)
+    return np.rint(at[appearance.faces]).astype(np.int32)

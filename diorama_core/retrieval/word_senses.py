@@ -18,6 +18,7 @@ from jaxtyping import Float
 from diorama_core.artefacts import CameraEstimate, DetectedObject
 from diorama_core.library.company import CARRIED_KINDS
 from diorama_core.library.hyponyms import is_named, meanings
+from diorama_core.library.labels import names_a_kind
 from diorama_core.library.taxonomy import UNKNOWN, Mount, SizePrior, category
 from diorama_core.retrieval.kinds_together import carriers, kinds_together
 from diorama_core.retrieval.seen_kinds import as_it_looks
@@ -74,11 +75,12 @@ def with_word_senses(objects: tuple[DetectedObject, ...], camera: CameraEstimate
 
     Where a thing is held decides first, over all kinds that are held there. Among kinds that are held as the word says
     its own category stays unless another one is likelier than all others together: retrieval compares them later.
+    A word that is no kind's name ("stand") means the likeliest.
     """
     best = camera.best
     senses = sense_probabilities(objects, best.intrinsics, best.R_world_camera, camera.height_m)
     return tuple(
-        replace(item, category=_chosen(item.category, of_word), meanings=_listed(of_word))
+        replace(item, category=_chosen(item, of_word), meanings=_listed(of_word))
         for item, of_word in zip(objects, senses, strict=True)
     )
 
@@ -126,10 +128,11 @@ def sense_probabilities(
     return kinds_together(found, below)
 
 
-def _chosen(own: str, senses: Mapping[str, float]) -> str:
-    if own == UNKNOWN.name:
+def _chosen(item: DetectedObject, senses: Mapping[str, float]) -> str:
+    own, named = item.category, is_named(item.label)
+    if own == UNKNOWN.name or (named and not names_a_kind(item.label)):
         best = max(senses, key=lambda kind: senses[kind])
-        return best if senses[best] > _SURE else own
+        return best if named or senses[best] > _SURE else own
     mounts: dict[Mount, float] = {}
     for kind, share in senses.items():
         mount = category(kind).mount

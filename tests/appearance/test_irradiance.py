@@ -18,7 +18,7 @@ def test_light_from_one_side_falls_on_that_side() -> None:
         irradiance_map(replace(scene, light=RoomLight((x, 0.0, 0.4), strength)), scene.camera, LIBRARY)
         for x, strength in ((0.0, 0.0), (-0.9, 0.8), (0.9, 0.8))
     )
-    assert even.shape == (scene.camera.intrinsics.height, scene.camera.intrinsics.width)
+    assert even.shape == (scene.camera.intrinsics.height, scene.camera.intrinsics.width, 3)
     assert even.std() < 0.6 * left.std()
     assert np.abs(left - right).mean() > 0.1
 

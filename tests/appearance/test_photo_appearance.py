@@ -113,6 +113,22 @@ def test_other_books_wear_the_spines_of_the_photo() -> None:
     assert off[0] < 0.6 * off[1]
 
 
+def test_a_television_that_is_off_shows_no_picture_of_the_library() -> None:
+    def standing(shape_id: str) -> Scene:
+        shape = LIBRARY.shape(shape_id)
+        scale = np.array(LIBRARY.shape("television-large").size_m) / shape.size_m
+        pose = Pose.upright((0.5, 0.4, 1.4), -np.pi / 2 + 0.2, scale)
+        item = SceneObject("tv_1", "tv", "television", shape.id, shape.size_m, pose)
+        return Scene(camera=camera(), objects=(item,))
+
+    seen = picture(standing("television-large"), LIBRARY, size=SIZE)
+    framed = standing("television-framed")
+    look = photo_appearance(seen, detected(standing("television-large")), framed, LIBRARY)
+    (screen,) = (m for m in look.materials["tv_1"] if m.slot == "picture")
+    assert max(screen.colour) < 0.35
+    assert look.pictures[str(screen.texture)].std() < 25
+
+
 def test_names_tell_pictures_apart() -> None:
     first, second = texture_name("a b/1", "wood 2", art()), texture_name("a b/1", "wood 2", art() // 2)
     assert first != second

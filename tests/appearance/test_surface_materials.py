@@ -1,5 +1,7 @@
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 from diorama_core.appearance.surface_materials import appearance_of, shade_of, slot_pixels
@@ -9,6 +11,7 @@ from diorama_core.library.slots import slots_of
 from diorama_core.scene.types import Pose
 from tests.appearance.test_surface_view import CAMERA, parts
 
+NOTHING = np.zeros((150, 200), dtype=bool)
 B = np.array([0.0, -0.4, 0.3])
 ALBEDO = {"fabric": (0.4, 0.1, 0.05), "wood": (0.1, 0.2, 0.3)}
 
@@ -18,15 +21,15 @@ def seen(turn: float = 0.6):
     view = surface_view(parts(), slots, Pose.upright((0.0, 0.0, 0.0), turn), CAMERA, mask)
     assert view is not None
     albedo = np.array([ALBEDO[s.role] for s in slots])[view.slot]
-    light = (1.0 + view.normals_world @ B).astype(np.float32)
-    linear = np.where((view.slot >= 0)[..., None], albedo * light[..., None], 0.5)
+    light = np.repeat((1.0 + view.normals_world @ B).astype(np.float32)[..., None], 3, axis=2)
+    linear = np.where((view.slot >= 0)[..., None], albedo * light, 0.5)
     rgb = np.round(255 * linear_to_srgb(np.clip(linear, 0, 1))).astype(np.uint8)
     return view, slots, rgb, view.slot >= 0, light
 
 
 def test_albedo_is_freed_from_the_light() -> None:
     view, slots, rgb, mask, light = seen()
-    for pixels in slot_pixels(view, slots, rgb, mask, mask):
+    for pixels in slot_pixels(view, slots, rgb, mask, mask, NOTHING):
         found = appearance_of(view, pixels, rgb, light)
         want = linear_to_srgb(np.array(ALBEDO[found.slot.role]))
         np.testing.assert_allclose(found.colour, want, atol=0.02)
@@ -35,7 +38,7 @@ def test_albedo_is_freed_from_the_light() -> None:
 
 def test_faces_of_one_material_tell_the_light() -> None:
     view, slots, rgb, mask, _ = seen()
-    (body, *_) = slot_pixels(view, slots, rgb, mask, mask)
+    (body, *_) = slot_pixels(view, slots, rgb, mask, mask, NOTHING)
     shade = shade_of(view, body, rgb)
     assert len(shade.luminance) == 2
     lit = 1.0 + shade.normals_world @ B
@@ -46,14 +49,14 @@ def test_slots_that_are_hardly_seen_are_not_read() -> None:
     view, slots, rgb, mask, _ = seen()
     few = np.zeros_like(mask)
     few[70:74, 98:102] = True
-    assert slot_pixels(view, slots, rgb, few, few) == ()
+    assert slot_pixels(view, slots, rgb, few, few, NOTHING) == ()
 
 
 def test_a_slot_that_the_mask_lost_is_read_where_the_shape_shows_it() -> None:
     view, slots, rgb, mask, light = seen()
     lost = mask & np.array([s.role != "wood" for s in slots])[view.slot]
-    body_alone = slot_pixels(view, slots, rgb, lost, lost)
-    both = slot_pixels(view, slots, rgb, lost, mask)
+    body_alone = slot_pixels(view, slots, rgb, lost, lost, NOTHING)
+    both = slot_pixels(view, slots, rgb, lost, mask, NOTHING)
     assert [p.slot.role for p in body_alone] == ["fabric"]
     assert [p.slot.role for p in both] == ["fabric", "wood"]
     found = appearance_of(view, both[1], rgb, light)
@@ -64,7 +67,7 @@ def test_a_mask_that_is_elsewhere_is_not_replaced_by_the_shape() -> None:
     view, slots, rgb, mask, _ = seen()
     little = np.zeros_like(mask)
     little[70:84, 90:112] = True
-    (body,) = slot_pixels(view, slots, rgb, mask & little, mask)
+    (body,) = slot_pixels(view, slots, rgb, mask & little, mask, NOTHING)
     assert body.mine.sum() <= little.sum()
 
 
@@ -75,7 +78,7 @@ def test_a_duvet_that_hangs_over_the_frame_is_no_colour_of_the_frame() -> None:
     over = rows[rows[:, 0] < np.quantile(rows[:, 0], 0.6)]
     hung = rgb.copy()
     hung[over[:, 0] + view.top, over[:, 1] + view.left] = np.median(view.of(rgb)[view.slot == body], axis=0)
-    (_, frame) = slot_pixels(view, slots, hung, mask, mask)
+    (_, frame) = slot_pixels(view, slots, hung, mask, mask, NOTHING)
     assert frame.slot.role == "wood"
     found = appearance_of(view, frame, hung, light)
     np.testing.assert_allclose(found.colour, linear_to_srgb(np.array(ALBEDO["wood"])), atol=0.02)
@@ -84,5 +87,57 @@ def test_a_duvet_that_hangs_over_the_frame_is_no_colour_of_the_frame() -> None:
 def test_an_object_of_one_colour_keeps_it_on_all_its_slots() -> None:
     view, slots, rgb, mask, _ = seen()
     rgb[mask] = (200, 190, 180)
-    (body, frame) = slot_pixels(view, slots, rgb, mask, mask)
+    (body, frame) = slot_pixels(view, slots, rgb, mask, mask, NOTHING)
     np.testing.assert_allclose(*(np.median(view.of(rgb)[p.near], axis=0) for p in (body, frame)))
+
+
+def colours_of(rgb, view, slots, background=NOTHING):
+    """Median colours by role of the slots that are read, from a picture of the view's size."""
+    mask = view.slot >= 0
+    found = slot_pixels(view, slots, rgb, mask, mask, background)
+    return {p.slot.role: np.median(view.of(rgb)[p.near], axis=0) for p in found}
+
+
+def index_of(slots, role: str) -> int:
+    return next(k for k, s in enumerate(slots) if s.role == role)
+
+
+def test_a_large_slot_keeps_its_colour_where_a_small_one_crosses_it() -> None:
+    view, slots, rgb, _, _ = seen()
+    body, foot = (view.slot == index_of(slots, role) for role in ("fabric", "wood"))
+    red, white = (160, 20, 30), (240, 240, 240)
+    rgb[body | foot] = red
+    rows = np.argwhere(body)
+    rgb[tuple(rows[rows[:, 0] > np.quantile(rows[:, 0], 0.65)].T)] = white
+    found = colours_of(rgb, view, slots)
+    np.testing.assert_allclose(found["fabric"], red, atol=2)
+    assert "wood" not in found
+
+
+def test_two_materials_of_one_pale_colour_are_both_read() -> None:
+    view, slots, rgb, _, _ = seen()
+    rgb[view.slot >= 0] = (225, 222, 218)
+    assert set(colours_of(rgb, view, slots)) == {"fabric", "wood"}
+
+
+def test_a_colour_that_the_background_has_more_of_is_the_backgrounds() -> None:
+    view, slots, rgb, _, _ = seen()
+    body = np.argwhere(view.slot == index_of(slots, "fabric"))
+    brown, rug = (90, 50, 30), (190, 120, 150)
+    rgb[:] = rug
+    rgb[view.slot >= 0] = brown
+    rgb[tuple(body[body[:, 0] > np.quantile(body[:, 0], 0.45)].T)] = rug
+    alone, beside = (colours_of(rgb, view, slots, b)["fabric"] for b in (NOTHING, view.slot < 0))
+    np.testing.assert_allclose(alone, rug, atol=2)
+    np.testing.assert_allclose(beside, brown, atol=2)
+
+
+def test_the_librarys_weave_gives_way_where_the_photo_shows_none() -> None:
+    view, slots, rgb, mask, light = seen()
+    body = next(p for p in slot_pixels(view, slots, rgb, mask, mask, NOTHING) if p.slot.role == "fabric")
+    body = replace(body, slot=replace(body.slot, tile_m=0.3))
+    weave = np.random.default_rng(0).integers(90, 160, (16, 16, 3)).astype(np.uint8)
+    found = appearance_of(view, body, rgb, light, weave)
+    assert found.texture is not None
+    assert found.texture.reshape(-1, 3).std(axis=0).max() == 0
+    assert appearance_of(view, body, rgb, light, np.full_like(weave, 120)).texture is None

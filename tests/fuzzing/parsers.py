@@ -22,7 +22,10 @@ from diorama_core.pipeline import codec
 from diorama_core.project.storage import Project
 from diorama_core.scene.schema import scene_from_json, scene_to_json
 from tests.app.small_room import PlainLibrary, furnished_scene, make_project, plain_photo
+from tests.fuzzing import kept_files as kept
+from tests.fuzzing import measured_files as measured
 from tests.fuzzing import scene_files as files
+from tests.fuzzing import words
 from tests.fuzzing.mutate import Mutate, damaged, strange_glb, strange_json, strange_usd, strange_zip
 from tests.fuzzing.photo_readers import as_photo, with_boxes, with_depth, with_masks
 
@@ -303,5 +306,13 @@ PARSERS: dict[str, Parser] = {
     "marked": Parser(files.marked_samples, files.read_marked, strange_glb),
     "usd": Parser(files.usd_samples, _in_process(files.read_usd), strange_usd),
     "home": Parser(files.home_samples, files.read_home, strange_zip),
+    "cloud": Parser(measured.cloud_samples, _in_process(measured.read_cloud), damaged),
+    "frame": Parser(measured.frame_samples, _in_process(measured.read_frame), measured.strange_frame),
+    "plan": Parser(measured.plan_samples, _in_process(measured.read_plan), damaged),
+    "table": Parser(measured.table_samples, measured.read_models_table, damaged),
+    "further": Parser(kept.further_samples, kept.read_further, strange_zip),
+    "placed": Parser(kept.placed_samples, kept.read_placed, strange_json),
+    "rooms": Parser(words.room_samples, words.read_room_words, words.strange_words),
+    "commands": Parser(words.command_samples, words.read_command, words.strange_words),
     "edits": Parser(files.edit_samples, files.read_edits, strange_json),
 }

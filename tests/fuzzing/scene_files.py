@@ -9,7 +9,7 @@ import traceback
 import zipfile
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import cache
+from functools import cache, wraps
 from pathlib import Path
 
 import numpy as np
@@ -177,22 +177,33 @@ def usd_samples() -> tuple[bytes, ...]:
         return tuple((Path(folder) / name).read_bytes() for name in names)
 
 
-def read_usd(data: bytes) -> object:
-    """As `diorama import` reads it, but for the shapes. Whatever Python raises comes back as the finding it is."""
-    try:
-        return _opened_usd(data)
-    except DioramaError:
-        raise
-    except Exception as error:
-        return Leaked(f"{type(error).__name__}: {error}", traceback.format_exc(limit=-3))
-
-
 @dataclass(frozen=True)
 class Leaked:
     """Something else than a `DioramaError` that a reader in another process raised."""
 
     what: str
     where: str
+
+
+def leaks(read: Callable[[bytes], object]) -> Callable[[bytes], object]:
+    """A reader for another process: whatever Python raises in it comes back as the finding it is."""
+
+    @wraps(read)
+    def through(data: bytes) -> object:
+        try:
+            return read(data)
+        except DioramaError:
+            raise
+        except Exception as error:
+            return Leaked(f"{type(error).__name__}: {error}", traceback.format_exc(limit=-3))
+
+    return through
+
+
+@leaks
+def read_usd(data: bytes) -> object:
+    """As `diorama import` reads it, but for the shapes."""
+    return _opened_usd(data)
 
 
 def _opened_usd(data: bytes) -> object:

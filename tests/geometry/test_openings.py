@@ -6,7 +6,7 @@ import manifold3d
 import numpy as np
 import pytest
 
-from diorama_core.geometry.openings import cut_wall, wall_of, with_openings
+from diorama_core.geometry.openings import cut_wall, wall_of, with_hole, with_openings
 from diorama_core.geometry.planes import plane_axes, plane_rectangle
 from diorama_core.scene.types import Plane, Pose, Scene, SceneObject, Support
 from tests.app.small_room import furnished_scene
@@ -75,3 +75,14 @@ def test_doors_and_windows_find_their_wall_and_hidden_ones_cut_none() -> None:
     closed = replace(scene, objects=tuple(replace(o, hidden=True) for o in scene.objects))
     assert with_openings(closed) is closed
     assert with_openings(Scene()) == Scene()
+
+
+@pytest.mark.parametrize(("low", "high"), [(0.0, 2.0), (1.0, 1.8)])
+def test_a_hole_has_no_frame(low: float, high: float) -> None:
+    corners = np.array([[x, 3.1, z] for x in (-0.4, 0.5) for z in (low, high)])
+    cut = with_hole(WALL, corners)
+    assert area(cut) == pytest.approx(area(WALL) - 0.9 * (high - low), abs=1e-6)
+    beyond = corners + np.array([20.0, 0.0, 0.0])
+    assert with_hole(WALL, beyond) is WALL
+    whole = np.array([[x, 3.1, z] for x in (-9.0, 9.0) for z in (-1.0, 9.0)])
+    assert with_hole(WALL, whole) is WALL, "nothing would be left"

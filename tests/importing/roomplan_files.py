@@ -12,6 +12,9 @@ from pathlib import Path
 
 import numpy as np
 
+from diorama_core.importing.roomplan import KINDS
+from diorama_core.scene.types import Scene
+
 WORLD_TO_SCAN = np.array([[1.0, 0, 0, 0], [0, 0, 1.0, 0], [0, -1.0, 0, 0], [0, 0, 0, 1.0]])
 """+Z up to RoomPlan's +Y up."""
 HEIGHT_M, FLOOR_M, TURN = 2.6, -1.31, 0.37
@@ -119,6 +122,50 @@ def write_json(path: Path, rows: tuple = FURNITURE, *, floors: bool = True) -> P
         "floors": [floor] if floors else [],
         "sections": [{"label": "bedroom", "center": [1.0, 0.0, 1.0], "story": 0}],
     }
+    path.write_text(json.dumps(document))
+    return path
+
+
+TO_SCAN = np.array(
+    [
+        [np.cos(TURN), -np.sin(TURN), 0.0, 1.2],
+        [np.sin(TURN), np.cos(TURN), 0.0, -0.7],
+        [0, 0, 1.0, FLOOR_M],
+        [0, 0, 0, 1.0],
+    ]
+)
+"""From a room's own frame to where the phone's session had it."""
+
+
+def _upright(R: np.ndarray, place: np.ndarray) -> np.ndarray:
+    """RoomPlan's axes (x along the width, y up, z out of the front) of something with our axes."""
+    T = np.eye(4)
+    T[:3, 0], T[:3, 1], T[:3, 2], T[:3, 3] = R[:, 1], R[:, 2], R[:, 0], place
+    return TO_SCAN @ T
+
+
+def write_scan_of(path: Path, scene: Scene) -> Path:
+    """The JSON that a phone would write of a room: what RoomPlan has no word for is not in it."""
+    wall_rows = []
+    for wall in scene.architecture.by_role("wall"):
+        along = np.cross([0.0, 0.0, 1.0], wall.normal)
+        low, high = (wall.polygon.min(axis=0), wall.polygon.max(axis=0))
+        T = _upright(np.stack([wall.normal, along, [0.0, 0.0, 1.0]], axis=1), (low + high) / 2)
+        wall_rows.append(_row({"wall": {}}, (np.ptp(wall.polygon @ along), high[2] - low[2], 0.0), T))
+    floor = scene.architecture.floor
+    assert floor is not None
+    corners = [[float(x), float(y), 0.0] for x, y in floor.polygon[:, :2]]
+    rows: dict[str, list] = {"doors": [], "windows": [], "objects": []}
+    for item in scene.objects:
+        depth, width, height = item.size_m
+        T = _upright(item.pose.R_world_object, item.pose.position)
+        word = next((w for w, kinds in KINDS.items() if item.category in kinds and w != "stairs"), None)
+        if item.category in ("door", "window"):
+            rows[f"{item.category}s"].append(_row({item.category: {}}, (width, height, 0.0), T))
+        elif word is not None:
+            rows["objects"].append(_row({word: {}}, (width, height, depth), T, attributes={}))
+    document = {"version": 2, "walls": wall_rows, "openings": [], **rows}
+    document["floors"] = [_row({"floor": {}}, (1.0, 1.0, 0.0), TO_SCAN, polygonCorners=corners)]
     path.write_text(json.dumps(document))
     return path
 

@@ -65,3 +65,29 @@ def test_what_is_no_room_is_one_line() -> None:
         measured_cloud(PointCloud(flat, UP))
     with pytest.raises(InputError, match="more than 60 m"):
         measured_cloud(PointCloud(1000 * flat, UP))
+    for points in (np.zeros((5000, 3)), np.column_stack([np.linspace(0, 5, 5000), np.zeros((5000, 2))])):
+        with pytest.raises(InputError, match="no room in the points"):
+            measured_cloud(PointCloud(points, UP))
+    with pytest.raises(InputError, match="more than 60 m"):
+        measured_cloud(PointCloud(1e20 * flat, None))
+
+
+@pytest.mark.parametrize(("floor", "ceiling"), [(False, True), (True, False), (False, False)])
+def test_a_room_without_floor_or_ceiling_has_its_walls_and_things(floor: bool, ceiling: bool) -> None:
+    points = room_points()
+    height = points[:, 2] - points[:, 2].min()
+    points = points[((height > 0.05) | floor) & ((height < HEIGHT - 0.05) | ceiling)]
+    room = measured_cloud(PointCloud(points, UP))
+    assert sides(Polygon(room.floor)) == pytest.approx([DEPTH, DEPTH, WIDTH, WIDTH], abs=0.02)
+    assert len(room.boxes) == len(FURNITURE)
+    said = " ".join(room.notes)
+    assert ("no floor was scanned" in said, "no ceiling was scanned" in said) == (not floor, not ceiling)
+
+
+@pytest.mark.parametrize("every", [12, 40])
+def test_things_of_a_thin_scan_stay_whole(every: int) -> None:
+    room = measured_cloud(PointCloud(room_points()[::every], UP))
+    assert Polygon(room.floor).area == pytest.approx(WIDTH * DEPTH, rel=0.02)
+    found = sorted((sorted(b.size_m) for b in room.boxes), key=max)
+    true = sorted((sorted(f.size_m) for f in FURNITURE), key=max)
+    assert np.abs(np.array(found) - np.array(true)).max() < 0.12

@@ -40,6 +40,22 @@ def test_a_ply_is_imported_as_a_room(tmp_path: Path, capsys: pytest.CaptureFixtu
     assert "kinds of things are guessed" in capsys.readouterr().err
 
 
+@pytest.mark.parametrize("mesh", [False, True])
+def test_a_ply_in_centimetres_is_brought_to_metres_and_says_so(tmp_path: Path, mesh: bool) -> None:
+    path = tmp_path / "room.ply"
+    if mesh:
+        whole = trimesh.util.concatenate(room_meshes())
+        whole.apply_scale(100.0)
+        whole.export(path)
+    else:
+        write_ply(path, 100.0 * (room_points() - room_points().mean(axis=0)))
+    cloud = read_points(path)
+    assert any("taken for centimetres" in note for note in cloud.notes)
+    room = measured_cloud(cloud)
+    assert Polygon(room.floor).area == pytest.approx(AREA, rel=0.02)
+    assert len(room.boxes) == len(FURNITURE)
+
+
 @pytest.mark.parametrize("suffix", [".las", ".laz"])
 def test_las_and_laz_are_read(tmp_path: Path, suffix: str) -> None:
     laspy = pytest.importorskip("laspy", reason="needs laspy (pip install 'diorama[scan]')")
@@ -95,6 +111,8 @@ def test_what_cannot_be_read_is_one_line(tmp_path: Path, monkeypatch: pytest.Mon
         read_points(tmp_path / "broken.ply")
     with pytest.raises(InputError, match="has 10 points"):
         read_points(write_ply(tmp_path / "few.ply", np.zeros((10, 3))))
+    with pytest.raises(InputError, match="has 0 points"):
+        read_points(write_ply(tmp_path / "none.ply", np.zeros((0, 3))))
     (tmp_path / "empty").mkdir()
     assert not is_scan_folder(tmp_path / "empty")
     with pytest.raises(InputError, match="neither depth nor a mesh"):

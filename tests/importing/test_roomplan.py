@@ -5,12 +5,14 @@ from __future__ import annotations
 import json
 from pathlib import Path
 
+import manifold3d
 import numpy as np
 import pytest
 from shapely.geometry import Polygon
 
 from diorama_app.cli import main
 from diorama_core.errors import InputError
+from diorama_core.geometry.planes import plane_axes
 from diorama_core.importing.measured_room import opened_room
 from diorama_core.importing.opening import Opened
 from diorama_core.importing.roomplan import read_room_plan
@@ -132,7 +134,7 @@ def test_the_command_makes_a_project(tmp_path: Path, capsys: pytest.CaptureFixtu
     assert main(["import", str(path), "-o", str(tmp_path / "room")]) == 0
     said = capsys.readouterr()
     assert f"{len(FURNITURE) + 2} objects, 8 planes" in said.out
-    assert "opening of 0.80 x 2.00 m" in said.err
+    assert "opening" not in said.err
     assert main(["export", str(tmp_path / "room"), "--format", "glb", "-o", str(tmp_path / "room.glb")]) == 0
 
 
@@ -180,3 +182,37 @@ def test_an_empty_scan_is_an_empty_room(tmp_path: Path) -> None:
     assert room is not None
     scene = opened_room(room, built_in_library()).scene
     assert (scene.objects, scene.architecture.planes) == ((), ())
+
+
+def test_an_opening_without_a_door_cuts_its_wall(tmp_path: Path) -> None:
+    wall = import_scene(write_json(tmp_path / "room.json", ())).opened.scene.plane("wall-3")
+    truth = walls()[2]
+    whole = truth.length * HEIGHT_M
+    triangles = manifold3d.triangulate([wall.polygon @ np.stack(plane_axes(wall.normal), axis=1)])
+    a, b, c = (wall.polygon[triangles[:, k]] for k in range(3))
+    area = float(np.linalg.norm(np.cross(b - a, c - a), axis=1).sum()) / 2
+    assert area == pytest.approx(whole - 0.8 * 2.0, abs=1e-4)
+
+
+@pytest.mark.parametrize(
+    ("change", "kinds", "words"),
+    [
+        ({"category": {"lamp": {}}}, {"floor lamp", "lamp"}, ""),
+        ({"category": {"hammock": {}}}, {"object"}, ""),
+        ({"category": None}, {"object"}, ""),
+        ({"transform": [1, 0, 0, 0, 0, 0, 1, 0, 0, -1, 0, 0, 0, 0, 0, 1]}, set(), "a chair lies on its side"),
+        ({"dimensions": [0.0, 0.0, 0.0]}, set(), "a chair lies on its side or has no size"),
+    ],
+)
+def test_odd_things_cost_themselves_at_most(tmp_path: Path, change: dict, kinds: set, words: str) -> None:
+    rows = (FURNITURE[0], ("chair", 0.4, 1.6, 0.4, 2.0, 1.1, 0.0, 215))
+    path = write_json(tmp_path / "room.json", rows)
+    document = json.loads(path.read_text())
+    document["objects"][1].update(change)
+    path.write_text(json.dumps(document))
+    opened = import_scene(path).opened
+    things = [o for o in opened.scene.objects if o.category not in ("door", "window")]
+    assert things[0].category in KINDS["bed"]
+    assert {o.category for o in things[1:]} <= kinds
+    assert len(things) == 1 + bool(kinds)
+    assert words in " ".join(opened.changes)

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import numpy as np
+import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
-from diorama_core.io.srgb import linear_to_srgb, srgb_to_linear
+from diorama_core.io.srgb import linear_to_srgb, luminance, srgb_to_linear
 
 VALUES = arrays(np.float64, st.integers(1, 20), elements=st.floats(0, 1))
 
@@ -36,3 +37,9 @@ def test_every_byte_survives_and_negative_light_is_no_error() -> None:
     with np.errstate(all="raise"):
         assert linear_to_srgb(np.array(-0.5)) < 0
         assert srgb_to_linear(np.array(-0.5)) < 0
+
+
+def test_luminance_of_white_is_one_and_green_is_brightest() -> None:
+    assert luminance(np.ones((1, 3)))[0] == pytest.approx(1.0)
+    red, green, blue = luminance(np.eye(3))
+    assert green > red > blue

@@ -161,6 +161,30 @@ def test_a_plant_over_a_table_stands_on_it(room: Room) -> None:
     assert checked.support_of(plant).parent == table
 
 
+@pytest.mark.parametrize(("kind", "beside"), [("vase", True), ("pillow", False)])
+def test_reasoned_distances_move_nothing_to_odd_company(room: Room, kind: str, beside: bool) -> None:
+    """A vase whose night stand came out too far away is not on the bed; a pillow is."""
+    stand = room.put("cabinet_10", (0.0, 0.0, 0.4))
+    top = room.objects[0].size_m[2]
+    bed = room.put("table_0", (0.9, 0.0, 0.37))
+    item = room.put("cup_21", (0.9, 0.0, top + 0.03), on=stand)
+    scene = room.scene(camera=looking_north())
+    kinds = {stand: "night stand", bed: "bed", item: kind}
+    scene = replace(scene, objects=tuple(replace(o, category=kinds[o.id]) for o in scene.objects))
+    assert checked_supports(scene, LIBRARY, REASONED)[0].support_of(item).parent == (stand if beside else bed)
+
+
+def test_furniture_on_a_rug_stands_on_the_floor(room: Room) -> None:
+    rug = room.put("table_0", (0.0, 0.0, 0.01), scale=(2.0, 2.0, 0.03))
+    cabinet = room.put("cabinet_10", (0.0, 0.0, 0.4))
+    scene = room.scene(camera=looking_north())
+    kinds = {rug: "rug", cabinet: "cabinet"}
+    scene = replace(scene, objects=tuple(replace(o, category=kinds[o.id]) for o in scene.objects))
+    checked, reasons = checked_supports(scene, LIBRARY, REASONED)
+    assert checked.support_of(cabinet).parent == "floor"
+    assert not reasons
+
+
 def test_what_would_stand_behind_a_wall_rests_on_what_is_in_its_line_of_sight(room: Room) -> None:
     table = room.put("table_0", (0.0, 1.0, 0.37))
     top = room.objects[0].size_m[2]

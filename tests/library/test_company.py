@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from diorama_core.library.company import CARRIED, ROOMS
+from diorama_core.library.company import CARRIED, ROOMS, often_carried
 from diorama_core.library.taxonomy import CATEGORIES, category
 
 NAMES = {c.name for c in CATEGORIES}
@@ -25,3 +25,10 @@ def test_what_lies_on_objects_is_small_or_hangs_nowhere() -> None:
     lying = {kind for row in CARRIED for kind in row.kinds}
     assert {category(kind).mount for kind in lying} <= {"surface", "floor", "wall"}
     assert sum(category(kind).mount == "surface" for kind in lying) > 0.8 * len(lying)
+
+
+def test_how_often_kinds_lie_on_carriers() -> None:
+    assert often_carried("keyboard", "desk") > often_carried("keyboard", "table") > often_carried("wardrobe", "table")
+    assert often_carried("vase", "night stand") > 1 > often_carried("vase", "bed")
+    assert often_carried("heater", "bed") > often_carried("sofa", "bed")
+    assert often_carried("vase", "door") == often_carried("object", "bed") == 1.0

@@ -61,6 +61,16 @@ def slimsam(folder: Path) -> tuple[Any, Path, Path]:
 
 
 @pytest.fixture(scope="module")
+def sam3(tmp_path_factory: pytest.TempPathFactory) -> tuple[Any, Path, Path]:
+    return tiny_sams.sam3_tracker(tmp_path_factory.mktemp("sam3"))
+
+
+@pytest.fixture(scope="module")
+def hq_sam(tmp_path_factory: pytest.TempPathFactory) -> tuple[Any, Path, Path]:
+    return tiny_sams.hq_sam(tmp_path_factory.mktemp("hq_sam"))
+
+
+@pytest.fixture(scope="module")
 def dinov2(folder: Path) -> tuple[Any, Path]:
     return tiny_networks.dinov2(folder / "dinov2.onnx")
 
@@ -113,8 +123,8 @@ def test_sam2_draws_the_same_masks(sam2: tuple[Any, Path, Path], photo: np.ndarr
         assert 0.001 < prompted.mask.mean() < 0.999
 
 
-def test_sam3s_tracker_draws_the_same_masks(tmp_path: Path, photo: np.ndarray) -> None:
-    model, encoder, decoder = tiny_sams.sam3_tracker(tmp_path)
+def test_sam3s_tracker_draws_the_same_masks(sam3: tuple[Any, Path, Path], photo: np.ndarray) -> None:
+    model, encoder, decoder = sam3
     height, width = photo.shape[:2]
     boxes = np.array([[20.0, 30.0, 100.0, 110.0], [5.0, 5.0, width - 5.0, height - 5.0]])
     facade = sam3_tracker(encoder, decoder, pool=SessionPool())
@@ -135,8 +145,8 @@ def test_sam3s_tracker_draws_the_same_masks(tmp_path: Path, photo: np.ndarray) -
         assert 0.001 < prompted.mask.mean() < 0.999
 
 
-def test_hq_sam_draws_the_same_masks(tmp_path: Path, photo: np.ndarray) -> None:
-    model, encoder, decoder = tiny_sams.hq_sam(tmp_path)
+def test_hq_sam_draws_the_same_masks(hq_sam: tuple[Any, Path, Path], photo: np.ndarray) -> None:
+    model, encoder, decoder = hq_sam
     facade = HqSam(encoder, decoder, pool=SessionPool())
     height, width = photo.shape[:2]
     boxes = np.array([[20.0, 30.0, 100.0, 110.0], [40.0, 10.0, 90.0, 60.0]])

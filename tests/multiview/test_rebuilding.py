@@ -8,13 +8,12 @@ import numpy as np
 import pytest
 
 from diorama_core.artefacts import FurtherPhoto, Inputs
-from diorama_core.layout.recipes import recipe
 from diorama_core.library.catalogue import built_in_library
 from diorama_core.multiview.rebuilding import carried, with_photos_again
 from diorama_core.pipeline.stages import Stages, embedded_stages
 from diorama_core.scene.types import Camera, yaw_rotation
 from tests.multiview.rooms import camera
-from tests.multiview.two_photos import two_photos, with_camera
+from tests.multiview.two_photos import AsItIs, two_photos, with_camera
 
 
 def moved(one: Camera, turn_rad: float, scale: float) -> Camera:
@@ -46,9 +45,8 @@ def test_photos_join_the_new_scene_or_are_named() -> None:
         return embedded_stages(inputs, library)
 
     found = with_photos_again(
-        scene, photos.first, scene.camera, (beside, blank, apart), library, choose,
-        lambda free: recipe("feasible", library, free, depth_measured=True),
-    )  # fmt: skip
+        scene, photos.first, scene.camera, (beside, blank, apart), library, choose, lambda free: AsItIs()
+    )
     assert [p.name for p in found.photos] == ["beside", "blank", "apart"]
     assert found.left_out == ("blank",)
     assert found.photos[0].camera is not None

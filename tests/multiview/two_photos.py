@@ -8,10 +8,12 @@ from pathlib import Path
 
 import numpy as np
 
-from diorama_core.artefacts import FurtherPhoto, Inputs
+from diorama_core.artefacts import FurtherPhoto, Inputs, LayoutReport
 from diorama_core.library.catalogue import built_in_library
+from diorama_core.progress import Progress
 from diorama_core.project.further_photos import note_placed
 from diorama_core.project.storage import Project
+from diorama_core.protocols import Preview
 from diorama_core.scene.edits import remove
 from diorama_core.scene.types import Camera, Scene
 from diorama_core.synthesis import furnished_room
@@ -71,3 +73,10 @@ def project_of(photos: TwoPhotos, folder: Path) -> Project:
 
 def with_camera(photos: TwoPhotos) -> FurtherPhoto:
     return FurtherPhoto("beside", replace(photos.second, intrinsics=photos.camera.intrinsics), photos.camera)
+
+
+class AsItIs:
+    """The layout that leaves everything where it was put: what a layout does to rooms is tested elsewhere."""
+
+    def optimise(self, scene: Scene, progress: Progress, preview: Preview | None = None) -> tuple[Scene, LayoutReport]:
+        return scene, LayoutReport("as it is", {}, {}, 0.0)

@@ -43,3 +43,14 @@ def test_a_measured_height_is_plausible_however_tall() -> None:
     tall = np.array([0.7, 0.7, 0.75])
     assert SizeLimits.of((0.7, 0.7, 0.42), "coffee table", tall).max_m[2] == pytest.approx(0.6)
     assert SizeLimits.of((0.7, 0.7, 0.42), "coffee table", tall, measured=True).max_m[2] == pytest.approx(0.75)
+
+
+def test_flat_things_come_in_all_proportions_where_only_a_photo_shows_them() -> None:
+    landscape, tall = (0.03, 0.8, 0.6), np.array([0.03, 0.4, 1.05])
+    flat = SizeLimits.of(landscape, "picture", tall)
+    assert flat.any_proportions
+    assert np.allclose(flat.scale_for(tall) * landscape, tall)
+    measured = SizeLimits.of(landscape, "picture", tall, measured=True)
+    assert not measured.any_proportions
+    assert not np.allclose(measured.scale_for(tall) * landscape, tall)
+    assert not SizeLimits.of((0.5, 0.5, 0.9), "chair", np.array([0.5, 0.5, 0.9])).any_proportions

@@ -36,6 +36,15 @@ DESIGNS = {d.id: d for d in designs()}
 
 def fitted(true_id: str, found_id: str, scale=(1.0, 1.0, 1.0), library=LIBRARY, measured: bool = True) -> Candidate:
     """The first candidate for one object that looks like `true_id`, for which `found_id` was retrieved."""
+    out = ranked(true_id, (found_id,), measured, scale, library)
+    assert out[-1].shape_id == found_id
+    return out[0]
+
+
+def ranked(
+    true_id: str, found_ids: tuple[str, ...], measured: bool, scale=(1.0, 1.0, 1.0), library=LIBRARY
+) -> tuple[Candidate, ...]:
+    """The candidates for one object that looks like `true_id`, for which these were retrieved, the best first."""
     size = np.array(library.shape(true_id).size_m)
     pose = Pose.upright((0.0, 3.4, size[2] / 2), np.deg2rad(-65.0))
     seen = render_buffers([(library.mesh(true_id), pose.matrix)], CAMERA)
@@ -46,9 +55,12 @@ def fitted(true_id: str, found_id: str, scale=(1.0, 1.0, 1.0), library=LIBRARY, 
     rgb = np.repeat(shade.clip(0, 255).astype(np.uint8)[..., None], 3, axis=2)
     item = DetectedObject("o", "thing", "thing", box, mask, 1, 1.0)
     cuboid = Cuboid("o", pose.R_world_object, pose.position, size, 0.9)
-    found_size = library.shape(found_id).size_m
-    start = Pose(pose.R_world_object, pose.position, size / np.array(found_size) * scale)
-    posed = PosedCandidates("o", (Candidate(found_id, found_size, 0.9, start),), 0.9)
+    sizes = [library.shape(i).size_m for i in found_ids]
+    starts = [Pose(pose.R_world_object, pose.position, size / np.array(s) * scale) for s in sizes]
+    found = (
+        Candidate(i, s, 0.9 - 0.1 * k, p) for k, (i, s, p) in enumerate(zip(found_ids, sizes, starts, strict=True))
+    )
+    posed = PosedCandidates("o", tuple(found), 0.9)
     k = CAMERA.intrinsics
     source = DepthSource.MEASURED if measured else DepthSource.RENDERED
     geometry = ObjectGeometry(CAMERA, (cuboid,), (), ScaleSource.GIVEN)
@@ -56,8 +68,7 @@ def fitted(true_id: str, found_id: str, scale=(1.0, 1.0, 1.0), library=LIBRARY, 
     stage = replace(STAGE, library=library)
     depth = DepthMap(seen.depth_m, seen.normals_world, source)
     (out,) = stage.fitted((posed,), inputs, (item,), geometry, depth, Progress())
-    assert out.candidates[-1].shape_id == found_id
-    return out.candidates[0]
+    return out.candidates
 
 
 @pytest.mark.parametrize(
@@ -89,3 +100,23 @@ def test_a_made_shape_has_scale_one_and_the_extents_that_were_measured() -> None
 
 def test_peoples_own_models_stay_as_they_are() -> None:
     assert fitted("sofa", "bed", library=BLOCKS).shape_id == "bed"
+
+
+def badly_fitting(measured: bool) -> tuple[str, ...]:
+    """Shapes, best first, of a tall dresser for which a stool was ranked just before a dresser."""
+    ids = ("stool-round-oak", "dresser-white-four")
+    true = "dresser-white-four"
+    assert all(i in DESIGNS for i in ids)
+    return tuple(base_id(c.shape_id) for c in ranked(true, ids, measured))
+
+
+def test_where_the_first_shape_fits_badly_the_next_ones_are_fitted_too() -> None:
+    assert badly_fitting(measured=False)[0] == "dresser-white-four"
+
+
+def test_no_candidate_gets_lost_when_another_one_comes_first() -> None:
+    assert sorted(set(badly_fitting(measured=False))) == ["dresser-white-four", "stool-round-oak"]
+
+
+def test_shapes_that_were_refined_against_measured_depth_keep_their_ranks() -> None:
+    assert badly_fitting(measured=True)[0] == "stool-round-oak"

@@ -4,8 +4,10 @@ from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
+import pytest
 
 from diorama_core.artefacts import FurtherPhoto, Inputs
+from diorama_core.pipeline import codec
 from diorama_core.project.further_photos import load_photos, note_placed, save_photos, still_made, still_placed
 from diorama_core.scene.edits import move, recolour, rename
 from diorama_core.scene.room_edits import move_plane
@@ -49,6 +51,33 @@ def test_a_damaged_photo_is_named_and_the_others_are_read(tmp_path: Path) -> Non
     assert "one.zip" in damage[0]
     project.update_info(photos=["../../scene", 5])
     assert load_photos(project)[0] == ()
+
+
+def test_a_photo_that_says_another_name_is_not_read(tmp_path: Path) -> None:
+    """Its name becomes that of files: a received project could write outside its folder."""
+    project = make_project(tmp_path / "demo")
+    save_photos(project, (FurtherPhoto("one", Inputs(plain_photo())),))
+    other = codec.dump(FurtherPhoto(str(tmp_path / "elsewhere"), Inputs(plain_photo())))
+    (project.folder / "photos" / "one.zip").write_bytes(other)
+    found, damage = load_photos(project)
+    assert found == ()
+    assert "one.zip" in damage[0]
+    assert "elsewhere" in damage[0]
+
+
+@pytest.mark.parametrize("noted", ["[", "[1]", '{"table_1": 5, "wall_1": [7]}', '{"table_1": [[[1], "x", 1]]}'])
+def test_where_notes_are_damaged_nothing_was_put_by_the_program_until_it_notes_again(
+    tmp_path: Path, noted: str
+) -> None:
+    project = make_project(tmp_path / "demo")
+    scene = project.load_scene()
+    for name in ("placed.json", "looks.json"):
+        (project.stages_folder / name).write_text(noted)
+    assert still_placed(project, scene) == still_made(project, scene) == frozenset()
+    note_placed(project, scene)
+    ids = {o.id for o in scene.objects}
+    assert still_made(project, scene) == ids
+    assert still_placed(project, scene) == ids | {p.id for p in scene.architecture.planes}
 
 
 def test_what_a_person_moved_or_locked_is_not_where_it_was_put(tmp_path: Path) -> None:

@@ -42,6 +42,10 @@ def test_a_row_of_prints_is_rarer_than_one(several):
     assert factor(several) == factor("mirror-pebble")
 
 
+def test_a_mirror_of_panes_is_rarer_than_one_of_one_pane():
+    assert factor("mirror-window") < factor("mirror-gilt") == 1.0
+
+
 def test_sofas_usually_have_padded_arms():
     assert factor("sofa-leather-tan") == 1.0
     assert 0.7 < factor("sofa-slat-pine") < 0.9

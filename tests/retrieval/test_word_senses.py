@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from diorama_core.artefacts import CameraEstimate, CameraHypothesis, DetectedObject
 from diorama_core.library.hyponyms import meanings
+from diorama_core.library.labels import understand_label
 from diorama_core.library.taxonomy import category, resolve
 from diorama_core.provenance import AttitudeSource, CameraSource, FocalSource, HeadingSource
 from diorama_core.retrieval.word_senses import sense_probabilities, with_word_senses
@@ -59,6 +62,14 @@ def test_sizes_make_kinds_likelier_than_their_words_do(word, kind) -> None:
     sofa = seen("sofa", "sofa", 0.0, (-1.5, 4.5), number=2)
     senses = sense_probabilities([seen(word, kind, 0.0), sofa], K, LEVEL)[0]
     assert senses[kind] > 1.5 * meanings(word, word)[kind]
+
+
+@pytest.mark.parametrize("kind", ["tv stand", "night stand", "coat rack"])
+def test_a_word_that_is_no_kinds_name_means_the_likeliest(kind) -> None:
+    alone = replace(seen("stand", kind, 0.0), category=understand_label("stand").category.name)
+    (found,) = understood(alone)
+    assert found.category == max(found.meanings, key=lambda sense: sense[1])[0]
+    assert found.category == kind
 
 
 def test_a_lamp_on_a_table_stays_a_lamp() -> None:

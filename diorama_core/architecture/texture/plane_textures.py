@@ -35,6 +35,8 @@ ISLAND_M = 0.22
 """Pieces of a plane narrower than this are mostly rims, shadows and leaves of what stands before it."""
 FLOOR_ISLAND_M = 0.1
 """Of a floor, whose colours were looked at already."""
+GRAIN_M = 0.01
+"""Half the width of a floor's specks and lines that are its material's, though of another colour."""
 ISLAND_SHARE = 0.04
 """Pieces apart from the rest with a smaller share of all that is seen are given up too."""
 RIM = 0.008
@@ -168,8 +170,10 @@ class PhotoView:
         share = _photo_share(points, plane, self._camera)
         if ground:
             contact = _of_texels(self._contact, self._camera, points) & seen
-            seen = floor_texels(colours, seen, share, contact, pixel_m, self._white)
-        seen = _without_islands(seen, (FLOOR_ISLAND_M if ground else ISLAND_M) / pixel_m)
+            floor = floor_texels(colours, seen, share, contact, pixel_m, self._white)
+            seen = _without_islands(_with_grain(floor, pixel_m) & seen, FLOOR_ISLAND_M / pixel_m)
+        else:
+            seen = _without_islands(seen, ISLAND_M / pixel_m)
         if seen.sum() < MIN_SEEN_PX:
             return None
         own = shown = seen
@@ -195,6 +199,13 @@ def _without_islands(seen: Bool[np.ndarray, "h w"], width_px: float) -> Bool[np.
     large = stats[:, cv2.CC_STAT_AREA] >= ISLAND_SHARE * max(int(opened.sum()), 1)
     large[0] = False
     return large[labels] if count > 1 else opened.astype(bool)
+
+
+def _with_grain(floor: Bool[np.ndarray, "h w"], pixel_m: float) -> Bool[np.ndarray, "h w"]:
+    """A floor with its grain: gaps between boards, knots and threads are its material's and cut no piece in two."""
+    side = 2 * max(1, round(GRAIN_M / pixel_m)) + 1
+    around = cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (side, side))
+    return cv2.morphologyEx(floor.astype(np.uint8), cv2.MORPH_CLOSE, around).astype(bool)
 
 
 def _grown(hidden: Bool[np.ndarray, "h w"]) -> Bool[np.ndarray, "h w"]:

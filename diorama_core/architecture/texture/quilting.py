@@ -14,7 +14,7 @@ BLOCKS_PX = ((48, 24), (32, 60), (20, 400))
 """Sizes of the copied squares and how many must have been seen: copies of few small ones show as a weave."""
 BROADEST = 0.1
 """Detail broader than this share of a block is not copied."""
-MIN_SOURCE = 0.01
+MIN_SOURCE = 0.005
 """A material seen on a smaller share of the surface is not continued."""
 OVERLAP = 0.34
 """Share of a block that lies on what is already known."""

@@ -32,6 +32,7 @@ from diorama_core.evaluation.benchmarks.pose_comparison import (
     shapes_of,
 )
 from diorama_core.evaluation.metrics.colour import delta_e_2000, lab_of
+from diorama_core.evaluation.metrics.light import light_error_deg, main_light
 from diorama_core.evaluation.metrics.shape import chamfer, points_of, shape_distance
 from diorama_core.evaluation.reports.tables import Column, Row, Table
 from diorama_core.geometry.silhouette import PoseBatch, ShapeCaster
@@ -46,6 +47,7 @@ from diorama_core.render.picture import picture
 from diorama_core.retrieval.hierarchical import HierarchicalRetrieval
 from diorama_core.scene.types import Camera, Pose, Scene, SceneObject
 from diorama_core.synthesis.artefacts import TrueShapes
+from diorama_core.synthesis.light import room_light
 from diorama_core.synthesis.truth import TruthView
 
 log = logging.getLogger(__name__)
@@ -94,6 +96,8 @@ class LookBench:
     objects: tuple[ObjectLook, ...]
     seconds: tuple[tuple[str, float, float], ...]
     """What was given, and the processor time that fitting and materials took for an object, on average."""
+    light_errors_deg: tuple[tuple[str, float], ...] = ()
+    """What was given, and how far the main direction of the light is off, for every room."""
 
     def tables(self) -> tuple[Table, ...]:
         """One row for what was given."""
@@ -103,6 +107,7 @@ class LookBench:
             *(Column(name, ".1f", "↓") for name in names),
             *(Column(f"outline IoU {when}", ".3f", "↑") for when in ("before", "after")),
             *(Column(f"delta E {when}", ".1f", "↓") for when in ("flat", "after")),
+            Column("light °", ".0f", "↓"),
             *(Column(f"s/object {step}", ".2f", "↓") for step in ("made", "materials")),
         )
         rows = [self._row(given, made, materials) for given, made, materials in self.seconds]
@@ -119,7 +124,8 @@ class LookBench:
         outlines = [_mean([getattr(o, f"outline_{k}") for o in mine]) for k in ("before", "after")]
         coloured = [o for o in mine if o.colour_before is not None and o.colour_after is not None]
         colours = [_mean([getattr(o, f"colour_{k}") for o in coloured]) for k in ("before", "after")]
-        return Row(given, (len(mine), *means, *medians, *outlines, *colours, made_s, materials_s))
+        light = _mean([error for of, error in self.light_errors_deg if of == given])
+        return Row(given, (len(mine), *means, *medians, *outlines, *colours, light, made_s, materials_s))
 
     def to_json(self) -> dict[str, object]:
         """Tables and every object."""
@@ -128,6 +134,7 @@ class LookBench:
             "seed": self.seed,
             "tables": [t.to_json() for t in self.tables()],
             "objects": [asdict(o) for o in self.objects],
+            "light_errors_deg": list(self.light_errors_deg),
         }
 
 
@@ -150,12 +157,13 @@ def run(
     progress = progress or Progress()
     objects: list[ObjectLook] = []
     spent: dict[str, list[tuple[float, float, int]]] = {given: [] for given in GIVEN}
+    lights: list[tuple[str, float]] = []
     cases = recipe(scenes, 1, seed)
     for number, (case, view) in enumerate(attempted(cases, library, [])):
         for turn, given in enumerate(GIVEN):
             progress.report((number + turn / len(GIVEN)) / len(cases), f"{case.name}: {given}")
             try:
-                found, times = _one_room(case.name, view, given, library, show)
+                found, times, off_deg = _one_room(case.name, view, given, library, show)
             except Cancelled:
                 raise
             except Exception as error:  # whatever goes wrong, the other rooms' results are worth keeping
@@ -163,14 +171,15 @@ def run(
                 continue
             objects += found
             spent[given].append(times)
+            lights += [] if off_deg is None else [(given, off_deg)]
     progress.report(1.0, "done")
     seconds = tuple((given, *_for_an_object(times)) for given, times in spent.items() if times)
-    return LookBench(seed, tuple(objects), seconds)
+    return LookBench(seed, tuple(objects), seconds, tuple(lights))
 
 
 def _one_room(
     name: str, view: TruthView, given: str, library: ShapeLibrary, show: Show | None
-) -> tuple[list[ObjectLook], tuple[float, float, int]]:
+) -> tuple[list[ObjectLook], tuple[float, float, int], float | None]:
     seen = predict(inputs_with(view, GIVEN[given]), library)
     retrieved = HierarchicalRetrieval(library, keep=KEPT + 1).retrieve(
         seen.inputs, seen.objects, seen.geometry, Progress()
@@ -201,7 +210,9 @@ def _one_room(
             pair = before.object(item.id), after.object(item.id)
             colours = _colours(view, index, seen.geometry.camera, pair, differences, library)
             found.append(_measured(name, given, view, index, pair, seen.geometry.camera, colours, library))
-    return found, (made_s, materials_s, len(seen.objects))
+    true_light = main_light(room_light(view.scene), np.array([view.scene.objects[k].pose.position for k in view.asked]))
+    off_deg = light_error_deg(true_light, view.camera, look.light, seen.geometry.camera)
+    return found, (made_s, materials_s, len(seen.objects)), off_deg
 
 
 def _balanced(seen: Seen) -> tuple[Picture, tuple[float, float, float]]:

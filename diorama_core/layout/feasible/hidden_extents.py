@@ -57,7 +57,8 @@ def ending_before_neighbours(problem: Problem, observations: PhotoObservations) 
                 if not _is_hidden(observations, i, p[i], face):
                     continue
                 cut = _overlap_m(problem, i, neighbours, p, scale, axis, outward)
-                cut = min(cut, _free_m(problem, i, float(face @ outward), outward), (1.0 - LEAST_SHARE) * extent)
+                least = LEAST_SHARE * float(problem.shape_size[i, axis] * problem.scale[i, axis])
+                cut = min(cut, _free_m(problem, i, float(face @ outward), outward), extent - least)
                 shorter = scale[i] * np.where(np.arange(3) == axis, 1.0 - cut / extent, 1.0)
                 nearer = p[i] - 0.5 * cut * outward
                 if cut > LEAST_OVERLAP_M and _covers_box(problem, observations, i, nearer, shorter):
@@ -83,7 +84,8 @@ def ending_on_walls(problem: Problem, observations: PhotoObservations) -> Proble
                 if abs(float(outward @ wall.normal)) > UPRIGHT or not _is_hidden(observations, i, p[i], face, (0, 1)):
                     continue
                 beyond = float(face @ outward) - float((wall.polygon @ outward).max())
-                cut = min(beyond, (1.0 - LEAST_SHARE) * extent)
+                least = LEAST_SHARE * float(problem.shape_size[i, axis] * problem.scale[i, axis])
+                cut = min(beyond, extent - least)
                 if cut > LEAST_OVERLAP_M:
                     scale[i, axis] *= 1.0 - cut / extent
                     p[i] = p[i] - 0.5 * cut * outward

@@ -8,13 +8,20 @@ limits) is fitted to them by Gauss-Newton, in metres at the object's distance.
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from types import MappingProxyType
 
 import numpy as np
 from jaxtyping import Bool, Float, Int
-from scipy.optimize import linear_sum_assignment
 
 from diorama_core.artefacts import PhotoDisagreement
 from diorama_core.geometry.projection import box_iou
+from diorama_core.layout.feasible.visible_points import (
+    NEAREST_M,
+    TrackedPoints,
+    VisiblePoints,
+    tracked_points,
+    turned_points,
+)
 from diorama_core.layout.problem.problem import Problem
 from diorama_core.layout.problem.supports import box_misfit
 from diorama_core.scene.types import Camera, box_corners
@@ -43,10 +50,9 @@ UPWARD = 0.98
 LOAD_M = 0.12
 """What was observed farther from its place says nothing about that place."""
 _OUTWARD = np.array([-1.0, -1.0, 1.0, 1.0])
-_NEAREST_M = 0.1
 _STEPS = 4
-_CORNERS = 1.0
-"""Weight of a metre by which the corners of a box leave their lines of sight, against one of its outline."""
+_TRACKED = 4.0
+"""Weight of a metre by which tracked points leave their lines of sight, against one of the outline."""
 _KEEP_PLACE = 0.1
 """Weight of staying where structure put an object, against one metre of disagreement with the picture."""
 _LOAD = 1.5
@@ -79,10 +85,10 @@ class PhotoObservations:
     """Extents at scale 1."""
     points: tuple[Float[np.ndarray, "_ 3"], ...]
     """Outline points of each shape at scale 1, object frame."""
-    corners_px: Float[np.ndarray, "n 8 2"]
-    """Where the camera saw the corners of each object's box; NaN for those behind the camera."""
+    tracked: tuple[TrackedPoints, ...]
+    """Points of each object and where the camera saw them."""
     R: Float[np.ndarray, "n 3 3"]
-    """Rotations of those boxes."""
+    """Observed rotations."""
     contradicted: Bool[np.ndarray, " n"]
     """Objects whose posed shape is not where the photo's box is."""
     measured: Bool[np.ndarray, " n"]
@@ -92,6 +98,12 @@ class PhotoObservations:
         """The same with nothing larger than it is now where it has been made smaller."""
         smaller = scale < 0.999 * self.most / MAX_STRETCH
         return replace(self, most=np.where(smaller, scale, self.most), least=np.minimum(self.least, scale))
+
+    def at_heights(self, members: Int[np.ndarray, " m"], scale: Float[np.ndarray, " n"]) -> PhotoObservations:
+        """The same with the heights of some objects decided: the scales of all along their own up axes."""
+        least, most = self.least.copy(), self.most.copy()
+        least[members, 2] = most[members, 2] = scale[members]
+        return replace(self, least=least, most=most)
 
     def fitted(
         self,
@@ -115,7 +127,7 @@ class PhotoObservations:
             grown: what its distance and its size were multiplied by already.
         """
         settled = not self.contradicted[i] and np.linalg.norm(p - self.observed[i]) < MOVED_M
-        if settled or not np.isfinite(self.corners_px[i]).all():
+        if settled or not len(self.tracked[i].points):
             return p, scale
         fit = self.fit(i, R, p, scale, basis, pinned, grown)
         low, high = np.log(grown * self.least[i] / scale), np.log(grown * self.most[i] / scale)
@@ -140,6 +152,7 @@ class PhotoObservations:
         """The least-squares problem of one object; arguments as in `fitted`."""
         local = pinned * self.size[i] / 2
         observed = self.camera.position + grown * (self.observed[i] - self.camera.position)
+        tracked = self.tracked[i]
         return ObjectFit(
             camera=self.camera,
             bounds_px=self.bounds_px[i],
@@ -151,8 +164,9 @@ class PhotoObservations:
             anchor=p + R @ (local * scale),
             anchor_local=local,
             arms=self.points[i] - local,
-            corner_arms=box_corners(self.size[i]) - local,
-            corners_px=self.corners_px[i][same_corners(self.R[i], R)],
+            tracked=tracked,
+            tracked_arms=turned_points(tracked.points, self.size[i], self.R[i], R) - local,
+            surface_measured=bool(self.measured[i]) and tracked.seen,
             scale=scale,
             basis=basis,
             metres=float(self.camera.to_camera(observed)[2]) / self.camera.intrinsics.fx,
@@ -182,10 +196,11 @@ class ObjectFit:
     """The same at scale 1, object frame."""
     arms: Float[np.ndarray, "v 3"]
     """Outline points from the anchor, at scale 1."""
-    corner_arms: Float[np.ndarray, "8 3"]
-    """Corners of the box from the anchor, at scale 1."""
-    corners_px: Float[np.ndarray, "8 2"]
-    """Where the camera saw them."""
+    tracked: TrackedPoints
+    tracked_arms: Float[np.ndarray, "t 3"]
+    """The tracked points from the anchor, at scale 1."""
+    surface_measured: bool
+    """Whether it is the tracked points' distances that were measured, rather than the centre's that was reasoned."""
     scale: Float[np.ndarray, "3"]
     basis: Float[np.ndarray, "3 2"]
     metres: float
@@ -198,13 +213,14 @@ class ObjectFit:
         return self.anchor + self.basis @ x[:2] - self.R @ (self.anchor_local * self.scale * np.exp(x[2:]))
 
     def linearised(self, x: Float[np.ndarray, "5"]) -> tuple[Float[np.ndarray, "r 5"], Float[np.ndarray, " r"]] | None:
-        """Derivatives and residuals in metres: four outline bounds, distance, and what holds place, shape and size.
+        """Derivatives and residuals in metres: four outline bounds, tracked points, distance, and what holds
+        place, shape and size.
 
         None when the object reaches the camera.
         """
         arms = self.arms * (self.scale * np.exp(x[2:]))
         seen = self.camera.to_camera(self.anchor + self.basis @ x[:2] + arms @ self.R.T)
-        if seen[:, 2].min() < _NEAREST_M:
+        if seen[:, 2].min() < NEAREST_M:
             return None
         k = self.camera.intrinsics
         flat = seen[:, :2] / seen[:, 2:] * [k.fx, k.fy] + [k.cx, k.cy]
@@ -219,34 +235,48 @@ class ObjectFit:
         outline, pixel = np.where(counts, outline, 0.0), np.where(counts[:, None], pixel, 0.0)
         to_metres = pixel @ self.camera.T_camera_world[:3, :3] * self.metres
         J = np.column_stack([to_metres @ self.basis, (to_metres @ self.R) * arms[extreme]])
-        corners = self._corners(x)
-        if corners is None:
+        sight = self._sight(x)
+        if sight is None:
             return None
+        distance = self._surface(x) if self.surface_measured else self._centre(x)
+        clamped = self._clamped()
+        held, gaps = self._held(x)
+        rows = [J, sight[0], distance[0], held, clamped]
+        return np.vstack(rows), np.concatenate([outline, sight[1], distance[1], gaps, clamped @ x])
 
+    def _placed(self, x: Float[np.ndarray, "5"]) -> tuple[Float[np.ndarray, "t 3"], Float[np.ndarray, "t 3"]]:
+        """Arms of the tracked points at their sizes, and where they are before the camera."""
+        arms = self.tracked_arms * (self.scale * np.exp(x[2:]))
+        return arms, self.camera.to_camera(self.anchor + self.basis @ x[:2] + arms @ self.R.T)
+
+    def _centre(self, x: Float[np.ndarray, "5"]) -> tuple[Float[np.ndarray, "1 5"], Float[np.ndarray, "1"]]:
+        """How far the centre leaves the distance at which it was observed."""
         ray = self.observed - self.camera.position
         ray = self.depth_weight * ray / np.linalg.norm(ray)
         moved = -self.anchor_local * self.scale * np.exp(x[2:]) * (ray @ self.R)
-        distance = np.concatenate([ray @ self.basis, moved])
-        clamped = self._clamped()
-        held, gaps = self._held(x)
-        along = [float(ray @ (self.centre(x) - self.observed))]
-        residual = np.concatenate([outline, corners[1], along, gaps, clamped @ x])
-        return np.vstack([J, corners[0], distance, held, clamped]), residual
+        along = np.array([float(ray @ (self.centre(x) - self.observed))])
+        return np.concatenate([ray @ self.basis, moved])[None], along
 
-    def _corners(self, x: Float[np.ndarray, "5"]) -> tuple[Float[np.ndarray, "16 5"], Float[np.ndarray, "16"]] | None:
-        """How the corners of the box leave where they were seen, in metres at their distance."""
-        arms = self.corner_arms * (self.scale * np.exp(x[2:]))
-        seen = self.camera.to_camera(self.anchor + self.basis @ x[:2] + arms @ self.R.T)
-        if seen[:, 2].min() < _NEAREST_M:
+    def _surface(self, x: Float[np.ndarray, "5"]) -> tuple[Float[np.ndarray, "t 5"], Float[np.ndarray, " t"]]:
+        """How far the surface that was seen leaves its measured distance."""
+        arms, placed = self._placed(x)
+        axis = self.depth_weight / np.sqrt(len(arms)) * self.camera.T_camera_world[2, :3]
+        rows = np.column_stack([np.tile(axis @ self.basis, (len(arms), 1)), (axis @ self.R) * arms])
+        return rows, self.depth_weight / np.sqrt(len(arms)) * (placed[:, 2] - self.tracked.depth_m)
+
+    def _sight(self, x: Float[np.ndarray, "5"]) -> tuple[Float[np.ndarray, "r 5"], Float[np.ndarray, " r"]] | None:
+        """How the tracked points leave where they were seen, in metres at their distance."""
+        arms, placed = self._placed(x)
+        if placed[:, 2].min() < NEAREST_M:
             return None
         k = self.camera.intrinsics
-        sight = (self.corners_px - [k.cx, k.cy]) / [k.fx, k.fy]
-        # What is left of the corner across its observed line of sight: linear in the corner.
-        residual = seen[:, :2] - sight * seen[:, 2:]
-        pixel = np.concatenate([np.tile(np.eye(2), (8, 1, 1)), -sight[..., None]], axis=2).reshape(16, 3)
+        sight = (self.tracked.pixels - [k.cx, k.cy]) / [k.fx, k.fy]
+        # What is left of a point across its observed line of sight: linear in the point.
+        residual = placed[:, :2] - sight * placed[:, 2:]
+        pixel = np.concatenate([np.tile(np.eye(2), (len(arms), 1, 1)), -sight[..., None]], axis=2).reshape(-1, 3)
         across = pixel @ self.camera.T_camera_world[:3, :3]
         J = np.column_stack([across @ self.basis, (across @ self.R) * np.repeat(arms, 2, axis=0)])
-        weight = _CORNERS / np.sqrt(len(arms))
+        weight = _TRACKED / np.sqrt(len(arms))
         return weight * J, weight * residual.ravel()
 
     def _held(self, x: Float[np.ndarray, "5"]) -> tuple[Float[np.ndarray, "m 5"], Float[np.ndarray, " m"]]:
@@ -281,12 +311,27 @@ def _bounded_step(J: np.ndarray, residual: np.ndarray, low: np.ndarray, high: np
 
 
 def photo_observations(
-    problem: Problem, camera: Camera, *, depth_weight: float, measured: bool = False
+    problem: Problem,
+    camera: Camera,
+    *,
+    depth_weight: float,
+    measured: bool = False,
+    visible: VisiblePoints = MappingProxyType({}),
 ) -> PhotoObservations:
-    """What the camera sees of the observed layout, whose distances were measured or only reasoned."""
+    """What the camera sees of the observed layout.
+
+    Args:
+        problem: the observed layout.
+        camera: what looks at it.
+        depth_weight: how much a metre along the viewing ray counts against a metre across.
+        measured: whether distances were measured, or only reasoned.
+        visible: points of the objects that are seen.
+    """
     points = _outline_points(problem)
     posed = _posed_bounds_px(problem, camera)
     bounds, hidden = _pictured(problem, camera, posed)
+    if measured:  # masks and depth, to which shapes were fitted, say more than boxes
+        bounds = posed
     return PhotoObservations(
         camera=camera,
         bounds_px=bounds,
@@ -298,7 +343,7 @@ def photo_observations(
         loads=tuple(_loads(problem, i) for i in range(problem.count)),
         size=problem.shape_size,
         points=points,
-        corners_px=_corners_px(problem, camera, posed, bounds),
+        tracked=tracked_points(problem, camera, posed, bounds, visible),
         R=problem.R,
         contradicted=(np.abs(posed - bounds) > 0.0).any(axis=1),
         measured=_agrees(_bounds_in_picture_px(problem, camera), problem.box_px) & measured,
@@ -341,7 +386,7 @@ def _bounds_in_picture_px(problem: Problem, camera: Camera) -> Float[np.ndarray,
     k, bounds = camera.intrinsics, np.full((problem.count, 4), np.nan)
     for i, own in enumerate(_outline_points(problem)):
         world = (own * problem.scale[i]) @ problem.R[i].T + problem.p[i]
-        flat = camera.project(world[camera.to_camera(world)[:, 2] >= _NEAREST_M])
+        flat = camera.project(world[camera.to_camera(world)[:, 2] >= NEAREST_M])
         if len(flat):
             bounds[i] = np.clip([*flat.min(axis=0), *flat.max(axis=0)], 0, [k.width, k.height] * 2)
     return bounds
@@ -352,36 +397,10 @@ def posed_bounds_px(
 ) -> Float[np.ndarray, "4"]:
     """Bounds in the picture of one object at another place or size, not cut at its border; NaN behind the camera."""
     world = (_outline_points_of(problem, i) * scale) @ problem.R[i].T + p
-    if camera.to_camera(world)[:, 2].min() < _NEAREST_M:
+    if camera.to_camera(world)[:, 2].min() < NEAREST_M:
         return np.full(4, np.nan)
     flat = camera.project(world)
     return np.array([*flat.min(axis=0), *flat.max(axis=0)])
-
-
-def _corners_px(
-    problem: Problem, camera: Camera, posed: Float[np.ndarray, "n 4"], bounds: Float[np.ndarray, "n 4"]
-) -> Float[np.ndarray, "n 8 2"]:
-    """Where the corners of every box were seen: as posed, and stretched as the bounds in the picture are."""
-    found = np.full((problem.count, 8, 2), np.nan)
-    for i in np.flatnonzero(np.isfinite(posed).all(axis=1)):
-        world = problem.p[i] + box_corners(problem.shape_size[i] * problem.scale[i]) @ problem.R[i].T
-        if camera.to_camera(world)[:, 2].min() < _NEAREST_M:
-            continue
-        stretch = (bounds[i, 2:] - bounds[i, :2]) / np.maximum(posed[i, 2:] - posed[i, :2], 1.0)
-        found[i] = bounds[i, :2] + (camera.project(world) - posed[i, :2]) * stretch
-    return found
-
-
-def same_corners(R_from: Float[np.ndarray, "3 3"], R_to: Float[np.ndarray, "3 3"]) -> Int[np.ndarray, "8"]:
-    """For every corner of a turned box the corner of the box before the turn that is in its place.
-
-    A mirror that was seen with its back to the room is turned round; what is left in the picture remains left.
-    """
-    nearest = R_from.T @ R_to
-    rows, columns = linear_sum_assignment(-np.abs(nearest))
-    before = np.zeros((8, 3))
-    before[:, rows] = np.sign(nearest[rows, columns]) * box_corners(np.ones(3))[:, columns]
-    return (before > 0) @ np.array([1, 2, 4])
 
 
 def _pictured(

@@ -10,12 +10,14 @@ import numpy as np
 from jaxtyping import Float
 
 from diorama_core.artefacts import LayoutReport, PhotoDisagreement
+from diorama_core.layout.feasible.heights import joint_heights
 from diorama_core.layout.feasible.hidden_extents import ending_before_neighbours, ending_on_walls
 from diorama_core.layout.feasible.photo_observations import PhotoObservations, disagreements, photo_observations
 from diorama_core.layout.feasible.relocate import relocate
 from diorama_core.layout.feasible.resize import fitted_sizes
 from diorama_core.layout.feasible.separate import Program, Separation, base, build_program, relaxed, separate
 from diorama_core.layout.feasible.structure import Structure, exact_structure
+from diorama_core.layout.feasible.visible_points import VisiblePoints, visible_points
 from diorama_core.layout.problem.problem import Problem, build_problem
 from diorama_core.layout.report import measure
 from diorama_core.layout.weights import AS_IT_IS, Weights
@@ -79,11 +81,15 @@ class FeasibleRecipe:
         progress.report(0.0, "reading the layout")
         problem = build_problem(scene, self.library, only=self.only, adherence_m=self.adherence_m)
         before = measure(problem, problem.R, problem.p, problem.scale)
-        observations = self._observations(problem, scene.camera)
+        watched = scene.camera is not None and self._across > 1.0
+        visible = visible_points(scene, self.library) if watched else {}
+        observations = self._observations(problem, scene.camera, visible)
         wanted = problem
         if observations is not None and not self.sizes_reasoned:  # reasoned distances overlap for other reasons
             wanted = ending_on_walls(ending_before_neighbours(problem, observations), observations)
-            observations = self._observations(wanted, scene.camera)
+            observations = self._observations(wanted, scene.camera, visible)
+        if observations is not None and self.depth_measured:
+            wanted, observations = joint_heights(wanted, observations)
         best: tuple[Problem, Program, Separation] | None = None
         for _ in range(self.attempts):
             seen = None if observations is None else observations.limited(wanted.scale)
@@ -148,11 +154,13 @@ class FeasibleRecipe:
         away = problem.p - camera.position
         return away / np.maximum(np.linalg.norm(away, axis=1, keepdims=True), 1e-9)
 
-    def _observations(self, problem: Problem, camera: Camera | None) -> PhotoObservations | None:
+    def _observations(
+        self, problem: Problem, camera: Camera | None, visible: VisiblePoints
+    ) -> PhotoObservations | None:
         if camera is None or self._across <= 1.0:
             return None
         weight = self.depth_weight * self.weights.distance
-        return photo_observations(problem, camera, depth_weight=weight, measured=self.depth_measured)
+        return photo_observations(problem, camera, depth_weight=weight, measured=self.depth_measured, visible=visible)
 
     def _outline_cost(self, problem: Problem) -> Float[np.ndarray, " n"]:
         """What a metre of outline counts, by object: moving it across the viewing ray."""

@@ -1,7 +1,8 @@
-"""What encloses a place: the parts of a supporter that stand beside what rests on it.
+"""What encloses a place: the parts of a supporter that rise above it, beside what rests there.
 
 An object touches the board it stands on, so it never collides with its supporter as a whole. It does collide with the
-back and the sides of a bookcase, with the arms of a chair and with the frame of a mirror on a dresser.
+back and the sides of a bookcase, with the arms of a chair, with the frame of a mirror on a dresser and with the tap of
+a worktop.
 """
 
 from __future__ import annotations
@@ -18,8 +19,6 @@ from diorama_core.layout.problem.supports import Surface
 
 ABOVE_M = 0.01
 """Parts of a supporter that do not rise above a place by so much are below what rests there."""
-BESIDE_M = 0.005
-"""Parts reach by up to so much over the edge of a place beside which they stand: they contain the mesh."""
 
 
 def may_meet(problem: Problem, bodies: Bodies, surface: Sequence[Surface | None]) -> Bool[np.ndarray, "b b"]:
@@ -39,15 +38,12 @@ def may_meet(problem: Problem, bodies: Bodies, surface: Sequence[Surface | None]
             if place is None or problem.yielding[i, below]:
                 continue
             parts = np.flatnonzero(owner == below)
-            beside = parts[_beside(bodies, parts, place)]
+            beside = parts[_rises(bodies, parts, place)]
             own = np.flatnonzero(owner == i)
             allowed[np.ix_(own, beside)] = allowed[np.ix_(beside, own)] = True
     return allowed
 
 
-def _beside(bodies: Bodies, parts: np.ndarray, place: Surface) -> Bool[np.ndarray, " k"]:
-    """Which parts rise above a place (world) and lie outside of one of its sides."""
-    points = bodies.vertices[parts]
-    rises = (points @ place.normal).max(axis=1) - place.level > ABOVE_M
-    outside = (np.matmul(points, place.outward.T) - place.offset).min(axis=1).max(axis=1) > -BESIDE_M
-    return rises & outside
+def _rises(bodies: Bodies, parts: np.ndarray, place: Surface) -> Bool[np.ndarray, " k"]:
+    """Which parts rise above a place (world)."""
+    return np.asarray((bodies.vertices[parts] @ place.normal).max(axis=1) - place.level > ABOVE_M)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import hashlib
+import io
 import os
 import re
 import signal
@@ -18,6 +19,7 @@ from pathlib import Path
 from types import FrameType
 
 from diorama_core.errors import DioramaError, InputError, LibraryError
+from diorama_core.io.bounded import read_bytes, shortened
 from diorama_core.library.ingest.guess import Given
 from diorama_core.library.ingest.known_shapes import KnownShapes, known_shapes
 from diorama_core.library.ingest.limits import DEFAULT_LIMITS, Limits
@@ -33,6 +35,7 @@ LEARNING_SHARE = 0.8
 """Of a first import's time, what goes into learning the built-in shapes."""
 UNSURE = 0.6
 """Guesses less sure than this are worth a person's look."""
+MAX_TABLE_BYTES = 64_000_000
 _COLUMNS = ("file", "up", "front", "unit", "category", "caption", "licence")
 
 
@@ -115,15 +118,13 @@ def read_table(path: Path) -> dict[str, Given]:
     Raises:
         InputError: when it cannot be read, or a value makes no sense; names the line.
     """
+    data = read_bytes(path, MAX_TABLE_BYTES, InputError, "name a CSV file")
     try:
-        with path.open(newline="", encoding="utf-8-sig") as stream:
-            reader = csv.DictReader(stream)
-            if "file" not in (reader.fieldnames or ()):
-                raise InputError(
-                    f"{path}: the first line must name the columns, with 'file' among {', '.join(_COLUMNS)}"
-                )
-            return {row["file"]: _row(path, reader.line_num, row) for row in reader if row.get("file")}
-    except (OSError, UnicodeDecodeError, csv.Error) as error:
+        reader = csv.DictReader(io.StringIO(data.decode("utf-8-sig"), newline=""))
+        if "file" not in (reader.fieldnames or ()):
+            raise InputError(f"{path}: the first line must name the columns, with 'file' among {', '.join(_COLUMNS)}")
+        return {row["file"]: _row(path, reader.line_num, row) for row in reader if row.get("file")}
+    except (UnicodeDecodeError, csv.Error) as error:
         raise InputError(f"{path} cannot be read as CSV ({error})") from error
 
 
@@ -261,7 +262,7 @@ def _row(path: Path, line: int, row: Mapping[str, str | None]) -> Given:
             reason=f"{path.name}",
         )
     except (InputError, ValueError) as error:
-        raise InputError(f"{path}, line {line}: {error}") from error
+        raise InputError(f"{path}, line {line}: {shortened(str(error))}") from error
 
 
 def _slug(text: str) -> str:

@@ -71,7 +71,8 @@ class Given:
         if self.unit_m is not None and not 1e-9 < self.unit_m < 1e9:
             raise InputError(f"unit {self.unit_m}: give the metres in one unit of the file, such as 0.01")
         if self.category is not None and not taxonomy.resolve(self.category).exact:
-            raise InputError(f"category {self.category!r} is not known; {taxonomy.resolve(self.category).note}")
+            name = shortened(self.category, 60)
+            raise InputError(f"category {name!r} is not known; {taxonomy.resolve(name).note}")
 
     def over(self, other: Given) -> Given:
         """This, and where it says nothing, the other."""

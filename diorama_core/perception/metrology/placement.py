@@ -9,6 +9,7 @@ import numpy as np
 from jaxtyping import Float
 
 from diorama_core.geometry.projection import cuboid_corners
+from diorama_core.library.company import often_carried
 from diorama_core.library.taxonomy import AGAINST_WALLS, PORTABLE, UNKNOWN, Category, with_kin
 from diorama_core.perception.metrology.arrangement import arrange, distinct
 from diorama_core.perception.metrology.box_observations import BoxObservations
@@ -44,6 +45,10 @@ _SCREENS = frozenset({"television", "monitor"})
 _SCREEN_ON_WALL_COST, _SCREEN_ON_FLOOR_COST = 3.0, 12.0
 _BESIDE_ITS_SUPPORTER_COST = 20.0
 """For a thing on the floor, or on a wall, that belongs on something its box rests in."""
+_AT_CARRIER_COST = 4.0
+"""For a portable thing on the floor that ends on what often carries such things: it would do so by chance."""
+_USUAL, _COMPANY_TRUST = 4.0, 0.5
+"""How often a carrier's usual loads lie on it (`company.CARRIED`), and how much less of that is held against others."""
 _BEFORE_COST = 10.0
 """Of a thing on the floor that ends before another whose lower end is nearer: it would stand in the other's place."""
 _FIXED_TO_WALLS = frozenset({"door", "window", "curtain", "radiator"})
@@ -253,7 +258,7 @@ def _supported_rows(
     parents = _possible_parents(observations, index)
     if np.isfinite(on_top) and category.name not in _LARGE:
         for parent in parents:
-            cost = on_top + _unlikely_parent_cost(observations.categories[parent])
+            cost = on_top + _unlikely_parent_cost(category, observations.categories[parent])
             options.append((parent, place_on(observations, index, parent, carriers[parent].cuboid, height_m, cost)))
     on_wall = _SCREEN_ON_WALL_COST if category.name in _SCREENS else _cost(category, "wall", _WALL_COST)
     if category is UNKNOWN and observations.fill[index] < _MIN_FLAT_FILL:
@@ -299,10 +304,17 @@ def _floor_cost(observations: BoxObservations, index: int) -> float:
     parents = _possible_parents(observations, index)
     if category.mount == "surface" and parents:
         cost += _BESIDE_ITS_SUPPORTER_COST
+    if category.name in PORTABLE and any(_often_carries(observations, j, index) for j in parents):
+        cost += _AT_CARRIER_COST
     before = max(
         (float(observations.before[index, j]) for j in parents if not observations.in_front[j, index]), default=0.0
     )
     return cost + _BEFORE_COST * before
+
+
+def _often_carries(observations: BoxObservations, parent: int, index: int) -> bool:
+    carrier = observations.categories[parent]
+    return carrier.supports_objects and often_carried(observations.categories[index].name, carrier.name) > 1.0
 
 
 def _possible_parents(observations: BoxObservations, index: int) -> list[int]:
@@ -314,17 +326,23 @@ def _cost(category: Category, where: str, table: dict[str, float]) -> float:
     return _UNNAMED_COSTS[where] if category is UNKNOWN else table[category.mount]
 
 
-def _unlikely_parent_cost(category: Category) -> float:
-    if category is UNKNOWN:
+def _unlikely_parent_cost(category: Category, parent: Category) -> float:
+    if parent is UNKNOWN:
         return 0.5
-    return 0.0 if category.supports_objects else 4.0
+    carries = 0.0 if parent.supports_objects else 4.0
+    if category is UNKNOWN:
+        return carries
+    return carries + 2.0 * _COMPANY_TRUST * float(np.log(max(_USUAL / often_carried(category.name, parent.name), 1.0)))
 
 
 def _tells_the_room(placement: Placement, observations: BoxObservations) -> bool:
     """Whether a thing surely stands on the floor where it was placed."""
     category = observations.categories[placement.index]
-    bottom_hidden = bool(observations.hidden(placement.index)[3])
-    return category.mount == "floor" and placement.cost < _SURE_COST and not (category is UNKNOWN and bottom_hidden)
+    if category.mount != "floor" or placement.cost >= _SURE_COST:
+        return False
+    if category.name in PORTABLE and _possible_parents(observations, placement.index):
+        return False
+    return not (category is UNKNOWN and bool(observations.hidden(placement.index)[3]))
 
 
 def _room(telling: list[Placement], observations: BoxObservations) -> Extent:

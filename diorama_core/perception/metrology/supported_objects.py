@@ -31,6 +31,7 @@ _BACK_COST, _ODD_ON_BACK_COST = 2.5, 10.0
 """Of a pillow or toy that lies on a backrest or headboard, and of anything else there."""
 _ABOVE_PARENT = 0.5
 """Share of a thing's width that must lie within its supporter's box."""
+_ABOVE_SHARE, _DRAWN_SIGMAS = 0.15, 2.0
 _SEATS_WITHOUT_SUPPORT_FLAG_COST = 2.0
 _FLAT_M = 0.2
 """A door thinner than this along an axis is in the wall across that axis."""
@@ -91,14 +92,21 @@ def extent_of(corners_world: Float[np.ndarray, "n 8 3"], names: tuple[str, ...])
 
 
 def supporters_of(observations: BoxObservations, index: int, candidates: list[int]) -> list[int]:
-    """Candidates whose boxes an object may rest in: most of its width lies within, and its bottom not below."""
+    """Candidates whose boxes an object may rest in: most of its width lies within, and its bottom not below.
+
+    Both boxes' edges are drawn by people or detectors; the bottom may be above the candidate by as much as that leaves
+    open, or by a share of the candidate's height.
+    """
     box = observations.box_px[index]
     found = []
     for other in candidates:
         theirs = observations.box_px[other]
         shared = min(box[2], theirs[2]) - max(box[0], theirs[0])
-        reach = 0.15 * (theirs[3] - theirs[1])
-        within = theirs[1] - reach < box[3] <= theirs[3] + 0.1 * reach
+        drawn = _DRAWN_SIGMAS * float(
+            np.hypot(observations.edge_sigma_px[index, 3], observations.edge_sigma_px[other, 1])
+        )
+        reach = max(_ABOVE_SHARE * (theirs[3] - theirs[1]), drawn)
+        within = theirs[1] - reach < box[3] <= theirs[3] + 0.1 * _ABOVE_SHARE * (theirs[3] - theirs[1])
         if other != index and shared >= _ABOVE_PARENT * (box[2] - box[0]) and within:
             found.append(other)
     return found

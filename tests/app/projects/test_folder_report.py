@@ -20,7 +20,7 @@ def test_failures_come_first_and_every_picture_is_inside(tmp_path: Path) -> None
         "notes": ["a <note>"],
     }
     done = PhotoResult(tmp_path / "living.jpg", project, report, seconds=12.3, tries=2)
-    kept = PhotoResult(tmp_path / "gone.jpg", tmp_path / "gone", report, kept=True)
+    kept = PhotoResult(tmp_path / "gone.jpg", tmp_path / "gone", {**report, "seconds": 44.4}, kept=True)
     failed = PhotoResult(tmp_path / "<b>.jpg", tmp_path / "b", error="it is <broken>", tries=2)
     write_report(tmp_path / "report.html", (done, kept, failed), ("a remark",))
     page = (tmp_path / "report.html").read_text()
@@ -29,6 +29,7 @@ def test_failures_come_first_and_every_picture_is_inside(tmp_path: Path) -> None
     assert "2 of 3 photos became scenes with 6 objects; 1 of them were finished before" in page
     assert "2 × chair, sofa" in page
     assert "12 s, second try" in page
+    assert "44 s, in an earlier run" in page
     assert len(re.findall(r'src="data:image/jpeg;base64,[A-Za-z0-9+/=]{200,}"', page)) == 2
     assert page.count("cannot be shown") == 2, "pictures of the other are gone"
     assert not re.search(r'src="(?!data:)|<script|<link', page)

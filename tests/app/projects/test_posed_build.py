@@ -23,6 +23,7 @@ from tests.cli.room_photo import room_picture
 from tests.multiview.rooms import CAMERAS, THINGS, photo
 
 POSED = CAMERAS[:2]
+SHOWN = THINGS[:2]
 
 
 @pytest.fixture
@@ -31,9 +32,9 @@ def folder(tmp_path: Path) -> Path:
     place = tmp_path / "photos"
     place.mkdir()
     for number, camera in enumerate(POSED):
-        seen, whose = photo(camera)
+        seen, whose = photo(camera, SHOWN)
         boxes = [
-            {"bbox": [float(v) for v in box], "class": THINGS[k].kind}
+            {"bbox": [float(v) for v in box], "class": SHOWN[k].kind}
             for box, k in zip(seen.boxes.observations.box_px, whose, strict=True)
         ]
         Image.fromarray(room_picture()).resize((640, 480)).save(place / f"view{number}.png")
@@ -48,11 +49,11 @@ def test_photos_with_cameras_become_one_project(folder: Path, tmp_path: Path, ca
     command = ["build", str(folder), "--poses", str(tmp_path / "model"), "-o", str(tmp_path / "room")]
     assert main([*command, "--profile", "embedded", "--json"]) == 0
     said = json.loads(capsys.readouterr().out)
-    assert len(said["objects"]) == len(THINGS)
-    assert said["in_several"] == len(THINGS)
+    assert len(said["objects"]) == len(SHOWN)
+    assert said["in_several"] == len(SHOWN)
     assert any("other.png" in note for note in said["notes"])
     project = Project.open(tmp_path / "room")
-    assert len(project.load_scene().objects) == len(THINGS)
+    assert len(project.load_scene().objects) == len(SHOWN)
     assert {c["photo"] for c in project.info()["cameras"]} == {"view0.png", "view1.png"}
     assert {p.name for p in (tmp_path / "room" / "photos").glob("*.png")} == {"view0.png", "view1.png"}
     assert main(["picture", str(tmp_path / "room"), "-o", str(tmp_path / "top.png"), "--view", "top"]) == 0

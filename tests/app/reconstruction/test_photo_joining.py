@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -12,9 +13,15 @@ from diorama_app.session.client import Client
 from diorama_app.session.session import EditorSession
 from diorama_core.artefacts import Inputs, LabelledBox, Photo
 from diorama_core.errors import EditRefused, InputError
+from diorama_core.importing.scene_import import import_scene
+from diorama_core.library.catalogue import built_in_library
 from diorama_core.project.further_photos import load_photos
 from diorama_core.scene.types import Scene
+from diorama_core.synthesis.artefacts import photo_only
 from tests.app.small_room import plain_photo
+from tests.importing.roomplan_files import write_scan_of
+from tests.importing.test_photo_of_scan import KNOWN as SCANNED
+from tests.importing.test_photo_of_scan import room as scanned_room
 
 BOX = LabelledBox((10.0, 20.0, 60.0, 80.0), "chair", "chair")
 
@@ -85,3 +92,55 @@ def test_a_photo_that_does_not_join_is_one_line_and_nothing_is_lost(session: Edi
     assert any(line.startswith("grey does not join") for line in said), said
     assert session.scene is scene
     assert session.further_photos == photos
+
+
+def scanned(session: EditorSession) -> None:
+    """The session's scene as an opened scan: without photo and camera."""
+    session.document.open(replace(session.scene, camera=None), None, ())
+
+
+def test_the_first_photo_of_a_scan_is_marked_and_one_of_elsewhere_changes_nothing(
+    session: EditorSession, client: Client
+) -> None:
+    scanned(session)
+    scene, opened = session.scene, []
+    client.open_board = lambda: opened.append(True)
+    grey = Photo(np.full((120, 160, 3), 120, np.uint8), "grey.png", (160, 120))
+    take_photo(
+        client, "grey.png", Inputs(grey, tuple(replace(BOX, category=c, label=c) for c in ("bed", "stove", "sink")))
+    )
+    assert opened == [True]
+    assert session.inputs.photo is grey
+    assert session.further_photos == ()
+    said: list[str] = []
+    client.view.notice = lambda message, kind: said.append(message)
+    join_photo(client)
+    assert session.jobs.wait(60.0)
+    assert session.ui_thread.wait(20.0)
+    assert any(line.startswith("grey.png does not join the scan") for line in said), said
+    assert session.scene is scene
+    session.undo(client)
+    assert session.inputs is None
+
+
+@pytest.mark.slow
+def test_the_first_photo_of_a_scan_brings_looks_and_new_things(
+    session: EditorSession, client: Client, tmp_path: Path
+) -> None:
+    room, truth, _ = scanned_room()
+    before = import_scene(write_scan_of(tmp_path / "room.json", room)).opened.scene
+    session.library = built_in_library()
+    session.document.open(before, None, ())
+    whole = photo_only(truth)
+    marked = tuple(b for b in whole.boxes if b.category in SCANNED or b.category in ("door", "window", "plant"))
+    take_photo(client, "room.jpg", replace(whole, boxes=marked))
+    join_photo(client)
+    assert session.jobs.wait(400.0)
+    assert session.ui_thread.wait(20.0)
+    scene = session.scene
+    assert scene.camera is not None
+    assert {o.id for o in before.objects} < {o.id for o in scene.objects}
+    assert {p.texture for p in scene.architecture.planes} & set(session.textures)
+    assert len(session.inputs.boxes) == len(marked)
+    session.undo(client)
+    assert session.scene is before

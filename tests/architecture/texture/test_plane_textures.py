@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -45,8 +47,6 @@ def test_unseen_planes_have_none(textures):
 
 
 def test_a_mark_on_the_wall_lands_at_its_texture_coordinates(shot):
-    from dataclasses import replace
-
     target = np.array([-1.0, 4.0, 1.7])
     column, row = CAMERA.project(target).astype(int)
     rgb = shot.inputs.photo.rgb.copy()
@@ -59,6 +59,22 @@ def test_a_mark_on_the_wall_lands_at_its_texture_coordinates(shot):
     texel = picture[int((1 - v) * height), int(u * width)].astype(int)
     assert texel[0] > 200
     assert texel[1] < 80
+
+
+def test_gaps_between_boards_are_the_floors_and_cut_it_in_no_pieces(shot):
+    """Without them, what is left between gaps narrower than an island's width would be given up."""
+    floor = next(p for p in shot.planes if p.id == "floor")
+    rgb = shot.inputs.photo.rgb.copy()
+    origin, rays = camera_rays(CAMERA)
+    depth, index = cast_planes(origin, rays, shot.planes)
+    on_floor = index == [p.id for p in shot.planes].index("floor")
+    x = origin[0] + np.where(on_floor, depth, 0.0) * rays[..., 0]
+    gap = on_floor & (x % 0.09 < 0.016)
+    rgb[gap] = rgb[gap] // 3
+    inputs = replace(shot.inputs, photo=replace(shot.inputs.photo, rgb=rgb))
+    picture = plane_textures(inputs, shot.objects, CAMERA, Architecture((floor,)))["floor"]
+    dark = (picture.astype(int).sum(axis=-1) < 0.6 * np.median(picture.astype(int).sum(axis=-1))).mean()
+    assert dark > 0.02
 
 
 def test_textures_are_deterministic(shot, textures):

@@ -14,6 +14,8 @@ from tests.pose.rooms import LIBRARY, camera_at
 ONE = ObjectLook("room", "measured depth", "table", 6.0, 5.0, 4.0, 0.8, 0.85, 10.0, 5.0)
 UNSEEN = replace(ONE, chamfer_after=2.0, colour_before=None, colour_after=None)
 
+LIGHTS = (("measured depth", 10.0), ("measured depth", 30.0), ("picture alone", 90.0))
+
 
 def table(x: float = 0.0, scale: tuple[float, float, float] = (1.0, 1.0, 1.0)) -> SceneObject:
     size = LIBRARY.shape("table").size_m
@@ -22,11 +24,25 @@ def table(x: float = 0.0, scale: tuple[float, float, float] = (1.0, 1.0, 1.0)) -
 
 
 def test_objects_of_what_was_given_are_averaged_and_unseen_colours_left_out() -> None:
-    bench = LookBench(0, (ONE, UNSEEN, replace(ONE, given="picture alone")), (("measured depth", 0.2, 0.1),))
+    bench = LookBench(0, (ONE, UNSEEN, replace(ONE, given="picture alone")), (("measured depth", 0.2, 0.1),), LIGHTS)
     (found,) = bench.tables()
     (row,) = found.rows
     assert row.name == "measured depth"
-    assert row.values == (2, 6.0, 5.0, 3.0, 5.0, 3.0, pytest.approx(0.8), pytest.approx(0.85), 10.0, 5.0, 0.2, 0.1)
+    assert row.values == (
+        2,
+        6.0,
+        5.0,
+        3.0,
+        5.0,
+        3.0,
+        pytest.approx(0.8),
+        pytest.approx(0.85),
+        10.0,
+        5.0,
+        20.0,
+        0.2,
+        0.1,
+    )
     assert len(row.values) == len(found.columns)
     assert bench.to_json()["bench"] == "look"
 

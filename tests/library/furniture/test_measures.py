@@ -57,6 +57,14 @@ def test_every_variant_can_be_built_in_its_size_and_is_found_by_its_id(design) -
             assert np.ptp(mesh_of(built(made)).vertices, axis=0) == pytest.approx(made.size_m, abs=1e-6)
 
 
+def test_designs_with_nothing_of_what_they_have_several_of_can_be_built() -> None:
+    """Counts are fitted one after another, so that a stand may lose its drawers and its shelves."""
+    for design in FAMILIES:
+        none = {p.name: 0 for p in parameters(design.id) if p.is_count and p.limits[0] == 0}
+        if len(none) > 1:
+            assert design.builder(design.size_m, **{**design.options, **none}), design.id
+
+
 def test_a_longer_table_has_legs_as_thick_as_before() -> None:
     table = next(d for d in DESIGNS.values() if d.builder.__name__ == "leg_table" and "outline" not in d.options)
     longer = made_to_measure(table, np.array(table.size_m) * (1, 1.5, 1), {})

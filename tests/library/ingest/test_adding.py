@@ -159,6 +159,17 @@ def test_a_table_that_makes_no_sense_names_the_line(tmp_path: Path, text: str, m
         read_table(path)
 
 
+def test_a_table_that_is_no_table_is_one_short_line(tmp_path: Path) -> None:
+    path = tmp_path / "facts.csv"
+    path.write_text(f"file,category\na.glb,{'x' * 5000}\n")
+    with pytest.raises(InputError, match="is not known") as caught:
+        read_table(path)
+    assert len(str(caught.value)) < 600
+    os.mkfifo(tmp_path / "pipe.csv")  # opened without care, it would wait for a writer for ever
+    with pytest.raises(InputError, match="is not a file"):
+        read_table(tmp_path / "pipe.csv")
+
+
 def test_no_folder_is_an_input_error(tmp_path: Path) -> None:
     with pytest.raises(InputError, match="is no folder"):
         model_files(tmp_path / "nowhere")

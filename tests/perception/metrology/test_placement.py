@@ -51,6 +51,31 @@ def test_a_television_is_on_its_stand_when_there_is_one_and_on_the_wall_otherwis
     assert placed(ROOM[0], on_wall)[1].supporter == WALL
 
 
+def test_a_small_plant_is_on_the_table_that_it_ends_on_and_a_tall_one_beside_it() -> None:
+    """From little above a table nothing but the coincidence of edges tells the plant from a tall one far behind."""
+    table = RequestedObject("table", (0.1, 2.1, 0.44), (0.75, 0.8, 0.88))
+    on_it = RequestedObject("plant", (-0.07, 2.05, 1.0), (0.2, 0.2, 0.25))
+    beside = RequestedObject("plant", (-1.2, 3.4, 0.6), (0.5, 0.5, 1.2))
+    found = placed(table, on_it, beside, height_m=1.04)
+    assert [p.supporter for p in found[1:]] == [0, FLOOR]
+
+
+def test_a_vase_with_flowers_is_on_the_night_stand_behind_the_bed() -> None:
+    """A vase of the usual size would be half as far away, and so on the bed."""
+    bed = RequestedObject("bed", (0.3, 2.6, 0.3), (2.1, 1.6, 0.6))
+    stand = RequestedObject("night stand", (1.4, 2.75, 0.31), (0.42, 0.5, 0.62))
+    vase = RequestedObject("vase", (1.35, 2.7, 1.04), (0.3, 0.3, 0.84))
+    assert placed(bed, stand, vase, height_m=1.1)[2].supporter == 1
+
+
+def test_a_plant_on_furniture_does_not_make_the_room_larger() -> None:
+    sideboard = RequestedObject("sideboard", (0.9, 3.0, 0.4), (0.45, 1.2, 0.8))
+    plant = RequestedObject("plant", (0.9, 3.0, 1.05), (0.35, 0.35, 0.5))
+    picture = RequestedObject("picture", (0.0, 3.3, 1.6), (0.03, 0.8, 0.6))
+    with_plant, without = placed(sideboard, picture, plant), placed(sideboard, picture)
+    assert with_plant[1].cuboid.centre[0] == pytest.approx(without[1].cuboid.centre[0], abs=0.02)
+
+
 def test_large_objects_never_stand_on_others() -> None:
     sofa, table = ROOM[0], RequestedObject("desk", (0.2, 3.6, 0.37), (0.7, 1.4, 0.74))
     assert [p.supporter for p in placed(sofa, table)] == [FLOOR, FLOOR]

@@ -62,8 +62,16 @@ def test_supporters_hold_most_of_the_width_and_the_bottom(x, width, bottom) -> N
     observations = gather(items, 640, 480)
     box = observations.box_px[0]
     shared = max(min(box[2], 300) - max(box[0], 100), 0)
-    expected = shared >= 0.5 * (box[2] - box[0]) and 120 < box[3] <= 353
+    drawn = 2.0 * np.hypot(observations.edge_sigma_px[0, 3], observations.edge_sigma_px[1, 1])
+    expected = shared >= 0.5 * (box[2] - box[0]) and 150 - max(30, drawn) < box[3] <= 353
     assert supporters_of(observations, 0, [0, 1]) == ([1] if expected else [])
+
+
+def test_a_box_that_is_drawn_a_little_high_above_a_carrier_that_shows_little_still_rests_in_it() -> None:
+    items = (detected("v", "vase", (330, 122, 353, 183)), detected("n", "night stand", (319, 190, 394, 210)))
+    far = (detected("v", "vase", (330, 102, 353, 163)), items[1])
+    assert supporters_of(gather(items, 640, 480), 0, [1]) == [1]
+    assert supporters_of(gather(far, 640, 480), 0, [1]) == []
 
 
 def test_objects_lie_on_tops_within_the_parents_outline() -> None:

@@ -86,7 +86,7 @@ def changing_table(size: Size, style: Style, pad: Material, drawers: int = 2, op
         ),
     )
     levels = drawers + open_shelves
-    each = (deck - t - 0.12) / levels
+    each = (deck - t - 0.12) / max(levels, 1)
     for k in range(levels):
         z = 0.12 + each * k
         parts += of(wood, box((d - 0.03, w - 2 * t + 0.004, 0.018), 0.003).moved(-0.004, 0, z - 0.018))

@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from diorama_core.library.furniture.kit import *
 from diorama_core.library.furniture.lighting.shades import flex, rose, shade
+from diorama_core.library.furniture.solids import axis_rotation
 
 
 def chandelier(size: Size, metal: Material, arms: int) -> Parts:
@@ -188,6 +191,28 @@ def branches(size: Size, metal: Material) -> Parts:
     return parts
 
 
+def rings(size: Size, metal: Material, tilts_deg: Sequence[float]) -> Parts:
+    """Rings of light below one another, each tilted on three wires from the rose; the lowest is the largest."""
+    d, _, h = size
+    parts: Parts = []
+    for k, tilt_deg in enumerate(tilts_deg):
+        r = d / 2 * (1.0 - 0.14 * k)
+        low = r * np.sin(np.deg2rad(abs(tilt_deg)))
+        z = low if k == 0 else low + (0.78 * h - low) * k / len(tilts_deg)
+        band = lathe([(r - 0.012, 0), (r, 0), (r, 0.03), (r - 0.012, 0.03), (r - 0.012, 0)], 56)
+        lit = lathe(
+            [(r - 0.018, 0.003), (r - 0.01, 0.003), (r - 0.01, 0.027), (r - 0.018, 0.027), (r - 0.018, 0.003)], 56
+        )
+        turn = 140.0 * k
+        parts += of(metal, band.turned("y", tilt_deg).turned("z", turn).moved(z=z))
+        parts += of(m.LAMP_GLOW, lit.turned("y", tilt_deg).turned("z", turn).moved(z=z))
+        around = np.deg2rad([0.0, 120.0, 240.0])
+        edge = (r - 0.006) * np.stack([np.cos(around), np.sin(around), np.zeros(3)], axis=1)
+        ends = edge @ (axis_rotation("z", turn) @ axis_rotation("y", tilt_deg)).T + [0.0, 0.0, z + 0.03]
+        parts += of(metal, *(rod((*map(float, end),), (0, 0, h - 0.03), 0.0012, segments=5) for end in ends))
+    return parts + rose(h, metal, 0.07)
+
+
 CRYSTAL = m.glass("crystal", "#e3e9ea", 0.38, 0.03)
 
 
@@ -199,4 +224,7 @@ DESIGNS: tuple[Design, ...] = (
     design("chandelier", "sputnik-black", "black starburst chandelier", (0.60, 0.60, 0.80), "industrial", sputnik, 1, metal=m.BLACK_STEEL, arms=11),
     design("chandelier", "wheel", "wagon-wheel chandelier", (0.80, 0.80, 0.75), "rustic", wheel, 1, wood=m.RECLAIMED, iron=m.IRON),
     design("chandelier", "globes", "branching chandelier with glass globes", (0.85, 0.95, 0.70), "minimal", branches, 1, metal=m.BLACK_STEEL),
+    design("chandelier", "rings-gold", "chandelier of three tilted gold rings", (0.62, 0.62, 1.00), "modern", rings, 1, metal=m.BRASS, tilts_deg=[10.0, -16.0, 8.0]),
+    design("chandelier", "rings-black", "chandelier of two level black rings", (0.80, 0.80, 0.75), "minimal", rings, 3, metal=m.BLACK_STEEL, tilts_deg=[0.0, 0.0]),
+    design("chandelier", "shades-long", "brass chandelier with six shades on a long rod", (0.58, 0.58, 1.05), "classic", chandelier, 6, metal=m.BRASS, arms=6),
 )  # fmt: skip

@@ -124,6 +124,9 @@ def branches(size: Size, vase: Material, bloom: Material) -> Parts:
 STRAW = m.paint("dry straw", "#c2ab84", 0.9)
 PLUME = Material("plume", "shag", "#d9c8ab", 0.98, 0.0, 0.1)
 BLOSSOM = m.paint("blossom", "#dcc0bb", 0.85)
+WHITE_PETAL = m.paint("white cut petals", "#eee9df", 0.8)
+RED_PETAL = m.paint("red petals", "#a83a34", 0.8)
+YELLOW_GLAZE = m.paint("yellow glaze", "#d3b24a", 0.25)
 MUSTARD_PETAL = m.paint("mustard petals", "#c9ab66", 0.8)
 
 
@@ -133,4 +136,8 @@ DESIGNS: tuple[Design, ...] = (
     design("plant", "grasses-black", "plumes in a black vase", (0.40, 0.40, 0.80), "modern", grasses, 36, vase=m.CHARCOAL, dry=STRAW, plume=PLUME),
     design("plant", "blossom", "branches of blossom in a white vase", (0.60, 0.58, 0.95), "minimal", branches, 36, vase=m.PORCELAIN, bloom=BLOSSOM),
     design("plant", "yellow-flowers", "yellow flowers in a stoneware jug", (0.32, 0.31, 0.40), "rustic", bunch, 36, vase=m.DARK_STONEWARE, green=m.LEAF, bloom=MUSTARD_PETAL),
+    design("vase", "bouquet", "glass vase with a bouquet of white flowers", (0.32, 0.30, 0.44), "classic", bunch, 36, vase=m.GLASS, green=m.LEAF, bloom=WHITE_PETAL),
+    design("vase", "tulips", "yellow vase with red tulips", (0.28, 0.27, 0.50), "modern", bunch, 36, vase=YELLOW_GLAZE, green=m.LEAF, bloom=RED_PETAL),
+    design("vase", "twigs", "stoneware vase with twigs in blossom", (0.42, 0.42, 0.80), "minimal", branches, 36, vase=m.STONEWARE, bloom=BLOSSOM),
+    design("vase", "plumes", "white vase with plumes", (0.34, 0.34, 0.66), "rustic", grasses, 36, vase=m.PORCELAIN, dry=STRAW, plume=PLUME),
 )  # fmt: skip

@@ -1,0 +1,109 @@
+"""What the room itself says of its light: how brightly walls of one paint are lit, and where daylight comes in."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import cv2
+import numpy as np
+from jaxtyping import Bool, Float, UInt8
+
+from diorama_core.appearance.light import Shade
+from diorama_core.artefacts import DetectedObject
+from diorama_core.geometry.planes import in_plane_polygon
+from diorama_core.io.srgb import luminance, srgb_to_linear
+from diorama_core.scene.types import Architecture, Camera, Plane, Scene
+
+STEP_PX = 4
+"""Every fourth pixel each way is looked at."""
+RIM_SHARE = 0.01
+"""Of the photo's longer side: so much around every object is left out, where its shadow lies."""
+MIN_CELLS = 60
+"""Of a wall."""
+SAME_PAINT = 0.03
+"""Chromaticities of walls that differ by less are of one paint."""
+BY_DAY = 0.4
+"""A window is as bright as this share of what is seen in the middle, or it is night."""
+
+
+def wall_shade(rgb: UInt8[np.ndarray, "h w 3"], objects: Sequence[DetectedObject], scene: Scene) -> Shade | None:
+    """The walls of the paint that is seen most, as one material at several normals; None where only one is seen.
+
+    Args:
+        rgb: The photo, as white light would have it.
+        objects: What stands before the walls.
+        scene: With the photo's camera.
+    """
+    walls = [p for p in scene.architecture.by_role("wall") if p.seen]
+    if scene.camera is None or len(walls) < 2:
+        return None
+    height, width = rgb.shape[:2]
+    x, y = np.meshgrid(np.arange(0, width, STEP_PX), np.arange(0, height, STEP_PX))
+    which = _plane_seen(scene.architecture, scene.camera, np.stack([x, y], axis=-1) + 0.5)
+    free = ~_covered(objects, (height, width))[y, x]
+    linear = srgb_to_linear(rgb[y, x] / 255.0)
+    seen = {w.id: linear[free & (which == _index(scene.architecture, w))] for w in walls}
+    medians = {w.id: np.median(seen[w.id], axis=0) for w in walls if len(seen[w.id]) >= MIN_CELLS}
+    if not medians:
+        return None
+    most = max(medians, key=lambda i: (len(seen[i]), i))
+    alike = [w for w in walls if w.id in medians and _far(medians[w.id], medians[most]) < SAME_PAINT]
+    if len(alike) < 2:
+        return None
+    cells = np.array([len(seen[w.id]) for w in alike], dtype=float)
+    light = np.array([max(float(luminance(medians[w.id])), 1e-4) for w in alike])
+    return Shade(np.array([w.normal for w in alike]), light, cells / cells.sum())
+
+
+def toward_window(
+    rgb: UInt8[np.ndarray, "h w 3"], objects: Sequence[DetectedObject], scene: Scene
+) -> Float[np.ndarray, "3"] | None:
+    """Unit vector from what stands in the room to its largest window; None where none is seen by day."""
+    mask_of = {o.id: o.mask for o in objects}
+    grey = luminance(srgb_to_linear(rgb[::STEP_PX, ::STEP_PX] / 255.0))
+    windows = [o for o in scene.objects if o.category == "window" and o.id in mask_of]
+    least = BY_DAY * float(np.median(grey))
+    bright = [o for o in windows if _median(grey, mask_of[o.id][::STEP_PX, ::STEP_PX]) >= least]
+    others = [o.pose.position for o in scene.objects if o.category != "window"]
+    if not bright or not others:
+        return None
+    largest = max(bright, key=lambda o: (float(np.prod(o.size_m[1:])), o.id))
+    away = largest.pose.position - np.mean(others, axis=0)
+    length = float(np.linalg.norm(away))
+    return away / length if length > 1e-6 else None
+
+
+def _median(grey: Float[np.ndarray, "h w"], mask: Bool[np.ndarray, "h w"]) -> float:
+    return float(np.median(grey[mask])) if mask.any() else 0.0
+
+
+def _far(a: Float[np.ndarray, "3"], b: Float[np.ndarray, "3"]) -> float:
+    """Difference of two chromaticities."""
+    return float(np.abs(a / max(float(a.sum()), 1e-6) - b / max(float(b.sum()), 1e-6)).max())
+
+
+def _index(room: Architecture, plane: Plane) -> int:
+    return next(k for k, p in enumerate(room.planes) if p.id == plane.id)
+
+
+def _plane_seen(room: Architecture, camera: Camera, pixels: Float[np.ndarray, "h w 2"]) -> np.ndarray:
+    """Index of the plane behind each pixel; -1 where there is none."""
+    rays = camera.rays(pixels)
+    nearest, which = np.full(pixels.shape[:2], np.inf), np.full(pixels.shape[:2], -1)
+    for index, plane in enumerate(room.planes):
+        slant = rays @ plane.normal
+        with np.errstate(divide="ignore", invalid="ignore"):
+            away = (plane.offset - float(camera.position @ plane.normal)) / slant
+        ahead = np.isfinite(away) & (away > 0) & (away < nearest)
+        points = camera.position + np.where(ahead, away, 0.0)[..., None] * rays
+        met = ahead & in_plane_polygon(points, plane)
+        nearest, which = np.where(met, away, nearest), np.where(met, index, which)
+    return which
+
+
+def _covered(objects: Sequence[DetectedObject], size: tuple[int, int]) -> Bool[np.ndarray, "h w"]:
+    covered = np.zeros(size, np.uint8)
+    for item in objects:
+        covered |= item.mask.astype(np.uint8)
+    radius = max(1, round(RIM_SHARE * max(size)))
+    return cv2.dilate(covered, np.ones((2 * radius + 1,) * 2, np.uint8)).astype(bool)

@@ -1,0 +1,168 @@
+"""Heights of what stands on one another, found together: contact that needs no moves.
+
+With measured depth the foot and the top of every object are observations, and a retrieved table is not as high as the
+true one. Settled one after another, everything on it would go up or down with it. Found together, the table becomes as
+high as its loads say: one least-squares problem over the heights of all objects, in which each foot is where its
+supporter's place is.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from jaxtyping import Float
+from scipy.optimize import lsq_linear
+
+from diorama_core.layout.feasible.photo_observations import LOAD_M, MAX_STRETCH, UPWARD, PhotoObservations
+from diorama_core.layout.problem.problem import Problem
+from diorama_core.layout.problem.supports import Surface, box_misfit, is_wall_like
+from diorama_core.scene.types import box_corners
+
+HIDDEN = 0.2
+"""Weight of an end that something hides, against one that was seen."""
+LEAST_EXTENT_M = 0.02
+"""Objects that look flatter count as if they were so high."""
+USUAL = 0.05
+"""Disagreements up to this share of an apparent height are usual."""
+ROUNDS = 4
+AS_IT_WAS_M = 1e-4
+"""Smaller changes of a height or a place are rounding."""
+
+
+@dataclass(frozen=True, eq=False)
+class _Chains:
+    """Feet as a linear function of the unknowns: foot_i = constant_i + rows_i @ (heights, feet of what hangs)."""
+
+    members: tuple[int, ...]
+    rows: Float[np.ndarray, "n v"]
+    constant: Float[np.ndarray, " n"]
+
+
+def joint_heights(problem: Problem, observations: PhotoObservations) -> tuple[Problem, PhotoObservations]:
+    """The problem and what was observed of it, at heights at which supporters and loads agree best with what was seen.
+
+    Each end of an object counts relative to how high the object looks in the picture: a centimetre is much for a cup
+    and little for the table below it. Objects that are exact already stay as they are, since nothing disagrees.
+
+    Args:
+        problem: at measured places.
+        observations: what the camera saw of it.
+    """
+    chains = _chains(problem, observations)
+    if not chains.members:
+        return problem, observations
+    height = problem.shape_size[:, 2] * problem.scale[:, 2]
+    foot = problem.p[:, 2] - height / 2
+    x = _solved(problem, observations, chains, height, foot)
+    members = np.array(chains.members)
+    found = x[: len(members)]
+    feet = chains.constant[members] + chains.rows[members] @ x
+    changed = (np.abs(found - height[members]) > AS_IT_WAS_M) | (np.abs(feet - foot[members]) > AS_IT_WAS_M)
+    scale, p = problem.scale.copy(), problem.p.copy()
+    chosen = members[changed]
+    scale[chosen, 2] *= found[changed] / height[chosen]
+    p[chosen, 2] = (feet + found / 2)[changed]
+    holds = np.isin(members, problem.parent)
+    fixed = members[holds | ~observations.contradicted[members]]
+    return replace(problem, scale=scale, p=p), observations.at_heights(fixed, scale[:, 2])
+
+
+def _chains(problem: Problem, observations: PhotoObservations) -> _Chains:
+    """The objects whose heights are sought: upright ones at measured places, on a floor, on another or on a wall."""
+    members = [i for i in problem.top_down if _is_sought(problem, observations, i)]
+    hanging = [i for i in members if is_wall_like(problem.surface[i])]
+    column = {i: k for k, i in enumerate(members)}
+    own_foot = {i: len(members) + k for k, i in enumerate(hanging)}
+    rows = np.zeros((problem.count, len(members) + len(hanging)))
+    constant = np.zeros(problem.count)
+    for i in members:
+        if i in own_foot:
+            rows[i, own_foot[i]] = 1.0
+            continue
+        j, place = int(problem.parent[i]), _observed_place(problem, i)
+        if j in column:
+            rows[i], constant[i] = rows[j], constant[j]
+            rows[i, column[j]] += place.level / problem.shape_size[j, 2] + 0.5
+        else:
+            constant[i] = place.level if j < 0 else _observed_level(problem, i)
+    return _Chains(tuple(members), rows, constant)
+
+
+def _is_sought(problem: Problem, observations: PhotoObservations, i: int) -> bool:
+    surface = problem.surface[i]
+    if surface is None or not problem.free[i] or not observations.measured[i] or problem.firm[i] < 1.0:
+        return False
+    if is_wall_like(surface):
+        return bool((problem.parent == i).any()) and not problem.grounded[i]
+    upright = problem.contact[i][2] == -1.0 and float(problem.R[i][2, 2]) > UPWARD
+    return upright and float(surface.normal[2]) > UPWARD
+
+
+def _observed_place(problem: Problem, i: int) -> Surface:
+    """The place on its supporter that agrees best with where an object was observed, as `problem.levels` has it."""
+    j, size = int(problem.parent[i]), problem.shape_size[i] * problem.scale[i]
+    if j < 0 or len(problem.levels[i]) < 2:
+        surface = problem.surface[i]
+        assert surface is not None, "it rests on something"
+        return surface
+    corners = problem.p[i] + box_corners(size) @ problem.R[i].T
+    places = problem.levels[i]
+    return min(places, key=lambda s: box_misfit(corners, size, s.at(problem.R[j], problem.p[j], problem.scale[j])))
+
+
+def _observed_level(problem: Problem, i: int) -> float:
+    """Height of the place of an object on its supporter as observed."""
+    j = int(problem.parent[i])
+    return _observed_place(problem, i).at(problem.R[j], problem.p[j], problem.scale[j]).level
+
+
+def _solved(
+    problem: Problem,
+    observations: PhotoObservations,
+    chains: _Chains,
+    height: Float[np.ndarray, " n"],
+    foot: Float[np.ndarray, " n"],
+) -> Float[np.ndarray, " v"]:
+    """Heights of the members, and feet of those that hang, that agree best with both ends of every object."""
+    count, unknowns = len(chains.members), chains.rows.shape[1]
+    hanging = [i for i in chains.members if is_wall_like(problem.surface[i])]
+    start = np.concatenate([height[list(chains.members)], foot[hanging]])
+    lines, wanted = [], []
+    for k, i in enumerate(chains.members):
+        own = np.arange(unknowns) == k
+        fits = int(problem.parent[i]) < 0 or abs(_observed_level(problem, i) - foot[i]) <= LOAD_M
+        weight = np.where(observations.hidden[i, [3, 1]], HIDDEN, 1.0) / _apparent_height_m(observations, i)
+        if fits:
+            lines += [weight[0] * chains.rows[i], weight[1] * (chains.rows[i] + own)]
+            wanted += list(weight * (np.array([foot[i], foot[i] + height[i]]) - chains.constant[i]))
+        else:  # it does not stand there as observed, and says nothing about that place
+            lines.append(weight[1] * own)
+            wanted.append(weight[1] * height[i])
+    # A hidden foot says nothing against a height: the top was measured, and the foot is where the supporter is.
+    whole = [foot[i] + height[i] - (chains.constant[i] + chains.rows[i] @ start) for i in chains.members]
+    tall = np.where(observations.hidden[list(chains.members), 3], whole, 0.0)
+    least = np.concatenate([start[:count] / MAX_STRETCH, np.full(unknowns - count, -np.inf)])
+    most = np.concatenate([MAX_STRETCH * np.maximum(start[:count], tall), np.full(unknowns - count, np.inf)])
+    return _robust(np.array(lines), np.array(wanted), (least, most))
+
+
+def _robust(
+    A: Float[np.ndarray, "r v"],
+    b: Float[np.ndarray, " r"],
+    bounds: tuple[Float[np.ndarray, " v"], Float[np.ndarray, " v"]],
+) -> Float[np.ndarray, " v"]:
+    """The bounded least-squares solution in which large disagreements count by their size, not its square (Huber)."""
+    weight = np.ones(len(b))
+    for _ in range(ROUNDS):
+        x = np.asarray(lsq_linear(weight[:, None] * A, weight * b, bounds).x)
+        weight = np.sqrt(1.0 / np.maximum(np.abs(A @ x - b) / USUAL, 1.0))
+    return x
+
+
+def _apparent_height_m(observations: PhotoObservations, i: int) -> float:
+    """How high an object looks in the picture, in metres at its distance."""
+    camera = observations.camera
+    pixels = float(observations.bounds_px[i, 3] - observations.bounds_px[i, 1])
+    metres = pixels * float(camera.to_camera(observations.observed[i : i + 1])[0, 2]) / camera.intrinsics.fy
+    return max(metres, LEAST_EXTENT_M) if np.isfinite(metres) else 1.0

@@ -1,0 +1,118 @@
+"""What a label says a thing is: the word of the taxonomy, or the loose one, that people and data sets mean by it.
+
+"a wooden coffee table with a glass top", "chair_2", "Statue (sculpture)" and "arm chair" name a coffee table, a chair,
+a statue and an armchair: what follows "with" or "on" and what brackets hold describes, the last words before it name.
+Where none is known the nearest in form is taken (`near_names`), then the nearest spelling.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Mapping, Sequence
+from functools import cache
+
+from diorama_core.library import taxonomy
+from diorama_core.library.language import JOINTS, broader, narrower, size_request, tokens
+from diorama_core.library.loose_words import LABELS, MEANINGS
+from diorama_core.library.near_names import near_names
+from diorama_core.library.taxonomy import CATEGORIES, UNKNOWN, Resolution, category, resolve
+
+_POSITIONS = frozenset({"left", "right", "front", "back", "middle", "corner", "first", "second", "upper", "lower"})
+
+_NOTHING = "'{}' is nothing that furnishes a room; treated as an unnamed object"
+
+Words = tuple[str, ...]
+
+
+def understand_label(label: str) -> Resolution:
+    """The category that a label names; "object" for what is none.
+
+    Args:
+        label: as a person or a detector called one thing: a noun, a phrase, a data set's label.
+    """
+    found = _found(label)
+    if found is None:
+        return resolve(label)
+    word, exact = found
+    kind = _category_of(word)
+    if kind is UNKNOWN:
+        unsaid = resolve(label)
+        said_so = unsaid.exact and unsaid.category is UNKNOWN
+        return unsaid if said_so else Resolution(UNKNOWN, exact=False, note=_NOTHING.format(label))
+    return Resolution(kind, exact, "" if exact else f"'{label}' is no class of its own; read as '{kind.name}'")
+
+
+@cache
+def plain_word(label: str) -> str | None:
+    """The name, synonym or loose word (a key of `MEANINGS`) that a label comes down to; None where it names nothing."""
+    found = _found(label)
+    if found is not None:
+        return found[0]
+    slip = resolve(label).category
+    return None if slip is UNKNOWN else slip.name
+
+
+def names_a_kind(label: str) -> bool:
+    """Whether the plain word of a label is a name of one kind, and not only loosely used of several: "stand"."""
+    word = plain_word(label)
+    return word is not None and resolve(word).exact and resolve(word).category is not UNKNOWN
+
+
+def _category_of(word: str) -> taxonomy.Category:
+    named = resolve(word)
+    if named.exact or word not in MEANINGS:
+        return named.category
+    shares = MEANINGS[word]
+    return category(max(shares, key=lambda kind: shares[kind]))
+
+
+def _found(label: str) -> tuple[str, bool] | None:
+    """The plain word, and whether it says the same rather than the nearest thing in form."""
+    exact, near = _names(), near_names()
+    run = next((run for run in _runs(label) if run in exact or run in near), None)
+    return None if run is None else (exact.get(run) or near[run], run in exact)
+
+
+def _runs(label: str) -> Iterator[Words]:
+    """Words that may name the thing, the likeliest first."""
+    words = tokens(re.sub(r"\([^)]*\)", " ", label))
+    while len(words) > 1 and words[-1].isdigit():
+        words = words[:-1]
+    joint = next((i for i, word in enumerate(words) if word in JOINTS and i > 0), len(words))
+    yield from (run for run in _endings(words) if JOINTS.intersection(run))  # "chest of drawers"
+    head = words[:joint]
+    yield from _endings(head)
+    yield from _endings(words[joint + 1 :] if words[joint : joint + 1] == ("of",) else ())  # "pile of books"
+    while len(head) > 1 and _describes(head[-1]):  # "chair, black"
+        head = head[:-1]
+        yield from _endings(head)
+    yield from _endings(words)  # "all in one computer"
+
+
+def _endings(words: Sequence[str]) -> Iterator[Words]:
+    """Endings of a phrase, the longest first; each also as one word, for "arm chair" and "waste basket"."""
+    for start in range(len(words)):
+        ending = tuple(words[start:])
+        yield ending
+        if len(ending) == 2:
+            yield ("".join(ending),)
+
+
+def _describes(word: str) -> bool:
+    return bool(broader(word) or narrower(word) or size_request(word) or word in _POSITIONS)
+
+
+@cache
+def _names() -> Mapping[Words, str]:
+    """Normal words of every data set's label, loose word, name and synonym; the former come first."""
+    table: dict[Words, str] = {}
+    for label, word in LABELS.items():
+        table.setdefault(tokens(label), word)
+    for word in MEANINGS:
+        table.setdefault(tokens(word), word)
+    for entry in CATEGORIES:
+        table.setdefault(tokens(entry.name), entry.name)
+    for entry in CATEGORIES:
+        for word in entry.synonyms:
+            table.setdefault(tokens(word), UNKNOWN.name if entry is UNKNOWN else word)
+    return table
