@@ -48,7 +48,8 @@ class EditApplier:
         if isinstance(edit, Move):
             return moved(self.positioner, scene, ids, self._relations(scene, edit.places, ids))
         if isinstance(edit, Shift):
-            return shifted(self.positioner, scene, ids, edit)
+            toward = self._ids(scene, [edit.toward])[0] if edit.toward else ""
+            return shifted(self.positioner, scene, ids, edit, toward)
         if isinstance(edit, Turn):
             toward = self._ids(scene, [edit.toward])[0] if edit.toward else ""
             return turned(self.positioner, scene, ids, edit, toward)

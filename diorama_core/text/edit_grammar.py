@@ -15,6 +15,7 @@ from diorama_core.errors import EditRefused
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.library.taxonomy import category
 from diorama_core.scene.types import Scene
+from diorama_core.text.edit_lengths import lifted, nearer, shift_of
 from diorama_core.text.edit_plan import (
     Edit,
     Insert,
@@ -24,7 +25,6 @@ from diorama_core.text.edit_plan import (
     Remove,
     Resize,
     Restyle,
-    Shift,
     Swap,
     Turn,
 )
@@ -42,8 +42,9 @@ _VERBS = {
     "make": "make",
     "larger": "enlarge|scale up|grow",
     "smaller": "shrink|scale down|reduce",
+    "lift": "raise|lift|lower",
     "move": "move|shift|push|pull|drag|bring|slide|relocate|carry",
-    "put": "put|place|set|hang|stand|lay|position|arrange",
+    "put": "put|place|set|hang|stand|lay|position|arrange|line up|cent(?:er|re)",
     "insert": "add|insert|give me|i want|i would like|i'd like|i need|there should be|create|get|bring in",
 }
 _VERB = re.compile(
@@ -117,6 +118,8 @@ def edits_of(
         return _each_alone(_look, selector, clause, rest)
     if verb in ("larger", "smaller"):
         return (Resize(objects=list(_subject(selector, rest)), factor=_factor(rest, verb == "larger")),)
+    if verb == "lift":
+        return (lifted(selector, clause, rest, _subject),)
     if verb == "move":
         return _each_alone(_move, selector, clause, rest)
     if verb == "put":
@@ -206,7 +209,7 @@ def _places(selector: Selector, places: Sequence[Placing]) -> list[Place]:
 
 def _move(selector: Selector, clause: str, rest: str) -> Edit:
     head, places = split_places(rest)
-    shift = _shift(selector, rest)
+    shift = nearer(selector, rest, _subject) or shift_of(selector, rest, _subject)
     if shift is not None:
         return shift
     toward = re.match(r"(.*?)\s+\bto\s+(.+)$", rest)
@@ -220,32 +223,6 @@ def _move(selector: Selector, clause: str, rest: str) -> Edit:
     if not wanted:
         raise EditRefused(f"“{clause}”: where to? For example: beside the sofa, against the wall, in the corner")
     return Move(objects=list(ids), places=wanted)
-
-
-_DISTANCE = re.compile(r"\b(?:by )?(\d+(?:\.\d+)?|a|half a|one|two) ?(m|cm|metres?|meters?|centimet(?:re|er)s?)\b")
-_WAYS = {
-    "left": (-1.0, 0.0), "right": (1.0, 0.0), "back": (0.0, 1.0), "backwards": (0.0, 1.0), "backward": (0.0, 1.0),
-    "forward": (0.0, -1.0), "forwards": (0.0, -1.0), "closer": (0.0, -1.0), "away": (0.0, 1.0),
-}  # fmt: skip
-_STEP_M = 0.5
-
-
-def _shift(selector: Selector, rest: str) -> Shift | None:
-    """ "the sofa 50 cm to the left": None where it says something else."""
-    found = _DISTANCE.search(rest)
-    plain = _DISTANCE.sub(" ", rest)
-    way = re.search(rf"^(.*?)\s*(?:to the |a (?:bit|little) |further )*\b({'|'.join(_WAYS)})\s*$", plain.strip())
-    if way is None or not way[1]:
-        return None
-    distance = _STEP_M
-    if found is not None:
-        number = {"a": 1.0, "half a": 0.5, "one": 1.0, "two": 2.0}.get(found[1]) or float(found[1])
-        distance = number * (0.01 if found[2].startswith("c") else 1.0)
-    right, away = _WAYS[way[2]]
-    if distance > 20.0:
-        raise EditRefused(f"{distance:g} m is farther than any room; give at most 20 m")
-    head = re.sub(r"\b(?:to the|a bit|a little|further)\s*$", "", way[1]).strip()
-    return Shift(objects=list(_subject(selector, head)), right_m=distance * right, away_m=distance * away)
 
 
 def _usual_relation(selector: Selector, head: str, goal: str) -> RelationKind:

@@ -43,22 +43,37 @@ def moved(positioner: Positioner, scene: Scene, ids: Sequence[str], relations: S
     return Done(after, (f"move {names_of(scene, ids)} {where}",), tuple(ids), tuple(missed))
 
 
-def shifted(positioner: Positioner, scene: Scene, ids: Sequence[str], edit: Shift) -> Done:
-    """Objects moved by lengths, as seen in the photo."""
+def shifted(positioner: Positioner, scene: Scene, ids: Sequence[str], edit: Shift, toward: str = "") -> Done:
+    """Objects moved by lengths: as seen in the photo, up and down what they hang on, or toward an object of an id."""
     away = np.array([0.0, 1.0]) if scene.camera is None else np.array(scene.camera.T_world_camera[:2, 2])
     away = away / max(float(np.linalg.norm(away)), 1e-6)
     right = np.array([away[1], -away[0]])
     step = edit.right_m * right + edit.away_m * away
-    if not step.any():
+    if not (step.any() or edit.up_m or (toward and edit.toward_m)):
         raise EditRefused(f"which way should {names_of(scene, ids)} go?")
     after, notes = scene, []
     for object_id in ids:
-        pose = after.object(object_id).pose.moved((step[0], step[1], 0.0))
+        item, own = after.object(object_id), step
+        held = after.support_of(object_id)
+        if edit.up_m and (held is None or held.relation != "mounted on"):
+            raise EditRefused(f"{item.label} stands and does not hang; only what hangs can go up or down")
+        if toward:
+            ahead = after.object(toward).pose.position[:2] - item.pose.position[:2]
+            own = step + edit.toward_m * ahead / max(float(np.linalg.norm(ahead)), 1e-6)
+        pose = item.pose.moved((own[0], own[1], edit.up_m))
         after, note = freed(positioner, edits.move(after, object_id, pose), object_id)
+        if edit.up_m and not _within_heights(after, object_id):
+            raise EditRefused(f"{item.label} would leave its wall; move it by less")
         if _off_its_support(after, object_id):
             raise EditRefused(f"{after.object(object_id).label} would fall off what it stands on; move it by less")
         notes += note
-    ways = ((edit.right_m, "to the right", "to the left"), (edit.away_m, "back", "forward"))
+    goal = scene.object(toward).label if toward else ""
+    ways = (
+        (edit.right_m, "to the right", "to the left"),
+        (edit.away_m, "back", "forward"),
+        (edit.up_m, "up", "down"),
+        (edit.toward_m if toward else 0.0, f"toward {goal}", f"away from {goal}"),
+    )
     said = " and ".join(f"{abs(m):g} m {plus if m > 0 else minus}" for m, plus, minus in ways if m)
     return Done(after, (f"move {names_of(scene, ids)} {said}",), tuple(ids), tuple(notes))
 
@@ -149,6 +164,16 @@ def lifted_onto(scene: Scene, rug_id: str) -> Scene:
             scene = edits.move(scene, item.id, item.pose.moved((0.0, 0.0, rise)))
             scene = edits.attach(scene, Support(item.id, rug_id))
     return scene
+
+
+def _within_heights(scene: Scene, object_id: str) -> bool:
+    """Whether an object is between the floor and the top of the walls."""
+    heights = scene.object(object_id).corners_world[:, 2]
+    planes = [p.polygon[:, 2] for p in scene.architecture.planes if p.role in ("floor", "wall")]
+    if not planes:
+        return True
+    within_m = np.concatenate(planes)
+    return bool(heights.min() >= within_m.min() and heights.max() <= within_m.max())
 
 
 def _off_its_support(scene: Scene, object_id: str) -> bool:

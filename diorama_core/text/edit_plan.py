@@ -43,13 +43,20 @@ class Move(_Strict):
 
 
 class Shift(_Strict):
-    """Objects move by a distance, as seen by somebody who looks at the room from where the photo was taken."""
+    """Objects move by a distance: as seen by somebody who looks at the room from where the photo was taken, or toward
+    an object."""
 
     do: Literal["shift"] = "shift"
     objects: Ids
     right_m: Annotated[float, Field(ge=-20, le=20)] = 0.0
     away_m: Annotated[float, Field(ge=-20, le=20)] = 0.0
     """Away from the viewer."""
+    up_m: Annotated[float, Field(ge=-5, le=5)] = 0.0
+    """Of what hangs."""
+    toward: Words = ""
+    """Id of an object; empty where none is meant."""
+    toward_m: Annotated[float, Field(ge=-20, le=20)] = 0.0
+    """Toward that object along the floor; away from it where negative."""
 
 
 class Turn(_Strict):

@@ -45,7 +45,8 @@ The edits, each with its "do":
 - move: objects go to "places". A place is a relation to objects ("targets", by id): on, under, above, beside, near, \
 in front of, behind, left of, right of, around, between (two targets), facing, opposite, aligned with; or to the room, \
 without targets: against wall, in corner, in middle.
-- shift: objects move "right_m" metres to the right and "away_m" away, as seen from where the photo was taken.
+- shift: objects move "right_m" metres to the right and "away_m" away, as seen from where the photo was taken; \
+what hangs also "up_m"; or "toward_m" metres toward the object "toward" (away from it where negative).
 - turn: objects turn "toward" one object, or by "degrees" (counter-clockwise seen from above; "toward" empty).
 - insert: "count" new objects, "what" in words (noun and attributes), at "places"; later edits call it "name".
 - restyle: objects in a colour or material, "look" ("light blue", "wooden").

@@ -66,6 +66,8 @@ def look_of(text: str) -> Look | None:
     )
     names = [w for w in words if w not in _SHADES and w not in MATERIALS and w not in ("wooden", "metallic")]
     named = _colour("".join(names))
+    if named is None and len(names) == 2 and _colour(names[1]) is not None:
+        named = _colour(names[0])  # "sage green" is sage
     if (names and named is None) or not (names or material or shaded):
         return None
     plain, finish = MATERIALS.get(material, (None, None))

@@ -51,6 +51,16 @@ LIVING = {
         objects=["side_table_1"], places=[Place(relation="between", targets=["sofa_1", "piano_1"])]
     ),
     "move the sofa 50 cm to the left": Shift(objects=["sofa_1"], right_m=-0.5),
+    "push the coffee table half a metre closer to the sofa": Shift(
+        objects=["coffee_table_1"], toward="sofa_1", toward_m=0.5
+    ),
+    "move the plant away from the piano": Shift(objects=["plant_1"], toward="piano_1", toward_m=-0.5),
+    "slide the sofa closer to the wall": Move(objects=["sofa_1"], places=[Place(relation="against wall")]),
+    "raise picture 1 by 20 cm": Shift(objects=["picture_1"], up_m=0.2),
+    "lower picture 1 a bit": Shift(objects=["picture_1"], up_m=-0.1),
+    "center the rug under the coffee table": Move(
+        objects=["rug_1"], places=[Place(relation="under", targets=["coffee_table_1"])]
+    ),
     "turn the sofa to the window": Turn(objects=["sofa_1"], toward="window_1"),
     "make the sofa face the piano": Turn(objects=["sofa_1"], toward="piano_1"),
     "rotate the sofa by 30 degrees to the right": Turn(objects=["sofa_1"], degrees=-30.0),
@@ -65,6 +75,7 @@ LIVING = {
     "swap the sofa for a leather one": Swap(objects=["sofa_1"], what="leather sofa"),
     "replace the piano with a bookshelf": Swap(objects=["piano_1"], what="bookshelf"),
     "paint the walls light blue": Paint(part="walls", colour="light blue"),
+    "paint the walls sage green": Paint(part="walls", colour="sage green"),
     "make the floor oak": Paint(part="floor", colour="oak"),
 }
 

@@ -49,6 +49,29 @@ def test_what_is_moved_by_a_length_goes_that_far_or_says_that_it_stepped_aside(l
         assert_sound(living, outcome.scene)
 
 
+def test_things_go_nearer_to_others_and_what_hangs_up_and_down(living: Scene) -> None:
+    positioner = Positioner(built_in_library())
+
+    def apart(scene: Scene) -> float:
+        return float(
+            np.linalg.norm((scene.object("piano_1").pose.position - scene.object("plant_1").pose.position)[:2])
+        )
+
+    away = shifted(
+        positioner, living, ["plant_1"], Shift(objects=["plant_1"], toward="piano_1", toward_m=-0.1), "piano_1"
+    )
+    assert away.notes or apart(away.scene) == pytest.approx(apart(living) + 0.1, abs=1e-6)
+    assert away.lines == ("move plant 1 0.1 m away from piano 1",)
+    raised = shifted(positioner, living, ["picture_1"], Shift(objects=["picture_1"], up_m=0.05))
+    rise = raised.scene.object("picture_1").pose.position - living.object("picture_1").pose.position
+    np.testing.assert_allclose(rise, [0.0, 0.0, 0.05], atol=1e-9)
+    assert_sound(living, raised.scene)
+    with pytest.raises(EditRefused, match="does not hang"):
+        shifted(positioner, living, ["sofa_1"], Shift(objects=["sofa_1"], up_m=0.2))
+    with pytest.raises(EditRefused, match="leave its wall"):
+        shifted(positioner, living, ["picture_1"], Shift(objects=["picture_1"], up_m=2.0))
+
+
 def test_nothing_is_moved_off_what_it_stands_on(living: Scene) -> None:
     edge = living.support_of("lamp_1")
     assert edge is not None

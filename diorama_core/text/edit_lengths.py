@@ -1,0 +1,73 @@
+"""Edits by lengths in plain English: "50 cm to the left", "half a metre closer to the sofa", "raise the picture"."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable
+
+from diorama_core.errors import EditRefused
+from diorama_core.text.edit_plan import Shift
+from diorama_core.text.phrases import split_places
+from diorama_core.text.selecting import Selector
+
+_DISTANCE = re.compile(r"\b(?:by )?(\d+(?:\.\d+)?|a|half a|one|two) ?(m|cm|metres?|meters?|centimet(?:re|er)s?)\b")
+_WAYS = {
+    "left": (-1.0, 0.0), "right": (1.0, 0.0), "back": (0.0, 1.0), "backwards": (0.0, 1.0), "backward": (0.0, 1.0),
+    "forward": (0.0, -1.0), "forwards": (0.0, -1.0), "closer": (0.0, -1.0), "away": (0.0, 1.0),
+}  # fmt: skip
+_NEARER = re.compile(
+    r"^(.+?)\s+(?:a (?:bit|little) |much |further )*(closer|nearer|towards?|away|farther|further)(?: (?:to|from))? "
+    r"((?:the|my|that|this) .+)$"
+)
+STEP_M, HUNG_STEP_M = 0.5, 0.1
+"""Where no distance is said: along the floor, and up or down a wall."""
+MAX_SHIFT_M, MAX_LIFT_M = 20.0, 3.0
+
+Subject = Callable[[Selector, str], tuple[str, ...]]
+"""The ids of the objects that a phrase names."""
+
+
+def shift_of(selector: Selector, rest: str, subject: Subject) -> Shift | None:
+    """ "the sofa 50 cm to the left": None where it says something else."""
+    plain = _DISTANCE.sub(" ", rest)
+    way = re.search(rf"^(.*?)\s*(?:to the |a (?:bit|little) |further )*\b({'|'.join(_WAYS)})\s*$", plain.strip())
+    if way is None or not way[1]:
+        return None
+    distance = _distance_m(rest, STEP_M, MAX_SHIFT_M)
+    right, away = _WAYS[way[2]]
+    head = re.sub(r"\b(?:to the|a bit|a little|further)\s*$", "", way[1]).strip()
+    return Shift(objects=list(subject(selector, head)), right_m=distance * right, away_m=distance * away)
+
+
+def nearer(selector: Selector, rest: str, subject: Subject) -> Shift | None:
+    """ "the table half a metre closer to the sofa": None where it says something else.
+
+    Without a distance "to" and "towards" mean beside, and walls are no objects to go nearer to.
+    """
+    way = _NEARER.match(" ".join(_DISTANCE.sub(" ", rest).split()))
+    if way is None or split_places(way[1])[1] or re.fullmatch(r"\w+ (?:\w+ )?walls?", way[3]):
+        return None
+    distance = _distance_m(rest, STEP_M, MAX_SHIFT_M)
+    sign = -1.0 if way[2] in ("away", "farther", "further") else 1.0
+    toward = selector.targets(way[3])[0]
+    return Shift(objects=list(subject(selector, way[1])), toward=toward, toward_m=sign * distance)
+
+
+def lifted(selector: Selector, clause: str, rest: str, subject: Subject) -> Shift:
+    """ "raise the picture by 20 cm", "lower the clock"."""
+    distance = _distance_m(rest, HUNG_STEP_M, MAX_LIFT_M)
+    head = re.sub(r"\b(?:a bit|a little|slightly)\s*$", "", _DISTANCE.sub(" ", rest).strip()).strip()
+    down = re.search(r"\blower\b", clause) is not None
+    return Shift(objects=list(subject(selector, head)), up_m=-distance if down else distance)
+
+
+def _distance_m(text: str, otherwise_m: float, most_m: float) -> float:
+    """The distance that a text says, or another where it says none."""
+    found = _DISTANCE.search(text)
+    if found is None:
+        return otherwise_m
+    number = {"a": 1.0, "half a": 0.5, "one": 1.0, "two": 2.0}.get(found[1]) or float(found[1])
+    distance = number * (0.01 if found[2].startswith("c") else 1.0)
+    if distance > most_m:
+        raise EditRefused(f"{distance:g} m is farther than any room; give at most {most_m:g} m")
+    return distance
