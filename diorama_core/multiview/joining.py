@@ -15,6 +15,8 @@ from diorama_core.multiview.joint_fit import JointCuboid, PhotoBoxes, fit_jointl
 from diorama_core.perception.metrology.placement import FLOOR
 from diorama_core.progress import Progress
 
+UNSEEN_EDGE_FACTOR = 0.5
+"""Of a box's area, for each of its edges that is hidden or cut: how well a photo shows an object."""
 MIN_OVERLAP = 0.1
 """Of a cuboid's outline with a box of its kind in another photo, intersection over union."""
 FARTHER = tuple(float(f) for f in np.geomspace(0.6, 1.67, 9))
@@ -59,10 +61,17 @@ class Track:
     boxes: Boxes
     kind: Category
     cuboid: JointCuboid
+    left_out: Boxes = ()
+    """Boxes of it that the cuboid does not fit (`agreement`)."""
+
+    @property
+    def fitted(self) -> Boxes:
+        """The boxes that the cuboid fits."""
+        return tuple(b for b in self.boxes if b not in self.left_out)
 
     def sightings(self, photos: Sequence[RoomPhoto]) -> list[tuple[PhotoBoxes, int]]:
         """As `fit_jointly` takes them."""
-        return [(photos[photo].boxes, box) for photo, box in self.boxes]
+        return [(photos[photo].boxes, box) for photo, box in self.fitted]
 
 
 def joined_objects(photos: Sequence[RoomPhoto], progress: Progress | None = None) -> tuple[Track, ...]:
@@ -199,3 +208,12 @@ def fitted_track(boxes: Boxes, photos: Sequence[RoomPhoto]) -> Track:
         raised = fit_jointly(sightings, kind, starts[1:], on_floor=False)
         found = raised if raised.cost + RAISED_COST < found.cost else found
     return Track(boxes, kind, found)
+
+
+def shown(photo: RoomPhoto, box: int) -> float:
+    """How well a photo shows an object: the area of its box, less where edges are hidden or cut."""
+    seen = photo.boxes.observations
+    x1, y1, x2, y2 = seen.box_px[box]
+    unseen = int((seen.hidden(box) | seen.truncated[box]).sum())
+    k = photo.boxes.camera.intrinsics
+    return float((x2 - x1) * (y2 - y1) / (k.width * k.height)) * UNSEEN_EDGE_FACTOR**unseen

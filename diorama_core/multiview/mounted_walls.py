@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Collection, Sequence
 
 import numpy as np
+from jaxtyping import Float
 
 from diorama_core.errors import EditRefused
 from diorama_core.library.taxonomy import category
@@ -50,6 +51,29 @@ def walls_at_mounted(
         except EditRefused:
             continue  # the room is too small there for what was measured: the wall stays where photos saw it
     return room
+
+
+def room_holding(rooms: Sequence[Architecture], mounted: Sequence[JointCuboid]) -> Architecture:
+    """Of several readings of a room the first of those in which the fewest things on walls are without a wall.
+
+    Args:
+        rooms: at least one, the one to be preferred first.
+        mounted: what hangs on walls.
+    """
+    return min(rooms, key=lambda room: sum(not _held(room, thing) for thing in mounted))
+
+
+def _held(room: Architecture, thing: JointCuboid) -> bool:
+    """Whether a wall is within reach of a thing in plan."""
+    reach = REACH_M + float(thing.size_m[:2].min()) / 2
+    return any(_from_wall(wall, thing.centre[:2]) < reach for wall in room.by_role("wall"))
+
+
+def _from_wall(wall: Plane, place: Float[np.ndarray, "2"]) -> float:
+    along = np.cross([0.0, 0.0, 1.0], wall.normal)[:2]
+    span, at = wall.polygon[:, :2] @ along, float(place @ along)
+    beside = max(float(span.min()) - at, at - float(span.max()), 0.0)
+    return float(np.hypot(float(wall.normal[:2] @ place) - wall.offset, beside))
 
 
 def hangs_on_wall(kind: str) -> bool:

@@ -25,12 +25,13 @@ from diorama_core.errors import InputError
 from diorama_core.geometry.openings import OPENING_CATEGORIES
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.library.taxonomy import category
+from diorama_core.multiview.agreement import with_agreeing_boxes
 from diorama_core.multiview.alignment import Alignment, PhotoReading, align
 from diorama_core.multiview.cut_short import edges_cut_short
-from diorama_core.multiview.joining import RoomPhoto, Sighted, Track, joined_objects
+from diorama_core.multiview.joining import RoomPhoto, Sighted, Track, joined_objects, shown
 from diorama_core.multiview.joint_fit import JointCuboid, PhotoBoxes
 from diorama_core.multiview.joint_room import SeenRoom, joint_room, with_open_doorways
-from diorama_core.multiview.mounted_walls import hangs_on_wall, seen_whole, walls_at_mounted
+from diorama_core.multiview.mounted_walls import hangs_on_wall, room_holding, seen_whole, walls_at_mounted
 from diorama_core.multiview.one_scene import acyclic, edge_in_room, filling, moved_to_room, set_into_wall
 from diorama_core.multiview.room_pictures import PlacedPicture, room_pictures
 from diorama_core.perception.metrology.box_observations import gather
@@ -54,9 +55,6 @@ from diorama_core.protocols import LayoutStage, Preview
 from diorama_core.scene.edits import set_metrics
 from diorama_core.scene.support import check_scene
 from diorama_core.scene.types import Architecture, Camera, Scene, SceneObject, Support, yaw_rotation
-
-UNSEEN_EDGE_FACTOR = 0.5
-"""Of a box's area, for each of its edges that is hidden or cut: how well a photo shows an object."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -163,8 +161,9 @@ def build_room(
         part = progress.part(0.2 * number / len(photos), 0.2 * (number + 1) / len(photos))
         read.append(read_photo(photo, choose(photo.inputs), part))
     room_photos = [said_alone(r) for r in read]
-    tracks = joined_objects(room_photos, progress.part(0.2, 0.45))
-    best = [max(t.boxes, key=lambda b: (shown(room_photos[b[0]], b[1]), -b[0]))[0] for t in tracks]
+    joined = joined_objects(room_photos, progress.part(0.2, 0.45))
+    tracks = tuple(with_agreeing_boxes(t, room_photos) for t in joined)
+    best = [max(t.fitted, key=lambda b: (shown(room_photos[b[0]], b[1]), -b[0]))[0] for t in tracks]
     used = sorted({0, *best})
     built: dict[int, Built] = {}
     single = len(photos) == 1
@@ -238,15 +237,6 @@ def said_alone(read: ReadPhoto) -> RoomPhoto:
     return RoomPhoto(PhotoBoxes(read.posed.camera, observations, hidden_px), tuple(alone))
 
 
-def shown(photo: RoomPhoto, box: int) -> float:
-    """How well a photo shows an object: the area of its box, less where edges are hidden or cut."""
-    seen = photo.boxes.observations
-    x1, y1, x2, y2 = seen.box_px[box]
-    unseen = int((seen.hidden(box) | seen.truncated[box]).sum())
-    k = photo.boxes.camera.intrinsics
-    return float((x2 - x1) * (y2 - y1) / (k.width * k.height)) * UNSEEN_EDGE_FACTOR**unseen
-
-
 def track_name(number: int) -> str:
     """The id of a track's object."""
     return f"object-{number + 1}"
@@ -300,9 +290,13 @@ def _room_of_all(
         part = progress.part(index / len(read), (index + 1) / len(read))
         objects = placed_picture(r, _ids_in(tracks, index)).objects
         seen.append(SeenRoom(room_alone(r, index, tracks, part), r.posed.camera, objects))
-    standing = [_footprint(t.cuboid) for t in tracks if t.kind.mount == "floor" and len(t.boxes) > 1]
-    mounted = [t.cuboid for t in tracks if _hangs(t, alone) and seen_whole(t.sightings(alone))]
-    room, passages = with_open_doorways(walls_at_mounted(joint_room(seen, standing), mounted), seen)
+    standing = [_footprint(t.cuboid) for t in tracks if t.kind.mount == "floor" and len(t.fitted) > 1]
+    hanging = [t for t in tracks if _hangs(t, alone)]
+    mounted = [t.cuboid for t in hanging if seen_whole(t.sightings(alone))]
+    # A wall that another photo looks past stays where something hangs on it.
+    rooms = (joint_room(seen, standing), *(s.architecture for s in seen))
+    found = room_holding(rooms, [t.cuboid for t in hanging])
+    room, passages = with_open_doorways(walls_at_mounted(found, mounted), seen)
     worlds = [moved_to_room(Scene(architecture=room), np.linalg.inv(r.T_room_photo)).architecture for r in read]
     return tuple(GivenRoom(world, marks) for world, marks in zip(worlds, passages, strict=True))
 
@@ -362,7 +356,7 @@ def _merged(
             continue  # nothing of the library is like it, or it is an open doorway
         item = scenes[source].object(name)
         in_main = main.object(name) if main.has_object(name) else None
-        if len(track.boxes) > 1:
+        if len(track.fitted) > 1:
             item = filling(item, track.cuboid)
         if item.category in OPENING_CATEGORIES:
             item = set_into_wall(item)

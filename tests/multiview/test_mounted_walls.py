@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from diorama_core.multiview.joint_fit import JointCuboid
-from diorama_core.multiview.mounted_walls import hangs_on_wall, walls_at_mounted
+from diorama_core.multiview.mounted_walls import hangs_on_wall, room_holding, walls_at_mounted
 from diorama_core.scene.types import Architecture, Plane
 
 WIDTH, DEPTH, TOP = 4.0, 3.0, 2.5
@@ -67,3 +67,23 @@ def test_what_hangs_on_walls_by_its_kind() -> None:
     assert hangs_on_wall("picture")
     assert hangs_on_wall("door")
     assert not hangs_on_wall("chair")
+
+
+def test_a_wall_that_something_hangs_on_is_not_given_up() -> None:
+    whole = room()
+    open_side = Architecture(tuple(p for p in whole.planes if p.id != "wall_1"))
+    assert room_holding([open_side, whole], [picture(1.0, 0.1)]) is whole
+    assert room_holding([open_side, whole], [picture(1.0, 2.9)]) is open_side
+    assert room_holding([open_side, whole], []) is open_side
+
+
+def test_what_hangs_beside_a_wall_does_not_hang_on_it() -> None:
+    whole = room()
+    beside = picture(WIDTH + 1.0, 0.1)
+    assert room_holding([whole, replace_walls(whole, 1.2)], [beside]).planes != whole.planes
+
+
+def replace_walls(found: Architecture, stretch: float) -> Architecture:
+    """The same room, longer along x."""
+    longer = [replace(p, polygon=p.polygon * [stretch, 1.0, 1.0]) for p in found.planes]
+    return Architecture(tuple(longer))
