@@ -69,4 +69,6 @@ def test_what_is_no_room_is_one_line() -> None:
     with pytest.raises(InputError, match="more than 60 m"):
         measured_cloud(PointCloud(1000 * flat, UP))
     with pytest.raises(InputError, match="more than 60 m"):  # a histogram of them would fill all memory
-        measured_cloud(PointCloud(1e30 * flat, None))
+        measured_cloud(PointCloud(1e6 * flat, None))
+    with pytest.raises(InputError, match="too far from the file's zero"):
+        measured_cloud(PointCloud(flat + 1e30, None))
