@@ -31,6 +31,8 @@ from diorama_core.library.taxonomy import CATEGORIES
 from diorama_core.scene.types import yaw_rotation
 
 MAX_REACH_M = 60.0
+FARTHEST_M = 1e8
+"""From the file's zero: surveyors' grids are within 10,000 km."""
 VOXEL_M = 0.03
 LEVEL_M = 0.02
 """Of the histogram of heights."""
@@ -158,6 +160,8 @@ def _thinned(points: Float[np.ndarray, "n 3"]) -> Float[np.ndarray, "m 3"]:
 def _spread(points: Float[np.ndarray, "n 3"], most_m: float) -> tuple[Float[np.ndarray, "3"], Float[np.ndarray, "3"]]:
     """The least and the largest coordinates of all points but stray ones; an error where they are too far apart."""
     low, high = np.quantile(points, [0.001, 0.999], axis=0)
+    if not (np.abs([low, high]) < FARTHEST_M).all():
+        raise InputError("the points lie too far from the file's zero to be told apart; export them near it, in metres")
     if not (high - low < most_m).all():
         raise InputError(f"the points reach over more than {MAX_REACH_M:.0f} m; cut out one room, in metres")
     return low, high

@@ -9,6 +9,7 @@ ones are fitted as well and the best of them is taken, unless depth was measured
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
@@ -120,27 +121,35 @@ class MadeToMeasure:
         """The candidates with the first of each made to measure, where the picture tells how."""
         seen = _seen(posed, inputs, objects, geometry, depth)
         progress.report(0.0, "Making shapes to measure")
-        chosen = {
-            p.object_id: p for of_set in each(lambda s: self._best_fitting(s, seen), _sets(posed)) for p in of_set
-        }
-        posed = tuple(chosen.get(p.object_id, p) for p in posed)
-        seen = {i: replace(one, pose=chosen[i].candidates[0].pose) for i, one in seen.items()}
+        posed = self._best_fitting(posed, seen)
+        pose_of = {p.object_id: p.candidates[0].pose for p in posed if p.candidates}
+        seen = {i: replace(one, pose=pose_of[i]) for i, one in seen.items()}
         made = each(lambda members: self._of_set(members, seen), _sets(posed), progress, "Making shapes to measure")
         found = {object_id: candidate for of_set in made for object_id, candidate in of_set.items()}
         return tuple(_with_first(p, found[p.object_id]) if p.object_id in found else p for p in posed)
 
-    def _best_fitting(self, members: Sequence[PosedCandidates], seen: Mapping[str, _Seen]) -> Sequence[PosedCandidates]:
-        """One object with the candidate first that fits best, where its first one fits badly.
+    def _best_fitting(
+        self, posed: tuple[PosedCandidates, ...], seen: Mapping[str, _Seen]
+    ) -> tuple[PosedCandidates, ...]:
+        """Objects with the candidate first that fits best, where their first one fits badly.
 
-        Sets stay as they agreed, and measured objects too: their shapes were refined one by one before ranking.
+        What agreed on a shape stays as it agreed, whatever its sizes, and measured objects stay too: their shapes were
+        refined one by one before ranking.
         """
-        one = members[0]
-        evidence = seen[one.object_id].evidence if one.object_id in seen else None
-        if len(members) > 1 or evidence is None or evidence.surface is not None:
-            return members
+        shared = Counter(p.candidates[0].shape_id for p in posed if p.candidates)
+
+        def chosen(one: PosedCandidates) -> PosedCandidates:
+            evidence = seen[one.object_id].evidence if one.object_id in seen else None
+            if evidence is None or evidence.surface is not None or shared[one.candidates[0].shape_id] > 1:
+                return one
+            return self._better_fitting(one, evidence)
+
+        return tuple(each(chosen, posed))
+
+    def _better_fitting(self, one: PosedCandidates, evidence: Evidence) -> PosedCandidates:
         first = self._fit_error(evidence, one.candidates[0])
         if first < POOR_FIT:
-            return members
+            return one
         tried = one.candidates[:COMPARED]
         errors = [first, *(self._fit_error(evidence, c) for c in tried[1:])]
         scores = [
@@ -149,7 +158,7 @@ class MadeToMeasure:
         ]
         best = int(np.argmax(scores))
         others = (*one.candidates[:best], *one.candidates[best + 1 :])
-        return [replace(one, candidates=(one.candidates[best], *others))]
+        return replace(one, candidates=(one.candidates[best], *others))
 
     def _fit_error(self, evidence: Evidence, candidate: Candidate) -> float:
         """How much a shape disagrees with the picture at the best pose near its own, 0 to 1."""

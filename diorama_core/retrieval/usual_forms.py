@@ -20,7 +20,8 @@ from diorama_core.library.taxonomy import with_kin
 from diorama_core.retrieval.feature_cache import cached_features
 from diorama_core.retrieval.seen_forms import shape_form
 
-_SEAT = {"four legs": 0.75, "sled": 0.08, "five-star": 0.07, "pedestal": 0.06, "plinth": 0.02}
+_CROSSED_LEGS = "crossed legs"
+_SEAT = {"four legs": 0.75, "sled": 0.08, "five-star": 0.07, "pedestal": 0.06, _CROSSED_LEGS: 0.03, "plinth": 0.02}
 _OFFICE_SEAT = {"five-star": 0.8, "four legs": 0.1, "pedestal": 0.05, "sled": 0.05}
 _EASY_SEAT = {"four legs": 0.7, "plinth": 0.12, "pedestal": 0.08, "sled": 0.06, "panel": 0.04}
 _TABLE = {"four legs": 0.7, "pedestal": 0.12, "panel": 0.08, "sled": 0.05, "plinth": 0.03}
@@ -49,12 +50,15 @@ _SIDES: tuple[tuple[frozenset[str], Mapping[str, float]], ...] = (
 """Padded arms, and frames that are seen through below the arms."""
 _CLOSED = 0.72
 """Share of the outline from the side that is filled, from which on a seat's sides are closed."""
+_BELOW_SEAT, _FOOT, _CROSSING = 0.33, 0.08, 0.5
+"""Shares of a chair's height up to which legs are looked at, of a foot, and of its depth that crossing legs have."""
 _DRAWN_PX = 128
+_LEG_POINTS = 6000
 _RARE = 0.02
 _SAYS = 0.08
 """Power of the share that multiplies a retrieval score: scores of shapes that fit well and badly differ little."""
 
-OUTLINE_FEATURES, SIDE_FEATURES = "outline-2", "side-1"
+OUTLINE_FEATURES, SIDE_FEATURES, LEGS_FEATURES = "outline-2", "side-1", "legs-1"
 """Cache keys; to be changed with what is measured under them."""
 
 
@@ -78,7 +82,21 @@ def usual_form_factor(shape: Shape, appearance: ShapeAppearance) -> float:
 def _form(shape: Shape, appearance: ShapeAppearance) -> tuple[str, str]:
     """Base and top."""
     form = shape_form(shape, appearance)
-    return str(form.get("base", "none")), str(form.get("top", "none"))
+    base = str(form.get("base", "none"))
+    if base == "four legs" and shape.category == "chair" and _kept(LEGS_FEATURES, shape, lambda: _cross(appearance)):
+        base = _CROSSED_LEGS
+    return base, str(form.get("top", "none"))
+
+
+def _cross(appearance: ShapeAppearance) -> bool:
+    """Whether front and back legs meet below the seat, as those of folding chairs do."""
+    points = appearance.spread_points(_LEG_POINTS)
+    height = (points[:, 2] - points[:, 2].min()) / max(float(np.ptp(points[:, 2])), 1e-9)
+    levels = np.arange(0.0, _BELOW_SEAT, _FOOT / 2)
+    depths = [
+        np.ptp(np.quantile(at, [0.05, 0.95])) for z in levels if len(at := points[abs(height - z) < _FOOT / 2, 0])
+    ]
+    return bool(min(depths[1:], default=np.inf) < _CROSSING * depths[0])
 
 
 def _outline(shape: Shape, appearance: ShapeAppearance) -> str:

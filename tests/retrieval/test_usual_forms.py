@@ -24,6 +24,11 @@ def test_legs_are_more_usual_than_plinths(usual, rare):
     assert 0.7 < factor(rare) < 0.95
 
 
+@pytest.mark.parametrize("folding", ["chair-folding-black", "chair-folding-pine"])
+def test_folding_chairs_are_rarer_than_chairs_on_four_legs(folding):
+    assert factor(folding) < factor("chair-cafe-steel") == factor("chair-ladder-walnut") == 1.0
+
+
 def test_kinds_without_bases_are_all_as_usual():
     assert factor("sofa-grey-three") == 1.0
 
