@@ -6,7 +6,7 @@ of the room's edges and of what stands before it.
 
 from __future__ import annotations
 
-from collections.abc import Collection, Sequence
+from collections.abc import Collection, Iterable, Sequence
 
 import numpy as np
 from jaxtyping import Float
@@ -53,14 +53,21 @@ def walls_at_mounted(
     return room
 
 
-def room_holding(rooms: Sequence[Architecture], mounted: Sequence[JointCuboid]) -> Architecture:
+def room_holding(
+    preferred: Architecture, others: Iterable[Architecture], mounted: Sequence[JointCuboid]
+) -> Architecture:
     """Of several readings of a room the first of those in which the fewest things on walls are without a wall.
 
     Args:
-        rooms: at least one, the one to be preferred first.
+        preferred: taken unless another one holds more.
+        others: looked at only where the preferred one leaves something without a wall.
         mounted: what hangs on walls.
     """
-    return min(rooms, key=lambda room: sum(not _held(room, thing) for thing in mounted))
+
+    def without_wall(room: Architecture) -> int:
+        return sum(not _held(room, thing) for thing in mounted)
+
+    return preferred if without_wall(preferred) == 0 else min((preferred, *others), key=without_wall)
 
 
 def _held(room: Architecture, thing: JointCuboid) -> bool:

@@ -294,11 +294,19 @@ def _room_of_all(
     hanging = [t for t in tracks if _hangs(t, alone)]
     mounted = [t.cuboid for t in hanging if seen_whole(t.sightings(alone))]
     # A wall that another photo looks past stays where something hangs on it.
-    rooms = (joint_room(seen, standing), *(s.architecture for s in seen))
-    found = room_holding(rooms, [t.cuboid for t in hanging])
+    own = (room_alone(r, index, _tracks_alone(index, alone[index])) for index, r in enumerate(read))
+    found = room_holding(joint_room(seen, standing), own, [t.cuboid for t in hanging])
     room, passages = with_open_doorways(walls_at_mounted(found, mounted), seen)
     worlds = [moved_to_room(Scene(architecture=room), np.linalg.inv(r.T_room_photo)).architecture for r in read]
     return tuple(GivenRoom(world, marks) for world, marks in zip(worlds, passages, strict=True))
+
+
+def _tracks_alone(index: int, photo: RoomPhoto) -> tuple[Track, ...]:
+    """What a photo says of its objects by itself, as objects that no other photo shows."""
+    return tuple(
+        Track(((index, box),), one.kind, JointCuboid(one.centre, one.yaw_rad, one.size_m, 0.0))
+        for box, one in enumerate(photo.alone)
+    )
 
 
 def _hangs(track: Track, alone: Sequence[RoomPhoto]) -> bool:

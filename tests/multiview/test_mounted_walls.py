@@ -72,18 +72,17 @@ def test_what_hangs_on_walls_by_its_kind() -> None:
 def test_a_wall_that_something_hangs_on_is_not_given_up() -> None:
     whole = room()
     open_side = Architecture(tuple(p for p in whole.planes if p.id != "wall_1"))
-    assert room_holding([open_side, whole], [picture(1.0, 0.1)]) is whole
-    assert room_holding([open_side, whole], [picture(1.0, 2.9)]) is open_side
-    assert room_holding([open_side, whole], []) is open_side
+    assert room_holding(open_side, [whole], [picture(1.0, 0.1)]) is whole
+    assert room_holding(open_side, [whole], [picture(1.0, 2.9)]) is open_side
+    assert room_holding(open_side, [whole], []) is open_side
 
 
 def test_what_hangs_beside_a_wall_does_not_hang_on_it() -> None:
     whole = room()
     beside = picture(WIDTH + 1.0, 0.1)
-    assert room_holding([whole, replace_walls(whole, 1.2)], [beside]).planes != whole.planes
+    assert room_holding(whole, [longer(whole, 1.3)], [beside]) is not whole
 
 
-def replace_walls(found: Architecture, stretch: float) -> Architecture:
+def longer(found: Architecture, stretch: float) -> Architecture:
     """The same room, longer along x."""
-    longer = [replace(p, polygon=p.polygon * [stretch, 1.0, 1.0]) for p in found.planes]
-    return Architecture(tuple(longer))
+    return Architecture(tuple(replace(p, polygon=p.polygon * [stretch, 1.0, 1.0]) for p in found.planes))
