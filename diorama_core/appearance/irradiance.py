@@ -24,7 +24,7 @@ EFFORT = Effort(window_rays=2, sky_rays=3)
 DARKEST, BRIGHTEST = 0.45, 1.6
 """The scene is not exactly the room: deeper shade than this is not believed."""
 UNKNOWN = 0.9
-MOST_TINTED = 1.5
+MAX_TINTED = 1.5
 """A channel of the light is at most so many times stronger or weaker than its luminance."""
 
 
@@ -49,5 +49,5 @@ def irradiance_map(scene: Scene, camera: Camera, library: ShapeLibrary) -> Float
     grey = luminance(light)
     level = np.where(grey > 0, np.clip(grey, DARKEST, BRIGHTEST), np.float32(UNKNOWN))
     tint = np.where(grey[..., None] > 0, light / np.maximum(grey, 1e-6)[..., None], 1.0)
-    whole = (level[..., None] * np.clip(tint, 1.0 / MOST_TINTED, MOST_TINTED)).astype(np.float32)
+    whole = (level[..., None] * np.clip(tint, 1.0 / MAX_TINTED, MAX_TINTED)).astype(np.float32)
     return np.asarray(cv2.resize(whole, (k.width, k.height), interpolation=cv2.INTER_LINEAR))

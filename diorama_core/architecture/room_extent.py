@@ -20,7 +20,7 @@ from diorama_core.scene.types import Architecture, Plane, Scene, SceneObject, Su
 
 _MARGIN_M = 0.01
 """Left around what stands on the floor."""
-LONGEST_CORD = 1.4
+LONGEST_CORD = 1.3
 """A lamp's cord makes it at most so many times as high as it was seen."""
 _MIN_AREA_M2 = 1e-4
 _JOINED_M = 0.02

@@ -23,7 +23,7 @@ from diorama_core.scene import edits
 from diorama_core.scene.support import descendants
 from diorama_core.scene.types import Pose, Scene, SceneObject, Support
 
-MOST_TRIED = 500
+MAX_TRIED = 500
 """Candidates, best first, that are tested exactly."""
 STEPS_ASIDE_M = 1.2
 """How far an object that turned or grew goes to be free again."""
@@ -110,7 +110,7 @@ class Positioner:
         self, scene: Scene, item: SceneObject, candidates: Candidates, cost: Float[np.ndarray, "n"]
     ) -> Spot | None:
         usable = np.flatnonzero(candidates.usable)
-        order = usable[np.argsort(cost[usable], kind="stable")][:MOST_TRIED]
+        order = usable[np.argsort(cost[usable], kind="stable")][:MAX_TRIED]
         for k in order:
             pose = candidates.pose(item, int(k))
             support = candidates.supports[int(k)]

@@ -36,7 +36,7 @@ FOOT_M = 0.006
 NEAR_TOP_M = 0.012
 """Corners of a carrier this near to the level of a foot belong to the face that holds it up."""
 MIN_HOLD_M2 = 1e-5
-LEAST_JOINT_FRICTION = 0.5
+MIN_JOINT_FRICTION = 0.5
 """Newtons or newton metres."""
 HOLD = 1.5
 """Joints that stand open hold this many times the weight on them."""
@@ -176,12 +176,12 @@ def _body(gathered: ExportScene, node: ExportObject) -> RigidBody:
 def joint_friction(limb: ExportLimb, inertia: Inertia, T_world: Float[np.ndarray, "4 4"]) -> float:
     """What a joint resists with, newtons or newton metres: what stands open is held there against its weight."""
     if limb.opened == 0.0:
-        return LEAST_JOINT_FRICTION
+        return MIN_JOINT_FRICTION
     axis, R = T_world[:3, :3] @ limb.axis, T_world[:3, :3]
     weight = np.array([0.0, 0.0, -GRAVITY * inertia.mass_kg])
     lever = R @ (_placed(limb.T_object_limb, inertia.centre) - limb.origin)
     load = weight if limb.kind == "slide" else np.cross(lever, weight)
-    return max(LEAST_JOINT_FRICTION, HOLD * abs(float(axis @ load)))
+    return max(MIN_JOINT_FRICTION, HOLD * abs(float(axis @ load)))
 
 
 def _scaled(parts: Iterable[ConvexPart], node: ExportObject) -> tuple[Points, ...]:

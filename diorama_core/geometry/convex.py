@@ -246,7 +246,7 @@ def _cut(triangles: np.ndarray, axis: int, at: float, sign: float) -> Float[np.n
 
 
 def _gathered(clouds: list[np.ndarray]) -> list[np.ndarray]:
-    """At most `MOST_PIECES` clouds: many small ones (leaves, slats) are joined with their neighbours."""
+    """At most `MAX_PIECES` clouds: many small ones (leaves, slats) are joined with their neighbours."""
     if len(clouds) <= MAX_PIECES:
         return clouds
     centres = np.array([0.5 * (c.min(axis=0) + c.max(axis=0)) for c in clouds])
@@ -255,7 +255,7 @@ def _gathered(clouds: list[np.ndarray]) -> list[np.ndarray]:
 
 
 def _merge(clouds: list[np.ndarray]) -> list[np.ndarray]:
-    """Join parts while the union stays nearly convex; beyond `MOST_PARTS`, those that add least empty space."""
+    """Join parts while the union stays nearly convex; beyond `MAX_PARTS`, those that add least empty space."""
     parts = {k: _Cloud.of(c) for k, c in enumerate(clouds)}
     added = {pair: _added(parts[pair[0]], parts[pair[1]]) for pair in itertools.combinations(parts, 2)}
     while added:

@@ -18,7 +18,7 @@ BESIDE_M = 0.25
 """A wall whose foot is no farther than this from the floor's edge stands on it."""
 PARALLEL = 0.97
 """Least cosine between such a wall and the edge."""
-LEAST_GAP_M = 0.1
+MIN_GAP_M = 0.1
 USUAL_HEIGHT_M = 2.5
 SILL_M, HEAD_M, LINTEL_M = 0.9, 2.1, 0.2
 """Of a usual window: its lower and upper edge above the floor, and the least that is left of the wall above it."""
@@ -91,7 +91,7 @@ def _gaps(
 ) -> list[tuple[Float[np.ndarray, "2"], Float[np.ndarray, "2"]]]:
     """The parts of a floor's edge on which no wall stands."""
     length = float(np.linalg.norm(b - a))
-    if length < LEAST_GAP_M:
+    if length < MIN_GAP_M:
         return []
     along = (b - a) / length
     inward = np.array([-along[1], along[0]])
@@ -102,7 +102,7 @@ def _gaps(
             covered.append((float((foot @ along).min()), float((foot @ along).max())))
     gaps, start = [], 0.0
     for low, high in [*sorted(covered), (length, length)]:
-        if low - start > LEAST_GAP_M:
+        if low - start > MIN_GAP_M:
             gaps.append((a + start * along, a + min(low, length) * along))
         start = max(start, high)
     return gaps

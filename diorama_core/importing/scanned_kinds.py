@@ -36,7 +36,7 @@ MIN_SEEN, MIN_SEEN_PX = 0.25, 16
 """Share of a thing's points that a photo must show, and the least side of their box."""
 LOOKED_AT = 400
 """Points of a thing that are projected."""
-LIKELY, MOST_KINDS = 1e-3, 12
+LIKELY, MAX_KINDS = 1e-3, 12
 """Kinds whose shapes are compared: not less likely than so many times the likeliest, and not more."""
 MISFIT_SIGMA_M = 0.02
 """A kind whose best shape is so much farther off the points is less likely by e."""
@@ -89,7 +89,7 @@ def _with_shapes(box: MeasuredBox, kinds: Mapping[str, float], library: ShapeLib
         return dict(kinds)
     surface = ScannedSurface.of(box)
     order = sorted(kinds, key=lambda kind: (-kinds[kind], kind))
-    compared = [kind for kind in order[:MOST_KINDS] if kinds[kind] >= LIKELY * kinds[order[0]]]
+    compared = [kind for kind in order[:MAX_KINDS] if kinds[kind] >= LIKELY * kinds[order[0]]]
     misfit = {kind: found for kind in compared if (found := surface.misfit_of_kind(kind, library)) is not None}
     if not misfit:
         return dict(kinds)

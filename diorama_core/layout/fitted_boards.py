@@ -32,7 +32,7 @@ ONE_BOARD_M = 0.06
 """Feet at heights that differ by less stand on one board."""
 BELOW_TOP_M = 0.05
 """What was observed so little below the top, or above it, stands on the top."""
-MOST_WAYS = 500
+MAX_WAYS = 500
 """So many ways to assign feet to boards are looked through; with more, boards stay."""
 WORTH = 0.7
 """Boards are moved where that leaves less than this share of the distance between feet and boards."""
@@ -124,7 +124,7 @@ def _adjusted(shape: Shape, feet: Sequence[_Feet], scale: float) -> str | None:
     before = float(counts @ np.abs(wanted[:, None] - np.array(levels)).min(axis=1)) * scale if len(feet) else 0.0
     # The top stays.
     inside = len(levels) - 1
-    if before <= AGREES_M * counts.sum() or comb(inside + len(feet) - 1, len(feet)) > MOST_WAYS:
+    if before <= AGREES_M * counts.sum() or comb(inside + len(feet) - 1, len(feet)) > MAX_WAYS:
         return None
     least, most = _free_lengths(shape, levels)
     if (least >= most).any():  # boards that lie on one another

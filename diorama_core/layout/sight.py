@@ -7,7 +7,7 @@ from jaxtyping import Float
 
 MAX_NEARER = 1.4
 """An object is brought to its supporter along its line of sight by at most this factor, either way."""
-LEAST_FACING = 0.3
+MIN_FACING = 0.3
 """Cosine between a supporter's front and the line of sight from which on its middle plane tells distances."""
 
 
@@ -28,7 +28,7 @@ def nearness(
         load: the load's observed centre.
     """
     sight, away = load - eye, supporter - eye
-    if abs(float(front @ away)) < LEAST_FACING * float(np.linalg.norm(away)) or float(front @ sight) == 0.0:
+    if abs(float(front @ away)) < MIN_FACING * float(np.linalg.norm(away)) or float(front @ sight) == 0.0:
         front = sight
     factor = float(front @ away) / float(front @ sight)
     return float(np.clip(factor, 1.0 / MAX_NEARER, MAX_NEARER)) if factor > 0.0 else 1.0

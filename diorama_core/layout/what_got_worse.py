@@ -11,7 +11,7 @@ Problems = Mapping[str, tuple[str, ...]]
 
 FAR_M = 0.3
 """A layout whose objects moved so far on average is hardly that of the photo."""
-LEAST_M = 0.005
+MIN_M = 0.005
 
 
 def new_problems(before: Problems, after: Problems) -> dict[str, tuple[str, ...]]:
@@ -37,7 +37,7 @@ def in_words(report: LayoutReport, worse: Problems, labels: Mapping[str, str]) -
     if pairs is not None and more is not None and more > pairs:
         lines.append(f"Overlapping pairs went from {pairs:.0f} to {more:.0f}.")
     deep, deeper = before.get("part_overlap_m"), after.get("part_overlap_m")
-    if deep is not None and deeper is not None and deeper > deep + LEAST_M:
+    if deep is not None and deeper is not None and deeper > deep + MIN_M:
         lines.append(f"The deepest overlap went from {100 * deep:.0f} cm to {100 * deeper:.0f} cm.")
     moved = after.get("moved_m", 0.0)
     if moved > FAR_M:

@@ -92,7 +92,8 @@ class BuiltInLibrary:
         self._designs = {d.id: d for d in designs}
         if len(self._designs) != len(designs):
             raise LibraryError("two built-in designs share an id; give each its own")
-        self._records = {d.id: _record(d) for d in designs}
+        self._records: dict[str, Shape] = {}
+        """Of the designs that were asked for: naming the geometry of all takes a fifth of a second."""
         self._folder = cache_dir
         self._solids: LruCache[str, list[tuple[Material, Solid]]] = LruCache(8)
         self._scenes: LruCache[str, trimesh.Scene] = LruCache(SCENE_BYTES, _bytes_of)
@@ -103,15 +104,15 @@ class BuiltInLibrary:
         self._surfaces: LruCache[str, tuple[SupportSurface, ...]] = LruCache(4096)
 
     def __repr__(self) -> str:
-        return f"BuiltInLibrary({len(self._records)} shapes)"
+        return f"BuiltInLibrary({len(self._designs)} shapes)"
 
     def shapes(self) -> tuple[Shape, ...]:
         """All records in a stable order, without support surfaces."""
-        return tuple(self._records.values())
+        return tuple(self._record(shape_id) for shape_id in self._designs)
 
     def in_category(self, category: str) -> tuple[Shape, ...]:
         """Records of one canonical category, without support surfaces."""
-        return tuple(r for r in self._records.values() if r.category == category)
+        return tuple(self._record(d.id) for d in self._designs.values() if d.category == category)
 
     def shape(self, shape_id: str) -> Shape:
         """One record with its support surfaces; raises `LibraryError` when unknown."""
@@ -177,9 +178,14 @@ class BuiltInLibrary:
             return self._derived(shape_id)[1]
         if is_made(shape_id) and base_id(shape_id) in self._designs:
             return self._made.get(shape_id, lambda: _record(self._design(shape_id)))
+        if shape_id not in self._designs:
+            raise LibraryError(f"no shape is called '{shape_id}' in the built-in library; list them to see the names")
+        return self._record(shape_id)
+
+    def _record(self, shape_id: str) -> Shape:
         record = self._records.get(shape_id)
         if record is None:
-            raise LibraryError(f"no shape is called '{shape_id}' in the built-in library; list them to see the names")
+            record = self._records.setdefault(shape_id, _record(self._designs[shape_id]))
         return record
 
     def _measured(self, record: Shape) -> tuple[SupportSurface, ...]:

@@ -35,7 +35,7 @@ AREAS_PX = (320 * 256, 512 * 384)
 """The photo is looked at in each of these sizes: large things are found in the first, small ones in the second."""
 DOUBLE_IOU, ALIKE_IOU = 0.5, 0.7
 """Overlap of two boxes of one object, and of two that are no choice."""
-LEAST_SCORE, MOST_OF_LOOK = 0.06, 400
+MIN_SCORE, MAX_OF_LOOK = 0.06, 400
 """Boxes of one look at a picture that are compared with those of the others."""
 
 
@@ -115,8 +115,8 @@ class Recogniser:
         for k, seen in enumerate(rows.astype(np.float64)):
             centres, strides = places(width, height)
             scores = expit(seen[:, 0])
-            best = np.flatnonzero(scores >= LEAST_SCORE)
-            best = best[np.argsort(-scores[best], kind="stable")][:MOST_OF_LOOK]
+            best = np.flatnonzero(scores >= MIN_SCORE)
+            best = best[np.argsort(-scores[best], kind="stable")][:MAX_OF_LOOK]
             reach = np.exp(np.minimum(seen[best, 1:5], 5.0)) * strides[best, None]
             boxes = np.concatenate([centres[best] - reach[:, :2], centres[best] + reach[:, 2:]], axis=1)
             if k == 1:

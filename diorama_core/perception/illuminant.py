@@ -22,7 +22,7 @@ _NORM = 6.0
 """Of the Minkowski means: bright pixels and strong edges say most."""
 _DARK, _CLIPPED = 0.02, 0.97
 """Linear light outside these says nothing of colour."""
-_FEWEST_PIXELS = 200
+_MIN_PIXELS = 200
 _BRIGHT_SHARE = 0.5
 """Of the walls' pixels, the brightest: the others are shaded or lit by what is beside them."""
 _EXPECTED_SIGMA = np.array([0.28, 0.06])
@@ -68,12 +68,12 @@ def estimate_illuminant(rgb: UInt8[np.ndarray, "h w 3"], walls: Bool[np.ndarray,
     small, of_walls = _reduced(rgb, walls)
     light = srgb_to_linear(small / 255.0)
     usable = ((light > _DARK).all(axis=-1)) & ((light < _CLIPPED).all(axis=-1))
-    if usable.sum() < _FEWEST_PIXELS:
+    if usable.sum() < _MIN_PIXELS:
         return Illuminant()
     found = [(_chromaticity(_minkowski(light[usable])), _STATISTICS_SIGMA)]
     edges = np.abs(cv2.Laplacian(cv2.GaussianBlur(light, (0, 0), 1.0), cv2.CV_64F))
     found.append((_chromaticity(_minkowski(edges[usable])), _STATISTICS_SIGMA))
-    if (usable & of_walls).sum() >= _FEWEST_PIXELS:
+    if (usable & of_walls).sum() >= _MIN_PIXELS:
         found.append((_chromaticity(_bright_median(light[usable & of_walls])), _WALLS_SIGMA))
     return _of_chromaticity(_combined(found))
 

@@ -21,7 +21,7 @@ KEEP_THEIR_OWN = frozenset({"picture", "mirror", "window", "plant", "books", "cl
 _BIN = 20.0
 _BINS = 16
 """More than there are along either axis of hue, which reach from -127 to 127."""
-_FEWEST_PIXELS = 60
+_MIN_PIXELS = 60
 _MIN_SHARE = 0.25
 """An object without a colour that covers this much of it is not painted."""
 
@@ -81,7 +81,7 @@ def shared_by_sets(
 def _main_colour(rgb: UInt8[np.ndarray, "h w 3"], mask: Bool[np.ndarray, "h w"]) -> Colour | None:
     """Median of the fullest bin of a coarse Lab grid, and its neighbours'."""
     pixels = rgb[mask]
-    if len(pixels) < _FEWEST_PIXELS:
+    if len(pixels) < _MIN_PIXELS:
         return None
     lab = cv2.cvtColor(pixels[None].astype(np.float32) / 255.0, cv2.COLOR_RGB2Lab)[0]
     # Shade varies over one surface, hue hardly: lightness gets wider bins.

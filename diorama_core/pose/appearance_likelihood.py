@@ -21,7 +21,7 @@ from diorama_core.geometry.silhouette import Hits, PoseBatch
 from diorama_core.io.srgb import srgb_to_linear
 from diorama_core.pose.surface import MeasuredSurface
 
-_FEWEST_CELLS, _MAX_CELLS = 16, 48
+_MIN_CELLS, _MAX_CELLS = 16, 48
 _CELLS_PER_PX = 1.16
 _TOLERANCE_M = 0.004
 _TOLERANCE_SHARE = 0.04
@@ -163,7 +163,7 @@ class AppearanceLikelihood:
 def cells_for(box: tuple[float, float, float, float]) -> int:
     """How many cells a window around a box needs for cells of about a pixel, within reason."""
     longest = max(box[2] - box[0], box[3] - box[1])
-    return int(np.clip(_CELLS_PER_PX * longest, _FEWEST_CELLS, _MAX_CELLS))
+    return int(np.clip(_CELLS_PER_PX * longest, _MIN_CELLS, _MAX_CELLS))
 
 
 @dataclass(frozen=True, eq=False)

@@ -21,7 +21,7 @@ from diorama_core.pose.limits import SizeLimits
 from diorama_core.scene.types import Camera, yaw_rotation
 
 PARAMETERS = 7
-FEWEST_RAYS = 6
+MIN_RAYS = 6
 """Minimum number of measured points for a fit."""
 _MAX_RAYS = 260
 _DIRECTIONS = 16
@@ -43,7 +43,7 @@ _THIN_SHAPE_SIGMA = 0.8
 SURE_CONTACT_M = 0.02
 _SHAPE_FOOT_M = 0.03
 """Usual distance of a shape's foot from that of the thing it stands for, beside the contact's own uncertainty."""
-_MOST_SIGMAS = 3.0
+_MAX_SIGMAS = 3.0
 """Gaps of more deviations say no more: the contact may be wrong."""
 _YAW_SIGMA_RAD = float(np.deg2rad(10.0))
 
@@ -163,7 +163,7 @@ class Contact:
     def log_likelihood(self, poses: PoseBatch, shape_size_m: Float[np.ndarray, "3"]) -> Float[np.ndarray, " p"]:
         """What the gap says of poses: the layout will close it, and they will agree less with the picture."""
         sigma = np.hypot(self.sigma_m, _SHAPE_FOOT_M)
-        return -0.5 * np.minimum(np.abs(self.gap_m(poses, shape_size_m)) / sigma, _MOST_SIGMAS) ** 2
+        return -0.5 * np.minimum(np.abs(self.gap_m(poses, shape_size_m)) / sigma, _MAX_SIGMAS) ** 2
 
 
 @dataclass(frozen=True, eq=False)

@@ -10,7 +10,7 @@ from jaxtyping import Bool, Float
 from diorama_core.artefacts import Cuboid, DepthMap
 from diorama_core.geometry.silhouette import PoseBatch
 from diorama_core.library.record import SymmetryFold
-from diorama_core.pose.depth_fit import FEWEST_RAYS, NOISE_REACH, SURE_CONTACT_M, Contact, DepthFit, Outline, SeenPoints
+from diorama_core.pose.depth_fit import MIN_RAYS, NOISE_REACH, SURE_CONTACT_M, Contact, DepthFit, Outline, SeenPoints
 from diorama_core.pose.facing import WallSamples
 from diorama_core.pose.hypotheses import Anchor, Hypotheses
 from diorama_core.pose.limits import SizeLimits
@@ -63,7 +63,7 @@ class MeasuredObject:
         points = SeenPoints.of(
             observations.seen, observations.surface.depth_m, observations.surface.weight, observations.surface.spread_m
         )
-        if len(points.depth_m) < FEWEST_RAYS:
+        if len(points.depth_m) < MIN_RAYS:
             return None
         outline = Outline.of(observations.seen, mask)
         contact = _contact(anchor, floor_foot_m, points, outline)

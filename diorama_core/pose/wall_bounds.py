@@ -13,13 +13,13 @@ from diorama_core.pose.facing import WallSamples
 
 _SIGMA_M = 0.05
 """How far a shape's box reaches into a wall that its object stands against."""
-_MOST_SIGMAS = 3.0
+_MAX_SIGMAS = 3.0
 """Deeper ones say no more: the surface may be no wall."""
 _BESIDE_M = 0.2
 """A corner meets the wall where it was seen this near to the corner's foot on it."""
 _SEEN_BEHIND_SHARE = 0.05
 """A surface with a larger share of the object's own points behind it does not bound the object."""
-_MOST_SAMPLES = 400
+_MAX_SAMPLES = 400
 
 
 @dataclass(frozen=True, eq=False)
@@ -39,7 +39,7 @@ class WallBounds:
         xy = points.points_world[:, :2]
         middle, reach = xy.mean(axis=0), np.ptp(xy, axis=0).max() + 2.0
         near = np.flatnonzero(np.linalg.norm(walls.points_xy - middle, axis=1) < reach)
-        near = near[:: max(1, -(-len(near) // _MOST_SAMPLES))]
+        near = near[:: max(1, -(-len(near) // _MAX_SAMPLES))]
         at, normals = walls.points_xy[near], walls.normals_xy[near]
         behind = (normals @ xy.T) - (normals * at).sum(axis=1, keepdims=True) < -_SIGMA_M
         bounding = behind.mean(axis=1) < _SEEN_BEHIND_SHARE
@@ -61,7 +61,7 @@ class WallBounds:
 
     def log_likelihood(self, poses: PoseBatch, shape_size_m: Float[np.ndarray, "3"]) -> Float[np.ndarray, " p"]:
         """What the walls say of poses: the layout will bring them into the room, away from where they were seen."""
-        return -0.5 * np.minimum(self.through_m(poses, shape_size_m) / _SIGMA_M, _MOST_SIGMAS) ** 2
+        return -0.5 * np.minimum(self.through_m(poses, shape_size_m) / _SIGMA_M, _MAX_SIGMAS) ** 2
 
 
 NO_BOUNDS = WallBounds(WallSamples(np.zeros((0, 2)), np.zeros((0, 2))))

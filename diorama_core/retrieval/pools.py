@@ -31,7 +31,7 @@ _MAX_POOL = 110
 """No more kinds are added to so many shapes."""
 _MIN_SENSE = 0.04
 """Kinds less likely than this share of the likeliest are not looked at."""
-_LEAST_UNNAMED = 10
+_MIN_UNNAMED = 10
 """So many kinds are looked at whatever their share, where a thing has no name."""
 _VIEWS_SAY = 10.0
 """How sharply views tell kinds apart: agreeing better by a factor f makes up for a kind less likely by f to this."""
@@ -178,7 +178,7 @@ def pool_for(library: ShapeLibrary, query: RetrievalQuery) -> Pool:
     senses = dict(query.senses) or {query.category: 1.0}
     best = max(senses.values())
     members: list[Pooled] = []
-    least = 1 if query.named else _LEAST_UNNAMED
+    least = 1 if query.named else _MIN_UNNAMED
     for rank, (kind, share) in enumerate(sorted(senses.items(), key=lambda row: (-row[1], row[0]))):
         if rank < least or (share >= _MIN_SENSE * best and len(members) < _MAX_POOL):
             own = len(senses) == 1 or kind == query.category

@@ -22,7 +22,7 @@ from diorama_core.text.edit_grammar import clauses_of, edits_of
 from diorama_core.text.edit_plan import Edit, EditPlan
 from diorama_core.text.edit_prompt import SYSTEM, edit_prompt
 
-MOST_OBJECTS_ASKED = 300
+MAX_OBJECTS_ASKED = 300
 """A language model is told of no more objects."""
 
 
@@ -104,8 +104,8 @@ def _by_model(
     selected: Sequence[str],
     progress: Progress,
 ) -> ProposedEdits:
-    if len(scene.objects) > MOST_OBJECTS_ASKED:
-        raise UnavailableError(f"a scene of more than {MOST_OBJECTS_ASKED} objects is too large to be told")
+    if len(scene.objects) > MAX_OBJECTS_ASKED:
+        raise UnavailableError(f"a scene of more than {MAX_OBJECTS_ASKED} objects is too large to be told")
     progress.report(0.0, f"Asking {settings.model} what is meant")
     client = LmmClient(settings, system=SYSTEM)
     plan = client.ask(edit_prompt(command, scene, selected), [], EditPlan, progress).value

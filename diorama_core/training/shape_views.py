@@ -35,7 +35,7 @@ SOLID = 240
 """Opacity above which a pixel is the shape's own and not its shadow's."""
 HIDDEN, CUT = 0.4, 0.2
 """Shares of the crops in which another shape stands before it, and in which the picture's border cuts it."""
-MOST_HIDDEN, MOST_CUT = 0.45, 0.4
+MAX_HIDDEN, MAX_CUT = 0.45, 0.4
 """Of its width or height."""
 
 
@@ -174,7 +174,7 @@ class _Cut:
 
     @classmethod
     def drawn(cls, rng: np.random.Generator) -> _Cut:
-        return cls(int(rng.integers(3)), float(rng.uniform(0.05, MOST_CUT)))
+        return cls(int(rng.integers(3)), float(rng.uniform(0.05, MAX_CUT)))
 
     def of(self, rgba: UInt8[np.ndarray, "h w 4"]) -> UInt8[np.ndarray, "h2 w2 4"]:
         """What the border leaves."""
@@ -240,7 +240,7 @@ def _hide(canvas: UInt8[np.ndarray, "s s 3"], files: ShapeViewFiles, rng: np.ran
     """Set another shape before a part of the box, from the left, the right or below."""
     views = files.draw(rng)
     rgba = _cropped_to_solid(views.rgba[int(rng.integers(len(views.rgba)))], rng)
-    size, share, side = box[2:] - box[:2], float(rng.uniform(0.08, MOST_HIDDEN)), int(rng.integers(3))
+    size, share, side = box[2:] - box[:2], float(rng.uniform(0.08, MAX_HIDDEN)), int(rng.integers(3))
     scale = float(rng.uniform(0.4, 1.1) * max(size) / max(rgba.shape[:2]))
     own = np.array([rgba.shape[1], rgba.shape[0]]) * scale
     middle = (box[:2] + box[2:]) / 2 + rng.uniform(-0.3, 0.3, 2) * size

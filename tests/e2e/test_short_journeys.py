@@ -20,7 +20,7 @@ from tests.e2e.hand import Hand
 
 pytestmark = [pytest.mark.browser, pytest.mark.slow]
 
-MOST_ACTIONS = 60
+MAX_ACTIONS = 60
 BUILD_S = 300
 SOFA, RUG = (875.0, 565.0), (640.0, 800.0, 1240.0, 940.0)
 """Of the example's photo: a point on the sofa, and the box of the rug (px)."""
@@ -111,7 +111,7 @@ def test_from_a_photo_to_an_exported_room(hand: Hand, tmp_path: Path) -> None:
         lambda: not np.allclose(session.scene.object(chosen.id).pose.position, chosen.pose.position, atol=0.02), "moved"
     )
     export(hand, tmp_path)
-    assert hand.count < MOST_ACTIONS, "\n".join(hand.actions)
+    assert hand.count < MAX_ACTIONS, "\n".join(hand.actions)
 
 
 def test_from_an_empty_room_to_an_exported_one(hand: Hand, tmp_path: Path) -> None:
@@ -134,7 +134,7 @@ def test_from_an_empty_room_to_an_exported_one(hand: Hand, tmp_path: Path) -> No
     hand.click(page.locator(".dio .tile:visible", has_text="Paint"), "Paint")
     editor.until(lambda: session.scene.plane("wall_3").finish is not None, "painted")
     export(hand, tmp_path)
-    assert hand.count < MOST_ACTIONS, "\n".join(hand.actions)
+    assert hand.count < MAX_ACTIONS, "\n".join(hand.actions)
 
 
 def test_from_a_description_to_an_exported_room(hand: Hand, tmp_path: Path) -> None:
@@ -160,4 +160,4 @@ def test_from_a_description_to_an_exported_room(hand: Hand, tmp_path: Path) -> N
     hand.click(page.locator(".dio .tile:visible", has_text="Paint"), "Paint")
     editor.until(lambda: any(p.finish is not None for p in session.scene.architecture.planes), "painted")
     export(hand, tmp_path)
-    assert hand.count < MOST_ACTIONS, "\n".join(hand.actions)
+    assert hand.count < MAX_ACTIONS, "\n".join(hand.actions)

@@ -45,7 +45,7 @@ _SHADOW_L = 14.0
 _PATTERN_M, _PATTERN_SHARE = 0.15, 0.75
 """Colours of a pattern are within this distance of each other over at least this share of both."""
 _PATTERN_COLOURS = 2
-_FEWEST_OF_PATTERN = 0.03
+_MIN_OF_PATTERN = 0.03
 _SPECK_M, _RIM_M = 0.02, 0.03
 """Foreign pieces narrower than the one are grain; so much around the others has their rims and shadows."""
 
@@ -124,12 +124,12 @@ def floor_texels(
     own[rows, columns] = alike
     for _ in range(_PATTERN_COLOURS):
         left = ~alike
-        if left.mean() < _FEWEST_OF_PATTERN:
+        if left.mean() < _MIN_OF_PATTERN:
             break
         other = _of_material(lab, _fullest(lab[left][:: max(1, int(left.sum()) // _SAMPLES)])) & left
         of_other = np.zeros(seen.shape, dtype=bool)
         of_other[rows, columns] = other
-        if other.mean() < _FEWEST_OF_PATTERN or not _intermingled(own, of_other, pixel_m):
+        if other.mean() < _MIN_OF_PATTERN or not _intermingled(own, of_other, pixel_m):
             break
         own |= of_other
         alike |= other

@@ -21,7 +21,7 @@ from diorama_core.scene.types import box_corners
 
 HIDDEN = 0.2
 """Weight of an end that something hides, against one that was seen."""
-LEAST_EXTENT_M = 0.02
+MIN_EXTENT_M = 0.02
 """Objects that look flatter count as if they were so high."""
 USUAL = 0.05
 """Disagreements up to this share of an apparent height are usual."""
@@ -165,4 +165,4 @@ def _apparent_height_m(observations: PhotoObservations, i: int) -> float:
     camera = observations.camera
     pixels = float(observations.bounds_px[i, 3] - observations.bounds_px[i, 1])
     metres = pixels * float(camera.to_camera(observations.observed[i : i + 1])[0, 2]) / camera.intrinsics.fy
-    return max(metres, LEAST_EXTENT_M) if np.isfinite(metres) else 1.0
+    return max(metres, MIN_EXTENT_M) if np.isfinite(metres) else 1.0

@@ -26,11 +26,11 @@ from diorama_core.layout.problem.problem import Problem
 from diorama_core.layout.report import part_overlaps
 from diorama_core.scene.types import box_corners
 
-LEAST_SHARE = 0.5
+MIN_SHARE = 0.5
 """An extent is reduced to no less than this share of what was retrieved."""
-LEAST_OVERLAP_M = 0.01
+MIN_OVERLAP_M = 0.01
 """Overlaps that go less deep are left to moves."""
-LEAST_SEEN = 0.03
+MIN_SEEN = 0.03
 """Share of its box in the photo by which a shortened object may fall short of it."""
 UPRIGHT = 0.3
 """A normal whose z is smaller is that of a wall; a direction that is more along it goes through the wall."""
@@ -46,7 +46,7 @@ def ending_before_neighbours(problem: Problem, observations: PhotoObservations) 
     scale, p = problem.scale.copy(), problem.p.copy()
     overlaps = part_overlaps(problem, problem.R, problem.p, problem.scale)
     for i in map(int, np.flatnonzero(problem.free & observations.hidden.any(axis=1))):
-        neighbours = [j for j in range(problem.count) if overlaps.get((min(i, j), max(i, j)), 0.0) > LEAST_OVERLAP_M]
+        neighbours = [j for j in range(problem.count) if overlaps.get((min(i, j), max(i, j)), 0.0) > MIN_OVERLAP_M]
         if not neighbours:
             continue
         for axis in (0, 1):
@@ -57,11 +57,11 @@ def ending_before_neighbours(problem: Problem, observations: PhotoObservations) 
                 if not _is_hidden(observations, i, p[i], face):
                     continue
                 cut = _overlap_m(problem, i, neighbours, p, scale, axis, outward)
-                least = LEAST_SHARE * float(problem.shape_size[i, axis] * problem.scale[i, axis])
+                least = MIN_SHARE * float(problem.shape_size[i, axis] * problem.scale[i, axis])
                 cut = min(cut, _free_m(problem, i, float(face @ outward), outward), extent - least)
                 shorter = scale[i] * np.where(np.arange(3) == axis, 1.0 - cut / extent, 1.0)
                 nearer = p[i] - 0.5 * cut * outward
-                if cut > LEAST_OVERLAP_M and _covers_box(problem, observations, i, nearer, shorter):
+                if cut > MIN_OVERLAP_M and _covers_box(problem, observations, i, nearer, shorter):
                     scale[i], p[i] = shorter, nearer
     return replace(problem, scale=scale, p=p)
 
@@ -84,9 +84,9 @@ def ending_on_walls(problem: Problem, observations: PhotoObservations) -> Proble
                 if abs(float(outward @ wall.normal)) > UPRIGHT or not _is_hidden(observations, i, p[i], face, (0, 1)):
                     continue
                 beyond = float(face @ outward) - float((wall.polygon @ outward).max())
-                least = LEAST_SHARE * float(problem.shape_size[i, axis] * problem.scale[i, axis])
+                least = MIN_SHARE * float(problem.shape_size[i, axis] * problem.scale[i, axis])
                 cut = min(beyond, extent - least)
-                if cut > LEAST_OVERLAP_M:
+                if cut > MIN_OVERLAP_M:
                     scale[i, axis] *= 1.0 - cut / extent
                     p[i] = p[i] - 0.5 * cut * outward
     return replace(problem, scale=scale, p=p)
@@ -116,7 +116,7 @@ def _covers_box(
         return True
     before = posed_bounds_px(problem, observations.camera, i, problem.p[i], problem.scale[i])
     after = posed_bounds_px(problem, observations.camera, i, p, scale)
-    slack = LEAST_SEEN * np.tile(box[2:] - box[:2], 2) + BORDER_PX
+    slack = MIN_SEEN * np.tile(box[2:] - box[:2], 2) + BORDER_PX
     short = np.array([1.0, 1.0, -1.0, -1.0]) * (after - box)
     was_short = np.array([1.0, 1.0, -1.0, -1.0]) * (before - box)
     return bool((short <= np.maximum(slack, was_short + slack)).all())

@@ -51,7 +51,7 @@ LOAD_M = 0.12
 """What was observed farther from its place says nothing about that place."""
 _OUTWARD = np.array([-1.0, -1.0, 1.0, 1.0])
 _STEPS = 4
-_TRACKED = 4.0
+_TRACKED = 3.0
 """Weight of a metre by which tracked points leave their lines of sight, against one of the outline."""
 _KEEP_PLACE = 0.1
 """Weight of staying where structure put an object, against one metre of disagreement with the picture."""

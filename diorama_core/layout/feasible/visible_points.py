@@ -25,9 +25,9 @@ if TYPE_CHECKING:
 
 LONG_SIDE_PX = 400
 """The layout is looked at in this size: a cup at the far wall still has a dozen pixels."""
-MOST_POINTS = 120
+MAX_POINTS = 120
 """So many points of an object are enough."""
-FEWEST_POINTS = 8
+MIN_POINTS = 8
 """With fewer the corners of the object's box count in their place."""
 NEAREST_M = 0.1
 """What is nearer to the camera has no place in the picture."""
@@ -80,7 +80,7 @@ class ObservedView:
         found = {}
         for number, (name, pose) in enumerate(zip(self.ids, self.poses, strict=True)):
             rows, columns = np.nonzero(self.view.instance == number)
-            step = max(len(rows) // MOST_POINTS, 1)
+            step = max(len(rows) // MAX_POINTS, 1)
             rows, columns = rows[::step], columns[::step]
             rays = self.camera.rays(np.column_stack([columns + 0.5, rows + 0.5]))
             world = self.camera.position + self.view.depth_m[rows, columns, None].astype(np.float64) * rays
@@ -94,7 +94,7 @@ class ObservedView:
         shares = []
         for number in range(len(self.ids)):
             was, is_now = before == number, after == number
-            if was.sum() >= FEWEST_POINTS:
+            if was.sum() >= MIN_POINTS:
                 shares.append(float((was & is_now).sum() / (was | is_now).sum()))
         return float(np.mean(shares)) if shares else 1.0
 
@@ -126,7 +126,7 @@ def tracked_points(
     found = []
     for i, name in enumerate(problem.ids):
         points = visible.get(name, np.zeros((0, 3)))
-        seen = len(points) >= FEWEST_POINTS
+        seen = len(points) >= MIN_POINTS
         points = points if seen else box_corners(problem.shape_size[i])
         world = problem.p[i] + (points * problem.scale[i]) @ problem.R[i].T
         depth = camera.to_camera(world)[:, 2]

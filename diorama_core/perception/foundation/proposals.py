@@ -25,7 +25,7 @@ MIN_SIDE_PX = 8.0
 SAME_IOU = 0.5
 """Two boxes that overlap at least so much are one object's."""
 SUGGESTIONS = 5
-FAINT, MOST_FAINT = 0.3, 300
+FAINT, MAX_FAINT = 0.3, 300
 """Score from which a box is worth a click on the object, and how many such boxes a photo has at most."""
 CLICK_SPREAD = 0.25
 """How far from the middle of an object people click, as a share of its box (standard deviation)."""
@@ -97,7 +97,7 @@ def clickable(recogniser: Recogniser, photo: Photo, known: Sequence[LabelledBox]
         photo: the photo.
         known: what a network found in it, which learnt from photos: these boxes count as sure.
     """
-    faint = recogniser.alternatives(photo.rgb, FAINT, MOST_FAINT)
+    faint = recogniser.alternatives(photo.rgb, FAINT, MAX_FAINT)
     corners = np.array([k.box for k in known], dtype=float).reshape(-1, 4)
     return joined((faint, Detections(corners, np.ones(len(known)), np.zeros(len(known), dtype=int))))
 

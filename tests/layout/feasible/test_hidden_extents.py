@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from diorama_core.layout.feasible.hidden_extents import LEAST_SHARE, ending_before_neighbours, ending_on_walls
+from diorama_core.layout.feasible.hidden_extents import MIN_SHARE, ending_before_neighbours, ending_on_walls
 from diorama_core.layout.feasible.photo_observations import photo_observations
 from diorama_core.layout.problem.problem import Problem, build_problem
 from diorama_core.layout.report import part_overlaps
@@ -56,7 +56,7 @@ def test_an_end_that_the_photo_shows_above_what_hides_it_stays(room: Room) -> No
 
 def test_no_object_loses_more_than_half(room: Room) -> None:
     before, after = problem_of(room, 0.05)
-    assert (after.scale >= LEAST_SHARE * before.scale - 1e-12).all()
+    assert (after.scale >= MIN_SHARE * before.scale - 1e-12).all()
 
 
 def test_an_end_goes_on_under_its_load(room: Room) -> None:

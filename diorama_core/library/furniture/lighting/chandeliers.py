@@ -226,5 +226,5 @@ DESIGNS: tuple[Design, ...] = (
     design("chandelier", "globes", "branching chandelier with glass globes", (0.85, 0.95, 0.70), "minimal", branches, 1, metal=m.BLACK_STEEL),
     design("chandelier", "rings-gold", "chandelier of three tilted gold rings", (0.62, 0.62, 1.00), "modern", rings, 1, metal=m.BRASS, tilts_deg=[10.0, -16.0, 8.0]),
     design("chandelier", "rings-black", "chandelier of two level black rings", (0.80, 0.80, 0.75), "minimal", rings, 3, metal=m.BLACK_STEEL, tilts_deg=[0.0, 0.0]),
-    design("chandelier", "shades-long", "brass chandelier with six shades on a long rod", (0.58, 0.58, 1.05), "classic", chandelier, 6, metal=m.BRASS, arms=6),
+    design("chandelier", "shades-long", "brass chandelier with six shades on a long rod", (0.58, 0.58, 1.05), "classic", chandelier, 2, metal=m.BRASS, arms=6),
 )  # fmt: skip

@@ -1,0 +1,52 @@
+"""Distances in edits by words: along the floor, nearer to things, up and down walls."""
+
+from __future__ import annotations
+
+import pytest
+
+from diorama_core.errors import EditRefused
+from diorama_core.library.catalogue import built_in_library
+from diorama_core.text.edit_lengths import HUNG_STEP_M, MAX_SHIFT_M, STEP_M, lifted, nearer, shift_of
+from diorama_core.text.selecting import Selector
+from tests.text.edited import dining_room
+
+
+def named(selector: Selector, phrase: str) -> tuple[str, ...]:
+    return (phrase.removeprefix("the "),)
+
+
+SELECTOR = Selector(dining_room(), built_in_library())
+
+
+@pytest.mark.parametrize(
+    ("words", "right_m", "away_m"),
+    [
+        ("the sofa 50 cm to the left", -0.5, 0.0),
+        ("the sofa two metres back", 0.0, 2.0),
+        ("the sofa half a metre to the right", 0.5, 0.0),
+        ("the sofa a bit forward", 0.0, -STEP_M),
+    ],
+)
+def test_a_length_and_a_way_are_a_shift(words, right_m, away_m):
+    found = shift_of(SELECTOR, words, named)
+    assert found is not None
+    assert (found.objects, found.right_m, found.away_m) == (["sofa"], pytest.approx(right_m), pytest.approx(away_m))
+
+
+def test_what_names_no_way_is_no_shift():
+    assert shift_of(SELECTOR, "the sofa beside the table", named) is None
+
+
+def test_a_picture_is_lifted_and_lowered():
+    assert lifted(SELECTOR, "raise the clock by 20 cm", "the clock by 20 cm", named).up_m == pytest.approx(0.2)
+    assert lifted(SELECTOR, "lower the clock", "the clock", named).up_m == -HUNG_STEP_M
+
+
+def test_nearer_needs_an_object_to_go_nearer_to():
+    assert nearer(SELECTOR, "the chair closer to the wall", named) is None
+    assert nearer(SELECTOR, "the chair beside the table", named) is None
+
+
+def test_farther_than_any_room_is_refused():
+    with pytest.raises(EditRefused, match=f"at most {MAX_SHIFT_M:g} m"):
+        shift_of(SELECTOR, "the sofa 200 m to the left", named)
