@@ -97,8 +97,9 @@
   setInterval(() => {
     const job = document.getElementById("dio-job"), busy = job !== null && !job.hidden;
     const ready = document.getElementById("dio-toolbar") && !document.getElementById("dio-start") && !busy;
+    const typing = document.activeElement?.matches("input, textarea"); // the tour takes the keyboard: it waits
     const from = read(sessionStorage, WANTED);
-    calm = !tour && ready && from ? calm + 1 : 0;
+    calm = !tour && ready && from && !typing ? calm + 1 : 0;
     if (calm < (from === location.search ? OPENS_WITHIN : 4)) return;
     if (read(localStorage, SEEN)) store(sessionStorage, WANTED, null);
     else window.__dioTour(); // it stays wanted until it ends: should the page load again, it comes again
