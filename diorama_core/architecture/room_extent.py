@@ -142,7 +142,7 @@ def _footprint(scene: Scene, item: SceneObject) -> Float[np.ndarray, "k 2"]:
     return polygon[:, :2]
 
 
-def _with_floor_under(scene: Scene, prints: list[Float[np.ndarray, "k 2"]]) -> Scene:
+def _with_floor_under(scene: Scene, prints: list[Float[np.ndarray, "_ 2"]]) -> Scene:
     floor = scene.architecture.floor
     assert floor is not None
     here = manifold3d.CrossSection([floor.polygon[:, :2]], manifold3d.FillRule.NonZero)
