@@ -15,6 +15,7 @@ from jaxtyping import Bool, Float, Int
 
 from diorama_core.artefacts import PhotoDisagreement
 from diorama_core.geometry.projection import box_iou
+from diorama_core.layout.feasible.object_fit import ObjectFit, bounded_step
 from diorama_core.layout.feasible.visible_points import (
     NEAREST_M,
     TrackedPoints,
@@ -49,18 +50,7 @@ UPWARD = 0.98
 """Normals with a larger z are of places on which things are put down."""
 LOAD_M = 0.12
 """What was observed farther from its place says nothing about that place."""
-_OUTWARD = np.array([-1.0, -1.0, 1.0, 1.0])
 _STEPS = 4
-_TRACKED = 3.0
-"""Weight of a metre by which tracked points leave their lines of sight, against one of the outline."""
-_KEEP_PLACE = 0.1
-"""Weight of staying where structure put an object, against one metre of disagreement with the picture."""
-_LOAD = 1.5
-"""Weight of a metre between a place and what was observed on it."""
-_KEEP_SIZE = 0.4
-"""Weight of a relative change of size, times the largest extent."""
-_KEEP_SHAPE = 0.4
-"""Weight of a relative change of one extent against the others, times that extent."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -136,7 +126,7 @@ class PhotoObservations:
             system = fit.linearised(x)
             if system is None:
                 return p, scale
-            x = x + _bounded_step(*system, low - x[2:], high - x[2:])
+            x = x + bounded_step(*system, low - x[2:], high - x[2:])
         return fit.centre(x), fit.scale * np.exp(x[2:])
 
     def fit(
@@ -177,137 +167,6 @@ class PhotoObservations:
         level, foot = self.loads[i].T
         eye = float(self.camera.position[2])
         return np.column_stack([level, eye + grown * (foot - eye)])
-
-
-@dataclass(frozen=True, eq=False)
-class ObjectFit:
-    """One object's outline and distance as a function of x: its two coordinates and the logarithms of three scales."""
-
-    camera: Camera
-    bounds_px: Float[np.ndarray, "4"]
-    hidden: Bool[np.ndarray, "4"]
-    loads: Float[np.ndarray, "m 2"]
-    observed: Float[np.ndarray, "3"]
-    depth_weight: float
-    R: Float[np.ndarray, "3 3"]
-    anchor: Float[np.ndarray, "3"]
-    """World point that stays put when the object is resized."""
-    anchor_local: Float[np.ndarray, "3"]
-    """The same at scale 1, object frame."""
-    arms: Float[np.ndarray, "v 3"]
-    """Outline points from the anchor, at scale 1."""
-    tracked: TrackedPoints
-    tracked_arms: Float[np.ndarray, "t 3"]
-    """The tracked points from the anchor, at scale 1."""
-    surface_measured: bool
-    """Whether it is the tracked points' distances that were measured, rather than the centre's that was reasoned."""
-    scale: Float[np.ndarray, "3"]
-    basis: Float[np.ndarray, "3 2"]
-    metres: float
-    """What a pixel is at the object's distance."""
-    extents: Float[np.ndarray, "3"]
-    """The object's own, metres."""
-
-    def centre(self, x: Float[np.ndarray, "5"]) -> Float[np.ndarray, "3"]:
-        """Where the object's centre is."""
-        return self.anchor + self.basis @ x[:2] - self.R @ (self.anchor_local * self.scale * np.exp(x[2:]))
-
-    def linearised(self, x: Float[np.ndarray, "5"]) -> tuple[Float[np.ndarray, "r 5"], Float[np.ndarray, " r"]] | None:
-        """Derivatives and residuals in metres: four outline bounds, tracked points, distance, and what holds
-        place, shape and size.
-
-        None when the object reaches the camera.
-        """
-        arms = self.arms * (self.scale * np.exp(x[2:]))
-        seen = self.camera.to_camera(self.anchor + self.basis @ x[:2] + arms @ self.R.T)
-        if seen[:, 2].min() < NEAREST_M:
-            return None
-        k = self.camera.intrinsics
-        flat = seen[:, :2] / seen[:, 2:] * [k.fx, k.fy] + [k.cx, k.cy]
-        extreme = np.array([*flat.argmin(axis=0), *flat.argmax(axis=0)])
-        axis = np.array([0, 1, 0, 1])
-        depth, focal = seen[extreme, 2], np.array([k.fx, k.fy])[axis]
-        outline = (flat[extreme, axis] - self.bounds_px) * self.metres
-        counts = ~self.hidden | (outline * _OUTWARD < 0.0)
-        pixel = np.zeros((4, 3))
-        pixel[np.arange(4), axis] = focal / depth
-        pixel[:, 2] = -focal * seen[extreme, axis] / depth**2
-        outline, pixel = np.where(counts, outline, 0.0), np.where(counts[:, None], pixel, 0.0)
-        to_metres = pixel @ self.camera.T_camera_world[:3, :3] * self.metres
-        J = np.column_stack([to_metres @ self.basis, (to_metres @ self.R) * arms[extreme]])
-        sight = self._sight(x)
-        if sight is None:
-            return None
-        distance = self._surface(x) if self.surface_measured else self._centre(x)
-        clamped = self._clamped()
-        held, gaps = self._held(x)
-        rows = [J, sight[0], distance[0], held, clamped]
-        return np.vstack(rows), np.concatenate([outline, sight[1], distance[1], gaps, clamped @ x])
-
-    def _placed(self, x: Float[np.ndarray, "5"]) -> tuple[Float[np.ndarray, "t 3"], Float[np.ndarray, "t 3"]]:
-        """Arms of the tracked points at their sizes, and where they are before the camera."""
-        arms = self.tracked_arms * (self.scale * np.exp(x[2:]))
-        return arms, self.camera.to_camera(self.anchor + self.basis @ x[:2] + arms @ self.R.T)
-
-    def _centre(self, x: Float[np.ndarray, "5"]) -> tuple[Float[np.ndarray, "1 5"], Float[np.ndarray, "1"]]:
-        """How far the centre leaves the distance at which it was observed."""
-        ray = self.observed - self.camera.position
-        ray = self.depth_weight * ray / np.linalg.norm(ray)
-        moved = -self.anchor_local * self.scale * np.exp(x[2:]) * (ray @ self.R)
-        along = np.array([float(ray @ (self.centre(x) - self.observed))])
-        return np.concatenate([ray @ self.basis, moved])[None], along
-
-    def _surface(self, x: Float[np.ndarray, "5"]) -> tuple[Float[np.ndarray, "t 5"], Float[np.ndarray, " t"]]:
-        """How far the surface that was seen leaves its measured distance."""
-        arms, placed = self._placed(x)
-        axis = self.depth_weight / np.sqrt(len(arms)) * self.camera.T_camera_world[2, :3]
-        rows = np.column_stack([np.tile(axis @ self.basis, (len(arms), 1)), (axis @ self.R) * arms])
-        return rows, self.depth_weight / np.sqrt(len(arms)) * (placed[:, 2] - self.tracked.depth_m)
-
-    def _sight(self, x: Float[np.ndarray, "5"]) -> tuple[Float[np.ndarray, "r 5"], Float[np.ndarray, " r"]] | None:
-        """How the tracked points leave where they were seen, in metres at their distance."""
-        arms, placed = self._placed(x)
-        if placed[:, 2].min() < NEAREST_M:
-            return None
-        k = self.camera.intrinsics
-        sight = (self.tracked.pixels - [k.cx, k.cy]) / [k.fx, k.fy]
-        # What is left of a point across its observed line of sight: linear in the point.
-        residual = placed[:, :2] - sight * placed[:, 2:]
-        pixel = np.concatenate([np.tile(np.eye(2), (len(arms), 1, 1)), -sight[..., None]], axis=2).reshape(-1, 3)
-        across = pixel @ self.camera.T_camera_world[:3, :3]
-        J = np.column_stack([across @ self.basis, (across @ self.R) * np.repeat(arms, 2, axis=0)])
-        weight = _TRACKED / np.sqrt(len(arms))
-        return weight * J, weight * residual.ravel()
-
-    def _held(self, x: Float[np.ndarray, "5"]) -> tuple[Float[np.ndarray, "m 5"], Float[np.ndarray, " m"]]:
-        """How the places of an upright object miss what was observed on them."""
-        arm = (self.loads[:, 0] - self.anchor_local[2]) * self.scale[2] * np.exp(x[4])
-        rows = np.zeros((len(arm), 5))
-        rows[:, :2] = self.basis[2]
-        rows[:, 4] = arm
-        height = self.anchor[2] + self.basis[2] @ x[:2] + arm
-        return _LOAD * rows, _LOAD * (height - self.loads[:, 1])
-
-    def _clamped(self) -> Float[np.ndarray, "6 5"]:
-        clamped = np.zeros((6, 5))
-        clamped[0, 0] = clamped[1, 1] = _KEEP_PLACE
-        clamped[2:5, 2:] = _KEEP_SHAPE * self.extents[:, None] * (np.eye(3) - 1 / 3)
-        clamped[5, 2:] = _KEEP_SIZE * self.extents.max() / 3
-        return clamped
-
-
-def _bounded_step(J: np.ndarray, residual: np.ndarray, low: np.ndarray, high: np.ndarray) -> Float[np.ndarray, "5"]:
-    """The least-squares step whose sizes stay within limits: sizes that reach one are held there, and the rest solved
-    again."""
-    step, clamped = np.zeros(5), np.zeros(5, dtype=bool)
-    for _ in range(4):
-        step[~clamped] = np.linalg.lstsq(J[:, ~clamped], -(residual + J[:, clamped] @ step[clamped]), rcond=None)[0]
-        beyond = ~clamped[2:] & ((step[2:] < low) | (step[2:] > high))
-        if not beyond.any():
-            break
-        step[2:] = np.where(beyond, np.clip(step[2:], low, high), step[2:])
-        clamped[2:] |= beyond
-    return step
 
 
 def photo_observations(
