@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import argparse
-import gc
 import logging
 import os
 import sys
@@ -18,16 +17,21 @@ from diorama_app.cli.importing import add_import
 from diorama_app.cli.library import add_library
 from diorama_app.cli.models import add_models
 from diorama_app.cli.scenes import add_build, add_export, add_optimise, add_picture, add_serve
+from diorama_app.cli.startup import load_quickly
 from diorama_app.cli.text import add_text
 from diorama_core.errors import Cancelled, DioramaError
+
+LOAD_MUCH = ("build", "optimise", "export", "picture", "text", "edit")
+"""Commands that need most libraries whatever they are told."""
 
 
 def main(argv: Sequence[str] | None = None) -> int:
     """Run one command; returns the exit status: 0 done, 1 failed with one clear line, 2 bad usage, 130 stopped."""
     # Small problems run faster on one thread than on two that wait for each other.
     os.environ.setdefault("OMP_NUM_THREADS", "1")
-    gc.set_threshold(10_000)  # most of what is made by importing stays: looking for garbage so often takes a twentieth
     arguments = _parser().parse_args(argv)
+    if arguments.command in LOAD_MUCH:
+        load_quickly()
     logging.basicConfig(level=logging.DEBUG if arguments.verbose else logging.ERROR, stream=sys.stderr)
     try:
         return int(arguments.run(arguments) or 0)
