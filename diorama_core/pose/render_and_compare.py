@@ -31,7 +31,7 @@ from diorama_core.pose.appearance_likelihood import AppearanceLikelihood, cells_
 from diorama_core.pose.facing import facing_of, wall_samples
 from diorama_core.pose.hypotheses import Anchor, Hypotheses, anchor_of, hypotheses_for, unlike_best
 from diorama_core.pose.levels import level_cost
-from diorama_core.pose.limits import SizeLimits
+from diorama_core.pose.limits import SizeLimits, sides_log_of
 from diorama_core.pose.mask_observations import Evidence
 from diorama_core.pose.measured import MeasuredObject, foot_height_m
 from diorama_core.pose.refine import BoxFit
@@ -262,7 +262,8 @@ class RenderAndCompare:
         appearance = self._compare(shape)
         name = task.item.category
         depth_known = task.measured is not None
-        limits = SizeLimits.of(shape.size_m, name, task.cuboid.size_m, measured=depth_known)
+        sides = sides_log_of(shape.symmetry, name, round=appearance.caster.round_from_above)
+        limits = SizeLimits.of(shape.size_m, name, task.cuboid.size_m, measured=depth_known, sides_log=sides)
         tried = hypotheses_for(task.cuboid, name, shape.symmetry, limits, task.anchor, sides_known=depth_known)
         if task.measured is not None:
             tried = tried.and_also(task.measured.hypotheses(shape.symmetry, limits))
