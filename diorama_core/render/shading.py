@@ -86,7 +86,7 @@ class _Band:
 
 
 def _first_sight(world: World, view: View, rows: slice) -> _Band:
-    rays = view.rays(pixel_centres(view.width, rows.stop)[rows])
+    rays = view.rays(pixel_centres(view.width, rows.stop, rows.start))
     hits = world.caster.first_hits(rays)
     found = hits.found
     footprint_m = pixel_footprint(view, np.where(found, hits.distance, 0).astype(np.float32))[found]
@@ -274,18 +274,12 @@ def _grid(parts: list[_Band], view: View) -> Grid:
     found = np.concatenate([p.found for p in parts])
     depth = np.concatenate([p.depth for p in parts])
 
-    def image(name: str, empty: float = 0.0) -> np.ndarray:
-        values = np.concatenate([getattr(p.places, name) for p in parts])
-        whole = np.full((*found.shape, *values.shape[1:]), empty, values.dtype)
-        whole[found] = values
+    def image(name: str) -> np.ndarray:
+        values = [getattr(p.places, name) for p in parts]
+        empty = -1 if name == "instance" else 0
+        whole = np.full((*found.shape, *values[0].shape[1:]), empty, values[0].dtype)
+        whole[found] = np.concatenate(values)
         return whole
 
-    return Grid(
-        found,
-        image("points"),
-        image("normals"),
-        image("flat_normals"),
-        image("instance", -1),
-        depth,
-        pixel_footprint(view, depth),
-    )
+    points, normals, flat_normals, instance = each(image, ("points", "normals", "flat_normals", "instance"))
+    return Grid(found, points, normals, flat_normals, instance, depth, pixel_footprint(view, depth))

