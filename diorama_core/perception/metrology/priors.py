@@ -1,7 +1,7 @@
 """How big a thing may be: the modes of its size, read from the taxonomy.
 
-A general word covers more than its own row ("table" is also said of coffee tables), and a thing without a name is
-most likely one of the usual kinds of furniture; each such reading is a further mode at a price.
+A general word covers more than its own row ("table" is also said of coffee tables), and a thing without a name is one
+of the kinds that it looks like, or else of the usual furniture; each such reading is a further mode at a price.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ import numpy as np
 from jaxtyping import Float
 
 from diorama_core.library.kinds import modes_of_kind, outline_of
-from diorama_core.library.taxonomy import PORTABLE, UNKNOWN, SizePrior, category
+from diorama_core.library.taxonomy import PORTABLE, UNKNOWN, Mount, SizePrior, category
 
 _ALSO = {
     "table": (("coffee table", 1.5), ("side table", 2.5)),
@@ -36,7 +36,7 @@ _UNNAMED = {
     "bed": 1.5,
     "wardrobe": 4.5,
 }
-"""What unnamed furniture may be, with the cost of the rarer kinds."""
+"""What unnamed furniture may be that nobody looked at, with the cost of the rarer kinds."""
 _UNNAMED_WIDENED = 1.3
 _UNNAMED_ANYTHING_COST = 6.0
 BROAD_SHARE = 0.3
@@ -77,14 +77,22 @@ def size_modes(name: str, meanings: tuple[tuple[str, float], ...] = ()) -> tuple
         meanings: kinds that the word may mean with their probabilities; what it is generally said of when empty.
     """
     if name == UNKNOWN.name:
-        kinds = tuple(
-            _mode(kind, cost + _breadth_cost(category(kind).priors[0]), _UNNAMED_WIDENED)
-            for kind, cost in _UNNAMED.items()
-        )
-        return (*kinds, _mode(UNKNOWN.name, _UNNAMED_ANYTHING_COST))
+        return (*(_modes_held(meanings, "floor") or _usual_furniture()), _mode(UNKNOWN.name, _UNNAMED_ANYTHING_COST))
     if meanings:
         return _own_modes(name) + _modes_of_meanings(name, meanings)
     return _own_modes(name) + tuple(_mode(kind, cost) for kind, cost in _ALSO.get(name, ()))
+
+
+def _usual_furniture() -> tuple[SizeMode, ...]:
+    return tuple(
+        _mode(kind, cost + _breadth_cost(category(kind).priors[0]), _UNNAMED_WIDENED) for kind, cost in _UNNAMED.items()
+    )
+
+
+def _modes_held(meanings: tuple[tuple[str, float], ...], mount: Mount) -> tuple[SizeMode, ...]:
+    """The likeliest modes of the likeliest kinds that a thing without a name may be and that are so mounted."""
+    kinds = [(kind, share) for kind, share in meanings if category(kind).mount == mount]
+    return tuple(_rarer(kind, share, *kinds[0]) for kind, share in kinds[: MAX_MEANINGS + 1])
 
 
 def _modes_of_meanings(name: str, meanings: tuple[tuple[str, float], ...]) -> tuple[SizeMode, ...]:
@@ -92,13 +100,14 @@ def _modes_of_meanings(name: str, meanings: tuple[tuple[str, float], ...]) -> tu
     shares = dict(meanings)
     own, held = max(shares.get(name, 0.0), MIN_SHARE), _held(name)
     others = [(kind, share) for kind, share in meanings if kind != name and share >= MIN_SHARE and _held(kind) == held]
-    usual = _log_breadth(_own_modes(name)[0])
-    found = []
-    for kind, share in others[:MAX_MEANINGS]:
-        mode = _own_modes(kind)[0]
-        rarer = 2.0 * (float(np.log(own / share)) + _log_breadth(mode) - usual)
-        found.append(replace(mode, cost=max(0.0, rarer)))
-    return tuple(found)
+    return tuple(_rarer(kind, share, name, own) for kind, share in others[:MAX_MEANINGS])
+
+
+def _rarer(kind: str, share: float, than: str, its_share: float) -> SizeMode:
+    """The likeliest mode of a kind, dearer as far as it is rarer than another."""
+    mode, usual = _own_modes(kind)[0], _own_modes(than)[0]
+    cost = 2.0 * (float(np.log(its_share / share)) + _log_breadth(mode) - _log_breadth(usual))
+    return replace(mode, cost=max(0.0, cost))
 
 
 def _log_breadth(mode: SizeMode) -> float:
@@ -125,26 +134,30 @@ def standing_costs(name: str, mode: SizeMode) -> tuple[float, float]:
 
 
 @cache
-def supported_modes(name: str) -> tuple[SizeMode, ...]:
-    """The modes of a thing that lies on another; unnamed things are small there."""
+def supported_modes(name: str, meanings: tuple[tuple[str, float], ...] = ()) -> tuple[SizeMode, ...]:
+    """The modes of a thing that lies on another; unnamed ones that nobody looked at are small there."""
     if name == UNKNOWN.name:
-        return (plain_mode(np.log([0.2, 0.24, 0.24]), np.array([0.7, 0.7, 0.7]), 0.0, name),)
+        return _modes_held(meanings, "surface") or (
+            plain_mode(np.log([0.2, 0.24, 0.24]), np.array([0.7, 0.7, 0.7]), 0.0, name),
+        )
     return size_modes(name)
 
 
 @cache
-def hung_modes(name: str) -> tuple[SizeMode, ...]:
-    """The modes of a thing on a wall; unnamed things are flat there."""
+def hung_modes(name: str, meanings: tuple[tuple[str, float], ...] = ()) -> tuple[SizeMode, ...]:
+    """The modes of a thing on a wall; unnamed ones that nobody looked at are flat there."""
     if name == UNKNOWN.name:
-        return (plain_mode(np.log([0.05, 0.8, 0.7]), np.array([0.4, 0.5, 0.5]), 0.0, name),)
+        return _modes_held(meanings, "wall") or (
+            plain_mode(np.log([0.05, 0.8, 0.7]), np.array([0.4, 0.5, 0.5]), 0.0, name),
+        )
     return size_modes(name)
 
 
 @cache
-def hanging_modes(name: str) -> tuple[SizeMode, ...]:
-    """The modes of a thing below the ceiling; unnamed things are lamps there."""
+def hanging_modes(name: str, meanings: tuple[tuple[str, float], ...] = ()) -> tuple[SizeMode, ...]:
+    """The modes of a thing below the ceiling; unnamed ones that nobody looked at are lamps there."""
     if name == UNKNOWN.name:
-        return (_mode("ceiling lamp", 0.0, _UNNAMED_WIDENED),)
+        return _modes_held(meanings, "ceiling") or (_mode("ceiling lamp", 0.0, _UNNAMED_WIDENED),)
     return size_modes(name)
 
 
