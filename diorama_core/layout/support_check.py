@@ -47,6 +47,8 @@ BEHIND = 0.9
 """An object is behind a wall that is nearer than this share of its distance."""
 UPRIGHT = 0.98
 """Surfaces whose normals have a smaller z carry nothing."""
+SHORTEST_ON_PLACE = 0.3
+"""An object that reaches down through the place on which it rests keeps at least this share of its height above it."""
 UNUSUAL_M = 0.3
 """Objects that people put on surfaces hang on a wall only where nothing is below them: this is added to their gap.
 
@@ -96,7 +98,8 @@ def checked_supports(
             )
             scene = edits.attach(_along_sight(scene, item, share), Support(item.id, parent))
             continue
-        inside = _inside_m(scene, library, item, edge) if shapes_clear else 0.0
+        sits = noise.measured and taxonomy.resolve(item.category).category.mount == "surface"
+        inside = _inside_m(scene, library, item, edge) if shapes_clear or sits else 0.0
         better = _better(scene, library, item, edge, noise, inside)
         if better is None and floor is not None and _belongs_on_floor(scene, library, item, edge, noise):
             better = Support(item.id, floor.id)
@@ -108,6 +111,8 @@ def checked_supports(
                 f"{label_of(scene, better.parent)}"
             )
             scene = edits.attach(scene, better)
+            if noise.measured and inside > 0.0:
+                scene = _ending_on_place(scene, library, item, better)
         elif hangs and _is_set_down(item):
             reasons.append(
                 f"please check: {item.label} hangs on {label_of(scene, edge.parent)}; nothing was seen below it"
@@ -115,6 +120,23 @@ def checked_supports(
         elif (walls := _touched(scene, item, edge, noise)) != edge.adheres_to:
             scene = edits.attach(scene, replace(edge, adheres_to=walls))
     return scene, tuple(reasons)
+
+
+def _ending_on_place(scene: Scene, library: ShapeLibrary, item: SceneObject, edge: Support) -> Scene:
+    """The scene with an object that reached down through a place ending there: its top was seen, its foot was not."""
+    parent = scene.object(edge.parent)
+    place = choose_surface(scene, item, edge, library.shape(parent.shape_id)).in_world(parent.pose)
+    heights = item.corners_world @ UP_WORLD
+    low, high = float(heights.min()), float(heights.max())
+    share = (high - place.level) / max(high - low, 1e-9)
+    if not SHORTEST_ON_PLACE <= share < 1.0 or float(item.pose.R_world_object[2, 2]) < UPRIGHT:
+        return scene
+    pose = Pose(
+        item.pose.R_world_object,
+        item.pose.position + 0.5 * (place.level - low) * UP_WORLD,
+        item.pose.scale * [1.0, 1.0, share],
+    )
+    return edits.place(scene, {item.id: pose})
 
 
 def _wall_in_sight(scene: Scene, item: SceneObject, edge: Support, noise: ObservationNoise) -> str | None:

@@ -23,6 +23,8 @@ from diorama_core.scene.types import box_corners
 
 SMALLEST_SHRINK = 0.8
 """An object that does not fit is made smaller by at most this factor; beyond, it stays large and is named."""
+SHORTEST_BEFORE_WALL = 0.5
+"""An object that reaches through a wall ends before it, if this share of its extent is left."""
 UPRIGHT_WITHIN = float(np.cos(np.deg2rad(35.0)))
 """Objects hung within this angle of upright hang upright; others keep their roll."""
 MAX_GROWTH = 1.7
@@ -176,7 +178,7 @@ def _before_walls(problem: Problem, walk: _Walk, i: int) -> None:
         half = 0.5 * _size(problem, walk, i)
         through = wall.offset - float(wall.normal @ walk.p[i]) + float(np.abs(wall.normal @ walk.R[i]) @ half)
         factor = 1.0 - through / (2.0 * float(half[axis]))
-        if abs(float(wall.normal @ walk.R[i][:, axis])) < PARALLEL or not SMALLEST_SHRINK <= factor < 1.0:
+        if abs(float(wall.normal @ walk.R[i][:, axis])) < PARALLEL or not SHORTEST_BEFORE_WALL <= factor < 1.0:
             continue
         walk.scale[i, axis] *= factor
         walk.p[i] = walk.p[i] + 0.5 * through * wall.normal
