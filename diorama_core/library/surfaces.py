@@ -226,7 +226,8 @@ def _breadth(outline: Float[np.ndarray, "n 2"]) -> float:
 def _joined(surfaces: list[SupportSurface]) -> list[SupportSurface]:
     """Open surfaces at about one height with only a seam between them become one: the cushions of a seat, a made bed.
 
-    What lies on them does not mind the seam, and rests on the higher one. Joined only where the common outline holds little else.
+    What lies on them does not mind the seam, and rests on the higher one. Joined only where the common outline holds
+    little else.
     """
     surfaces = list(surfaces)
     for i in range(len(surfaces)):

@@ -103,7 +103,12 @@ def reaching_ceilings(problem: Problem, observations: PhotoObservations) -> Prob
     scale, p = problem.scale.copy(), problem.p.copy()
     for i in map(int, np.flatnonzero(problem.free & observations.hidden[:, 1])):
         ceiling = problem.surface[i]
-        if problem.on_plane[i] is None or ceiling is None or ceiling.normal[2] > -UPRIGHT or problem.contact[i][2] < 0.5:
+        if (
+            problem.on_plane[i] is None
+            or ceiling is None
+            or ceiling.normal[2] > -UPRIGHT
+            or problem.contact[i][2] < 0.5
+        ):
             continue
         up = problem.R[i][:, 2]
         height = float(problem.shape_size[i, 2] * scale[i, 2])
