@@ -276,7 +276,8 @@ def _better(
         cost = min(cost, inside) if other.parent in entered else cost
         beneath = scene.support_of(other.parent)
         between = beneath is not None and beneath.parent == edge.parent and _is_thin(scene, other.parent, limit)
-        between = between and edge.relation == "placed on" and _carries(scene, other.parent)
+        between = between and edge.relation == "placed on"
+        between = between and (noise.measured or _carries(scene, other.parent))
         # Against a measured gap that is many times as large, a foot that is hidden does not count.
         reached = np.inf if noise.measured else max(limit, UNUSUAL_M * unusual)
         most = min(CLEARLY * gap, reached) if contradicted else limit * between
