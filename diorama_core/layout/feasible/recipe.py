@@ -11,7 +11,7 @@ from jaxtyping import Float
 
 from diorama_core.artefacts import LayoutReport, PhotoDisagreement
 from diorama_core.layout.feasible.heights import joint_heights
-from diorama_core.layout.feasible.hidden_extents import ending_before_neighbours, ending_on_walls
+from diorama_core.layout.feasible.hidden_extents import ending_before_neighbours, ending_on_walls, reaching_ceilings
 from diorama_core.layout.feasible.photo_observations import PhotoObservations, disagreements, photo_observations
 from diorama_core.layout.feasible.relocate import relocate
 from diorama_core.layout.feasible.resize import fitted_sizes
@@ -88,6 +88,7 @@ class FeasibleRecipe:
         wanted = problem
         if observations is not None and not self.sizes_reasoned:  # reasoned distances overlap for other reasons
             wanted = ending_on_walls(ending_before_neighbours(problem, observations), observations)
+            wanted = reaching_ceilings(wanted, observations)
             observations = self._observations(wanted, scene.camera, visible)
         if observations is not None and self.depth_measured:
             wanted, observations = joint_heights(wanted, observations)
