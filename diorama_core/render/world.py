@@ -152,6 +152,10 @@ class World:
         """The instances that triangles are of."""
         return self._instance_of_face.take(triangle)
 
+    def photographed(self, triangle: Int[np.ndarray, "n"]) -> Bool[np.ndarray, "n"]:
+        """Whether the colours of triangles already hold the light of the room."""
+        return np.asarray(self._materials.photographed.take(self._surface_of_face.take(triangle)))
+
     def rough_appearance(self, hits: Hits) -> tuple[Float32[np.ndarray, "n 3"], Float32[np.ndarray, "n 3"]]:
         """Face normals (as modelled) and mean colours of what was hit: enough for light that bounces."""
         surface = self._surface_of_face.take(hits.triangle)

@@ -203,6 +203,23 @@ def test_a_photographed_plane_is_not_lit_a_second_time() -> None:
     assert (bare < photo).all()
 
 
+def test_photographed_walls_do_not_darken_one_another() -> None:
+    """Black photographs all around: the grey floor, whose photo holds the room's light, stays as grey as it is."""
+    grey, black = np.full((8, 8, 3), 180, np.uint8), np.full((8, 8, 3), 10, np.uint8)
+    room = box_room()
+    planes = tuple(replace(p, texture=p.id) for p in room.planes)
+    textures = {p.id: grey if p.role == "floor" else black for p in planes}
+    scene = Scene(eye_camera(), Architecture(planes))
+    shown = picture(scene, LIBRARY, size=SMALL, textures=textures, effort=QUICK)
+    floor = shown.min(axis=-1) > 170
+    assert floor.mean() > 0.1
+    assert shown[floor].std() < 2.0
+    painted = tuple(p if p.role == "floor" else replace(p, texture=None, colour=(0.04,) * 3) for p in planes)
+    beside = replace(scene, architecture=Architecture(painted))
+    darker = picture(beside, LIBRARY, size=SMALL, textures=textures, effort=QUICK)
+    assert (shown[floor].astype(int) - darker[floor]).max() > 10  # what is painted and not photographed holds light off
+
+
 def test_progress_rises_to_the_end_and_changes_nothing() -> None:
     scene, events = furnished_room(LIBRARY), []
     told = picture(scene, LIBRARY, size=SMALL, effort=QUICK, progress=Progress(events.append))

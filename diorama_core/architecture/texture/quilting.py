@@ -10,7 +10,7 @@ import cv2
 import numpy as np
 from jaxtyping import Bool, Float32
 
-BLOCKS_PX = ((48, 24), (32, 60), (20, 400))
+BLOCKS_PX = ((96, 200), (48, 24), (32, 60), (20, 400))
 """Sizes of the copied squares and how many must have been seen: copies of few small ones show as a weave."""
 BROADEST = 0.1
 """Detail broader than this share of a block is not copied."""
@@ -33,6 +33,7 @@ def detail_continued(
     seen: Bool[np.ndarray, "h w"],
     strongest: float,
     seed: int = 0,
+    source: Bool[np.ndarray, "h w"] | None = None,
 ) -> Float32[np.ndarray, "h w 3"] | None:
     """Detail everywhere: as seen, else copied from where it was seen; none where too little was seen to copy from.
 
@@ -41,10 +42,14 @@ def detail_continued(
         seen: Where it is known and the surface's own.
         strongest: Detail beyond this many levels is an object and not the surface.
         seed: Of the draw among equally good places.
+        source: The part of it to copy from, unless that is too little; all of it by default.
     """
-    source = seen & ~_odd(detail, seen, strongest)
-    size = next((b for b, enough in BLOCKS_PX if min(seen.shape) > b and _places(source, b).sum() >= enough), None)
-    if size is None or source.mean() < MIN_SOURCE:
+    whole = seen & ~_odd(detail, seen, strongest)
+    source = whole if source is None else whole & source
+    size = _block_size(source)
+    if size is None:
+        source, size = whole, _block_size(whole)
+    if size is None:
         return None
     given = detail
     # What is nearly as broad as a block shows as a weave when the block is copied side by side.
@@ -63,6 +68,13 @@ def detail_continued(
         out[window] = np.where(wanted[..., None], block, _blended(out[window], block, known[window], source[window]))
         known[window] = True
     return np.asarray(np.where(seen[..., None], given, out), dtype=np.float32)
+
+
+def _block_size(source: Bool[np.ndarray, "h w"]) -> int | None:
+    """Side of the blocks to copy from a source; None where it is too little."""
+    if source.mean() < MIN_SOURCE:
+        return None
+    return next((b for b, enough in BLOCKS_PX if min(source.shape) > b and _places(source, b).sum() >= enough), None)
 
 
 def _odd(
