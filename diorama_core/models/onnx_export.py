@@ -25,6 +25,7 @@ def write_graph(
     dynamic: Mapping[str, Mapping[int, str]] | None = None,
     *,
     half_weights: bool = False,
+    data_beside: bool = False,
 ) -> Path:
     """Trace a network and write its graph.
 
@@ -36,6 +37,7 @@ def write_graph(
         outputs: names of the results.
         dynamic: axes that may have any length, by name of an input or output: number and name.
         half_weights: store weights in half precision, which halves the file; the graph still calculates in single.
+        data_beside: store weights in one file beside the graph, `NAME_data`; a graph of over 2 GB cannot hold them.
 
     Returns:
         The path.
@@ -53,10 +55,24 @@ def write_graph(
             opset_version=OPSET,
             dynamo=False,
         )
-    if half_weights:
-        onnx.save(with_half_weights(onnx.load(str(path))), str(path))
+    if half_weights or data_beside:
+        _store_again(path, half_weights, data_beside)
     onnx.checker.check_model(str(path))
     return path
+
+
+def _store_again(path: Path, half_weights: bool, data_beside: bool) -> None:
+    """Write a graph anew, its weights in half precision or in one file beside it."""
+    # The tracer itself leaves weights of large networks beside the graph, each in a file of its own.
+    weights = onnx.load(str(path), load_external_data=False).graph.initializer
+    parts = {entry.value for weight in weights for entry in weight.external_data if entry.key == "location"}
+    model = onnx.load(str(path))
+    for part in parts:
+        (path.parent / part).unlink()
+    model = with_half_weights(model) if half_weights else model
+    data = path.with_name(f"{path.name}_data")
+    data.unlink(missing_ok=True)  # it would be appended to
+    onnx.save_model(model, str(path), save_as_external_data=data_beside, location=data.name if data_beside else None)
 
 
 def with_half_weights(model: onnx.ModelProto) -> onnx.ModelProto:
