@@ -24,6 +24,7 @@ from diorama_core.geometry.observed import observe_among
 from diorama_core.geometry.shape_appearance import SHARED_APPEARANCES, ShapeAppearance
 from diorama_core.geometry.silhouette import PoseBatch, ShapeCaster
 from diorama_core.library.catalogue import default_cache_dir
+from diorama_core.library.hyponyms import is_named
 from diorama_core.library.record import ROUND, Shape, ShapeLibrary
 from diorama_core.library.taxonomy import category
 from diorama_core.pose.agree import MAX_LOSS_WITH_DEPTH, agreed_ranks
@@ -43,6 +44,8 @@ from diorama_core.scene.types import Candidate, Pose
 
 _POWERS = (1.5, 0.6)
 """How much retrieval and pose say about which shape is best: the picture's outline alone would ignore colours."""
+_POWERS_OF_UNNAMED = (3.0, 0.6)
+"""The same for a thing without a name: shapes of many kinds compete, and some unlike thing always has its outline."""
 _RETRIEVAL_WITH_DEPTH = 4.0
 """What retrieval says beside `Evidence.log_likelihood` where depth was measured: that tells shapes apart."""
 _MAX_THREADS = 4
@@ -276,7 +279,7 @@ class RenderAndCompare:
     def _pose_by_outline(self, task: _Task, tried: _Tried) -> _Posed:
         best = _worth_refining(tried.scores, task.fine.facing.cost(tried.hypotheses.poses.R), self.refined)
         poses, error, score = self._chosen(task, tried, tried.hypotheses[best])
-        of_retrieval, of_pose = _POWERS
+        of_retrieval, of_pose = _POWERS if is_named(task.item.label) else _POWERS_OF_UNNAMED
         enlarged = task.fine.enlarged_cost(poses.scale[0], tried.limits)
         return _Posed(tried.shape, _only(poses), error, of_retrieval * tried.liked + of_pose * score - enlarged)
 

@@ -12,7 +12,8 @@ from functools import cache
 import numpy as np
 from jaxtyping import Float
 
-from diorama_core.library.kinds import modes_of_kind, outline_of
+from diorama_core.library.kind_sizes import sizes_of_kind
+from diorama_core.library.kinds import outline_of
 from diorama_core.library.taxonomy import PORTABLE, UNKNOWN, Mount, SizePrior, category
 
 _ALSO = {
@@ -39,9 +40,6 @@ _UNNAMED = {
 """What unnamed furniture may be that nobody looked at, with the cost of the rarer kinds."""
 _UNNAMED_WIDENED = 1.3
 _UNNAMED_ANYTHING_COST = 6.0
-BROAD_SHARE = 0.3
-"""Of the mixture that is the taxonomy's: of things unlike all in the library."""
-MAX_MODES = 3
 MIN_SHARE, MAX_MEANINGS = 0.03, 4
 """Of what a word may mean, what counts for the size."""
 _USUAL_SPREAD = 3 * np.log(0.16)
@@ -163,16 +161,11 @@ def hanging_modes(name: str, meanings: tuple[tuple[str, float], ...] = ()) -> tu
 
 def _own_modes(name: str) -> tuple[SizeMode, ...]:
     """A mixture of the library's usual sizes of a kind and the taxonomy's broader ones, by log density."""
-    broad = category(name).priors
-    outline = outline_of(name)
-    parts = [(p.log_median_xyz, np.diag(p.log_sigma_xyz**2), BROAD_SHARE / len(broad), outline) for p in broad]
-    parts += [
-        (m.log_size, m.covariance, (1 - BROAD_SHARE) * m.share, m.outline) for m in modes_of_kind(name)[:MAX_MODES]
-    ]
-    costs = [float(np.linalg.slogdet(covariance)[1]) - 2.0 * np.log(share) for _, covariance, share, _ in parts]
+    parts = sizes_of_kind(name)
+    costs = [float(np.linalg.slogdet(p.covariance)[1]) - 2.0 * np.log(p.share) for p in parts]
     modes = [
-        SizeMode(size, np.sqrt(np.diag(covariance)), cost - min(costs), points, _whitening(covariance))
-        for (size, covariance, _, points), cost in zip(parts, costs, strict=True)
+        SizeMode(p.log_size, np.sqrt(np.diag(p.covariance)), cost - min(costs), p.outline, _whitening(p.covariance))
+        for p, cost in zip(parts, costs, strict=True)
     ]
     return tuple(sorted(modes, key=lambda m: m.cost))
 
