@@ -109,7 +109,10 @@ def _seen(
         beyond = _beyond(world, places, rays, clear, light, depth)
         share = places.alpha[clear, None]
         out[clear] = out[clear] * share + beyond * (1 - share)
-    return (out + _gloss(world, places, direction, fallen, light)).astype(np.float32)
+    gloss = _gloss(world, places, direction, fallen, light)
+    if not light.relights:
+        gloss[places.photographed] = 0  # their colours hold it already
+    return (out + gloss).astype(np.float32)
 
 
 def _relit(places: Places, fallen: Float32[np.ndarray, "n 3"], light: Lighting) -> Float32[np.ndarray, "n 3"]:

@@ -36,9 +36,9 @@ def levelled(
     """
     if not own.any():
         return colours
-    main = np.median(colours[own], axis=0).astype(np.float32)
     finer = broad_shading(colours, own, FINE_M / pixel_m)
     broad = broad_shading(colours, own, PATTERN_M / pixel_m)
+    main = np.median(colours[own], axis=0).astype(np.float32)
     fine, pattern = colours - finer, finer - broad
     light = broad_shading(colours, own, LIGHT_M / pixel_m) - main
     light = MOST_LEVELS * np.tanh(light / MOST_LEVELS)

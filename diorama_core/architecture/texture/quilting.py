@@ -10,8 +10,10 @@ import cv2
 import numpy as np
 from jaxtyping import Bool, Float32
 
-BLOCKS_PX = ((96, 200), (48, 24), (32, 60), (20, 400))
-"""Sizes of the copied squares and how many must have been seen: copies of few small ones show as a weave."""
+BLOCKS_PX = ((96, 200, 384), (48, 24, 49), (32, 60, 33), (20, 400, 21))
+"""Sizes of the copied squares, how many must have been seen, and least sides of the picture.
+
+Copies of few small squares show as a weave; large ones hold patterns of carpets and tiles."""
 BROADEST = 0.1
 """Detail broader than this share of a block is not copied."""
 MIN_SOURCE = 0.005
@@ -74,7 +76,9 @@ def _block_size(source: Bool[np.ndarray, "h w"]) -> int | None:
     """Side of the blocks to copy from a source; None where it is too little."""
     if source.mean() < MIN_SOURCE:
         return None
-    return next((b for b, enough in BLOCKS_PX if min(source.shape) > b and _places(source, b).sum() >= enough), None)
+    return next(
+        (b for b, enough, side in BLOCKS_PX if min(source.shape) >= side and _places(source, b).sum() >= enough), None
+    )
 
 
 def _odd(
@@ -134,8 +138,13 @@ class _Finder:
         rows, columns = np.flatnonzero(source.any(axis=1)), np.flatnonzero(source.any(axis=0))
         self._top, self._left = int(rows[0]), int(columns[0])
         bottom, right = max(int(rows[-1]) + 1, self._top + size), max(int(columns[-1]) + 1, self._left + size)
+        everywhere = _places(source[self._top : bottom, self._left : right], size)
+        starts = [(row, column) for row in range(SEARCH_STEP) for column in range(SEARCH_STEP)]
+        found = [everywhere[row::SEARCH_STEP, column::SEARCH_STEP] for row, column in starts]
+        most = int(np.argmax([places.sum() for places in found]))
+        self._places = found[most]
+        self._top, self._left = self._top + starts[most][0], self._left + starts[most][1]
         part = (slice(self._top, bottom), slice(self._left, right))
-        self._places = _places(source[part], size)[::SEARCH_STEP, ::SEARCH_STEP]
         grey = cv2.cvtColor(np.where(source[part][..., None], detail[part], 0.0).astype(np.float32), cv2.COLOR_RGB2GRAY)
         self._picture = grey[::SEARCH_STEP, ::SEARCH_STEP].copy()
         self._squares = self._picture**2
