@@ -45,6 +45,8 @@ _POWERS = (1.5, 0.6)
 """How much retrieval and pose say about which shape is best: the picture's outline alone would ignore colours."""
 _RETRIEVAL_WITH_DEPTH = 4.0
 """What retrieval says beside `Evidence.log_likelihood` where depth was measured: that tells shapes apart."""
+_MIN_STANDING = -1.0
+"""What holds an object may be mistaken: that a shape does not stand there says at most so much against it (logarithm)."""
 _VERY_SHAPE = 0.1
 """Disagreement with picture and depth below which a shape may be the very one."""
 _MAX_THREADS = 4
@@ -346,7 +348,7 @@ def _rank(
 ) -> float:
     """What retrieval, the picture and what holds the object say about a posed shape, where depth was measured."""
     similarity = task.fine.log_likelihood(error, poses.scale[0], tried.limits, in_library=in_library)
-    stands = float(measured.log_likelihood(poses, tried.limits)[0])
+    stands = max(float(measured.log_likelihood(poses, tried.limits)[0]), _MIN_STANDING)
     return _RETRIEVAL_WITH_DEPTH * tried.liked + similarity + stands
 
 
