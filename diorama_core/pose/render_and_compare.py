@@ -49,7 +49,7 @@ _POWERS_OF_UNNAMED = (3.0, 0.6)
 _RETRIEVAL_WITH_DEPTH = 4.0
 """What retrieval says beside `Evidence.log_likelihood` where depth was measured: that tells shapes apart."""
 _MIN_STANDING = -1.0
-"""What holds an object may be mistaken: that a shape does not stand there says at most so much against it, a logarithm."""
+"""What holds an object may be mistaken: that a shape does not stand there says at most so much against it, as a log."""
 _VERY_SHAPE = 0.1
 """Disagreement with picture and depth below which a shape may be the very one."""
 _MAX_THREADS = 4
