@@ -18,7 +18,7 @@ from typing import Any
 import torch
 from torch.nn import functional
 
-from diorama_core.models.onnx_export import write_graph
+from diorama_core.models.onnx_export import read_checkpoint, write_graph
 from diorama_core.models.openshape import NEIGHBOURS, PATCHES
 
 HEAD = 64
@@ -74,16 +74,6 @@ class PointTower(torch.nn.Module):
             inner = functional.gelu(self._linear(self._norm(x, f"{second}.norm"), f"{second}.fn.net.0"))
             x = x + self._linear(inner, f"{second}.fn.net.3")
         return self._linear(x[:, 0], "proj")
-
-
-def read_checkpoint(path: Path, trusted: bool) -> dict[str, Any]:
-    """A checkpoint, without running code that it may carry unless it is trusted."""
-    try:
-        return torch.load(path, map_location="cpu", weights_only=not trusted)
-    except Exception as error:  # unpickling raises almost anything
-        words = " ".join(str(error).split())[:120]
-        advice = "is it the right file?" if trusted else "add --trust if you know where it comes from (it may run code)"
-        sys.exit(f"{path}: cannot be read ({words}); {advice}")
 
 
 def point_tower(saved: Mapping[str, Any]) -> PointTower:

@@ -1,10 +1,11 @@
-"""Networks of PyTorch as ONNX graphs: with one set of operators, in evaluation mode, checked."""
+"""Networks of PyTorch as ONNX graphs: with one set of operators, in evaluation mode, checked; and checkpoints read."""
 
 from __future__ import annotations
 
 import warnings
 from collections.abc import Mapping, Sequence
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import onnx
@@ -14,6 +15,20 @@ from torch import nn
 OPSET = 17
 _LARGE = 64
 """Numbers in a weight that is worth storing in half precision."""
+
+
+def read_checkpoint(path: Path, trusted: bool) -> dict[str, Any]:
+    """A checkpoint of a user's own, without running code that it may carry unless it is trusted.
+
+    Raises:
+        SystemExit: it cannot be read; one line that says why.
+    """
+    try:
+        return torch.load(path, map_location="cpu", weights_only=not trusted)
+    except Exception as error:  # unpickling raises almost anything
+        words = " ".join(str(error).split())[:120]
+        advice = "is it the right file?" if trusted else "add --trust if you know where it comes from (it may run code)"
+        raise SystemExit(f"{path}: cannot be read ({words}); {advice}") from error
 
 
 def write_graph(
