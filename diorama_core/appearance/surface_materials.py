@@ -46,6 +46,8 @@ BESIDE = 1.3
 COLOURED, CROSSED = 25.0, 4.0
 """Another material than its neighbour's of one vivid colour (chroma) with a neighbour of so many times its pixels is
 not read: a metal arm that crosses a red back in the picture is not red."""
+CLEARLY = 2.0
+"""A thing's lit side has a colour that covers so many times more of the thing than of the background."""
 AS_GOOD = 0.8
 """A colour is as good as the best when it is nearly as much the slot's own."""
 BIN_LAB = np.array([40.0, 20.0, 20.0])
@@ -146,13 +148,30 @@ def _own_colours(
             share, pixels = _share(lab, mine, seed), float(_alike(lab, seed)[mine].sum())
             alike = [where for where, main in others if _is_near(main - seed)]
             elsewhere = [_share(lab, w, seed) for w in alike if float(_alike(lab, seed)[w].sum()) >= pixels]
-            elsewhere += [_share(lab, beside, seed) / BESIDE] if beside.sum() >= MIN_PIXELS else []
+            elsewhere.append(_covers(lab, beside, seed) / BESIDE)
             own.append(share / max([share, *elsewhere, 1e-9]))
         chosen = int(np.argmax(own))
-        as_good = [k for k, score in enumerate(own) if score >= AS_GOOD * own[chosen]]
-        others_of_it = [options[index][k] for k in as_good if _share(lab, mine, options[index][k]) >= MIN_OUTLINED]
-        seeds[index] = unveiled(options[index][chosen], others_of_it)
+        main = options[index][chosen]
+        as_good = [seed for seed, score in zip(options[index], own, strict=True) if score >= AS_GOOD * own[chosen]]
+        much = [seed for seed in as_good if _share(lab, mine, seed) >= MIN_OUTLINED]
+        seeds[index] = unveiled(main, [s for s in much if s[0] <= main[0] or _is_not_behind(lab, mine, beside, s)])
     return seeds
+
+
+def _is_not_behind(
+    lab: Float32[np.ndarray, "gh gw 3"],
+    mine: Bool[np.ndarray, "gh gw"],
+    beside: Bool[np.ndarray, "gh gw"],
+    seed: np.ndarray,
+) -> bool:
+    """Whether a light colour is a thing's lit side, and not the background seen beside a dark thing."""
+    exactly = np.linalg.norm(lab - seed, axis=-1) < NEAR_LAB / 2
+    return bool(beside.sum() < MIN_PIXELS or exactly[mine].mean() > CLEARLY * exactly[beside].mean())
+
+
+def _covers(lab: Float32[np.ndarray, "gh gw 3"], where: Bool[np.ndarray, "gh gw"], seed: np.ndarray) -> float:
+    """Share of a region that has about a colour; 0 of one too small to tell."""
+    return _share(lab, where, seed) if where.sum() >= MIN_PIXELS else 0.0
 
 
 def _colours_of(lab: Float32[np.ndarray, "gh gw 3"], mine: Bool[np.ndarray, "gh gw"]) -> list[Float32[np.ndarray, "3"]]:
