@@ -48,8 +48,18 @@ def may_meet(problem: Problem, bodies: Bodies, surface: Sequence[Surface | None]
 
 
 def _rises(bodies: Bodies, parts: np.ndarray, place: Surface) -> Bool[np.ndarray, " k"]:
-    """Which parts rise above a place (world)."""
-    return np.asarray((bodies.vertices[parts] @ place.normal).max(axis=1) - place.level > ABOVE_M)
+    """Which parts rise above a place (world) beside its middle.
+
+    One that has the middle of the place inside it encloses nothing: it is the hull of a worktop and of what rises
+    behind it, and nothing could stand there.
+    """
+    vertices, normals = bodies.vertices[parts], bodies.normals[parts]
+    middle = place.polygon.mean(axis=0)
+    middle = middle + (place.level + ABOVE_M - float(middle @ place.normal)) * place.normal
+    along = np.einsum("pvc,pfc->pvf", vertices, normals)
+    here = normals @ middle
+    around = ((along.min(axis=1) <= here) & (here <= along.max(axis=1))).all(axis=1)
+    return np.asarray(((vertices @ place.normal).max(axis=1) - place.level > ABOVE_M) & ~around)
 
 
 def _stands_beside(bodies: Bodies, parts: np.ndarray, place: Surface) -> Bool[np.ndarray, " k"]:
