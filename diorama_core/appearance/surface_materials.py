@@ -35,6 +35,8 @@ ROUGHNESS: Mapping[str, tuple[float, float]] = {
 """Roughness and metalness by role; what is seen too dark to mirror that much is rougher."""
 MIN_PIXELS, MIN_SHARE = 40, 0.2
 """A slot is read from at least so many pixels, of which such a share is of about one colour."""
+MIN_OF_WHOLE = 16
+"""Pixels from which the main slot is read of a thing whose slots are too small to be told apart."""
 MIN_OUTLINED = 0.35
 """Of the pixels where the posed shape is a mask must hold this share. Where it holds less of one slot, it has lost that
 part of the object (white bedding on a dark bed), and the slot is read where the shape shows it; where it holds less of
@@ -125,6 +127,22 @@ def slot_pixels(
         if near[index].sum() >= MIN_SHARE * mine.sum() and not crossed:
             found.append(SlotPixels(slots[index], index, near[index], mine))
     return tuple(found)
+
+
+def whole_pixels(
+    view: SurfaceView, slots: tuple[Slot, ...], visible: Bool[np.ndarray, "h w"]
+) -> tuple[SlotPixels, ...]:
+    """All that is seen of a small thing as its main slot, of one colour; none where that is hardly anything.
+
+    Args:
+        view: The shape in its pose.
+        slots: Its slots.
+        visible: The object's inner pixels, without what stands before it.
+    """
+    seen = view.of(visible) & (view.slot >= 0)
+    if np.count_nonzero(seen) * view.step**2 < MIN_OF_WHOLE:
+        return ()
+    return tuple(SlotPixels(s, k, seen, np.zeros_like(seen)) for k, s in enumerate(slots) if s.main)
 
 
 def _own_colours(

@@ -7,7 +7,7 @@ from jaxtyping import Float, Float32
 
 DIELECTRIC = 0.04
 """Share that everything but metal mirrors when seen head-on."""
-LEAST_LEFT = 0.2
+MIN_LEFT = 0.2
 """A colour without its gloss is at least this share of it: light and gloss are known roughly only."""
 
 
@@ -40,7 +40,7 @@ def roughness_seen(seen: Float[np.ndarray, "*n 3"], metallic: float, usual: floa
         metallic: 0 to 1, at most half.
         usual: Of its kind of material, 0 to 1.
     """
-    most = (1.0 - LEAST_LEFT) * float(np.median(seen.min(axis=1))) / (DIELECTRIC * (1 - metallic))
+    most = (1.0 - MIN_LEFT) * float(np.median(seen.min(axis=1))) / (DIELECTRIC * (1 - metallic))
     return 1.0 - min(1.0 - usual, most)
 
 
@@ -58,4 +58,4 @@ def without_gloss(
     smooth, grazing = 1.0 - roughness, (1 - cosine) ** 5
     added = smooth * (DIELECTRIC * (1 - metallic) * (1 - grazing) + smooth * grazing)
     factor = (1 - metallic) + smooth * metallic * (1 - grazing)
-    return np.asarray(np.maximum(seen - added, LEAST_LEFT * seen) / factor)
+    return np.asarray(np.maximum(seen - added, MIN_LEFT * seen) / factor)

@@ -4,7 +4,14 @@ from dataclasses import replace
 
 import numpy as np
 
-from diorama_core.appearance.surface_materials import ROUGHNESS, appearance_of, shade_of, slot_pixels
+from diorama_core.appearance.surface_materials import (
+    MIN_OF_WHOLE,
+    ROUGHNESS,
+    appearance_of,
+    shade_of,
+    slot_pixels,
+    whole_pixels,
+)
 from diorama_core.appearance.surface_view import surface_view
 from diorama_core.io.srgb import linear_to_srgb
 from diorama_core.library.slots import slots_of
@@ -53,6 +60,21 @@ def test_slots_that_are_hardly_seen_are_not_read() -> None:
     few = np.zeros_like(mask)
     few[70:74, 98:102] = True
     assert slot_pixels(view, slots, rgb, few, few, NOTHING) == ()
+
+
+def test_a_thing_whose_slots_are_hardly_seen_is_read_as_one_colour() -> None:
+    view, slots, rgb, mask, light = seen()
+    rows, columns = np.nonzero(view.slot == next(k for k, s in enumerate(slots) if s.main))
+    few = np.zeros_like(mask)
+    few[rows[: MIN_OF_WHOLE * 2], columns[: MIN_OF_WHOLE * 2]] = True
+    (whole,) = whole_pixels(view, slots, few)
+    assert whole.slot.main
+    found = appearance_of(view, whole, rgb, light)
+    assert found.texture is None
+    np.testing.assert_allclose(found.colour, linear_to_srgb(np.array(ALBEDO[whole.slot.role])), atol=0.03)
+    fewer = np.zeros_like(mask)
+    fewer[rows[:5], columns[:5]] = True
+    assert whole_pixels(view, slots, fewer) == ()
 
 
 def test_a_slot_that_the_mask_lost_is_read_where_the_shape_shows_it() -> None:

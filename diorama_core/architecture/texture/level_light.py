@@ -21,7 +21,7 @@ AROUND_M = 0.3
 """Both are compared over about this length."""
 LIGHT_M, MOST_LEVELS = 0.8, 10.0
 """Of the light, what varies more broadly than this is left, up to so many levels of 255: a room has a brighter side."""
-_LEAST_LEVELS = 0.5
+_MIN_LEVELS = 0.5
 
 
 def levelled(
@@ -58,5 +58,5 @@ def _share_of_material(
     energy = (
         cv2.GaussianBlur(np.asarray(around * own[..., None], dtype=np.float32), (0, 0), width_px) / weight[..., None]
     )
-    expected = WITH_EDGES**2 * energy[..., 1] + _LEAST_LEVELS**2
-    return np.asarray(np.minimum((energy[..., 0] + _LEAST_LEVELS**2) / expected, 1.0), dtype=np.float32)
+    expected = WITH_EDGES**2 * energy[..., 1] + _MIN_LEVELS**2
+    return np.asarray(np.minimum((energy[..., 0] + _MIN_LEVELS**2) / expected, 1.0), dtype=np.float32)

@@ -35,7 +35,7 @@ _MAX_AXES = 64
 """So many axes of a pair of parts are looked at for a way out; fewer axes never part what overlaps."""
 _SIDES = 8
 """In so many directions the axes that part them soonest are looked at besides."""
-_LEAST_SLOPE = 1e-6
+_MIN_SLOPE = 1e-6
 _WORTH = 0.01
 """Relaxing goes on as long as it saves this share of the move."""
 
@@ -306,7 +306,7 @@ def _soonest(
     """For every pair and direction, the axis by which the pair is apart after the shortest way."""
     slope = normals @ directions.T
     with np.errstate(divide="ignore", invalid="ignore"):
-        way = np.where(slope > _LEAST_SLOPE, (APART_M - apart)[..., None] / slope, np.inf)
+        way = np.where(slope > _MIN_SLOPE, (APART_M - apart)[..., None] / slope, np.inf)
     return np.asarray(way.argmin(axis=1))
 
 
