@@ -12,7 +12,7 @@ from diorama_core.perception.metrology.box_observations import BoxObservations, 
 from diorama_core.perception.metrology.floor import HeightScan, scan_heights
 from diorama_core.perception.metrology.placement import CEILING, FLOOR, WALL, Placement, place_all
 from diorama_core.perception.metrology.problem import View
-from diorama_core.perception.metrology.reading import confidence_of, heading_and_size
+from diorama_core.perception.metrology.reading import confidence_of, foot_seen, heading_and_size
 from diorama_core.perception.metrology.supported_votes import with_votes_of_supported
 from diorama_core.progress import Progress
 from diorama_core.provenance import ScaleSource
@@ -87,6 +87,7 @@ def _cuboid(item: DetectedObject, placement: Placement, observations: BoxObserva
         centre=placement.cuboid.centre[0],
         size_m=size,
         confidence=confidence_of(placement, observations, scan.log_sigma),
+        foot_seen=foot_seen(placement, observations),
     )
 
 
