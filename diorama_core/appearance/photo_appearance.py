@@ -15,9 +15,17 @@ from jaxtyping import Bool, Float32, UInt8
 from diorama_core.appearance.flat_faces import Face, faces_of
 from diorama_core.appearance.irradiance import irradiance_map
 from diorama_core.appearance.light import SHINING, estimated_light
+from diorama_core.appearance.matched_brightness import brightened, brightness_gains
 from diorama_core.appearance.room_cues import toward_window, wall_shade
 from diorama_core.appearance.sets import SETS, shared_materials
-from diorama_core.appearance.surface_materials import ROUGHNESS, SlotPixels, appearance_of, shade_of, slot_pixels
+from diorama_core.appearance.surface_materials import (
+    ROUGHNESS,
+    SlotPixels,
+    appearance_of,
+    shade_of,
+    slot_pixels,
+    whole_pixels,
+)
 from diorama_core.appearance.surface_view import SurfaceView, surface_view
 from diorama_core.artefacts import DetectedObject
 from diorama_core.library.furniture.measures import MARK
@@ -31,6 +39,10 @@ from diorama_core.scene.types import Camera, PhotoMaterial, RoomLight, Scene, Sc
 
 MASK_MARGIN = 0.004
 """Widening of what stands before an object, as a share of the photo's longer side."""
+EDGES_PX = (5, 3)
+"""Sides of the squares by which masks are narrowed: their edges show something of what is beside."""
+MIN_INNER = 0.3
+"""Of a mask that must be left of it."""
 
 Picture = UInt8[np.ndarray, "_ _ 3"]
 
@@ -109,7 +121,32 @@ def photo_appearance(
     )
     used = {m.texture for of_one in materials.values() for m in of_one}
     pictures = {name: picture for name, picture in pictures.items() if name in used}
-    return PhotoAppearance({key: value for key, value in materials.items() if value}, pictures, light)
+    read = PhotoAppearance({key: value for key, value in materials.items() if value}, pictures, light)
+    return _as_bright(read, rgb, objects, scene, library)
+
+
+def _as_bright(
+    read: PhotoAppearance,
+    rgb: UInt8[np.ndarray, "h w 3"],
+    objects: tuple[DetectedObject, ...],
+    scene: Scene,
+    library: ShapeLibrary,
+) -> PhotoAppearance:
+    """The materials as bright as the photo shows them in the scene's light."""
+    visible = {o.id: _inner(o) & ~hiding(o, objects) for o in objects if o.id in read.materials}
+    gains = brightness_gains(rgb, visible, read.applied(scene), read.pictures, library)
+    materials, pictures = brightened(read.materials, read.pictures, gains, _sets(scene))
+    return replace(read, materials=materials, pictures=pictures)
+
+
+def _inner(found: DetectedObject) -> Bool[np.ndarray, "h w"]:
+    """The object's pixels without the outermost ones; of thin and small things fewer are left out."""
+    mask, inner = found.mask.astype(np.uint8), found.mask
+    for side in EDGES_PX:
+        inner = np.asarray(cv2.erode(mask, np.ones((side, side), np.uint8)).astype(bool))
+        if np.count_nonzero(inner) >= MIN_INNER * np.count_nonzero(mask):
+            break
+    return inner
 
 
 def _sets(scene: Scene) -> list[list[str]]:
@@ -135,7 +172,7 @@ def _seen(
 ) -> _Seen:
     hidden = hiding(found, objects)
     faces = faces_of(item, parts, rgb, hidden, found, camera)
-    visible = cv2.erode(found.mask.astype(np.uint8), np.ones((5, 5), np.uint8)).astype(bool) & ~hidden
+    visible = _inner(found) & ~hidden
     slots = slots_of(parts)
     unhidden = visible if found.mask_confidence >= 1.0 else _in_box(found) & ~hidden
     view = surface_view(parts, slots, item.pose, camera, visible | unhidden)
@@ -144,6 +181,8 @@ def _seen(
     pixels = () if view is None else slot_pixels(view, slots, rgb, visible, unhidden, behind)
     read = (p for p in pixels if p.slot.name not in taken)
     own = tuple(p for p in read if view is not None and not _shines(item, p, view, rgb))
+    if view is not None and not pixels and not faces and item.category not in LAMPS:
+        own = whole_pixels(view, slots, visible)
     weaves = {p.slot.name: _weave(parts, p.slot) for p in own}
     return _Seen(item, faces, view, own, {name: weave for name, weave in weaves.items() if weave is not None})
 
@@ -176,14 +215,14 @@ def _surfaces(
         return made
     for pixels in seen.pixels:
         found = appearance_of(seen.view, pixels, rgb, light, seen.weaves.get(pixels.slot.name))
-        roughness, metallic = ROUGHNESS[found.slot.role]
+        _, metallic = ROUGHNESS[found.slot.role]
         name = None if found.texture is None else texture_name(seen.item.id, found.slot.name, found.texture)
         material = PhotoMaterial(
             slot=found.slot.name,
             colour=found.colour,
             texture=name,
             tile_m=found.tile_m,
-            roughness=roughness,
+            roughness=found.roughness,
             metallic=metallic,
             main=found.slot.main,
         )

@@ -46,7 +46,7 @@ class ExportOptions:
     max_texture_px: int | None = None
     """Longest side of a picture; larger ones are reduced."""
     max_photo_textures_px: int = MAX_PHOTO_TEXTURES_PX
-    """Side of a square that all pictures from the photo on objects would fill together; more are reduced alike."""
+    """Side of a square that would hold all pictures from the photo, of planes and objects; more are reduced alike."""
     compression: Compression = "none"
     """Of geometry, where the format has one (GLB)."""
     bodies: Bodies = "free"

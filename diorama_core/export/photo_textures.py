@@ -1,4 +1,8 @@
-"""The size of a file's pictures: those that objects have from the photo are bounded together."""
+"""The size of a file's pictures: those that the scene has from the photo are bounded together.
+
+They stay pictures of their own rather than parts of one atlas: floors, walls and most materials repeat their picture,
+which a part of an atlas cannot, and the few that do not (paintings, screens, rugs) are a small share of the texels.
+"""
 
 from __future__ import annotations
 
@@ -15,22 +19,27 @@ Pictures = Mapping[str, UInt8[np.ndarray, "_ _ _"]]
 
 
 def bounded_pictures(scene: Scene, pictures: Pictures, side_px: int) -> Pictures:
-    """The pictures, those of the objects' materials reduced by one factor so that they fit a square of that side.
+    """The pictures, those that the scene shows reduced so that one square of that side would hold all of them.
+
+    No side of one is longer than the square's, and all are reduced by one factor where they have more texels together.
 
     Args:
-        scene: Whose objects name them.
-        pictures: By name; those of planes stay as they are.
-        side_px: Side of the square that would hold the same number of texels.
+        scene: Whose planes and objects name them.
+        pictures: By name.
+        side_px: Of the square.
     """
-    names = {m.texture for o in scene.objects for m in o.shown_photo_materials if m.texture in pictures}
-    texels = sum(pictures[n].shape[0] * pictures[n].shape[1] for n in names if n is not None)
-    if texels <= side_px**2:
-        return pictures
-    factor = side_px / float(np.sqrt(texels))
-    return {name: _scaled(p, factor) if name in names else p for name, p in pictures.items()}
+    names = {p.texture for p in scene.architecture.planes}
+    names |= {m.texture for o in scene.objects for m in o.shown_photo_materials}
+    shown = {name: _scaled(p, side_px / max(p.shape[:2])) for name, p in pictures.items() if name in names}
+    texels = sum(p.shape[0] * p.shape[1] for p in shown.values())
+    factor = side_px / max(float(np.sqrt(texels)), 1.0)
+    return {**pictures, **{name: _scaled(p, factor) for name, p in shown.items()}}
 
 
 def _scaled(picture: UInt8[np.ndarray, "h w c"], factor: float) -> UInt8[np.ndarray, "h2 w2 c"]:
+    """The picture made smaller; as it is where the factor would make it larger."""
+    if factor >= 1.0:
+        return picture
     import cv2  # the editor opens without it
 
     width, height = (max(1, int(n * factor)) for n in (picture.shape[1], picture.shape[0]))

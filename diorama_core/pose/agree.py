@@ -13,6 +13,8 @@ _TIE = 0.15
 """Two shapes whose log ranks differ by less are as good for one thing of a set: then it takes what the set likes."""
 MAX_LOSS_WITH_DEPTH = 1.0
 """Maximum cost of agreement where depth was measured, since depth shows when objects differ."""
+MAX_LOSS_OF_SURE_OUTLINES = 1.0
+"""And of things that come in no sets where their masks are sure: these show it, too."""
 SETS = with_kin("chair", "office chair", "stool", "armchair", "night stand", "ottoman") | LAMPS
 """What comes in sets; books and pictures of one room are different ones."""
 

@@ -24,6 +24,8 @@ _STRENGTH_WITH_DEPTH = 2.0
 """Weight of measured depth, relative to an outline alone, against the pose priors."""
 _OF_SURE_MASK = 0.8
 """How much more the outline of a sure mask counts against the pose priors than that of a doubtful one."""
+_OF_SURE_OUTLINE = 0.4
+"""And how much more it counts when shapes are compared: which one it is, is seen in the outline."""
 _NOISE_FLOOR = 0.03
 """Error below which two poses count as equal: the resolution of the silhouettes."""
 _FACING_STRENGTH = 0.7
@@ -33,6 +35,8 @@ _ENLARGED_SIGMA_REASONED = 0.5
 """The same where sizes follow from a photo alone, and are those of the kind as much as of the thing."""
 _LIKELIHOOD_SIGMA = 0.15
 _LIKELIHOOD_FLOOR = 0.02
+_STRENGTH_OF_LIKE_SHAPES = 1.5
+"""As `_STRENGTH_WITH_DEPTH`, of shapes none of which is the very one."""
 _MISFIT_SIGMA = 0.2
 _OFF_AXIS_SIGMA_RAD = float(np.deg2rad(35.0))
 
@@ -103,22 +107,39 @@ class Evidence:
     def enlarged_cost(self, scale: Float[np.ndarray, "3"], limits: SizeLimits) -> float:
         """What speaks against a shape that had to become much larger or smaller than it was made, from a photo alone.
 
-        A folded blanket that is twice as large in every direction is another thing.
+        A folded blanket that is twice as large in every direction is another thing. A sure outline tells that better.
         """
         logs = np.log(scale[~limits.thin]) if not limits.thin.all() else np.log(scale)
-        return 0.5 * (float(logs.mean()) / _ENLARGED_SIGMA_REASONED) ** 2
+        return 0.5 * (1.0 - self.seen.mask_trust**4) * (float(logs.mean()) / _ENLARGED_SIGMA_REASONED) ** 2
 
-    def log_likelihood(self, error: float, scale: Float[np.ndarray, "3"], limits: SizeLimits) -> float:
+    def sure_outline_cost(self, error: float) -> float:
+        """What a sure mask says of a shape's disagreement beyond its score, from a photo alone."""
+        return _OF_SURE_OUTLINE * self.seen.mask_trust**4 * float(np.log(error + _NOISE_FLOOR))
+
+    def log_likelihood(
+        self, error: float, scale: Float[np.ndarray, "3"], limits: SizeLimits, *, in_library: bool = True
+    ) -> float:
         """How well one shape at its best pose explains the object, to compare shapes where depth was measured.
 
         Shapes are made in metres: the very one fits without being enlarged or stretched much. Where the library has
         none of that size, how much exactly one that is like it was changed says little: the tails are those of a Cauchy
         distribution.
+
+        Args:
+            error: Its disagreement with the picture.
+            scale: Of the pose.
+            limits: Of the shape.
+            in_library: Whether some shape fits so well that it may be the very one. Where none is, like ones come in
+                any size, and how well they fit says less.
         """
         logs = np.log(scale[~limits.thin]) if not limits.thin.all() else np.log(scale)
-        deviations = np.array([float(logs.mean()) / _ENLARGED_SIGMA, float(logs.std()) / _LIKELIHOOD_SIGMA])
-        cost = 0.5 * float(np.log1p(deviations**2).sum())
-        return -_STRENGTH_WITH_DEPTH * float(np.log(error + _LIKELIHOOD_FLOOR)) - cost
+        enlarged, stretched = float(logs.mean()) / _ENLARGED_SIGMA, float(logs.std()) / _LIKELIHOOD_SIGMA
+        cost = 0.5 * float(np.log1p(stretched**2))
+        if not in_library:
+            return -_STRENGTH_OF_LIKE_SHAPES * float(np.log(error + _LIKELIHOOD_FLOOR)) - cost
+        return (
+            -_STRENGTH_WITH_DEPTH * float(np.log(error + _LIKELIHOOD_FLOOR)) - cost - 0.5 * float(np.log1p(enlarged**2))
+        )
 
     def confidence(self, error: float, cuboid_confidence: float) -> float:
         """0 to 1: lower for cut, hidden, tiny or badly masked objects and for poses that fit badly."""

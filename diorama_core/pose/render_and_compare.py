@@ -24,14 +24,15 @@ from diorama_core.geometry.observed import observe_among
 from diorama_core.geometry.shape_appearance import SHARED_APPEARANCES, ShapeAppearance
 from diorama_core.geometry.silhouette import PoseBatch, ShapeCaster
 from diorama_core.library.catalogue import default_cache_dir
+from diorama_core.library.hyponyms import is_named
 from diorama_core.library.record import ROUND, Shape, ShapeLibrary
 from diorama_core.library.taxonomy import category
-from diorama_core.pose.agree import MAX_LOSS_WITH_DEPTH, agreed_ranks
+from diorama_core.pose.agree import MAX_LOSS_OF_SURE_OUTLINES, MAX_LOSS_WITH_DEPTH, SETS, agreed_ranks
 from diorama_core.pose.appearance_likelihood import AppearanceLikelihood, cells_for
 from diorama_core.pose.facing import facing_of, wall_samples
 from diorama_core.pose.hypotheses import Anchor, Hypotheses, anchor_of, hypotheses_for, unlike_best
 from diorama_core.pose.levels import level_cost
-from diorama_core.pose.limits import SizeLimits
+from diorama_core.pose.limits import SizeLimits, sides_log_of
 from diorama_core.pose.mask_observations import Evidence
 from diorama_core.pose.measured import MeasuredObject, foot_height_m
 from diorama_core.pose.refine import BoxFit
@@ -43,8 +44,14 @@ from diorama_core.scene.types import Candidate, Pose
 
 _POWERS = (1.5, 0.6)
 """How much retrieval and pose say about which shape is best: the picture's outline alone would ignore colours."""
+_POWERS_OF_UNNAMED = (3.0, 0.6)
+"""The same for a thing without a name: shapes of many kinds compete, and some unlike thing always has its outline."""
 _RETRIEVAL_WITH_DEPTH = 4.0
 """What retrieval says beside `Evidence.log_likelihood` where depth was measured: that tells shapes apart."""
+_MIN_STANDING = -1.0
+"""What holds an object may be mistaken: that a shape does not stand there says at most so much against it, as a log."""
+_VERY_SHAPE = 0.1
+"""Disagreement with picture and depth below which a shape may be the very one."""
 _MAX_THREADS = 4
 """Objects posed side by side: casting and array work let go of the interpreter, the rest of it does not."""
 _FACES_BETTER = 0.3
@@ -68,6 +75,13 @@ class _Task:
     """Where depth was measured."""
     close: AppearanceLikelihood | None
     """Where depth was measured."""
+
+    @property
+    def max_loss(self) -> float:
+        """What agreeing on a shape may cost: it averages doubtful outlines; sure ones and depth show who differs."""
+        if self.measured is not None:
+            return MAX_LOSS_WITH_DEPTH
+        return np.inf if self.item.mask_confidence < 1.0 or self.item.category in SETS else MAX_LOSS_OF_SURE_OUTLINES
 
 
 @dataclass(frozen=True, eq=False)
@@ -151,7 +165,7 @@ class RenderAndCompare:
             [task.item.category for task in tasks],
             [{posed.shape.id: posed.rank for posed in of_one} for of_one in found],
             [task.fine.confidence(0.0, 1.0) for task in tasks],
-            [np.inf if task.measured is None else MAX_LOSS_WITH_DEPTH for task in tasks],
+            [task.max_loss for task in tasks],
         )
         ordered = [_ordered(of_one, order) for of_one, order in zip(found, ranks, strict=True)]
         firsts = self._evened(tasks, [of_one[0] for of_one in ordered])
@@ -242,12 +256,15 @@ class RenderAndCompare:
             return tuple(self._with_levels(task, self._pose_by_outline(task, one)) for one in tried)
         order = sorted(range(len(tried)), key=lambda k: -float(tried[k].scores.max()))
         promising = set(order[: self.promising])
-        posed = [
-            self._with_levels(task, self._pose_by_depth(task, task.measured, one, k in promising))
-            for k, one in enumerate(tried)
+        posed = [self._pose_by_depth(task, task.measured, one, k in promising) for k, one in enumerate(tried)]
+        there = min(one.error for one in posed) < _VERY_SHAPE
+        ranks = [
+            _rank(task, task.measured, one, _batch(p.pose), p.error, in_library=there)
+            for p, one in zip(posed, tried, strict=True)
         ]
+        posed = [self._with_levels(task, replace(p, rank=rank)) for p, rank in zip(posed, ranks, strict=True)]
         first = max(range(len(posed)), key=lambda k: posed[k].rank)
-        turned = self._turned_all_around(task, task.measured, tried[first], posed[first])
+        turned = self._turned_all_around(task, task.measured, tried[first], posed[first], there)
         posed[first] = turned if turned is posed[first] else self._with_levels(task, turned)
         return tuple(posed)
 
@@ -262,7 +279,8 @@ class RenderAndCompare:
         appearance = self._compare(shape)
         name = task.item.category
         depth_known = task.measured is not None
-        limits = SizeLimits.of(shape.size_m, name, task.cuboid.size_m, measured=depth_known)
+        sides = sides_log_of(shape.symmetry, name, round=appearance.caster.round_from_above)
+        limits = SizeLimits.of(shape.size_m, name, task.cuboid.size_m, measured=depth_known, sides_log=sides)
         tried = hypotheses_for(task.cuboid, name, shape.symmetry, limits, task.anchor, sides_known=depth_known)
         if task.measured is not None:
             tried = tried.and_also(task.measured.hypotheses(shape.symmetry, limits))
@@ -275,12 +293,12 @@ class RenderAndCompare:
     def _pose_by_outline(self, task: _Task, tried: _Tried) -> _Posed:
         best = _worth_refining(tried.scores, task.fine.facing.cost(tried.hypotheses.poses.R), self.refined)
         poses, error, score = self._chosen(task, tried, tried.hypotheses[best])
-        of_retrieval, of_pose = _POWERS
-        enlarged = task.fine.enlarged_cost(poses.scale[0], tried.limits)
-        return _Posed(tried.shape, _only(poses), error, of_retrieval * tried.liked + of_pose * score - enlarged)
+        of_retrieval, of_pose = _POWERS if is_named(task.item.label) else _POWERS_OF_UNNAMED
+        cost = task.fine.enlarged_cost(poses.scale[0], tried.limits) + task.fine.sure_outline_cost(error)
+        return _Posed(tried.shape, _only(poses), error, of_retrieval * tried.liked + of_pose * score - cost)
 
     def _pose_by_depth(self, task: _Task, measured: MeasuredObject, tried: _Tried, promising: bool) -> _Posed:
-        """Unlike hypotheses are refined; the best one is also tried turned by quarters in its place."""
+        """Unlike hypotheses are refined; the best one is also tried turned by quarters in its place. Not ranked yet."""
         fold, size_m = tried.shape.symmetry, tried.limits.shape_size_m
         count = self.refined_with_depth if promising else self.refined
         best = unlike_best(tried.hypotheses.poses, tried.scores, fold, size_m, count)
@@ -290,9 +308,11 @@ class RenderAndCompare:
             nothing = np.zeros(len(turned))
             other = self._chosen(task, tried, Hypotheses(turned, nothing, nothing))
             poses, error, score = max((poses, error, score), other, key=lambda found: found[2])
-        return _Posed(tried.shape, _only(poses), error, _rank(task, measured, tried, poses, error))
+        return _Posed(tried.shape, _only(poses), error, 0.0)
 
-    def _turned_all_around(self, task: _Task, measured: MeasuredObject, tried: _Tried, posed: _Posed) -> _Posed:
+    def _turned_all_around(
+        self, task: _Task, measured: MeasuredObject, tried: _Tried, posed: _Posed, in_library: bool
+    ) -> _Posed:
         """The pose with its turn compared closely."""
         if tried.shape.symmetry == ROUND or task.close is None:
             return posed
@@ -300,7 +320,8 @@ class RenderAndCompare:
         search = TurnSearch.of(task.close, task.fine, measured, tried.appearance, tried.limits, fold, start)
         poses, doubt = search.best(start)
         error = float(task.fine.errors(tried.appearance.caster, poses)[0])
-        return _Posed(tried.shape, _only(poses), error, _rank(task, measured, tried, poses, error), doubt)
+        rank = _rank(task, measured, tried, poses, error, in_library=in_library)
+        return _Posed(tried.shape, _only(poses), error, rank, doubt)
 
     def _chosen(self, task: _Task, tried: _Tried, start: Hypotheses) -> tuple[PoseBatch, float, float]:
         """The best of some poses and their refinements, with its error and score."""
@@ -320,10 +341,18 @@ class RenderAndCompare:
         return BoxFit(task.fine.camera, task.fine.seen, task.anchor, limits, float(yaw_sigma)).refined(caster, start)
 
 
-def _rank(task: _Task, measured: MeasuredObject, tried: _Tried, poses: PoseBatch, error: float) -> float:
+def _rank(
+    task: _Task,
+    measured: MeasuredObject,
+    tried: _Tried,
+    poses: PoseBatch,
+    error: float,
+    *,
+    in_library: bool,
+) -> float:
     """What retrieval, the picture and what holds the object say about a posed shape, where depth was measured."""
-    similarity = task.fine.log_likelihood(error, poses.scale[0], tried.limits)
-    stands = float(measured.log_likelihood(poses, tried.limits)[0])
+    similarity = task.fine.log_likelihood(error, poses.scale[0], tried.limits, in_library=in_library)
+    stands = max(float(measured.log_likelihood(poses, tried.limits)[0]), _MIN_STANDING)
     return _RETRIEVAL_WITH_DEPTH * tried.liked + similarity + stands
 
 

@@ -11,6 +11,7 @@ from diorama_core.geometry.vectors import dot, unit
 from diorama_core.progress import Progress
 from diorama_core.render.filters import tone_mapped
 from diorama_core.render.gathering import fallen_light
+from diorama_core.render.gloss import gloss_share
 from diorama_core.render.grid import Grid, bands, each, pixel_footprint
 from diorama_core.render.lighting import Effort, Lighting, ambient, unshadowed
 from diorama_core.render.raycast import Caster, RayArray, View, pixel_centres
@@ -108,7 +109,10 @@ def _seen(
         beyond = _beyond(world, places, rays, clear, light, depth)
         share = places.alpha[clear, None]
         out[clear] = out[clear] * share + beyond * (1 - share)
-    return (out + _gloss(world, places, direction, fallen, light)).astype(np.float32)
+    gloss = _gloss(world, places, direction, fallen, light)
+    if not light.relights:
+        gloss[places.photographed] = 0  # their colours hold it already
+    return (out + gloss).astype(np.float32)
 
 
 def _relit(places: Places, fallen: Float32[np.ndarray, "n 3"], light: Lighting) -> Float32[np.ndarray, "n 3"]:
@@ -131,9 +135,7 @@ def _gloss(
     """Mirrored surroundings, blurred toward the fallen light as roughness grows (Schlick's Fresnel)."""
     cosine = np.clip(-dot(places.normals, direction), 0, 1)[:, None]
     smooth = 1 - places.roughness[:, None]
-    f0 = 0.04 * (1 - places.metallic[:, None]) + places.albedo * places.metallic[:, None]
-    fresnel = f0 + (np.maximum(smooth, f0) - f0) * (1 - cosine) ** 5
-    strength = fresnel * np.where(places.metallic[:, None] > 0.5, 1, smooth)
+    strength = gloss_share(places.albedo, places.metallic[:, None], smooth, cosine)
     shiny = np.flatnonzero((smooth[:, 0] > 0.45) | (places.metallic > 0.3))
     mirrored = fallen.copy()
     if len(shiny):
@@ -281,5 +283,7 @@ def _grid(parts: list[_Band], view: View) -> Grid:
         whole[found] = np.concatenate(values)
         return whole
 
-    points, normals, flat_normals, instance = each(image, ("points", "normals", "flat_normals", "instance"))
-    return Grid(found, points, normals, flat_normals, instance, depth, pixel_footprint(view, depth))
+    points, normals, flat_normals, instance, photographed = each(
+        image, ("points", "normals", "flat_normals", "instance", "photographed")
+    )
+    return Grid(found, points, normals, flat_normals, instance, depth, pixel_footprint(view, depth), photographed)

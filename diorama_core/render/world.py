@@ -152,6 +152,10 @@ class World:
         """The instances that triangles are of."""
         return self._instance_of_face.take(triangle)
 
+    def photographed(self, triangle: Int[np.ndarray, "n"]) -> Bool[np.ndarray, "n"]:
+        """Whether the colours of triangles already hold the light of the room."""
+        return np.asarray(self._materials.photographed.take(self._surface_of_face.take(triangle)))
+
     def rough_appearance(self, hits: Hits) -> tuple[Float32[np.ndarray, "n 3"], Float32[np.ndarray, "n 3"]]:
         """Face normals (as modelled) and mean colours of what was hit: enough for light that bounces."""
         surface = self._surface_of_face.take(hits.triangle)
@@ -195,10 +199,14 @@ def placed_surfaces(
             shapes = library if item.open_share == 0.0 else OpenedShapes(library, item.open_share, scale)
             surfaces = shape_surfaces(shapes, item.shape_id, *paint, textures or {}, scale)
             placed.append(Placed(as_lit(item, surfaces, scene), item.pose.matrix, index))
-    for index, plane in enumerate(scene.architecture.planes, start=len(scene.objects)):
+    planes = scene.architecture.planes
+    pictures = {p.id: (textures or {}).get(p.texture) if p.texture else None for p in planes}
+    # Beside photographed walls, a plain one has its colour from the same photo, and so in the same light.
+    beside = photographed and any(pictures[p.id] is not None and p.finish is None for p in planes)
+    for index, plane in enumerate(planes, start=len(scene.objects)):
         if plane.id not in without:
-            picture = (textures or {}).get(plane.texture) if plane.texture else None
-            placed.append(Placed(plane_surfaces(plane, picture, photographed=photographed), np.eye(4), index))
+            faces = plane_surfaces(plane, pictures[plane.id], photographed=photographed, plain_photographed=beside)
+            placed.append(Placed(faces, np.eye(4), index))
     return placed
 
 

@@ -17,7 +17,7 @@ from diorama_core.export.gltf import write_gathered
 from diorama_core.export.photo_textures import bounded_pictures
 from diorama_core.importing.opening import marked_file, open_marked
 from diorama_core.library.catalogue import built_in_library
-from diorama_core.scene.types import PhotoMaterial, Pose, Scene, SceneObject
+from diorama_core.scene.types import Architecture, PhotoMaterial, Plane, Pose, Scene, SceneObject
 from tests.export.validators import gltf_findings, needs_gltf_validator
 
 ART = np.random.default_rng(0).integers(0, 255, (64, 64, 3)).astype(np.uint8)
@@ -35,12 +35,23 @@ def pictures() -> dict[str, np.ndarray]:
     return {"picture-1-picture-0": ART, "picture-1-wood-1": ART[::2, ::2].copy(), "wall": ART}
 
 
-def test_pictures_of_objects_are_bounded_together() -> None:
+def test_pictures_that_the_scene_shows_are_bounded_together() -> None:
     bounded = bounded_pictures(hung_picture(), pictures(), 40)
     texels = sum(p.shape[0] * p.shape[1] for name, p in bounded.items() if name != "wall")
     assert 0.9 * 40**2 < texels <= 40**2
     assert bounded["wall"].shape == ART.shape
     assert bounded_pictures(hung_picture(), pictures(), 80)["picture-1-picture-0"] is ART
+
+
+def test_pictures_of_planes_count_too_and_no_side_is_longer_than_the_squares() -> None:
+    corners = np.array([[0.0, 1, 0], [1, 1, 0], [1, 1, 2], [0, 1, 2]])
+    wall = Plane("wall_1", "wall", corners, texture="wall")
+    walled = replace(hung_picture(), architecture=Architecture(planes=(wall,)))
+    bounded = bounded_pictures(walled, pictures(), 64)
+    assert 0.9 * 64**2 < sum(p.shape[0] * p.shape[1] for p in bounded.values()) <= 64**2
+    assert bounded["wall"].shape == bounded["picture-1-picture-0"].shape
+    long = {**pictures(), "picture-1-picture-0": np.zeros((8, 200, 3), np.uint8)}
+    assert bounded_pictures(hung_picture(), long, 80)["picture-1-picture-0"].shape == (3, 80, 3)
 
 
 def test_the_look_is_in_the_file_and_comes_back(tmp_path) -> None:

@@ -1,5 +1,7 @@
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -19,6 +21,8 @@ def evidence() -> Evidence:
 
 
 def enlarged_cost(evidence: Evidence, shape_size_m: tuple[float, float, float], scale: tuple[float, ...]) -> float:
+    """Of a doubtful mask."""
+    evidence = replace(evidence, seen=replace(evidence.seen, mask_trust=0.6))
     limits = SizeLimits.of(shape_size_m, "blanket", np.array([0.6, 0.9, 0.15]))
     return evidence.enlarged_cost(np.array(scale), limits)
 
@@ -43,3 +47,26 @@ def test_with_depth_a_shape_of_another_size_is_less_likely_but_never_ruled_out(e
     assert same > larger > twice
     better_fit = evidence.log_likelihood(0.04, np.full(3, 2.0), limits)
     assert better_fit > same
+
+
+def test_a_sure_outline_tells_shapes_apart_whatever_their_size(evidence: Evidence) -> None:
+    limits = SizeLimits.of((0.34, 0.42, 0.3), "blanket", np.array([0.6, 0.9, 0.15]))
+    sure = replace(evidence, seen=replace(evidence.seen, mask_trust=1.0))
+    doubtful = replace(evidence, seen=replace(evidence.seen, mask_trust=0.5))
+    assert sure.enlarged_cost(np.full(3, 2.0), limits) == 0.0 < doubtful.enlarged_cost(np.full(3, 2.0), limits)
+
+    def lead(of: Evidence) -> float:
+        return of.sure_outline_cost(0.4) - of.sure_outline_cost(0.1)
+
+    assert lead(sure) > 10 * lead(doubtful) > 0.0
+
+
+def test_where_no_shape_is_the_very_one_its_size_says_nothing_but_its_proportions_do(evidence: Evidence) -> None:
+    limits = SizeLimits.of((0.5, 0.5, 0.9), "chair", np.array([0.5, 0.5, 0.9]), measured=True)
+
+    def likelihood(error: float, scale: tuple[float, float, float]) -> float:
+        return evidence.log_likelihood(error, np.array(scale), limits, in_library=False)
+
+    assert likelihood(0.2, (1.0, 1.0, 1.0)) == pytest.approx(likelihood(0.2, (2.0, 2.0, 2.0)))
+    assert likelihood(0.2, (1.0, 1.0, 1.0)) > likelihood(0.2, (1.0, 1.4, 1.0))
+    assert likelihood(0.2, (1.0, 1.0, 1.0)) > likelihood(0.3, (1.0, 1.0, 1.0))
