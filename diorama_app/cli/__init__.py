@@ -21,7 +21,7 @@ from diorama_app.cli.text import add_text
 from diorama_core.errors import Cancelled, DioramaError
 from diorama_core.io.quick_imports import load_quickly
 
-LOAD_MUCH = ("build", "optimise", "export", "picture", "text", "edit")
+LOAD_MUCH = ("build", "optimise", "export", "import", "picture", "text", "edit", "library", "bench")
 """Commands that need most libraries whatever they are told."""
 
 
