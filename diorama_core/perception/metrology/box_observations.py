@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from jaxtyping import Bool, Float
@@ -81,16 +82,28 @@ class BoxObservations:
 
         What rests on a parent is not hidden by it, nor by things on the floor that are not in front of the parent.
         """
-        others = [j for j in range(len(self)) if j != index and (parent is None or self._may_hide(j, parent))]
-        beyond = (self.box_px[others] - self.box_px[index]) * _OUTWARD
-        return np.where(self.covered_by[index][others], beyond, 0.0).max(axis=0, initial=0.0)
+        return self._beyond_edges(index, parent)[0]
 
     def hidden_odds(self, index: int, parent: int | None = None) -> Float[np.ndarray, "4"]:
         """Odds that an object goes on unseen beyond each edge, by what is drawn and outlined there."""
-        others = [j for j in range(len(self)) if j != index and (parent is None or self._may_hide(j, parent))]
-        outlined = np.minimum(self.beside[index][others].sum(axis=0), 1.0) if others else np.zeros(4)
-        boxed = self.hidden(index, parent)
-        return HIDDEN_ODDS * np.where(boxed, ODDS_BOXED, 1.0) * ODDS_OUTLINED**outlined
+        return self._beyond_edges(index, parent)[1]
+
+    def _beyond_edges(self, index: int, parent: int | None) -> tuple[Float[np.ndarray, "4"], Float[np.ndarray, "4"]]:
+        """`hidden_px` and `hidden_odds`, found once: thousands of assumptions about the same objects ask for them."""
+        if (index, parent) not in self._known_beyond:
+            others = [j for j in range(len(self)) if j != index and (parent is None or self._may_hide(j, parent))]
+            beyond = (self.box_px[others] - self.box_px[index]) * _OUTWARD
+            far = np.where(self.covered_by[index][others], beyond, 0.0).max(axis=0, initial=0.0)
+            outlined = np.minimum(self.beside[index][others].sum(axis=0), 1.0) if others else np.zeros(4)
+            odds = HIDDEN_ODDS * np.where(far > 0, ODDS_BOXED, 1.0) * ODDS_OUTLINED**outlined
+            far.setflags(write=False)
+            odds.setflags(write=False)
+            self._known_beyond[index, parent] = far, odds
+        return self._known_beyond[index, parent]
+
+    @cached_property
+    def _known_beyond(self) -> dict[tuple[int, int | None], tuple[np.ndarray, np.ndarray]]:
+        return {}
 
     def _may_hide(self, other: int, parent: int) -> bool:
         on_floor = self.categories[other].mount == "floor"
