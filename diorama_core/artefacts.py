@@ -170,6 +170,8 @@ class Cuboid(ArrayValue):
     confidence: float
     front_known: bool = False
     """Whether +X is known to be the front; otherwise yaw is meant modulo a quarter turn."""
+    foot_seen: bool = True
+    """Whether the picture shows its lower end; otherwise what it is tells how far away it is, by its size."""
 
     @property
     def corners_world(self) -> Float[np.ndarray, "8 3"]:

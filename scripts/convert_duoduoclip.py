@@ -18,7 +18,7 @@ from typing import Any
 import torch
 from torch.nn import functional
 
-from diorama_core.models.onnx_export import write_graph
+from diorama_core.models.onnx_export import read_checkpoint, write_graph
 
 HEAD = 64
 """Channels of an attention head in every CLIP transformer."""
@@ -76,16 +76,6 @@ class ShapeTower(torch.nn.Module):
             x = x + self._widened(self._norm(x, f"{layer}.ln_2"), layer)
         seen = self._norm(x.reshape(-1, tokens, width)[:, 0], "ln_post")
         return seen.mean(dim=0, keepdim=True) @ self._w("proj")
-
-
-def read_checkpoint(path: Path, trusted: bool) -> dict[str, Any]:
-    """A checkpoint, without running code that it may carry unless it is trusted."""
-    try:
-        return torch.load(path, map_location="cpu", weights_only=not trusted)
-    except Exception as error:  # unpickling raises almost anything
-        words = " ".join(str(error).split())[:120]
-        advice = "is it the right file?" if trusted else "add --trust if you know where it comes from (it may run code)"
-        sys.exit(f"{path}: cannot be read ({words}); {advice}")
 
 
 def shape_tower(saved: Mapping[str, Any]) -> ShapeTower:

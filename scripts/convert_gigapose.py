@@ -18,7 +18,7 @@ from typing import Any
 import torch
 from torch.nn import functional
 
-from diorama_core.models.onnx_export import write_graph
+from diorama_core.models.onnx_export import read_checkpoint, write_graph
 
 SIDE, INNER_SIDE = 224, 256
 """Of the crops, and of what the backbone enlarges them to."""
@@ -79,16 +79,6 @@ class Regressor(Weights):
     def forward(self, pairs: torch.Tensor) -> tuple[torch.Tensor, torch.Tensor]:
         turned = torch.tanh(self._mlp(pairs, "inplane_predictor"))
         return self._mlp(pairs, "scale_predictor"), functional.normalize(turned, dim=1)
-
-
-def read_checkpoint(path: Path, trusted: bool) -> dict[str, Any]:
-    """A checkpoint, without running code that it may carry unless it is trusted."""
-    try:
-        return torch.load(path, map_location="cpu", weights_only=not trusted)
-    except Exception as error:  # unpickling raises almost anything
-        words = " ".join(str(error).split())[:120]
-        advice = "is it the right file?" if trusted else "add --trust if you know where it comes from (it may run code)"
-        sys.exit(f"{path}: cannot be read ({words}); {advice}")
 
 
 def part(saved: Mapping[str, Any], name: str) -> dict[str, torch.Tensor]:

@@ -17,8 +17,12 @@ from diorama_app.cli.importing import add_import
 from diorama_app.cli.library import add_library
 from diorama_app.cli.models import add_models
 from diorama_app.cli.scenes import add_build, add_export, add_optimise, add_picture, add_serve
+from diorama_app.cli.startup import load_quickly
 from diorama_app.cli.text import add_text
 from diorama_core.errors import Cancelled, DioramaError
+
+LOAD_MUCH = ("build", "optimise", "export", "picture", "text", "edit")
+"""Commands that need most libraries whatever they are told."""
 
 
 def main(argv: Sequence[str] | None = None) -> int:
@@ -26,6 +30,8 @@ def main(argv: Sequence[str] | None = None) -> int:
     # Small problems run faster on one thread than on two that wait for each other.
     os.environ.setdefault("OMP_NUM_THREADS", "1")
     arguments = _parser().parse_args(argv)
+    if arguments.command in LOAD_MUCH:
+        load_quickly()
     logging.basicConfig(level=logging.DEBUG if arguments.verbose else logging.ERROR, stream=sys.stderr)
     try:
         return int(arguments.run(arguments) or 0)

@@ -145,7 +145,9 @@ def _bench_rooms(a: argparse.Namespace) -> None:
     from diorama_core.evaluation.benchmarks import views as views_bench
     from diorama_core.evaluation.benchmarks.cases import parse_seeds
     from diorama_core.library.catalogue import built_in_library
+    from diorama_core.models.store import ModelStore
     from diorama_core.perception.language.client import LmmSettings
+    from diorama_core.pipeline.learned_retrieval import published_embeddings
 
     _check(a)
     library = built_in_library()
@@ -154,7 +156,8 @@ def _bench_rooms(a: argparse.Namespace) -> None:
         if a.table == "architecture":
             bench = architecture_bench.run(library, a.scenes, parse_seeds(a.seeds, a.seed), progress)
         elif a.table == "retrieval":
-            bench = retrieval_bench.run(library, a.scenes, a.seed, progress)
+            embeddings = published_embeddings(ModelStore.default())
+            bench = retrieval_bench.run(library, a.scenes, a.seed, progress, embeddings)
         elif a.table == "relations":
             bench = relations_bench.run(library, a.scenes, a.seed, progress, LmmSettings.from_environment())
         elif a.table == "look":

@@ -4,17 +4,15 @@ from __future__ import annotations
 
 import html
 import json
-from collections.abc import Callable
 
 import viser
 
+from diorama_app.panels.upload_field import Take, hidden_upload
 from diorama_app.session.client import Client
-from diorama_app.web.viser_adapter import component_uuid
 
 MODELS = ("glb", "gltf", "obj", "ply", "stl", "fbx")
 SCENES = ("usd", "usda", "usdc", "usdz", "sh3d")
 """A GLB may be either; dropped, it is a model, and *Open a file* takes it as a scene."""
-Take = Callable[[str, bytes], None]
 
 _SCRIPT = """(()=>{const to=%s,veil=document.getElementById('dio-drop')||Object.assign(document.createElement('div'),
 {id:'dio-drop',textContent:'Drop a photo of a room, a model or a scene file'});document.body.appendChild(veil);
@@ -32,7 +30,7 @@ field.dispatchEvent(new Event('change',{bubbles:true}))};this.remove()})()"""
 
 _STYLE = """<style>#dio-drop { position: fixed; inset: 12px; z-index: 950; display: none; pointer-events: none;
   align-items: center; justify-content: center; border: 3px dashed #2f6fd6; border-radius: 14px; font-size: 20px;
-  color: #fff; background: #1d4f9e99; } %s { display: none; }</style>"""
+  color: #fff; background: #1d4f9e99; }</style>"""
 
 
 def take_dropped_files(gui: viser.GuiApi, client: Client, photo: Take, model: Take, scene: Take) -> None:
@@ -45,19 +43,7 @@ def take_dropped_files(gui: viser.GuiApi, client: Client, photo: Take, model: Ta
         model: takes those of a model.
         scene: takes those of a scene.
     """
-    fields = [_hidden_upload(gui, client, take) for take in (photo, model, scene)]
+    fields = [hidden_upload(gui, client, "Dropped file", take) for take in (photo, model, scene)]
     to = {"": fields[0], **dict.fromkeys(MODELS, fields[1]), **dict.fromkeys(SCENES, fields[2])}
     script = html.escape(_SCRIPT.replace("\n", "") % json.dumps(to))
-    hidden = ", ".join(f"div:has(> #file_upload_{uuid})" for uuid in fields)
-    gui.add_html(f'{_STYLE % hidden}<img alt="" src="data:," style="display:none" onerror="{script}">')
-
-
-def _hidden_upload(gui: viser.GuiApi, client: Client, take: Take) -> str:
-    button = gui.add_upload_button("Dropped file")
-
-    async def uploaded(event: viser.GuiEvent[viser.GuiUploadButtonHandle]) -> None:
-        file = event.target.value
-        client.post(lambda: take(file.name, file.content))
-
-    button.on_upload(uploaded)
-    return component_uuid(button)
+    gui.add_html(f'{_STYLE}<img alt="" src="data:," style="display:none" onerror="{script}">')

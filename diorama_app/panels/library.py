@@ -11,6 +11,7 @@ import viser
 from diorama_app.commands.import_model import import_model
 from diorama_app.commands.insert import insert_shape, start_placing, toggle_favourite
 from diorama_app.panels.fields import on_change
+from diorama_app.panels.upload_field import UploadField
 from diorama_app.session.client import Client, Placing
 from diorama_app.session.units import format_size
 from diorama_app.web.html import Action, LiveHtml, button, text
@@ -51,15 +52,7 @@ class LibraryPanel:
         self._words = gui.add_text("Search", "", hint="For example: armchair, round table, blue")
         on_change(self._words, lambda v: client.post(self._searched, key="search"))
         self._choices = LiveHtml(gui, self._act)
-        upload = gui.add_upload_button(
-            "Add a model file", hint="GLB, OBJ, PLY, STL or FBX; then click where to place it"
-        )
-
-        async def uploaded(event: viser.GuiEvent[viser.GuiUploadButtonHandle]) -> None:
-            file = event.target.value
-            client.post(lambda: import_model(client, file.name, file.content))
-
-        upload.on_upload(uploaded)
+        UploadField(gui, client, "Add a model file", lambda name, content: import_model(client, name, content))
         self._where = LiveHtml(gui)
         self._html = LiveHtml(gui, self._act)
         self._drawn: tuple[object, ...] = ()

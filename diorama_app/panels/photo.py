@@ -15,6 +15,7 @@ from PIL import Image
 from diorama_app.commands.registry import CommandTable
 from diorama_app.panels.fields import GO_COLOUR, enable, on_change, on_press, show_if, show_label
 from diorama_app.panels.photo_boxes import PhotoBoxes, box_list
+from diorama_app.panels.upload_field import UploadField
 from diorama_app.projects.begin import begin_project
 from diorama_app.projects.uploads import Upload
 from diorama_app.reconstruction import build_job as work
@@ -37,7 +38,6 @@ from diorama_app.viewport.annotation_canvas import (
 )
 from diorama_app.viewport.mesh_assets import reduced
 from diorama_app.web.html import Action, LiveHtml, button, text
-from diorama_app.web.viser_adapter import component_uuid
 from diorama_core.artefacts import Inputs
 from diorama_core.editing.input_corrections import boxes_json
 from diorama_core.errors import InputError
@@ -82,6 +82,7 @@ class PhotoPanel:
         on_press(self._find, lambda: client.post(lambda: commands["find_furniture"].run(client)))
         self._no_detector = LiveHtml(gui, self._act)
         client.open_board = self._boxes.open
+        self._proposed = LiveHtml(gui, self._act)
         self._naming = LiveHtml(gui, self._act)
         self._list = LiveHtml(gui, self._act)
         self._add = gui.add_button(
@@ -121,25 +122,23 @@ class PhotoPanel:
         enable(self._find, idle and finds)
         self._no_detector.show(about if inputs is not None else "")
         self._naming.show("" if inputs is None else self._boxes.name_field(inputs))
-        self._list.show("" if inputs is None else box_list(inputs, client.selected_box))
+        drawing = client.view.canvas.is_open
+        self._proposed.show("" if inputs is None else self._boxes.proposal_note(inputs))
+        self._list.show("" if inputs is None else box_list(inputs, client.selected_box, drawing=drawing))
         show_if(inputs is not None and further is None and bool(self._session.scene.objects), self._add)
         enable(self._add, idle and client.selected_box is not None)
         enable(self._build, idle and work.ready_to_build(inputs))
-        show_label(self._draw, "Done drawing" if client.view.canvas.is_open else "Draw boxes")
+        show_label(self._draw, "Done drawing" if drawing else "Draw boxes")
         if inputs is not None:
             self._boxes.show(inputs)
 
     # -- uploads ----------------------------------------------------------------------------------------------
 
     def _upload(self, gui: viser.GuiApi, kind: Kind, label: str, mime_type: str) -> str:
-        handle = gui.add_upload_button(label, mime_type=mime_type)
+        def take(name: str, content: bytes) -> None:
+            self._received(kind, name, content)
 
-        async def uploaded(event: viser.GuiEvent[viser.GuiUploadButtonHandle]) -> None:
-            file = event.target.value
-            self._client.post(lambda: self._received(kind, file.name, file.content))
-
-        handle.on_upload(uploaded)
-        return component_uuid(handle)
+        return UploadField(gui, self._client, label, take, mime_type=mime_type).uuid
 
     def _received(self, kind: Kind, name: str, content: bytes) -> None:
         if kind == "photo":
@@ -206,6 +205,8 @@ class PhotoPanel:
         def do() -> None:
             if action.do == "download":
                 detect_with_networks(self._client)
+            elif action.do == "accept all":
+                self._boxes.accept_all()
             elif action.do == "named":
                 self._boxes.name(action.pair[1])
             elif action.do == "name":
@@ -244,7 +245,7 @@ def _state(inputs: Inputs) -> str:
         return "1 box" if len(inputs.boxes) == 1 else f"{len(inputs.boxes)} boxes"
     if can_find_furniture():
         return "<b>Build the scene: furniture is detected automatically. Or draw boxes.</b>"
-    return "<b>Draw a box around each piece of furniture.</b>"
+    return "<b>Mark each piece of furniture.</b>"
 
 
 def _detection() -> tuple[bool, str]:

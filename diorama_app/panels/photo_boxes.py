@@ -68,6 +68,30 @@ class PhotoBoxes:
         likely = (b for b in self._suggested(inputs).boxes() if b.box not in self._dismissed)
         return tuple(b for b in likely if same_object(inputs.boxes, b.box) is None)
 
+    def proposal_note(self, inputs: Inputs) -> str:
+        """How many proposals are shown, with a button that accepts them all."""
+        count = len(self._proposals(inputs)) if self._client.view.canvas.is_open else 0
+        if not count:
+            return ""
+        said, label = (
+            ("1 dashed proposal", "Accept it") if count == 1 else (f"{count} dashed proposals", f"Accept all {count}")
+        )
+        return (
+            f'<p class="dim">{said}: click what is right. Only boxes that you accept or draw are built.</p>'
+            f'<div class="bar tight">{button(label, "accept all", title="One undo step")}</div>'
+        )
+
+    def accept_all(self) -> None:
+        """Make boxes of all proposals."""
+        inputs = self._client.marked
+        if inputs is None:
+            return
+        accepted = tuple(labelled_box(b.box, b.label) for b in self._proposals(inputs))
+        if accepted:
+            self._client.selected_box = None
+            self._annotate(f"mark {len(accepted)} objects", replace(inputs, boxes=(*inputs.boxes, *accepted)))
+            self._client.refresh()
+
     def toggle(self) -> None:
         """Put the photo on the canvas, or take it off."""
         if self._client.view.canvas.is_open:
@@ -186,10 +210,11 @@ class PhotoBoxes:
         )
 
 
-def box_list(inputs: Inputs, selected: int | None) -> str:
-    """All boxes, to be selected and deleted."""
+def box_list(inputs: Inputs, selected: int | None, *, drawing: bool) -> str:
+    """All boxes, to be selected and deleted; how to make the first one, also while somebody draws."""
     if not inputs.boxes:
-        return "<p class='dim'>Choose a name, press <b>Draw boxes</b> and drag a rectangle on the photo.</p>"
+        how = "Click" if drawing else "Press <b>Draw boxes</b>, then click"
+        return f"<p class='dim'>{how} each piece of furniture in the photo, or drag a box around it.</p>"
     rows = []
     for index, box in enumerate(inputs.boxes):
         unknown = ' <span class="dim">as an object</span>' if box.category == "object" else ""

@@ -11,6 +11,7 @@ from jaxtyping import UInt8
 from PIL import Image
 
 from diorama_app.commands.camera_presets import Views
+from diorama_app.panels.upload_field import UploadField
 from diorama_app.projects.uploads import Upload
 from diorama_app.reconstruction.photo_joining import awaits_photo, take_out, take_photo
 from diorama_app.session.client import Client
@@ -20,6 +21,7 @@ from diorama_core.artefacts import FurtherPhoto
 
 TILE_PX = 200
 """Of the pictures, which are shown at half of it."""
+ADVICE = "Take it a step or two aside, with much of the same in view. What is in the scene stays."
 KEPT = 128
 """Encoded pictures."""
 
@@ -31,27 +33,17 @@ class PhotoStrip:
         self._client, self._views = client, views
         self._pictures: dict[int, tuple[object, str]] = {}
         self._html = LiveHtml(gui, self._act)
-        self._upload = gui.add_upload_button(
-            "Add a photo of the same room",
-            mime_type="image/*",
-            hint="Take it from a step or two aside, with much of the same in view. What is there stays",
-        )
-
-        async def uploaded(event: viser.GuiEvent[viser.GuiUploadButtonHandle]) -> None:
-            file = event.target.value
-            client.post(lambda: self._received(file.name, file.content))
-
-        self._upload.on_upload(uploaded)
+        self._upload = UploadField(gui, client, "Add a photo of this room", self._received, mime_type="image/*")
+        self._upload.show_if(False)
 
     def refresh(self) -> None:
         """Draw the photos."""
         session, client = self._client.session, self._client
         inputs, camera = session.inputs, session.scene.camera
         shown = (inputs is not None and camera is not None) or awaits_photo(session.scene)
-        if self._upload.visible != shown:
-            self._upload.visible = shown
+        self._upload.show_if(shown)
         if inputs is None or camera is None or not session.further_photos:
-            self._html.show("")
+            self._html.show(f'<p class="dim">{ADVICE}</p>' if shown else "")
             return
         own = self._tile("", "First photo", inputs.photo.rgb, on=client.further_photo is None, joined=True)
         rest = "".join(

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import base64
-import html
 import json
 import threading
 from typing import Any
@@ -12,9 +11,9 @@ import numpy as np
 import viser
 from jaxtyping import UInt8
 
+from diorama_app.panels.upload_field import hidden_upload
 from diorama_app.session.client import Client
 from diorama_app.web.html import run_once
-from diorama_app.web.viser_adapter import component_uuid
 from diorama_core.errors import EditRefused
 from diorama_core.importing.plan_pages import plan_page
 from diorama_core.io.limited import LimitedProcess
@@ -42,15 +41,9 @@ class PicturesBelow:
         """
         self._client, self._bounds = client, bounds
         self._told: tuple[object, ...] = ()
-        upload = gui.add_upload_button("Picture of a plan", mime_type="image/*,application/pdf")
-
-        async def uploaded(event: viser.GuiEvent[viser.GuiUploadButtonHandle]) -> None:
-            file = event.target.value
-            client.post(lambda: self._received(file.name, file.content))
-
-        upload.on_upload(uploaded)
-        self._uuid = component_uuid(upload)
-        gui.add_html(f"<style>div:has(> #file_upload_{html.escape(self._uuid)}) {{ display: none; }}</style>")
+        self._uuid = hidden_upload(
+            gui, client, "Picture of a plan", self._received, mime_type="image/*,application/pdf"
+        )
         self._teller = gui.add_html("")
 
     def refresh(self) -> None:

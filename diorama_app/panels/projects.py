@@ -14,6 +14,7 @@ from PIL import Image
 
 from diorama_app.commands.registry import CommandTable
 from diorama_app.panels.fields import GO_COLOUR, QUIET_COLOUR, enable, on_press
+from diorama_app.panels.upload_field import UploadField
 from diorama_app.projects import manage as project_care
 from diorama_app.reconstruction.opening_job import open_file
 from diorama_app.session.client import Client
@@ -46,37 +47,22 @@ class Projects:
         on_press(save, lambda: client.post(lambda: commands["save"].run(client)))
         start = gui.add_button("Start page", color=QUIET_COLOUR, hint=commands["start_page"].tooltip)
         on_press(start, lambda: client.post(client.open_start))
-        new = gui.add_upload_button(
-            "New from a photo",
-            color=GO_COLOUR,
-            mime_type="image/*",
-            hint="Starts another project; this one is not changed",
-        )
-
-        async def uploaded(event: viser.GuiEvent[viser.GuiUploadButtonHandle]) -> None:
-            file = event.target.value
-            client.post(lambda: take_photo(file.name, file.content))
-
-        new.on_upload(uploaded)
-        self._open = gui.add_upload_button(
+        UploadField(gui, client, "New from a photo", take_photo, color=GO_COLOUR, mime_type="image/*")
+        self._open = UploadField(
+            gui,
+            client,
             "Open a file",
+            lambda name, content: open_file(client, name, content),
             color=QUIET_COLOUR,
             mime_type=",".join(SUFFIXES),
-            hint="GLB, USD, USDZ or Sweet Home 3D: a project of its own; what Diorama exported comes back as it was",
         )
-
-        async def chosen(event: viser.GuiEvent[viser.GuiUploadButtonHandle]) -> None:
-            file = event.target.value
-            client.post(lambda: open_file(client, file.name, file.content))
-
-        self._open.on_upload(chosen)
         self._notes = LiveHtml(gui)
         self._list = LiveHtml(gui, self._act)
 
     def refresh(self) -> None:
         """Draw what is open and what else there is."""
         session = self._client.session
-        enable(self._open, session.jobs.status is None)
+        enable(self._open.handle, session.jobs.status is None)
         if session.project is None:
             self._status.show('<div class="card">No project is open.</div>')
         else:

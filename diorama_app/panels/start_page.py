@@ -13,6 +13,7 @@ from pathlib import Path
 
 import viser
 
+from diorama_app.panels.upload_field import hidden_upload
 from diorama_app.projects.manage import name_of, recent_projects
 from diorama_app.reconstruction.opening_job import open_file
 from diorama_app.reconstruction.starting_rooms import LIVING_ROOM, open_example, start_empty_room
@@ -20,7 +21,6 @@ from diorama_app.reconstruction.text_to_scene import describe_room
 from diorama_app.session.client import Client
 from diorama_app.session.units import format_length, parse_length
 from diorama_app.web.html import Action, LiveHtml, button, run_once, text
-from diorama_app.web.viser_adapter import component_uuid
 from diorama_core.errors import EditRefused, InputError
 from diorama_core.project.storage import Project
 
@@ -50,10 +50,8 @@ class StartPage:
         self._lengths_m = USUAL_ROOM_M
         gui.add_html(run_once(REMOVE))
         self._opened_over: Project | None = None
-        self._photo_field = _hidden_upload(gui, client, take_photo)
-        self._file_field = _hidden_upload(gui, client, self._take_file)
-        hidden = ", ".join(f"div:has(> #file_upload_{uuid})" for uuid in (self._photo_field, self._file_field))
-        gui.add_html(f"<style>{hidden} {{ display: none; }}</style>")
+        self._photo_field = hidden_upload(gui, client, "Start with a photo", take_photo)
+        self._file_field = hidden_upload(gui, client, "Start with a file", self._take_file)
         self._opener = LiveHtml(gui, self._act)
         self._tour = gui.add_html("")
         self._tours = 0
@@ -192,14 +190,3 @@ class StartPage:
 def _picture(kind: str) -> str:
     """A small picture of an example, as it lies beside the program."""
     return "data:image/jpeg;base64," + base64.b64encode((PICTURES / f"{kind}.jpg").read_bytes()).decode()
-
-
-def _hidden_upload(gui: viser.GuiApi, client: Client, take: Callable[[str, bytes], None]) -> str:
-    field = gui.add_upload_button("Start with a file")
-
-    async def uploaded(event: viser.GuiEvent[viser.GuiUploadButtonHandle]) -> None:
-        file = event.target.value
-        client.post(lambda: take(file.name, file.content))
-
-    field.on_upload(uploaded)
-    return component_uuid(field)

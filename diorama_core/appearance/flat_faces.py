@@ -51,6 +51,11 @@ MIN_SEEN = 0.2
 """A face of which less is seen keeps its own picture."""
 MIN_IN_MASK = 0.4
 """Of the face as it is posed; where less is the object's own, its picture would be of what is beside it."""
+RIM, MOSTLY = 0.014, 0.5
+"""A box that ends so near the photo's edge (as a share of its longer side; undistorted photos have frames), or where
+that much of what is just inside its side is hidden, does not end the object."""
+PALE = 245
+"""Frames are at least so bright (of 255)."""
 MIN_BOX_IOU = 0.5
 """Boxes that overlap less tell nothing of where exactly the face is."""
 SURE_MASK = 0.95
@@ -98,7 +103,7 @@ def faces_of(
     if not chosen and not SEEN_THROUGH & set(roles):
         chosen = [s for s in slots if s.main]
     by_mask = found.mask_confidence >= SURE_MASK or item.category in NOT_RECTANGULAR
-    unseen = hidden | ~found.mask if by_mask else hidden
+    unseen = (hidden | ~found.mask if by_mask else hidden) | pale_frame(rgb)
     made = [_face(item, parts, slot, layout, rgb, (hidden, unseen), found, camera) for slot in chosen]
     return tuple(face for face in made if face is not None)
 
@@ -131,7 +136,7 @@ def _face(
     corners = corners_in_photo(camera, item.pose.apply(rectangle.corners))
     if corners is None:
         return None
-    corners = aligned(corners, _outline_box(item, parts, camera), found.box, (rgb.shape[1], rgb.shape[0]))
+    corners = aligned(corners, _outline_box(item, parts, camera), found.box, sides_told(found.box, others))
     if _share_in_mask(corners, others, found) < MIN_IN_MASK:
         return None
     picture = rectified(rgb, unseen, corners)
@@ -159,23 +164,60 @@ def aligned(
     corners_px: Float[np.ndarray, "4 2"],
     projected: Float[np.ndarray, "4"],
     detected: tuple[float, float, float, float],
-    size_px: tuple[int, int],
+    told: tuple[bool, bool, bool, bool] = (True, True, True, True),
 ) -> Float[np.ndarray, "4 2"]:
     """The corners moved and scaled as the object's projected box is to its box in the photo.
 
-    Sides at the photo's edge say nothing; boxes that hardly overlap leave the corners where they are.
+    Boxes that hardly overlap leave the corners where they are.
+
+    Args:
+        corners_px: Of the face.
+        projected: The whole object's box as it is posed.
+        detected: Its box in the photo.
+        told: Which of its left, upper, right and lower side end the object itself (`sides_told`).
     """
-    box, (width, height) = np.array(detected), size_px
-    inside = np.clip(projected, 0, [width, height, width, height])
-    if float(box_iou(inside, box)) < MIN_BOX_IOU:
+    box = np.where(told, detected, projected)
+    if float(box_iou(projected, box)) < MIN_BOX_IOU:
         return corners_px
     out = corners_px.copy()
-    for axis, most in ((0, width), (1, height)):
+    for axis in (0, 1):
         low, high = projected[axis], projected[axis + 2]
-        to_low = low if box[axis] <= 2 else box[axis]
-        to_high = high if box[axis + 2] >= most - 2 else box[axis + 2]
+        to_low, to_high = box[axis], box[axis + 2]
         out[:, axis] = to_low + (corners_px[:, axis] - low) * (to_high - to_low) / max(high - low, 1e-6)
     return out
+
+
+def pale_frame(rgb: UInt8[np.ndarray, "h w 3"]) -> Bool[np.ndarray, "h w"]:
+    """What undistorting left white along a photo's edges, with a small margin."""
+    height, width = rgb.shape[:2]
+    rim = max(2, round(RIM * max(height, width)))
+    white = (rgb.min(axis=2) >= PALE).astype(np.uint8)
+    white[rim:-rim, rim:-rim] = 0
+    _, labels = cv2.connectedComponents(white)
+    lines = [labels[0], labels[-1], labels[:, 0], labels[:, -1]]
+    framed = [line[line > 0] for line in lines if (line > 0).mean() >= MOSTLY]
+    if not framed:
+        return np.zeros((height, width), dtype=bool)
+    frame = np.isin(labels, np.unique(np.concatenate(framed)))
+    return cv2.dilate(frame.astype(np.uint8), np.ones((5, 5), np.uint8)).astype(bool)
+
+
+def sides_told(
+    box: tuple[float, float, float, float], hidden: Bool[np.ndarray, "h w"]
+) -> tuple[bool, bool, bool, bool]:
+    """Which sides of a box (left, upper, right, lower) end the object, and not the photo or what hides it."""
+    height, width = hidden.shape
+    rim = max(2.0, RIM * max(height, width))
+    at_edge = (box[0] <= rim, box[1] <= rim, box[2] >= width - rim, box[3] >= height - rim)
+    x1, y1, x2, y2 = (max(round(v), 0) for v in box)
+    inside = hidden[y1:y2, x1:x2]
+    deep = max(1, round(rim))
+    strips = (inside[:, :deep], inside[:deep], inside[:, -deep:], inside[-deep:])
+    left, upper, right, lower = (
+        not edge and (strip.size == 0 or float(strip.mean()) < MOSTLY)
+        for edge, strip in zip(at_edge, strips, strict=True)
+    )
+    return left, upper, right, lower
 
 
 def is_lit(screen: Rectified) -> bool:

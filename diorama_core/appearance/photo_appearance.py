@@ -215,14 +215,14 @@ def _surfaces(
         return made
     for pixels in seen.pixels:
         found = appearance_of(seen.view, pixels, rgb, light, seen.weaves.get(pixels.slot.name))
-        roughness, metallic = ROUGHNESS[found.slot.role]
+        _, metallic = ROUGHNESS[found.slot.role]
         name = None if found.texture is None else texture_name(seen.item.id, found.slot.name, found.texture)
         material = PhotoMaterial(
             slot=found.slot.name,
             colour=found.colour,
             texture=name,
             tile_m=found.tile_m,
-            roughness=roughness,
+            roughness=found.roughness,
             metallic=metallic,
             main=found.slot.main,
         )

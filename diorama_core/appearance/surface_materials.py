@@ -10,11 +10,13 @@ import numpy as np
 from jaxtyping import Bool, Float, Float32, UInt8
 
 from diorama_core.appearance.light import Shade
+from diorama_core.appearance.lit_colour import unveiled
 from diorama_core.appearance.plainness import shows_plain
 from diorama_core.appearance.surface_view import SurfaceView
 from diorama_core.appearance.texture_example import Example, best_example, tileable
 from diorama_core.io.srgb import linear_to_srgb, luminance, srgb_to_linear
 from diorama_core.library.slots import Role, Slot
+from diorama_core.render.gloss import roughness_seen, without_gloss
 
 READ_ROLES: frozenset[Role] = frozenset(
     {"fabric", "leather", "wood", "metal", "stone", "paint", "wicker", "paper", "leaf", "material"}
@@ -30,7 +32,7 @@ ROUGHNESS: Mapping[str, tuple[float, float]] = {
     "paint": (0.55, 0.0), "wicker": (0.85, 0.0), "paper": (0.9, 0.0), "leaf": (0.55, 0.0), "material": (0.7, 0.0),
     "glass": (0.06, 0.0),
 }  # fmt: skip
-"""Roughness and metalness by role."""
+"""Roughness and metalness by role; what is seen too dark to mirror that much is rougher."""
 MIN_PIXELS, MIN_SHARE = 40, 0.2
 """A slot is read from at least so many pixels, of which such a share is of about one colour."""
 MIN_OF_WHOLE = 16
@@ -46,6 +48,10 @@ BESIDE = 1.3
 COLOURED, CROSSED = 25.0, 4.0
 """Another material than its neighbour's of one vivid colour (chroma) with a neighbour of so many times its pixels is
 not read: a metal arm that crosses a red back in the picture is not red."""
+CLEARLY = 2.0
+"""A thing's lit side has a colour that covers so many times more of the thing than of the background."""
+AS_GOOD = 0.8
+"""A colour is as good as the best when it is nearly as much the slot's own."""
 BIN_LAB = np.array([40.0, 20.0, 20.0])
 NEAR_LAB = 20.0
 NORMAL_CELL = 0.35
@@ -63,6 +69,7 @@ class SlotAppearance:
     """Albedo, sRGB 0 to 1."""
     texture: UInt8[np.ndarray, "h w 3"] | None
     tile_m: float
+    roughness: float
 
 
 @dataclass(frozen=True, eq=False)
@@ -159,16 +166,40 @@ def _own_colours(
             share, pixels = _share(lab, mine, seed), float(_alike(lab, seed)[mine].sum())
             alike = [where for where, main in others if _is_near(main - seed)]
             elsewhere = [_share(lab, w, seed) for w in alike if float(_alike(lab, seed)[w].sum()) >= pixels]
-            elsewhere += [_share(lab, beside, seed) / BESIDE] if beside.sum() >= MIN_PIXELS else []
+            elsewhere.append(_covers(lab, beside, seed) / BESIDE)
             own.append(share / max([share, *elsewhere, 1e-9]))
-        seeds[index] = options[index][int(np.argmax(own))]
+        chosen = int(np.argmax(own))
+        main = options[index][chosen]
+        as_good = [seed for seed, score in zip(options[index], own, strict=True) if score >= AS_GOOD * own[chosen]]
+        much = [seed for seed in as_good if _share(lab, mine, seed) >= MIN_OUTLINED]
+        seeds[index] = unveiled(main, [s for s in much if s[0] <= main[0] or _is_not_behind(lab, mine, beside, s)])
     return seeds
 
 
+def _is_not_behind(
+    lab: Float32[np.ndarray, "gh gw 3"],
+    mine: Bool[np.ndarray, "gh gw"],
+    beside: Bool[np.ndarray, "gh gw"],
+    seed: np.ndarray,
+) -> bool:
+    """Whether a light colour is a thing's lit side, and not the background seen beside a dark thing."""
+    exactly = np.linalg.norm(lab - seed, axis=-1) < NEAR_LAB / 2
+    return bool(beside.sum() < MIN_PIXELS or exactly[mine].mean() > CLEARLY * exactly[beside].mean())
+
+
+def _covers(lab: Float32[np.ndarray, "gh gw 3"], where: Bool[np.ndarray, "gh gw"], seed: np.ndarray) -> float:
+    """Share of a region that has about a colour; 0 of one too small to tell."""
+    return _share(lab, where, seed) if where.sum() >= MIN_PIXELS else 0.0
+
+
 def _colours_of(lab: Float32[np.ndarray, "gh gw 3"], mine: Bool[np.ndarray, "gh gw"]) -> list[Float32[np.ndarray, "3"]]:
-    """Medians of the bins of a coarse Lab grid that hold much of a slot, the fullest first."""
+    """Medians of the bins of a coarse Lab grid that hold much of a slot, the fullest first.
+
+    Bins have grey in their middle, or whites and greys would lie in four of them.
+    """
     pixels = lab[mine]
-    _, label, counts = np.unique(np.floor(pixels / BIN_LAB), axis=0, return_inverse=True, return_counts=True)
+    cells = np.floor(pixels / BIN_LAB + (0.0, 0.5, 0.5))
+    _, label, counts = np.unique(cells, axis=0, return_inverse=True, return_counts=True)
     order = np.argsort(-counts, kind="stable")
     much = [k for k in order if k == order[0] or counts[k] >= MIN_SHARE * len(pixels)]
     return [np.median(pixels[label.ravel() == k], axis=0) for k in much]
@@ -207,7 +238,7 @@ def appearance_of(
     light: Float32[np.ndarray, "h w 3"],
     weave: UInt8[np.ndarray, "th tw 3"] | None = None,
 ) -> SlotAppearance:
-    """The slot's material under a light.
+    """The slot's material under a light, without the gloss that a material of its role has.
 
     Args:
         view: The shape in its pose.
@@ -218,7 +249,9 @@ def appearance_of(
     """
     linear = srgb_to_linear(view.of(rgb)[pixels.near] / 255.0)
     lit = view.of(light)[pixels.near]
-    albedo = np.median(linear / lit, axis=0)
+    usual, metallic = ROUGHNESS[pixels.slot.role]
+    roughness = roughness_seen(linear / lit, metallic, usual)
+    albedo = np.median(without_gloss(linear / lit, metallic, roughness, view.cosine[pixels.near][:, None]), axis=0)
     albedo *= min(1.0, MAX_LINEAR / max(float(albedo.max()), 1e-6))  # not channel by channel: the hue stays
     red, green, blue = (float(c) for c in linear_to_srgb(albedo))
     example = None
@@ -227,11 +260,13 @@ def appearance_of(
     if example is None:
         tile_m = pixels.slot.tile_m if pixels.slot.role in WOVEN_ROLES else None
         if weave is None or tile_m is None or not shows_plain(view, pixels.near, rgb, weave, tile_m):
-            return SlotAppearance(pixels.slot, (red, green, blue), None, 1.0)
+            return SlotAppearance(pixels.slot, (red, green, blue), None, 1.0, roughness)
         plain = np.rint(255 * np.clip([red, green, blue], 0, 1)).astype(np.uint8)
-        return SlotAppearance(pixels.slot, (red, green, blue), np.tile(plain, (PLAIN_PX, PLAIN_PX, 1)), tile_m)
+        return SlotAppearance(
+            pixels.slot, (red, green, blue), np.tile(plain, (PLAIN_PX, PLAIN_PX, 1)), tile_m, roughness
+        )
     texture = tileable(_in_albedo(example, albedo))
-    return SlotAppearance(pixels.slot, (red, green, blue), texture, example.texel_m * texture.shape[0])
+    return SlotAppearance(pixels.slot, (red, green, blue), texture, example.texel_m * texture.shape[0], roughness)
 
 
 def _in_albedo(example: Example, albedo: Float[np.ndarray, "3"]) -> Example:

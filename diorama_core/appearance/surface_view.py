@@ -8,7 +8,7 @@ import numpy as np
 import trimesh
 from jaxtyping import Bool, Float, Float32, Int8, Int32
 
-from diorama_core.geometry.vectors import face_normals, facing
+from diorama_core.geometry.vectors import dot, face_normals, facing, unit
 from diorama_core.library.photo_materials import metric_uv, with_own_corners
 from diorama_core.library.slots import Slot, placed_vertices
 from diorama_core.render.raycast import Caster, PinholeView
@@ -31,6 +31,8 @@ class SurfaceView:
     """Texture coordinates in metres of the shape at scale 1."""
     normals_world: Float32[np.ndarray, "h w 3"]
     """Unit, toward the camera."""
+    cosine: Float32[np.ndarray, "h w"]
+    """Of the angle between the normal and the direction to the camera; 0 where the shape is not met."""
 
     def of(self, image: np.ndarray) -> np.ndarray:
         """The same pixels of a picture or a mask of the photo's size."""
@@ -69,7 +71,8 @@ def surface_view(
     uv_m[found] = np.einsum("nk,nkc->nc", weights, uv[faces[triangle]])
     normals = np.zeros((*found.shape, 3), np.float32)
     normals[found] = facing(face_normals(world, faces)[triangle], rays[found][:, 3:])
-    return SurfaceView(left, top, step, slot, uv_m, normals)
+    cosine = np.clip(-dot(normals, unit(rays[..., 3:])), 0.0, 1.0).astype(np.float32)
+    return SurfaceView(left, top, step, slot, uv_m, normals, cosine)
 
 
 def _joined(

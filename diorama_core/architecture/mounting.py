@@ -49,12 +49,12 @@ def _raised(cuboid: Cuboid, level: float, walls: tuple[Plane, ...], camera: Came
     for wall in walls:
         toward = float(((cuboid.corners_world - eye) @ wall.normal).min())
         room = wall.offset + CLEAR_OF_WALL_M - float(eye @ wall.normal)
-        if toward < -1e-6 and room < 0 and _ahead(cuboid, wall, eye):
+        if toward < -1e-6 and room < 0 and ahead_of(cuboid, wall, eye):
             scale = min(scale, max(room / toward, 1.0))
     return replace(cuboid, centre=eye + scale * (cuboid.centre - eye), size_m=scale * cuboid.size_m)
 
 
-def _ahead(cuboid: Cuboid, wall: Plane, eye: Float[np.ndarray, "3"]) -> bool:
+def ahead_of(cuboid: Cuboid, wall: Plane, eye: Float[np.ndarray, "3"]) -> bool:
     """Whether the sight through a cuboid meets the wall, and not only the plane that it is part of."""
     sight = cuboid.centre - eye
     along = np.array([-wall.normal[1], wall.normal[0], 0.0])

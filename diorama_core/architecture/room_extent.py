@@ -20,19 +20,27 @@ from diorama_core.scene.types import Architecture, Plane, Scene, SceneObject, Su
 
 _MARGIN_M = 0.01
 """Left around what stands on the floor."""
+_HOLD = 0.5
+"""How much a wall's own place counts beside that of an object against it."""
 LONGEST_CORD = 1.3
 """A lamp's cord makes it at most so many times as high as it was seen."""
 _MIN_AREA_M2 = 1e-4
 _JOINED_M = 0.02
 
 
-def containing_room(scene: Scene) -> Scene:
+def containing_room(scene: Scene, *, reasoned: bool = False) -> Scene:
     """The scene with unseen walls moved behind what stands on the floor, the floor drawn out under it, and a ceiling
     above what hangs.
+
+    Args:
+        scene: as observed.
+        reasoned: whether distances were reasoned from a photo alone: walls then come to what stands against them.
     """
     floor = scene.architecture.floor
     if floor is None:
         return scene
+    if reasoned:
+        scene = _at_backs(scene)
     standing = [o for o in scene.objects if (edge := scene.support_of(o.id)) is not None and edge.parent == floor.id]
     for wall in scene.architecture.by_role("wall"):
         if not wall.seen:
@@ -66,6 +74,46 @@ def _with_ceiling(scene: Scene) -> Scene:
     edges = {o.id: Support(o.id, ceiling.id, "mounted on") for o in hanging}
     supports = (*(s for s in scene.supports if s.child not in edges), *edges.values())
     return replace(scene, architecture=Architecture((*scene.architecture.planes, ceiling)), supports=supports)
+
+
+def _at_backs(scene: Scene) -> Scene:
+    """The walls where most of what stands against them says: from a photo alone they are as uncertain as objects.
+
+    What stands before a wall without touching it resists a wall that would come past its back.
+    """
+    floor = scene.architecture.floor
+    edges = [s for s in scene.supports if floor is not None and s.parent == floor.id]
+    for wall in scene.architecture.by_role("wall"):
+        backs = [_back(scene.object(s.child), wall) for s in edges if wall.id in s.adheres_to]
+        others = [
+            _back(scene.object(s.child), wall)
+            for s in edges
+            if wall.id not in s.adheres_to and _behind(scene.object(s.child), wall, np.inf) < np.inf
+        ]
+        inward = _agreed(np.array(backs), np.array(others))
+        if abs(inward) < _MARGIN_M:
+            continue
+        try:
+            moved = move_plane(scene, wall.id, _MARGIN_M - inward)
+        except EditRefused:
+            continue
+        scene = replace(moved, objects=scene.objects)
+    return scene
+
+
+def _back(item: SceneObject, wall: Plane) -> float:
+    """Height of an object's hindmost corner before a wall."""
+    return float((item.corners_world @ wall.normal).min()) - wall.offset
+
+
+def _agreed(backs: Float[np.ndarray, " a"], others: Float[np.ndarray, " b"]) -> float:
+    """How far inward a wall agrees best with the backs of what stands against it and of what stands before it."""
+    if not len(backs):
+        return 0.0
+    tried = np.concatenate([[0.0], backs])
+    apart = np.abs(tried[:, None] - backs).sum(axis=1)
+    past = np.maximum(tried[:, None] - others, 0.0).sum(axis=1) if len(others) else 0.0
+    return float(tried[np.argmin(apart + past + _HOLD * np.abs(tried))])
 
 
 def _given_way(scene: Scene, wall_id: str, standing: list[SceneObject]) -> Scene:

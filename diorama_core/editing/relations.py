@@ -36,6 +36,7 @@ MIDDLE_SHARE = 0.2
 """The middle of a room is this share of its extents."""
 FACING_RAD = float(np.radians(30.0))
 FACING_REACH_M = 4.0
+WATCHING_REACH_M, SCREENS = 7.0, frozenset({"television", "tv stand", "whiteboard"})
 SEATS_FACING_M = 1.1
 SEAT_COST = 1.5
 """Of a metre from one's own place at a table; wishes are judged without it, so another place is as good for them."""
@@ -119,8 +120,8 @@ def relation_cost(
     found = [targets[t] for t in relation.targets if t in targets]
     if not found:
         return np.full(len(stances.places), 2.0)
-    if relation.kind == "between" and len(found) > 1:
-        return _between(stances, found)
+    if relation.kind == "between":
+        return _between(stances, found) if len(found) > 1 else np.full(len(stances.places), 2.0)
     cost = np.zeros(len(stances.places))
     for target in found:
         cost = cost + _to_target(relation.kind, stances, kind, target, relation.aside_m)
@@ -202,7 +203,7 @@ def _to_target(
         return (
             np.maximum(looking - FACING_RAD, 0.0) / FACING_RAD
             + 0.5 * looking
-            + _too_far(apart)
+            + _too_far(apart, category_name, target)
             + 0.08 * gap
             + _too_near(category_name, target, gap)
         )
@@ -217,7 +218,7 @@ def _to_target(
             + turned
             + 0.3 * heading
             + (0.3 if aside_m == 0.0 else 0.6) * np.abs(local[:, 1] - aside_m)
-            + _too_far(apart)
+            + _too_far(apart, category_name, target)
             + _too_near(category_name, target, gap)
         )
     if kind == "aligned with":
@@ -258,8 +259,10 @@ def _too_near(name: str, target: SceneObject, gap_m: Float[np.ndarray, "n"]) -> 
     return 0.8 * np.maximum(SEATS_FACING_M - gap_m, 0.0)
 
 
-def _too_far(apart_m: Float[np.ndarray, "n"]) -> Float[np.ndarray, "n"]:
-    return np.maximum(apart_m - FACING_REACH_M, 0.0) / 0.5
+def _too_far(apart_m: Float[np.ndarray, "n"], name: str, target: SceneObject) -> Float[np.ndarray, "n"]:
+    """People talk across a few metres, and watch a screen across more: it stays at its wall in a large room."""
+    watched = {broad(name), broad(target.category)} & SCREENS
+    return np.maximum(apart_m - (WATCHING_REACH_M if watched else FACING_REACH_M), 0.0) / 0.5
 
 
 def _angle(a: Float[np.ndarray, "n"], b: Float[np.ndarray, "n"]) -> Float[np.ndarray, "n"]:

@@ -72,16 +72,25 @@ class ShapeAppearance:
 
     def spread_points(self, count: int) -> Float[np.ndarray, "n 3"]:
         """Points spread evenly over the surface, the same ones every time; none where there is no surface."""
+        return self._spread(count)[0]
+
+    def coloured_points(self, count: int) -> tuple[Float[np.ndarray, "n 3"], Float[np.ndarray, "n 3"]]:
+        """The same points with the colours (sRGB, 0 to 1) of the faces they lie on."""
+        points, face = self._spread(count)
+        return points, self.face_rgba[face, :3] / 255.0
+
+    def _spread(self, count: int) -> tuple[Float[np.ndarray, "n 3"], Int[np.ndarray, " n"]]:
+        """Points spread evenly over the surface, and the face of each."""
         triangles = self.vertices[self.faces].astype(np.float64)
         area = np.linalg.norm(np.cross(triangles[:, 1] - triangles[:, 0], triangles[:, 2] - triangles[:, 0]), axis=1)
         total = np.cumsum(area)
         if not len(total) or not np.isfinite(total[-1]) or total[-1] <= _MIN_AREA_M2:
-            return np.zeros((0, 3))
+            return np.zeros((0, 3)), np.zeros(0, int)
         steps = np.arange(count) + 0.5
         face = np.minimum(np.searchsorted(total, steps / count * total[-1]), len(total) - 1)
         u, v = np.sqrt(np.mod(steps * 0.7548776662466927, 1.0)), np.mod(steps * 0.5698402909980532, 1.0)
         shares = np.stack([1 - u, u * (1 - v), u * v], axis=1)
-        return np.asarray((shares[:, :, None] * triangles[face]).sum(axis=1))
+        return np.asarray((shares[:, :, None] * triangles[face]).sum(axis=1)), face
 
     @cached_property
     def opaque_faces(self) -> Int[np.ndarray, "o"]:

@@ -16,6 +16,7 @@ import trimesh
 from jaxtyping import Bool, Float, Float32, Int, UInt32
 from scipy.spatial import ConvexHull, QhullError
 
+from diorama_core.geometry.circle import is_circle
 from diorama_core.geometry.open3d_import import o3d
 from diorama_core.geometry.projection import NEAR_M, frustum_slack
 from diorama_core.scene.types import Camera, box_corners
@@ -107,6 +108,11 @@ class ShapeCaster:
     def hull(self) -> tuple[Float[np.ndarray, "h 3"], Int[np.ndarray, "e 2"]]:
         """Corners and edges of the (slightly simplified) convex hull."""
         return _hull(self._vertices, self.size_m)
+
+    @cached_property
+    def round_from_above(self) -> bool:
+        """Whether the outline from above is a circle, whatever the legs: things like it are not made oval."""
+        return is_circle(self._vertices[:, :2])
 
     def _cast(self, rays: Float[np.ndarray, "n 6"]) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         answer = self._scene.cast_rays(o3d.core.Tensor(rays), nthreads=1)

@@ -18,7 +18,7 @@ from diorama_core.geometry.planes import plane_axes
 from diorama_core.geometry.unseen_walls import Opening, unseen_parts
 from diorama_core.scene.types import Plane, Scene
 
-LEAST_M2 = 0.01
+MIN_AREA_M2 = 0.01
 LIFT_M = 0.006
 """Patches lie so far before their plane."""
 FRAME_SHARE = 0.06
@@ -96,7 +96,7 @@ def _on_plane(
     if shade is not None:
         common = common.difference(shade)
     for part in _without_holes(common):
-        if part.area >= LEAST_M2:
+        if part.area >= MIN_AREA_M2:
             flat = np.array(part.exterior.coords)[:-1]
             if not part.exterior.is_ccw:
                 flat = flat[::-1]

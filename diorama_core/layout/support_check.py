@@ -13,6 +13,8 @@ import numpy as np
 
 from diorama_core.layout.noise import ObservationNoise
 from diorama_core.layout.problem.supports import (
+    SMALLEST_CLEARANCE,
+    Surface,
     choose_surface,
     closes_cycle,
     is_wide_enough,
@@ -47,6 +49,8 @@ BEHIND = 0.9
 """An object is behind a wall that is nearer than this share of its distance."""
 UPRIGHT = 0.98
 """Surfaces whose normals have a smaller z carry nothing."""
+SHORTEST_ON_PLACE = 0.3
+"""An object that reaches down through the place on which it rests keeps at least this share of its height above it."""
 UNUSUAL_M = 0.3
 """Objects that people put on surfaces hang on a wall only where nothing is below them: this is added to their gap.
 
@@ -96,8 +100,11 @@ def checked_supports(
             )
             scene = edits.attach(_along_sight(scene, item, share), Support(item.id, parent))
             continue
-        inside = _inside_m(scene, library, item, edge) if shapes_clear else 0.0
-        better = _better(scene, library, item, edge, noise, inside)
+        mount = taxonomy.resolve(item.category).category.mount
+        sits = noise.measured and (mount == "surface" or (hangs and mount == "floor"))
+        entered = _entered(scene, library, item, edge, sits=sits) if shapes_clear or sits else {}
+        inside = max(entered.values(), default=0.0)
+        better = _better(scene, library, item, edge, noise, inside, frozenset(entered) if sits else frozenset())
         if better is None and floor is not None and _belongs_on_floor(scene, library, item, edge, noise):
             better = Support(item.id, floor.id)
         if better is not None:
@@ -108,6 +115,8 @@ def checked_supports(
                 f"{label_of(scene, better.parent)}"
             )
             scene = edits.attach(scene, better)
+            if noise.measured and inside > 0.0:
+                scene = _ending_on_place(scene, library, item, better)
         elif hangs and _is_set_down(item):
             reasons.append(
                 f"please check: {item.label} hangs on {label_of(scene, edge.parent)}; nothing was seen below it"
@@ -115,6 +124,40 @@ def checked_supports(
         elif (walls := _touched(scene, item, edge, noise)) != edge.adheres_to:
             scene = edits.attach(scene, replace(edge, adheres_to=walls))
     return scene, tuple(reasons)
+
+
+def _place_reached_through(library: ShapeLibrary, item: SceneObject, other: SceneObject) -> Surface | None:
+    """The lowest place of another object through which an upright object reaches down, and above which it fits."""
+    heights = item.corners_world @ UP_WORLD
+    low, high = float(heights.min()), float(heights.max())
+    found = [
+        place
+        for place in surfaces_below(item, other, library.shape(other.shape_id), under=1.0)
+        if low < place.level < high - SHORTEST_ON_PLACE * (high - low)
+        and place.clearance_m >= SMALLEST_CLEARANCE * (high - place.level)
+    ]
+    upright = float(item.pose.R_world_object[2, 2]) >= UPRIGHT
+    return min(found, key=lambda place: place.level) if found and upright else None
+
+
+def _ending_on_place(scene: Scene, library: ShapeLibrary, item: SceneObject, edge: Support) -> Scene:
+    """The scene with an object that reached down through a place ending there: its top was seen, its foot was not."""
+    place = _place_reached_through(library, item, scene.object(edge.parent))
+    if place is None:
+        return scene
+    candidates = tuple(replace(c, pose=_ending_at(c.pose, c.shape_size_m, place.level)) for c in item.candidates)
+    ended = replace(item, pose=_ending_at(item.pose, item.shape_size_m, place.level), candidates=candidates)
+    return replace(scene, objects=tuple(ended if o.id == item.id else o for o in scene.objects))
+
+
+def _ending_at(pose: Pose, size_m: tuple[float, float, float], level_m: float) -> Pose:
+    """A pose in which a shape that reached down through a height ends there; unchanged where little would be left."""
+    height, centre = float(size_m[2] * pose.scale[2]), float(pose.position[2])
+    share = (centre + 0.5 * height - level_m) / height
+    if not SHORTEST_ON_PLACE <= share < 1.0:
+        return pose
+    higher = pose.position + 0.5 * (1.0 - share) * height * UP_WORLD
+    return Pose(pose.R_world_object, higher, pose.scale * [1.0, 1.0, share])
 
 
 def _wall_in_sight(scene: Scene, item: SceneObject, edge: Support, noise: ObservationNoise) -> str | None:
@@ -208,11 +251,18 @@ def _is_set_down(item: SceneObject) -> bool:
 
 
 def _better(
-    scene: Scene, library: ShapeLibrary, item: SceneObject, edge: Support, noise: ObservationNoise, inside: float
+    scene: Scene,
+    library: ShapeLibrary,
+    item: SceneObject,
+    edge: Support,
+    noise: ObservationNoise,
+    inside: float,
+    entered: frozenset[str],
 ) -> Support | None:
     """The supporter that is there, where the measured gap contradicts the edge; None where it may stay.
 
-    What lies on the same supporter right under the object is there, too: a tray under a bottle.
+    What lies on the same supporter right under the object is there, too: a tray under a bottle. How far an object
+    reaches down through the places of what it has entered says nothing: its foot was not seen.
     """
     gap = _gap(scene, library, item, edge) + inside
     unusual = _is_unusual(scene, item, edge)
@@ -223,9 +273,11 @@ def _better(
         if other.parent == edge.parent or closes_cycle({s.child: s for s in scene.supports}, item.id, other.parent):
             continue
         cost, limit = _gap(scene, library, item, other) + odd, _tolerance(scene, item, other, noise)
+        cost = min(cost, inside) if other.parent in entered else cost
         beneath = scene.support_of(other.parent)
         between = beneath is not None and beneath.parent == edge.parent and _is_thin(scene, other.parent, limit)
-        between = between and edge.relation == "placed on" and _carries(scene, other.parent)
+        between = between and edge.relation == "placed on"
+        between = between and (noise.measured or _carries(scene, other.parent))
         # Against a measured gap that is many times as large, a foot that is hidden does not count.
         reached = np.inf if noise.measured else max(limit, UNUSUAL_M * unusual)
         most = min(CLEARLY * gap, reached) if contradicted else limit * between
@@ -290,20 +342,25 @@ def _carries(scene: Scene, object_id: str) -> bool:
     return taxonomy.resolve(scene.object(object_id).category).category.supports_objects
 
 
-def _inside_m(scene: Scene, library: ShapeLibrary, item: SceneObject, edge: Support) -> float:
-    """How far an object would have to go to stand on the floor beside the furniture that it was observed in."""
-    if not scene.has_plane(edge.parent) or scene.plane(edge.parent).role != "floor":
-        return 0.0
-    return max(
-        (
-            _overlap_m(item, other)
-            for other in scene.objects
-            if other.category not in _WALKED_ON
-            and surfaces_below(item, other, library.shape(other.shape_id), under=1.0)
-            and is_wide_enough(item, Support(item.id, other.id), other, library.shape(other.shape_id))
-        ),
-        default=0.0,
-    )
+def _entered(scene: Scene, library: ShapeLibrary, item: SceneObject, edge: Support, *, sits: bool) -> dict[str, float]:
+    """Furniture in which an object was observed that stands on the floor, and how far it would have to go to be beside
+    it, metres; for what people put on things, also where it hangs on a wall.
+    """
+    roles = ("floor", "wall") if sits else ("floor",)
+    if not scene.has_plane(edge.parent) or scene.plane(edge.parent).role not in roles:
+        return {}
+    return {
+        other.id: depth
+        for other in scene.objects
+        if other.category not in _WALKED_ON
+        and (
+            _place_reached_through(library, item, other) is not None
+            if sits
+            else bool(surfaces_below(item, other, library.shape(other.shape_id), under=1.0))
+        )
+        and is_wide_enough(item, Support(item.id, other.id), other, library.shape(other.shape_id))
+        and (depth := _overlap_m(item, other)) > 0.0
+    }
 
 
 def _overlap_m(item: SceneObject, other: SceneObject) -> float:

@@ -16,10 +16,10 @@ import trimesh
 from jaxtyping import Float
 
 from diorama_core.errors import LibraryError
+from diorama_core.library.axis_map import AxisMap
 from diorama_core.library.furniture.measures import MARK as MADE_MARK
 from diorama_core.library.record import Shape, SupportSurface
 from diorama_core.library.slots import placed_vertices, transform_of
-from diorama_core.library.stretch import AxisMap
 
 _MARK = "+boards-"
 _THOUSAND = 1000

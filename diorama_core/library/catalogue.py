@@ -23,9 +23,9 @@ from diorama_core.library.furniture.geometry_key import geometry_key
 from diorama_core.library.furniture.latest import built_once
 from diorama_core.library.furniture.materials import Material
 from diorama_core.library.furniture.measures import is_made, made_by_id
-from diorama_core.library.furniture.model import Design, mesh_of, scene_of
-from diorama_core.library.furniture.roles import with_roles
+from diorama_core.library.furniture.model import Design, mesh_of
 from diorama_core.library.furniture.solids import Solid
+from diorama_core.library.kept_pictures import scene_with_pictures
 from diorama_core.library.record import Shape, SupportSurface, usual_contact_faces
 from diorama_core.library.surfaces import SURFACES_VERSION, support_surfaces
 
@@ -95,6 +95,7 @@ class BuiltInLibrary:
         self._records: dict[str, Shape] = {}
         """Of the designs that were asked for: naming the geometry of all takes a fifth of a second."""
         self._folder = cache_dir
+        self._pictures_folder = cache_dir / "pictures"
         self._solids: LruCache[str, list[tuple[Material, Solid]]] = LruCache(8)
         self._scenes: LruCache[str, trimesh.Scene] = LruCache(SCENE_BYTES, _bytes_of)
         self._meshes: LruCache[str, trimesh.Trimesh] = LruCache(256)
@@ -133,7 +134,7 @@ class BuiltInLibrary:
         self._known(shape_id)
         if (base := without_boards(shape_id)) != shape_id:
             return self._scenes.get(shape_id, lambda: self._derived(shape_id)[0].parts(self.parts(base)))
-        return self._scenes.get(shape_id, lambda: _scene(self._built(shape_id)))
+        return self._scenes.get(shape_id, lambda: scene_with_pictures(self._built(shape_id), self._pictures_folder))
 
     def glb(self, shape_id: str) -> bytes:
         """`parts` as GLB, +Z up, metres; the same bytes every time."""
@@ -197,10 +198,6 @@ class BuiltInLibrary:
 
 def _bytes_of(scene: trimesh.Scene) -> float:
     return float(sum(g.vertices.nbytes * 3 + g.faces.nbytes for g in scene.geometry.values()))
-
-
-def _scene(solids: list[tuple[Material, Solid]]) -> trimesh.Scene:
-    return with_roles(scene_of(solids), [material for material, _ in solids])
 
 
 def _record(design: Design) -> Shape:

@@ -13,7 +13,7 @@ LARGEST_ERRORS = (0.05, 0.015, 0.004)
 """How far a simplified surface may lie from the true one, in the part's size: the first that keeps the part."""
 MIN_AREA_SHARE = 0.8
 """A part of thin bars loses its surface before anything else: less than so much of it is not the same part."""
-FEWEST = 24
+MIN_TRIANGLES = 24
 """Triangles that every part of a model keeps."""
 
 _TYPES = {5121: np.uint8, 5123: np.uint16, 5125: np.uint32, 5126: np.float32}
@@ -50,7 +50,7 @@ def simplified_glb(data: bytes, max_triangles: int) -> bytes:
 
 
 def _simplified(triangles: np.ndarray, positions: np.ndarray, share: float) -> np.ndarray:
-    target = 3 * max(round(share * len(triangles) / 3), FEWEST)
+    target = 3 * max(round(share * len(triangles) / 3), MIN_TRIANGLES)
     if target >= len(triangles):
         return triangles
     points = np.ascontiguousarray(positions, dtype=np.float32)

@@ -23,7 +23,7 @@ from diorama_core.library.record import SupportSurface
 if TYPE_CHECKING:
     from open3d.t.geometry import RaycastingScene
 
-SURFACES_VERSION = 1
+SURFACES_VERSION = 2
 """Raise it when other surfaces are found on the same shape, so that those on disk are measured again."""
 MINIMUM_UP = 0.9
 """Cosine of the steepest slope that still carries objects."""
@@ -226,7 +226,8 @@ def _breadth(outline: Float[np.ndarray, "n 2"]) -> float:
 def _joined(surfaces: list[SupportSurface]) -> list[SupportSurface]:
     """Open surfaces at about one height with only a seam between them become one: the cushions of a seat, a made bed.
 
-    What lies on them does not mind the seam. Joined only where the common outline holds little else.
+    What lies on them does not mind the seam, and rests on the higher one. Joined only where the common outline holds
+    little else.
     """
     surfaces = list(surfaces)
     for i in range(len(surfaces)):
@@ -246,7 +247,7 @@ def _common_outline(a: SupportSurface, b: SupportSurface) -> SupportSurface | No
     parts = [_area(s.polygon[:, :2]) for s in (a, b)]
     if sum(parts) < SEAM_FILL * _area(outline):
         return None
-    height = float(np.average([a.height_m, b.height_m], weights=parts))
+    height = max(a.height_m, b.height_m)
     return SupportSurface(np.column_stack([outline, np.full(len(outline), height)]), float("inf"), False)
 
 

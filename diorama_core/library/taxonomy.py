@@ -304,6 +304,11 @@ PORTABLE = with_kin("plant", "box", "basket", "speaker", "fan", "heater", "wine 
 """What stands on the floor or on furniture, by its size."""
 
 
+def is_furniture(name: str) -> bool:
+    """Whether a category is what people call furniture: it stands on the floor, and is no lamp, plant, basket or rug."""
+    return category(name).mount == "floor" and name not in PORTABLE | LAMPS and broad(name) != "rug"
+
+
 _OTHER_THINGS = frozenset({
     "beam", "belt", "bird", "bolt", "boot", "bread", "cable", "cake", "car", "cat", "coat", "coin", "cord", "corn",
     "cow", "deer", "dress", "face", "fence", "fish", "flag", "food", "foot", "glove", "goat", "grass", "hammer",

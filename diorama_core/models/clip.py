@@ -1,4 +1,4 @@
-"""Texts, pictures and shapes in one space: OpenCLIP B-32 and DuoduoCLIP's shape tower (Lee et al. 2025)."""
+"""Texts, pictures and shapes in one space: OpenCLIP (B-32, bigG-14) and DuoduoCLIP's shape tower (Lee et al. 2025)."""
 
 from __future__ import annotations
 
@@ -18,12 +18,13 @@ from diorama_core.models.tokens import clip_tokens, load_tokenizer
 
 TOKENS = 77
 SIDE = 224
-_VECTOR: Dims = (1, 512)
+_VECTOR: Dims = (1, None)
+_OF_TOWER: Dims = (1, 512)
 
 
 @dataclass(frozen=True)
 class OpenClip:
-    """Input: texts, or RGB pictures of eight bits and any size. Output: unit vectors of 512 numbers."""
+    """Input: texts, or RGB pictures of 8 bits and any size. Output: unit vectors (B-32: 512 numbers, bigG: 1280)."""
 
     text_graph: Path = field(repr=False)
     image_graph: Path = field(repr=False)
@@ -35,7 +36,7 @@ class OpenClip:
     def _tokenizer(self) -> Any:
         return load_tokenizer(self.tokenizer)
 
-    def texts(self, texts: Sequence[str]) -> Float32[np.ndarray, "n 512"]:
+    def texts(self, texts: Sequence[str]) -> Float32[np.ndarray, "n d"]:
         """One vector per text."""
         session = self.pool.get(self.text_graph)
         name, first = session.first_input, session.outputs[0]
@@ -43,7 +44,7 @@ class OpenClip:
         rows = [session.run({name: one[None]}, {first: _VECTOR})[first] for one in ids]
         return unit(np.concatenate(rows)) if rows else np.zeros((0, 512), np.float32)
 
-    def images(self, pictures: Sequence[UInt8[np.ndarray, "_ _ 3"]]) -> Float32[np.ndarray, "n 512"]:
+    def images(self, pictures: Sequence[UInt8[np.ndarray, "_ _ 3"]]) -> Float32[np.ndarray, "n d"]:
         """One vector per picture."""
         session = self.pool.get(self.image_graph)
         name, first = session.picture_input, session.outputs[0]
@@ -67,7 +68,7 @@ class DuoduoClip:
         # A graph for a fixed number of views sees given ones again: attention over copies is that over the originals.
         shown = [views[k % len(views)] for k in range(count)] if isinstance(count, int) else views
         pixels = np.concatenate([clip_pixels(v) for v in shown])[None]
-        return unit(session.run({name: pixels}, {first: _VECTOR})[first])[0]
+        return unit(session.run({name: pixels}, {first: _OF_TOWER})[first])[0]
 
 
 def clip_pixels(rgb: UInt8[np.ndarray, "h w 3"]) -> Float32[np.ndarray, "1 3 224 224"]:

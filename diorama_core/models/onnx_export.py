@@ -1,10 +1,11 @@
-"""Networks of PyTorch as ONNX graphs: with one set of operators, in evaluation mode, checked."""
+"""Networks of PyTorch as ONNX graphs: with one set of operators, in evaluation mode, checked; and checkpoints read."""
 
 from __future__ import annotations
 
 import warnings
 from collections.abc import Mapping, Sequence
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import onnx
@@ -16,6 +17,20 @@ _LARGE = 64
 """Numbers in a weight that is worth storing in half precision."""
 
 
+def read_checkpoint(path: Path, trusted: bool) -> dict[str, Any]:
+    """A checkpoint of a user's own, without running code that it may carry unless it is trusted.
+
+    Raises:
+        SystemExit: it cannot be read; one line that says why.
+    """
+    try:
+        return torch.load(path, map_location="cpu", weights_only=not trusted)
+    except Exception as error:  # unpickling raises almost anything
+        words = " ".join(str(error).split())[:120]
+        advice = "is it the right file?" if trusted else "add --trust if you know where it comes from (it may run code)"
+        raise SystemExit(f"{path}: cannot be read ({words}); {advice}") from error
+
+
 def write_graph(
     network: nn.Module,
     arguments: tuple[torch.Tensor, ...],
@@ -25,6 +40,7 @@ def write_graph(
     dynamic: Mapping[str, Mapping[int, str]] | None = None,
     *,
     half_weights: bool = False,
+    data_beside: bool = False,
 ) -> Path:
     """Trace a network and write its graph.
 
@@ -36,6 +52,7 @@ def write_graph(
         outputs: names of the results.
         dynamic: axes that may have any length, by name of an input or output: number and name.
         half_weights: store weights in half precision, which halves the file; the graph still calculates in single.
+        data_beside: store weights in one file beside the graph, `NAME_data`; a graph of over 2 GB cannot hold them.
 
     Returns:
         The path.
@@ -53,10 +70,24 @@ def write_graph(
             opset_version=OPSET,
             dynamo=False,
         )
-    if half_weights:
-        onnx.save(with_half_weights(onnx.load(str(path))), str(path))
+    if half_weights or data_beside:
+        _store_again(path, half_weights, data_beside)
     onnx.checker.check_model(str(path))
     return path
+
+
+def _store_again(path: Path, half_weights: bool, data_beside: bool) -> None:
+    """Write a graph anew, its weights in half precision or in one file beside it."""
+    # The tracer itself leaves weights of large networks beside the graph, each in a file of its own.
+    weights = onnx.load(str(path), load_external_data=False).graph.initializer
+    parts = {entry.value for weight in weights for entry in weight.external_data if entry.key == "location"}
+    model = onnx.load(str(path))
+    for part in parts:
+        (path.parent / part).unlink()
+    model = with_half_weights(model) if half_weights else model
+    data = path.with_name(f"{path.name}_data")
+    data.unlink(missing_ok=True)  # it would be appended to
+    onnx.save_model(model, str(path), save_as_external_data=data_beside, location=data.name if data_beside else None)
 
 
 def with_half_weights(model: onnx.ModelProto) -> onnx.ModelProto:

@@ -45,6 +45,8 @@ MIN_PHOTOS_OF_ODD = 4
 ODD_STARTS = np.radians((0.0, 30.0, 60.0, 90.0, 120.0, 150.0))
 NEAREST_M = 0.15
 SURE = (0.0, 0.0, 0.0)
+HIDDEN_ODDS = 10.0
+"""That an object goes on beyond an edge where several photos say that something hides it."""
 MAX_HIDDEN = 1.0
 """Sigmas that a cuboid which goes on behind something costs at most for each hidden edge."""
 
@@ -157,6 +159,7 @@ class _Joint:
                     base_sigma_m=1.0,
                     cut_sigma=UNTOLD,
                     hidden_px=photo.hidden_px[index],
+                    hidden_odds=np.where(photo.hidden_px[index] > 0, HIDDEN_ODDS, 0.0),
                 )
                 for mode in modes
             ]

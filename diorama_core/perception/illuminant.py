@@ -48,6 +48,10 @@ class Illuminant:
         """Colours (sRGB 0 to 1) of surfaces as this light shows them; the inverse of `albedo` unless clipped."""
         return self._scaled(srgb, np.array(self.rgb))
 
+    def partly(self, share: float) -> Illuminant:
+        """A light between white and this one: that share of its cast, as exposures go (in logarithms)."""
+        return _of_chromaticity(share * _chromaticity(np.array(self.rgb)))
+
     def balanced(self, picture: UInt8[np.ndarray, "h w 3"]) -> UInt8[np.ndarray, "h w 3"]:
         """A picture as white light would have it."""
         values = np.arange(256) / 255.0

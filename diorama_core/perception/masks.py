@@ -27,7 +27,7 @@ _MAX_CONFIDENCE = 0.98
 _SEED = 7
 _SURE = 0.75
 """Probability of belonging or not belonging to the object beyond which a pixel is not asked again."""
-_FEWEST = 16
+_MIN_PIXELS = 16
 """Pixels of object and of surroundings that colours are learnt from."""
 
 
@@ -88,7 +88,7 @@ def refined(
     labels = np.where(likely > 0.5, cv2.GC_PR_FGD, cv2.GC_PR_BGD).astype(np.uint8)
     labels[likely > _SURE], labels[likely < 1 - _SURE] = cv2.GC_FGD, cv2.GC_BGD
     object_like = (labels == cv2.GC_PR_FGD) | (labels == cv2.GC_FGD)
-    if min(object_like.sum(), (~object_like).sum()) < _FEWEST:
+    if min(object_like.sum(), (~object_like).sum()) < _MIN_PIXELS:
         return np.asarray(probability > 0.5)
     models = np.zeros((2, 1, 65))
     cv2.setRNGSeed(_SEED)

@@ -22,6 +22,9 @@ _BIN = 20.0
 _BINS = 16
 """More than there are along either axis of hue, which reach from -127 to 127."""
 _MIN_PIXELS = 60
+_ADAPTED = 0.5
+"""Share of a light's cast that is taken off: eyes that look at a photo adapt to it in part (CIECAM02's degree of
+adaptation), and a room that looks warm in the photo is to look warm."""
 _MIN_SHARE = 0.25
 """An object without a colour that covers this much of it is not painted."""
 
@@ -29,13 +32,13 @@ _MIN_SHARE = 0.25
 def room_illuminant(
     inputs: Inputs, objects: tuple[DetectedObject, ...], room: Architecture, camera: Camera
 ) -> Illuminant:
-    """The light of a photo, by all its pixels and those of walls and ceiling that nothing hides."""
+    """The light of a photo that its colours are freed of, by all its pixels and those of unhidden walls and ceiling."""
     shape = (inputs.photo.height, inputs.photo.width)
     step = max(1, max(shape) // GRID_PX)
     upper = np.array([plane.role != "floor" for plane in room.planes] + [False])  # the last one: no plane
     seen = upper[visible_planes(room.planes, camera, step)]
     walls = cv2.resize(seen.astype(np.uint8), shape[::-1], interpolation=cv2.INTER_NEAREST).astype(bool)
-    return estimate_illuminant(inputs.photo.rgb, walls & ~object_pixels(shape, objects))
+    return estimate_illuminant(inputs.photo.rgb, walls & ~object_pixels(shape, objects)).partly(_ADAPTED)
 
 
 def photo_colours(rgb: UInt8[np.ndarray, "h w 3"], objects: tuple[DetectedObject, ...]) -> dict[str, Colour]:
@@ -84,8 +87,8 @@ def _main_colour(rgb: UInt8[np.ndarray, "h w 3"], mask: Bool[np.ndarray, "h w"])
     if len(pixels) < _MIN_PIXELS:
         return None
     lab = cv2.cvtColor(pixels[None].astype(np.float32) / 255.0, cv2.COLOR_RGB2Lab)[0]
-    # Shade varies over one surface, hue hardly: lightness gets wider bins.
-    light, green_red, blue_yellow = np.floor(lab / (2 * _BIN, _BIN, _BIN)).astype(int).T
+    # Shade varies over one surface, hue hardly: lightness gets wider bins. Grey lies in the middle of one.
+    light, green_red, blue_yellow = np.floor(lab / (2 * _BIN, _BIN, _BIN) + (0.0, 0.5, 0.5)).astype(int).T
     bins = (light * _BINS + green_red + _BINS // 2) * _BINS + blue_yellow + _BINS // 2
     seed = np.median(lab[bins == int(np.argmax(np.bincount(bins)))], axis=0)
     near = np.linalg.norm((lab - seed) / (2.0, 1.0, 1.0), axis=1) < _BIN

@@ -170,6 +170,11 @@ def _text_and_image(store: ModelStore, network: Network, known: Inputs, progress
     if network.id == "duoduoclip":
         vector = network_stages.shape_tower(store, network).shape([known.photo.rgb])
         return (Measurement("length of a shape's vector", float(np.linalg.norm(vector)), (0.99, 1.01)),)
+    if network.id == "openshape":
+        ball = np.random.default_rng(0).standard_normal((2000, 3))
+        ball /= np.linalg.norm(ball, axis=1, keepdims=True)
+        vector = network_stages.point_tower(store, network).shape(ball, np.full((2000, 3), 0.5))
+        return (Measurement("length of a shape's vector", float(np.linalg.norm(vector)), (0.99, 1.01)),)
     clip = network_stages.open_clip(store, network)
     picture = clip.images([known.photo.rgb])[0]
     right, wrong = clip.texts(["a photo of a room with furniture", "a photo of the sea"]) @ picture

@@ -13,6 +13,7 @@ from diorama_core.models.hq_sam import HqSam
 from diorama_core.models.inpainting import Filler, Lama, Migan
 from diorama_core.models.manifest import network
 from diorama_core.models.network import Network
+from diorama_core.models.openshape import OpenShape
 from diorama_core.models.owlv2 import SIDE, Owlv2
 from diorama_core.models.segment_anything import BoxSegmenter, Sam2, SlimSam, sam3_tracker
 from diorama_core.models.store import ModelStore
@@ -89,13 +90,19 @@ def patch_features(store: ModelStore, chosen: Network) -> Dinov2:
 
 def open_clip(store: ModelStore, chosen: Network) -> OpenClip:
     """Words and pictures in one space."""
-    text, tokenizer, image = (store.path(chosen, f.path) for f in chosen.files)
+    places = ("textual/model.onnx", "visual/model.onnx", "textual/tokenizer.json")
+    text, image, tokenizer = (store.path(chosen, place) for place in places)
     return OpenClip(text, image, tokenizer, store.identity(chosen))
 
 
 def shape_tower(store: ModelStore, chosen: Network) -> DuoduoClip:
     """Shapes in OpenCLIP's space."""
     return DuoduoClip(store.path(chosen, chosen.files[0].path), store.identity(chosen))
+
+
+def point_tower(store: ModelStore, chosen: Network) -> OpenShape:
+    """Shapes, by their points, in the space of OpenCLIP bigG-14."""
+    return OpenShape(store.path(chosen, chosen.files[0].path), store.identity(chosen))
 
 
 def scale_network(store: ModelStore, chosen: Network) -> GigaPoseScale:

@@ -11,6 +11,7 @@ from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
+from diorama_core.architecture.before_walls import drawn_before_walls
 from diorama_core.architecture.mounting import snap_mounted_objects
 from diorama_core.architecture.walls.passages import without_openings
 from diorama_core.artefacts import Inputs
@@ -105,7 +106,8 @@ PLAN: tuple[StageStep | Derivation, ...] = (
     StageStep("graph", "relate", ("inputs", "objects", "measured_geometry"), "graph", 0.02),
     Derivation(with_graph, ("measured_geometry", "graph"), "supported_geometry"),
     StageStep("architecture", "reconstruct", ("inputs", "objects", "supported_geometry"), "architecture", 0.1),
-    Derivation(snap_mounted_objects, ("supported_geometry", "architecture"), "mounted_geometry"),
+    Derivation(drawn_before_walls, ("supported_geometry", "architecture"), "standing_geometry"),
+    Derivation(snap_mounted_objects, ("standing_geometry", "architecture"), "mounted_geometry"),
     Derivation(without_openings, ("objects", "mounted_geometry", "architecture"), "furniture"),
     Derivation(lambda furniture: furniture[0], ("furniture",), "furniture_objects"),
     Derivation(lambda furniture: furniture[1], ("furniture",), "geometry"),

@@ -26,7 +26,7 @@ from diorama_core.artefacts import (
 from diorama_core.layout.clear_shapes import clear_shapes
 from diorama_core.layout.fitted_boards import fitted_boards
 from diorama_core.layout.holding_shapes import holding_shapes
-from diorama_core.layout.noise import MEASURED, REASONED
+from diorama_core.layout.noise import MEASURED, REASONED, ObservationNoise
 from diorama_core.layout.support_check import checked_supports
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.perception.illuminant import Illuminant
@@ -123,17 +123,9 @@ def build_scene(
         )
         found = evaluate(stages, found, ("posed",), runner, progress.part(0.45, 0.85))
         textures = painted.result()
-    noise = REASONED if inputs.depth_m is None else MEASURED
     shaped = _observed({**found, "architecture": room}, balanced, library)
-    changed: tuple[str, ...] = ()
-    if inputs.depth_m is not None:  # heights reasoned from a photo alone do not tell boards from one another
-        shaped, holding = holding_shapes(shaped, library, noise)
-        shaped, contradicted = checked_supports(shaped, library, noise, shapes_clear=False)
-        shaped, clear = clear_shapes(shaped, library, noise)
-        changed = holding + contradicted + clear
-    checked, corrected = checked_supports(shaped, library, noise)
-    fitted, moved = fitted_boards(checked, library, reasoned=inputs.depth_m is None)
-    observed = _textured(containing_room(fitted), textures)
+    contained, changed = prepared(shaped, library, REASONED if inputs.depth_m is None else MEASURED)
+    observed = _textured(contained, textures)
     appearance = photo_appearance(balanced.photo.rgb, found["furniture_objects"], observed, library, illuminant.rgb)
     observed, textures = appearance.applied(observed), {**textures, **appearance.pictures}
 
@@ -161,8 +153,27 @@ def build_scene(
         inputs=inputs,
         runs=tuple(runner.runs),
         stages=stages,
-        notes=(*_notes(found, changed + corrected + moved, report), *runner.lost),
+        notes=(*_notes(found, changed, report), *runner.lost),
     )
+
+
+def prepared(shaped: Scene, library: ShapeLibrary, noise: ObservationNoise) -> tuple[Scene, tuple[str, ...]]:
+    """The scene as the layout takes it, and what was changed: supports, shapes and the room agree with the objects.
+
+    Args:
+        shaped: every object in its best candidate's pose.
+        library: where shapes come from.
+        noise: of the observed positions.
+    """
+    changed: tuple[str, ...] = ()
+    if noise.measured:  # heights reasoned from a photo alone do not tell boards from one another
+        shaped, holding = holding_shapes(shaped, library, noise)
+        shaped, contradicted = checked_supports(shaped, library, noise, shapes_clear=False)
+        shaped, clear = clear_shapes(shaped, library, noise)
+        changed = holding + contradicted + clear
+    checked, corrected = checked_supports(shaped, library, noise)
+    fitted, moved = fitted_boards(checked, library, reasoned=not noise.measured)
+    return containing_room(fitted, reasoned=not noise.measured), changed + corrected + moved
 
 
 def _in_white_light(room: Architecture, illuminant: Illuminant) -> Architecture:

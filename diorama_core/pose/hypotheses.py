@@ -103,8 +103,13 @@ def hypotheses_for(
     turned = np.concatenate([np.zeros(len(total), dtype=bool), np.ones(len(again), dtype=bool)])
     total, off_axis, odd = (np.concatenate([values, values[again]]) for values in (total, off_axis, odd))
     wanted = np.where((odd & ~turned)[:, None], cuboid.size_m[[1, 0, 2]], cuboid.size_m)
+    filled = wanted
+    if np.isfinite(limits.sides_log) and long:  # it is as wide as one of the cuboid's sides, not something between
+        total, off_axis, turned = np.tile(total, 2), np.tile(off_axis, 2), np.tile(turned, 2)
+        filled = np.concatenate([wanted[:, [side, side, 2]] for side in (0, 1)])
+        wanted = np.tile(wanted, (2, 1))
     R = np.array([cuboid.R_world_object @ yaw_rotation(angle) for angle in total])
-    scale = limits.scale_for(wanted)
+    scale = limits.scale_for(filled)
     sizes = scale * limits.shape_size_m
     position = anchor.placed(np.tile(cuboid.centre, (len(total), 1)), R, sizes)
     thick = np.maximum(cuboid.size_m.min(), _THIN_M)

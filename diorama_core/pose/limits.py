@@ -7,11 +7,14 @@ from dataclasses import dataclass
 import numpy as np
 from jaxtyping import Bool, Float
 
+from diorama_core.library.record import SymmetryFold
 from diorama_core.library.taxonomy import UNKNOWN, SizePrior, category, with_kin
 
 _SIGMAS = 2.3
 _STRETCH_SHAPED = float(np.log(1.28))
 _STRETCH_BOXY = float(np.log(1.75))
+_SIDES_SQUARE = 0.5 * float(np.log(1.3))
+_QUARTERS = 4
 _STRETCH_FLAT = float(np.log(3.0))
 _THIN_M = 0.08
 _THIN_SHARE = 0.1
@@ -54,6 +57,8 @@ class SizeLimits:
     max_m: Float[np.ndarray, "3"]
     stretch_log: float
     """How far the logarithm of one axis' scale may be from the mean of the three."""
+    sides_log: float = np.inf
+    """How far the logarithms of the horizontal scales may be from their mean: 0 for what is round and stays round."""
     any_proportions: bool = False
     """Whether things of its category come in all proportions, so that stretching says nothing against a shape."""
 
@@ -65,6 +70,7 @@ class SizeLimits:
         observed_m: Float[np.ndarray, "3"],
         *,
         measured: bool = False,
+        sides_log: float = np.inf,
     ) -> SizeLimits:
         """Limits for a shape standing for an object of a category, by the size prior nearest to what was observed.
 
@@ -76,7 +82,7 @@ class SizeLimits:
             most[2] = max(most[2], observed_m[2])
         flat = category_name in FLAT and not measured  # measured proportions tell which frame it is
         stretch = _STRETCH_FLAT if flat else _STRETCH_BOXY if category_name in BOXY else _STRETCH_SHAPED
-        return cls(own, least, most, stretch, flat)
+        return cls(own, least, most, stretch, sides_log, flat)
 
     @property
     def thin(self) -> Bool[np.ndarray, "3"]:
@@ -88,6 +94,9 @@ class SizeLimits:
         free = self.shape_size_m > _DEGENERATE_M
         wanted = np.clip(np.nan_to_num(wanted_m, nan=1.0), self.min_m, self.max_m)
         log_scale = np.log(wanted / np.maximum(self.shape_size_m, _DEGENERATE_M))
+        sides = log_scale[..., :2]
+        middle = sides.mean(axis=-1, keepdims=True)
+        log_scale[..., :2] = middle + np.clip(sides - middle, -self.sides_log, self.sides_log)
         shaped = free & ~self.thin
         if not shaped.any():
             shaped = free if free.any() else np.ones(3, dtype=bool)
@@ -102,6 +111,21 @@ class SizeLimits:
         if not shaped.any():
             return np.zeros(np.shape(scale)[:-1])
         return np.log(scale[..., shaped]).std(axis=-1)
+
+
+def sides_log_of(symmetry: SymmetryFold, category_name: str, *, round: bool) -> float:
+    """How far the horizontal scales of a shape may differ: what looks the same after a quarter turn is no long one.
+
+    Args:
+        symmetry: Turns about up that leave the shape the same.
+        category_name: Unnamed things come in all proportions.
+        round: Whether its outline from above is a circle.
+    """
+    if category_name == UNKNOWN.name:
+        return np.inf
+    if round:
+        return 0.0
+    return _SIDES_SQUARE if symmetry % _QUARTERS == 0 else np.inf
 
 
 def _category_range(category_name: str, observed_m: np.ndarray, own_m: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

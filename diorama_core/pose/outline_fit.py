@@ -42,7 +42,12 @@ class _Moves:
 
 
 def fitted_pose(
-    evidence: Evidence, caster: ShapeCaster, pose: Pose, shape_size_m: Float[np.ndarray, "3"], *, resize: bool
+    evidence: Evidence,
+    caster: ShapeCaster,
+    pose: Pose,
+    shape_size_m: Float[np.ndarray, "3"],
+    *,
+    resize: bool,
 ) -> Pose:
     """The pose near one with which the shape agrees best.
 
@@ -51,14 +56,14 @@ def fitted_pose(
         caster: The shape.
         pose: Where it is so far.
         shape_size_m: Its extents at scale 1.
-        resize: Whether its size may change; one of a set keeps it.
+        resize: Whether its size may change; one of a set keeps it. What is round from above stays round.
     """
     if evidence.surface is None and evidence.seen.mask_trust < MIN_TRUST:
         return pose
     error = float(evidence.errors(caster, _batch(_Moves([pose.R_world_object], [pose.position], [pose.scale])))[0])
     for step in STEPS:
         for _ in range(ROUNDS):
-            moves = _neighbours(pose, np.asarray(shape_size_m), step, resize)
+            moves = _neighbours(pose, np.asarray(shape_size_m), step, _resizings(resize, caster.round_from_above))
             errors = evidence.errors(caster, _batch(moves))
             best = int(np.argmin(errors))
             if errors[best] >= error - GAIN:
@@ -67,18 +72,29 @@ def fitted_pose(
     return pose
 
 
-def _neighbours(pose: Pose, shape_size_m: Float[np.ndarray, "3"], step: float, resize: bool) -> _Moves:
+def _resizings(resize: bool, round: bool) -> tuple[tuple[tuple[int, ...], int], ...]:
+    """Axes that grow together, and the side of the first that stays: 0 for none, the middle stays."""
+    if not resize:
+        return ()
+    if round:
+        return (((0, 1), 0), ((2,), -1))
+    return (((0,), 0), ((0,), 1), ((0,), -1), ((1,), 0), ((1,), 1), ((1,), -1), ((2,), -1))
+
+
+def _neighbours(
+    pose: Pose, shape_size_m: Float[np.ndarray, "3"], step: float, resizings: tuple[tuple[tuple[int, ...], int], ...]
+) -> _Moves:
     R, moves = pose.R_world_object, _Moves([], [], [])
     reach = 0.5 * step * float((shape_size_m * pose.scale).max())
     for sign in (1.0, -1.0):
         moves.add(R @ yaw_rotation(sign * step), pose.position, pose.scale)
         for axis in range(2):
             moves.add(R, pose.position + sign * reach * R[:, axis], pose.scale)
-        for axis, fixed in ((0, 0), (0, 1), (0, -1), (1, 0), (1, 1), (1, -1), (2, -1)) if resize else ():
-            scale = pose.scale.copy()
-            scale[axis] *= 1.0 + sign * step
-            grown = 0.5 * (scale[axis] - pose.scale[axis]) * shape_size_m[axis]
-            moves.add(R, pose.position - fixed * grown * R[:, axis], scale)
+        for axes, fixed in resizings:
+            scale, first = pose.scale.copy(), axes[0]
+            scale[list(axes)] *= 1.0 + sign * step
+            grown = 0.5 * (scale[first] - pose.scale[first]) * shape_size_m[first]
+            moves.add(R, pose.position - fixed * grown * R[:, first], scale)
     return moves
 
 

@@ -24,6 +24,7 @@ from diorama_core.geometry.observed import observe_among
 from diorama_core.geometry.shape_appearance import SHARED_APPEARANCES, ShapeAppearance
 from diorama_core.geometry.silhouette import PoseBatch, ShapeCaster
 from diorama_core.library.catalogue import default_cache_dir
+from diorama_core.library.hyponyms import is_named
 from diorama_core.library.record import ROUND, Shape, ShapeLibrary
 from diorama_core.library.taxonomy import category
 from diorama_core.pose.agree import MAX_LOSS_OF_SURE_OUTLINES, MAX_LOSS_WITH_DEPTH, SETS, agreed_ranks
@@ -31,7 +32,7 @@ from diorama_core.pose.appearance_likelihood import AppearanceLikelihood, cells_
 from diorama_core.pose.facing import facing_of, wall_samples
 from diorama_core.pose.hypotheses import Anchor, Hypotheses, anchor_of, hypotheses_for, unlike_best
 from diorama_core.pose.levels import level_cost
-from diorama_core.pose.limits import SizeLimits
+from diorama_core.pose.limits import SizeLimits, sides_log_of
 from diorama_core.pose.mask_observations import Evidence
 from diorama_core.pose.measured import MeasuredObject, foot_height_m
 from diorama_core.pose.refine import BoxFit
@@ -43,10 +44,12 @@ from diorama_core.scene.types import Candidate, Pose
 
 _POWERS = (1.5, 0.6)
 """How much retrieval and pose say about which shape is best: the picture's outline alone would ignore colours."""
+_POWERS_OF_UNNAMED = (3.0, 0.6)
+"""The same for a thing without a name: shapes of many kinds compete, and some unlike thing always has its outline."""
 _RETRIEVAL_WITH_DEPTH = 4.0
 """What retrieval says beside `Evidence.log_likelihood` where depth was measured: that tells shapes apart."""
 _MIN_STANDING = -1.0
-"""What holds an object may be mistaken: that a shape does not stand there says at most so much against it (logarithm)."""
+"""What holds an object may be mistaken: that a shape does not stand there says at most so much against it, as a log."""
 _VERY_SHAPE = 0.1
 """Disagreement with picture and depth below which a shape may be the very one."""
 _MAX_THREADS = 4
@@ -276,7 +279,8 @@ class RenderAndCompare:
         appearance = self._compare(shape)
         name = task.item.category
         depth_known = task.measured is not None
-        limits = SizeLimits.of(shape.size_m, name, task.cuboid.size_m, measured=depth_known)
+        sides = sides_log_of(shape.symmetry, name, round=appearance.caster.round_from_above)
+        limits = SizeLimits.of(shape.size_m, name, task.cuboid.size_m, measured=depth_known, sides_log=sides)
         tried = hypotheses_for(task.cuboid, name, shape.symmetry, limits, task.anchor, sides_known=depth_known)
         if task.measured is not None:
             tried = tried.and_also(task.measured.hypotheses(shape.symmetry, limits))
@@ -289,7 +293,7 @@ class RenderAndCompare:
     def _pose_by_outline(self, task: _Task, tried: _Tried) -> _Posed:
         best = _worth_refining(tried.scores, task.fine.facing.cost(tried.hypotheses.poses.R), self.refined)
         poses, error, score = self._chosen(task, tried, tried.hypotheses[best])
-        of_retrieval, of_pose = _POWERS
+        of_retrieval, of_pose = _POWERS if is_named(task.item.label) else _POWERS_OF_UNNAMED
         cost = task.fine.enlarged_cost(poses.scale[0], tried.limits) + task.fine.sure_outline_cost(error)
         return _Posed(tried.shape, _only(poses), error, of_retrieval * tried.liked + of_pose * score - cost)
 

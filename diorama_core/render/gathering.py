@@ -66,7 +66,7 @@ def fallen_light(
 def _noisy(world: World, blockers: Caster, grid: Grid, rows: slice, light: Lighting, effort: Effort) -> Light:
     """Light of some rows, every pixel with its own share of the samples."""
     found = grid.found
-    spots = Spots(grid.points[found], grid.normals[found], grid.flat_normals[found])
+    spots = Spots(grid.points[found], grid.normals[found], grid.flat_normals[found], grid.photographed[found])
     pixels = np.argwhere(found) + np.array([rows.start, 0])
     noisy = np.zeros(grid.points.shape, np.float32)
     noisy[found] = np.add(*irradiance(world, blockers, spots, pixels, light, effort))
@@ -119,5 +119,5 @@ def _alone(
 ) -> Float32[np.ndarray, "n 3"]:
     """Light of pixels that no neighbour tells."""
     at = (pixels[:, 0], pixels[:, 1])
-    spots = Spots(grid.points[at], grid.normals[at], grid.flat_normals[at])
+    spots = Spots(grid.points[at], grid.normals[at], grid.flat_normals[at], grid.photographed[at])
     return np.add(*irradiance(world, blockers, spots, None, light, ALONE))

@@ -32,6 +32,8 @@ class Grid:
     """Along the viewing axis."""
     pixel_m: Float32[np.ndarray, "h w"]
     """Width that a pixel covers at its depth."""
+    photographed: Bool[np.ndarray, "h w"]
+    """Whether the colour of what is seen already holds the light of the room."""
 
     def part(self, rows: slice, columns: slice = slice(None)) -> Grid:
         """Some rows and columns, as a view of the same memory."""
@@ -43,6 +45,7 @@ class Grid:
             self.instance[rows, columns],
             self.depth[rows, columns],
             self.pixel_m[rows, columns],
+            self.photographed[rows, columns],
         )
 
 

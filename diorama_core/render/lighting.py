@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from functools import cache
 
 import numpy as np
-from jaxtyping import Float, Float32, Int
+from jaxtyping import Bool, Float, Float32, Int
 
 from diorama_core.geometry.vectors import dot, facing, unit
 from diorama_core.render.direct_light import DirectLight
@@ -65,6 +65,8 @@ class Spots:
     """Smooth."""
     flat_normals: Float32[np.ndarray, "n 3"]
     """Of the triangles."""
+    photographed: Bool[np.ndarray, "n"] | None = None
+    """Whose colours already hold the light of the room; None where no place's do."""
 
 
 def studio(bounds: Float[np.ndarray, "2 3"], toward_camera: Float[np.ndarray, "3"]) -> Lighting:
@@ -160,7 +162,7 @@ def irradiance(
     for samples in _sample_sets(effort.sky_rays, sharing):
         local = _cosine_directions(samples).take(lane, axis=0)
         direction = frames[0] * local[:, :1] + frames[1] * local[:, 1:2] + spots.normals * local[:, 2:]
-        around += _from_around(world, origins, direction, light)
+        around += _from_around(world, origins, direction, light, None if light.relights else spots.photographed)
     return window / max(effort.window_rays, 1), around / max(effort.sky_rays, 1)
 
 
@@ -209,12 +211,21 @@ def _key_strength(
 
 
 def _from_around(
-    world: World, origins: np.ndarray, direction: Float32[np.ndarray, "n 3"], light: Lighting
+    world: World,
+    origins: np.ndarray,
+    direction: Float32[np.ndarray, "n 3"],
+    light: Lighting,
+    photographed: Bool[np.ndarray, "n"] | None,
 ) -> Float32[np.ndarray, "n 3"]:
-    """Radiance along one direction each: the surroundings, or the colour of what is near."""
+    """Radiance along one direction each: the surroundings, or the colour of what is near.
+
+    Photographed walls hold nothing off one another: the photo shows them in the light that the room leaves.
+    """
     hits = world.caster.first_hits(np.concatenate([origins, direction], axis=1))
     radiance = ambient(direction, light)
     near = np.flatnonzero(hits.distance < light.reach_m)
+    if photographed is not None and photographed.any():
+        near = near[~(photographed[near] & world.photographed(hits.triangle[near]))]
     if len(near):
         chosen, toward = hits.chosen(near), direction.take(near, axis=0)
         normals, colour = world.rough_appearance(chosen)

@@ -105,9 +105,9 @@ View = PinholeView | OrthographicView
 """Anything that turns image positions into rays."""
 
 
-def pixel_centres(width: int, height: int) -> Float[np.ndarray, "h w 2"]:
-    """Image positions (x, y) of all pixel centres."""
-    x, y = np.meshgrid(np.arange(width) + 0.5, np.arange(height) + 0.5)
+def pixel_centres(width: int, height: int, first_row: int = 0) -> Float[np.ndarray, "h w 2"]:
+    """Image positions (x, y) of all pixel centres, from a row on."""
+    x, y = np.meshgrid(np.arange(width) + 0.5, np.arange(first_row, height) + 0.5)
     return np.stack([x, y], axis=-1)
 
 

@@ -11,6 +11,7 @@ from diorama_core.geometry.vectors import dot, unit
 from diorama_core.progress import Progress
 from diorama_core.render.filters import tone_mapped
 from diorama_core.render.gathering import fallen_light
+from diorama_core.render.gloss import gloss_share
 from diorama_core.render.grid import Grid, bands, each, pixel_footprint
 from diorama_core.render.lighting import Effort, Lighting, ambient, unshadowed
 from diorama_core.render.raycast import Caster, RayArray, View, pixel_centres
@@ -86,7 +87,7 @@ class _Band:
 
 
 def _first_sight(world: World, view: View, rows: slice) -> _Band:
-    rays = view.rays(pixel_centres(view.width, rows.stop)[rows])
+    rays = view.rays(pixel_centres(view.width, rows.stop, rows.start))
     hits = world.caster.first_hits(rays)
     found = hits.found
     footprint_m = pixel_footprint(view, np.where(found, hits.distance, 0).astype(np.float32))[found]
@@ -108,7 +109,10 @@ def _seen(
         beyond = _beyond(world, places, rays, clear, light, depth)
         share = places.alpha[clear, None]
         out[clear] = out[clear] * share + beyond * (1 - share)
-    return (out + _gloss(world, places, direction, fallen, light)).astype(np.float32)
+    gloss = _gloss(world, places, direction, fallen, light)
+    if not light.relights:
+        gloss[places.photographed] = 0  # their colours hold it already
+    return (out + gloss).astype(np.float32)
 
 
 def _relit(places: Places, fallen: Float32[np.ndarray, "n 3"], light: Lighting) -> Float32[np.ndarray, "n 3"]:
@@ -131,9 +135,7 @@ def _gloss(
     """Mirrored surroundings, blurred toward the fallen light as roughness grows (Schlick's Fresnel)."""
     cosine = np.clip(-dot(places.normals, direction), 0, 1)[:, None]
     smooth = 1 - places.roughness[:, None]
-    f0 = 0.04 * (1 - places.metallic[:, None]) + places.albedo * places.metallic[:, None]
-    fresnel = f0 + (np.maximum(smooth, f0) - f0) * (1 - cosine) ** 5
-    strength = fresnel * np.where(places.metallic[:, None] > 0.5, 1, smooth)
+    strength = gloss_share(places.albedo, places.metallic[:, None], smooth, cosine)
     shiny = np.flatnonzero((smooth[:, 0] > 0.45) | (places.metallic > 0.3))
     mirrored = fallen.copy()
     if len(shiny):
@@ -274,18 +276,14 @@ def _grid(parts: list[_Band], view: View) -> Grid:
     found = np.concatenate([p.found for p in parts])
     depth = np.concatenate([p.depth for p in parts])
 
-    def image(name: str, empty: float = 0.0) -> np.ndarray:
-        values = np.concatenate([getattr(p.places, name) for p in parts])
-        whole = np.full((*found.shape, *values.shape[1:]), empty, values.dtype)
-        whole[found] = values
+    def image(name: str) -> np.ndarray:
+        values = [getattr(p.places, name) for p in parts]
+        empty = -1 if name == "instance" else 0
+        whole = np.full((*found.shape, *values[0].shape[1:]), empty, values[0].dtype)
+        whole[found] = np.concatenate(values)
         return whole
 
-    return Grid(
-        found,
-        image("points"),
-        image("normals"),
-        image("flat_normals"),
-        image("instance", -1),
-        depth,
-        pixel_footprint(view, depth),
+    points, normals, flat_normals, instance, photographed = each(
+        image, ("points", "normals", "flat_normals", "instance", "photographed")
     )
+    return Grid(found, points, normals, flat_normals, instance, depth, pixel_footprint(view, depth), photographed)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import manifold3d
 import numpy as np
 from jaxtyping import Float, Int, Int32, UInt8
@@ -13,7 +15,11 @@ from diorama_core.scene.types import Plane
 
 
 def plane_surfaces(
-    plane: Plane, texture: UInt8[np.ndarray, "h w c"] | None = None, *, photographed: bool = True
+    plane: Plane,
+    texture: UInt8[np.ndarray, "h w c"] | None = None,
+    *,
+    photographed: bool = True,
+    plain_photographed: bool = False,
 ) -> tuple[Surface, Surface]:
     """The face toward the room, textured where there is a picture, and the plain rest, extruded away from the room.
 
@@ -21,12 +27,15 @@ def plane_surfaces(
         plane: Any polygon, concave ones included.
         texture: The plane's rectified picture, laid out as `geometry.planes.plane_uv` says.
         photographed: Whether that picture holds the light of the room, rather than the bare colour of the material.
+        plain_photographed: Whether the plane's plain colour does.
     """
     polygon, count = plane.polygon, len(plane.polygon)
     inner = _triangles(plane)
     behind = polygon - plane.normal * plane.thickness
     plain = _plain_material(plane)
-    face = plain if texture is None else _textured(plane, texture, photographed and plane.finish is None)
+    bare = plane.finish is None
+    face = replace(plain, photographed=plain_photographed and bare)
+    face = face if texture is None else _textured(plane, texture, photographed and bare)
     front = _surface(polygon, inner, plane.normal, face, plane_uv(plane))
     ring = np.arange(count)
     after = np.roll(ring, -1)

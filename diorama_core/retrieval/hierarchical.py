@@ -25,6 +25,7 @@ from diorama_core.retrieval.appearance_similarity import (
     EmbeddedSimilarity,
     ObjectCrop,
 )
+from diorama_core.retrieval.measured_sizes import as_measured
 from diorama_core.retrieval.neighbours import neighbour_factors
 from diorama_core.retrieval.outlines import outline_agreement, whole_outline
 from diorama_core.retrieval.pools import Pool, RetrievalQuery, pool_for, size_cost
@@ -109,9 +110,10 @@ class HierarchicalRetrieval:
             object_crop = ObjectCrop(inputs.photo.rgb, item.mask, item.label, visible, seen.mask_trust)
             alike = similarity.of(object_crop, [m.shape for m in members])
             said = described_share(self.library, item.label, item.category, [m.shape for m in members])
+            described = (said == 1) & (said < 1).any()
             factors = [
-                m.kind_factor * (1 - _OF_WORDS * (1 - w)) * self._of_form(m.shape, item)
-                for m, w in zip(members, said, strict=True)
+                m.kind_factor * (1 - _OF_WORDS * (1 - w)) * self._of_form(m.shape, item, described=d)
+                for m, w, d in zip(members, said, described.tolist(), strict=True)
             ]
             sight.append(visible)
             scores.append(
@@ -169,11 +171,14 @@ class HierarchicalRetrieval:
         folder = default_cache_dir() / "appearances"
         return SHARED_APPEARANCES.get(shape.content_hash, folder, lambda: self.library.parts(shape.id))
 
-    def _of_form(self, shape: Shape, item: DetectedObject) -> float:
-        """How well the shape's form agrees with what was seen; how usual it is, where the mask can hardly tell."""
+    def _of_form(self, shape: Shape, item: DetectedObject, *, described: bool) -> float:
+        """How well the shape's form agrees with what was seen; how usual it is, where the mask can hardly tell.
+
+        What the label describes is as usual as can be.
+        """
         appearance = self._appearance(shape)
         seen = seen_form_factor(shape_form(shape, appearance), item.seen_form) if item.seen_form else 1.0
-        return seen if item.mask_confidence >= 1.0 else seen * usual_form_factor(shape, appearance)
+        return seen if described or item.mask_confidence >= 1.0 else seen * usual_form_factor(shape, appearance)
 
     def _weights(self, item: _Observation) -> tuple[float, float, float]:
         """Weights of size, outline and appearance for an object with this visibility."""
@@ -200,7 +205,10 @@ class _Observation:
 def _senses(
     objects: Sequence[DetectedObject], cuboids: Sequence[Cuboid], geometry: ObjectGeometry
 ) -> list[Mapping[str, float]]:
-    """For every object how likely its word means each kind, by its box, its height and its neighbours."""
+    """For every object how likely its word means each kind, by its box, its height, its size and its neighbours.
+
+    A thing without a name was measured as what it was taken for, so that its size says nothing more.
+    """
     camera = geometry.camera
     by_box = sense_probabilities(objects, camera.intrinsics, camera.T_world_camera[:3, :3], float(camera.position[2]))
     parent_of = {s.child: s.parent for s in geometry.supports}
@@ -208,11 +216,13 @@ def _senses(
     for index, senses in enumerate(by_box):
         factors = neighbour_factors(index, tuple(senses), objects, cuboids, geometry.supports)
         mounts = _MOUNTS.get(parent_of.get(objects[index].id, "floor"), ("floor", "surface"))
-        other = _OTHER_MOUNT if is_named(objects[index].label) else _OTHER_MOUNT_OF_UNNAMED
+        named = is_named(objects[index].label)
+        other = _OTHER_MOUNT if named else _OTHER_MOUNT_OF_UNNAMED
+        sized = as_measured(senses, cuboids[index].size_m) if named else senses
         found.append(
             {
                 kind: share * factors[kind] * (1.0 if category(kind).mount in mounts else other)
-                for kind, share in senses.items()
+                for kind, share in sized.items()
             }
         )
     return found

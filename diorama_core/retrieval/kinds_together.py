@@ -8,15 +8,17 @@ how well they explain the whole.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from functools import cache
 from math import fsum
 
 import numpy as np
-from jaxtyping import Float
+from jaxtyping import Bool, Float
 
 from diorama_core.library.company import CARRIED, HARDLY_CARRIED, ROOMS, SELDOM_CARRIED
 from diorama_core.library.hyponyms import meanings
 from diorama_core.library.taxonomy import CATEGORIES, UNKNOWN, category
+from diorama_core.scene.values import ArrayValue
 
 Box = tuple[float, float, float, float]
 
@@ -33,6 +35,22 @@ _FOOT_SLACK, _LOWEST_FOOT = 0.1, 0.03
 """How far a foot may be above a carrier's box, in the thing's heights, and must be above its lower edge, in its own."""
 
 
+@dataclass(frozen=True, eq=False)
+class Lying(ArrayValue):
+    """What a thing's box says for its lying on its carrier."""
+
+    kinds: tuple[str, ...]
+    """That it may be of."""
+    carrier_kinds: tuple[str, ...]
+    ratio: Float[np.ndarray, "k c"]
+    """How many times likelier the box is for a kind on a kind of carrier than for the kind anywhere."""
+
+
+def carries(kind: str) -> bool:
+    """Whether things of a kind carry others."""
+    return bool(_carriers()[_index()[kind]])
+
+
 def carriers(boxes: Sequence[Box]) -> list[int | None]:
     """For every box the smallest larger one that its foot is in, as an index; None where there is none."""
     rows = np.asarray(boxes, dtype=np.float64).reshape(-1, 4)
@@ -47,30 +65,48 @@ def carriers(boxes: Sequence[Box]) -> list[int | None]:
     return [int(row.argmin()) if np.isfinite(row).any() else None for row in best]
 
 
-def kinds_together(alone: Sequence[Mapping[str, float]], carrier_of: Sequence[int | None]) -> list[Mapping[str, float]]:
+def kinds_together(
+    alone: Sequence[Mapping[str, float]],
+    carrier_of: Sequence[int | None],
+    lying: Sequence[Lying | None] | None = None,
+) -> list[Mapping[str, float]]:
     """For every thing how likely it is of each kind, given all others.
 
     Args:
         alone: how likely it is of each kind by itself; kinds that are not there are impossible.
         carrier_of: for every thing the one that its foot is in; no thing carries itself, not even through others.
+        lying: for every thing what its box says for its lying there; nothing by default.
     """
     if not alone:
         return []
-    index = {name: i for i, name in enumerate(_names())}
+    index = _index()
     own = np.zeros((len(alone), len(index)))
     for row, of_one in zip(own, alone, strict=True):
         for kind, share in of_one.items():
             row[index[kind]] = share
-    explained = [_in_room(own * usual, carrier_of) for usual in _rooms()]
+    edges = [_edge(of_one) for of_one in lying or [None] * len(alone)]
+    explained = [_in_room(own * usual, carrier_of, edges) for usual in _rooms()]
     says = _ROOM_TRUST * np.array([log for _, log in explained])
     weight = np.exp(says - says.max())
     mixed = np.einsum("t,tnk->nk", weight / weight.sum(), np.stack([beliefs for beliefs, _ in explained]))
     return [{kind: float(row[index[kind]]) for kind in of_one} for row, of_one in zip(mixed, alone, strict=True)]
 
 
-def _in_room(own: Float[np.ndarray, "n k"], carrier_of: Sequence[int | None]) -> tuple[Float[np.ndarray, "n k"], float]:
+def _edge(lying: Lying | None) -> Float[np.ndarray, "k k"]:
+    """How well every kind of a thing (row) goes with every kind of its carrier (column)."""
+    there = _together()
+    if lying is not None:
+        index = _index()
+        rows, columns = ([index[kind] for kind in kinds] for kinds in (lying.kinds, lying.carrier_kinds))
+        there = there.copy()
+        there[np.ix_(rows, columns)] *= lying.ratio
+    return (1.0 - _LIES_ON_IT) + _LIES_ON_IT * there
+
+
+def _in_room(
+    own: Float[np.ndarray, "n k"], carrier_of: Sequence[int | None], edges: Sequence[Float[np.ndarray, "k k"]]
+) -> tuple[Float[np.ndarray, "n k"], float]:
     """Marginals in one type of room, and the logarithm of how well it explains everything."""
-    together = _together()
     upward, inward = np.ones_like(own), own.copy()
     order = _children_first(carrier_of)
     logs: list[float] = []
@@ -83,14 +119,14 @@ def _in_room(own: Float[np.ndarray, "n k"], carrier_of: Sequence[int | None]) ->
         logs.append(float(np.log(total)))
         parent = carrier_of[i]
         if parent is not None:
-            upward[i] = inward[i] @ together
+            upward[i] = inward[i] @ edges[i]
             said[parent].append(upward[i])
     beliefs = inward.copy()
     for i in reversed(order):  # and back down again
         parent = carrier_of[i]
         if parent is not None:
             without = beliefs[parent] / upward[i]
-            beliefs[i] = inward[i] * (together @ (without / without.sum()))
+            beliefs[i] = inward[i] * (edges[i] @ (without / without.sum()))
             beliefs[i] /= beliefs[i].sum()
     return beliefs, fsum(logs)
 
@@ -110,6 +146,11 @@ def _names() -> tuple[str, ...]:
 
 
 @cache
+def _index() -> Mapping[str, int]:
+    return {name: i for i, name in enumerate(_names())}
+
+
+@cache
 def _frequency() -> Float[np.ndarray, "k"]:
     """Of every kind among all things."""
     shares = meanings(UNKNOWN.name, UNKNOWN.name)
@@ -118,20 +159,22 @@ def _frequency() -> Float[np.ndarray, "k"]:
 
 @cache
 def _together() -> Float[np.ndarray, "k k"]:
-    """How many times more often a thing of each kind (row) has its foot in the box of one of each kind (column)."""
-    names = _names()
-    index = {name: i for i, name in enumerate(names)}
+    """How many times more often a thing of each kind (row) lies on one of each kind (column) than it is met at all."""
+    names, index = _names(), _index()
     lies = np.array([category(name).mount == "surface" for name in names])
     ratio = np.ones((len(names), len(names)))
-    often = np.full(len(names), _NO_CARRIER)
     for row in CARRIED:
         for carrier in sorted(row.carriers):
             column = np.where(lies, SELDOM_CARRIED, HARDLY_CARRIED)
             column[[index[kind] for kind in row.kinds]] = list(row.kinds.values())
             ratio[:, index[carrier]] = column
-            often[index[carrier]] = 1.0
-    ratio = ratio / (_frequency() @ ratio)
-    return (1.0 - _LIES_ON_IT) + _LIES_ON_IT * ratio * often
+    return np.where(_carriers(), 1.0, _NO_CARRIER) * ratio / (_frequency() @ ratio)
+
+
+@cache
+def _carriers() -> Bool[np.ndarray, "k"]:
+    """Which kinds carry things."""
+    return np.isin(_names(), [carrier for row in CARRIED for carrier in row.carriers])
 
 
 @cache

@@ -48,6 +48,11 @@ _SIDES: tuple[tuple[frozenset[str], Mapping[str, float]], ...] = (
     (with_kin("armchair"), {"closed": 0.65, "open": 0.35}),
 )
 """Padded arms, and frames that are seen through below the arms."""
+_PLANTS = {"leafy": 0.9, "other": 0.1}
+_OTHER_PLANTS = frozenset(
+    {"cactus", "bonsai", "succulents", "christmas", "fir", "bell", "plumes", "grasses", "blossom"}
+)
+"""Words of captions: their filled outlines fit many a plant whose leaves a mask runs together."""
 _CLOSED = 0.72
 """Share of the outline from the side that is filled, from which on a seat's sides are closed."""
 _BELOW_SEAT, _FOOT, _CROSSING = 0.33, 0.08, 0.5
@@ -69,6 +74,8 @@ def usual_form_factor(shape: Shape, appearance: ShapeAppearance) -> float:
     """
     if shape.category in _FLAT_KINDS:
         return float((_FLAT[_outline(shape, appearance)] / max(_FLAT.values())) ** _SAYS)
+    if shape.category == "plant":
+        return float((_PLANTS[_plant(shape)] / max(_PLANTS.values())) ** _SAYS)
     bases = next((shares for kinds, shares in _BASES if shape.category in kinds), None)
     tops = _TOPS if shape.category in _TABLES else None
     sides = next((shares for kinds, shares in _SIDES if shape.category in kinds), None)
@@ -77,6 +84,10 @@ def usual_form_factor(shape: Shape, appearance: ShapeAppearance) -> float:
     of_form = zip((bases, tops, sides), (*_form(shape, appearance), _side(shape, appearance)), strict=True)
     usual = [shares.get(form, _RARE) / max(shares.values()) for shares, form in of_form if shares is not None]
     return float(np.prod(usual) ** _SAYS)
+
+
+def _plant(shape: Shape) -> str:
+    return "other" if _OTHER_PLANTS & set(shape.caption.lower().split()) else "leafy"
 
 
 def _form(shape: Shape, appearance: ShapeAppearance) -> tuple[str, str]:

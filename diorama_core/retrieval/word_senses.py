@@ -4,70 +4,39 @@
 to know which before it can measure anything. Every kind that a word may mean is set at many distances; where its foot
 or its top would be, and its size, are compared with what such things usually have. The camera's height is inferred from
 all boxes together, on a grid: given the height, boxes are taken to be independent (naive Bayes). What the picture of a
-thing looks like joins in where that is known, and then what lies on what and the type of the room (`kinds_together`).
+thing looks like joins in where that is known, and then what lies on what, how large it would be there, and the type of
+the room (`kinds_together`).
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 from jaxtyping import Float
 
 from diorama_core.artefacts import CameraEstimate, DetectedObject
-from diorama_core.library.company import CARRIED_KINDS
 from diorama_core.library.hyponyms import is_named, meanings
 from diorama_core.library.labels import names_a_kind
-from diorama_core.library.taxonomy import UNKNOWN, Mount, SizePrior, category
-from diorama_core.retrieval.kinds_together import carriers, kinds_together
+from diorama_core.library.taxonomy import UNKNOWN, Mount, category
+from diorama_core.retrieval.box_views import HEIGHTS_M, BoxView, box_likelihood, box_view
+from diorama_core.retrieval.kinds_together import Lying, carriers, carries, kinds_together
+from diorama_core.retrieval.lying_views import lying_likelihoods
 from diorama_core.retrieval.seen_kinds import as_it_looks
 from diorama_core.scene.types import Intrinsics
 
-_HEIGHTS_M = np.linspace(0.7, 2.2, 16)
 _USUAL_HEIGHT_M, _HEIGHT_SIGMA_M = 1.45, 0.3
 """Of cameras above the floor."""
 _MEASURED_SIGMA_M = 0.15
-_DISTANCES_M = np.geomspace(0.7, 9.0, 48)
-_FOOT_SIGMA_M, _FOOT_SIGMA_SHARE = 0.05, 0.06
-"""How far from the floor a foot may seem to be: by itself, and for every metre of distance."""
-_ON_OBJECTS_M, _ON_OBJECTS_SIGMA_M = 0.75, 0.3
-_ON_WALLS_M, _ON_WALLS_SIGMA_M = 1.45, 0.35
-"""Middle heights of what hangs on walls."""
-_CEILING_M, _CEILING_SIGMA_M = 2.55, 0.3
-_VIEW_SIGMA = 0.3
-"""Of the logarithms of sizes read off a box: turns, perspective, ornaments."""
-_HIDDEN_SHARE, _HIDDEN_RANGE = 0.15, 2.0
-"""Of things much of which is hidden: then any smaller size, over this range of its logarithm, is as likely."""
 _UNSUPPORTED, _INSIDE = 0.15, 0.5
 """How likely a thing lies on another one where no box is below it, and where one is all around it."""
-_ALSO_CARRIED = 0.5
-"""How often boxes, baskets and plants lie on other things, which else stand on the floor."""
-_BORDER_PX = 3.0
 _SWITCH = 1.5
 """How many times likelier it must be that a thing is held otherwise than its word says before geometry takes it so."""
 _MAJORITY = 0.5
 """How likely another kind that is held alike must be: a wrong one's narrow size would spoil the whole room's scale."""
 _SURE = 0.4
 """How likely a kind must be before geometry takes a thing without a name for it."""
-_CERTAIN = 0.02
-"""Of the likelihood that is spread evenly over all kinds: boxes are drawn by people."""
-
-
-@dataclass(frozen=True, eq=False)
-class _View:
-    """One box as directions from the camera."""
-
-    tan_bottom: float
-    """Height that is gained for every metre of distance, at the box's lower edge."""
-    tan_top: float
-    width: float
-    """Metres that it spans at one metre."""
-    cut_bottom: bool
-    cut_top: bool
-    cut_side: bool
-    carried: float
-    """How likely such a box is for what lies on another thing, by the boxes below it."""
 
 
 def with_word_senses(objects: tuple[DetectedObject, ...], camera: CameraEstimate) -> tuple[DetectedObject, ...]:
@@ -106,26 +75,48 @@ def sense_probabilities(
     """
     below = carriers([item.box for item in objects])
     views = [
-        _view(item, _carried(item, objects, on), intrinsics, R_world_camera)
+        box_view(item.box, _carried(item, objects, on), intrinsics, R_world_camera)
         for item, on in zip(objects, below, strict=True)
     ]
     senses = [
         as_it_looks(meanings(item.label, item.category), item.looks_like, is_named(item.label)) for item in objects
     ]
-    likely = [{kind: _likelihood(view, kind) for kind in of_word} for view, of_word in zip(views, senses, strict=True)]
+    likely = [
+        {kind: box_likelihood(view, kind) for kind in of_word} for view, of_word in zip(views, senses, strict=True)
+    ]
     usual, sigma = (_USUAL_HEIGHT_M, _HEIGHT_SIGMA_M) if height_m is None else (height_m, _MEASURED_SIGMA_M)
-    said = [-0.5 * ((_HEIGHTS_M - np.clip(usual, _HEIGHTS_M[0], _HEIGHTS_M[-1])) / sigma) ** 2]
+    said = [-0.5 * ((HEIGHTS_M - np.clip(usual, HEIGHTS_M[0], HEIGHTS_M[-1])) / sigma) ** 2]
     for of_word, of_view in zip(senses, likely, strict=True):
         said.append(np.log(sum(share * of_view[kind] for kind, share in of_word.items())))
     log_height = np.sort(np.stack(said), axis=0).sum(axis=0)  # the order of the objects must not show in a bit
     height = np.exp(log_height - log_height.max())
+    height /= height.sum()
     found: list[Mapping[str, float]] = []
     for of_word, of_view in zip(senses, likely, strict=True):
         mixed = sum(share * of_view[kind] for kind, share in of_word.items())  # the others' say on the height
         posterior = {kind: share * float((height * of_view[kind] / mixed).sum()) for kind, share in of_word.items()}
         whole = sum(posterior.values())
         found.append({kind: value / whole for kind, value in posterior.items()})
-    return kinds_together(found, below)
+    return kinds_together(found, below, _as_lying(views, likely, below, height))
+
+
+def _as_lying(
+    views: Sequence[BoxView],
+    likely: Sequence[Mapping[str, Float[np.ndarray, "h"]]],
+    below: Sequence[int | None],
+    height: Float[np.ndarray, "h"],
+) -> list[Lying | None]:
+    """For every thing with a carrier how many times likelier its box is if it lies there."""
+    found: list[Lying | None] = []
+    for view, of_view, on in zip(views, likely, below, strict=True):
+        on_kinds = () if on is None else tuple(kind for kind in likely[on] if carries(kind))
+        if on is None or not on_kinds:
+            found.append(None)
+            continue
+        alone = np.array([float(height @ of_kind) for of_kind in of_view.values()])
+        there = lying_likelihoods(view, tuple(of_view), views[on], on_kinds, height)
+        found.append(Lying(tuple(of_view), on_kinds, there / alone[:, None]))
+    return found
 
 
 def _chosen(item: DetectedObject, senses: Mapping[str, float]) -> str:
@@ -154,80 +145,3 @@ def _stands_on(below: tuple[float, float, float, float], box: tuple[float, float
     """Whether a box's foot is over another one that begins lower than it."""
     x, slack = (box[0] + box[2]) / 2, 0.1 * (box[3] - box[1])
     return below[0] <= x <= below[2] and box[1] < below[1] <= box[3] + slack <= below[3] + slack
-
-
-def _view(item: DetectedObject, carried: float, k: Intrinsics, R_world_camera: Float[np.ndarray, "3 3"]) -> _View:
-    x1, y1, x2, y2 = item.box
-    middle_x, middle_y = (x1 + x2) / 2, (y1 + y2) / 2
-    pixels = np.array([[middle_x, y2], [middle_x, y1], [x1, middle_y], [x2, middle_y]])
-    rays = np.column_stack([(pixels[:, 0] - k.cx) / k.fx, (pixels[:, 1] - k.cy) / k.fy, np.ones(4)])
-    rays = rays @ R_world_camera.T
-    rays = rays / np.maximum(np.linalg.norm(rays[:, :2], axis=1, keepdims=True), 1e-6)
-    return _View(
-        tan_bottom=float(rays[0, 2]),
-        tan_top=float(rays[1, 2]),
-        width=float(np.linalg.norm(rays[2, :2] - rays[3, :2])),
-        cut_bottom=y2 > k.height - _BORDER_PX,
-        cut_top=y1 < _BORDER_PX,
-        cut_side=x1 < _BORDER_PX or x2 > k.width - _BORDER_PX,
-        carried=carried,
-    )
-
-
-def _likelihood(view: _View, kind: str) -> Float[np.ndarray, "h"]:
-    """How likely such a box is for a kind, for every camera height: over all distances and the kind's modes."""
-    entry = category(kind)
-    likely = np.mean([_of_size(view, prior, entry.mount) for prior in entry.priors], axis=0)
-    if entry.mount == "surface":
-        likely = likely * view.carried
-    elif entry.mount == "floor" and kind in CARRIED_KINDS:
-        lying = np.mean([_of_size(view, prior, "surface") for prior in entry.priors], axis=0)
-        likely = (1.0 - _ALSO_CARRIED) * likely + _ALSO_CARRIED * view.carried * lying
-    return likely + _CERTAIN
-
-
-def _of_size(view: _View, prior: SizePrior, mount: str) -> Float[np.ndarray, "h"]:
-    camera, distance = _HEIGHTS_M[:, None], _DISTANCES_M[None]
-    bottom = camera + distance * view.tan_bottom
-    beyond = np.where(view.tan_top < 0, prior.depth_m, 0.0)  # from above one sees a thing's far edge
-    top = camera + (distance + beyond) * view.tan_top
-    height, width = np.maximum(top - bottom, 0.01), np.maximum(distance * view.width, 0.01)
-    across = 0.5 * (prior.width_m + prior.depth_m) if mount != "wall" else prior.width_m
-    place = _place(mount, bottom, top, distance, view)
-    tall = _log_normal(height, prior.height_m, prior.sigma_height, view.cut_bottom or view.cut_top)
-    wide = _log_normal(width, across, prior.sigma_width, view.cut_side)
-    return np.asarray((place * tall * wide).mean(axis=1))
-
-
-def _place(
-    mount: str,
-    bottom: Float[np.ndarray, "h d"],
-    top: Float[np.ndarray, "h d"],
-    distance: Float[np.ndarray, "1 d"],
-    view: _View,
-) -> Float[np.ndarray, "h d"]:
-    """How usual it is for a thing that is so mounted to be at such a height; densities over height in metres."""
-    sigma = _FOOT_SIGMA_M + _FOOT_SIGMA_SHARE * distance
-    if mount == "floor":
-        return _normal(np.minimum(bottom, 0.0) if view.cut_bottom else bottom, sigma)
-    if mount == "ceiling":
-        return _normal(
-            np.maximum(top - _CEILING_M, 0.0) if view.cut_top else top - _CEILING_M, _CEILING_SIGMA_M + sigma
-        )
-    if mount == "wall":
-        return _normal((bottom + top) / 2 - _ON_WALLS_M, _ON_WALLS_SIGMA_M + sigma) * (bottom > 0.0)
-    return _normal(bottom - _ON_OBJECTS_M, _ON_OBJECTS_SIGMA_M + sigma)
-
-
-def _normal(off: Float[np.ndarray, "h d"], sigma: Float[np.ndarray, "1 d"] | float) -> Float[np.ndarray, "h d"]:
-    return np.asarray(np.exp(-0.5 * (off / sigma) ** 2) / sigma)
-
-
-def _log_normal(size_m: Float[np.ndarray, "h d"], usual_m: float, sigma: float, cut: bool) -> Float[np.ndarray, "h d"]:
-    """Density of the logarithm of a size; smaller ones are as likely where a thing is cut or hidden."""
-    off = np.log(size_m / usual_m)
-    spread = float(np.hypot(sigma, _VIEW_SIGMA))
-    whole = np.exp(-0.5 * (off / spread) ** 2) / spread
-    part = ((off < 0) & (off > -_HIDDEN_RANGE)) * np.sqrt(2 * np.pi) / _HIDDEN_RANGE
-    share = 0.7 if cut else _HIDDEN_SHARE
-    return np.asarray((1 - share) * whole + share * part)

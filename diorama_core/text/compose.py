@@ -19,7 +19,7 @@ from diorama_core.library.record import Shape, ShapeLibrary
 from diorama_core.library.taxonomy import broad
 from diorama_core.progress import Progress
 from diorama_core.scene import edits
-from diorama_core.scene.support import check_scene
+from diorama_core.scene.support import check_scene, descendants
 from diorama_core.scene.types import Pose, Scene, SceneObject
 from diorama_core.synthesis import furnished_room
 from diorama_core.text.customs import DECOR
@@ -82,7 +82,10 @@ def composed_room(
     digest = int.from_bytes(hashlib.sha256(f"{seed} {prompt}".encode()).digest()[:4], "big")
     ignored = tuple(f"“{words}” names nothing in the library and was left out" for words in request.ignored)
     if not request.objects:
-        return Composed(furnished_room(digest, request.room, library, outline="box", clutter=6), ignored, request)
+        scene = furnished_room(digest, request.room, library, outline="box", clutter=6)
+        unwished = [o.id for o in scene.objects if {o.category, broad(o.category)} & set(request.excluded)]
+        scene = edits.remove(scene, [*unwished, *(c for i in unwished for c in descendants(scene, i))])
+        return Composed(scene, ignored, request)
     progress = progress or Progress()
     best: tuple[float, Composed] | None = None
     for attempt in range(TRIES):
@@ -250,7 +253,7 @@ class _Composer:
         """What hangs in such rooms, where nothing of its kind was asked for."""
         asked = {broad(o.category) for o in wanted} | {o.category for o in wanted}
         for name in DECOR[self.request.room]:
-            if name in asked or not self.library.in_category(name):
+            if name in asked or name in self.request.excluded or not self.library.in_category(name):
                 continue
             shapes = requested_shapes(self.library, self.rng, RequestedObject(name, name), wanted)
             if name in ("picture", "mirror"):

@@ -30,7 +30,7 @@ USUAL: dict[str, tuple[tuple[RelationKind, tuple[str, ...]], ...]] = {
     "television": (("on", ("tv stand", "sideboard", "cabinet")),),
     "office chair": (("around", ("desk", "table")), ("facing", ("desk",))),
     "chair": (("around", ("table", "desk", "vanity table")), ("facing", ("table", "desk"))),
-    "stool": (("around", ("kitchen counter", "table", "piano", "vanity table")),),
+    "stool": (("around", ("kitchen island", "kitchen counter", "table", "piano", "vanity table")),),
     "bench": (("around", ("table", "piano")), ("in front of", ("bed",))),
     "rug": (("under", ("coffee table", "table")), ("in front of", ("sofa", "bed"))),
     "plant": (("in corner", ()),),

@@ -15,6 +15,7 @@ from diorama_core.errors import EditRefused
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.library.taxonomy import category
 from diorama_core.scene.types import Scene
+from diorama_core.text.edit_counts import all_but, counted_edits
 from diorama_core.text.edit_lengths import lifted, nearer, shift_of
 from diorama_core.text.edit_plan import (
     Edit,
@@ -59,6 +60,7 @@ _CLAUSES = re.compile(
 _SHOULD = re.compile(
     r"^(?:please )?((?:the|all|every|each|my|these|those) .+?) (?:should|must|ought to|ha(?:s|ve) to)(?: be)? "
 )
+_HIGHER = re.compile(r"(?:\s+(?:a (?:bit|little)|slightly|much|somewhat))?\s+(higher|lower)(?: up| down)?$")
 _AND_SO = frozenset({"of", "more", "new", "another", "please", "also", "and", "pair", "set", "few", "some", "with"})
 """Words that may stand beside what is named anew."""
 _SCALES = {"twice": 2.0, "double": 2.0, "half": 0.5}
@@ -96,6 +98,9 @@ def edits_of(
         EditRefused: the clause is not understood, or names what is not there; one line that says which.
     """
     selector = Selector(scene, library, last, selected)
+    counted = counted_edits(selector, clause)
+    if counted is not None:
+        return counted
     clause = _SHOULD.sub(r"make \1 ", clause)
     found = _VERB.match(clause)
     verb = "" if found is None else str(found.lastgroup)
@@ -120,6 +125,8 @@ def edits_of(
         return (Resize(objects=list(_subject(selector, rest)), factor=_factor(rest, verb == "larger")),)
     if verb == "lift":
         return (lifted(selector, clause, rest, _subject),)
+    if verb in ("move", "put") and (height := _HIGHER.search(rest)) is not None:
+        return (lifted(selector, "lower" if height[1] == "lower" else "raise", rest[: height.start()], _subject),)
     if verb == "move":
         return _each_alone(_move, selector, clause, rest)
     if verb == "put":
@@ -160,12 +167,18 @@ def _carried(scene: Scene, carrier: str) -> tuple[str, ...]:
 
 def _subject(selector: Selector, text: str) -> tuple[str, ...]:
     """Objects with everything that is said of where they are; several joined by "and"."""
-    kept, _, spared = (
+    if (spared := all_but(text)) is not None:
+        number, noun = spared
+        ids = _subject(selector, f"all {noun}")
+        if len(ids) <= number:
+            raise EditRefused(f"there {'is' if len(ids) == 1 else 'are'} only {len(ids)} of these")
+        return ids[number:]
+    kept, _, left = (
         part.strip()
         for part in re.sub(r"\b(?:other than|apart from|but not|but)\b", "except", text).partition("except")
     )
-    if spared:
-        left_out = _subject(selector, spared)
+    if left:
+        left_out = _subject(selector, left)
         return tuple(i for i in _subject(selector, kept) if i not in left_out)
     parts = re.split(r",\s*|\band\b", text) if not re.search(r"\bbetween\b", text) else [text]
     found: list[str] = []

@@ -8,9 +8,9 @@ from dataclasses import replace
 import numpy as np
 
 from diorama_core.editing.positioning import Positioner
-from diorama_core.editing.relations import Relation
+from diorama_core.editing.relations import SEATS, Relation
 from diorama_core.errors import EditRefused
-from diorama_core.library.record import Shape, ShapeLibrary
+from diorama_core.library.record import Shape, ShapeLibrary, record_of
 from diorama_core.library.taxonomy import broad
 from diorama_core.scene import edits
 from diorama_core.scene.types import Pose, Scene, SceneObject
@@ -20,6 +20,8 @@ from diorama_core.text.edit_places import lifted_onto, missed_notes
 from diorama_core.text.edit_plan import Insert
 from diorama_core.text.looks import fitting_shapes
 from diorama_core.text.phrases import NounPhrase, noun_phrase
+from diorama_core.text.prompt import RequestedObject
+from diorama_core.text.requested_relations import usual_relations
 
 SHAPES_TRIED = 8
 RUG_MARGIN_M = 0.25
@@ -41,6 +43,9 @@ def inserted(positioner: Positioner, scene: Scene, edit: Insert, relations: Sequ
     missed: list[str] = []
     for copy in range(edit.count):
         options, lacking = _options(positioner.library, phrase, relations, targets)
+        if broad(phrase.category) in SEATS and not phrase.appearance:
+            there = dict.fromkeys(o.shape_id for o in scene.objects if o.category == phrase.category)
+            options = (*(record_of(positioner.library, i) for i in there), *options)  # seats are of a set
         if not options:
             raise EditRefused(f"the library has no {phrase.label}")
         tried = (shape,) if shape is not None else options[:SHAPES_TRIED]
@@ -116,7 +121,9 @@ def _with_one(
             shape.size_m,
             Pose.upright(np.zeros(3)),
         )
-        spot = positioner.best(scene, item, own)
+        # Where nothing is said, it stands as such things do: a chair at the table.
+        usual = [] if own else usual_relations(scene, RequestedObject(kind, kind), copy)
+        spot = positioner.best(scene, item, own, usual=usual)
         if spot is not None:
             after = positioner.put(scene, item, spot)
             return lifted_onto(after, object_id), object_id, shape

@@ -142,6 +142,11 @@ APPEARANCES = frozenset(
         "potted",
         "double",
         "single",
+        "twin",
+        "one-seater",
+        "two-seater",
+        "three-seater",
+        "four-seater",
         "king",
         "queen",
         "larger",
@@ -160,7 +165,7 @@ RELATION_WORDS: tuple[tuple[str, RelationKind | None], ...] = (
     (r"on (?:either|both|each) sides? of", "beside"), (r"(?:flanked|surrounded) by", None),
     (r"on the wall above", "above"), (r"(?:on|to|at) the left(?: hand)?(?: side)? of", "left of"),
     (r"(?:on|to|at) the right(?: hand)?(?: side)? of", "right of"), (r"left of", "left of"), (r"right of", "right of"),
-    (r"on top of", "on"), (r"next to|beside|alongside|adjacent to|at the side of|close by", "beside"),
+    (r"(?:at|on|by) (?:the |one |either |each )?(?:far |other |very )?(?:ends?|head) of", "beside"), (r"on top of", "on"), (r"next to|beside|alongside|adjacent to|at the side of|close by", "beside"),
     (r"in front of", "in front of"), (r"at the foot of", "in front of"), (r"behind|in back of", "behind"),
     (r"across from|opposite(?: to| from)?", "opposite"), (r"facing|looking at|turned to(?:wards?)?", "facing"),
     (r"in line with|aligned with|lined up with", "aligned with"), (r"between|in between", "between"),
@@ -241,7 +246,7 @@ def noun_phrase(text: str) -> tuple[NounPhrase | None, str]:
     ):
         return NounPhrase("", "", 2 if "them" in raw or "both" in raw else 1, (), True, "both" in raw, False, True), ""
     if raw and raw[-1] in ("everything", "things", "objects", "furniture", "all", "items", "stuff"):
-        return NounPhrase("", "", 1, (), True, True, True), ""
+        return NounPhrase("", "", 1, tuple(w for w in raw[:-1] if w in APPEARANCES), True, True, True), ""
     count = 1
     words: list[str] = []
     for word in raw:

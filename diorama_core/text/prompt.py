@@ -5,8 +5,8 @@ from __future__ import annotations
 import re
 from dataclasses import dataclass, field, replace
 
-from diorama_core.editing.relations import OF_ROOM, RelationKind
-from diorama_core.library.taxonomy import LAMPS, PORTABLE, broad, category, resolve
+from diorama_core.editing.relations import OF_ROOM, SEATS, RelationKind
+from diorama_core.library.taxonomy import broad, category, is_furniture, resolve
 from diorama_core.synthesis import RoomKind
 from diorama_core.text.customs import USUAL
 from diorama_core.text.phrases import MAX_OF_A_KIND, NUMBERS, NounPhrase, Placing, noun_phrase, split_places
@@ -29,6 +29,7 @@ _JOINTS = re.compile(
     r"|\bwhile\b|\bincluding\b|\bfurnished\b|\bwhere\b|\bholding\b|\bcarrying\b"
 )
 _REWRITES = (
+    (r"\b(one|two|three|four|[1-4])[ -]seat(?:er)?s?\b", r"\1-seater"),
     (r"\b(?:flanked|bordered) by ([^,;.]*?)(?=,|;|\.| and a| and an| and the| with |$)", r", \1 beside it"),
     (r"\bsurrounded by ([^,;.]*?)(?=,|;|\.| and a| and an| and the| with |$)", r", \1 around it"),
     (
@@ -62,6 +63,13 @@ _EACH = re.compile(r"^(?:(.*) )?(?:each|both)(?: of (?:them|these|those|the \w+)
 """A clause after which everything is meant once for each: "two desks, each with a lamp"."""
 _FIGURES = re.compile(r"\b(?:an? )((?:l|u|ring|circle|semicircle|half circle|triangle)(?:[ -]shaped?)? of)\b")
 """Arrangements that are read as no relation."""
+_ROWS = re.compile(r"\b(an?|two|three|four|[1-4]) rows? of (two|three|four|five|six|[2-6]) ((?:[a-z-]+ )*?[a-z-]+s)\b")
+"""So many in so many rows: "three rows of four desks"; the number is read, the rows are not."""
+_NOT_WISHED = re.compile(
+    r"\b(?:(?:with|has|have|having|there (?:is|are)|needs?|want) )?(?:no|without|not any)(?: any| a| an)? "
+    r"((?:[a-z-]+ )*?[a-z-]+?(?:,? (?:or|nor) (?:any |a |an |no )?(?:[a-z-]+ )*?[a-z-]+?)*)(?=,|;|\.| and | but | with | in | on | at | by |$)"
+)
+"""What the room is to do without: "no curtains", "without a rug or pictures"."""
 _NOT_PLACES = re.compile(
     r"^(?:the |a |an |this )?(?:[a-z]+ )?(?:room|bedroom|kitchen|office|floor|ground|space|house|home|apartment|style|corner of .*)$"
 )
@@ -110,6 +118,8 @@ class RoomRequest:
     """How large the room should be beside a usual one."""
     named: bool = False
     """Whether the prompt names the kind of room."""
+    excluded: tuple[str, ...] = ()
+    """Categories that the room is to do without."""
 
 
 @dataclass
@@ -131,9 +141,12 @@ def understood_prompt(prompt: str) -> RoomRequest:
     text = " ".join(re.sub(r"[^a-z0-9' ,;.-]+", " ", prompt.lower()).split())
     room, rest = _room(text)
     named = rest != text
+    rest, excluded = _without_unwished(rest)
+    rows = [f"{match[1]} rows" for match in _ROWS.finditer(rest)]
+    rest = _ROWS.sub(lambda m: f"{_number(m[1]) * _number(m[2])} {m[3]}", rest)
     for pattern, form in _REWRITES:
         rest = re.sub(pattern, form, rest)
-    reading = _Reading(ignored=[match.group(1) for match in _FIGURES.finditer(rest)])
+    reading = _Reading(ignored=[*rows, *(match.group(1) for match in _FIGURES.finditer(rest))])
     for sentence in re.split(r"[;.]", rest):
         reading.hosts = None
         for clause in _JOINTS.split(sentence):
@@ -148,7 +161,22 @@ def understood_prompt(prompt: str) -> RoomRequest:
         )
         else size
     )
-    return RoomRequest(room, tuple(reading.objects), tuple(dict.fromkeys(reading.ignored)), size, named)
+    ignored = tuple(dict.fromkeys(reading.ignored))
+    return RoomRequest(room, tuple(reading.objects), ignored, size, named, excluded)
+
+
+def _without_unwished(text: str) -> tuple[str, tuple[str, ...]]:
+    """A prompt without what it says the room is to do without, and the categories of that."""
+    excluded: list[str] = []
+    for match in _NOT_WISHED.finditer(text):
+        phrases = (noun_phrase(words)[0] for words in re.split(r",|\bn?or\b", match[1]))
+        openings = (name for name in ("window", "door") if re.search(rf"\b{name}s?\b", match[1]))
+        excluded += [*(p.category for p in phrases if p is not None and p.label), *openings]
+    return _NOT_WISHED.sub(" ", text), tuple(dict.fromkeys(excluded))
+
+
+def _number(word: str) -> int:
+    return int(word) if word.isdigit() else NUMBERS[word]
 
 
 def _read(reading: _Reading, clause: str) -> None:
@@ -286,27 +314,27 @@ def _wish(reading: _Reading, index: int | None, wish: Wish) -> None:
         reading.objects[index] = replace(request, wishes=(*request.wishes, wish))
 
 
-def _meant(reading: _Reading, own: int | None, kind: RelationKind) -> str | None:
+def _meant(reading: _Reading, own: int | None, kind: RelationKind, several: bool) -> str | None:
     """Category of what "it" means: the last before that can be what the relation says, else the last at all.
 
     Things are on what carries things, and stand near furniture rather than near its lamps and plants: in "an armchair,
-    a floor lamp and a bookshelf near it" the bookshelf is near the armchair.
+    a floor lamp and a bookshelf near it" the bookshelf is near the armchair. "Them" are several.
     """
     if not reading.objects or reading.last < 0:
         return None
     newest = own is not None and own == len(reading.objects) - 1 and reading.last != own
     last = own - 1 if newest and own else reading.last
-    before = [o.category for o in reading.objects[: last + 1]][::-1] or [reading.objects[reading.last].category]
-    fits = _carries if kind == "on" else _is_furniture
-    return next((name for name in before if fits(name)), before[0])
-
-
-def _carries(name: str) -> bool:
-    return category(name).supports_objects
-
-
-def _is_furniture(name: str) -> bool:
-    return category(name).mount == "floor" and name not in PORTABLE | LAMPS
+    named = reading.objects[: last + 1]
+    named = [o for o in named if o.count > 1 or not several] or named
+    before = [o.category for o in named][::-1] or [reading.objects[reading.last].category]
+    if kind != "on":
+        return next((name for name in before if is_furniture(name)), before[0])
+    carriers = [name for name in before if category(name).supports_objects]
+    what = reading.objects[own].category if own is not None else ""
+    usual = {name for said, names in USUAL.get(what, ()) if said == "on" for name in names}
+    # A lamp is on the table rather than on one of its chairs, a cushion on a chair.
+    unsat = [name for name in carriers if broad(name) not in SEATS or broad(name) in usual]
+    return next(iter([*unsat, *carriers]), before[0])
 
 
 def _target(reading: _Reading, words: str, own: int | None, kind: RelationKind) -> str | None:
@@ -315,7 +343,7 @@ def _target(reading: _Reading, words: str, own: int | None, kind: RelationKind) 
     if phrase is None:
         return None
     if phrase.pronoun:
-        return _meant(reading, own, kind)
+        return _meant(reading, own, kind, phrase.count > 1)
     if not phrase.label:
         return None
     kin = next((o.category for o in reading.objects if o.category == phrase.category), None)
@@ -323,7 +351,9 @@ def _target(reading: _Reading, words: str, own: int | None, kind: RelationKind) 
         (o.category for o in reading.objects if o.category.endswith(f" {phrase.category}") and phrase.definite), None
     )
     if kin is None and phrase.category not in ("window", "door"):
-        reading.objects.append(RequestedObject(phrase.category, phrase.label, phrase.count, phrase.appearance))
+        # "A lamp on each night stand" means at least two.
+        count = max(phrase.count, 2) if phrase.every else phrase.count
+        reading.objects.append(RequestedObject(phrase.category, phrase.label, count, phrase.appearance))
     return kin or phrase.category
 
 

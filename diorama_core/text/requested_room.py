@@ -30,7 +30,7 @@ def with_essentials(request: RoomRequest) -> tuple[list[RequestedObject], tuple[
     present = frozenset(o.category for o in asked)
     if request.named:
         for name, count in ESSENTIALS.get(request.room, ()):
-            if not stands_in_for(name, present):
+            if name not in request.excluded and not stands_in_for(name, present):
                 asked.append(RequestedObject(name, name, count))
                 added.append(name)
     carriers = {o.category for o in asked if category(o.category).supports_objects and broad(o.category) != "rug"}
@@ -67,7 +67,7 @@ def empty_room(
     wide, deep = ((float(a), 1.08 * float(a)) for a in low)
     f = Furnisher(room_plan(rng, wide, deep, "box"), library, rng)
     add_door(f)
-    if request.room != "corridor":
+    if request.room != "corridor" and "window" not in request.excluded:
         windows = max(1, sum(o.count for o in wanted if o.category == "window"))
         walls = groups.long_walls(f)
         for k in range(min(windows, 4)):

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from diorama_core.editing.relations import SEATS
+from diorama_core.editing.relations import SEATS, is_long
 from diorama_core.library.language import size_request
 from diorama_core.library.record import Shape, ShapeLibrary
 from diorama_core.library.taxonomy import broad
@@ -14,11 +14,12 @@ from diorama_core.scene import edits
 from diorama_core.scene.types import Scene
 from diorama_core.text.customs import USUAL
 from diorama_core.text.looks import fitting_shapes, has_look, look_of
+from diorama_core.text.phrases import MAX_OF_A_KIND
 from diorama_core.text.prompt import RequestedObject
+from diorama_core.text.requested_relations import SEAT_WIDTH_M, seats_at
 
 TALL_PLANT_M = 0.6
-SEAT_WIDTH_M = 0.62
-"""Of a table's rim, for each who sits at it."""
+SOFA_WIDTHS_M = {"two-seater": (1.2, 1.9), "three-seater": (1.75, 2.4), "four-seater": (2.2, 4.0)}
 
 
 def requested_shapes(
@@ -26,16 +27,19 @@ def requested_shapes(
 ) -> tuple[Shape, ...]:
     """Shapes that fit the words equally well, in an order left to chance; the others after them."""
     on = any(w.kind == "on" for w in request.wishes)
+    words = {*request.appearance, *request.label.split()}
     double, single = (
-        request.category == "bed" and word in (*request.appearance, *request.label.split())
-        for word in ("double", "single")
+        request.category == "bed" and bool(words & set(said)) for said in (("double",), ("single", "twin"))
     )
+    width_m = next((SOFA_WIDTHS_M[word] for word in SOFA_WIDTHS_M if word in words), None)
 
     def usable(shape: Shape) -> bool:
         if request.category == "plant" and request.label in ("plant", "plants", "potted plant") and not on:
             return TALL_PLANT_M < shape.size_m[2] < 1.9
         if double or single:
             return (shape.size_m[1] > 1.3) == double
+        if width_m is not None and broad(request.category) == "sofa":
+            return width_m[0] <= shape.size_m[1] < width_m[1]
         if request.category == "television":
             return shape.size_m[0] > 0.12
         if request.category == "kitchen counter":
@@ -53,7 +57,7 @@ def requested_shapes(
         return ()
     seats = sum(o.count for o in wanted if broad(o.category) in SEATS and _stand_around(o, request.category))
     if broad(request.category) == "table" and seats > 2:
-        roomy = tuple(s for s in shapes if 2.0 * float(sum(s.size_m[:2])) >= SEAT_WIDTH_M * seats)
+        roomy = tuple(s for s in shapes if _seats(s) >= seats)
         shapes = roomy or tuple(sorted(shapes, key=lambda s: -float(sum(s.size_m[:2])))[:3])
     asked = [w for w in request.appearance if look_of(w) is not None]
     said = [w for w in request.appearance if size_request(w) is None]
@@ -73,6 +77,13 @@ def dressed(scene: Scene, object_id: str, shape: Shape, appearance: Sequence[str
         if look is not None and look.colour is not None and not has_look(shape, word) and word not in ("light", "dark"):
             scene = edits.refinish(edits.recolour(scene, object_id, look.colour), object_id, look.finish)
     return scene
+
+
+def _seats(table: Shape) -> int:
+    """How many sit at a table: side by side at a long one, all around another."""
+    if is_long(np.asarray(table.size_m)):
+        return len(seats_at(tuple(table.size_m), MAX_OF_A_KIND))
+    return int(2.0 * float(sum(table.size_m[:2])) / SEAT_WIDTH_M)
 
 
 def _stand_around(seats: RequestedObject, name: str) -> bool:

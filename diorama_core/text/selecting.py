@@ -11,7 +11,7 @@ from diorama_core.editing.relations import Relation, is_met
 from diorama_core.editing.room_frame import RoomFrame
 from diorama_core.errors import EditRefused
 from diorama_core.library.record import ShapeLibrary, record_of
-from diorama_core.library.taxonomy import category, with_kin
+from diorama_core.library.taxonomy import broad, category, is_furniture, with_kin
 from diorama_core.scene.support import descendants
 from diorama_core.scene.types import Scene, SceneObject
 from diorama_core.text.looks import has_look
@@ -58,12 +58,14 @@ class Selector:
             )
         if phrase.pronoun:
             return self._meant(words)
-        exact = next((o.id for o in self.scene.objects if o.label.lower() == _plain(words)), None)
-        if exact is not None:
-            return (exact,)
+        exact = [o.id for o in self.scene.objects if o.label.lower() == _plain(words)]
+        if len(exact) == 1:
+            return (exact[0],)
         found = self._named(phrase, words)
         found = self._in_place(found, places, words)
-        if movable and not phrase.every:
+        if movable and not phrase.label:  # "everything" that is moved is what stands on the floor, with what it carries
+            found = [o for o in found if self._stands_free(o)] or found
+        elif movable and not phrase.every:
             found = [o for o in found if category(o.category).mount != "ceiling"] or found
         number = next((k for w, k in _ORDINALS.items() if w in words.lower().split()), None)
         if number is not None and not phrase.plural:
@@ -93,16 +95,29 @@ class Selector:
 
     def _named(self, phrase: NounPhrase, words: str) -> list[SceneObject]:
         if not phrase.label:
-            return [o for o in self.scene.objects if o.category not in ("door", "window")]
+            inside = [o for o in self.scene.objects if o.category not in ("door", "window")]
+            furniture = [o for o in inside if "furniture" not in words or is_furniture(o.category)]
+            return self._looking(furniture, phrase.appearance, words)
         objects = self.scene.objects
         kin = with_kin(phrase.category)
         found = [o for o in objects if o.category == phrase.category] or [o for o in objects if o.category in kin]
         noun = phrase.label.split()[-1].removesuffix("s")
         labelled = [o for o in objects if noun in (w.removesuffix("s") for w in o.label.lower().split())]
+        of_all_sorts = [o for o in objects if o.category.split()[-1] == noun == phrase.category]
+        if phrase.every or (phrase.plural and len(found) < 2):
+            found = of_all_sorts or found  # "every lamp" is also those that stand on the floor and hang
         found = found or [o for o in objects if o.category.split()[-1] == noun] or labelled
         if not found:
             raise EditRefused(f"there is no {phrase.category} in this scene; it has: {self.inventory()}")
         return self._looking(found, phrase.appearance, words)
+
+    def _stands_free(self, item: SceneObject) -> bool:
+        edge = self.scene.support_of(item.id)
+        on_rug = edge is not None and any(
+            o.id == edge.parent and broad(o.category) == "rug" for o in self.scene.objects
+        )
+        on_floor = edge is not None and self.scene.has_plane(edge.parent) and edge.relation == "placed on"
+        return (on_floor or on_rug) and category(item.category).mount == "floor" and broad(item.category) != "rug"
 
     def _looking(self, found: list[SceneObject], appearance: Sequence[str], words: str) -> list[SceneObject]:
         for word in appearance:
@@ -114,7 +129,8 @@ class Selector:
             if like:
                 found = like
             elif len(found) > 1:
-                raise EditRefused(f"no {found[0].category} here is {word}; there are {len(found)}: {_names(found)}")
+                kind = found[0].category if len({o.category for o in found}) == 1 else "object"
+                raise EditRefused(f"no {kind} here is {word}; there are {len(found)}: {_names(found)}")
         return found
 
     def _in_place(self, found: list[SceneObject], places: Sequence[Placing], words: str) -> list[SceneObject]:
@@ -151,7 +167,9 @@ class Selector:
             return chosen
         if not phrase.definite:
             return ids[:1]
-        raise EditRefused(f"there are {len(ids)} of these: {_names(found)}; say which (“{found[0].label}”), or “all”")
+        alike = len({o.label for o in found}) < len(found)
+        which = f"the second {phrase.label}" if alike else found[0].label
+        raise EditRefused(f"there are {len(ids)} of these: {_names(found)}; say which (“{which}”), or “all”")
 
 
 def _plain(words: str) -> str:

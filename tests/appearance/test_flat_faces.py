@@ -3,7 +3,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from diorama_core.appearance.flat_faces import FACES, aligned, face_kind, is_lit
+from diorama_core.appearance.flat_faces import FACES, aligned, face_kind, is_lit, pale_frame, sides_told
 from diorama_core.appearance.rectify import Rectified
 from diorama_core.library.taxonomy import CATEGORIES
 
@@ -14,19 +14,43 @@ def test_flat_categories_are_the_librarys() -> None:
 
 def test_corners_follow_the_objects_box() -> None:
     corners = np.array([[20, 20], [80, 20], [80, 60], [20, 60]], float)
-    found = aligned(corners, np.array([10.0, 10, 90, 70]), (14.0, 10.0, 94.0, 76.0), (200, 200))
+    found = aligned(corners, np.array([10.0, 10, 90, 70]), (14.0, 10.0, 94.0, 76.0))
     np.testing.assert_allclose(found, [[24, 21], [84, 21], [84, 65], [24, 65]])
 
 
 def test_the_photos_edge_is_no_edge_of_the_object() -> None:
     corners = np.array([[-20, 20], [80, 20], [80, 60], [-20, 60]], float)
-    found = aligned(corners, np.array([-30.0, 10, 90, 70]), (0.0, 10.0, 90.0, 70.0), (200, 200))
+    told = sides_told((0.0, 10.0, 90.0, 70.0), np.zeros((200, 200), dtype=bool))
+    assert told == (False, True, True, True)
+    found = aligned(corners, np.array([-30.0, 10, 90, 70]), (0.0, 10.0, 90.0, 70.0), told)
     np.testing.assert_allclose(found, corners)
+
+
+def test_what_hides_a_side_says_nothing_of_where_the_object_ends() -> None:
+    """A rug that goes on below a bed."""
+    hidden = np.zeros((200, 200), dtype=bool)
+    hidden[10:70, :66] = True
+    told = sides_told((60.0, 10.0, 120.0, 70.0), hidden)
+    assert told == (False, True, True, True)
+    corners = np.array([[32, 20], [118, 20], [118, 60], [32, 60]], float)
+    found = aligned(corners, np.array([30.0, 10, 120, 70]), (60.0, 10.0, 120.0, 70.0), told)
+    np.testing.assert_allclose(found, corners)
+
+
+def test_a_white_frame_is_found_and_a_white_thing_at_the_edge_is_none() -> None:
+    photo = np.full((200, 300, 3), 120, np.uint8)
+    assert not pale_frame(photo).any()
+    photo[:40, 100:160] = 255
+    assert not pale_frame(photo).any()
+    photo[-3:] = 255
+    frame = pale_frame(photo)
+    assert frame[-3:].all()
+    assert not frame[:180].any()
 
 
 def test_a_box_somewhere_else_is_ignored() -> None:
     corners = np.array([[20, 20], [80, 20], [80, 60], [20, 60]], float)
-    found = aligned(corners, np.array([10.0, 10, 90, 70]), (100.0, 100.0, 150.0, 150.0), (200, 200))
+    found = aligned(corners, np.array([10.0, 10, 90, 70]), (100.0, 100.0, 150.0, 150.0))
     np.testing.assert_array_equal(found, corners)
 
 

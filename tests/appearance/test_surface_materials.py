@@ -4,10 +4,18 @@ from dataclasses import replace
 
 import numpy as np
 
-from diorama_core.appearance.surface_materials import MIN_OF_WHOLE, appearance_of, shade_of, slot_pixels, whole_pixels
+from diorama_core.appearance.surface_materials import (
+    MIN_OF_WHOLE,
+    ROUGHNESS,
+    appearance_of,
+    shade_of,
+    slot_pixels,
+    whole_pixels,
+)
 from diorama_core.appearance.surface_view import surface_view
 from diorama_core.io.srgb import linear_to_srgb
 from diorama_core.library.slots import slots_of
+from diorama_core.render.gloss import gloss_share
 from diorama_core.scene.types import Pose
 from tests.appearance.test_surface_view import CAMERA, parts
 
@@ -21,6 +29,8 @@ def seen(turn: float = 0.6):
     view = surface_view(parts(), slots, Pose.upright((0.0, 0.0, 0.0), turn), CAMERA, mask)
     assert view is not None
     albedo = np.array([ALBEDO[s.role] for s in slots])[view.slot]
+    smooth = 1.0 - np.array([ROUGHNESS[s.role][0] for s in slots])[view.slot][..., None]
+    albedo = albedo + gloss_share(albedo, np.zeros_like(smooth), smooth, view.cosine[..., None])
     light = np.repeat((1.0 + view.normals_world @ B).astype(np.float32)[..., None], 3, axis=2)
     linear = np.where((view.slot >= 0)[..., None], albedo * light, 0.5)
     rgb = np.round(255 * linear_to_srgb(np.clip(linear, 0, 1))).astype(np.uint8)

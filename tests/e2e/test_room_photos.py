@@ -1,4 +1,4 @@
-"""Add a photo of the same room: it joins the scene, its camera is in the view, and one undo takes it back."""
+"""Add a photo of this room: it joins the scene, its camera is in the view, and one undo takes it back."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ def test_a_photo_of_the_same_room_is_added_looked_through_and_undone(
     editor = visit(serve(project.folder))
     before = editor.session.scene
     editor.tab("Photo")
-    editor.upload("Add a photo of the same room", tmp_path / "beside.png")
+    editor.upload("Add a photo of this room", tmp_path / "beside.png")
     editor.at_board()
     assert editor.session.scene is before
     for box in photos.second.boxes[:2]:  # as a person would: a name, then a rectangle

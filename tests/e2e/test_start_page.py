@@ -112,3 +112,18 @@ def test_a_server_with_a_project_shows_it_at_once_and_the_start_page_when_asked(
     page.page.locator("#dio-start").get_by_role("button", name="mine").click()
     expect(page.page.locator("#dio-start")).to_have_count(0)
     page.page.close()
+
+
+def test_the_tour_waits_while_somebody_types(context, serve: Callable[..., Running]) -> None:
+    editor = EditorPage.open(context, serve())
+    page, tour = editor.page, editor.page.get_by_role("dialog", name="Tour")
+    field = page.get_by_placeholder("make all chairs wooden")
+    field.click()
+    page.evaluate("localStorage.removeItem('diorama-tour'); sessionStorage.setItem('diorama-tour-wanted', 'begun')")
+    page.wait_for_timeout(2500)
+    expect(tour).to_have_count(0)
+    page.keyboard.type("remove the rug")
+    expect(field).to_have_value("remove the rug")
+    field.blur()
+    expect(tour).to_be_visible()
+    page.close()

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 import trimesh
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from diorama_core.library.thin_matter import BINS, thin_matter
+from diorama_core.library.thin_matter import BINS, kept_thin_matter, thin_matter
 
 
 def box(size: tuple[float, float, float], centre: tuple[float, float, float]) -> trimesh.Trimesh:
@@ -74,3 +76,26 @@ def test_it_is_a_share_whatever_the_mesh_and_blind_to_the_order_of_faces(axis: i
     assert found.shape == (BINS,)
     assert ((found >= 0) & (found <= 1)).all()
     np.testing.assert_allclose(thin_matter(vertices, faces[::-1], axis), found, atol=1e-9)
+
+
+def test_what_was_found_is_kept_by_the_shape_and_found_again_when_damaged(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    vertices, faces = np.asarray(frame(0).vertices), np.asarray(frame(0).faces)
+    probed: list[int] = []
+
+    def probe(vertices: np.ndarray, faces: np.ndarray, axis: int) -> np.ndarray:
+        probed.append(axis)
+        return thin_matter(vertices, faces, axis)
+
+    monkeypatch.setattr("diorama_core.library.thin_matter.thin_matter", probe)
+    for _ in range(2):
+        np.testing.assert_array_equal(kept_thin_matter(vertices, faces, 0, tmp_path), thin_matter(vertices, faces, 0))
+    assert probed == [0]
+    kept_thin_matter(vertices, faces, 1, tmp_path)
+    kept_thin_matter(vertices + 0.1, faces, 0, tmp_path)
+    assert probed == [0, 1, 0]
+    for path in tmp_path.iterdir():
+        path.write_bytes(path.read_bytes()[:100])
+    np.testing.assert_array_equal(kept_thin_matter(vertices, faces, 0, tmp_path), thin_matter(vertices, faces, 0))
+    assert len(probed) == 4

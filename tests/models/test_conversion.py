@@ -7,6 +7,7 @@ the weights alone.
 from __future__ import annotations
 
 import importlib.util
+import itertools
 from collections import OrderedDict
 from pathlib import Path
 from types import ModuleType
@@ -19,8 +20,11 @@ from torch import nn
 from diorama_core.models.clip import DuoduoClip, clip_pixels
 from diorama_core.models.gigapose import GigaPoseScale
 from diorama_core.models.manifest import network
+from diorama_core.models.openshape import OpenShape, patches_of
 from diorama_core.models.runtime import SessionPool
 from diorama_core.models.store import ModelStore
+from diorama_core.pipeline import network_stages
+from tests.models import tiny_networks
 
 SCRIPTS = Path(__file__).resolve().parents[2] / "scripts"
 WIDTH, LAYERS, ALONE = 128, 4, 2
@@ -108,6 +112,104 @@ def test_duoduoclips_shape_tower_is_rebuilt_from_a_checkpoint(
         np.testing.assert_allclose(facade.shape(views), expected / np.linalg.norm(expected), atol=1e-4)
 
 
+class _Mixing(nn.Module):
+    """One block of OpenShape's transformer, with its authors' names of weights."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        attention = nn.Module()
+        attention.to_qkv = nn.Linear(WIDTH, 3 * WIDTH, bias=False)
+        attention.to_out = nn.Sequential(nn.Linear(WIDTH, WIDTH), nn.Dropout(0.0))
+        forward = nn.Module()
+        forward.net = nn.Sequential(
+            nn.Linear(WIDTH, 2 * WIDTH), nn.GELU(), nn.Dropout(0.0), nn.Linear(2 * WIDTH, WIDTH), nn.Dropout(0.0)
+        )
+        pair = []
+        for inner in (attention, forward):
+            wrapped = nn.Module()
+            wrapped.norm, wrapped.fn = nn.LayerNorm(WIDTH), inner
+            pair.append(wrapped)
+        self.pair = nn.ModuleList(pair)
+
+    def forward(self, x: torch.Tensor) -> torch.Tensor:
+        attention, feed = self.pair
+        q, k, v = (
+            part.reshape(*x.shape[:2], WIDTH // 64, 64).permute(0, 2, 1, 3)
+            for part in attention.fn.to_qkv(attention.norm(x)).chunk(3, dim=-1)
+        )
+        mixed = torch.softmax(torch.einsum("bhid,bhjd->bhij", q, k) / 8.0, dim=-1) @ v
+        x = x + attention.fn.to_out(mixed.permute(0, 2, 1, 3).reshape(x.shape))
+        return x + feed.fn.net(feed.norm(x))
+
+
+class _PointBert(nn.Module):
+    """OpenShape's point encoder, narrower, after its patches are made."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        channels = (9, 8, 8, 16)
+        self.ppat = nn.Module()
+        self.ppat.sa = nn.Module()
+        pairs = list(itertools.pairwise(channels))
+        self.ppat.sa.mlp_convs = nn.ModuleList(nn.Conv2d(a, b, 1) for a, b in pairs)
+        self.ppat.sa.mlp_bns = nn.ModuleList(nn.BatchNorm2d(b) for _, b in pairs)
+        self.ppat.lift = nn.Sequential(nn.Conv1d(19, WIDTH, 1), nn.Identity(), nn.LayerNorm([WIDTH]))
+        self.ppat.cls_token = nn.Parameter(torch.zeros(WIDTH))
+        self.ppat.transformer = nn.Module()
+        self.ppat.transformer.layers = nn.ModuleList(_Mixing().pair for _ in range(2))
+        self.proj = nn.Linear(WIDTH, 1280)
+
+    def forward(self, centres: torch.Tensor, patches: torch.Tensor) -> torch.Tensor:
+        x = patches.permute(0, 3, 2, 1)
+        for convolution, norm in zip(self.ppat.sa.mlp_convs, self.ppat.sa.mlp_bns, strict=True):
+            x = torch.relu(norm(convolution(x)))
+        x = self.ppat.lift[0](torch.cat([centres.permute(0, 2, 1), x.max(dim=2).values], dim=1))
+        x = self.ppat.lift[2](x.permute(0, 2, 1))
+        x = torch.cat([self.ppat.cls_token.expand(len(x), 1, -1), x], dim=1)
+        for pair in self.ppat.transformer.layers:
+            block = _Mixing()
+            block.pair = pair
+            x = block.eval()(x)
+        return self.proj(x[:, 0])
+
+
+def test_openshapes_point_encoder_is_rebuilt_from_a_checkpoint(tmp_path: Path, rng: np.random.Generator) -> None:
+    encoder = _shaken(_PointBert())
+    torch.save({"state_dict": {f"module.{k}": v for k, v in encoder.state_dict().items()}}, tmp_path / "own.pt")
+    _script("convert_openshape").main([str(tmp_path / "own.pt"), "-o", str(tmp_path / "made")])
+    store = ModelStore(tmp_path / "store")
+    assert store.add_folder(tmp_path / "made") == ("openshape",)
+    facade = OpenShape(store.path(network("openshape"), "points.onnx"), pool=SessionPool())
+    points, colours = rng.normal(size=(1500, 3)), rng.random((1500, 3))
+    with torch.no_grad():
+        expected = encoder(*(torch.from_numpy(part[None]) for part in patches_of(points, colours)))[0].numpy()
+    np.testing.assert_allclose(facade.shape(points, colours), expected / np.linalg.norm(expected), atol=1e-4)
+
+
+def test_openclip_is_converted_from_a_folder_with_its_weights_beside_the_graphs(
+    tmp_path: Path, rng: np.random.Generator
+) -> None:
+    model, *_ = tiny_networks.clip(tmp_path)
+    model.save_pretrained(tmp_path / "own")
+    tiny_networks.clip_tokenizer(tmp_path / "own" / "tokenizer.json")
+    _script("convert_openclip").main([str(tmp_path / "own"), "-o", str(tmp_path / "made")])
+    assert sorted(p.name for p in (tmp_path / "made" / "openclip-bigg14" / "visual").iterdir()) == [
+        "model.onnx",
+        "model.onnx_data",
+    ]
+    store = ModelStore(tmp_path / "store")
+    assert store.add_folder(tmp_path / "made") == ("openclip-bigg14",)
+    facade = network_stages.open_clip(store, network("openclip-bigg14"))
+    picture = rng.integers(0, 255, (300, 240, 3)).astype(np.uint8)
+    with torch.no_grad():
+        seen = tiny_networks._ClipImage(model)(torch.from_numpy(clip_pixels(picture)))
+        ids = torch.zeros(1, 77, dtype=torch.long)
+        ids[0, :6] = torch.tensor([30, 2, 3, 4, 5, 31])
+        read = tiny_networks._ClipText(model)(ids)
+    for found, expected in ((facade.images([picture]), seen), (facade.texts(["a photo of chair"]), read)):
+        np.testing.assert_allclose(found, nn.functional.normalize(expected, dim=1).numpy(), atol=5e-3)
+
+
 class _Residual(nn.Module):
     def __init__(self, before: int, after: int, stride: int) -> None:
         super().__init__()
@@ -178,7 +280,7 @@ def test_gigaposes_scale_network_is_rebuilt_from_a_checkpoint(
     assert found.angle_rad[0] == pytest.approx(float(torch.atan2(turn[1], turn[0])), abs=1e-4)
 
 
-@pytest.mark.parametrize("script", ["convert_duoduoclip", "convert_gigapose"])
+@pytest.mark.parametrize("script", ["convert_duoduoclip", "convert_gigapose", "convert_openshape"])
 @pytest.mark.parametrize("damage", ["absent", "no checkpoint", "another network"])
 def test_checkpoints_that_cannot_be_used_are_one_clear_line(tmp_path: Path, script: str, damage: str) -> None:
     path = tmp_path / "own.ckpt"

@@ -8,7 +8,7 @@ import pytest
 from diorama_core.artefacts import Inputs, Photo
 from diorama_core.models.manifest import network
 from diorama_core.models.store import ModelStore
-from diorama_core.pipeline.learned_retrieval import with_joint_retrieval
+from diorama_core.pipeline.learned_retrieval import published_embeddings, with_joint_retrieval
 from diorama_core.pipeline.presets import stages_for
 from diorama_core.pipeline.stages import Stages
 from diorama_core.retrieval.hierarchical import HierarchicalRetrieval
@@ -72,3 +72,22 @@ def test_pictures_and_shapes_are_compared_in_one_space(base, tmp_path: Path, tow
     assert (embedding.tower is not None) is tower
     changed = {n for n in vars(base) if getattr(base, n) is not getattr(made, n)}
     assert changed == {"retrieval"}
+
+
+@pytest.mark.parametrize(
+    ("present", "names"),
+    [
+        ({"openclip-b32"}, []),
+        ({"openclip-b32", "duoduoclip"}, ["DD"]),
+        ({"openclip-bigg14"}, ["CLIP"]),
+        ({"openshape"}, []),
+        ({"openclip-b32", "duoduoclip", "openclip-bigg14", "openshape"}, ["CLIP", "OS", "DD"]),
+    ],
+)
+def test_the_publications_embeddings_are_those_whose_networks_are_here(
+    tmp_path: Path, present: set[str], names: list[str]
+) -> None:
+    store = type("Some", (Store,), {"present": frozenset(present)})(tmp_path)
+    found = published_embeddings(store)
+    assert list(found) == names
+    assert len({e.weights for e in found.values()}) == len(names)

@@ -55,3 +55,14 @@ def test_the_best_that_are_unlike_each_other_are_kept(count: int) -> None:
     chosen = unlike_best(found.poses, scores, 1, PILLOW, count)
     assert len(chosen) == count
     assert chosen[0] == 0
+
+
+def test_a_round_shape_in_a_long_cuboid_is_tried_as_wide_as_either_side() -> None:
+    cuboid = Cuboid("a", np.eye(3), np.array([0.0, 2.0, 0.37]), np.array([0.9, 1.8, 0.74]), 0.5)
+    limits = SizeLimits.of((0.9, 0.9, 0.74), "table", cuboid.size_m, sides_log=0.0)
+    anchor = anchor_of(cuboid, False, np.array([0.0, -1.0]))
+    found = hypotheses_for(cuboid, "table", 36, limits, anchor, sides_known=False)
+    sides = found.poses.scale[:, 0] * 0.9
+    assert np.allclose(found.poses.scale[:, 0], found.poses.scale[:, 1])
+    assert sides.min() == pytest.approx(0.9, rel=0.01)
+    assert sides.max() > 1.3

@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from diorama_core.library.taxonomy import CATEGORIES
-from diorama_core.pose.limits import SizeLimits
+from diorama_core.pose.limits import SizeLimits, sides_log_of
 
 metres = st.floats(1e-4, 6.0)
 sizes = st.tuples(metres, metres, metres)
@@ -54,3 +54,21 @@ def test_flat_things_come_in_all_proportions_where_only_a_photo_shows_them() -> 
     assert not measured.any_proportions
     assert not np.allclose(measured.scale_for(tall) * landscape, tall)
     assert not SizeLimits.of((0.5, 0.5, 0.9), "chair", np.array([0.5, 0.5, 0.9])).any_proportions
+
+
+@given(st.floats(0.2, 3.0), st.floats(0.2, 3.0), st.floats(0.2, 2.0))
+def test_what_is_round_stays_round_and_what_is_square_becomes_no_long_one(x, y, z) -> None:
+    observed, shape = np.array([x, y, z]), (0.8, 0.8, 0.75)
+    round_ = SizeLimits.of(shape, "table", observed, sides_log=sides_log_of(36, "table", round=True)).scale_for(
+        observed
+    )
+    assert round_[0] == pytest.approx(round_[1])
+    square = SizeLimits.of(shape, "table", observed, sides_log=sides_log_of(4, "table", round=False)).scale_for(
+        observed
+    )
+    assert max(square[:2]) <= 1.3 * min(square[:2]) + 1e-9
+
+
+def test_unnamed_things_and_those_with_a_front_come_in_all_proportions() -> None:
+    assert sides_log_of(4, "object", round=False) == np.inf
+    assert sides_log_of(2, "table", round=False) == np.inf

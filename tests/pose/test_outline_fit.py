@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+import trimesh
 
 from diorama_core.artefacts import DepthMap
 from diorama_core.geometry.observed import observe
@@ -62,3 +63,17 @@ def test_the_best_pose_and_doubtful_masks_move_nothing() -> None:
     assert np.abs(best.position - TRUE.position).max() < 0.02
     doubtful = evidence(False, trust=0.3)
     assert fitted_pose(doubtful, CASTER, off(), SIZE, resize=True) == off()
+
+
+def test_what_is_round_from_above_stays_round() -> None:
+    size, drum = np.array([0.8, 0.8, 0.7]), trimesh.creation.cylinder(0.4, 0.7, sections=48)
+    true = Pose.upright((0.2, 3.2, 0.35), 0.0)
+    seen = render_buffers([(drum, true.matrix)], CAMERA)
+    mask = seen.instance == 0
+    rows, columns = np.nonzero(mask)
+    box = (float(columns.min()), float(rows.min()), float(columns.max() + 1), float(rows.max() + 1))
+    of = Evidence(CAMERA, observe(CAMERA, box, mask, 1.0, (), 56), Facing(()), None)
+    small = Pose(true.R_world_object, true.position, np.array([0.85, 0.85, 1.0]))
+    found = fitted_pose(of, ShapeCaster(drum), small, size, resize=True)
+    assert found.scale[0] == pytest.approx(found.scale[1])
+    assert found.scale[0] == pytest.approx(1.0, abs=0.06)

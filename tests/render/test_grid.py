@@ -33,7 +33,8 @@ def test_work_is_done_in_order_by_two_threads_and_errors_arrive() -> None:
 def test_a_part_is_a_view_of_the_same_memory() -> None:
     shape = (4, 6)
     flat, deep = np.zeros(shape, np.float32), np.zeros((*shape, 3), np.float32)
-    grid = Grid(np.ones(shape, dtype=bool), deep, deep.copy(), deep.copy(), np.zeros(shape, int), flat, flat.copy())
+    seen, nothing = np.ones(shape, dtype=bool), np.zeros(shape, dtype=bool)
+    grid = Grid(seen, deep, deep.copy(), deep.copy(), np.zeros(shape, int), flat, flat.copy(), nothing)
     part = grid.part(slice(1, 3), slice(2, 5))
     assert part.points.shape == (2, 3, 3)
     part.depth[0, 0] = 7.0

@@ -12,7 +12,7 @@ from diorama_core.progress import CancelToken, Progress, ProgressEvent
 from diorama_core.render.lighting import Effort
 from diorama_core.render.picture import BACKGROUND_SRGB, picture, scene_view
 from diorama_core.render.raycast import PinholeView
-from diorama_core.scene.types import Architecture, Plane, Scene
+from diorama_core.scene.types import Architecture, Plane, Scene, SurfaceFinish
 from tests.primitives import PrimitiveLibrary, box_room, eye_camera, furnished_room, place
 
 LIBRARY = PrimitiveLibrary()
@@ -201,6 +201,30 @@ def test_a_photographed_plane_is_not_lit_a_second_time() -> None:
     bare = picture(scene, LIBRARY, size=SMALL, textures={"c": grey}, photographed=False, effort=QUICK)[row, column]
     assert np.abs(photo.astype(int) - 180).max() < 45
     assert (bare < photo).all()
+
+
+def test_photographed_walls_do_not_darken_one_another() -> None:
+    """Black photographs all around: the grey floor, whose photo holds the room's light, stays as grey as it is."""
+    grey, black = np.full((8, 8, 3), 180, np.uint8), np.full((8, 8, 3), 10, np.uint8)
+    room = box_room()
+    planes = tuple(replace(p, texture=p.id) for p in room.planes)
+    textures = {p.id: grey if p.role == "floor" else black for p in planes}
+    scene = Scene(eye_camera(), Architecture(planes))
+    shown = picture(scene, LIBRARY, size=SMALL, textures=textures, effort=QUICK)
+    floor = shown.min(axis=-1) > 170
+    assert floor.mean() > 0.1
+    assert shown[floor].std() < 2.0
+    bare = tuple(p if p.role == "floor" else replace(p, texture=None, colour=(0.04,) * 3) for p in planes)
+    beside = picture(
+        replace(scene, architecture=Architecture(bare)), LIBRARY, size=SMALL, textures=textures, effort=QUICK
+    )
+    assert np.abs(beside.astype(int) - shown).max() < 12  # a plain colour of the same photo is in the same light
+    black_paint = SurfaceFinish("paint", (0.04,) * 3)
+    painted = tuple(p if p.role == "floor" else replace(p, finish=black_paint) for p in bare)
+    darker = picture(
+        replace(scene, architecture=Architecture(painted)), LIBRARY, size=SMALL, textures=textures, effort=QUICK
+    )
+    assert (shown[floor].astype(int) - darker[floor]).max() > 10
 
 
 def test_progress_rises_to_the_end_and_changes_nothing() -> None:

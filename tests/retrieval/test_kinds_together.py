@@ -47,11 +47,22 @@ def test_an_object_alone_keeps_what_is_known_of_it() -> None:
     assert kinds_together([], []) == []
 
 
+def test_what_its_size_says_of_lying_there_counts() -> None:
+    as_large, too_large = (module.Lying(("pillow",), ("bed",), np.array([[ratio]])) for ratio in (1.0, 0.1))
+    on_bed = [
+        kinds_together([{"bed": 1.0}, UNDECIDED], [None, 0], [None, of_box])[1] for of_box in (as_large, too_large)
+    ]
+    assert on_bed[0] == kinds_together([{"bed": 1.0}, UNDECIDED], [None, 0])[1]
+    assert on_bed[0]["pillow"] > 0.7 > 0.65 > on_bed[1]["pillow"]
+
+
 def test_sums_over_the_forest_are_those_over_all_combinations() -> None:
     alone = [{"bed": 0.4, "sofa": 0.6}, {"pillow": 0.3, "blanket": 0.7}, {"toy": 0.2, "tray": 0.8}, {"pillow": 1.0}]
     carrier_of = [None, 0, 1, 0]
     names = [c.name for c in CATEGORIES]
-    together, usual = module._together(), module._rooms()[0]
+    lying = module.Lying(("pillow", "blanket"), ("bed",), np.array([[3.0], [0.2]]))
+    edges = [module._edge(None), module._edge(lying), *[module._edge(None)] * 2]
+    usual = module._rooms()[0]
     own = np.zeros((4, len(names)))
     for row, of_one in zip(own, alone, strict=True):
         for kind, share in of_one.items():
@@ -60,10 +71,10 @@ def test_sums_over_the_forest_are_those_over_all_combinations() -> None:
     for combination in product(*(np.flatnonzero(row) for row in own)):
         weight = np.prod([own[i, k] for i, k in enumerate(combination)])
         for child, parent in ((1, 0), (2, 1), (3, 0)):
-            weight *= together[combination[child], combination[parent]]
+            weight *= edges[child][combination[child], combination[parent]]
         total += weight
         for i, k in enumerate(combination):
             expected[i, k] += weight
-    beliefs, log = module._in_room(own, carrier_of)
+    beliefs, log = module._in_room(own, carrier_of, edges)
     np.testing.assert_allclose(beliefs, expected / total, atol=1e-12)
     assert log == pytest.approx(np.log(total))

@@ -59,3 +59,9 @@ def test_sofas_usually_have_padded_arms():
 
 def test_frames_are_more_usual_of_armchairs():
     assert factor("sofa-slat-pine") < factor("armchair-mission-oak") < factor("armchair-track-beige")
+
+
+@pytest.mark.parametrize("rare", ["plant-cactus", "plant-bonsai", "plant-christmas", "plant-grasses"])
+def test_leafy_plants_are_more_usual_than_others(rare):
+    assert factor("plant-shrub") == factor("plant-rubber") == 1.0
+    assert 0.7 < factor(rare) < 0.9

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
@@ -58,6 +60,8 @@ LIVING = {
     "slide the sofa closer to the wall": Move(objects=["sofa_1"], places=[Place(relation="against wall")]),
     "raise picture 1 by 20 cm": Shift(objects=["picture_1"], up_m=0.2),
     "lower picture 1 a bit": Shift(objects=["picture_1"], up_m=-0.1),
+    "hang picture 1 a little higher": Shift(objects=["picture_1"], up_m=0.1),
+    "move picture 2 20 cm lower": Shift(objects=["picture_2"], up_m=-0.2),
     "center the rug under the coffee table": Move(
         objects=["rug_1"], places=[Place(relation="under", targets=["coffee_table_1"])]
     ),
@@ -128,6 +132,48 @@ def test_lists_are_several_edits_and_clauses_follow_each_other(dining: Scene) ->
     assert clauses_of("move the lamp between the sofa and the table") == (
         "move the lamp between the sofa and the table",
     )
+
+
+def test_numbers_of_a_kind_are_changed(living: Scene, dining: Scene) -> None:
+    library = built_in_library()
+    assert edits_of("double the number of books", living, library) == (
+        Insert(what="books", count=1, places=on("sideboard_1")),
+    )
+    assert edits_of("triple the pictures", living, library) == (Insert(what="picture", count=8),)
+    assert edits_of("double the size of the sofa", living, library) == (Resize(objects=["sofa_1"], factor=2.0),)
+    (halved,) = edits_of("halve the number of chairs", dining, library)
+    assert isinstance(halved, Remove)
+    assert len(halved.objects) == 3
+    with pytest.raises(EditRefused, match="only one sofa"):
+        edits_of("halve the number of sofas", living, library)
+    assert edits_of("delete all but one of the pictures", living, library) == (
+        Remove(objects=["picture_2", "picture_3", "picture_4"]),
+    )
+    with pytest.raises(EditRefused, match="only 4"):
+        edits_of("remove all but six pictures", living, library)
+
+
+def test_every_lamp_is_of_every_sort_and_everything_is_what_can_be_meant() -> None:
+    library = built_in_library()
+    scene = composed_room(
+        "a sofa, a floor lamp, a wooden coffee table, a rug and a lamp on a side table", library
+    ).scene
+    (turned,) = edits_of("turn every lamp around", scene, library)
+    assert isinstance(turned, Turn)
+    assert {scene.object(i).category for i in turned.objects} == {"lamp", "floor lamp", "ceiling lamp"}
+    (moved,) = edits_of("push everything against the walls", scene, library)
+    assert isinstance(moved, Move)
+    assert {scene.object(i).category for i in moved.objects} == {"sofa", "floor lamp", "coffee table", "side table"}
+    (white,) = edits_of("make all the wooden furniture white", scene, library)
+    assert isinstance(white, Restyle)
+    assert "coffee_table_1" in white.objects
+    assert not {"sofa", "rug", "lamp", "floor lamp"} & {scene.object(i).category for i in white.objects}
+
+
+def test_of_several_with_one_label_none_is_taken_unasked(living: Scene) -> None:
+    alike = tuple(replace(o, label="picture") if o.category == "picture" else o for o in living.objects)
+    with pytest.raises(EditRefused, match=r"there are 4 of these.*the second picture"):
+        edits_of("remove the picture", replace(living, objects=alike), built_in_library())
 
 
 def test_all_and_some_of_a_kind(dining: Scene) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import numpy as np
 import pytest
 
 from diorama_core.editing.positioning import Positioner
@@ -9,6 +10,7 @@ from diorama_core.editing.relations import Relation, is_met
 from diorama_core.editing.room_frame import RoomFrame
 from diorama_core.library.catalogue import built_in_library
 from diorama_core.scene.types import Scene
+from diorama_core.text.compose import composed_room
 from diorama_core.text.edit_insert import RUG_MARGIN_M, inserted
 from diorama_core.text.edit_plan import Insert, Place
 from tests.text.edited import assert_sound, done, living_room
@@ -58,3 +60,16 @@ def test_several_share_what_they_are_beside(living: Scene) -> None:
     for object_id, target in zip(outcome.touched, relation.targets, strict=True):
         assert is_met(outcome.scene, object_id, Relation("beside", (target,)), frame)
     assert len({outcome.scene.object(i).shape_id for i in outcome.touched}) == 1
+
+
+def test_more_chairs_are_like_those_at_the_table_and_stand_there() -> None:
+    library = built_in_library()
+    scene = composed_room("a large table with four chairs around it", library).scene
+    table = next(o for o in scene.objects if o.category == "table")
+    before = {o.id for o in scene.objects}
+    after = inserted(Positioner(library), scene, Insert(what="chair", count=2), ()).scene
+    new = [o for o in after.objects if o.id not in before]
+    assert {o.shape_id for o in new} == {o.shape_id for o in scene.objects if o.category == "chair"}
+    for chair in new:
+        local = np.abs((chair.pose.position - table.pose.position)[:2] @ table.pose.R_world_object[:2, :2])
+        assert (local - table.size_m[:2] / 2).max() < 1.2

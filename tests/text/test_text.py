@@ -79,6 +79,55 @@ def test_tables_have_seats_for_as_many_as_they_are_for(prompt: str, seats: int) 
     assert kinds["chair"] + kinds["stool"] == seats
 
 
+@pytest.mark.parametrize(
+    ("prompt", "counts"),
+    [
+        ("a two seater sofa and a 3-seat couch", {"sofa": 1}),
+        ("a bed and a lamp on each night stand", {"bed": 1, "lamp": 2, "night stand": 2}),
+        ("three rows of four desks facing the blackboard", {"desk": 12, "whiteboard": 1}),
+        ("a bedroom with no curtains, a bed and a plant", {"bed": 1, "plant": 1}),
+        ("a sofa without a rug or cushions and two plants", {"sofa": 1, "plant": 2}),
+    ],
+)
+def test_as_many_are_asked_for_as_people_mean(prompt: str, counts: dict[str, int]) -> None:
+    request = understood_prompt(prompt)
+    assert {o.category: o.count for o in request.objects} == counts
+    assert any("rows" in words for words in request.ignored) == ("rows" in prompt)
+
+
+@pytest.mark.parametrize(
+    ("prompt", "absent"),
+    [
+        ("a living room without a rug or a television", {"rug", "television"}),
+        ("a bedroom with a wardrobe, no bed and no window", {"bed", "window"}),
+        ("a bathroom with a shower and no mirror", {"mirror"}),
+    ],
+)
+def test_rooms_do_without_what_they_are_to_do_without(prompt: str, absent: set[str]) -> None:
+    made = composed_room(prompt, built_in_library())
+    assert set(made.request.excluded) == absent
+    assert not absent & {o.category for o in made.scene.objects}
+
+
+def test_tables_are_large_enough_for_their_seats() -> None:
+    made = composed_room("a table with eight chairs around it", built_in_library())
+    table = next(o for o in made.scene.objects if o.category == "table")
+    chairs = [o for o in made.scene.objects if o.category == "chair"]
+    assert len(chairs) == 8
+    # None sits in a second row.
+    for chair in chairs:
+        local = np.abs((chair.pose.position - table.pose.position)[:2] @ table.pose.R_world_object[:2, :2])
+        assert (local - table.size_m[:2] / 2).max() < 0.5
+
+
+def test_a_television_stays_at_its_wall_in_a_large_room() -> None:
+    made = composed_room("a huge living room with a sofa facing a television on a tv stand", built_in_library())
+    frame = RoomFrame.of(made.scene)
+    stand = next(o for o in made.scene.objects if o.category == "tv stand")
+    assert not made.notes
+    assert is_met(made.scene, stand.id, Relation("against wall"), frame)
+
+
 def test_arrangements_that_are_no_relation_are_named() -> None:
     assert understood_prompt("a study with an L of two desks").ignored == ("l of",)
 
@@ -142,6 +191,10 @@ WISHES = {
     "an armchair and a sofa facing each other": ("armchair", Wish("facing", ("sofa",))),
     "an armchair, a floor lamp and a bookshelf near it": ("bookshelf", Wish("near", ("armchair",))),
     "a sideboard with two candles and a vase on it": ("vase", Wish("on", ("sideboard",))),
+    "two armchairs by the fireplace with a side table between them": ("side table", Wish("between", ("armchair",))),
+    "a table with four chairs and a lamp on it": ("lamp", Wish("on", ("table",))),
+    "a table and an armchair with a cushion on it": ("pillow", Wish("on", ("armchair",))),
+    "a piano at the end of the sofa": ("piano", Wish("beside", ("sofa",))),
     "a dining room for six with an oval table": ("chair", Wish("around", ("table",))),
 }
 

@@ -34,6 +34,8 @@ MIN_LEVEL = 0.25
 CROWD_SHARE, CROWD_FREE, CROWD_LOSS, CROWD_MIN = 0.12, 0.12, 3.0, 0.25
 """Dense parallel edges (bricks, boards) are down-weighted beyond this share of a window."""
 SURE_MASK = 0.95
+UNSEEN_FOOT = 0.1
+"""What an object says about the walls whose distance only its size tells, against one that is seen to stand there."""
 NEAR_M = 0.05
 MAX_CEILING_M = 5.0
 
@@ -254,7 +256,7 @@ def gather_room_cues(
         segment_axes=axes[free],
         object_low=corners.min(axis=1),
         object_high=corners.max(axis=1),
-        object_weights=np.array([max(c.confidence, 0.1) for c in solid]),
+        object_weights=np.array([max(c.confidence, 0.1) * (1.0 if c.foot_seen else UNSEEN_FOOT) for c in solid]),
         object_portable=np.array([_is_portable(c, objects) for c in solid], dtype=bool),
         backed_low=backs.min(axis=1),
         backed_high=backs.max(axis=1),

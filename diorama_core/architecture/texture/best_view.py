@@ -15,6 +15,7 @@ import numpy as np
 from jaxtyping import Bool, Float, Float32, UInt8
 
 from diorama_core.architecture.texture.continuation import completed
+from diorama_core.architecture.texture.level_light import levelled
 from diorama_core.architecture.texture.plane_textures import (
     PhotoView,
     PlaneView,
@@ -71,7 +72,9 @@ def best_view_textures(
         colours, owned, there = _blended(chosen, pixel_m)
         if there.any() and owned.any():
             ground = plane.role == "floor"
-            textures[plane.id] = completed(colours, there, plane.colour, pixel_m, owned, ground=ground)
+            colours = levelled(colours, owned, pixel_m) if ground else colours
+            sharp = np.any([v.sharp for v in views.values()], axis=0)
+            textures[plane.id] = completed(colours, there, plane.colour, pixel_m, owned, ground=ground, sharp=sharp)
     return textures
 
 

@@ -15,6 +15,8 @@ from diorama_core.scene.types import Camera, Plane, PlaneRole
 
 GRID_PX = 240
 MIN_PIXELS = 40
+MIN_FREE = 0.2
+"""A wall of which less is unhidden in the photo has no colour of its own: what is left is panes, shelves and rims."""
 _PLAIN: dict[PlaneRole, tuple[float, float, float]] = {
     "floor": (0.62, 0.56, 0.50),
     "wall": (0.86, 0.85, 0.83),
@@ -52,7 +54,7 @@ def coloured(
 ) -> tuple[Plane, ...]:
     """The planes with the colour that most of their visible pixels have.
 
-    A plane that is hardly seen takes the colour of another of its role, else a plain one.
+    A plane that is hardly seen takes the colour of the one of its role that is seen best, else a plain one.
     """
     step = max(1, max(rgb.shape[:2]) // GRID_PX)
     seen = visible_planes(planes, camera, step)
@@ -67,10 +69,15 @@ def coloured(
         return surely if role != "floor" and surely.sum() >= MIN_PIXELS else own
 
     found = [_colour_of(plane.role, small, where(i, plane.role), white) for i, plane in enumerate(planes)]
-    by_role = {p.role: c for p, c in reversed(list(zip(planes, found, strict=True))) if c is not None}
-    return tuple(
-        replace(p, colour=c or by_role.get(p.role, _PLAIN[p.role])) for p, c in zip(planes, found, strict=True)
-    )
+    shown = [int((seen == i).sum()) for i in range(len(planes))]
+    unhidden = [int(((seen == i) & free).sum()) for i in range(len(planes))]
+    by_role: dict[PlaneRole, tuple[float, float, float]] = {}
+    for i in sorted(range(len(planes)), key=lambda k: -unhidden[k]):
+        if (colour := found[i]) is not None:
+            by_role.setdefault(planes[i].role, colour)
+    hidden = [p.role == "wall" and n < MIN_FREE * m for p, n, m in zip(planes, unhidden, shown, strict=True)]
+    own = [None if lost else colour for colour, lost in zip(found, hidden, strict=True)]
+    return tuple(replace(p, colour=c or by_role.get(p.role, _PLAIN[p.role])) for p, c in zip(planes, own, strict=True))
 
 
 def _colour_of(

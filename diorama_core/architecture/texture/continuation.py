@@ -10,7 +10,7 @@ from diorama_core.architecture.texture.quilting import broad_shading, detail_con
 
 FADE_M = 1.2
 """Far from what is seen, shading fades to the plane's plain colour over this length."""
-FLOOR_SHADING_M, WALL_SHADING_M = 0.10, 0.08
+FLOOR_SHADING_M, WALL_SHADING_M = 0.25, 0.08
 """Variation broader than this is light and shade, finer is the material's own."""
 SEAM_M = 0.25
 """Over about this length beside what is seen, what is made up has its light and shade."""
@@ -30,6 +30,7 @@ def completed(
     own: Bool[np.ndarray, "h w"],
     *,
     ground: bool = False,
+    sharp: Bool[np.ndarray, "h w"] | None = None,
 ) -> UInt8[np.ndarray, "h w 3"]:
     """The plane's picture: as seen, and where it was not seen, its shading spread smoothly and its detail continued.
 
@@ -43,6 +44,7 @@ def completed(
         pixel_m: Size of a texel.
         own: Which of the seen texels show the plane's material: what may be continued.
         ground: Whether it is a floor: boards and rugs vary more, and more broadly, than walls.
+        sharp: Which of the plane's own texels are seen from near enough to copy detail from; all by default.
     """
     breadth_m, strongest = (FLOOR_SHADING_M, FLOOR_DETAIL) if ground else (WALL_SHADING_M, WALL_DETAIL)
     if ground:
@@ -62,7 +64,7 @@ def completed(
     beside = broad_shading(colours, seen, breadth_m / pixel_m)
     alike = seen & (np.abs(beside - smooth).max(axis=-1) < (CALM_LEVELS if ground else SEAM_LEVELS))
     filled = near * _pull_push(beside * alike[..., None], alike.astype(np.float32)) + (1.0 - near) * filled
-    detail = detail_continued(colours - shading, own, strongest)
+    detail = detail_continued(colours - shading, own, strongest, source=sharp)
     if detail is not None:
         filled = filled + detail
     # The first texels inside a mask's border still carry its rim; a soft seam hides the step.

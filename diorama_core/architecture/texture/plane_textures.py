@@ -13,6 +13,7 @@ from diorama_core.architecture.texture.colours import object_pixels
 from diorama_core.architecture.texture.continuation import completed
 from diorama_core.architecture.texture.empty_room import EmptyRoomFiller
 from diorama_core.architecture.texture.floor_material import contact_pixels, floor_texels, white_level
+from diorama_core.architecture.texture.level_light import levelled
 from diorama_core.artefacts import DetectedObject, Inputs
 from diorama_core.geometry.casting import cast_planes
 from diorama_core.geometry.planes import plane_rectangle
@@ -44,6 +45,8 @@ RIM = 0.008
 SURE_MASK = 0.95
 PAINTED = 1e-3
 """How much what an inpainting network painted counts beside what another photo shows."""
+SHARP, NEAREST = 0.25, 0.9
+"""Texels that cover at least such a share of the photo beside the texel of this quantile are sharp."""
 COLOUR_CELL_LAB = np.array([14.0, 8.0, 8.0])
 """Colours within about this much are one material in light and shade."""
 EXPECTED_LAB = 8.0
@@ -96,6 +99,13 @@ class PlaneView:
     share: Float[np.ndarray, "h w"]
     """How much of the photo a texel covers, up to a factor; hardly any where it was painted."""
 
+    @property
+    def sharp(self) -> Bool[np.ndarray, "h w"]:
+        """The own texels that are seen from about as near as the nearest ones: farther ones are blurred."""
+        if not self.own.any():
+            return self.own
+        return np.asarray(self.own & (self.share >= SHARP * np.quantile(self.share[self.own], NEAREST)))
+
 
 def plane_textures(
     inputs: Inputs,
@@ -128,7 +138,10 @@ def plane_textures(
         seen = view.of_plane(plane, architecture.planes, points, pixel_m)
         if seen is not None and is_enough(seen.shown, pixel_m, plane):
             ground = plane.role == "floor"
-            found[plane.id] = completed(seen.colours, seen.seen, plane.colour, pixel_m, seen.own, ground=ground)
+            colours = levelled(seen.colours, seen.own, pixel_m) if ground else seen.colours
+            found[plane.id] = completed(
+                colours, seen.seen, plane.colour, pixel_m, seen.own, ground=ground, sharp=seen.sharp
+            )
     return found
 
 

@@ -10,8 +10,10 @@ import cv2
 import numpy as np
 from jaxtyping import Bool, Float32
 
-BLOCKS_PX = ((48, 24), (32, 60), (20, 400))
-"""Sizes of the copied squares and how many must have been seen: copies of few small ones show as a weave."""
+BLOCKS_PX = ((96, 200, 384), (48, 24, 49), (32, 60, 33), (20, 400, 21))
+"""Sizes of the copied squares, how many must have been seen, and least sides of the picture.
+
+Copies of few small squares show as a weave; large ones hold patterns of carpets and tiles."""
 BROADEST = 0.1
 """Detail broader than this share of a block is not copied."""
 MIN_SOURCE = 0.005
@@ -33,6 +35,7 @@ def detail_continued(
     seen: Bool[np.ndarray, "h w"],
     strongest: float,
     seed: int = 0,
+    source: Bool[np.ndarray, "h w"] | None = None,
 ) -> Float32[np.ndarray, "h w 3"] | None:
     """Detail everywhere: as seen, else copied from where it was seen; none where too little was seen to copy from.
 
@@ -41,10 +44,14 @@ def detail_continued(
         seen: Where it is known and the surface's own.
         strongest: Detail beyond this many levels is an object and not the surface.
         seed: Of the draw among equally good places.
+        source: The part of it to copy from, unless that is too little; all of it by default.
     """
-    source = seen & ~_odd(detail, seen, strongest)
-    size = next((b for b, enough in BLOCKS_PX if min(seen.shape) > b and _places(source, b).sum() >= enough), None)
-    if size is None or source.mean() < MIN_SOURCE:
+    whole = seen & ~_odd(detail, seen, strongest)
+    source = whole if source is None else whole & source
+    size = _block_size(source)
+    if size is None:
+        source, size = whole, _block_size(whole)
+    if size is None:
         return None
     given = detail
     # What is nearly as broad as a block shows as a weave when the block is copied side by side.
@@ -63,6 +70,15 @@ def detail_continued(
         out[window] = np.where(wanted[..., None], block, _blended(out[window], block, known[window], source[window]))
         known[window] = True
     return np.asarray(np.where(seen[..., None], given, out), dtype=np.float32)
+
+
+def _block_size(source: Bool[np.ndarray, "h w"]) -> int | None:
+    """Side of the blocks to copy from a source; None where it is too little."""
+    if source.mean() < MIN_SOURCE:
+        return None
+    return next(
+        (b for b, enough, side in BLOCKS_PX if min(source.shape) >= side and _places(source, b).sum() >= enough), None
+    )
 
 
 def _odd(
@@ -122,8 +138,13 @@ class _Finder:
         rows, columns = np.flatnonzero(source.any(axis=1)), np.flatnonzero(source.any(axis=0))
         self._top, self._left = int(rows[0]), int(columns[0])
         bottom, right = max(int(rows[-1]) + 1, self._top + size), max(int(columns[-1]) + 1, self._left + size)
+        everywhere = _places(source[self._top : bottom, self._left : right], size)
+        starts = [(row, column) for row in range(SEARCH_STEP) for column in range(SEARCH_STEP)]
+        found = [everywhere[row::SEARCH_STEP, column::SEARCH_STEP] for row, column in starts]
+        most = int(np.argmax([places.sum() for places in found]))
+        self._places = found[most]
+        self._top, self._left = self._top + starts[most][0], self._left + starts[most][1]
         part = (slice(self._top, bottom), slice(self._left, right))
-        self._places = _places(source[part], size)[::SEARCH_STEP, ::SEARCH_STEP]
         grey = cv2.cvtColor(np.where(source[part][..., None], detail[part], 0.0).astype(np.float32), cv2.COLOR_RGB2GRAY)
         self._picture = grey[::SEARCH_STEP, ::SEARCH_STEP].copy()
         self._squares = self._picture**2

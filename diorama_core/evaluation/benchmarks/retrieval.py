@@ -7,8 +7,9 @@ can be found; "out of distribution" retrieves from the other shapes only.
 from __future__ import annotations
 
 import logging
-from collections.abc import Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict, dataclass, replace
+from functools import partial
 
 import numpy as np
 
@@ -23,7 +24,9 @@ from diorama_core.library.taxonomy import broad
 from diorama_core.progress import Progress
 from diorama_core.protocols import RetrievalStage
 from diorama_core.retrieval.hierarchical import HierarchicalRetrieval
+from diorama_core.retrieval.joint import JointEmbedding
 from diorama_core.retrieval.matched import MatchedByLooks
+from diorama_core.retrieval.text_then_picture import By, TextThenPicture
 from diorama_core.synthesis.artefacts import true_geometry, true_objects
 from diorama_core.synthesis.splits import split_library
 from diorama_core.synthesis.truth import TruthView
@@ -61,7 +64,7 @@ class ObjectResult:
     """Whether the first shape is of the true category, or of the same broad one; the whole library offered."""
     unseen_kind: bool
     alone: tuple[tuple[str, float, float], ...] = ()
-    """(one of `ALONE`, best of five with the whole library offered, and with the unseen shapes)."""
+    """(one of `ALONE` or `published_stages`, best of five of the whole library, and of the unseen shapes)."""
 
 
 @dataclass(frozen=True)
@@ -85,18 +88,35 @@ class RetrievalBench:
         }
 
 
-def run(library: ShapeLibrary, scenes: int = 20, seed: int = 0, progress: Progress | None = None) -> RetrievalBench:
-    """Retrieve for every object asked for, from the whole library and from its training and validation shapes."""
+def run(
+    library: ShapeLibrary,
+    scenes: int = 20,
+    seed: int = 0,
+    progress: Progress | None = None,
+    embeddings: Mapping[str, JointEmbedding] | None = None,
+) -> RetrievalBench:
+    """Retrieve for every object asked for, from the whole library and from its training and validation shapes.
+
+    Args:
+        library: Whose test shapes furnish the rooms.
+        scenes: Number of rooms.
+        seed: Of the rooms.
+        progress: Where it is reported.
+        embeddings: By their names in the publication's table, each gets its rows; see `published_stages`.
+    """
     progress = progress or Progress()
     tested = split_library(library, "test")
     unoffered = split_library(library, "train", "validation")
     everything, others = HierarchicalRetrieval(library), HierarchicalRetrieval(unoffered)
+    rows = {name: (partial(_alone, name, library), partial(_alone, name, unoffered)) for name in ALONE}
+    for name, stage in published_stages(embeddings or {}).items():
+        rows[name] = (partial(_ranked, stage(library)), partial(_ranked, stage(unoffered)))
     results: list[ObjectResult] = []
     cases = recipe(scenes, 1, seed)
     for k, (case, view) in enumerate(attempted(cases, tested, [])):
         progress.report(k / len(cases), case.name)
         same, unseen = _ranked(everything, view), _ranked(others, view)
-        alone = [(name, _alone(name, library, view), _alone(name, unoffered, view)) for name in ALONE]
+        alone = [(name, whole(view), others_only(view)) for name, (whole, others_only) in rows.items()]
         for index in view.asked:
             found = _result(case.name, view, index, same, unseen, library)
             object_id = view.scene.objects[index].id
@@ -106,6 +126,21 @@ def run(library: ShapeLibrary, scenes: int = 20, seed: int = 0, progress: Progre
             )
             results.append(replace(found, alone=best))
     return RetrievalBench(seed, tuple(results))
+
+
+def published_stages(embeddings: Mapping[str, JointEmbedding]) -> dict[str, Callable[[ShapeLibrary], RetrievalStage]]:
+    """The publication's way with each embedding, and DuoduoCLIP's by words and by picture alone, by row."""
+
+    def stage(embedding: JointEmbedding, by: By) -> Callable[[ShapeLibrary], RetrievalStage]:
+        return lambda library: TextThenPicture(library, embedding, by)
+
+    ways: dict[str, By] = {"T": "words", "V": "picture", "H": "words and picture"}
+    return {
+        f"{name}-{letter}": stage(embedding, by)
+        for name, embedding in embeddings.items()
+        for letter, by in ways.items()
+        if letter == "H" or name == "DD"
+    }
 
 
 def _ranked(stage: RetrievalStage, view: TruthView) -> dict[str, tuple[str, ...]]:
@@ -197,12 +232,13 @@ def retrieval_table(objects: Sequence[ObjectResult]) -> Table:
     rows = (
         row("embedded, first", "same_first", "unseen_first"),
         row("embedded, best of 5", "same_best", "unseen_best"),
-        *(alone(name) for name in ALONE if any(o.alone for o in objects)),
+        *(alone(name) for name in dict.fromkeys(n for o in objects for n, *_ in o.alone)),
     )
     note = (
         f"{len(objects)} objects. Two-way mean squared chamfer of normalised shapes x 1000. SS: the true shape "
         "is in the library; OOD: it is not. Words alone: a text search for the label; looks alone: rendered views of "
-        "the shapes of its kind. They stand in for the halves of the paper's networks, which were not measured here."
+        "the shapes of its kind. They stand in for the halves of the paper's networks. CLIP-H, OS-H, DD-T, DD-V, DD-H: "
+        "the paper's way with its networks, where they are on the machine."
     )
     return Table("Retrieval", columns, (*rows, *paper_rows(paper.RETRIEVAL)), note)
 

@@ -3,7 +3,8 @@ end before it.
 
 A bookcase whose left end is behind a wardrobe was seen up to the wardrobe. Where its shape goes on into the wardrobe, a
 narrower bookcase agrees with the picture as well, and nothing has to move. So it is with a window whose upper end is
-above the picture's border, and whose shape goes on through the ceiling.
+above the picture's border, and whose shape goes on through the ceiling. The other way round, a lamp whose upper end
+is above the border goes on up to the ceiling.
 """
 
 from __future__ import annotations
@@ -34,6 +35,8 @@ MIN_SEEN = 0.03
 """Share of its box in the photo by which a shortened object may fall short of it."""
 UPRIGHT = 0.3
 """A normal whose z is smaller is that of a wall; a direction that is more along it goes through the wall."""
+MAX_CORD_M = 1.5
+"""A lamp that was seen farther below its ceiling does not hang from it."""
 AROUND_LOAD_M = 0.02
 """Left beside what stands on an object."""
 
@@ -89,6 +92,30 @@ def ending_on_walls(problem: Problem, observations: PhotoObservations) -> Proble
                 if cut > MIN_OVERLAP_M:
                     scale[i, axis] *= 1.0 - cut / extent
                     p[i] = p[i] - 0.5 * cut * outward
+    return replace(problem, scale=scale, p=p)
+
+
+def reaching_ceilings(problem: Problem, observations: PhotoObservations) -> Problem:
+    """The problem with lamps whose upper end was not seen going on up to the ceiling that they hang from.
+
+    The lower end stays.
+    """
+    scale, p = problem.scale.copy(), problem.p.copy()
+    for i in map(int, np.flatnonzero(problem.free & observations.hidden[:, 1])):
+        ceiling = problem.surface[i]
+        if (
+            problem.on_plane[i] is None
+            or ceiling is None
+            or ceiling.normal[2] > -UPRIGHT
+            or problem.contact[i][2] < 0.5
+        ):
+            continue
+        up = problem.R[i][:, 2]
+        height = float(problem.shape_size[i, 2] * scale[i, 2])
+        gap = (float(ceiling.normal @ p[i]) - ceiling.level) / max(-float(ceiling.normal @ up), UPRIGHT) - height / 2
+        if 0.0 < gap <= MAX_CORD_M:
+            scale[i, 2] *= 1.0 + gap / height
+            p[i] = p[i] + 0.5 * gap * up
     return replace(problem, scale=scale, p=p)
 
 

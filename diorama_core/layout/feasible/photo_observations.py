@@ -89,6 +89,15 @@ class PhotoObservations:
         smaller = scale < 0.999 * self.most / MAX_STRETCH
         return replace(self, most=np.where(smaller, scale, self.most), least=np.minimum(self.least, scale))
 
+    def no_larger(self, i: int, scale: Float[np.ndarray, "3"]) -> PhotoObservations:
+        """The same with one object no larger than this."""
+        if not np.isfinite(scale).any():
+            return self
+        most, least = self.most.copy(), self.least.copy()
+        most[i] = np.minimum(most[i], scale)
+        least[i] = np.minimum(least[i], most[i])
+        return replace(self, most=most, least=least)
+
     def at_heights(self, members: Int[np.ndarray, " m"], scale: Float[np.ndarray, " n"]) -> PhotoObservations:
         """The same with the heights of some objects decided: the scales of all along their own up axes."""
         least, most = self.least.copy(), self.most.copy()

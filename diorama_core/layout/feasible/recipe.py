@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -11,7 +11,7 @@ from jaxtyping import Float
 
 from diorama_core.artefacts import LayoutReport, PhotoDisagreement
 from diorama_core.layout.feasible.heights import joint_heights
-from diorama_core.layout.feasible.hidden_extents import ending_before_neighbours, ending_on_walls
+from diorama_core.layout.feasible.hidden_extents import ending_before_neighbours, ending_on_walls, reaching_ceilings
 from diorama_core.layout.feasible.photo_observations import PhotoObservations, disagreements, photo_observations
 from diorama_core.layout.feasible.relocate import relocate
 from diorama_core.layout.feasible.resize import fitted_sizes
@@ -37,6 +37,8 @@ SHRINK = 0.9
 
 MIN_CERTAINTY = 0.1
 """An object that is hardly seen still counts so much."""
+ACROSS_ALONE = 8.0
+"""So many times what moves across the picture cost: also tried where objects must be parted."""
 RIDING = 0.05
 """What moving on its supporter costs an object, against moving in the picture."""
 
@@ -88,6 +90,7 @@ class FeasibleRecipe:
         wanted = problem
         if observations is not None and not self.sizes_reasoned:  # reasoned distances overlap for other reasons
             wanted = ending_on_walls(ending_before_neighbours(problem, observations), observations)
+            wanted = reaching_ceilings(wanted, observations)
             observations = self._observations(wanted, scene.camera, visible)
         if observations is not None and self.depth_measured:
             wanted, observations = joint_heights(wanted, observations)
@@ -100,7 +103,8 @@ class FeasibleRecipe:
             if seen is not None:
                 structure = fitted_sizes(program, self._outline_cost(wanted))
                 program = build_program(wanted, structure, *self._costs(wanted, scene.camera))
-            found = _apart(program, self.rounds, self._watcher(scene, program, progress, preview), seen_before)
+            check = self._watcher(scene, program, progress, preview)
+            found = _apart(program, self.rounds, check, seen_before, self._farther(program, scene.camera))
             # Smaller objects that overlap as much as before have become smaller in vain.
             if best is None or len(found.stuck) < len(best[2].stuck):
                 best = (wanted, program, found)
@@ -148,6 +152,14 @@ class FeasibleRecipe:
                 preview(edits.place(scene, poses), costs)
 
         return check
+
+    def _farther(self, program: Program, camera: Camera | None) -> tuple[Program, ...]:
+        """The same moves where those across the picture cost more still: one of several ways to part a crowd."""
+        if camera is None or self._across <= 1.0:
+            return ()
+        shy = replace(self, observations=ACROSS_ALONE * self.observations)
+        costs = shy._costs(program.problem, camera)
+        return (build_program(program.problem, program.structure, *costs),)
 
     def _rays(self, problem: Problem, camera: Camera | None) -> Float[np.ndarray, "n 3"] | None:
         if camera is None or self._across <= 1.0:
@@ -197,8 +209,9 @@ def _apart(
     rounds: int,
     check: Callable[[np.ndarray, float], None],
     view: ObservedView | None,
+    others: Sequence[Program],
 ) -> Separation:
-    """The better of two ways to take overlaps away: all at once, and one after another.
+    """The best of several ways to take overlaps away: all at once, one after another, and with other costs.
 
     Which agrees better with the picture, where there is one; else which costs less. Objects that change their order
     along the line of sight may cost little, but they hide one another.
@@ -206,8 +219,10 @@ def _apart(
     together = separate(program, rounds=rounds, check=check)
     if not program.tried:
         return together
-    single = relocate(program, base(program))
-    found = [relaxed(program, f) for f in (together, single)]
+    found = [relaxed(program, f) for f in (together, relocate(program, base(program)))]
+    for other in others:
+        found.append(relaxed(other, separate(other, rounds=rounds, check=check)))
+        found.append(relaxed(other, relocate(other, base(other))))
     best = min(found, key=lambda f: (len(f.stuck), *_disagreement(program, f, view)))
     check(best.y, best.depth_m)
     return best

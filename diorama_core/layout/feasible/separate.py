@@ -11,7 +11,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 
 import numpy as np
-from jaxtyping import Bool, Float
+from jaxtyping import Bool, Float, Int
 
 from diorama_core.geometry.planes import in_polygon
 from diorama_core.geometry.sat import Bodies, PairAxes, pair_axes, place_bodies
@@ -33,6 +33,9 @@ _SAME_WAY = float(np.cos(np.deg2rad(20.0)))
 _RELAXATIONS = 3
 _MAX_AXES = 64
 """So many axes of a pair of parts are looked at for a way out; fewer axes never part what overlaps."""
+_SIDES = 8
+"""In so many directions the axes that part them soonest are looked at besides."""
+_MIN_SLOPE = 1e-6
 _WORTH = 0.01
 """Relaxing goes on as long as it saves this share of the move."""
 
@@ -275,8 +278,12 @@ def _near_parts(program: Program, w: Float[np.ndarray, "n 3"]) -> list[tuple[int
     return found
 
 
-def _between(program: Program, i: int, j: int, offset: Float[np.ndarray, "3"]) -> list[PairAxes]:
-    """The watched pairs of parts of two objects, with the axes along which they are deepest apart or least deep."""
+def _between(
+    program: Program, i: int, j: int, offset: Float[np.ndarray, "3"], directions: Float[np.ndarray, "d 3"]
+) -> list[PairAxes]:
+    """The watched pairs of parts of two objects, with the axes along which they are deepest apart or least deep, and
+    those by which they part soonest in some of the directions.
+    """
     owner = program.bodies.owner
     found = []
     for block in program.blocks:
@@ -284,11 +291,23 @@ def _between(program: Program, i: int, j: int, offset: Float[np.ndarray, "3"]) -
         if len(rows):
             normals, gaps = block.normals[rows], block.gaps[rows]
             if gaps.shape[1] > _MAX_AXES:
-                best = np.argpartition(-(gaps + normals @ offset), _MAX_AXES, axis=1)[:, :_MAX_AXES]
+                apart = gaps + normals @ offset
+                best = np.argpartition(-apart, _MAX_AXES, axis=1)[:, :_MAX_AXES]
+                best = np.hstack([best, _soonest(apart, normals, directions[:: max(len(directions) // _SIDES, 1)])])
                 normals = np.take_along_axis(normals, best[..., None], axis=1)
                 gaps = np.take_along_axis(gaps, best, axis=1)
             found.append(PairAxes(block.a[rows], block.b[rows], normals, gaps))
     return found
+
+
+def _soonest(
+    apart: Float[np.ndarray, "m a"], normals: Float[np.ndarray, "m a 3"], directions: Float[np.ndarray, "d 3"]
+) -> Int[np.ndarray, "m d"]:
+    """For every pair and direction, the axis by which the pair is apart after the shortest way."""
+    slope = normals @ directions.T
+    with np.errstate(divide="ignore", invalid="ignore"):
+        way = np.where(slope > _MIN_SLOPE, (APART_M - apart)[..., None] / slope, np.inf)
+    return np.asarray(way.argmin(axis=1))
 
 
 def _choose_way(program: Program, y: Float[np.ndarray, " v"], i: int, j: int) -> None:
@@ -298,7 +317,7 @@ def _choose_way(program: Program, y: Float[np.ndarray, " v"], i: int, j: int) ->
     if not len(directions):
         return
     now = lever @ y
-    blocks = _between(program, i, j, now)
+    blocks = _between(program, i, j, now, directions)
     offsets = [np.tile(now, (len(block.a), 1)) for block in blocks]
     far = exits(blocks, offsets, [np.ones(len(block.a)) for block in blocks], directions, APART_M)
     known = np.isfinite(far)

@@ -23,6 +23,8 @@ from diorama_core.scene.types import box_corners
 
 SMALLEST_SHRINK = 0.8
 """An object that does not fit is made smaller by at most this factor; beyond, it stays large and is named."""
+SHORTEST_BEFORE_WALL = 0.5
+"""An object that reaches through a wall ends before it, if this share of its extent is left."""
 UPRIGHT_WITHIN = float(np.cos(np.deg2rad(35.0)))
 """Objects hung within this angle of upright hang upright; others keep their roll."""
 MAX_GROWTH = 1.7
@@ -143,6 +145,8 @@ def _settle(
     walk.R[i] = _aligned(walk.R[i], problem.contact[i], surface, [(problem.walls[w].normal, f) for w, f in against])
     u, v = plane_axes(n)
     _before_walls(problem, walk, i)
+    if observations is not None:
+        observations = observations.no_larger(i, np.where(walk.scale[i] < problem.scale[i], walk.scale[i], np.inf))
     grown = 1.0 if eye is None else _from_the_eye(problem, walk, i, surface, eye)
     if observations is not None and observations.measured[i]:
         _reach_support(problem, walk, i, surface)
@@ -170,16 +174,31 @@ def _settle(
 
 
 def _before_walls(problem: Problem, walk: _Walk, i: int) -> None:
-    """Shorten an object that reaches through a wall from behind: its front was seen where it is, its back was not."""
+    """Shorten an object that reaches through a wall from behind: its front was seen where it is, its back was not.
+
+    Where what it holds up was seen before its front, the object comes forward so far instead.
+    """
     for wall in problem.walls_near(i):
         axis = int(np.abs(wall.normal @ walk.R[i]).argmax())
         half = 0.5 * _size(problem, walk, i)
         through = wall.offset - float(wall.normal @ walk.p[i]) + float(np.abs(wall.normal @ walk.R[i]) @ half)
         factor = 1.0 - through / (2.0 * float(half[axis]))
-        if abs(float(wall.normal @ walk.R[i][:, axis])) < PARALLEL or not SMALLEST_SHRINK <= factor < 1.0:
+        if abs(float(wall.normal @ walk.R[i][:, axis])) < PARALLEL or not SHORTEST_BEFORE_WALL <= factor < 1.0:
             continue
-        walk.scale[i, axis] *= factor
-        walk.p[i] = walk.p[i] + 0.5 * through * wall.normal
+        forward = min(_overhang(problem, i, wall.normal), through)
+        walk.scale[i, axis] *= factor + forward / (2.0 * float(half[axis]))
+        walk.p[i] = walk.p[i] + (forward + 0.5 * (through - forward)) * wall.normal
+
+
+def _overhang(problem: Problem, i: int, outward: np.ndarray) -> float:
+    """How far what was observed on an object reaches beyond the object's own side, metres."""
+    reach = [
+        float(
+            outward @ problem.p[k] + np.abs(outward @ problem.R[k]) @ (0.5 * problem.shape_size[k] * problem.scale[k])
+        )
+        for k in problem.rides(i)
+    ]
+    return max(reach) - reach[0]
 
 
 def _within_support(

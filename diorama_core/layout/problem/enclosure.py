@@ -2,7 +2,7 @@
 
 An object touches the board it stands on, so it never collides with its supporter as a whole. It does collide with the
 back and the sides of a bookcase, with the arms of a chair, with the frame of a mirror on a dresser and with the tap of
-a worktop.
+a worktop. Soft loads sink into bedding and cushions: of what rises above their place they meet what stands beside it.
 """
 
 from __future__ import annotations
@@ -19,6 +19,8 @@ from diorama_core.layout.problem.supports import Surface
 
 ABOVE_M = 0.01
 """Parts of a supporter that do not rise above a place by so much are below what rests there."""
+BESIDE_M = 0.005
+"""Parts reach by up to so much over the edge of a place beside which they stand: they contain the mesh."""
 
 
 def may_meet(problem: Problem, bodies: Bodies, surface: Sequence[Surface | None]) -> Bool[np.ndarray, "b b"]:
@@ -38,12 +40,29 @@ def may_meet(problem: Problem, bodies: Bodies, surface: Sequence[Surface | None]
             if place is None or problem.yielding[i, below]:
                 continue
             parts = np.flatnonzero(owner == below)
-            beside = parts[_rises(bodies, parts, place)]
+            rises = _rises(bodies, parts, place)
+            beside = parts[rises & _stands_beside(bodies, parts, place) if problem.firm[i] < 1.0 else rises]
             own = np.flatnonzero(owner == i)
             allowed[np.ix_(own, beside)] = allowed[np.ix_(beside, own)] = True
     return allowed
 
 
 def _rises(bodies: Bodies, parts: np.ndarray, place: Surface) -> Bool[np.ndarray, " k"]:
-    """Which parts rise above a place (world)."""
-    return np.asarray((bodies.vertices[parts] @ place.normal).max(axis=1) - place.level > ABOVE_M)
+    """Which parts rise above a place (world) beside its middle.
+
+    One that has the middle of the place inside it encloses nothing: it is the hull of a worktop and of what rises
+    behind it, and nothing could stand there.
+    """
+    vertices, normals = bodies.vertices[parts], bodies.normals[parts]
+    middle = place.polygon.mean(axis=0)
+    middle = middle + (place.level + ABOVE_M - float(middle @ place.normal)) * place.normal
+    along = np.einsum("pvc,pfc->pvf", vertices, normals)
+    here = normals @ middle
+    around = ((along.min(axis=1) <= here) & (here <= along.max(axis=1))).all(axis=1)
+    return np.asarray(((vertices @ place.normal).max(axis=1) - place.level > ABOVE_M) & ~around)
+
+
+def _stands_beside(bodies: Bodies, parts: np.ndarray, place: Surface) -> Bool[np.ndarray, " k"]:
+    """Which parts lie outside of one of a place's sides (world)."""
+    out = np.matmul(bodies.vertices[parts], place.outward.T) - place.offset
+    return np.asarray(out.min(axis=1).max(axis=1) > -BESIDE_M)

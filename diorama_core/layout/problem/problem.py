@@ -120,14 +120,17 @@ class Problem:
         return list(self._riders[index])
 
     def walls_near(self, index: int) -> tuple[Plane, ...]:
-        """The seen walls that an object could reach and before which it was observed; not the one it is on."""
+        """The seen walls that an object could reach, beyond their ends too, and before which it was observed.
+
+        The one it is on is left out.
+        """
         found = []
         radius = 0.5 * float(np.linalg.norm(self.shape_size[index] * self.scale[index]))
         for wall in self.walls:
             surface = plane_surface(wall)
             beside = float((surface.outward @ self.p[index] - surface.offset).max())
             ahead = float(wall.normal @ self.p[index]) - wall.offset
-            if wall.seen and self.on_plane[index] != wall.id and beside <= 0.0 <= ahead <= radius:
+            if wall.seen and self.on_plane[index] != wall.id and beside <= radius and 0.0 <= ahead <= radius:
                 found.append(wall)
         return tuple(found)
 

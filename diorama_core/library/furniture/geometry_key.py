@@ -67,6 +67,15 @@ def _told(value: Any) -> str:
     return text
 
 
+def code_key(function: Callable[..., Any]) -> str:
+    """Names what a function of this package does: its text and that of everything that it uses.
+
+    Raises:
+        LibraryError: it is no function at the top of a module of this package.
+    """
+    return _code_of(inspect.unwrap(function))
+
+
 @cache
 def _code_of(function: Callable[..., Any]) -> str:
     if not inspect.isfunction(function):

@@ -10,6 +10,7 @@ from pathlib import Path
 
 import numpy as np
 import trimesh
+from PIL import Image
 
 from diorama_core.errors import LibraryError
 from diorama_core.io.atomic import write_atomically
@@ -21,6 +22,11 @@ from diorama_core.library.store.records import Records, StoredRow
 
 MAX_MODEL_BYTES = 600_000_000
 """Of one model as it is stored; ingestion makes none as large."""
+
+_PICTURES = (
+    "baseColorTexture", "metallicRoughnessTexture", "normalTexture", "occlusionTexture", "emissiveTexture", "image",
+)  # fmt: skip
+"""Pictures that a material may have."""
 
 
 class StoredLibrary:
@@ -164,9 +170,20 @@ class StoredLibrary:
 def _loaded(glb: bytes, shape_id: str) -> trimesh.Scene:
     try:
         scene = trimesh.load_scene(io.BytesIO(glb), file_type="glb", process=False)
+        _decode(scene)
     except Exception as error:  # a damaged file may fail in any way inside the loader
         raise LibraryError(f"the model of shape '{shape_id}' is damaged ({error}); add it again") from error
     return scene
+
+
+def _decode(scene: trimesh.Scene) -> None:
+    """Read the pictures of a scene's materials: threads that share it must not do so at the same time."""
+    for mesh in scene.geometry.values():
+        material = getattr(getattr(mesh, "visual", None), "material", None)
+        for name in _PICTURES:
+            picture = getattr(material, name, None)
+            if isinstance(picture, Image.Image):
+                picture.load()
 
 
 def _merged(scene: trimesh.Scene) -> trimesh.Trimesh:

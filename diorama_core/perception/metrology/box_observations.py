@@ -21,6 +21,13 @@ _COVERED = 0.65
 """Share of an edge that something in front must cover to hide it."""
 _STRIP, _LOWER_END = 0.15, 0.25
 """Width of the strips beside a box, and the part of its height along which they lie, as shares of the box."""
+HIDDEN_ODDS = np.array([0.06, 0.03, 0.06, 0.12])
+"""That an object goes on unseen beyond an edge of its box where nothing speaks for it; see `hidden_odds`."""
+ODDS_BOXED, ODDS_OUTLINED = 2.0, 8.0
+"""By how much a nearer thing's box across the edge, and others' masks all along its outer side, raise them."""
+_OUTSIDE_PX = 2.5
+"""Of a picture 640 pixels wide."""
+_ALONG = 64
 _CLEARLY_LOWER = 0.03
 """How much lower, as a share of the picture, a thing's box must end to be in front."""
 
@@ -51,6 +58,8 @@ class BoxObservations:
     """Whether the mask is the user's own."""
     before: Float[np.ndarray, "n n"]
     """How much of both sides of object i's lower end is object j, 0 to 1: then i is on j or in front of it."""
+    beside: Float[np.ndarray, "n n 4"]
+    """Share of the outer side of edge e of object i that is object j's mask."""
     fill: Float[np.ndarray, "n"]
     """Share of the box that the user's own mask fills; 1 where there is only a guess."""
     meanings: tuple[tuple[tuple[str, float], ...], ...]
@@ -75,6 +84,13 @@ class BoxObservations:
         others = [j for j in range(len(self)) if j != index and (parent is None or self._may_hide(j, parent))]
         beyond = (self.box_px[others] - self.box_px[index]) * _OUTWARD
         return np.where(self.covered_by[index][others], beyond, 0.0).max(axis=0, initial=0.0)
+
+    def hidden_odds(self, index: int, parent: int | None = None) -> Float[np.ndarray, "4"]:
+        """Odds that an object goes on unseen beyond each edge, by what is drawn and outlined there."""
+        others = [j for j in range(len(self)) if j != index and (parent is None or self._may_hide(j, parent))]
+        outlined = np.minimum(self.beside[index][others].sum(axis=0), 1.0) if others else np.zeros(4)
+        boxed = self.hidden(index, parent)
+        return HIDDEN_ODDS * np.where(boxed, ODDS_BOXED, 1.0) * ODDS_OUTLINED**outlined
 
     def _may_hide(self, other: int, parent: int) -> bool:
         on_floor = self.categories[other].mount == "floor"
@@ -101,7 +117,19 @@ def gather(objects: tuple[DetectedObject, ...], width: int, height: int) -> BoxO
     in_front, before = _bottom_lower(boxes, height), _before(objects, boxes)
     meanings = tuple(o.meanings for o in objects)
     return BoxObservations(
-        categories, boxes, sigma, covered, in_front, truncated, reach, weight, exact, before, fill, meanings
+        categories,
+        boxes,
+        sigma,
+        covered,
+        in_front,
+        truncated,
+        reach,
+        weight,
+        exact,
+        before,
+        _beside(objects, boxes),
+        fill,
+        meanings,
     )
 
 
@@ -116,6 +144,31 @@ def _before(objects: tuple[DetectedObject, ...], boxes: Float[np.ndarray, "n 4"]
         for j in range(n):
             shares = [float(objects[j].mask[rows, side].mean()) for side in sides if objects[j].mask[rows, side].size]
             found[i, j] = min(shares) if i != j and len(shares) == 2 else 0.0
+    return found
+
+
+def _beside(objects: tuple[DetectedObject, ...], boxes: Float[np.ndarray, "n 4"]) -> Float[np.ndarray, "n n 4"]:
+    """For objects i and j and edges of i: the share of points just outside the edge that j's mask has."""
+    n, found = len(boxes), np.zeros((len(boxes), len(boxes), 4))
+    if not n:
+        return found
+    height, width = objects[0].mask.shape
+    steps = (np.arange(_ALONG) + 0.5) / _ALONG
+    away = _OUTSIDE_PX * max(height, width) / 640
+    for i in range(n):
+        x1, y1, x2, y2 = boxes[i]
+        x, y = x1 + steps * (x2 - x1), y1 + steps * (y2 - y1)
+        sides = (
+            (np.full(_ALONG, x1 - away), y),
+            (x, np.full(_ALONG, y1 - away)),
+            (np.full(_ALONG, x2 + away), y),
+            (x, np.full(_ALONG, y2 + away)),
+        )
+        for edge, (u, v) in enumerate(sides):
+            columns, rows = u.astype(int).clip(0, width - 1), v.astype(int).clip(0, height - 1)
+            for j in range(n):
+                if j != i:
+                    found[i, j, edge] = float(objects[j].mask[rows, columns].mean())
     return found
 
 

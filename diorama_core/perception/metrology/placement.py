@@ -9,8 +9,9 @@ import numpy as np
 from jaxtyping import Float
 
 from diorama_core.geometry.projection import cuboid_corners
+from diorama_core.library import taxonomy
 from diorama_core.library.company import often_carried
-from diorama_core.library.taxonomy import AGAINST_WALLS, PORTABLE, UNKNOWN, Category, with_kin
+from diorama_core.library.taxonomy import AGAINST_WALLS, PORTABLE, UNKNOWN, Category, Mount, with_kin
 from diorama_core.perception.metrology.arrangement import arrange, distinct
 from diorama_core.perception.metrology.box_observations import BoxObservations
 from diorama_core.perception.metrology.floor import place_on_floor, solve_all
@@ -33,11 +34,17 @@ FLOOR, WALL, CEILING = -1, -2, -3
 """Supporters that are no objects."""
 
 _NEVER = np.inf
-_ON_TOP_COST = {"floor": FLOOR_OBJECT_COST, "surface": 0.0, "wall": 4.0, "ceiling": _NEVER}
-_FLOOR_COST = {"floor": 0.0, "surface": 6.0, "wall": 12.0, "ceiling": _NEVER}
-_WALL_COST = {"floor": 12.0, "surface": 8.0, "wall": 0.0, "ceiling": 6.0}
-_CEILING_COST = {"floor": _NEVER, "surface": _NEVER, "wall": _NEVER, "ceiling": 0.0}
+_COSTS: Mapping[str, Mapping[Mount, float]] = {
+    "on top": {"floor": FLOOR_OBJECT_COST, "surface": 0.0, "wall": 4.0, "ceiling": _NEVER},
+    "floor": {"floor": 0.0, "surface": 6.0, "wall": 12.0, "ceiling": _NEVER},
+    "wall": {"floor": 12.0, "surface": 8.0, "wall": 0.0, "ceiling": 6.0},
+    "ceiling": {"floor": _NEVER, "surface": _NEVER, "wall": _NEVER, "ceiling": 0.0},
+}
+"""What speaks against a thing being held in a place, by how things of its kind are usually held."""
 _UNNAMED_COSTS = {"on top": 4.0, "floor": 0.0, "wall": 5.0, "ceiling": 6.0}
+"""The same for a thing without a name that nobody looked at."""
+_HARDLY = 1e-4
+"""How likely a thing without a name is held as no kind is that it may be of."""
 _MIN_FLAT_FILL = 0.7
 _NOT_FLAT_COST = 6.0
 """Of an unnamed thing on a wall whose mask leaves much of its box empty: pictures and boards do not."""
@@ -254,20 +261,20 @@ def _supported_rows(
     """Rows for everything but the floor that may hold an object, by supporter."""
     category = observations.categories[index]
     options: list[tuple[int, list[Problems]]] = []
-    on_top = _cost(category, "on top", _ON_TOP_COST)
+    on_top = _held_cost(observations, index, "on top")
     parents = _possible_parents(observations, index)
     if np.isfinite(on_top) and category.name not in _LARGE:
         for parent in parents:
             cost = on_top + _unlikely_parent_cost(category, observations.categories[parent])
             options.append((parent, place_on(observations, index, parent, carriers[parent].cuboid, height_m, cost)))
-    on_wall = _SCREEN_ON_WALL_COST if category.name in _SCREENS else _cost(category, "wall", _WALL_COST)
+    on_wall = _SCREEN_ON_WALL_COST if category.name in _SCREENS else _held_cost(observations, index, "wall")
     if category is UNKNOWN and observations.fill[index] < _MIN_FLAT_FILL:
         on_wall += _NOT_FLAT_COST
     if category.mount == "surface" and parents:
         on_wall += _BESIDE_ITS_SUPPORTER_COST
     if category.name not in _LARGE or category.name in _FIXED_TO_WALLS:
         options.append((WALL, place_on_wall(observations, index, height_m, room, on_wall)))
-    below = _cost(category, "ceiling", _CEILING_COST)
+    below = _held_cost(observations, index, "ceiling")
     if np.isfinite(below):
         options.append((CEILING, place_below_ceiling(observations, index, height_m, room, below)))
     return options
@@ -300,7 +307,7 @@ def _averted_costs(problems: Problems, boxes: Cuboids, observations: BoxObservat
 
 def _floor_cost(observations: BoxObservations, index: int) -> float:
     category = observations.categories[index]
-    cost = _SCREEN_ON_FLOOR_COST if category.name in _SCREENS else _cost(category, "floor", _FLOOR_COST)
+    cost = _SCREEN_ON_FLOOR_COST if category.name in _SCREENS else _held_cost(observations, index, "floor")
     parents = _possible_parents(observations, index)
     if category.mount == "surface" and parents:
         cost += _BESIDE_ITS_SUPPORTER_COST
@@ -322,8 +329,15 @@ def _possible_parents(observations: BoxObservations, index: int) -> list[int]:
     return supporters_of(observations, index, carriers)
 
 
-def _cost(category: Category, where: str, table: dict[str, float]) -> float:
-    return _UNNAMED_COSTS[where] if category is UNKNOWN else table[category.mount]
+def _held_cost(observations: BoxObservations, index: int, where: str) -> float:
+    """What speaks against an object being held there; of one without a name the mean over all that it may be."""
+    category, meanings, costs = observations.categories[index], observations.meanings[index], _COSTS[where]
+    if category is not UNKNOWN:
+        return costs[category.mount]
+    if not meanings:
+        return _UNNAMED_COSTS[where]
+    likely = sum(share * float(np.exp(-costs[taxonomy.category(kind).mount] / 2)) for kind, share in meanings)
+    return -2.0 * float(np.log(likely + _HARDLY))
 
 
 def _unlikely_parent_cost(category: Category, parent: Category) -> float:

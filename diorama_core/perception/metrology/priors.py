@@ -1,7 +1,7 @@
 """How big a thing may be: the modes of its size, read from the taxonomy.
 
-A general word covers more than its own row ("table" is also said of coffee tables), and a thing without a name is
-most likely one of the usual kinds of furniture; each such reading is a further mode at a price.
+A general word covers more than its own row ("table" is also said of coffee tables), and a thing without a name is one
+of the kinds that it looks like, or else of the usual furniture; each such reading is a further mode at a price.
 """
 
 from __future__ import annotations
@@ -12,8 +12,9 @@ from functools import cache
 import numpy as np
 from jaxtyping import Float
 
-from diorama_core.library.kinds import modes_of_kind, outline_of
-from diorama_core.library.taxonomy import PORTABLE, UNKNOWN, SizePrior, category
+from diorama_core.library.kind_sizes import sizes_of_kind
+from diorama_core.library.kinds import outline_of
+from diorama_core.library.taxonomy import PORTABLE, UNKNOWN, Mount, SizePrior, category
 
 _ALSO = {
     "table": (("coffee table", 1.5), ("side table", 2.5)),
@@ -36,12 +37,9 @@ _UNNAMED = {
     "bed": 1.5,
     "wardrobe": 4.5,
 }
-"""What unnamed furniture may be, with the cost of the rarer kinds."""
+"""What unnamed furniture may be that nobody looked at, with the cost of the rarer kinds."""
 _UNNAMED_WIDENED = 1.3
 _UNNAMED_ANYTHING_COST = 6.0
-BROAD_SHARE = 0.3
-"""Of the mixture that is the taxonomy's: of things unlike all in the library."""
-MAX_MODES = 3
 MIN_SHARE, MAX_MEANINGS = 0.03, 4
 """Of what a word may mean, what counts for the size."""
 _USUAL_SPREAD = 3 * np.log(0.16)
@@ -77,14 +75,22 @@ def size_modes(name: str, meanings: tuple[tuple[str, float], ...] = ()) -> tuple
         meanings: kinds that the word may mean with their probabilities; what it is generally said of when empty.
     """
     if name == UNKNOWN.name:
-        kinds = tuple(
-            _mode(kind, cost + _breadth_cost(category(kind).priors[0]), _UNNAMED_WIDENED)
-            for kind, cost in _UNNAMED.items()
-        )
-        return (*kinds, _mode(UNKNOWN.name, _UNNAMED_ANYTHING_COST))
+        return (*(_modes_held(meanings, "floor") or _usual_furniture()), _mode(UNKNOWN.name, _UNNAMED_ANYTHING_COST))
     if meanings:
         return _own_modes(name) + _modes_of_meanings(name, meanings)
     return _own_modes(name) + tuple(_mode(kind, cost) for kind, cost in _ALSO.get(name, ()))
+
+
+def _usual_furniture() -> tuple[SizeMode, ...]:
+    return tuple(
+        _mode(kind, cost + _breadth_cost(category(kind).priors[0]), _UNNAMED_WIDENED) for kind, cost in _UNNAMED.items()
+    )
+
+
+def _modes_held(meanings: tuple[tuple[str, float], ...], mount: Mount) -> tuple[SizeMode, ...]:
+    """The likeliest modes of the likeliest kinds that a thing without a name may be and that are so mounted."""
+    kinds = [(kind, share) for kind, share in meanings if category(kind).mount == mount]
+    return tuple(_rarer(kind, share, *kinds[0]) for kind, share in kinds[: MAX_MEANINGS + 1])
 
 
 def _modes_of_meanings(name: str, meanings: tuple[tuple[str, float], ...]) -> tuple[SizeMode, ...]:
@@ -92,13 +98,14 @@ def _modes_of_meanings(name: str, meanings: tuple[tuple[str, float], ...]) -> tu
     shares = dict(meanings)
     own, held = max(shares.get(name, 0.0), MIN_SHARE), _held(name)
     others = [(kind, share) for kind, share in meanings if kind != name and share >= MIN_SHARE and _held(kind) == held]
-    usual = _log_breadth(_own_modes(name)[0])
-    found = []
-    for kind, share in others[:MAX_MEANINGS]:
-        mode = _own_modes(kind)[0]
-        rarer = 2.0 * (float(np.log(own / share)) + _log_breadth(mode) - usual)
-        found.append(replace(mode, cost=max(0.0, rarer)))
-    return tuple(found)
+    return tuple(_rarer(kind, share, name, own) for kind, share in others[:MAX_MEANINGS])
+
+
+def _rarer(kind: str, share: float, than: str, its_share: float) -> SizeMode:
+    """The likeliest mode of a kind, dearer as far as it is rarer than another."""
+    mode, usual = _own_modes(kind)[0], _own_modes(than)[0]
+    cost = 2.0 * (float(np.log(its_share / share)) + _log_breadth(mode) - _log_breadth(usual))
+    return replace(mode, cost=max(0.0, cost))
 
 
 def _log_breadth(mode: SizeMode) -> float:
@@ -125,41 +132,40 @@ def standing_costs(name: str, mode: SizeMode) -> tuple[float, float]:
 
 
 @cache
-def supported_modes(name: str) -> tuple[SizeMode, ...]:
-    """The modes of a thing that lies on another; unnamed things are small there."""
+def supported_modes(name: str, meanings: tuple[tuple[str, float], ...] = ()) -> tuple[SizeMode, ...]:
+    """The modes of a thing that lies on another; unnamed ones that nobody looked at are small there."""
     if name == UNKNOWN.name:
-        return (plain_mode(np.log([0.2, 0.24, 0.24]), np.array([0.7, 0.7, 0.7]), 0.0, name),)
+        return _modes_held(meanings, "surface") or (
+            plain_mode(np.log([0.2, 0.24, 0.24]), np.array([0.7, 0.7, 0.7]), 0.0, name),
+        )
     return size_modes(name)
 
 
 @cache
-def hung_modes(name: str) -> tuple[SizeMode, ...]:
-    """The modes of a thing on a wall; unnamed things are flat there."""
+def hung_modes(name: str, meanings: tuple[tuple[str, float], ...] = ()) -> tuple[SizeMode, ...]:
+    """The modes of a thing on a wall; unnamed ones that nobody looked at are flat there."""
     if name == UNKNOWN.name:
-        return (plain_mode(np.log([0.05, 0.8, 0.7]), np.array([0.4, 0.5, 0.5]), 0.0, name),)
+        return _modes_held(meanings, "wall") or (
+            plain_mode(np.log([0.05, 0.8, 0.7]), np.array([0.4, 0.5, 0.5]), 0.0, name),
+        )
     return size_modes(name)
 
 
 @cache
-def hanging_modes(name: str) -> tuple[SizeMode, ...]:
-    """The modes of a thing below the ceiling; unnamed things are lamps there."""
+def hanging_modes(name: str, meanings: tuple[tuple[str, float], ...] = ()) -> tuple[SizeMode, ...]:
+    """The modes of a thing below the ceiling; unnamed ones that nobody looked at are lamps there."""
     if name == UNKNOWN.name:
-        return (_mode("ceiling lamp", 0.0, _UNNAMED_WIDENED),)
+        return _modes_held(meanings, "ceiling") or (_mode("ceiling lamp", 0.0, _UNNAMED_WIDENED),)
     return size_modes(name)
 
 
 def _own_modes(name: str) -> tuple[SizeMode, ...]:
     """A mixture of the library's usual sizes of a kind and the taxonomy's broader ones, by log density."""
-    broad = category(name).priors
-    outline = outline_of(name)
-    parts = [(p.log_median_xyz, np.diag(p.log_sigma_xyz**2), BROAD_SHARE / len(broad), outline) for p in broad]
-    parts += [
-        (m.log_size, m.covariance, (1 - BROAD_SHARE) * m.share, m.outline) for m in modes_of_kind(name)[:MAX_MODES]
-    ]
-    costs = [float(np.linalg.slogdet(covariance)[1]) - 2.0 * np.log(share) for _, covariance, share, _ in parts]
+    parts = sizes_of_kind(name)
+    costs = [float(np.linalg.slogdet(p.covariance)[1]) - 2.0 * np.log(p.share) for p in parts]
     modes = [
-        SizeMode(size, np.sqrt(np.diag(covariance)), cost - min(costs), points, _whitening(covariance))
-        for (size, covariance, _, points), cost in zip(parts, costs, strict=True)
+        SizeMode(p.log_size, np.sqrt(np.diag(p.covariance)), cost - min(costs), p.outline, _whitening(p.covariance))
+        for p, cost in zip(parts, costs, strict=True)
     ]
     return tuple(sorted(modes, key=lambda m: m.cost))
 

@@ -26,8 +26,12 @@ from diorama_core.scene.types import Intrinsics
 UNKNOWNS = 6
 ROBUST_BEYOND = 2.0
 """Residuals beyond this many sigmas count linearly."""
-OCCLUDED_WEIGHT = 0.08
-"""Weight of an edge as far as something in front hides what goes on behind it."""
+HIDDEN_DENSITY = 0.25
+"""Of how far an object goes on where it is hidden, even over its reach, against the highest of a measured edge's: below
+1, since a range of places shares it, though not the ratio of their widths, since of two readings the one with more room
+is the likelier."""
+HIDDEN_REACH = 1.0
+"""How far an object may go on unseen, in extents of its box, where no other box tells how far."""
 INVISIBLE_PENALTY = 12.0
 """Sigmas per edge for a cuboid that is not in the picture at all."""
 WALL_NEARER_LOG_SIGMA = 0.06
@@ -65,6 +69,8 @@ class Problems:
     edge_sigma_px: Float[np.ndarray, "n 4"]
     hidden_px: Float[np.ndarray, "n 4"]
     """How far beyond each edge the object may go on, hidden by something in front; 0 where nothing is in front."""
+    hidden_odds: Float[np.ndarray, "n 4"]
+    """Odds that it does go on beyond each edge, unseen; 0 where it surely ends there."""
     log_size: Float[np.ndarray, "n 3"]
     """Prior of the logarithms of depth, width, height."""
     log_size_sigma: Float[np.ndarray, "n 3"]
@@ -233,14 +239,29 @@ def _edges(
     inward = np.array([1.0, 1.0, -1.0, -1.0])
     bounds = bounds + np.where(border, 0.0, unfilled) * inward
     outward = (bounds - problems.box_px) * -inward
-    behind = np.clip(outward, 0.0, problems.hidden_px)
-    off = (outward - (1 - OCCLUDED_WEIGHT) * behind) / problems.edge_sigma_px
+    off = outward / problems.edge_sigma_px
     robust = np.where(
         np.abs(off) > ROBUST_BEYOND,
         np.sign(off) * np.sqrt(np.maximum(2 * ROBUST_BEYOND * np.abs(off) - ROBUST_BEYOND**2, 0.0)),
         off,
     )
+    robust = np.where(off > 0, _gone_on(robust, outward, problems), robust)
     return robust + np.where(visible, 0.0, INVISIBLE_PENALTY)[:, None]
+
+
+def _gone_on(
+    seen: Float[np.ndarray, "n 4"], outward_px: Float[np.ndarray, "n 4"], problems: Problems
+) -> Float[np.ndarray, "n 4"]:
+    """Residuals of cuboids that go on beyond their boxes: either the edge is measured badly, or the rest is hidden.
+
+    The likelihood is a mixture: of a measured edge's, and of an even one over as far as something may hide the rest.
+    """
+    extent = np.tile(problems.box_px[:, 2:] - problems.box_px[:, :2], 2)
+    reach = np.maximum(problems.hidden_px, HIDDEN_REACH * extent)
+    even = problems.hidden_odds * HIDDEN_DENSITY
+    beyond = np.maximum(outward_px - reach, 0.0) / problems.edge_sigma_px
+    cost = -2.0 * np.log((np.exp(-0.5 * seen**2) + even) / (1.0 + even))
+    return np.sqrt(np.minimum(np.maximum(cost, 0.0) + 2 * ROBUST_BEYOND * beyond, seen**2))
 
 
 def _outside_footprint(boxes: Cuboids, problems: Problems) -> Float[np.ndarray, "n 2"]:

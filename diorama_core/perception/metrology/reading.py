@@ -7,11 +7,13 @@ from jaxtyping import Float
 
 from diorama_core.library.taxonomy import UNKNOWN, Category
 from diorama_core.perception.metrology.box_observations import BoxObservations
-from diorama_core.perception.metrology.placement import WALL, Placement
+from diorama_core.perception.metrology.placement import FLOOR, WALL, Placement
 
 _SQUARE = 0.15
 """Difference of the logarithms of width and depth below which the prior cannot tell them apart."""
 _COST_SCALE = 18.0
+_MAY_BE_HIDDEN = 0.5
+"""Odds from which on a lower end is not taken for seen."""
 _HIDDEN_FACTOR = 0.85
 """Per edge that is hidden or cut by the picture's border."""
 
@@ -36,6 +38,13 @@ def heading_and_size(placement: Placement, category: Category) -> tuple[float, F
         size = size[[1, 0, 2]]
     turned = yaw + turns[best]
     return float(np.arctan2(np.sin(turned), np.cos(turned))), size
+
+
+def foot_seen(placement: Placement, observations: BoxObservations) -> bool:
+    """Whether the lower end of an object is seen, as far as it tells how far away the object is: on the floor."""
+    index = placement.index
+    hidden = observations.truncated[index][3] or observations.hidden_odds(index)[3] > _MAY_BE_HIDDEN
+    return placement.supporter != FLOOR or not hidden
 
 
 def confidence_of(placement: Placement, observations: BoxObservations, height_log_sigma: float) -> float:

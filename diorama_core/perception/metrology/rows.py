@@ -9,7 +9,11 @@ from diorama_core.perception.metrology.box_observations import BoxObservations
 from diorama_core.perception.metrology.priors import SizeMode
 from diorama_core.perception.metrology.problem import UNKNOWNS, UNTOLD, Problems, View
 
-_CUT_LOG_SIGMA = 0.9
+_CUT_LOG_SIGMA = 1.5
+_MIN_RISE_M = 0.1
+"""Tops nearer to the camera's height do not tell how far they are."""
+_MAYBE_HIDDEN = 0.3
+"""Odds from which on a lower end may be hidden."""
 _NEAREST_M = 0.4
 _FARTHEST_M = 12.0
 
@@ -42,6 +46,7 @@ def row(
         "box_px": observations.box_px[index],
         "edge_sigma_px": observations.edge_sigma_px[index],
         "hidden_px": observations.hidden_px(index, parent),
+        "hidden_odds": observations.hidden_odds(index, parent),
         "log_size": mode.log_size,
         "log_size_sigma": mode.sigma,
         "whitening": mode.whitening,
@@ -82,6 +87,20 @@ def size_start(problems: Problems, view: View, farther: float = 1.0) -> Float[np
     by_height = k.fy * size[:, 2] / (box[:, 3] - box[:, 1])
     by_width = k.fx * np.sqrt(size[:, 0] * size[:, 1]) / (box[:, 2] - box[:, 0])
     return _start((farther * np.sqrt(by_height * by_width))[:, None] * rays[:, :2], problems, view)
+
+
+def other_start(problems: Problems, view: View, farther: float = 1.0) -> Float[np.ndarray, "n 6"]:
+    """Start as `size_start`; where the lower end may be hidden, with a usual height and the top where the box has it.
+
+    The visible part alone would be taken for a thing far away.
+    """
+    box = problems.box_px
+    rays = _rays(np.column_stack([(box[:, 0] + box[:, 2]) / 2, box[:, 1]]), view)
+    rise = problems.base_m + np.exp(problems.log_size[:, 2]) - problems.camera_height_m
+    meets = (rays[:, 2] * np.sign(rise) > 0.02) & (np.abs(rise) > _MIN_RISE_M)
+    plan = (rise / np.where(meets, rays[:, 2], 1.0))[:, None] * rays[:, :2]
+    hidden = problems.hidden_odds[:, 3:] > _MAYBE_HIDDEN
+    return np.where(meets[:, None] & hidden, _start(plan, problems, view), size_start(problems, view, farther))
 
 
 def _rays(pixels: Float[np.ndarray, "n 2"], view: View) -> Float[np.ndarray, "n 3"]:

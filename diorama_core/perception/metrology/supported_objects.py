@@ -125,7 +125,7 @@ def place_on(
         observations.categories[parent].seat_height_m is not None and observations.categories[index].name not in _SEATS
     )
     for base, sigma, level_cost in _levels(observations, parent, tall, soft):
-        for mode in supported_modes(names[1]):
+        for mode in supported_modes(names[1], observations.meanings[index]):
             raised = standing_costs(names[1], mode)[1] - (FLOOR_OBJECT_COST if names[1] in PORTABLE else 0.0)
             for turn in (0.0,) if mode.square else (0.0, np.pi / 2):
                 rows.append(
@@ -212,7 +212,7 @@ def place_on_wall(
             footprint_sigma_m=0.4,
             extra=mode.cost + side_cost + cost,
         )
-        for mode in hung_modes(category.name)
+        for mode in hung_modes(category.name, observations.meanings[index])
         for yaw, wall, sigma, side_cost in walls
     ]
 
@@ -241,6 +241,6 @@ def place_below_ceiling(
             footprint_sigma_m=0.4,
             extra=mode.cost + cost,
         )
-        for mode in hanging_modes(observations.categories[index].name)
+        for mode in hanging_modes(observations.categories[index].name, observations.meanings[index])
         for yaw in ((0.0,) if mode.square else (0.0, np.pi / 2))
     ]

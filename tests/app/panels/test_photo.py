@@ -61,7 +61,7 @@ def test_an_uploaded_photo_is_a_project_at_once(session, client, page, empty) ->
     assert client.view.canvas.is_open
     assert "&lt;room&gt;.png" in page.html
     assert page.field("Draw boxes").label == "Done drawing"
-    assert "Draw a box around each piece" in page.html
+    assert "Mark each piece of furniture" in page.html
 
 
 def test_what_is_no_picture_is_refused_and_loses_nothing(session, client, page, panel) -> None:

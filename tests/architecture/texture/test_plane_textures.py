@@ -9,7 +9,14 @@ import pytest
 
 from diorama_core.architecture.texture.colours import coloured, object_pixels
 from diorama_core.architecture.texture.empty_room import empty_room
-from diorama_core.architecture.texture.plane_textures import MAX_SIDE_PX, plane_textures, strays
+from diorama_core.architecture.texture.plane_textures import (
+    MAX_SIDE_PX,
+    PhotoView,
+    RoomPicture,
+    plane_textures,
+    strays,
+    texel_points,
+)
 from diorama_core.geometry.casting import camera_rays, cast_planes
 from diorama_core.geometry.planes import plane_rectangle
 from diorama_core.scene.types import Architecture
@@ -96,9 +103,21 @@ class _Painter:
 @pytest.mark.parametrize(("colour", "accepted"), [((165, 122, 90), True), ((20, 40, 230), False)])
 def test_what_a_filler_painted_is_taken_for_floor_where_it_looks_like_it(shot, colour, accepted):
     planes = coloured(shot.planes, shot.inputs.photo.rgb, CAMERA, shot.objects)
-    picture = plane_textures(shot.inputs, shot.objects, CAMERA, Architecture(planes), _Painter(colour))["floor"]
-    share = (np.abs(picture.astype(int) - colour).max(axis=-1) < 5).mean()
+    floor = next(p for p in planes if p.id == "floor")
+    view = PhotoView(RoomPicture(shot.inputs.photo.rgb, shot.objects, CAMERA, filler=_Painter(colour)))
+    found = view.of_plane(floor, planes, *texel_points(floor))
+    share = (found.own & (np.abs(found.colours - colour).max(axis=-1) < 5)).mean()
     assert share > 0.02 if accepted else share == 0
+
+
+def test_the_nearest_texels_are_sharp(shot):
+    floor = next(p for p in shot.planes if p.id == "floor")
+    points, pixel_m = texel_points(floor)
+    view = PhotoView(RoomPicture(shot.inputs.photo.rgb, shot.objects, CAMERA))
+    found = view.of_plane(floor, shot.planes, points, pixel_m)
+    away = np.linalg.norm(points - CAMERA.position, axis=-1)
+    assert 0.1 * found.own.sum() < found.sharp.sum() < found.own.sum()
+    assert away[found.sharp].mean() < away[found.own & ~found.sharp].min() + 0.5
 
 
 def test_the_empty_room_has_no_furniture(shot, textures):

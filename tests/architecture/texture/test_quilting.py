@@ -61,3 +61,13 @@ def test_shading_is_smooth_and_takes_nothing_from_what_was_not_seen() -> None:
     ramp = np.broadcast_to(np.arange(80.0)[None, :, None], (60, 80, 3)).astype(np.float32)
     whole = np.ones((60, 80), dtype=bool)
     np.testing.assert_allclose(broad_shading(ramp, whole, 2.0)[:, 10:70], ramp[:, 10:70], atol=0.2)
+
+
+def test_blocks_that_fit_at_odd_places_only_are_found() -> None:
+    """A source as wide as a block beside a wider rest that is no source."""
+    detail, seen = boards(160, 200), np.zeros((160, 200), dtype=bool)
+    seen[21:101, 31:79] = True
+    seen[20, 30] = True
+    found = detail_continued(np.where(seen[..., None], detail, 0.0).astype(np.float32), seen, 40.0)
+    assert found is not None
+    assert np.abs(found[:, 100:]).mean() > 3.0

@@ -2,9 +2,23 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
+import numpy as np
 import pytest
 
-from diorama_core.evaluation.benchmarks.retrieval import ALONE, MISSED, ObjectResult, _alone, _nearest, retrieval_table
+from diorama_core.evaluation.benchmarks.retrieval import (
+    ALONE,
+    MISSED,
+    ObjectResult,
+    _alone,
+    _nearest,
+    _ranked,
+    published_stages,
+    retrieval_table,
+)
+from diorama_core.geometry.shape_appearance import appearance_of
+from diorama_core.library.record import Shape, ShapeLibrary
 from diorama_core.synthesis import render_truth, sample_cameras
 from diorama_core.synthesis.layout_rooms import BoxLibrary, box_library, generate_room
 from diorama_core.synthesis.truth import TruthView
@@ -42,3 +56,46 @@ def test_a_row_for_each_half() -> None:
     )
     row = retrieval_table([item]).row("words alone, best of 5")
     assert (row["furniture SS"], row["furniture OOD"], row["household SS"]) == (6.0, 7.0, None)
+
+
+class ByColour:
+    """A stand-in for the networks: mean colours for pictures and shapes, the same for all words."""
+
+    weights = "stand-in"
+
+    def text(self, text: str) -> np.ndarray:
+        return np.ones(3, np.float32) / np.sqrt(np.float32(3))
+
+    def picture(self, rgb: np.ndarray) -> np.ndarray:
+        mean = rgb.reshape(-1, 3).mean(axis=0) + 1.0
+        return (mean / np.linalg.norm(mean)).astype(np.float32)
+
+    def shape(self, library: ShapeLibrary, shape: Shape) -> np.ndarray:
+        mean = appearance_of(library.parts(shape.id)).face_rgba[:, :3].mean(axis=0) + 1.0
+        return (mean / np.linalg.norm(mean)).astype(np.float32)
+
+
+def test_each_network_gets_the_publications_rows(
+    view: TruthView, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("DIORAMA_CACHE", str(tmp_path))
+    stages = published_stages({"CLIP": ByColour(), "OS": ByColour(), "DD": ByColour()})
+    assert list(stages) == ["CLIP-H", "OS-H", "DD-T", "DD-V", "DD-H"]
+    for stage in stages.values():
+        found = _ranked(stage(LIBRARY), view)
+        assert all(len(found[view.scene.objects[index].id]) >= 5 for index in view.asked)
+    item = ObjectResult(
+        "r",
+        "a",
+        "chair",
+        ("furniture",),
+        5.0,
+        4.0,
+        9.0,
+        8.0,
+        2,
+        True,
+        False,
+        (("words alone", 6.0, 7.0), ("OS-H", 1, 2)),
+    )
+    assert retrieval_table([item]).row("OS-H, best of 5")["furniture OOD"] == 2.0

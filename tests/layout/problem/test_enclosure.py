@@ -6,6 +6,7 @@ from diorama_core.layout.feasible.recipe import FeasibleRecipe
 from diorama_core.layout.feasible.separate import build_program
 from diorama_core.layout.feasible.structure import exact_structure
 from diorama_core.layout.problem.problem import build_problem
+from diorama_core.library.catalogue import built_in_library
 from diorama_core.progress import Progress
 from tests.layout.small_rooms import Room
 
@@ -45,3 +46,14 @@ def test_a_layout_takes_books_out_of_the_back_of_their_shelf(room: Room) -> None
     settled, _ = FeasibleRecipe(room.library).optimise(room.scene(), Progress())
     back = float(settled.object(shelf).corners_world[:, 0].min())
     assert float(settled.object(books).corners_world[:, 0].min()) > back
+
+
+def test_a_pillow_sinks_into_the_bedding_of_its_bed_but_not_into_the_headboard() -> None:
+    room = Room(built_in_library())
+    bed = room.put("bed-channel-green", (0.0, 0.0, 0.58))
+    pillow = room.put("pillow-tweed", (0.3, -0.2, 0.7), on=bed)
+    tray = room.put("tray-round-oak", (0.3, 0.4, 0.65), on=bed)
+    of_pillow, of_tray = allowed(room, pillow, bed).any(axis=0), allowed(room, tray, bed).any(axis=0)
+    assert of_pillow.any()
+    assert of_tray[of_pillow].all()
+    assert of_pillow.sum() < of_tray.sum()

@@ -90,6 +90,20 @@ def test_geometry_and_materials(library: StoredLibrary) -> None:
     assert part.visual.kind is not None
 
 
+@pytest.mark.parametrize("own", [True, False])
+def test_pictures_of_materials_are_decoded_before_threads_share_them(library: StoredLibrary, own: bool) -> None:
+    """PIL decodes a picture when it is first used, and two threads that do so at once break it."""
+    built_in = built_in_library()
+    shape_id = built_in.in_category("armchair")[0].id
+    if own:
+        item = ingested("woven")
+        library.add(dataclasses.replace(item, glb=built_in.glb(shape_id)))
+    parts = library.parts("woven") if own else built_in.parts(shape_id)
+    pictures = [m.visual.material.baseColorTexture for m in parts.geometry.values()]
+    assert any(picture is not None for picture in pictures)
+    assert all(getattr(picture, "fp", None) is None for picture in pictures)
+
+
 def test_the_same_id_is_replaced_and_the_old_model_goes(library: StoredLibrary) -> None:
     library.add(ingested("a", height=0.5))
     library.add(ingested("twin", height=0.5))

@@ -6,7 +6,13 @@ import numpy as np
 import pytest
 
 from diorama_core.artefacts import DetectedObject
-from diorama_core.perception.metrology.box_observations import BoxObservations, gather
+from diorama_core.perception.metrology.box_observations import (
+    HIDDEN_ODDS,
+    ODDS_BOXED,
+    ODDS_OUTLINED,
+    BoxObservations,
+    gather,
+)
 from tests.perception.metrology.test_metrology import detected
 
 LEFT, TOP, RIGHT, BOTTOM = range(4)
@@ -83,3 +89,16 @@ def test_no_objects() -> None:
     seen = of()
     assert len(seen) == 0
     assert seen.box_px.shape == seen.corner_weight.shape == (0, 4)
+
+
+def test_boxes_and_masks_beyond_an_edge_raise_the_odds_that_the_object_goes_on_there() -> None:
+    sofa, table = ("sofa", (100, 100, 300, 250)), ("coffee table", (90, 200, 320, 400))
+    alone, before = of(sofa).hidden_odds(0), of(sofa, table).hidden_odds(0)
+    assert alone.tolist() == HIDDEN_ODDS.tolist()
+    np.testing.assert_allclose(before / alone, [1.0, 1.0, 1.0, ODDS_BOXED])
+    outlined = replace(masked((90, 200, 320, 400), 1.0), category="coffee table")
+    seen = gather((detected("s", *sofa), outlined), 640, 480)
+    assert seen.beside[0, 1].tolist() == pytest.approx([1 / 3, 0.0, 1 / 3, 1.0], abs=0.02)
+    assert seen.hidden_odds(0)[BOTTOM] == pytest.approx(HIDDEN_ODDS[BOTTOM] * ODDS_BOXED * ODDS_OUTLINED)
+    # What it rests on hides nothing of it.
+    assert seen.hidden_odds(0, parent=1).tolist() == HIDDEN_ODDS.tolist()

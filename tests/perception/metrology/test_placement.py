@@ -1,8 +1,11 @@
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
+from diorama_core.library.taxonomy import UNKNOWN
 from diorama_core.perception.metrology.box_observations import gather
 from diorama_core.perception.metrology.placement import CEILING, FLOOR, WALL, Placement, place_all
 from diorama_core.perception.metrology.problem import View
@@ -88,6 +91,21 @@ def test_overlapping_readings_are_parted() -> None:
     )
     gap = np.linalg.norm(found[0].cuboid.centre[0, :2] - found[1].cuboid.centre[0, :2])
     assert gap > 1.2
+
+
+@pytest.mark.parametrize(
+    ("item", "looks_like", "supporter"),
+    [
+        (RequestedObject("object", (0.2, 3.9, 1.7), (0.04, 0.7, 0.5)), {"picture": 0.35, "mirror": 0.3}, WALL),
+        (RequestedObject("object", (0.2, 3.5, 2.35), (0.4, 0.45, 0.45)), {"ceiling lamp": 0.35, "fan": 0.3}, CEILING),
+        (RequestedObject("object", (-1.2, 2.4, 0.4), (0.5, 0.5, 0.8)), {"chair": 0.35, "stool": 0.3}, FLOOR),
+    ],
+)  # fmt: skip
+def test_a_thing_without_a_name_is_held_like_what_it_may_be(item, looks_like, supporter) -> None:
+    *known, unnamed = seen((*ROOM[:3], item), R, 1.5)
+    meanings = (*looks_like.items(), *((k, 0.05) for k in ("vase", "table", "picture", "chair") if k not in looks_like))
+    objects = (*known, replace(unnamed, category=UNKNOWN.name, label=UNKNOWN.name, meanings=meanings))
+    assert place_all(gather(objects, K.width, K.height), VIEW, 1.5)[-1].supporter == supporter
 
 
 def test_no_objects() -> None:

@@ -3,11 +3,10 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from diorama_core.library.kind_sizes import BROAD_SHARE, MAX_MODES
 from diorama_core.library.kinds import modes_of_kind
 from diorama_core.library.taxonomy import CATEGORIES, UNKNOWN, Category, category
 from diorama_core.perception.metrology.priors import (
-    BROAD_SHARE,
-    MAX_MODES,
     SizeMode,
     hanging_modes,
     hung_modes,
@@ -89,3 +88,16 @@ def test_what_a_word_may_mean_here_takes_the_place_of_what_it_is_said_of() -> No
     assert extra[0].cost >= 0
     likelier = size_modes("cabinet", (("sideboard", 0.6), ("cabinet", 0.3)))[own:]
     assert likelier[0].cost <= extra[0].cost
+
+
+def test_a_thing_without_a_name_has_the_sizes_of_what_it_may_be_where_it_is_held() -> None:
+    meanings = (("picture", 0.4), ("chair", 0.3), ("ceiling lamp", 0.2), ("vase", 0.1), ("desk", 0.05))
+    for modes, kind in ((hung_modes, "picture"), (hanging_modes, "ceiling lamp"), (supported_modes, "vase")):
+        (found,) = modes(UNKNOWN.name, meanings)
+        assert found.log_size.tolist() == size_modes(kind)[0].log_size.tolist()
+        (otherwise,), (unlooked,) = modes(UNKNOWN.name, (("bed", 1.0),)), modes(UNKNOWN.name)
+        assert otherwise.log_size.tolist() == unlooked.log_size.tolist()
+    chair, desk, anything = size_modes(UNKNOWN.name, meanings)
+    assert chair.log_size.tolist() == size_modes("chair")[0].log_size.tolist()
+    assert chair.cost == 0 < desk.cost
+    assert anything.cost > 0

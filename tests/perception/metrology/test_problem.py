@@ -9,8 +9,9 @@ from diorama_core.geometry.projection import cuboid_corners, visible_bounds
 from diorama_core.perception.metrology.box_observations import gather
 from diorama_core.perception.metrology.priors import SizeMode
 from diorama_core.perception.metrology.problem import (
+    HIDDEN_DENSITY,
+    HIDDEN_REACH,
     INVISIBLE_PENALTY,
-    OCCLUDED_WEIGHT,
     ROBUST_BEYOND,
     Problems,
     View,
@@ -91,20 +92,37 @@ def test_sizes_and_heights_are_measured_in_their_sigmas() -> None:
     assert raised[TOP] == pytest.approx(3.0)
 
 
-def test_edges_are_robust_and_lenient_as_far_as_something_hides_the_rest() -> None:
+def left_edge(shift: float, odds: float = 0.0, hidden_px: float = 0.0) -> float:
+    """The residual of a box whose left edge lies `shift` pixels within the true cuboid's."""
     true = problem().box_px[0]
+    moved = problem(box=true).changed(box_px=true + np.array([shift, 0.0, 0.0, 0.0]))
+    rows = moved.changed(hidden_px=[hidden_px] * 4, hidden_odds=[odds] * 4)
+    return float(residuals(unknowns(), rows, VIEW)[0, 0])
+
+
+def test_edges_are_robust() -> None:
     sigma = problem().edge_sigma_px[0, 0]
+    assert left_edge(sigma) == pytest.approx(1.0)
+    assert left_edge(-sigma) == pytest.approx(-1.0)
+    assert left_edge(10 * sigma) == pytest.approx(np.sqrt(20.0 * ROBUST_BEYOND - ROBUST_BEYOND**2))
 
-    def left(shift: float, hidden_px: float = 0.0) -> float:
-        moved = problem(box=true).changed(box_px=true + np.array([shift, 0.0, 0.0, 0.0]))
-        return float(residuals(unknowns(), moved.changed(hidden_px=[hidden_px] * 4), VIEW)[0, 0])
 
-    assert left(sigma) == pytest.approx(1.0)
-    assert left(-sigma) == pytest.approx(-1.0)
-    assert left(10 * sigma) == pytest.approx(np.sqrt(20.0 * ROBUST_BEYOND - ROBUST_BEYOND**2))
-    assert left(sigma, hidden_px=3 * sigma) == pytest.approx(OCCLUDED_WEIGHT)
-    assert left(3 * sigma, hidden_px=2 * sigma) == pytest.approx(1.0 + 2 * OCCLUDED_WEIGHT)
-    assert left(-sigma, hidden_px=3 * sigma) == pytest.approx(-1.0)
+def test_what_may_be_hidden_beyond_an_edge_costs_the_less_the_likelier_that_is() -> None:
+    sigma = problem().edge_sigma_px[0, 0]
+    seen, maybe, likely = (left_edge(6 * sigma, odds) for odds in (0.0, 0.1, 2.0))
+    assert seen > maybe > likely > 0.0
+    even = 0.1 * HIDDEN_DENSITY
+    assert maybe == pytest.approx(np.sqrt(2.0 * np.log((1.0 + even) / even)), rel=1e-3)
+    assert left_edge(0.5 * sigma, 0.1) == pytest.approx(0.5, abs=0.05)
+    assert left_edge(-6 * sigma, 2.0) == left_edge(-6 * sigma)
+
+
+def test_nothing_goes_on_farther_than_something_may_hide_it() -> None:
+    box = problem().box_px[0]
+    near = left_edge(0.5 * HIDDEN_REACH * float(box[2] - box[0]), 2.0, hidden_px=1.0)
+    far = 0.9 * float(box[2] - box[0])
+    assert left_edge(far, 2.0) > near
+    assert left_edge(far, 2.0, hidden_px=2 * far) == pytest.approx(near, abs=1e-6)
 
 
 def test_a_cuboid_that_the_camera_cannot_see_is_refused_dearly() -> None:

@@ -7,7 +7,7 @@ from diorama_core.geometry.projection import visible_bounds
 from diorama_core.perception.metrology.box_observations import gather
 from diorama_core.perception.metrology.priors import size_modes
 from diorama_core.perception.metrology.problem import UNTOLD, Problems, View, corners_camera, cuboids
-from diorama_core.perception.metrology.rows import contact_start, row, size_start
+from diorama_core.perception.metrology.rows import contact_start, other_start, row, size_start
 from tests.perception.metrology.test_metrology import K, detected, rotation
 from tests.perception.metrology.test_problem import CENTRE, HEIGHT, SIZE, VIEW, problem, unknowns
 
@@ -70,3 +70,13 @@ def test_starts_are_ahead_and_bounded(turn: float) -> None:
 
 def test_unknowns_of_the_truth_are_a_fixed_start() -> None:
     assert place(unknowns(), problem()) == pytest.approx(CENTRE)
+
+
+def test_where_the_lower_end_may_be_hidden_a_start_has_the_usual_height() -> None:
+    whole = problem()
+    cut = whole.changed(box_px=whole.box_px - [[0.0, 0.0, 0.0, 0.6 * float(whole.box_px[0, 3] - whole.box_px[0, 1])]])
+    np.testing.assert_array_equal(other_start(cut, VIEW), size_start(cut, VIEW))
+    hidden = cut.changed(hidden_odds=[0.0, 0.0, 0.0, 2.0])
+    reached = [place(start, hidden)[1] for start in (other_start(hidden, VIEW), size_start(hidden, VIEW))]
+    assert reached[0] == pytest.approx(CENTRE[1], abs=0.5)
+    assert reached[1] > CENTRE[1] + 0.6

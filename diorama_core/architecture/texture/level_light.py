@@ -1,0 +1,62 @@
+"""A floor's picture without the photo's light: reflections, glow and shadows go, the floor's material stays.
+
+Two layers, as in Retinex (Land and McCann 1971; Horn 1974): light varies smoothly, a material has edges. What varies
+more broadly than patterns of floors do is light. What varies as broadly as a pattern is light too where nothing finer
+goes with it: boards, tiles and carpets have joints and threads, a blurred mirror image has none.
+"""
+
+from __future__ import annotations
+
+import cv2
+import numpy as np
+from jaxtyping import Bool, Float32
+
+from diorama_core.architecture.texture.quilting import broad_shading
+
+FINE_M, PATTERN_M = 0.03, 0.25
+"""Detail is finer than the first; what is broader than the second is light."""
+WITH_EDGES = 0.6
+"""A pattern has at least so much fine detail, as a share of its own variation."""
+AROUND_M = 0.3
+"""Both are compared over about this length."""
+LIGHT_M, MOST_LEVELS = 0.8, 10.0
+"""Of the light, what varies more broadly than this is left, up to so many levels of 255: a room has a brighter side."""
+_MIN_LEVELS = 0.5
+
+
+def levelled(
+    colours: Float32[np.ndarray, "h w 3"], own: Bool[np.ndarray, "h w"], pixel_m: float
+) -> Float32[np.ndarray, "h w 3"]:
+    """The colours of a floor as even light shows them; meaningful where they are its own.
+
+    Args:
+        colours: 0 to 255.
+        own: which texels show the floor's material.
+        pixel_m: size of a texel.
+    """
+    if not own.any():
+        return colours
+    finer = broad_shading(colours, own, FINE_M / pixel_m)
+    broad = broad_shading(colours, own, PATTERN_M / pixel_m)
+    main = np.median(colours[own], axis=0).astype(np.float32)
+    fine, pattern = colours - finer, finer - broad
+    light = broad_shading(colours, own, LIGHT_M / pixel_m) - main
+    light = MOST_LEVELS * np.tanh(light / MOST_LEVELS)
+    kept = _share_of_material(fine, pattern, own, AROUND_M / pixel_m)
+    return np.asarray(main + light + fine + kept[..., None] * pattern, dtype=np.float32)
+
+
+def _share_of_material(
+    fine: Float32[np.ndarray, "h w 3"],
+    pattern: Float32[np.ndarray, "h w 3"],
+    own: Bool[np.ndarray, "h w"],
+    width_px: float,
+) -> Float32[np.ndarray, "h w"]:
+    """How much of what varies as broadly as a pattern is one, 0 to 1, by the fine detail around."""
+    around = np.stack([(fine**2).mean(axis=-1), (pattern**2).mean(axis=-1)], axis=-1)
+    weight = np.maximum(cv2.GaussianBlur(own.astype(np.float32), (0, 0), width_px), 1e-4)
+    energy = (
+        cv2.GaussianBlur(np.asarray(around * own[..., None], dtype=np.float32), (0, 0), width_px) / weight[..., None]
+    )
+    expected = WITH_EDGES**2 * energy[..., 1] + _MIN_LEVELS**2
+    return np.asarray(np.minimum((energy[..., 0] + _MIN_LEVELS**2) / expected, 1.0), dtype=np.float32)

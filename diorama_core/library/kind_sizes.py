@@ -1,0 +1,45 @@
+"""How large things of a kind are: the library's usual sizes of it, mixed with the taxonomy's broader ones."""
+
+from __future__ import annotations
+
+from functools import cache
+
+import numpy as np
+from jaxtyping import Float
+
+from diorama_core.library.kinds import KindMode, modes_of_kind, outline_of
+from diorama_core.library.taxonomy import category
+
+BROAD_SHARE = 0.3
+"""Of the mixture that is the taxonomy's: of things unlike all in the library."""
+MAX_MODES = 3
+
+
+@cache
+def sizes_of_kind(name: str) -> tuple[KindMode, ...]:
+    """The parts of the mixture for a canonical category: the taxonomy's, then the library's most common ones."""
+    broad, outline = category(name).priors, outline_of(name)
+    return (
+        *(KindMode(BROAD_SHARE / len(broad), p.log_median_xyz, np.diag(p.log_sigma_xyz**2), outline) for p in broad),
+        *(
+            KindMode((1 - BROAD_SHARE) * m.share, m.log_size, m.covariance, m.outline)
+            for m in modes_of_kind(name)[:MAX_MODES]
+        ),
+    )
+
+
+def size_density(name: str, size_m: Float[np.ndarray, "3"], sigma: float) -> float:
+    """How usual a size is for a kind, the better way round: a density of logarithms, but for a constant factor.
+
+    Args:
+        name: of the canonical category.
+        size_m: depth, width and height, metres; width and depth may have changed places.
+        sigma: of the logarithms: how exactly they were measured.
+    """
+    log_size, total = np.log(size_m), 0.0
+    for mode in sizes_of_kind(name):
+        covariance = mode.covariance + sigma**2 * np.eye(3)
+        off = np.stack([log_size, log_size[[1, 0, 2]]]) - mode.log_size
+        nearest = float((off * np.linalg.solve(covariance, off.T).T).sum(axis=1).min())
+        total += mode.share * float(np.exp(-nearest / 2) / np.sqrt(np.linalg.det(covariance)))
+    return total

@@ -1,0 +1,64 @@
+"""Retrieval as the publication has it: shapes near to the label's words, ordered by the crop; or by one of both alone.
+
+No size, outline in place or neighbour has a say (section 3.2 and supplement). The publication does not say how many
+shapes the words leave; shapes that carry others are not told apart here.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Literal
+
+import numpy as np
+from jaxtyping import Float32
+
+from diorama_core.artefacts import DetectedObject, Inputs, ObjectGeometry, RankedShapes
+from diorama_core.library.record import Shape, ShapeLibrary
+from diorama_core.progress import Progress
+from diorama_core.retrieval.appearance_similarity import ObjectCrop
+from diorama_core.retrieval.joint import PROMPT, JointEmbedding, shape_vectors
+
+By = Literal["words", "picture", "words and picture"]
+LEFT_BY_WORDS = 50
+TOP_SHAPES = 8
+
+
+@dataclass(frozen=True)
+class TextThenPicture:
+    """The shapes of a whole library nearest to what is asked, in one joint embedding."""
+
+    library: ShapeLibrary
+    embedding: JointEmbedding
+    by: By = "words and picture"
+    folder: Path | None = field(default=None, repr=False)
+    """Cache folder of embeddings; `features` in Diorama's cache folder by default."""
+
+    def retrieve(
+        self, inputs: Inputs, objects: tuple[DetectedObject, ...], geometry: ObjectGeometry, progress: Progress
+    ) -> tuple[RankedShapes, ...]:
+        """At most `TOP_SHAPES` of every object that was placed."""
+        shapes = self.library.shapes()
+        placed = {c.object_id for c in geometry.cuboids}
+        if not shapes or not placed:
+            return ()
+        known = shape_vectors(self.library, self.embedding, shapes, self.folder)
+        found = []
+        for index, item in enumerate(objects):
+            if item.id in placed:
+                progress.report(index / len(objects), f"Looking for shapes: {item.label}")
+                found.append(RankedShapes(item.id, self._ranked(inputs, item, shapes, known)))
+        return tuple(found)
+
+    def _ranked(
+        self, inputs: Inputs, item: DetectedObject, shapes: tuple[Shape, ...], known: Float32[np.ndarray, "n d"]
+    ) -> tuple[tuple[str, float], ...]:
+        """Shapes with their cosines, best first; what cannot be seen is found by its words."""
+        left = np.arange(len(shapes))
+        cosine = known @ self.embedding.text(PROMPT.format(item.label))
+        if self.by != "words" and item.mask.any():
+            if self.by == "words and picture":
+                left = np.argsort(-cosine, kind="stable")[:LEFT_BY_WORDS]
+            cosine = known @ self.embedding.picture(ObjectCrop(inputs.photo.rgb, item.mask, item.label).crop)
+        order = sorted(left.tolist(), key=lambda k: (-float(cosine[k]), shapes[k].id))[:TOP_SHAPES]
+        return tuple((shapes[k].id, float(cosine[k])) for k in order)

@@ -1,0 +1,83 @@
+"""Shapes by words, by the picture, and by both, in embeddings whose answers are known."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from diorama_core.library.record import Shape, ShapeLibrary
+from diorama_core.models.clip import OpenClip
+from diorama_core.models.openshape import POINTS, OpenShape
+from diorama_core.progress import Progress
+from diorama_core.retrieval import text_then_picture
+from diorama_core.retrieval.joint import PointEmbedding
+from diorama_core.retrieval.text_then_picture import TOP_SHAPES, TextThenPicture
+from tests.pose.rooms import LIBRARY, Room, camera_at, standing
+
+SEATS = ("chair", "low chair", "sofa")
+
+
+@dataclass(frozen=True)
+class Known:
+    """A space in which seats and the rest lie apart along one axis, and light and dark along another."""
+
+    weights: str = "known"
+
+    def text(self, text: str) -> np.ndarray:
+        assert text == "a photo of chair"
+        return np.array([1.0, 0.0], np.float32)
+
+    def picture(self, rgb: np.ndarray) -> np.ndarray:
+        return np.array([0.0, 1.0], np.float32)
+
+    def shape(self, library: ShapeLibrary, shape: Shape) -> np.ndarray:
+        angle = 0.2 + 0.1 * SEATS.index(shape.id) if shape.id in SEATS else 1.2
+        return np.array([np.cos(angle), np.sin(angle)], np.float32)
+
+
+@pytest.fixture
+def room() -> Room:
+    return Room(camera_at(), (standing("chair", 0.0, 3.0, 20.0),), (0,))
+
+
+def ranked(stage: TextThenPicture, room: Room) -> list[str]:
+    (found,) = stage.retrieve(room.inputs, room.objects, room.geometry, Progress())
+    assert len(found.ranked) <= TOP_SHAPES
+    return [shape for shape, _ in found.ranked]
+
+
+def test_words_leave_shapes_that_the_picture_orders(
+    room: Room, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(text_then_picture, "LEFT_BY_WORDS", len(SEATS))
+    both = TextThenPicture(LIBRARY, Known(), folder=tmp_path)
+    assert ranked(both, room) == ["sofa", "low chair", "chair"]
+    assert ranked(replace(both, by="words"), room)[:3] == ["chair", "low chair", "sofa"]
+    assert set(ranked(replace(both, by="picture"), room)).isdisjoint(SEATS)
+
+
+def test_what_is_not_seen_is_found_by_its_words(room: Room, tmp_path: Path) -> None:
+    hidden = tuple(replace(o, mask=o.mask & False) for o in room.objects)
+    stage = TextThenPicture(LIBRARY, Known(), "picture", tmp_path)
+    (found,) = stage.retrieve(room.inputs, hidden, room.geometry, Progress())
+    assert found.ranked[0][0] == "chair"
+
+
+def test_points_carry_the_colours_of_the_shape(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    seen: list[tuple[np.ndarray, np.ndarray]] = []
+
+    def shape_vector(self: OpenShape, points: np.ndarray, colours: np.ndarray) -> np.ndarray:
+        seen.append((points, colours))
+        return np.ones(3, np.float32)
+
+    monkeypatch.setattr(OpenShape, "shape", shape_vector)
+    shape = LIBRARY.shape("sofa")
+    absent = tmp_path / "absent.onnx"
+    PointEmbedding(OpenClip(absent, absent, absent), OpenShape(absent)).shape(LIBRARY, shape)
+    ((points, colours),) = seen
+    assert len(points) == len(colours) == POINTS
+    np.testing.assert_allclose(np.ptp(points, axis=0), shape.size_m, rtol=0.02)
+    assert ((colours >= 0) & (colours <= 1)).all()
