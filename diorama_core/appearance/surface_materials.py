@@ -142,7 +142,8 @@ def whole_pixels(
     seen = view.of(visible) & (view.slot >= 0)
     if np.count_nonzero(seen) * view.step**2 < MIN_OF_WHOLE:
         return ()
-    return tuple(SlotPixels(s, k, seen, np.zeros_like(seen)) for k, s in enumerate(slots) if s.main)
+    main = ((k, s) for k, s in enumerate(slots) if s.main and (s.role in READ_ROLES or s.role == "glass"))
+    return tuple(SlotPixels(s, k, seen, np.zeros_like(seen)) for k, s in main)
 
 
 def _own_colours(

@@ -75,6 +75,8 @@ def test_a_thing_whose_slots_are_hardly_seen_is_read_as_one_colour() -> None:
     fewer = np.zeros_like(mask)
     fewer[rows[:5], columns[:5]] = True
     assert whole_pixels(view, slots, fewer) == ()
+    pictured = tuple(replace(s, role="picture") for s in slots)
+    assert whole_pixels(view, pictured, few) == ()
 
 
 def test_a_slot_that_the_mask_lost_is_read_where_the_shape_shows_it() -> None:
