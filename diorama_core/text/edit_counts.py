@@ -6,6 +6,7 @@ import re
 from collections import Counter
 
 from diorama_core.errors import EditRefused
+from diorama_core.library.taxonomy import broad
 from diorama_core.text.edit_plan import MAX_COPIES, Edit, Insert, Place, Remove, Resize
 from diorama_core.text.phrases import NUMBERS
 from diorama_core.text.selecting import Selector
@@ -55,9 +56,11 @@ def all_but(text: str) -> tuple[int, str] | None:
 
 
 def _carrier(selector: Selector, object_id: str) -> str:
-    """The object that carries another; empty for what stands on the floor or hangs."""
+    """The object that carries another; empty for what stands on the floor, on a rug too, or hangs."""
     edge = selector.scene.support_of(object_id)
-    return edge.parent if edge is not None and selector.scene.has_object(edge.parent) else ""
+    if edge is None or not selector.scene.has_object(edge.parent):
+        return ""
+    return "" if broad(selector.scene.object(edge.parent).category) == "rug" else edge.parent
 
 
 def _too_few(selector: Selector, object_id: str) -> tuple[Edit, ...]:
