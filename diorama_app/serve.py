@@ -22,6 +22,7 @@ import diorama_core as diorama
 from diorama_app.session.preload import warm_up
 from diorama_app.web.viser_adapter import create_server, stop_server
 from diorama_app.web.visitors import ANY_HOST, Visitors, page_address, with_token
+from diorama_core.io.quick_imports import load_quickly
 from diorama_core.project.storage import Project
 
 if TYPE_CHECKING:
@@ -121,6 +122,7 @@ def start(
         projects=_Opening(made),
     )
     try:
+        load_quickly()
         from diorama_app.workspace import Workspace
 
         if isinstance(library, str):

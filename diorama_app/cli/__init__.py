@@ -17,9 +17,9 @@ from diorama_app.cli.importing import add_import
 from diorama_app.cli.library import add_library
 from diorama_app.cli.models import add_models
 from diorama_app.cli.scenes import add_build, add_export, add_optimise, add_picture, add_serve
-from diorama_app.cli.startup import load_quickly
 from diorama_app.cli.text import add_text
 from diorama_core.errors import Cancelled, DioramaError
+from diorama_core.io.quick_imports import load_quickly
 
 LOAD_MUCH = ("build", "optimise", "export", "picture", "text", "edit")
 """Commands that need most libraries whatever they are told."""

@@ -52,6 +52,9 @@ CLEARLY = 2.0
 """A thing's lit side has a colour that covers so many times more of the thing than of the background."""
 AS_GOOD = 0.8
 """A colour is as good as the best when it is nearly as much the slot's own."""
+BEHIND = 0.5
+"""Nor is a part that the mask lost read, where its vivid colour covers so much of the background: legs are not red
+because the carpet below them is."""
 BIN_LAB = np.array([40.0, 20.0, 20.0])
 NEAR_LAB = 20.0
 NORMAL_CELL = 0.35
@@ -107,10 +110,12 @@ def slot_pixels(
     together = seen.sum() >= MIN_OUTLINED * shown.sum()
     lab = cv2.cvtColor(np.ascontiguousarray(colours, dtype=np.float32) / 255.0, cv2.COLOR_RGB2Lab)
     of_slots: dict[int, Bool[np.ndarray, "gh gw"]] = {}
+    lost: set[int] = set()
     for index, slot in enumerate(slots):
         mine, posed = seen & (view.slot == index), shown & (view.slot == index)
         if together and mine.sum() < MIN_OUTLINED * posed.sum():
             mine = posed
+            lost.add(index)
         count = int(mine.sum())
         read = slot.role in READ_ROLES or (slot.main and slot.role == "glass")
         if read and count * view.step**2 >= MIN_PIXELS and count >= MIN_VISIBLE * max(seen.sum(), shown.sum()):
@@ -121,10 +126,9 @@ def slot_pixels(
     near = {index: mine & _alike(lab, seeds[index]) for index, mine in of_slots.items()}
     for index, mine in of_slots.items():
         unlike = [k for k in of_slots if slots[k].role != slots[index].role and _is_near(seeds[k] - seeds[index])]
-        crossed = np.hypot(*seeds[index][1:]) >= COLOURED and any(
-            near[k].sum() >= CROSSED * near[index].sum() for k in unlike
-        )
-        if near[index].sum() >= MIN_SHARE * mine.sum() and not crossed:
+        crossed = _is_vivid(seeds[index]) and any(near[k].sum() >= CROSSED * near[index].sum() for k in unlike)
+        behind = index in lost and _is_vivid(seeds[index]) and _covers(lab, beside, seeds[index]) >= BEHIND
+        if near[index].sum() >= MIN_SHARE * mine.sum() and not crossed and not behind:
             found.append(SlotPixels(slots[index], index, near[index], mine))
     return tuple(found)
 
@@ -186,6 +190,10 @@ def _is_not_behind(
     """Whether a light colour is a thing's lit side, and not the background seen beside a dark thing."""
     exactly = np.linalg.norm(lab - seed, axis=-1) < NEAR_LAB / 2
     return bool(beside.sum() < MIN_PIXELS or exactly[mine].mean() > CLEARLY * exactly[beside].mean())
+
+
+def _is_vivid(seed: np.ndarray) -> bool:
+    return bool(np.hypot(*seed[1:]) >= COLOURED)
 
 
 def _covers(lab: Float32[np.ndarray, "gh gw 3"], where: Bool[np.ndarray, "gh gw"], seed: np.ndarray) -> float:

@@ -22,6 +22,8 @@ SEATS_APART_M = 0.62
 """Seats around one table are at least so far apart, where there is room."""
 OTHER_SIDE_COST = 0.15
 """Half of what it costs to sit in the same direction from a table's middle as another."""
+LARGE_M2, ASKEW_COST = 0.9, 0.8
+"""Furniture of at least this floor area; what it costs at 45 degrees to the walls."""
 DOUBLE_BED_M, BEDSIDE_M = 1.2, 0.55
 """Wider beds are entered from both sides."""
 
@@ -90,7 +92,7 @@ def _habits(
     cost = np.zeros(len(quads))
     if kind == "rug":
         return cost + 0.05 * np.linalg.norm(stances.places - frame.middle, axis=1)
-    cost += _in_the_way(scene, item, quads, relations)
+    cost += _in_the_way(scene, item, quads, relations) + _askew(item, stances, frame)
     free = any(r.kind in ("in middle", "around", "facing", "between", "opposite") for r in relations)
     walled = bool({kind, item.category} & AT_WALLS) and item.category not in FREE_STANDING
     walled = walled and not (free and kind == "desk")
@@ -123,6 +125,14 @@ def _habits(
         for quad in door_floors(scene.objects):
             cost += 0.6 * overlapping(sides, quad)
     return cost + _own_front(scene, item, stances, relations, frame)
+
+
+def _askew(item: SceneObject, stances: Stances, frame: RoomFrame) -> Float[np.ndarray, "n"]:
+    """Large furniture stands square to a wall, also where it faces something a little aside."""
+    if not frame.walls or float(np.prod(item.size_m[:2])) < LARGE_M2:
+        return np.zeros(len(stances.places))
+    turned = [np.abs(np.sin(2.0 * (stances.yaws_rad - wall.yaw_rad))) for wall in frame.walls]
+    return ASKEW_COST * np.min(turned, axis=0)
 
 
 def _in_the_way(scene: Scene, item: SceneObject, quads: Quads, relations: Sequence[Relation]) -> Float[np.ndarray, "n"]:

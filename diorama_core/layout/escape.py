@@ -67,17 +67,16 @@ def exits(
         low = np.where(steep & (slope < 0), meets, -np.inf).max(axis=1)
         lows.append(np.where(always.any(axis=1), np.inf, low))
     low, high = np.concatenate(lows), np.concatenate(highs)
-    return np.array([_first_gap(low[:, k], high[:, k]) for k in range(len(directions))])
+    return _first_gaps(low, high)
 
 
-def _first_gap(low: Float[np.ndarray, " m"], high: Float[np.ndarray, " m"]) -> float:
-    """The least t >= 0 that is inside none of the open intervals."""
+def _first_gaps(low: Float[np.ndarray, "m d"], high: Float[np.ndarray, "m d"]) -> Float[np.ndarray, " d"]:
+    """For every direction the least t >= 0 that is inside none of its open intervals."""
     ahead = (low < high) & (high > 0)
-    low, high = low[ahead], high[ahead]
-    order = np.argsort(low)
-    t = 0.0
-    for begin, end in zip(low[order], high[order]):
-        if begin >= t:
-            break
-        t = max(t, float(end))
-    return t
+    low, high = np.where(ahead, low, np.inf), np.where(ahead, high, -np.inf)
+    order = np.argsort(low, axis=0)
+    begins, ends = (np.take_along_axis(side, order, axis=0) for side in (low, high))
+    # How far the intervals that begin before the next one reach from 0 on, as long as they follow on one another.
+    reached = np.maximum.accumulate(np.concatenate([np.zeros((1, low.shape[1])), ends]), axis=0)
+    gaps = np.concatenate([begins >= reached[:-1], np.ones((1, low.shape[1]), bool)])
+    return reached[gaps.argmax(axis=0), np.arange(low.shape[1])]

@@ -37,8 +37,9 @@ def scene_with_pictures(solids: Iterable[tuple[Material, Solid]], folder: Path) 
     scene = with_roles(scene_of(unpainted), [material for material, _ in solids])
     for mesh, (material, _) in zip(scene.geometry.values(), solids, strict=True):
         if material.kind != PAINTED_AT_ONCE:
-            data = io.BytesIO(kept_picture(material, folder))
-            mesh.visual.material.baseColorTexture = Image.open(data, formats=("JPEG", "PNG"))
+            picture = Image.open(io.BytesIO(kept_picture(material, folder)), formats=("JPEG", "PNG"))
+            picture.load()  # as in `with_roles`
+            mesh.visual.material.baseColorTexture = picture
     return scene
 
 

@@ -168,3 +168,17 @@ def test_the_librarys_weave_gives_way_where_the_photo_shows_none() -> None:
     assert found.texture is not None
     assert found.texture.reshape(-1, 3).std(axis=0).max() == 0
     assert appearance_of(view, body, rgb, light, np.full_like(weave, 120)).texture is None
+
+
+def test_legs_that_the_mask_lost_are_not_blue_because_the_carpet_is() -> None:
+    view, slots, rgb, mask, _ = seen()
+    wood = view.slot == next(k for k, s in enumerate(slots) if s.role == "wood")
+    rows, columns = np.nonzero(wood)
+    lost, painted = mask.copy(), rgb.copy()
+    lost[rows + view.top, columns + view.left] = False
+    painted[rows + view.top, columns + view.left] = (30, 60, 150)
+    background = ~mask
+    grey, blue = painted.copy(), painted.copy()
+    grey[background], blue[background] = 128, (30, 60, 150)
+    roles = [[p.slot.role for p in slot_pixels(view, slots, x, lost, mask, background)] for x in (grey, blue)]
+    assert roles == [["fabric", "wood"], ["fabric"]]

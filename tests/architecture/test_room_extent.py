@@ -129,3 +129,46 @@ def test_what_stands_behind_a_hanging_thing_decides_where_an_assumed_wall_is() -
     found = containing_room(room.scene(architecture=sliver(0.15), camera=looking_north(5.0)))
     behind = float(found.object(box).corners_world[:, 1].max())
     assert -found.plane("wall_1").offset == pytest.approx(behind + 0.01)
+
+
+def standing_against_the_wall(*gaps_m: float, before_m: float | None = None) -> tuple[Room, Scene]:
+    """Boxes whose backs were seen so far before the wall that they stand against, and one that only stands there."""
+    room = Room(LIBRARY)
+    half = LIBRARY.shape("box_24").size_m[0] / 2
+    for k, gap in enumerate(gaps_m):
+        room.put("box_24", (-0.7 + 0.5 * k, 2.5 - half - gap, 0.15), yaw=-np.pi / 2, adheres_to=("wall_1",))
+    if before_m is not None:
+        room.put("box_24", (0.75, 2.5 - half - before_m, 0.15), yaw=-np.pi / 2)
+    return room, room.scene(architecture=sliver(), camera=looking_north(5.0))
+
+
+def wall_y(scene: Scene) -> float:
+    return float(scene.plane("wall_1").polygon[:, 1].mean())
+
+
+def test_from_a_photo_alone_a_wall_comes_to_what_stands_against_it() -> None:
+    _, scene = standing_against_the_wall(0.3, 0.3)
+    near = containing_room(scene, reasoned=True)
+    assert wall_y(near) == pytest.approx(2.5 - 0.3, abs=0.02)
+    assert wall_y(containing_room(scene)) == pytest.approx(2.5)
+    assert near.objects == scene.objects
+    settled = FeasibleRecipe(LIBRARY, sizes_reasoned=True).optimise(near, Progress())[0]
+    for item in scene.objects:
+        assert np.linalg.norm(settled.object(item.id).pose.position - item.pose.position) < 0.03
+
+
+def test_a_wall_goes_outward_too_and_follows_most_of_what_stands_against_it() -> None:
+    assert wall_y(containing_room(standing_against_the_wall(-0.2, -0.2)[1], reasoned=True)) > 2.6
+    assert wall_y(containing_room(standing_against_the_wall(0.1, 0.1, 0.4)[1], reasoned=True)) == pytest.approx(
+        2.4, abs=0.02
+    )
+
+
+def test_a_wall_does_not_come_past_what_stands_before_it() -> None:
+    _, scene = standing_against_the_wall(0.3, before_m=0.1)
+    assert wall_y(containing_room(scene, reasoned=True)) > 2.5 - 0.3 + 0.1
+
+
+def test_a_wall_without_anything_against_it_stays() -> None:
+    _, scene = standing_against_the_wall(before_m=0.1)
+    assert wall_y(containing_room(scene, reasoned=True)) == pytest.approx(2.5)

@@ -54,7 +54,10 @@ def test_a_photo_alone_gives_a_room_and_an_invitation(
     tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Of 16 bits a pixel, one of the two oddest modes; `tests/perception/test_input_photo.py` reads pictures of all."""
-    monkeypatch.setattr(own_weights, "FOLDER", tmp_path / "left out")
+    without = tmp_path / "without recogniser"
+    without.mkdir()
+    shutil.copyfile(own_weights.FOLDER / own_weights.OUTLINER, without / own_weights.OUTLINER)
+    monkeypatch.setattr(own_weights, "FOLDER", without)
     photo, _ = write_room(tmp_path)
     Image.fromarray(np.asarray(Image.open(photo).convert("L")).astype(np.uint16) * 257).save(tmp_path / "deep.png")
     assert main(["build", str(tmp_path / "deep.png"), "-o", str(tmp_path / "empty")]) == 0

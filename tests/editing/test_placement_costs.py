@@ -97,3 +97,14 @@ def test_two_of_a_kind_stand_on_both_sides() -> None:
         room=Architecture(),
     )  # fmt: skip
     assert other < same
+
+
+def test_large_furniture_stands_square_and_an_armchair_may_turn() -> None:
+    sofa, armchair = item("sofa", (0.9, 2.0, 0.8), 0.0, 0.0), item("armchair", (0.8, 0.8, 0.8), 0.0, 0.0)
+    square, turned = ((FRAME.middle, WALL.yaw_rad + turn) for turn in (0.0, np.radians(12.0)))
+    ahead = FRAME.middle + 2.5 * np.array([np.cos(turned[1]), np.sin(turned[1])])
+    screen = item("television", (0.1, 0.9, 0.6), *ahead, WALL.yaw_rad + np.pi)
+    facing = {"there": (screen,), "relations": (Relation("facing", (screen.id,)),)}
+    for what, straight in ((sofa, True), (armchair, False)):
+        first, second = cost(what, square, turned, **facing)  # type: ignore[arg-type]  # each of its own type
+        assert (first < second) == straight

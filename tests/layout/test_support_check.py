@@ -9,6 +9,7 @@ from diorama_core.layout.feasible.recipe import FeasibleRecipe
 from diorama_core.layout.noise import MEASURED, REASONED
 from diorama_core.layout.support_check import checked_supports
 from diorama_core.progress import Progress
+from diorama_core.scene.types import Candidate
 from diorama_core.synthesis.layout_rooms import room_box
 from tests.layout.feasible.test_photo_observations import LIBRARY, looking_north, outline
 from tests.layout.small_rooms import Room
@@ -87,12 +88,55 @@ def test_what_is_under_a_table_stays_on_the_floor(room: Room) -> None:
     assert checked_supports(room.scene(camera=looking_north()), LIBRARY, MEASURED)[0].support_of(box).parent == "floor"
 
 
-def test_where_shapes_may_not_leave_room_only_a_measured_gap_counts(room: Room) -> None:
+def test_where_shapes_may_not_leave_room_only_a_measured_gap_counts_for_what_stands_on_floors(room: Room) -> None:
     room.put("bookshelf_7", (0.0, 1.0, 0.6))
-    books = room.put("books_18", (0.0, 1.0, 0.12), yaw=0.2)
+    basket = room.put("books_18", (0.0, 1.0, 0.12), yaw=0.2)
+    room.objects[-1] = replace(room.objects[-1], category="trash can")
     scene = room.scene(camera=looking_north())
     assert checked_supports(scene, LIBRARY, MEASURED, shapes_clear=False) == (scene, ())
-    assert checked_supports(scene, LIBRARY, MEASURED)[0].support_of(books).parent != "floor"
+    assert checked_supports(scene, LIBRARY, MEASURED)[0].support_of(basket).parent != "floor"
+
+
+@pytest.mark.parametrize("shapes_clear", [True, False])
+def test_what_reaches_down_through_a_board_ends_there_and_its_top_stays(room: Room, shapes_clear: bool) -> None:
+    table = room.put("table_0", (0.0, 1.0, 0.37))
+    top = float(room.scene().object(table).corners_world[:, 2].max())
+    tall = 0.4 / LIBRARY.shape("books_18").size_m[2]
+    books = room.put("books_18", (0.0, 1.0, top), scale=(1.0, 1.0, tall))
+    room.put("books_18", (2.0, 1.0, top), scale=(1.0, 1.0, tall))
+    scene = room.scene(camera=looking_north())
+    checked, reasons = checked_supports(scene, LIBRARY, MEASURED, shapes_clear=shapes_clear)
+    assert checked.support_of(books).parent == table
+    low, high = np.sort(checked.object(books).corners_world[:, 2])[[0, -1]]
+    assert low == pytest.approx(top, abs=1e-6)
+    assert high == pytest.approx(top + 0.2)
+    assert len(reasons) == 1
+
+
+def test_a_vase_hung_within_a_cabinet_stands_on_it_with_all_its_shapes(room: Room) -> None:
+    cabinet = room.put("cabinet_10", (0.0, 2.25, 0.4), yaw=-np.pi / 2)
+    top = float(room.scene().object(cabinet).corners_world[:, 2].max())
+    tall = 0.6 / LIBRARY.shape("cup_21").size_m[2]
+    cup = room.put("cup_21", (0.0, 2.25, top), on="wall_2", relation="mounted on", scale=(1.0, 1.0, tall))
+    item = room.objects[-1]
+    room.objects[-1] = replace(item, candidates=(Candidate(item.shape_id, item.shape_size_m, 0.5, item.pose),))
+    checked, _ = checked_supports(room.scene(camera=looking_north()), LIBRARY, MEASURED)
+    assert checked.support_of(cup).parent == cabinet
+    found = checked.object(cup)
+    assert found.corners_world[:, 2].min() == pytest.approx(top, abs=1e-6)
+    np.testing.assert_allclose(found.candidates[0].pose.scale, found.pose.scale)
+
+
+def test_a_cup_measured_on_a_plate_is_on_the_plate(room: Room) -> None:
+    table = room.put("table_0", (0.0, 0.0, 0.37))
+    top = float(room.scene().object(table).corners_world[:, 2].max())
+    flat = 0.02 / LIBRARY.shape("box_24").size_m[2]
+    plate = room.put("box_24", (0.0, 0.0, top + 0.01), on=table, scale=(0.7, 0.7, flat))
+    room.objects[-1] = replace(room.objects[-1], category="plate")
+    cup = room.put("cup_21", (0.0, 0.0, top + 0.02 + LIBRARY.shape("cup_21").size_m[2] / 2), on=table)
+    checked, _ = checked_supports(room.scene(camera=looking_north()), LIBRARY, MEASURED)
+    assert checked.support_of(cup).parent == plate
+    assert checked.support_of(plate).parent == table
 
 
 def test_a_laptop_far_above_its_chair_rests_on_the_desk_below_it_although_its_foot_is_hidden(room: Room) -> None:

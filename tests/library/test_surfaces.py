@@ -103,3 +103,9 @@ def test_a_rim_is_no_surface() -> None:
     frame = [block((0.04, 0.6, 0.04), (s * 0.28, 0, 0)) for s in (1, -1)]
     frame += [block((0.6, 0.04, 0.04), (0, s * 0.28, 0)) for s in (1, -1)]
     assert support_surfaces(trimesh.util.concatenate(frame)) == ()
+
+
+def test_a_worktop_with_a_lower_piece_between_is_as_high_as_its_higher_ends() -> None:
+    ends = [block((0.6, 0.4, 0.04), (0, s * 0.45, 0.88)) for s in (1, -1)]
+    (top,) = support_surfaces(trimesh.util.concatenate([*ends, block((0.6, 0.5, 0.03), (0, 0, 0.875))]))
+    assert top.height_m == pytest.approx(0.9, abs=1e-3)

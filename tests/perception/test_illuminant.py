@@ -68,3 +68,13 @@ def test_balanced_pictures_agree_with_albedo():
     picture, _ = room()
     expected = TUNGSTEN.albedo(picture / 255.0) * 255
     assert np.abs(TUNGSTEN.balanced(picture) - expected).max() <= 0.51
+
+
+@pytest.mark.parametrize("light", [TUNGSTEN, SHADE])
+def test_half_of_a_light_applied_twice_is_the_light(light):
+    half = light.partly(0.5)
+    assert off_deg(half, Illuminant()) < off_deg(light, Illuminant())
+    colour = np.array([0.4, 0.35, 0.3])
+    np.testing.assert_allclose(half.albedo(half.albedo(colour)), light.albedo(colour), atol=0.02)
+    assert off_deg(light.partly(1.0), light) < 1e-5
+    assert off_deg(light.partly(0.0), Illuminant()) < 1e-5

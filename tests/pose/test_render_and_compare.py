@@ -62,6 +62,19 @@ def test_the_shape_that_fits_the_picture_comes_first() -> None:
     assert len(candidates) == 3
 
 
+def test_retrieval_says_more_of_a_thing_without_a_name() -> None:
+    """Of shapes of all kinds some always has its outline."""
+    room = Room(camera_at(), (standing("low chair", 0.0, 3.0, 200.0),), (1,))
+    ranked = (RankedShapes("o0", (("chair", 0.9), ("low chair", 0.6))),)
+    said = []
+    for label in ("chair", "object"):
+        objects = (replace(room.objects[0], label=label),)
+        (found,) = STAGE.pose(room.inputs, objects, room.geometry, room.depth(False), ranked, Progress())
+        score = {c.shape_id: c.score for c in found.candidates}
+        said.append(score["chair"] / score["low chair"])
+    assert said[1] > 1.5 * said[0]
+
+
 def test_what_a_nearer_object_hides_is_not_supported_against_a_shape() -> None:
     room = Room(camera_at(), (standing("desk", 0.0, 4.0, -60.0), standing("carton", 0.1, 2.6, 0.0)), (0, 0))
     found = posed(room)[0]

@@ -8,7 +8,7 @@ import trimesh
 
 from diorama_core.io.srgb import srgb_to_linear
 from diorama_core.render.slabs import plane_surfaces
-from diorama_core.scene.types import Plane
+from diorama_core.scene.types import Plane, SurfaceFinish
 
 L_SHAPE = np.array([[0, 0, 0], [3, 0, 0], [3, 1, 0], [1, 1, 0], [1, 2, 0], [0, 2, 0]], dtype=float)
 FLOOR = Plane("f", "floor", L_SHAPE, thickness=0.1, colour=(0.5, 0.25, 1.0))
@@ -56,3 +56,11 @@ def test_without_a_picture_the_planes_colour_is_linear() -> None:
     np.testing.assert_allclose(front.material.colour, srgb_to_linear(np.array(FLOOR.colour)))
     assert front.uv is None
     assert plane_surfaces(replace(FLOOR, role="wall"))[0].material.roughness > front.material.roughness
+
+
+def test_a_plain_colour_is_photographed_where_that_is_said_and_nobody_painted_it() -> None:
+    front, rest = plane_surfaces(FLOOR, plain_photographed=True)
+    assert front.material.photographed
+    assert not rest.material.photographed
+    painted = replace(FLOOR, finish=SurfaceFinish("paint", (0.5, 0.5, 0.5)))
+    assert not plane_surfaces(painted, plain_photographed=True)[0].material.photographed

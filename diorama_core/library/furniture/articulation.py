@@ -45,12 +45,22 @@ def joint_of(geometry_name: str) -> int | None:
     return None if owner == _FIXED else int(owner)
 
 
+_FURTHER = "+"
+"""Begins what an id says beyond how the shape is made."""
+
+
 @lru_cache(maxsize=1024)
 def articulation(shape_id: str) -> Articulation | None:
-    """The moving parts of a built-in shape, made to measure or not; None where it has none, or is not built in."""
-    design = _designs().get(shape_id.split(MARK, 1)[0])
-    if design is None or not is_made(shape_id):
-        return None if design is None else _articulated(design)
+    """The moving parts of a built-in shape, made to measure or not; None where it has none, or is not built in.
+
+    A shape whose boards are elsewhere (`library.boards`) is stretched as a whole, and has none.
+    """
+    listed, _, made = shape_id.partition(MARK)
+    design = _designs().get(listed)
+    if design is None or _FURTHER in made:
+        return None
+    if not is_made(shape_id):
+        return _articulated(design)
     return _articulated(made_by_id(shape_id, design))
 
 

@@ -185,11 +185,9 @@ def pbr(material: Material) -> trimesh.visual.material.PBRMaterial:
         optional |= {"alphaMode": "BLEND", "baseColorFactor": [255, 255, 255, round(255 * material.alpha)]}
     if material.glow:
         optional["emissiveFactor"] = [float(c) for c in material.glow * material.rgb**2.2]
-    picture = Image.open(io.BytesIO(picture_bytes(material)), formats=("JPEG", "PNG"))
-    picture.load()  # shapes are shared between threads, which must not decode one picture at the same time
     return trimesh.visual.material.PBRMaterial(
         name=material.name,
-        baseColorTexture=picture,
+        baseColorTexture=Image.open(io.BytesIO(picture_bytes(material)), formats=("JPEG", "PNG")),
         roughnessFactor=material.roughness,
         metallicFactor=material.metallic,
         **optional,

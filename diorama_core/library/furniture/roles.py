@@ -33,7 +33,11 @@ def role(material: Material) -> Role:
 
 
 def with_roles(scene: trimesh.Scene, materials: Iterable[Material]) -> trimesh.Scene:
-    """The scene of a design with roles noted on its meshes, one material for each in their order."""
+    """The scene of a design with roles noted on its meshes, one material for each in their order.
+
+    Pictures are decoded: shapes are shared between threads, which must not decode one at the same time.
+    """
     for mesh, material in zip(scene.geometry.values(), materials, strict=True):
         mesh.metadata |= {ROLE: role(material), TILE_M: material.tile_m}
+        mesh.visual.material.baseColorTexture.load()
     return scene

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from diorama_core.architecture.texture.colours import coloured
+from diorama_core.architecture.texture.colours import coloured, visible_planes
 from diorama_core.artefacts import DetectedObject
 from tests.synthetic_rooms import box_room, look
 
@@ -36,3 +36,19 @@ def test_a_wall_that_is_only_seen_in_boxes_has_the_colour_seen_there() -> None:
     everywhere = replace(door, box=(0, 0, 320, 240))
     back = next(p for p in coloured(ROOM, rgb, CAMERA, (everywhere,)) if p.role == "wall" and p.normal[1] < -0.9)
     np.testing.assert_allclose(back.colour, np.array(GREEN) / 255, atol=0.03)
+
+
+@pytest.mark.parametrize(("covered", "expected"), [(0.95, GREY), (0.5, GREEN)])
+def test_a_wall_behind_windows_and_shelves_has_the_colour_of_the_wall_that_is_seen_best(
+    covered: float, expected: tuple[int, int, int]
+) -> None:
+    """The left wall is green where it is unhidden: a view out of a window's rest, or its paint."""
+    left = next(k for k, p in enumerate(ROOM) if p.role == "wall" and p.normal[0] > 0.9)
+    shown = visible_planes(ROOM, CAMERA, 1) == left
+    rgb = np.full((240, 320, 3), GREY, np.uint8)
+    rgb[shown] = GREEN
+    mask = shown.copy()
+    mask[int(covered * 240) :] = False
+    shelf = DetectedObject("shelf", "bookshelf", "bookshelf", (0, 0, 90, 240), mask, 1, 1.0)
+    walls = coloured(ROOM, rgb, CAMERA, (replace(shelf, mask_confidence=1.0),))
+    np.testing.assert_allclose(walls[left].colour, np.array(expected) / 255, atol=0.03)

@@ -1,10 +1,14 @@
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
+from diorama_core.geometry.sat import place_bodies
 from diorama_core.layout.feasible.recipe import FeasibleRecipe
 from diorama_core.layout.feasible.separate import build_program
 from diorama_core.layout.feasible.structure import exact_structure
+from diorama_core.layout.problem.enclosure import may_meet
 from diorama_core.layout.problem.problem import build_problem
 from diorama_core.library.catalogue import built_in_library
 from diorama_core.progress import Progress
@@ -32,6 +36,18 @@ def test_a_cup_on_a_table_meets_nothing_of_it(room: Room) -> None:
     table = room.put("table_0", (0.0, 0.0, 0.37))
     cup = room.put("cup_21", (0.0, 0.0, 0.8), on=table)
     assert not allowed(room, cup, table).any()
+
+
+def test_a_part_that_covers_the_middle_of_a_place_encloses_nothing(room: Room) -> None:
+    table = room.put("table_0", (0.0, 0.0, 0.37))
+    cup = room.put("cup_21", (0.0, 0.0, 0.8), on=table)
+    problem = build_problem(room.scene(), room.library)
+    bodies = place_bodies(problem.packed, problem.R, problem.p, problem.scale)
+    k, below = problem.ids.index(cup), problem.ids.index(table)
+    place = problem.surface[k].at(problem.R[below], problem.p[below], problem.scale[below])
+    lower = replace(place, level=place.level - 0.02, polygon=place.polygon - 0.02 * place.normal)
+    surfaces = [lower if i == k else s for i, s in enumerate(problem.surface)]
+    assert not may_meet(problem, bodies, surfaces)[np.ix_(bodies.owner == k, bodies.owner == below)].any()
 
 
 def test_strangers_meet_with_all_parts(room: Room) -> None:

@@ -1,4 +1,4 @@
-"""What a command does before it loads large libraries, so that they load sooner."""
+"""What a program does before it loads large libraries, so that they load sooner."""
 
 from __future__ import annotations
 

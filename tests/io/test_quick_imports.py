@@ -5,11 +5,11 @@ from __future__ import annotations
 import subprocess
 import sys
 
-from diorama_app.cli.startup import GARBAGE_EVERY
+from diorama_core.io.quick_imports import GARBAGE_EVERY
 
 SCRIPT = """
 import gc
-from diorama_app.cli.startup import load_quickly
+from diorama_core.io.quick_imports import load_quickly
 load_quickly()
 import numpy as np
 from scipy import ndimage, optimize, special, spatial
