@@ -354,7 +354,7 @@ def _entered(scene: Scene, library: ShapeLibrary, item: SceneObject, edge: Suppo
         for other in scene.objects
         if other.category not in _WALKED_ON
         and (
-            _place_reached_through(library, item, other) is not None
+            _carries(scene, other.id) and _place_reached_through(library, item, other) is not None
             if sits
             else bool(surfaces_below(item, other, library.shape(other.shape_id), under=1.0))
         )

@@ -6,10 +6,14 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from diorama_core.errors import Cancelled
+from diorama_core.layout.feasible.recipe import FeasibleRecipe
 from diorama_core.layout.feasible.separate import APART_M, Program, Separation, build_program, overlaps, separate
 from diorama_core.layout.feasible.structure import exact_structure
 from diorama_core.layout.problem.problem import build_problem
-from diorama_core.synthesis.layout_rooms import box_library
+from diorama_core.library.catalogue import built_in_library
+from diorama_core.progress import Progress
+from diorama_core.scene.types import Pose, Scene, SceneObject, Support
+from diorama_core.synthesis.layout_rooms import box_library, room_box
 from tests.layout.small_rooms import Room
 
 BOX = "box_24"
@@ -141,3 +145,18 @@ def test_the_check_sees_every_round_and_may_stop(room: Room) -> None:
         separate(program(room), rounds=20, check=check)
     assert seen[0] == pytest.approx(0.15, abs=1e-6)
     assert seen[1] < 1e-4
+
+
+def test_round_things_with_many_axes_part_without_becoming_smaller() -> None:
+    library = built_in_library()
+    cup, plate = (library.shape(name) for name in ("cup-mug-white", "bowl-plate"))
+    objects = tuple(
+        SceneObject(s.id, s.id, s.category, s.id, s.size_m, Pose.upright((x, 0.1 * x, s.size_m[2] / 2), 0.3))
+        for s, x in ((cup, 0.0), (plate, 0.05))
+    )
+    edges = tuple(Support(item.id, "floor") for item in objects)
+    scene = Scene(objects=objects, supports=edges, architecture=room_box(4.0, 4.0))
+    settled, report = FeasibleRecipe(library).optimise(scene, Progress())
+    assert report.reasons == ()
+    assert report.after["part_overlap_m"] == 0.0
+    assert all(np.array_equal(o.pose.scale, np.ones(3)) for o in settled.objects)
