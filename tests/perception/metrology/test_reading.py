@@ -1,5 +1,7 @@
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -9,7 +11,7 @@ from diorama_core.library.taxonomy import UNKNOWN, category
 from diorama_core.perception.metrology.box_observations import gather
 from diorama_core.perception.metrology.placement import FLOOR, WALL, Placement
 from diorama_core.perception.metrology.problem import Cuboids
-from diorama_core.perception.metrology.reading import confidence_of, heading_and_size
+from diorama_core.perception.metrology.reading import confidence_of, foot_seen, heading_and_size
 from tests.perception.metrology.test_metrology import detected
 from tests.perception.metrology.test_problem import problem
 
@@ -54,3 +56,23 @@ def test_confidence_falls_with_cost_hidden_edges_and_an_unsure_height() -> None:
     assert confidence(placement(0.0), box=(0, 100, 200, 480)) == pytest.approx(0.85**2)
     assert confidence(placement(0.0), chair=(90, 250, 210, 400)) == pytest.approx(0.85)
     assert confidence(placement(0.0, cost=1e6)) == 0.02
+
+
+def test_a_foot_is_seen_unless_the_picture_ends_there_or_others_hide_it() -> None:
+    def seen(box, *before, supporter: int = FLOOR) -> bool:
+        front = [replace(detected("f", "table", b), mask=_filled(b)) for b in before]
+        return foot_seen(placement(0.0, supporter), gather((detected("o", "sofa", box), *front), 640, 480))
+
+    whole, before = (100, 100, 200, 300), (90, 250, 210, 400)
+    assert seen(whole)
+    assert not seen(whole, before)
+    assert seen(whole, (90, 310, 210, 400))
+    assert not seen((100, 100, 200, 480))
+    # Where it hangs or lies on something its own foot tells nothing.
+    assert seen(whole, before, supporter=WALL)
+
+
+def _filled(box: tuple[int, int, int, int]) -> np.ndarray:
+    mask = np.zeros((480, 640), dtype=bool)
+    mask[box[1] : box[3], box[0] : box[2]] = True
+    return mask
