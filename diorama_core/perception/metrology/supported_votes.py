@@ -58,8 +58,8 @@ def with_votes_of_supported(
     for index, cost in found.items():
         vote = np.minimum(cost - cost.min(), _CAP) * share_of_vote(index, found, observations)
         total[tried] += vote
-    log_height, log_sigma, cost = parabola_minimum(np.log(heights_m), total[tried])
-    return HeightScan(float(np.exp(log_height)), log_sigma, cost, total)
+    log_height, log_sigma, lowest = parabola_minimum(np.log(heights_m), total[tried])
+    return HeightScan(float(np.exp(log_height)), log_sigma, lowest, total)
 
 
 def _plausible(costs: Float[np.ndarray, "h"]) -> slice:
