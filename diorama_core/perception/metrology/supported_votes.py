@@ -55,8 +55,8 @@ def with_votes_of_supported(
     ]
     found = costs_at_heights(stacked(rows), heights_m, observations, view)
     total = scan.costs.copy()
-    for index, cost in found.items():
-        vote = np.minimum(cost - cost.min(), _CAP) * share_of_vote(index, found, observations)
+    for index, costs in found.items():
+        vote = np.minimum(costs - costs.min(), _CAP) * share_of_vote(index, found, observations)
         total[tried] += vote
     log_height, log_sigma, lowest = parabola_minimum(np.log(heights_m), total[tried])
     return HeightScan(float(np.exp(log_height)), log_sigma, lowest, total)
