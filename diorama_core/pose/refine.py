@@ -21,6 +21,8 @@ _PARAMETERS = 6
 _STEP = 1e-3
 _BEYOND_SIGMA = 4.0
 _HIDDEN_SIDE = 0.2
+_AWAY_SHARE, _AWAY_SHARE_UNSEEN = 0.05, 0.01
+"""Of its distance, how far an object may be expected to move away from the camera or nearer: foot seen, and not."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -32,6 +34,8 @@ class BoxFit:
     anchor: Anchor
     limits: SizeLimits
     yaw_sigma_rad: float
+    foot_seen: bool = True
+    """Where it is not, the box hardly tells how far away the object is: its cuboid, placed among all others, does."""
     iterations: int = 4
 
     def refined(self, caster: ShapeCaster, start: PoseBatch) -> PoseBatch:
@@ -68,7 +72,8 @@ class BoxFit:
         """How far each parameter may be expected to move: two offsets in metres, three log scales, yaw."""
         distance = np.linalg.norm(start.position - self.camera.position, axis=1)
         sigma = np.empty((len(start), _PARAMETERS))
-        sigma[:, 0], sigma[:, 1] = 0.05 * distance, 0.03 * distance
+        away = _AWAY_SHARE if self.foot_seen else _AWAY_SHARE_UNSEEN
+        sigma[:, 0], sigma[:, 1] = away * distance, 0.03 * distance
         sigma[:, 2:5], sigma[:, 5] = 0.12, self.yaw_sigma_rad
         return sigma
 

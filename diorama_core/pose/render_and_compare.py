@@ -338,7 +338,9 @@ class RenderAndCompare:
         if task.measured is not None:
             return task.measured.fit(limits).refined(caster, start)
         yaw_sigma = np.deg2rad(9.0 if category(task.item.category).quarter_turns_free else 4.0)
-        return BoxFit(task.fine.camera, task.fine.seen, task.anchor, limits, float(yaw_sigma)).refined(caster, start)
+        foot_seen = task.cuboid.foot_seen
+        fit = BoxFit(task.fine.camera, task.fine.seen, task.anchor, limits, float(yaw_sigma), foot_seen)
+        return fit.refined(caster, start)
 
 
 def _rank(

@@ -94,3 +94,13 @@ def test_things_on_walls_are_corrected_along_the_wall() -> None:
     made = BoxFit(ROOM.camera, seen(), onto_wall, LIMITS, 0.05).refined(CASTER, start)
     reach = 0.5 * (np.abs(made.R[0].T @ onto_wall.axis_world) * made.scale[0] * LIMITS.shape_size_m).sum()
     assert made.position[0, 1] + reach == pytest.approx(3.0, abs=1e-6)
+
+
+def test_an_object_whose_foot_is_not_seen_stays_at_its_distance() -> None:
+    start = batch((-0.05, 0.4, 0.85, 0.0))
+    away = TRUE.position[:2] / np.linalg.norm(TRUE.position[:2])
+    moved = [
+        abs(float((fit(foot_seen=seen_).refined(CASTER, start).position[0] - start.position[0])[:2] @ away))
+        for seen_ in (True, False)
+    ]
+    assert moved[1] < 0.4 * moved[0]
