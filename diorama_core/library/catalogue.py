@@ -19,13 +19,13 @@ from diorama_core.io.derived import derived
 from diorama_core.io.glb import whole_glb
 from diorama_core.library import furniture, taxonomy
 from diorama_core.library.boards import Boards, base_id, without_boards
+from diorama_core.library.cached_pictures import scene_with_pictures
 from diorama_core.library.furniture.geometry_key import geometry_key
 from diorama_core.library.furniture.latest import built_once
 from diorama_core.library.furniture.materials import Material
 from diorama_core.library.furniture.measures import is_made, made_by_id
 from diorama_core.library.furniture.model import Design, mesh_of
 from diorama_core.library.furniture.solids import Solid
-from diorama_core.library.kept_pictures import scene_with_pictures
 from diorama_core.library.record import Shape, SupportSurface, usual_contact_faces
 from diorama_core.library.surfaces import SURFACES_VERSION, support_surfaces
 

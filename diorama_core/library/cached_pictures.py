@@ -20,7 +20,7 @@ from diorama_core.library.furniture.roles import with_roles
 from diorama_core.library.furniture.solids import Solid
 
 PAINTED_AT_ONCE = "plain"
-"""Pictures of this kind are of one colour: nothing is gained by keeping them."""
+"""Pictures of this kind are of one colour: nothing is gained by caching them."""
 _ENDS = (b"\xff\xd9", b"IEND\xaeB`\x82")
 """Of whole JPEG and PNG files."""
 
@@ -30,21 +30,21 @@ def scene_with_pictures(solids: Iterable[tuple[Material, Solid]], folder: Path) 
 
     Args:
         solids: One for each material.
-        folder: Where pictures are kept; without access to it they are painted each time.
+        folder: Where pictures are cached; without access to it they are painted each time.
     """
     solids = list(solids)
     unpainted = [(replace(material, kind=PAINTED_AT_ONCE), solid) for material, solid in solids]
     scene = with_roles(scene_of(unpainted), [material for material, _ in solids])
     for mesh, (material, _) in zip(scene.geometry.values(), solids, strict=True):
         if material.kind != PAINTED_AT_ONCE:
-            picture = Image.open(io.BytesIO(kept_picture(material, folder)), formats=("JPEG", "PNG"))
+            picture = Image.open(io.BytesIO(cached_picture(material, folder)), formats=("JPEG", "PNG"))
             picture.load()  # as in `with_roles`
             mesh.visual.material.baseColorTexture = picture
     return scene
 
 
 @lru_cache(maxsize=512)
-def kept_picture(material: Material, folder: Path) -> bytes:
+def cached_picture(material: Material, folder: Path) -> bytes:
     """`picture_bytes` from its file, which is renewed with the material and the code that paints."""
     name = hashlib.sha256(f"{_code()} {material.name} {material.kind} {material.colour}".encode()).hexdigest()[:32]
     return derived(folder / f"{name}.jpg", lambda: picture_bytes(material), _whole)
