@@ -18,8 +18,7 @@ from diorama_core.models.tokens import clip_tokens, load_tokenizer
 
 TOKENS = 77
 SIDE = 224
-_VECTOR: Dims = (1, None)
-_OF_TOWER: Dims = (1, 512)
+_VECTOR: Dims = (1, 512)
 
 
 @dataclass(frozen=True)
@@ -30,7 +29,13 @@ class OpenClip:
     image_graph: Path = field(repr=False)
     tokenizer: Path = field(repr=False)
     weights: str = "openclip-b32"
+    width: int = 512
+    """Numbers of a vector."""
     pool: SessionPool = field(default=SHARED_SESSIONS, repr=False, compare=False)
+
+    @property
+    def _vector(self) -> Dims:
+        return (1, self.width)
 
     @cached_property
     def _tokenizer(self) -> Any:
@@ -41,15 +46,15 @@ class OpenClip:
         session = self.pool.get(self.text_graph)
         name, first = session.first_input, session.outputs[0]
         ids, _ = clip_tokens(self._tokenizer, texts, TOKENS)
-        rows = [session.run({name: one[None]}, {first: _VECTOR})[first] for one in ids]
-        return unit(np.concatenate(rows)) if rows else np.zeros((0, 512), np.float32)
+        rows = [session.run({name: one[None]}, {first: self._vector})[first] for one in ids]
+        return unit(np.concatenate(rows)) if rows else np.zeros((0, self.width), np.float32)
 
     def images(self, pictures: Sequence[UInt8[np.ndarray, "_ _ 3"]]) -> Float32[np.ndarray, "n d"]:
         """One vector per picture."""
         session = self.pool.get(self.image_graph)
         name, first = session.picture_input, session.outputs[0]
-        rows = [session.run({name: clip_pixels(p)}, {first: _VECTOR})[first] for p in pictures]
-        return unit(np.concatenate(rows)) if rows else np.zeros((0, 512), np.float32)
+        rows = [session.run({name: clip_pixels(p)}, {first: self._vector})[first] for p in pictures]
+        return unit(np.concatenate(rows)) if rows else np.zeros((0, self.width), np.float32)
 
 
 @dataclass(frozen=True)
@@ -68,7 +73,7 @@ class DuoduoClip:
         # A graph for a fixed number of views sees given ones again: attention over copies is that over the originals.
         shown = [views[k % len(views)] for k in range(count)] if isinstance(count, int) else views
         pixels = np.concatenate([clip_pixels(v) for v in shown])[None]
-        return unit(session.run({name: pixels}, {first: _OF_TOWER})[first])[0]
+        return unit(session.run({name: pixels}, {first: _VECTOR})[first])[0]
 
 
 def clip_pixels(rgb: UInt8[np.ndarray, "h w 3"]) -> Float32[np.ndarray, "1 3 224 224"]:

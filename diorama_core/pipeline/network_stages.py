@@ -26,6 +26,9 @@ WORDS_THRESHOLD = 0.3
 PUBLISHED_BLOCK = 17
 """Of DINOv2 large, whose features the publication matches; a smaller network's last block is read."""
 
+OPENCLIP_WIDTHS = {"openclip-bigg14": 1280}
+"""Numbers of a vector of OpenCLIP, by the network's id; the others have 512."""
+
 
 def detector(store: ModelStore, chosen: Network) -> DetectionStage:
     """OWLv2 and LLMDet for any words, YOLOX for everyday classes."""
@@ -92,7 +95,8 @@ def open_clip(store: ModelStore, chosen: Network) -> OpenClip:
     """Words and pictures in one space."""
     places = ("textual/model.onnx", "visual/model.onnx", "textual/tokenizer.json")
     text, image, tokenizer = (store.path(chosen, place) for place in places)
-    return OpenClip(text, image, tokenizer, store.identity(chosen))
+    width = OPENCLIP_WIDTHS.get(chosen.id, OpenClip.width)
+    return OpenClip(text, image, tokenizer, store.identity(chosen), width)
 
 
 def shape_tower(store: ModelStore, chosen: Network) -> DuoduoClip:

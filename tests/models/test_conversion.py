@@ -189,7 +189,7 @@ def test_openshapes_point_encoder_is_rebuilt_from_a_checkpoint(tmp_path: Path, r
 def test_openclip_is_converted_from_a_folder_with_its_weights_beside_the_graphs(
     tmp_path: Path, rng: np.random.Generator
 ) -> None:
-    model, *_ = tiny_networks.clip(tmp_path)
+    model, *_ = tiny_networks.clip(tmp_path, network_stages.OPENCLIP_WIDTHS["openclip-bigg14"])
     model.save_pretrained(tmp_path / "own")
     tiny_networks.clip_tokenizer(tmp_path / "own" / "tokenizer.json")
     _script("convert_openclip").main([str(tmp_path / "own"), "-o", str(tmp_path / "made")])

@@ -124,7 +124,7 @@ class _ManyViews(torch.nn.Module):
         return self.one(views[0]).mean(dim=0, keepdim=True)
 
 
-def clip(folder: Path) -> tuple[CLIPModel, Path, Path, Path]:
+def clip(folder: Path, width: int = 512) -> tuple[CLIPModel, Path, Path, Path]:
     torch.manual_seed(5)
     common = {"hidden_size": 16, "intermediate_size": 16, "num_hidden_layers": 1, "num_attention_heads": 2}
     config = CLIPConfig(
@@ -137,7 +137,7 @@ def clip(folder: Path) -> tuple[CLIPModel, Path, Path, Path]:
             "pad_token_id": 0,
         },
         vision_config={**common, "image_size": 224, "patch_size": 32},
-        projection_dim=512,
+        projection_dim=width,
     )
     model = CLIPModel(config).eval()
     text = export(
