@@ -34,7 +34,7 @@ MIN_LEVEL = 0.25
 CROWD_SHARE, CROWD_FREE, CROWD_LOSS, CROWD_MIN = 0.12, 0.12, 3.0, 0.25
 """Dense parallel edges (bricks, boards) are down-weighted beyond this share of a window."""
 SURE_MASK = 0.95
-UNSEEN_FOOT = 0.1
+UNSEEN_FOOT = 0.3
 """What an object says about the walls whose distance only its size tells, against one that is seen to stand there."""
 NEAR_M = 0.05
 MAX_CEILING_M = 5.0
