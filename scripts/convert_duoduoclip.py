@@ -9,7 +9,6 @@ patches of all views together, and whose class tokens are averaged over the view
 
 from __future__ import annotations
 
-import argparse
 import sys
 from collections.abc import Mapping
 from pathlib import Path
@@ -18,7 +17,7 @@ from typing import Any
 import torch
 from torch.nn import functional
 
-from diorama_core.models.onnx_export import read_checkpoint, write_graph
+from diorama_core.models.onnx_export import checkpoint_arguments, read_checkpoint, write_graph
 
 HEAD = 64
 """Channels of an attention head in every CLIP transformer."""
@@ -97,11 +96,7 @@ def write_tower(tower: ShapeTower, target: Path) -> None:
 
 
 def main(arguments: list[str] | None = None) -> None:
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("checkpoint", type=Path)
-    parser.add_argument("-o", "--output", type=Path, required=True)
-    parser.add_argument("--trust", action="store_true", help="read a checkpoint that may run code")
-    a = parser.parse_args(arguments)
+    a = checkpoint_arguments(__doc__, arguments)
     target = a.output / "duoduoclip" / "visual.onnx"
     write_tower(shape_tower(read_checkpoint(a.checkpoint, a.trust)), target)
     print(target)

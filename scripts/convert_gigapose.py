@@ -9,7 +9,6 @@ checkpoint's own weights. The features of the first one are DINOv2's.
 
 from __future__ import annotations
 
-import argparse
 import sys
 from collections.abc import Mapping
 from pathlib import Path
@@ -18,7 +17,7 @@ from typing import Any
 import torch
 from torch.nn import functional
 
-from diorama_core.models.onnx_export import read_checkpoint, write_graph
+from diorama_core.models.onnx_export import checkpoint_arguments, read_checkpoint, write_graph
 
 SIDE, INNER_SIDE = 224, 256
 """Of the crops, and of what the backbone enlarges them to."""
@@ -104,11 +103,7 @@ def write_networks(saved: Mapping[str, Any], folder: Path) -> None:
 
 
 def main(arguments: list[str] | None = None) -> None:
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("checkpoint", type=Path)
-    parser.add_argument("-o", "--output", type=Path, required=True)
-    parser.add_argument("--trust", action="store_true", help="read a checkpoint that may run code")
-    a = parser.parse_args(arguments)
+    a = checkpoint_arguments(__doc__, arguments)
     folder = a.output / "gigapose-scale"
     write_networks(read_checkpoint(a.checkpoint, a.trust), folder)
     print(folder)

@@ -9,16 +9,14 @@ transformer mixes the patches, and a linear layer leads into OpenCLIP bigG-14's 
 
 from __future__ import annotations
 
-import argparse
 import sys
 from collections.abc import Mapping
-from pathlib import Path
 from typing import Any
 
 import torch
 from torch.nn import functional
 
-from diorama_core.models.onnx_export import read_checkpoint, write_graph
+from diorama_core.models.onnx_export import checkpoint_arguments, read_checkpoint, write_graph
 from diorama_core.models.openshape import NEIGHBOURS, PATCHES
 
 HEAD = 64
@@ -91,11 +89,7 @@ def point_tower(saved: Mapping[str, Any]) -> PointTower:
 
 
 def main(arguments: list[str] | None = None) -> None:
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("checkpoint", type=Path)
-    parser.add_argument("-o", "--output", type=Path, required=True)
-    parser.add_argument("--trust", action="store_true", help="read a checkpoint that may run code")
-    a = parser.parse_args(arguments)
+    a = checkpoint_arguments(__doc__, arguments)
     target = a.output / "openshape" / "points.onnx"
     example = (torch.zeros(1, PATCHES, 3), torch.zeros(1, PATCHES, NEIGHBOURS, 9))
     tower = point_tower(read_checkpoint(a.checkpoint, a.trust))

@@ -37,6 +37,8 @@ CLEARLY = 0.5
 """Another supporter is taken only where its gap is at most this share of the contradicted one."""
 WALL_FACTOR = 2.0
 """Objects that belong on walls stay on theirs up to so many times the tolerance: the wall may be wrong as well."""
+_IN_WALLS = frozenset({"door", "window"})
+"""From a photo alone it is surer that these are in a wall than how far away they are; measured doors may stand open."""
 _NEVER_HANGS = taxonomy.with_kin(
     *("chair", "office chair", "armchair", "stool", "bench", "sofa", "ottoman", "bed", "dresser", "wardrobe"),
     *("table", "coffee table", "side table", "desk", "floor lamp", "refrigerator", "washing machine", "stove"),
@@ -99,6 +101,8 @@ def checked_supports(
                 f"{label_of(scene, parent)}"
             )
             scene = edits.attach(_along_sight(scene, item, share), Support(item.id, parent))
+            continue
+        if hangs and not noise.measured and item.category in _IN_WALLS:
             continue
         mount = taxonomy.resolve(item.category).category.mount
         sits = noise.measured and (mount == "surface" or (hangs and mount == "floor"))

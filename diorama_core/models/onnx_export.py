@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import argparse
 import warnings
 from collections.abc import Mapping, Sequence
 from pathlib import Path
@@ -29,6 +30,20 @@ def read_checkpoint(path: Path, trusted: bool) -> dict[str, Any]:
         words = " ".join(str(error).split())[:120]
         advice = "is it the right file?" if trusted else "add --trust if you know where it comes from (it may run code)"
         raise SystemExit(f"{path}: cannot be read ({words}); {advice}") from error
+
+
+def checkpoint_arguments(about: str | None, given: list[str] | None) -> argparse.Namespace:
+    """What a script that converts a checkpoint is told: `checkpoint`, `output` and `trust`.
+
+    Args:
+        about: The script's own description.
+        given: Its arguments; those of the process where None.
+    """
+    parser = argparse.ArgumentParser(description=about, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("checkpoint", type=Path)
+    parser.add_argument("-o", "--output", type=Path, required=True)
+    parser.add_argument("--trust", action="store_true", help="read a checkpoint that may run code")
+    return parser.parse_args(given)
 
 
 def write_graph(

@@ -104,7 +104,7 @@ def test_large_furniture_stands_square_and_an_armchair_may_turn() -> None:
     square, turned = ((FRAME.middle, WALL.yaw_rad + turn) for turn in (0.0, np.radians(12.0)))
     ahead = FRAME.middle + 2.5 * np.array([np.cos(turned[1]), np.sin(turned[1])])
     screen = item("television", (0.1, 0.9, 0.6), *ahead, WALL.yaw_rad + np.pi)
-    facing = {"there": (screen,), "relations": (Relation("facing", (screen.id,)),)}
+    facing = (Relation("facing", (screen.id,)),)
     for what, straight in ((sofa, True), (armchair, False)):
-        first, second = cost(what, square, turned, **facing)  # type: ignore[arg-type]  # each of its own type
+        first, second = cost(what, square, turned, there=(screen,), relations=facing)
         assert (first < second) == straight
