@@ -15,7 +15,8 @@ from jaxtyping import Float
 from diorama_core.geometry.sat import place_bodies
 from diorama_core.layout.feasible.relocate import REACHES_M, cheapest_spot
 from diorama_core.layout.feasible.separate import Program, base, overlaps
-from diorama_core.layout.feasible.structure import SMALLEST_SHRINK, Structure
+from diorama_core.layout.feasible.settle import SMALLEST_SHRINK
+from diorama_core.layout.feasible.structure import Structure
 
 _STEPS = (0.95, 0.9, 0.85, SMALLEST_SHRINK)
 _AXES = np.array([[1, 1, 1], [1, 1, 0], [0, 0, 1], [1, 0, 0], [0, 1, 0]], dtype=bool)

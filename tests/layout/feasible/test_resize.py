@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from diorama_core.layout.feasible.recipe import FeasibleRecipe
-from diorama_core.layout.feasible.structure import SMALLEST_SHRINK
+from diorama_core.layout.feasible.settle import SMALLEST_SHRINK
 from diorama_core.progress import Progress
 from diorama_core.scene.types import Scene
 from diorama_core.synthesis.layout_rooms import box_library

@@ -1,0 +1,66 @@
+"""How an object is turned on what holds it up: its contact face on the support, its front as it was seen."""
+
+from __future__ import annotations
+
+from math import hypot, sqrt
+
+import numpy as np
+from jaxtyping import Float
+
+from diorama_core.geometry.cross import cross
+from diorama_core.layout.problem.supports import Surface, is_wall_like
+
+UPRIGHT_WITHIN = float(np.cos(np.deg2rad(35.0)))
+"""Objects hung within this angle of upright hang upright; others keep their roll."""
+_IDENTITY = np.eye(3)
+_FRONT_FIRST = np.array([2.25, 1.0, 1.0])
+
+
+def aligned(
+    R: np.ndarray, contact: np.ndarray, surface: Surface, against: list[tuple[np.ndarray, np.ndarray]]
+) -> np.ndarray:
+    """Swing the contact face onto the support, then twist about the normal to the observed front, or to a wall."""
+    n = surface.normal
+    swung = swing(R @ contact, -n) @ R
+    if against:
+        wall, face = against[0]
+        return _twist(swung, n, face, -wall)
+    if is_wall_like(surface):
+        up = np.array([0.0, 0.0, 1.0])
+        flat_up = up - (up @ n) * n
+        own = swung[:, 2] - (swung[:, 2] @ n) * n
+        if float(own @ flat_up) > UPRIGHT_WITHIN * float(np.linalg.norm(own) * np.linalg.norm(flat_up)):
+            return _twist(swung, n, np.array([0.0, 0.0, 1.0]), up)
+        return swung
+    # The front, unless another axis lies much flatter on the support.
+    axis = int(((1.0 - (n @ swung) ** 2) * _FRONT_FIRST).argmax())
+    return _twist(swung, n, _IDENTITY[axis], R[:, axis])
+
+
+def swing(a: Float[np.ndarray, "3"], b: Float[np.ndarray, "3"]) -> Float[np.ndarray, "3 3"]:
+    """The smallest rotation that takes unit vector a to unit vector b."""
+    c = float(a @ b)
+    if c < -1.0 + 1e-9:
+        perpendicular = cross(a, np.eye(3)[int(np.abs(a).argmin())])
+        perpendicular /= np.linalg.norm(perpendicular)
+        return 2.0 * np.outer(perpendicular, perpendicular) - np.eye(3)
+    x, y, z = cross(a, b)
+    K = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
+    return _IDENTITY + K + K @ K / (1.0 + c)
+
+
+def _twist(R: np.ndarray, n: np.ndarray, axis_object: np.ndarray, toward: np.ndarray) -> np.ndarray:
+    """Turn about n until an object axis points toward a world direction, both seen along n."""
+    have, want = R @ axis_object, np.asarray(toward)
+    have, want = have - (have @ n) * n, want - (want @ n) * n
+    length = sqrt(float(have @ have) * float(want @ want))
+    if length < 1e-9:
+        return R
+    sine, cosine = float(n @ cross(have, want)) / length, float(have @ want) / length
+    if abs(sine) < 1e-12 and cosine > 0:
+        return R
+    norm = hypot(sine, cosine)
+    sine, cosine = sine / norm, cosine / norm
+    x, y, z = n.tolist()
+    K = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
+    return (_IDENTITY + sine * K + (1.0 - cosine) * (K @ K)) @ R

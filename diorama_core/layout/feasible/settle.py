@@ -1,0 +1,308 @@
+"""One object brought onto what holds it up: turned, stretched or moved there, within its edge and before the walls."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+from jaxtyping import Float
+
+from diorama_core.geometry.cross import cross
+from diorama_core.geometry.planes import plane_axes
+from diorama_core.layout.feasible.footprints import INSET_M, largest_share
+from diorama_core.layout.feasible.orientation import aligned
+from diorama_core.layout.feasible.photo_observations import MAX_STRETCH, PhotoObservations
+from diorama_core.layout.feasible.quadratic import HARD, least_distance
+from diorama_core.layout.problem.footing import reach_of
+from diorama_core.layout.problem.problem import Problem
+from diorama_core.layout.problem.supports import Surface, is_wall_like
+
+SMALLEST_SHRINK = 0.8
+"""An object that does not fit is made smaller by at most this factor; beyond, it stays large and is named."""
+SHORTEST_BEFORE_WALL = 0.5
+"""An object that reaches through a wall ends before it, if this share of its extent is left."""
+MAX_GROWTH = 1.7
+"""An object's distance, with its size, is corrected by at most this factor."""
+MAX_DETOUR = 3.0
+"""An object leaves its wall rather than move so many times as far along it to come back onto its support."""
+PARALLEL = 0.97
+"""Cosine within which a side of an object is along a wall."""
+MIN_SLANT = 0.1
+"""A surface seen more edge-on than this says nothing about distance."""
+
+
+@dataclass
+class Walk:
+    """The structure while it grows."""
+
+    R: np.ndarray
+    p: np.ndarray
+    scale: np.ndarray
+    basis: np.ndarray
+    surface: list[Surface | None]
+    owners: list[int] = field(default_factory=list)
+    normals: list[np.ndarray] = field(default_factory=list)
+    slacks: list[float] = field(default_factory=list)
+    reasons: list[str] = field(default_factory=list)
+
+
+def settle(
+    problem: Problem,
+    walk: Walk,
+    i: int,
+    surface: Surface,
+    against: list[tuple[int, np.ndarray]],
+    ray: np.ndarray | None,
+    observations: PhotoObservations | None,
+    eye: np.ndarray | None,
+) -> None:
+    """Fix what the supporter of object i determines, in `walk`: rotation, size and height, and what bounds the rest.
+
+    Args:
+        problem: the observed poses and the graph.
+        walk: the structure so far; its supporters are settled.
+        i: index of the object.
+        surface: where it rests, in the world.
+        against: walls against which it stands, by index, and its faces there (object frame).
+        ray: unit viewing directions per object, as in `exact_structure`.
+        observations: what the camera saw.
+        eye: the camera's position where sizes follow distances, as in `exact_structure`.
+    """
+    n = surface.normal
+    walk.R[i] = aligned(walk.R[i], problem.contact[i], surface, [(problem.walls[w].normal, f) for w, f in against])
+    u, v = plane_axes(n)
+    _before_walls(problem, walk, i)
+    if observations is not None:
+        observations = observations.no_larger(i, np.where(walk.scale[i] < problem.scale[i], walk.scale[i], np.inf))
+    grown = 1.0 if eye is None else _from_the_eye(problem, walk, i, surface, eye)
+    if observations is not None and observations.measured[i]:
+        _reach_support(problem, walk, i, surface)
+    _on_support(problem, walk, i, surface, None if ray is None else ray[i])
+    grounded = problem.grounded[i] and is_wall_like(surface)
+    walk.basis[i] = np.column_stack([u, np.zeros(3) if grounded else v])
+    _against_walls(problem, walk, i, against)
+    if grounded:
+        _reach_floor(problem, walk, i)
+    if observations is not None:
+        pinned = problem.contact[i] + sum((face for _, face in against), np.zeros(3))
+        pinned[2] -= float(grounded)
+        walk.p[i], walk.scale[i] = observations.fitted(
+            i, walk.R[i], walk.p[i], walk.scale[i], walk.basis[i], pinned, grown
+        )
+    m, slack = _within_support(problem, walk, i, surface)
+    if (slack < 0).any():
+        _onto_support(problem, walk, i, surface, slack, m)
+        if observations is not None:
+            _seen_from_the_edge(problem, walk, i, surface, observations, pinned, eye)
+        m, slack = _within_support(problem, walk, i, surface)
+    walk.owners += [i] * len(m)
+    walk.normals += list(m)
+    walk.slacks += [max(float(s), 0.0) for s in slack]
+
+
+def _before_walls(problem: Problem, walk: Walk, i: int) -> None:
+    """Shorten an object that reaches through a wall from behind: its front was seen where it is, its back was not.
+
+    Where what it holds up was seen before its front, the object comes forward so far instead.
+    """
+    for wall in problem.walls_near(i):
+        axis = int(np.abs(wall.normal @ walk.R[i]).argmax())
+        half = 0.5 * _size(problem, walk, i)
+        through = wall.offset - float(wall.normal @ walk.p[i]) + float(np.abs(wall.normal @ walk.R[i]) @ half)
+        factor = 1.0 - through / (2.0 * float(half[axis]))
+        if abs(float(wall.normal @ walk.R[i][:, axis])) < PARALLEL or not SHORTEST_BEFORE_WALL <= factor < 1.0:
+            continue
+        forward = min(_overhang(problem, i, wall.normal), through)
+        walk.scale[i, axis] *= factor + forward / (2.0 * float(half[axis]))
+        walk.p[i] = walk.p[i] + (forward + 0.5 * (through - forward)) * wall.normal
+
+
+def _overhang(problem: Problem, i: int, outward: np.ndarray) -> float:
+    """How far what was observed on an object reaches beyond the object's own side, metres."""
+    reach = [
+        float(
+            outward @ problem.p[k] + np.abs(outward @ problem.R[k]) @ (0.5 * problem.shape_size[k] * problem.scale[k])
+        )
+        for k in problem.rides(i)
+    ]
+    return max(reach) - reach[0]
+
+
+def _within_support(
+    problem: Problem, walk: Walk, i: int, surface: Surface
+) -> tuple[Float[np.ndarray, "k 3"], Float[np.ndarray, " k"]]:
+    """Outward normals of the support's sides that the object's free coordinates can meet, and how far each is.
+
+    The object is shrunk where it does not fit and set on its surface first.
+    """
+    m = surface.outward
+    reach = _fit(problem, walk, i, surface, m, surface.offset)
+    walk.p[i] = walk.p[i] + _lift(problem, walk, i, surface) * surface.normal
+    slack = surface.offset - m @ _contact_centre(problem, walk, i) - reach - INSET_M
+    rows = m @ walk.basis[i]
+    mobile = (rows * rows).sum(axis=1) > 1e-12
+    return m[mobile], slack[mobile]
+
+
+def _onto_support(problem: Problem, walk: Walk, i: int, surface: Surface, slack: np.ndarray, m: np.ndarray) -> None:
+    """The shortest way onto the surface: with the coordinates that a wall leaves where that is about as short."""
+    plane = np.column_stack(plane_axes(surface.normal))
+    shortest = plane @ _into(m @ plane, slack)
+    along = walk.basis[i] @ _into(m @ walk.basis[i], slack)
+    detour = np.linalg.norm(along) > MAX_DETOUR * np.linalg.norm(shortest) and not problem.grounded[i]
+    walk.p[i] = walk.p[i] + (shortest if detour else along)
+
+
+def _seen_from_the_edge(
+    problem: Problem,
+    walk: Walk,
+    i: int,
+    surface: Surface,
+    observations: PhotoObservations,
+    pinned: np.ndarray,
+    eye: np.ndarray | None,
+) -> None:
+    """Move an object that had to come back onto its support along the side that it came to, until it is seen best."""
+    m, slack = _within_support(problem, walk, i, surface)
+    reached = m[int(np.argmin(slack))] if len(m) else np.zeros(3)
+    side = cross(surface.normal, reached)
+    length = float(np.linalg.norm(side))
+    free = length > 1e-9 and float(np.linalg.norm(walk.basis[i].T @ (side / max(length, 1e-9)))) > 0.9
+    if not free:
+        return
+    grown = 1.0 if eye is None else _nearness(walk.p[i], problem.p[i], eye)
+    basis = np.column_stack([side / length, np.zeros(3)])
+    start = walk.p[i].copy(), walk.scale[i].copy()
+    walk.p[i], walk.scale[i] = observations.fitted(i, walk.R[i], *start, basis, pinned, grown)
+    m, slack = _within_support(problem, walk, i, surface)
+    if (slack < 0).any():
+        _onto_support(problem, walk, i, surface, slack, m)
+
+
+def _nearness(p: np.ndarray, observed: np.ndarray, eye: np.ndarray) -> float:
+    """How many times as far as it was observed an object is, along its viewing ray and within limits."""
+    sight = observed - eye
+    return float(np.clip((p - eye) @ sight / max(float(sight @ sight), 1e-9), 1.0 / MAX_GROWTH, MAX_GROWTH))
+
+
+def _reach_floor(problem: Problem, walk: Walk, i: int) -> None:
+    """Stretch a door to the floor, keeping its top where it was seen; lower it where that would change it too much."""
+    height = float(_size(problem, walk, i)[2])
+    top = float(walk.p[i][2]) + height / 2
+    factor = (top - problem.floor_m) / height
+    if SMALLEST_SHRINK <= factor <= 1.0 / SMALLEST_SHRINK:
+        walk.scale[i, 2] *= factor
+    walk.p[i] = [*walk.p[i][:2], problem.floor_m + float(_size(problem, walk, i)[2]) / 2]
+
+
+def _size(problem: Problem, walk: Walk, i: int) -> np.ndarray:
+    return problem.shape_size[i] * walk.scale[i]
+
+
+def _contact_centre(problem: Problem, walk: Walk, i: int) -> np.ndarray:
+    return walk.p[i] + walk.R[i] @ (problem.contact[i] * _size(problem, walk, i) / 2)
+
+
+def _lift(problem: Problem, walk: Walk, i: int, surface: Surface) -> float:
+    """How far the contact face is below the surface."""
+    return surface.level - float(surface.normal @ _contact_centre(problem, walk, i))
+
+
+def _reach_support(problem: Problem, walk: Walk, i: int, surface: Surface) -> None:
+    """Stretch the object so that its contact face is on its surface; its far face, which was measured, stays."""
+    axis = int(np.abs(problem.contact[i]).argmax())
+    extent = float(_size(problem, walk, i)[axis])
+    wanted = extent - _lift(problem, walk, i, surface)
+    factor = float(np.clip(wanted / extent, 1.0 / MAX_STRETCH, MAX_STRETCH))
+    walk.scale[i, axis] *= factor
+    walk.p[i] = walk.p[i] - 0.5 * (factor - 1.0) * extent * surface.normal
+
+
+def _on_support(problem: Problem, walk: Walk, i: int, surface: Surface, ray: np.ndarray | None) -> None:
+    """Move the object onto its surface: along the normal, or along its viewing ray where that meets it decently."""
+    lift = _lift(problem, walk, i, surface)
+    shift = lift * surface.normal
+    if ray is not None and abs(lift) > 1e-6:
+        meets = float(ray @ surface.normal)
+        if abs(meets) > 0.15:
+            slide = lift / meets * ray
+            limit = max(0.5 * float(_size(problem, walk, i).max()), 0.15)
+            sideways = slide - shift
+            far = float(np.linalg.norm(sideways))
+            shift = shift + sideways * min(1.0, limit / max(far, 1e-9))
+    walk.p[i] = walk.p[i] + shift
+
+
+def _from_the_eye(problem: Problem, walk: Walk, i: int, surface: Surface, eye: np.ndarray) -> float:
+    """Enlarge or reduce the object about the camera until its contact face is on the surface; returns by how much."""
+    sight = _contact_centre(problem, walk, i) - eye
+    meets = float(sight @ surface.normal)
+    if abs(meets) < MIN_SLANT * float(np.linalg.norm(sight)):
+        return 1.0
+    grown = (surface.level - float(eye @ surface.normal)) / meets
+    if not 1.0 / MAX_GROWTH <= grown <= MAX_GROWTH:
+        return 1.0
+    walk.p[i] = eye + grown * (walk.p[i] - eye)
+    walk.scale[i] = grown * walk.scale[i]
+    return grown
+
+
+def _against_walls(problem: Problem, walk: Walk, i: int, against: list[tuple[int, np.ndarray]]) -> None:
+    """Bring faces to their walls and give up the coordinate that would leave them."""
+    basis = walk.basis[i]
+    for w, _ in against[:2]:
+        wall = problem.walls[w]
+        slope = basis.T @ wall.normal
+        steepness = float(slope @ slope)
+        if steepness < 0.25:
+            continue
+        half = 0.5 * np.abs((wall.normal @ walk.R[i]) * _size(problem, walk, i)).sum()
+        gap = float(wall.normal @ walk.p[i]) - wall.offset - half
+        walk.p[i] = walk.p[i] - basis @ (slope * gap / steepness)
+        along = basis @ (np.array([-slope[1], slope[0]]) / np.sqrt(steepness))
+        free = np.linalg.norm(basis, axis=0).min() > 1e-9
+        basis = np.column_stack([along, np.zeros(3)]) if free else np.zeros((3, 2))
+    walk.basis[i] = basis
+
+
+def _fit(problem: Problem, walk: Walk, i: int, surface: Surface, m: np.ndarray, h: np.ndarray) -> np.ndarray:
+    """Shrink only what does not fit; returns the reach of the contact face along each outward normal."""
+    label = problem.labels[i]
+    normal_axis = int(np.abs(problem.contact[i]).argmax())
+    tall = float(_size(problem, walk, i)[normal_axis])
+    if tall > surface.clearance_m - INSET_M:
+        factor = max((surface.clearance_m - INSET_M) / tall, 1e-3)
+        if factor >= SMALLEST_SHRINK:
+            walk.scale[i, normal_axis] *= factor
+        else:
+            walk.reasons.append(f"too tall: {label} does not fit in the {surface.clearance_m:.2f} m above its support")
+    footprint = [k for k in range(3) if k != normal_axis]
+    middle = m @ (surface.polygon.sum(axis=0) / len(surface.polygon))
+    reach = _reach(problem, walk, i, m)
+    room = largest_share(m, h - middle, reach)
+    if room < 1.0:
+        for k in footprint:
+            axis = walk.R[i][:, k]
+            width = float(np.ptp(surface.polygon @ axis)) - 2 * INSET_M
+            factor = max(width, 1e-6) / max(float(np.ptp(problem.footing[i][:, k]) * walk.scale[i, k]), 1e-6)
+            if SMALLEST_SHRINK <= factor < 1.0:
+                walk.scale[i, k] *= factor
+        room = largest_share(m, h - middle, _reach(problem, walk, i, m))
+        if SMALLEST_SHRINK <= room < 1.0:
+            walk.scale[i, footprint] *= room
+            room = 1.0
+        reach = _reach(problem, walk, i, m)
+    if room < 1.0:
+        walk.reasons.append(f"larger than its support: {label} overhangs by {100 * (1 - room):.0f} %")
+    return max(min(room, 1.0), 0.0) * reach
+
+
+def _reach(problem: Problem, walk: Walk, i: int, m: np.ndarray) -> np.ndarray:
+    return reach_of(problem.footing[i], walk.R[i], walk.scale[i], m)
+
+
+def _into(rows: np.ndarray, slack: np.ndarray) -> Float[np.ndarray, "2"]:
+    """The shortest move r with rows r <= slack."""
+    if not len(rows) or (slack >= 0).all():
+        return np.zeros(2)
+    return least_distance(-rows, -slack, np.full(len(slack), HARD))

@@ -1,0 +1,53 @@
+"""How objects are turned on what holds them up."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from diorama_core.geometry.rotations import rotation_from_vector
+from diorama_core.layout.feasible.orientation import aligned, swing
+from diorama_core.layout.problem.supports import Surface
+
+directions = st.tuples(*(st.floats(-1.0, 1.0) for _ in range(3))).filter(lambda v: np.linalg.norm(v) > 0.1)
+BACK, BOTTOM = np.array([-1.0, 0.0, 0.0]), np.array([0.0, 0.0, -1.0])
+
+
+def unit(v: tuple[float, ...]) -> np.ndarray:
+    return np.asarray(v) / np.linalg.norm(v)
+
+
+def level() -> Surface:
+    square = np.array([[-1.0, -1.0, 0.0], [1.0, -1.0, 0.0], [1.0, 1.0, 0.0], [-1.0, 1.0, 0.0]])
+    return Surface.of(square, np.array([0.0, 0.0, 1.0]), np.inf, of_plane=True)
+
+
+@given(directions, directions)
+def test_a_swing_takes_one_direction_to_the_other_and_is_a_rotation(a, b):
+    R = swing(unit(a), unit(b))
+    np.testing.assert_allclose(R @ unit(a), unit(b), atol=1e-6)
+    np.testing.assert_allclose(R @ R.T, np.eye(3), atol=1e-6)
+    assert np.linalg.det(R) == pytest.approx(1.0)
+
+
+@given(directions)
+def test_opposite_directions_swing_by_half_a_turn(a):
+    R = swing(unit(a), -unit(a))
+    np.testing.assert_allclose(R @ unit(a), -unit(a), atol=1e-6)
+    assert np.trace(R) == pytest.approx(-1.0, abs=1e-6)
+
+
+@pytest.mark.parametrize("yaw", [0.0, 0.7, 2.5, -1.8])
+def test_what_leans_stands_upright_and_looks_where_it_looked(yaw):
+    seen = rotation_from_vector(np.array([0.0, 0.0, yaw])) @ swing(np.array([0.0, 0.0, 1.0]), unit((0.0, 0.1, 1.0)))
+    R = aligned(seen, BOTTOM, level(), [])
+    np.testing.assert_allclose(R @ BOTTOM, BOTTOM, atol=1e-9)
+    assert float(R[:2, 0] @ seen[:2, 0]) / np.linalg.norm(seen[:2, 0]) == pytest.approx(1.0, abs=0.01)
+
+
+def test_what_stands_against_a_wall_turns_its_face_to_it():
+    wall = unit((1.0, 0.2, 0.0))
+    R = aligned(rotation_from_vector(np.array([0.0, 0.0, 0.9])), BOTTOM, level(), [(wall, BACK)])
+    np.testing.assert_allclose(R @ BACK, -wall, atol=1e-9)
