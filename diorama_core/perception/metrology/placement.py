@@ -14,6 +14,7 @@ from diorama_core.library.company import often_carried
 from diorama_core.library.taxonomy import AGAINST_WALLS, PORTABLE, UNKNOWN, Category, Mount, with_kin
 from diorama_core.perception.metrology.arrangement import arrange, distinct
 from diorama_core.perception.metrology.box_observations import BoxObservations
+from diorama_core.perception.metrology.carried_costs import CarriedCosts
 from diorama_core.perception.metrology.floor import place_on_floor, solve_all
 from diorama_core.perception.metrology.priors import SizeMode, plain_mode
 from diorama_core.perception.metrology.problem import Cuboids, Problems, View, cuboids, stacked
@@ -69,7 +70,6 @@ _HUNG_CARRIERS = frozenset({"shelves"})
 """What hangs on walls and carries things."""
 _SURE_COST = 12.0
 """Things on the floor that cost less than this tell how far the room reaches."""
-_CHILD_CAP = 12.0
 SETS = with_kin("chair", "office chair", "stool", "night stand", "ottoman", "table", "desk")
 """What often comes in sets of one shape on the floor of one room."""
 SET_SIGMA = 0.05
@@ -146,14 +146,15 @@ def _on_floor(observations: BoxObservations, view: View, height_m: float) -> dic
             rows += [p.changed(extra=p.extra + cost) for p in place_on_floor(observations, index, height_m)]
     if not rows:
         return {}
+    carried = CarriedCosts(observations, view, height_m)
     solved = solve_all(rows, view)
-    placed = _arranged(solved, observations, view, height_m)
+    placed = _arranged(solved, observations, view, carried)
     sets = set_sizes(placed, observations)
     if sets:
         shared = [p for i, mode in sets.items() for p in place_on_floor(observations, i, height_m, (mode,))]
         alone = np.isin(solved.problems.item, list(sets))
         solved = joined(solved.dearer(np.where(alone, ODD_ONE_COST, 0.0)), solve_all(shared, view))
-        placed = _arranged(solved, observations, view, height_m)
+        placed = _arranged(solved, observations, view, carried)
     boxes = {i: p.cuboid for i, p in placed.items()}
     table_of = tables_of_seats(boxes, observations)
     if table_of:
@@ -162,14 +163,17 @@ def _on_floor(observations: BoxObservations, view: View, height_m: float) -> dic
         moved = solve(seated, np.concatenate([s.unknowns for s in seats]), view)
         apart = np.isin(solved.problems.item, list(table_of))
         solved = joined(solved.dearer(np.where(apart, APART_COST, 0.0)), moved)
-        placed = _arranged(solved, observations, view, height_m)
+        placed = _arranged(solved, observations, view, carried)
     return placed
 
 
-def _arranged(solved: Solutions, observations: BoxObservations, view: View, height_m: float) -> dict[int, Placement]:
+def _arranged(
+    solved: Solutions, observations: BoxObservations, view: View, carried: CarriedCosts
+) -> dict[int, Placement]:
     readings = _readings(solved, observations, view)
     standing = [i for i in readings if observations.categories[i].mount == "floor"]
-    costs = [readings[i].costs + _children_costs(observations, view, height_m, i, readings[i]) for i in standing]
+    loads = carried.of({i: readings[i].boxes for i in standing})
+    costs = [readings[i].costs + loads[i] for i in standing]
     chosen = arrange([readings[i].boxes for i in standing], costs, [observations.categories[i] for i in standing])
     picked = dict(zip(standing, chosen, strict=True))
     return {i: r.placement(picked.get(i, 0), FLOOR) for i, r in readings.items()}
@@ -196,36 +200,6 @@ def set_sizes(placed: Mapping[int, Placement], observations: BoxObservations) ->
                 size[axes], sigma[axes] = np.median(sizes[seen][:, axes], axis=0), SET_SIGMA
         found |= dict.fromkeys(members, plain_mode(size, sigma, 0.0, name))
     return found
-
-
-def _children_costs(
-    observations: BoxObservations, view: View, height_m: float, parent: int, readings: _Readings
-) -> Float[np.ndarray, "k"]:
-    """How badly the things that rest in the parent's box would lie on each of its readings."""
-    total = np.zeros(len(readings.costs))
-    children = [
-        i
-        for i, category in enumerate(observations.categories)
-        if category.mount == "surface" and parent in supporters_of(observations, i, [parent])
-    ]
-    if not children or len(total) < 2:
-        return total
-    rows: list[Problems] = []
-    below: list[int] = []
-    """The reading that each row lies on: all are solved together, which a row's solution does not depend on."""
-    for reading in range(len(total)):
-        box = readings.placement(reading, FLOOR).cuboid
-        made = [p for i in children for p in place_on(observations, i, parent, box, height_m, 0.0)]
-        rows += made
-        below += [reading] * sum(map(len, made))
-    solved = solve_all(rows, view)
-    reading_of = np.tile(below, len(solved.cost) // len(below))
-    for child in children:
-        lowest = np.full(len(total), np.inf)
-        mine = solved.problems.item == child
-        np.minimum.at(lowest, reading_of[mine], solved.cost[mine])
-        total += np.minimum(lowest, _CHILD_CAP)
-    return total
 
 
 def _supported(

@@ -165,11 +165,21 @@ def residuals(
 
     `inset_px` is what `outline_inset` says here or nearby, where it is known: it hardly changes with small steps.
     """
+    return residuals_and_inset(unknowns, problems, view, inset_px)[0]
+
+
+def residuals_and_inset(
+    unknowns: Float[np.ndarray, "n 6"],
+    problems: Problems,
+    view: View,
+    inset_px: Float[np.ndarray, "n 4"] | None = None,
+) -> tuple[Float[np.ndarray, "n r"], Float[np.ndarray, "n 4"]]:
+    """As `residuals`, with the inset that they were taken with."""
     boxes = cuboids(unknowns, problems, view)
     corners = corners_camera(boxes, problems.camera_height_m, view)
     if inset_px is None:
         inset_px = _unfilled(boxes, corners, problems, view)
-    return np.concatenate(
+    found = np.concatenate(
         [
             _edges(corners, inset_px, problems, view),
             _cut_off(corners, problems, view),
@@ -182,6 +192,7 @@ def residuals(
         ],
         axis=1,
     )
+    return found, inset_px
 
 
 def outline_inset(unknowns: Float[np.ndarray, "n 6"], problems: Problems, view: View) -> Float[np.ndarray, "n 4"]:

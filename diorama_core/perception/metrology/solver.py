@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from jaxtyping import Float
 
-from diorama_core.perception.metrology.problem import UNKNOWNS, Problems, View, outline_inset, residuals, stacked
+from diorama_core.perception.metrology.problem import UNKNOWNS, Problems, View, residuals, residuals_and_inset, stacked
 
 _STEP = 1e-5
 _LONGEST_STEP = 0.7
@@ -48,20 +48,22 @@ def solve(problems: Problems, start: Float[np.ndarray, "n 6"], view: View, itera
     """Minimise every row's cost from its start; rows that have settled are left alone."""
     low, high = _bounds(problems)
     unknowns = np.clip(start, low, high)
-    inset = outline_inset(unknowns, problems, view)
-    r = residuals(unknowns, problems, view, inset)
+    r, inset = residuals_and_inset(unknowns, problems, view)
     cost = _cost(r)
     damping = np.full(len(problems), 1e-2)
-    active = np.arange(len(problems))
+    active, moved = np.arange(len(problems)), np.arange(len(problems))
+    slopes = _Slopes(np.empty((len(problems), UNKNOWNS)), np.empty((len(problems), UNKNOWNS, UNKNOWNS)))
     for _ in range(iterations):
         if not len(active):
             break
+        anew = np.intersect1d(active, moved, assume_unique=True)  # a row that stayed has the slopes that it had
+        if len(anew):
+            known = _Values(r[anew], inset[anew])
+            slopes.put(anew, _slopes(problems.rows(anew), unknowns[anew], known, view))
         part, here = problems.rows(active), unknowns[active]
         bounds = low[active], high[active]
-        step = _step(part, here, _Values(r[active], inset[active]), damping[active], bounds, view)
-        there = np.clip(here + step, *bounds)
-        inset_there = outline_inset(there, part, view)
-        r_there = residuals(there, part, view, inset_there)
+        there = np.clip(here + _step(slopes.rows(active), here, damping[active], bounds), *bounds)
+        r_there, inset_there = residuals_and_inset(there, part, view)
         reached = _cost(r_there)
         gain = cost[active] - reached
         better = gain > 0
@@ -94,25 +96,42 @@ class _Values:
     inset_px: Float[np.ndarray, "n 4"]
 
 
-def _step(
-    problems: Problems,
-    unknowns: Float[np.ndarray, "n 6"],
-    here: _Values,
-    damping: Float[np.ndarray, "n"],
-    bounds: tuple[Float[np.ndarray, "n 6"], Float[np.ndarray, "n 6"]],
-    view: View,
-) -> Float[np.ndarray, "n 6"]:
-    """The damped Gauss-Newton step of the unknowns that no bound stops, with derivatives by forward differences."""
+@dataclass(frozen=True, eq=False)
+class _Slopes:
+    """How the rows' costs change where they are."""
+
+    gradient: Float[np.ndarray, "n 6"]
+    normal: Float[np.ndarray, "n 6 6"]
+
+    def rows(self, chosen: np.ndarray) -> _Slopes:
+        """The chosen rows."""
+        return _Slopes(self.gradient[chosen], self.normal[chosen])
+
+    def put(self, chosen: np.ndarray, anew: _Slopes) -> None:
+        """Replace the chosen rows."""
+        self.gradient[chosen], self.normal[chosen] = anew.gradient, anew.normal
+
+
+def _slopes(problems: Problems, unknowns: Float[np.ndarray, "n 6"], here: _Values, view: View) -> _Slopes:
+    """Gradients and normal matrices, with derivatives by forward differences."""
     count = len(problems)
     probes = (unknowns[None] + _STEP * np.eye(UNKNOWNS)[:, None]).reshape(-1, UNKNOWNS)
     repeated = problems.without_outlines().rows(np.tile(np.arange(count), UNKNOWNS))
     inset = np.tile(here.inset_px, (UNKNOWNS, 1))
-    r = here.residuals
     values = residuals(probes, repeated, view, inset).reshape(UNKNOWNS, count, -1)
-    jacobian = ((values - r) / _STEP).transpose(1, 2, 0)
-    normal = np.einsum("nri,nrj->nij", jacobian, jacobian)
-    gradient = np.einsum("nri,nr->ni", jacobian, r)
+    jacobian = ((values - here.residuals) / _STEP).transpose(1, 2, 0)
+    return _Slopes(np.einsum("nri,nr->ni", jacobian, here.residuals), np.einsum("nri,nrj->nij", jacobian, jacobian))
+
+
+def _step(
+    slopes: _Slopes,
+    unknowns: Float[np.ndarray, "n 6"],
+    damping: Float[np.ndarray, "n"],
+    bounds: tuple[Float[np.ndarray, "n 6"], Float[np.ndarray, "n 6"]],
+) -> Float[np.ndarray, "n 6"]:
+    """The damped Gauss-Newton step of the unknowns that no bound stops."""
     low, high = bounds
+    gradient, normal = slopes.gradient, slopes.normal
     free = ~(((unknowns <= low) & (gradient > 0)) | ((unknowns >= high) & (gradient < 0)))
     gradient = gradient * free
     normal = normal * free[:, :, None] * free[:, None, :]

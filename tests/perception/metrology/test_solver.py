@@ -7,6 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from diorama_core.perception.metrology import solver
 from diorama_core.perception.metrology.problem import cuboids, residuals, stacked
 from diorama_core.perception.metrology.solver import solve
 from tests.perception.metrology.test_problem import CENTRE, SIZE, VIEW, problem, unknowns
@@ -37,6 +38,22 @@ def test_rows_do_not_disturb_each_other() -> None:
         expected = solve(alone, starts[k : k + 1], VIEW)
         np.testing.assert_allclose(both.unknowns[k], expected.unknowns[0], atol=1e-9)
         np.testing.assert_allclose(both.rows(np.array([k])).cost, expected.cost)
+
+
+def test_slopes_are_taken_anew_only_of_rows_that_moved(monkeypatch: pytest.MonkeyPatch) -> None:
+    taken: list[int] = []
+
+    def counted(problems, unknowns, here, view):
+        taken.append(len(problems))
+        return original(problems, unknowns, here, view)
+
+    original = solver._slopes
+    monkeypatch.setattr(solver, "_slopes", counted)
+    settled = solve(problem(), unknowns(CENTRE * [1, 1.5, 1]), VIEW, 60).unknowns
+    taken.clear()
+    again = solve(problem(), settled, VIEW, 60)  # no step makes it better, whatever its damping
+    np.testing.assert_allclose(again.unknowns, settled, atol=1e-4)
+    assert sum(taken) <= 2
 
 
 def test_sizes_stay_within_two_sigmas_whatever_the_box_says() -> None:
