@@ -6,6 +6,7 @@ is in front of the camera where its own is positive, so all cuts are straight li
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import combinations
 
@@ -31,13 +32,22 @@ class Cell:
 
 
 @dataclass(frozen=True, eq=False)
+class Line:
+    """A cut through the picture."""
+
+    form: Float[np.ndarray, "3"]
+    """`form @ (x, y, 1)` is positive on one side of it."""
+    ending: frozenset[int]
+    """Planes that may end here: the two that meet, none at a plane's horizon, one before what hides its end."""
+
+
+@dataclass(frozen=True, eq=False)
 class Arrangement:
     """Cells and lines of a set of planes."""
 
     inverse: Float[np.ndarray, "p 3"]
     """Per plane `a`: inverse depth 1/m at pixel (x, y) is `a @ (x, y, 1)`."""
-    lines: tuple[tuple[int, int], ...]
-    """(plane, plane) that meet at each line; (plane, plane) with one plane twice for its horizon."""
+    lines: tuple[Line, ...]
     cells: tuple[Cell, ...]
 
     def inverse_at(self, plane: int, pixels: Float[np.ndarray, "n 2"]) -> Float[np.ndarray, "n"]:
@@ -59,13 +69,10 @@ class Arrangement:
 
     def holds(self, pixels: Float[np.ndarray, "n 2"]) -> Int[np.ndarray, "n"]:
         """The cell of every pixel; -1 for one in a piece too small to be a cell."""
-        forms = self._forms()
+        forms = np.array([line.form for line in self.lines]).reshape(-1, 3)
         signs: Bool[np.ndarray, "n l"] = pixels @ forms[:, :2].T + forms[:, 2] > 0
         known = {cell.sides: k for k, cell in enumerate(self.cells)}
         return np.array([known.get(tuple(row.tolist()), -1) for row in signs], dtype=int)
-
-    def _forms(self) -> Float[np.ndarray, "l 3"]:
-        return line_forms(self.inverse, self.lines)
 
 
 def inverse_depths(
@@ -80,35 +87,31 @@ def inverse_depths(
     return np.stack([x, y, local[:, 2] - x * k.cx - y * k.cy], axis=1)
 
 
-def line_forms(inverse: Float[np.ndarray, "p 3"], lines: tuple[tuple[int, int], ...]) -> Float[np.ndarray, "l 3"]:
-    """Every line as a form that is positive on one side of it."""
-    if not lines:
-        return np.zeros((0, 3))
-    return np.stack([inverse[i] - inverse[j] if i != j else inverse[i] - [0, 0, MIN_INVERSE_M] for i, j in lines])
+def plane_lines(inverse: Float[np.ndarray, "p 3"]) -> tuple[Line, ...]:
+    """Where every two planes meet, and where each leaves the view (its horizon)."""
+    count = len(inverse)
+    meetings = [Line(inverse[i] - inverse[j], frozenset((i, j))) for i, j in combinations(range(count), 2)]
+    return (*meetings, *(Line(inverse[k] - [0, 0, MIN_INVERSE_M], frozenset()) for k in range(count)))
 
 
-def arrangement(inverse: Float[np.ndarray, "p 3"], size_px: tuple[int, int]) -> Arrangement:
-    """The picture of this size (width, height) cut by all lines of the planes that cross it."""
+def arrangement(
+    inverse: Float[np.ndarray, "p 3"], size_px: tuple[int, int], hidden_ends: Sequence[Line] = ()
+) -> Arrangement:
+    """The picture of this size (width, height) cut by all lines of the planes that cross it, and by hidden ends."""
     width, height = size_px
     frame = np.array([[0.0, 0.0], [width, 0.0], [width, height], [0.0, height]])
-    count = len(inverse)
-    lines: list[tuple[int, int]] = []
-    for pair in [*combinations(range(count), 2), *((k, k) for k in range(count))]:
-        form = line_forms(inverse, (pair,))[0]
-        side = frame @ form[:2] + form[2]
-        if side.min() < 0 < side.max():
-            lines.append(pair)
-    forms = line_forms(inverse, tuple(lines))
+    sides = [(line, frame @ line.form[:2] + line.form[2]) for line in (*plane_lines(inverse), *hidden_ends)]
+    lines = tuple(line for line, side in sides if side.min() < 0 < side.max())
     pieces: list[tuple[np.ndarray, tuple[bool, ...]]] = [(frame, ())]
-    for form in forms:
+    for line in lines:
         cut: list[tuple[np.ndarray, tuple[bool, ...]]] = []
-        for corners, sides in pieces:
+        for corners, within in pieces:
             for positive in (True, False):
-                part = _part(corners, form if positive else -form)
+                part = _part(corners, line.form if positive else -line.form)
                 if _area(part) > MIN_AREA_PX:
-                    cut.append((part, (*sides, positive)))
+                    cut.append((part, (*within, positive)))
         pieces = cut
-    return Arrangement(inverse, tuple(lines), tuple(Cell(corners, sides) for corners, sides in pieces))
+    return Arrangement(inverse, lines, tuple(Cell(corners, within) for corners, within in pieces))
 
 
 def _part(corners: Float[np.ndarray, "k 2"], form: Float[np.ndarray, "3"]) -> Float[np.ndarray, "m 2"]:

@@ -6,16 +6,19 @@ two ends there at its intersection with a third plane and hides the farther one.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import permutations
 
 import numpy as np
 from jaxtyping import Bool, Float
+from scipy import sparse
+from scipy.optimize import Bounds, LinearConstraint, milp
 
 from diorama_core.architecture.rac.arrangement import Arrangement
 
-MAX_STEPS = 30000
-"""Partial labellings that are looked at; without a feasible one among them there is no layout."""
+MAX_NODES = 2000
+"""Branches that the solver looks at; the best labelling found by then is taken."""
 EDGE_COST = 2e-5
 """Of a pixel of edge between two planes, beside a picture in which everything disagrees: of layouts that agree as well,
 which differ behind furniture only, the one with the shortest edges is taken."""
@@ -39,13 +42,11 @@ def borders_of(cells: Arrangement) -> tuple[tuple[Border, ...], ...]:
     for a, b, line in cells.neighbours():
         middle, length = _shared(cells, a, b)
         depth = [float(cells.inverse_at(k, middle[None])[0]) for k in planes]
-        meeting = set(cells.lines[line]) if cells.lines[line][0] != cells.lines[line][1] else set()
+        ending = cells.lines[line].ending
         allowed = np.eye(len(planes), dtype=bool)
-        for i in planes:
-            for j in planes:
-                if i != j and meeting:
-                    nearer = i if depth[i] > depth[j] else j
-                    allowed[i, j] = {i, j} == meeting or nearer in meeting
+        for i, j in permutations(planes, 2):
+            nearer = i if depth[i] > depth[j] else j
+            allowed[i, j] = {i, j} == ending or nearer in ending
         found[a].append(Border(b, allowed, EDGE_COST * length))
         found[b].append(Border(a, allowed.T, EDGE_COST * length))
     return tuple(tuple(of_cell) for of_cell in found)
@@ -60,42 +61,11 @@ def _shared(cells: Arrangement, a: int, b: int) -> tuple[Float[np.ndarray, "2"],
     return (common[0] + common[-1]) / 2, float(np.linalg.norm(common[-1] - common[0]))
 
 
-@dataclass
-class _Search:
-    """Depth first, the cheapest plane of a cell first, cut off by the best labelling so far."""
-
-    costs: Float[np.ndarray, "c p"]
-    borders: Sequence[Sequence[Border]]
-    order: Sequence[int]
-    rest: Float[np.ndarray, "_"]
-    best: float = np.inf
-    found: Mapping[int, int] = field(default_factory=dict)
-    steps: int = 0
-
-    def go(self, depth: int, chosen: dict[int, int], spent: float) -> None:
-        if self.steps >= MAX_STEPS or spent + self.rest[depth] >= self.best:
-            return
-        self.steps += 1
-        if depth == len(self.order):
-            self.best, self.found = spent, dict(chosen)
-            return
-        cell = self.order[depth]
-        own = self.costs[cell].copy()
-        for border in self.borders[cell]:
-            if border.other in chosen:
-                other = chosen[border.other]
-                own[~border.allowed[:, other]] = np.inf
-                own[np.arange(len(own)) != other] += border.length
-        for plane in np.argsort(own, kind="stable"):
-            if not np.isfinite(own[plane]):
-                break
-            chosen[cell] = int(plane)
-            self.go(depth + 1, chosen, spent + float(own[plane]))
-            del chosen[cell]
-
-
 def labelled(costs: Float[np.ndarray, "c p"], borders: Sequence[Sequence[Border]]) -> tuple[int, ...] | None:
-    """The cheapest feasible plane of every cell; None where the search finds none.
+    """The cheapest feasible plane of every cell; None where there is none.
+
+    The publication's problem in whole numbers: one of `c p` switches is on for every cell, a plane is shown only beside
+    planes that may meet it there, and every border between two planes costs its length.
 
     Args:
         costs: of every plane in every cell, infinite where it cannot be seen.
@@ -103,24 +73,32 @@ def labelled(costs: Float[np.ndarray, "c p"], borders: Sequence[Sequence[Border]
     """
     if not costs.size or not np.isfinite(costs.min(axis=1)).all():
         return None
-    order = _order(costs, borders)
-    least = np.array([costs[k].min() for k in order])
-    rest = np.concatenate([np.cumsum(least[::-1])[::-1], [0.0]])
-    search = _Search(costs, borders, order, rest)
-    search.go(0, {}, 0.0)
-    return tuple(search.found[k] for k in range(len(costs))) if search.found else None
+    cells, planes = costs.shape
+    pairs = [(a, b) for a, of_cell in enumerate(borders) for b in of_cell]
+    switches, between = cells * planes, len(pairs)
+    one_each = sparse.hstack([sparse.kron(sparse.eye(cells), np.ones((1, planes))), sparse.csr_array((cells, between))])
+    rows = [_beside(a, border, k, costs.shape, between) for k, (a, border) in enumerate(pairs)]
+    visible = np.isfinite(costs).ravel()
+    constraints = [LinearConstraint(one_each, 1.0, 1.0)]
+    if rows:
+        constraints.append(LinearConstraint(sparse.vstack(rows), -np.inf, 0.0))
+    solved = milp(
+        np.concatenate([np.where(visible, costs.ravel(), 0.0), [0.5 * border.length for _, border in pairs]]),
+        integrality=np.concatenate([np.ones(switches), np.zeros(between)]),
+        bounds=Bounds(0.0, np.concatenate([visible.astype(float), np.ones(between)])),
+        constraints=constraints,
+        options={"node_limit": MAX_NODES},
+    )
+    if solved.x is None:
+        return None
+    return tuple(int(p) for p in solved.x[:switches].reshape(cells, planes).argmax(axis=1))
 
 
-def _order(costs: Float[np.ndarray, "c p"], borders: Sequence[Sequence[Border]]) -> list[int]:
-    """The surest cell first, then always the surest that touches what is decided."""
-    finite = np.where(np.isfinite(costs), costs, 1.0)
-    two = np.sort(finite, axis=1)[:, :2]
-    regret = two[:, 1] - two[:, 0] if two.shape[1] > 1 else np.ones(len(costs))
-    left, order = set(range(len(costs))), []
-    touching: set[int] = set()
-    while left:
-        pick = max(touching or left, key=lambda k: (regret[k], -k))
-        order.append(pick)
-        left.discard(pick)
-        touching = (touching | {b.other for b in borders[pick]}) & left
-    return order
+def _beside(cell: int, border: Border, number: int, shape: tuple[int, int], between: int) -> sparse.csr_array:
+    """Rows, each at most 0: own plane less those of the other cell that may meet it; own less other's less the edge."""
+    cells, planes = shape
+    own, other = (sparse.kron(sparse.eye(1, cells, k), np.eye(planes)) for k in (cell, border.other))
+    others = sparse.kron(sparse.eye(1, cells, border.other), border.allowed.astype(float))
+    edge = sparse.kron(sparse.eye(1, between, number), np.ones((planes, 1)))
+    none = sparse.csr_array((planes, between))
+    return sparse.csr_array(sparse.vstack([sparse.hstack([own - others, none]), sparse.hstack([own - other, -edge])]))
