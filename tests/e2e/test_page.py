@@ -16,6 +16,7 @@ from diorama_core.perception.inputs import read_inputs
 from diorama_core.progress import Progress
 from tests.app.small_room import PlainLibrary, make_project
 from tests.e2e.browser import BEEN_HERE, PROJECT, QUERY, SIZE, EditorPage
+from tests.ports import lasting_port
 
 pytestmark = pytest.mark.browser
 
@@ -229,12 +230,12 @@ def test_the_running_job_is_in_view_in_every_tab_with_what_it_found(editor: Edit
 def test_a_dead_server_is_told_and_the_page_goes_on_by_itself(
     context, serve: Callable[..., Running], visit: Callable[[Running], EditorPage], tmp_path
 ) -> None:
-    folder = make_project(tmp_path / "projects" / "demo").folder
-    running = serve(folder, PlainLibrary())
+    folder, port = make_project(tmp_path / "projects" / "demo").folder, lasting_port()
+    running = serve(folder, PlainLibrary(), port=port)
     editor = visit(running)
     running.stop()
     expect(editor.page.locator("#dio-lost")).to_be_visible(timeout=15_000)
     expect(editor.page.locator("#dio-lost")).to_contain_text("Your work is saved")
-    serve(folder, PlainLibrary(), port=running.port)
+    serve(folder, PlainLibrary(), port=port)
     expect(editor.page.locator("#dio-lost")).to_be_hidden(timeout=30_000)
     editor.page.wait_for_selector("#dio-toolbar")
