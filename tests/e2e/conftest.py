@@ -70,17 +70,23 @@ class SharedPage:
     def __init__(self, context: BrowserContext, folders: pytest.TempPathFactory) -> None:
         self._context, self._folders = context, folders
         self._page: EditorPage | None = None
+        self._first_box = (0.0, 0.0, 0.0, 0.0)
         self.libraries = folders.mktemp("libraries")
         """Where the server keeps the models that are added."""
 
     def page(self) -> EditorPage:
-        """The tab, with nothing remembered of other modules."""
+        """The tab, with nothing remembered of other modules and its panels as wide as at first."""
+        if self._page is not None:
+            self._page.page.evaluate(FORGET)
+            self._page.settle()
+            if self._page.canvas_box() != self._first_box:
+                self.close()
         if self._page is None:
             projects = self._folders.mktemp("shared") / "projects"
             project = make_project(projects / "demo")
             running = start(project=project.folder, projects_dir=projects, low_graphics=True, library=PlainLibrary())
             self._page = EditorPage.open(self._context, running)
-        self._page.page.evaluate(FORGET)
+            self._first_box = self._page.canvas_box()
         return self._page
 
     def module_ends(self) -> None:
