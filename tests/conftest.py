@@ -14,7 +14,7 @@ import numpy as np
 import pytest
 from hypothesis import settings
 
-from tests import typechecking
+from tests import made_once, typechecking
 
 if typechecking.wanted():  # before anything of Diorama is imported
     typechecking.install()
@@ -119,6 +119,8 @@ def _own_folders(tmp_path_factory: pytest.TempPathFactory) -> Iterator[None]:
         patch.setattr(os, "fsync", lambda descriptor: None)
         patch.setenv("DIORAMA_CACHE", str(derived_files(tmp_path_factory)))
         patch.setenv("DIORAMA_LIBRARIES", str(tmp_path_factory.mktemp("libraries")))
+        if "PYTEST_XDIST_WORKER" in os.environ:
+            patch.setenv(made_once.FOLDER, str(tmp_path_factory.getbasetemp().parent / "made"))
         yield
 
 

@@ -21,7 +21,7 @@ BLOCK = re.compile(r"^```python\n(.*?)^```$", re.MULTILINE | re.DOTALL)
 def executed(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Any]:
     """The names that the page's blocks define, executed one after another beside `room.jpg` and `boxes.json`."""
     folder = tmp_path_factory.mktemp("page")
-    photo, _ = write_room(folder)
+    photo, _ = write_room(folder, marked=1)
     photo.rename(folder / "room.jpg")
     page = DOCS / "python.md"
     names: dict[str, Any] = {"__name__": "page"}
@@ -33,6 +33,7 @@ def executed(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Any]:
     return {**names, "folder": folder}
 
 
+@pytest.mark.slow
 def test_the_page_s_files_and_values_are_there(executed: dict[str, Any]) -> None:
     assert (executed["folder"] / "room.glb").stat().st_size > 1000
     assert executed["again"].scene == executed["optimised"].scene

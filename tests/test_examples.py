@@ -34,6 +34,7 @@ def project(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return folder / "room"
 
 
+@pytest.mark.slow
 def test_a_photo_becomes_a_scene_seen_from_four_sides(project: Path) -> None:
     assert len(diorama.load(project).scene.objects) == 2
     pictures = [np.asarray(Image.open(project / f"{view}.png")) for view in ("photo", "top", "front", "orbit_30")]

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import shutil
-from dataclasses import replace
 from functools import cache
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -186,8 +185,3 @@ def _saved_photo() -> TemporaryDirectory:
     box = LabelledBox((240.0, 200.0, 440.0, 420.0), "table", "dining table")
     Project.create(Path(folder.name)).save_inputs(Inputs(plain_photo(), (box,)))
     return folder
-
-
-def without_candidates(scene: Scene) -> Scene:
-    """The same scene, nothing to swap."""
-    return replace(scene, objects=tuple(replace(o, candidates=()) for o in scene.objects))

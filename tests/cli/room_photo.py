@@ -26,9 +26,9 @@ def room_picture() -> np.ndarray:
     return image
 
 
-def write_room(folder: Path) -> tuple[Path, Path]:
-    """The picture and its boxes as files."""
+def write_room(folder: Path, marked: int = len(BOXES)) -> tuple[Path, Path]:
+    """The picture and the first of its boxes as files."""
     photo, boxes = folder / "room.png", folder / "boxes.json"
     cv2.imwrite(str(photo), room_picture()[..., ::-1])
-    boxes.write_text(json.dumps(BOXES))
+    boxes.write_text(json.dumps(BOXES[:marked]))
     return photo, boxes

@@ -1,4 +1,4 @@
-"""One Chromium a process, one server and tab per module; pictures of every test's end are kept in `test-artefacts`."""
+"""One Chromium, one server and one tab a process; pictures of every test's end are kept in `test-artefacts`."""
 
 from __future__ import annotations
 
@@ -7,6 +7,7 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import pytest
+from playwright.sync_api import BrowserContext
 
 from diorama_app.serve import Running, start
 from diorama_app.session.preferences import Preferences
@@ -19,6 +20,11 @@ playwright = pytest.importorskip("playwright.sync_api", reason="the browser test
 ARTEFACTS = Path(__file__).resolve().parents[2] / "test-artefacts" / "screens"
 
 StartServer = Callable[..., Running]
+
+FORGET = """() => {
+    for (const key of Object.keys(localStorage)) if (key !== 'diorama-tour') localStorage.removeItem(key);
+}"""
+"""What a page keeps in the browser, but for the tour that was seen."""
 
 
 @pytest.fixture(scope="session")
@@ -55,12 +61,62 @@ def context(driver, program: str, tmp_path_factory: pytest.TempPathFactory) -> I
     context.close()
 
 
+class SharedPage:
+    """One server and one tab for all tests of a process: starting them is most of a test's time.
+
+    Models that the tests of a module add are not there for those of another: then both are started anew.
+    """
+
+    def __init__(self, context: BrowserContext, folders: pytest.TempPathFactory) -> None:
+        self._context, self._folders = context, folders
+        self._page: EditorPage | None = None
+        self._first_box = (0.0, 0.0, 0.0, 0.0)
+        self.libraries = folders.mktemp("libraries")
+        """Where the server keeps the models that are added."""
+
+    def page(self) -> EditorPage:
+        """The tab, with nothing remembered of other modules and its panels as wide as at first."""
+        if self._page is not None:
+            self._page.page.evaluate(FORGET)
+            self._page.settle()
+            if self._page.canvas_box() != self._first_box:
+                self.close()
+        if self._page is None:
+            projects = self._folders.mktemp("shared") / "projects"
+            project = make_project(projects / "demo")
+            running = start(project=project.folder, projects_dir=projects, low_graphics=True, library=PlainLibrary())
+            self._page = EditorPage.open(self._context, running)
+            self._first_box = self._page.canvas_box()
+        return self._page
+
+    def module_ends(self) -> None:
+        """Close the tab and its server if models were added or the page is gone."""
+        if any(self.libraries.iterdir()) or (self._page is not None and self._page.page.is_closed()):
+            self.close()
+            self.libraries = self._folders.mktemp("libraries")
+
+    def close(self) -> None:
+        """End server and tab."""
+        if self._page is not None:
+            self._page.page.close()
+            self._page.running.stop()
+            self._page = None
+
+
+@pytest.fixture(scope="session")
+def for_all(context, tmp_path_factory: pytest.TempPathFactory) -> Iterator[SharedPage]:
+    shared = SharedPage(context, tmp_path_factory)
+    yield shared
+    shared.close()
+
+
 @pytest.fixture(scope="module", autouse=True)
-def own_models(tmp_path_factory: pytest.TempPathFactory) -> Iterator[None]:
+def own_models(for_all: SharedPage) -> Iterator[None]:
     """Models that the tests of a module add are not there for those of another."""
     with pytest.MonkeyPatch.context() as patch:
-        patch.setenv("DIORAMA_LIBRARIES", str(tmp_path_factory.mktemp("libraries")))
+        patch.setenv("DIORAMA_LIBRARIES", str(for_all.libraries))
         yield
+    for_all.module_ends()
 
 
 @pytest.fixture
@@ -79,15 +135,9 @@ def serve(tmp_path: Path) -> Iterator[StartServer]:
 
 
 @pytest.fixture(scope="module")
-def shared_page(context, tmp_path_factory: pytest.TempPathFactory) -> Iterator[EditorPage]:
-    """One server and one tab for all tests of a module: starting them is most of a test's time."""
-    projects = tmp_path_factory.mktemp("shared") / "projects"
-    project = make_project(projects / "demo")
-    running = start(project=project.folder, projects_dir=projects, low_graphics=True, library=PlainLibrary())
-    page = EditorPage.open(context, running)
-    yield page
-    page.page.close()
-    running.stop()
+def shared_page(for_all: SharedPage) -> EditorPage:
+    """The tab that all tests share."""
+    return for_all.page()
 
 
 @pytest.fixture

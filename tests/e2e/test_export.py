@@ -255,8 +255,6 @@ def colours(picture: np.ndarray) -> float:
     ("name", "content", "words"),
     [
         ("room.glb", b"glTF but then nothing of it", "room.glb"),
-        ("room.usdz", b"PK\x03\x04 broken", "room.usdz"),
-        ("home.sh3d", b"no zip at all", "no Sweet Home 3D file"),
         ("room.txt", b"words", "no scene that can be opened"),
     ],
 )

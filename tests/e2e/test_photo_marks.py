@@ -18,6 +18,7 @@ from diorama_core.artefacts import LabelledBox
 from diorama_core.project.storage import Project
 from tests.app.small_room import make_project, plain_photo
 from tests.e2e.browser import QUERY, EditorPage
+from tests.ports import lasting_port
 from tests.waiting import until
 
 pytestmark = [pytest.mark.browser, pytest.mark.slow]
@@ -153,9 +154,10 @@ def saved_boxes(folder: Path) -> tuple[LabelledBox, ...]:
 
 
 def test_what_was_drawn_outlives_a_killed_server(context, serve_apart, photo: Path, tmp_path: Path) -> None:
-    server = serve_apart(0)
+    port = lasting_port()
+    server = serve_apart(port)
     assert server.stdout is not None
-    port = int(server.stdout.readline())
+    assert int(server.stdout.readline()) == port
     page = context.new_page()
     page.set_default_timeout(60_000)
     page.goto(f"http://127.0.0.1:{port}/{QUERY}")

@@ -8,6 +8,7 @@ import pytest
 from playwright.sync_api import expect
 
 from tests.app.small_room import PlainLibrary, make_project
+from tests.ports import lasting_port
 
 pytestmark = pytest.mark.browser
 
@@ -17,7 +18,8 @@ DARK = "document.documentElement.dataset.mantineColorScheme == 'dark'"
 
 def test_theme_unit_snap_recipe_and_open_tabs_outlive_a_reload_and_another_start(serve, visit, tmp_path: Path) -> None:
     folder = make_project(tmp_path / "projects" / "demo").folder
-    first = serve(folder, PlainLibrary())
+    port = lasting_port()
+    first = serve(folder, PlainLibrary(), port=port)
     page = visit(first)
     page.menu_tool("Dark or light").click()
     page.page.keyboard.press("Escape")
@@ -38,7 +40,6 @@ def test_theme_unit_snap_recipe_and_open_tabs_outlive_a_reload_and_another_start
     expect(page.page.get_by_label("Recipe")).to_have_value("As in the paper")
     expect(page.page.get_by_role("tab", name="Arrange", exact=True)).to_have_attribute("aria-selected", "true")
 
-    port = first.port
     first.stop()
     page.page.goto("about:blank")
     again = serve(folder, PlainLibrary(), port=port)

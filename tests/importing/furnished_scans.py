@@ -10,14 +10,19 @@ from diorama_core.library.record import ShapeLibrary
 from diorama_core.scene.types import Scene
 from diorama_core.synthesis.scan import ScanFrame, scanned
 from diorama_core.synthesis.splits import split_library
+from tests.made_once import made_once
 
 
 @cache
 def living_room() -> tuple[Scene, tuple[ScanFrame, ...]]:
     """The room and its frames."""
-    tested = split_library(built_in_library(), "test")
-    scene = furnished(recipe(1, 1, 0)[0], tested)
-    return scene, scanned(scene, tested, 0, places=3, turns=8)
+
+    def make() -> tuple[Scene, tuple[ScanFrame, ...]]:
+        tested = split_library(built_in_library(), "test")
+        scene = furnished(recipe(1, 1, 0)[0], tested)
+        return scene, scanned(scene, tested, 0, places=3, turns=8)
+
+    return made_once("scanned living room", make)
 
 
 def searched() -> ShapeLibrary:

@@ -20,6 +20,7 @@ from diorama_core.synthesis import furnished_room
 from diorama_core.synthesis.artefacts import photo_only
 from diorama_core.synthesis.cameras import level_pose, sample_cameras
 from diorama_core.synthesis.truth import Studio
+from tests.made_once import made_once
 
 SIZE = (640, 480)
 ASIDE_M = 0.45
@@ -39,6 +40,11 @@ class TwoPhotos:
 
 @cache
 def two_photos() -> TwoPhotos:
+    """The same in all processes of a run."""
+    return made_once("two photos", _made)
+
+
+def _made() -> TwoPhotos:
     library = built_in_library()
     room = furnished_room(7006, "dining", library, clutter=1)
     camera = sample_cameras(room, library, 7006, 1, SIZE)[0]

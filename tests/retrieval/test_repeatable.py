@@ -24,7 +24,7 @@ from diorama_core.synthesis.splits import Subset
 
 ROOT = Path(__file__).resolve().parents[2]
 EXAMPLE = ROOT / "assets" / "example"
-EACH_KIND = 5
+EACH_KIND = 3
 LOOKED_FOR = ("chair", "plant", "lamp", "bowl")
 CHILD = "import sys; from tests.retrieval.test_repeatable import answer; sys.stdout.write(answer(sys.argv[1]))"
 

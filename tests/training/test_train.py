@@ -69,6 +69,7 @@ def trainer(kind: str, files: PictureFiles, path: Path, steps: int) -> Trainer:
     return namer_trainer(files, shape_files(path.parent), KINDS, schedule, path)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("kind", ["detector", "namer", "outliner"])
 def test_a_run_goes_on_where_it_stopped(kind: str, files: PictureFiles, tmp_path: Path) -> None:
     whole = trainer(kind, files, tmp_path / "whole.pt", 4).run(Progress())

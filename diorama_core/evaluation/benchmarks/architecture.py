@@ -93,6 +93,8 @@ def run(
             ("PlainRecon as published, depth of the empty room", _emptied(view), PlainRecon()),
             ("RaC, true masks and depth", view.inputs, RenderAndCompareRoom()),
             ("RaC, true masks, depth with 2 % noise", noisy, RenderAndCompareRoom()),
+            ("RaC without refinement, true masks and depth", view.inputs, RenderAndCompareRoom(refine=False)),
+            ("RaC without refinement, true masks, depth with 2 % noise", noisy, RenderAndCompareRoom(refine=False)),
             ("ACDC, true masks and depth", view.inputs, AcdcRoom()),
             ("ACDC, true masks, depth with 2 % noise", noisy, AcdcRoom()),
             ("picture and boxes", photo_only(view), None),

@@ -280,7 +280,7 @@ class LmmClient:
             client,
             client.chat.completions.with_streaming_response.create(
                 model=self.settings.model,
-                messages=messages,  # type: ignore[arg-type]  # plain dictionaries, as the endpoint takes them
+                messages=messages,  # plain dictionaries, as the endpoint takes them
                 **extra,
             ) as response,
         ):

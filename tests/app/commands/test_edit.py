@@ -4,8 +4,6 @@ from __future__ import annotations
 
 import threading
 import time
-from collections.abc import Iterator
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -22,31 +20,13 @@ from diorama_app.session.client import Client
 from diorama_app.session.jobs import Jobs, Outcome
 from diorama_app.session.session import EditorSession
 from diorama_app.session.ui_thread import UiThread
-from diorama_app.web.viser_adapter import create_server, stop_server
-from diorama_app.web.visitors import Visitors
 from diorama_core.errors import EditRefused, InputError
 from diorama_core.progress import Progress
 from diorama_core.scene import edits
 from diorama_core.scene.support import check_scene
 from tests.app.people import join
-from tests.app.small_room import PlainLibrary, furnished_scene, make_project
+from tests.app.small_room import furnished_scene
 from tests.waiting import until
-
-
-@pytest.fixture
-def session(tmp_path: Path) -> Iterator[EditorSession]:
-    server = create_server(host="127.0.0.1", port=0, label="test", visitors=Visitors("127.0.0.1"))
-    made = EditorSession(server, PlainLibrary(), tmp_path / "projects", Client)
-    made.checker.look_at = lambda scene: None  # its thread would post to the UI thread
-    made.open_project(make_project(tmp_path / "projects" / "demo"))
-    yield made
-    made.close()
-    stop_server(server)
-
-
-@pytest.fixture
-def client(session: EditorSession) -> Client:
-    return join(session)
 
 
 def test_undo_restores_scene_and_selection(session: EditorSession, client: Client) -> None:

@@ -8,13 +8,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 import trimesh
+import viser
 
 from diorama_app.commands.import_model import FIXES, correct_model, is_own_model
 from diorama_app.commands.insert import insert_shape
 from diorama_app.session.client import Client
 from diorama_app.session.session import EditorSession
-from diorama_app.web.viser_adapter import create_server, stop_server
-from diorama_app.web.visitors import Visitors
 from diorama_core.errors import EditRefused, InputError
 from diorama_core.library.ingest.shaping import packed_shape
 from diorama_core.library.record import Shape
@@ -25,18 +24,18 @@ from tests.app.small_room import PlainLibrary, make_project
 
 
 @pytest.fixture
-def session(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[EditorSession]:
+def session(server: viser.ViserServer, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[EditorSession]:
     monkeypatch.setenv("DIORAMA_LIBRARIES", str(tmp_path / "libraries"))
     user_library = UserLibrary(PlainLibrary())
     lying = trimesh.creation.box((1.8, 0.6, 0.3))  # a bookcase that was read lying on its back
     user_library.own().add(packed_shape(Shape("my-case", "box", "my case", (1.0, 1.0, 1.0)), [lying], None, "key", ()))
-    server = create_server(host="127.0.0.1", port=0, label="test", visitors=Visitors("127.0.0.1"))
     made = EditorSession(server, user_library, tmp_path / "projects", Client)
     made.checker.look_at = lambda scene: None  # its thread would post to the UI thread
     made.open_project(make_project(tmp_path / "projects" / "demo"))
     yield made
     made.close()
-    stop_server(server)
+    server.scene.reset()
+    server.gui.reset()
 
 
 @pytest.fixture

@@ -53,7 +53,7 @@ def running(projects: Path, *more: str) -> Iterator[tuple[str, subprocess.Popen]
 @pytest.fixture(scope="module")
 def photo(tmp_path_factory: pytest.TempPathFactory) -> dict:
     """Arguments of `create_job`."""
-    image, boxes = write_room(tmp_path_factory.mktemp("photo"))
+    image, boxes = write_room(tmp_path_factory.mktemp("photo"), marked=1)
     return {"photo": ("my room.png", image.read_bytes()), "boxes": boxes.read_text(), "profile": "embedded"}
 
 

@@ -23,7 +23,7 @@ from tests.cli.room_photo import room_picture
 from tests.multiview.rooms import CAMERAS, THINGS, photo
 
 POSED = CAMERAS[:2]
-SHOWN = THINGS[:2]
+SHOWN = THINGS[:1]
 
 
 @pytest.fixture

@@ -9,6 +9,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+import viser
 
 from diorama_app.commands.camera_presets import Views
 from diorama_app.commands.definitions import build_commands
@@ -18,8 +19,6 @@ from diorama_app.projects import manage as project_care
 from diorama_app.reconstruction.photo_outlines import PhotoOutlines
 from diorama_app.session.client import Client
 from diorama_app.session.session import EditorSession
-from diorama_app.web.viser_adapter import create_server, stop_server
-from diorama_app.web.visitors import Visitors
 from diorama_core.scene import edits
 from diorama_core.scene.types import Scene
 from tests.app.people import join
@@ -28,13 +27,13 @@ from tests.io.test_bombs import png
 
 
 @pytest.fixture
-def session(tmp_path: Path) -> Iterator[EditorSession]:
-    server = create_server(host="127.0.0.1", port=0, label="test", visitors=Visitors("127.0.0.1"))
+def session(server: viser.ViserServer, tmp_path: Path) -> Iterator[EditorSession]:
     made = EditorSession(server, PlainLibrary(), tmp_path / "projects", Client)
     made.open_project(make_project(tmp_path / "projects" / "demo"))
     yield made
     made.close()
-    stop_server(server)
+    server.scene.reset()
+    server.gui.reset()
 
 
 def moved_to(x: float) -> Callable[[Scene], Scene]:
