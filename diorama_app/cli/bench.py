@@ -35,7 +35,7 @@ TABLES = (
     ("system", 20, "Images to scenes, end to end."),
     ("views", 6, "One, two, four and eight photos of a room with given cameras."),
     ("scans", 6, "Scans of a phone: furniture, its kinds, doors and windows."),
-    ("text", 60, "Rooms composed from prompts: what was asked for, and whether people could use the room."),
+    ("text", 64, "Rooms composed from prompts: what was asked for, and whether people could use the room."),
     ("speed", 1, "Time and memory by scene size, compared with the committed figures."),
 )
 

@@ -228,5 +228,7 @@ def is_lit(screen: Rectified) -> bool:
 
 
 def _outline_box(item: SceneObject, parts: trimesh.Scene, camera: Camera) -> Float[np.ndarray, "4"]:
-    pixels = camera.project(item.pose.apply(np.asarray(parts.to_geometry().vertices)))
+    placed = [(parts.geometry[name], to_shape) for to_shape, name in map(parts.graph.get, parts.graph.nodes_geometry)]
+    corners = np.concatenate([trimesh.transform_points(mesh.vertices, to_shape) for mesh, to_shape in placed])
+    pixels = camera.project(item.pose.apply(corners))
     return np.concatenate([pixels.min(axis=0), pixels.max(axis=0)])

@@ -77,7 +77,7 @@ def frustum_slack(points: Float[np.ndarray, "n p 3"], k: Intrinsics) -> Float[np
 
     The near plane is in metres, the side planes are times the focal length; positive inside.
     """
-    return np.moveaxis(_slack(np.moveaxis(points, -1, 0), k), 0, -1)
+    return _slack(points.transpose(2, 0, 1), k).transpose(1, 2, 0)
 
 
 def _slack(points: Float[np.ndarray, "3 *n"], k: Intrinsics) -> Float[np.ndarray, "5 *n"]:

@@ -25,3 +25,12 @@ def rotation_from_vector(vectors: Float[np.ndarray, "*n 3"]) -> Float[np.ndarray
 def rotation_vector(R: Float[np.ndarray, "*n 3 3"]) -> Float[np.ndarray, "*n 3"]:
     """Rotation vectors (axis times angle, at most pi) of rotation matrices."""
     return Rotation.from_matrix(R).as_rotvec()
+
+
+def yaw_rotations(yaws_rad: Float[np.ndarray, "n"]) -> Float[np.ndarray, "n 3 3"]:
+    """Rotations about world up."""
+    R = np.zeros((len(yaws_rad), 3, 3))
+    R[:, 0, 0] = R[:, 1, 1] = np.cos(yaws_rad)
+    R[:, 1, 0] = np.sin(yaws_rad)
+    R[:, 0, 1], R[:, 2, 2] = -R[:, 1, 0], 1.0
+    return R

@@ -193,11 +193,16 @@ def clipped_bounds(
     k = camera.intrinsics
     slack = frustum_slack(points_camera, k)
     inside = (slack >= 0).all(axis=(1, 2))
+    if inside.all():
+        return _ends(_pixels(camera, points_camera))
     bounds = np.empty((len(points_camera), 4))
-    uv = _pixels(camera, points_camera[inside])
-    bounds[inside] = np.concatenate([uv.min(axis=1), uv.max(axis=1)], axis=-1)
+    bounds[inside] = _ends(_pixels(camera, points_camera[inside]))
     bounds[~inside] = _cut_bounds(camera, points_camera[~inside], slack[~inside], edges)
     return bounds
+
+
+def _ends(pixels: Float[np.ndarray, "p n 2"]) -> Float[np.ndarray, "p 4"]:
+    return np.concatenate([pixels.min(axis=1), pixels.max(axis=1)], axis=-1)
 
 
 def _pixels(camera: Camera, points_camera: Float[np.ndarray, "*n 3"]) -> Float[np.ndarray, "*n 2"]:

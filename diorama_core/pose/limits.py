@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from jaxtyping import Bool, Float
@@ -84,7 +85,7 @@ class SizeLimits:
         stretch = _STRETCH_FLAT if flat else _STRETCH_BOXY if category_name in BOXY else _STRETCH_SHAPED
         return cls(own, least, most, stretch, sides_log, flat)
 
-    @property
+    @cached_property
     def thin(self) -> Bool[np.ndarray, "3"]:
         """Axes along which objects of this shape come in any thickness."""
         return self.shape_size_m <= max(_THIN_M, _THIN_SHARE * float(self.shape_size_m.max()))
@@ -92,7 +93,7 @@ class SizeLimits:
     def scale_for(self, wanted_m: Float[np.ndarray, "*p 3"]) -> Float[np.ndarray, "*p 3"]:
         """Per-axis scales nearest to giving the shape the wanted size, within the limits."""
         free = self.shape_size_m > _DEGENERATE_M
-        wanted = np.clip(np.nan_to_num(wanted_m, nan=1.0), self.min_m, self.max_m)
+        wanted = np.clip(np.where(np.isnan(wanted_m), 1.0, wanted_m), self.min_m, self.max_m)
         log_scale = np.log(wanted / np.maximum(self.shape_size_m, _DEGENERATE_M))
         sides = log_scale[..., :2]
         middle = sides.mean(axis=-1, keepdims=True)

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from jaxtyping import Float
+from jaxtyping import Bool, Float
 
 from diorama_core.geometry.observed import Observed
 from diorama_core.geometry.projection import box_iou
@@ -53,6 +54,8 @@ class Evidence:
 
     def errors(self, caster: ShapeCaster, poses: PoseBatch) -> Float[np.ndarray, "p"]:
         """0 (agrees entirely) to 1: weighted disagreement of silhouette, box, depth and normals."""
+        if self.surface is None:  # how far away it is would not count
+            return self._outline_errors(caster, poses, self.seen.silhouettes(caster, poses))
         return self.errors_of(caster, self.hits(caster, poses))
 
     def hits(self, caster: ShapeCaster, poses: PoseBatch) -> Hits:
@@ -61,15 +64,17 @@ class Evidence:
 
     def errors_of(self, caster: ShapeCaster, hits: Hits) -> Float[np.ndarray, "p"]:
         """As `errors`, of a shape that the rays have met."""
-        if self.surface is not None:
-            weights = [_SILHOUETTE_WEIGHT_WITH_DEPTH * (0.3 + 0.7 * self.seen.mask_trust), _DEPTH_WEIGHT]
-            terms = [self._outline_with_depth(self.surface, hits), self.surface.agreement(hits)]
-        else:
-            weights = [_SILHOUETTE_WEIGHT * self.seen.mask_trust, _BOX_WEIGHT]
-            boxes = box_iou(caster.bounds_px(self.camera, hits.poses), np.asarray(self.seen.box))
-            terms = [self.seen.agreement(hits.covered), np.nan_to_num(boxes)]
-        agreement = sum(w * t for w, t in zip(weights, terms, strict=True)) / sum(weights)
-        return np.clip(1.0 - np.nan_to_num(agreement), 0.0, 1.0)
+        if self.surface is None:
+            return self._outline_errors(caster, hits.poses, hits.covered)
+        weights = [_SILHOUETTE_WEIGHT_WITH_DEPTH * (0.3 + 0.7 * self.seen.mask_trust), _DEPTH_WEIGHT]
+        return _disagreement(weights, [self._outline_with_depth(self.surface, hits), self.surface.agreement(hits)])
+
+    def _outline_errors(
+        self, caster: ShapeCaster, poses: PoseBatch, covered: Bool[np.ndarray, "p r"]
+    ) -> Float[np.ndarray, "p"]:
+        boxes = box_iou(caster.bounds_px(self.camera, poses), np.asarray(self.seen.box))
+        weights = [_SILHOUETTE_WEIGHT * self.seen.mask_trust, _BOX_WEIGHT]
+        return _disagreement(weights, [self.seen.agreement(covered), np.nan_to_num(boxes)])
 
     def _outline_with_depth(self, surface: MeasuredSurface, hits: Hits) -> Float[np.ndarray, "p"]:
         """Intersection over union with the mask where nothing that was measured is in front of the shape."""
@@ -149,3 +154,9 @@ class Evidence:
         believed = (0.3 + 0.7 * self.seen.mask_trust) * (0.5 + 0.5 * float(np.clip(cuboid_confidence, 0.0, 1.0)))
         value = (1.0 - error) * large_enough * visible * believed
         return float(np.clip(np.nan_to_num(value), 0.0, 1.0))
+
+
+def _disagreement(weights: Sequence[float], agreements: Sequence[Float[np.ndarray, "p"]]) -> Float[np.ndarray, "p"]:
+    """1 less the weighted mean of agreements."""
+    agreement = sum(w * t for w, t in zip(weights, agreements, strict=True)) / sum(weights)
+    return np.clip(1.0 - np.nan_to_num(agreement), 0.0, 1.0)

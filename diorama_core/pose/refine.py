@@ -12,10 +12,11 @@ import numpy as np
 from jaxtyping import Bool, Float
 
 from diorama_core.geometry.observed import Observed
+from diorama_core.geometry.rotations import yaw_rotations
 from diorama_core.geometry.silhouette import PoseBatch, ShapeCaster
 from diorama_core.pose.hypotheses import Anchor
 from diorama_core.pose.limits import SizeLimits
-from diorama_core.scene.types import Camera, yaw_rotation
+from diorama_core.scene.types import Camera
 
 _PARAMETERS = 6
 _STEP = 1e-3
@@ -46,8 +47,11 @@ class BoxFit:
         sigma = self._sigma(start)
         cost, residual = self._residuals(caster, start, x, sigma, tangents, sides)
         damping = np.full(len(start), 0.05)
+        jacobian = self._jacobian(caster, start, x, residual, sigma, tangents, sides)
+        better = np.zeros(len(start), dtype=bool)
         for _ in range(self.iterations):
-            jacobian = self._jacobian(caster, start, x, residual, sigma, tangents, sides)
+            if better.any():
+                jacobian = self._jacobian(caster, start, x, residual, sigma, tangents, sides)
             step = _damped_step(jacobian, residual, damping)
             trial = np.clip(x + step, -3.0, 3.0)
             trial_cost, trial_residual = self._residuals(caster, start, trial, sigma, tangents, sides)
@@ -80,7 +84,7 @@ class BoxFit:
     def _moved(self, start: PoseBatch, x: np.ndarray, sigma: np.ndarray, tangents: np.ndarray) -> PoseBatch:
         """The starting poses after steps of x sigmas."""
         change = x * sigma
-        R = np.einsum("pij,pjk->pik", start.R, np.array([yaw_rotation(angle) for angle in change[:, 5]]))
+        R = np.einsum("pij,pjk->pik", start.R, yaw_rotations(change[:, 5]))
         scale = self.limits.scale_for(start.scale * np.exp(change[:, 2:5]) * self.limits.shape_size_m)
         centres = start.position + change[:, :2] @ tangents
         return PoseBatch(R, self.anchor.placed(centres, R, scale * self.limits.shape_size_m), scale)
@@ -98,7 +102,7 @@ class BoxFit:
         box = np.asarray(self.seen.box, dtype=np.float64)
         extent = np.maximum(np.tile(box[2:] - box[:2], 2), 1.0)
         outward = (bounds - box) * np.array([-1.0, -1.0, 1.0, 1.0]) / (0.015 * extent + 1.5)
-        outward = np.nan_to_num(outward, nan=20.0)
+        outward = np.where(np.isnan(outward), 20.0, outward)
         outward = np.where(hidden & (outward > 0), _HIDDEN_SIDE * outward, outward)
         robust = np.sign(outward) * _softened(np.abs(outward))
         residual = np.concatenate([robust, x], axis=1)

@@ -24,6 +24,7 @@ from diorama_core.scene.types import Pose, Scene, SceneObject
 from diorama_core.synthesis import furnished_room
 from diorama_core.text.customs import DECOR
 from diorama_core.text.edit_places import lifted_onto
+from diorama_core.text.placed_rows import PlacedRows, placed_rows
 from diorama_core.text.prompt import RequestedObject, RoomRequest, Wish, understood_prompt
 from diorama_core.text.requested_relations import (
     in_row,
@@ -110,6 +111,8 @@ class _Composer:
         self.relations: dict[str, list[Relation]] = {}
         self.wishes: dict[str, list[tuple[Wish, Relation]]] = {}
         self.missing: dict[int, int] = {}
+        self.in_rows: dict[int, PlacedRows] = {}
+        self.not_in_rows: list[int] = []
 
     def composed(self) -> tuple[float, Composed]:
         """The room, and how much it lacks."""
@@ -139,6 +142,12 @@ class _Composer:
             self.ids[k] = there
             self.missing[k] = request.count - len(there)
             return
+        if request.rows:
+            rows = placed_rows(self.scene, request, shapes[:SHAPES_TRIED], self.positioner, self.relations)
+            if rows is not None:
+                self._take_rows(k, request, rows)
+                return
+            self.not_in_rows.append(k)
         placed: list[str] = []
         self.ids[k] = placed
         chosen: Shape | None = None
@@ -171,6 +180,12 @@ class _Composer:
                 break
             else:
                 self.missing[k] = self.missing.get(k, 0) + 1
+
+    def _take_rows(self, k: int, request: RequestedObject, rows: PlacedRows) -> None:
+        self.scene, self.in_rows[k], self.ids[k] = rows.scene, rows, list(rows.ids)
+        for object_id in rows.ids:
+            item = self.scene.object(object_id)
+            self.scene = dressed(self.scene, object_id, self.library.shape(item.shape_id), request.appearance)
 
     def _resolved(self, k: int, request: RequestedObject, copy: int, object_id: str) -> list[tuple[Wish, Relation]]:
         """The wishes of one copy with ids in the place of categories."""
@@ -219,7 +234,8 @@ class _Composer:
 
     def _unmet(self) -> list[tuple[str, Wish, Relation]]:
         frame = RoomFrame.of(self.scene)
-        return [
+        of_rows = [(rows.ids[0], wish, r) for rows in self.in_rows.values() for wish, r in rows.unmet(self.scene)]
+        return of_rows + [
             (i, wish, relation)
             for i, pairs in self.wishes.items()
             for wish, relation in pairs
@@ -233,7 +249,8 @@ class _Composer:
             return False
         better = False
         involved = dict.fromkeys(i for o, _, r in unmet for i in (o, *r.targets) if self.scene.has_object(i))
-        for object_id in involved:
+        fixed = {i for rows in self.in_rows.values() for i in rows.ids}
+        for object_id in (i for i in involved if i not in fixed):
             item = self.scene.object(object_id)
             if item.category in ("window", "door") or broad(item.category) == "rug":
                 continue
@@ -274,6 +291,9 @@ class _Composer:
                 name = wanted[k].label or wanted[k].category
                 notes.append(f"no place was found for {count} of {wanted[k].count} x {name}")
                 lacking += 10.0 * count
+        for k in self.not_in_rows:
+            notes.append(f"{wanted[k].label} are not in {wanted[k].rows} x rows: there was no room for it")
+            lacking += 6.0
         for object_id, wish, _ in self._unmet():
             notes.append(f"{self.scene.object(object_id).label} is not {wish.words}: there was no room for it")
             lacking += 3.0

@@ -21,6 +21,7 @@ from diorama_core.editing.positioning import Positioner
 from diorama_core.editing.relations import OF_ROOM, RelationKind
 from diorama_core.errors import EditRefused, UnavailableError
 from diorama_core.library.record import ShapeLibrary
+from diorama_core.library.taxonomy import category
 from diorama_core.perception.language.client import LmmClient, LmmSettings
 from diorama_core.progress import Progress
 from diorama_core.render.picture import picture
@@ -31,6 +32,7 @@ from diorama_core.text.edit_plan import EditPlan
 from diorama_core.text.edit_prompt import edit_prompt
 from diorama_core.text.phrases import MAX_OF_A_KIND, noun_phrase
 from diorama_core.text.prompt import RequestedObject, RoomRequest, Wish
+from diorama_core.text.rows import MAX_IN_ROWS
 
 LOOKS = 2
 """How often the picture of the room is shown to the model."""
@@ -62,7 +64,9 @@ class ListedObject(BaseModel):
     model_config = ConfigDict(extra="forbid")
 
     what: Annotated[str, Field(max_length=80)]
-    count: Annotated[int, Field(ge=1, le=MAX_OF_A_KIND)] = 1
+    count: Annotated[int, Field(ge=1, le=MAX_IN_ROWS)] = 1
+    rows: Annotated[int, Field(ge=0, le=MAX_IN_ROWS)] = 0
+    """In how many rows they stand; 0 where they do not."""
     places: Annotated[list[ListedWish], Field(max_length=5)] = []
 
 
@@ -94,7 +98,8 @@ def listed_request(prompt: str, settings: LmmSettings, progress: Progress) -> Ro
 Description: {json.dumps(prompt)}
 "what" is a noun with its attributes ("blue velvet sofa"), "places" how it stands, by relations from \
 {list(get_args(RelationKind))}; "targets" are nouns of other objects in the list, "window" or "door" ({list(OF_ROOM)} \
-have none); "each_other" where objects of one entry stand so to one another. "room" is one of \
+have none); "each_other" where objects of one entry stand so to one another, "rows" in how many \
+rows they stand (left out where they do not). "room" is one of \
 {list(get_args(RoomKind))}, "size" how large it is beside a usual one (1).
 Format: {{"room": "living", "size": 1.0, "objects": [{{"what": "armchair", "count": 2, "places": [{{"relation": \
 "facing", "targets": [], "each_other": true}}]}}]}}"""
@@ -107,7 +112,9 @@ Format: {{"room": "living", "size": 1.0, "objects": [{{"what": "armchair", "coun
             ignored.append(unknown or entry.what)
             continue
         wishes = tuple(w for listed in entry.places if (w := _wish(listed)) is not None)
-        objects.append(RequestedObject(phrase.category, phrase.label, entry.count, phrase.appearance, wishes))
+        count = entry.count if entry.rows else min(entry.count, MAX_OF_A_KIND)
+        rows = min(entry.rows, count) if count > 1 and category(phrase.category).mount == "floor" else 0
+        objects.append(RequestedObject(phrase.category, phrase.label, count, phrase.appearance, wishes, rows))
     if not objects:
         raise UnavailableError(f"{settings.model} lists nothing that the library has")
     return RoomRequest(room.room, tuple(objects), tuple(ignored), room.size)

@@ -8,6 +8,7 @@ from functools import cache
 
 from diorama_core.editing.relations import RelationKind
 from diorama_core.library.taxonomy import ARCHITECTURE_WORDS, UNKNOWN, Category, resolve
+from diorama_core.text.rows import MAX_IN_ROWS, USUAL_IN_ROW, without_marks
 
 NUMBERS = {
     "a": 1, "an": 1, "the": 1, "one": 1, "another": 1, "two": 2, "pair": 2, "couple": 2, "both": 2,
@@ -198,6 +199,8 @@ class NounPhrase:
     """Whether it means all of them."""
     plural: bool = False
     pronoun: bool = False
+    rows: int = 0
+    """In how many rows they stand; 0 where nothing is said."""
 
 
 @dataclass(frozen=True)
@@ -249,6 +252,7 @@ def noun_phrase(text: str) -> tuple[NounPhrase | None, str]:
         return NounPhrase("", "", 1, tuple(w for w in raw[:-1] if w in APPEARANCES), True, True, True), ""
     count = 1
     words: list[str] = []
+    raw, in_rows = without_marks(raw)
     for word in raw:
         if not words and (word in NUMBERS or word.isdigit()):
             count = max(count, int(word) if word.isdigit() else NUMBERS[word])
@@ -270,6 +274,13 @@ def noun_phrase(text: str) -> tuple[NounPhrase | None, str]:
         and not category_name.endswith("s")
         and last != category_name.split()[-1]
     )
+    if in_rows is not None:
+        rows, each = in_rows
+        count = rows * (each or (USUAL_IN_ROW if plural else 1)) if count == 1 else count
+        several = plural or count > 1
+        return NounPhrase(
+            label, category_name, min(count, MAX_IN_ROWS), appearance, definite, every, several, rows=rows
+        ), ""
     if plural and count == 1:
         count = 2
     return NounPhrase(

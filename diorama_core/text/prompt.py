@@ -10,6 +10,7 @@ from diorama_core.library.taxonomy import broad, category, is_furniture, resolve
 from diorama_core.synthesis import RoomKind
 from diorama_core.text.customs import USUAL
 from diorama_core.text.phrases import MAX_OF_A_KIND, NUMBERS, NounPhrase, Placing, noun_phrase, split_places
+from diorama_core.text.rows import with_marks
 
 _ROOMS: tuple[tuple[str, RoomKind], ...] = (
     ("living room", "living"), ("sitting room", "living"), ("lounge", "living"), ("family room", "living"),
@@ -17,8 +18,8 @@ _ROOMS: tuple[tuple[str, RoomKind], ...] = (
     ("nursery", "bedroom"), ("children's room", "bedroom"), ("child's room", "bedroom"),
     ("kids' room", "bedroom"), ("kids room", "bedroom"), ("kid's room", "bedroom"), ("home office", "study"), ("study", "study"), ("library", "study"), ("office", "office"),
     ("kitchen", "kitchen"), ("dining room", "dining"), ("dining area", "dining"), ("bathroom", "bathroom"),
-    ("restroom", "bathroom"), ("laboratory", "lab"), ("lab", "lab"), ("workshop", "lab"), ("corridor", "corridor"),
-    ("hallway", "corridor"), ("hall", "corridor"), ("apartment", "living"), ("room", "living"),
+    ("restroom", "bathroom"), ("classroom", "lab"), ("laboratory", "lab"), ("lab", "lab"), ("workshop", "lab"), ("corridor", "corridor"),
+    ("hallway", "corridor"), ("hall", "corridor"), ("apartment", "living"), ("cinema", "living"), ("room", "living"),
 )  # fmt: skip
 _COMPOUNDS = (
     "chair|desk|table|cabinet|counter|island|sink|stool|scale|mat|lamp|shel(?:f|ve)|unit|mirror|bench|cart|tree|rug"
@@ -41,7 +42,7 @@ _REWRITES = (
     (r"\bat its foot\b", "at the foot of it"),
     (r"\b(?:at|by|on) its sides?\b", "beside it"),
     (r"\b(?:on|to|at) its (left|right)\b", r"\1 of it"),
-    (r"\b(?:aligned|lined up|in a (?:row|line))\b(?! with)", "aligned with each other"),
+    (r"\b(?:aligned|lined up)\b(?! with)", "aligned with each other"),
     (r"\b(?:that|which|who)\b", " "),
     (
         r"\b(?:is|are|(?<!night )(?<!tv )(?<!television )(?<!coat )(?<!umbrella )(?<!hat )stands?|sits?|hangs?|lies|placed|positioned|located|standing|hanging|leaning|lying|arranged|mounted|set)\b",
@@ -63,8 +64,6 @@ _EACH = re.compile(r"^(?:(.*) )?(?:each|both)(?: of (?:them|these|those|the \w+)
 """A clause after which everything is meant once for each: "two desks, each with a lamp"."""
 _FIGURES = re.compile(r"\b(?:an? )((?:l|u|ring|circle|semicircle|half circle|triangle)(?:[ -]shaped?)? of)\b")
 """Arrangements that are read as no relation."""
-_ROWS = re.compile(r"\b(an?|two|three|four|[1-4]) rows? of (two|three|four|five|six|[2-6]) ((?:[a-z-]+ )*?[a-z-]+s)\b")
-"""So many in so many rows: "three rows of four desks"; the number is read, the rows are not."""
 _NOT_WISHED = re.compile(
     r"\b(?:(?:with|has|have|having|there (?:is|are)|needs?|want) )?(?:no|without|not any)(?: any| a| an)? "
     r"((?:[a-z-]+ )*?[a-z-]+?(?:,? (?:or|nor) (?:any |a |an |no )?(?:[a-z-]+ )*?[a-z-]+?)*)(?=,|;|\.| and | but | with | in | on | at | by |$)"
@@ -104,6 +103,8 @@ class RequestedObject:
     appearance: tuple[str, ...] = ()
     """Adjectives: colours, materials, styles."""
     wishes: tuple[Wish, ...] = ()
+    rows: int = 0
+    """In how many rows they stand; 0 where nothing is said."""
 
 
 @dataclass(frozen=True)
@@ -142,11 +143,10 @@ def understood_prompt(prompt: str) -> RoomRequest:
     room, rest = _room(text)
     named = rest != text
     rest, excluded = _without_unwished(rest)
-    rows = [f"{match[1]} rows" for match in _ROWS.finditer(rest)]
-    rest = _ROWS.sub(lambda m: f"{_number(m[1]) * _number(m[2])} {m[3]}", rest)
+    rest, too_long = with_marks(rest)
     for pattern, form in _REWRITES:
         rest = re.sub(pattern, form, rest)
-    reading = _Reading(ignored=[*rows, *(match.group(1) for match in _FIGURES.finditer(rest))])
+    reading = _Reading(ignored=[*too_long, *(match.group(1) for match in _FIGURES.finditer(rest))])
     for sentence in re.split(r"[;.]", rest):
         reading.hosts = None
         for clause in _JOINTS.split(sentence):
@@ -173,10 +173,6 @@ def _without_unwished(text: str) -> tuple[str, tuple[str, ...]]:
         openings = (name for name in ("window", "door") if re.search(rf"\b{name}s?\b", match[1]))
         excluded += [*(p.category for p in phrases if p is not None and p.label), *openings]
     return _NOT_WISHED.sub(" ", text), tuple(dict.fromkeys(excluded))
-
-
-def _number(word: str) -> int:
-    return int(word) if word.isdigit() else NUMBERS[word]
 
 
 def _read(reading: _Reading, clause: str) -> None:
@@ -225,9 +221,19 @@ def _subject(reading: _Reading, phrase: NounPhrase | None) -> int | None:
         known = next((k for k, o in enumerate(reading.objects) if o.category == phrase.category), None)
         if known is not None:
             return known
-    count = min(phrase.count * _times(reading, phrase.category), MAX_OF_A_KIND)
-    reading.objects.append(RequestedObject(phrase.category, phrase.label, count, phrase.appearance))
+    count = min(phrase.count * _times(reading, phrase.category), max(MAX_OF_A_KIND, phrase.count))
+    reading.objects.append(_requested(phrase, count))
     return len(reading.objects) - 1
+
+
+def _requested(phrase: NounPhrase, count: int) -> RequestedObject:
+    """Rows are of what stands on the floor; what hangs or lies on others in a row is aligned."""
+    request = RequestedObject(phrase.category, phrase.label, count, phrase.appearance)
+    if not phrase.rows or count < 2:
+        return request
+    if category(phrase.category).mount == "floor":
+        return replace(request, rows=min(phrase.rows, count))
+    return replace(request, wishes=(Wish("aligned with", each_other=True),))
 
 
 def _times(reading: _Reading, category: str) -> int:
@@ -353,7 +359,7 @@ def _target(reading: _Reading, words: str, own: int | None, kind: RelationKind) 
     if kin is None and phrase.category not in ("window", "door"):
         # "A lamp on each night stand" means at least two.
         count = max(phrase.count, 2) if phrase.every else phrase.count
-        reading.objects.append(RequestedObject(phrase.category, phrase.label, count, phrase.appearance))
+        reading.objects.append(_requested(phrase, count))
     return kin or phrase.category
 
 

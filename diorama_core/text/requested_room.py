@@ -16,12 +16,15 @@ from diorama_core.synthesis.grammar import RECIPES
 from diorama_core.synthesis.openings import add_door, add_window
 from diorama_core.synthesis.plan import room_plan
 from diorama_core.text.customs import ESSENTIALS, HOSTS, stands_in_for
+from diorama_core.text.placed_rows import rows_of
 from diorama_core.text.prompt import RequestedObject, RoomRequest
 
 FREE_SHARE = 0.28
 """At most this share of a room's floor is under furniture."""
 MIN_AREA_M2, MIN_SHARE, MIN_SIDE_M = 8.5, 0.6, 2.3
 """Rooms are no smaller, nor smaller than this share of those of their kind: a few pieces are lost in large ones."""
+AROUND_ROWS_M = 0.7
+"""Free floor around objects in rows."""
 
 
 def with_essentials(request: RoomRequest) -> tuple[list[RequestedObject], tuple[str, ...]]:
@@ -64,6 +67,9 @@ def empty_room(
     low = np.array([recipe.width_m[0], recipe.depth_m[0]])
     area = max(taken / FREE_SHARE, MIN_AREA_M2, MIN_SHARE * float(np.prod(low)))
     low = np.maximum(low * float(np.sqrt(area / float(np.prod(low)))), MIN_SIDE_M) * factor
+    for k, o in enumerate(wanted):
+        if o.rows and shapes[k]:
+            low = np.maximum(low, np.sort(rows_of(o, shapes[k][0]).block_m[:2]) + 2 * AROUND_ROWS_M)
     wide, deep = ((float(a), 1.08 * float(a)) for a in low)
     f = Furnisher(room_plan(rng, wide, deep, "box"), library, rng)
     add_door(f)

@@ -92,7 +92,8 @@ def test_tables_have_seats_for_as_many_as_they_are_for(prompt: str, seats: int) 
 def test_as_many_are_asked_for_as_people_mean(prompt: str, counts: dict[str, int]) -> None:
     request = understood_prompt(prompt)
     assert {o.category: o.count for o in request.objects} == counts
-    assert any("rows" in words for words in request.ignored) == ("rows" in prompt)
+    assert not request.ignored
+    assert [o.rows for o in request.objects if o.label == "desks"] == ([3] if "rows" in prompt else [])
 
 
 @pytest.mark.parametrize(

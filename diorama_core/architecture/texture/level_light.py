@@ -7,11 +7,11 @@ goes with it: boards, tiles and carpets have joints and threads, a blurred mirro
 
 from __future__ import annotations
 
-import cv2
 import numpy as np
 from jaxtyping import Bool, Float32
 
 from diorama_core.architecture.texture.quilting import broad_shading
+from diorama_core.architecture.texture.wide_blur import wide_blur
 
 FINE_M, PATTERN_M = 0.03, 0.25
 """Detail is finer than the first; what is broader than the second is light."""
@@ -54,9 +54,7 @@ def _share_of_material(
 ) -> Float32[np.ndarray, "h w"]:
     """How much of what varies as broadly as a pattern is one, 0 to 1, by the fine detail around."""
     around = np.stack([(fine**2).mean(axis=-1), (pattern**2).mean(axis=-1)], axis=-1)
-    weight = np.maximum(cv2.GaussianBlur(own.astype(np.float32), (0, 0), width_px), 1e-4)
-    energy = (
-        cv2.GaussianBlur(np.asarray(around * own[..., None], dtype=np.float32), (0, 0), width_px) / weight[..., None]
-    )
+    weight = np.maximum(wide_blur(own.astype(np.float32), width_px), 1e-4)
+    energy = wide_blur(np.asarray(around * own[..., None], dtype=np.float32), width_px) / weight[..., None]
     expected = WITH_EDGES**2 * energy[..., 1] + _MIN_LEVELS**2
     return np.asarray(np.minimum((energy[..., 0] + _MIN_LEVELS**2) / expected, 1.0), dtype=np.float32)

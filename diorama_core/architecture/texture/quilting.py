@@ -10,6 +10,8 @@ import cv2
 import numpy as np
 from jaxtyping import Bool, Float32
 
+from diorama_core.architecture.texture.wide_blur import wide_blur
+
 BLOCKS_PX = ((96, 200, 384), (48, 24, 49), (32, 60, 33), (20, 400, 21))
 """Sizes of the copied squares, how many must have been seen, and least sides of the picture.
 
@@ -184,6 +186,6 @@ def broad_shading(
     colours: Float32[np.ndarray, "h w 3"], seen: Bool[np.ndarray, "h w"], width_px: float
 ) -> Float32[np.ndarray, "h w 3"]:
     """The colours without detail finer than about `width_px`, from what was seen only."""
-    weight = cv2.GaussianBlur(seen.astype(np.float32), (0, 0), width_px)[..., None]
-    blurred = cv2.GaussianBlur((colours * seen[..., None]).astype(np.float32), (0, 0), width_px)
+    weight = wide_blur(seen.astype(np.float32), width_px)[..., None]
+    blurred = wide_blur((colours * seen[..., None]).astype(np.float32), width_px)
     return np.asarray(blurred / np.maximum(weight, 1e-4), dtype=np.float32)

@@ -1,4 +1,4 @@
-"""Scenes from text: sixty prompts with what each asks for, as a person wrote it down; thirty are for reporting."""
+"""Scenes from text: 64 prompts with what each asks for, as a person wrote it down; thirty are for reporting."""
 
 from __future__ import annotations
 
@@ -75,6 +75,7 @@ def prompts_of(series: str) -> tuple[Asked, ...]:
             row["has"],
             {name: tuple(words) for name, words in row["looks"].items()},
             tuple((r[0], r[1], tuple(r[2:])) for r in row["relations"]),
+            {name: (rows, each) for name, (rows, each) in row.get("rows", {}).items()},
         )
         for row in json.loads(text)[series]
     )
@@ -82,7 +83,7 @@ def prompts_of(series: str) -> tuple[Asked, ...]:
 
 def run(
     library: ShapeLibrary,
-    scenes: int = 60,
+    scenes: int = 64,
     seed: int = 0,
     progress: Progress | None = None,
     *,
@@ -104,7 +105,9 @@ def run(
     """
     progress = progress or Progress()
     compose = compose or _composed
-    wanted = [(name, asked) for name in SERIES for asked in prompts_of(name)[: (scenes + 1) // 2]][:scenes]
+    series = {name: prompts_of(name) for name in SERIES}
+    first = (scenes + 1) // 2 if scenes < sum(map(len, series.values())) else scenes
+    wanted = [(name, asked) for name in SERIES for asked in series[name][:first]][:scenes]
     found: list[Measured] = []
     tiles: list[np.ndarray] = []
     for k, (name, asked) in enumerate(wanted):

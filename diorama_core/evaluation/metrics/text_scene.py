@@ -7,7 +7,7 @@ accessibility, out of bounds. Shares of 0 to 1.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import cv2
 import numpy as np
@@ -31,6 +31,8 @@ BEFORE_M = 0.5
 """Floor before an object that people need to use it."""
 CONTACT_M = 0.015
 OUTSIDE_M = 0.05
+ROW_OFF_M, ROW_GAP_M, ROW_TURNED_RAD = 0.08, 1.0, 0.1
+"""Of objects in a row: how far from its line, how far apart, how far turned from one another at most."""
 
 
 @dataclass(frozen=True)
@@ -42,6 +44,8 @@ class Asked:
     looks: Mapping[str, tuple[str, ...]]
     relations: tuple[tuple[str, RelationKind, tuple[str, ...]], ...]
     """Category, relation, categories of its targets (none for relations to the room)."""
+    rows: Mapping[str, tuple[int, int]] = field(default_factory=dict)
+    """By category in how many rows of how many they stand."""
 
 
 @dataclass(frozen=True)
@@ -137,7 +141,31 @@ def _relations(
         tally[1] += 1
         if not good:
             failures.append(f"{name} {kind} {' and '.join(targets)}: {met} of {number}")
+    for name, (rows, each) in asked.rows.items():
+        good = are_in_rows(_named(scene, name), rows, each)
+        between[0] += good
+        between[1] += 1
+        if not good:
+            failures.append(f"{name} not in {rows} x {each}")
     return (between[0], between[1]), (to_room[0], to_room[1])
+
+
+def are_in_rows(items: Sequence[SceneObject], rows: int, each: int) -> bool:
+    """Whether objects stand in rows: parallel, as many in each, evenly side by side, the rows clear of one another."""
+    if len(items) != rows * each:
+        return False
+    first = items[0].pose
+    turned = np.array([item.pose.yaw_rad - first.yaw_rad for item in items])
+    if np.abs(np.sin(turned)).max() > np.sin(ROW_TURNED_RAD):
+        return False
+    local = np.array([(item.pose.position - first.position) @ first.R_world_object for item in items])
+    order = np.argsort(local[:, 0], kind="stable")
+    depths, asides = local[order, 0].reshape(rows, each), np.sort(local[order, 1].reshape(rows, each), axis=1)
+    straight = np.ptp(depths, axis=1).max() <= ROW_OFF_M
+    apart = rows == 1 or np.diff(depths.mean(axis=1)).min() >= float(items[0].size_m[0])
+    pitch = np.diff(asides, axis=1)
+    even = each == 1 or (np.ptp(pitch) <= 2 * ROW_OFF_M and pitch.max() <= float(items[0].size_m[1]) + ROW_GAP_M)
+    return bool(straight and apart and even)
 
 
 def _holds(scene: Scene, item: SceneObject, kind: RelationKind, targets: Sequence[str], frame: RoomFrame) -> bool:

@@ -33,11 +33,11 @@ def room() -> Scene:
     return composed_room(PROMPT, built_in_library()).scene
 
 
-def test_prompts_are_sixty_and_ask_for_what_there_is() -> None:
+def test_prompts_are_64_and_ask_for_what_there_is() -> None:
     prompts = [asked for series in SERIES for asked in prompts_of(series)]
-    assert len({asked.prompt for asked in prompts}) == 60
+    assert len({asked.prompt for asked in prompts}) == 64
     for asked in prompts:
-        names = {*asked.counts, *asked.looks, *(n for s, _, t in asked.relations for n in (s, *t))}
+        names = {*asked.counts, *asked.looks, *asked.rows, *(n for s, _, t in asked.relations for n in (s, *t))}
         assert all(category(name).name == name for name in names)
         assert all(kind in RELATION_KINDS for _, kind, _ in asked.relations)
 
