@@ -14,7 +14,7 @@ import numpy as np
 from jaxtyping import Float
 
 from diorama_core.geometry.sat import place_bodies
-from diorama_core.layout.feasible.hidden_extents import MIN_SHARE, free_m, is_hidden, reaching_in_m
+from diorama_core.layout.feasible.hidden_extents import MIN_SHARE, covers_box, free_m, is_hidden, reaching_in_m
 from diorama_core.layout.feasible.photo_observations import PhotoObservations
 from diorama_core.layout.feasible.relocate import cheapest_spot
 from diorama_core.layout.feasible.resize import MAX_PAIRS, WORTH
@@ -30,7 +30,7 @@ LEVEL = 0.3
 """A direction whose cosine to a support's normal is smaller lies in the support."""
 
 
-def ending_apart(program: Program, observations: PhotoObservations, seen: Float[np.ndarray, "n 3 3"]) -> Structure:
+def ending_apart(program: Program, observations: PhotoObservations, outline_cost: Float[np.ndarray, " n"]) -> Structure:
     """The structure with colliding objects cut on one side where that costs less than the moves it saves.
 
     What would have to move as far nevertheless keeps its size.
@@ -38,7 +38,7 @@ def ending_apart(program: Program, observations: PhotoObservations, seen: Float[
     Args:
         program: the moves that are possible, and what they cost.
         observations: what the camera saw.
-        seen: cost of each object's move w in the world: w^T seen w, as in `build_program`.
+        outline_cost: what a metre of outline counts, by object, in the unit of `Program.cost`.
     """
     structure, y = program.structure, base(program)
     pairs = overlaps(program, y)[1]
@@ -48,7 +48,7 @@ def ending_apart(program: Program, observations: PhotoObservations, seen: Float[
         options = [
             (cost, *cut)
             for k, other in (pair, pair[::-1])
-            for cost, *cut in _cuts(settled, start, observations, k, other, seen[k])
+            for cost, *cut in _cuts(settled, start, observations, k, other, float(outline_cost[k]))
         ]
         cost, k, p, scale = min(options, key=lambda option: option[:2], default=(np.inf, -1, None, None))
         if cost < WORTH * _move_cost(program, y, pair):
@@ -88,7 +88,7 @@ def _cuts(
     observations: PhotoObservations,
     k: int,
     other: int,
-    seen: Float[np.ndarray, "3 3"],
+    outline_cost: float,
 ) -> Iterator[tuple[float, int, Float[np.ndarray, "3"], Float[np.ndarray, "3"]]]:
     """What it costs to end an object before another on each of its sides: cost, object, its centre and its scale."""
     place = settled.surface[k]
@@ -107,10 +107,11 @@ def _cuts(
             extent = float(settled.shape_size[k, axis] * settled.scale[k, axis])
             face = settled.p[k] + 0.5 * extent * outward
             cut = reaching_in_m(settled, k, [other], settled.p, settled.scale, axis, outward)
-            hidden = is_hidden(observations, k, settled.p[k], face)
             least = MIN_SHARE * float(start.shape_size[k, axis] * start.scale[k, axis])
             if not 0.0 < cut <= min(free_m(settled, k, float(face @ outward), outward), extent - least):
                 continue
-            cost = (HIDDEN_SIDE if hidden else ONE_SIDE) * cut * float(np.sqrt(outward @ seen @ outward))
             shorter = settled.scale[k] * np.where(np.arange(3) == axis, 1.0 - cut / extent, 1.0)
-            yield cost, k, settled.p[k] - 0.5 * cut * outward, shorter
+            nearer = settled.p[k] - 0.5 * cut * outward
+            hidden = is_hidden(observations, k, settled.p[k], face)
+            hidden = hidden and covers_box(start, observations, k, nearer, shorter)
+            yield (HIDDEN_SIDE if hidden else ONE_SIDE) * cut * outline_cost, k, nearer, shorter

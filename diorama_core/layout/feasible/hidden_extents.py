@@ -64,7 +64,7 @@ def ending_before_neighbours(problem: Problem, observations: PhotoObservations) 
                 cut = min(cut, free_m(problem, i, float(face @ outward), outward), extent - least)
                 shorter = scale[i] * np.where(np.arange(3) == axis, 1.0 - cut / extent, 1.0)
                 nearer = p[i] - 0.5 * cut * outward
-                if cut > MIN_OVERLAP_M and _covers_box(problem, observations, i, nearer, shorter):
+                if cut > MIN_OVERLAP_M and covers_box(problem, observations, i, nearer, shorter):
                     scale[i], p[i] = shorter, nearer
     return replace(problem, scale=scale, p=p)
 
@@ -134,7 +134,7 @@ def is_hidden(
     return side in sides and bool(observations.hidden[i, side if step[side] < 0 else side + 2])
 
 
-def _covers_box(
+def covers_box(
     problem: Problem, observations: PhotoObservations, i: int, p: Float[np.ndarray, "3"], scale: Float[np.ndarray, "3"]
 ) -> bool:
     """Whether an object still reaches to the sides of its box in the photo to which it reached as observed."""

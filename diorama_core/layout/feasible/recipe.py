@@ -117,10 +117,8 @@ class FeasibleRecipe:
             structure = exact_structure(wanted, self._rays(wanted, scene.camera), seen, eye=eye)
             program = build_program(wanted, structure, *self._costs(wanted, scene.camera))
             if seen is not None:
-                beside, across = self._costs(wanted, scene.camera)
-                assert across is not None, "there is a camera"
-                structure = ending_apart(program, seen, across)
-                program = build_program(wanted, structure, beside, across)
+                structure = ending_apart(program, seen, self._outline_cost(wanted))
+                program = build_program(wanted, structure, *self._costs(wanted, scene.camera))
                 structure = fitted_sizes(program, self._outline_cost(wanted))
                 program = build_program(wanted, structure, *self._costs(wanted, scene.camera))
             check = self._watcher(scene, program, progress, preview)
