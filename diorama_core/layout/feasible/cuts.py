@@ -19,6 +19,7 @@ from diorama_core.layout.feasible.photo_observations import PhotoObservations
 from diorama_core.layout.feasible.relocate import cheapest_spot
 from diorama_core.layout.feasible.resize import MAX_PAIRS, WORTH
 from diorama_core.layout.feasible.separate import Program, base, overlaps
+from diorama_core.layout.feasible.settle import SMALLEST_SHRINK
 from diorama_core.layout.feasible.structure import Structure, with_sizes
 from diorama_core.layout.problem.problem import Problem
 
@@ -114,4 +115,6 @@ def _cuts(
             nearer = settled.p[k] - 0.5 * cut * outward
             hidden = is_hidden(observations, k, settled.p[k], face)
             hidden = hidden and covers_box(start, observations, k, nearer, shorter)
+            if not hidden and extent - cut < SMALLEST_SHRINK * float(start.shape_size[k, axis] * start.scale[k, axis]):
+                continue
             yield (HIDDEN_SIDE if hidden else ONE_SIDE) * cut * outline_cost, k, nearer, shorter
