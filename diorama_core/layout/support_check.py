@@ -265,7 +265,8 @@ def _better(
 ) -> Support | None:
     """The supporter that is there, where the measured gap contradicts the edge; None where it may stay.
 
-    What lies on the same supporter right under the object is there, too: a tray under a bottle. How far an object
+    What lies on the same supporter right under the object is there, too: a tray under a bottle, but not one remote
+    control under another that lies beside it. How far an object
     reaches down through the places of what it has entered says nothing: its foot was not seen.
     """
     gap = _gap(scene, library, item, edge) + inside
@@ -281,13 +282,22 @@ def _better(
         beneath = scene.support_of(other.parent)
         between = beneath is not None and beneath.parent == edge.parent and _is_thin(scene, other.parent, limit)
         between = between and edge.relation == "placed on"
-        between = between and (noise.measured or _carries(scene, other.parent))
+        between = between and (
+            _is_over(scene, library, item, other) if noise.measured else _carries(scene, other.parent)
+        )
         # Against a measured gap that is many times as large, a foot that is hidden does not count.
         reached = np.inf if noise.measured else max(limit, UNUSUAL_M * unusual)
         most = min(CLEARLY * gap, reached) if contradicted else limit * between
         if cost <= max(most, inside):
             options.append((cost, other.parent, other))
     return min(options, key=lambda option: option[:2])[2] if options else None
+
+
+def _is_over(scene: Scene, library: ShapeLibrary, item: SceneObject, edge: Support) -> bool:
+    """Whether an object's middle is over the place on which an edge puts it: beside a thin thing it lies on another."""
+    parent = scene.object(edge.parent)
+    surface = choose_surface(scene, item, edge, library.shape(parent.shape_id))
+    return outside_m(surface.in_world(parent.pose), item.pose.position) == 0.0
 
 
 def _is_thin(scene: Scene, object_id: str, limit_m: float) -> bool:

@@ -127,15 +127,18 @@ def test_a_vase_hung_within_a_cabinet_stands_on_it_with_all_its_shapes(room: Roo
     np.testing.assert_allclose(found.candidates[0].pose.scale, found.pose.scale)
 
 
-def test_a_cup_measured_on_a_plate_is_on_the_plate(room: Room) -> None:
+@pytest.mark.parametrize("beside", [False, True])
+def test_a_cup_measured_over_a_plate_is_on_the_plate_and_beside_it_on_the_table(room: Room, *, beside: bool) -> None:
     table = room.put("table_0", (0.0, 0.0, 0.37))
     top = float(room.scene().object(table).corners_world[:, 2].max())
     flat = 0.02 / LIBRARY.shape("box_24").size_m[2]
     plate = room.put("box_24", (0.0, 0.0, top + 0.01), on=table, scale=(0.7, 0.7, flat))
     room.objects[-1] = replace(room.objects[-1], category="plate")
-    cup = room.put("cup_21", (0.0, 0.0, top + 0.02 + LIBRARY.shape("cup_21").size_m[2] / 2), on=table)
+    edge = float(room.objects[-1].size_m[1]) / 2
+    foot = top if beside else top + 0.02
+    cup = room.put("cup_21", (0.0, (edge + 0.01) * beside, foot + LIBRARY.shape("cup_21").size_m[2] / 2), on=table)
     checked, _ = checked_supports(room.scene(camera=looking_north()), LIBRARY, MEASURED)
-    assert checked.support_of(cup).parent == plate
+    assert checked.support_of(cup).parent == (table if beside else plate)
     assert checked.support_of(plate).parent == table
 
 

@@ -57,14 +57,14 @@ def ending_before_neighbours(problem: Problem, observations: PhotoObservations) 
                 outward = sign * problem.R[i][:, axis]
                 extent = float(problem.shape_size[i, axis] * scale[i, axis])
                 face = p[i] + 0.5 * extent * outward
-                if not _is_hidden(observations, i, p[i], face):
+                if not is_hidden(observations, i, p[i], face):
                     continue
-                cut = _overlap_m(problem, i, neighbours, p, scale, axis, outward)
+                cut = reaching_in_m(problem, i, neighbours, p, scale, axis, outward)
                 least = MIN_SHARE * float(problem.shape_size[i, axis] * problem.scale[i, axis])
-                cut = min(cut, _free_m(problem, i, float(face @ outward), outward), extent - least)
+                cut = min(cut, free_m(problem, i, float(face @ outward), outward), extent - least)
                 shorter = scale[i] * np.where(np.arange(3) == axis, 1.0 - cut / extent, 1.0)
                 nearer = p[i] - 0.5 * cut * outward
-                if cut > MIN_OVERLAP_M and _covers_box(problem, observations, i, nearer, shorter):
+                if cut > MIN_OVERLAP_M and covers_box(problem, observations, i, nearer, shorter):
                     scale[i], p[i] = shorter, nearer
     return replace(problem, scale=scale, p=p)
 
@@ -84,7 +84,7 @@ def ending_on_walls(problem: Problem, observations: PhotoObservations) -> Proble
                 outward = sign * problem.R[i][:, axis]
                 extent = float(problem.shape_size[i, axis] * scale[i, axis])
                 face = p[i] + 0.5 * extent * outward
-                if abs(float(outward @ wall.normal)) > UPRIGHT or not _is_hidden(observations, i, p[i], face, (0, 1)):
+                if abs(float(outward @ wall.normal)) > UPRIGHT or not is_hidden(observations, i, p[i], face, (0, 1)):
                     continue
                 beyond = float(face @ outward) - float((wall.polygon @ outward).max())
                 least = MIN_SHARE * float(problem.shape_size[i, axis] * problem.scale[i, axis])
@@ -119,7 +119,7 @@ def reaching_ceilings(problem: Problem, observations: PhotoObservations) -> Prob
     return replace(problem, scale=scale, p=p)
 
 
-def _is_hidden(
+def is_hidden(
     observations: PhotoObservations, i: int, centre: np.ndarray, face: np.ndarray, sides: tuple[int, ...] = (0,)
 ) -> bool:
     """Whether a face of an object looks to a side of the picture on which something hides the object's end.
@@ -134,7 +134,7 @@ def _is_hidden(
     return side in sides and bool(observations.hidden[i, side if step[side] < 0 else side + 2])
 
 
-def _covers_box(
+def covers_box(
     problem: Problem, observations: PhotoObservations, i: int, p: Float[np.ndarray, "3"], scale: Float[np.ndarray, "3"]
 ) -> bool:
     """Whether an object still reaches to the sides of its box in the photo to which it reached as observed."""
@@ -149,7 +149,7 @@ def _covers_box(
     return bool((short <= np.maximum(slack, was_short + slack)).all())
 
 
-def _overlap_m(
+def reaching_in_m(
     problem: Problem,
     i: int,
     neighbours: Sequence[int],
@@ -158,7 +158,7 @@ def _overlap_m(
     axis: int,
     outward: np.ndarray,
 ) -> float:
-    """How far unrelated objects reach into an object from one of its sides, metres.
+    """How far other objects reach into an object from one of its sides, metres.
 
     Where boxes overlap and parts hardly do, as those of a chair under a table, it is as far as the parts are from being
     apart.
@@ -188,7 +188,7 @@ def _exit_m(problem: Problem, i: int, j: int, p: np.ndarray, scale: np.ndarray, 
     return float(exits(blocks, offsets, [np.ones(len(block.a)) for block in blocks], outward[None], APART_M)[0])
 
 
-def _free_m(problem: Problem, i: int, face: float, outward: np.ndarray) -> float:
+def free_m(problem: Problem, i: int, face: float, outward: np.ndarray) -> float:
     """How far a side may come in until it meets what the object holds up, metres."""
     loads = (
         problem.p[k] + box_corners(problem.shape_size[k] * problem.scale[k]) @ problem.R[k].T

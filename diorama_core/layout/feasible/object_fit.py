@@ -33,6 +33,7 @@ class ObjectFit:
 
     camera: Camera
     bounds_px: Float[np.ndarray, "4"]
+    """NaN for an object that reaches behind the camera: it has no outline, but points of it are tracked."""
     hidden: Bool[np.ndarray, "4"]
     loads: Float[np.ndarray, "m 2"]
     observed: Float[np.ndarray, "3"]
@@ -66,6 +67,22 @@ class ObjectFit:
 
         None when the object reaches the camera.
         """
+        outline = self._outline(x)
+        if outline is None:
+            return None
+        sight = self._sight(x)
+        if sight is None:
+            return None
+        distance = self._surface(x) if self.surface_measured else self._centre(x)
+        clamped = self._clamped()
+        held, gaps = self._held(x)
+        rows = [outline[0], sight[0], distance[0], held, clamped]
+        return np.vstack(rows), np.concatenate([outline[1], sight[1], distance[1], gaps, clamped @ x])
+
+    def _outline(self, x: Float[np.ndarray, "5"]) -> tuple[Float[np.ndarray, "r 5"], Float[np.ndarray, " r"]] | None:
+        """How the bounds of the outline leave where they were seen; None when the object reaches the camera."""
+        if not np.isfinite(self.bounds_px).all():
+            return np.zeros((0, 5)), np.zeros(0)
         arms = self.arms * (self.scale * np.exp(x[2:]))
         seen = self.camera.to_camera(self.anchor + self.basis @ x[:2] + arms @ self.R.T)
         if seen[:, 2].min() < NEAREST_M:
@@ -82,15 +99,7 @@ class ObjectFit:
         pixel[:, 2] = -focal * seen[extreme, axis] / depth**2
         outline, pixel = np.where(counts, outline, 0.0), np.where(counts[:, None], pixel, 0.0)
         to_metres = pixel @ self.camera.T_camera_world[:3, :3] * self.metres
-        J = np.column_stack([to_metres @ self.basis, (to_metres @ self.R) * arms[extreme]])
-        sight = self._sight(x)
-        if sight is None:
-            return None
-        distance = self._surface(x) if self.surface_measured else self._centre(x)
-        clamped = self._clamped()
-        held, gaps = self._held(x)
-        rows = [J, sight[0], distance[0], held, clamped]
-        return np.vstack(rows), np.concatenate([outline, sight[1], distance[1], gaps, clamped @ x])
+        return np.column_stack([to_metres @ self.basis, (to_metres @ self.R) * arms[extreme]]), outline
 
     def _placed(self, x: Float[np.ndarray, "5"]) -> tuple[Float[np.ndarray, "t 3"], Float[np.ndarray, "t 3"]]:
         """Arms of the tracked points at their sizes, and where they are before the camera."""

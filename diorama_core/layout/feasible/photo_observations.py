@@ -104,6 +104,28 @@ class PhotoObservations:
         least[members, 2] = most[members, 2] = scale[members]
         return replace(self, least=least, most=most)
 
+    def replaced(self, members: Int[np.ndarray, " m"], other: PhotoObservations) -> PhotoObservations:
+        """The same with all that was seen of some objects as others have it, but for what decided their heights."""
+
+        def rows(own: np.ndarray, theirs: np.ndarray) -> np.ndarray:
+            changed = own.copy()
+            changed[members] = theirs[members]
+            return changed
+
+        least, most = rows(self.least, other.least), rows(self.most, other.most)
+        least[:, 2], most[:, 2] = self.least[:, 2], self.most[:, 2]
+        return replace(
+            self,
+            bounds_px=rows(self.bounds_px, other.bounds_px),
+            hidden=rows(self.hidden, other.hidden),
+            observed=rows(self.observed, other.observed),
+            least=least,
+            most=most,
+            loads=tuple(other.loads[i] if i in members else own for i, own in enumerate(self.loads)),
+            tracked=tuple(other.tracked[i] if i in members else own for i, own in enumerate(self.tracked)),
+            contradicted=rows(self.contradicted, other.contradicted),
+        )
+
     def fitted(
         self,
         i: int,

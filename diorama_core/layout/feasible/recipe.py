@@ -10,6 +10,8 @@ import numpy as np
 from jaxtyping import Float
 
 from diorama_core.artefacts import LayoutReport, PhotoDisagreement
+from diorama_core.layout.feasible.along_walls import turned_along_walls
+from diorama_core.layout.feasible.cuts import ending_apart
 from diorama_core.layout.feasible.heights import joint_heights
 from diorama_core.layout.feasible.hidden_extents import ending_before_neighbours, ending_on_walls, reaching_ceilings
 from diorama_core.layout.feasible.photo_observations import PhotoObservations, disagreements, photo_observations
@@ -18,6 +20,7 @@ from diorama_core.layout.feasible.resize import fitted_sizes
 from diorama_core.layout.feasible.separate import Program, Separation, base, build_program, relaxed, separate
 from diorama_core.layout.feasible.structure import Structure, exact_structure
 from diorama_core.layout.feasible.visible_points import ObservedView, VisiblePoints
+from diorama_core.layout.feasible.wide_supports import reaching_loads
 from diorama_core.layout.problem.problem import Problem, build_problem
 from diorama_core.layout.report import measure
 from diorama_core.layout.weights import AS_IT_IS, Weights
@@ -88,12 +91,25 @@ class FeasibleRecipe:
         visible = {} if seen_before is None else seen_before.points
         observations = self._observations(problem, scene.camera, visible)
         wanted = problem
+        if observations is not None:
+            wanted = turned_along_walls(wanted, observations)
+            observations = self._observations(wanted, scene.camera, visible)
         if observations is not None and not self.sizes_reasoned:  # reasoned distances overlap for other reasons
-            wanted = ending_on_walls(ending_before_neighbours(problem, observations), observations)
+            wanted = ending_on_walls(ending_before_neighbours(wanted, observations), observations)
             wanted = reaching_ceilings(wanted, observations)
             observations = self._observations(wanted, scene.camera, visible)
         if observations is not None and self.depth_measured:
             wanted, observations = joint_heights(wanted, observations)
+        if observations is not None:
+            assert scene.camera is not None, "something observed it"
+            eye = scene.camera.position if self.sizes_reasoned else None
+            settled = exact_structure(wanted, self._rays(wanted, scene.camera), observations, eye=eye)
+            wider = reaching_loads(wanted, settled, eye)
+            grown = np.flatnonzero((wider.scale != wanted.scale).any(axis=1))
+            if len(grown):
+                anew = self._observations(wider, scene.camera, visible)
+                assert anew is not None, "it was observed before"
+                wanted, observations = wider, observations.replaced(grown, anew)
         best: tuple[Problem, Program, Separation] | None = None
         for _ in range(self.attempts):
             seen = None if observations is None else observations.limited(wanted.scale)
@@ -101,6 +117,8 @@ class FeasibleRecipe:
             structure = exact_structure(wanted, self._rays(wanted, scene.camera), seen, eye=eye)
             program = build_program(wanted, structure, *self._costs(wanted, scene.camera))
             if seen is not None:
+                structure = ending_apart(program, seen, self._outline_cost(wanted))
+                program = build_program(wanted, structure, *self._costs(wanted, scene.camera))
                 structure = fitted_sizes(program, self._outline_cost(wanted))
                 program = build_program(wanted, structure, *self._costs(wanted, scene.camera))
             check = self._watcher(scene, program, progress, preview)

@@ -53,7 +53,8 @@ def fitted_sizes(program: Program, outline_cost: Float[np.ndarray, " n"]) -> Str
         if cost < WORTH * moved:
             factors[k] = factor
     scale, p = _resting(program, factors)
-    reduced = tuple(int(k) for k in np.flatnonzero((factors < 1.0).any(axis=1)))
+    smaller = np.flatnonzero((factors < 1.0).any(axis=1))
+    reduced = tuple(sorted({*program.structure.reduced, *map(int, smaller)}))
     return replace(program.structure, scale=scale, p=p, reduced=reduced)
 
 

@@ -135,11 +135,25 @@ def _within_support(
 
     The object is shrunk where it does not fit and set on its surface first.
     """
-    m = surface.outward
-    reach = _fit(problem, walk, i, surface, m, surface.offset)
+    reach = _fit(problem, walk, i, surface, surface.outward, surface.offset)
     walk.p[i] = walk.p[i] + _lift(problem, walk, i, surface) * surface.normal
-    slack = surface.offset - m @ _contact_centre(problem, walk, i) - reach - INSET_M
-    rows = m @ walk.basis[i]
+    return sides(surface, _contact_centre(problem, walk, i), reach, walk.basis[i])
+
+
+def sides(
+    surface: Surface, contact: Float[np.ndarray, "3"], reach: Float[np.ndarray, " s"], basis: Float[np.ndarray, "3 2"]
+) -> tuple[Float[np.ndarray, "k 3"], Float[np.ndarray, " k"]]:
+    """Outward normals of a support's sides that an object's free coordinates can meet, and how far each is.
+
+    Args:
+        surface: where the object rests, in the world.
+        contact: centre of its contact face.
+        reach: of the contact face along each side's outward normal, metres.
+        basis: world directions in which the object may move.
+    """
+    m = surface.outward
+    slack = surface.offset - m @ contact - reach - INSET_M
+    rows = m @ basis
     mobile = (rows * rows).sum(axis=1) > 1e-12
     return m[mobile], slack[mobile]
 

@@ -38,7 +38,10 @@ VisiblePoints = Mapping[str, Float[np.ndarray, "_ 3"]]
 
 @dataclass(frozen=True, eq=False)
 class TrackedPoints:
-    """Points of one object and where the camera saw them; none for an object that reaches behind the camera."""
+    """Points of one object and where the camera saw them.
+
+    None where its middle is behind the camera, or it reaches there and nothing of its surface is seen.
+    """
 
     points: Float[np.ndarray, "m 3"]
     """Object frame, scale 1."""
@@ -126,11 +129,12 @@ def tracked_points(
     found = []
     for i, name in enumerate(problem.ids):
         points = visible.get(name, np.zeros((0, 3)))
-        seen = len(points) >= MIN_POINTS
+        before = float(camera.to_camera(problem.p[i : i + 1])[0, 2]) >= NEAREST_M
+        seen = before and len(points) >= MIN_POINTS
         points = points if seen else box_corners(problem.shape_size[i])
         world = problem.p[i] + (points * problem.scale[i]) @ problem.R[i].T
         depth = camera.to_camera(world)[:, 2]
-        if not np.isfinite(posed_px[i]).all() or depth.min() < NEAREST_M:
+        if depth.min() < NEAREST_M or not (seen or np.isfinite(posed_px[i]).all()):
             found.append(TrackedPoints(np.zeros((0, 3)), np.zeros((0, 2)), np.zeros(0), seen=False))
             continue
         pixels = camera.project(world)

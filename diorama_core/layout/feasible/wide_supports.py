@@ -1,0 +1,99 @@
+"""Supporters that reach as far as what was seen on them.
+
+A retrieved table is shorter than the true one, or its far end was a guess. A load that was seen beyond its edge would
+have to leave the place where it was seen, and for a small thing that is all of its outline; with one side of the table
+farther out, only that side of the table changes.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+from jaxtyping import Float
+
+from diorama_core.layout.feasible.footprints import INSET_M
+from diorama_core.layout.feasible.photo_observations import MAX_STRETCH, UPWARD
+from diorama_core.layout.feasible.settle import MAX_GROWTH, MIN_SLANT
+from diorama_core.layout.feasible.structure import Structure
+from diorama_core.layout.problem.footing import reach_of
+from diorama_core.layout.problem.problem import Problem
+from diorama_core.layout.problem.supports import Surface
+
+MIN_BEYOND_M = 0.005
+"""Loads that reach less beyond an edge are brought back."""
+
+
+def reaching_loads(problem: Problem, structure: Structure, eye: Float[np.ndarray, "3"] | None) -> Problem:
+    """The problem with sides of supporters farther out, to where their loads were seen; by `MAX_STRETCH` at most.
+
+    Sides against walls stay.
+
+    Args:
+        problem: the observed poses and the graph.
+        structure: the same with every object on its support.
+        eye: the camera's position where sizes follow distances; a load is then seen where its line of sight meets its
+            place, in the size that it has there. None where distances were measured.
+    """
+    scale, p = problem.scale.copy(), problem.p.copy()
+    for j in range(problem.count):
+        loads = [i for i in np.flatnonzero(problem.parent == j) if _stands(problem, structure, int(i))]
+        if not problem.free[j] or not loads:
+            continue
+        for axis in range(3):
+            outward = structure.R[j][:, axis]
+            if abs(float(outward[2])) > 1.0 - UPWARD:
+                continue
+            for sign in (-1.0, 1.0):
+                if any(k == j and sign * float(face[axis]) > 0.5 for k, _, face in problem.adheres):
+                    continue
+                factor = max(_needed(problem, structure, int(i), sign * outward, axis, eye) for i in loads)
+                extent = float(problem.shape_size[j, axis] * scale[j, axis])
+                farther = extent * (min(factor, MAX_STRETCH) - 1.0)
+                scale[j, axis] *= 1.0 + farther / extent
+                p[j] = p[j] + 0.5 * farther * sign * problem.R[j][:, axis]
+    return replace(problem, scale=scale, p=p)
+
+
+def _stands(problem: Problem, structure: Structure, i: int) -> bool:
+    """Whether an object keeps its form on an upward place."""
+    place = structure.surface[i]
+    return place is not None and float(place.normal[2]) > UPWARD and float(problem.firm[i]) == 1.0
+
+
+def _needed(
+    problem: Problem, structure: Structure, i: int, outward: np.ndarray, axis: int, eye: np.ndarray | None
+) -> float:
+    """What the extent of a load's supporter must be multiplied by for its side to reach the load; 1 where it does."""
+    j = int(problem.parent[i])
+    own = structure.surface[i]
+    assert own is not None, "it stands on something"
+    place: Surface = own.at(structure.R[j], structure.p[j], structure.scale[j])
+    centre, grown = _seen(problem, i, place.level, eye)
+    reach = float(reach_of(problem.footing[i], structure.R[i], grown * problem.scale[i], outward[None])[0])
+    edge = float((place.polygon @ outward).max())
+    beyond = float(outward @ centre) + reach + INSET_M - edge
+    half = 0.5 * float(problem.shape_size[j, axis] * structure.scale[j, axis])
+    back = float(outward @ structure.p[j]) - half
+    return 1.0 + beyond / max(edge - back, 1e-6) if beyond > MIN_BEYOND_M and _is_near(place, outward, centre) else 1.0
+
+
+def _is_near(place: Surface, outward: np.ndarray, centre: np.ndarray) -> bool:
+    """Whether a point is beside a place only in one direction."""
+    across = np.array([-outward[1], outward[0], 0.0])
+    along = place.polygon @ across
+    return bool(along.min() <= float(across @ centre) <= along.max())
+
+
+def _seen(problem: Problem, i: int, level_m: float, eye: np.ndarray | None) -> tuple[Float[np.ndarray, "3"], float]:
+    """Where an object with its foot at a height is seen, and how many times as far away as it was observed."""
+    p = problem.p[i]
+    if eye is None:
+        return p, 1.0
+    sight = p - np.array([0.0, 0.0, 0.5 * float(problem.shape_size[i, 2] * problem.scale[i, 2])]) - eye
+    if abs(float(sight[2])) < MIN_SLANT * float(np.linalg.norm(sight)):
+        return p, 1.0
+    grown = (level_m - float(eye[2])) / float(sight[2])
+    if not 1.0 / MAX_GROWTH <= grown <= MAX_GROWTH:
+        return p, 1.0
+    return eye + grown * (p - eye), grown

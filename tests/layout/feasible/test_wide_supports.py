@@ -1,0 +1,61 @@
+"""Supporters reach as far as what was seen on them."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from diorama_core.layout.feasible.photo_observations import MAX_STRETCH
+from diorama_core.layout.feasible.structure import exact_structure
+from diorama_core.layout.feasible.wide_supports import reaching_loads
+from diorama_core.layout.problem.problem import Problem, build_problem
+from diorama_core.synthesis.layout_rooms import box_library
+from tests.layout.feasible.test_photo_observations import looking_north
+from tests.layout.small_rooms import Room
+
+LIBRARY = box_library()
+
+
+def reached(
+    room: Room, beyond_m: float, *, above_m: float = 0.0, eye: np.ndarray | None = None
+) -> tuple[Problem, Problem]:
+    """A table with a vase whose middle is beyond its right end; before and after."""
+    table = room.put("table_0", (0.0, 0.6, 0.37), id="a-table")
+    right = float(room.objects[0].corners_world[:, 0].max())
+    room.put("vase_20", (right + beyond_m, 0.6, 0.74 + above_m + 0.14), on=table, id="b-vase")
+    problem = build_problem(room.scene(camera=looking_north()), LIBRARY)
+    return problem, reaching_loads(problem, exact_structure(problem), eye)
+
+
+def sides(problem: Problem) -> tuple[float, float]:
+    half = 0.5 * np.abs(problem.R[0]) @ (problem.shape_size[0] * problem.scale[0])
+    return float(problem.p[0, 0] - half[0]), float(problem.p[0, 0] + half[0])
+
+
+def test_a_side_comes_out_to_its_load_and_the_other_stays(room: Room) -> None:
+    before, after = reached(room, 0.02)
+    vase = 0.5 * float(LIBRARY.shape("vase_20").size_m[1])
+    assert sides(after)[0] == pytest.approx(sides(before)[0])
+    assert sides(after)[1] == pytest.approx(before.p[1, 0] + vase, abs=2e-3)
+    np.testing.assert_array_equal(after.p[1], before.p[1])
+
+
+def test_sides_come_out_within_limits(room: Room) -> None:
+    before, after = reached(room, 1.0)
+    assert sides(after)[1] - sides(after)[0] == pytest.approx(MAX_STRETCH * (sides(before)[1] - sides(before)[0]))
+
+
+def test_what_carries_its_load_stays_as_it_is(room: Room) -> None:
+    before, after = reached(room, -0.3)
+    np.testing.assert_array_equal(after.scale, before.scale)
+    np.testing.assert_array_equal(after.p, before.p)
+
+
+def test_from_a_photo_alone_a_load_is_where_its_line_of_sight_meets_its_place(room: Room) -> None:
+    # Seen too high it is farther away than it was put, and with that farther to the right.
+    eye = looking_north().position
+    _, measured = reached(room, 0.02, above_m=0.04)
+    room.objects.clear()
+    room.supports.clear()
+    _, reasoned = reached(room, 0.02, above_m=0.04, eye=eye)
+    assert sides(reasoned)[1] > sides(measured)[1] + 0.02
