@@ -36,8 +36,8 @@ _ENLARGED_SIGMA_REASONED = 0.5
 """The same where sizes follow from a photo alone, and are those of the kind as much as of the thing."""
 _LIKELIHOOD_SIGMA = 0.15
 _LIKELIHOOD_FLOOR = 0.02
-_STRENGTH_OF_LIKE_SHAPES = 1.5
-"""As `_STRENGTH_WITH_DEPTH`, of shapes none of which is the very one."""
+_STRENGTH_OF_SHAPES = 3.0
+"""As `_STRENGTH_WITH_DEPTH`, when shapes are compared: outline and depth show which one it is."""
 _MISFIT_SIGMA = 0.2
 _OFF_AXIS_SIGMA_RAD = float(np.deg2rad(35.0))
 
@@ -121,30 +121,17 @@ class Evidence:
         """What a sure mask says of a shape's disagreement beyond its score, from a photo alone."""
         return _OF_SURE_OUTLINE * self.seen.mask_trust**4 * float(np.log(error + _NOISE_FLOOR))
 
-    def log_likelihood(
-        self, error: float, scale: Float[np.ndarray, "3"], limits: SizeLimits, *, in_library: bool = True
-    ) -> float:
+    def log_likelihood(self, error: float, scale: Float[np.ndarray, "3"], limits: SizeLimits) -> float:
         """How well one shape at its best pose explains the object, to compare shapes where depth was measured.
 
         Shapes are made in metres: the very one fits without being enlarged or stretched much. Where the library has
         none of that size, how much exactly one that is like it was changed says little: the tails are those of a Cauchy
         distribution.
-
-        Args:
-            error: Its disagreement with the picture.
-            scale: Of the pose.
-            limits: Of the shape.
-            in_library: Whether some shape fits so well that it may be the very one. Where none is, like ones come in
-                any size, and how well they fit says less.
         """
         logs = np.log(scale[~limits.thin]) if not limits.thin.all() else np.log(scale)
-        enlarged, stretched = float(logs.mean()) / _ENLARGED_SIGMA, float(logs.std()) / _LIKELIHOOD_SIGMA
-        cost = 0.5 * float(np.log1p(stretched**2))
-        if not in_library:
-            return -_STRENGTH_OF_LIKE_SHAPES * float(np.log(error + _LIKELIHOOD_FLOOR)) - cost
-        return (
-            -_STRENGTH_WITH_DEPTH * float(np.log(error + _LIKELIHOOD_FLOOR)) - cost - 0.5 * float(np.log1p(enlarged**2))
-        )
+        deviations = np.array([float(logs.mean()) / _ENLARGED_SIGMA, float(logs.std()) / _LIKELIHOOD_SIGMA])
+        cost = 0.5 * float(np.log1p(deviations**2).sum())
+        return -_STRENGTH_OF_SHAPES * float(np.log(error + _LIKELIHOOD_FLOOR)) - cost
 
     def confidence(self, error: float, cuboid_confidence: float) -> float:
         """0 to 1: lower for cut, hidden, tiny or badly masked objects and for poses that fit badly."""

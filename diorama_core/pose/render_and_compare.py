@@ -50,8 +50,6 @@ _RETRIEVAL_WITH_DEPTH = 4.0
 """What retrieval says beside `Evidence.log_likelihood` where depth was measured: that tells shapes apart."""
 _MIN_STANDING = -1.0
 """What holds an object may be mistaken: that a shape does not stand there says at most so much against it, as a log."""
-_VERY_SHAPE = 0.1
-"""Disagreement with picture and depth below which a shape may be the very one."""
 _MAX_THREADS = 4
 """Objects posed side by side: casting and array work let go of the interpreter, the rest of it does not."""
 _FACES_BETTER = 0.3
@@ -256,15 +254,12 @@ class RenderAndCompare:
             return tuple(self._with_levels(task, self._pose_by_outline(task, one)) for one in tried)
         order = sorted(range(len(tried)), key=lambda k: -float(tried[k].scores.max()))
         promising = set(order[: self.promising])
-        posed = [self._pose_by_depth(task, task.measured, one, k in promising) for k, one in enumerate(tried)]
-        there = min(one.error for one in posed) < _VERY_SHAPE
-        ranks = [
-            _rank(task, task.measured, one, _batch(p.pose), p.error, in_library=there)
-            for p, one in zip(posed, tried, strict=True)
+        posed = [
+            self._with_levels(task, self._pose_by_depth(task, task.measured, one, k in promising))
+            for k, one in enumerate(tried)
         ]
-        posed = [self._with_levels(task, replace(p, rank=rank)) for p, rank in zip(posed, ranks, strict=True)]
         first = max(range(len(posed)), key=lambda k: posed[k].rank)
-        turned = self._turned_all_around(task, task.measured, tried[first], posed[first], there)
+        turned = self._turned_all_around(task, task.measured, tried[first], posed[first])
         posed[first] = turned if turned is posed[first] else self._with_levels(task, turned)
         return tuple(posed)
 
@@ -298,7 +293,7 @@ class RenderAndCompare:
         return _Posed(tried.shape, _only(poses), error, of_retrieval * tried.liked + of_pose * score - cost)
 
     def _pose_by_depth(self, task: _Task, measured: MeasuredObject, tried: _Tried, promising: bool) -> _Posed:
-        """Unlike hypotheses are refined; the best one is also tried turned by quarters in its place. Not ranked yet."""
+        """Unlike hypotheses are refined; the best one is also tried turned by quarters in its place."""
         fold, size_m = tried.shape.symmetry, tried.limits.shape_size_m
         count = self.refined_with_depth if promising else self.refined
         best = unlike_best(tried.hypotheses.poses, tried.scores, fold, size_m, count)
@@ -308,11 +303,9 @@ class RenderAndCompare:
             nothing = np.zeros(len(turned))
             other = self._chosen(task, tried, Hypotheses(turned, nothing, nothing))
             poses, error, score = max((poses, error, score), other, key=lambda found: found[2])
-        return _Posed(tried.shape, _only(poses), error, 0.0)
+        return _Posed(tried.shape, _only(poses), error, _rank(task, measured, tried, poses, error))
 
-    def _turned_all_around(
-        self, task: _Task, measured: MeasuredObject, tried: _Tried, posed: _Posed, in_library: bool
-    ) -> _Posed:
+    def _turned_all_around(self, task: _Task, measured: MeasuredObject, tried: _Tried, posed: _Posed) -> _Posed:
         """The pose with its turn compared closely."""
         if tried.shape.symmetry == ROUND or task.close is None:
             return posed
@@ -320,7 +313,7 @@ class RenderAndCompare:
         search = TurnSearch.of(task.close, task.fine, measured, tried.appearance, tried.limits, fold, start)
         poses, doubt = search.best(start)
         error = float(task.fine.errors(tried.appearance.caster, poses)[0])
-        rank = _rank(task, measured, tried, poses, error, in_library=in_library)
+        rank = _rank(task, measured, tried, poses, error)
         return _Posed(tried.shape, _only(poses), error, rank, doubt)
 
     def _chosen(self, task: _Task, tried: _Tried, start: Hypotheses) -> tuple[PoseBatch, float, float]:
@@ -343,17 +336,9 @@ class RenderAndCompare:
         return fit.refined(caster, start)
 
 
-def _rank(
-    task: _Task,
-    measured: MeasuredObject,
-    tried: _Tried,
-    poses: PoseBatch,
-    error: float,
-    *,
-    in_library: bool,
-) -> float:
+def _rank(task: _Task, measured: MeasuredObject, tried: _Tried, poses: PoseBatch, error: float) -> float:
     """What retrieval, the picture and what holds the object say about a posed shape, where depth was measured."""
-    similarity = task.fine.log_likelihood(error, poses.scale[0], tried.limits, in_library=in_library)
+    similarity = task.fine.log_likelihood(error, poses.scale[0], tried.limits)
     stands = max(float(measured.log_likelihood(poses, tried.limits)[0]), _MIN_STANDING)
     return _RETRIEVAL_WITH_DEPTH * tried.liked + similarity + stands
 

@@ -61,12 +61,12 @@ def test_a_sure_outline_tells_shapes_apart_whatever_their_size(evidence: Evidenc
     assert lead(sure) > 10 * lead(doubtful) > 0.0
 
 
-def test_where_no_shape_is_the_very_one_its_size_says_nothing_but_its_proportions_do(evidence: Evidence) -> None:
+def test_shapes_are_told_apart_by_their_fit_before_their_size(evidence: Evidence) -> None:
     limits = SizeLimits.of((0.5, 0.5, 0.9), "chair", np.array([0.5, 0.5, 0.9]), measured=True)
 
     def likelihood(error: float, scale: tuple[float, float, float]) -> float:
-        return evidence.log_likelihood(error, np.array(scale), limits, in_library=False)
+        return evidence.log_likelihood(error, np.array(scale), limits)
 
-    assert likelihood(0.2, (1.0, 1.0, 1.0)) == pytest.approx(likelihood(0.2, (2.0, 2.0, 2.0)))
+    assert likelihood(0.2, (1.0, 1.0, 1.0)) > likelihood(0.2, (1.4, 1.4, 1.4)) > likelihood(0.2, (2.0, 2.0, 2.0))
     assert likelihood(0.2, (1.0, 1.0, 1.0)) > likelihood(0.2, (1.0, 1.4, 1.0))
-    assert likelihood(0.2, (1.0, 1.0, 1.0)) > likelihood(0.3, (1.0, 1.0, 1.0))
+    assert likelihood(0.1, (1.4, 1.4, 1.4)) > likelihood(0.2, (1.0, 1.0, 1.0))

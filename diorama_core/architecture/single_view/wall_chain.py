@@ -25,6 +25,8 @@ from diorama_core.architecture.single_view.room_cues import (
 REGION_WEIGHT = 6.0
 LINE_WEIGHT = 2.5
 EDGE_WEIGHT = 1.0
+SKIRTINGS_M = (0.06, 0.08, 0.1, 0.12)
+"""Usual heights of skirting boards, whose upper edge is a line above a wall's foot as clear as the foot itself."""
 UPRIGHT_WEIGHT = 1.5
 OBJECT_WEIGHT = 0.5
 PRIOR_WEIGHT = 0.1
@@ -98,6 +100,7 @@ class ChainScorer:
         foot, top = -eye[2] / near, (ceiling_m - eye[2]) / near
         total = self._surfaces(walls, foot, top)
         total -= EDGE_WEIGHT * (self._edge(walls, near, 0.0)[0] + self._edge(walls, near, ceiling_m)[0])
+        total -= EDGE_WEIGHT * self._skirting(walls, near)
         total += self._objects(near) + self._backs(near) + self._usual(walls, near)
         return np.where(met & (near > NEAREST_M * 0.5), total, 1e3)
 
@@ -137,6 +140,8 @@ class ChainScorer:
         reach = self.reach(chain.walls)
         near = np.where(np.isfinite(reach), reach, FARTHEST_M)
         sides = [self._edge(chain.walls, near, height) for height in (0.0, chain.ceiling_m)]
+        skirting = self._skirting(chain.walls, near)
+        sides.append((skirting, np.where(skirting > 0.0, sides[0][1], 0.0)))
         eye = float(self.cues.camera.position[2])
         colour, known = (_summed(x) for x in (self.view.floor_ratio * self.view.share, self._coloured()))
         found = []
@@ -179,6 +184,13 @@ class ChainScorer:
             found[mine] = response(edge_map, pixels[mine], inside[mine], e.map_scale) - EDGE_THRESHOLD
         free = inside & (np.abs(found) > 1e-6)
         return np.where(free, found * step, 0.0), np.where(free, step, 0.0)
+
+    def _skirting(self, walls: PhotoWalls, near: Float[np.ndarray, "w m"]) -> Float[np.ndarray, "w m"]:
+        """How much of the upper edge of a skirting board is an edge, over the threshold; 0 for walls without one.
+
+        Without it the board's upper edge is taken for the foot of a wall that is farther away as readily as its lower.
+        """
+        return np.maximum(np.max([self._edge(walls, near, height)[0] for height in SKIRTINGS_M], axis=0), 0.0)
 
     def _objects(self, near: Float[np.ndarray, "w m"]) -> Float[np.ndarray, "w m"]:
         """Objects that would stick through a wall, in the headings of their corners."""

@@ -97,7 +97,7 @@ class Placement:
 
 
 @dataclass(frozen=True, eq=False)
-class _Readings:
+class Readings:
     """Solved rows of one object with their full costs, cheapest first."""
 
     problems: Problems
@@ -105,6 +105,7 @@ class _Readings:
     costs: Float[np.ndarray, "k"]
 
     def placement(self, row: int, supporter: int) -> Placement:
+        """One of them, with what holds the object."""
         one = np.array([row])
         box = Cuboids(self.boxes.centre[one], self.boxes.yaw_rad[one], self.boxes.size_m[one])
         return Placement(int(self.problems.item[row]), supporter, self.problems.rows(one), box, float(self.costs[row]))
@@ -170,7 +171,7 @@ def _on_floor(observations: BoxObservations, view: View, height_m: float) -> dic
 def _arranged(
     solved: Solutions, observations: BoxObservations, view: View, carried: CarriedCosts
 ) -> dict[int, Placement]:
-    readings = _readings(solved, observations, view)
+    readings = readings_of(solved, observations, view)
     standing = [i for i in readings if observations.categories[i].mount == "floor"]
     loads = carried.of({i: readings[i].boxes for i in standing})
     costs = [readings[i].costs + loads[i] for i in standing]
@@ -222,7 +223,7 @@ def _supported(
     under = np.repeat(list(groups), [sum(map(len, rows)) for rows in groups.values()])
     supporter_of = np.tile(under, len(solved.cost) // len(under))
     for supporter in groups:
-        for index, readings in _readings(solved.rows(supporter_of == supporter), observations, view).items():
+        for index, readings in readings_of(solved.rows(supporter_of == supporter), observations, view).items():
             challenger = readings.placement(0, supporter)
             if index not in best or challenger.cost < best[index].cost:
                 best[index] = challenger
@@ -254,7 +255,7 @@ def _supported_rows(
     return options
 
 
-def _readings(solved: Solutions, observations: BoxObservations, view: View) -> dict[int, _Readings]:
+def readings_of(solved: Solutions, observations: BoxObservations, view: View) -> dict[int, Readings]:
     """Distinct readings of every object in a batch, masks counted in."""
     boxes = cuboids(solved.unknowns, solved.problems, view)
     names = tuple(c.name for c in observations.categories)
@@ -267,7 +268,7 @@ def _readings(solved: Solutions, observations: BoxObservations, view: View) -> d
         own = Cuboids(boxes.centre[mine], boxes.yaw_rad[mine], boxes.size_m[mine])
         retained = mine[distinct(own, costs[mine])]
         remaining_boxes = Cuboids(boxes.centre[retained], boxes.yaw_rad[retained], boxes.size_m[retained])
-        found[int(index)] = _Readings(solved.problems.rows(retained), remaining_boxes, costs[retained])
+        found[int(index)] = Readings(solved.problems.rows(retained), remaining_boxes, costs[retained])
     return found
 
 

@@ -25,7 +25,7 @@ from diorama_core.architecture.single_view.wall_chain import (
     leaves,
     refined,
 )
-from tests.architecture.single_view.plain_cues import cues
+from tests.architecture.single_view.plain_cues import cues, drawn_edges
 from tests.synthetic_rooms import box_room, cuboid, look, shoot
 
 CAMERA = look(20.0, 8.0, fov_deg=75.0, size=(320, 240))
@@ -218,3 +218,26 @@ def test_support_tells_a_seen_wall_from_an_assumed_one() -> None:
     assert (scorer.support(true) > scorer.support(wrong) + 0.2).all()
     nothing = blank().support(Chain(walls(FAR), np.array([0, 144]), 2.6, 0.0))
     assert ((nothing >= 0) & (nothing < 0.35)).all()
+
+
+LINES = [(0, (-6.0, 4.0, height), (6.0, 4.0, height)) for height in (0.0, 0.09)]
+"""The two edges of a skirting board along the far wall."""
+AT_UPPER_EDGE = ((0.0, -1.0), -4.0 * 1.5 / (1.5 - 0.09))
+"""The wall whose foot would be where the board's upper edge is seen."""
+
+
+def test_the_lower_edge_of_a_skirting_board_is_the_walls_foot() -> None:
+    scorer = blank(edge_maps=drawn_edges(CAMERA, LINES))
+    foot, upper = scorer.costs(walls(FAR, AT_UPPER_EDGE), 2.6).sum(axis=1)
+    assert foot < upper - 0.2
+    bare = blank(edge_maps=drawn_edges(CAMERA, LINES[1:]))
+    foot, upper = bare.costs(walls(FAR, AT_UPPER_EDGE), 2.6).sum(axis=1)
+    assert upper < foot, "one line alone is the foot itself"
+
+
+def test_a_wall_with_a_skirting_board_is_surer() -> None:
+    chain = Chain(walls(FAR), np.array([0, 144]), 2.6, 0.0)
+    with_board, without = (
+        blank(edge_maps=drawn_edges(CAMERA, lines)).support(chain)[0] for lines in (LINES, LINES[:1])
+    )
+    assert with_board > without + 0.05
