@@ -26,7 +26,7 @@ from diorama_core.retrieval.appearance_similarity import (
     ObjectCrop,
 )
 from diorama_core.retrieval.measured_sizes import as_measured
-from diorama_core.retrieval.neighbours import neighbour_factors
+from diorama_core.retrieval.neighbours import with_neighbours
 from diorama_core.retrieval.outlines import outline_agreement, whole_outline
 from diorama_core.retrieval.pools import Pool, RetrievalQuery, pool_for, size_cost
 from diorama_core.retrieval.seen_forms import seen_form_factor, shape_form
@@ -213,19 +213,13 @@ def _senses(
     by_box = sense_probabilities(objects, camera.intrinsics, camera.T_world_camera[:3, :3], float(camera.position[2]))
     parent_of = {s.child: s.parent for s in geometry.supports}
     found: list[Mapping[str, float]] = []
-    for index, senses in enumerate(by_box):
-        factors = neighbour_factors(index, tuple(senses), objects, cuboids, geometry.supports)
-        mounts = _MOUNTS.get(parent_of.get(objects[index].id, "floor"), ("floor", "surface"))
-        named = is_named(objects[index].label)
+    for item, cuboid, senses in zip(objects, cuboids, by_box, strict=True):
+        mounts = _MOUNTS.get(parent_of.get(item.id, "floor"), ("floor", "surface"))
+        named = is_named(item.label)
         other = _OTHER_MOUNT if named else _OTHER_MOUNT_OF_UNNAMED
-        sized = as_measured(senses, cuboids[index].size_m) if named else senses
-        found.append(
-            {
-                kind: share * factors[kind] * (1.0 if category(kind).mount in mounts else other)
-                for kind, share in sized.items()
-            }
-        )
-    return found
+        sized = as_measured(senses, cuboid.size_m) if named else senses
+        found.append({kind: p * (1.0 if category(kind).mount in mounts else other) for kind, p in sized.items()})
+    return with_neighbours(found, objects, cuboids, geometry.supports)
 
 
 def _mean_senses(senses: Sequence[Mapping[str, float]]) -> dict[str, float]:

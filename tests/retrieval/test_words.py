@@ -42,6 +42,14 @@ def test_a_name_of_some_of_a_kind_finds_those() -> None:
     assert wing["armchair-wing-blue"] == 1.0 > wing["armchair-sling-black"]
 
 
+def test_a_synonym_that_names_some_of_a_kind_finds_those() -> None:
+    plants = LIBRARY.in_category("plant")
+    found = dict(zip((s.id for s in plants), described_share(LIBRARY, "flowers", "plant", plants), strict=True))
+    assert found["plant-cut-flowers"] == 1.0
+    assert found["plant-orchid"] > found["plant-spider"] == 0.0
+    assert set(described_share(LIBRARY, "houseplant", "plant", plants)) == {1.0}
+
+
 def test_no_shapes_no_shares() -> None:
     assert described_share(LIBRARY, "leather armchair", "armchair", []).shape == (0,)
 
