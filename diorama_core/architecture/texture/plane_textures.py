@@ -11,6 +11,7 @@ from jaxtyping import Bool, Float, Float32, UInt8
 
 from diorama_core.architecture.texture.colours import object_pixels
 from diorama_core.architecture.texture.continuation import completed
+from diorama_core.architecture.texture.continued_objects import continued_objects, object_colours
 from diorama_core.architecture.texture.empty_room import EmptyRoomFiller
 from diorama_core.architecture.texture.floor_material import contact_pixels, floor_texels, white_level
 from diorama_core.architecture.texture.level_light import levelled
@@ -164,6 +165,7 @@ class PhotoView:
         self._masked, self._hidden, self._painted = masked, hidden, painted
         self._contact = contact_pixels(shape, on_floor) & ~masked
         self._white = white_level(rgb)
+        self._of_objects = () if picture.filler is not None else object_colours(rgb, unsure)
 
     def of_plane(
         self, plane: Plane, planes: tuple[Plane, ...], points: Float[np.ndarray, "h w 3"], pixel_m: float
@@ -192,7 +194,14 @@ class PhotoView:
         own = shown = seen
         if not ground:
             own = _own(colours, seen, share, plane.colour)
-            seen = _without_islands(seen & ~strays(seen, own, pixel_m, wall=plane.role == "wall"), ISLAND_M / pixel_m)
+            wall = plane.role == "wall"
+            stray = strays(seen, own, pixel_m, wall=wall)
+            if wall:
+                foreign = seen & ~own
+                where = self._camera.project(points[foreign])
+                longest = max(self._rgb.shape[:2])
+                stray |= continued_objects(colours, own, foreign, where, self._of_objects, pixel_m, longest)
+            seen = _without_islands(seen & ~stray, ISLAND_M / pixel_m)
         if self._painted.any():
             share = np.where(_of_texels(self._painted, self._camera, points), PAINTED * share, share)
         return PlaneView(colours, seen, own & seen, shown, share)
