@@ -1,8 +1,9 @@
-"""What of an object goes on outside its box before a wall: it is no more wall than the rest of the object.
+"""What of an object goes on where it was not marked: it is no more wall or floor than the rest of the object.
 
 A box that is drawn too small, or around a part, leaves a plant's upper half in the wall's picture. What is not of the
 wall's own colour, has about a colour of the object, and is joined to where the object hides the wall, is the object's.
-A poster behind it stays, unless it has the object's colours.
+A poster behind it stays, unless it has the object's colours. Within a box, an even patch that a doubtful mask cuts in
+two where the picture has no edge (a white duvet) is the object's too.
 """
 
 from __future__ import annotations
@@ -36,6 +37,13 @@ _GAP_M, _RIM_M = 0.06, 0.06
 """Gaps between leaves that do not part a piece, and shadows and rims around it."""
 
 
+_MAIN_SHARE = 0.25
+"""Of an object's pixels that have a colour whose patches are looked at."""
+_EVEN_LAB = np.array([8.0, 5.0, 5.0])
+_CUT_SHARE = 0.3
+"""Of a patch of even colour that a mask holds when it has cut it in two."""
+
+
 @dataclass(frozen=True, eq=False)
 class ObjectColours(ArrayValue):
     """One object's box and the colours that cover most of it."""
@@ -44,15 +52,33 @@ class ObjectColours(ArrayValue):
     lab: Float32[np.ndarray, "k 3"]
 
 
+def cut_patches(rgb: UInt8[np.ndarray, "h w 3"], objects: Sequence[DetectedObject]) -> Bool[np.ndarray, "h w"]:
+    """Pixels in the boxes of objects that belong to even patches of which the masks hold a part."""
+    found = np.zeros(rgb.shape[:2], dtype=bool)
+    for item in objects:
+        x1, y1, x2, y2 = (max(round(v), 0) for v in item.box)
+        mask = item.mask[y1:y2, x1:x2]
+        if np.count_nonzero(mask) < _MIN_PIXELS:
+            continue
+        lab = cv2.cvtColor(rgb[y1:y2, x1:x2].astype(np.float32) / np.float32(255.0), cv2.COLOR_RGB2LAB)
+        for colour in _common_colours(lab[mask], _MAIN_SHARE):
+            even = (np.abs(lab - colour) < _EVEN_LAB).all(axis=-1).astype(np.uint8)
+            count, label = cv2.connectedComponents(even)
+            held = np.bincount(label[mask], minlength=count) / np.maximum(
+                np.bincount(label.ravel(), minlength=count), 1
+            )
+            held[0] = 0.0
+            found[y1:y2, x1:x2] |= (held > _CUT_SHARE)[label] & ~mask
+    return cv2.morphologyEx(found.astype(np.uint8), cv2.MORPH_OPEN, np.ones((3, 3), np.uint8)).astype(bool)
+
+
 def object_colours(rgb: UInt8[np.ndarray, "h w 3"], objects: Sequence[DetectedObject]) -> tuple[ObjectColours, ...]:
     """Of all objects that enough is seen of."""
     found = []
     for item in objects:
         pixels = rgb[item.mask]
         if len(pixels) >= _MIN_PIXELS:
-            cells, count = np.unique(np.round(_lab(pixels) / _CELL_LAB), axis=0, return_counts=True)
-            common = cells[count >= _MIN_CELL_SHARE * len(pixels)] * _CELL_LAB
-            found.append(ObjectColours(item.box, common.astype(np.float32)))
+            found.append(ObjectColours(item.box, _common_colours(_lab(pixels), _MIN_CELL_SHARE)))
     return tuple(found)
 
 
@@ -115,6 +141,14 @@ def _is_shade(lab: Float32[np.ndarray, "n 3"], of: Float32[np.ndarray, "3"]) -> 
     scale = (lab[:, :1] + _BLACK_L) / (of[0] + _BLACK_L)
     off = np.abs(lab[:, 1:] - scale * of[1:])
     return np.asarray((off < _SHADE_AB).all(axis=1) & (lab[:, 0] > _DARKEST_SHADE * of[0]))
+
+
+def _common_colours(lab: Float32[np.ndarray, "n 3"], share: float) -> Float32[np.ndarray, "k 3"]:
+    """Medians of the cells of colour that hold at least a share of some pixels."""
+    _, label, count = np.unique(np.round(lab / _CELL_LAB), axis=0, return_inverse=True, return_counts=True)
+    common = np.flatnonzero(count >= share * len(lab))
+    medians = [np.median(lab[label.ravel() == k], axis=0) for k in common]
+    return np.array(medians, dtype=np.float32).reshape(-1, 3)
 
 
 def _lab(rgb: np.ndarray) -> Float32[np.ndarray, "n 3"]:

@@ -14,6 +14,7 @@ import numpy as np
 from jaxtyping import Bool, Float, Float32, UInt8
 
 from diorama_core.artefacts import DetectedObject
+from diorama_core.library.taxonomy import with_kin
 
 _CELL_LAB = np.array([14.0, 8.0, 8.0])
 """Colours within about this much are one material in light and shade."""
@@ -21,6 +22,7 @@ _CELLS_TRIED = 8
 _SAMPLES = 4000
 _CONTACT_BAND = (0.012, 0.06)
 """Before the feet of things, beyond their contact shadows: distances below masks, as shares of the photo's height."""
+_RUGS = with_kin("rug")
 _WITHOUT_CONTACT = 0.15
 """How much a colour counts that is seen at nobody's feet, beside one that is at all of them."""
 _USUAL_LAB = np.array([58.0, 5.0, 12.0])
@@ -51,7 +53,10 @@ _SPECK_M, _RIM_M = 0.02, 0.03
 
 
 def contact_pixels(shape: tuple[int, int], objects: Sequence[DetectedObject]) -> Bool[np.ndarray, "h w"]:
-    """Pixels of the photo a little below the feet of things, where the floor is usually seen."""
+    """Pixels of the photo a little below the feet of things, where the floor is usually seen.
+
+    Within the box of a rug whose outline is only a guess, it is rather the rug.
+    """
     near, far = (round(share * shape[0]) for share in _CONTACT_BAND)
     found = np.zeros(shape, dtype=bool)
     for item in objects:
@@ -63,6 +68,9 @@ def contact_pixels(shape: tuple[int, int], objects: Sequence[DetectedObject]) ->
             found[rows[inside], columns[inside]] = True
     for item in objects:
         found &= ~item.mask
+        if item.category in _RUGS and item.mask_confidence < 1.0:
+            x1, y1, x2, y2 = (max(round(v), 0) for v in item.box)
+            found[y1:y2, x1:x2] = False
     return found
 
 

@@ -11,7 +11,11 @@ from jaxtyping import Bool, Float, Float32, UInt8
 
 from diorama_core.architecture.texture.colours import object_pixels
 from diorama_core.architecture.texture.continuation import completed
-from diorama_core.architecture.texture.continued_objects import continued_objects, object_colours
+from diorama_core.architecture.texture.continued_objects import (
+    continued_objects,
+    cut_patches,
+    object_colours,
+)
 from diorama_core.architecture.texture.empty_room import EmptyRoomFiller
 from diorama_core.architecture.texture.floor_material import contact_pixels, floor_texels, white_level
 from diorama_core.architecture.texture.level_light import levelled
@@ -152,7 +156,7 @@ class PhotoView:
     def __init__(self, picture: RoomPicture) -> None:
         shape = picture.rgb.shape[:2]
         unsure = [o for o in picture.objects if o.mask_confidence < SURE_MASK]
-        masked = object_pixels(shape, picture.objects)
+        masked = object_pixels(shape, picture.objects) | cut_patches(picture.rgb, unsure)
         masked = _grown(masked if picture.unmarked is None else masked | picture.unmarked)
         hidden = masked | _boxes(shape, unsure)
         rgb, painted = picture.rgb, np.zeros(shape, dtype=bool)

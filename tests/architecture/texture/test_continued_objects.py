@@ -5,7 +5,11 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from diorama_core.architecture.texture.continued_objects import continued_objects, object_colours
+from diorama_core.architecture.texture.continued_objects import (
+    continued_objects,
+    cut_patches,
+    object_colours,
+)
 from diorama_core.artefacts import DetectedObject
 
 SIZE, PIXEL_M = 200, 0.01
@@ -58,3 +62,26 @@ def test_what_is_not_joined_or_much_larger_stays(piece) -> None:
 
 def test_without_objects_nothing_is_theirs() -> None:
     assert not continued(wall_with(UPPER_HALF, GREEN), ()).any()
+
+
+def duvet(*, shown: slice) -> tuple[np.ndarray, DetectedObject]:
+    """A white duvet on a brown floor, of which a mask holds some columns."""
+    picture = np.full((SIZE, SIZE, 3), (120, 90, 60), np.uint8)
+    picture[60:140, 40:160] = (245, 245, 245)
+    mask = np.zeros((SIZE, SIZE), dtype=bool)
+    mask[60:140, shown] = True
+    return picture, DetectedObject("bed_1", "bed", "bed", (30.0, 50.0, 170.0, 150.0), mask, 1, 0.7)
+
+
+def test_an_even_patch_that_a_mask_cuts_in_two_is_the_objects() -> None:
+    picture, bed = duvet(shown=slice(40, 110))
+    found = cut_patches(picture, (bed,))
+    assert found[61:139, 111:159].all()
+    assert not found[:, :110].any()
+    assert not found[145:].any()
+    assert not found[:55].any()
+
+
+def test_a_patch_that_a_mask_hardly_touches_is_not() -> None:
+    picture, bed = duvet(shown=slice(40, 60))
+    assert not cut_patches(picture, (bed,)).any()

@@ -95,6 +95,17 @@ def test_contact_is_a_little_below_masks_and_in_no_other():
     assert not (found & other).any()
 
 
+@pytest.mark.parametrize(
+    ("category", "sure", "is_floor"), [("rug", 0.8, False), ("rug", 1.0, True), ("box", 0.8, True)]
+)
+def test_what_a_doubtful_rug_may_hide_is_no_floor_at_the_feet_of_things(category, sure, is_floor):
+    foot, lying = np.zeros((100, 100), dtype=bool), np.zeros((100, 100), dtype=bool)
+    foot[20:50, 30:60], lying[80:95, 20:80] = True, True
+    chair = DetectedObject("chair_1", "chair", "chair", (30, 20, 60, 50), foot, 1, 0.9)
+    other = DetectedObject("other_1", category, category, (10, 40, 90, 95), lying, 2, sure)
+    assert contact_pixels((100, 100), [chair, other])[52:55, 32:58].all() == is_floor
+
+
 def test_the_white_of_a_dark_photo_is_dark():
     assert white_level(np.full((50, 50, 3), 60, np.uint8)) < 30 < white_level(np.full((50, 50, 3), 250, np.uint8))
 
