@@ -32,7 +32,7 @@ from diorama_core.retrieval.pools import Pool, RetrievalQuery, pool_for, size_co
 from diorama_core.retrieval.seen_forms import seen_form_factor, shape_form
 from diorama_core.retrieval.usual_forms import usual_form_factor
 from diorama_core.retrieval.word_senses import sense_probabilities
-from diorama_core.retrieval.words import described_share
+from diorama_core.retrieval.words import described_share, names_some
 from diorama_core.scene.types import Support, yaw_rotation
 
 _SIMILAR_LOG_SIZE = 0.45
@@ -51,8 +51,8 @@ _OTHER_MOUNT, _OTHER_MOUNT_OF_UNNAMED = 0.1, 0.5
 """How likely a thing is of a kind that is held otherwise than it is; what holds one without a name is guessed too."""
 _KINDS, _KINDS_OF_UNNAMED = 3, 7
 """How many kinds are among the candidates of a thing with and without a name, where it may be of so many."""
-_OF_WORDS = 0.12
-"""Penalty of a shape that matches none of the label's describing words."""
+_OF_WORDS, _OF_NAMES = 0.12, 0.3
+"""Penalties of a shape that matches none of the label's describing words, and of one that its very noun rules out."""
 
 
 @dataclass(frozen=True)
@@ -111,8 +111,9 @@ class HierarchicalRetrieval:
             alike = similarity.of(object_crop, [m.shape for m in members])
             said = described_share(self.library, item.label, item.category, [m.shape for m in members])
             described = (said == 1) & (said < 1).any()
+            of_words = _OF_NAMES if names_some(item.label) else _OF_WORDS
             factors = [
-                m.kind_factor * (1 - _OF_WORDS * (1 - w)) * self._of_form(m.shape, item, described=d)
+                m.kind_factor * (1 - of_words * (1 - w)) * self._of_form(m.shape, item, described=d)
                 for m, w, d in zip(members, said, described.tolist(), strict=True)
             ]
             sight.append(visible)

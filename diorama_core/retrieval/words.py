@@ -14,6 +14,11 @@ from diorama_core.library.record import Shape, ShapeLibrary
 from diorama_core.library.search import text_index
 
 
+def names_some(label: str) -> bool:
+    """Whether a label's noun names only some things of a kind, and so tells which."""
+    return bool(NAMES_OF_SOME & set(understand(label).naming))
+
+
 def described_share(
     library: ShapeLibrary, label: str, category: str, shapes: Sequence[Shape]
 ) -> Float[np.ndarray, " n"]:

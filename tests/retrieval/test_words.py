@@ -11,7 +11,7 @@ from diorama_core.library.catalogue import built_in_library
 from diorama_core.library.record import Shape
 from diorama_core.progress import Progress
 from diorama_core.retrieval.hierarchical import HierarchicalRetrieval
-from diorama_core.retrieval.words import described_share
+from diorama_core.retrieval.words import described_share, names_some
 from tests.pose.rooms import BlockLibrary, Room, camera_at, standing
 
 LIBRARY = built_in_library()
@@ -48,6 +48,8 @@ def test_a_synonym_that_names_some_of_a_kind_finds_those() -> None:
     assert found["plant-cut-flowers"] == 1.0
     assert found["plant-orchid"] > found["plant-spider"] == 0.0
     assert set(described_share(LIBRARY, "houseplant", "plant", plants)) == {1.0}
+    assert names_some("flowers")
+    assert not names_some("houseplant")
 
 
 def test_no_shapes_no_shares() -> None:
