@@ -23,6 +23,8 @@ _SAMPLES = 4000
 _CONTACT_BAND = (0.012, 0.06)
 """Before the feet of things, beyond their contact shadows: distances below masks, as shares of the photo's height."""
 _RUGS = with_kin("rug")
+_QUANTILES = (0.16, 0.84)
+"""Of a normal distribution, one standard deviation to either side."""
 _WITHOUT_CONTACT = 0.15
 """How much a colour counts that is seen at nobody's feet, beside one that is at all of them."""
 _USUAL_LAB = np.array([58.0, 5.0, 12.0])
@@ -156,7 +158,7 @@ def _main_colour(
     found, covers, scores = [], [], []
     for cell in _cells(lab, weight):
         alike = (np.abs(lab - cell) < _CELL_LAB).all(axis=1)
-        spread = float(places[alike].var(axis=0).sum()) ** 0.5 if alike.sum() > 1 else 0.0
+        spread = _spread(places[alike], weight[alike])
         middle = np.median(lab[alike], axis=0) if alike.any() else cell
         shaded = _OF_SHADE * float(weight[contact & ~alike & _shades_of(middle, lab)].sum())
         touched = (float(weight[contact & alike].sum()) + shaded) / at_feet
@@ -165,6 +167,19 @@ def _main_colour(
         covers.append(float(weight[alike].sum()) * spread * (_WITHOUT_CONTACT + touched))
         scores.append(covers[-1] * float(np.exp(-0.5 * (off**2).sum())))
     return _lit(int(np.argmax(scores)), np.array(found), np.array(covers))
+
+
+def _spread(places: Float[np.ndarray, "n 2"], weight: Float[np.ndarray, "n"]) -> float:
+    """About the standard deviation of places, by quantiles: a sliver far away covers little of the photo."""
+    if not weight.sum() > 0.0:
+        return 0.0
+    halves = []
+    for along in places.T:
+        order = np.argsort(along, kind="stable")
+        below = np.cumsum(weight[order]) / weight.sum()
+        low, high = np.searchsorted(below, _QUANTILES)
+        halves.append((along[order[min(high, len(order) - 1)]] - along[order[low]]) / 2)
+    return float(np.hypot(*halves))
 
 
 def _lit(best: int, found: Float[np.ndarray, "k 3"], covers: Float[np.ndarray, "k"]) -> Float[np.ndarray, "3"]:

@@ -55,6 +55,17 @@ def test_shadows_at_the_feet_of_objects_speak_for_the_floor_that_they_lie_on():
     assert own[40:160, 40:160].mean() < 0.05
 
 
+def test_a_sliver_far_away_does_not_outweigh_the_floor_that_is_near():
+    colours, weight = floor((186, 152, 119)), np.full((SIZE, SIZE), 1.0)
+    seen = np.zeros((SIZE, SIZE), dtype=bool)
+    seen[80:120, 150:195], seen[:, :4] = True, True  # a wall's foot across the whole room, almost edge on
+    colours[:, :4] = floor((107, 96, 72))[:, :4]
+    colours[80:120, 150:170] = floor((107, 96, 72))[80:120, 150:170]  # and the floor's shade under a table
+    weight[:, :4] = 0.1
+    own = floor_texels(colours, seen, weight, seen & False, PIXEL_M)
+    assert own[85:115, 175:190].mean() > 0.9
+
+
 def test_a_pattern_belongs_to_the_floor():
     rows, columns = np.indices((SIZE, SIZE)) // 10
     colours = np.where(((rows + columns) % 2 == 0)[..., None], floor((90, 80, 70)), floor((190, 180, 165), 1))
