@@ -60,6 +60,7 @@ _CONCEPTS = {
     "dark": "black charcoal walnut ebony mahogany oxblood navy",
     "light": "pale white cream ivory birch",
     "round": "circular drum oval",
+    "flower": "flowering blossom bouquet orchid",
     "padded": "upholstered cushioned cushion",
     "modern": "contemporary minimal scandinavian scandi sleek",
     "classic": "traditional antique vintage old georgian victorian period",

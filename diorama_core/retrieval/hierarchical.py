@@ -26,13 +26,13 @@ from diorama_core.retrieval.appearance_similarity import (
     ObjectCrop,
 )
 from diorama_core.retrieval.measured_sizes import as_measured
-from diorama_core.retrieval.neighbours import neighbour_factors
+from diorama_core.retrieval.neighbours import with_neighbours
 from diorama_core.retrieval.outlines import outline_agreement, whole_outline
 from diorama_core.retrieval.pools import Pool, RetrievalQuery, pool_for, size_cost
 from diorama_core.retrieval.seen_forms import seen_form_factor, shape_form
 from diorama_core.retrieval.usual_forms import usual_form_factor
 from diorama_core.retrieval.word_senses import sense_probabilities
-from diorama_core.retrieval.words import described_share
+from diorama_core.retrieval.words import described_share, names_some
 from diorama_core.scene.types import Support, yaw_rotation
 
 _SIMILAR_LOG_SIZE = 0.45
@@ -51,8 +51,8 @@ _OTHER_MOUNT, _OTHER_MOUNT_OF_UNNAMED = 0.1, 0.5
 """How likely a thing is of a kind that is held otherwise than it is; what holds one without a name is guessed too."""
 _KINDS, _KINDS_OF_UNNAMED = 3, 7
 """How many kinds are among the candidates of a thing with and without a name, where it may be of so many."""
-_OF_WORDS = 0.12
-"""Penalty of a shape that matches none of the label's describing words."""
+_OF_WORDS, _OF_NAMES = 0.12, 0.3
+"""Penalties of a shape that matches none of the label's describing words, and of one that its very noun rules out."""
 
 
 @dataclass(frozen=True)
@@ -111,8 +111,9 @@ class HierarchicalRetrieval:
             alike = similarity.of(object_crop, [m.shape for m in members])
             said = described_share(self.library, item.label, item.category, [m.shape for m in members])
             described = (said == 1) & (said < 1).any()
+            of_words = _OF_NAMES if names_some(item.label) else _OF_WORDS
             factors = [
-                m.kind_factor * (1 - _OF_WORDS * (1 - w)) * self._of_form(m.shape, item, described=d)
+                m.kind_factor * (1 - of_words * (1 - w)) * self._of_form(m.shape, item, described=d)
                 for m, w, d in zip(members, said, described.tolist(), strict=True)
             ]
             sight.append(visible)
@@ -213,19 +214,13 @@ def _senses(
     by_box = sense_probabilities(objects, camera.intrinsics, camera.T_world_camera[:3, :3], float(camera.position[2]))
     parent_of = {s.child: s.parent for s in geometry.supports}
     found: list[Mapping[str, float]] = []
-    for index, senses in enumerate(by_box):
-        factors = neighbour_factors(index, tuple(senses), objects, cuboids, geometry.supports)
-        mounts = _MOUNTS.get(parent_of.get(objects[index].id, "floor"), ("floor", "surface"))
-        named = is_named(objects[index].label)
+    for item, cuboid, senses in zip(objects, cuboids, by_box, strict=True):
+        mounts = _MOUNTS.get(parent_of.get(item.id, "floor"), ("floor", "surface"))
+        named = is_named(item.label)
         other = _OTHER_MOUNT if named else _OTHER_MOUNT_OF_UNNAMED
-        sized = as_measured(senses, cuboids[index].size_m) if named else senses
-        found.append(
-            {
-                kind: share * factors[kind] * (1.0 if category(kind).mount in mounts else other)
-                for kind, share in sized.items()
-            }
-        )
-    return found
+        sized = as_measured(senses, cuboid.size_m) if named else senses
+        found.append({kind: p * (1.0 if category(kind).mount in mounts else other) for kind, p in sized.items()})
+    return with_neighbours(found, objects, cuboids, geometry.supports)
 
 
 def _mean_senses(senses: Sequence[Mapping[str, float]]) -> dict[str, float]:

@@ -8,9 +8,15 @@ from dataclasses import replace
 import numpy as np
 from jaxtyping import Float
 
+from diorama_core.library.loose_words import NAMES_OF_SOME
 from diorama_core.library.naming import understand
 from diorama_core.library.record import Shape, ShapeLibrary
 from diorama_core.library.search import text_index
+
+
+def names_some(label: str) -> bool:
+    """Whether a label's noun names only some things of a kind, and so tells which."""
+    return bool(NAMES_OF_SOME & set(understand(label).naming))
 
 
 def described_share(
@@ -18,8 +24,8 @@ def described_share(
 ) -> Float[np.ndarray, " n"]:
     """For every shape the share of the label's describing words that fit it, 0 to 1, by word or by meaning.
 
-    All 1 where the label names the kind and nothing more, or says only what no shape here is known for: then words do
-    not tell the shapes apart.
+    A name of some things of a kind describes them, too. All 1 where the label names the kind and nothing more, or says
+    only what no shape here is known for: then words do not tell the shapes apart.
 
     Args:
         library: Whose words.
@@ -28,7 +34,8 @@ def described_share(
         shapes: Of the library.
     """
     query = understand(label)
-    said = tuple(w for w in query.words if w not in category and not w.isdigit())  # an "arm chair" has no more arms
+    words = (*query.words, *(w for w in query.naming if w in NAMES_OF_SOME))
+    said = tuple(w for w in words if w not in category and not w.isdigit())  # an "arm chair" has no more arms
     if not said or not len(shapes):
         return np.ones(len(shapes))
     index = text_index(library)

@@ -11,7 +11,7 @@ from diorama_core.library.catalogue import built_in_library
 from diorama_core.library.record import Shape
 from diorama_core.progress import Progress
 from diorama_core.retrieval.hierarchical import HierarchicalRetrieval
-from diorama_core.retrieval.words import described_share
+from diorama_core.retrieval.words import described_share, names_some
 from tests.pose.rooms import BlockLibrary, Room, camera_at, standing
 
 LIBRARY = built_in_library()
@@ -40,6 +40,16 @@ def test_words_fit_some_shapes_and_not_others() -> None:
 def test_a_name_of_some_of_a_kind_finds_those() -> None:
     wing = share("wing chair")
     assert wing["armchair-wing-blue"] == 1.0 > wing["armchair-sling-black"]
+
+
+def test_a_synonym_that_names_some_of_a_kind_finds_those() -> None:
+    plants = LIBRARY.in_category("plant")
+    found = dict(zip((s.id for s in plants), described_share(LIBRARY, "flowers", "plant", plants), strict=True))
+    assert found["plant-cut-flowers"] == 1.0
+    assert found["plant-orchid"] > found["plant-spider"] == 0.0
+    assert set(described_share(LIBRARY, "houseplant", "plant", plants)) == {1.0}
+    assert names_some("flowers")
+    assert not names_some("houseplant")
 
 
 def test_no_shapes_no_shares() -> None:

@@ -14,6 +14,7 @@ import numpy as np
 from jaxtyping import Bool, Float, Float32, UInt8
 
 from diorama_core.artefacts import DetectedObject
+from diorama_core.library.taxonomy import with_kin
 
 _CELL_LAB = np.array([14.0, 8.0, 8.0])
 """Colours within about this much are one material in light and shade."""
@@ -21,6 +22,9 @@ _CELLS_TRIED = 8
 _SAMPLES = 4000
 _CONTACT_BAND = (0.012, 0.06)
 """Before the feet of things, beyond their contact shadows: distances below masks, as shares of the photo's height."""
+_RUGS = with_kin("rug")
+_QUANTILES = (0.16, 0.84)
+"""Of a normal distribution, one standard deviation to either side."""
 _WITHOUT_CONTACT = 0.15
 """How much a colour counts that is seen at nobody's feet, beside one that is at all of them."""
 _USUAL_LAB = np.array([58.0, 5.0, 12.0])
@@ -51,7 +55,10 @@ _SPECK_M, _RIM_M = 0.02, 0.03
 
 
 def contact_pixels(shape: tuple[int, int], objects: Sequence[DetectedObject]) -> Bool[np.ndarray, "h w"]:
-    """Pixels of the photo a little below the feet of things, where the floor is usually seen."""
+    """Pixels of the photo a little below the feet of things, where the floor is usually seen.
+
+    Within the box of a rug whose outline is only a guess, it is rather the rug.
+    """
     near, far = (round(share * shape[0]) for share in _CONTACT_BAND)
     found = np.zeros(shape, dtype=bool)
     for item in objects:
@@ -63,6 +70,9 @@ def contact_pixels(shape: tuple[int, int], objects: Sequence[DetectedObject]) ->
             found[rows[inside], columns[inside]] = True
     for item in objects:
         found &= ~item.mask
+        if item.category in _RUGS and item.mask_confidence < 1.0:
+            x1, y1, x2, y2 = (max(round(v), 0) for v in item.box)
+            found[y1:y2, x1:x2] = False
     return found
 
 
@@ -148,7 +158,7 @@ def _main_colour(
     found, covers, scores = [], [], []
     for cell in _cells(lab, weight):
         alike = (np.abs(lab - cell) < _CELL_LAB).all(axis=1)
-        spread = float(places[alike].var(axis=0).sum()) ** 0.5 if alike.sum() > 1 else 0.0
+        spread = _spread(places[alike], weight[alike])
         middle = np.median(lab[alike], axis=0) if alike.any() else cell
         shaded = _OF_SHADE * float(weight[contact & ~alike & _shades_of(middle, lab)].sum())
         touched = (float(weight[contact & alike].sum()) + shaded) / at_feet
@@ -157,6 +167,19 @@ def _main_colour(
         covers.append(float(weight[alike].sum()) * spread * (_WITHOUT_CONTACT + touched))
         scores.append(covers[-1] * float(np.exp(-0.5 * (off**2).sum())))
     return _lit(int(np.argmax(scores)), np.array(found), np.array(covers))
+
+
+def _spread(places: Float[np.ndarray, "n 2"], weight: Float[np.ndarray, "n"]) -> float:
+    """About the standard deviation of places, by quantiles: a sliver far away covers little of the photo."""
+    if not weight.sum() > 0.0:
+        return 0.0
+    halves = []
+    for along in places.T:
+        order = np.argsort(along, kind="stable")
+        below = np.cumsum(weight[order]) / weight.sum()
+        low, high = np.searchsorted(below, _QUANTILES)
+        halves.append((along[order[min(high, len(order) - 1)]] - along[order[low]]) / 2)
+    return float(np.hypot(*halves))
 
 
 def _lit(best: int, found: Float[np.ndarray, "k 3"], covers: Float[np.ndarray, "k"]) -> Float[np.ndarray, "3"]:

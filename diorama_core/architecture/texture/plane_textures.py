@@ -11,6 +11,11 @@ from jaxtyping import Bool, Float, Float32, UInt8
 
 from diorama_core.architecture.texture.colours import object_pixels
 from diorama_core.architecture.texture.continuation import completed
+from diorama_core.architecture.texture.continued_objects import (
+    continued_objects,
+    cut_patches,
+    object_colours,
+)
 from diorama_core.architecture.texture.empty_room import EmptyRoomFiller
 from diorama_core.architecture.texture.floor_material import contact_pixels, floor_texels, white_level
 from diorama_core.architecture.texture.level_light import levelled
@@ -151,7 +156,7 @@ class PhotoView:
     def __init__(self, picture: RoomPicture) -> None:
         shape = picture.rgb.shape[:2]
         unsure = [o for o in picture.objects if o.mask_confidence < SURE_MASK]
-        masked = object_pixels(shape, picture.objects)
+        masked = object_pixels(shape, picture.objects) | cut_patches(picture.rgb, unsure)
         masked = _grown(masked if picture.unmarked is None else masked | picture.unmarked)
         hidden = masked | _boxes(shape, unsure)
         rgb, painted = picture.rgb, np.zeros(shape, dtype=bool)
@@ -164,6 +169,7 @@ class PhotoView:
         self._masked, self._hidden, self._painted = masked, hidden, painted
         self._contact = contact_pixels(shape, on_floor) & ~masked
         self._white = white_level(rgb)
+        self._of_objects = () if picture.filler is not None else object_colours(rgb, unsure)
 
     def of_plane(
         self, plane: Plane, planes: tuple[Plane, ...], points: Float[np.ndarray, "h w 3"], pixel_m: float
@@ -192,7 +198,14 @@ class PhotoView:
         own = shown = seen
         if not ground:
             own = _own(colours, seen, share, plane.colour)
-            seen = _without_islands(seen & ~strays(seen, own, pixel_m, wall=plane.role == "wall"), ISLAND_M / pixel_m)
+            wall = plane.role == "wall"
+            stray = strays(seen, own, pixel_m, wall=wall)
+            if wall:
+                foreign = seen & ~own
+                where = self._camera.project(points[foreign])
+                longest = max(self._rgb.shape[:2])
+                stray |= continued_objects(colours, own, foreign, where, self._of_objects, pixel_m, longest)
+            seen = _without_islands(seen & ~stray, ISLAND_M / pixel_m)
         if self._painted.any():
             share = np.where(_of_texels(self._painted, self._camera, points), PAINTED * share, share)
         return PlaneView(colours, seen, own & seen, shown, share)

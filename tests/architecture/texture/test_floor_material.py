@@ -55,6 +55,17 @@ def test_shadows_at_the_feet_of_objects_speak_for_the_floor_that_they_lie_on():
     assert own[40:160, 40:160].mean() < 0.05
 
 
+def test_a_sliver_far_away_does_not_outweigh_the_floor_that_is_near():
+    colours, weight = floor((186, 152, 119)), np.full((SIZE, SIZE), 1.0)
+    seen = np.zeros((SIZE, SIZE), dtype=bool)
+    seen[80:120, 150:195], seen[:, :4] = True, True  # a wall's foot across the whole room, almost edge on
+    colours[:, :4] = floor((107, 96, 72))[:, :4]
+    colours[80:120, 150:170] = floor((107, 96, 72))[80:120, 150:170]  # and the floor's shade under a table
+    weight[:, :4] = 0.1
+    own = floor_texels(colours, seen, weight, seen & False, PIXEL_M)
+    assert own[85:115, 175:190].mean() > 0.9
+
+
 def test_a_pattern_belongs_to_the_floor():
     rows, columns = np.indices((SIZE, SIZE)) // 10
     colours = np.where(((rows + columns) % 2 == 0)[..., None], floor((90, 80, 70)), floor((190, 180, 165), 1))
@@ -93,6 +104,17 @@ def test_contact_is_a_little_below_masks_and_in_no_other():
     assert found[52:55, 42:60].all()
     assert not found[:50].any()
     assert not (found & other).any()
+
+
+@pytest.mark.parametrize(
+    ("category", "sure", "is_floor"), [("rug", 0.8, False), ("rug", 1.0, True), ("box", 0.8, True)]
+)
+def test_what_a_doubtful_rug_may_hide_is_no_floor_at_the_feet_of_things(category, sure, is_floor):
+    foot, lying = np.zeros((100, 100), dtype=bool), np.zeros((100, 100), dtype=bool)
+    foot[20:50, 30:60], lying[80:95, 20:80] = True, True
+    chair = DetectedObject("chair_1", "chair", "chair", (30, 20, 60, 50), foot, 1, 0.9)
+    other = DetectedObject("other_1", category, category, (10, 40, 90, 95), lying, 2, sure)
+    assert contact_pixels((100, 100), [chair, other])[52:55, 32:58].all() == is_floor
 
 
 def test_the_white_of_a_dark_photo_is_dark():
