@@ -5,10 +5,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from jaxtyping import Float
+from jaxtyping import Bool, Float
 
 from diorama_core.geometry.observed import Observed
 from diorama_core.geometry.projection import box_iou
+from diorama_core.geometry.see_through import SeeThrough
 from diorama_core.geometry.silhouette import Hits, PoseBatch, ShapeCaster
 from diorama_core.geometry.window import soft_iou
 from diorama_core.pose.facing import Facing
@@ -50,6 +51,8 @@ class Evidence:
     facing: Facing
     surface: MeasuredSurface | None
     """None where depth was not measured."""
+    see_through: SeeThrough | None = None
+    """Where one looks past the object; None where its mask tells."""
 
     def errors(self, caster: ShapeCaster, poses: PoseBatch) -> Float[np.ndarray, "p"]:
         """0 (agrees entirely) to 1: weighted disagreement of silhouette, box, depth and normals."""
@@ -67,9 +70,17 @@ class Evidence:
         else:
             weights = [_SILHOUETTE_WEIGHT * self.seen.mask_trust, _BOX_WEIGHT]
             boxes = box_iou(caster.bounds_px(self.camera, hits.poses), np.asarray(self.seen.box))
-            terms = [self.seen.agreement(hits.covered), np.nan_to_num(boxes)]
+            terms = [self._outline(hits.covered), np.nan_to_num(boxes)]
         agreement = sum(w * t for w, t in zip(weights, terms, strict=True)) / sum(weights)
         return np.clip(1.0 - np.nan_to_num(agreement), 0.0, 1.0)
+
+    def _outline(self, silhouettes: Bool[np.ndarray, "p n"]) -> Float[np.ndarray, "p"]:
+        """Agreement with the mask, and with where one looks past the object although the mask is filled there."""
+        of_mask = self.seen.agreement(silhouettes)
+        if self.see_through is None:
+            return of_mask
+        share = self.see_through.share
+        return (1 - share) * of_mask + share * self.see_through.agreement(silhouettes)
 
     def _outline_with_depth(self, surface: MeasuredSurface, hits: Hits) -> Float[np.ndarray, "p"]:
         """Intersection over union with the mask where nothing that was measured is in front of the shape."""

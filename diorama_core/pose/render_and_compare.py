@@ -21,6 +21,7 @@ from diorama_core.artefacts import (
     RankedShapes,
 )
 from diorama_core.geometry.observed import observe_among
+from diorama_core.geometry.see_through import SeeThrough
 from diorama_core.geometry.shape_appearance import SHARED_APPEARANCES, ShapeAppearance
 from diorama_core.geometry.silhouette import PoseBatch, ShapeCaster
 from diorama_core.library.catalogue import default_cache_dir
@@ -237,7 +238,11 @@ class RenderAndCompare:
                 for cells in (self.coarse_cells, self.fine_cells, cells_for(item.box))
             ]
             surfaces = [measured_surface(depth, seen, item.mask, noise) for seen in windows]
-            coarse, fine = (Evidence(geometry.camera, *of) for of in zip(windows[:2], [facing] * 2, surfaces[:2]))
+            colours = [SeeThrough.of(inputs.photo.rgb, w) if s is None else None for w, s in zip(windows[:2], surfaces)]
+            coarse, fine = (
+                Evidence(geometry.camera, seen, facing, *of)
+                for seen, *of in zip(windows[:2], surfaces[:2], colours, strict=True)
+            )
             on_floor = parent_of.get(item.id) == "floor"
             foot_m = foot_height_m(depth, item.mask, geometry.camera) if on_floor else None
             measured = MeasuredObject.of(item.mask, fine, cuboids[i], anchor, walls, foot_m)

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from diorama_core.geometry.observed import observe_among
+from diorama_core.geometry.see_through import SeeThrough
 from diorama_core.pose.facing import Facing
 from diorama_core.pose.limits import SizeLimits
 from diorama_core.pose.mask_observations import Evidence
@@ -70,3 +71,19 @@ def test_where_no_shape_is_the_very_one_its_size_says_nothing_but_its_proportion
     assert likelihood(0.2, (1.0, 1.0, 1.0)) == pytest.approx(likelihood(0.2, (2.0, 2.0, 2.0)))
     assert likelihood(0.2, (1.0, 1.0, 1.0)) > likelihood(0.2, (1.0, 1.4, 1.0))
     assert likelihood(0.2, (1.0, 1.0, 1.0)) > likelihood(0.3, (1.0, 1.0, 1.0))
+
+
+def test_where_one_looks_past_an_object_tells_open_shapes_from_closed_ones(evidence: Evidence) -> None:
+    cells, seen = evidence.seen.window.cells, evidence.seen
+    open_ = np.zeros((cells, cells), dtype=bool)
+    open_[8:24, [8, 9, 22, 23]] = open_[[8, 9], 8:24] = True
+    closed = np.zeros_like(open_)
+    closed[8:24, 8:24] = True
+    filled = replace(evidence, seen=replace(seen, covered=closed.ravel().astype(float), mask_trust=0.9))
+    weight = np.ones(cells * cells)
+    told = replace(filled, see_through=SeeThrough(seen.window, open_.ravel().astype(float), weight, 0.8))
+    shapes = np.stack([open_.ravel(), closed.ravel()])
+    assert filled._outline(shapes).argmax() == 1
+    assert told._outline(shapes).argmax() == 0
+    silent = replace(told, see_through=replace(told.see_through, share=0.0))
+    np.testing.assert_allclose(silent._outline(shapes), filled._outline(shapes))
