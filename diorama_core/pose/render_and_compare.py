@@ -28,7 +28,13 @@ from diorama_core.library.catalogue import default_cache_dir
 from diorama_core.library.hyponyms import is_named
 from diorama_core.library.record import ROUND, Shape, ShapeLibrary
 from diorama_core.library.taxonomy import category
-from diorama_core.pose.agree import MAX_LOSS_OF_SURE_OUTLINES, MAX_LOSS_WITH_DEPTH, SETS, agreed_ranks
+from diorama_core.pose.agree import (
+    MAX_LOSS_OF_SURE_OUTLINES,
+    MAX_LOSS_WHERE_COLOURS_TELL,
+    MAX_LOSS_WITH_DEPTH,
+    SETS,
+    agreed_ranks,
+)
 from diorama_core.pose.appearance_likelihood import AppearanceLikelihood, cells_for
 from diorama_core.pose.facing import facing_of, wall_samples
 from diorama_core.pose.hypotheses import Anchor, Hypotheses, anchor_of, hypotheses_for, unlike_best
@@ -53,6 +59,8 @@ _MIN_STANDING = -1.0
 """What holds an object may be mistaken: that a shape does not stand there says at most so much against it, as a log."""
 _VERY_SHAPE = 0.1
 """Disagreement with picture and depth below which a shape may be the very one."""
+_TELLS = 0.5
+"""What colours must say beside a mask for it to tell who of a set differs (`SeeThrough.share`)."""
 _MAX_THREADS = 4
 """Objects posed side by side: casting and array work let go of the interpreter, the rest of it does not."""
 _FACES_BETTER = 0.3
@@ -82,7 +90,10 @@ class _Task:
         """What agreeing on a shape may cost: it averages doubtful outlines; sure ones and depth show who differs."""
         if self.measured is not None:
             return MAX_LOSS_WITH_DEPTH
-        return np.inf if self.item.mask_confidence < 1.0 or self.item.category in SETS else MAX_LOSS_OF_SURE_OUTLINES
+        in_sets, colours = self.item.category in SETS, self.fine.see_through
+        if in_sets and colours is not None and colours.share > _TELLS:
+            return MAX_LOSS_WHERE_COLOURS_TELL
+        return np.inf if self.item.mask_confidence < 1.0 or in_sets else MAX_LOSS_OF_SURE_OUTLINES
 
 
 @dataclass(frozen=True, eq=False)
@@ -300,6 +311,7 @@ class RenderAndCompare:
         poses, error, score = self._chosen(task, tried, tried.hypotheses[best])
         of_retrieval, of_pose = _POWERS if is_named(task.item.label) else _POWERS_OF_UNNAMED
         cost = task.fine.enlarged_cost(poses.scale[0], tried.limits) + task.fine.sure_outline_cost(error)
+        cost -= task.fine.seen_past(tried.appearance.caster, poses)
         return _Posed(tried.shape, _only(poses), error, of_retrieval * tried.liked + of_pose * score - cost)
 
     def _pose_by_depth(self, task: _Task, measured: MeasuredObject, tried: _Tried, promising: bool) -> _Posed:
