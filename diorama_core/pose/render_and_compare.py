@@ -249,10 +249,9 @@ class RenderAndCompare:
                 for cells in (self.coarse_cells, self.fine_cells, cells_for(item.box))
             ]
             surfaces = [measured_surface(depth, seen, item.mask, noise) for seen in windows]
-            colours = [SeeThrough.of(inputs.photo.rgb, w) if s is None else None for w, s in zip(windows[:2], surfaces)]
             coarse, fine = (
-                Evidence(geometry.camera, seen, facing, *of)
-                for seen, *of in zip(windows[:2], surfaces[:2], colours, strict=True)
+                Evidence(geometry.camera, w, facing, s, SeeThrough.of(inputs.photo.rgb, w) if s is None else None)
+                for w, s in zip(windows[:2], surfaces[:2], strict=True)
             )
             on_floor = parent_of.get(item.id) == "floor"
             foot_m = foot_height_m(depth, item.mask, geometry.camera) if on_floor else None
