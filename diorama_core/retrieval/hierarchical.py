@@ -52,10 +52,8 @@ _OTHER_MOUNT, _OTHER_MOUNT_OF_UNNAMED = 0.1, 0.5
 """How likely a thing is of a kind that is held otherwise than it is; what holds one without a name is guessed too."""
 _KINDS, _KINDS_OF_UNNAMED = 3, 7
 """How many kinds are among the candidates of a thing with and without a name, where it may be of so many."""
-_OF_OPENINGS, _OF_OPENINGS_OF_KINDS = 2.0, 1.0
-"""Powers of the agreement with where one looks past an object: among shapes of a kind, and of kinds' best ones."""
-_ROUGHLY = 0.1
-"""What a shape that is not yet in place may be off in that."""
+_OF_SEE_THROUGH, _ROUGHLY = 2.0, 0.1
+"""Power of the agreement with where one looks past an object, and what a shape that is not yet in place may be off."""
 _OF_WORDS = 0.12
 """Penalty of a shape that matches none of the label's describing words."""
 
@@ -121,13 +119,11 @@ class HierarchicalRetrieval:
                 m.kind_factor * (1 - _OF_WORDS * (1 - w)) * self._of_form(m.shape, item, described=d)
                 for m, w, d in zip(members, said, described.tolist(), strict=True)
             ]
-            fits = [self._score(m.shape, observed, float(like)) for m, like in zip(members, alike, strict=True)]
-            opened = _of_openings([m.shape.category for m in members], [o for _, o in fits], colours)
             sight.append(visible)
             scores.append(
                 {
-                    m.shape.id: factor * fit * open_
-                    for m, (fit, _), factor, open_ in zip(members, fits, factors, opened, strict=True)
+                    m.shape.id: factor * self._score(m.shape, observed, float(like))
+                    for m, like, factor in zip(members, alike, factors, strict=True)
                 }
             )
         means = _means(groups, scores, sight)
@@ -165,8 +161,8 @@ class HierarchicalRetrieval:
             pools.append(pool_for(self.library, query))
         return pools
 
-    def _score(self, shape: Shape, item: _Observation, like: float) -> tuple[float, float]:
-        """0 to 1: the best of the shape's quarter turns in the cuboid with its likeness, and `SeeThrough.agreement`."""
+    def _score(self, shape: Shape, item: _Observation, like: float) -> float:
+        """0 to 1: the best of the shape's quarter turns in the cuboid, and its likeness."""
         appearance = self._appearance(shape)
         targets, poses = quarter_turns(shape, item.cuboid)
         cost = np.array([size_cost(shape.size_m, t) for t in targets])
@@ -175,8 +171,10 @@ class HierarchicalRetrieval:
         of_size, of_outline, of_appearances = self._weights(item)
         fit = of_size * np.exp(-cost / 2) + of_outline * outline
         score = float((fit.max() + of_appearances * like) / (of_size + of_outline + of_appearances))
-        through = item.see_through
-        return score, 1.0 if through is None else float(through.agreement(silhouettes).max())
+        if item.see_through is None:
+            return score
+        open_alike = float(item.see_through.agreement(silhouettes).max())
+        return score * (open_alike + _ROUGHLY) ** (_OF_SEE_THROUGH * item.see_through.share)
 
     def _appearance(self, shape: Shape) -> ShapeAppearance:
         folder = default_cache_dir() / "appearances"
@@ -213,20 +211,6 @@ class _Observation:
     named: bool
     see_through: SeeThrough | None
     """Where one looks past it; None where its mask tells."""
-
-
-def _of_openings(kinds: Sequence[str], alike: Sequence[float], colours: SeeThrough | None) -> list[float]:
-    """What the shapes' scores are multiplied by for how they agree with where one looks past the object."""
-    if colours is None:
-        return [1.0] * len(kinds)
-    best: dict[str, float] = {}
-    for kind, of_shape in zip(kinds, alike, strict=True):
-        best[kind] = max(best.get(kind, 0.0), of_shape)
-    own, between = _OF_OPENINGS * colours.share, _OF_OPENINGS_OF_KINDS * colours.share
-    return [
-        ((of_shape + _ROUGHLY) / (best[kind] + _ROUGHLY)) ** own * (best[kind] + _ROUGHLY) ** between
-        for kind, of_shape in zip(kinds, alike, strict=True)
-    ]
 
 
 def _senses(

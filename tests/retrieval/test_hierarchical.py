@@ -5,12 +5,9 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
-import pytest
 
-from diorama_core.geometry.see_through import SeeThrough
-from diorama_core.geometry.window import Window
 from diorama_core.progress import Progress
-from diorama_core.retrieval.hierarchical import HierarchicalRetrieval, _best, _of_openings
+from diorama_core.retrieval.hierarchical import HierarchicalRetrieval, _best
 from tests.pose.rooms import LIBRARY, Room, camera_at, random_room, standing
 
 STAGE = HierarchicalRetrieval(LIBRARY)
@@ -101,16 +98,3 @@ def test_objects_of_a_kind_choose_among_mostly_the_same_shapes() -> None:
     assert len(shared) >= 6
     assert [v for _, v in first] == sorted((v for _, v in first), reverse=True)
     assert first[0] != second[0]
-
-
-def test_openings_tell_more_of_forms_than_of_kinds() -> None:
-    colours = SeeThrough(Window((0.0, 0.0, 8.0, 8.0), 2), np.ones(4), np.ones(4), 1.0)
-    kinds = ["lamp", "lamp", "chandelier", "chandelier"]
-    closed, half, same, ring = _of_openings(kinds, [0.3, 0.5, 0.5, 0.8], colours)
-    assert closed < half == pytest.approx(0.6)
-    assert ring > half
-    assert half / closed == pytest.approx((0.6 / 0.4) ** 2)
-    assert ring / half == pytest.approx(0.9 / 0.6)
-    assert same < half
-    silent = _of_openings(kinds, [0.3, 0.5, 0.5, 0.8], replace(colours, share=0.0))
-    assert silent == [1.0] * 4 == _of_openings(kinds, [0.3, 0.5, 0.5, 0.8], None)
