@@ -14,7 +14,7 @@ from dataclasses import dataclass, replace
 
 import cv2
 import numpy as np
-from jaxtyping import Bool, Float, UInt8
+from jaxtyping import Bool, Float, Int, UInt8
 
 from diorama_core.geometry.observed import Observed
 from diorama_core.geometry.window import Window, soft_iou
@@ -36,6 +36,8 @@ MIN_TELLING = 0.1
 OF_SURE_MASK, CLEARLY = 0.5, 0.6
 """What colours that tell the object clearly from its surroundings say beside a mask with which they agree; and the mean
 weight of cells from which on they do."""
+MAX_SAMPLES = 900
+"""Cells, evenly spread, that stand for all of the background or of the object."""
 MIN_CELLS = 30
 MIN_SIDE_PX = 24.0
 """Objects of which less is seen have too few pixels."""
@@ -68,7 +70,7 @@ class SeeThrough:
             return None
         lab = _lab(seen.window.means(rgb))
         reach_px = REACH * max(x2 - x1, y2 - y1)
-        of_background = _density_around(inside, behind, lab, seen.window.centres_px / reach_px)
+        of_background = _density_around(inside, _spread(behind), lab, seen.window.centres_px / reach_px)
         shown = np.zeros(len(x))
         shown[inside] = _posterior(lab[inside], seen.covered[inside], of_background)
         telling = MIN_TELLING + (1 - MIN_TELLING) * np.abs(2 * shown - 1)
@@ -102,8 +104,16 @@ def _kernel(a: Float[np.ndarray, "n d"], b: Float[np.ndarray, "m d"]) -> Float[n
     return np.exp(-0.5 * np.maximum(squared, 0.0))
 
 
+def _spread(cells: Int[np.ndarray, "n"]) -> Int[np.ndarray, "m"]:
+    """At most `MAX_SAMPLES` of the cells, evenly spread."""
+    return cells[:: -(-len(cells) // MAX_SAMPLES) or 1]
+
+
 def _density_around(
-    inside: np.ndarray, behind: np.ndarray, lab: Float[np.ndarray, "n 3"], place: Float[np.ndarray, "n 2"]
+    inside: Int[np.ndarray, "k"],
+    behind: Int[np.ndarray, "m"],
+    lab: Float[np.ndarray, "n 3"],
+    place: Float[np.ndarray, "n 2"],
 ) -> Float[np.ndarray, "k"]:
     """How likely the colours inside are among those that are seen around them beside the object."""
     near = _kernel(place[inside], place[behind])
@@ -115,14 +125,15 @@ def _posterior(
     lab: Float[np.ndarray, "k 3"], covered: Float[np.ndarray, "k"], of_background: Float[np.ndarray, "k"]
 ) -> Float[np.ndarray, "k"]:
     """Probability that each cell shows the object: its colours are those of its mask that are not seen behind it."""
-    alike = _kernel(lab, lab)
-    np.fill_diagonal(alike, 0.0)
+    every = np.arange(len(lab))
+    samples = _spread(every)
+    alike = np.where(every[:, None] == samples, 0.0, _kernel(lab, lab[samples]))
     usual = max(float(np.quantile(of_background, 0.9)), _NOTHING)
     own = covered * (1 - np.minimum(of_background / usual, 1.0)) ** 2
     prior = OF_REST + (OF_MASK - OF_REST) * covered
     shown = prior
     for _ in range(ROUNDS):
-        of_object = (alike @ own) / max(float(own.sum()), _NOTHING)
+        of_object = (alike @ own[samples]) / max(float(own[samples].sum()), _NOTHING)
         theirs = (1 - prior) * (of_background + UNLIKE / 2)
         shown = 1 - theirs / (theirs + prior * (of_object + UNLIKE))
         own = shown * covered
