@@ -143,11 +143,19 @@ def _not_through_tops(
         category = observations.categories[index]
         if category is not UNKNOWN and category.name not in PORTABLE:
             continue
-        carriers = [floor[j] for j in _possible_parents(observations, index) if j in floor]
+        carriers = [
+            floor[j] for j in _possible_parents(observations, index) if j in floor and _has_top(observations, j)
+        ]
         box = observations.box_px[index]
         shares = [seen_through_top(box, placement.cuboid, c.cuboid, height_m, view) for c in carriers]
         found[index] = replace(placement, cost=placement.cost + _THROUGH_TOP_COST * max(shares, default=0.0))
     return found
+
+
+def _has_top(observations: BoxObservations, index: int) -> bool:
+    """Whether a thing is known to have a closed top on which others stand."""
+    category = observations.categories[index]
+    return category is not UNKNOWN and category.supports_objects
 
 
 def _cheaper(best: Mapping[int, Placement], challengers: Mapping[int, Placement]) -> dict[int, Placement]:
