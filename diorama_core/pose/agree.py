@@ -15,6 +15,8 @@ MAX_LOSS_WITH_DEPTH = 1.0
 """Maximum cost of agreement where depth was measured, since depth shows when objects differ."""
 MAX_LOSS_OF_SURE_OUTLINES = 1.0
 """And of things that come in no sets where their masks are sure: these show it, too."""
+MAX_LOSS_WHERE_COLOURS_TELL = 0.5
+"""And of things that are told from what is seen through and past them."""
 SETS = with_kin("chair", "office chair", "stool", "armchair", "night stand", "ottoman") | LAMPS
 """What comes in sets; books and pictures of one room are different ones."""
 

@@ -25,6 +25,7 @@ from diorama_core.artefacts import (
     RankedShapes,
 )
 from diorama_core.geometry.observed import observe_among
+from diorama_core.geometry.see_through import SeeThrough
 from diorama_core.geometry.silhouette import PoseBatch, ShapeCaster
 from diorama_core.library.furniture.measures import Value, can_be_made, made_id, varied
 from diorama_core.library.record import BUILT_IN, ShapeLibrary, record_of
@@ -274,7 +275,8 @@ def _seen(
         if float((window.covered * window.weight).sum()) < MIN_CELLS:
             continue
         surface = measured_surface(depth, window, item.mask, noise)
-        evidence = Evidence(geometry.camera, window, Facing(()), surface)
+        colours = SeeThrough.of(inputs.photo.rgb, window) if surface is None else None
+        evidence = Evidence(geometry.camera, window, Facing(()), surface, colours)
         found[item.id] = _Seen(
             evidence, InnerEdges.of(inputs.photo.rgb, window), pose_of[item.id], int(item.mask.sum())
         )

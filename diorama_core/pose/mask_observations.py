@@ -4,12 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from jaxtyping import Bool, Float
 
 from diorama_core.geometry.observed import Observed
 from diorama_core.geometry.projection import box_iou
+from diorama_core.geometry.see_through import SeeThrough
 from diorama_core.geometry.silhouette import Hits, PoseBatch, ShapeCaster
 from diorama_core.geometry.window import soft_iou
 from diorama_core.pose.facing import Facing
@@ -19,6 +21,9 @@ from diorama_core.scene.types import Camera
 
 _SILHOUETTE_WEIGHT = 0.7
 _BOX_WEIGHT = 0.5
+_SEEN_PAST_FLOOR = 0.05
+_OF_CONTRADICTED = 0.75
+"""What a cell of a mask loses of its weight that the picture's colours contradict."""
 _SILHOUETTE_WEIGHT_WITH_DEPTH = 0.7
 _DEPTH_WEIGHT = 0.7
 _STRENGTH_WITH_DEPTH = 2.0
@@ -51,6 +56,8 @@ class Evidence:
     facing: Facing
     surface: MeasuredSurface | None
     """None where depth was not measured."""
+    see_through: SeeThrough | None = None
+    """Where one looks past the object; None where its mask tells."""
 
     def errors(self, caster: ShapeCaster, poses: PoseBatch) -> Float[np.ndarray, "p"]:
         """0 (agrees entirely) to 1: weighted disagreement of silhouette, box, depth and normals."""
@@ -74,7 +81,25 @@ class Evidence:
     ) -> Float[np.ndarray, "p"]:
         boxes = box_iou(caster.bounds_px(self.camera, poses), np.asarray(self.seen.box))
         weights = [_SILHOUETTE_WEIGHT * self.seen.mask_trust, _BOX_WEIGHT]
-        return _disagreement(weights, [self.seen.agreement(covered), np.nan_to_num(boxes)])
+        return _disagreement(weights, [self._outline(covered), np.nan_to_num(boxes)])
+
+    def _outline(self, silhouettes: Bool[np.ndarray, "p n"]) -> Float[np.ndarray, "p"]:
+        """Agreement with the mask as far as the picture's colours confirm it, and with where they look past the object.
+
+        Without colours that tell, the mask is trusted less where a shape is open below (`Observed.agreement`).
+        """
+        if self.see_through is None:
+            return self.seen.agreement(silhouettes)
+        share, weight = self.see_through.share, self.seen.weight * self._confirmed
+        of_mask = soft_iou(self.seen.covered, silhouettes.astype(np.float64), weight)
+        return (1 - share) * of_mask + share * self.see_through.agreement(silhouettes)
+
+    @cached_property
+    def _confirmed(self) -> Float[np.ndarray, "n"]:
+        """What cells of the mask count: less where the colours contradict it."""
+        assert self.see_through is not None
+        boxed = self.see_through.weight > 0
+        return 1 - _OF_CONTRADICTED * boxed * np.abs(self.seen.covered - self.see_through.shown)
 
     def _outline_with_depth(self, surface: MeasuredSurface, hits: Hits) -> Float[np.ndarray, "p"]:
         """Intersection over union with the mask where nothing that was measured is in front of the shape."""
@@ -120,6 +145,13 @@ class Evidence:
     def sure_outline_cost(self, error: float) -> float:
         """What a sure mask says of a shape's disagreement beyond its score, from a photo alone."""
         return _OF_SURE_OUTLINE * self.seen.mask_trust**4 * float(np.log(error + _NOISE_FLOOR))
+
+    def seen_past(self, caster: ShapeCaster, poses: PoseBatch) -> float:
+        """What colours say of one posed shape by where one looks past it, beyond its score: a logarithm, at most 0."""
+        if self.see_through is None:
+            return 0.0
+        alike = float(self.see_through.agreement(self.seen.silhouettes(caster, poses))[0])
+        return self.see_through.share * float(np.log(np.clip(alike, _SEEN_PAST_FLOOR, 1.0)))
 
     def log_likelihood(self, error: float, scale: Float[np.ndarray, "3"], limits: SizeLimits) -> float:
         """How well one shape at its best pose explains the object, to compare shapes where depth was measured.

@@ -21,13 +21,20 @@ from diorama_core.artefacts import (
     RankedShapes,
 )
 from diorama_core.geometry.observed import observe_among
+from diorama_core.geometry.see_through import SeeThrough
 from diorama_core.geometry.shape_appearance import SHARED_APPEARANCES, ShapeAppearance
 from diorama_core.geometry.silhouette import PoseBatch, ShapeCaster
 from diorama_core.library.catalogue import default_cache_dir
 from diorama_core.library.hyponyms import is_named
 from diorama_core.library.record import ROUND, Shape, ShapeLibrary
 from diorama_core.library.taxonomy import category
-from diorama_core.pose.agree import MAX_LOSS_OF_SURE_OUTLINES, MAX_LOSS_WITH_DEPTH, SETS, agreed_ranks
+from diorama_core.pose.agree import (
+    MAX_LOSS_OF_SURE_OUTLINES,
+    MAX_LOSS_WHERE_COLOURS_TELL,
+    MAX_LOSS_WITH_DEPTH,
+    SETS,
+    agreed_ranks,
+)
 from diorama_core.pose.appearance_likelihood import AppearanceLikelihood, cells_for
 from diorama_core.pose.facing import facing_of, wall_samples
 from diorama_core.pose.hypotheses import Anchor, Hypotheses, anchor_of, hypotheses_for, unlike_best
@@ -50,6 +57,8 @@ _RETRIEVAL_WITH_DEPTH = 4.0
 """What retrieval says beside `Evidence.log_likelihood` where depth was measured: that tells shapes apart."""
 _MIN_STANDING = -1.0
 """What holds an object may be mistaken: that a shape does not stand there says at most so much against it, as a log."""
+_TELLS = 0.5
+"""What colours must say beside a mask for it to tell who of a set differs (`SeeThrough.share`)."""
 _MAX_THREADS = 4
 """Objects posed side by side: casting and array work let go of the interpreter, the rest of it does not."""
 _FACES_BETTER = 0.3
@@ -79,7 +88,10 @@ class _Task:
         """What agreeing on a shape may cost: it averages doubtful outlines; sure ones and depth show who differs."""
         if self.measured is not None:
             return MAX_LOSS_WITH_DEPTH
-        return np.inf if self.item.mask_confidence < 1.0 or self.item.category in SETS else MAX_LOSS_OF_SURE_OUTLINES
+        in_sets, colours = self.item.category in SETS, self.fine.see_through
+        if in_sets and colours is not None and colours.share > _TELLS:
+            return MAX_LOSS_WHERE_COLOURS_TELL
+        return np.inf if self.item.mask_confidence < 1.0 or in_sets else MAX_LOSS_OF_SURE_OUTLINES
 
 
 @dataclass(frozen=True, eq=False)
@@ -235,7 +247,10 @@ class RenderAndCompare:
                 for cells in (self.coarse_cells, self.fine_cells, cells_for(item.box))
             ]
             surfaces = [measured_surface(depth, seen, item.mask, noise) for seen in windows]
-            coarse, fine = (Evidence(geometry.camera, *of) for of in zip(windows[:2], [facing] * 2, surfaces[:2]))
+            coarse, fine = (
+                Evidence(geometry.camera, w, facing, s, SeeThrough.of(inputs.photo.rgb, w) if s is None else None)
+                for w, s in zip(windows[:2], surfaces[:2], strict=True)
+            )
             on_floor = parent_of.get(item.id) == "floor"
             foot_m = foot_height_m(depth, item.mask, geometry.camera) if on_floor else None
             measured = MeasuredObject.of(item.mask, fine, cuboids[i], anchor, walls, foot_m)
@@ -290,6 +305,7 @@ class RenderAndCompare:
         poses, error, score = self._chosen(task, tried, tried.hypotheses[best])
         of_retrieval, of_pose = _POWERS if is_named(task.item.label) else _POWERS_OF_UNNAMED
         cost = task.fine.enlarged_cost(poses.scale[0], tried.limits) + task.fine.sure_outline_cost(error)
+        cost -= task.fine.seen_past(tried.appearance.caster, poses)
         return _Posed(tried.shape, _only(poses), error, of_retrieval * tried.liked + of_pose * score - cost)
 
     def _pose_by_depth(self, task: _Task, measured: MeasuredObject, tried: _Tried, promising: bool) -> _Posed:

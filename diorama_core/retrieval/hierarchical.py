@@ -12,6 +12,7 @@ from jaxtyping import Float
 
 from diorama_core.artefacts import Cuboid, DetectedObject, Inputs, ObjectGeometry, RankedShapes
 from diorama_core.geometry.observed import Observed, observe_among
+from diorama_core.geometry.see_through import SeeThrough
 from diorama_core.geometry.shape_appearance import SHARED_APPEARANCES, ShapeAppearance
 from diorama_core.geometry.silhouette import PoseBatch
 from diorama_core.library.catalogue import default_cache_dir
@@ -51,6 +52,8 @@ _OTHER_MOUNT, _OTHER_MOUNT_OF_UNNAMED = 0.1, 0.5
 """How likely a thing is of a kind that is held otherwise than it is; what holds one without a name is guessed too."""
 _KINDS, _KINDS_OF_UNNAMED = 3, 7
 """How many kinds are among the candidates of a thing with and without a name, where it may be of so many."""
+_OF_SEE_THROUGH, _ROUGHLY = 2.0, 0.1
+"""Power of the agreement with where one looks past an object, and what a shape that is not yet in place may be off."""
 _OF_WORDS, _OF_NAMES = 0.12, 0.3
 """Penalties of a shape that matches none of the label's describing words, and of one that its very noun rules out."""
 
@@ -106,7 +109,8 @@ class HierarchicalRetrieval:
             seen = observe_among(geometry.camera, measured, centres, parents, index, self.cells)
             members = pools[groups[index]].members
             visible = (1 - seen.border_share) * (1 - seen.hidden_share) * seen.mask_trust
-            observed = _Observation(cuboids[item.id], seen, whole_outline(seen), visible, named[index])
+            colours = SeeThrough.of(inputs.photo.rgb, seen)
+            observed = _Observation(cuboids[item.id], seen, whole_outline(seen), visible, named[index], colours)
             object_crop = ObjectCrop(inputs.photo.rgb, item.mask, item.label, visible, seen.mask_trust)
             alike = similarity.of(object_crop, [m.shape for m in members])
             said = described_share(self.library, item.label, item.category, [m.shape for m in members])
@@ -163,10 +167,15 @@ class HierarchicalRetrieval:
         appearance = self._appearance(shape)
         targets, poses = quarter_turns(shape, item.cuboid)
         cost = np.array([size_cost(shape.size_m, t) for t in targets])
-        outline = outline_agreement(item.seen, item.whole, item.seen.silhouettes(appearance.caster, poses))
+        silhouettes = item.seen.silhouettes(appearance.caster, poses)
+        outline = outline_agreement(item.seen, item.whole, silhouettes)
         of_size, of_outline, of_appearances = self._weights(item)
         fit = of_size * np.exp(-cost / 2) + of_outline * outline
-        return float((fit.max() + of_appearances * like) / (of_size + of_outline + of_appearances))
+        score = float((fit.max() + of_appearances * like) / (of_size + of_outline + of_appearances))
+        if item.see_through is None:
+            return score
+        open_alike = float(item.see_through.agreement(silhouettes).max())
+        return score * (open_alike + _ROUGHLY) ** (_OF_SEE_THROUGH * item.see_through.share)
 
     def _appearance(self, shape: Shape) -> ShapeAppearance:
         folder = default_cache_dir() / "appearances"
@@ -201,6 +210,8 @@ class _Observation:
     visible: float
     """0 to 1: how much of it is seen, and how well."""
     named: bool
+    see_through: SeeThrough | None
+    """Where one looks past it; None where its mask tells."""
 
 
 def _senses(

@@ -6,10 +6,12 @@ import numpy as np
 import pytest
 
 from diorama_core.geometry.observed import observe_among
+from diorama_core.geometry.see_through import SeeThrough
+from diorama_core.geometry.silhouette import PoseBatch, ShapeCaster
 from diorama_core.pose.facing import Facing
 from diorama_core.pose.limits import SizeLimits
 from diorama_core.pose.mask_observations import Evidence
-from tests.pose.rooms import Room, camera_at, standing
+from tests.pose.rooms import LIBRARY, Room, camera_at, standing
 
 
 @pytest.fixture(scope="module")
@@ -70,3 +72,33 @@ def test_shapes_are_told_apart_by_their_fit_before_their_size(evidence: Evidence
     assert likelihood(0.2, (1.0, 1.0, 1.0)) > likelihood(0.2, (1.4, 1.4, 1.4)) > likelihood(0.2, (2.0, 2.0, 2.0))
     assert likelihood(0.2, (1.0, 1.0, 1.0)) > likelihood(0.2, (1.0, 1.4, 1.0))
     assert likelihood(0.1, (1.4, 1.4, 1.4)) > likelihood(0.2, (1.0, 1.0, 1.0))
+
+
+def test_where_one_looks_past_an_object_tells_open_shapes_from_closed_ones(evidence: Evidence) -> None:
+    cells, seen = evidence.seen.window.cells, evidence.seen
+    open_ = np.zeros((cells, cells), dtype=bool)
+    open_[8:24, [8, 9, 22, 23]] = open_[[8, 9], 8:24] = True
+    closed = np.zeros_like(open_)
+    closed[8:24, 8:24] = True
+    filled = replace(evidence, seen=replace(seen, covered=closed.ravel().astype(float), mask_trust=0.9))
+    weight = np.ones(cells * cells)
+    told = replace(filled, see_through=SeeThrough(seen.window, open_.ravel().astype(float), weight, 0.8))
+    shapes = np.stack([open_.ravel(), closed.ravel()])
+    assert filled._outline(shapes).argmax() == 1
+    assert told._outline(shapes).argmax() == 0
+    silent = replace(told, see_through=replace(told.see_through, share=0.0))
+    np.testing.assert_allclose(silent._outline(shapes), filled._outline(shapes))
+
+
+def test_a_shape_that_is_open_where_one_sees_past_the_object_is_likelier(evidence: Evidence) -> None:
+    room = Room(camera_at(), (standing("chair", 0.2, 2.6, 30.0),), (0,))
+    caster = ShapeCaster(LIBRARY.mesh("chair"))
+    pose = room.placed[0].pose
+    poses = PoseBatch(pose.R_world_object[None], pose.position[None], pose.scale[None])
+    shown = evidence.seen.silhouettes(caster, poses)[0].astype(float)
+    told = SeeThrough(evidence.seen.window, shown, np.ones(len(shown)), 0.8)
+    smaller = PoseBatch(poses.R, poses.position, 0.5 * poses.scale)
+    right, wrong = (replace(evidence, see_through=told).seen_past(caster, p) for p in (poses, smaller))
+    assert right == pytest.approx(0.0, abs=1e-6)
+    assert wrong < right - 0.3
+    assert evidence.seen_past(caster, smaller) == 0.0

@@ -184,8 +184,9 @@ def _joined(chain: Chain, k: int, ends: Float[np.ndarray, "r1"], eye: Float[np.n
 def _push(wall: WallCandidate, first: float, last: float, cues: RoomCues, sure: float) -> float:
     """How far, in metres, a wall gives way to the objects within its headings.
 
-    Every object pulls by its confidence as far as it protrudes, the wall resists by how sure it is. What could stand
-    on furniture and would be wholly behind the wall is not where it seems to be.
+    Every object pulls by its confidence as far as it protrudes, the wall resists by how sure it is; either may be
+    wholly wrong, so that much farther says little more. What could stand on furniture and would be wholly behind the
+    wall is not where it seems to be.
     """
     eye = cues.camera.position[:2]
     outs, weights = [0.0], [0.0]
@@ -201,7 +202,8 @@ def _push(wall: WallCandidate, first: float, last: float, cues: RoomCues, sure: 
             weights.append(float(weight))
     out = np.array(outs)
     left = np.clip(out - out[:, None], 0.0, ENOUGH_OUT_M)
-    return outs[int(np.argmin(left @ np.array(weights) + PUSH_WEIGHT * sure * out))]
+    resistance = PUSH_WEIGHT * sure * ENOUGH_OUT_M * np.log1p(out / ENOUGH_OUT_M)
+    return outs[int(np.argmin(left @ np.array(weights) + resistance))]
 
 
 def _highest(cues: RoomCues) -> float:

@@ -61,6 +61,8 @@ class BoxObservations:
     """How much of both sides of object i's lower end is object j, 0 to 1: then i is on j or in front of it."""
     beside: Float[np.ndarray, "n n 4"]
     """Share of the outer side of edge e of object i that is object j's mask."""
+    ends_seen: Float[np.ndarray, "n"]
+    """Share of the mask's columns that end within the picture and on nothing that is marked: there its foot is seen."""
     fill: Float[np.ndarray, "n"]
     """Share of the box that the user's own mask fills; 1 where there is only a guess."""
     meanings: tuple[tuple[tuple[str, float], ...], ...]
@@ -85,7 +87,10 @@ class BoxObservations:
         return self._beyond_edges(index, parent)[0]
 
     def hidden_odds(self, index: int, parent: int | None = None) -> Float[np.ndarray, "4"]:
-        """Odds that an object goes on unseen beyond each edge, by what is drawn and outlined there."""
+        """Odds that an object goes on unseen beyond each edge, by what is drawn and outlined there.
+
+        Of the lower edge the whole lower contour tells: seen at an angle, a thing has its lowest point at one end.
+        """
         return self._beyond_edges(index, parent)[1]
 
     def _beyond_edges(self, index: int, parent: int | None) -> tuple[Float[np.ndarray, "4"], Float[np.ndarray, "4"]]:
@@ -95,7 +100,8 @@ class BoxObservations:
             beyond = (self.box_px[others] - self.box_px[index]) * _OUTWARD
             far = np.where(self.covered_by[index][others], beyond, 0.0).max(axis=0, initial=0.0)
             outlined = np.minimum(self.beside[index][others].sum(axis=0), 1.0) if others else np.zeros(4)
-            odds = HIDDEN_ODDS * np.where(far > 0, ODDS_BOXED, 1.0) * ODDS_OUTLINED**outlined
+            unseen = np.array([1.0, 1.0, 1.0, 1.0 - self.ends_seen[index]])
+            odds = HIDDEN_ODDS * (np.where(far > 0, ODDS_BOXED, 1.0) * ODDS_OUTLINED**outlined) ** unseen
             far.setflags(write=False)
             odds.setflags(write=False)
             self._known_beyond[index, parent] = far, odds
@@ -141,6 +147,7 @@ def gather(objects: tuple[DetectedObject, ...], width: int, height: int) -> BoxO
         exact,
         before,
         _beside(objects, boxes),
+        _ends_seen(objects),
         fill,
         meanings,
     )
@@ -182,6 +189,23 @@ def _beside(objects: tuple[DetectedObject, ...], boxes: Float[np.ndarray, "n 4"]
             for j in range(n):
                 if j != i:
                     found[i, j, edge] = float(objects[j].mask[rows, columns].mean())
+    return found
+
+
+def _ends_seen(objects: tuple[DetectedObject, ...]) -> Float[np.ndarray, "n"]:
+    """For every object the share of its mask's columns below which no other mask and no border is; 0 without a mask."""
+    found = np.zeros(len(objects))
+    for i, item in enumerate(objects):
+        columns = np.flatnonzero(item.mask.any(axis=0))
+        if not len(columns):
+            continue
+        height, width = item.mask.shape
+        away = 1 + round(_OUTSIDE_PX * max(height, width) / 640)
+        below = height - 1 - np.argmax(item.mask[::-1, columns], axis=0) + away
+        within = below < height
+        rows = np.minimum(below, height - 1)
+        others = [other.mask[rows, columns] for j, other in enumerate(objects) if j != i]
+        found[i] = float((within & ~np.any(others, axis=0)).mean()) if others else float(within.mean())
     return found
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from jaxtyping import Float
@@ -19,6 +19,7 @@ from diorama_core.perception.metrology.floor import place_on_floor, solve_all
 from diorama_core.perception.metrology.priors import SizeMode, plain_mode
 from diorama_core.perception.metrology.problem import Cuboids, Problems, View, cuboids, stacked
 from diorama_core.perception.metrology.seats import APART_COST, at_table, tables_of_seats
+from diorama_core.perception.metrology.seen_through_tops import seen_through_top
 from diorama_core.perception.metrology.silhouette import corner_costs
 from diorama_core.perception.metrology.solver import Solutions, joined, solve
 from diorama_core.perception.metrology.supported_objects import (
@@ -59,6 +60,8 @@ _USUAL, _COMPANY_TRUST = 4.0, 0.5
 """How often a carrier's usual loads lie on it (`company.CARRIED`), and how much less of that is held against others."""
 _BEFORE_COST = 10.0
 """Of a thing on the floor that ends before another whose lower end is nearer: it would stand in the other's place."""
+_THROUGH_TOP_COST = 10.0
+"""Of a thing on the floor that would be seen through a piece of furniture's top."""
 _FIXED_TO_WALLS = frozenset({"door", "window", "curtain", "radiator"})
 _LARGE = (
     _FIXED_TO_WALLS
@@ -116,7 +119,7 @@ def place_all(observations: BoxObservations, view: View, height_m: float) -> tup
 
     Shelves that hang on walls come before the things that may lie on them.
     """
-    floor = _on_floor(observations, view, height_m)
+    floor = _not_through_tops(_on_floor(observations, view, height_m), observations, view, height_m)
     standing = [p for p in floor.values() if _tells_the_room(p, observations)]
     doors = [i for i, category in enumerate(observations.categories) if category.name == "door"]
     hung = [i for i, category in enumerate(observations.categories) if category.name in _HUNG_CARRIERS]
@@ -130,6 +133,30 @@ def place_all(observations: BoxObservations, view: View, height_m: float) -> tup
     best = _cheaper(best, _supported(observations, view, height_m, carriers, room, others))
     needed = {p.supporter for p in best.values() if p.supporter >= 0}
     return tuple(carriers[i] if i in needed else best[i] for i in range(len(observations)))
+
+
+def _not_through_tops(
+    floor: Mapping[int, Placement], observations: BoxObservations, view: View, height_m: float
+) -> dict[int, Placement]:
+    """The same, dearer where what may stand on others would be seen on the floor through their tops."""
+    found = dict(floor)
+    for index, placement in floor.items():
+        category = observations.categories[index]
+        if category is not UNKNOWN and category.name not in PORTABLE:
+            continue
+        carriers = [
+            floor[j] for j in _possible_parents(observations, index) if j in floor and _has_top(observations, j)
+        ]
+        box = observations.box_px[index]
+        shares = [seen_through_top(box, placement.cuboid, c.cuboid, height_m, view) for c in carriers]
+        found[index] = replace(placement, cost=placement.cost + _THROUGH_TOP_COST * max(shares, default=0.0))
+    return found
+
+
+def _has_top(observations: BoxObservations, index: int) -> bool:
+    """Whether a thing is known to have a closed top on which others stand."""
+    category = observations.categories[index]
+    return category is not UNKNOWN and category.supports_objects
 
 
 def _cheaper(best: Mapping[int, Placement], challengers: Mapping[int, Placement]) -> dict[int, Placement]:

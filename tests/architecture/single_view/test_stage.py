@@ -10,12 +10,14 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from diorama_core.architecture.single_view.stage import PhotoRoom
+from diorama_core.architecture.single_view.stage import CLEARANCE_M, PhotoRoom, _push
+from diorama_core.architecture.walls.wall_candidates import WallCandidate
 from diorama_core.artefacts import Inputs, ObjectGeometry, Photo
 from diorama_core.evaluation.metrics.architecture import architecture_scores
 from diorama_core.progress import CancelToken, Progress
 from diorama_core.provenance import RoomMethod, ScaleSource
 from diorama_core.scene.types import Support
+from tests.architecture.single_view.plain_cues import cues
 from tests.synthetic_rooms import box_room, cuboid, floor, look, shoot, wall
 
 FURNITURE = (cuboid("cabinet", (-0.6, 2.5, 0), (0.6, 0.8, 0.8)), cuboid("stand", (0.8, 2.2, 0), (0.5, 0.5, 0.9)))
@@ -226,3 +228,26 @@ def test_stops_when_asked():
     shot = shoot(look(), box_room(-2.0, 2.0, 4.0, 2.6))
     with pytest.raises(Cancelled):
         PhotoRoom().reconstruct(shot.inputs, shot.objects, shot.geometry, Progress(token=token))
+
+
+def pushed(out_m: float, weight: float, sure: float, *others: tuple[float, float]) -> float:
+    """How far a wall 3 m ahead gives way to objects that protrude through it, by protrusion and confidence."""
+    known = ((out_m, weight), *others)
+    low = np.array([[-0.5, 2.5, 0.0] for _ in known])
+    high = np.array([[0.5, 3.0 + out, 0.8] for out, _ in known])
+    found = cues(object_low=low, object_high=high, object_weights=np.array([w for _, w in known]))
+    wall = WallCandidate(np.array([0.0, -1.0]), -3.0, np.zeros(0, dtype=bool), 0.0, 1.0)
+    return _push(wall, -1.0, 1.0, found, sure)
+
+
+def test_an_unsure_wall_gives_way_to_a_sure_object_and_a_sure_wall_does_not():
+    assert pushed(0.4, 0.6, 0.4) == pytest.approx(0.4 + CLEARANCE_M)
+    assert pushed(0.4, 0.6, 0.9) == 0.0
+    assert pushed(0.4, 0.2, 0.4) == 0.0
+
+
+def test_a_wall_may_be_wholly_wrong_as_objects_may():
+    assert pushed(1.1, 0.6, 0.42) == pytest.approx(1.1 + CLEARANCE_M)
+    assert pushed(1.1, 0.6, 0.9) == 0.0
+    # Once it is, what hardly anybody saw still does not take it along.
+    assert pushed(1.1, 0.6, 0.42, (1.9, 0.03)) == pytest.approx(1.1 + CLEARANCE_M)

@@ -102,3 +102,26 @@ def test_boxes_and_masks_beyond_an_edge_raise_the_odds_that_the_object_goes_on_t
     assert seen.hidden_odds(0)[BOTTOM] == pytest.approx(HIDDEN_ODDS[BOTTOM] * ODDS_BOXED * ODDS_OUTLINED)
     # What it rests on hides nothing of it.
     assert seen.hidden_odds(0, parent=1).tolist() == HIDDEN_ODDS.tolist()
+
+
+def test_the_lower_contour_tells_whether_a_lower_edge_is_hidden() -> None:
+    """Seen at an angle, a sofa has its lowest corner behind something, and most of its front's foot in sight."""
+    lower = np.linspace(250, 320, 200).astype(int)
+    mask = np.zeros((480, 640), dtype=bool)
+    for x, y in zip(range(100, 300), lower, strict=True):
+        mask[100:y, x] = True
+    sofa = replace(detected("s", "sofa", (100.0, 100.0, 300.0, 320.0)), mask=mask)
+    before = masked((90, 322, 330, 420), 1.0)
+    seen = gather((sofa, before), 640, 480)
+    assert seen.beside[0, 1, BOTTOM] == 1.0
+    assert seen.ends_seen[0] > 0.9
+    raised = ODDS_OUTLINED ** (1 - seen.ends_seen[0])
+    assert seen.hidden_odds(0)[BOTTOM] == pytest.approx(HIDDEN_ODDS[BOTTOM] * raised)
+    level = gather((masked((100, 100, 300, 320), 1.0), before), 640, 480)
+    assert level.ends_seen[0] == 0.0
+    assert level.hidden_odds(0)[BOTTOM] == pytest.approx(HIDDEN_ODDS[BOTTOM] * ODDS_OUTLINED)
+
+
+def test_what_the_picture_cuts_does_not_end_in_sight() -> None:
+    assert gather((masked((100, 300, 300, 480), 1.0),), 640, 480).ends_seen.tolist() == [0.0]
+    assert gather((masked((100, 300, 300, 400), 1.0),), 640, 480).ends_seen.tolist() == [1.0]

@@ -1,0 +1,140 @@
+"""Where one looks through or past an object: cells of its box that look like its surroundings.
+
+The outline that a box gives without networks fills rings, the space between legs and the air between slats, and
+closed shapes fit it best. The picture tells more: what is seen through an object has the colours that are seen beside
+it. Every cell of the box belongs either to the object or to what is behind it; the colours of both are told from each
+other by kernel densities, those behind from cells around the place in question, those of the object from cells of its
+mask that do not look like them. Shapes are compared with the result after both are blurred: how much of a place is
+filled counts, and not whether two thin rods meet.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import cv2
+import numpy as np
+from jaxtyping import Bool, Float, Int, UInt8
+
+from diorama_core.geometry.observed import Observed
+from diorama_core.geometry.window import Window, soft_iou
+
+COLOUR_SIGMA = 5.0
+"""Of colours of one thing side by side (CIE Lab), lightness at `LIGHTNESS` of the weight of hues: shade changes it."""
+LIGHTNESS = 0.5
+REACH = 0.3
+"""How far around a cell its background is looked for: sigma, as a share of the box's longer side."""
+OF_MASK, OF_REST = 0.55, 0.15
+"""Probability that a cell shows the object where its mask says so, and where it does not."""
+UNLIKE = 0.02
+"""Density of colours that are met nowhere else."""
+ROUNDS = 2
+BLUR = 0.04
+"""Of the window's side: as far as parts may lie off."""
+MIN_TELLING = 0.1
+"""Weight of cells that may show the one as well as the other."""
+OF_SURE_MASK, CLEARLY = 0.5, 0.6
+"""What colours that tell the object clearly from its surroundings say beside a mask with which they agree; and the mean
+weight of cells from which on they do."""
+MAX_SAMPLES = 900
+"""Cells, evenly spread, that stand for all of the background or of the object."""
+MIN_CELLS = 30
+MIN_SIDE_PX = 24.0
+"""Objects of which less is seen have too few pixels."""
+_NOTHING = 1e-9
+
+
+@dataclass(frozen=True, eq=False)
+class SeeThrough:
+    """What the colours within one object's box say about where the object is."""
+
+    window: Window
+    shown: Float[np.ndarray, "n"]
+    """Probability that a cell shows the object and not what is behind it; 0 outside its box."""
+    weight: Float[np.ndarray, "n"]
+    """How much a cell tells, 0 to 1; 0 outside the box and where nearer things are seen."""
+    share: float
+    """What the colours say beside the mask, 0 to 1: more the clearer they tell and the less it agrees with them."""
+
+    @classmethod
+    def of(cls, rgb: UInt8[np.ndarray, "h w 3"], seen: Observed) -> SeeThrough | None:
+        """Look at one object; None where its mask is sure already, or too little of it or around it is seen."""
+        x1, y1, x2, y2 = seen.box
+        x, y = seen.window.centres_px.T
+        boxed = (x >= x1) & (x < x2) & (y >= y1) & (y < y2)
+        known = seen.weight > 0.5
+        inside, behind = np.flatnonzero(boxed & known), np.flatnonzero(known & (seen.covered < 0.1))
+        if seen.mask_trust >= 1.0 or min(x2 - x1, y2 - y1) < MIN_SIDE_PX:
+            return None
+        if len(inside) < MIN_CELLS or (~boxed[behind]).sum() < MIN_CELLS:
+            return None
+        lab = _lab(seen.window.means(rgb))
+        reach_px = REACH * max(x2 - x1, y2 - y1)
+        of_background = _density_around(inside, _spread(behind), lab, seen.window.centres_px / reach_px)
+        shown = np.zeros(len(x))
+        shown[inside] = _posterior(lab[inside], seen.covered[inside], of_background)
+        telling = MIN_TELLING + (1 - MIN_TELLING) * np.abs(2 * shown - 1)
+        found = cls(seen.window, shown, np.where(boxed, seen.weight * telling, 0.0), 0.0)
+        of_mask = float(found.agreement((seen.covered > 0.5)[None])[0])
+        clear = min(float(found.weight[found.weight > 0].mean()) / CLEARLY, 1.0)
+        return replace(found, share=clear * (1.0 - (1.0 - OF_SURE_MASK) * of_mask**2))
+
+    def agreement(self, silhouettes: Bool[np.ndarray, "p n"]) -> Float[np.ndarray, "p"]:
+        """How well shapes fill the same places, 0 to 1; cells as in the window."""
+        target = self._blurred((self.shown * self.weight)[None])[0]
+        return soft_iou(target, self._blurred(silhouettes * self.weight), np.ones(len(target)))
+
+    def _blurred(self, filled: Float[np.ndarray, "p n"]) -> Float[np.ndarray, "p n"]:
+        cells = self.window.cells
+        sigma = BLUR * cells
+        grids = filled.reshape(-1, cells, cells).astype(np.float32)
+        blurred = [cv2.GaussianBlur(g, (0, 0), sigma, borderType=cv2.BORDER_CONSTANT) for g in grids]
+        return np.asarray(blurred, dtype=np.float64).reshape(filled.shape)
+
+
+def _lab(rgb: Float[np.ndarray, "n 3"]) -> Float[np.ndarray, "n 3"]:
+    """CIE Lab, lightness weighted down, in units of `COLOUR_SIGMA`."""
+    lab = cv2.cvtColor((rgb / 255.0).astype(np.float32)[None], cv2.COLOR_RGB2LAB)[0].astype(np.float64)
+    return lab * np.sqrt([LIGHTNESS, 1.0, 1.0]) / COLOUR_SIGMA
+
+
+def _kernel(a: Float[np.ndarray, "n d"], b: Float[np.ndarray, "m d"]) -> Float[np.ndarray, "n m"]:
+    """Gaussian kernel of points in units of its sigma."""
+    squared = (a**2).sum(axis=1)[:, None] + (b**2).sum(axis=1) - 2 * a @ b.T
+    return np.exp(-0.5 * np.maximum(squared, 0.0))
+
+
+def _spread(cells: Int[np.ndarray, "n"]) -> Int[np.ndarray, "m"]:
+    """At most `MAX_SAMPLES` of the cells, evenly spread."""
+    return cells[:: -(-len(cells) // MAX_SAMPLES) or 1]
+
+
+def _density_around(
+    inside: Int[np.ndarray, "k"],
+    behind: Int[np.ndarray, "m"],
+    lab: Float[np.ndarray, "n 3"],
+    place: Float[np.ndarray, "n 2"],
+) -> Float[np.ndarray, "k"]:
+    """How likely the colours inside are among those that are seen around them beside the object."""
+    near = _kernel(place[inside], place[behind])
+    near[inside[:, None] == behind] = 0.0
+    return (near * _kernel(lab[inside], lab[behind])).sum(axis=1) / np.maximum(near.sum(axis=1), _NOTHING)
+
+
+def _posterior(
+    lab: Float[np.ndarray, "k 3"], covered: Float[np.ndarray, "k"], of_background: Float[np.ndarray, "k"]
+) -> Float[np.ndarray, "k"]:
+    """Probability that each cell shows the object: its colours are those of its mask that are not seen behind it."""
+    every = np.arange(len(lab))
+    samples = _spread(every)
+    alike = np.where(every[:, None] == samples, 0.0, _kernel(lab, lab[samples]))
+    usual = max(float(np.quantile(of_background, 0.9)), _NOTHING)
+    own = covered * (1 - np.minimum(of_background / usual, 1.0)) ** 2
+    prior = OF_REST + (OF_MASK - OF_REST) * covered
+    shown = prior
+    for _ in range(ROUNDS):
+        of_object = (alike @ own[samples]) / max(float(own[samples].sum()), _NOTHING)
+        theirs = (1 - prior) * (of_background + UNLIKE / 2)
+        shown = 1 - theirs / (theirs + prior * (of_object + UNLIKE))
+        own = shown * covered
+    return shown
