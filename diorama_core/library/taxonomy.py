@@ -303,6 +303,11 @@ LAMPS = with_kin("lamp", "floor lamp", "ceiling lamp", "wall lamp", "chandelier"
 PORTABLE = with_kin("plant", "box", "basket", "speaker", "fan", "heater", "wine rack") - {"hanging plant", "suitcase"}
 """What stands on the floor or on furniture, by its size."""
 
+NEVER_OPEN = with_kin(
+    *("picture", "mirror", "window", "curtain", "rug", "door", "television", "monitor", "pillow", "blanket"),
+)
+"""What nobody looks through: what has the colours of its surroundings within it, has them itself."""
+
 
 def is_furniture(name: str) -> bool:
     """Whether a category is what people call furniture: it stands on the floor, and is no lamp, plant, basket or rug."""

@@ -30,6 +30,7 @@ from diorama_core.geometry.silhouette import PoseBatch, ShapeCaster
 from diorama_core.library.furniture.measures import Value, can_be_made, made_id, varied
 from diorama_core.library.record import BUILT_IN, ShapeLibrary, record_of
 from diorama_core.library.stretch import EVEN, relative_scale
+from diorama_core.library.taxonomy import NEVER_OPEN
 from diorama_core.pose.facing import Facing
 from diorama_core.pose.inner_edges import InnerEdges
 from diorama_core.pose.mask_observations import Evidence
@@ -275,7 +276,8 @@ def _seen(
         if float((window.covered * window.weight).sum()) < MIN_CELLS:
             continue
         surface = measured_surface(depth, window, item.mask, noise)
-        colours = SeeThrough.of(inputs.photo.rgb, window) if surface is None else None
+        closed = surface is not None or item.category in NEVER_OPEN
+        colours = None if closed else SeeThrough.of(inputs.photo.rgb, window)
         evidence = Evidence(geometry.camera, window, Facing(()), surface, colours)
         found[item.id] = _Seen(
             evidence, InnerEdges.of(inputs.photo.rgb, window), pose_of[item.id], int(item.mask.sum())

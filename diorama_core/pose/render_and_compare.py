@@ -27,7 +27,7 @@ from diorama_core.geometry.silhouette import PoseBatch, ShapeCaster
 from diorama_core.library.catalogue import default_cache_dir
 from diorama_core.library.hyponyms import is_named
 from diorama_core.library.record import ROUND, Shape, ShapeLibrary
-from diorama_core.library.taxonomy import category
+from diorama_core.library.taxonomy import NEVER_OPEN, category
 from diorama_core.pose.agree import (
     MAX_LOSS_OF_SURE_OUTLINES,
     MAX_LOSS_WHERE_COLOURS_TELL,
@@ -247,8 +247,15 @@ class RenderAndCompare:
                 for cells in (self.coarse_cells, self.fine_cells, cells_for(item.box))
             ]
             surfaces = [measured_surface(depth, seen, item.mask, noise) for seen in windows]
+            closed = item.category in NEVER_OPEN
             coarse, fine = (
-                Evidence(geometry.camera, w, facing, s, SeeThrough.of(inputs.photo.rgb, w) if s is None else None)
+                Evidence(
+                    geometry.camera,
+                    w,
+                    facing,
+                    s,
+                    None if closed or s is not None else SeeThrough.of(inputs.photo.rgb, w),
+                )
                 for w, s in zip(windows[:2], surfaces[:2], strict=True)
             )
             on_floor = parent_of.get(item.id) == "floor"

@@ -18,7 +18,7 @@ from diorama_core.geometry.silhouette import PoseBatch
 from diorama_core.library.catalogue import default_cache_dir
 from diorama_core.library.hyponyms import is_named
 from diorama_core.library.record import Shape, ShapeLibrary
-from diorama_core.library.taxonomy import UNKNOWN, category, with_kin
+from diorama_core.library.taxonomy import NEVER_OPEN, UNKNOWN, category, with_kin
 from diorama_core.progress import Progress
 from diorama_core.retrieval.appearance_similarity import (
     EMBEDDED_FEATURES,
@@ -109,7 +109,7 @@ class HierarchicalRetrieval:
             seen = observe_among(geometry.camera, measured, centres, parents, index, self.cells)
             members = pools[groups[index]].members
             visible = (1 - seen.border_share) * (1 - seen.hidden_share) * seen.mask_trust
-            colours = SeeThrough.of(inputs.photo.rgb, seen)
+            colours = None if item.category in NEVER_OPEN else SeeThrough.of(inputs.photo.rgb, seen)
             observed = _Observation(cuboids[item.id], seen, whole_outline(seen), visible, named[index], colours)
             object_crop = ObjectCrop(inputs.photo.rgb, item.mask, item.label, visible, seen.mask_trust)
             alike = similarity.of(object_crop, [m.shape for m in members])

@@ -5,7 +5,9 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
+import pytest
 
+from diorama_core.geometry.see_through import SeeThrough
 from diorama_core.progress import Progress
 from diorama_core.retrieval.hierarchical import HierarchicalRetrieval, _best
 from tests.pose.rooms import LIBRARY, Room, camera_at, random_room, standing
@@ -98,3 +100,13 @@ def test_objects_of_a_kind_choose_among_mostly_the_same_shapes() -> None:
     assert len(shared) >= 6
     assert [v for _, v in first] == sorted((v for _, v in first), reverse=True)
     assert first[0] != second[0]
+
+
+@pytest.mark.parametrize(("name", "looked"), [("picture", 0), ("chair", 1)])
+def test_nobody_looks_through_pictures(monkeypatch, name, looked) -> None:
+    room = Room(camera_at(), (standing("chair", 0.0, 3.0, 20.0),), (0,))
+    objects = tuple(replace(o, category=name, label=name) for o in room.objects)
+    calls = []
+    monkeypatch.setattr(SeeThrough, "of", lambda rgb, seen: calls.append(seen))
+    STAGE.retrieve(room.inputs, objects, room.geometry, Progress())
+    assert len(calls) == looked
