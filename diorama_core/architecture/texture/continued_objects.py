@@ -112,7 +112,7 @@ def continued_objects(
     for item in objects:
         x1, y1, x2, y2 = item.box
         low, high = np.array([x1, y1]) - reach, np.array([x2, y2]) + reach
-        beside = ((pixels >= low) & (pixels <= high)).all(axis=1)
+        beside = np.asarray(((pixels >= low) & (pixels <= high)).all(axis=1))
         if not beside.any() or not len(item.lab):
             continue
         alike = np.flatnonzero((_distance(lab, item.lab) < _ALIKE_LAB) & ~lit)
