@@ -8,6 +8,12 @@ from tests import ports
 from tests.ports import free, lasting_port
 
 
+@pytest.fixture(autouse=True)
+def _apart(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Browser tests, which may run meanwhile, have the others."""
+    monkeypatch.setattr(ports, "FIRST", 26_000)
+
+
 def test_a_port_is_named_once_and_is_given_to_nobody_who_asks_for_any() -> None:
     named = {lasting_port() for _ in range(20)}
     assert len(named) == 20

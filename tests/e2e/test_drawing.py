@@ -47,8 +47,8 @@ def test_what_moves_is_drawn_with_fewer_pixels_until_it_rests(editor: EditorPage
     try:
         page.page.wait_for_timeout(1000)
         sharp = page.page.evaluate(PIXELS)
-        page.page.evaluate("window.__viserMutable.requestRender()")
-        page.page.wait_for_function(f"{PIXELS} < {0.7 * sharp}", polling=5)
+        moving = "window.__viserMutable.requestRender()"  # for as long as it takes to be seen
+        page.page.wait_for_function(f"() => {{ {moving}; return {PIXELS} < {0.7 * sharp}; }}", polling=5)
         page.page.wait_for_function(f"{PIXELS} === {sharp}", polling=20)
     finally:
         page.page.close()

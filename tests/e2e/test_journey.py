@@ -38,9 +38,9 @@ def test_the_example_is_there_and_is_swapped_moved_undone_optimised_and_download
     session = with_example.session
     assert session.photo is not None
     assert session.scene.architecture.floor is not None
+    editor.page.wait_for_function("'/photo_camera' in window.__viserMutable.nodeRefFromName")
     names = editor.page.evaluate("Object.keys(window.__viserMutable.nodeRefFromName)")
     assert sum("/objects/" in n and "/v" in n for n in names) >= len(session.scene.objects)
-    assert "/photo_camera" in names
 
     chair = _swappable(session.scene)
     _click_on(editor, chair)
