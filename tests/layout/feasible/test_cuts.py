@@ -36,23 +36,23 @@ def ends(scene: Scene, name: str) -> tuple[float, float]:
 
 
 def test_one_of_two_in_a_row_becomes_shorter_and_outer_ends_stay(room: Room) -> None:
-    before, after = in_a_row(room, 0.2)
+    before, after = in_a_row(room, 0.15)
     assert ends(after, "left")[0] == pytest.approx(ends(before, "left")[0], abs=0.01)
     assert ends(after, "right")[1] == pytest.approx(ends(before, "right")[1], abs=0.01)
     lengths = [ends(after, n)[1] - ends(after, n)[0] for n in ("left", "right")]
-    assert min(lengths) < 0.85
+    assert min(lengths) < 0.9
     assert max(lengths) == pytest.approx(1.0, abs=0.02)
 
 
 def test_what_stands_at_an_end_keeps_its_place(room: Room) -> None:
-    before, after = in_a_row(room, 0.2, load_x=-0.03)
+    before, after = in_a_row(room, 0.15, load_x=-0.05)
     moved = after.object("cup").pose.position - before.object("cup").pose.position
     assert np.linalg.norm(moved[:2]) < 0.02
     low, high = ends(after, "left")
     cup = ends(after, "cup")
     assert low <= cup[0]
     assert cup[1] <= high
-    assert ends(after, "right")[1] - ends(after, "right")[0] < 0.85
+    assert ends(after, "right")[1] - ends(after, "right")[0] < 0.9
 
 
 def test_apart_nothing_becomes_shorter(room: Room) -> None:
