@@ -12,6 +12,7 @@ from diorama_core.geometry.rotations import (
     rotation_from_quaternion,
     rotation_from_vector,
     rotation_vector,
+    yaw_rotations,
 )
 from diorama_core.scene.types import yaw_rotation
 
@@ -42,3 +43,8 @@ def test_many_vectors_at_once() -> None:
     vectors = np.random.default_rng(0).normal(size=(5, 3))
     one_by_one = np.array([rotation_from_vector(v) for v in vectors])
     np.testing.assert_allclose(rotation_from_vector(vectors), one_by_one, atol=1e-15)
+
+
+def test_many_turns_about_up_are_each_as_one() -> None:
+    yaws = np.linspace(-4.0, 4.0, 9)
+    np.testing.assert_allclose(yaw_rotations(yaws), [yaw_rotation(float(yaw)) for yaw in yaws], atol=1e-15)
