@@ -41,6 +41,8 @@ MASK_MARGIN = 0.004
 """Widening of what stands before an object, as a share of the photo's longer side."""
 EDGES_PX = (5, 3)
 """Sides of the squares by which masks are narrowed: their edges show something of what is beside."""
+BRIGHTNESS_ROUNDS = 2
+"""Times that the scene is shown and set against the photo."""
 MIN_INNER = 0.3
 """Of a mask that must be left of it."""
 
@@ -132,11 +134,13 @@ def _as_bright(
     scene: Scene,
     library: ShapeLibrary,
 ) -> PhotoAppearance:
-    """The materials as bright as the photo shows them in the scene's light."""
+    """The materials as bright as the photo shows them in the scene's light, part of which they reflect themselves."""
     visible = {o.id: _inner(o) & ~hiding(o, objects) for o in objects if o.id in read.materials}
-    gains = brightness_gains(rgb, visible, read.applied(scene), read.pictures, library)
-    materials, pictures = brightened(read.materials, read.pictures, gains, _sets(scene))
-    return replace(read, materials=materials, pictures=pictures)
+    for _ in range(BRIGHTNESS_ROUNDS):
+        gains = brightness_gains(rgb, visible, read.applied(scene), read.pictures, library)
+        materials, pictures = brightened(read.materials, read.pictures, gains, _sets(scene))
+        read = replace(read, materials=materials, pictures=pictures)
+    return read
 
 
 def _inner(found: DetectedObject) -> Bool[np.ndarray, "h w"]:

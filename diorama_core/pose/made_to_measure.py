@@ -3,8 +3,9 @@
 Retrieval gives the nearest design of the library. Here its parameters (`library.furniture.measures`: heights of bases
 and seats, forms of backs and legs, numbers of drawers, doors, boards, cushions and panes) are changed one after the
 other, and a change is kept where outline, measured depth and inner edges agree clearly better with it. Objects that
-share shape and size are fitted together and stay alike. Where the nearest design fits badly even at its best, the next
-ones are fitted as well and the best of them is taken, unless depth was measured.
+share shape and size are fitted together and stay alike. Where the nearest design does not fit well at its best, others
+are fitted as well and the best of them is taken (`fitted_choice`); bodies of revolution get the profile that their
+outline shows (`turned_profile`).
 """
 
 from __future__ import annotations
@@ -27,15 +28,18 @@ from diorama_core.artefacts import (
 from diorama_core.geometry.observed import observe_among
 from diorama_core.geometry.see_through import SeeThrough
 from diorama_core.geometry.silhouette import PoseBatch, ShapeCaster
-from diorama_core.library.furniture.measures import Value, can_be_made, made_id, varied
+from diorama_core.library.furniture.measures import Value, can_be_made, can_be_turned, made_id, varied
 from diorama_core.library.record import BUILT_IN, ShapeLibrary, record_of
 from diorama_core.library.stretch import EVEN, relative_scale
 from diorama_core.library.taxonomy import NEVER_OPEN
+from diorama_core.pose.agree import SETS
 from diorama_core.pose.facing import Facing
+from diorama_core.pose.fitted_choice import FittedChoice
 from diorama_core.pose.inner_edges import InnerEdges
 from diorama_core.pose.mask_observations import Evidence
 from diorama_core.pose.outline_fit import fitted_pose
 from diorama_core.pose.surface import measured_surface, noise_of
+from diorama_core.pose.turned_profile import turned
 from diorama_core.progress import Progress
 from diorama_core.protocols import PoseStage
 from diorama_core.render.grid import each
@@ -55,17 +59,12 @@ SIZE_LOSS = 0.1
 """A shape stretched unevenly is rather built at that size, unless it agrees worse by so much."""
 PASSES, MAX_VARIANTS = 2, 32
 """Times that all parameters are gone through, since one may hide another, and shapes built for one object or set."""
-POOR_FIT = 0.3
-"""Disagreement from which on the designs that were ranked next are fitted, too."""
-COMPARED = 3
-"""Designs that are then compared after they were fitted."""
-OF_RANK, OF_FIT = 0.3, 3.0
-"""What the ranks from before the fit and the fits themselves say of them, as factors of logarithms."""
 MAX_TRIANGLES = 20_000
 """Designs of more triangles, such as plants, are not built again and again."""
 MIN_PIXELS = 900
 """Of objects of fewer pixels only place and size are fitted: their parts are a pixel or two."""
-_NO_SCORE = 1e-9
+SURE_MASK = 0.9
+"""The outline of a mask that is trusted less tells no profile."""
 MIN_CELLS = 100.0
 """Objects of which fewer cells are seen tell nothing of their parts."""
 
@@ -79,6 +78,13 @@ class _Seen:
     pose: Pose
     pixels: int
     """Of its mask."""
+    mask_confidence: float
+    category: str
+
+    @property
+    def may_have_agreed(self) -> bool:
+        """Whether objects like this one took one shape together."""
+        return self.category in SETS or (self.mask_confidence < 1.0 and self.evidence.surface is None)
 
     def score(self, caster: ShapeCaster, scale: Float[np.ndarray, "3"]) -> float:
         """How well a shape agrees: logarithm, higher is better."""
@@ -133,41 +139,21 @@ class MadeToMeasure:
     def _best_fitting(
         self, posed: tuple[PosedCandidates, ...], seen: Mapping[str, _Seen]
     ) -> tuple[PosedCandidates, ...]:
-        """Objects with the candidate first that fits best, where their first one fits badly.
+        """Objects with the candidate first that fits best, where their first one does not fit well.
 
-        What agreed on a shape stays as it agreed, whatever its sizes, and measured objects stay too: their shapes were
-        refined one by one before ranking.
+        What agreed on a shape stays as it agreed, whatever its sizes; what is outlined surely and comes in no sets did
+        not agree (`agree`).
         """
         shared = Counter(p.candidates[0].shape_id for p in posed if p.candidates)
+        choice = FittedChoice(self.library)
 
         def chosen(one: PosedCandidates) -> PosedCandidates:
-            evidence = seen[one.object_id].evidence if one.object_id in seen else None
-            if evidence is None or evidence.surface is not None or shared[one.candidates[0].shape_id] > 1:
+            shown = seen.get(one.object_id)
+            if shown is None or (shared[one.candidates[0].shape_id] > 1 and shown.may_have_agreed):
                 return one
-            return self._better_fitting(one, evidence)
+            return choice.best_first(one, shown.evidence, outlined=shown.mask_confidence >= SURE_MASK)
 
         return tuple(each(chosen, posed))
-
-    def _better_fitting(self, one: PosedCandidates, evidence: Evidence) -> PosedCandidates:
-        first = self._fit_error(evidence, one.candidates[0])
-        if first < POOR_FIT:
-            return one
-        tried = one.candidates[:COMPARED]
-        errors = [first, *(self._fit_error(evidence, c) for c in tried[1:])]
-        scores = [
-            OF_RANK * np.log(max(c.score, _NO_SCORE)) - OF_FIT * np.log(e + NOISE_FLOOR)
-            for c, e in zip(tried, errors, strict=True)
-        ]
-        best = int(np.argmax(scores))
-        others = (*one.candidates[:best], *one.candidates[best + 1 :])
-        return replace(one, candidates=(one.candidates[best], *others))
-
-    def _fit_error(self, evidence: Evidence, candidate: Candidate) -> float:
-        """How much a shape disagrees with the picture at the best pose near its own, 0 to 1."""
-        caster = ShapeCaster(self.library.mesh(candidate.shape_id))
-        pose = fitted_pose(evidence, caster, candidate.pose, np.asarray(candidate.shape_size_m), resize=True)
-        batch = PoseBatch(pose.R_world_object[None], pose.position[None], pose.scale[None])
-        return float(evidence.errors(caster, batch)[0])
 
     def _of_set(self, members: Sequence[PosedCandidates], seen: Mapping[str, _Seen]) -> dict[str, Candidate]:
         """The first candidates of objects of one shape and size; none where none of them is seen well enough."""
@@ -177,8 +163,31 @@ class MadeToMeasure:
         clear = [one for one in shown.values() if one.pixels >= MIN_PIXELS]
         changes = self._changes(members[0].candidates[0], clear) if clear else None
         alone = len(members) == 1
-        return {
+        placed = {
             m.object_id: self._placed(m.candidates[0], changes, shown.get(m.object_id), resize=alone) for m in members
+        }
+        return self._turned(members, shown, placed) or placed
+
+    def _turned(
+        self, members: Sequence[PosedCandidates], shown: Mapping[str, _Seen], placed: Mapping[str, Candidate]
+    ) -> dict[str, Candidate] | None:
+        """Objects of one shape with the profile that the picture shows; None where they agree as well without."""
+        best = members[0].candidates[0]
+        sure = {i: one.evidence for i, one in shown.items() if one.mask_confidence >= SURE_MASK}
+        if not sure or not can_be_turned(best.shape_id):
+            return None
+        before = [e.error(ShapeCaster(self.library.mesh(placed[i].shape_id)), placed[i].pose) for i, e in sure.items()]
+        caster, alone = ShapeCaster(self.library.mesh(best.shape_id)), len(members) == 1
+        own, size = {m.object_id: m.candidates[0].pose for m in members}, np.asarray(best.shape_size_m)
+        poses = [fitted_pose(e, caster, own[i], size, resize=alone) for i, e in sure.items()]
+        found = turned(self.library, best.shape_id, list(sure.values()), poses, float(np.mean(before)))
+        if found is None:
+            return None
+        x, y, z = (float(v) for v in found.size_m)
+        seen_at = dict(zip(sure, found.poses, strict=True))
+        return {
+            i: replace(c, shape_id=found.shape_id, shape_size_m=(x, y, z), pose=seen_at.get(i) or _standing(c, z))
+            for i, c in placed.items()
         }
 
     def _changes(self, best: Candidate, seen: Sequence[_Seen]) -> dict[str, Value] | None:
@@ -238,6 +247,13 @@ class MadeToMeasure:
         return _mean_score(seen, ShapeCaster(mesh), np.ones(3))
 
 
+def _standing(candidate: Candidate, height_m: float) -> Pose:
+    """Where a candidate stands, of another height, at scale 1."""
+    pose = candidate.pose
+    raised = 0.5 * (height_m - candidate.shape_size_m[2] * float(pose.scale[2]))
+    return Pose(pose.R_world_object, pose.position + np.array([0.0, 0.0, raised]), np.ones(3))
+
+
 def _mean_score(seen: Sequence[_Seen], caster: ShapeCaster, scale: Float[np.ndarray, "3"]) -> float:
     return float(np.mean([one.score(caster, scale) for one in seen]))
 
@@ -280,7 +296,12 @@ def _seen(
         colours = None if closed else SeeThrough.of(inputs.photo.rgb, window)
         evidence = Evidence(geometry.camera, window, Facing(()), surface, colours)
         found[item.id] = _Seen(
-            evidence, InnerEdges.of(inputs.photo.rgb, window), pose_of[item.id], int(item.mask.sum())
+            evidence,
+            InnerEdges.of(inputs.photo.rgb, window),
+            pose_of[item.id],
+            int(item.mask.sum()),
+            item.mask_confidence,
+            item.category,
         )
     return found
 

@@ -17,7 +17,7 @@ from diorama_core.geometry.window import soft_iou
 from diorama_core.pose.facing import Facing
 from diorama_core.pose.limits import SizeLimits
 from diorama_core.pose.surface import MeasuredSurface
-from diorama_core.scene.types import Camera
+from diorama_core.scene.types import Camera, Pose
 
 _SILHOUETTE_WEIGHT = 0.7
 _BOX_WEIGHT = 0.5
@@ -64,6 +64,12 @@ class Evidence:
         if self.surface is None:  # how far away it is would not count
             return self._outline_errors(caster, poses, self.seen.silhouettes(caster, poses))
         return self.errors_of(caster, self.hits(caster, poses))
+
+    def error(self, caster: ShapeCaster, pose: Pose) -> float:
+        """As `errors`, of one pose."""
+        return float(
+            self.errors(caster, PoseBatch(pose.R_world_object[None], pose.position[None], pose.scale[None]))[0]
+        )
 
     def hits(self, caster: ShapeCaster, poses: PoseBatch) -> Hits:
         """What the rays of the object's window meet of a shape under every pose."""

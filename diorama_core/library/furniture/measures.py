@@ -6,6 +6,7 @@ what the designs of the same builder (its family) use, numbers also a little bey
 
 `night-stand-cane+made-420x480x600.base=plinth.bays=door,2` is the design `night-stand-cane` at that size in millimetres
 with these two parameters changed. Nothing has to be stored: libraries derive such a shape from the one it is named after.
+Bodies of revolution have one parameter more, whatever their builder: their `girth` along the height.
 """
 
 from __future__ import annotations
@@ -22,6 +23,7 @@ from jaxtyping import Float
 
 from diorama_core.errors import LibraryError
 from diorama_core.library import furniture
+from diorama_core.library.furniture import girth
 from diorama_core.library.furniture.model import Design
 from diorama_core.library.record import ROUND, SymmetryFold
 
@@ -122,10 +124,9 @@ def parameters(design_id: str) -> tuple[Parameter, ...]:
 
 def values_of(design: Design) -> dict[str, Value]:
     """What the parameters of a design are."""
-    arguments = inspect.signature(design.builder).parameters
-    stated = {
-        p.name: _plain(design.options.get(p.name, arguments[p.name].default)) for p in parameters(_base(design.id))
-    }
+    base = _designs().get(_base(design.id), design)
+    arguments = inspect.signature(base.builder).parameters
+    stated = {p.name: _plain(design.options.get(p.name, arguments[p.name].default)) for p in parameters(base.id)}
     return {name: value for name, value in stated.items() if value is not None}
 
 
@@ -136,6 +137,17 @@ def varied(design_id: str) -> Iterator[tuple[str, tuple[Value, ...]]]:
     for parameter in parameters(design_id):
         if parameter.name in own:
             yield parameter.name, parameter.alternatives(own[parameter.name])
+
+
+def can_be_turned(design_id: str) -> bool:
+    """Whether a built-in design is a body of revolution, whose girth may be another along its height."""
+    design = _designs().get(design_id)
+    return design is not None and design.symmetry == ROUND
+
+
+def is_turned(shape_id: str) -> bool:
+    """Whether an id says that its shape has another girth than its design."""
+    return is_made(shape_id) and f";{girth.NAME}=" in shape_id
 
 
 def can_be_made(design_id: str, size_m: Float[np.ndarray, "3"]) -> bool:
@@ -171,9 +183,12 @@ def made_to_measure(base: Design, size_m: Float[np.ndarray, "3"], changes: Mappi
         raise LibraryError(f"'{base.id}' cannot be made {'x'.join(f'{v:.0f}' for v in size)} mm large")
     known, own = {p.name: p for p in parameters(base.id)}, values_of(base)
     for name, value in changes.items():
-        if name not in known or not known[name].allows(value):
+        allowed = _may_be_girth(base, value) if name == girth.NAME else name in known and known[name].allows(value)
+        if not allowed:
             raise LibraryError(f"'{base.id}' cannot be made with {name} {_told(value)}")
     changed = {name: value for name, value in sorted(changes.items()) if own.get(name) != value}
+    options = {**base.options, **{n: _as_given(base, n, v) for n, v in changed.items()}}
+    turned = girth.NAME in changed
     words = [f"{size[0]:.0f}x{size[1]:.0f}x{size[2]:.0f}", *(f"{n}={_told(v)}" for n, v in changed.items())]
     x, y, z = (float(v) / _MILLI for v in size)
     return replace(
@@ -181,8 +196,9 @@ def made_to_measure(base: Design, size_m: Float[np.ndarray, "3"], changes: Mappi
         id=f"{base.id}{MARK}{';'.join(words)}",
         caption=f"{base.caption}, made to measure",
         size_m=(x, y, z),
-        options={**base.options, **{n: _as_given(base, n, v) for n, v in changed.items()}},
-        symmetry=_symmetry(base, factors, bool(changed)),
+        builder=girth.girthed if turned else base.builder,
+        options={**options, "builder": base.builder} if turned else options,
+        symmetry=_symmetry(base, factors, bool(changed.keys() - {girth.NAME})),
         mass_kg=None if base.mass_kg is None else round(base.mass_kg * float(np.prod(factors)), 3),
     )
 
@@ -197,9 +213,12 @@ def made_by_id(shape_id: str, base: Design) -> Design:
     size = _SIZE.fullmatch(words[0])
     stated = [word.partition("=") for word in words[1:]]
     known = {p.name: p for p in parameters(base.id)}
-    if size is None or any(not equals or name not in known for name, equals, _ in stated):
+    if size is None or any(not equals or name not in {*known, girth.NAME} for name, equals, _ in stated):
         raise LibraryError(f"'{shape_id}' does not say how '{base.id}' is made")
-    changes = {name: _read(known[name], text, shape_id) for name, _, text in stated}
+    changes = {
+        name: _read_girth(text, shape_id) if name == girth.NAME else _read(known[name], text, shape_id)
+        for name, _, text in stated
+    }
     design = made_to_measure(base, np.array([int(v) for v in size.groups()]) / _MILLI, changes)
     if design.id != shape_id:
         raise LibraryError(f"'{shape_id}' does not say how '{base.id}' is made")
@@ -246,6 +265,19 @@ def _read(parameter: Parameter, text: str, shape_id: str) -> Value:
     except ValueError:
         pass
     raise LibraryError(f"'{shape_id}': {parameter.name} cannot be '{text[:40]}'")
+
+
+def _may_be_girth(base: Design, value: Value) -> bool:
+    percents = value if isinstance(value, tuple) else ()
+    within = all(isinstance(v, int) and girth.MIN_PERCENT <= v <= girth.MAX_PERCENT for v in percents)
+    return base.symmetry == ROUND and len(percents) == girth.KNOTS and within
+
+
+def _read_girth(text: str, shape_id: str) -> tuple[int, ...]:
+    words = text.split(",")
+    if not all(word.isdecimal() and len(word) <= 3 for word in words):
+        raise LibraryError(f"'{shape_id}': {girth.NAME} cannot be '{text[:40]}'")
+    return tuple(int(word) for word in words)
 
 
 def _plain(value: Any) -> Value | None:

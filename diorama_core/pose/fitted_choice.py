@@ -1,0 +1,83 @@
+"""Which of an object's candidates comes first, once they were fitted to the picture as well as they can be.
+
+Shapes are ranked in the poses in which they were compared as wholes. A design whose profile or size is another is a bad
+match there and the right one afterwards: what round things look like is known only when their profile was measured. So
+where the first candidate does not fit well at its best, others are fitted too: the likeliest bodies of revolution, of
+which a few are enough, since all get the same profile, and, where depth tells forms from one another or the first fits
+badly, the next ones.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+
+from diorama_core.artefacts import PosedCandidates
+from diorama_core.geometry.silhouette import ShapeCaster
+from diorama_core.library.furniture.measures import can_be_turned
+from diorama_core.library.record import ShapeLibrary
+from diorama_core.pose.mask_observations import Evidence
+from diorama_core.pose.outline_fit import fitted_pose
+from diorama_core.pose.turned_profile import turned
+from diorama_core.scene.types import Candidate
+
+GOOD_FIT = 0.08
+"""Disagreement with the picture, 0 to 1, below which the first candidate stays."""
+POOR_FIT = 0.3
+"""Disagreement from which on the next ones are fitted from a photo alone, too."""
+COMPARED, TURNED = 3, 2
+"""Candidates that are fitted in those cases and where depth was measured, and bodies of revolution that always are."""
+OF_RANK, OF_FIT = 0.5, 2.0
+"""What the ranks from before the fit and the fits themselves say of them, as factors of logarithms."""
+NOISE_FLOOR = 0.03
+"""Disagreement below which two shapes count as equal: the resolution of the outlines."""
+_NO_SCORE = 1e-3
+
+
+@dataclass(frozen=True)
+class FittedChoice:
+    """Compares the candidates of single objects; those of sets are the set's."""
+
+    library: ShapeLibrary = field(repr=False)
+
+    def best_first(self, one: PosedCandidates, evidence: Evidence, *, outlined: bool) -> PosedCandidates:
+        """The candidates with the best first, all of them as they were.
+
+        Args:
+            one: Candidates, best first so far; at least one.
+            evidence: Of the object.
+            outlined: Whether its outline is sure enough to tell a profile.
+        """
+        first = self._error(one.candidates[0], evidence, outlined)
+        if first < GOOD_FIT:
+            return one
+        by_rank = evidence.surface is not None or first >= POOR_FIT
+        errors = {
+            k: self._error(one.candidates[k], evidence, outlined) for k in _compared(one.candidates, by_rank, outlined)
+        }
+        scores = {k: _score(one.candidates[k], error) for k, error in {0: first, **errors}.items()}
+        best = max(scores, key=lambda k: (scores[k], -k))
+        others = (*one.candidates[:best], *one.candidates[best + 1 :])
+        return replace(one, candidates=(one.candidates[best], *others))
+
+    def _error(self, candidate: Candidate, evidence: Evidence, outlined: bool) -> float:
+        """Disagreement with the picture, 0 to 1, in the fitted pose and with the profile that is seen."""
+        caster = ShapeCaster(self.library.mesh(candidate.shape_id))
+        pose = fitted_pose(evidence, caster, candidate.pose, np.asarray(candidate.shape_size_m), resize=True)
+        error = evidence.error(caster, pose)
+        found = turned(self.library, candidate.shape_id, [evidence], [pose], error) if outlined else None
+        return error if found is None else found.error
+
+
+def _score(candidate: Candidate, error: float) -> float:
+    """Logarithm, higher is better."""
+    return OF_RANK * float(np.log(max(candidate.score, _NO_SCORE))) - OF_FIT * float(np.log(error + NOISE_FLOOR))
+
+
+def _compared(candidates: Sequence[Candidate], by_rank: bool, outlined: bool) -> list[int]:
+    """Which candidates are fitted beside the first: the next ones, and bodies of revolution."""
+    next_ones = range(1, min(COMPARED, len(candidates))) if by_rank else ()
+    round_ones = [k for k, c in enumerate(candidates) if can_be_turned(c.shape_id)][:TURNED] if outlined else []
+    return sorted({*next_ones, *round_ones} - {0})

@@ -1,0 +1,209 @@
+"""The profile of a body of revolution, measured from its outline.
+
+Every level of an upright body of revolution is a circle, whose picture lies within the body's. So at every height the
+widest circle about the axis that lies within the outline says how wide the body can be there, and where that height
+makes the outline, how wide it is. One side is enough: what hides the other one, or the picture's border, says nothing.
+(Shape from the silhouette of a surface of revolution; here without its contour generator, so that any view will do.)
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import trimesh
+from jaxtyping import Bool, Float
+
+from diorama_core.geometry.observed import Observed
+from diorama_core.geometry.projection import NEAR_M
+from diorama_core.geometry.silhouette import ShapeCaster
+from diorama_core.library.furniture.girth import KNOTS, MAX_PERCENT, MIN_PERCENT, NAME
+from diorama_core.library.furniture.measures import can_be_made, can_be_turned, made_id
+from diorama_core.library.record import BUILT_IN, ShapeLibrary, record_of
+from diorama_core.pose.mask_observations import Evidence
+from diorama_core.pose.outline_fit import fitted_pose
+from diorama_core.scene.types import Camera, Pose
+
+RADII = np.linspace(0.02, 1.6, 80)
+"""Tried, as shares of the body's largest so far."""
+ANGLES = np.linspace(0.0, 2.0 * np.pi, 32, endpoint=False)
+INSET = 0.05
+"""Share of the height by which the lowest and the highest circle are within the body: a height is not that exact."""
+MAX_OUTSIDE = 0.06
+"""Share of a circle that may lie beside the outline: its resolution."""
+MIN_KNOWN = 0.2
+"""Share of the widest circle that must be seen."""
+COVERED, KNOWN = 0.5, 0.9
+"""A place is within the outline when so much of it is covered, and known when it says so much: not where something that
+hides the object begins."""
+MAX_NARROW = 2
+"""Heights at which the body may be narrower than can be made: at more of them it is no such body, or not as high."""
+MUCH_BETTER, NOISE_FLOOR = 0.85, 0.03
+"""Another profile must bring the disagreement with the picture, and what two shapes may differ by, below this share."""
+MAX_FACES = 5000
+"""Of a shape: the wires of a basket are no profile."""
+SECTORS, MAX_UNEVEN, MIN_EVEN = 8, 0.15, 0.7
+"""A section is even when its reach in these sectors differs by at most this share, and so many sections are."""
+
+
+def profile_m(mesh: trimesh.Trimesh, heights_m: Float[np.ndarray, " k"]) -> Float[np.ndarray, " k"]:
+    """The largest distance from the vertical axis at some heights of a shape's own frame; 0 where there is nothing."""
+    ends = np.asarray(mesh.vertices)[mesh.edges_unique]
+    return np.array([_reach(_section(ends, float(height))) for height in heights_m])
+
+
+def is_revolution(mesh: trimesh.Trimesh) -> bool:
+    """Whether most sections of a shape reach equally far all around: those of a plant or a basket's handle do not."""
+    ends = np.asarray(mesh.vertices)[mesh.edges_unique]
+    low, high = mesh.bounds[:, 2]
+    even = []
+    for share in np.linspace(INSET, 1.0 - INSET, KNOTS):
+        section = _section(ends, low + float(share) * (high - low))
+        sector = ((np.arctan2(section[:, 1], section[:, 0]) / (2.0 * np.pi) + 0.5) * SECTORS).astype(int) % SECTORS
+        reach = np.array([_reach(section[sector == k]) for k in range(SECTORS)])
+        if reach.any():
+            even.append(float(np.ptp(reach)) <= MAX_UNEVEN * float(reach.max()))
+    return bool(even) and float(np.mean(even)) >= MIN_EVEN
+
+
+def _section(ends: Float[np.ndarray, "e 2 3"], height: float) -> Float[np.ndarray, "p 2"]:
+    """Where edges cross a height."""
+    z = ends[..., 2]
+    a, b = np.moveaxis(ends[(z.min(axis=1) <= height) & (z.max(axis=1) >= height)], 1, 0)
+    rise = b[:, 2] - a[:, 2]
+    share = np.clip((height - a[:, 2]) / np.where(np.abs(rise) < 1e-9, 1.0, rise), 0.0, 1.0)
+    return np.asarray((a + share[:, None] * (b - a))[:, :2])
+
+
+def _reach(points_xy: Float[np.ndarray, "p 2"]) -> float:
+    return float(np.hypot(*points_xy.T).max()) if len(points_xy) else 0.0
+
+
+@dataclass(frozen=True, eq=False)
+class OutlineMap:
+    """Where an object is seen in its window, between the cells' centres too."""
+
+    camera: Camera
+    seen: Observed
+
+    def at(self, points_world: Float[np.ndarray, "*n 3"]) -> tuple[Bool[np.ndarray, "*n"], Bool[np.ndarray, "*n"]]:
+        """Whether points lie within the outline, and whether that is known at all."""
+        flat = points_world.reshape(-1, 3)
+        pixels, in_front = self.camera.project(flat), self.camera.to_camera(flat)[:, 2] > NEAR_M
+        x1, y1, x2, y2 = self.seen.window.bounds_px
+        cells = self.seen.window.cells
+        place = (pixels - (x1, y1)) / ((x2 - x1) / cells, (y2 - y1) / cells) - 0.5
+        covered, known = (_between(v.reshape(cells, cells), place) for v in (self.seen.covered, self.seen.weight))
+        inside = in_front & (covered >= COVERED)
+        shape = points_world.shape[:-1]
+        return inside.reshape(shape), (in_front & (known >= KNOWN) | inside).reshape(shape)
+
+
+def measured_girth(outline: OutlineMap, mesh: trimesh.Trimesh, pose: Pose) -> tuple[int, ...] | None:
+    """How much wider the body is than a shape at every knot of its height, percent; None where nothing is to be seen.
+
+    Args:
+        outline: Of the object in the photo.
+        mesh: The shape, a body of revolution.
+        pose: Where it stands, upright, as high as the body and as wide at most as it may be.
+    """
+    low, high = mesh.bounds[:, 2]
+    shares = np.clip(np.linspace(0.0, 1.0, KNOTS), INSET, 1.0 - INSET)
+    heights = low + shares * (high - low)
+    width = float(pose.scale[:2].mean())
+    own = np.maximum(width * profile_m(mesh, heights), 1e-4)
+    tried = RADII * float(own.max())
+    circle = np.stack([np.cos(ANGLES), np.sin(ANGLES)], axis=1)
+    points = np.empty((KNOTS, len(tried), len(ANGLES), 3))
+    points[..., :2] = pose.position[:2] + tried[None, :, None, None] * circle
+    points[..., 2] = (pose.position[2] + pose.scale[2] * heights)[:, None, None]
+    inside, known = outline.at(points)
+    fits = (known & ~inside).mean(axis=2) <= MAX_OUTSIDE
+    widest = np.where(fits.all(axis=1), len(tried), np.argmin(fits, axis=1))
+    limited = widest < len(tried)
+    last = np.clip(widest, 1, len(tried)) - 1
+    limited &= (widest == 0) | (np.take_along_axis(inside.mean(axis=2), last[:, None], axis=1)[:, 0] >= MIN_KNOWN)
+    if not limited.any():
+        return None
+    knots = np.arange(KNOTS)
+    factors = np.interp(knots, knots[limited], (tried[last] / own)[limited])
+    if np.count_nonzero(factors < MIN_PERCENT / 100.0) > MAX_NARROW:
+        return None
+    return tuple(int(v) for v in np.clip(np.rint(100.0 * factors), MIN_PERCENT, MAX_PERCENT))
+
+
+@dataclass(frozen=True, eq=False)
+class Turned:
+    """A design with another profile, and how well it agrees with the picture."""
+
+    shape_id: str
+    size_m: Float[np.ndarray, "3"]
+    """At scale 1."""
+    poses: tuple[Pose, ...]
+    """Of the objects that it was measured for."""
+    error: float
+    """Mean disagreement, 0 to 1."""
+
+
+def turned(
+    library: ShapeLibrary, shape_id: str, evidence: Sequence[Evidence], poses: Sequence[Pose], error: float
+) -> Turned | None:
+    """A design with the profile that the picture shows; None where it is none, or agrees hardly better.
+
+    Args:
+        library: Where it is.
+        shape_id: A listed design.
+        evidence: Of the objects that have this shape, alike.
+        poses: Where they stand, all of one scale.
+        error: How much the design as it is disagrees, in the mean.
+    """
+    if not can_be_turned(shape_id) or record_of(library, shape_id).source != BUILT_IN:
+        return None
+    mesh = library.mesh(shape_id)
+    if len(mesh.faces) > MAX_FACES or not is_revolution(mesh):
+        return None
+    found = [measured_girth(OutlineMap(e.camera, e.seen), mesh, p) for e, p in zip(evidence, poses, strict=True)]
+    told = [g for g in found if g is not None]
+    if not told:
+        return None
+    girth = tuple(int(v) for v in np.rint(np.median(told, axis=0)))
+    size = _widened(mesh, np.ptp(mesh.bounds, axis=0) * poses[0].scale, girth)
+    if not can_be_made(shape_id, size):
+        return None
+    made = made_id(shape_id, size, {NAME: girth})
+    caster = ShapeCaster(library.mesh(made))
+    alone = len(poses) == 1
+    fitted = [
+        fitted_pose(e, caster, Pose(p.R_world_object, p.position, np.ones(3)), size, resize=alone)
+        for e, p in zip(evidence, poses, strict=True)
+    ]
+    errors = [e.error(caster, p) for e, p in zip(evidence, fitted, strict=True)]
+    now = float(np.mean(errors))
+    if now + NOISE_FLOOR > MUCH_BETTER * (error + NOISE_FLOOR):
+        return None
+    whole = np.round(size * fitted[0].scale, 3)
+    if not can_be_made(shape_id, whole):
+        return None
+    at_scale = tuple(Pose(p.R_world_object, p.position, np.ones(3)) for p in fitted)
+    return Turned(made_id(shape_id, whole, {NAME: girth}), whole, at_scale, now)
+
+
+def _widened(mesh: trimesh.Trimesh, size_m: Float[np.ndarray, "3"], girth: tuple[int, ...]) -> Float[np.ndarray, "3"]:
+    """The size with this girth of a shape that has a size without it, whole millimetres."""
+    low, high = mesh.bounds[:, 2]
+    own = profile_m(mesh, low + np.clip(np.linspace(0.0, 1.0, KNOTS), INSET, 1.0 - INSET) * (high - low))
+    growth = float((own * girth).max() / (100.0 * max(float(own.max()), 1e-6)))
+    width = float(size_m[:2].mean()) * growth
+    return np.maximum(np.round([width, width, size_m[2]], 3), 1e-3)
+
+
+def _between(grid: Float[np.ndarray, "r c"], place: Float[np.ndarray, "n 2"]) -> Float[np.ndarray, " n"]:
+    """A grid's values between its cells' centres; beyond them nothing is covered and nothing known."""
+    rows, columns = grid.shape
+    padded = np.pad(grid, 1)
+    x, y = np.clip(place[:, 0] + 1.0, 0.0, columns + 0.999), np.clip(place[:, 1] + 1.0, 0.0, rows + 0.999)
+    i, j = y.astype(int), x.astype(int)
+    u, v = y - i, x - j
+    top = padded[i, j] * (1 - v) + padded[i, j + 1] * v
+    return np.asarray(top * (1 - u) + (padded[i + 1, j] * (1 - v) + padded[i + 1, j + 1] * v) * u)
