@@ -8,7 +8,7 @@ only that side changes. What the object holds up stays where it is.
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 from jaxtyping import Float
@@ -31,6 +31,18 @@ LEVEL = 0.3
 """A direction whose cosine to a support's normal is smaller lies in the support."""
 
 
+@dataclass(frozen=True, eq=False)
+class _Cut:
+    """One side of an object nearer."""
+
+    cost: float
+    k: int
+    """Index of the object."""
+    p: Float[np.ndarray, "3"]
+    """Its centre then."""
+    scale: Float[np.ndarray, "3"]
+
+
 def ending_apart(program: Program, observations: PhotoObservations, outline_cost: Float[np.ndarray, " n"]) -> Structure:
     """The structure with colliding objects cut on one side where that costs less than the moves it saves.
 
@@ -47,14 +59,16 @@ def ending_apart(program: Program, observations: PhotoObservations, outline_cost
     start, spent = settled, np.zeros(program.problem.count)
     for pair in pairs if len(pairs) <= MAX_PAIRS else ():
         options = [
-            (cost, *cut)
+            cut
             for k, other in (pair, pair[::-1])
-            for cost, *cut in _cuts(settled, start, observations, k, other, float(outline_cost[k]))
+            for cut in _cuts(settled, start, observations, k, other, float(outline_cost[k]))
         ]
-        cost, k, p, scale = min(options, key=lambda option: option[:2], default=(np.inf, -1, None, None))
-        if cost < WORTH * _move_cost(program, y, pair):
-            spent[k] += cost
-            settled = replace(settled, p=_with(settled.p, k, p), scale=_with(settled.scale, k, scale))
+        best = min(options, key=lambda cut: (cut.cost, cut.k), default=None)
+        if best is not None and best.cost < WORTH * _move_cost(program, y, pair):
+            spent[best.k] += best.cost
+            centres, scales = settled.p.copy(), settled.scale.copy()
+            centres[best.k], scales[best.k] = best.p, best.scale
+            settled = replace(settled, p=centres, scale=scales)
     shorter = _resized(program, structure.p + (settled.p - start.p), settled.scale)
     left = sorted({k for pair in overlaps(shorter, y)[1] for k in pair})
     in_vain = [k for k in left if _move_cost(shorter, y, [k]) + spent[k] >= _move_cost(program, y, [k])]
@@ -71,12 +85,6 @@ def _resized(program: Program, p: Float[np.ndarray, "n 3"], scale: Float[np.ndar
     return replace(program, structure=structure, bodies=bodies, watched={}, blocks=[], chosen={}, tried={})
 
 
-def _with(values: Float[np.ndarray, "n 3"], k: int, value: Float[np.ndarray, "3"] | None) -> Float[np.ndarray, "n 3"]:
-    changed = values.copy()
-    changed[k] = value
-    return changed
-
-
 def _move_cost(program: Program, y: Float[np.ndarray, " v"], objects: Sequence[int]) -> float:
     """What the cheapest move of one of some objects to a free place costs."""
     spots = (cheapest_spot(program, y, k) for k in objects if program.problem.free[k])
@@ -90,8 +98,8 @@ def _cuts(
     k: int,
     other: int,
     outline_cost: float,
-) -> Iterator[tuple[float, int, Float[np.ndarray, "3"], Float[np.ndarray, "3"]]]:
-    """What it costs to end an object before another on each of its sides: cost, object, its centre and its scale."""
+) -> Iterator[_Cut]:
+    """The sides on which an object can end before another."""
     place = settled.surface[k]
     if not settled.free[k] or place is None:
         return
@@ -117,4 +125,4 @@ def _cuts(
             hidden = hidden and covers_box(start, observations, k, nearer, shorter)
             if not hidden and extent - cut < SMALLEST_SHRINK * float(start.shape_size[k, axis] * start.scale[k, axis]):
                 continue
-            yield (HIDDEN_SIDE if hidden else ONE_SIDE) * cut * outline_cost, k, nearer, shorter
+            yield _Cut((HIDDEN_SIDE if hidden else ONE_SIDE) * cut * outline_cost, k, nearer, shorter)

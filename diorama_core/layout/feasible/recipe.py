@@ -89,27 +89,7 @@ class FeasibleRecipe:
         watched = scene.camera is not None and self._across > 1.0
         seen_before = ObservedView.of(scene, self.library) if watched else None
         visible = {} if seen_before is None else seen_before.points
-        observations = self._observations(problem, scene.camera, visible)
-        wanted = problem
-        if observations is not None:
-            wanted = turned_along_walls(wanted, observations)
-            observations = self._observations(wanted, scene.camera, visible)
-        if observations is not None and not self.sizes_reasoned:  # reasoned distances overlap for other reasons
-            wanted = ending_on_walls(ending_before_neighbours(wanted, observations), observations)
-            wanted = reaching_ceilings(wanted, observations)
-            observations = self._observations(wanted, scene.camera, visible)
-        if observations is not None and self.depth_measured:
-            wanted, observations = joint_heights(wanted, observations)
-        if observations is not None:
-            assert scene.camera is not None, "something observed it"
-            eye = scene.camera.position if self.sizes_reasoned else None
-            settled = exact_structure(wanted, self._rays(wanted, scene.camera), observations, eye=eye)
-            wider = reaching_loads(wanted, settled, eye)
-            grown = np.flatnonzero((wider.scale != wanted.scale).any(axis=1))
-            if len(grown):
-                anew = self._observations(wider, scene.camera, visible)
-                assert anew is not None, "it was observed before"
-                wanted, observations = wider, observations.replaced(grown, anew)
+        wanted, observations = self._wanted(problem, scene.camera, visible)
         best: tuple[Problem, Program, Separation] | None = None
         for _ in range(self.attempts):
             seen = None if observations is None else observations.limited(wanted.scale)
@@ -147,6 +127,27 @@ class FeasibleRecipe:
         report = LayoutReport("feasible", before, after, time.perf_counter() - begun, reasons, apart)
         settled = edits.place(scene, problem.poses(structure.R, p, structure.scale))
         return edits.set_metrics(settled, after), report
+
+    def _wanted(
+        self, problem: Problem, camera: Camera | None, visible: VisiblePoints
+    ) -> tuple[Problem, PhotoObservations | None]:
+        """The problem with what was not seen of objects as their neighbours, walls and loads say, and what was seen."""
+        observations = self._observations(problem, camera, visible)
+        if observations is None or camera is None:
+            return problem, None
+        wanted = turned_along_walls(problem, observations)
+        observations = self._observations(wanted, camera, visible) or observations
+        if not self.sizes_reasoned:  # reasoned distances overlap for other reasons
+            wanted = ending_on_walls(ending_before_neighbours(wanted, observations), observations)
+            wanted = reaching_ceilings(wanted, observations)
+            observations = self._observations(wanted, camera, visible) or observations
+        if self.depth_measured:
+            wanted, observations = joint_heights(wanted, observations)
+        eye = camera.position if self.sizes_reasoned else None
+        wider = reaching_loads(wanted, exact_structure(wanted, self._rays(wanted, camera), observations, eye=eye), eye)
+        grown = np.flatnonzero((wider.scale != wanted.scale).any(axis=1))
+        anew = self._observations(wider, camera, visible) if len(grown) else None
+        return wider, observations if anew is None else observations.replaced(grown, anew)
 
     @property
     def _across(self) -> float:
