@@ -17,6 +17,8 @@ from diorama_core.perception.metrology.solver import Solutions, solve
 
 HEIGHT_PRIOR_M = 1.4
 HEIGHT_LOG_SIGMA = 0.18
+HEIGHT_TAILS = 4.0
+"""Degrees of freedom of Student's t: photos are taken from the floor and from stairs, too, and drawn from anywhere."""
 HEIGHTS_M: Float[np.ndarray, "13"] = np.geomspace(0.5, 2.3, 13)
 _CAP = 25.0
 """No object counts more than this: it may be mislabelled."""
@@ -61,7 +63,8 @@ def scan_heights(observations: BoxObservations, view: View) -> HeightScan:
     standing = [i for i in range(len(observations)) if stands_on_floor(observations.categories[i])]
     voters = [i for i in standing if observations.categories[i].name not in TELL_LITTLE] or standing
     log_heights = np.log(HEIGHTS_M)
-    total = ((log_heights - np.log(HEIGHT_PRIOR_M)) / HEIGHT_LOG_SIGMA) ** 2
+    off = (log_heights - np.log(HEIGHT_PRIOR_M)) / HEIGHT_LOG_SIGMA
+    total = (HEIGHT_TAILS + 1) * np.log1p(off**2 / HEIGHT_TAILS)
     if voters:
         rows = stacked([p for i in voters for p in _scan_rows(observations, i)])
         total = total + _votes(rows, observations, view)

@@ -31,6 +31,12 @@ def test_objects_of_usual_size_tell_the_cameras_height(height_m: float) -> None:
     assert 0 < scan.log_sigma < 0.2
 
 
+def test_one_object_suffices_for_an_unusually_low_camera() -> None:
+    level = View(K, rotation(0.0))
+    one = gather(seen(ROOM[1:2], level.R_world_camera, 0.55), K.width, K.height)
+    assert scan_heights(one, level).height_m == pytest.approx(0.55, rel=0.15)
+
+
 def test_more_objects_make_it_surer() -> None:
     assert scan_heights(observed(ROOM[:4]), VIEW).log_sigma < scan_heights(observed(ROOM[:1]), VIEW).log_sigma
 
