@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import importlib
 from collections.abc import Sequence
 
 import numpy as np
@@ -35,17 +34,6 @@ APART_M = 5.0
 AT_ONCE = 60
 
 
-def has_mujoco() -> bool:
-    try:
-        importlib.import_module("mujoco")
-    except ImportError:
-        return False
-    return True
-
-
-needs_mujoco = pytest.mark.skipif(not has_mujoco(), reason="MuJoCo is not installed (optional extra 'sim')")
-
-
 def standing_shapes() -> list[Shape]:
     mounts = {s.category: taxonomy.resolve(s.category).category.mount for s in built_in_library().shapes()}
     return [s for s in built_in_library().shapes() if mounts[s.category] in {"floor", "surface"}]
@@ -64,8 +52,8 @@ def side_by_side(shapes: Sequence[Shape]) -> Scene:
 
 
 @pytest.mark.slow
-@needs_mujoco
 def test_every_shape_stands_by_itself() -> None:
+    pytest.importorskip("mujoco", reason="an optional extra")
     shapes, moved = standing_shapes(), {}
     for first in range(0, len(shapes), AT_ONCE):
         moved |= drift(side_by_side(shapes[first : first + AT_ONCE]), built_in_library(), seconds=1.0)
@@ -73,8 +61,8 @@ def test_every_shape_stands_by_itself() -> None:
     assert {i for i, drifted in moved.items() if stable_share({i: drifted}) < 1.0} == WEIGHTED | HUNG | LEANING
 
 
-@needs_mujoco
 def test_weighted_feet_and_soft_things_hold_in_exported_scenes() -> None:
+    pytest.importorskip("mujoco", reason="an optional extra")
     shapes = [built_in_library().shape(i) for i in sorted(WEIGHTED | LEANING)]
     assert not stability(gather(side_by_side(shapes), built_in_library()), seconds=1.0).unstable
 

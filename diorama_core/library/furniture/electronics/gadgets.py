@@ -65,7 +65,7 @@ def desk_telephone(size: Size, body: Material, trim: Material) -> Parts:
     wedge = loft(np.array([*rings[:2], *(ring + np.array([0.0, 0.0, drop]) for ring in rings[2:])]))
     digits = [(0.05 - 0.024 * r, 0.0) for r in range(4)]
     field = keypad(box((0.016, 0.02, 0.006), 0.002), digits, spread(3, -0.028, -0.048))
-    field += keypad(box((0.01, 0.026, 0.005), 0.002), [(0.045 - 0.018 * r, 0.0) for r in range(4)], [-0.115])
+    field += keypad(box((0.01, 0.026, 0.005), 0.002), [(0.045 - 0.018 * r, 0.0) for r in range(4)], [-0.1])
     screen = box((0.035, 0.1, 0.004), 0.001).moved(-0.065, -0.05, 0)
     parts = of(trim, *(s.moved(0, 0, h * 0.33).turned("y", tilt) for s in field)) + of(
         m.SCREEN, screen.moved(0, 0, h * 0.33).turned("y", tilt)

@@ -240,7 +240,7 @@ def board_set(size: Size) -> Parts:
     d, w, h = size
     parts: Parts = []
     for k, (wood, share, y, tilt) in enumerate(
-        ((m.WALNUT, 1.0, -0.06, 12), (m.OAK, 0.82, 0.1, 17), (m.MARBLE, 0.6, -0.08, 22))
+        ((m.WALNUT, 1.0, -0.06, 12), (m.OAK, 0.82, 0.1, 12.5), (m.MARBLE, 0.6, -0.08, 13))
     ):
         blade = prism(rounded_rectangle(h * share * 0.98, w * (0.72 - 0.08 * k), 0.03, 5), 0.016, 0.004).turned(
             "y", -90
