@@ -3,7 +3,7 @@
 Furniture is assembled from boxes, prisms and turned pieces, so the hulls of a mesh's connected components already
 are a good convex decomposition. Each hull is then replaced by a simpler convex body that contains it (box, prism,
 discrete-orientation polytope) where that costs little volume, so that separating-axis tests stay short. Parts always
-contain the mesh: two shapes whose parts are apart do not touch.
+contain the mesh: two shapes whose parts are apart do not touch. None reaches below it: shapes stand on their feet.
 """
 
 from __future__ import annotations
@@ -34,6 +34,8 @@ MAX_PIECES = 40
 """Components beyond this many are joined with their neighbours before anything else."""
 MAX_VERTICES = 24
 THINNEST_M = 1e-3
+_LEVEL_M = 1e-5
+"""Parts reach this far below and above the mesh at most, but for what gives flat things a thickness."""
 _ROUGH = np.array(
     [d for d in itertools.product((-2, -1, 0, 1, 2), repeat=3) if max(map(abs, d)) == 2], dtype=np.float64
 )
@@ -99,7 +101,23 @@ def convex_parts(mesh: trimesh.Trimesh) -> tuple[ConvexPart, ...]:
         clouds.extend(_split(vertices[component], small, 0))
     clouds = _merge(_gathered([_hull_points(c) for c in clouds]))
     clouds = _drop_contained(sorted(clouds, key=_volume, reverse=True))
-    return tuple(simplest_part(c) for c in clouds)
+    low, high = float(vertices[:, 2].min()), float(vertices[:, 2].max())
+    return tuple(_level(simplest_part(c), c, low, high) for c in clouds)
+
+
+def _level(part: ConvexPart, points: np.ndarray, low: float, high: float) -> ConvexPart:
+    """The part about some points without what of it is below or above two heights, so that feet and tops are level."""
+    z = part.vertices[:, 2]
+    thin = bool((np.ptp(points, axis=0) < THINNEST_M).any())
+    if thin or (z.min() >= low - _LEVEL_M and z.max() <= high + _LEVEL_M):
+        return part
+    ends = [[0.0, 0.0, 1.0, -high], [0.0, 0.0, -1.0, low]]
+    try:
+        planes = np.unique(np.round(np.vstack([ConvexHull(part.vertices).equations, ends]), 9), axis=0)
+        corners = HalfspaceIntersection(planes, points.mean(axis=0)).intersections
+    except QhullError:
+        return part  # the points are too flat to have an inside
+    return hull_part(np.unique(np.round(corners, 9), axis=0))
 
 
 def simplest_part(points: Float[np.ndarray, "n 3"]) -> ConvexPart:

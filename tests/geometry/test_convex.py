@@ -61,6 +61,17 @@ def test_parts_contain_the_mesh(mesh: trimesh.Trimesh) -> None:
     assert contains(parts, np.asarray(points)).all()
 
 
+@pytest.mark.parametrize("axis", [(1.0, 0.0, 0.0), (0.3, 1.0, 0.0), (1.0, 1.0, 0.0)])
+def test_parts_of_lying_and_tilted_things_are_level_with_them(axis: tuple[float, float, float]) -> None:
+    for degrees in (90.0, 75.0, 40.0):
+        mesh = trimesh.creation.cylinder(0.2, 0.9, sections=36)
+        mesh.apply_transform(trimesh.transformations.rotation_matrix(np.deg2rad(degrees), axis))
+        parts = convex_parts(mesh)
+        heights = np.concatenate([p.vertices[:, 2] for p in parts])
+        assert (heights.min(), heights.max()) == pytest.approx((mesh.bounds[0, 2], mesh.bounds[1, 2]), abs=2e-5)
+        assert contains(parts, np.asarray(mesh.vertices)).all()
+
+
 def test_a_ring_keeps_its_hole() -> None:
     parts = convex_parts(trimesh.creation.torus(0.5, 0.06))
     assert not contains(parts, np.zeros((1, 3))).any()

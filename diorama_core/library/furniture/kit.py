@@ -57,6 +57,7 @@ from diorama_core.library.furniture.solids import (
     tube,
     unit,
 )
+from diorama_core.library.furniture.standing import lowered, seated
 from diorama_core.library.furniture.styles import CLASSIC, INDUSTRIAL, MINIMAL, MODERN, RUSTIC, Style
 
 __all__ = [  # noqa: RUF022
@@ -68,5 +69,5 @@ __all__ = [  # noqa: RUF022
     "ring_path", "rod", "rounded_rectangle", "shell", "slab", "smooth_profile", "superellipse", "taper", "tube", "unit",
     "Leg", "leg", "trumpet", "Base", "Cell", "case", "feet", "door_front", "drawer_front", "open_case", "plinth", "pull",
     "bar_handle", "knob", "tap", "frame", "stand_up", "wall_outline", "hollow", "keypad", "keys_of",
-    "piano_keys", "spread",
+    "piano_keys", "spread", "lowered", "seated",
 ]  # fmt: skip

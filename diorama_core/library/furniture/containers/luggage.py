@@ -102,7 +102,8 @@ def duffel(size: Size, cloth: Material, trim: Material) -> Parts:
         for y in (-0.2, 0.2)
     ]
     zip_ = rod((0, -w * 0.42, top - 0.002), (0, w * 0.42, top - 0.002), 0.005)
-    return of(cloth, body) + of(trim, *straps, *bands) + of(m.STEEL, zip_)
+    sunk = [seated(p.moved(z=-0.012)) for p in (body, *bands)]
+    return of(cloth, sunk[0]) + of(trim, *straps, *sunk[1:]) + of(m.STEEL, zip_.moved(z=-0.012))
 
 
 def rucksack(size: Size, cloth: Material, trim: Material, flap: bool = False) -> Parts:

@@ -70,13 +70,18 @@ def window_mirror(size: Size, bar: Material, columns: int = 3, rows: int = 4) ->
 
 
 def leaning(size: Size, bar: Material, width: float, arch: bool = False) -> Parts:
-    """A tall mirror that leans against the wall."""
+    """A tall mirror that leans back on its strut, as if against the wall."""
     d, w, h = size
     lean = float(np.rad2deg(np.arcsin(min((d - 0.04) / h, 0.3))))
     tall = (h - 0.03 * np.sin(np.deg2rad(lean))) / np.cos(np.deg2rad(lean))
     upright = mirror((0.035, w, tall), bar, "arch" if arch else "square", width)
     low = min(float(p.solid.vertices[:, 2].min()) for p in upright)
-    return [p.moved(z=-low).turned("y", -lean).moved(d / 2 - 0.03) for p in upright]
+    leant = [p.moved(z=-low).turned("y", -lean) for p in upright]
+    foot = min(float(p.solid.vertices[:, 2].min()) for p in leant)
+    front, high = d / 2 - 0.03, 0.62 * h
+    hinge = (front - high * np.tan(np.deg2rad(lean)) - 0.03, 0, high)
+    strut = lowered(beam(hinge, (-d / 2 + 0.014, 0, 0.01), 0.3 * w, 0.012, 0.003))
+    return [p.moved(front, 0, -foot) for p in leant] + of(m.SHADOW, strut)
 
 
 def cheval(size: Size, wood: Material) -> Parts:

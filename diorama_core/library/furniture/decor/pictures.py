@@ -172,7 +172,7 @@ def photo_frame(size: Size, bar: Material, image: Material, mount: float = 0.02)
     high = 0.6 * tall * np.cos(np.deg2rad(lean))
     x = d / 2 - 0.045 - 0.6 * tall * np.sin(np.deg2rad(lean))
     strut = beam((x, 0, high), (-d / 2 + 0.006, 0, 0.003), 0.05, 0.005, 0.002)
-    return [p.moved(d / 2 - 0.03, 0, -low) for p in back] + of(m.SHADOW, strut)
+    return [p.moved(d / 2 - 0.03, 0, -low) for p in back] + of(m.SHADOW, lowered(strut))
 
 
 def twin_frame(size: Size, bar: Material, images: tuple[Material, Material]) -> Parts:

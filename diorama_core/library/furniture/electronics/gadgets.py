@@ -54,27 +54,24 @@ def rotary_telephone(size: Size, body: Material, metal: Material) -> Parts:
 def desk_telephone(size: Size, body: Material, trim: Material) -> Parts:
     """An office telephone with keys and a display."""
     d, w, h = size
-    wedge = loft(
-        np.array(
-            [
-                ring_path(rounded_rectangle(d * a, w * a, 0.02, 4), z)
-                for a, z in ((0.98, 0.0), (1.0, 0.006), (0.97, h * 0.3), (0.95, h * 0.34))
-            ]
-        )
-    )
     tilt = 9.0
+    rings = [
+        ring_path(rounded_rectangle(d * a, w * a, 0.02, 4), z)
+        for a, z in ((0.98, 0.0), (1.0, 0.006), (0.97, h * 0.3), (0.95, h * 0.34))
+    ]
+    for ring in rings[2:]:
+        ring[:, 2] -= ring[:, 0] * np.tan(np.deg2rad(tilt))  # the top slopes, the foot is level
+    drop = d / 2 * np.sin(np.deg2rad(tilt))
+    wedge = loft(np.array([*rings[:2], *(ring + np.array([0.0, 0.0, drop]) for ring in rings[2:])]))
     digits = [(0.05 - 0.024 * r, 0.0) for r in range(4)]
     field = keypad(box((0.016, 0.02, 0.006), 0.002), digits, spread(3, -0.028, -0.048))
-    field += keypad(box((0.01, 0.026, 0.005), 0.002), [(0.045 - 0.018 * r, 0.0) for r in range(4)], [-0.115])
+    field += keypad(box((0.01, 0.026, 0.005), 0.002), [(0.045 - 0.018 * r, 0.0) for r in range(4)], [-0.1])
     screen = box((0.035, 0.1, 0.004), 0.001).moved(-0.065, -0.05, 0)
-    parts = (
-        of(body, wedge.turned("y", tilt))
-        + of(trim, *(s.moved(0, 0, h * 0.33).turned("y", tilt) for s in field))
-        + of(m.SCREEN, screen.moved(0, 0, h * 0.33).turned("y", tilt))
+    parts = of(trim, *(s.moved(0, 0, h * 0.33).turned("y", tilt) for s in field)) + of(
+        m.SCREEN, screen.moved(0, 0, h * 0.33).turned("y", tilt)
     )
     receiver = [p.turned("z", 90).moved(0, w * 0.32, h * 0.34).turned("y", tilt) for p in handset(d * 0.98, body)]
-    low = min(float(p.solid.vertices[:, 2].min()) for p in parts)
-    return [p.moved(z=-low) for p in parts + receiver]
+    return of(body, wedge) + [p.moved(z=drop) for p in parts + receiver]
 
 
 def cordless(size: Size, body: Material, trim: Material) -> Parts:

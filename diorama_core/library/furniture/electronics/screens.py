@@ -112,7 +112,7 @@ def portable_television(size: Size, body: Material) -> Parts:
 
 
 def curved_monitor(size: Size, body: Material) -> Parts:
-    """A wide curved screen on a V-shaped foot."""
+    """A wide curved screen on a foot of three legs."""
     d, w, h = size
     low, tall = 0.28 * h, 0.72 * h
     t = np.linspace(-1, 1, 15)
@@ -127,7 +127,8 @@ def curved_monitor(size: Size, body: Material) -> Parts:
     face[1, :, 2] -= 0.009
     face[:, :, 1] *= 0.985
     skin = slab(rows[:, ::-1], 0.022)
-    legs = [rod((-0.02, 0, 0.02), (d / 2 - 0.01, s * 0.26 * w, 0.008), 0.01, 0.007) for s in (1, -1)]
+    hub, tips = (-0.01, 0, 0.01), [(d / 2 - 0.01, s * 0.26 * w, 0.007) for s in (1, -1)]
+    legs = [lowered(rod(hub, tip, 0.01, 0.007)) for tip in (*tips, (-d / 2 + 0.03, 0, 0.007))]
     return of(body, skin, *legs, box((0.024, 0.06, low + 0.4 * tall), 0.008, 2).moved(-0.01, 0, 0.01)) + of(
         m.SCREEN, slab(face[:, ::-1], 0.002).pictured()
     )

@@ -236,11 +236,11 @@ def board(size: Size, wood: Material, kind: str = "plain") -> Parts:
 
 
 def board_set(size: Size) -> Parts:
-    """Three boards leaning together."""
+    """Three boards leaning together on a stand of wire."""
     d, w, h = size
     parts: Parts = []
     for k, (wood, share, y, tilt) in enumerate(
-        ((m.WALNUT, 1.0, -0.06, 12), (m.OAK, 0.82, 0.1, 17), (m.MARBLE, 0.6, -0.08, 22))
+        ((m.WALNUT, 1.0, -0.06, 12), (m.OAK, 0.82, 0.1, 12.5), (m.MARBLE, 0.6, -0.08, 13))
     ):
         blade = prism(rounded_rectangle(h * share * 0.98, w * (0.72 - 0.08 * k), 0.03, 5), 0.016, 0.004).turned(
             "y", -90
@@ -251,7 +251,9 @@ def board_set(size: Size) -> Parts:
             .moved(0.012 + 0.02 * k + d * 0.08, y * w)
         )
         parts += of(wood, blade)
-    return parts
+    base = [rod((d / 2 - 0.004, y, 0.003), (-d / 2 + 0.004, y, 0.003), 0.003, segments=8) for y in (-0.2 * w, 0.2 * w)]
+    back = [rod((-0.042, y, 0.6 * h), (-d / 2 + 0.004, y, 0.003), 0.003, segments=8) for y in (-0.2 * w, 0.2 * w)]
+    return [p.moved(z=0.006) for p in parts] + of(m.STEEL, *base, *back)
 
 
 DESIGNS: tuple[Design, ...] = (

@@ -10,7 +10,7 @@ from diorama_core.library.furniture.kit import *
 def teddy(size: Size, fur: Material, muzzle: Material) -> Parts:
     """A sitting teddy bear."""
     d, w, h = size
-    body = cushion((0.55 * d, 0.52 * w, 0.52 * h), 2, 2.2, 10).moved(-0.1 * d, 0, 0.02)
+    body = seated(cushion((0.55 * d, 0.52 * w, 0.56 * h), 2, 2.2, 10).moved(-0.1 * d, 0, -0.02))
     head = cushion((0.5 * d, 0.5 * w, 0.42 * h), 2, 2.1, 10).moved(-0.05 * d, 0, 0.5 * h)
     nose = cushion((0.2 * d, 0.22 * w, 0.15 * h), 2, 2, 6).moved(0.19 * d, 0, 0.56 * h)
     ears = both_sides(cushion((0.12 * d, 0.2 * w, 0.17 * h), 2, 2, 6).moved(-0.06 * d, 0.2 * w, 0.82 * h))
@@ -143,7 +143,7 @@ def rocking_horse(size: Size, wood: Material, hair: Material, saddle: Material) 
 def rabbit(size: Size, fur: Material, inner: Material) -> Parts:
     """A sitting cloth rabbit with long ears."""
     d, w, h = size
-    body = cushion((0.6 * d, 0.62 * w, 0.44 * h), 2, 2.2, 10).moved(-0.06 * d, 0, 0.01)
+    body = seated(cushion((0.6 * d, 0.62 * w, 0.49 * h), 2, 2.2, 10).moved(-0.06 * d, 0, -0.02))
     head = cushion((0.52 * d, 0.52 * w, 0.3 * h), 2, 2.1, 10).moved(-0.02 * d, 0, 0.4 * h)
     ears = both_sides(
         cushion((0.1 * d, 0.2 * w, 0.36 * h), 2, 2.2, 7).turned("x", -8).moved(-0.06 * d, 0.13 * w, 0.635 * h)

@@ -10,8 +10,8 @@ from diorama_core.library.furniture.kit import *
 def desk_lamp(size: Size, paint: Material, joint: Material) -> Parts:
     """A jointed desk lamp with a metal hood."""
     d, w, h = size
-    x0 = -d / 2 + w * 0.45
-    elbow, head = (x0 - 0.02, 0.0, h * 0.62), (d / 2 - 0.08, 0.0, h * 0.93)
+    x0, r = 0.05 * d, 0.49 * w  # the elbow leans back behind the foot, so that the hood does not pull it over
+    elbow, head = (-d / 2 + 0.016, 0.0, h * 0.62), (d / 2 - 0.08, 0.0, h * 0.93)
     arms = [rod((x0, s, 0.03), (elbow[0], s, elbow[2]), 0.005) for s in (0.012, -0.012)] + [
         rod((elbow[0], s, elbow[2]), (head[0], s, head[2]), 0.005) for s in (0.012, -0.012)
     ]
@@ -26,7 +26,7 @@ def desk_lamp(size: Size, paint: Material, joint: Material) -> Parts:
     ]
     glow = ball(0.06).moved(head[0] + 0.045, 0, head[2] - 0.115)
     return (
-        of(paint, lathe([(w * 0.44, 0), (w * 0.45, 0.006), (w * 0.42, 0.02), (0.03, 0.028)], 36).moved(x0), hood)
+        of(paint, lathe([(r - 0.002, 0), (r, 0.006), (r - 0.004, 0.026), (0.03, 0.034)], 36).moved(x0), hood)
         + of(joint, *arms, *joints)
         + of(m.LAMP_GLOW, glow)
     )
@@ -80,13 +80,13 @@ def bankers_lamp(size: Size, metal: Material, glass: Material) -> Parts:
 def gooseneck(size: Size, paint: Material, metal: Material) -> Parts:
     """A flexible neck with a small bell."""
     d, w, h = size
-    x = -d / 2 + w / 2
+    x = -0.01
     path = bend(
         [
             (x, 0, 0.02),
-            (x - 0.01, 0, h * 0.5),
-            (x + 0.05, 0, h * 0.86),
-            (x + 0.16, 0, h * 0.94),
+            (-d / 2 + 0.03, 0, h * 0.42),
+            (-d / 2 + 0.035, 0, h * 0.82),
+            (-0.01, 0, h * 0.96),
             (d / 2 - 0.07, 0, h * 0.78),
         ],
         7,
@@ -97,7 +97,7 @@ def gooseneck(size: Size, paint: Material, metal: Material) -> Parts:
         .turned("y", 24)
         .moved(d / 2 - 0.1, 0, h * 0.78 - 0.1)
     )
-    foot = lathe([(w * 0.48, 0), (w * 0.5, 0.006), (w * 0.44, 0.02), (0.02, 0.03)], 32).moved(x)
+    foot = lathe([(w * 0.48, 0), (w * 0.5, 0.006), (w * 0.47, 0.026), (0.02, 0.034)], 32).moved(x)
     return (
         of(paint, foot, hood)
         + of(metal, tube(path, ribs, 10))

@@ -59,7 +59,7 @@ def ladder_shelf(size: Size, wood: Material, frame: Material, levels: int = 5) -
     d, w, h = size
     front, rear = d / 2 - 0.01, -d / 2 + 0.02
     sides = both_sides(
-        beam((front, w / 2 - 0.014, 0), (rear, w / 2 - 0.014, h), 0.026, 0.045),
+        lowered(beam((front, w / 2 - 0.014, 0), (rear, w / 2 - 0.014, h), 0.026, 0.045)),
         box((0.024, 0.026, h * 0.98), 0.003).moved(rear - 0.006, w / 2 - 0.014),
     )
     parts = of(frame, *sides)
