@@ -53,7 +53,7 @@ def tube_trolley(size: Size, frame: Material, decks: Material, levels: int = 2, 
             rod((0, 0, 0.13), (0.13 * np.cos(a), 0, 0.13 + 0.13 * np.sin(a)), 0.004, segments=6)
             for a in np.linspace(0, 2 * np.pi, 9)[:-1]
         ]
-        parts += of(frame, *both_sides(*(q.moved(-x + 0.11, y + 0.02) for q in (wheel, *spokes))))
+        parts += of(frame, *both_sides(*(q.moved(-x + 0.11, y + 0.02, 0.008) for q in (wheel, *spokes))))
     return parts
 
 
