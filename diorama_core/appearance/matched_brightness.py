@@ -1,8 +1,7 @@
 """Materials as bright as the photo: what was read of them is shown in the scene's own light and set against the photo.
 
 An albedo is known only up to the light on its surface, and the estimated light is not the room's: what it gets wrong of
-an object as a whole, in brightness and a little in colour, is found by rendering the scene and comparing each object's
-visible pixels with the photo's.
+an object as a whole is found by rendering the scene once and comparing each object's visible pixels with the photo's.
 """
 
 from __future__ import annotations
@@ -13,7 +12,7 @@ from dataclasses import replace
 
 import cv2
 import numpy as np
-from jaxtyping import Bool, Float, UInt8
+from jaxtyping import Bool, UInt8
 
 from diorama_core.io.srgb import linear_to_srgb, luminance, srgb_to_linear
 from diorama_core.library.record import ShapeLibrary
@@ -28,16 +27,12 @@ MIN_PIXELS = 12
 """Of it, below which nothing is said of an object."""
 MAX_GAIN = 1.5
 """More than so much brighter or darker is another surface than the one that is seen."""
-MAX_TINT = 1.25
-"""One channel may become so much brighter or darker beside brightness as a whole: coloured floors and walls shine."""
 MAX_LINEAR = 0.9
 """Brightest albedo, as where it is read."""
 DARKEST = 1e-3
 
 Materials = Mapping[str, tuple[PhotoMaterial, ...]]
 Pictures = Mapping[str, UInt8[np.ndarray, "_ _ 3"]]
-Gain = Float[np.ndarray, "3"]
-"""By which the linear red, green and blue of a material are multiplied."""
 
 
 def brightness_gains(
@@ -46,7 +41,7 @@ def brightness_gains(
     scene: Scene,
     pictures: Pictures,
     library: ShapeLibrary,
-) -> dict[str, Gain]:
+) -> dict[str, float]:
     """By how much every object's materials must become brighter for it to look in the scene as in the photo.
 
     Args:
@@ -65,20 +60,13 @@ def brightness_gains(
     for object_id, mask in visible.items():
         seen = cv2.resize(mask.astype(np.float32), size, interpolation=cv2.INTER_AREA) > 0.9
         if np.count_nonzero(seen) >= MIN_PIXELS:
-            gains[object_id] = _gain(photo[seen].mean(axis=0), shown[seen].mean(axis=0))
+            ratio = float(photo[seen].mean()) / max(float(shown[seen].mean()), DARKEST)
+            gains[object_id] = float(np.clip(ratio, 1.0 / MAX_GAIN, MAX_GAIN))
     return gains
 
 
-def _gain(photo: Float[np.ndarray, "3"], shown: Float[np.ndarray, "3"]) -> Gain:
-    """Of brightness as a whole, and of each channel beside it."""
-    whole = float(luminance(photo)) / max(float(luminance(shown)), DARKEST)
-    tint = np.maximum(photo, DARKEST) / np.maximum(shown, DARKEST) / max(whole, DARKEST)
-    clipped = float(np.clip(whole, 1.0 / MAX_GAIN, MAX_GAIN))
-    return np.asarray(clipped * np.clip(tint, 1.0 / MAX_TINT, MAX_TINT))
-
-
 def brightened(
-    materials: Materials, pictures: Pictures, gains: Mapping[str, Gain], sets: Sequence[Sequence[str]]
+    materials: Materials, pictures: Pictures, gains: Mapping[str, float], sets: Sequence[Sequence[str]]
 ) -> tuple[dict[str, tuple[PhotoMaterial, ...]], dict[str, UInt8[np.ndarray, "_ _ 3"]]]:
     """Materials and pictures made brighter; things of a set keep the materials that they share.
 
@@ -104,22 +92,17 @@ def brightened(
     return made, textures
 
 
-def _shared_gains(materials: Materials, gains: Mapping[str, Gain], sets: Sequence[Sequence[str]]) -> dict[str, Gain]:
+def _shared_gains(materials: Materials, gains: Mapping[str, float], sets: Sequence[Sequence[str]]) -> dict[str, float]:
     """One gain for every object that no material of it makes brighter than surfaces are, the same for a set."""
     room = {i: min((_headroom(m) for m in own), default=1.0) for i, own in materials.items()}
-    shared = {i: _within(gains.get(i, np.ones(3)), room[i]) for i in materials}
+    shared = {i: min(gains.get(i, 1.0), room[i]) for i in materials}
     for members in sets:
         logs = [np.log(gains[i]) for i in members if i in gains]
         most = min((room[i] for i in members if i in room), default=1.0)
         if logs:
-            mean = np.exp(np.mean(logs, axis=0))
-            shared |= {i: _within(mean, most) for i in members if i in materials}
+            mean = float(np.exp(np.mean(logs)))
+            shared |= {i: min(mean, most) for i in members if i in materials}
     return shared
-
-
-def _within(gain: Gain, most: float) -> Gain:
-    """The gain, darker as a whole where a channel would grow more."""
-    return np.asarray(gain * min(1.0, most / float(gain.max())))
 
 
 def _name_of(name: str, changed: UInt8[np.ndarray, "_ _ 3"]) -> str:
@@ -132,18 +115,18 @@ def _headroom(material: PhotoMaterial) -> float:
     return max(1.0, MAX_LINEAR / max(brightest, DARKEST))
 
 
-def _lit(texture: UInt8[np.ndarray, "h w 3"], gain: Gain) -> UInt8[np.ndarray, "h w 3"]:
-    return texture if (gain == 1.0).all() else np.rint(255.0 * _scaled(texture / 255.0, gain)).astype(np.uint8)
+def _lit(texture: UInt8[np.ndarray, "h w 3"], gain: float) -> UInt8[np.ndarray, "h w 3"]:
+    return texture if gain == 1.0 else np.rint(255.0 * _scaled(texture / 255.0, gain)).astype(np.uint8)
 
 
-def _brighter(colour: tuple[float, float, float], gain: Gain) -> tuple[float, float, float]:
-    if (gain == 1.0).all():
+def _brighter(colour: tuple[float, float, float], gain: float) -> tuple[float, float, float]:
+    if gain == 1.0:
         return colour
     red, green, blue = (float(c) for c in _scaled(np.asarray(colour, dtype=np.float64), gain))
     return red, green, blue
 
 
-def _scaled(display: np.ndarray, gain: Gain) -> np.ndarray:
+def _scaled(display: np.ndarray, gain: float) -> np.ndarray:
     return np.asarray(linear_to_srgb(np.clip(gain * srgb_to_linear(display), 0.0, 1.0)))
 
 
@@ -154,4 +137,4 @@ def _small(camera: Camera) -> tuple[int, int]:
 
 
 def _linear(rgb: UInt8[np.ndarray, "h w 3"]) -> np.ndarray:
-    return np.asarray(srgb_to_linear(rgb / 255.0))
+    return np.asarray(luminance(srgb_to_linear(rgb / 255.0)))
