@@ -14,6 +14,7 @@ from diorama_core.appearance.lit_colour import unveiled
 from diorama_core.appearance.plainness import shows_plain
 from diorama_core.appearance.surface_view import SurfaceView
 from diorama_core.appearance.texture_example import Example, best_example, tileable
+from diorama_core.geometry.rows import cells_of
 from diorama_core.io.srgb import linear_to_srgb, luminance, srgb_to_linear
 from diorama_core.library.slots import Role, Slot
 from diorama_core.render.gloss import roughness_seen, without_gloss
@@ -213,10 +214,10 @@ def _colours_of(lab: Float32[np.ndarray, "gh gw 3"], mine: Bool[np.ndarray, "gh 
     """
     pixels = lab[mine]
     cells = np.floor(pixels / BIN_LAB + (0.0, 0.5, 0.5))
-    _, label, counts = np.unique(cells, axis=0, return_inverse=True, return_counts=True)
+    label, counts = cells_of(cells)
     order = np.argsort(-counts, kind="stable")
     much = [k for k in order if k == order[0] or counts[k] >= MIN_SHARE * len(pixels)]
-    return [np.median(pixels[label.ravel() == k], axis=0) for k in much]
+    return [np.median(pixels[label == k], axis=0) for k in much]
 
 
 def _share(lab: Float32[np.ndarray, "gh gw 3"], where: Bool[np.ndarray, "gh gw"], seed: np.ndarray) -> float:
@@ -235,10 +236,8 @@ def _is_near(difference: np.ndarray) -> np.ndarray:
 def shade_of(view: SurfaceView, pixels: SlotPixels, rgb: UInt8[np.ndarray, "h w 3"]) -> Shade:
     """How bright the slot is at each of its normals."""
     linear = luminance(srgb_to_linear(view.of(rgb)[pixels.near] / 255.0))
-    cells, label = np.unique(np.round(view.normals_world[pixels.near] / NORMAL_CELL), axis=0, return_inverse=True)
-    count = np.bincount(label.ravel(), minlength=len(cells))
-    chosen = [k for k in range(len(cells)) if count[k] >= MIN_FACE_PIXELS]
-    of = [label.ravel() == k for k in chosen]
+    label, count = cells_of(np.round(view.normals_world[pixels.near] / NORMAL_CELL))
+    of = [label == k for k in np.flatnonzero(count >= MIN_FACE_PIXELS)]
     normals = np.array([view.normals_world[pixels.near][m].mean(axis=0) for m in of]).reshape(-1, 3)
     brightness = np.array([max(float(np.median(linear[m])), 1e-4) for m in of])
     weight = np.array([float(m.mean()) for m in of])

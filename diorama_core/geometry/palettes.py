@@ -11,6 +11,7 @@ import cv2
 import numpy as np
 from jaxtyping import Bool, Float, UInt8
 
+from diorama_core.geometry.rows import cells_of
 from diorama_core.geometry.shape_appearance import ShapeAppearance
 from diorama_core.scene.values import ArrayValue
 
@@ -38,9 +39,7 @@ def _to_lab(rgb: UInt8[np.ndarray, "n 3"]) -> Float[np.ndarray, "n 3"]:
 
 def _main_colours(lab: Float[np.ndarray, "n 3"], weight: Float[np.ndarray, "n"]) -> Palette:
     """Means of the fullest bins of a coarse colour grid."""
-    bins = np.floor(lab / _BIN).astype(int)
-    _, label = np.unique(bins, axis=0, return_inverse=True)
-    label = label.ravel()
+    label, _ = cells_of(np.floor(lab / _BIN))
     mass = np.bincount(label, weight)
     fullest = np.argsort(-mass, kind="stable")[:_MAIN_COLOURS]
     sums = np.stack([np.bincount(label, weight * lab[:, c]) for c in range(3)], axis=1)

@@ -42,7 +42,7 @@ def visible_bounds(
         to the cuboid's centre.
     """
     points = _by_coordinate(corners_camera)
-    slack = _slack(points, intrinsics)
+    slack = frustum_slack(points, intrinsics)
     inside = (slack >= 0).all(axis=(0, 1))
     u, v = _project(points, intrinsics)
     bounds = np.stack([u.min(axis=0), v.min(axis=0), u.max(axis=0), v.max(axis=0)], axis=-1)
@@ -72,15 +72,11 @@ def _project(points: Float[np.ndarray, "3 *n"], k: Intrinsics) -> Float[np.ndarr
     return np.stack([k.fx * x / z + k.cx, k.fy * y / z + k.cy])
 
 
-def frustum_slack(points: Float[np.ndarray, "n p 3"], k: Intrinsics) -> Float[np.ndarray, "n p 5"]:
+def frustum_slack(points: Float[np.ndarray, "3 *n"], k: Intrinsics) -> Float[np.ndarray, "5 *n"]:
     """How far camera-frame points are on the inner side of the near plane and the picture's four side planes.
 
     The near plane is in metres, the side planes are times the focal length; positive inside.
     """
-    return _slack(points.transpose(2, 0, 1), k).transpose(1, 2, 0)
-
-
-def _slack(points: Float[np.ndarray, "3 *n"], k: Intrinsics) -> Float[np.ndarray, "5 *n"]:
     x, y, z = points
     return np.stack(
         [
@@ -149,7 +145,7 @@ def _near_cut_bounds(
     cut = (near[a] < 0) != (near[b] < 0)
     share = near[a] / np.where(cut, near[a] - near[b], 1.0)
     ends = points[:, a] + share * (points[:, b] - points[:, a])
-    slack = _slack(ends, k)
+    slack = frustum_slack(ends, k)
     slack[0] = np.where(cut, 0.0, -1.0)
     first, second = _edge_pairs_of_faces().T
     return _segment_bounds(ends[:, first], ends[:, second], slack[:, first], slack[:, second], k)

@@ -30,6 +30,24 @@ def unique_rows(values: np.ndarray) -> tuple[Int[np.ndarray, " m"], Int[np.ndarr
     return first[order], rank[kind.reshape(-1)]
 
 
+def cells_of(whole: np.ndarray) -> tuple[Int[np.ndarray, " n"], Int[np.ndarray, " m"]]:
+    """Which rows are equal, for whole numbers that lie near one another, such as the cells of a grid of colours.
+
+    Args:
+        whole: (n k), whole numbers of any type.
+
+    Returns:
+        For every row the number of its kind, kinds in the order of their sorted rows; and how many rows each kind has.
+    """
+    columns = np.ascontiguousarray(whole.T).astype(np.int64)
+    if not columns.size:
+        return np.zeros(len(whole), dtype=np.int64), np.zeros(0, dtype=np.int64)
+    least = columns.min(axis=1)
+    key = np.ravel_multi_index(tuple(columns - least[:, None]), tuple(columns.max(axis=1) - least + 1))
+    _, kind, count = np.unique(key, return_inverse=True, return_counts=True)
+    return kind, count
+
+
 def _hashes(rows: np.ndarray) -> np.ndarray:
     found = np.zeros(len(rows), dtype=np.uint64)
     for column in rows.T:

@@ -14,7 +14,7 @@ from dataclasses import dataclass, replace
 
 import cv2
 import numpy as np
-from jaxtyping import Bool, Float, Int, UInt8
+from jaxtyping import Bool, Float, Float32, Int, UInt8
 
 from diorama_core.geometry.observed import Observed
 from diorama_core.geometry.window import Window, soft_iou
@@ -98,10 +98,15 @@ def _lab(rgb: Float[np.ndarray, "n 3"]) -> Float[np.ndarray, "n 3"]:
     return lab * np.sqrt([LIGHTNESS, 1.0, 1.0]) / COLOUR_SIGMA
 
 
-def _kernel(a: Float[np.ndarray, "n d"], b: Float[np.ndarray, "m d"]) -> Float[np.ndarray, "n m"]:
-    """Gaussian kernel of points in units of its sigma."""
-    squared = (a**2).sum(axis=1)[:, None] + (b**2).sum(axis=1) - 2 * a @ b.T
-    return np.exp(-0.5 * np.maximum(squared, 0.0))
+def _kernel(a: Float[np.ndarray, "n d"], b: Float[np.ndarray, "m d"]) -> Float32[np.ndarray, "n m"]:
+    """Gaussian kernel of points in units of its sigma; single precision, whose exponentials are ten times as fast."""
+    middle = b.mean(axis=0)  # distances are differences of squares: small numbers keep their digits
+    a, b = a - middle, b - middle
+    ones, of_a, of_b = np.ones, -0.5 * (a**2).sum(axis=1), -0.5 * (b**2).sum(axis=1)
+    left = np.column_stack([a, of_a, ones(len(a))]).astype(np.float32)
+    right = np.column_stack([b, ones(len(b)), of_b]).astype(np.float32)
+    exponent = left @ right.T
+    return np.exp(np.minimum(exponent, 0.0, out=exponent), out=exponent)
 
 
 def _spread(cells: Int[np.ndarray, "n"]) -> Int[np.ndarray, "m"]:
@@ -117,23 +122,25 @@ def _density_around(
 ) -> Float[np.ndarray, "k"]:
     """How likely the colours inside are among those that are seen around them beside the object."""
     near = _kernel(place[inside], place[behind])
-    near[inside[:, None] == behind] = 0.0
-    return (near * _kernel(lab[inside], lab[behind])).sum(axis=1) / np.maximum(near.sum(axis=1), _NOTHING)
+    _, rows, columns = np.intersect1d(inside, behind, assume_unique=True, return_indices=True)
+    near[rows, columns] = 0.0
+    whole = np.maximum(near.sum(axis=1, dtype=np.float64), _NOTHING)
+    return np.einsum("nm,nm->n", near, _kernel(lab[inside], lab[behind])).astype(np.float64) / whole
 
 
 def _posterior(
     lab: Float[np.ndarray, "k 3"], covered: Float[np.ndarray, "k"], of_background: Float[np.ndarray, "k"]
 ) -> Float[np.ndarray, "k"]:
     """Probability that each cell shows the object: its colours are those of its mask that are not seen behind it."""
-    every = np.arange(len(lab))
-    samples = _spread(every)
-    alike = np.where(every[:, None] == samples, 0.0, _kernel(lab, lab[samples]))
+    samples = _spread(np.arange(len(lab)))
+    alike = _kernel(lab, lab[samples])
+    alike[samples, np.arange(len(samples))] = 0.0
     usual = max(float(np.quantile(of_background, 0.9)), _NOTHING)
     own = covered * (1 - np.minimum(of_background / usual, 1.0)) ** 2
     prior = OF_REST + (OF_MASK - OF_REST) * covered
     shown = prior
     for _ in range(ROUNDS):
-        of_object = (alike @ own[samples]) / max(float(own[samples].sum()), _NOTHING)
+        of_object = (alike @ own[samples].astype(np.float32)) / max(float(own[samples].sum()), _NOTHING)
         theirs = (1 - prior) * (of_background + UNLIKE / 2)
         shown = 1 - theirs / (theirs + prior * (of_object + UNLIKE))
         own = shown * covered

@@ -49,8 +49,12 @@ class PoseBatch:
 
     def apply(self, points_object: Float[np.ndarray, "n 3"]) -> Float[np.ndarray, "p n 3"]:
         """Shape points in the world under every pose."""
-        to_world = self.R * self.scale[:, None, :]
-        return points_object @ to_world.transpose(0, 2, 1) + self.position[:, None]
+        return self.by_coordinate(points_object).transpose(1, 2, 0)
+
+    def by_coordinate(self, points_object: Float[np.ndarray, "n 3"]) -> Float[np.ndarray, "3 p n"]:
+        """The same, coordinate by coordinate: one product for all poses, and the points side by side in memory."""
+        rows = (self.R * self.scale[:, None, :]).transpose(1, 0, 2).reshape(-1, 3)
+        return (rows @ points_object.T).reshape(3, len(self), len(points_object)) + self.position.T[..., None]
 
 
 @dataclass(frozen=True, eq=False)
@@ -95,7 +99,7 @@ class ShapeCaster:
 
     def __init__(self, mesh: trimesh.Trimesh) -> None:
         vertices = np.asarray(mesh.vertices, dtype=np.float64)
-        extent = np.ptp(vertices, axis=0) if len(vertices) else np.ones(3)
+        extent = np.ptp(np.ascontiguousarray(vertices.T), axis=1) if len(vertices) else np.ones(3)
         self.size_m: Float[np.ndarray, "3"] = np.maximum(extent, _MIN_EXTENT_M)
         self._vertices = vertices
         self._scene: Any = o3d.t.geometry.RaycastingScene(nthreads=1)
@@ -140,7 +144,9 @@ class ShapeCaster:
     def bounds_px(self, camera: Camera, poses: PoseBatch) -> Float[np.ndarray, "p 4"]:
         """Boxes x1, y1, x2, y2 of the posed shape in the photo, clipped to it; NaN where it is out of sight."""
         corners, edges = self.hull
-        return clipped_bounds(camera, camera.to_camera(poses.apply(corners)), edges)
+        T = camera.T_camera_world
+        points = T[:3, :3] @ poses.by_coordinate(corners).reshape(3, -1) + T[:3, 3:]
+        return clipped_bounds(camera, points.reshape(3, len(poses), len(corners)), edges)
 
 
 def _rays(
@@ -168,7 +174,7 @@ def _directions() -> Float[np.ndarray, "d 3"]:
 def _hull(vertices: np.ndarray, size_m: np.ndarray) -> tuple[Float[np.ndarray, "h 3"], Int[np.ndarray, "e 2"]]:
     """Corners and edges of the hull of the extreme vertices; the bounding box for flat or broken shapes."""
     if len(vertices) >= 4:
-        extreme = np.unique(np.argmax((vertices / size_m) @ _directions().T, axis=0))
+        extreme = np.unique(np.argmax(_directions() @ (vertices / size_m).T, axis=1))
         try:
             hull = ConvexHull(vertices[extreme] / size_m)
         except (QhullError, ValueError):
@@ -187,47 +193,47 @@ BOX_EDGES: Int[np.ndarray, "12 2"] = np.array(
 
 
 def clipped_bounds(
-    camera: Camera, points_camera: Float[np.ndarray, "p n 3"], edges: Int[np.ndarray, "e 2"]
+    camera: Camera, points_camera: Float[np.ndarray, "3 p n"], edges: Int[np.ndarray, "e 2"]
 ) -> Float[np.ndarray, "p 4"]:
     """Boxes of the edges' visible parts: clipped to the near plane and to the photo; NaN where nothing is visible."""
-    k = camera.intrinsics
-    slack = frustum_slack(points_camera, k)
-    inside = (slack >= 0).all(axis=(1, 2))
+    slack = frustum_slack(points_camera, camera.intrinsics)
+    inside = (slack >= 0).all(axis=(0, 2))
     if inside.all():
         return _ends(_pixels(camera, points_camera))
-    bounds = np.empty((len(points_camera), 4))
-    bounds[inside] = _ends(_pixels(camera, points_camera[inside]))
-    bounds[~inside] = _cut_bounds(camera, points_camera[~inside], slack[~inside], edges)
+    bounds = np.empty((len(inside), 4))
+    bounds[inside] = _ends(_pixels(camera, points_camera[:, inside]))
+    bounds[~inside] = _cut_bounds(camera, points_camera[:, ~inside], slack[:, ~inside], edges)
     return bounds
 
 
-def _ends(pixels: Float[np.ndarray, "p n 2"]) -> Float[np.ndarray, "p 4"]:
-    return np.concatenate([pixels.min(axis=1), pixels.max(axis=1)], axis=-1)
+def _ends(pixels: Float[np.ndarray, "2 p n"]) -> Float[np.ndarray, "p 4"]:
+    return np.concatenate([pixels.min(axis=-1), pixels.max(axis=-1)]).T
 
 
-def _pixels(camera: Camera, points_camera: Float[np.ndarray, "*n 3"]) -> Float[np.ndarray, "*n 2"]:
-    k, depth = camera.intrinsics, np.maximum(points_camera[..., 2], NEAR_M / 2)
-    return np.stack([k.fx * points_camera[..., 0] / depth + k.cx, k.fy * points_camera[..., 1] / depth + k.cy], axis=-1)
+def _pixels(camera: Camera, points_camera: Float[np.ndarray, "3 *n"]) -> Float[np.ndarray, "2 *n"]:
+    k, (x, y, z) = camera.intrinsics, points_camera
+    depth = np.maximum(z, NEAR_M / 2)
+    return np.stack([k.fx * x / depth + k.cx, k.fy * y / depth + k.cy])
 
 
 def _cut_bounds(
     camera: Camera,
-    points_camera: Float[np.ndarray, "p n 3"],
-    slack: Float[np.ndarray, "p n 5"],
+    points_camera: Float[np.ndarray, "3 p n"],
+    slack: Float[np.ndarray, "5 p n"],
     edges: Int[np.ndarray, "e 2"],
 ) -> Float[np.ndarray, "p 4"]:
     """As `clipped_bounds`, for shapes that leave the view; `slack` is positive inside each of its five planes."""
-    a, b = slack[:, edges[:, 0]], slack[:, edges[:, 1]]
+    first, second = edges.T
+    a, b = slack[..., first], slack[..., second]
     with np.errstate(divide="ignore", invalid="ignore"):
         cut = a / (a - b)
-    enter = np.where((a < 0) & (b >= 0), cut, 0.0).max(axis=-1)
-    leave = np.where((b < 0) & (a >= 0), cut, 1.0).min(axis=-1)
-    visible = (enter <= leave) & ~((a < 0) & (b < 0)).any(axis=-1)
-    start, end = points_camera[:, edges[:, 0]], points_camera[:, edges[:, 1]]
-    ends = np.stack([start + (end - start) * enter[..., None], start + (end - start) * leave[..., None]], axis=2)
-    uv = _pixels(camera, ends)
-    low = np.where(visible[..., None, None], uv, np.inf).min(axis=(1, 2))
-    high = np.where(visible[..., None, None], uv, -np.inf).max(axis=(1, 2))
-    bounds = np.concatenate([low, high], axis=-1)
+    enter = np.where((a < 0) & (b >= 0), cut, 0.0).max(axis=0)
+    leave = np.where((b < 0) & (a >= 0), cut, 1.0).min(axis=0)
+    visible = (enter <= leave) & ~((a < 0) & (b < 0)).any(axis=0)
+    start, way = points_camera[..., first], points_camera[..., second] - points_camera[..., first]
+    uv = _pixels(camera, np.stack([start + way * enter, start + way * leave], axis=1))
+    low = np.where(visible, uv, np.inf).min(axis=(1, 3))
+    high = np.where(visible, uv, -np.inf).max(axis=(1, 3))
+    bounds = np.concatenate([low, high]).T
     bounds[~np.isfinite(bounds).all(axis=-1)] = np.nan
     return bounds

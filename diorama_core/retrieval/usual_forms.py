@@ -13,6 +13,7 @@ import cv2
 import numpy as np
 from jaxtyping import Int32, UInt8
 
+from diorama_core.geometry.rows import cells_of
 from diorama_core.geometry.shape_appearance import ShapeAppearance
 from diorama_core.library.form import FULL_RECTANGLE
 from diorama_core.library.record import Shape
@@ -145,7 +146,7 @@ def _pieces(appearance: ShapeAppearance) -> int:
 
 def _panes(appearance: ShapeAppearance) -> int:
     """How many large regions the colour has that covers most of the front: bars cut a mirror into panes."""
-    colours = np.unique(appearance.face_rgba, axis=0, return_inverse=True)[1].ravel() + 1
+    colours = cells_of(appearance.face_rgba)[0] + 1
     back_to_front = np.argsort(appearance.vertices[appearance.faces][:, :, 0].mean(axis=1), kind="stable")
     drawn = np.zeros((_DRAWN_PX, _DRAWN_PX), np.int32)
     triangles = _triangles_px(appearance, [1, 2])

@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 from hypothesis.extra.numpy import array_shapes, arrays
 
 from diorama_core.geometry import rows
-from diorama_core.geometry.rows import unique_rows
+from diorama_core.geometry.rows import cells_of, unique_rows
 
 small_numbers = st.sampled_from([-2.0, -0.5, -0.0, 0.0, 1e-5, 1.0, 3.0])
 
@@ -31,3 +31,16 @@ def test_single_precision_and_no_rows() -> None:
     first, kind = unique_rows(np.zeros((0, 3), np.float32))
     assert len(first) == len(kind) == 0
     assert unique_rows(np.array([[0.1], [0.1]], np.float32))[1].tolist() == [0, 0]
+
+
+@given(arrays(np.float64, array_shapes(min_dims=2, max_dims=2, max_side=12), elements=st.integers(-40, 40)))
+def test_cells_are_those_of_sorting_rows(values: np.ndarray) -> None:
+    kind, count = cells_of(values)
+    _, sorted_kind, sorted_count = np.unique(values, axis=0, return_inverse=True, return_counts=True)
+    assert kind.tolist() == sorted_kind.ravel().tolist()
+    assert count.tolist() == sorted_count.tolist()
+
+
+def test_no_rows_are_in_no_cells() -> None:
+    kind, count = cells_of(np.zeros((0, 3), np.uint8))
+    assert len(kind) == len(count) == 0

@@ -16,6 +16,7 @@ import numpy as np
 from jaxtyping import Bool, Float, Float32, UInt8
 
 from diorama_core.artefacts import Box, DetectedObject
+from diorama_core.geometry.rows import cells_of
 from diorama_core.scene.values import ArrayValue
 
 _CELL_LAB = np.array([14.0, 8.0, 8.0])
@@ -145,9 +146,9 @@ def _is_shade(lab: Float32[np.ndarray, "n 3"], of: Float32[np.ndarray, "3"]) -> 
 
 def _common_colours(lab: Float32[np.ndarray, "n 3"], share: float) -> Float32[np.ndarray, "k 3"]:
     """Medians of the cells of colour that hold at least a share of some pixels."""
-    _, label, count = np.unique(np.round(lab / _CELL_LAB), axis=0, return_inverse=True, return_counts=True)
+    label, count = cells_of(np.round(lab / _CELL_LAB))
     common = np.flatnonzero(count >= share * len(lab))
-    medians = [np.median(lab[label.ravel() == k], axis=0) for k in common]
+    medians = [np.median(lab[label == k], axis=0) for k in common]
     return np.array(medians, dtype=np.float32).reshape(-1, 3)
 
 
