@@ -21,6 +21,8 @@ COMPLETED_SIDE_PX = 224
 """Longer side at which what was not seen is made up."""
 WHOLLY = 0.99
 """A reduced texel is known when so much of it was seen."""
+MOST, MUCH_MORE = 0.75, 2.0
+"""What differs by more than so many times this quantile of all differences is not carried on."""
 RIM_SHARE = 0.006
 """Beside what is hidden so much of the longer side is given up: masks are a little small."""
 
@@ -64,9 +66,17 @@ def _continued(colours: Picture, seen: Bool[np.ndarray, "h w"], pixel_m: float) 
         return np.broadcast_to(np.median(colours[seen], axis=0), colours.shape).astype(np.float32)
     small = cv2.resize(colours, size, interpolation=cv2.INTER_AREA)
     known = weight >= WHOLLY
-    red, green, blue = (float(c) / 255.0 for c in np.median(small[known], axis=0))
-    whole = completed(small, known, (red, green, blue), pixel_m / factor, known, ground=True)
+    usual = _usual(small, known)
+    red, green, blue = (float(c) / 255.0 for c in np.median(small[usual], axis=0))
+    whole = completed(small, known, (red, green, blue), pixel_m / factor, usual, ground=True)
     return cv2.resize(whole, (width, height), interpolation=cv2.INTER_LINEAR).astype(np.float32)
+
+
+def _usual(colours: Picture, known: Bool[np.ndarray, "h w"]) -> Bool[np.ndarray, "h w"]:
+    """What is known without hems, creases and shadows: texels that differ much more than most from the median."""
+    difference = np.abs(colours - np.median(colours[known], axis=0)).max(axis=-1)
+    most = float(np.quantile(difference[known], MOST))
+    return np.asarray(known & (difference <= max(MUCH_MORE * most, MAX_LEVELS)))
 
 
 def mirrored(colours: Picture, seen: Bool[np.ndarray, "h w"]) -> tuple[Picture, Bool[np.ndarray, "h w"]]:

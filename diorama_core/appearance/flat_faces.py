@@ -6,6 +6,7 @@ the photo, and rectified. Frames, mats and stands stay what they are.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 
@@ -15,7 +16,7 @@ import trimesh
 from jaxtyping import Bool, Float, UInt8
 
 from diorama_core.appearance.completion import completed_picture
-from diorama_core.appearance.rectify import Rectified, corners_in_photo, rectified
+from diorama_core.appearance.rectify import Rectified, face_homography, is_cut, outline_px, rectified
 from diorama_core.artefacts import DetectedObject
 from diorama_core.geometry.projection import box_iou
 from diorama_core.library.slots import Slot, rectangle_of, slots_of
@@ -103,7 +104,7 @@ def faces_of(
     if not chosen and not SEEN_THROUGH & set(roles):
         chosen = [s for s in slots if s.main]
     by_mask = found.mask_confidence >= SURE_MASK or item.category in NOT_RECTANGULAR
-    unseen = (hidden | ~found.mask if by_mask else hidden) | pale_frame(rgb)
+    unseen = (hidden | ~found.mask if by_mask else hidden) | pale_frame(rgb) | _outside(found)
     made = [_face(item, parts, slot, layout, rgb, (hidden, unseen), found, camera) for slot in chosen]
     return tuple(face for face in made if face is not None)
 
@@ -133,13 +134,14 @@ def _face(
     """The face of one slot; `hidden` is what others hide, and everything that is not to be read."""
     others, unseen = hidden
     rectangle = rectangle_of(parts, slot, layout)
-    corners = corners_in_photo(camera, item.pose.apply(rectangle.corners))
-    if corners is None:
+    H = face_homography(camera, item.pose.apply(rectangle.corners))
+    if H is None:
         return None
-    corners = aligned(corners, _outline_box(item, parts, camera), found.box, sides_told(found.box, others))
-    if _share_in_mask(corners, others, found) < MIN_IN_MASK:
+    if not is_cut(H):  # or the box in the photo does not end where the object does
+        H = box_alignment(_outline_box(item, parts, camera), found.box, sides_told(found.box, others)) @ H
+    if _share_in_mask(outline_px(H), others, found) < MIN_IN_MASK:
         return None
-    picture = rectified(rgb, unseen, corners)
+    picture = rectified(rgb, unseen, H)
     if picture is None or picture.seen.mean() < MIN_SEEN:
         return None
     roughness = ROUGHNESS.get(slot.role, OTHER_ROUGHNESS)
@@ -150,41 +152,45 @@ def _face(
     return Face(slot, layout, completed_picture(picture, pixel_m), roughness)
 
 
-def _share_in_mask(
-    corners_px: Float[np.ndarray, "4 2"], hidden: Bool[np.ndarray, "h w"], found: DetectedObject
-) -> float:
-    """Share of a quadrilateral, as far as it is in the photo and not hidden, that is within the object's mask."""
+def _outside(found: DetectedObject) -> Bool[np.ndarray, "h w"]:
+    """Pixels that are not in the object's box: whatever its pose says, they show something else."""
+    outside = np.ones(found.mask.shape, dtype=bool)
+    x1, y1, x2, y2 = found.box
+    outside[max(math.floor(y1), 0) : math.ceil(y2), max(math.floor(x1), 0) : math.ceil(x2)] = False
+    return outside
+
+
+def _share_in_mask(outline: Float[np.ndarray, "n 2"], hidden: Bool[np.ndarray, "h w"], found: DetectedObject) -> float:
+    """Share of a convex outline, as far as it is in the photo and not hidden, that is within the object's mask."""
     region = np.zeros(found.mask.shape, np.uint8)
-    cv2.fillConvexPoly(region, np.rint(np.clip(corners_px, -_FAR_PX, _FAR_PX)).astype(np.int32), 1)
+    cv2.fillConvexPoly(region, np.rint(np.clip(outline, -_FAR_PX, _FAR_PX)).astype(np.int32), 1)
     free = region.astype(bool) & ~hidden
     return float((free & found.mask).sum() / max(int(free.sum()), 1))
 
 
-def aligned(
-    corners_px: Float[np.ndarray, "4 2"],
+def box_alignment(
     projected: Float[np.ndarray, "4"],
     detected: tuple[float, float, float, float],
     told: tuple[bool, bool, bool, bool] = (True, True, True, True),
-) -> Float[np.ndarray, "4 2"]:
-    """The corners moved and scaled as the object's projected box is to its box in the photo.
+) -> Float[np.ndarray, "3 3"]:
+    """How pixels move and scale as an object's projected box is to become its box in the photo, as a homography.
 
-    Boxes that hardly overlap leave the corners where they are.
+    Boxes that hardly overlap leave the pixels where they are.
 
     Args:
-        corners_px: Of the face.
         projected: The whole object's box as it is posed.
         detected: Its box in the photo.
         told: Which of its left, upper, right and lower side end the object itself (`sides_told`).
     """
     box = np.where(told, detected, projected)
+    A = np.eye(3)
     if float(box_iou(projected, box)) < MIN_BOX_IOU:
-        return corners_px
-    out = corners_px.copy()
+        return A
     for axis in (0, 1):
         low, high = projected[axis], projected[axis + 2]
-        to_low, to_high = box[axis], box[axis + 2]
-        out[:, axis] = to_low + (corners_px[:, axis] - low) * (to_high - to_low) / max(high - low, 1e-6)
-    return out
+        A[axis, axis] = (box[axis + 2] - box[axis]) / max(high - low, 1e-6)
+        A[axis, 2] = box[axis] - A[axis, axis] * low
+    return A
 
 
 def pale_frame(rgb: UInt8[np.ndarray, "h w 3"]) -> Bool[np.ndarray, "h w"]:

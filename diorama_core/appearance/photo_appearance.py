@@ -182,7 +182,7 @@ def _seen(
     view = surface_view(parts, slots, item.pose, camera, visible | unhidden)
     taken = {face.slot.name for face in faces}
     behind = _in_box(found) & ~found.mask & ~hiding(found, objects, smaller_only=True)
-    pixels = () if view is None else slot_pixels(view, slots, rgb, visible, unhidden, behind)
+    pixels = () if view is None else slot_pixels(view, slots, rgb, visible, unhidden, behind, taken)
     read = (p for p in pixels if p.slot.name not in taken)
     own = tuple(p for p in read if view is not None and not _shines(item, p, view, rgb))
     if view is not None and not pixels and not faces and item.category not in LAMPS:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass
 
 import cv2
@@ -22,7 +22,9 @@ from diorama_core.render.gloss import roughness_seen, without_gloss
 READ_ROLES: frozenset[Role] = frozenset(
     {"fabric", "leather", "wood", "metal", "stone", "paint", "wicker", "paper", "leaf", "material"}
 )
-PATTERNED_ROLES = READ_ROLES - {"metal", "leaf"}
+PRINTED: Role = "picture"
+"""Role of slots that wear a print: the photo's, or what is seen of its colours where the print cannot be read."""
+PATTERNED_ROLES = (READ_ROLES | {PRINTED}) - {"metal", "leaf"}
 """Of which a texture is taken: what metal mirrors and how leaves lie is no pattern."""
 WOVEN_ROLES: frozenset[Role] = frozenset({"fabric", "leather", "paper", "material"})
 """Of which the library's own texture gives way to a plain colour where the photo shows none; wood keeps its grain."""
@@ -31,7 +33,7 @@ PLAIN_PX = 4
 ROUGHNESS: Mapping[str, tuple[float, float]] = {
     "fabric": (0.92, 0.0), "leather": (0.45, 0.0), "wood": (0.55, 0.0), "metal": (0.35, 0.45), "stone": (0.4, 0.0),
     "paint": (0.55, 0.0), "wicker": (0.85, 0.0), "paper": (0.9, 0.0), "leaf": (0.55, 0.0), "material": (0.7, 0.0),
-    "glass": (0.06, 0.0),
+    "glass": (0.06, 0.0), "picture": (0.8, 0.0),
 }  # fmt: skip
 """Roughness and metalness by role; what is seen too dark to mirror that much is rougher."""
 MIN_PIXELS, MIN_SHARE = 40, 0.2
@@ -95,6 +97,7 @@ def slot_pixels(
     visible: Bool[np.ndarray, "h w"],
     unhidden: Bool[np.ndarray, "h w"],
     background: Bool[np.ndarray, "h w"],
+    faces: Collection[str] = (),
 ) -> tuple[SlotPixels, ...]:
     """The slots that are seen well enough, with the pixels of their main colours.
 
@@ -105,6 +108,7 @@ def slot_pixels(
         visible: The object's inner pixels, without what stands before it.
         unhidden: Pixels in the object's box that nothing else hides; of use where the mask is doubtful.
         background: Pixels in its box that show what is behind or below it.
+        faces: Names of slots whose print was read from the photo.
     """
     seen, colours = view.of(visible) & (view.slot >= 0), view.of(rgb)
     shown = view.of(unhidden) & (cv2.erode((view.slot >= 0).astype(np.uint8), np.ones((5, 5), np.uint8)) > 0)
@@ -118,7 +122,8 @@ def slot_pixels(
             mine = posed
             lost.add(index)
         count = int(mine.sum())
-        read = slot.role in READ_ROLES or (slot.main and slot.role == "glass")
+        printed = slot.role == PRINTED and slot.name not in faces
+        read = printed or slot.role in READ_ROLES or (slot.main and slot.role == "glass")
         if read and count * view.step**2 >= MIN_PIXELS and count >= MIN_VISIBLE * max(seen.sum(), shown.sum()):
             of_slots[index] = mine
     beside = view.of(background) & (view.slot < 0)
@@ -266,8 +271,8 @@ def appearance_of(
     if pixels.slot.role in PATTERNED_ROLES:
         example = best_example(view, pixels.mine, pixels.near, rgb)
     if example is None:
-        tile_m = pixels.slot.tile_m if pixels.slot.role in WOVEN_ROLES else None
-        if weave is None or tile_m is None or not shows_plain(view, pixels.near, rgb, weave, tile_m):
+        tile_m = pixels.slot.tile_m if pixels.slot.role in {*WOVEN_ROLES, PRINTED} else None
+        if weave is None or tile_m is None or not _is_plain(view, pixels, rgb, weave, tile_m):
             return SlotAppearance(pixels.slot, (red, green, blue), None, 1.0, roughness)
         plain = np.rint(255 * np.clip([red, green, blue], 0, 1)).astype(np.uint8)
         return SlotAppearance(
@@ -275,6 +280,17 @@ def appearance_of(
         )
     texture = tileable(_in_albedo(example, albedo))
     return SlotAppearance(pixels.slot, (red, green, blue), texture, example.texel_m * texture.shape[0], roughness)
+
+
+def _is_plain(
+    view: SurfaceView,
+    pixels: SlotPixels,
+    rgb: UInt8[np.ndarray, "h w 3"],
+    weave: UInt8[np.ndarray, "th tw 3"],
+    tile_m: float,
+) -> bool:
+    """Whether a plain picture takes the place of the library's: of a print always, which is another one's."""
+    return pixels.slot.role == PRINTED or shows_plain(view, pixels.near, rgb, weave, tile_m)
 
 
 def _in_albedo(example: Example, albedo: Float[np.ndarray, "3"]) -> Example:

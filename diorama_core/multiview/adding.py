@@ -19,6 +19,7 @@ from diorama_core.errors import InputError
 from diorama_core.geometry.projection import box_iou
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.library.taxonomy import broad, category
+from diorama_core.multiview.agreement import with_agreeing_boxes
 from diorama_core.multiview.better_seen import CLEARLY_BETTER, better_seen
 from diorama_core.multiview.joining import RoomPhoto, Sighted, Track, claims, fitted_track, overlap, shown
 from diorama_core.multiview.joint_fit import JointCuboid
@@ -137,7 +138,7 @@ def with_photo(
     for box, item in claimed.items():
         if item.id in movable and sightings[item.id]:
             rows = (*sightings[item.id], (len(others), box))
-            track = fitted_track(tuple(rows), photos)
+            track = with_agreeing_boxes(fitted_track(tuple(rows), photos), photos)
             fitted[item.id] = track.cuboid
             if _hangs(item, scene) and seen_whole(track.sightings(photos)):
                 on_walls.append(track.cuboid)

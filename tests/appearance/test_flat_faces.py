@@ -3,9 +3,18 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from diorama_core.appearance.flat_faces import FACES, aligned, face_kind, is_lit, pale_frame, sides_told
+from diorama_core.appearance.flat_faces import FACES, box_alignment, face_kind, is_lit, pale_frame, sides_told
 from diorama_core.appearance.rectify import Rectified
 from diorama_core.library.taxonomy import CATEGORIES
+
+
+def aligned(
+    corners: np.ndarray,
+    projected: np.ndarray,
+    box: tuple[float, float, float, float],
+    told: tuple[bool, bool, bool, bool] = (True,) * 4,
+) -> np.ndarray:
+    return (np.c_[corners, np.ones(len(corners))] @ box_alignment(projected, box, told).T)[:, :2]
 
 
 def test_flat_categories_are_the_librarys() -> None:

@@ -67,6 +67,21 @@ def test_a_picture_wears_the_photo(photo) -> None:
     assert off[0] < 0.45 * off[1]
 
 
+def test_a_print_too_small_to_be_read_gives_way_to_its_colour() -> None:
+    """Not the library's print, which nobody saw."""
+    scene = hung("picture-hills-oak", worn=True)
+    far = replace(scene.objects[0].pose, position=np.array([0.7, 8.5, 1.4]))
+    own = (PhotoMaterial("picture", (0.5,) * 3, "red", "front"),)
+    scene = replace(scene, objects=(replace(scene.objects[0], pose=far, photo_materials=own),))
+    red = np.broadcast_to(np.array([200, 40, 30], np.uint8), (30, 40, 3)).copy()
+    seen = picture(scene, LIBRARY, size=SIZE, textures={"red": red})
+    look = photo_appearance(seen, detected(scene), scene, LIBRARY)
+    (material,) = (m for m in look.materials["picture_1"] if m.slot == "picture")
+    worn = look.pictures[str(material.texture)]
+    assert worn.reshape(-1, 3).std(axis=0).max() < 4
+    assert material.colour[0] > 2 * max(material.colour[1:])
+
+
 def test_another_shape_takes_the_look(photo) -> None:
     scene = hung("picture-hills-oak", worn=False)
     look = photo_appearance(photo, detected(scene), scene, LIBRARY)
