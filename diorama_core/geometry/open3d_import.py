@@ -1,6 +1,6 @@
 """Open3D without its plots for notebooks, whose Dash, Plotly and IPython take half of the time of importing it.
 
-The plots load when somebody calls them.
+It loads when it is first used, the plots when somebody calls them.
 """
 
 from __future__ import annotations
@@ -8,6 +8,7 @@ from __future__ import annotations
 import importlib
 import sys
 from collections.abc import Callable
+from threading import Lock
 from types import ModuleType
 from typing import Any
 
@@ -37,4 +38,22 @@ def _loaded_on_call(name: str) -> Callable[..., Any]:
     return call
 
 
-o3d: Any = _without_plots()  # Any, as its stubs do not know that arrays are taken for tensors
+class _LoadedOnUse:
+    """The package's names, which load it, by whichever thread asks first."""
+
+    def __init__(self) -> None:
+        self._loading = Lock()
+
+    def __getattr__(self, name: str) -> Any:
+        with self._loading:
+            value = getattr(_without_plots(), name)
+        self.__dict__[name] = value  # found without this call from now on
+        return value
+
+
+o3d: Any = _LoadedOnUse()  # Any, as its stubs do not know that arrays are taken for tensors
+
+
+def load_open3d() -> None:
+    """Load the package now, for instance while another thread works."""
+    _ = o3d.core

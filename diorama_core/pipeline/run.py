@@ -32,6 +32,7 @@ from diorama_core.library.record import ShapeLibrary
 from diorama_core.perception.illuminant import Illuminant
 from diorama_core.pipeline.assemble import assemble
 from diorama_core.pipeline.colours import photo_colours, room_illuminant, shared_by_sets
+from diorama_core.pipeline.look_ahead import looking_ahead
 from diorama_core.pipeline.plan import Artefacts, evaluate
 from diorama_core.pipeline.provenance_text import camera_sentence, geometry_sentence, graph_sentence, room_sentence
 from diorama_core.pipeline.runner import Runner, StageRun
@@ -101,7 +102,8 @@ def build_scene(
     stages = stages or embedded_stages(inputs, library)
     progress = progress or Progress()
     runner = Runner(cache)
-    found = evaluate(stages, {"given": inputs}, ("graph", "furniture"), runner, progress.part(0.0, 0.45))
+    with looking_ahead(stages.retrieval, inputs.boxes):
+        found = evaluate(stages, {"given": inputs}, ("graph", "furniture"), runner, progress.part(0.0, 0.45))
     inputs, room = found["inputs"], found["architecture"]
     geometry: ObjectGeometry = found["furniture"][1]
     illuminant = room_illuminant(inputs, found["objects"], room.architecture, geometry.camera)

@@ -3,15 +3,16 @@
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from math import fsum
 
 import numpy as np
 from jaxtyping import Float
 
-from diorama_core.artefacts import Cuboid, DetectedObject, Inputs, ObjectGeometry, RankedShapes
+from diorama_core.artefacts import Cuboid, DetectedObject, Inputs, LabelledBox, ObjectGeometry, RankedShapes
 from diorama_core.geometry.observed import Observed, observe_among
+from diorama_core.geometry.open3d_import import load_open3d
 from diorama_core.geometry.see_through import SeeThrough
 from diorama_core.geometry.shape_appearance import SHARED_APPEARANCES, ShapeAppearance
 from diorama_core.geometry.silhouette import PoseBatch
@@ -29,7 +30,7 @@ from diorama_core.retrieval.appearance_similarity import (
 from diorama_core.retrieval.measured_sizes import as_measured
 from diorama_core.retrieval.neighbours import with_neighbours
 from diorama_core.retrieval.outlines import outline_agreement, whole_outline
-from diorama_core.retrieval.pools import Pool, RetrievalQuery, pool_for, size_cost
+from diorama_core.retrieval.pools import NAMED_POOL, Pool, RetrievalQuery, pool_for, size_cost
 from diorama_core.retrieval.seen_forms import seen_form_factor, shape_form
 from diorama_core.retrieval.usual_forms import usual_form_factor
 from diorama_core.retrieval.word_senses import sense_probabilities
@@ -135,6 +136,21 @@ class HierarchicalRetrieval:
             )
             for item, own, mean, group, n in zip(measured, scores, means, groups, named, strict=True)
         )
+
+    def ahead(self, boxes: Sequence[LabelledBox]) -> Iterator[None]:
+        """Load what is compared of the shapes of these kinds, step by step: all of those that are few enough."""
+        load_open3d()
+        similarity = self.similarity or EmbeddedSimilarity(self.library)
+        for kind in dict.fromkeys(box.category for box in boxes if is_named(box.label)):
+            shapes = self.library.in_category(kind)
+            for shape in shapes if len(shapes) <= NAMED_POOL else ():
+                yield
+                if isinstance(similarity, EmbeddedSimilarity):
+                    similarity.prepare(shape)
+                appearance = self._appearance(shape)
+                shape_form(shape, appearance)
+                usual_form_factor(shape, appearance)
+                _ = appearance.caster
 
     def _pools(
         self,

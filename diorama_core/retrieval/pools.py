@@ -21,7 +21,7 @@ _ENOUGH = 4
 _RELATED_FACTOR = 0.6
 _USUAL_FACTOR = 0.92
 _RARE_FACTOR = 0.68
-_NAMED_POOL = 50
+NAMED_POOL = 50
 """Of one kind; the paper's text query keeps as many."""
 _OTHER_POOL = 14
 """Of every other kind that the word may mean."""
@@ -182,7 +182,7 @@ def pool_for(library: ShapeLibrary, query: RetrievalQuery) -> Pool:
     for rank, (kind, share) in enumerate(sorted(senses.items(), key=lambda row: (-row[1], row[0]))):
         if rank < least or (share >= _MIN_SENSE * best and len(members) < _MAX_POOL):
             own = len(senses) == 1 or kind == query.category
-            most = _NAMED_POOL if own else _OTHER_POOL if query.named else _UNNAMED_EACH
+            most = NAMED_POOL if own else _OTHER_POOL if query.named else _UNNAMED_EACH
             near_shapes = _nearest(_usable(library, library.in_category(kind), query), query.size_m, most)
             members += [Pooled(shape, sense_factor(share / best)) for shape in near_shapes]
     found = bool(members)
@@ -190,7 +190,7 @@ def pool_for(library: ShapeLibrary, query: RetrievalQuery) -> Pool:
     for near in near_kinds(query.category):
         if len(members) >= _ENOUGH:
             break
-        near_shapes = _nearest(_usable(library, library.in_category(near), query), query.size_m, _NAMED_POOL)
+        near_shapes = _nearest(_usable(library, library.in_category(near), query), query.size_m, NAMED_POOL)
         members += [Pooled(shape, factor) for shape in near_shapes]
         factor *= _RELATED_FACTOR
     if found:

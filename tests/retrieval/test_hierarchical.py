@@ -7,6 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from diorama_core.artefacts import LabelledBox
 from diorama_core.geometry.see_through import SeeThrough
 from diorama_core.progress import Progress
 from diorama_core.retrieval.hierarchical import HierarchicalRetrieval, _best
@@ -89,6 +90,14 @@ def test_its_name_is_short_and_changes_with_the_library() -> None:
 
     assert len(repr(STAGE)) < 120
     assert repr(STAGE) == repr(HierarchicalRetrieval(LIBRARY)) != repr(HierarchicalRetrieval(Fewer()))
+
+
+def test_shapes_of_named_kinds_are_loaded_ahead() -> None:
+    boxes = [LabelledBox((0.0, 0.0, 9.0, 9.0), "chair", word) for word in ("chair", "thing", "chair")]
+    chairs = LIBRARY.in_category("chair")
+    assert len(list(STAGE.ahead(boxes))) == len(chairs)
+    assert all("caster" in vars(STAGE._appearance(shape)) for shape in chairs)
+    assert not list(STAGE.ahead([LabelledBox((0.0, 0.0, 9.0, 9.0), "object", "thing")]))
 
 
 def test_objects_of_a_kind_choose_among_mostly_the_same_shapes() -> None:
