@@ -203,7 +203,7 @@ def _split(
 
 def _digest(array: np.ndarray) -> bytes:
     """Names an array's content; the faces of mirrored parts are a view from their other end."""
-    return hashlib.sha256(np.ascontiguousarray(array)).digest()
+    return hashlib.sha256(np.ascontiguousarray(array).data).digest()
 
 
 def _colour_rows(mesh: trimesh.Trimesh, colours: Float32[np.ndarray, "k 3"], faces: np.ndarray) -> np.ndarray:
