@@ -200,7 +200,7 @@ def clipped_bounds(
     inside = np.logical_and.reduce(slack >= 0, axis=(0, 2))
     if inside.all():
         return _ends(_pixels(camera, points_camera))
-    bounds = np.empty((len(inside), 4))
+    bounds = np.empty((points_camera.shape[1], 4))
     bounds[inside] = _ends(_pixels(camera, points_camera[:, inside]))
     bounds[~inside] = _cut_bounds(camera, points_camera[:, ~inside], slack[:, ~inside], edges)
     return bounds
@@ -224,6 +224,7 @@ def _cut_bounds(
 ) -> Float[np.ndarray, "p 4"]:
     """As `clipped_bounds`, for shapes that leave the view; `slack` is positive inside each of its five planes."""
     first, second = edges.T
+    slack = slack[(slack < 0).any(axis=(1, 2))]  # the other planes cut nothing
     a, b = slack[..., first], slack[..., second]
     with np.errstate(divide="ignore", invalid="ignore"):
         cut = a / (a - b)

@@ -128,16 +128,20 @@ def build_scene(
     shaped = _observed({**found, "architecture": room}, balanced, library)
     contained, changed = prepared(shaped, library, REASONED if inputs.depth_m is None else MEASURED)
     observed = _textured(contained, textures)
-    appearance = photo_appearance(balanced.photo.rgb, found["furniture_objects"], observed, library, illuminant.rgb)
-    observed, textures = appearance.applied(observed), {**textures, **appearance.pictures}
-
-    scene, report = observed, None
-    if observed.objects:
-        step = progress.part(0.85, 1.0)
-        step.report(0.0, "layout…")
-        scene, report = stages.layout.optimise(observed, step, preview)
-        runner.runs.append(StageRun("layout", repr(stages.layout), report.seconds, cached=False))
-        scene = set_metrics(scene, report.after)
+    with ThreadPoolExecutor(1) as beside:  # what objects look like is all the same to the layout
+        seen = beside.submit(
+            photo_appearance, balanced.photo.rgb, found["furniture_objects"], observed, library, illuminant.rgb
+        )
+        scene, report = observed, None
+        if observed.objects:
+            step = progress.part(0.85, 1.0)
+            step.report(0.0, "layout…")
+            scene, report = stages.layout.optimise(observed, step, preview)
+            runner.runs.append(StageRun("layout", repr(stages.layout), report.seconds, cached=False))
+            scene = set_metrics(scene, report.after)
+        appearance = seen.result()
+    scene, observed = appearance.applied(scene), appearance.applied(observed)
+    textures = {**textures, **appearance.pictures}
     scene = _at_given_height(scene, inputs.camera_height_m)
     progress.report(1.0, "done")
     return Built(

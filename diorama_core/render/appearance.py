@@ -6,6 +6,7 @@ Colours are linear, as glTF states them; pictures (textures) are sRGB, as they c
 
 from __future__ import annotations
 
+import hashlib
 from dataclasses import dataclass, field
 from typing import Protocol, runtime_checkable
 
@@ -118,6 +119,14 @@ def _bytes_of(entry: tuple[trimesh.Scene, tuple[Surface, ...]]) -> float:
 _CACHE: LruCache[_Key, tuple[trimesh.Scene, tuple[Surface, ...]]] = LruCache(CACHE_BYTES, _bytes_of)
 
 
+GEOMETRY_BYTES = 64e6
+"""Of what is remembered of the parts' geometry, twice: their normals, and their vertices."""
+_NORMALS: LruCache[bytes, np.ndarray] = LruCache(GEOMETRY_BYTES, lambda normals: float(normals.nbytes))
+_SPLIT: LruCache[bytes, tuple[np.ndarray, np.ndarray]] = LruCache(
+    GEOMETRY_BYTES, lambda found: float(found[0].nbytes + found[1].nbytes)
+)
+
+
 def _cached_surfaces(
     parts: trimesh.Scene, paint: Paint, materials: tuple[PhotoMaterial, ...], pictures: Pictures, scale: Scale
 ) -> tuple[Surface, ...]:
@@ -154,23 +163,47 @@ def _surface(
     if np.linalg.det(matrix[:3, :3]) < 0:
         faces = faces[:, ::-1]
     material, uv, colours = _compare(mesh, materials)
-    corner_normals = smooth_corner_normals(points, faces)
-    corners = faces.reshape(-1)
-    columns = [points[corners], corner_normals]
-    columns += [uv[corners]] if uv is not None else []
-    columns += [colours[_colour_rows(mesh, colours, faces)]] if colours is not None else []
-    rounded = np.round(np.concatenate(columns, axis=1), 5) + 0.0
-    first, index = unique_rows(rounded)
-    rows = rounded[first].astype(np.float32)
+    per_corner = None if colours is None else colours[_colour_rows(mesh, colours, faces)]
+    rows, index = _split(points, faces, uv, per_corner)
     return Surface(
         vertices=rows[:, :3],
         normals=unit(rows[:, 3:6]).astype(np.float32),
-        faces=index.reshape(-1, 3).astype(np.int32),
+        faces=index,
         material=material,
         uv=rows[:, 6:8] if uv is not None else None,
         colours=rows[:, -3:] if colours is not None else None,
         name=name,
     )
+
+
+def _split(
+    points: Float32[np.ndarray, "n 3"],
+    faces: Int32[np.ndarray, "m 3"],
+    uv: Float32[np.ndarray, "n 2"] | None,
+    colours: Float32[np.ndarray, "c 3"] | None,
+) -> tuple[Float32[np.ndarray, "v k"], Int32[np.ndarray, "m 3"]]:
+    """Place, normal, texture coordinates and colour of every vertex, and the faces between them.
+
+    Remembered, since a shape is read again with each material that it gets.
+    """
+    form = _digest(points) + _digest(faces)
+    key = b"".join([form, *(b"-" if column is None else _digest(column) for column in (uv, colours))])
+
+    def made() -> tuple[np.ndarray, np.ndarray]:
+        corners = faces.reshape(-1)
+        columns = [points[corners], _NORMALS.get(form, lambda: smooth_corner_normals(points, faces))]
+        columns += [uv[corners]] if uv is not None else []
+        columns += [colours] if colours is not None else []
+        rounded = np.round(np.concatenate(columns, axis=1), 5) + 0.0
+        first, index = unique_rows(rounded)
+        return rounded[first].astype(np.float32), index.reshape(-1, 3).astype(np.int32)
+
+    return _SPLIT.get(key, made)
+
+
+def _digest(array: np.ndarray) -> bytes:
+    """Names an array's content; the faces of mirrored parts are a view from their other end."""
+    return hashlib.sha256(np.ascontiguousarray(array).data).digest()
 
 
 def _colour_rows(mesh: trimesh.Trimesh, colours: Float32[np.ndarray, "k 3"], faces: np.ndarray) -> np.ndarray:

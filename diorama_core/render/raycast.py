@@ -94,6 +94,10 @@ class PinholeView:
         """Pixels down."""
         return self.camera.intrinsics.height
 
+    def all_rays(self) -> RayArray:
+        """Those through the centres of all pixels."""
+        return self.rays(pixel_centres(self.width, self.height))
+
     def rays(self, pixels: Float[np.ndarray, "*n 2"]) -> RayArray:
         """Rays through image positions, one unit of distance being one metre of depth."""
         directions = self.camera.rays(pixels)
@@ -162,6 +166,11 @@ class MeshCaster:
     def first_hits(self, rays: RayArray) -> Hits:
         """What every ray meets first."""
         return self._caster.first_hits(rays)
+
+    def instances(self, rays: RayArray) -> Int32[np.ndarray, "*n"]:
+        """Which mesh every ray meets first; -1 where it meets none."""
+        hits = self._caster.first_hits(rays)
+        return np.where(hits.found, self._owner[np.where(hits.found, hits.triangle, 0)], -1).astype(np.int32)
 
     def buffers(self, view: Camera | View) -> Buffers:
         """Depth, normals and instance ids from one camera."""

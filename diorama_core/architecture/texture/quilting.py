@@ -11,6 +11,7 @@ import numpy as np
 from jaxtyping import Bool, Float32
 
 from diorama_core.architecture.texture.wide_blur import wide_blur
+from diorama_core.io.cache import LruCache
 
 BLOCKS_PX = ((96, 200, 384), (48, 24, 49), (32, 60, 33), (20, 400, 21))
 """Sizes of the copied squares, how many must have been seen, and least sides of the picture.
@@ -22,6 +23,8 @@ MIN_SOURCE = 0.005
 """A material seen on a smaller share of the surface is not continued."""
 OVERLAP = 0.34
 """Share of a block that lies on what is already known."""
+WEIGHTS_KEPT = 16
+"""Of blocks with equal weights the same sums are needed again; most lie beside one another."""
 SEARCH_STEP = 2
 """Matches are looked for at half resolution."""
 TOLERANCE = 0.1
@@ -150,6 +153,7 @@ class _Finder:
         grey = cv2.cvtColor(np.where(source[part][..., None], detail[part], 0.0).astype(np.float32), cv2.COLOR_RGB2GRAY)
         self._picture = grey[::SEARCH_STEP, ::SEARCH_STEP].copy()
         self._squares = self._picture**2
+        self._square_by_weight: LruCache[bytes, np.ndarray] = LruCache(WEIGHTS_KEPT)
         self._rng = rng
         self._rows, self._columns = np.nonzero(self._places)
         self._uses = np.zeros(self._places.shape, np.float32)
@@ -161,7 +165,7 @@ class _Finder:
             grey = cv2.cvtColor(block, cv2.COLOR_RGB2GRAY)[::SEARCH_STEP, ::SEARCH_STEP]
             weight = known[::SEARCH_STEP, ::SEARCH_STEP].astype(np.float32)
             cross = cv2.matchTemplate(self._picture, grey * weight, cv2.TM_CCORR)
-            square = cv2.matchTemplate(self._squares, weight, cv2.TM_CCORR)
+            square = self._square_of(weight)
             misfit = self._fitted(square - 2.0 * cross + float((weight * grey**2).sum()))
             costs = np.maximum(misfit[rows, columns], 0.0)
         else:
@@ -172,6 +176,12 @@ class _Finder:
         row, column = int(rows[pick]), int(columns[pick])
         self._uses[max(0, row - 3) : row + 4, max(0, column - 3) : column + 4] += 1.0
         return self._top + SEARCH_STEP * row, self._left + SEARCH_STEP * column
+
+    def _square_of(self, weight: Float32[np.ndarray, "q q"]) -> Float32[np.ndarray, "a b"]:
+        """Sum of squares of the source under a weight at every place: many blocks know the same of themselves."""
+        return self._square_by_weight.get(
+            weight.tobytes(), lambda: cv2.matchTemplate(self._squares, weight, cv2.TM_CCORR)
+        )
 
     def _fitted(self, misfit: Float32[np.ndarray, "a b"]) -> Float32[np.ndarray, "p q"]:
         """The misfits at the places' grid: reduced sizes may differ by one at the far ends."""

@@ -242,7 +242,12 @@ def _apart(
     for other in others:
         found.append(relaxed(other, separate(other, rounds=rounds, check=check)))
         found.append(relaxed(other, relocate(other, base(other))))
-    best = min(found, key=lambda f: (len(f.stuck), *_disagreement(program, f, view)))
+    fewest, left = min(len(f.stuck) for f in found), dict[bytes, Separation]()
+    for way in found:  # looking at one takes most of its time: only at those that are not ruled out, and once at each
+        if len(way.stuck) == fewest:
+            left.setdefault(way.y.tobytes(), way)
+    first, *more = left.values()
+    best = min(left.values(), key=lambda f: _disagreement(program, f, view)) if more else first
     check(best.y, best.depth_m)
     return best
 

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 import trimesh
-from jaxtyping import Float
+from jaxtyping import Float, Float32, Int, Int32
 from scipy.optimize import linear_sum_assignment
 
 from diorama_core.layout.problem.problem import Problem
@@ -21,7 +21,7 @@ from diorama_core.library.record import ShapeLibrary
 from diorama_core.scene.types import Camera, Pose, Scene, box_corners
 
 if TYPE_CHECKING:
-    from diorama_core.render.raycast import Buffers
+    from diorama_core.render.raycast import Buffers, MeshCaster
 
 LONG_SIDE_PX = 400
 """The layout is looked at in this size: a cup at the far wall still has a dozen pixels."""
@@ -75,7 +75,7 @@ class ObservedView:
         size = max(round(k.width * shrink), 1), max(round(k.height * shrink), 1)
         camera = Camera(k.scaled(*size), scene.camera.T_world_camera)
         meshes, poses = tuple(library.mesh(o.shape_id) for o in items), tuple(o.pose for o in items)
-        return cls(camera, tuple(o.id for o in items), meshes, poses, _seen(camera, meshes, poses))
+        return cls(camera, tuple(o.id for o in items), meshes, poses, _caster(meshes, poses).buffers(camera))
 
     @cached_property
     def points(self) -> VisiblePoints:
@@ -93,19 +93,28 @@ class ObservedView:
     def agreement(self, poses: Mapping[str, Pose]) -> float:
         """How far objects in other poses still cover what they covered, hiding included: mean over those seen."""
         now = tuple(poses.get(name, pose) for name, pose in zip(self.ids, self.poses, strict=True))
-        after, before = _seen(self.camera, self.meshes, now).instance, self.view.instance
-        shares = []
-        for number in range(len(self.ids)):
-            was, is_now = before == number, after == number
-            if was.sum() >= MIN_POINTS:
-                shares.append(float((was & is_now).sum() / (was | is_now).sum()))
-        return float(np.mean(shares)) if shares else 1.0
+        after, before = _caster(self.meshes, now).instances(self._rays), self.view.instance
+        count = len(self.ids)
+        was, is_now, both = (_pixels_of(seen, count) for seen in (before, after, before[before == after]))
+        shares = both[was >= MIN_POINTS] / (was + is_now - both)[was >= MIN_POINTS]
+        return float(np.mean(shares)) if len(shares) else 1.0
+
+    @cached_property
+    def _rays(self) -> Float32[np.ndarray, "h w 6"]:
+        from diorama_core.render.raycast import PinholeView
+
+        return PinholeView(self.camera).all_rays()
 
 
-def _seen(camera: Camera, meshes: Sequence[trimesh.Trimesh], poses: Sequence[Pose]) -> Buffers:
-    from diorama_core.render.raycast import MeshCaster  # Open3D; the editor opens without it
+def _pixels_of(instance: Int32[np.ndarray, "*n"], count: int) -> Int[np.ndarray, "k"]:
+    """How many pixels show each of so many objects."""
+    return np.bincount(instance[instance >= 0], minlength=count)
 
-    return MeshCaster([(m, pose.matrix) for m, pose in zip(meshes, poses, strict=True)]).buffers(camera)
+
+def _caster(meshes: Sequence[trimesh.Trimesh], poses: Sequence[Pose]) -> MeshCaster:
+    from diorama_core.render.raycast import MeshCaster  # the editor opens without it
+
+    return MeshCaster([(m, pose.matrix) for m, pose in zip(meshes, poses, strict=True)])
 
 
 def tracked_points(
