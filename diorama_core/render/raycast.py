@@ -169,8 +169,12 @@ class MeshCaster:
 
     def instances(self, rays: RayArray) -> Int32[np.ndarray, "*n"]:
         """Which mesh every ray meets first; -1 where it meets none."""
-        hits = self._caster.first_hits(rays)
-        return np.where(hits.found, self._owner[np.where(hits.found, hits.triangle, 0)], -1).astype(np.int32)
+        return self._instances(self._caster.first_hits(rays))
+
+    def _instances(self, hits: Hits) -> Int32[np.ndarray, "*n"]:
+        instance = np.full(hits.found.shape, -1, dtype=np.int32)
+        instance[hits.found] = self._owner[hits.triangle[hits.found]]
+        return instance
 
     def buffers(self, view: Camera | View) -> Buffers:
         """Depth, normals and instance ids from one camera."""
@@ -179,11 +183,9 @@ class MeshCaster:
         hits = self._caster.first_hits(rays)
         found = hits.found
         depth = np.where(found, hits.distance, 0).astype(np.float32)
-        instance = np.full(found.shape, -1, dtype=np.int32)
-        instance[found] = self._owner[hits.triangle[found]]
         normals = np.zeros((*found.shape, 3), dtype=np.float32)
         normals[found] = facing(self._normals[hits.triangle[found]], rays[found][:, 3:])
-        return Buffers(depth, normals, instance)
+        return Buffers(depth, normals, self._instances(hits))
 
 
 def render_buffers(meshes: Sequence[tuple[trimesh.Trimesh, Float[np.ndarray, "4 4"]]], camera: Camera) -> Buffers:

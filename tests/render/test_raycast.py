@@ -7,7 +7,7 @@ import trimesh
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from diorama_core.render.raycast import MeshCaster, OrthographicView, render_buffers
+from diorama_core.render.raycast import MeshCaster, OrthographicView, PinholeView, render_buffers
 from diorama_core.scene.types import Camera, Intrinsics, Pose
 from tests.primitives import eye_camera
 
@@ -39,6 +39,13 @@ def test_the_nearer_mesh_hides_the_farther() -> None:
     assert buffers.instance.dtype == np.int32
     assert buffers.depth_m.dtype == np.float32
     assert (buffers.depth_m[buffers.instance == -1] == 0).all()
+
+
+def test_what_rays_meet_is_what_the_buffers_show() -> None:
+    rays = PinholeView(camera()).all_rays()
+    for boxes in ([], [box_at((0, 5, 0)), box_at((1.6, 4, 0))]):
+        caster = MeshCaster(boxes)
+        np.testing.assert_array_equal(caster.instances(rays), caster.buffers(camera()).instance)
 
 
 def test_nothing_to_see() -> None:
