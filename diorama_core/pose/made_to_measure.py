@@ -57,6 +57,8 @@ WORTH, WORTH_WITH_DEPTH = 0.4, 0.15
 """A changed parameter must agree better by so much: without depth it may make up for a pose that is a little off."""
 SIZE_LOSS = 0.1
 """A shape stretched unevenly is rather built at that size, unless it agrees worse by so much."""
+MIN_DRAWER_M = (0.2, 0.08)
+"""Width and height of the front of a drawer, at least."""
 PASSES, MAX_VARIANTS = 2, 32
 """Times that all parameters are gone through, since one may hide another, and shapes built for one object or set."""
 MAX_TRIANGLES = 20_000
@@ -205,7 +207,7 @@ class MadeToMeasure:
         for _ in range(PASSES):
             before_pass = dict(changes)
             for name, values in varied(best.shape_id):
-                others = [v for v in values if v != changes.get(name)][:left]
+                others = [v for v in values if v != changes.get(name) and can_have(name, v, size)][:left]
                 tried = {v: self._score(best.shape_id, size, {**changes, name: v}, seen) for v in others}
                 left -= len(tried)
                 value = max(tried, key=tried.__getitem__, default=None)
@@ -245,6 +247,14 @@ class MadeToMeasure:
     ) -> float:
         mesh = self.library.mesh(made_id(shape_id, size_m, changes))
         return _mean_score(seen, ShapeCaster(mesh), np.ones(3))
+
+
+def can_have(name: str, value: Value, size_m: Float[np.ndarray, "3"]) -> bool:
+    """Whether a shape of this depth, width and height can have a parameter's value: its drawers are for things."""
+    drawers = [v for v in value if isinstance(v, int)] if name == "bays" and isinstance(value, tuple) else []
+    if not drawers or not isinstance(value, tuple):
+        return True
+    return bool(size_m[1] / len(value) >= MIN_DRAWER_M[0] and size_m[2] / max(drawers) >= MIN_DRAWER_M[1])
 
 
 def _standing(candidate: Candidate, height_m: float) -> Pose:
