@@ -18,8 +18,8 @@ from diorama_core.scene.types import Pose, yaw_rotation
 
 STEPS = (0.06, 0.03, 0.015)
 """Of an extent, and radians, from coarse to fine."""
-ROUNDS = 2
-"""Moves at each of them."""
+ROUNDS = 5
+"""Moves at each of them, as long as they help: sides, place and turn may all be a little off."""
 GAIN = 0.002
 """Of the disagreement, 0 to 1: less is no better."""
 MIN_TRUST = 0.5
