@@ -11,10 +11,11 @@ from __future__ import annotations
 import inspect
 import os
 import random
+import warnings
 from collections.abc import Callable
 from dataclasses import is_dataclass
 from functools import cache, wraps
-from types import FunctionType
+from types import CodeType, FunctionType
 from typing import Any, get_args, get_type_hints
 from unittest import mock
 
@@ -33,9 +34,11 @@ CONFIGURATION = BeartypeConf(is_pep484_tower=True, violation_type=jaxtyping.Type
 CHECKED_CALLS = 5
 """Of each function, in each test."""
 _calls: dict[int, list[int]] = {}
-"""By a function's code, how often it was called in this test: in a list, which a call finds without looking."""
-_called: list[list[int]] = []
-"""Those that were called at all."""
+"""By a function's code, how often it was called in this test."""
+_counted: list[list[int]] = []
+"""Those that are not 0."""
+_called: dict[int, tuple[FunctionType, CodeType]] = {}
+"""Functions that were called, by their identity, each with the code that checks."""
 
 
 def install() -> None:
@@ -51,50 +54,91 @@ def install() -> None:
 
 def begin_test(*, unchecked: bool) -> None:
     """Check the first calls again, and the same items of lists every time."""
-    for calls in _called:
+    for calls in _counted:
         calls[0] = 0
+    _counted.clear()
+    for function, checking in _called.values():
+        function.__code__ = checking
     _called.clear()
     items.seed(0)
     jaxtyping.config.update("jaxtyping_disable", unchecked)
 
 
-_MARK = "first_calls_are_checked"
-
-
 def _first_calls_checked(item: Any, checking: Callable[[Any], Any]) -> Any:
     """A function, or the constructor of a dataclass, whose first calls are checked."""
     if not inspect.isclass(item):
-        return _alternating(item, checking)
-    if is_dataclass(item) and "__init__" in vars(item) and not hasattr(item.__init__, _MARK):
-        item.__init__ = _alternating(item.__init__, checking)  # as `jaxtyping.jaxtyped` does
+        _check_first_calls(item, checking)
+    elif is_dataclass(item) and "__init__" in vars(item) and not hasattr(item.__init__, "__wrapped__"):
+        _check_first_calls(item.__init__, checking)  # as `jaxtyping.jaxtyped` does
     return item
 
 
-def _alternating(unchecked: Callable[..., Any], checking: Callable[[Any], Any]) -> Callable[..., Any]:
-    """The function, checked in its first calls: what checks it is made at the first, since most are never called.
+_IS_ASKED_FOR = inspect.CO_GENERATOR | inspect.CO_COROUTINE | inspect.CO_ASYNC_GENERATOR
+"""What others ask a function's code for, so that it must not change between two calls."""
 
+
+def _check_first_calls(function: FunctionType, checking: Callable[..., Any]) -> None:
+    """Check the function's first calls: what checks it is made at the first, since most are never called.
+
+    Until then its code is one that checks, later its own again, so that the million calls of a loop cost nothing.
     Calls of a function within another are counted for all that the other makes of it.
     """
+    code = function.__code__
+    calls = _calls.setdefault(id(code), [0])
+    if calls[0] >= CHECKED_CALLS:
+        return
+    plain = _copy(function)
     checked: Callable[..., Any] | None = None
-    calls = _calls.setdefault(id(unchecked.__code__), [0])
 
-    @wraps(unchecked)
     def called(*args: Any, **kwargs: Any) -> Any:
         nonlocal checked
-        if calls[0] >= CHECKED_CALLS:  # before all else: loops call some functions a million times
-            return unchecked(*args, **kwargs)
         if not calls[0]:
-            _called.append(calls)
+            _counted.append(calls)
         calls[0] += 1
-        if jaxtyping.config.jaxtyping_disable:
-            return unchecked(*args, **kwargs)
+        if id(function) not in _called:
+            _called[id(function)] = function, own_checks
+        if calls[0] >= CHECKED_CALLS and not code.co_flags & _IS_ASKED_FOR:
+            function.__code__ = code
+        if jaxtyping.config.jaxtyping_disable or calls[0] > CHECKED_CALLS:
+            return plain(*args, **kwargs)
         if checked is None:
-            plain = _plain_annotations(unchecked)
-            checked = checking(unchecked) if plain is None else check(_annotated(unchecked, plain))
+            annotations = _plain_annotations(plain)
+            checked = checking(plain) if annotations is None else check(_copy(plain, annotations))
         return checked(*args, **kwargs)
 
-    setattr(called, _MARK, True)
-    return called
+    own_checks = _calling(called, code)
+    function.__code__ = own_checks
+    function.__wrapped__ = plain  # whose signature it has
+
+
+@cache
+def _template(held: int) -> CodeType:
+    """Code of a function that holds so many names from around it, and calls the number 0 with whatever it is given."""
+    names = ", ".join(f"name_{i}" for i in range(held))
+    text = (
+        f"def around({names}):\n def calling(*args, **kwargs):\n  if 0: {names or 'pass'}\n  return 0(*args, **kwargs)"
+    )
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", SyntaxWarning)  # a number is not called: the function that takes its place is
+        around = compile(text, __file__, "exec").co_consts[0]
+    return next(part for part in around.co_consts if isinstance(part, CodeType))
+
+
+def _calling(called: Callable[..., Any], code: CodeType) -> CodeType:
+    """Code that can take the place of a function's own and calls another function with the same arguments."""
+    template = _template(len(code.co_freevars))
+    constants = tuple(called if constant == 0 else constant for constant in template.co_consts)
+    return template.replace(co_consts=constants, co_name=code.co_name)
+
+
+def _copy(function: FunctionType, annotations: dict[str, Any] | None = None) -> FunctionType:
+    """The same function, with the annotations themselves in place of their text where they are given."""
+    code, names = function.__code__, function.__globals__
+    same = FunctionType(code, names, function.__name__, function.__defaults__, function.__closure__)
+    same.__kwdefaults__, same.__doc__ = function.__kwdefaults__, function.__doc__
+    same.__annotations__ = function.__annotations__ if annotations is None else annotations
+    same.__module__, same.__qualname__ = function.__module__, function.__qualname__
+    return same
 
 
 def _plain_annotations(function: Callable[..., Any]) -> dict[str, Any] | None:
@@ -108,15 +152,6 @@ def _plain_annotations(function: Callable[..., Any]) -> dict[str, Any] | None:
     except Exception:
         return None
     return None if any(_holds_shapes(annotation) for annotation in annotations.values()) else annotations
-
-
-def _annotated(function: Callable[..., Any], annotations: dict[str, Any]) -> Callable[..., Any]:
-    """The same function with the annotations themselves in place of their text."""
-    code, names = function.__code__, function.__globals__
-    same = FunctionType(code, names, function.__name__, function.__defaults__, function.__closure__)
-    same.__kwdefaults__, same.__annotations__ = function.__kwdefaults__, annotations
-    same.__module__, same.__qualname__ = function.__module__, function.__qualname__
-    return same
 
 
 def _holds_shapes(annotation: Any) -> bool:

@@ -46,7 +46,8 @@ def brightness_gains(
 
     Args:
         rgb: The photo, as white light would have it.
-        visible: Where it shows each object, without what stands before it, by object id.
+        visible: Where it shows each object's materials, without what stands before it, by object id. Highlights, and
+            where the pose shows another material than the photo, are the exception: the typical ratio counts.
         scene: In its own light, white, with the materials; its camera is the photo's.
         pictures: Of the materials, by name.
         library: Where its shapes are.
@@ -60,8 +61,8 @@ def brightness_gains(
     for object_id, mask in visible.items():
         seen = cv2.resize(mask.astype(np.float32), size, interpolation=cv2.INTER_AREA) > 0.9
         if np.count_nonzero(seen) >= MIN_PIXELS:
-            ratio = float(photo[seen].mean()) / max(float(shown[seen].mean()), DARKEST)
-            gains[object_id] = float(np.clip(ratio, 1.0 / MAX_GAIN, MAX_GAIN))
+            ratios = np.maximum(photo[seen], DARKEST) / np.maximum(shown[seen], DARKEST)
+            gains[object_id] = float(np.clip(np.median(ratios), 1.0 / MAX_GAIN, MAX_GAIN))
     return gains
 
 

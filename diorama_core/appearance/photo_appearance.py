@@ -124,23 +124,43 @@ def photo_appearance(
     used = {m.texture for of_one in materials.values() for m in of_one}
     pictures = {name: picture for name, picture in pictures.items() if name in used}
     read = PhotoAppearance({key: value for key, value in materials.items() if value}, pictures, light)
-    return _as_bright(read, rgb, objects, scene, library)
+    return _as_bright(read, rgb, {s.item.id: _read_from(s, found[s.item.id], objects) for s in seen}, scene, library)
 
 
 def _as_bright(
     read: PhotoAppearance,
     rgb: UInt8[np.ndarray, "h w 3"],
-    objects: tuple[DetectedObject, ...],
+    read_from: Mapping[str, Bool[np.ndarray, "h w"]],
     scene: Scene,
     library: ShapeLibrary,
 ) -> PhotoAppearance:
-    """The materials as bright as the photo shows them in the scene's light, part of which they reflect themselves."""
-    visible = {o.id: _inner(o) & ~hiding(o, objects) for o in objects if o.id in read.materials}
+    """The materials as bright as the photo shows them in the scene's light, part of which they reflect themselves.
+
+    Args:
+        read: The materials.
+        rgb: The photo.
+        read_from: Pixels that show the materials of each object.
+        scene: As in `photo_appearance`.
+        library: Where its shapes are.
+    """
+    visible = {key: pixels for key, pixels in read_from.items() if key in read.materials}
     for _ in range(BRIGHTNESS_ROUNDS):
         gains = brightness_gains(rgb, visible, read.applied(scene), read.pictures, library)
         materials, pictures = brightened(read.materials, read.pictures, gains, _sets(scene))
         read = replace(read, materials=materials, pictures=pictures)
     return read
+
+
+def _read_from(seen: _Seen, found: DetectedObject, objects: tuple[DetectedObject, ...]) -> Bool[np.ndarray, "h w"]:
+    """The pixels that show an object's materials: those of its slots' main colours, or all of a thing with faces."""
+    if seen.faces or seen.view is None or not seen.pixels:
+        return _inner(found) & ~hiding(found, objects)
+    view, pixels = seen.view, np.zeros(found.mask.shape, dtype=bool)
+    near = np.any([p.near for p in seen.pixels], axis=0).repeat(view.step, axis=0).repeat(view.step, axis=1)
+    height = min(view.top + near.shape[0], len(pixels))
+    width = min(view.left + near.shape[1], pixels.shape[1])
+    pixels[view.top : height, view.left : width] = near[: height - view.top, : width - view.left]
+    return pixels
 
 
 def _inner(found: DetectedObject) -> Bool[np.ndarray, "h w"]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
 
 import cv2
@@ -53,12 +53,17 @@ COLOURED, CROSSED = 25.0, 4.0
 not read: a metal arm that crosses a red back in the picture is not red."""
 CLEARLY = 2.0
 """A thing's lit side has a colour that covers so many times more of the thing than of the background."""
+MOSTLY, CLEARLY_OWN = 0.5, 1.5
+"""A colour that covers less than half of a slot covers so many times more of it than of all others together, or it is
+of none of them: a white board before a chair's arm and seat."""
 AS_GOOD = 0.8
 """A colour is as good as the best when it is nearly as much the slot's own."""
 BEHIND = 0.5
 """Nor is a part that the mask lost read, where its vivid colour covers so much of the background: legs are not red
 because the carpet below them is."""
 BIN_LAB = np.array([40.0, 20.0, 20.0])
+MIN_OF_BIN = 0.02
+"""Bins that hold less of a slot are left out."""
 NEAR_LAB = 20.0
 NORMAL_CELL = 0.35
 """Normals within about this are one face of a shade."""
@@ -134,7 +139,9 @@ def slot_pixels(
         unlike = [k for k in of_slots if slots[k].role != slots[index].role and _is_near(seeds[k] - seeds[index])]
         crossed = _is_vivid(seeds[index]) and any(near[k].sum() >= CROSSED * near[index].sum() for k in unlike)
         behind = index in lost and _is_vivid(seeds[index]) and _covers(lab, beside, seeds[index]) >= BEHIND
-        if near[index].sum() >= MIN_SHARE * mine.sum() and not crossed and not behind:
+        foreign = [k for k in of_slots if k != index and not _is_near(seeds[k] - seeds[index])]
+        before = _is_before_all(lab, mine, [of_slots[k] for k in foreign], seeds[index])
+        if near[index].sum() >= MIN_SHARE * mine.sum() and not crossed and not behind and not before:
             found.append(SlotPixels(slots[index], index, near[index], mine))
     return tuple(found)
 
@@ -187,6 +194,26 @@ def _own_colours(
     return seeds
 
 
+def _is_before_all(
+    lab: Float32[np.ndarray, "gh gw 3"],
+    mine: Bool[np.ndarray, "gh gw"],
+    foreign: Sequence[Bool[np.ndarray, "gh gw"]],
+    seed: np.ndarray,
+) -> bool:
+    """Whether a slot's colour is of something before the object: on it in part, and as much on slots of other colours.
+
+    Args:
+        lab: The photo.
+        mine: The slot.
+        foreign: The slots of other colours.
+        seed: Its colour.
+    """
+    share = _share(lab, mine, seed)
+    if share >= MOSTLY or not foreign:
+        return False
+    return share < CLEARLY_OWN * _share(lab, np.any(foreign, axis=0), seed)
+
+
 def _is_not_behind(
     lab: Float32[np.ndarray, "gh gw 3"],
     mine: Bool[np.ndarray, "gh gw"],
@@ -208,16 +235,26 @@ def _covers(lab: Float32[np.ndarray, "gh gw 3"], where: Bool[np.ndarray, "gh gw"
 
 
 def _colours_of(lab: Float32[np.ndarray, "gh gw 3"], mine: Bool[np.ndarray, "gh gw"]) -> list[Float32[np.ndarray, "3"]]:
-    """Medians of the bins of a coarse Lab grid that hold much of a slot, the fullest first.
+    """Medians of the bins of a coarse Lab grid that hold much of a slot, those of the colour that covers most first.
 
-    Bins have grey in their middle, or whites and greys would lie in four of them.
+    Bins have grey in their middle, or whites and greys would lie in four of them. Of a colour that lies in several
+    bins the fullest one counts, however little it holds: a red back in light and shade covers more than a white board.
     """
     pixels = lab[mine]
     cells = np.floor(pixels / BIN_LAB + (0.0, 0.5, 0.5))
     label, counts = cells_of(cells)
-    order = np.argsort(-counts, kind="stable")
-    much = [k for k in order if k == order[0] or counts[k] >= MIN_SHARE * len(pixels)]
-    return [np.median(pixels[label == k], axis=0) for k in much]
+    order = [k for k in np.argsort(-counts, kind="stable") if counts[k] >= MIN_OF_BIN * len(pixels)]
+    medians = {k: np.median(pixels[label == k], axis=0) for k in order}
+    found: list[Float32[np.ndarray, "3"]] = []
+    while order:
+        alike = {k: [j for j in order if _is_near(medians[j] - medians[k])] for k in order}
+        covers = {k: sum(int(counts[j]) for j in alike[k]) for k in order}
+        group = alike[max(order, key=covers.__getitem__)]
+        if found and sum(int(counts[j]) for j in group) < MIN_SHARE * len(pixels):
+            break
+        found += [medians[j] for j in group if j == group[0] or counts[j] >= MIN_SHARE * len(pixels)]
+        order = [k for k in order if k not in group]
+    return found
 
 
 def _share(lab: Float32[np.ndarray, "gh gw 3"], where: Bool[np.ndarray, "gh gw"], seed: np.ndarray) -> float:

@@ -197,7 +197,7 @@ def clipped_bounds(
 ) -> Float[np.ndarray, "p 4"]:
     """Boxes of the edges' visible parts: clipped to the near plane and to the photo; NaN where nothing is visible."""
     slack = frustum_slack(points_camera, camera.intrinsics)
-    inside = (slack >= 0).all(axis=(0, 2))
+    inside = np.logical_and.reduce(slack >= 0, axis=(0, 2))
     if inside.all():
         return _ends(_pixels(camera, points_camera))
     bounds = np.empty((points_camera.shape[1], 4))

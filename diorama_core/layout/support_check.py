@@ -11,16 +11,17 @@ from dataclasses import replace
 
 import numpy as np
 
+from diorama_core.layout.behind_walls import NEVER_HANGS, UPRIGHT, before_wall
 from diorama_core.layout.noise import ObservationNoise
 from diorama_core.layout.problem.supports import (
     SMALLEST_CLEARANCE,
     Surface,
+    carries_things,
     choose_surface,
     closes_cycle,
     is_wide_enough,
     label_of,
     misfit,
-    object_surfaces,
     outside_m,
     plane_surface,
     resting_cost,
@@ -39,18 +40,10 @@ WALL_FACTOR = 2.0
 """Objects that belong on walls stay on theirs up to so many times the tolerance: the wall may be wrong as well."""
 _IN_WALLS = frozenset({"door", "window"})
 """From a photo alone it is surer that these are in a wall than how far away they are; measured doors may stand open."""
-_NEVER_HANGS = taxonomy.with_kin(
-    *("chair", "office chair", "armchair", "stool", "bench", "sofa", "ottoman", "bed", "dresser", "wardrobe"),
-    *("table", "coffee table", "side table", "desk", "floor lamp", "refrigerator", "washing machine", "stove"),
-)
 _WALKED_ON = taxonomy.with_kin("rug")
 """What furniture stands on and is on the floor nevertheless."""
 _SOMETIMES_HANGS = frozenset({"television", "monitor", "lamp", "clock", "speaker", "plant", "towel", "utensils"})
 """Of the kinds that are set down on things."""
-BEHIND = 0.9
-"""An object is behind a wall that is nearer than this share of its distance."""
-UPRIGHT = 0.98
-"""Surfaces whose normals have a smaller z carry nothing."""
 SHORTEST_ON_PLACE = 0.3
 """An object that reaches down through the place on which it rests keeps at least this share of its height above it."""
 UNUSUAL_M = 0.3
@@ -79,7 +72,7 @@ def checked_supports(
             continue
         hangs = edge.relation == "mounted on" and scene.has_plane(edge.parent)
         floor = scene.architecture.floor
-        if hangs and item.category in _NEVER_HANGS and floor is not None:
+        if hangs and item.category in NEVER_HANGS and floor is not None:
             reasons.append(f"support changed: {item.label} stands on the floor; nothing of its kind hangs")
             scene = edits.attach(scene, Support(item.id, floor.id))
             continue
@@ -93,15 +86,12 @@ def checked_supports(
             reasons.append(f"support changed: {item.label} was seen on another wall than its own")
             scene = edits.attach(scene, replace(edge, parent=wall, adheres_to=()))
             continue
-        behind = None if noise.measured or floor is None or edge.parent != floor.id else _wall_before(scene, item)
-        if behind is not None and (nearer := _nearer_in_sight(scene, library, item, noise)) is not None:
-            share, parent = nearer
-            reasons.append(
-                f"support changed: {item.label} would be behind {label_of(scene, behind)} and rests on "
-                f"{label_of(scene, parent)}"
-            )
-            scene = edits.attach(_along_sight(scene, item, share), Support(item.id, parent))
-            continue
+        if not noise.measured and floor is not None and edge.parent == floor.id:
+            before = before_wall(scene, library, item, noise)
+            if before is not None:
+                scene, reason = before
+                reasons.append(reason)
+                continue
         if hangs and not noise.measured and item.category in _IN_WALLS:
             continue
         mount = taxonomy.resolve(item.category).category.mount
@@ -184,67 +174,11 @@ def _wall_in_sight(scene: Scene, item: SceneObject, edge: Support, noise: Observ
     return min(met)[1] if met else None
 
 
-def _wall_before(scene: Scene, item: SceneObject) -> str | None:
-    """The seen wall that the line of sight to an object's centre goes through; None where the object is in the room."""
-    if scene.camera is None:
-        return None
-    eye, sight = scene.camera.position, item.pose.position - scene.camera.position
-    for wall in scene.architecture.by_role("wall"):
-        closing = float(wall.normal @ sight)
-        if wall.seen and closing < 0.0:
-            share = (wall.offset - float(wall.normal @ eye)) / closing
-            if 0.0 < share < BEHIND and outside_m(plane_surface(wall), eye + share * sight) == 0.0:
-                return wall.id
-    return None
-
-
-def _nearer_in_sight(
-    scene: Scene, library: ShapeLibrary, item: SceneObject, noise: ObservationNoise
-) -> tuple[float, str] | None:
-    """The object on which the line of sight to an object's foot ends, and at which share of the distance.
-
-    It ends on one of its places, or beside it but in the object's box in the photo: shapes are not what they stand for.
-    """
-    if scene.camera is None or item.category in _NEVER_HANGS:
-        return None
-    eye = scene.camera.position
-    sight = item.pose.apply(np.array([[0.0, 0.0, -0.5 * item.shape_size_m[2]]]))[0] - eye
-    pixel = scene.camera.project(eye + sight)
-    found: list[tuple[float, float, str]] = []
-    for other in scene.objects:
-        if other.id == item.id or not _carries(scene, other.id):
-            continue
-        x1, y1, x2, y2 = other.box_px or (np.inf, np.inf, -np.inf, -np.inf)
-        in_box = bool(x1 <= pixel[0] <= x2 and y1 <= pixel[1] <= y2)
-        for surface in object_surfaces(library.shape(other.shape_id), other):
-            world = surface.in_world(other.pose)
-            if float(world.normal @ UP_WORLD) < UPRIGHT or float(sight @ world.normal) >= 0.0:
-                continue
-            share = (world.level - float(eye @ world.normal)) / float(sight @ world.normal)
-            beside = outside_m(world, eye + share * sight)
-            if 0.0 < share < 1.0 and (in_box or beside <= 2.0 * noise.across_m):
-                found.append((beside, share, other.id))
-    return min(found)[1:] if found else None
-
-
-def _along_sight(scene: Scene, item: SceneObject, share: float) -> Scene:
-    """The scene with an object so much nearer and smaller: it looks alike in the photo."""
-    assert scene.camera is not None, "there is a line of sight"
-    eye = scene.camera.position
-
-    def nearer(pose: Pose) -> Pose:
-        return Pose(pose.R_world_object, eye + share * (pose.position - eye), share * pose.scale)
-
-    candidates = tuple(replace(c, pose=nearer(c.pose)) for c in item.candidates)
-    moved = replace(item, pose=nearer(item.pose), candidates=candidates)
-    return replace(scene, objects=tuple(moved if o.id == item.id else o for o in scene.objects))
-
-
 def _belongs_on_floor(
     scene: Scene, library: ShapeLibrary, item: SceneObject, edge: Support, noise: ObservationNoise
 ) -> bool:
     """Whether the measured gap contradicts the edge of furniture on an object, or of a door: their feet are hidden."""
-    on_object = scene.has_object(edge.parent) and edge.relation == "placed on" and item.category in _NEVER_HANGS
+    on_object = scene.has_object(edge.parent) and edge.relation == "placed on" and item.category in NEVER_HANGS
     is_door = scene.has_plane(edge.parent) and edge.relation == "mounted on" and item.category == "door"
     return (on_object or is_door) and _gap(scene, library, item, edge) > _tolerance(scene, item, edge, noise)
 
@@ -283,7 +217,7 @@ def _better(
         between = beneath is not None and beneath.parent == edge.parent and _is_thin(scene, other.parent, limit)
         between = between and edge.relation == "placed on"
         between = between and (
-            _is_over(scene, library, item, other) if noise.measured else _carries(scene, other.parent)
+            _is_over(scene, library, item, other) if noise.measured else carries_things(scene.object(other.parent))
         )
         # Against a measured gap that is many times as large, a foot that is hidden does not count.
         reached = np.inf if noise.measured else max(limit, UNUSUAL_M * unusual)
@@ -314,7 +248,7 @@ def _candidates(scene: Scene, library: ShapeLibrary, item: SceneObject) -> list[
         for plane in scene.architecture.planes
         if plane.role in usual
     ]
-    if mount in ("surface", "wall") or (mount == "floor" and item.category not in _NEVER_HANGS):
+    if mount in ("surface", "wall") or (mount == "floor" and item.category not in NEVER_HANGS):
         for other in scene.objects:
             if mount == "floor" and other.category in _WALKED_ON:
                 continue
@@ -352,10 +286,6 @@ def _is_odd_company(scene: Scene, item: SceneObject, edge: Support) -> bool:
     return often_carried(item.category, scene.object(edge.parent).category) <= SELDOM_CARRIED
 
 
-def _carries(scene: Scene, object_id: str) -> bool:
-    return taxonomy.resolve(scene.object(object_id).category).category.supports_objects
-
-
 def _entered(scene: Scene, library: ShapeLibrary, item: SceneObject, edge: Support, *, sits: bool) -> dict[str, float]:
     """Furniture in which an object was observed that stands on the floor, and how far it would have to go to be beside
     it, metres; for what people put on things, also where it hangs on a wall.
@@ -368,7 +298,7 @@ def _entered(scene: Scene, library: ShapeLibrary, item: SceneObject, edge: Suppo
         for other in scene.objects
         if other.category not in _WALKED_ON
         and (
-            _carries(scene, other.id) and _place_reached_through(library, item, other) is not None
+            carries_things(other) and _place_reached_through(library, item, other) is not None
             if sits
             else bool(surfaces_below(item, other, library.shape(other.shape_id), under=1.0))
         )

@@ -104,7 +104,7 @@ def wall_samples(depth: DepthMap, camera: Camera, objects: Sequence[DetectedObje
 
 
 def facing_of(
-    item: DetectedObject,
+    kind: str,
     cuboid: Cuboid,
     cuboids: Sequence[Cuboid],
     categories: dict[str, str],
@@ -117,7 +117,7 @@ def facing_of(
     """Reasons to face somewhere for one object.
 
     Args:
-        item: The object.
+        kind: Category of the object.
         cuboid: Its box in the world.
         cuboids: All boxes, its own included.
         categories: Category of every object id.
@@ -132,21 +132,21 @@ def facing_of(
         return Facing(((3.0, _unit(cuboid.R_world_object[:2, 0])),))
     if out_of_wall is not None:
         return Facing(((4.0, _unit(out_of_wall)),))
-    if item.category == "pillow" and carrier is not None:
+    if kind == "pillow" and carrier is not None:
         return _leaning(cuboid, carrier, broad(categories.get(carrier.object_id, "")) == "bed", toward_camera)
-    if item.category in _NO_FRONT:
+    if kind in _NO_FRONT:
         return Facing(())
-    if item.category in _TOWARD_VIEWER:
+    if kind in _TOWARD_VIEWER:
         return Facing(((2.0, toward_camera),))
-    table = _nearest_table(item.category, cuboid, cuboids, categories)
+    table = _nearest_table(kind, cuboid, cuboids, categories)
     if table is not None:
         return Facing(((1.2, _axis_toward(cuboid, table.centre[:2] - cuboid.centre[:2])), (0.1, toward_camera)))
-    shown = _TOWARD_CAMERA.get(broad(item.category), 2.0)
+    shown = _TOWARD_CAMERA.get(broad(kind), 2.0)
     preferences = [(_FRONTAL * shown, toward_camera)]
-    against = _AGAINST_WALLS if broad(item.category) in _STORAGE else 1.0
+    against = _AGAINST_WALLS if broad(kind) in _STORAGE else 1.0
     preferences += [(against * weight, to) for weight, to in _away_from_walls(cuboid, walls) if weight > 0.05]
     preferences += _away_from_pillows(cuboid, pillows)
-    if broad(item.category) in _STORAGE:
+    if broad(kind) in _STORAGE:
         preferences += _in_a_row(cuboid, cuboids, categories, camera)
     middle = np.mean([c.centre[:2] for c in cuboids], axis=0) - cuboid.centre[:2]
     if len(cuboids) >= 3 and np.linalg.norm(middle) > 0.3:

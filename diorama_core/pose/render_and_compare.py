@@ -11,40 +11,21 @@ from dataclasses import dataclass, replace
 import numpy as np
 from jaxtyping import Float, Int
 
-from diorama_core.artefacts import (
-    Cuboid,
-    DepthMap,
-    DetectedObject,
-    Inputs,
-    ObjectGeometry,
-    PosedCandidates,
-    RankedShapes,
-)
-from diorama_core.geometry.observed import observe_among
-from diorama_core.geometry.see_through import SeeThrough
+from diorama_core.artefacts import DepthMap, DetectedObject, Inputs, ObjectGeometry, PosedCandidates, RankedShapes
 from diorama_core.geometry.shape_appearance import SHARED_APPEARANCES, ShapeAppearance
 from diorama_core.geometry.silhouette import PoseBatch, ShapeCaster
 from diorama_core.library.catalogue import default_cache_dir
 from diorama_core.library.hyponyms import is_named
 from diorama_core.library.record import ROUND, Shape, ShapeLibrary
-from diorama_core.library.taxonomy import NEVER_OPEN, category
-from diorama_core.pose.agree import (
-    MAX_LOSS_OF_SURE_OUTLINES,
-    MAX_LOSS_WHERE_COLOURS_TELL,
-    MAX_LOSS_WITH_DEPTH,
-    SETS,
-    agreed_ranks,
-)
-from diorama_core.pose.appearance_likelihood import AppearanceLikelihood, cells_for
-from diorama_core.pose.facing import facing_of, wall_samples
-from diorama_core.pose.hypotheses import Anchor, Hypotheses, anchor_of, hypotheses_for, unlike_best
+from diorama_core.library.taxonomy import category
+from diorama_core.pose.agree import agreed_ranks
+from diorama_core.pose.hypotheses import Hypotheses, hypotheses_for, unlike_best
 from diorama_core.pose.levels import level_cost
 from diorama_core.pose.limits import SizeLimits, sides_log_of
-from diorama_core.pose.mask_observations import Evidence
-from diorama_core.pose.measured import MeasuredObject, foot_height_m
+from diorama_core.pose.measured import MeasuredObject
+from diorama_core.pose.posing_tasks import PosingTask, kinds_of_shapes, posing_tasks
 from diorama_core.pose.refine import BoxFit
 from diorama_core.pose.sets import shared_scales
-from diorama_core.pose.surface import measured_surface, noise_of
 from diorama_core.pose.turns import TurnSearch
 from diorama_core.progress import Progress
 from diorama_core.scene.types import Candidate, Pose
@@ -57,41 +38,12 @@ _RETRIEVAL_WITH_DEPTH = 4.0
 """What retrieval says beside `Evidence.log_likelihood` where depth was measured: that tells shapes apart."""
 _MIN_STANDING = -1.0
 """What holds an object may be mistaken: that a shape does not stand there says at most so much against it, as a log."""
-_TELLS = 0.5
-"""What colours must say beside a mask for it to tell who of a set differs (`SeeThrough.share`)."""
 _MAX_THREADS = 4
 """Objects posed side by side: casting and array work let go of the interpreter, the rest of it does not."""
 _FACES_BETTER = 0.3
 """Cost by which a hypothesis must face more usually than the best ones to be refined although it fits worse so far."""
 _LOSS_FOR_A_SET = 0.02
 """Additional image error allowed for an object to take the size of its set."""
-
-
-@dataclass(frozen=True, eq=False)
-class _Task:
-    """One object with the observations for posing its shapes."""
-
-    item: DetectedObject
-    cuboid: Cuboid
-    anchor: Anchor
-    carried: tuple[Cuboid, ...]
-    """What lies on it."""
-    coarse: Evidence
-    fine: Evidence
-    measured: MeasuredObject | None
-    """Where depth was measured."""
-    close: AppearanceLikelihood | None
-    """Where depth was measured."""
-
-    @property
-    def max_loss(self) -> float:
-        """What agreeing on a shape may cost: it averages doubtful outlines; sure ones and depth show who differs."""
-        if self.measured is not None:
-            return MAX_LOSS_WITH_DEPTH
-        in_sets, colours = self.item.category in SETS, self.fine.see_through
-        if in_sets and colours is not None and colours.share > _TELLS:
-            return MAX_LOSS_WHERE_COLOURS_TELL
-        return np.inf if self.item.mask_confidence < 1.0 or in_sets else MAX_LOSS_OF_SURE_OUTLINES
 
 
 @dataclass(frozen=True, eq=False)
@@ -161,7 +113,14 @@ class RenderAndCompare:
         """Posed candidates, best first, of every object that has a cuboid and at least one ranked shape."""
         ranked = {r.object_id: r.ranked for r in shapes if r.ranked}
         records = {s.id: s for s in self.library.shapes()}
-        tasks = self._tasks(inputs, objects, geometry, depth, frozenset(ranked))
+        tasks = posing_tasks(
+            inputs,
+            objects,
+            geometry,
+            depth,
+            kinds_of_shapes(objects, ranked, records),
+            (self.coarse_cells, self.fine_cells),
+        )
         found = []
         with ThreadPoolExecutor(min(os.cpu_count() or 1, _MAX_THREADS)) as threads:
             underway = [threads.submit(self._pose_object, task, ranked[task.item.id], records) for task in tasks]
@@ -182,7 +141,7 @@ class RenderAndCompare:
         ordered = [(first, *of_one[1:]) for first, of_one in zip(firsts, ordered, strict=True)]
         return tuple(_candidates(*one) for one in zip(tasks, ordered, ranks, strict=True))
 
-    def _evened(self, tasks: Sequence[_Task], chosen: Sequence[_Posed]) -> list[_Posed]:
+    def _evened(self, tasks: Sequence[PosingTask], chosen: Sequence[_Posed]) -> list[_Posed]:
         """The chosen poses, those of one set equally large where that fits the picture hardly worse."""
         if not tasks:
             return []
@@ -197,7 +156,7 @@ class RenderAndCompare:
         )
         return [self._rescaled(*one) for one in zip(tasks, chosen, scales, strict=True)]
 
-    def _rescaled(self, task: _Task, posed: _Posed, scale: Float[np.ndarray, "3"]) -> _Posed:
+    def _rescaled(self, task: PosingTask, posed: _Posed, scale: Float[np.ndarray, "3"]) -> _Posed:
         if np.array_equal(scale, posed.pose.scale):
             return posed
         R, axis = posed.pose.R_world_object, task.anchor.axis_world
@@ -210,89 +169,35 @@ class RenderAndCompare:
         folder = default_cache_dir() / "appearances"
         return SHARED_APPEARANCES.get(shape.content_hash, folder, lambda: self.library.parts(shape.id))
 
-    def _tasks(
-        self,
-        inputs: Inputs,
-        objects: tuple[DetectedObject, ...],
-        geometry: ObjectGeometry,
-        depth: DepthMap,
-        wanted: frozenset[str],
-    ) -> list[_Task]:
-        cuboid_of = {c.object_id: c for c in geometry.cuboids}
-        items = [o for o in objects if o.id in cuboid_of]
-        cuboids = [cuboid_of[o.id] for o in items]
-        centres = np.array([c.centre for c in cuboids]).reshape(-1, 3)
-        positions = {o.id: i for i, o in enumerate(items)}
-        parent_of = {s.child: s.parent for s in geometry.supports}
-        parents = [positions.get(parent_of.get(o.id, "")) for o in items]
-        categories = {o.id: o.category for o in items}
-        walls = wall_samples(depth, geometry.camera, items)
-        noise = noise_of(depth)
-        tasks = []
-        for i, item in enumerate(items):
-            if item.id not in wanted:
-                continue
-            on_wall = parent_of.get(item.id) == "wall" and category(item.category).mount != "floor"
-            carried = tuple(cuboids[j] for j, parent in enumerate(parents) if parent == i)
-            lying = [cuboids[j] for j, parent in enumerate(parents) if parent == i and items[j].category == "pillow"]
-            anchor = anchor_of(cuboids[i], on_wall, geometry.camera.position[:2] - cuboids[i].centre[:2])
-            out_of_wall = anchor.axis_world[:2] if on_wall else None
-            parent = parents[i]
-            carrier = None if parent is None else cuboids[parent]
-            facing = facing_of(
-                item, cuboids[i], cuboids, categories, geometry.camera, walls, out_of_wall, lying, carrier
-            )
-            windows = [
-                observe_among(geometry.camera, items, centres, parents, i, cells)
-                for cells in (self.coarse_cells, self.fine_cells, cells_for(item.box))
-            ]
-            surfaces = [measured_surface(depth, seen, item.mask, noise) for seen in windows]
-            closed = item.category in NEVER_OPEN
-            coarse, fine = (
-                Evidence(
-                    geometry.camera,
-                    w,
-                    facing,
-                    s,
-                    None if closed or s is not None else SeeThrough.of(inputs.photo.rgb, w),
-                )
-                for w, s in zip(windows[:2], surfaces[:2], strict=True)
-            )
-            on_floor = parent_of.get(item.id) == "floor"
-            foot_m = foot_height_m(depth, item.mask, geometry.camera) if on_floor else None
-            measured = MeasuredObject.of(item.mask, fine, cuboids[i], anchor, walls, foot_m)
-            close = None
-            if measured is not None and surfaces[2] is not None:
-                close = AppearanceLikelihood.of(inputs.photo.rgb, item.mask, windows[2], surfaces[2], cuboids[i].size_m)
-            tasks.append(_Task(item, cuboids[i], anchor, carried, coarse, fine, measured, close))
-        return tasks
-
     def _pose_object(
-        self, task: _Task, ranked: tuple[tuple[str, float], ...], records: Mapping[str, Shape]
+        self, task: PosingTask, ranked: tuple[tuple[str, float], ...], records: Mapping[str, Shape]
     ) -> tuple[_Posed, ...]:
         best = max(max(score for _, score in ranked), 1e-9)
-        tried = [self._try_shape(task, records[i], float(np.log(max(score / best, 1e-6)))) for i, score in ranked]
+        tasks = [task.as_kind(records[i].category) for i, _ in ranked]
+        liked = [float(np.log(max(score / best, 1e-6))) for _, score in ranked]
+        tried = [self._try_shape(t, records[i], how) for t, (i, _), how in zip(tasks, ranked, liked, strict=True)]
         if task.measured is None:
-            return tuple(self._with_levels(task, self._pose_by_outline(task, one)) for one in tried)
+            posed = [self._pose_by_outline(t, one) for t, one in zip(tasks, tried, strict=True)]
+            return tuple(self._with_levels(task, one) for one in posed)
         order = sorted(range(len(tried)), key=lambda k: -float(tried[k].scores.max()))
         promising = set(order[: self.promising])
         posed = [
-            self._with_levels(task, self._pose_by_depth(task, task.measured, one, k in promising))
-            for k, one in enumerate(tried)
+            self._with_levels(task, self._pose_by_depth(t, task.measured, one, k in promising))
+            for k, (t, one) in enumerate(zip(tasks, tried, strict=True))
         ]
         first = max(range(len(posed)), key=lambda k: posed[k].rank)
-        turned = self._turned_all_around(task, task.measured, tried[first], posed[first])
+        turned = self._turned_all_around(tasks[first], task.measured, tried[first], posed[first])
         posed[first] = turned if turned is posed[first] else self._with_levels(task, turned)
         return tuple(posed)
 
-    def _with_levels(self, task: _Task, posed: _Posed) -> _Posed:
+    def _with_levels(self, task: PosingTask, posed: _Posed) -> _Posed:
         """Ranked by the levels of what it carries, too."""
         if not task.carried:
             return posed
         cost = level_cost(self.library.shape(posed.shape.id), posed.pose, task.carried)
         return replace(posed, rank=posed.rank - cost)
 
-    def _try_shape(self, task: _Task, shape: Shape, liked: float) -> _Tried:
+    def _try_shape(self, task: PosingTask, shape: Shape, liked: float) -> _Tried:
         appearance = self._compare(shape)
         name = task.item.category
         depth_known = task.measured is not None
@@ -307,7 +212,7 @@ class RenderAndCompare:
             scores = scores + task.measured.bounds.log_likelihood(tried.poses, limits.shape_size_m)
         return _Tried(shape, liked, appearance, limits, tried, scores)
 
-    def _pose_by_outline(self, task: _Task, tried: _Tried) -> _Posed:
+    def _pose_by_outline(self, task: PosingTask, tried: _Tried) -> _Posed:
         best = _worth_refining(tried.scores, task.fine.facing.cost(tried.hypotheses.poses.R), self.refined)
         poses, error, score = self._chosen(task, tried, tried.hypotheses[best])
         of_retrieval, of_pose = _POWERS if is_named(task.item.label) else _POWERS_OF_UNNAMED
@@ -315,7 +220,7 @@ class RenderAndCompare:
         cost -= task.fine.seen_past(tried.appearance.caster, poses)
         return _Posed(tried.shape, _only(poses), error, of_retrieval * tried.liked + of_pose * score - cost)
 
-    def _pose_by_depth(self, task: _Task, measured: MeasuredObject, tried: _Tried, promising: bool) -> _Posed:
+    def _pose_by_depth(self, task: PosingTask, measured: MeasuredObject, tried: _Tried, promising: bool) -> _Posed:
         """Unlike hypotheses are refined; the best one is also tried turned by quarters in its place."""
         fold, size_m = tried.shape.symmetry, tried.limits.shape_size_m
         count = self.refined_with_depth if promising else self.refined
@@ -328,7 +233,7 @@ class RenderAndCompare:
             poses, error, score = max((poses, error, score), other, key=lambda found: found[2])
         return _Posed(tried.shape, _only(poses), error, _rank(task, measured, tried, poses, error))
 
-    def _turned_all_around(self, task: _Task, measured: MeasuredObject, tried: _Tried, posed: _Posed) -> _Posed:
+    def _turned_all_around(self, task: PosingTask, measured: MeasuredObject, tried: _Tried, posed: _Posed) -> _Posed:
         """The pose with its turn compared closely."""
         if tried.shape.symmetry == ROUND or task.close is None:
             return posed
@@ -339,7 +244,7 @@ class RenderAndCompare:
         rank = _rank(task, measured, tried, poses, error)
         return _Posed(tried.shape, _only(poses), error, rank, doubt)
 
-    def _chosen(self, task: _Task, tried: _Tried, start: Hypotheses) -> tuple[PoseBatch, float, float]:
+    def _chosen(self, task: PosingTask, tried: _Tried, start: Hypotheses) -> tuple[PoseBatch, float, float]:
         """The best of some poses and their refinements, with its error and score."""
         both = start.poses.and_also(self._refined(task, tried.appearance.caster, tried.limits, start.poses))
         errors = task.fine.errors(tried.appearance.caster, both)
@@ -350,7 +255,7 @@ class RenderAndCompare:
         chosen = int(np.argmax(scores))
         return both[chosen : chosen + 1], float(errors[chosen]), float(scores[chosen])
 
-    def _refined(self, task: _Task, caster: ShapeCaster, limits: SizeLimits, start: PoseBatch) -> PoseBatch:
+    def _refined(self, task: PosingTask, caster: ShapeCaster, limits: SizeLimits, start: PoseBatch) -> PoseBatch:
         if task.measured is not None:
             return task.measured.fit(limits).refined(caster, start)
         yaw_sigma = np.deg2rad(9.0 if category(task.item.category).quarter_turns_free else 4.0)
@@ -359,7 +264,7 @@ class RenderAndCompare:
         return fit.refined(caster, start)
 
 
-def _rank(task: _Task, measured: MeasuredObject, tried: _Tried, poses: PoseBatch, error: float) -> float:
+def _rank(task: PosingTask, measured: MeasuredObject, tried: _Tried, poses: PoseBatch, error: float) -> float:
     """What retrieval, the picture and what holds the object say about a posed shape, where depth was measured."""
     similarity = task.fine.log_likelihood(error, poses.scale[0], tried.limits)
     stands = max(float(measured.log_likelihood(poses, tried.limits)[0]), _MIN_STANDING)
@@ -388,7 +293,7 @@ def _ordered(found: Sequence[_Posed], ranks: Mapping[str, float]) -> tuple[_Pose
     return tuple(sorted(found, key=lambda posed: (-ranks[posed.shape.id], posed.shape.id)))
 
 
-def _candidates(task: _Task, ordered: Sequence[_Posed], ranks: Mapping[str, float]) -> PosedCandidates:
+def _candidates(task: PosingTask, ordered: Sequence[_Posed], ranks: Mapping[str, float]) -> PosedCandidates:
     """The posed shapes of one object; scores are relative to the best one's agreement with the picture."""
     best = ordered[0]
     top = ranks[best.shape.id]

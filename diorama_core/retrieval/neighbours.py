@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from math import fsum, prod
+from typing import Literal
 
 import numpy as np
 
@@ -16,42 +17,52 @@ from diorama_core.artefacts import Cuboid, DetectedObject
 from diorama_core.library.taxonomy import with_kin
 from diorama_core.scene.types import Support
 
-_BESIDE_M = 0.8
+Relation = Literal["on it", "near", "behind it", "beside it"]
+"""Where a companion is: a sofa is behind a coffee table that stands before it, and beside a side table."""
+
+_NEAR_M = 0.8
 _ROUNDS = 3
 """After so many updates beliefs hardly change."""
 _COMPUTERS = frozenset({"monitor", "computer", "laptop", "keyboard", "mouse", "printer"})
 _DESKS = with_kin("desk")
+_SOFAS = with_kin("sofa")
 _LOUNGE_SEATS = frozenset({"armchair", "recliner", "rocking chair"})
 _KITCHEN = frozenset({"stove", "sink", "dishwasher", "refrigerator", "kitchen counter", "range hood", "microwave"})
 
 
 @dataclass(frozen=True)
 class Companion:
-    """Kinds that another kind makes likelier."""
+    """Kinds that are seldom without another one, and so likelier where it is, and less likely where it is not."""
 
     kinds: frozenset[str]
     others: frozenset[str]
-    carried: bool
-    """Whether the others lie on it; else they stand beside it."""
-    factor: float
+    where: Relation
+    often: float
+    """Share of things of the kinds that photos show with one of the others there."""
+    usual: float
+    """The same share of things that are mistaken for them."""
 
 
 COMPANIONS = (
-    Companion(frozenset({"office chair"}), _DESKS | _COMPUTERS, False, 4.0),
-    Companion(frozenset({"filing cabinet"}), _DESKS | _COMPUTERS, False, 2.0),
-    Companion(_DESKS, _COMPUTERS, True, 5.0),
-    Companion(frozenset({"tv stand"}), frozenset({"television", "game console"}), True, 5.0),
-    Companion(frozenset({"night stand"}), with_kin("bed"), False, 4.0),
-    Companion(frozenset({"coffee table", "side table"}), with_kin("sofa"), False, 2.0),
-    Companion(frozenset({"kitchen counter"}), frozenset({"stove", "sink", "dishwasher"}), False, 3.0),
-    Companion(frozenset({"chair"}), frozenset({"table"}), False, 1.5),
-    Companion(_LOUNGE_SEATS, frozenset({"coffee table", "sofa", "side table", "fireplace", "floor lamp"}), False, 2.0),
-    Companion(_DESKS, frozenset({"office chair"}), False, 3.0),
-    Companion(frozenset({"bar stool"}), frozenset({"kitchen island", "kitchen counter"}), False, 3.0),
-    Companion(frozenset({"sideboard", "display cabinet", "chandelier"}), frozenset({"table"}), False, 2.0),
-    Companion(frozenset({"dresser"}), with_kin("bed"), False, 2.0),
-    Companion(frozenset({"wall cabinet", "pantry cabinet"}), _KITCHEN, False, 3.0),
+    Companion(frozenset({"office chair"}), _DESKS | _COMPUTERS, "near", 0.8, 0.2),
+    Companion(frozenset({"filing cabinet"}), _DESKS | _COMPUTERS, "near", 0.4, 0.2),
+    Companion(_DESKS, _COMPUTERS, "on it", 0.6, 0.12),
+    Companion(frozenset({"tv stand"}), frozenset({"television", "game console"}), "on it", 0.7, 0.1),
+    Companion(frozenset({"night stand"}), with_kin("bed"), "near", 0.8, 0.2),
+    Companion(frozenset({"coffee table"}), _SOFAS, "behind it", 0.7, 0.3),
+    Companion(frozenset({"side table"}), _SOFAS | _LOUNGE_SEATS | with_kin("bed"), "beside it", 0.6, 0.2),
+    Companion(frozenset({"kitchen counter"}), frozenset({"stove", "sink", "dishwasher"}), "near", 0.5, 0.15),
+    Companion(frozenset({"chair"}), frozenset({"table"}), "near", 0.7, 0.45),
+    Companion(
+        _LOUNGE_SEATS, frozenset({"coffee table", "sofa", "side table", "fireplace", "floor lamp"}), "near", 0.6, 0.3
+    ),
+    Companion(_DESKS, frozenset({"office chair"}), "near", 0.5, 0.15),
+    Companion(frozenset({"bar stool"}), frozenset({"kitchen island", "kitchen counter"}), "near", 0.75, 0.25),
+    Companion(frozenset({"sideboard", "display cabinet"}), frozenset({"table"}), "near", 0.4, 0.2),
+    Companion(frozenset({"dresser"}), with_kin("bed"), "near", 0.6, 0.3),
+    Companion(frozenset({"wall cabinet", "pantry cabinet"}), _KITCHEN, "near", 0.6, 0.2),
 )
+"""Rough shares in photos of homes and offices; the other may be outside the picture."""
 
 
 def with_neighbours(
@@ -74,24 +85,36 @@ def with_neighbours(
         if edge.parent in positions and edge.child in positions:
             carried[positions[edge.parent]].append(positions[edge.child])
     indices = range(len(objects))
-    beside = [[j for j in indices if j != i and gap_m(cuboids[i], cuboids[j]) < _BESIDE_M] for i in indices]
+    near = [[j for j in indices if j != i and gap_m(cuboids[i], cuboids[j]) < _NEAR_M] for i in indices]
+    across = [[j for j in near[i] if is_before(cuboids[i], cuboids[j])] for i in indices]
+    there: list[Mapping[Relation, list[int]]] = [
+        {
+            "on it": carried[i],
+            "near": near[i],
+            "behind it": across[i],
+            "beside it": [j for j in near[i] if j not in across[i]],
+        }
+        for i in indices
+    ]
     beliefs = [_normalised(kinds) for kinds in alone]
     for _ in range(_ROUNDS):
         beliefs = [
-            _updated(alone[i], [beliefs[j] for j in carried[i]], [beliefs[j] for j in beside[i]]) for i in indices
+            _updated(alone[i], {where: [beliefs[j] for j in of_one] for where, of_one in there[i].items()})
+            for i in indices
         ]
     return beliefs
 
 
 def _updated(
-    alone: Mapping[str, float], carried: Sequence[Mapping[str, float]], beside: Sequence[Mapping[str, float]]
+    alone: Mapping[str, float], there: Mapping[Relation, Sequence[Mapping[str, float]]]
 ) -> Mapping[str, float]:
     """One object's belief, by itself and by what is on it and near it."""
     likely = dict(alone)
     for row in COMPANIONS:
         kinds = row.kinds & likely.keys()
         if kinds:
-            factor = 1.0 + (row.factor - 1.0) * _any(row.others, carried if row.carried else beside)
+            present = _any(row.others, there[row.where])
+            factor = present * row.often / row.usual + (1.0 - present) * (1.0 - row.often) / (1.0 - row.usual)
             likely |= {kind: likely[kind] * factor for kind in kinds}
     return _normalised(likely)
 
@@ -111,3 +134,9 @@ def gap_m(a: Cuboid, b: Cuboid) -> float:
     """Horizontal distance between two cuboids' upright bounding boxes."""
     (low_a, high_a), (low_b, high_b) = ((c.corners_world[:, :2].min(0), c.corners_world[:, :2].max(0)) for c in (a, b))
     return float(np.linalg.norm(np.clip(np.maximum(low_a, low_b) - np.minimum(high_a, high_b), 0.0, None)))
+
+
+def is_before(thing: Cuboid, seat: Cuboid) -> bool:
+    """Whether a thing is across the longer side of a seat, within its width, and not at one of its ends."""
+    x, y = seat.R_world_object[:2, :2].T @ (thing.centre - seat.centre)[:2]
+    return bool(abs(y) < seat.size_m[1] / 2 and abs(x) > seat.size_m[0] / 2)

@@ -35,6 +35,18 @@ def test_the_gain_is_what_the_material_lacks(factor: float) -> None:
     assert gains["dresser_1"] == pytest.approx(factor, rel=0.12)
 
 
+def test_highlights_and_what_lies_before_it_do_not_make_a_thing_brighter() -> None:
+    seen = dresser(0.15)
+    photo, mask = picture(seen, LIBRARY, size=SIZE), detected(seen)[0].mask
+    inner = cv2.erode(mask.astype(np.uint8), np.ones((5, 5), np.uint8)).astype(bool)
+    _, columns = np.nonzero(inner)
+    glossy = inner.copy()
+    glossy[:, : int(np.quantile(columns, 0.7))] = False
+    photo[glossy] = 255
+    gains = brightness_gains(photo, {"dresser_1": inner}, seen, {}, LIBRARY)
+    assert gains["dresser_1"] == pytest.approx(1.0, rel=0.05)
+
+
 def test_another_surface_than_the_one_that_is_seen_is_not_followed() -> None:
     seen, read = dresser(0.6), dresser(0.02)
     photo, mask = picture(seen, LIBRARY, size=SIZE), detected(seen)[0].mask

@@ -141,6 +141,21 @@ def test_a_large_slot_keeps_its_colour_where_a_small_one_crosses_it() -> None:
     assert "wood" not in found
 
 
+def test_what_lies_before_two_slots_is_no_colour_of_either() -> None:
+    """A white board before a red chair's seat and legs; the red lies in several bins of colour, the white in one."""
+    view, slots, rgb, _, _ = seen()
+    body, foot = (view.slot == index_of(slots, role) for role in ("fabric", "wood"))
+    columns = np.arange(rgb.shape[1])[None, :, None]
+    red = np.array([200, 25, 35]) * (0.35 + 0.6 * ((columns // 3) % 4) / 3)
+    rgb[:] = np.where((body | foot)[..., None], red, 90).astype(np.uint8)
+    for part in (body, foot):
+        rows = np.argwhere(part)
+        rgb[tuple(rows[rows[:, 1] > np.quantile(rows[:, 1], 0.7)].T)] = 250
+    found = colours_of(rgb, view, slots)
+    assert found["fabric"][0] > 3 * found["fabric"][1]
+    assert found.get("wood", np.zeros(3)).min() < 200
+
+
 def test_two_materials_of_one_pale_colour_are_both_read() -> None:
     view, slots, rgb, _, _ = seen()
     rgb[view.slot >= 0] = (225, 222, 218)

@@ -27,6 +27,12 @@ def form(shape_id: str, stretch=(1.0, 1.0, 1.0)):
         ("coffee-table-round-drum", "round", "plinth"),
         ("coffee-table-oak-shelf", "rectangular", "four legs"),
         ("coffee-table-tray-linen", "rectangular", "plinth"),
+        ("coffee-table-plain-oak", "rectangular", "four legs"),
+        ("coffee-table-plain-white-shelf", "rectangular", "four legs"),
+        ("coffee-table-bent-oak", "rectangular", "sled"),
+        ("side-table-plain-oak", "square", "four legs"),
+        ("side-table-round-oak", "round", "four legs"),
+        ("side-table-plinth-white", "square", "plinth"),
     ],
 )
 def test_tops_and_bases_of_tables(shape_id, top, base) -> None:

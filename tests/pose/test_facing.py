@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from diorama_core.artefacts import Cuboid, DetectedObject
+from diorama_core.artefacts import Cuboid
 from diorama_core.pose.facing import WallSamples, facing_of
 from diorama_core.scene.types import Camera, Intrinsics, yaw_rotation
 
@@ -19,10 +19,6 @@ CAMERA = Camera(
 """At the origin, looking along +Y."""
 
 
-def thing(name: str, kind: str) -> DetectedObject:
-    return DetectedObject(name, kind, kind, (0.0, 0.0, 9.0, 9.0), np.zeros((1, 1), bool), 1, 1.0)
-
-
 def cuboid(name: str, x: float, y: float, size=(0.7, 0.7, 1.8), turn_deg: float = -90.0) -> Cuboid:
     return Cuboid(name, yaw_rotation(np.deg2rad(turn_deg)), np.array([x, y, size[2] / 2]), np.array(size), 1.0)
 
@@ -31,7 +27,7 @@ def best_deg(kind: str, own: Cuboid, others: dict[str, Cuboid], carrier: Cuboid 
     """The heading of least cost, of four."""
     kinds = {c.object_id: name for name, c in others.items()} | {own.object_id: kind}
     cuboids = [own, *others.values()]
-    found = facing_of(thing(own.object_id, kind), own, cuboids, kinds, CAMERA, NO_WALLS, None, carrier=carrier)
+    found = facing_of(kind, own, cuboids, kinds, CAMERA, NO_WALLS, None, carrier=carrier)
     headings = np.arange(-180, 180, 90)
     cost = found.cost(np.array([yaw_rotation(np.deg2rad(h)) for h in headings]))
     return int(headings[int(cost.argmin())])

@@ -19,6 +19,10 @@ from diorama_core.library.taxonomy import with_kin
 _CELL_LAB = np.array([14.0, 8.0, 8.0])
 """Colours within about this much are one material in light and shade."""
 _CELLS_TRIED = 8
+_CORE = 0.5
+"""A material's own colour is a mode: a mean of colours within this share of a cell about it. A cell's middle may lie
+between two materials and hold both."""
+_MEAN_SHIFTS = 12
 _SAMPLES = 4000
 _CONTACT_BAND = (0.012, 0.06)
 """Before the feet of things, beyond their contact shadows: distances below masks, as shares of the photo's height."""
@@ -157,6 +161,7 @@ def _main_colour(
     at_feet = max(float(weight[contact].sum()), 1e-12)
     found, covers, scores = [], [], []
     for cell in _cells(lab, weight):
+        cell = _mode(cell, lab, weight)
         alike = (np.abs(lab - cell) < _CELL_LAB).all(axis=1)
         spread = _spread(places[alike], weight[alike])
         middle = np.median(lab[alike], axis=0) if alike.any() else cell
@@ -167,6 +172,21 @@ def _main_colour(
         covers.append(float(weight[alike].sum()) * spread * (_WITHOUT_CONTACT + touched))
         scores.append(covers[-1] * float(np.exp(-0.5 * (off**2).sum())))
     return _lit(int(np.argmax(scores)), np.array(found), np.array(covers))
+
+
+def _mode(
+    cell: Float[np.ndarray, "3"], lab: Float[np.ndarray, "n 3"], weight: Float[np.ndarray, "n"]
+) -> Float[np.ndarray, "3"]:
+    """Where colours lie densest near a cell's middle: mean shift (Comaniciu and Meer 2002) with a flat kernel."""
+    for _ in range(_MEAN_SHIFTS):
+        near = (np.abs(lab - cell) < _CORE * _CELL_LAB).all(axis=1)
+        if not weight[near].sum() > 0.0:
+            break
+        moved = np.average(lab[near], axis=0, weights=weight[near])
+        if np.abs(moved - cell).max() < 0.1:
+            break
+        cell = moved
+    return np.asarray(cell)
 
 
 def _spread(places: Float[np.ndarray, "n 2"], weight: Float[np.ndarray, "n"]) -> float:

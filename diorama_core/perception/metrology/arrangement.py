@@ -33,15 +33,16 @@ def distinct(boxes: Cuboids, costs: Float[np.ndarray, "n"]) -> list[int]:
     for row in np.argsort(costs, kind="stable"):
         if len(retained) == _MAX_READINGS or (retained and costs[row] > costs[retained[0]] + _DEAREST):
             break
-        if not any(_alike(boxes, int(row), other) for other in retained):
+        if not any(alike(boxes, int(row), boxes, other) for other in retained):
             retained.append(int(row))
     return retained
 
 
-def _alike(boxes: Cuboids, a: int, b: int) -> bool:
+def alike(some: Cuboids, a: int, others: Cuboids, b: int) -> bool:
+    """Whether a reading and another one hardly differ in place, heading and size."""
     return bool(
-        np.linalg.norm(boxes.centre[a] - boxes.centre[b]) < _SAME_PLACE_M
-        and np.abs(np.log(_footprint_axes(boxes, a) / _footprint_axes(boxes, b))).max() < _SAME_SIZE
+        np.linalg.norm(some.centre[a] - others.centre[b]) < _SAME_PLACE_M
+        and np.abs(np.log(_footprint_axes(some, a) / _footprint_axes(others, b))).max() < _SAME_SIZE
     )
 
 

@@ -163,7 +163,8 @@ def residuals(
 ) -> Float[np.ndarray, "n r"]:
     """Everything that speaks against a row's cuboid, in sigmas: their squares sum to its cost.
 
-    `inset_px` is what `outline_inset` says here or nearby, where it is known: it hardly changes with small steps.
+    `inset_px` is by how much the objects' outlines stay within their cuboids here or nearby, where it is known: it
+    hardly changes with small steps.
     """
     return residuals_and_inset(unknowns, problems, view, inset_px)[0]
 
@@ -193,12 +194,6 @@ def residuals_and_inset(
         axis=1,
     )
     return found, inset_px
-
-
-def outline_inset(unknowns: Float[np.ndarray, "n 6"], problems: Problems, view: View) -> Float[np.ndarray, "n 4"]:
-    """By how many pixels the objects' own outlines stay within their cuboids', at each edge of their boxes."""
-    boxes = cuboids(unknowns, problems, view)
-    return _unfilled(boxes, corners_camera(boxes, problems.camera_height_m, view), problems, view)
 
 
 def _cut_off(corners: Float[np.ndarray, "n 8 3"], problems: Problems, view: View) -> Float[np.ndarray, "n 2"]:

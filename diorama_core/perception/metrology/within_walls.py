@@ -1,8 +1,10 @@
-"""Measures objects anew whose lower ends are not seen and that would reach through a wall of the room.
+"""Measures objects anew that the walls of the room tell something of.
 
-Boxes leave several readings of such an object open: farther and larger, turned by a quarter, nearer and smaller. The
-walls, which are found after the objects, say which of them there is room for. So its readings compete once more, now
-with the walls behind it, beside the other objects where they are; what it carries follows.
+Boxes leave several readings of an object open: farther and larger, turned by a quarter, nearer and smaller. The walls,
+which are found after the objects, say which of them there is room for where its lower end is not seen and it would
+reach through one. Of a kind that stands at walls the one with its back there is the likelier, and the way in which its
+edges run tells a case that is seen from the front from a long one that is seen along its length. So its readings
+compete once more, beside the other objects where they are; what it carries follows.
 """
 
 from __future__ import annotations
@@ -11,14 +13,17 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
-from jaxtyping import Float
+from jaxtyping import Bool, Float, UInt8
 
 from diorama_core.architecture.before_walls import MIN_CONFIDENCE, nearer_by
 from diorama_core.architecture.mounting import ahead_of
 from diorama_core.artefacts import ArchitectureEstimate, Cuboid, DetectedObject, Inputs, ObjectGeometry
-from diorama_core.perception.metrology.arrangement import arrange
+from diorama_core.library.taxonomy import AGAINST_WALLS, Category, category
+from diorama_core.perception.metrology.arrangement import alike, arrange
+from diorama_core.perception.metrology.backs import back_costs
 from diorama_core.perception.metrology.box_observations import BoxObservations, gather
 from diorama_core.perception.metrology.carried_costs import CarriedCosts
+from diorama_core.perception.metrology.drawn_edges import DrawnEdges
 from diorama_core.perception.metrology.floor import place_on_floor, solve_all
 from diorama_core.perception.metrology.placement import FLOOR, Placement, readings_of
 from diorama_core.perception.metrology.problem import Cuboids, Problems, View
@@ -30,6 +35,8 @@ _WALL_SIGMA_M = 0.1
 """How well the place of a wall that is seen is known."""
 _ANYWHERE_M = 50.0
 """How far a room reaches where no wall is known."""
+_LONG = 0.2
+"""Difference of the logarithms of depth and width."""
 _SQUARE = 0.05
 """Sine up to which walls count as square or parallel to one another."""
 
@@ -42,12 +49,14 @@ class _Measured:
     view: View
     height_m: float
     index_of: Mapping[str, int]
+    rgb: UInt8[np.ndarray, "h w 3"]
+    masks: tuple[Bool[np.ndarray, "h w"], ...]
 
 
 def measured_within_walls(
     geometry: ObjectGeometry, room: ArchitectureEstimate, objects: tuple[DetectedObject, ...], inputs: Inputs
 ) -> ObjectGeometry:
-    """The same objects, those measured anew that stand behind a wall with their feet unseen, and what they carry.
+    """The same objects, those measured anew that the walls tell something of, and what they carry.
 
     Args:
         geometry: Of all objects.
@@ -58,12 +67,11 @@ def measured_within_walls(
     walls = tuple(w for w in room.architecture.by_role("wall") if w.confidence >= MIN_CONFIDENCE)
     floors = {p.id for p in room.architecture.by_role("floor")}
     parents = {s.child: s.parent for s in room.supports}
-    behind = [
-        c
-        for c in geometry.cuboids
-        if not c.foot_seen and parents.get(c.object_id) in floors and nearer_by(c, walls, geometry.camera) < 1.0
-    ]
-    if not behind:
+    standing = [c for c in geometry.cuboids if parents.get(c.object_id) in floors]
+    behind = [c for c in standing if not c.foot_seen and nearer_by(c, walls, geometry.camera) < 1.0]
+    long = {o.id for o in objects if o.category in AGAINST_WALLS and _is_long(category(o.category))}
+    backed = [c for c in standing if walls and c.object_id in long]
+    if not behind and not backed:
         return geometry
     foot = np.array([*geometry.camera.position[:2], 0.0])
     seen = _Measured(
@@ -71,16 +79,29 @@ def measured_within_walls(
         View(geometry.camera.intrinsics, geometry.camera.T_world_camera[:3, :3]),
         float(geometry.camera.position[2]),
         {o.id: k for k, o in enumerate(objects)},
+        inputs.photo.rgb,
+        tuple(o.mask for o in objects),
     )
     known = {c.object_id: replace(c, centre=c.centre - foot) for c in geometry.cuboids}
     bounds = {
         c.object_id: _room_for(c, tuple(w for w in walls if ahead_of(c, w, geometry.camera.position)), foot)
         for c in behind
     }
-    for placed in _placed(seen, bounds, known, parents):
+    for placed in _placed(seen, bounds, known, parents) if bounds else ():
         known[placed.object_id] = placed
         known |= _carried(placed.object_id, seen, known, parents)
+    for name in [c.object_id for c in backed if c.object_id not in bounds]:
+        turned = _with_back_at_wall(seen, name, known, parents, walls, foot)
+        if turned is not None:
+            known[name] = turned
+            known |= _carried(name, seen, known, parents)
     return replace(geometry, cuboids=tuple(replace(c, centre=c.centre + foot) for c in known.values()))
+
+
+def _is_long(kind: Category) -> bool:
+    """Whether things of a kind are clearly of another depth than width: turned by a quarter, others are not another."""
+    depth, width, _ = kind.priors[0].log_median_xyz
+    return bool(abs(depth - width) > _LONG)
 
 
 def _room_for(cuboid: Cuboid, walls: tuple[Plane, ...], foot: Float[np.ndarray, "3"]) -> Float[np.ndarray, "5"]:
@@ -131,6 +152,35 @@ def _placed(
         _cuboid(known[name], found.placement(row, FLOOR), seen.observations)
         for (name, found), row in zip(own.items(), chosen, strict=False)
     ]
+
+
+def _with_back_at_wall(
+    seen: _Measured,
+    name: str,
+    known: Mapping[str, Cuboid],
+    parents: Mapping[str, str],
+    walls: tuple[Plane, ...],
+    foot: Float[np.ndarray, "3"],
+) -> Cuboid | None:
+    """One object's best reading, walls and drawn edges counted in; None where it stays as it is.
+
+    An object that was measured as no single reading of its box, as one of a set, stays, too.
+    """
+    index = seen.index_of[name]
+    rows = place_on_floor(seen.observations, index, seen.height_m)
+    readings = readings_of(solve_all(rows, seen.view), seen.observations, seen.view)[index]
+    now = next((k for k in range(len(readings.costs)) if alike(readings.boxes, k, _batch(known[name]), 0)), None)
+    if now is None:
+        return None
+    loads = CarriedCosts(seen.observations, seen.view, seen.height_m).of({index: readings.boxes})[index]
+    edges = DrawnEdges.of(seen.rgb, seen.masks[index]).costs(readings.boxes, seen.height_m, seen.view)
+    costs = readings.costs + loads + edges + back_costs(readings.boxes, walls, foot)
+    kinds = {n: seen.observations.categories[seen.index_of[n]] for n in known}
+    beside = [n for n in known if n != name and parents.get(n) == parents[name] and kinds[n].mount != "surface"]
+    categories = [kinds[n] for n in (name, *beside)]
+    boxes = [readings.boxes, *(_batch(known[n]) for n in beside)]
+    chosen = arrange(boxes, [costs, *([np.zeros(1)] * len(beside))], categories)[0]
+    return None if chosen == now else _cuboid(known[name], readings.placement(chosen, FLOOR), seen.observations)
 
 
 def _carried(

@@ -36,6 +36,17 @@ def test_what_nobody_marked_is_rejected(colour):
     assert own[:50].mean() > 0.99
 
 
+def test_a_colour_between_two_materials_is_neither():
+    """A cream rug left over on brown boards: a cell of colour between the two holds both."""
+    boards, cream = np.array([160.0, 140.0, 125.0]), np.array([205.0, 200.0, 190.0])
+    colours = floor((160.0, 140.0, 125.0))
+    colours[60:150] = floor((205.0, 200.0, 190.0), seed=1)[60:150]
+    colours[40:60] = np.linspace(boards, cream, 20)[:, None]
+    own = texels(colours)
+    assert own[155:].mean() > 0.95
+    assert not own[65:145].any()
+
+
 def test_the_floor_is_what_shows_at_the_feet_of_objects():
     colours = floor((96, 108, 84))
     colours[:, 60:] = OAK  # more of another colour, as of a bed nobody marked

@@ -8,6 +8,10 @@ import numpy as np
 import pytest
 
 from diorama_core.artefacts import ArchitectureEstimate, Cuboid, Inputs, ObjectGeometry, Photo
+from diorama_core.perception.metrology.box_observations import gather
+from diorama_core.perception.metrology.floor import place_on_floor, solve_all
+from diorama_core.perception.metrology.placement import readings_of
+from diorama_core.perception.metrology.problem import View
 from diorama_core.perception.metrology.within_walls import measured_within_walls
 from diorama_core.provenance import RoomMethod, RoomSource, ScaleSource
 from diorama_core.scene.types import Architecture, Camera, Support, yaw_rotation
@@ -59,4 +63,42 @@ def test_a_sofa_that_would_stand_behind_the_wall_is_measured_before_it(foot: np.
 def test_what_is_seen_to_stand_there_and_what_is_before_the_walls_stays() -> None:
     for given in ({"foot_seen": True}, {"behind": 1.0}):
         before, after = moved(np.zeros(3), **given)
-        assert after is before
+        for one, same in zip(before.cuboids, after.cuboids, strict=True):
+            np.testing.assert_array_equal(same.corners_world, one.corners_world)
+
+
+SIDEBOARD = RequestedObject("sideboard", (1.77, 3.4, 0.4), (0.46, 1.5, 0.8), 0.0)
+
+
+def beside_the_wall(cuboid: Cuboid | None = None) -> tuple[ObjectGeometry, ObjectGeometry]:
+    """A sideboard along the right wall as it was measured before and within the walls.
+
+    Without a cuboid it was measured as the cheapest reading of its box that shows its front to the camera.
+    """
+    T = np.eye(4)
+    T[:3, :3], T[:3, 3] = R, [0.0, 0.0, HEIGHT_M]
+    objects = seen((SIDEBOARD,), R, HEIGHT_M)
+    if cuboid is None:
+        observations, view = gather(objects, K.width, K.height), View(K, R)
+        readings = readings_of(solve_all(place_on_floor(observations, 0, HEIGHT_M), view), observations, view)[0]
+        row = next(k for k, yaw in enumerate(readings.boxes.yaw_rad) if abs(np.sin(yaw)) > 0.9)
+        boxes = readings.boxes
+        cuboid = Cuboid("", yaw_rotation(-np.pi / 2), boxes.centre[row], boxes.size_m[row], 0.5)
+    cuboid = replace(cuboid, object_id=objects[0].id)
+    edges = (Support(cuboid.object_id, "floor"),)
+    room = ArchitectureEstimate(Architecture(ROOM), edges, 1.0, RoomSource(RoomMethod.GIVEN))
+    geometry = ObjectGeometry(Camera(K, T), (cuboid,), edges, ScaleSource.OBJECT_SIZES)
+    return geometry, measured_within_walls(geometry, room, objects, INPUTS)
+
+
+def test_a_sideboard_that_seems_to_show_its_front_stands_with_its_back_at_the_wall() -> None:
+    before, after = beside_the_wall()
+    (old,), (new,) = before.cuboids, after.cuboids
+    assert abs(old.R_world_object[0, 0]) < 0.1 < 0.9 < abs(new.R_world_object[0, 0])
+    np.testing.assert_allclose(new.corners_world[:, 0].max(), 2.0, atol=0.25)
+    assert new.size_m[1] > 1.5 * new.size_m[0]
+
+
+def test_what_no_reading_of_its_box_explains_keeps_its_place() -> None:
+    before, after = beside_the_wall(Cuboid("", np.eye(3), np.array([1.0, 1.9, 1.0]), np.full(3, 2.0), 0.5))
+    np.testing.assert_array_equal(after.cuboids[0].corners_world, before.cuboids[0].corners_world)

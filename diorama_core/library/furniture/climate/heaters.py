@@ -76,5 +76,6 @@ DESIGNS: tuple[Design, ...] = (
     design("heater", "oil-black", "black oil-filled radiator on wheels", (0.56, 0.26, 0.64), "industrial", oil_heater, body=m.CHARCOAL),
     design("heater", "fan", "small fan heater", (0.15, 0.25, 0.28), "minimal", fan_heater, body=m.WHITE),
     design("heater", "panel", "slim panel heater on feet", (0.22, 0.70, 0.46), "minimal", panel_heater, face=m.WHITE),
+    design("heater", "panel-charcoal", "long charcoal panel heater", (0.20, 0.90, 0.42), "modern", panel_heater, face=m.CHARCOAL),
     design("heater", "tower", "upright ceramic heater", (0.22, 0.22, 0.62), "modern", tower_heater, body=m.CHARCOAL, face=GRILLE),
 )  # fmt: skip

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import Literal
 
 import numpy as np
 
@@ -13,6 +14,9 @@ VASES: dict[str, Profile] = {
     "bottle": ((0.7, 0), (0.78, 0.02), (1.0, 0.25), (0.85, 0.48), (0.32, 0.66), (0.24, 0.85), (0.34, 1.0)),
     "cylinder": ((0.94, 0), (1.0, 0.015), (1.0, 0.985), (0.99, 1.0)),
     "moon": ((0.36, 0), (0.42, 0.02), (0.86, 0.22), (1.0, 0.5), (0.86, 0.78), (0.42, 0.95), (0.4, 1.0)),
+    "bud": ((0.5, 0), (0.56, 0.02), (0.98, 0.2), (1.0, 0.28), (0.62, 0.46), (0.26, 0.58), (0.22, 0.82), (0.34, 1.0)),
+    "gourd": ((0.5, 0), (0.56, 0.02), (0.96, 0.22), (0.98, 0.34), (0.5, 0.54), (0.62, 0.7), (0.6, 0.8), (0.34, 1.0)),
+    "trumpet": ((0.62, 0), (0.64, 0.02), (0.5, 0.06), (0.4, 0.2), (0.46, 0.5), (0.68, 0.82), (1.0, 1.0)),
     "tulip": ((0.5, 0), (0.54, 0.02), (0.5, 0.1), (0.72, 0.45), (0.8, 0.7), (0.86, 0.88), (1.0, 1.0)),
 }
 
@@ -70,10 +74,17 @@ def ring_vase(size: Size, clay: Material) -> Parts:
     return of(clay, ring, neck, foot)
 
 
-def bud_vases(size: Size, glass: Material) -> Parts:
-    """Three slender vases of different heights."""
+BUD_SPOTS = {
+    2: ((-0.06, -0.24, 1.0, 0.26), (0.06, 0.25, 0.68, 0.25)),
+    3: ((-0.05, -0.3, 1.0, 0.2), (0.2, 0.02, 0.72, 0.19), (-0.1, 0.31, 0.52, 0.18)),
+}
+"""Where slender vases stand, how high each is and its radius: shares of depth, width, height and width."""
+
+
+def bud_vases(size: Size, glass: Material, count: Literal[2, 3] = 3) -> Parts:
+    """Two or three slender vases of different heights."""
     d, w, h = size
-    spots = ((-0.05 * d, -0.3 * w, 1.0, 0.2), (0.2 * d, 0.02 * w, 0.72, 0.19), (-0.1 * d, 0.31 * w, 0.52, 0.18))
+    spots = [(x * d, y * w, share, r) for x, y, share, r in BUD_SPOTS[count]]
     outer = smooth_profile(((0.8, 0), (0.9, 0.03), (1.0, 0.3), (0.5, 0.6), (0.3, 0.8), (0.42, 1.0)))
     return of(glass, *(hollow(outer, r * w, share * h, 0.004, 0.008, 28).moved(x, y) for x, y, share, r in spots))
 
@@ -94,5 +105,10 @@ DESIGNS: tuple[Design, ...] = (
     design("vase", "spiral-sand", "vase with spiral ribs", (0.20, 0.20, 0.34), "minimal", fluted_vase, 36, clay=m.STONEWARE, ribs=14, twist=0.08),
     design("vase", "ring", "ring-shaped vase", (0.09, 0.24, 0.30), "modern", ring_vase, 2, clay=m.CREAM),
     design("vase", "floor", "tall floor vase", (0.28, 0.28, 0.72), "rustic", vase, 36, clay=RAKU, kind="bottle"),
+    design("vase", "bud-white", "small white bud vase", (0.09, 0.09, 0.19), "minimal", vase, 36, clay=m.PORCELAIN, kind="bud"),
+    design("vase", "bud-green", "green glass bud vase", (0.07, 0.07, 0.22), "modern", vase, 36, clay=m.glass("green vase glass", "#7f9c84", 0.5), kind="bud"),
+    design("vase", "gourd-sand", "sand-coloured gourd vase", (0.17, 0.17, 0.30), "rustic", vase, 36, clay=m.STONEWARE, kind="gourd"),
+    design("vase", "trumpet-glass", "tall trumpet-shaped glass vase", (0.16, 0.16, 0.40), "classic", vase, 36, clay=m.GLASS, kind="trumpet"),
+    design("vase", "bud-blue-pair", "pair of blue bud vases", (0.10, 0.19, 0.20), "classic", bud_vases, glass=m.BLUE_GLAZE, count=2),
     design("vase", "bud-amber", "three amber bud vases", (0.18, 0.26, 0.22), "industrial", bud_vases, glass=AMBER),
 )  # fmt: skip

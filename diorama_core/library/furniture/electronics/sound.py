@@ -259,6 +259,7 @@ DESIGNS: tuple[Design, ...] = (
     design("speaker", "tower-black", "black floor-standing speaker", (0.32, 0.22, 1.02), "modern", box_speaker, cabinet=m.BLACK_WOOD, feet=True, ways=3),
     design("speaker", "tower-walnut", "walnut floor-standing speaker", (0.34, 0.24, 0.96), "classic", box_speaker, cabinet=m.WALNUT, grille=CLOTH_GRILLE, feet=True),
     design("speaker", "soundbar", "black soundbar", (0.11, 0.90, 0.07), "minimal", soundbar, body=m.BLACK, grille=PERFORATED),
+    design("speaker", "soundbar-oak", "pale soundbar with an oak front", (0.13, 0.70, 0.09), "modern", soundbar, body=m.LIGHT_GREY, grille=m.OAK),
     design("speaker", "smart", "round smart speaker", (0.15, 0.15, 0.14), "minimal", smart_speaker, 36, cloth=CLOTH_GRILLE, top=m.BLACK),
     design("speaker", "smart-tall", "cylindrical smart speaker", (0.11, 0.11, 0.18), "modern", smart_speaker, 36, cloth=PALE_GRILLE, top=m.WHITE),
     design("speaker", "radio", "wooden table radio", (0.13, 0.28, 0.20), "rustic", radio, wood=m.CHERRY, cloth=PALE_GRILLE),

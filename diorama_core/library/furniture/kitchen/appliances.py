@@ -329,5 +329,6 @@ DESIGNS: tuple[Design, ...] = (
     design("range hood", "plaster", "plastered country hood with an oak ledge", (0.55, 1.10, 0.90), "rustic", canopy_hood, body=m.paint("lime plaster", "#ded6c6", 0.95), trim=m.OAK),
     design("range hood", "duck-egg", "duck egg canopy hood with a brass ledge", (0.52, 0.95, 0.85), "classic", canopy_hood, body=s.DUCK_EGG, trim=m.BRASS),
     design("range hood", "under-cabinet", "flat white cooker hood", (0.48, 0.60, 0.14), "minimal", under_hood, body=m.WHITE),
+    design("range hood", "under-cabinet-steel", "wide stainless-steel hood under a cupboard", (0.50, 0.90, 0.13), "modern", under_hood, body=m.STAINLESS),
     design("range hood", "workshop", "iron hood with a round duct", (0.52, 0.85, 0.88), "industrial", pipe_hood, steel=m.IRON, band=m.BLACK_STEEL),
 )  # fmt: skip

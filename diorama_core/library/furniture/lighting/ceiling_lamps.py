@@ -186,11 +186,13 @@ SMOKE_GLASS = m.glass("smoked lamp glass", "#6b6560", 0.42)
 DESIGNS: tuple[Design, ...] = (
     design("ceiling lamp", "dome-black", "black dome pendant", (0.42, 0.42, 0.45), "industrial", pendant, 36, kind="dome", outer=m.BLACK_STEEL),
     design("ceiling lamp", "drum-linen", "linen drum pendant", (0.50, 0.50, 0.48), "classic", pendant, 36, kind="drum", outer=m.LINEN_SHADE),
+    design("ceiling lamp", "drum-white", "wide low drum pendant", (0.60, 0.60, 0.50), "modern", pendant, 36, kind="drum", outer=m.WHITE_COTTON),
     design("ceiling lamp", "globe", "opal globe pendant", (0.30, 0.30, 0.55), "minimal", pendant, 36, kind="globe", outer=m.LAMP_GLOW),
     design("ceiling lamp", "wicker-bell", "wicker bell pendant", (0.48, 0.48, 0.55), "rustic", pendant, 36, kind="bell", outer=m.RATTAN),
     design("ceiling lamp", "cone-sage", "sage cone pendant", (0.36, 0.36, 0.50), "modern", pendant, 36, kind="cone", outer=m.SAGE),
     design("ceiling lamp", "flush", "flush ceiling light", (0.40, 0.40, 0.12), "minimal", flush_light, 36, rim=m.STEEL),
     design("ceiling lamp", "linear", "linear black pendant", (0.08, 1.10, 0.60), "modern", linear_pendant, 2, metal=m.BLACK_STEEL),
+    design("ceiling lamp", "linear-oak", "long oak pendant", (0.11, 1.30, 0.75), "rustic", linear_pendant, 2, metal=m.OAK),
     design("ceiling lamp", "cage", "brass cage pendant", (0.36, 0.36, 0.55), "industrial", lantern_cluster, 8, metal=m.BRASS),
     design("ceiling lamp", "paper-globe", "round paper lantern", (0.50, 0.50, 0.80), "minimal", paper_globe, 36, paper=PAPER_SHADE),
     design("ceiling lamp", "ring", "ring of light", (0.70, 0.70, 0.65), "modern", ring_pendant, 36, metal=m.BRASS),

@@ -189,6 +189,48 @@ def stacked_lamp(size: Size, body: tuple[Material, ...], cloth: Material) -> Par
     return parts + bulb(h - hs * 0.5) + of(cloth, shade(r, r * 0.88, hs).moved(z=h - hs))
 
 
+def block_lamp(
+    size: Size,
+    body: Material,
+    cloth: Material,
+    foot: Material,
+    column: float = 0.34,
+    shade_h: float = 0.34,
+    deep: float = 0.5,
+) -> Parts:
+    """A square column under an oblong box of cloth.
+
+    Args:
+        size: Its extents.
+        body: What the column is made of.
+        cloth: What the shade is made of.
+        foot: What plate, neck and finial are made of.
+        column: Width of the column, as a share of the shade's.
+        shade_h: Height of the shade, as a share of the whole.
+        deep: Depth of the column, as a share of its width.
+    """
+    d, w, h = size
+    hs, plate, finial = shade_h * h, 0.018, 0.022
+    low, neck = h - finial - hs, 0.05 * h
+    wide, deep_m = column * w, max(deep * column * w, 0.04)
+    t = 0.004
+    walls = [box((t, w, hs), 0.0015).moved(f * (d - t) / 2) for f in (1, -1)]
+    walls += [box((d, t, hs), 0.0015).moved(0, f * (w - t) / 2) for f in (1, -1)]
+    spokes = [rod((0, -w / 2, h - finial - 0.012), (0, w / 2, h - finial - 0.012), 0.002, segments=6)]
+    return (
+        of(body, box((deep_m, wide, low - neck - plate), 0.006, 2).moved(z=plate))
+        + of(
+            foot,
+            box((1.5 * deep_m, 1.25 * wide, plate), 0.003),
+            cylinder(0.008, h - low + neck - 0.01, 0.002, 12).moved(z=low - neck - 0.004),
+            ball(0.018, 4).moved(z=h - 0.018),
+            *spokes,
+        )
+        + bulb(low + 0.4 * hs, min(0.03, 0.3 * d))
+        + of(cloth, *(wall.moved(z=low) for wall in walls))
+    )
+
+
 LEADED = m.Material("leaded glass", "medallion", "#7d8f7a", 0.3, 0.0, 1.0, glow=0.18)
 SALT = m.lit("salt crystal", "#d39d7d", 0.3, "clay")
 PAPER_SHADE = m.lit("rice paper", "#f0e8d8", 0.3)
@@ -227,6 +269,19 @@ ORB = (
 )
 
 
+GOURD = (
+    *((0.34, 0.0), (0.36, 0.02), (0.52, 0.12), (0.58, 0.24), (0.5, 0.38), (0.28, 0.5)),
+    *((0.34, 0.6), (0.36, 0.68), (0.28, 0.79), (0.12, 0.88), (0.1, 0.94), (0.04, 1.0)),
+)
+
+
+TOTEM = (
+    *((0.36, 0.0), (0.37, 0.02), (0.2, 0.045), (0.34, 0.09), (0.4, 0.16), (0.34, 0.23), (0.14, 0.275)),
+    *((0.28, 0.32), (0.34, 0.39), (0.28, 0.46), (0.12, 0.505), (0.23, 0.545), (0.28, 0.61), (0.23, 0.675)),
+    *((0.1, 0.715), (0.16, 0.75), (0.19, 0.79), (0.16, 0.83), (0.08, 0.87), (0.06, 0.94), (0.04, 1.0)),
+)
+
+
 CANDLE = (
     (0.4, 0.0),
     (0.42, 0.02),
@@ -259,4 +314,9 @@ DESIGNS: tuple[Design, ...] = (
     design("lamp", "mushroom-white", "small white mushroom lamp", (0.24, 0.24, 0.30), "minimal", mushroom_lamp, 36, body=m.CREAM),
     design("lamp", "column-black", "black metal table lamp with a grey shade", (0.26, 0.26, 0.48), "industrial", shaded_lamp, 36, profile=COLUMN, body=m.BLACK_STEEL, cloth=m.LIGHT_FABRIC, flare=0.9, shade_h=0.36),
     design("lamp", "urn-green", "green glazed lamp with an empire shade", (0.40, 0.40, 0.64), "classic", shaded_lamp, 36, profile=URN, body=m.GREEN_GLAZE, cloth=m.LINEN_SHADE, flare=0.55),
+    design("lamp", "gourd-celadon", "pale green gourd lamp with a drum shade", (0.38, 0.38, 0.62), "classic", shaded_lamp, 36, profile=GOURD, body=m.GREEN_GLAZE, cloth=m.LINEN_SHADE, flare=0.88, shade_h=0.38),
+    design("lamp", "gourd-white", "white gourd lamp", (0.32, 0.32, 0.56), "modern", shaded_lamp, 36, profile=GOURD, body=m.PORCELAIN, cloth=m.LINEN_SHADE, flare=0.74),
+    design("lamp", "totem-silver", "silver lamp of stacked globes", (0.34, 0.34, 0.68), "modern", shaded_lamp, 36, profile=TOTEM, body=m.CHROME, cloth=m.WHITE_COTTON, flare=0.86, shade_h=0.36),
+    design("lamp", "block-stone", "stone block lamp with an oblong shade", (0.20, 0.40, 0.58), "modern", block_lamp, 2, body=m.CONCRETE, cloth=m.LINEN_SHADE, foot=m.CHROME),
+    design("lamp", "block-walnut", "walnut column lamp with a square shade", (0.28, 0.28, 0.55), "minimal", block_lamp, 4, body=m.WALNUT, cloth=m.WHITE_COTTON, foot=m.BLACK_STEEL, column=0.32, shade_h=0.40, deep=1.0),
 )  # fmt: skip

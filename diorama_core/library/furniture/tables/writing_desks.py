@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 from diorama_core.library.furniture.kit import *
@@ -118,10 +120,12 @@ def corner_desk(size: Size, top: Material, frame: Material) -> Parts:
     return of(top, main, wing) + of(frame, *legs, *rails)
 
 
-def shelf_desk(size: Size, top: Material, frame: Material, levels: int = 3) -> Parts:
-    """A desk with shelves up one side, in an open frame."""
+def shelf_desk(
+    size: Size, top: Material, frame: Material, levels: int = 3, left: bool = True, side: float = 0.36
+) -> Parts:
+    """A desk with shelves up its left or right side, `side` wide, in an open frame."""
     d, w, h = size
-    desk_h, bar, side = 0.75, 0.026, 0.36
+    desk_h, bar = 0.75, 0.026
     x, y = d / 2 - bar / 2, w / 2 - bar / 2
     ys = y - side
     posts = [box((bar, bar, h), 0.003).moved(f * x, yy) for f in (1, -1) for yy in (y, ys)] + [
@@ -136,7 +140,8 @@ def shelf_desk(size: Size, top: Material, frame: Material, levels: int = 3) -> P
         box((d - 0.02, side, 0.02), 0.003).moved(0, (y + ys) / 2, z)
         for z in (0.2, 0.45, *np.linspace(desk_h + 0.28, h - 0.03, levels - 1))
     ]
-    return of(top, *boards) + of(frame, *posts, *rails)
+    parts = of(top, *boards) + of(frame, *posts, *rails)
+    return parts if left else [replace(p, solid=p.solid.mirrored()) for p in parts]
 
 
 DESIGNS: tuple[Design, ...] = (
@@ -150,6 +155,7 @@ DESIGNS: tuple[Design, ...] = (
     design("desk", "corner-oak", "L-shaped oak desk on black steel", (1.30, 1.50, 0.74), "modern", corner_desk, top=m.OAK, frame=m.BLACK_STEEL),
     design("desk", "corner-white", "L-shaped white desk", (1.20, 1.60, 0.73), "minimal", corner_desk, top=m.WHITE, frame=m.STEEL),
     design("desk", "shelves-reclaimed", "reclaimed-wood desk with shelves at its side", (0.55, 1.30, 1.45), "industrial", shelf_desk, top=m.RECLAIMED, frame=m.BLACK_STEEL),
+    design("desk", "shelves-birch", "birch desk with open shelves at its right", (0.50, 1.20, 1.20), "minimal", shelf_desk, top=m.BIRCH, frame=m.WHITE, levels=2, left=False, side=0.30),
     design("desk", "standing-raised", "oak standing desk, raised", (0.75, 1.50, 1.08), "modern", standing_desk, 2, top=m.OAK, frame=m.BLACK_STEEL),
     design("desk", "standing-birch", "white and birch standing desk", (0.70, 1.30, 1.02), "minimal", standing_desk, 2, top=m.BIRCH, frame=m.metal("white steel", "#dedcd6", 0.5, 0.1)),
 )  # fmt: skip

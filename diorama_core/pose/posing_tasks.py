@@ -1,0 +1,174 @@
+"""What posing knows of every object: its place, what it may face, and what the picture shows of it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from diorama_core.artefacts import Cuboid, DepthMap, DetectedObject, Inputs, ObjectGeometry
+from diorama_core.geometry.observed import observe_among
+from diorama_core.geometry.see_through import SeeThrough
+from diorama_core.library.hyponyms import is_named
+from diorama_core.library.record import Shape
+from diorama_core.library.taxonomy import NEVER_OPEN, category
+from diorama_core.pose.agree import (
+    MAX_LOSS_OF_SURE_OUTLINES,
+    MAX_LOSS_WHERE_COLOURS_TELL,
+    MAX_LOSS_WITH_DEPTH,
+    SETS,
+)
+from diorama_core.pose.appearance_likelihood import AppearanceLikelihood, cells_for
+from diorama_core.pose.facing import Facing, WallSamples, facing_of, wall_samples
+from diorama_core.pose.hypotheses import Anchor, anchor_of
+from diorama_core.pose.mask_observations import Evidence
+from diorama_core.pose.measured import MeasuredObject, foot_height_m
+from diorama_core.pose.surface import measured_surface, noise_of
+
+_TELLS = 0.5
+"""What colours must say beside a mask for it to tell who of a set differs (`SeeThrough.share`)."""
+
+
+@dataclass(frozen=True, eq=False)
+class PosingTask:
+    """One object with the observations for posing its shapes."""
+
+    item: DetectedObject
+    cuboid: Cuboid
+    anchor: Anchor
+    carried: tuple[Cuboid, ...]
+    """What lies on it."""
+    coarse: Evidence
+    fine: Evidence
+    measured: MeasuredObject | None
+    """Where depth was measured."""
+    close: AppearanceLikelihood | None
+    """Where depth was measured."""
+    facings: Mapping[str, Facing]
+    """Of a thing without a name how it would face as each kind that its shapes are of."""
+
+    def as_kind(self, kind: str) -> PosingTask:
+        """The task with the facing of a kind, where the thing has no name."""
+        if kind not in self.facings:
+            return self
+        facing = self.facings[kind]
+        return replace(self, coarse=replace(self.coarse, facing=facing), fine=replace(self.fine, facing=facing))
+
+    @property
+    def max_loss(self) -> float:
+        """What agreeing on a shape may cost: it averages doubtful outlines; sure ones and depth show who differs."""
+        if self.measured is not None:
+            return MAX_LOSS_WITH_DEPTH
+        in_sets, colours = self.item.category in SETS, self.fine.see_through
+        if in_sets and colours is not None and colours.share > _TELLS:
+            return MAX_LOSS_WHERE_COLOURS_TELL
+        return np.inf if self.item.mask_confidence < 1.0 or in_sets else MAX_LOSS_OF_SURE_OUTLINES
+
+
+def kinds_of_shapes(
+    objects: Sequence[DetectedObject], ranked: Mapping[str, tuple[tuple[str, float], ...]], records: Mapping[str, Shape]
+) -> dict[str, tuple[str, ...]]:
+    """What every object with shapes may be, likeliest first: what its word means, or the kinds of its shapes."""
+    return {
+        o.id: (o.category,) if is_named(o.label) else tuple(dict.fromkeys(records[i].category for i, _ in ranked[o.id]))
+        for o in objects
+        if o.id in ranked
+    }
+
+
+def posing_tasks(
+    inputs: Inputs,
+    objects: tuple[DetectedObject, ...],
+    geometry: ObjectGeometry,
+    depth: DepthMap,
+    kinds: Mapping[str, tuple[str, ...]],
+    cells: tuple[int, int],
+) -> list[PosingTask]:
+    """One task for every object that has a cuboid and kinds, in the order of `objects`.
+
+    Args:
+        inputs: with the photo.
+        objects: all of the photo.
+        geometry: their cuboids, and what carries what.
+        depth: of the photo.
+        kinds: by object what it may be, likeliest first.
+        cells: resolutions at which all hypotheses, and the best ones, are compared.
+    """
+    cuboid_of = {c.object_id: c for c in geometry.cuboids}
+    items = [o for o in objects if o.id in cuboid_of]
+    scene = _Surroundings(
+        inputs,
+        geometry,
+        depth,
+        items,
+        [cuboid_of[o.id] for o in items],
+        {o.id: kinds[o.id][0] if o.id in kinds else o.category for o in items},
+        wall_samples(depth, geometry.camera, items),
+        noise_of(depth),
+    )
+    return [scene.task(i, kinds[item.id], cells) for i, item in enumerate(items) if item.id in kinds]
+
+
+@dataclass(frozen=True, eq=False)
+class _Surroundings:
+    """All objects where they are, and what is seen around them."""
+
+    inputs: Inputs
+    geometry: ObjectGeometry
+    depth: DepthMap
+    items: Sequence[DetectedObject]
+    cuboids: Sequence[Cuboid]
+    likeliest: dict[str, str]
+    """Kind by object."""
+    walls: WallSamples
+    noise: float
+    """Of measured depth (`surface.noise_of`)."""
+
+    @property
+    def parents(self) -> list[int | None]:
+        """For every object the one that carries it."""
+        positions = {o.id: i for i, o in enumerate(self.items)}
+        parent_of = {s.child: s.parent for s in self.geometry.supports}
+        return [positions.get(parent_of.get(o.id, "")) for o in self.items]
+
+    def task(self, i: int, kinds: tuple[str, ...], cells: tuple[int, int]) -> PosingTask:
+        """Of one object."""
+        item, cuboid, camera, depth = self.items[i], self.cuboids[i], self.geometry.camera, self.depth
+        held_by = next((s.parent for s in self.geometry.supports if s.child == item.id), None)
+        on_wall = held_by == "wall" and category(self.likeliest[item.id]).mount != "floor"
+        anchor = anchor_of(cuboid, on_wall, camera.position[:2] - cuboid.centre[:2])
+        facings = {kind: self._facing(i, kind, anchor if on_wall else None) for kind in kinds}
+        centres = np.array([c.centre for c in self.cuboids]).reshape(-1, 3)
+        windows = [
+            observe_among(camera, self.items, centres, self.parents, i, count)
+            for count in (*cells, cells_for(item.box))
+        ]
+        surfaces = [measured_surface(depth, seen, item.mask, self.noise) for seen in windows]
+        rgb, closed = self.inputs.photo.rgb, item.category in NEVER_OPEN
+        coarse, fine = (
+            Evidence(camera, w, facings[kinds[0]], s, None if closed or s is not None else SeeThrough.of(rgb, w))
+            for w, s in zip(windows[:2], surfaces[:2], strict=True)
+        )
+        foot_m = foot_height_m(depth, item.mask, camera) if held_by == "floor" else None
+        measured = MeasuredObject.of(item.mask, fine, cuboid, anchor, self.walls, foot_m)
+        close = None
+        if measured is not None and surfaces[2] is not None:
+            close = AppearanceLikelihood.of(rgb, item.mask, windows[2], surfaces[2], cuboid.size_m)
+        carried = tuple(self.cuboids[j] for j, parent in enumerate(self.parents) if parent == i)
+        return PosingTask(item, cuboid, anchor, carried, coarse, fine, measured, close, facings)
+
+    def _facing(self, i: int, kind: str, on_wall: Anchor | None) -> Facing:
+        """How one object would face as a kind, the others being what they most likely are."""
+        parents, likeliest = self.parents, self.likeliest
+        lying = [
+            c
+            for c, p, o in zip(self.cuboids, parents, self.items, strict=True)
+            if p == i and likeliest[o.id] == "pillow"
+        ]
+        out_of_wall, parent = None if on_wall is None else on_wall.axis_world[:2], parents[i]
+        carrier = None if parent is None else self.cuboids[parent]
+        camera = self.geometry.camera
+        return facing_of(
+            kind, self.cuboids[i], self.cuboids, likeliest, camera, self.walls, out_of_wall, lying, carrier
+        )
