@@ -208,20 +208,26 @@ def _built(
     output: Path | str | None,
     progress: Progress | None,
 ) -> Reconstruction:
-    """The scene of `inputs`, built in a project folder or, without one, in memory."""
+    """The scene of `inputs`, built in a project folder or, without one, in memory.
+
+    Small products are sooner done by one thread than by several that wait for each other; and all machines and the
+    command line add in one order.
+    """
+    from threadpoolctl import threadpool_limits
+
     from diorama_core.project.build import build_project, build_with_usable_networks
     from diorama_core.project.lock import ProjectLock
     from diorama_core.project.storage import Project
 
-    project = None
-    if output is None:
-        built = build_with_usable_networks(inputs, library, choose, progress=progress)
-    else:
-        project = Project.create(Path(output))
-        with ProjectLock(project.folder, "diorama build"):
-            if library_name is not None:
-                project.update_info(library=library_name)
-            built = build_project(project, inputs, library, choose=choose, warnings=warnings, progress=progress)
+    project = None if output is None else Project.create(Path(output))
+    with threadpool_limits(1, "blas"):
+        if project is None:
+            built = build_with_usable_networks(inputs, library, choose, progress=progress)
+        else:
+            with ProjectLock(project.folder, "diorama build"):
+                if library_name is not None:
+                    project.update_info(library=library_name)
+                built = build_project(project, inputs, library, choose=choose, warnings=warnings, progress=progress)
     return Reconstruction(
         scene=built.scene,
         library=library,

@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 import pytest
+from threadpoolctl import threadpool_info, threadpool_limits
 
 import diorama_core as diorama
 from diorama_core.artefacts import CameraEstimate, Inputs
@@ -22,20 +23,25 @@ def test_arrays_and_files_give_the_same_scene(room: diorama.Reconstruction, tmp_
     assert diorama.load(tmp_path / "room").scene == built.scene
 
 
-def test_one_stage_can_be_replaced(room: diorama.Reconstruction) -> None:
+def test_one_stage_can_be_replaced_and_products_are_done_by_one_thread(room: diorama.Reconstruction) -> None:
+    threads: set[int] = set()
+
     @dataclass(frozen=True)
     class Wider:
         """The embedded camera with a shorter focal length."""
 
         def estimate(self, inputs: Inputs, progress: Progress) -> CameraEstimate:
+            threads.update(p["num_threads"] for p in threadpool_info() if p["user_api"] == "blas")
             found = EmbeddedCamera().estimate(inputs, progress)
             k = found.best.intrinsics
             best = replace(found.best, intrinsics=replace(k, fx=0.8 * k.fx, fy=0.8 * k.fy))
             return replace(found, hypotheses=(best,))
 
-    wider = diorama.build(
-        room_picture(), boxes=BOXES[:1], profile="embedded", stages=lambda stages: replace(stages, camera=Wider())
-    )
+    with threadpool_limits(2, "blas"):  # whatever the program has set
+        wider = diorama.build(
+            room_picture(), boxes=BOXES[:1], profile="embedded", stages=lambda stages: replace(stages, camera=Wider())
+        )
+    assert threads == {1}
     assert wider.scene.camera is not None
     assert room.scene.camera is not None
     assert wider.scene.camera.intrinsics.fx == pytest.approx(0.8 * room.scene.camera.intrinsics.fx)
