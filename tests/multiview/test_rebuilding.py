@@ -13,7 +13,7 @@ from diorama_core.multiview.rebuilding import carried, with_photos_again
 from diorama_core.pipeline.stages import Stages, embedded_stages
 from diorama_core.scene.types import Camera, yaw_rotation
 from tests.multiview.rooms import camera
-from tests.multiview.two_photos import AsItIs, two_photos, with_camera
+from tests.multiview.two_photos import SMALL, AsItIs, two_photos, with_camera
 
 
 def moved(one: Camera, turn_rad: float, scale: float) -> Camera:
@@ -35,7 +35,7 @@ def test_a_camera_follows_turn_place_and_scale() -> None:
 
 @pytest.mark.slow
 def test_photos_join_the_new_scene_or_are_named() -> None:
-    photos, library = two_photos(), built_in_library()
+    photos, library = two_photos(SMALL), built_in_library()
     scene, beside = photos.scene, with_camera(photos)
     grey = replace(photos.second, photo=replace(photos.second.photo, rgb=np.full_like(photos.second.photo.rgb, 128)))
     blank = FurtherPhoto("blank", replace(grey, boxes=(), instances=None, instance_boxes=()), photos.camera)

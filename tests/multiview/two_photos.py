@@ -23,6 +23,8 @@ from diorama_core.synthesis.truth import Studio
 from tests.made_once import made_once
 
 SIZE = (640, 480)
+SMALL = (400, 300)
+"""Enough for what is built from a photo whose camera is known; to find a camera takes more."""
 ASIDE_M = 0.45
 
 
@@ -39,21 +41,21 @@ class TwoPhotos:
 
 
 @cache
-def two_photos() -> TwoPhotos:
-    """The same in all processes of a run."""
-    return made_once("two photos", _made)
+def two_photos(size: tuple[int, int] = SIZE) -> TwoPhotos:
+    """Photos of so many pixels, the same in all processes of a run."""
+    return made_once(f"two photos of {size[0]} x {size[1]}", lambda: _made(size))
 
 
-def _made() -> TwoPhotos:
+def _made(size: tuple[int, int]) -> TwoPhotos:
     library = built_in_library()
     room = furnished_room(7006, "dining", library, clutter=1)
-    camera = sample_cameras(room, library, 7006, 1, SIZE)[0]
+    camera = sample_cameras(room, library, 7006, 1, size)[0]
     studio, eye, ahead = Studio(room, library), camera.position, camera.T_world_camera[:3, 2]
     yaw, target = float(np.arctan2(ahead[1], ahead[0])), eye + 2.5 * ahead
     place = eye + ASIDE_M * np.array([np.sin(yaw), -np.cos(yaw), 0.0])
     turned = float(np.arctan2(target[1] - place[1], target[0] - place[0]))
     beside = Camera(camera.intrinsics, level_pose(place, turned, -float(np.arcsin(ahead[2]))))
-    views = [studio.view(c, SIZE, with_empty_room=False) for c in (camera, beside)]
+    views = [studio.view(c, size, with_empty_room=False) for c in (camera, beside)]
     there = views[0].camera.T_world_camera @ np.linalg.inv(camera.T_world_camera) @ beside.T_world_camera
     seen = set(views[0].asked) & set(views[1].asked)
     items = views[0].scene.objects

@@ -106,10 +106,11 @@ def test_the_projects_own_annotations_can_be_read_and_name_known_kinds():
 
 @pytest.mark.slow
 def test_a_real_photo_has_the_right_kinds(shared, tmp_path):
-    """Half of its things are marked: doors, a picture, cabinets and what stands on one of them."""
+    """Few of its things are marked: a door, a picture, cabinets and what stands on one of them."""
     folder, few = shared / "photos", tmp_path / "annotations.json"
     document = json.loads(ANNOTATIONS.read_text())["sunrgbd_corridor"]
-    few.write_text(json.dumps({"sunrgbd_corridor": {**document, "things": document["things"][:8]}}))
+    things = [{**t, "on": t["on"] - 2 if isinstance(t["on"], int) else t["on"]} for t in document["things"][2:8]]
+    few.write_text(json.dumps({"sunrgbd_corridor": {**document, "things": things}}))
     if picture_of(folder, "sunrgbd_corridor") is None:
         pytest.skip("the photo sunrgbd_corridor is not here")
     bench = run(few, folder, built_in_library(), only=("sunrgbd_corridor",))
