@@ -38,6 +38,8 @@ CLEARLY = 0.5
 """Another supporter is taken only where its gap is at most this share of the contradicted one."""
 WALL_FACTOR = 2.0
 """Objects that belong on walls stay on theirs up to so many times the tolerance: the wall may be wrong as well."""
+MEASURED_GAP = 0.5
+"""Share of the tolerance beyond which a measured gap before a wall is one: what would close it is a move or a guess."""
 _IN_WALLS = frozenset({"door", "window"})
 """From a photo alone it is surer that these are in a wall than how far away they are; measured doors may stand open."""
 _WALKED_ON = taxonomy.with_kin("rug")
@@ -329,6 +331,7 @@ def _touched(scene: Scene, item: SceneObject, edge: Support, noise: ObservationN
             continue
         wall = scene.plane(wall_id)
         gap = abs(float((item.corners_world @ wall.normal).min()) - wall.offset)
-        if gap <= noise.tolerance_m(scene.camera, item.pose.position, wall.normal):
+        tolerance = noise.tolerance_m(scene.camera, item.pose.position, wall.normal)
+        if gap <= (MEASURED_GAP * tolerance if noise.measured else tolerance):
             retained.append(wall_id)
     return tuple(retained)

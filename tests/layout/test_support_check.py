@@ -49,6 +49,15 @@ def test_a_measured_gap_to_a_wall_is_no_adherence(room: Room) -> None:
     assert checked_supports(scene, LIBRARY, REASONED)[0].support_of(shelf).adheres_to == ("wall_2",)
 
 
+@pytest.mark.parametrize(("gap_m", "stands_against"), [(0.03, True), (0.09, False)])
+def test_half_the_tolerance_is_a_measured_gap(room: Room, gap_m: float, stands_against: bool) -> None:
+    # Seen from 8 m a measured position along the ray is within 16 cm; what stands 9 cm before its wall does not touch.
+    depth = float(LIBRARY.shape("bookshelf_6").size_m[0])
+    shelf = room.put("bookshelf_6", (0.0, 2.5 - gap_m - depth / 2, 0.9), yaw=-np.pi / 2, adheres_to=("wall_2",))
+    checked, _ = checked_supports(room.scene(camera=looking_north(6.0)), LIBRARY, MEASURED)
+    assert (checked.support_of(shelf).adheres_to == ("wall_2",)) == stands_against
+
+
 def test_without_a_camera_and_without_edges_nothing_breaks(room: Room) -> None:
     room.put("cup_21", (0.0, 0.1, 0.82), on=None)
     scene = room.scene(architecture=room_box(6.0, 5.0))

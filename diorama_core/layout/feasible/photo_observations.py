@@ -104,6 +104,11 @@ class PhotoObservations:
         least[members, 2] = most[members, 2] = scale[members]
         return replace(self, least=least, most=most)
 
+    def no_smaller(self, scale: Float[np.ndarray, "n 3"], extents: Bool[np.ndarray, "n 3"]) -> PhotoObservations:
+        """The same with some extents no smaller than they are."""
+        least = np.where(extents, np.maximum(self.least, scale), self.least)
+        return replace(self, least=least, most=np.maximum(self.most, least))
+
     def replaced(self, members: Int[np.ndarray, " m"], other: PhotoObservations) -> PhotoObservations:
         """The same with all that was seen of some objects as others have it, but for what decided their heights."""
 

@@ -147,7 +147,9 @@ class FeasibleRecipe:
         wider = reaching_loads(wanted, exact_structure(wanted, self._rays(wanted, camera), observations, eye=eye), eye)
         grown = np.flatnonzero((wider.scale != wanted.scale).any(axis=1))
         anew = self._observations(wider, camera, visible) if len(grown) else None
-        return wider, observations if anew is None else observations.replaced(grown, anew)
+        if anew is not None:
+            observations = observations.replaced(grown, anew).no_smaller(wider.scale, wider.scale > wanted.scale)
+        return wider, observations
 
     @property
     def _across(self) -> float:

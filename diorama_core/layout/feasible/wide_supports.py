@@ -64,7 +64,10 @@ def _stands(problem: Problem, structure: Structure, i: int) -> bool:
 def _needed(
     problem: Problem, structure: Structure, i: int, outward: np.ndarray, axis: int, eye: np.ndarray | None
 ) -> float:
-    """What the extent of a load's supporter must be multiplied by for its side to reach the load; 1 where it does."""
+    """What the extent of a load's supporter must be multiplied by for its side to reach the load; 1 where it does.
+
+    A load that is larger than its supporter says more about its own size, and hangs over.
+    """
     j = int(problem.parent[i])
     own = structure.surface[i]
     assert own is not None, "it stands on something"
@@ -75,7 +78,9 @@ def _needed(
     beyond = float(outward @ centre) + reach + INSET_M - edge
     half = 0.5 * float(problem.shape_size[j, axis] * structure.scale[j, axis])
     back = float(outward @ structure.p[j]) - half
-    return 1.0 + beyond / max(edge - back, 1e-6) if beyond > MIN_BEYOND_M and _is_near(place, outward, centre) else 1.0
+    if beyond <= MIN_BEYOND_M or 2.0 * reach > edge - back or not _is_near(place, outward, centre):
+        return 1.0
+    return 1.0 + beyond / max(edge - back, 1e-6)
 
 
 def _is_near(place: Surface, outward: np.ndarray, centre: np.ndarray) -> bool:

@@ -183,3 +183,15 @@ def test_a_table_that_a_person_lifted_comes_down_as_it_is(room: Room) -> None:
     stood = solve(scene).object(table)
     assert stood.corners_world[:, 2].min() == pytest.approx(0.0, abs=1e-9)
     assert stood.size_m[2] == pytest.approx(scene.object(table).size_m[2], rel=0.08)
+
+
+def test_what_came_out_to_its_loads_is_not_made_smaller_again(room: Room) -> None:
+    room.put("table_0", (0.0, 0.6, 0.37))
+    scene = room.scene(camera=looking_north())
+    problem = build_problem(scene, LIBRARY)
+    assert scene.camera is not None
+    seen = photo_observations(problem, scene.camera, depth_weight=1.0)
+    wider = problem.scale * [1.2, 1.0, 1.0]
+    kept = seen.no_smaller(wider, wider > problem.scale)
+    np.testing.assert_allclose(kept.least[0], [1.2, 1 / MAX_STRETCH, 1 / MAX_STRETCH])
+    np.testing.assert_array_equal(kept.most, seen.most)

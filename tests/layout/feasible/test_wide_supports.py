@@ -45,6 +45,16 @@ def test_sides_come_out_within_limits(room: Room) -> None:
     assert sides(after)[1] - sides(after)[0] == pytest.approx(MAX_STRETCH * (sides(before)[1] - sides(before)[0]))
 
 
+def test_a_load_larger_than_its_supporter_hangs_over(room: Room) -> None:
+    table = room.put("table_0", (0.0, 0.6, 0.37), id="a-table")
+    width = float(np.ptp(room.objects[0].corners_world, axis=0).max() / min(LIBRARY.shape("vase_20").size_m[:2]))
+    room.put("vase_20", (0.05, 0.6, 0.88), on=table, id="b-vase", scale=(1.1 * width, 1.1 * width, 1.0))
+    problem = build_problem(room.scene(camera=looking_north()), LIBRARY)
+    after = reaching_loads(problem, exact_structure(problem), None)
+    np.testing.assert_array_equal(after.scale, problem.scale)
+    np.testing.assert_array_equal(after.p, problem.p)
+
+
 def test_what_carries_its_load_stays_as_it_is(room: Room) -> None:
     before, after = reached(room, -0.3)
     np.testing.assert_array_equal(after.scale, before.scale)
