@@ -156,10 +156,9 @@ def _read_from(seen: _Seen, found: DetectedObject, objects: tuple[DetectedObject
     if seen.faces or seen.view is None or not seen.pixels:
         return _inner(found) & ~hiding(found, objects)
     view, pixels = seen.view, np.zeros(found.mask.shape, dtype=bool)
-    near = np.any([p.near for p in seen.pixels], axis=0).repeat(view.step, axis=0).repeat(view.step, axis=1)
-    height = min(view.top + near.shape[0], len(pixels))
-    width = min(view.left + near.shape[1], pixels.shape[1])
-    pixels[view.top : height, view.left : width] = near[: height - view.top, : width - view.left]
+    near = np.kron(np.logical_or.reduce([p.near for p in seen.pixels]), np.ones((view.step, view.step), dtype=bool))
+    own = pixels[view.top : view.top + len(near), view.left : view.left + near.shape[1]]
+    own[:] = near[: own.shape[0], : own.shape[1]]
     return pixels
 
 
