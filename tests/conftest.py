@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 import json
 import os
 from collections.abc import Iterator
@@ -21,6 +22,8 @@ if typechecking.wanted():  # before anything of Diorama is imported
 
 from diorama_core.artefacts import Inputs
 from diorama_core.perception.inputs import ReadInputs, read_inputs
+
+gc.disable()  # until all tests are collected: what is imported stays
 
 settings.register_profile("deterministic", derandomize=True, deadline=None)
 settings.load_profile("deterministic")
@@ -129,6 +132,12 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     """Files with slow tests come first: of two processes that share the files, none is left with one at the end."""
     slow = {item.path for item in items if item.get_closest_marker("slow") is not None}
     items.sort(key=lambda item: item.path not in slow)
+
+
+def pytest_collection_finish() -> None:
+    """What is imported and collected is looked through for garbage neither now nor while tests run."""
+    gc.freeze()
+    gc.enable()
 
 
 @pytest.hookimpl(tryfirst=True)
