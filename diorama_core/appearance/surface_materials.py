@@ -68,7 +68,8 @@ NEAR_LAB = 20.0
 NORMAL_CELL = 0.35
 """Normals within about this are one face of a shade."""
 MIN_FACE_PIXELS = 30
-MAX_LINEAR = 0.9
+MIN_LINEAR, MAX_LINEAR = 0.015, 0.9
+"""Albedos of what is called black and white; soot and velvet apart nothing is a hole in the picture."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -303,6 +304,7 @@ def appearance_of(
     roughness = roughness_seen(linear / lit, metallic, usual)
     albedo = np.median(without_gloss(linear / lit, metallic, roughness, view.cosine[pixels.near][:, None]), axis=0)
     albedo *= min(1.0, MAX_LINEAR / max(float(albedo.max()), 1e-6))  # not channel by channel: the hue stays
+    albedo += max(MIN_LINEAR - float(luminance(albedo)), 0.0)
     red, green, blue = (float(c) for c in linear_to_srgb(albedo))
     example = None
     if pixels.slot.role in PATTERNED_ROLES:

@@ -11,8 +11,16 @@ from dataclasses import replace
 import numpy as np
 
 from diorama_core.layout.noise import ObservationNoise
-from diorama_core.layout.problem.supports import carries_things, label_of, object_surfaces, outside_m, plane_surface
+from diorama_core.layout.problem.supports import (
+    carries_things,
+    is_soft,
+    label_of,
+    object_surfaces,
+    outside_m,
+    plane_surface,
+)
 from diorama_core.library import taxonomy
+from diorama_core.library.company import SELDOM_CARRIED, often_carried
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.scene import edits
 from diorama_core.scene.frames import UP_WORLD
@@ -82,18 +90,20 @@ def _nearer_in_sight(
     """The object on which the line of sight to an object's foot ends, and at which share of the distance.
 
     It ends on one of its places, or beside it but in the object's box in the photo: shapes are not what they stand for.
+    Odd company carries it only where nothing else does.
     """
     if scene.camera is None or item.category in NEVER_HANGS:
         return None
     eye = scene.camera.position
     sight = item.pose.apply(np.array([[0.0, 0.0, -0.5 * item.shape_size_m[2]]]))[0] - eye
     pixel = scene.camera.project(eye + sight)
-    found: list[tuple[float, float, str]] = []
+    found: list[tuple[int, float, float, str]] = []
     for other in scene.objects:
         if other.id == item.id or not carries_things(other):
             continue
         x1, y1, x2, y2 = other.box_px or (np.inf, np.inf, -np.inf, -np.inf)
         in_box = bool(x1 <= pixel[0] <= x2 and y1 <= pixel[1] <= y2)
+        odd = _oddity(item, other)
         for surface in object_surfaces(library.shape(other.shape_id), other):
             world = surface.in_world(other.pose)
             if float(world.normal @ UP_WORLD) < UPRIGHT or float(sight @ world.normal) >= 0.0:
@@ -101,8 +111,14 @@ def _nearer_in_sight(
             share = (world.level - float(eye @ world.normal)) / float(sight @ world.normal)
             beside = outside_m(world, eye + share * sight)
             if 0.0 < share < 1.0 and (in_box or beside <= 2.0 * noise.across_m):
-                found.append((beside, share, other.id))
-    return min(found)[1:] if found else None
+                found.append((odd, beside, share, other.id))
+    return min(found)[2:] if found else None
+
+
+def _oddity(item: SceneObject, other: SceneObject) -> int:
+    """How much speaks against a carrier: seats carry what is soft, and some things are hardly ever on others."""
+    seat = taxonomy.resolve(other.category).category.seat_height_m is not None
+    return (seat and not is_soft(item)) + (often_carried(item.category, other.category) <= SELDOM_CARRIED)
 
 
 def _along_sight(scene: Scene, item: SceneObject, share: float) -> Scene:

@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 
 from diorama_core.appearance.surface_materials import (
+    MIN_LINEAR,
     MIN_OF_WHOLE,
     ROUGHNESS,
     appearance_of,
@@ -13,7 +14,7 @@ from diorama_core.appearance.surface_materials import (
     whole_pixels,
 )
 from diorama_core.appearance.surface_view import surface_view
-from diorama_core.io.srgb import linear_to_srgb
+from diorama_core.io.srgb import linear_to_srgb, srgb_to_linear
 from diorama_core.library.slots import slots_of
 from diorama_core.render.gloss import gloss_share
 from diorama_core.scene.types import Pose
@@ -44,6 +45,13 @@ def test_albedo_is_freed_from_the_light() -> None:
         want = linear_to_srgb(np.array(ALBEDO[found.slot.role]))
         np.testing.assert_allclose(found.colour, want, atol=0.02)
         assert found.texture is None
+
+
+def test_what_is_black_in_the_photo_is_black_paint_and_no_hole() -> None:
+    view, slots, rgb, mask, light = seen()
+    for pixels in slot_pixels(view, slots, np.zeros_like(rgb), mask, mask, NOTHING):
+        found = appearance_of(view, pixels, np.zeros_like(rgb), light)
+        np.testing.assert_allclose(srgb_to_linear(np.array(found.colour)), MIN_LINEAR, atol=1e-6)
 
 
 def test_faces_of_one_material_tell_the_light() -> None:

@@ -49,6 +49,23 @@ def test_beside_a_shape_the_box_in_the_photo_says_what_is_in_sight(room: Room) -
     assert checked.support_of(plant).parent == table
 
 
+def test_a_seat_carries_what_is_not_soft_only_where_nothing_else_is_in_sight(room: Room) -> None:
+    seat, table = room.put("table_0", (0.0, 0.6, 0.37)), room.put("table_0", (0.0, 1.6, 0.37))
+    camera = looking_north()
+    sight = np.array([0.0, 0.6, room.objects[0].size_m[2]]) - camera.position
+    far = camera.position + sight * camera.position[2] / -sight[2]
+    plant = room.put("cup_21", (far[0], 9.0, 0.05))
+    whole = (0.0, 0.0, 640.0, 480.0)
+    kinds = {seat: "chair", table: "table", plant: "vase"}
+    scene = room.scene(camera=camera)
+    boxed = tuple(replace(o, category=kinds[o.id], box_px=whole) for o in scene.objects)
+    assert checked_supports(replace(scene, objects=boxed), LIBRARY, REASONED)[0].support_of(plant).parent == table
+    alone = tuple(o for o in boxed if o.id != table)
+    edges = tuple(s for s in scene.supports if s.child != table)
+    only = replace(scene, objects=alone, supports=edges)
+    assert checked_supports(only, LIBRARY, REASONED)[0].support_of(plant).parent == seat
+
+
 def test_what_people_put_on_furniture_is_at_the_wall_where_nothing_marked_carries_it(room: Room) -> None:
     camera = looking_north()
     far = np.array([0.4, 6.0, 0.3])
