@@ -75,14 +75,16 @@ def ring_vase(size: Size, clay: Material) -> Parts:
 
 
 BUD_SPOTS = {
+    1: ((0.0, 0.0, 1.0, 0.45),),
     2: ((-0.06, -0.24, 1.0, 0.26), (0.06, 0.25, 0.68, 0.25)),
     3: ((-0.05, -0.3, 1.0, 0.2), (0.2, 0.02, 0.72, 0.19), (-0.1, 0.31, 0.52, 0.18)),
+    4: ((-0.18, -0.34, 0.84, 0.15), (0.2, -0.16, 0.6, 0.15), (-0.12, 0.08, 1.0, 0.16), (0.16, 0.34, 0.72, 0.15)),
 }
 """Where slender vases stand, how high each is and its radius: shares of depth, width, height and width."""
 
 
-def bud_vases(size: Size, glass: Material, count: Literal[2, 3] = 3) -> Parts:
-    """Two or three slender vases of different heights."""
+def bud_vases(size: Size, glass: Material, count: Literal[1, 2, 3, 4] = 3) -> Parts:
+    """Slender vases of different heights."""
     d, w, h = size
     spots = [(x * d, y * w, share, r) for x, y, share, r in BUD_SPOTS[count]]
     outer = smooth_profile(((0.8, 0), (0.9, 0.03), (1.0, 0.3), (0.5, 0.6), (0.3, 0.8), (0.42, 1.0)))
