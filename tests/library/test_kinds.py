@@ -14,10 +14,9 @@ KNOWN = [c.name for c in CATEGORIES if modes_of_kind(c.name)]
 @pytest.mark.parametrize("name", KNOWN)
 def test_every_kind_is_proper(name: str) -> None:
     modes = modes_of_kind(name)
-    assert sum(m.share for m in modes) == pytest.approx(1)
-    assert [m.count for m in modes] == sorted((m.count for m in modes), reverse=True)
+    assert sum(m.share for m in modes) == pytest.approx(1, abs=0.01)
     for mode in modes:
-        assert np.linalg.eigvalsh(mode.covariance).min() > 0.04**2
+        assert np.linalg.eigvalsh(mode.covariance).min() > 0.05**2
         assert np.abs(mode.outline).max() <= 0.5
         assert np.abs(np.exp(mode.log_size)).max() < 5
 

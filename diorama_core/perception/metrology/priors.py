@@ -6,14 +6,14 @@ of the kinds that it looks like, or else of the usual furniture; each such readi
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cache
 
 import numpy as np
 from jaxtyping import Float
 
 from diorama_core.library.kind_sizes import sizes_of_kind
-from diorama_core.library.kinds import KindMode, outline_of
+from diorama_core.library.kinds import outline_of
 from diorama_core.library.taxonomy import PORTABLE, UNKNOWN, Mount, SizePrior, category
 
 _ALSO = {
@@ -42,8 +42,6 @@ _UNNAMED_WIDENED = 1.3
 _UNNAMED_ANYTHING_COST = 6.0
 MIN_SHARE, MAX_MEANINGS = 0.03, 4
 """Of what a word may mean, what counts for the size."""
-MAX_MEANT = 5
-"""Sizes of further kinds that are tried."""
 _USUAL_SPREAD = 3 * np.log(0.16)
 """Sum of the logarithms of the sigmas of an ordinary category: wider ones explain anything, and pay for it."""
 
@@ -90,30 +88,29 @@ def _usual_furniture() -> tuple[SizeMode, ...]:
 
 
 def _modes_held(meanings: tuple[tuple[str, float], ...], mount: Mount) -> tuple[SizeMode, ...]:
-    """The likeliest sizes of the kinds that a thing without a name may be and that are so mounted."""
+    """The likeliest modes of the likeliest kinds that a thing without a name may be and that are so mounted."""
     kinds = [(kind, share) for kind, share in meanings if category(kind).mount == mount]
-    return _likeliest(kinds[: MAX_MEANINGS + 1], MAX_MEANT + 1)
+    return tuple(_rarer(kind, share, *kinds[0]) for kind, share in kinds[: MAX_MEANINGS + 1])
 
 
 def _modes_of_meanings(name: str, meanings: tuple[tuple[str, float], ...]) -> tuple[SizeMode, ...]:
-    """The likeliest sizes of the other kinds that a word may mean and that are held alike, dearer where rarer."""
+    """The likeliest mode of every other kind that a word may mean and that is held alike, dearer where it is rarer."""
     shares = dict(meanings)
     own, held = max(shares.get(name, 0.0), MIN_SHARE), _held(name)
     others = [(kind, share) for kind, share in meanings if kind != name and share >= MIN_SHARE and _held(kind) == held]
-    return _likeliest([(kind, share / own) for kind, share in others[:MAX_MEANINGS]], MAX_MEANT, name)
+    return tuple(_rarer(kind, share, name, own) for kind, share in others[:MAX_MEANINGS])
 
 
-def _likeliest(kinds: list[tuple[str, float]], most: int, than: str | None = None) -> tuple[SizeMode, ...]:
-    """The densest parts of weighted kinds' mixtures, with their costs against the densest of all, or of one kind's."""
-    parts = [(p, _log_density(p) + float(np.log(share))) for kind, share in kinds for p in sizes_of_kind(kind)]
-    known = [density for _, density in parts] if than is None else [_log_density(p) for p in sizes_of_kind(than)]
-    found = [_size_mode(p, max(0.0, 2.0 * (max(known) - density))) for p, density in parts]
-    return tuple(sorted(found, key=lambda m: m.cost)[:most])
+def _rarer(kind: str, share: float, than: str, its_share: float) -> SizeMode:
+    """The likeliest mode of a kind, dearer as far as it is rarer than another."""
+    mode, usual = _own_modes(kind)[0], _own_modes(than)[0]
+    cost = 2.0 * (float(np.log(its_share / share)) + _log_breadth(mode) - _log_breadth(usual))
+    return replace(mode, cost=max(0.0, cost))
 
 
-def _log_density(part: KindMode) -> float:
-    """Of a part of a mixture at its middle, but for a constant."""
-    return float(np.log(part.share) - 0.5 * np.linalg.slogdet(part.covariance)[1])
+def _log_breadth(mode: SizeMode) -> float:
+    """Logarithm of the volume of one sigma: a wide mode explains more, each size less well."""
+    return -float(np.linalg.slogdet(mode.whitening)[1])
 
 
 def _held(name: str) -> str:
@@ -164,11 +161,13 @@ def hanging_modes(name: str, meanings: tuple[tuple[str, float], ...] = ()) -> tu
 
 def _own_modes(name: str) -> tuple[SizeMode, ...]:
     """A mixture of the library's usual sizes of a kind and the taxonomy's broader ones, by log density."""
-    return _likeliest([(name, 1.0)], len(sizes_of_kind(name)))
-
-
-def _size_mode(part: KindMode, cost: float) -> SizeMode:
-    return SizeMode(part.log_size, np.sqrt(np.diag(part.covariance)), cost, part.outline, _whitening(part.covariance))
+    parts = sizes_of_kind(name)
+    costs = [float(np.linalg.slogdet(p.covariance)[1]) - 2.0 * np.log(p.share) for p in parts]
+    modes = [
+        SizeMode(p.log_size, np.sqrt(np.diag(p.covariance)), cost - min(costs), p.outline, _whitening(p.covariance))
+        for p, cost in zip(parts, costs, strict=True)
+    ]
+    return tuple(sorted(modes, key=lambda m: m.cost))
 
 
 def _whitening(covariance: Float[np.ndarray, "3 3"]) -> Float[np.ndarray, "3 3"]:
