@@ -19,6 +19,8 @@ from tests.app.small_room import photo_camera, room_planes
 from tests.primitives import PrimitiveLibrary, box_room, furnished_room
 
 _EXAMPLE = Path(__file__).resolve().parents[2] / "assets" / "example" / "project"
+DESK = "desk-writing-oak"
+"""With three drawers."""
 SOURCES = ("example", "primitives", "fittings", "boxes", "empty shell")
 
 
@@ -58,7 +60,7 @@ def fitted_room(library: ShapeLibrary) -> Scene:
     def put(
         name: str, category: str, at: tuple[float, float], yaw: float, on: str, z: float, **edge: str
     ) -> SceneObject:
-        shape = library.in_category(category)[0]
+        shape = library.shape(DESK) if category == "desk" else library.in_category(category)[0]
         centre_z = z + shape.size_m[2] / 2
         pose = Pose.upright((*at, centre_z), yaw)
         item = SceneObject(name, category, category, shape.id, shape.size_m, pose)

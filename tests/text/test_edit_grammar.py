@@ -18,12 +18,12 @@ from diorama_core.text.edit_plan import Insert, Move, Paint, Place, Remove, Resi
 from diorama_core.text.looks import look_of
 from diorama_core.text.phrases import noun_phrase, split_places
 from diorama_core.text.selecting import Selector
+from tests.text.edited import living_room
 
 
 @pytest.fixture(scope="module")
 def living() -> Scene:
-    """Sofa, coffee table, side table, sideboard with a lamp and books, piano, plant, rug, four pictures."""
-    return furnished_room(3, "living", built_in_library(), outline="box", clutter=4)
+    return living_room()
 
 
 @pytest.fixture(scope="module")
