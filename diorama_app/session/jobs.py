@@ -9,8 +9,8 @@ from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 from typing import Literal
 
-from diorama_app.session.preload import load_open3d
 from diorama_core.errors import Cancelled, DioramaError, EditRefused
+from diorama_core.geometry.open3d_import import load_open3d
 from diorama_core.progress import CancelToken, Progress, ProgressEvent
 
 log = logging.getLogger(__name__)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import importlib
 import subprocess
 import sys
 import threading
@@ -10,7 +9,6 @@ import threading
 WARM_UP_AFTER_S = 10.0
 """Loading takes two seconds of one core, which the browser needs while the page opens."""
 
-OPEN3D_TRIES = 5
 LEARN = "import os; os.nice(15); from diorama_core.library.ingest.known_shapes import known_shapes; known_shapes()"
 """Half a minute of a core, once on a machine, that the first upload of a model would wait for."""
 
@@ -19,6 +17,8 @@ def warm_up(stopped: threading.Event) -> None:
     """Wait until pages have come up, then load; not at all when stopped before."""
     if stopped.wait(WARM_UP_AFTER_S):
         return
+    from diorama_core.geometry.open3d_import import load_open3d
+
     load_open3d()
     if stopped.is_set():
         return
@@ -41,15 +41,3 @@ def learn_shapes(stopped: threading.Event) -> None:
         if stopped.wait(1.0):
             learning.terminate()
             learning.wait()
-
-
-def load_open3d() -> None:
-    """Load Open3D: it looks through the loaded modules, and fails where another thread loads one at that moment."""
-    for remaining in reversed(range(OPEN3D_TRIES)):
-        try:
-            importlib.import_module("diorama_core.geometry.open3d_import")
-        except RuntimeError as error:
-            if "changed size during iteration" not in str(error) or not remaining:
-                raise
-        else:
-            return

@@ -13,6 +13,8 @@ from types import ModuleType
 from typing import Any
 
 _PLOTS = "open3d.visualization.draw_plotly"
+_TRIES = 5
+"""Open3D looks through the loaded modules, and fails where another thread loads one at that moment."""
 _FUNCTIONS = ("get_plotly_fig", "draw_plotly", "draw_plotly_server")
 
 
@@ -25,9 +27,19 @@ def _without_plots() -> Any:
         setattr(stand_in, name, _loaded_on_call(name))
     sys.modules[_PLOTS] = stand_in
     try:
-        return importlib.import_module("open3d")
+        return _imported()
     finally:
         del sys.modules[_PLOTS]
+
+
+def _imported() -> Any:
+    for _ in range(_TRIES - 1):
+        try:
+            return importlib.import_module("open3d")
+        except RuntimeError as error:
+            if "changed size during iteration" not in str(error):
+                raise
+    return importlib.import_module("open3d")
 
 
 def _loaded_on_call(name: str) -> Callable[..., Any]:

@@ -9,6 +9,7 @@ import numpy as np
 from jaxtyping import Float
 
 from diorama_core.geometry.wall_line import WallLine
+from diorama_core.layout.problem.parts import parts_of_shape
 from diorama_core.library.record import Shape, ShapeLibrary, SupportSurface
 from diorama_core.scene.types import Pose, SceneObject, Support
 from diorama_core.synthesis.bodies import Bodies, Item, heights_below
@@ -252,7 +253,10 @@ class Furnisher:
         height = self._resting_height(parent, face, item, quad)
         if height is None:
             return None
-        centre = parent.pose.R_world_object @ np.array([*xy_local, height + item.size_m[2] / 2]) + parent.pose.position
+        local = np.array([*xy_local, height + item.size_m[2] / 2])
+        if self._is_shut_in(parent, local / scale):
+            return None
+        centre = parent.pose.R_world_object @ local + parent.pose.position
         pose = Pose.upright(centre, parent.pose.yaw_rad + turn_rad, item.scale)
         if not self._under_roof(item, pose):
             return None
@@ -260,6 +264,15 @@ class Furnisher:
             return None
         self._lying.setdefault((parent_id, surface), []).append(quad)
         return self._put(item, pose, Support("", parent_id, "placed on", surface, "bottom"))
+
+    def _is_shut_in(self, parent: SceneObject, point: Float[np.ndarray, "3"]) -> bool:
+        """Whether a point of a shape's frame is behind its doors: what is closed is solid for everything else."""
+        parts = parts_of_shape(self.library, self._full[parent.shape_id])
+        return any(
+            bool(((p.vertices @ p.normals.T).min(axis=0) < p.normals @ point).all())
+            and bool((p.normals @ point < (p.vertices @ p.normals.T).max(axis=0)).all())
+            for p in parts
+        )
 
     def _resting_height(
         self, parent: SceneObject, face: SupportSurface, item: Item, quad: Float[np.ndarray, "4 2"]

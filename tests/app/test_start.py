@@ -85,7 +85,7 @@ os._exit(0)
 def test_open3d_loads_while_other_threads_load_modules() -> None:
     script = """
 import sys, types
-from diorama_app.session.preload import load_open3d
+from diorama_core.geometry.open3d_import import load_open3d
 
 def meanwhile(frame, event, arg):
     def at_each_line(frame, event, arg):
