@@ -74,7 +74,7 @@ def test_a_photo_in_which_nothing_is_found_is_one_line() -> None:
         )  # fmt: skip
 
 
-THERE = ("door_1", "window_1", "picture_1", "desk_1", "chair_1")
+THERE = ("door_1", "clock_1", "chest_1", "tv_stand_1", "rug_1")
 """What is marked in the photos of the room, and in its scene: enough to tell where they were taken."""
 
 
@@ -88,8 +88,8 @@ def marked(view: RoomView, name: str, camera: Camera) -> FurtherPhoto:
 
 @cache
 def made_views() -> tuple[RoomView, ...]:
-    """A room photographed from six places."""
-    return tuple(photographed(recipe_of_rooms(3, 1, 91)[2], split_library(built_in_library(), "test"), 6))
+    """A room photographed from four places."""
+    return tuple(photographed(recipe_of_rooms(3, 1, 101)[0], split_library(built_in_library(), "test"), 4))
 
 
 def marked_photos() -> list[FurtherPhoto]:
@@ -130,19 +130,19 @@ def test_walls_that_nobody_moved_go_to_what_photos_show_on_them() -> None:
 
 @pytest.mark.slow
 def test_a_box_that_the_other_photos_contradict_does_not_move_an_object() -> None:
-    """A picture's box is drawn on its neighbour in one photo of three: alone it would move the picture by 0.8 m."""
+    """A clock's box is drawn beside it in one photo of three."""
     photos, scene = marked_photos(), marked_scene()
-    right = dict(photos[3].seen)["picture_1"]
+    right = dict(photos[3].seen)["clock_1"]
     x1, y1, x2, y2 = right
-    aside_px = 1.5 * (x2 - x1)
+    aside_px = (3.0 if x1 < 320 else -3.0) * (x2 - x1)
     wrong = (x1 + aside_px, y1, x2 + aside_px, y2)
     inputs = photos[3].inputs
     inputs = replace(inputs, boxes=tuple(replace(b, box=wrong if b.box == right else b.box) for b in inputs.boxes))
-    seen = tuple((name, wrong if name == "picture_1" else box) for name, box in photos[3].seen)
+    seen = tuple((name, wrong if name == "clock_1" else box) for name, box in photos[3].seen)
     known = photos_of_scene(scene, photos[0].inputs, tuple(photos[1:3]))
-    free = frozenset({"picture_1"})
+    free = frozenset({"clock_1"})
     new = replace(photos[3], inputs=inputs, seen=seen)
     found = with_photo(scene, known, new, free, free, built_in_library(), choose, lambda ids: AsItIs())
-    moved_m = found.scene.object("picture_1").pose.position - scene.object("picture_1").pose.position
+    moved_m = found.scene.object("clock_1").pose.position - scene.object("clock_1").pose.position
     assert np.linalg.norm(moved_m) < 0.1
-    assert "picture_1" in found.joined
+    assert "clock_1" in found.joined
