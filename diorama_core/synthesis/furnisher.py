@@ -267,12 +267,11 @@ class Furnisher:
 
     def _is_shut_in(self, parent: SceneObject, point: Float[np.ndarray, "3"]) -> bool:
         """Whether a point of a shape's frame is behind its doors: what is closed is solid for everything else."""
-        parts = parts_of_shape(self.library, self._full[parent.shape_id])
-        return any(
-            bool(((p.vertices @ p.normals.T).min(axis=0) < p.normals @ point).all())
-            and bool((p.normals @ point < (p.vertices @ p.normals.T).max(axis=0)).all())
-            for p in parts
-        )
+        for part in parts_of_shape(self.library, self._full[parent.shape_id]):
+            across, at = part.vertices @ part.normals.T, part.normals @ point
+            if (across.min(axis=0) < at).all() and (at < across.max(axis=0)).all():
+                return True
+        return False
 
     def _resting_height(
         self, parent: SceneObject, face: SupportSurface, item: Item, quad: Float[np.ndarray, "4 2"]
