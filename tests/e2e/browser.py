@@ -178,6 +178,14 @@ class EditorPage:
         self.page.evaluate(closing)
         self.page.wait_for_function("!document.querySelector('.mantine-Notification-closeButton')")
 
+    def unfold(self, folder: str, content: Locator) -> Locator:
+        """Open a folder of a panel, unless an earlier test has left it open."""
+        self.settle()
+        if content.count() == 0 or not content.first.is_visible():
+            self.page.get_by_text(folder, exact=True).first.click()
+            content.first.wait_for()
+        return content
+
     def button(self, name: str) -> Locator:
         return self.page.get_by_role("button", name=name, exact=True)
 

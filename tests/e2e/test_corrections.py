@@ -23,8 +23,7 @@ def scene(editor: EditorPage) -> Scene:
 
 
 def test_the_room_becomes_higher_and_what_hangs_on_a_moved_wall_goes_with_it(editor: EditorPage) -> None:
-    editor.page.get_by_text("Room", exact=True).first.click()
-    height = editor.page.get_by_label("Height", exact=True)
+    height = editor.unfold("Room", editor.page.get_by_label("Height", exact=True))
     expect(height).to_have_value("2.5 m")
     height.fill("2.9")
     height.press("Enter")

@@ -22,9 +22,7 @@ def light(editor: EditorPage) -> LightSettings:
 
 
 def open_group(editor: EditorPage) -> None:
-    if not editor.button("Daylight").is_visible():
-        editor.page.get_by_text("Light", exact=True).first.click()
-    editor.button("Daylight").wait_for(state="visible")
+    editor.unfold("Light", editor.button("Daylight"))
 
 
 def test_time_direction_lamps_and_exposure_are_seen_undone_saved_and_exported(

@@ -69,8 +69,7 @@ def test_a_click_on_the_floor_offers_finishes_which_are_seen_undone_saved_and_ex
 
 
 def test_all_walls_are_papered_from_the_list_and_go_back_to_the_photo(editor: EditorPage) -> None:
-    editor.page.get_by_text("Room", exact=True).first.click()
-    editor.page.locator(".dio button:visible", has_text="Wall 2").click()
+    editor.unfold("Room", editor.page.locator(".dio button:visible", has_text="Wall 2")).click()
     editor.until(lambda: editor.client.surface == "wall_2")
     editor.button("All walls").click()
     editor.page.locator(".dio .tile:visible", has_text="Leaves").click()
