@@ -53,6 +53,8 @@ class LabelledBox:
     label: str
     """The word as given, for people."""
     score: float = 1.0
+    guessed: bool = False
+    """Whether its word is no more than what the box looks like: size, place and neighbours may know better."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -50,9 +50,10 @@ def test_every_object_is_its_best_candidate_with_all_it_came_from() -> None:
     assert scene.architecture.planes == SHOT.planes
 
 
-def test_an_unknown_object_takes_the_category_of_its_shape() -> None:
+def test_an_unknown_object_takes_the_category_and_the_name_of_its_shape() -> None:
     scene = scene_of(posed("tray", "ball"))
     assert scene.object("tray").category == "toy"
+    assert (SHOT.objects[1].label, scene.object("tray").label) == ("object", "toy")
 
 
 def test_what_found_no_shape_is_left_out_and_hands_on_what_it_held() -> None:

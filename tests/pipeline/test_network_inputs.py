@@ -27,6 +27,12 @@ def test_boxes_and_depth_are_added_and_the_depth_says_whose_it_is() -> None:
     assert with_network_inputs(GIVEN, (), None).boxes == ()
 
 
+def test_a_guessed_word_is_left_to_later_stages() -> None:
+    guessed = replace(BOXES[0], guessed=True)
+    (box,) = with_network_inputs(GIVEN, (guessed,), None).boxes
+    assert (box.box, box.category, box.label) == (guessed.box, "object", "object")
+
+
 def test_given_intrinsics_stay() -> None:
     own = replace(K, fx=99.0)
     assert with_network_inputs(replace(GIVEN, intrinsics=own), None, DEPTH).intrinsics == own

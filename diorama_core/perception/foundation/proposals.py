@@ -53,7 +53,7 @@ class OwnDetection:
         for box, score, ranked in zip(found.boxes, found.scores, names, strict=True):
             name = next((n for n in ranked if n not in ARCHITECTURE_WORDS), "object")
             x1, y1, x2, y2 = (float(v) for v in box)
-            boxes.append(LabelledBox((x1, y1, x2, y2), name, name, float(score)))
+            boxes.append(LabelledBox((x1, y1, x2, y2), name, name, float(score), guessed=True))
         return tuple(boxes)
 
 
