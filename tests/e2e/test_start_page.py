@@ -35,6 +35,7 @@ def test_an_empty_room_is_begun_and_the_tour_comes_once(newcomer: EditorPage) ->
         page.get_by_label(f"{name} of the room").fill(length)
     newcomer.button("Create empty room").click()
     newcomer.until(lambda: newcomer.session.project is not None and newcomer.session.project.name == "Empty room")
+    page.wait_for_url("**project=**")  # the tour begins anew in the page of the room
     expect(begun).to_have_count(0)
     floor = newcomer.session.scene.plane("floor")
     np.testing.assert_allclose(plane_rectangle(floor)[2], (3.5, 4.2))
