@@ -140,6 +140,7 @@ class HierarchicalRetrieval:
     def ahead(self, boxes: Sequence[LabelledBox]) -> Iterator[None]:
         """Load what is compared of the shapes of these kinds, step by step: all of those that are few enough."""
         load_open3d()
+        repr(self)  # the libraries remember the names of all shapes' geometry, of which the stage's own name is made
         similarity = self.similarity or EmbeddedSimilarity(self.library)
         for kind in dict.fromkeys(box.category for box in boxes if is_named(box.label)):
             shapes = self.library.in_category(kind)

@@ -15,6 +15,7 @@ import re
 from collections.abc import Callable, Iterator, Mapping
 from functools import cache
 from pathlib import Path
+from threading import Lock
 from typing import Any
 
 import numpy as np
@@ -80,7 +81,12 @@ def code_key(function: Callable[..., Any]) -> str:
 def _code_of(function: Callable[..., Any]) -> str:
     if not inspect.isfunction(function):
         raise LibraryError(f"{function!r} is no function; a design's builder is one, and the rest are its options")
-    return _sources().digest((function.__module__.removeprefix(f"{_PACKAGE}."), function.__qualname__))
+    with _READING:
+        return _sources().digest((function.__module__.removeprefix(f"{_PACKAGE}."), function.__qualname__))
+
+
+_READING = Lock()
+"""What one thread has read of the names of a module is not all of them until it is done."""
 
 
 @cache

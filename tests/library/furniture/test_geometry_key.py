@@ -8,6 +8,7 @@ import shutil
 import subprocess
 import sys
 from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 from functools import cache, partial
 from pathlib import Path
@@ -19,6 +20,7 @@ import pytest
 from diorama_core.errors import LibraryError
 from diorama_core.library import furniture
 from diorama_core.library.furniture import designs
+from diorama_core.library.furniture import geometry_key as keys
 from diorama_core.library.furniture import materials as m
 from diorama_core.library.furniture.geometry_key import Sources, geometry_key
 from diorama_core.library.furniture.model import Design, built, mesh_of, scene_of
@@ -182,3 +184,18 @@ def test_what_cannot_be_told_is_refused() -> None:
         geometry_key(replace(lamp, builder=partial(lamp.builder)))
     with pytest.raises(LibraryError, match="at its top"):
         geometry_key(replace(lamp, builder=lambda size: []))
+
+
+def test_threads_that_name_shapes_at_once_name_them_alike() -> None:
+    chosen = tuple(DESIGNS.values())[::7]
+    alone = [geometry_key(d) for d in chosen]
+    usual = sys.getswitchinterval()
+    sys.setswitchinterval(1e-6)
+    try:
+        for forgets in (keys._code_of, keys._sources):
+            forgets.cache_clear()
+        with ThreadPoolExecutor(4) as pool:
+            found = list(pool.map(lambda _: [geometry_key(d) for d in chosen], range(4)))
+    finally:
+        sys.setswitchinterval(usual)
+    assert found == [alone] * 4
