@@ -6,6 +6,7 @@ objects, not objects to assumptions. Observed walls do not move.
 
 from __future__ import annotations
 
+from collections.abc import Collection, Sequence
 from dataclasses import replace
 
 import manifold3d
@@ -22,25 +23,28 @@ _MARGIN_M = 0.01
 """Left around what stands on the floor."""
 _HOLD = 0.5
 """How much a wall's own place counts beside that of an object against it."""
+_FOOT_HIDDEN = 0.3
+"""How much less certain the place of an object is whose foot the photo does not show."""
 LONGEST_CORD = 1.3
 """A lamp's cord makes it at most so many times as high as it was seen."""
 _MIN_AREA_M2 = 1e-4
 _JOINED_M = 0.02
 
 
-def containing_room(scene: Scene, *, reasoned: bool = False) -> Scene:
+def containing_room(scene: Scene, *, reasoned: bool = False, feet_seen: Collection[str] | None = None) -> Scene:
     """The scene with unseen walls moved behind what stands on the floor, the floor drawn out under it, and a ceiling
     above what hangs.
 
     Args:
         scene: as observed.
         reasoned: whether distances were reasoned from a photo alone: walls then come to what stands against them.
+        feet_seen: ids of the objects whose lower ends the photo shows; of all when None.
     """
     floor = scene.architecture.floor
     if floor is None:
         return scene
     if reasoned:
-        scene = _at_backs(scene)
+        scene = _at_backs(scene, feet_seen)
     standing = [o for o in scene.objects if (edge := scene.support_of(o.id)) is not None and edge.parent == floor.id]
     for wall in scene.architecture.by_role("wall"):
         if not wall.seen:
@@ -76,21 +80,23 @@ def _with_ceiling(scene: Scene) -> Scene:
     return replace(scene, architecture=Architecture((*scene.architecture.planes, ceiling)), supports=supports)
 
 
-def _at_backs(scene: Scene) -> Scene:
+def _at_backs(scene: Scene, feet_seen: Collection[str] | None) -> Scene:
     """The walls where most of what stands against them says: from a photo alone they are as uncertain as objects.
 
-    What stands before a wall without touching it resists a wall that would come past its back.
+    Doors say it, too: their feet, which were seen on the floor, are the wall's. What stands before a wall without
+    touching it resists a wall that would come past its back. Each counts as much as its place is certain.
     """
     floor = scene.architecture.floor
     edges = [s for s in scene.supports if floor is not None and s.parent == floor.id]
     for wall in scene.architecture.by_role("wall"):
-        backs = [_back(scene.object(s.child), wall) for s in edges if wall.id in s.adheres_to]
+        against = [scene.object(s.child) for s in edges if wall.id in s.adheres_to]
+        against += [o for o in _hanging(scene, wall.id) if o.category == "door"]
         others = [
-            _back(scene.object(s.child), wall)
+            item
             for s in edges
-            if wall.id not in s.adheres_to and _behind(scene.object(s.child), wall, np.inf) < np.inf
+            if wall.id not in s.adheres_to and _behind(item := scene.object(s.child), wall, np.inf) < np.inf
         ]
-        inward = _agreed(np.array(backs), np.array(others))
+        inward = _agreed(*_backs(against, wall, feet_seen), *_backs(others, wall, feet_seen))
         if abs(inward) < _MARGIN_M:
             continue
         try:
@@ -101,18 +107,32 @@ def _at_backs(scene: Scene) -> Scene:
     return scene
 
 
+def _backs(
+    items: Sequence[SceneObject], wall: Plane, feet_seen: Collection[str] | None
+) -> tuple[Float[np.ndarray, " a"], Float[np.ndarray, " a"]]:
+    """Heights of objects' hindmost corners before a wall, and how certain the objects' places are."""
+    hidden = [feet_seen is not None and o.id not in feet_seen for o in items]
+    certainty = [o.confidence * (_FOOT_HIDDEN if h else 1.0) for o, h in zip(items, hidden, strict=True)]
+    return np.array([_back(o, wall) for o in items]), np.array(certainty)
+
+
 def _back(item: SceneObject, wall: Plane) -> float:
     """Height of an object's hindmost corner before a wall."""
     return float((item.corners_world @ wall.normal).min()) - wall.offset
 
 
-def _agreed(backs: Float[np.ndarray, " a"], others: Float[np.ndarray, " b"]) -> float:
+def _agreed(
+    backs: Float[np.ndarray, " a"],
+    certainty: Float[np.ndarray, " a"],
+    others: Float[np.ndarray, " b"],
+    others_certainty: Float[np.ndarray, " b"],
+) -> float:
     """How far inward a wall agrees best with the backs of what stands against it and of what stands before it."""
     if not len(backs):
         return 0.0
     tried = np.concatenate([[0.0], backs])
-    apart = np.abs(tried[:, None] - backs).sum(axis=1)
-    past = np.maximum(tried[:, None] - others, 0.0).sum(axis=1) if len(others) else 0.0
+    apart = np.abs(tried[:, None] - backs) @ certainty
+    past = np.maximum(tried[:, None] - others, 0.0) @ others_certainty
     return float(tried[np.argmin(apart + past + _HOLD * np.abs(tried))])
 
 

@@ -203,7 +203,8 @@ def _better(
 
     What lies on the same supporter right under the object is there, too: a tray under a bottle, but not one remote
     control under another that lies beside it. How far an object
-    reaches down through the places of what it has entered says nothing: its foot was not seen.
+    reaches down through the places of what it has entered says nothing: its foot was not seen. What may hang or stand
+    stands where its measured foot is clearly nearer to a place than its back is to the wall.
     """
     gap = _gap(scene, library, item, edge) + inside
     unusual = _is_unusual(scene, item, edge)
@@ -223,10 +224,23 @@ def _better(
         )
         # Against a measured gap that is many times as large, a foot that is hidden does not count.
         reached = np.inf if noise.measured else max(limit, UNUSUAL_M * unusual)
-        most = min(CLEARLY * gap, reached) if contradicted else limit * between
+        most = (
+            min(CLEARLY * gap, reached)
+            if contradicted or _may_stand(scene, library, item, edge, other, noise)
+            else limit * between
+        )
         if cost <= max(most, inside):
             options.append((cost, other.parent, other))
     return min(options, key=lambda option: option[:2])[2] if options else None
+
+
+def _may_stand(
+    scene: Scene, library: ShapeLibrary, item: SceneObject, edge: Support, other: Support, noise: ObservationNoise
+) -> bool:
+    """Whether what hangs on a wall and may as well stand, as a clock, was measured over a place of furniture."""
+    if not noise.measured or edge.relation != "mounted on" or item.category not in _SOMETIMES_HANGS:
+        return False
+    return scene.has_object(other.parent) and other.relation == "placed on" and _is_over(scene, library, item, other)
 
 
 def _is_over(scene: Scene, library: ShapeLibrary, item: SceneObject, edge: Support) -> bool:

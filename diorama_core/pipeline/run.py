@@ -126,7 +126,8 @@ def build_scene(
         found = evaluate(stages, found, ("posed",), runner, progress.part(0.45, 0.85))
         textures = painted.result()
     shaped = _observed({**found, "architecture": room}, balanced, library)
-    contained, changed = prepared(shaped, library, REASONED if inputs.depth_m is None else MEASURED)
+    feet_seen = frozenset(c.object_id for c in geometry.cuboids if c.foot_seen)
+    contained, changed = prepared(shaped, library, REASONED if inputs.depth_m is None else MEASURED, feet_seen)
     observed = _textured(contained, textures)
     with ThreadPoolExecutor(1) as beside:  # what objects look like is all the same to the layout
         seen = beside.submit(
@@ -163,13 +164,16 @@ def build_scene(
     )
 
 
-def prepared(shaped: Scene, library: ShapeLibrary, noise: ObservationNoise) -> tuple[Scene, tuple[str, ...]]:
+def prepared(
+    shaped: Scene, library: ShapeLibrary, noise: ObservationNoise, feet_seen: frozenset[str]
+) -> tuple[Scene, tuple[str, ...]]:
     """The scene as the layout takes it, and what was changed: supports, shapes and the room agree with the objects.
 
     Args:
         shaped: every object in its best candidate's pose.
         library: where shapes come from.
         noise: of the observed positions.
+        feet_seen: ids of the objects whose lower ends the photo shows.
     """
     changed: tuple[str, ...] = ()
     if noise.measured:  # heights reasoned from a photo alone do not tell boards from one another
@@ -179,7 +183,7 @@ def prepared(shaped: Scene, library: ShapeLibrary, noise: ObservationNoise) -> t
         changed = holding + contradicted + clear
     checked, corrected = checked_supports(shaped, library, noise)
     fitted, moved = fitted_boards(checked, library, reasoned=not noise.measured)
-    return containing_room(fitted, reasoned=not noise.measured), changed + corrected + moved
+    return containing_room(fitted, reasoned=not noise.measured, feet_seen=feet_seen), changed + corrected + moved
 
 
 def _in_white_light(room: Architecture, illuminant: Illuminant) -> Architecture:

@@ -172,3 +172,21 @@ def test_a_wall_does_not_come_past_what_stands_before_it() -> None:
 def test_a_wall_without_anything_against_it_stays() -> None:
     _, scene = standing_against_the_wall(before_m=0.1)
     assert wall_y(containing_room(scene, reasoned=True)) == pytest.approx(2.5)
+
+
+def test_from_a_photo_alone_a_wall_is_at_the_foot_of_its_door() -> None:
+    room = Room(LIBRARY)
+    half = LIBRARY.shape("wardrobe_12").size_m[0] / 2
+    room.put("wardrobe_12", (0.0, 2.2 - half, 1.1), yaw=-np.pi / 2, on="wall_1", relation="mounted on")
+    scene = room.scene(architecture=sliver(), camera=looking_north(5.0))
+    assert wall_y(containing_room(scene, reasoned=True)) == pytest.approx(2.5)
+    scene = replace(scene, objects=(replace(scene.objects[0], category="door"),))
+    assert wall_y(containing_room(scene, reasoned=True)) == pytest.approx(2.2, abs=0.02)
+
+
+def test_what_shows_its_foot_says_more_of_a_wall_than_what_does_not() -> None:
+    _, scene = standing_against_the_wall(0.3, before_m=-0.1)
+    against, before = scene.objects
+    assert wall_y(containing_room(scene, reasoned=True)) == pytest.approx(2.5)
+    assert wall_y(containing_room(scene, reasoned=True, feet_seen={against.id})) == pytest.approx(2.2, abs=0.02)
+    assert wall_y(containing_room(scene, reasoned=True, feet_seen={before.id})) == pytest.approx(2.5)

@@ -175,6 +175,21 @@ def test_a_lamp_away_from_its_wall_stands_on_what_is_right_below_it(room: Room) 
     assert checked.support_of(lamp).parent == table
 
 
+@pytest.mark.parametrize(
+    ("above_m", "behind_m", "stands"), [(0.005, 0.06, True), (0.05, 0.06, False), (0.005, 0.0, False)]
+)
+def test_a_clock_near_its_wall_stands_where_its_measured_foot_is_clearly_nearer(
+    room: Room, above_m: float, behind_m: float, *, stands: bool
+) -> None:
+    top, (depth, _, height) = LIBRARY.shape("cabinet_10").size_m[2], LIBRARY.shape("lamp_16").size_m
+    cabinet = room.put("cabinet_10", (0.0, 2.25, top / 2), yaw=-np.pi / 2)
+    at = (0.0, 2.5 - behind_m - depth / 2, top + above_m + height / 2)
+    clock = room.put("lamp_16", at, on="wall_2", relation="mounted on", yaw=-np.pi / 2)
+    room.objects[-1] = replace(room.objects[-1], category="clock")
+    checked, _ = checked_supports(room.scene(camera=looking_north()), LIBRARY, MEASURED)
+    assert checked.support_of(clock).parent == (cabinet if stands else "wall_2")
+
+
 def test_a_door_stands_on_the_floor_where_it_was_measured_far_from_its_wall(room: Room) -> None:
     door = room.put("wardrobe_12", (0.0, 1.0, 1.1), on="wall_2", relation="mounted on")
     room.objects[0] = replace(room.objects[0], category="door")
