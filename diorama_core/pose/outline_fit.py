@@ -16,6 +16,7 @@ from dataclasses import dataclass
 import numpy as np
 from jaxtyping import Float
 
+from diorama_core.geometry.observed import Observed
 from diorama_core.geometry.silhouette import PoseBatch, ShapeCaster
 from diorama_core.pose.mask_observations import Evidence
 from diorama_core.scene.types import Pose, yaw_rotation
@@ -28,7 +29,7 @@ GAIN = 0.01
 """Of the cost, a logarithm: less is no better."""
 NOISE_FLOOR = 0.03
 """Disagreement, 0 to 1, below which two poses count as equal: the resolution of the outlines."""
-RESIZED_SIGMA = 0.15
+RESIZED_SIGMA = 0.3
 """Standard deviation of an extent's logarithm against where it was, of things that are seen whole."""
 OF_BORDER = 2.0
 """A box has two opposite pairs of sides: half of it on the photo's border leaves an extent open."""
@@ -88,10 +89,15 @@ def _costs(
     evidence: Evidence, caster: ShapeCaster, moves: _Moves, start: Float[np.ndarray, "3"]
 ) -> Float[np.ndarray, "p"]:
     """Disagreement with the picture and distance from the size at the start, as logarithms."""
-    poses, seen = _batch(moves), evidence.seen
+    poses = _batch(moves)
+    agreement = np.log(evidence.errors(caster, poses) + NOISE_FLOOR)
+    return agreement + resizing_cost(evidence.seen, poses.scale / start)
+
+
+def resizing_cost(seen: Observed, factors: Float[np.ndarray, "p 3"]) -> Float[np.ndarray, "p"]:
+    """What speaks against extents that are so many times what they were, as a logarithm; nearly all where it is cut."""
     sigma = RESIZED_SIGMA * max(1.0 - OF_BORDER * seen.border_share - seen.hidden_share, MIN_SEEN)
-    resized = np.log(poses.scale / start)
-    return np.log(evidence.errors(caster, poses) + NOISE_FLOOR) + 0.5 * (resized**2).sum(axis=1) / sigma**2
+    return np.asarray(0.5 * (np.log(factors) ** 2).sum(axis=1) / sigma**2)
 
 
 def _resizings(resize: bool, round: bool) -> tuple[tuple[tuple[int, ...], int], ...]:
