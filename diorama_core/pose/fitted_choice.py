@@ -3,8 +3,8 @@
 Shapes are ranked in the poses in which they were compared as wholes. A design whose profile or size is another is a bad
 match there and the right one afterwards: what round things look like is known only when their profile was measured. So
 where the first candidate does not fit well at its best, others are fitted too: the likeliest bodies of revolution, of
-which a few are enough, since all get the same profile, and, where depth tells forms from one another or the first fits
-badly, the next ones.
+which a few are enough, since all get the same profile, and the next ones, where the first fits badly in a photo alone.
+Measured depth has told them from one another already, with what is seen within the outline (`details`).
 """
 
 from __future__ import annotations
@@ -26,9 +26,9 @@ from diorama_core.scene.types import Candidate
 GOOD_FIT = 0.08
 """Disagreement with the picture, 0 to 1, below which the first candidate stays."""
 POOR_FIT = 0.3
-"""Disagreement from which on the next ones are fitted from a photo alone, too."""
+"""Disagreement from which on the next ones are fitted from a photo alone."""
 COMPARED, TURNED = 3, 2
-"""Candidates that are fitted in those cases and where depth was measured, and bodies of revolution that always are."""
+"""Candidates that are fitted in that case, and bodies of revolution that always are."""
 OF_RANK, OF_FIT = 0.5, 2.0
 """What the ranks from before the fit and the fits themselves say of them, as factors of logarithms."""
 NOISE_FLOOR = 0.03
@@ -53,7 +53,7 @@ class FittedChoice:
         first = self._error(one.candidates[0], evidence, outlined)
         if first < GOOD_FIT:
             return one
-        by_rank = evidence.surface is not None or first >= POOR_FIT
+        by_rank = evidence.surface is None and first >= POOR_FIT
         errors = {
             k: self._error(one.candidates[k], evidence, outlined) for k in _compared(one.candidates, by_rank, outlined)
         }

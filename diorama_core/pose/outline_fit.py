@@ -3,6 +3,10 @@
 Shapes are compared as wholes before they are made to measure; what fits them best may not be what fits the shape that
 was chosen in the end. Each side of the box is tried a little farther out or in with the opposite one in place, the base
 stays where it is, and every step is the best of all, as long as one agrees better.
+
+How large it is was found with more than its outline (what its kind measures, where it stands, what it carries). So its
+size changes only as far as the agreement pays for it, and hardly where it is cut or hidden: an outline that ends at the
+photo's border does not show where the thing ends.
 """
 
 from __future__ import annotations
@@ -12,6 +16,7 @@ from dataclasses import dataclass
 import numpy as np
 from jaxtyping import Float
 
+from diorama_core.geometry.observed import Observed
 from diorama_core.geometry.silhouette import PoseBatch, ShapeCaster
 from diorama_core.pose.mask_observations import Evidence
 from diorama_core.scene.types import Pose, yaw_rotation
@@ -20,8 +25,15 @@ STEPS = (0.06, 0.03, 0.015)
 """Of an extent, and radians, from coarse to fine."""
 ROUNDS = 5
 """Moves at each of them, as long as they help: sides, place and turn may all be a little off."""
-GAIN = 0.002
-"""Of the disagreement, 0 to 1: less is no better."""
+GAIN = 0.01
+"""Of the cost, a logarithm: less is no better."""
+NOISE_FLOOR = 0.03
+"""Disagreement, 0 to 1, below which two poses count as equal: the resolution of the outlines."""
+RESIZED_SIGMA = 0.3
+"""Standard deviation of an extent's logarithm against where it was, of things that are seen whole."""
+OF_BORDER = 2.0
+"""A box has two opposite pairs of sides: half of it on the photo's border leaves an extent open."""
+MIN_SEEN = 0.05
 MIN_TRUST = 0.5
 """Masks that are trusted less do not say it so exactly, unless depth does."""
 
@@ -60,16 +72,32 @@ def fitted_pose(
     """
     if evidence.surface is None and evidence.seen.mask_trust < MIN_TRUST:
         return pose
-    error = float(evidence.errors(caster, _batch(_Moves([pose.R_world_object], [pose.position], [pose.scale])))[0])
+    start = pose.scale
+    cost = float(_costs(evidence, caster, _Moves([pose.R_world_object], [pose.position], [pose.scale]), start)[0])
     for step in STEPS:
         for _ in range(ROUNDS):
             moves = _neighbours(pose, np.asarray(shape_size_m), step, _resizings(resize, caster.round_from_above))
-            errors = evidence.errors(caster, _batch(moves))
-            best = int(np.argmin(errors))
-            if errors[best] >= error - GAIN:
+            costs = _costs(evidence, caster, moves, start)
+            best = int(np.argmin(costs))
+            if costs[best] >= cost - GAIN:
                 break
-            error, pose = float(errors[best]), Pose(moves.R[best], moves.position[best], moves.scale[best])
+            cost, pose = float(costs[best]), Pose(moves.R[best], moves.position[best], moves.scale[best])
     return pose
+
+
+def _costs(
+    evidence: Evidence, caster: ShapeCaster, moves: _Moves, start: Float[np.ndarray, "3"]
+) -> Float[np.ndarray, "p"]:
+    """Disagreement with the picture and distance from the size at the start, as logarithms."""
+    poses = _batch(moves)
+    agreement = np.log(evidence.errors(caster, poses) + NOISE_FLOOR)
+    return agreement + resizing_cost(evidence.seen, poses.scale / start)
+
+
+def resizing_cost(seen: Observed, factors: Float[np.ndarray, "p 3"]) -> Float[np.ndarray, "p"]:
+    """What speaks against extents that are so many times what they were, as a logarithm; nearly all where it is cut."""
+    sigma = RESIZED_SIGMA * max(1.0 - OF_BORDER * seen.border_share - seen.hidden_share, MIN_SEEN)
+    return np.asarray(0.5 * (np.log(factors) ** 2).sum(axis=1) / sigma**2)
 
 
 def _resizings(resize: bool, round: bool) -> tuple[tuple[tuple[int, ...], int], ...]:

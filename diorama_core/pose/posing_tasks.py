@@ -20,6 +20,7 @@ from diorama_core.pose.agree import (
     SETS,
 )
 from diorama_core.pose.appearance_likelihood import AppearanceLikelihood, cells_for
+from diorama_core.pose.details import Details
 from diorama_core.pose.facing import Facing, WallSamples, facing_of, wall_samples
 from diorama_core.pose.hypotheses import Anchor, anchor_of
 from diorama_core.pose.mask_observations import Evidence
@@ -45,6 +46,8 @@ class PosingTask:
     """Where depth was measured."""
     close: AppearanceLikelihood | None
     """Where depth was measured."""
+    details: Details | None
+    """Where depth was measured: doubtful poses put a shape's edges and parts elsewhere."""
     facings: Mapping[str, Facing]
     """Of a thing without a name how it would face as each kind that its shapes are of."""
 
@@ -152,11 +155,12 @@ class _Surroundings:
         )
         foot_m = foot_height_m(depth, item.mask, camera) if held_by == "floor" else None
         measured = MeasuredObject.of(item.mask, fine, cuboid, anchor, self.walls, foot_m)
+        details = None if measured is None else Details.of(rgb, windows[1])
         close = None
         if measured is not None and surfaces[2] is not None:
             close = AppearanceLikelihood.of(rgb, item.mask, windows[2], surfaces[2], cuboid.size_m)
         carried = tuple(self.cuboids[j] for j, parent in enumerate(self.parents) if parent == i)
-        return PosingTask(item, cuboid, anchor, carried, coarse, fine, measured, close, facings)
+        return PosingTask(item, cuboid, anchor, carried, coarse, fine, measured, close, details, facings)
 
     def _facing(self, i: int, kind: str, on_wall: Anchor | None) -> Facing:
         """How one object would face as a kind, the others being what they most likely are."""

@@ -265,10 +265,13 @@ class RenderAndCompare:
 
 
 def _rank(task: PosingTask, measured: MeasuredObject, tried: _Tried, poses: PoseBatch, error: float) -> float:
-    """What retrieval, the picture and what holds the object say about a posed shape, where depth was measured."""
+    """What retrieval, the picture and what holds the object say of a posed shape, where depth was measured."""
     similarity = task.fine.log_likelihood(error, poses.scale[0], tried.limits)
     stands = max(float(measured.log_likelihood(poses, tried.limits)[0]), _MIN_STANDING)
-    return _RETRIEVAL_WITH_DEPTH * tried.liked + similarity + stands
+    told = 0.0
+    if task.details is not None:
+        told = task.details.log_likelihood(tried.appearance, task.fine.hits(tried.appearance.caster, poses))
+    return _RETRIEVAL_WITH_DEPTH * tried.liked + similarity + stands + told
 
 
 def _worth_refining(

@@ -22,7 +22,7 @@ from diorama_core.library.furniture.girth import KNOTS, MAX_PERCENT, MIN_PERCENT
 from diorama_core.library.furniture.measures import can_be_made, can_be_turned, made_id
 from diorama_core.library.record import BUILT_IN, ShapeLibrary, record_of
 from diorama_core.pose.mask_observations import Evidence
-from diorama_core.pose.outline_fit import fitted_pose
+from diorama_core.pose.outline_fit import fitted_pose, resizing_cost
 from diorama_core.scene.types import Camera, Pose
 
 RADII = np.linspace(0.02, 1.6, 80)
@@ -40,7 +40,8 @@ hides the object begins."""
 MAX_NARROW = 2
 """Heights at which the body may be narrower than can be made: at more of them it is no such body, or not as high."""
 MUCH_BETTER, NOISE_FLOOR = 0.85, 0.03
-"""Another profile must bring the disagreement with the picture, and what two shapes may differ by, below this share."""
+"""Another profile must bring the disagreement with the picture, and what two shapes may differ by, below this
+share; the lower, the more the body is resized: a glass seen from above became a bowl."""
 MAX_FACES = 5000
 """Of a shape: the wires of a basket are no profile."""
 SECTORS, MAX_UNEVEN, MIN_EVEN = 8, 0.15, 0.7
@@ -180,9 +181,11 @@ def turned(
     ]
     errors = [e.error(caster, p) for e, p in zip(evidence, fitted, strict=True)]
     now = float(np.mean(errors))
-    if now + NOISE_FLOOR > MUCH_BETTER * (error + NOISE_FLOOR):
-        return None
     whole = np.round(size * fitted[0].scale, 3)
+    grown = whole / (np.ptp(mesh.bounds, axis=0) * poses[0].scale)
+    cost = float(np.mean([resizing_cost(e.seen, grown[None])[0] for e in evidence]))
+    if np.log(now + NOISE_FLOOR) + cost > np.log(MUCH_BETTER * (error + NOISE_FLOOR)):
+        return None
     if not can_be_made(shape_id, whole):
         return None
     at_scale = tuple(Pose(p.R_world_object, p.position, np.ones(3)) for p in fitted)

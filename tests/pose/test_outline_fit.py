@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 import trimesh
@@ -63,6 +65,15 @@ def test_the_best_pose_and_doubtful_masks_move_nothing() -> None:
     assert np.abs(best.position - TRUE.position).max() < 0.02
     doubtful = evidence(False, trust=0.3)
     assert fitted_pose(doubtful, CASTER, off(), SIZE, resize=True) == off()
+
+
+@pytest.mark.parametrize("cut", [{"border_share": 0.5}, {"hidden_share": 0.95}])
+def test_what_is_cut_or_hidden_keeps_its_size(cut: dict[str, float]) -> None:
+    whole = evidence(False)
+    partly = replace(whole, seen=replace(whole.seen, **cut))
+    assert fitted_pose(whole, CASTER, off(), SIZE, resize=True).scale[1] < 1.05
+    found = fitted_pose(partly, CASTER, off(), SIZE, resize=True)
+    assert found.scale == pytest.approx(off().scale, rel=0.02)
 
 
 def test_what_is_round_from_above_stays_round() -> None:

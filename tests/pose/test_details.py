@@ -1,0 +1,74 @@
+"""What a photo shows within an outline, and which of two shapes of one outline it tells."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+import trimesh
+
+from diorama_core.geometry.observed import Observed, observe
+from diorama_core.geometry.shape_appearance import ShapeAppearance
+from diorama_core.geometry.silhouette import PoseBatch
+from diorama_core.pose.details import Details
+from diorama_core.scene.types import Pose
+from tests.pose.rooms import camera_at
+
+CAMERA = camera_at()
+POSE = Pose.upright((0.0, 3.0, 0.6), np.deg2rad(-90.0))
+LIGHT, DARK, BLUE = (200, 180, 150, 255), (90, 70, 50, 255), (60, 70, 150, 255)
+
+
+def block(*colours: tuple[int, int, int, int]) -> ShapeAppearance:
+    """A block of layers as high as one another, from below, of these colours."""
+    layers = []
+    for k in range(len(colours)):
+        layer = trimesh.creation.box((0.4, 1.0, 1.2 / len(colours)))
+        layers.append(layer.apply_translation((0.0, 0.0, -0.6 + (k + 0.5) * 1.2 / len(colours))))
+    whole = trimesh.util.concatenate(layers)
+    rgba = np.repeat(np.array(colours, np.uint8), 12, axis=0)
+    vertices, faces = np.asarray(whole.vertices, np.float32), np.asarray(whole.faces, np.int32)
+    nothing = np.zeros(len(faces), np.uint8)
+    return ShapeAppearance(vertices, faces, rgba[::12, :3], np.ones(len(colours)), rgba, nothing)
+
+
+def photo_of(shape: ShapeAppearance, brightness: float) -> tuple[np.ndarray, Observed]:
+    """The block in its colours, in some light."""
+    k = CAMERA.intrinsics
+    x, y = np.meshgrid(np.arange(k.width) + 0.5, np.arange(k.height) + 0.5)
+    batch = PoseBatch(POSE.R_world_object[None], POSE.position[None], POSE.scale[None])
+    hits = shape.caster.cast(CAMERA.position, CAMERA.rays(np.stack([x.ravel(), y.ravel()], axis=1)), batch)
+    mask = hits.covered.reshape(k.height, k.width)
+    rgb = shape.face_rgba[np.where(hits.covered[0], hits.triangles[0], 0), :3].reshape(k.height, k.width, 3)
+    rows, columns = np.nonzero(mask)
+    box = (float(columns.min()), float(rows.min()), float(columns.max() + 1), float(rows.max() + 1))
+    lit = np.where(mask[..., None], brightness * rgb, 60).astype(np.uint8)
+    return lit, observe(CAMERA, box, mask, 1.0, (), 56)
+
+
+def told(details: Details, seen: Observed, shape: ShapeAppearance) -> tuple[float, float]:
+    """Share of colours explained, and the log likelihood."""
+    batch = PoseBatch(POSE.R_world_object[None], POSE.position[None], POSE.scale[None])
+    hits = shape.caster.cast(seen.origin_world, seen.directions_world, batch)
+    return details.explained_by_parts(shape, hits), details.log_likelihood(shape, hits)
+
+
+@pytest.mark.parametrize("brightness", [0.4, 1.0])
+def test_parts_where_the_picture_changes_its_colour_come_first_whatever_their_colours(brightness: float) -> None:
+    true = block(DARK, LIGHT)
+    rgb, seen = photo_of(true, brightness)
+    details = Details.of(rgb, seen)
+    same, recoloured = told(details, seen, true), told(details, seen, block(BLUE, LIGHT))
+    plain, thirds = told(details, seen, block(LIGHT)), told(details, seen, block(DARK, LIGHT, BLUE))
+    assert same[0] > 0.9
+    assert recoloured[0] == pytest.approx(same[0])
+    assert plain[0] == pytest.approx(0.0)
+    assert thirds[0] < same[0]
+    assert same[1] > max(plain[1], thirds[1])
+
+
+def test_a_picture_of_one_colour_and_a_shape_without_any_say_nothing_of_parts() -> None:
+    true = block(DARK, LIGHT)
+    rgb, seen = photo_of(true, 1.0)
+    assert told(Details.of(np.full_like(rgb, 128), seen), seen, true)[0] == pytest.approx(0.0)
+    unknown = block((0, 0, 0, 0), (0, 0, 0, 0))
+    assert told(Details.of(rgb, seen), seen, unknown)[0] == 0.0
