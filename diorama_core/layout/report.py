@@ -98,7 +98,7 @@ def _structure(
     centre = p[supported] + np.matmul(own, (contact * size / 2)[..., None])[..., 0]
     aligned = (outward * here.normal).sum(axis=1) <= -np.cos(ALIGNED_RAD)
     placed = np.abs((centre * here.normal).sum(axis=1) - here.level) <= PLACED_M
-    reach = np.array([reach_of(problem.bearing[i], R[i], scale[i], m) for i, m in zip(supported, here.outward)])
+    reach = np.array([reach_of(problem.footing[i], R[i], scale[i], m) for i, m in zip(supported, here.outward)])
     reach = reach.reshape(here.offset.shape)
     past = np.matmul(here.outward, centre[..., None])[..., 0] + reach - here.offset
     half = 0.5 * (np.abs(np.matmul(here.normal[:, None, :], own)[:, 0]) * size).sum(axis=1)

@@ -98,12 +98,6 @@ class PhotoObservations:
         least[i] = np.minimum(least[i], most[i])
         return replace(self, most=most, least=least)
 
-    def of_size(self, i: int, scale: Float[np.ndarray, "3"]) -> PhotoObservations:
-        """The same with the size of one object decided."""
-        least, most = self.least.copy(), self.most.copy()
-        least[i] = most[i] = scale
-        return replace(self, least=least, most=most)
-
     def at_heights(self, members: Int[np.ndarray, " m"], scale: Float[np.ndarray, " n"]) -> PhotoObservations:
         """The same with the heights of some objects decided: the scales of all along their own up axes."""
         least, most = self.least.copy(), self.most.copy()

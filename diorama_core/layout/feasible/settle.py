@@ -186,7 +186,6 @@ def _seen_from_the_edge(
         return
     grown = 1.0 if eye is None else _nearness(walk.p[i], problem.p[i], eye)
     basis = np.column_stack([side / length, np.zeros(3)])
-    observations = observations.of_size(i, walk.scale[i] / grown)  # it is beside where it was seen, not larger
     start = walk.p[i].copy(), walk.scale[i].copy()
     walk.p[i], walk.scale[i] = observations.fitted(i, walk.R[i], *start, basis, pinned, grown)
     m, slack = _within_support(problem, walk, i, surface)
@@ -299,7 +298,7 @@ def _fit(problem: Problem, walk: Walk, i: int, surface: Surface, m: np.ndarray, 
         for k in footprint:
             axis = walk.R[i][:, k]
             width = float(np.ptp(surface.polygon @ axis)) - 2 * INSET_M
-            factor = max(width, 1e-6) / max(float(np.ptp(problem.bearing[i][:, k]) * walk.scale[i, k]), 1e-6)
+            factor = max(width, 1e-6) / max(float(np.ptp(problem.footing[i][:, k]) * walk.scale[i, k]), 1e-6)
             if SMALLEST_SHRINK <= factor < 1.0:
                 walk.scale[i, k] *= factor
         room = largest_share(m, h - middle, _reach(problem, walk, i, m))
@@ -308,12 +307,12 @@ def _fit(problem: Problem, walk: Walk, i: int, surface: Surface, m: np.ndarray, 
             room = 1.0
         reach = _reach(problem, walk, i, m)
     if room < 1.0:
-        walk.reasons.append(f"larger than its support: {label} overhangs too far")
+        walk.reasons.append(f"larger than its support: {label} overhangs by {100 * (1 - room):.0f} %")
     return max(min(room, 1.0), 0.0) * reach
 
 
 def _reach(problem: Problem, walk: Walk, i: int, m: np.ndarray) -> np.ndarray:
-    return reach_of(problem.bearing[i], walk.R[i], walk.scale[i], m)
+    return reach_of(problem.footing[i], walk.R[i], walk.scale[i], m)
 
 
 def _into(rows: np.ndarray, slack: np.ndarray) -> Float[np.ndarray, "2"]:

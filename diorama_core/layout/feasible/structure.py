@@ -114,7 +114,7 @@ def with_sizes(
             continue
         world = place if j < 0 else place.at(structure.R[j], p[j], scale[j])
         contact = p[i] + structure.R[i] @ (problem.contact[i] * problem.shape_size[i] * scale[i] / 2)
-        reach = reach_of(problem.bearing[i], structure.R[i], scale[i], world.outward)
+        reach = reach_of(problem.footing[i], structure.R[i], scale[i], world.outward)
         m, slack = sides(world, contact, reach, structure.basis[i])
         owners.append(np.full(len(m), i))
         normals.append(m)

@@ -66,23 +66,19 @@ def _needed(
 ) -> float:
     """What the extent of a load's supporter must be multiplied by for its side to reach the load; 1 where it does.
 
-    A load that is larger than its supporter says more about its own size, and hangs over, as does one that balances.
+    A load that is larger than its supporter says more about its own size, and hangs over.
     """
     j = int(problem.parent[i])
     own = structure.surface[i]
     assert own is not None, "it stands on something"
     place: Surface = own.at(structure.R[j], structure.p[j], structure.scale[j])
     centre, grown = _seen(problem, i, place.level, eye)
-    held, reach = (
-        float(reach_of(points[i], structure.R[i], grown * problem.scale[i], outward[None])[0])
-        for points in (problem.bearing, problem.footing)
-    )
+    reach = float(reach_of(problem.footing[i], structure.R[i], grown * problem.scale[i], outward[None])[0])
     edge = float((place.polygon @ outward).max())
     beyond = float(outward @ centre) + reach + INSET_M - edge
-    balanced = beyond - reach + held <= MIN_BEYOND_M
     half = 0.5 * float(problem.shape_size[j, axis] * structure.scale[j, axis])
     back = float(outward @ structure.p[j]) - half
-    if balanced or 2.0 * reach > edge - back or not _is_near(place, outward, centre):
+    if beyond <= MIN_BEYOND_M or 2.0 * reach > edge - back or not _is_near(place, outward, centre):
         return 1.0
     return 1.0 + beyond / max(edge - back, 1e-6)
 

@@ -14,11 +14,9 @@ from jaxtyping import Bool, Float, Int
 
 from diorama_core.geometry.convex import ConvexPart
 from diorama_core.geometry.sat import PackedParts, pack_parts
-from diorama_core.layout.problem.balance import bearing_of, centre_of_mass
 from diorama_core.layout.problem.footing import box_footing, footing_of
 from diorama_core.layout.problem.parts import parts_of_shape
 from diorama_core.layout.problem.supports import (
-    FLAT,
     Surface,
     choose_contact,
     choose_surface,
@@ -67,9 +65,6 @@ class Problem:
     """Outward normal of the touching face, in the object frame."""
     footing: tuple[Float[np.ndarray, "_ 3"], ...]
     """Points of each object at scale 1, in its frame, that touch its supporter, flattened onto the contact face."""
-    bearing: tuple[Float[np.ndarray, "_ 3"], ...]
-    """The points of that face that must be on its supporter: the footing, or where a firm object stands on another the
-    part of it within which it stands safely."""
     box_px: Float[np.ndarray, "n 4"]
     """Where the photo shows each object: x1, y1, x2, y2; NaN where nothing says so."""
     free: Bool[np.ndarray, " n"]
@@ -186,11 +181,6 @@ def build_problem(
     p = np.array([o.pose.position for o in objects]).reshape(-1, 3)
     R = np.array([o.pose.R_world_object for o in objects]).reshape(-1, 3, 3)
     sizes = np.array([o.size_m for o in objects]).reshape(-1, 3)
-    footing = tuple(
-        footing_of(own, face) if share == 1.0 else box_footing(share * np.asarray(o.shape_size_m), face)
-        for o, own, share, face in zip(objects, parts, firm, contacts)
-    )
-    stands = [j >= 0 and s is not None and float(s.normal[2]) > FLAT for j, s in zip(parent, surfaces)]
     return Problem(
         ids=tuple(o.id for o in objects),
         labels=tuple(o.label for o in objects),
@@ -205,10 +195,9 @@ def build_problem(
         surface=tuple(surfaces),
         levels=tuple(levels),
         contact=contacts,
-        footing=footing,
-        bearing=tuple(
-            bearing_of(touching, face, centre_of_mass(shape.content_hash, own)) if safe and share == 1.0 else touching
-            for touching, face, shape, own, safe, share in zip(footing, contacts, shapes, parts, stands, firm)
+        footing=tuple(
+            footing_of(own, face) if share == 1.0 else box_footing(share * np.asarray(o.shape_size_m), face)
+            for o, own, share, face in zip(objects, parts, firm, contacts)
         ),
         box_px=np.array([o.box_px or (np.nan,) * 4 for o in objects], dtype=np.float64).reshape(-1, 4),
         free=free,

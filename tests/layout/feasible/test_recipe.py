@@ -208,7 +208,7 @@ def test_wrong_graphs_stay_finite_and_inside(seed: int) -> None:
 
 def test_larger_than_its_support_is_named(room: Room) -> None:
     stand = room.put("night_stand_11", (0, 0, 0.25))
-    room.put("box_24", (0.0, 0, 0.7), on=stand, scale=(2.6, 2.6, 1.0))
+    room.put("box_24", (0.0, 0, 0.7), on=stand, scale=(1.9, 1.9, 1.0))
     _, report = solve(room.scene())
     assert any(r.startswith("larger than its support") for r in report.reasons)
 
