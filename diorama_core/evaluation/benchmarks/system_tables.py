@@ -80,6 +80,7 @@ def system_table(results: Results, *, offered: bool = False) -> Table:
 
 
 _SCENE = (
+    (Column("kind", better="↑"), "kind"),
     (Column("relation", better="↑"), "relation"),
     (Column("structure", better="↑"), "structure"),
     (Column("boxes cm", ".2f", "↓"), "box_overlap_cm"),
@@ -107,7 +108,8 @@ def scene_table(results: Results) -> Table:
         rows.append(_scene_row(name, [c.scores for c in cases]))
     note = (
         "own Acc: each object within 20 cm, 20 degrees and 20 % of its truth, which is the only share here that knows "
-        "where things should be. height off: median error of the camera's height, as a share. structure and supported "
+        "where things should be. kind: share of objects whose shape is of the true kind. height off: median "
+        "error of the camera's height, as a share. structure and supported "
         "are measured against the scene's own graph and say that it is consistent, not that it is true; relation and "
         "truly supported are measured against the true graph. meshes: litres that meshes share although neither "
         "carries the other. Overlaps, chamfer and F are means over the rooms in which anything came out. out of bounds "

@@ -20,7 +20,7 @@ from diorama_core.geometry.projection import box_iou
 from diorama_core.layout.exact import drift, mesh_overlap_m3, stable_share
 from diorama_core.layout.problem.problem import build_problem
 from diorama_core.layout.report import measure
-from diorama_core.library.record import ShapeLibrary
+from diorama_core.library.record import ShapeLibrary, record_of
 from diorama_core.render.raycast import Caster, MeshCaster
 from diorama_core.scene.room_edits import floor_height
 from diorama_core.scene.types import Camera, Intrinsics, Scene, SceneObject
@@ -90,6 +90,8 @@ class SceneScores:
     any."""
     f_score: float
     """Of the surfaces of both scenes, within `NEAR_M`."""
+    kind: float
+    """Share of the objects asked for whose shape is of the true kind."""
 
     @classmethod
     def failed(cls, asked: int) -> SceneScores:
@@ -102,6 +104,7 @@ class SceneScores:
             asked, 0, pairs, every, own, pairs, pairs, None, None, relation=0.0, orientation=0.0, placement=0.0,
             structure=0.0, box_overlap_cm=None, mesh_overlap_l=None, supported=0.0, truly_supported=0.0,
             out_of_bounds=1.0, stable=None, drift_cm=None, image_iou=0.0, chamfer_cm=None, f_score=0.0,
+            kind=0.0,
         )  # fmt: skip
 
 
@@ -152,7 +155,17 @@ def scene_scores(view: TruthView, scene: Scene, library: ShapeLibrary, *, physic
         image_iou=image_iou(view, scene, match, library),
         chamfer_cm=100 * chamfer_m,
         f_score=f_score,
+        kind=kind_share(truth, match, library),
     )
+
+
+def kind_share(truth: Sequence[SceneObject], match: Sequence[SceneObject | None], library: ShapeLibrary) -> float:
+    """Share of the true objects whose counterpart has a shape of their kind."""
+    right = [
+        m is not None and record_of(library, m.shape_id).category == record_of(library, t.shape_id).category
+        for t, m in zip(truth, match, strict=True)
+    ]
+    return float(np.mean(right)) if right else 1.0
 
 
 def _height_off(scene: Scene, view: TruthView) -> float | None:
