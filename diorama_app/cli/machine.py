@@ -94,9 +94,10 @@ def _cores() -> Finding:
 
 def _accelerator() -> Finding:
     """What onnxruntime, which runs the networks, can use; torch only lays out scenes."""
-    import onnxruntime
-
+    from diorama_core.models.onnxruntime_loading import load_onnxruntime
     from diorama_core.models.runtime import ACCELERATORS
+
+    onnxruntime = load_onnxruntime()
 
     offered = [ACCELERATORS[p] for p in onnxruntime.get_available_providers() if p in ACCELERATORS]
     if offered:

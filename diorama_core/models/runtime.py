@@ -22,6 +22,7 @@ import numpy as np
 
 from diorama_core.errors import Cancelled, UnavailableError
 from diorama_core.io.bounded import shortened
+from diorama_core.models.onnxruntime_loading import load_onnxruntime
 from diorama_core.progress import Progress
 
 _LOG = logging.getLogger(__name__)
@@ -148,7 +149,7 @@ class Session:
 
     def _watched(self, feeds: Mapping[str, np.ndarray], progress: Progress) -> list[Any]:
         """Compute in a thread; tell the graph to stop when the work was cancelled."""
-        import onnxruntime
+        onnxruntime = load_onnxruntime()
 
         options = onnxruntime.RunOptions()
         with ThreadPoolExecutor(1, thread_name_prefix="network") as pool:
@@ -269,7 +270,7 @@ def thread_count() -> int:
 
 def providers() -> list[str]:
     """Execution providers in the order of preference; the processor comes last and alone with DIORAMA_DEVICE=cpu."""
-    import onnxruntime
+    onnxruntime = load_onnxruntime()
 
     cpu = ["CPUExecutionProvider"]
     if os.environ.get("DIORAMA_DEVICE", "").lower() == "cpu":
@@ -289,7 +290,7 @@ def calculates_in_half() -> bool:
 @cache
 def _preload_cuda() -> None:
     """Let onnxruntime find the CUDA and cuDNN libraries that pip installed, where its version can."""
-    import onnxruntime
+    onnxruntime = load_onnxruntime()
 
     preload = getattr(onnxruntime, "preload_dlls", None)
     if preload is not None:
@@ -320,7 +321,7 @@ def _session(path: Path) -> tuple[Any, str]:
     """The graph and what was unusual: on a graphics card where there is one and it serves; else on the processor; and
     with fewer graph optimisations where the full ones fail, as they do for some half-precision graphs.
     """
-    import onnxruntime
+    onnxruntime = load_onnxruntime()
 
     fewer = onnxruntime.GraphOptimizationLevel.ORT_ENABLE_BASIC
     wanted = providers()
@@ -341,7 +342,7 @@ def _session(path: Path) -> tuple[Any, str]:
 
 
 def _options(level: Any) -> Any:
-    import onnxruntime
+    onnxruntime = load_onnxruntime()
 
     options = onnxruntime.SessionOptions()
     options.intra_op_num_threads = thread_count()

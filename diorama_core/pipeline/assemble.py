@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import replace
 
 from diorama_core.artefacts import ArchitectureEstimate, DetectedObject, ObjectGeometry, PosedCandidates
-from diorama_core.library.hyponyms import is_named, meanings
+from diorama_core.library.hyponyms import meanings
 from diorama_core.library.record import ShapeLibrary, record_of
 from diorama_core.library.taxonomy import UNKNOWN
 from diorama_core.scene.support import check_scene
@@ -54,7 +54,7 @@ def _scene_object(
     category = kind if item.category == UNKNOWN.name or kind in meanings(item.label, item.category) else item.category
     return SceneObject(
         id=item.id,
-        label=item.label if is_named(item.label) else category,
+        label=category if item.label == UNKNOWN.name else item.label,
         category=category,
         shape_id=best.shape_id,
         shape_size_m=best.shape_size_m,
