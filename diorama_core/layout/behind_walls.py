@@ -33,6 +33,8 @@ NEVER_HANGS = taxonomy.with_kin(
 """What stands on the floor wherever it is."""
 BEHIND = 0.9
 """An object is behind a wall that is nearer than this share of its distance."""
+_ODDEST = 2
+"""Everything speaks against a carrier."""
 UPRIGHT = 0.98
 """Surfaces whose normals, and objects whose up axes, have a smaller z carry nothing and rest on nothing."""
 
@@ -104,6 +106,8 @@ def _nearer_in_sight(
         x1, y1, x2, y2 = other.box_px or (np.inf, np.inf, -np.inf, -np.inf)
         in_box = bool(x1 <= pixel[0] <= x2 and y1 <= pixel[1] <= y2)
         odd = _oddity(item, other)
+        if odd == _ODDEST and taxonomy.resolve(item.category).category.mount == "floor":
+            continue  # a coat rack is on no chair
         for surface in object_surfaces(library.shape(other.shape_id), other):
             world = surface.in_world(other.pose)
             if float(world.normal @ UP_WORLD) < UPRIGHT or float(sight @ world.normal) >= 0.0:

@@ -65,6 +65,8 @@ def test_a_seat_carries_what_is_not_soft_only_where_nothing_else_is_in_sight(roo
     edges = tuple(s for s in scene.supports if s.child != table)
     only = replace(scene, objects=alone, supports=edges)
     assert checked_supports(only, LIBRARY, REASONED)[0].support_of(plant).parent == seat
+    rack = replace(only, objects=tuple(replace(o, category="coat rack") if o.id == plant else o for o in only.objects))
+    assert checked_supports(rack, LIBRARY, REASONED)[0].support_of(plant).parent != seat
 
 
 @pytest.mark.parametrize("kind", ["plant", "night stand"])
