@@ -44,8 +44,8 @@ def before_wall(
 ) -> tuple[Scene, str] | None:
     """The scene with an object before the wall behind which it would stand, and what to say of it.
 
-    It rests on the object on which the line of sight to its foot ends, and is at the wall where nothing that is known
-    carries it. None where the object is in the room, or must be on the floor.
+    It rests on the object on which the line of sight to its foot ends. What people put on furniture is at the wall
+    where nothing that is known carries it. None where the object is in the room, or must be on the floor.
     """
     wall = _wall_before(scene, item)
     if wall is None:
@@ -56,8 +56,8 @@ def before_wall(
         share, parent = nearer
         held = edits.attach(_along_sight(scene, item, share), Support(item.id, parent))
         return held, f"support changed: {behind} and rests on {label_of(scene, parent)}"
-    if item.category in NEVER_HANGS:
-        return None
+    if item.category not in taxonomy.PORTABLE and taxonomy.resolve(item.category).category.mount != "surface":
+        return None  # a cabinet whose foot is hidden would hang in the air
     at_wall = edits.attach(
         _along_sight(scene, item, _share_before(scene, item, wall)), Support(item.id, wall.id, "mounted on")
     )
