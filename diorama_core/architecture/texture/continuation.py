@@ -1,4 +1,4 @@
-"""A surface's picture continued where nobody saw it: shading spreads smoothly, fine detail is quilted."""
+"""A surface's picture continued where nobody saw it: shading spreads smoothly, fine detail is quilted or made anew."""
 
 from __future__ import annotations
 
@@ -6,7 +6,14 @@ import cv2
 import numpy as np
 from jaxtyping import Bool, Float32, UInt8
 
-from diorama_core.architecture.texture.quilting import broad_shading, detail_continued
+from diorama_core.architecture.texture.gaussian_texture import gaussian_texture, is_gaussian
+from diorama_core.architecture.texture.quilting import (
+    LARGEST_BLOCK_PX,
+    block_size,
+    broad_shading,
+    detail_continued,
+    plain_texels,
+)
 
 FADE_M = 1.2
 """Far from what is seen, shading fades to the plane's plain colour over this length."""
@@ -18,6 +25,8 @@ SEAM_LEVELS = 40.0
 """Not that of what differs by more levels of 255 from the plane's own."""
 CALM_LEVELS = 20.0
 """A floor's light and shade within so many levels of its main colour is carried on."""
+SAMPLE_BROADEST = 0.2
+"""Detail broader than this share of the width of what it is taken from is not made anew."""
 FLOOR_DETAIL, WALL_DETAIL = 45.0, 14.0
 """Detail that deviates by more levels of 255 is no part of the material."""
 
@@ -35,7 +44,8 @@ def completed(
     """The plane's picture: as seen, and where it was not seen, its shading spread smoothly and its detail continued.
 
     Shading spreads through an image pyramid (pull-push, Gortler et al. 1996), which leaves no streaks, and fades to
-    the plain colour; detail is quilted, where enough was seen to copy from.
+    the plain colour; detail is quilted where enough was seen to copy from, or, where that is little and without
+    figures, made with the same covariance.
 
     Args:
         colours: 0 to 255, meaningful where seen.
@@ -64,13 +74,31 @@ def completed(
     beside = broad_shading(colours, seen, breadth_m / pixel_m)
     alike = seen & (np.abs(beside - smooth).max(axis=-1) < (CALM_LEVELS if ground else SEAM_LEVELS))
     filled = near * _pull_push(beside * alike[..., None], alike.astype(np.float32)) + (1.0 - near) * filled
-    detail = detail_continued(colours - shading, own, strongest, source=sharp)
+    detail = _detail(colours - shading, own, strongest, sharp)
     if detail is not None:
         filled = filled + detail
     # The first texels inside a mask's border still carry its rim; a soft seam hides the step.
     inner = cv2.erode(seen.astype(np.float32), np.ones((5, 5), np.uint8))
     mixed = cv2.GaussianBlur(inner, (0, 0), 2.0)[..., None] * seen[..., None]
     return (mixed * colours + (1.0 - mixed) * filled).clip(0, 255).astype(np.uint8)
+
+
+def _detail(
+    detail: Float32[np.ndarray, "h w 3"],
+    own: Bool[np.ndarray, "h w"],
+    strongest: float,
+    sharp: Bool[np.ndarray, "h w"] | None,
+) -> Float32[np.ndarray, "h w 3"] | None:
+    """Detail everywhere: copied in blocks where large ones were seen or it has lines and figures, else made anew."""
+    sample = plain_texels(detail, own, strongest, sharp)
+    size = block_size(sample)
+    if size is None or size == LARGEST_BLOCK_PX or not is_gaussian(detail, sample):
+        return detail_continued(detail, own, strongest, source=sharp)
+    # What is nearly as broad as the sample is rather light and shade.
+    width = 2.0 * float(cv2.distanceTransform(np.pad(sample, 1).astype(np.uint8), cv2.DIST_L2, 5).max())
+    finer = detail - broad_shading(detail, sample, SAMPLE_BROADEST * width)
+    made = gaussian_texture(finer, sample)
+    return np.asarray(np.where(own[..., None], detail, made), dtype=np.float32)
 
 
 def _pull_push(

@@ -2,7 +2,8 @@
 
 What nobody marked is projected onto the floor like the floor itself. The floor's material covers much of what is seen,
 shows on many sides, and is there right before the feet of what stands on it; everything of another colour is rejected,
-unless it is a pattern of the material: intermingled with it nearly everywhere.
+unless it is a pattern of the material, intermingled with it nearly everywhere, or turns into it gradually: so does the
+same material in the light of a window and of a lamp, while things have edges.
 """
 
 from __future__ import annotations
@@ -13,6 +14,7 @@ import cv2
 import numpy as np
 from jaxtyping import Bool, Float, Float32, UInt8
 
+from diorama_core.architecture.texture.quilting import broad_shading
 from diorama_core.artefacts import DetectedObject
 from diorama_core.library.taxonomy import with_kin
 
@@ -52,8 +54,15 @@ _SHADOW_L = 14.0
 """What is so much darker is a shadow of what stands there, which will not stay where it is."""
 _PATTERN_M, _PATTERN_SHARE = 0.15, 0.75
 """Colours of a pattern are within this distance of each other over at least this share of both."""
-_PATTERN_COLOURS = 2
+_OTHER_COLOURS = 4
+"""So many colours beside the main one are looked at."""
 _MIN_OF_PATTERN = 0.03
+_GRADUAL = 0.8 / 0.1
+"""Light changes a floor's colour by fewer tolerances a metre than this, an edge by more."""
+_GRADUAL_M = 0.04
+"""Finer than this is grain."""
+_PIECE_M2, _BORDER_M2 = 0.01, 0.003
+"""Smaller pieces of another colour are not looked at, nor those that share a smaller border with the floor."""
 _SPECK_M, _RIM_M = 0.02, 0.03
 """Foreign pieces narrower than the one are grain; so much around the others has their rims and shadows."""
 
@@ -134,20 +143,74 @@ def floor_texels(
         white,
     )
     own = np.zeros(seen.shape, dtype=bool)
-    alike = _of_material(lab, main)
-    own[rows, columns] = alike
-    for _ in range(_PATTERN_COLOURS):
-        left = ~alike
+    own[rows, columns] = _of_material(lab, main)
+    picture = np.zeros((*seen.shape, 3), np.float32)
+    picture[rows, columns] = lab
+    others: list[np.ndarray] = []
+    looked_at = own[rows, columns]
+    for _ in range(_OTHER_COLOURS):
+        left = ~looked_at
         if left.mean() < _MIN_OF_PATTERN:
             break
-        other = _of_material(lab, _fullest(lab[left][:: max(1, int(left.sum()) // _SAMPLES)])) & left
-        of_other = np.zeros(seen.shape, dtype=bool)
-        of_other[rows, columns] = other
-        if other.mean() < _MIN_OF_PATTERN or not _intermingled(own, of_other, pixel_m):
+        found = _of_material(lab, _fullest(lab[left][:: max(1, int(left.sum()) // _SAMPLES)])) & left
+        if found.mean() < _MIN_OF_PATTERN:
             break
-        own |= of_other
-        alike |= other
+        looked_at |= found
+        other = np.zeros(seen.shape, dtype=bool)
+        other[rows, columns] = found
+        if _intermingled(own, other, pixel_m):
+            own |= other
+        else:
+            others.append(other & (picture[..., 0] >= main[0] - _SHADOW_L))
+    own |= _turning_into(own, others, _change(picture, seen, pixel_m), pixel_m) if others else False
     return own & ~_grown_pieces(seen & ~own, pixel_m)
+
+
+def _change(
+    picture: Float32[np.ndarray, "h w 3"], seen: Bool[np.ndarray, "h w"], pixel_m: float
+) -> Float32[np.ndarray, "h w 3"]:
+    """How fast colours without their grain change, per metre; nan at the rim of what is seen."""
+    down, across = np.gradient(broad_shading(picture, seen, _GRADUAL_M / pixel_m), axis=(0, 1))
+    change = np.hypot(down, across) / pixel_m
+    change[cv2.erode(seen.astype(np.uint8), np.ones((3, 3), np.uint8), borderValue=0) == 0] = np.nan
+    return np.asarray(change, dtype=np.float32)
+
+
+def _turning_into(
+    own: Bool[np.ndarray, "h w"],
+    others: list[Bool[np.ndarray, "h w"]],
+    change: Float32[np.ndarray, "h w 3"],
+    pixel_m: float,
+) -> Bool[np.ndarray, "h w"]:
+    """The floor with the pieces of other colours whose border with it is gradual, one after another."""
+    reach = _disc(_RIM_M, pixel_m)
+    pieces = [piece for other in others for piece in _pieces(other, _PIECE_M2 / pixel_m**2)]
+    while True:
+        beside = cv2.dilate(own.astype(np.uint8), reach).astype(bool) & ~np.isnan(change[..., 0])
+        turning = [piece for piece in pieces if _gradual(piece, beside, change, reach, pixel_m)]
+        if not turning:
+            return own
+        own = np.logical_or.reduce([own, *turning])
+        pieces = [piece for piece in pieces if not own[piece].all()]
+
+
+def _pieces(mask: Bool[np.ndarray, "h w"], least_px: float) -> list[Bool[np.ndarray, "h w"]]:
+    count, labels, stats, _ = cv2.connectedComponentsWithStats(mask.astype(np.uint8))
+    return [labels == k for k in range(1, count) if stats[k, cv2.CC_STAT_AREA] >= least_px]
+
+
+def _gradual(
+    piece: Bool[np.ndarray, "h w"],
+    beside: Bool[np.ndarray, "h w"],
+    change: Float32[np.ndarray, "h w 3"],
+    reach: UInt8[np.ndarray, "k k"],
+    pixel_m: float,
+) -> bool:
+    """Whether colours change slowly along a piece's border with the texels beside the floor."""
+    border = beside & cv2.dilate(piece.astype(np.uint8), reach).astype(bool)
+    if border.sum() * pixel_m**2 < _BORDER_M2:
+        return False
+    return bool((np.median(change[border], axis=0) < _GRADUAL * _TOLERANCE_LAB).all())
 
 
 def _main_colour(

@@ -17,6 +17,7 @@ BLOCKS_PX = ((96, 200, 384), (48, 24, 49), (32, 60, 33), (20, 400, 21))
 """Sizes of the copied squares, how many must have been seen, and least sides of the picture.
 
 Copies of few small squares show as a weave; large ones hold patterns of carpets and tiles."""
+LARGEST_BLOCK_PX = BLOCKS_PX[0][0]
 BROADEST = 0.1
 """Detail broader than this share of a block is not copied."""
 MIN_SOURCE = 0.005
@@ -51,11 +52,8 @@ def detail_continued(
         seed: Of the draw among equally good places.
         source: The part of it to copy from, unless that is too little; all of it by default.
     """
-    whole = seen & ~_odd(detail, seen, strongest)
-    source = whole if source is None else whole & source
-    size = _block_size(source)
-    if size is None:
-        source, size = whole, _block_size(whole)
+    source = plain_texels(detail, seen, strongest, source)
+    size = block_size(source)
     if size is None:
         return None
     given = detail
@@ -77,7 +75,24 @@ def detail_continued(
     return np.asarray(np.where(seen[..., None], given, out), dtype=np.float32)
 
 
-def _block_size(source: Bool[np.ndarray, "h w"]) -> int | None:
+def plain_texels(
+    detail: Float32[np.ndarray, "h w 3"],
+    seen: Bool[np.ndarray, "h w"],
+    strongest: float,
+    preferred: Bool[np.ndarray, "h w"] | None = None,
+) -> Bool[np.ndarray, "h w"]:
+    """The texels that show the surface without anything on it: the preferred ones, unless those are too few to copy.
+
+    Args:
+        detail, seen, strongest: As for `detail_continued`.
+        preferred: All by default.
+    """
+    plain = np.asarray(seen & ~_odd(detail, seen, strongest))
+    best = plain if preferred is None else plain & preferred
+    return plain if block_size(best) is None else best
+
+
+def block_size(source: Bool[np.ndarray, "h w"]) -> int | None:
     """Side of the blocks to copy from a source; None where it is too little."""
     if source.mean() < MIN_SOURCE:
         return None

@@ -41,7 +41,7 @@ def test_a_colour_between_two_materials_is_neither():
     boards, cream = np.array([160.0, 140.0, 125.0]), np.array([205.0, 200.0, 190.0])
     colours = floor((160.0, 140.0, 125.0))
     colours[60:150] = floor((205.0, 200.0, 190.0), seed=1)[60:150]
-    colours[40:60] = np.linspace(boards, cream, 20)[:, None]
+    colours[56:60] = np.linspace(boards, cream, 4)[:, None]
     own = texels(colours)
     assert own[155:].mean() > 0.95
     assert not own[65:145].any()
@@ -143,3 +143,14 @@ def test_a_dark_floor_beside_as_much_of_a_light_thing_stays_dark():
     rgb = np.concatenate([np.full((500, 3), (236, 196, 140)), np.full((450, 3), (133, 106, 72))]).astype(np.uint8)
     places = np.random.default_rng(0).uniform(0, 100, (950, 2))
     assert np.allclose(np.array(floor_colour(rgb, places, 95.0)) * 255, (133, 106, 72), atol=2)
+
+
+def test_a_floor_that_turns_gradually_from_daylight_to_lamplight_is_one():
+    cold, warm = np.array([150.0, 140.0, 125.0]), np.array([165.0, 135.0, 80.0])
+    share = np.clip((np.arange(SIZE) - 60.0) / 80.0, 0.0, 1.0)[:, None, None]
+    noise = np.random.default_rng(0).normal(0, 4, (SIZE, SIZE, 1))
+    colours = ((1.0 - share) * cold + share * warm + noise).astype(np.float32)
+    assert texels(colours).mean() > 0.95
+    # With an edge it is another thing.
+    step = (np.arange(SIZE) > 100)[:, None, None]
+    assert texels(np.where(step, warm + noise, cold + noise).astype(np.float32)).mean() < 0.6
