@@ -29,6 +29,8 @@ LONGEST_CORD = 1.3
 """A lamp's cord makes it at most so many times as high as it was seen."""
 _MIN_AREA_M2 = 1e-4
 _JOINED_M = 0.02
+_FAR_M = 100.0
+"""Farther behind a wall than any room reaches."""
 
 
 def containing_room(scene: Scene, *, reasoned: bool = False, feet_seen: Collection[str] | None = None) -> Scene:
@@ -52,6 +54,40 @@ def containing_room(scene: Scene, *, reasoned: bool = False, feet_seen: Collecti
         scene = _drawn_out(scene, wall.id)
     prints = [_footprint(scene, o) for o in standing]
     return _with_ceiling(_with_floor_under(scene, [p for p in prints if len(p) >= 3]))
+
+
+def without_floor_behind_walls(scene: Scene, known: Plane) -> Scene:
+    """The scene without the floor that was drawn out behind seen walls under objects that are before them now.
+
+    Args:
+        scene: after its layout.
+        known: the floor before it was drawn out.
+    """
+    floor = scene.architecture.floor
+    if floor is None:
+        return scene
+    standing = [_box_footprint(o) for o in scene.objects if (s := scene.support_of(o.id)) and s.parent == floor.id]
+    here = _section(floor.polygon[:, :2])
+    added = here - _section(known.polygon[:, :2])
+    trimmed = here
+    for wall in scene.architecture.by_role("wall"):
+        drawn = added ^ _behind_wall(wall)
+        if wall.seen and not any((drawn ^ _section(p)).area() > _MIN_AREA_M2 for p in standing):
+            trimmed = trimmed - drawn
+    if here.area() - trimmed.area() < _MIN_AREA_M2:
+        return scene
+    outline = max(trimmed.simplify(_MARGIN_M).to_polygons(), key=_signed_area)
+    return _with_floor_outline(scene, floor, outline)
+
+
+def _behind_wall(wall: Plane) -> manifold3d.CrossSection:
+    """What a wall hides of the plan."""
+    level = np.cross([0.0, 0.0, 1.0], wall.normal)
+    along = wall.polygon @ level
+    ends = [wall.offset * wall.normal + reach * level for reach in (float(along.min()), float(along.max()))]
+    far = [end - _FAR_M * wall.normal for end in ends]
+    corners = np.array([*ends, far[1], far[0]])[:, :2]
+    return _section(corners if _signed_area(corners) > 0.0 else corners[::-1])
 
 
 def _with_ceiling(scene: Scene) -> Scene:
@@ -199,15 +235,18 @@ def _behind(item: SceneObject, wall: Plane, inward_m: float = 0.0) -> float:
 
 def _footprint(scene: Scene, item: SceneObject) -> Float[np.ndarray, "k 2"]:
     """What an object covers of the floor before the walls that were seen, counter-clockwise in plan."""
-    half = item.size_m / 2 + _MARGIN_M
-    signs = np.array([[1, 1, -1], [-1, 1, -1], [-1, -1, -1], [1, -1, -1]])
-    corners = item.pose.position + (signs * half) @ item.pose.R_world_object.T
-    polygon = np.column_stack([corners[:, :2], np.zeros(4)])
+    polygon = np.column_stack([_box_footprint(item), np.zeros(4)])
     for wall in scene.architecture.by_role("wall"):
         if wall.seen and _behind(item, wall) < 0.0:
             level = wall.normal * [1.0, 1.0, 0.0]
             polygon = clip_polygon(polygon, level, wall.offset)
     return polygon[:, :2]
+
+
+def _box_footprint(item: SceneObject) -> Float[np.ndarray, "4 2"]:
+    half = item.size_m / 2 + _MARGIN_M
+    signs = np.array([[1, 1, -1], [-1, 1, -1], [-1, -1, -1], [1, -1, -1]])
+    return np.asarray(item.pose.position + (signs * half) @ item.pose.R_world_object.T)[:, :2]
 
 
 def _with_floor_under(scene: Scene, prints: list[Float[np.ndarray, "_ 2"]]) -> Scene:
@@ -222,6 +261,10 @@ def _with_floor_under(scene: Scene, prints: list[Float[np.ndarray, "_ 2"]]) -> S
     outer = [o for o in outlines if _signed_area(o) > 0]
     # Footprints away from the floor are reached by the hull of both.
     outline = outer[0] if len(outer) == 1 else union.hull().to_polygons()[0]
+    return _with_floor_outline(scene, floor, outline)
+
+
+def _with_floor_outline(scene: Scene, floor: Plane, outline: Float[np.ndarray, "k 2"]) -> Scene:
     height = float(floor.centre[2])
     polygon = np.column_stack([outline, np.full(len(outline), height)])
     wide = replace(floor, polygon=polygon)

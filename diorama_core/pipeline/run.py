@@ -11,8 +11,9 @@ import numpy as np
 from jaxtyping import UInt8
 
 from diorama_core.appearance.photo_appearance import photo_appearance
-from diorama_core.architecture.room_extent import containing_room
+from diorama_core.architecture.room_extent import containing_room, without_floor_behind_walls
 from diorama_core.architecture.texture.plane_textures import plane_textures
+from diorama_core.architecture.texture.refit import refitted_textures
 from diorama_core.artefacts import (
     ArchitectureEstimate,
     CameraEstimate,
@@ -129,9 +130,20 @@ def build_scene(
     feet_seen = frozenset(c.object_id for c in geometry.cuboids if c.foot_seen)
     contained, changed = prepared(shaped, library, REASONED if inputs.depth_m is None else MEASURED, feet_seen)
     observed = _textured(contained, textures)
-    with ThreadPoolExecutor(1) as beside:  # what objects look like is all the same to the layout
+    moved = _moved_planes(room.architecture, observed.architecture)
+    with ThreadPoolExecutor(1) as beside:  # what things look like is all the same to the layout
         seen = beside.submit(
             photo_appearance, balanced.photo.rgb, found["furniture_objects"], observed, library, illuminant.rgb
+        )
+        repainted = beside.submit(
+            plane_textures,
+            balanced,
+            found["objects"],
+            geometry.camera,
+            observed.architecture,
+            stages.filler,
+            standing,
+            moved if plane_pictures else (),
         )
         scene, report = observed, None
         if observed.objects:
@@ -141,8 +153,13 @@ def build_scene(
             runner.runs.append(StageRun("layout", repr(stages.layout), report.seconds, cached=False))
             scene = set_metrics(scene, report.after)
         appearance = seen.result()
-    scene, observed = appearance.applied(scene), appearance.applied(observed)
-    textures = {**textures, **appearance.pictures}
+        textures = {name: picture for name, picture in textures.items() if name not in moved} | repainted.result()
+    scene, observed = (_textured(appearance.applied(s), textures) for s in (scene, observed))
+    if room.architecture.floor is not None:
+        trimmed = without_floor_behind_walls(scene, room.architecture.floor)
+        scene, cut = refitted_textures(scene, trimmed, textures)
+        textures |= cut
+    textures |= appearance.pictures
     scene = _at_given_height(scene, inputs.camera_height_m)
     progress.report(1.0, "done")
     return Built(
@@ -207,8 +224,15 @@ def _at_given_height(scene: Scene, camera_height_m: float | None) -> Scene:
     return rescale_to_length(scene, float(scene.camera.position[2]) - floor_height(scene), camera_height_m)
 
 
+def _moved_planes(before: Architecture, after: Architecture) -> frozenset[str]:
+    """Ids of the planes that are not where they were: the photo shows other parts of them."""
+    known = {p.id: p.polygon for p in before.planes}
+    return frozenset(p.id for p in after.planes if p.id not in known or not np.array_equal(known[p.id], p.polygon))
+
+
 def _textured(scene: Scene, textures: Mapping[str, object]) -> Scene:
-    planes = tuple(replace(p, texture=p.id) if p.id in textures else p for p in scene.architecture.planes)
+    """The scene whose planes show the pictures that there are, by plane id."""
+    planes = tuple(replace(p, texture=p.id if p.id in textures else None) for p in scene.architecture.planes)
     return replace(scene, architecture=replace(scene.architecture, planes=planes))
 
 

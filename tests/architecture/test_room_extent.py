@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from diorama_core.architecture.room_extent import containing_room
+from diorama_core.architecture.room_extent import containing_room, without_floor_behind_walls
 from diorama_core.evaluation.metrics.scene import out_of_bounds_share
 from diorama_core.layout.feasible.recipe import MEASURED_WEIGHT, FeasibleRecipe
 from diorama_core.progress import Progress
@@ -190,3 +190,22 @@ def test_what_shows_its_foot_says_more_of_a_wall_than_what_does_not() -> None:
     assert wall_y(containing_room(scene, reasoned=True)) == pytest.approx(2.5)
     assert wall_y(containing_room(scene, reasoned=True, feet_seen={against.id})) == pytest.approx(2.2, abs=0.02)
     assert wall_y(containing_room(scene, reasoned=True, feet_seen={before.id})) == pytest.approx(2.5)
+
+
+def test_floor_drawn_out_behind_a_wall_goes_when_nothing_stands_on_it_any_more() -> None:
+    room = Room(LIBRARY)
+    behind = room.put("box_24", (0.2, 3.2, 0.15))
+    known = sliver(0.95).floor
+    assert known is not None
+    drawn = containing_room(room.scene(architecture=sliver(0.95), camera=looking_north(5.0)))
+    assert drawn.architecture.floor.polygon[:, 1].max() > 3.0
+    assert without_floor_behind_walls(drawn, known) is drawn  # it still stands there
+
+    before = drawn.object(behind)
+    inside = replace(before, pose=replace(before.pose, position=np.array([0.0, 1.0, 0.15])))
+    settled = replace(drawn, objects=tuple(inside if o.id == behind else o for o in drawn.objects))
+    trimmed = without_floor_behind_walls(settled, known)
+    floor = trimmed.architecture.floor
+    assert floor.polygon[:, 1].max() == pytest.approx(2.5, abs=0.02)
+    assert trimmed.objects == settled.objects
+    assert without_floor_behind_walls(trimmed, known) is trimmed

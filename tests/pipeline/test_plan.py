@@ -11,6 +11,7 @@ import pytest
 
 from diorama_core.artefacts import Inputs, LabelledBox
 from diorama_core.editing.reconstructed import replaced
+from diorama_core.geometry.planes import plane_rectangle
 from diorama_core.pipeline.plan import PLAN, StageStep, evaluate
 from diorama_core.pipeline.presets import stages_for
 from diorama_core.pipeline.reconstruct_object import reconstruct_object
@@ -61,6 +62,16 @@ class Room:
 def room(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Room:
     inputs, project = room_inputs(depth=request.param), Project.create(tmp_path_factory.mktemp("plan") / "room")
     return Room(inputs, project, build_project(project, inputs, LIBRARY))
+
+
+def test_the_pictures_of_planes_have_their_planes_proportions(room: Room) -> None:
+    textured = [p for p in room.built.scene.architecture.planes if p.texture is not None]
+    assert textured
+    for plane in textured:
+        assert plane.texture is not None
+        height, width = room.built.textures[plane.texture].shape[:2]
+        across, up = plane_rectangle(plane)[2]
+        assert width / height == pytest.approx(across / up, rel=0.02)
 
 
 def test_correcting_nothing_gives_the_same_scene_byte_for_byte(room: Room) -> None:
