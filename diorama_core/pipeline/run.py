@@ -24,6 +24,7 @@ from diorama_core.artefacts import (
     ObjectGeometry,
     SceneGraph,
 )
+from diorama_core.layout.backs_to_walls import with_backs_to_walls
 from diorama_core.layout.clear_shapes import clear_shapes
 from diorama_core.layout.fitted_boards import fitted_boards
 from diorama_core.layout.holding_shapes import holding_shapes
@@ -199,6 +200,7 @@ def prepared(
         shaped, clear = clear_shapes(shaped, library, noise)
         changed = holding + contradicted + clear
     checked, corrected = checked_supports(shaped, library, noise)
+    checked = checked if noise.measured else with_backs_to_walls(checked, noise)
     fitted, moved = fitted_boards(checked, library, reasoned=not noise.measured)
     return containing_room(fitted, reasoned=not noise.measured, feet_seen=feet_seen), changed + corrected + moved
 
