@@ -50,12 +50,12 @@ def test_a_back_about_at_a_wall_is_against_it(gap_m: float, turned_deg: float) -
 def test_what_is_far_or_turns_away_or_may_stand_free_is_left_alone(
     gap_m: float, turned_deg: float, category: str
 ) -> None:
-    name, scene = standing(gap_m, turned_deg, category)
+    _, scene = standing(gap_m, turned_deg, category)
     assert with_backs_to_walls(scene, REASONED) == scene
 
 
 def test_what_stands_against_a_wall_already_stays_as_it_is() -> None:
-    name, scene = standing(0.1, adheres_to=("wall_1",))
+    _, scene = standing(0.1, adheres_to=("wall_1",))
     assert with_backs_to_walls(scene, REASONED) is scene
     assert with_backs_to_walls(Scene(), REASONED) == Scene()
 

@@ -27,6 +27,8 @@ CALM_LEVELS = 20.0
 """A floor's light and shade within so many levels of its main colour is carried on."""
 SAMPLE_BROADEST = 0.2
 """Detail broader than this share of the width of what it is taken from is not made anew."""
+BROADEST_PX = 10.0
+"""Nor what is broader than this: the shadows of window bars are as broad."""
 FLOOR_DETAIL, WALL_DETAIL = 45.0, 14.0
 """Detail that deviates by more levels of 255 is no part of the material."""
 
@@ -96,7 +98,7 @@ def _detail(
         return detail_continued(detail, own, strongest, source=sharp)
     # What is nearly as broad as the sample is rather light and shade.
     width = 2.0 * float(cv2.distanceTransform(np.pad(sample, 1).astype(np.uint8), cv2.DIST_L2, 5).max())
-    finer = detail - broad_shading(detail, sample, SAMPLE_BROADEST * width)
+    finer = detail - broad_shading(detail, sample, min(SAMPLE_BROADEST * width, BROADEST_PX))
     made = gaussian_texture(finer, sample)
     return np.asarray(np.where(own[..., None], detail, made), dtype=np.float32)
 

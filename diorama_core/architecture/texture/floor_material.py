@@ -54,11 +54,15 @@ _SHADOW_L = 14.0
 """What is so much darker is a shadow of what stands there, which will not stay where it is."""
 _PATTERN_M, _PATTERN_SHARE = 0.15, 0.75
 """Colours of a pattern are within this distance of each other over at least this share of both."""
+_BETWEEN_SHARE = 0.4
+"""And so much of the one between pieces of the other."""
 _OTHER_COLOURS = 4
 """So many colours beside the main one are looked at."""
 _MIN_OF_PATTERN = 0.03
 _GRADUAL = 0.8 / 0.1
 """Light changes a floor's colour by fewer tolerances a metre than this, an edge by more."""
+_LIT_LAB = np.array([16.0, 17.5, 17.5])
+"""Nor by more than this in all: a wall above its floor may be no edge but a gradient, too."""
 _GRADUAL_M = 0.04
 """Finer than this is grain."""
 _PIECE_M2, _BORDER_M2 = 0.01, 0.003
@@ -161,7 +165,9 @@ def floor_texels(
         if _intermingled(own, other, pixel_m):
             own |= other
         else:
-            others.append(other & (picture[..., 0] >= main[0] - _SHADOW_L))
+            others.append(
+                other & (np.abs(picture - main) < _LIT_LAB).all(axis=-1) & (picture[..., 0] >= main[0] - _SHADOW_L)
+            )
     own |= _turning_into(own, others, _change(picture, seen, pixel_m), pixel_m) if others else False
     return own & ~_grown_pieces(seen & ~own, pixel_m)
 
@@ -301,11 +307,25 @@ def _of_material(lab: Float[np.ndarray, "n 3"], main: Float[np.ndarray, "3"]) ->
 
 
 def _intermingled(one: Bool[np.ndarray, "h w"], other: Bool[np.ndarray, "h w"], pixel_m: float) -> bool:
-    """Whether each of two colours has the other near over most of its area."""
+    """Whether each of two colours has the other near over most of its area, and the other lies between the first.
+
+    A skirting board along a narrow strip of floor is near all of it, but on one side only.
+    """
     reach = _disc(_PATTERN_M, pixel_m)
     beside = [cv2.dilate(part.astype(np.uint8), reach).astype(bool) for part in (one, other)]
     shares = [float(beside[1 - k][part].mean()) if part.any() else 0.0 for k, part in enumerate((one, other))]
-    return min(shares) >= _PATTERN_SHARE
+    return min(shares) >= _PATTERN_SHARE and float(_between(one, pixel_m)[other].mean()) >= _BETWEEN_SHARE
+
+
+def _between(mask: Bool[np.ndarray, "h w"], pixel_m: float) -> Bool[np.ndarray, "h w"]:
+    """The texels with some of a mask near on two opposite sides, along rows or along columns."""
+    reach = max(1, round(_PATTERN_M / pixel_m))
+    sides = []
+    for shape in ((1, reach + 1), (reach + 1, 1)):
+        ends = ((0, 0), (shape[1] - 1, shape[0] - 1))
+        before, after = (cv2.dilate(mask.astype(np.uint8), np.ones(shape, np.uint8), anchor=end) for end in ends)
+        sides.append((before & after).astype(bool))
+    return np.asarray(sides[0] | sides[1])
 
 
 def _grown_pieces(foreign: Bool[np.ndarray, "h w"], pixel_m: float) -> Bool[np.ndarray, "h w"]:

@@ -146,7 +146,7 @@ def test_a_dark_floor_beside_as_much_of_a_light_thing_stays_dark():
 
 
 def test_a_floor_that_turns_gradually_from_daylight_to_lamplight_is_one():
-    cold, warm = np.array([150.0, 140.0, 125.0]), np.array([165.0, 135.0, 80.0])
+    cold, warm = np.array([150.0, 140.0, 125.0]), np.array([158.0, 136.0, 96.0])
     share = np.clip((np.arange(SIZE) - 60.0) / 80.0, 0.0, 1.0)[:, None, None]
     noise = np.random.default_rng(0).normal(0, 4, (SIZE, SIZE, 1))
     colours = ((1.0 - share) * cold + share * warm + noise).astype(np.float32)
@@ -154,3 +154,18 @@ def test_a_floor_that_turns_gradually_from_daylight_to_lamplight_is_one():
     # With an edge it is another thing.
     step = (np.arange(SIZE) > 100)[:, None, None]
     assert texels(np.where(step, warm + noise, cold + noise).astype(np.float32)).mean() < 0.6
+
+
+def test_a_skirting_board_along_a_strip_of_floor_is_no_pattern_of_it_and_inlays_are():
+    colours, seen = floor(), np.zeros((SIZE, SIZE), dtype=bool)
+    seen[92:108] = True  # 32 cm of floor and board
+    board = colours.copy()
+    board[92:99] = (235.0, 235.0, 230.0)
+    assert not strip_texels(board, seen)[92:99].any()
+    inlaid = colours.copy()
+    inlaid[92:108][:, np.arange(SIZE) % 8 < 3] = (235.0, 235.0, 230.0)
+    assert strip_texels(inlaid, seen)[94:106, 10:190].mean() > 0.9
+
+
+def strip_texels(colours: np.ndarray, seen: np.ndarray) -> np.ndarray:
+    return floor_texels(colours, seen, np.ones((SIZE, SIZE)), seen & False, PIXEL_M)
