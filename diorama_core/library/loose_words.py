@@ -147,6 +147,3 @@ LABELS: Mapping[str, str] = {
     "stairs": "object", "pipe": "object", "sky": "object",
 }  # fmt: skip
 """Labels whose meaning is not the one their last words have for the taxonomy, and the words that say it."""
-
-NAMES_OF_SOME: frozenset[str] = frozenset({"flower", "tree", "succulent", "jug", "urn", "throw"})
-"""Synonyms of kinds that name only some things of theirs: flowers are plants, and tell which."""

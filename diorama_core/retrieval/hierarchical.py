@@ -34,7 +34,7 @@ from diorama_core.retrieval.pools import NAMED_POOL, Pool, RetrievalQuery, pool_
 from diorama_core.retrieval.seen_forms import seen_form_factor, shape_form
 from diorama_core.retrieval.usual_forms import usual_form_factor
 from diorama_core.retrieval.word_senses import sense_probabilities
-from diorama_core.retrieval.words import described_share, names_some
+from diorama_core.retrieval.words import words_factor
 from diorama_core.scene.types import Support, yaw_rotation
 
 _SIMILAR_LOG_SIZE = 0.45
@@ -55,8 +55,6 @@ _KINDS, _KINDS_OF_UNNAMED = 3, 7
 """How many kinds are among the candidates of a thing with and without a name, where it may be of so many."""
 _OF_SEE_THROUGH, _ROUGHLY = 2.0, 0.1
 """Power of the agreement with where one looks past an object, and what a shape that is not yet in place may be off."""
-_OF_WORDS, _OF_NAMES = 0.12, 0.3
-"""Penalties of a shape that matches none of the label's describing words, and of one that its very noun rules out."""
 
 
 @dataclass(frozen=True)
@@ -114,12 +112,11 @@ class HierarchicalRetrieval:
             observed = _Observation(cuboids[item.id], seen, whole_outline(seen), visible, named[index], colours)
             object_crop = ObjectCrop(inputs.photo.rgb, item.mask, item.label, visible, seen.mask_trust)
             alike = similarity.of(object_crop, [m.shape for m in members])
-            said = described_share(self.library, item.label, item.category, [m.shape for m in members])
+            words, said = words_factor(self.library, item.label, item.category, [m.shape for m in members])
             described = (said == 1) & (said < 1).any()
-            of_words = _OF_NAMES if names_some(item.label) else _OF_WORDS
             factors = [
-                m.kind_factor * (1 - of_words * (1 - w)) * self._of_form(m.shape, item, described=d)
-                for m, w, d in zip(members, said, described.tolist(), strict=True)
+                m.kind_factor * float(w) * self._of_form(m.shape, item, described=d)
+                for m, w, d in zip(members, words, described.tolist(), strict=True)
             ]
             sight.append(visible)
             scores.append(

@@ -11,7 +11,7 @@ from diorama_core.library.catalogue import built_in_library
 from diorama_core.library.record import Shape
 from diorama_core.progress import Progress
 from diorama_core.retrieval.hierarchical import HierarchicalRetrieval
-from diorama_core.retrieval.words import described_share, names_some
+from diorama_core.retrieval.words import described_share, nouns_of_few, words_factor
 from tests.pose.rooms import BlockLibrary, Room, camera_at, standing
 
 LIBRARY = built_in_library()
@@ -48,8 +48,30 @@ def test_a_synonym_that_names_some_of_a_kind_finds_those() -> None:
     assert found["plant-cut-flowers"] == 1.0
     assert found["plant-orchid"] > found["plant-spider"] == 0.0
     assert set(described_share(LIBRARY, "houseplant", "plant", plants)) == {1.0}
-    assert names_some("flowers")
-    assert not names_some("houseplant")
+    assert nouns_of_few(LIBRARY, "flowers", "plant") == ("flower",)
+    assert nouns_of_few(LIBRARY, "houseplant", "plant") == ()
+
+
+@pytest.mark.parametrize(
+    ("label", "category", "found"),
+    [("ball", "toy", "toy-ball"), ("teddy bear", "toy", "toy-teddy"), ("kettlebell 2", "dumbbells", "kettlebell")],
+)
+def test_a_noun_of_a_few_rules_out_the_others(label: str, category: str, found: str) -> None:
+    shapes = LIBRARY.in_category(category)
+    factor, share = words_factor(LIBRARY, label, category, shapes)
+    named = np.array([found in s.id for s in shapes])
+    assert named.any()
+    assert set(factor[named]) == {1.0}
+    assert factor[~named].max() < 0.2
+    np.testing.assert_array_equal(share == 1.0, factor == 1.0)
+
+
+@pytest.mark.parametrize(
+    ("label", "category"), [("light", "floor lamp"), ("cupboard", "cabinet"), ("toy", "toy"), ("cushion", "pillow")]
+)
+def test_what_is_said_of_many_rules_nothing_out(label: str, category: str) -> None:
+    assert nouns_of_few(LIBRARY, label, category) == ()
+    assert set(words_factor(LIBRARY, label, category, LIBRARY.in_category(category))[0]) == {1.0}
 
 
 def test_no_shapes_no_shares() -> None:
