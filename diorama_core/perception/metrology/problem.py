@@ -35,8 +35,6 @@ HIDDEN_REACH = 1.0
 INVISIBLE_PENALTY = 12.0
 """Sigmas per edge for a cuboid that is not in the picture at all."""
 WALL_NEARER_LOG_SIGMA = 0.06
-CUT_EDGE_SIGMA = 0.004
-"""Of a box's edge where the picture's border cuts the object, as a share of the picture's longer side."""
 CUT_NEAR_M = 0.2
 FAR_M = 6.0
 FAR_LOG_SIGMA = 0.15
@@ -247,9 +245,7 @@ def _edges(
     inward = np.array([1.0, 1.0, -1.0, -1.0])
     bounds = bounds + np.where(border, 0.0, unfilled) * inward
     outward = (bounds - problems.box_px) * -inward
-    # What the border cuts has an edge right there: a box that ends before it was not cut.
-    at_border = np.minimum(problems.edge_sigma_px, CUT_EDGE_SIGMA * max(k.width, k.height))
-    off = outward / np.where(border, at_border, problems.edge_sigma_px)
+    off = outward / problems.edge_sigma_px
     robust = np.where(
         np.abs(off) > ROBUST_BEYOND,
         np.sign(off) * np.sqrt(np.maximum(2 * ROBUST_BEYOND * np.abs(off) - ROBUST_BEYOND**2, 0.0)),
