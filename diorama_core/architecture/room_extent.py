@@ -29,6 +29,8 @@ LONGEST_CORD = 1.3
 """A lamp's cord makes it at most so many times as high as it was seen."""
 _MIN_AREA_M2 = 1e-4
 _JOINED_M = 0.02
+_BEHIND_SHARE = 0.1
+"""What stands behind a wall with a smaller share of its footprint only touches it."""
 _FAR_M = 100.0
 """Farther behind a wall than any room reaches."""
 
@@ -72,7 +74,7 @@ def without_floor_behind_walls(scene: Scene, known: Plane) -> Scene:
     trimmed = here
     for wall in scene.architecture.by_role("wall"):
         drawn = added ^ _behind_wall(wall)
-        if wall.seen and not any((drawn ^ _section(p)).area() > _MIN_AREA_M2 for p in standing):
+        if wall.seen and not any((drawn ^ _section(p)).area() > _BEHIND_SHARE * _area(p) for p in standing):
             trimmed = trimmed - drawn
     if here.area() - trimmed.area() < _MIN_AREA_M2:
         return scene

@@ -1,7 +1,7 @@
 """Furniture whose back is at a wall, as far as a photo alone can tell, stands against it.
 
 Cabinets, beds and the like hardly ever turn their backs to a gap of a hand's breadth. Distances that were reasoned are
-less sure than that, so it is the gap that is an error.
+less sure than that, so it is the gap that is an error; so is all of the distance behind a wall that was seen.
 """
 
 from __future__ import annotations
@@ -10,6 +10,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from diorama_core.layout.behind_walls import wall_before
 from diorama_core.layout.noise import ObservationNoise
 from diorama_core.library.taxonomy import AGAINST_WALLS
 from diorama_core.scene import edits
@@ -20,7 +21,8 @@ PARALLEL = 0.9
 
 
 def with_backs_to_walls(scene: Scene, noise: ObservationNoise) -> Scene:
-    """The scene with furniture against the seen walls that its backs are nearest to, within what positions are off.
+    """The scene with furniture against the seen walls that its backs are nearest to, within what positions are off, and
+    against those behind which it would stand.
 
     What stands against a wall already stays as it is.
 
@@ -36,15 +38,16 @@ def with_backs_to_walls(scene: Scene, noise: ObservationNoise) -> Scene:
         if item.category not in AGAINST_WALLS or edge is None or edge.parent != floor.id or edge.adheres_to:
             continue
         gaps = {
-            wall.id: abs(_gap_m(item, wall))
+            wall.id: _gap_m(item, wall)
             for wall in scene.architecture.by_role("wall")
             if wall.seen and _is_behind(item, wall)
         }
-        nearest = min(gaps, key=lambda name: (gaps[name], name), default=None)
+        nearest = min(gaps, key=lambda name: (abs(gaps[name]), name), default=None)
         if nearest is None:
             continue
-        normal = scene.plane(nearest).normal
-        if gaps[nearest] <= noise.tolerance_m(scene.camera, item.pose.position, normal):
+        tolerance = noise.tolerance_m(scene.camera, item.pose.position, scene.plane(nearest).normal)
+        before = wall_before(scene, item)
+        if abs(gaps[nearest]) <= tolerance or (gaps[nearest] < 0.0 and before is not None and before.id == nearest):
             scene = edits.attach(scene, replace(edge, adheres_to=(nearest,)))
     return scene
 

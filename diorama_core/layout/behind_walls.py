@@ -47,7 +47,7 @@ def before_wall(
     It rests on the object on which the line of sight to its foot ends. What people put on furniture is at the wall
     where nothing that is known carries it. None where the object is in the room, or must be on the floor.
     """
-    wall = _wall_before(scene, item)
+    wall = wall_before(scene, item)
     if wall is None:
         return None
     behind = f"{item.label} would be behind {label_of(scene, wall.id)}"
@@ -64,7 +64,7 @@ def before_wall(
     return at_wall, f"please check: {behind}; what carries it is not marked, so it is at the wall"
 
 
-def _wall_before(scene: Scene, item: SceneObject) -> Plane | None:
+def wall_before(scene: Scene, item: SceneObject) -> Plane | None:
     """The seen wall that the line of sight to an object's centre goes through; None where the object is in the room."""
     if scene.camera is None:
         return None

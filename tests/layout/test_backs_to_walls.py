@@ -43,6 +43,10 @@ def test_a_back_about_at_a_wall_is_against_it(gap_m: float, turned_deg: float) -
     assert against(*standing(gap_m, turned_deg)) == (NORTH_WALL,)
 
 
+def test_what_would_stand_behind_a_wall_that_was_seen_is_against_it() -> None:
+    assert against(*standing(-1.5)) == (NORTH_WALL,)
+
+
 @pytest.mark.parametrize(
     ("gap_m", "turned_deg", "category"),
     [(1.5, 0.0, "wardrobe"), (0.1, 60.0, "wardrobe"), (0.1, 180.0, "wardrobe"), (0.1, 0.0, "chair")],
