@@ -1,4 +1,4 @@
-"""Bookcases whose boards are where their loads were seen.
+"""Bookcases, and other furniture with several places, whose boards are where their loads were seen.
 
 No retrieved bookcase has its boards at the heights of the one in the picture, and what stands on them would go up or
 down with them. Shelves are adjustable: as long as no gap between two boards changes too much, a shape takes its boards
@@ -24,8 +24,6 @@ from diorama_core.library.record import BUILT_IN, Shape, ShapeLibrary
 from diorama_core.scene.frames import UP_WORLD
 from diorama_core.scene.types import Camera, Scene, SceneObject
 
-_ADJUSTABLE = taxonomy.with_kin("bookshelf", "shelves", "cabinet", "display cabinet")
-"""Kinds of furniture whose shelves can be hung at other heights."""
 AGREES_M = 0.01
 """Loads whose feet are nearer to a board than this stand on it already."""
 ONE_BOARD_M = 0.06
@@ -53,7 +51,7 @@ class _Feet:
 
 
 def fitted_boards(scene: Scene, library: ShapeLibrary, *, reasoned: bool) -> tuple[Scene, tuple[str, ...]]:
-    """The scene with the boards of its bookcases where their loads were seen, and what was changed.
+    """The scene with the boards of its furniture where their loads were seen, and what was changed.
 
     Args:
         scene: as observed, before any layout, with its support graph.
@@ -87,9 +85,14 @@ def fitted_shape(scene: Scene, item: SceneObject, library: ShapeLibrary, *, reas
 
 
 def is_adjustable(item: SceneObject, shape: Shape) -> bool:
-    """Whether the boards of an object can be hung at other heights; its library must derive such shapes."""
+    """Whether an object has places of which some can be at other heights: shelves, a desk below its hutch, no seats.
+
+    Its library must derive such shapes.
+    """
     derived = without_boards(shape.id) != shape.id
-    return item.category in _ADJUSTABLE and shape.source == BUILT_IN and not derived and len(levels_m(shape)) >= 3
+    kind = taxonomy.resolve(item.category).category
+    adjustable = kind.supports_objects and kind.seat_height_m is None and kind.mount in ("floor", "wall")
+    return adjustable and shape.source == BUILT_IN and not derived and len(levels_m(shape)) > 1
 
 
 def _feet(scene: Scene, item: SceneObject, camera: Camera | None) -> tuple[_Feet, ...]:

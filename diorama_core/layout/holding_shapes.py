@@ -84,7 +84,7 @@ def candidate_of(item: SceneObject, shape_id: str) -> Candidate:
     return next(c for c in item.candidates if c.shape_id == shape_id)
 
 
-def _gaps_m(
+def gaps_m(
     item: SceneObject, candidate: Candidate, loads: Sequence[SceneObject], library: ShapeLibrary, scene: Scene
 ) -> list[float]:
     """How badly each load agrees with standing on an object in another shape, its boards set for them."""
@@ -108,7 +108,7 @@ def cost_of_shape(
     noise: ObservationNoise,
 ) -> float:
     """What a shape's score and the gaps of its loads say against it: a negative logarithm."""
-    gaps = _gaps_m(item, candidate, loads, library, scene) if loads else []
+    gaps = gaps_m(item, candidate, loads, library, scene) if loads else []
     deviations = [gap / _sigma_m(scene, load, noise) for gap, load in zip(gaps, loads, strict=True)]
     return sum(min(0.5 * d * d, MAX_LOAD_COST) for d in deviations) - float(np.log(max(candidate.score, MIN_SCORE)))
 
@@ -123,7 +123,7 @@ def _agree(
     """Whether every load is within the noise of a place on its supporter as it is."""
     for item in members:
         current = Candidate(item.shape_id, item.shape_size_m, 1.0, item.pose)
-        gaps = _gaps_m(item, current, loads[item.id], library, scene) if loads[item.id] else []
+        gaps = gaps_m(item, current, loads[item.id], library, scene) if loads[item.id] else []
         if any(gap > 2.0 * _sigma_m(scene, load, noise) for gap, load in zip(gaps, loads[item.id], strict=True)):
             return False
     return True

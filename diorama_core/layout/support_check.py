@@ -13,6 +13,7 @@ import numpy as np
 
 from diorama_core.layout.behind_walls import NEVER_HANGS, UPRIGHT, before_wall
 from diorama_core.layout.noise import ObservationNoise
+from diorama_core.layout.on_walls import moved_to_wall
 from diorama_core.layout.problem.supports import (
     SMALLEST_CLEARANCE,
     Surface,
@@ -38,8 +39,10 @@ CLEARLY = 0.5
 """Another supporter is taken only where its gap is at most this share of the contradicted one."""
 WALL_FACTOR = 2.0
 """Objects that belong on walls stay on theirs up to so many times the tolerance: the wall may be wrong as well."""
-MEASURED_GAP = 0.5
+MEASURED_GAP = 0.25
 """Share of the tolerance beyond which a measured gap before a wall is one: what would close it is a move or a guess."""
+MEASURED_PARALLEL = float(np.cos(np.deg2rad(8.0)))
+"""What was measured turned farther from a wall touches it with an edge: it does not stand against it."""
 _IN_WALLS = frozenset({"door", "window"})
 """From a photo alone it is surer that these are in a wall than how far away they are; measured doors may stand open."""
 _WALKED_ON = taxonomy.with_kin("rug")
@@ -87,6 +90,8 @@ def checked_supports(
         if wall is not None:
             reasons.append(f"support changed: {item.label} was seen on another wall than its own")
             scene = edits.attach(scene, replace(edge, parent=wall, adheres_to=()))
+            if not noise.measured:
+                scene = moved_to_wall(scene, item, scene.plane(wall))
             continue
         if not noise.measured and floor is not None and edge.parent == floor.id:
             before = before_wall(scene, library, item, noise)
@@ -97,7 +102,8 @@ def checked_supports(
         if hangs and not noise.measured and item.category in _IN_WALLS:
             continue
         mount = taxonomy.resolve(item.category).category.mount
-        sits = noise.measured and (mount == "surface" or (hangs and mount == "floor"))
+        portable = item.category in taxonomy.PORTABLE
+        sits = noise.measured and (mount == "surface" or portable or (hangs and mount == "floor"))
         entered = _entered(scene, library, item, edge, sits=sits) if shapes_clear or sits else {}
         inside = max(entered.values(), default=0.0)
         better = _better(scene, library, item, edge, noise, inside, frozenset(entered) if sits else frozenset())
@@ -346,6 +352,9 @@ def _touched(scene: Scene, item: SceneObject, edge: Support, noise: ObservationN
         wall = scene.plane(wall_id)
         gap = abs(float((item.corners_world @ wall.normal).min()) - wall.offset)
         tolerance = noise.tolerance_m(scene.camera, item.pose.position, wall.normal)
+        facing = float(np.abs(wall.normal @ item.pose.R_world_object).max())
+        if noise.measured and facing < MEASURED_PARALLEL:
+            continue
         if gap <= (MEASURED_GAP * tolerance if noise.measured else tolerance):
             retained.append(wall_id)
     return tuple(retained)

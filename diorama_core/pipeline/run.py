@@ -30,6 +30,7 @@ from diorama_core.layout.fitted_boards import fitted_boards
 from diorama_core.layout.holding_shapes import holding_shapes
 from diorama_core.layout.noise import MEASURED, REASONED, ObservationNoise
 from diorama_core.layout.support_check import checked_supports
+from diorama_core.layout.unmarked_supporters import left_where_seen, over_what_may_hold_them
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.perception.illuminant import Illuminant
 from diorama_core.pipeline.assemble import assemble
@@ -195,6 +196,7 @@ def prepared(
     """
     changed: tuple[str, ...] = ()
     if noise.measured:  # heights reasoned from a photo alone do not tell boards from one another
+        shaped = over_what_may_hold_them(shaped, library)
         shaped, holding = holding_shapes(shaped, library, noise)
         shaped, contradicted = checked_supports(shaped, library, noise, shapes_clear=False)
         shaped, clear = clear_shapes(shaped, library, noise)
@@ -202,7 +204,9 @@ def prepared(
     checked, corrected = checked_supports(shaped, library, noise)
     checked = checked if noise.measured else with_backs_to_walls(checked, noise)
     fitted, moved = fitted_boards(checked, library, reasoned=not noise.measured)
-    return containing_room(fitted, reasoned=not noise.measured, feet_seen=feet_seen), changed + corrected + moved
+    fitted, loose = left_where_seen(fitted, library, noise)
+    room = containing_room(fitted, reasoned=not noise.measured, feet_seen=feet_seen)
+    return room, changed + corrected + moved + loose
 
 
 def _in_white_light(room: Architecture, illuminant: Illuminant) -> Architecture:

@@ -71,6 +71,15 @@ def test_what_is_locked_or_soft_or_no_bookcase_changes_nothing() -> None:
     assert not is_adjustable(scene.objects[0], boxes.shape("bookshelf_6"))
 
 
+def test_a_desk_below_its_hutch_is_as_high_as_its_loads_say() -> None:
+    hutch = next(s for r in LIBRARY.in_category("desk") if len(levels_m(s := LIBRARY.shape(r.id))) > 2)
+    desk = replace(shelf_with_books().objects[0], category="desk", shape_id=hutch.id, shape_size_m=hutch.size_m)
+    assert is_adjustable(desk, hutch)
+    single = next(s for r in LIBRARY.in_category("desk") if len(levels_m(s := LIBRARY.shape(r.id))) == 1)
+    assert not is_adjustable(replace(desk, shape_id=single.id, shape_size_m=single.size_m), single)
+    assert not is_adjustable(replace(desk, category="sofa"), hutch)
+
+
 def test_boards_that_lie_on_one_another_stay(monkeypatch: pytest.MonkeyPatch) -> None:
     low, *higher = SHELF.surfaces
     twice = replace(low, polygon=low.polygon + np.array([0.0, 0.0, 0.5 * BOARD_SHARE * SHELF.size_m[2]]))

@@ -58,6 +58,19 @@ def test_half_the_tolerance_is_a_measured_gap(room: Room, gap_m: float, stands_a
     assert (checked.support_of(shelf).adheres_to == ("wall_2",)) == stands_against
 
 
+@pytest.mark.parametrize(("degrees", "stands_against"), [(5.0, True), (12.0, False)])
+def test_what_was_measured_turned_touches_its_wall_with_an_edge(
+    room: Room, degrees: float, stands_against: bool
+) -> None:
+    depth, width = LIBRARY.shape("box_24").size_m[:2]
+    turn = np.deg2rad(degrees)
+    reach = 0.5 * (depth * np.cos(turn) + width * np.sin(turn))
+    box = room.put("box_24", (0.0, 2.5 - reach, 0.2), yaw=-np.pi / 2 + turn, adheres_to=("wall_2",))
+    scene = room.scene(camera=looking_north())
+    for noise, against in ((MEASURED, stands_against), (REASONED, True)):
+        assert (checked_supports(scene, LIBRARY, noise)[0].support_of(box).adheres_to == ("wall_2",)) == against
+
+
 def test_without_a_camera_and_without_edges_nothing_breaks(room: Room) -> None:
     room.put("cup_21", (0.0, 0.1, 0.82), on=None)
     scene = room.scene(architecture=room_box(6.0, 5.0))

@@ -128,11 +128,15 @@ def _solved(
     count, unknowns = len(chains.members), chains.rows.shape[1]
     hanging = [i for i in chains.members if is_wall_like(problem.surface[i])]
     start = np.concatenate([height[list(chains.members)], foot[hanging]])
+    # From below nobody sees where on a refrigerator a box stands.
+    from_below = (problem.parent >= 0) & (foot > float(observations.camera.position[2]))
+    foot_hidden = observations.hidden[:, 3] | from_below
     lines, wanted = [], []
     for k, i in enumerate(chains.members):
         own = np.arange(unknowns) == k
         fits = int(problem.parent[i]) < 0 or abs(_observed_level(problem, i) - foot[i]) <= LOAD_M
-        weight = np.where(observations.hidden[i, [3, 1]], HIDDEN, 1.0) / _apparent_height_m(observations, i)
+        hidden = [foot_hidden[i], observations.hidden[i, 1]]
+        weight = np.where(hidden, HIDDEN, 1.0) / _apparent_height_m(observations, i)
         if fits:
             lines += [weight[0] * chains.rows[i], weight[1] * (chains.rows[i] + own)]
             wanted += list(weight * (np.array([foot[i], foot[i] + height[i]]) - chains.constant[i]))
@@ -141,7 +145,7 @@ def _solved(
             wanted.append(weight[1] * height[i])
     # A hidden foot says nothing against a height: the top was measured, and the foot is where the supporter is.
     whole = [foot[i] + height[i] - (chains.constant[i] + chains.rows[i] @ start) for i in chains.members]
-    tall = np.where(observations.hidden[list(chains.members), 3], whole, 0.0)
+    tall = np.where(foot_hidden[list(chains.members)], whole, 0.0)
     least = np.concatenate([start[:count] / MAX_STRETCH, np.full(unknowns - count, -np.inf)])
     most = np.concatenate([MAX_STRETCH * np.maximum(start[:count], tall), np.full(unknowns - count, np.inf)])
     return _robust(np.array(lines), np.array(wanted), (least, most))

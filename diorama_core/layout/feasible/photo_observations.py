@@ -321,7 +321,7 @@ def _agrees(posed: Float[np.ndarray, "n 4"], boxes: Float[np.ndarray, "n 4"]) ->
 def _hidden_sides(problem: Problem, camera: Camera) -> Bool[np.ndarray, "n 4"]:
     """Which sides of the photo's boxes are on its border or behind the boxes of nearer objects.
 
-    What an object stands on does not hide its foot, and a rug hides nothing.
+    What an object stands on does not hide its foot, what stands on it does not hide its top, and a rug hides nothing.
     """
     k, boxes = camera.intrinsics, problem.box_px
     border = np.array([BORDER_PX, BORDER_PX, k.width - BORDER_PX, k.height - BORDER_PX])
@@ -330,12 +330,14 @@ def _hidden_sides(problem: Problem, camera: Camera) -> Bool[np.ndarray, "n 4"]:
     for i in range(problem.count):
         nearer = (depth < depth[i]) & ~problem.yielding[i]
         nearer[problem.chain(i)] = False
+        loads = np.isin(np.arange(problem.count), problem.rides(i))
         ends = boxes[i].reshape(2, 2)
         for side in range(4):
             axis, along = side % 2, 1 - side % 2
-            across = (boxes[nearer, axis] <= boxes[i, side]) & (boxes[i, side] <= boxes[nearer, axis + 2])
-            low = np.maximum(boxes[nearer, along], ends[0, along])
-            high = np.minimum(boxes[nearer, along + 2], ends[1, along])
+            before = boxes[nearer & ~loads] if side == 1 else boxes[nearer]
+            across = (before[:, axis] <= boxes[i, side]) & (boxes[i, side] <= before[:, axis + 2])
+            low = np.maximum(before[:, along], ends[0, along])
+            high = np.minimum(before[:, along + 2], ends[1, along])
             covered = np.where(across, np.maximum(high - low, 0.0), 0.0).max(initial=0.0)
             hidden[i, side] |= bool(covered > COVERED * (ends[1, along] - ends[0, along]))
     return hidden

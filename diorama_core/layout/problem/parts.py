@@ -8,7 +8,7 @@ from __future__ import annotations
 import hashlib
 import logging
 from collections.abc import Mapping
-from functools import cache
+from functools import cache, partial
 from pathlib import Path
 
 import numpy as np
@@ -19,6 +19,7 @@ from diorama_core.geometry.convex import convex_parts
 from diorama_core.geometry.packed_parts import NAMES, PackedParts, Parts, packed
 from diorama_core.io.cache import LruCache
 from diorama_core.io.derived import read_arrays, write_arrays
+from diorama_core.layout.problem.clear_places import clear_of_places
 from diorama_core.library.catalogue import default_cache_dir
 from diorama_core.library.record import Shape, ShapeLibrary
 
@@ -39,9 +40,10 @@ def parts_of_shape(library: ShapeLibrary, shape: Shape) -> Parts:
     anew each time.
     """
     key = shape.content_hash
+    mesh = partial(library.mesh, shape.id)
     if not key:
-        return convex_parts(library.mesh(shape.id))
-    return _CACHE.get(key, lambda: _known(key) or _made(key, library.mesh(shape.id)))
+        return clear_of_places(convex_parts(mesh()), shape.surfaces, mesh)
+    return _CACHE.get(key, lambda: clear_of_places(_known(key) or _made(key, mesh()), shape.surfaces, mesh))
 
 
 def parts_of_solids(vertices: Float[np.ndarray, "v 3"], faces: Int[np.ndarray, "f 3"]) -> Parts:

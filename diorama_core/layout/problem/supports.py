@@ -22,6 +22,10 @@ SMALLEST_SHARE = 0.35
 """A supporter narrower than this share of what it should hold cannot be meant."""
 SMALLEST_CLEARANCE = 0.75
 """A place with less than this share of an object's height above it is chosen only where there is no other."""
+OUT_OF_REACH_M = 0.12
+"""What was measured farther from its place than this does not rest there: sizes do not differ by so much."""
+_ON_OBJECT_M = 0.15
+"""Added to the gap to another object, of things that people put on others: the floor is surer."""
 NEAR_SURFACE_M = 0.1
 """What misses a surface by more does not rest on it."""
 FLAT = 0.7
@@ -320,7 +324,10 @@ def _most_plausible(
     shapes: Sequence[Shape],
     edges: dict[str, Support | None],
 ) -> Support | None:
-    """The supporter whose surface agrees best with the observed pose; None when there is none."""
+    """The supporter whose surface agrees best with the observed pose; None when there is none.
+
+    What was seen in a photo clearly away from all of them is held by something that is not marked.
+    """
     mount = taxonomy.resolve(item.category).category.mount
     options: list[tuple[float, str, Support]] = []
     for plane in scene.architecture.planes:
@@ -334,8 +341,10 @@ def _most_plausible(
         if mount == "ceiling" or closes_cycle(edges, item.id, other.id):
             continue
         for world in surfaces_below(item, other, shape):
-            cost = misfit(item, world) + (0.15 if mount == "surface" else 0.4)
+            cost = misfit(item, world) + (_ON_OBJECT_M if mount == "surface" else 0.4)
             options.append((cost, other.id, Support(item.id, other.id)))
+    if item.box_px is not None and mount == "surface":
+        options = [option for option in options if option[0] <= OUT_OF_REACH_M + _ON_OBJECT_M]
     return min(options, key=lambda o: o[:2])[2] if options else None
 
 

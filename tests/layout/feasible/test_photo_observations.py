@@ -129,6 +129,24 @@ def test_a_side_behind_a_nearer_object_is_a_least_bound(room: Room) -> None:
     assert not observations_of(scene).hidden.any()
 
 
+def test_what_stands_on_an_object_does_not_hide_its_top(room: Room) -> None:
+    table = room.put("table_0", (0, 0, 0.37))
+    top, (_, wide, high) = room.objects[0].size_m[2], room.library.shape("box_24").size_m
+    box = room.put("box_24", (-0.1, 0, top + high / 2), on=table, scale=(1, 2.0 / wide, 1))
+    camera = looking_north(height_m=0.6)
+    scene = room.scene(camera=camera)
+    boxed = tuple(replace(o, box_px=tuple(outline(scene, o.id))) for o in scene.objects)
+    assert boxed[1].box_px[3] > boxed[0].box_px[1]
+    for edges, hidden in (
+        (scene.supports, False),
+        ((scene.supports[0], replace(scene.supports[1], parent="floor")), True),
+    ):
+        problem = build_problem(replace(scene, objects=boxed, supports=edges), LIBRARY)
+        nearer = replace(problem, p=problem.p - np.outer(np.array(problem.ids) == box, [0, 0.2, 0]))
+        seen = photo_observations(nearer, camera, depth_weight=1.0)
+        assert seen.hidden[problem.ids.index(table), 1] == hidden
+
+
 def test_a_box_counts_only_for_poses_that_agree_with_it(room: Room) -> None:
     cabinet = room.put("cabinet_10", (0.0, 1.5, 0.4), yaw=-np.pi / 2)
     scene = room.scene(camera=looking_north())

@@ -1,0 +1,147 @@
+"""Convex parts cut back from the places of their shape: nothing is where things are put down.
+
+The hull of a quarter of a round tray's rim reaches far into the tray. What stands there would have to leave it,
+although the rim is thin and the place within is free.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+
+import numpy as np
+import trimesh
+from jaxtyping import Bool, Float
+from scipy.optimize import linprog
+from scipy.spatial import ConvexHull, HalfspaceIntersection, QhullError
+
+from diorama_core.geometry.convex import THINNEST_M, ConvexPart, simplest_part
+from diorama_core.library.record import SupportSurface
+
+RISES_M = (0.002, 0.01)
+"""What rises less above a place is below what rests there: above flat places, and above those that are hardly flat."""
+REACHES_M = 0.01
+"""Parts that reach less over a place are left as they are."""
+MARGIN_M = 0.008
+"""So far within a place's sides they may still rise: outlines are as fine as the grid that they were found on."""
+MAX_SIDES = 12
+"""Outlines with more corners are cut with an inscribed outline of so many."""
+_SAMPLES = 4000
+_SEED = 0
+
+Room = tuple[Float[np.ndarray, "k 2"], float, float]
+"""What is over a place: its outline in plan, counter-clockwise, and from which height to which it is looked at, m."""
+
+
+def clear_of_places(
+    parts: tuple[ConvexPart, ...], surfaces: Sequence[SupportSurface], mesh: Callable[[], trimesh.Trimesh]
+) -> tuple[ConvexPart, ...]:
+    """The parts without what of them is over places above which the mesh leaves room.
+
+    Together they contain the mesh but for what rises over a place so little that things are put down on it.
+
+    Args:
+        parts: convex bodies that contain the shape, in its own frame.
+        surfaces: its places.
+        mesh: gives its geometry, which most shapes need not be asked for.
+    """
+    places = [(_inscribed(np.asarray(s.polygon)[:, :2]), s.height_m, s.height_m + s.clearance_m) for s in surfaces]
+    if not any(_reaches_over(part, _above(place)[0]) for part in parts for place in places):
+        return parts
+    surface = mesh()
+    points = np.vstack([surface.vertices, trimesh.sample.sample_surface(surface, _SAMPLES, seed=_SEED)[0]])
+    for place in places:
+        free = next((room for room in _above(place) if not _within(points, *room).any()), None)
+        if free is not None:
+            whole = (place[0], place[1], free[2])
+            parts = tuple(piece for p in parts for piece in (_cut(p, whole) if _reaches_over(p, free) else [p]))
+    return parts
+
+
+def _inscribed(outline: Float[np.ndarray, "k 2"]) -> Float[np.ndarray, "m 2"]:
+    """At most `MAX_SIDES` of an outline's corners, evenly along it."""
+    if len(outline) <= MAX_SIDES:
+        return outline
+    length = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.roll(outline, -1, axis=0) - outline, axis=1))])
+    at = np.searchsorted(length[:-1], np.arange(MAX_SIDES) / MAX_SIDES * length[-1])
+    return outline[np.unique(np.minimum(at, len(outline) - 1))]
+
+
+def _sides(outline: Float[np.ndarray, "k 2"]) -> tuple[Float[np.ndarray, "s 2"], Float[np.ndarray, " s"]]:
+    """Outward unit normals of an outline's sides, and inside is where normal . x <= offset."""
+    along = np.roll(outline, -1, axis=0) - outline
+    length = np.linalg.norm(along, axis=1)
+    long = length > 1e-9
+    outward = np.column_stack([along[long, 1], -along[long, 0]]) / length[long, None]
+    return outward, (outward * outline[long]).sum(axis=1)
+
+
+def _above(place: Room) -> tuple[Room, Room]:
+    """The room over a place of a flat shape, and of one that is hardly flat."""
+    outline, level, top = place
+    flat, rough = ((outline, level + rise, top - RISES_M[1]) for rise in RISES_M)
+    return flat, rough
+
+
+def _within(
+    points: Float[np.ndarray, "n 3"], outline: Float[np.ndarray, "k 2"], low: float, high: float
+) -> Bool[np.ndarray, " n"]:
+    """Which points are in a room."""
+    outward, offset = _sides(outline)
+    beside = (points[:, :2] @ outward.T - offset).max(axis=1)
+    return np.asarray((beside < -MARGIN_M) & (points[:, 2] > low) & (points[:, 2] < high))
+
+
+def _reaches_over(part: ConvexPart, room: Room) -> bool:
+    """Whether a part has some of a room inside it."""
+    outline, low, high = room
+    vertices = part.vertices
+    if vertices[:, 2].max() < low or vertices[:, 2].min() > high or len(outline) < 3:
+        return False
+    reach = np.minimum(vertices[:, :2].max(axis=0), outline.max(axis=0))
+    if (reach - np.maximum(vertices[:, :2].min(axis=0), outline.min(axis=0)) < REACHES_M).any():
+        return False
+    outward, offset = _sides(outline)
+    inside = [[*n, 0.0, MARGIN_M + REACHES_M - o] for n, o in zip(outward, offset, strict=True)]
+    inside += [[0.0, 0.0, -1.0, low]]
+    inside += [[0.0, 0.0, 1.0, -high]] if np.isfinite(high) else []
+    return len(_clipped(vertices, np.array(inside))) > 0
+
+
+def _cut(part: ConvexPart, room: Room) -> list[ConvexPart]:
+    """A part without what of it is in a room: what is beyond each of the room's sides, and below and above it."""
+    outline, low, high = room
+    outward, offset = _sides(outline)
+    beyond = [np.array([[-x, -y, 0.0, o - MARGIN_M]]) for (x, y), o in zip(outward, offset, strict=True)]
+    beyond += [np.array([[0.0, 0.0, 1.0, -low]])]
+    beyond += [np.array([[0.0, 0.0, -1.0, high]])] if np.isfinite(high) else []
+    clouds = [_clipped(part.vertices, half) for half in beyond]
+    return [simplest_part(cloud) for cloud in _not_contained([c for c in clouds if len(c)])]
+
+
+def _clipped(vertices: Float[np.ndarray, "v 3"], half_spaces: Float[np.ndarray, "h 4"]) -> Float[np.ndarray, "n 3"]:
+    """Corners of what of a convex body is inside half-spaces (normal . x + offset <= 0); none where nothing is."""
+    try:
+        planes = np.vstack([ConvexHull(vertices).equations, half_spaces])
+    except (QhullError, ValueError):
+        return np.zeros((0, 3))
+    # The centre of the largest ball inside.
+    rows = np.column_stack([planes[:, :3], np.ones(len(planes))])
+    ball = linprog([0.0, 0.0, 0.0, -1.0], rows, -planes[:, 3], bounds=[(None, None)] * 3 + [(0.0, None)]).x
+    if ball is None or ball[3] < THINNEST_M / 2:
+        return np.zeros((0, 3))
+    try:
+        corners = HalfspaceIntersection(planes, ball[:3]).intersections
+    except QhullError:
+        return np.zeros((0, 3))
+    return np.unique(np.round(corners, 9), axis=0)
+
+
+def _not_contained(clouds: list[Float[np.ndarray, "_ 3"]]) -> list[Float[np.ndarray, "_ 3"]]:
+    """Without those inside a larger one."""
+    kept: list[np.ndarray] = []
+    planes: list[np.ndarray] = []
+    for cloud in sorted(clouds, key=lambda c: -float(ConvexHull(c).volume)):
+        if not any((cloud @ p[:, :3].T + p[:, 3] <= 1e-5).all() for p in planes):
+            kept.append(cloud)
+            planes.append(ConvexHull(cloud).equations)
+    return kept

@@ -1,0 +1,111 @@
+"""Objects that nothing in the scene reaches where they were seen: what holds them is not marked, or has another shape.
+
+With measured depth a cup at the height of a night stand that the bed hides does not hang on the wall 30 cm behind it,
+nor does a photo frame on the upper board of a desk stand on its lower one. Either what it stands on has another of the
+retrieved shapes, one with a place there; or nothing is known to hold it, and it stays where it was measured.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from diorama_core.layout.holding_shapes import gaps_m
+from diorama_core.layout.noise import ObservationNoise
+from diorama_core.layout.problem.supports import (
+    OUT_OF_REACH_M,
+    carries_things,
+    choose_surface,
+    closes_cycle,
+    is_soft,
+    label_of,
+    outside_m,
+    plane_surface,
+    resting_cost,
+)
+from diorama_core.library import taxonomy
+from diorama_core.library.record import ShapeLibrary
+from diorama_core.scene import edits
+from diorama_core.scene.types import Scene, SceneObject, Support
+
+BESIDE_M = 0.06
+"""What was measured with its middle farther beside a place than this does not rest there either."""
+REASONED_M = 0.3
+"""The distance from a place for heights that were reasoned from a photo alone."""
+
+
+def over_what_may_hold_them(scene: Scene, library: ShapeLibrary) -> Scene:
+    """The scene in which objects that their supporters do not reach rest on one that would, in another shape.
+
+    Args:
+        scene: at measured places, before shapes are chosen by what they hold.
+        library: where shapes come from.
+    """
+    for item in scene.objects:
+        edge = scene.support_of(item.id)
+        if edge is None or not is_out_of_reach(scene, library, item, edge):
+            continue
+        options = [
+            (min(gaps), other.id)
+            for other in scene.objects
+            if other.id not in (item.id, edge.parent)
+            and not closes_cycle({s.child: s for s in scene.supports}, item.id, other.id)
+            and carries_things(other)
+            and _is_within(item, other)
+            and (gaps := [gaps_m(other, c, [item], library, scene)[0] for c in other.candidates])
+        ]
+        if options and min(options)[0] <= OUT_OF_REACH_M:
+            scene = edits.attach(scene, Support(item.id, min(options)[1]))
+    return scene
+
+
+def left_where_seen(scene: Scene, library: ShapeLibrary, noise: ObservationNoise) -> tuple[Scene, tuple[str, ...]]:
+    """The scene without the edges of objects that their supporters do not reach, and what people should look at.
+
+    Args:
+        scene: as observed, before any layout, its shapes decided.
+        library: where shapes come from.
+        noise: of the observed positions; what was reasoned from a photo alone only contradicts the height of furniture.
+    """
+    reasons = []
+    for item in scene.objects:
+        edge = scene.support_of(item.id)
+        if edge is None or (not noise.measured and not scene.has_object(edge.parent)):
+            continue
+        if is_out_of_reach(scene, library, item, edge, measured=noise.measured):
+            scene = edits.detach(scene, item.id)
+            reasons.append(
+                f"please check: {item.label} was seen away from {label_of(scene, edge.parent)}; what holds it is "
+                "not marked, so it stays where it was seen"
+            )
+    return scene, tuple(reasons)
+
+
+def is_out_of_reach(
+    scene: Scene, library: ShapeLibrary, item: SceneObject, edge: Support, *, measured: bool = True
+) -> bool:
+    """Whether a thing that people put on others was seen clearly away from where an edge puts it.
+
+    Where distances were reasoned only its height tells: over what it was seen follows from what holds it.
+    """
+    if item.locked or is_soft(item) or taxonomy.resolve(item.category).category.mount != "surface":
+        return False
+    if scene.has_plane(edge.parent):
+        plane = plane_surface(scene.plane(edge.parent))
+        away = resting_cost(scene, item, edge, plane)
+        # How far the floor reaches is a guess where it was not seen; how high it is, is not.
+        return away - outside_m(plane, item.pose.position) > OUT_OF_REACH_M
+    parent = scene.object(edge.parent)
+    place = choose_surface(scene, item, edge, library.shape(parent.shape_id)).in_world(parent.pose)
+    if edge.relation == "mounted on":
+        return resting_cost(scene, item, edge, place) > OUT_OF_REACH_M
+    gap = abs(float((item.corners_world @ place.normal).min()) - place.level)
+    if not measured:
+        return gap > REASONED_M
+    return gap > OUT_OF_REACH_M or outside_m(place, item.pose.position) > BESIDE_M
+
+
+def _is_within(item: SceneObject, other: SceneObject) -> bool:
+    """Whether an object's middle is over another's box, and its foot is above the other's."""
+    local = other.pose.R_world_object.T @ (item.pose.position - other.pose.position)
+    over = bool((np.abs(local[:2]) <= 0.5 * other.size_m[:2]).all())
+    return over and float(item.corners_world[:, 2].min()) > float(other.corners_world[:, 2].min())

@@ -1,0 +1,92 @@
+"""What nothing reaches where it was seen stays there, or its supporter takes another shape."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from diorama_core.layout.feasible.recipe import FeasibleRecipe
+from diorama_core.layout.holding_shapes import holding_shapes
+from diorama_core.layout.noise import MEASURED, REASONED
+from diorama_core.layout.unmarked_supporters import left_where_seen, over_what_may_hold_them
+from diorama_core.progress import Progress
+from diorama_core.scene.types import Scene
+from tests.layout.feasible.test_photo_observations import LIBRARY, looking_north
+from tests.layout.small_rooms import Room
+from tests.layout.test_holding_shapes import LOW, TALL, candidate
+
+BOX_PX = (300.0, 200.0, 320.0, 225.0)
+
+
+def cup_by_the_wall(room: Room, gap_m: float, **more) -> tuple[Scene, str]:
+    """A cup in the air before a wall on which the graph hangs it."""
+    half = room.library.shape("cup_21").size_m[0] / 2
+    at = (0.0, 2.5 - half - gap_m, 0.8)
+    cup = room.put("cup_21", at, on="wall_2", relation="mounted on", yaw=-np.pi / 2, box_px=BOX_PX, **more)
+    return room.scene(camera=looking_north()), cup
+
+
+def test_a_cup_in_the_air_stays_where_it_was_measured(room: Room) -> None:
+    scene, cup = cup_by_the_wall(room, 0.3)
+    left, reasons = left_where_seen(scene, LIBRARY, MEASURED)
+    assert left.support_of(cup) is None
+    assert "please check" in reasons[0]
+    settled, report = FeasibleRecipe(LIBRARY, depth_measured=True).optimise(left, Progress())
+    assert np.allclose(settled.object(cup).pose.position, scene.object(cup).pose.position, atol=1e-6)
+    assert report.after["structure"] == 1.0
+
+
+@pytest.mark.parametrize(("gap_m", "locked"), [(0.05, False), (0.3, True)])
+def test_what_is_near_its_wall_or_locked_keeps_it(room: Room, gap_m: float, locked: bool) -> None:
+    scene, _ = cup_by_the_wall(room, gap_m, locked=locked)
+    assert left_where_seen(scene, LIBRARY, MEASURED) == (scene, ())
+
+
+def test_a_photo_alone_does_not_tell_how_far_from_a_wall_it_is(room: Room) -> None:
+    scene, _ = cup_by_the_wall(room, 0.3)
+    assert left_where_seen(scene, LIBRARY, REASONED) == (scene, ())
+
+
+@pytest.mark.parametrize(
+    ("gap_m", "measured", "reasoned"), [(0.08, True, True), (0.2, False, True), (0.5, False, False)]
+)
+def test_heights_over_a_table_tell_more_where_they_were_measured(
+    room: Room, gap_m: float, measured: bool, reasoned: bool
+) -> None:
+    table = room.put("table_0", (0.0, 1.0, 0.37))
+    height = room.library.shape("cup_21").size_m[2]
+    cup = room.put("cup_21", (0.0, 1.0, room.objects[0].size_m[2] + gap_m + height / 2), on=table)
+    scene = room.scene(camera=looking_north())
+    assert (left_where_seen(scene, LIBRARY, MEASURED)[0].support_of(cup) is not None) == measured
+    assert (left_where_seen(scene, LIBRARY, REASONED)[0].support_of(cup) is not None) == reasoned
+
+
+def test_what_was_measured_beside_a_table_is_not_on_it(room: Room) -> None:
+    table = room.put("table_0", (0.0, 1.0, 0.37))
+    depth, _, top = room.objects[0].size_m
+    height = room.library.shape("cup_21").size_m[2]
+    cup = room.put("cup_21", (depth / 2 + 0.1, 1.0, top + height / 2), on=table)
+    scene = room.scene(camera=looking_north())
+    assert left_where_seen(scene, LIBRARY, MEASURED)[0].support_of(cup) is None
+
+
+def test_furniture_keeps_its_floor(room: Room) -> None:
+    room.put("table_0", (0.0, 1.0, 0.9))
+    scene = room.scene(camera=looking_north())
+    assert left_where_seen(scene, LIBRARY, MEASURED) == (scene, ())
+
+
+def test_a_shelf_holds_what_is_within_it_when_another_of_its_shapes_reaches_it(room: Room) -> None:
+    shelf = room.put(TALL, (0.0, 1.0, 0.9), candidates=(candidate(TALL, 0.4), candidate(LOW, 0.3)))
+    books = room.put("books_18", (0.0, 0.9, 0.65 + 0.12), on="floor")
+    scene = room.scene(camera=looking_north())
+    held = over_what_may_hold_them(scene, LIBRARY)
+    assert held.support_of(books).parent == shelf
+    assert holding_shapes(held, LIBRARY, MEASURED)[0].object(shelf).shape_id == LOW
+
+
+def test_a_shelf_does_not_hold_what_is_beside_it(room: Room) -> None:
+    room.put(TALL, (0.0, 1.0, 0.9), candidates=(candidate(TALL, 0.4), candidate(LOW, 0.3)))
+    room.put("books_18", (1.5, 0.9, 0.65 + 0.12), on="floor")
+    scene = room.scene(camera=looking_north())
+    assert over_what_may_hold_them(scene, LIBRARY) == scene
