@@ -21,7 +21,7 @@ from diorama_core.library.catalogue import built_in_library
 from diorama_core.library.furniture import designs
 from diorama_core.library.furniture.measures import made_by_id, values_of
 from diorama_core.pose import MadeToMeasure, RenderAndCompare
-from diorama_core.pose.made_to_measure import can_have
+from diorama_core.pose.parameter_fit import can_have
 from diorama_core.progress import Progress
 from diorama_core.provenance import DepthSource, ScaleSource
 from diorama_core.render.raycast import render_buffers
