@@ -155,9 +155,7 @@ def observe_among(
     return observe(camera, item.box, mask, item.mask_confidence, masks, cells)
 
 
-def without_loads(
-    mask: Bool[np.ndarray, "h w"], loads: Sequence[Bool[np.ndarray, "h w"]]
-) -> Bool[np.ndarray, "h w"]:
+def without_loads(mask: Bool[np.ndarray, "h w"], loads: Sequence[Bool[np.ndarray, "h w"]]) -> Bool[np.ndarray, "h w"]:
     """A mask without what lies on the object: an outline that was not drawn often takes it for a part of it.
 
     Where next to nothing would be left, the masks of what lies on it are too large, and it stays as it is.

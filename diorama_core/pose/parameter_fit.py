@@ -20,8 +20,9 @@ from diorama_core.pose.outline_fit import Near, fitted_pose, resizing_cost
 from diorama_core.pose.seen_objects import SeenObject
 from diorama_core.scene.types import Candidate, Pose
 
-WORTH, WORTH_WITH_DEPTH = 0.25, 0.15
-"""A changed parameter must agree better by so much: without depth it may make up for a pose that is a little off."""
+WORTH, WORTH_WITH_DEPTH, WORTH_OF_UNSURE = 0.25, 0.15, 0.4
+"""A changed parameter must agree better by so much: without depth it may make up for a pose that is a little off, and
+where no one drew the mask also for what the mask missed or took for the object."""
 SIZE_LOSS = 0.1
 """A shape stretched unevenly is rather built at that size, unless it agrees worse by so much."""
 PROMISING = 0.8
@@ -99,7 +100,6 @@ class ParameterFit:
             start: The size from before any fit, as a share of that size.
             as_is: What the retrieved shape scores, stretched to that size.
         """
-        worth = WORTH if any(one.evidence.surface is None for one in self.seen) else WORTH_WITH_DEPTH
         changes: dict[str, Value] = {}
         best, left = self._at(self._caster(design_id, size_m, changes), poses, start), MAX_VARIANTS
         for _ in range(PASSES):
@@ -113,11 +113,18 @@ class ParameterFit:
                 tried = {v: self._fit(casters[v], size_m, best.poses, start) for v in promising}
                 value = max(tried, key=lambda v: tried[v].score, default=None)
                 own = best.score if changes else max(best.score, as_is)
-                if value is not None and tried[value].score > own + worth:
+                if value is not None and tried[value].score > own + self._worth:
                     changes, best = {**changes, name: value}, tried[value]
             if changes == before_pass:
                 break
         return changes, best
+
+    @property
+    def _worth(self) -> float:
+        """By how much a changed parameter must agree better."""
+        if all(one.evidence.surface is not None for one in self.seen):
+            return WORTH_WITH_DEPTH
+        return WORTH if all(one.mask_confidence >= 1.0 for one in self.seen) else WORTH_OF_UNSURE
 
     def _caster(self, design_id: str, size_m: Float[np.ndarray, "3"], changes: Mapping[str, Value]) -> ShapeCaster:
         return ShapeCaster(self.library.mesh(made_id(design_id, size_m, changes)))
