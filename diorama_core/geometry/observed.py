@@ -137,6 +137,8 @@ def observe_among(
     parents: Sequence[int | None],
     index: int,
     cells: int,
+    *,
+    loads_apart: bool = False,
 ) -> Observed:
     """Observe object `index`, given which of the others may occlude it.
 
@@ -147,11 +149,12 @@ def observe_among(
         parents: For each, which of the others it lies on, if any.
         index: The object to observe.
         cells: Resolution of the window, both ways.
+        loads_apart: Whether what lies on it is no part of its outline where its mask takes it for one.
     """
     depths = camera.to_camera(centres_world)[:, 2]
     masks = [items[i].mask for i in indices_in_front(depths, parents, index)]
     item = items[index]
-    mask = without_loads(item.mask, [items[i].mask for i in loads_of(parents, index)])
+    mask = without_loads(item.mask, [items[i].mask for i in loads_of(parents, index)] if loads_apart else [])
     return observe(camera, item.box, mask, item.mask_confidence, masks, cells)
 
 

@@ -119,7 +119,7 @@ def hypotheses_for(
     found = Hypotheses(PoseBatch(R, position, scale), np.abs(off_axis), np.hypot(misfit, _TURNED_MISFIT * turned))
     if sides_known or symmetry == ROUND:
         return found
-    return found.and_also(_as_made(found, cuboid, limits, anchor))
+    return found.and_also(_as_made(found[~turned], cuboid, limits, anchor))
 
 
 def _as_made(found: Hypotheses, cuboid: Cuboid, limits: SizeLimits, anchor: Anchor) -> Hypotheses:

@@ -98,7 +98,7 @@ class MadeToMeasure:
             shown = seen.get(one.object_id)
             if shown is None or (shared[one.candidates[0].shape_id] > 1 and shown.may_have_agreed):
                 return one
-            return choice.best_first(one, shown.evidence, outlined=shown.mask_confidence >= SURE_MASK)
+            return choice.best_first(one, shown, outlined=shown.mask_confidence >= SURE_MASK)
 
         return tuple(each(chosen, posed))
 

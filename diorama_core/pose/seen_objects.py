@@ -53,6 +53,11 @@ class SeenObject:
         """How much outline and depth say, as a factor of a logarithm."""
         return OUTLINE * self.evidence.seen.mask_trust if self.evidence.surface is None else OUTLINE_WITH_DEPTH
 
+    def edges_in(self, caster: ShapeCaster, pose: Pose) -> float:
+        """How well the inner edges of a shape agree with the photo's: -1 to 1."""
+        poses = PoseBatch(pose.R_world_object[None], pose.position[None], pose.scale[None])
+        return float(self.edges.agreement(self.evidence.hits(caster, poses))[0])
+
     def score(self, caster: ShapeCaster, pose: Pose) -> float:
         """How well a shape agrees in a pose: logarithm, higher is better."""
         hits = self.evidence.hits(caster, PoseBatch(pose.R_world_object[None], pose.position[None], pose.scale[None]))
@@ -82,7 +87,7 @@ def seen_objects(
     for k, item in enumerate(items):
         if item.id not in pose_of:
             continue
-        window = observe_among(geometry.camera, items, centres, parents, k, CELLS)
+        window = observe_among(geometry.camera, items, centres, parents, k, CELLS, loads_apart=True)
         if float((window.covered * window.weight).sum()) < MIN_CELLS:
             continue
         surface = measured_surface(depth, window, item.mask, noise)

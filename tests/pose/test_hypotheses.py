@@ -44,8 +44,18 @@ def test_the_cuboid_itself_may_be_turned_where_its_sides_differ() -> None:
 
 def test_turning_the_cuboid_costs_something() -> None:
     found = hypotheses((0.24, 0.48, 0.44))
-    as_measured, turned = found.misfit[0], found.misfit[-1]
+    yaw = np.rad2deg(np.arctan2(found.poses.R[:, 1, 0], found.poses.R[:, 0, 0])) % 360
+    filling = np.abs(found.poses.scale - 1.0).max(axis=1) < 0.01
+    as_measured, turned = (found.misfit[filling & (np.abs(yaw - angle) < 1.0)].min() for angle in (10.0, 100.0))
     assert turned > as_measured + 0.1
+
+
+def test_from_a_picture_alone_a_shape_is_tried_in_its_own_proportions_too() -> None:
+    found, measured = hypotheses((0.9, 0.48, 0.44)), hypotheses((0.9, 0.48, 0.44), sides_known=True)
+    as_made = np.isclose(found.poses.scale, 1.0, atol=0.01).all(axis=1)
+    assert as_made.any()
+    assert (found.misfit[as_made] > found.misfit.min() + 0.1).all()
+    assert not np.isclose(measured.poses.scale, 1.0, atol=0.01).all(axis=1).any()
 
 
 @pytest.mark.parametrize("count", [1, 3])
