@@ -72,9 +72,11 @@ class ParameterFit:
             poses: Where it stands for every object.
         """
         own = np.asarray(best.shape_size_m)
+        if not self._may_be_built(best.shape_id):
+            return None
         as_is = self._fit(ShapeCaster(self.library.mesh(best.shape_id)), own, poses, best.pose.scale)
         size = np.round(own * as_is.poses[0].scale, 3)
-        if not self._can_be_made(best.shape_id, size):
+        if not can_be_made(best.shape_id, size):
             return None
         poses = [Pose(p.R_world_object, p.position, p.scale * own / size) for p in as_is.poses]
         changes, fit = self._searched(best.shape_id, size, poses, best.pose.scale * own / size, as_is.score)
@@ -150,10 +152,9 @@ class ParameterFit:
         ]
         return self._at(caster, found, start)
 
-    def _can_be_made(self, shape_id: str, size_m: Float[np.ndarray, "3"]) -> bool:
-        if record_of(self.library, shape_id).source != BUILT_IN or not can_be_made(shape_id, size_m):
-            return False
-        return len(self.library.mesh(shape_id).faces) <= MAX_TRIANGLES
+    def _may_be_built(self, shape_id: str) -> bool:
+        built_in = record_of(self.library, shape_id).source == BUILT_IN
+        return built_in and len(self.library.mesh(shape_id).faces) <= MAX_TRIANGLES
 
 
 def can_have(name: str, value: Value, size_m: Float[np.ndarray, "3"]) -> bool:

@@ -71,11 +71,11 @@ def test_what_lies_on_a_thing_is_no_part_of_its_outline() -> None:
     on_them = of.window.coverage(books) > 0.99
     assert on_them.any()
     assert of.covered[on_them].max() == 0.0
-    assert of.weight[on_them].max() == 0.0
+    assert of.weight[on_them].max() < 1e-9
     beside = observe_among(
         look(0, 0), items, np.array([[0.0, 3.0, 0.5], [0.0, 3.1, 0.9]]), (None, None), 0, CELLS, loads_apart=True
     )
-    assert beside.covered[on_them].min() == 1.0
+    assert beside.covered[on_them].min() > 0.99
 
 
 def test_a_load_that_would_leave_nothing_leaves_the_mask_as_it_is() -> None:
