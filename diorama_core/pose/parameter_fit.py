@@ -7,7 +7,7 @@ promising value is compared in a pose fitted to it, sizes included.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -15,7 +15,8 @@ from jaxtyping import Float
 
 from diorama_core.geometry.silhouette import ShapeCaster
 from diorama_core.library.furniture.measures import Value, can_be_made, made_id, varied
-from diorama_core.library.record import BUILT_IN, ShapeLibrary, record_of
+from diorama_core.library.record import BUILT_IN, Shape, ShapeLibrary, record_of
+from diorama_core.pose.levels import level_cost
 from diorama_core.pose.outline_fit import Near, fitted_pose, resizing_cost
 from diorama_core.pose.seen_objects import SeenObject
 from diorama_core.scene.types import Candidate, Pose
@@ -56,6 +57,28 @@ class _Fit:
 
 
 @dataclass(frozen=True, eq=False)
+class _Variant:
+    """A design as it is built, to be compared with the picture."""
+
+    caster: ShapeCaster
+    shape: Shape | None
+    """With the surfaces on which things lie; None where none does."""
+
+    def score(self, seen: SeenObject, pose: Pose, start: Float[np.ndarray, "3"]) -> float:
+        """How well it agrees with one object and with what lies on that: a logarithm, higher is better.
+
+        Args:
+            seen: The object.
+            pose: Where it stands.
+            start: Its scale from before any fit.
+        """
+        cost = seen.outline_weight * float(resizing_cost(seen.evidence.seen, (pose.scale / start)[None])[0])
+        if self.shape is not None:
+            cost += level_cost(self.shape, pose, seen.carried)
+        return seen.score(self.caster, pose) - cost
+
+
+@dataclass(frozen=True, eq=False)
 class ParameterFit:
     """Fits the parameters of one candidate's design to the objects that have it."""
 
@@ -74,7 +97,7 @@ class ParameterFit:
         own = np.asarray(best.shape_size_m)
         if not self._may_be_built(best.shape_id):
             return None
-        as_is = self._fit(ShapeCaster(self.library.mesh(best.shape_id)), own, poses, best.pose.scale)
+        as_is = self._fit(self._variant(best.shape_id), own, poses, best.pose.scale)
         size = np.round(own * as_is.poses[0].scale, 3)
         if not can_be_made(best.shape_id, size):
             return None
@@ -103,16 +126,16 @@ class ParameterFit:
             as_is: What the retrieved shape scores, stretched to that size.
         """
         changes: dict[str, Value] = {}
-        best, left = self._at(self._caster(design_id, size_m, changes), poses, start), MAX_VARIANTS
+        best, left = self._at(self._variant(made_id(design_id, size_m, changes)), poses, start), MAX_VARIANTS
         for _ in range(PASSES):
             before_pass = dict(changes)
             for name, values in varied(design_id):
                 others = [v for v in values if v != changes.get(name) and can_have(name, v, size_m)][:left]
                 left -= len(others)
-                casters = {v: self._caster(design_id, size_m, {**changes, name: v}) for v in others}
-                roughly = {v: self._at(caster, best.poses, start) for v, caster in casters.items()}
+                variants = {v: self._variant(made_id(design_id, size_m, {**changes, name: v})) for v in others}
+                roughly = {v: self._at(variant, best.poses, start) for v, variant in variants.items()}
                 promising = [v for v in others if roughly[v].score > best.score - PROMISING]
-                tried = {v: self._fit(casters[v], size_m, best.poses, start) for v in promising}
+                tried = {v: self._fit(variants[v], size_m, best.poses, start) for v in promising}
                 value = max(tried, key=lambda v: tried[v].score, default=None)
                 own = best.score if changes else max(best.score, as_is)
                 if value is not None and tried[value].score > own + self._worth:
@@ -128,29 +151,28 @@ class ParameterFit:
             return WORTH_WITH_DEPTH
         return WORTH if all(one.mask_confidence >= 1.0 for one in self.seen) else WORTH_OF_UNSURE
 
-    def _caster(self, design_id: str, size_m: Float[np.ndarray, "3"], changes: Mapping[str, Value]) -> ShapeCaster:
-        return ShapeCaster(self.library.mesh(made_id(design_id, size_m, changes)))
+    def _variant(self, shape_id: str) -> _Variant:
+        carries = any(one.carried for one in self.seen)
+        return _Variant(ShapeCaster(self.library.mesh(shape_id)), self.library.shape(shape_id) if carries else None)
 
-    def _at(self, caster: ShapeCaster, poses: Sequence[Pose], start: Float[np.ndarray, "3"]) -> _Fit:
-        scores = [
-            o.score(caster, p) - o.outline_weight * float(resizing_cost(o.evidence.seen, (p.scale / start)[None])[0])
-            for o, p in zip(self.seen, poses, strict=True)
-        ]
-        return _Fit(float(np.mean(scores)), tuple(poses))
+    def _at(self, variant: _Variant, poses: Sequence[Pose], start: Float[np.ndarray, "3"]) -> _Fit:
+        return _Fit(
+            float(np.mean([variant.score(o, p, start) for o, p in zip(self.seen, poses, strict=True)])), tuple(poses)
+        )
 
     def _fit(
         self,
-        caster: ShapeCaster,
+        variant: _Variant,
         size_m: Float[np.ndarray, "3"],
         poses: Sequence[Pose],
         start: Float[np.ndarray, "3"],
     ) -> _Fit:
         near = Near(start, STEPS, ROUNDS)
         found = [
-            fitted_pose(o.evidence, caster, p, size_m, resize=self.resize, near=near)
+            fitted_pose(o.evidence, variant.caster, p, size_m, resize=self.resize, near=near)
             for o, p in zip(self.seen, poses, strict=True)
         ]
-        return self._at(caster, found, start)
+        return self._at(variant, found, start)
 
     def _may_be_built(self, shape_id: str) -> bool:
         built_in = record_of(self.library, shape_id).source == BUILT_IN

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from diorama_core.artefacts import DepthMap, DetectedObject, Inputs, ObjectGeometry, PosedCandidates
+from diorama_core.artefacts import Cuboid, DepthMap, DetectedObject, Inputs, ObjectGeometry, PosedCandidates
 from diorama_core.geometry.observed import observe_among
 from diorama_core.geometry.see_through import SeeThrough
 from diorama_core.geometry.silhouette import PoseBatch, ShapeCaster
@@ -42,6 +42,8 @@ class SeenObject:
     """Of its mask."""
     mask_confidence: float
     category: str
+    carried: tuple[Cuboid, ...] = ()
+    """What lies on it, measured without knowing its shape."""
 
     @property
     def may_have_agreed(self) -> bool:
@@ -76,9 +78,9 @@ def seen_objects(
 ) -> dict[str, SeenObject]:
     """What the picture says of every posed object of which enough is seen, by its id."""
     pose_of = {p.object_id: p.candidates[0].pose for p in posed if p.candidates}
-    centre_of = {c.object_id: c.centre for c in geometry.cuboids}
-    items = [o for o in objects if o.id in centre_of]
-    centres = np.array([centre_of[o.id] for o in items]).reshape(-1, 3)
+    cuboid_of = {c.object_id: c for c in geometry.cuboids}
+    items = [o for o in objects if o.id in cuboid_of]
+    centres = np.array([cuboid_of[o.id].centre for o in items]).reshape(-1, 3)
     positions = {o.id: k for k, o in enumerate(items)}
     parent_of = {s.child: s.parent for s in geometry.supports}
     parents = [positions.get(parent_of.get(o.id, "")) for o in items]
@@ -101,5 +103,6 @@ def seen_objects(
             int(item.mask.sum()),
             item.mask_confidence,
             item.category,
+            tuple(cuboid_of[o.id] for o, parent in zip(items, parents, strict=True) if parent == k),
         )
     return found
