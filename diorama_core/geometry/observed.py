@@ -38,6 +38,8 @@ class Outlined(Protocol):
 
 _BORDER_PX = 2.5
 _FULLY_TRUSTED_AREA_PX = 600.0
+MIN_OWN_SHARE = 0.2
+"""Of a mask, that must be left without what lies on the object."""
 _OF_OPENINGS = 0.25
 """Weight of a mask that was not drawn where a shape is open below."""
 
@@ -135,6 +137,8 @@ def observe_among(
     parents: Sequence[int | None],
     index: int,
     cells: int,
+    *,
+    loads_apart: bool = False,
 ) -> Observed:
     """Observe object `index`, given which of the others may occlude it.
 
@@ -145,11 +149,32 @@ def observe_among(
         parents: For each, which of the others it lies on, if any.
         index: The object to observe.
         cells: Resolution of the window, both ways.
+        loads_apart: Whether what lies on it is no part of its outline where its mask takes it for one.
     """
     depths = camera.to_camera(centres_world)[:, 2]
     masks = [items[i].mask for i in indices_in_front(depths, parents, index)]
     item = items[index]
-    return observe(camera, item.box, item.mask, item.mask_confidence, masks, cells)
+    mask = without_loads(item.mask, [items[i].mask for i in loads_of(parents, index)] if loads_apart else [])
+    return observe(camera, item.box, mask, item.mask_confidence, masks, cells)
+
+
+def without_loads(mask: Bool[np.ndarray, "h w"], loads: Sequence[Bool[np.ndarray, "h w"]]) -> Bool[np.ndarray, "h w"]:
+    """A mask without what lies on the object: an outline that was not drawn often takes it for a part of it.
+
+    Where next to nothing would be left, the masks of what lies on it are too large, and it stays as it is.
+    """
+    own = mask & ~np.logical_or.reduce([np.zeros_like(mask), *loads])
+    return own if own.sum() >= MIN_OWN_SHARE * mask.sum() else mask
+
+
+def loads_of(parents: Sequence[int | None], index: int) -> tuple[int, ...]:
+    """Which objects lie on object `index`, or on something that does."""
+    found: list[int] = []
+    level = {index}
+    while level:
+        level = {i for i, parent in enumerate(parents) if parent in level and i not in found and i != index}
+        found += sorted(level)
+    return tuple(found)
 
 
 def cut_sides(box: Box, width: int, height: int) -> Bool[np.ndarray, "4"]:

@@ -18,8 +18,8 @@ from diorama_core.artefacts import PosedCandidates
 from diorama_core.geometry.silhouette import ShapeCaster
 from diorama_core.library.furniture.measures import can_be_turned
 from diorama_core.library.record import ShapeLibrary
-from diorama_core.pose.mask_observations import Evidence
 from diorama_core.pose.outline_fit import fitted_pose
+from diorama_core.pose.seen_objects import SeenObject
 from diorama_core.pose.turned_profile import turned
 from diorama_core.scene.types import Candidate
 
@@ -29,8 +29,11 @@ POOR_FIT = 0.3
 """Disagreement from which on the next ones are fitted from a photo alone."""
 COMPARED, TURNED = 3, 2
 """Candidates that are fitted in that case, and bodies of revolution that always are."""
-OF_RANK, OF_FIT = 0.5, 2.0
+OF_RANK, OF_FIT = 1.0, 2.0
 """What the ranks from before the fit and the fits themselves say of them, as factors of logarithms."""
+OF_EDGES = 1.0
+"""What the correlation of inner edges says beside them: books on a top and what a mask missed change its outline.
+Less of a thing that is hidden."""
 NOISE_FLOOR = 0.03
 """Disagreement below which two shapes count as equal: the resolution of the outlines."""
 _NO_SCORE = 1e-3
@@ -42,38 +45,38 @@ class FittedChoice:
 
     library: ShapeLibrary = field(repr=False)
 
-    def best_first(self, one: PosedCandidates, evidence: Evidence, *, outlined: bool) -> PosedCandidates:
+    def best_first(self, one: PosedCandidates, seen: SeenObject, *, outlined: bool) -> PosedCandidates:
         """The candidates with the best first, all of them as they were.
 
         Args:
             one: Candidates, best first so far; at least one.
-            evidence: Of the object.
+            seen: The object.
             outlined: Whether its outline is sure enough to tell a profile.
         """
-        first = self._error(one.candidates[0], evidence, outlined)
+        first, first_score = self._fitted(one.candidates[0], seen, outlined)
         if first < GOOD_FIT:
             return one
-        by_rank = evidence.surface is None and first >= POOR_FIT
-        errors = {
-            k: self._error(one.candidates[k], evidence, outlined) for k in _compared(one.candidates, by_rank, outlined)
-        }
-        scores = {k: _score(one.candidates[k], error) for k, error in {0: first, **errors}.items()}
+        by_rank = seen.evidence.surface is None and first >= POOR_FIT
+        others = _compared(one.candidates, by_rank, outlined)
+        scores = {0: first_score, **{k: self._fitted(one.candidates[k], seen, outlined)[1] for k in others}}
         best = max(scores, key=lambda k: (scores[k], -k))
-        others = (*one.candidates[:best], *one.candidates[best + 1 :])
-        return replace(one, candidates=(one.candidates[best], *others))
+        rest = (*one.candidates[:best], *one.candidates[best + 1 :])
+        return replace(one, candidates=(one.candidates[best], *rest))
 
-    def _error(self, candidate: Candidate, evidence: Evidence, outlined: bool) -> float:
-        """Disagreement with the picture, 0 to 1, in the fitted pose and with the profile that is seen."""
-        caster = ShapeCaster(self.library.mesh(candidate.shape_id))
+    def _fitted(self, candidate: Candidate, seen: SeenObject, outlined: bool) -> tuple[float, float]:
+        """Disagreement with the picture, 0 to 1, in the fitted pose and with the profile that is seen; and the score.
+
+        The score is a logarithm, higher is better.
+        """
+        evidence, caster = seen.evidence, ShapeCaster(self.library.mesh(candidate.shape_id))
         pose = fitted_pose(evidence, caster, candidate.pose, np.asarray(candidate.shape_size_m), resize=True)
         error = evidence.error(caster, pose)
         found = turned(self.library, candidate.shape_id, [evidence], [pose], error) if outlined else None
-        return error if found is None else found.error
-
-
-def _score(candidate: Candidate, error: float) -> float:
-    """Logarithm, higher is better."""
-    return OF_RANK * float(np.log(max(candidate.score, _NO_SCORE))) - OF_FIT * float(np.log(error + NOISE_FLOOR))
+        if found is not None:
+            error = found.error
+        edges = (1.0 - evidence.seen.hidden_share) * seen.edges_in(caster, pose)
+        of_rank = OF_RANK * float(np.log(max(candidate.score, _NO_SCORE)))
+        return error, of_rank - OF_FIT * float(np.log(error + NOISE_FLOOR)) + OF_EDGES * edges
 
 
 def _compared(candidates: Sequence[Candidate], by_rank: bool, outlined: bool) -> list[int]:

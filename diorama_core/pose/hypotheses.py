@@ -15,6 +15,8 @@ from diorama_core.pose.limits import SizeLimits
 from diorama_core.scene.types import yaw_rotation
 
 _FINE_STEP_RAD = np.deg2rad(15.0)
+_TURNS = np.arange(-1, 2) * _FINE_STEP_RAD
+"""Of things in their own proportions, against their cuboid's axes."""
 _THIN_M = 0.1
 _SAME_TURN_RAD = np.deg2rad(20.0)
 _SAME_PLACE = 0.15
@@ -114,7 +116,31 @@ def hypotheses_for(
     position = anchor.placed(np.tile(cuboid.centre, (len(total), 1)), R, sizes)
     thick = np.maximum(cuboid.size_m.min(), _THIN_M)
     misfit = np.sqrt((np.log(np.maximum(sizes, thick) / np.maximum(wanted, thick)) ** 2).mean(axis=1))
-    return Hypotheses(PoseBatch(R, position, scale), np.abs(off_axis), np.hypot(misfit, _TURNED_MISFIT * turned))
+    found = Hypotheses(PoseBatch(R, position, scale), np.abs(off_axis), np.hypot(misfit, _TURNED_MISFIT * turned))
+    if sides_known or symmetry == ROUND:
+        return found
+    return found.and_also(_as_made(found[~turned], cuboid, limits, anchor))
+
+
+def _as_made(found: Hypotheses, cuboid: Cuboid, limits: SizeLimits, anchor: Anchor) -> Hypotheses:
+    """The shape in its own proportions, as high as the cuboid, and turned a little too.
+
+    From a picture alone the cuboid has the proportions that its kind usually has where the outline was seen to end.
+    """
+    growth = float(cuboid.size_m[2]) / max(float(limits.shape_size_m[2]), 1e-6)
+    scale = np.tile(limits.scale_for(growth * limits.shape_size_m), (len(_TURNS) * len(found.poses), 1))
+    turns = np.repeat(_TURNS, len(found.poses))
+    R = np.tile(found.poses.R, (len(_TURNS), 1, 1)) @ np.array([yaw_rotation(angle) for angle in turns])
+    sizes = scale * limits.shape_size_m
+    position = anchor.placed(np.tile(cuboid.centre, (len(R), 1)), R, sizes)
+    wanted = np.tile(found.poses.scale * limits.shape_size_m, (len(_TURNS), 1))
+    thick = np.maximum(cuboid.size_m.min(), _THIN_M)
+    misfit = np.sqrt((np.log(np.maximum(sizes, thick) / np.maximum(wanted, thick)) ** 2).mean(axis=1))
+    return Hypotheses(
+        PoseBatch(R, position, scale),
+        np.tile(found.off_axis_rad, len(_TURNS)) + np.abs(turns),
+        np.hypot(misfit, np.tile(found.misfit, len(_TURNS))),
+    )
 
 
 def unlike_best(

@@ -39,6 +39,19 @@ MIN_TRUST = 0.5
 
 
 @dataclass(frozen=True, eq=False)
+class Near:
+    """How far a fit may go."""
+
+    scale: Float[np.ndarray, "3"] | None = None
+    """The size from before any fit, from which it goes; None where the fit begins with it."""
+    steps: tuple[float, ...] = STEPS
+    rounds: int = ROUNDS
+
+
+WIDE = Near()
+
+
+@dataclass(frozen=True, eq=False)
 class _Moves:
     """Poses around one, all of them neighbours by one step."""
 
@@ -60,6 +73,7 @@ def fitted_pose(
     shape_size_m: Float[np.ndarray, "3"],
     *,
     resize: bool,
+    near: Near = WIDE,
 ) -> Pose:
     """The pose near one with which the shape agrees best.
 
@@ -69,13 +83,14 @@ def fitted_pose(
         pose: Where it is so far.
         shape_size_m: Its extents at scale 1.
         resize: Whether its size may change; one of a set keeps it. What is round from above stays round.
+        near: How far it may go.
     """
     if evidence.surface is None and evidence.seen.mask_trust < MIN_TRUST:
         return pose
-    start = pose.scale
+    start = pose.scale if near.scale is None else near.scale
     cost = float(_costs(evidence, caster, _Moves([pose.R_world_object], [pose.position], [pose.scale]), start)[0])
-    for step in STEPS:
-        for _ in range(ROUNDS):
+    for step in near.steps:
+        for _ in range(near.rounds):
             moves = _neighbours(pose, np.asarray(shape_size_m), step, _resizings(resize, caster.round_from_above))
             costs = _costs(evidence, caster, moves, start)
             best = int(np.argmin(costs))

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 import pytest
 
-from diorama_core.geometry.observed import observe, open_below
+from diorama_core.geometry.observed import loads_of, observe, observe_among, open_below, without_loads
 from tests.synthetic_rooms import look
 
 CELLS, BOX = 24, (40.0, 30.0, 100.0, 110.0)
@@ -42,3 +44,46 @@ def test_only_a_drawn_mask_tells_that_there_is_no_space_between_legs(confidence,
     closed, open_ = of.agreement(np.stack([whole, whole & ~inner]))
     assert closed > open_
     assert (closed - open_ > 0.15) == told
+
+
+def filled(rows: slice, columns: slice) -> np.ndarray:
+    """A mask of one rectangle."""
+    mask = np.zeros((150, 160), dtype=bool)
+    mask[rows, columns] = True
+    return mask
+
+
+@dataclass(frozen=True)
+class Marked:
+    """A thing with a box and a mask."""
+
+    box: tuple[float, float, float, float]
+    mask: np.ndarray
+    mask_confidence: float = 0.9
+
+
+def test_what_lies_on_a_thing_is_no_part_of_its_outline() -> None:
+    books = filled(slice(20, 50), slice(50, 80))
+    items = (Marked(BOX, filled(slice(20, 110), slice(40, 100))), Marked((50.0, 20.0, 80.0, 50.0), books))
+    of = observe_among(
+        look(0, 0), items, np.array([[0.0, 3.0, 0.5], [0.0, 3.1, 0.9]]), (None, 0), 0, CELLS, loads_apart=True
+    )
+    on_them = of.window.coverage(books) > 0.99
+    assert on_them.any()
+    assert of.covered[on_them].max() == 0.0
+    assert of.weight[on_them].max() < 1e-9
+    beside = observe_among(
+        look(0, 0), items, np.array([[0.0, 3.0, 0.5], [0.0, 3.1, 0.9]]), (None, None), 0, CELLS, loads_apart=True
+    )
+    assert beside.covered[on_them].min() > 0.99
+
+
+def test_a_load_that_would_leave_nothing_leaves_the_mask_as_it_is() -> None:
+    rug = filled(slice(60, 110), slice(40, 100))
+    assert without_loads(rug, [filled(slice(50, 120), slice(30, 110))]).sum() == rug.sum()
+    assert without_loads(rug, [filled(slice(60, 70), slice(40, 100))]).sum() == rug.sum() - 600
+
+
+def test_loads_lie_on_a_thing_or_on_what_lies_on_it() -> None:
+    assert loads_of((None, 0, 1, None, 3), 0) == (1, 2)
+    assert loads_of((1, 0), 0) == (1,)

@@ -7,6 +7,8 @@ import numpy as np
 from diorama_core.artefacts import PosedCandidates
 from diorama_core.library.catalogue import built_in_library
 from diorama_core.pose.fitted_choice import FittedChoice
+from diorama_core.pose.inner_edges import InnerEdges
+from diorama_core.pose.seen_objects import SeenObject
 from diorama_core.scene.types import Candidate
 from tests.pose.test_turned_profile import as_large, seen
 
@@ -20,7 +22,10 @@ def order(true_id: str, ids: tuple[str, ...], outlined: bool = True) -> tuple[st
     found = (
         Candidate(i, LIBRARY.shape(i).size_m, 0.9 - 0.1 * k, as_large(i, pose, true_id)) for k, i in enumerate(ids)
     )
-    out = CHOICE.best_first(PosedCandidates("o", tuple(found), 0.9), evidence, outlined=outlined)
+    k = evidence.camera.intrinsics
+    edges = InnerEdges.of(np.full((k.height, k.width, 3), 90, np.uint8), evidence.seen)
+    one = SeenObject(evidence, edges, pose, 5000, 1.0, "vase")
+    out = CHOICE.best_first(PosedCandidates("o", tuple(found), 0.9), one, outlined=outlined)
     assert all(np.isfinite(c.score) for c in out.candidates)
     return tuple(c.shape_id for c in out.candidates)
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from dataclasses import replace
 
 import numpy as np
@@ -26,26 +27,36 @@ def hypotheses(
     return hypotheses_for(cuboid, "pillow", 1, limits, anchor, sides_known=sides_known)
 
 
-def footprints(found: Hypotheses) -> set[tuple[int, float, float]]:
-    """Heading in whole degrees and sides, rounded."""
+def footprints(found: Hypotheses) -> Counter[tuple[int, float, float]]:
+    """How often there is each heading in whole degrees with sides, rounded."""
     yaw = np.rad2deg(np.arctan2(found.poses.R[:, 1, 0], found.poses.R[:, 0, 0])) % 360
     sizes = found.poses.scale * PILLOW
-    return {(round(a), round(float(x), 1), round(float(y), 1)) for a, (x, y, _) in zip(yaw, sizes, strict=True)}
+    return Counter((round(a), round(float(x), 1), round(float(y), 1)) for a, (x, y, _) in zip(yaw, sizes, strict=True))
 
 
 def test_the_cuboid_itself_may_be_turned_where_its_sides_differ() -> None:
-    found = hypotheses((0.24, 0.48, 0.44))
-    assert {(100, 0.2, 0.5), (280, 0.2, 0.5)} <= footprints(found)
-    assert (100, 0.2, 0.5) not in footprints(hypotheses((0.24, 0.48, 0.44), front_known=True))
+    found, turned = hypotheses((0.24, 0.48, 0.44)), ((100, 0.2, 0.5), (280, 0.2, 0.5))
+    front_known = hypotheses((0.24, 0.48, 0.44), front_known=True)
+    assert all(footprints(found)[one] == footprints(front_known)[one] + 1 for one in turned)
     assert (100, 0.2, 0.5) not in footprints(hypotheses((0.24, 0.48, 0.44), sides_known=True))
-    whole = hypotheses((0.4, 0.4, 0.44))
-    assert len(found.poses) == len(whole.poses) + len(whole.poses) // 2
+    whole = hypotheses((0.4, 0.4, 0.44), sides_known=True)
+    assert len(found.poses) == len(front_known.poses) + len(whole.poses) // 2
 
 
 def test_turning_the_cuboid_costs_something() -> None:
     found = hypotheses((0.24, 0.48, 0.44))
-    as_measured, turned = found.misfit[0], found.misfit[-1]
+    yaw = np.rad2deg(np.arctan2(found.poses.R[:, 1, 0], found.poses.R[:, 0, 0])) % 360
+    filling = np.abs(found.poses.scale - 1.0).max(axis=1) < 0.01
+    as_measured, turned = (found.misfit[filling & (np.abs(yaw - angle) < 1.0)].min() for angle in (10.0, 100.0))
     assert turned > as_measured + 0.1
+
+
+def test_from_a_picture_alone_a_shape_is_tried_in_its_own_proportions_too() -> None:
+    found, measured = hypotheses((0.9, 0.48, 0.44)), hypotheses((0.9, 0.48, 0.44), sides_known=True)
+    as_made = np.isclose(found.poses.scale, 1.0, atol=0.01).all(axis=1)
+    assert as_made.any()
+    assert (found.misfit[as_made] > found.misfit.min() + 0.1).all()
+    assert not np.isclose(measured.poses.scale, 1.0, atol=0.01).all(axis=1).any()
 
 
 @pytest.mark.parametrize("count", [1, 3])

@@ -21,7 +21,6 @@ from diorama_core.library.catalogue import built_in_library
 from diorama_core.library.furniture import designs
 from diorama_core.library.furniture.measures import made_by_id, values_of
 from diorama_core.pose import MadeToMeasure, RenderAndCompare
-from diorama_core.pose.made_to_measure import can_have
 from diorama_core.progress import Progress
 from diorama_core.provenance import DepthSource, ScaleSource
 from diorama_core.render.raycast import render_buffers
@@ -121,19 +120,3 @@ def test_no_candidate_gets_lost_when_another_one_comes_first() -> None:
 
 def test_with_measured_depth_the_ranking_stands() -> None:
     assert badly_fitting(measured=True)[0] == "stool-round-oak"
-
-
-@pytest.mark.parametrize(
-    ("name", "value", "possible"),
-    [
-        ("bays", (3, 3), False),
-        ("bays", (3,), True),
-        ("bays", (6,), False),
-        ("bays", ("door", 3), False),
-        ("bays", ("door", "door"), True),
-        ("panes", (3, 3), True),
-        ("drawers", 9, True),
-    ],
-)
-def test_a_small_cabinet_has_no_drawers_that_nothing_fits_into(name: str, value: object, possible: bool) -> None:
-    assert can_have(name, value, np.array([0.33, 0.34, 0.38])) is possible

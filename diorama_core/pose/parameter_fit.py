@@ -1,0 +1,187 @@
+"""The parameters of a design that agree best with the picture, each compared where the shape fits best with it.
+
+One after the other the parameters take their other values, and a value is kept where outline, measured depth and inner
+edges agree clearly better with it. A pose that was fitted to other legs or another top speaks for those: so every
+promising value is compared in a pose fitted to it, sizes included.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+from jaxtyping import Float
+
+from diorama_core.geometry.silhouette import ShapeCaster
+from diorama_core.library.furniture.measures import Value, can_be_made, made_id, varied
+from diorama_core.library.record import BUILT_IN, Shape, ShapeLibrary, record_of
+from diorama_core.pose.levels import level_cost
+from diorama_core.pose.outline_fit import Near, fitted_pose, resizing_cost
+from diorama_core.pose.seen_objects import SeenObject
+from diorama_core.scene.types import Candidate, Pose
+
+WORTH, WORTH_WITH_DEPTH, WORTH_OF_UNSURE = 0.25, 0.15, 0.4
+"""A changed parameter must agree better by so much: without depth it may make up for a pose that is a little off, and
+where no one drew the mask also for what the mask missed or took for the object."""
+SIZE_LOSS = 0.1
+"""A shape stretched unevenly is rather built at that size, unless it agrees worse by so much."""
+PROMISING = 0.8
+"""Values that agree worse than the best so far by more than this in its pose are not fitted."""
+STEPS, ROUNDS = (0.03, 0.015), 3
+"""Of the fits of single values: they begin where the shape fits with other ones."""
+MIN_DRAWER_M = (0.2, 0.08)
+"""Width and height of the front of a drawer, at least."""
+PASSES, MAX_VARIANTS = 2, 32
+"""Times that all parameters are gone through, since one may hide another, and shapes built for one object or set."""
+MAX_TRIANGLES = 20_000
+"""Designs of more triangles, such as plants, are not built again and again."""
+
+
+@dataclass(frozen=True, eq=False)
+class FittedParameters:
+    """What differs from a retrieved design in the picture."""
+
+    changes: dict[str, Value]
+    poses: tuple[Pose, ...]
+    """Of the objects that it was compared with; scales are those of the retrieved shape."""
+
+
+@dataclass(frozen=True, eq=False)
+class _Fit:
+    """One variant of a design, as it agrees with the objects that have it."""
+
+    score: float
+    """Mean over the objects: logarithm, higher is better."""
+    poses: tuple[Pose, ...]
+
+
+@dataclass(frozen=True, eq=False)
+class _Variant:
+    """A design as it is built, to be compared with the picture."""
+
+    caster: ShapeCaster
+    shape: Shape | None
+    """With the surfaces on which things lie; None where none does."""
+
+    def score(self, seen: SeenObject, pose: Pose, start: Float[np.ndarray, "3"]) -> float:
+        """How well it agrees with one object and with what lies on that: a logarithm, higher is better.
+
+        Args:
+            seen: The object.
+            pose: Where it stands.
+            start: Its scale from before any fit.
+        """
+        cost = seen.outline_weight * float(resizing_cost(seen.evidence.seen, (pose.scale / start)[None])[0])
+        if self.shape is not None:
+            cost += level_cost(self.shape, pose, seen.carried)
+        return seen.score(self.caster, pose) - cost
+
+
+@dataclass(frozen=True, eq=False)
+class ParameterFit:
+    """Fits the parameters of one candidate's design to the objects that have it."""
+
+    library: ShapeLibrary = field(repr=False)
+    seen: Sequence[SeenObject]
+    resize: bool
+    """Whether sizes may change; those of a set stay alike."""
+
+    def fitted(self, best: Candidate, poses: Sequence[Pose]) -> FittedParameters | None:
+        """The parameters that agree best; None where the retrieved shape is rather stretched than built.
+
+        Args:
+            best: The retrieved shape.
+            poses: Where it stands for every object.
+        """
+        own = np.asarray(best.shape_size_m)
+        if not self._may_be_built(best.shape_id):
+            return None
+        as_is = self._fit(self._variant(best.shape_id), own, poses, best.pose.scale)
+        size = np.round(own * as_is.poses[0].scale, 3)
+        if not can_be_made(best.shape_id, size):
+            return None
+        poses = [Pose(p.R_world_object, p.position, p.scale * own / size) for p in as_is.poses]
+        changes, fit = self._searched(best.shape_id, size, poses, best.pose.scale * own / size, as_is.score)
+        if fit.score < as_is.score - SIZE_LOSS:
+            return None
+        at = tuple(Pose(p.R_world_object, p.position, p.scale * size / own) for p in fit.poses)
+        return FittedParameters(changes, at)
+
+    def _searched(
+        self,
+        design_id: str,
+        size_m: Float[np.ndarray, "3"],
+        poses: Sequence[Pose],
+        start: Float[np.ndarray, "3"],
+        as_is: float,
+    ) -> tuple[dict[str, Value], _Fit]:
+        """The changes that are worth it, and how the shape with them agrees.
+
+        Args:
+            design_id: A built-in design.
+            size_m: At which it is built.
+            poses: Where it stands, scales of that size.
+            start: The size from before any fit, as a share of that size.
+            as_is: What the retrieved shape scores, stretched to that size.
+        """
+        changes: dict[str, Value] = {}
+        best, left = self._at(self._variant(made_id(design_id, size_m, changes)), poses, start), MAX_VARIANTS
+        for _ in range(PASSES):
+            before_pass = dict(changes)
+            for name, values in varied(design_id):
+                others = [v for v in values if v != changes.get(name) and can_have(name, v, size_m)][:left]
+                left -= len(others)
+                variants = {v: self._variant(made_id(design_id, size_m, {**changes, name: v})) for v in others}
+                roughly = {v: self._at(variant, best.poses, start) for v, variant in variants.items()}
+                promising = [v for v in others if roughly[v].score > best.score - PROMISING]
+                tried = {v: self._fit(variants[v], size_m, best.poses, start) for v in promising}
+                value = max(tried, key=lambda v: tried[v].score, default=None)
+                own = best.score if changes else max(best.score, as_is)
+                if value is not None and tried[value].score > own + self._worth:
+                    changes, best = {**changes, name: value}, tried[value]
+            if changes == before_pass:
+                break
+        return changes, best
+
+    @property
+    def _worth(self) -> float:
+        """By how much a changed parameter must agree better."""
+        if all(one.evidence.surface is not None for one in self.seen):
+            return WORTH_WITH_DEPTH
+        return WORTH if all(one.mask_confidence >= 1.0 for one in self.seen) else WORTH_OF_UNSURE
+
+    def _variant(self, shape_id: str) -> _Variant:
+        carries = any(one.carried for one in self.seen)
+        return _Variant(ShapeCaster(self.library.mesh(shape_id)), self.library.shape(shape_id) if carries else None)
+
+    def _at(self, variant: _Variant, poses: Sequence[Pose], start: Float[np.ndarray, "3"]) -> _Fit:
+        return _Fit(
+            float(np.mean([variant.score(o, p, start) for o, p in zip(self.seen, poses, strict=True)])), tuple(poses)
+        )
+
+    def _fit(
+        self,
+        variant: _Variant,
+        size_m: Float[np.ndarray, "3"],
+        poses: Sequence[Pose],
+        start: Float[np.ndarray, "3"],
+    ) -> _Fit:
+        near = Near(start, STEPS, ROUNDS)
+        found = [
+            fitted_pose(o.evidence, variant.caster, p, size_m, resize=self.resize, near=near)
+            for o, p in zip(self.seen, poses, strict=True)
+        ]
+        return self._at(variant, found, start)
+
+    def _may_be_built(self, shape_id: str) -> bool:
+        built_in = record_of(self.library, shape_id).source == BUILT_IN
+        return built_in and len(self.library.mesh(shape_id).faces) <= MAX_TRIANGLES
+
+
+def can_have(name: str, value: Value, size_m: Float[np.ndarray, "3"]) -> bool:
+    """Whether a shape of this depth, width and height can have a parameter's value: its drawers are for things."""
+    drawers = [v for v in value if isinstance(v, int)] if name == "bays" and isinstance(value, tuple) else []
+    if not drawers or not isinstance(value, tuple):
+        return True
+    return bool(size_m[1] / len(value) >= MIN_DRAWER_M[0] and size_m[2] / max(drawers) >= MIN_DRAWER_M[1])

@@ -1,0 +1,42 @@
+"""Parameters of retrieved designs, fitted to rendered pictures of other members of their families."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from diorama_core.library.boards import base_id
+from diorama_core.library.furniture.measures import made_by_id, values_of
+from diorama_core.pose.parameter_fit import can_have
+from tests.pose.test_made_to_measure import DESIGNS, fitted
+
+
+@pytest.mark.parametrize("measured", [False, True])
+def test_legs_are_compared_where_a_table_with_such_legs_stands(measured: bool) -> None:
+    true_id, found_id = "table-walnut-splay", "table-oak-classic"
+    best = fitted(true_id, found_id, scale=(0.94, 0.94, 1.0), measured=measured)
+    assert base_id(best.shape_id) == found_id
+    made = values_of(made_by_id(best.shape_id, DESIGNS[found_id]))
+    assert made["shape"] == values_of(DESIGNS[true_id])["shape"] == "splay"
+
+
+def test_a_shape_that_agrees_worse_when_it_is_built_is_built_with_what_agrees_better() -> None:
+    best = fitted("wardrobe-open-white", "wardrobe-open-steel")
+    made = values_of(made_by_id(best.shape_id, DESIGNS["wardrobe-open-steel"]))
+    assert made["drawers"] == values_of(DESIGNS["wardrobe-open-white"])["drawers"]
+
+
+@pytest.mark.parametrize(
+    ("name", "value", "possible"),
+    [
+        ("bays", (3, 3), False),
+        ("bays", (3,), True),
+        ("bays", (6,), False),
+        ("bays", ("door", 3), False),
+        ("bays", ("door", "door"), True),
+        ("panes", (3, 3), True),
+        ("drawers", 9, True),
+    ],
+)
+def test_a_small_cabinet_has_no_drawers_that_nothing_fits_into(name: str, value: object, possible: bool) -> None:
+    assert can_have(name, value, np.array([0.33, 0.34, 0.38])) is possible
