@@ -6,7 +6,7 @@ import cv2
 import numpy as np
 from jaxtyping import Bool, Float32, UInt8
 
-from diorama_core.architecture.texture.gaussian_texture import gaussian_texture, is_gaussian
+from diorama_core.architecture.texture.gaussian_texture import gaussian_texture, has_lines, is_gaussian
 from diorama_core.architecture.texture.quilting import (
     LARGEST_BLOCK_PX,
     block_size,
@@ -27,6 +27,8 @@ CALM_LEVELS = 20.0
 """A floor's light and shade within so many levels of its main colour is carried on."""
 SAMPLE_BROADEST = 0.2
 """Detail broader than this share of the width of what it is taken from is not made anew."""
+LINED_BLOCK_PX = 48
+"""Smaller copies of lines are a weave rather than lines."""
 BROADEST_PX = 10.0
 """Nor what is broader than this: the shadows of window bars are as broad."""
 FLOOR_DETAIL, WALL_DETAIL = 45.0, 14.0
@@ -94,7 +96,8 @@ def _detail(
     """Detail everywhere: copied in blocks where large ones were seen or it has lines and figures, else made anew."""
     sample = plain_texels(detail, own, strongest, sharp)
     size = block_size(sample)
-    if size is None or size == LARGEST_BLOCK_PX or not is_gaussian(detail, sample):
+    copied = size is None or size == LARGEST_BLOCK_PX or not is_gaussian(detail, sample)
+    if copied or (size is not None and size >= LINED_BLOCK_PX and has_lines(detail, sample)):
         return detail_continued(detail, own, strongest, source=sharp)
     # What is nearly as broad as the sample is rather light and shade.
     width = 2.0 * float(cv2.distanceTransform(np.pad(sample, 1).astype(np.uint8), cv2.DIST_L2, 5).max())

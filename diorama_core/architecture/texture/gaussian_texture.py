@@ -11,10 +11,14 @@ import numpy as np
 from jaxtyping import Bool, Float, Float32
 from scipy import fft
 
+from diorama_core.architecture.texture.quilting import broad_shading
+
 REACH_PX = 45
 """Covariance is taken up to this distance."""
 NORMAL_KURTOSIS, KURTOSIS_SPAN = 3.0, 1.5
 """A normal distribution has the one; lines have far more, two colours side by side far less."""
+LINE_PX, LINE_SKEWNESS = 5.0, 0.75
+"""Gaps between boards are about so wide, and skew the distribution of what is so fine by more than that."""
 
 
 def is_gaussian(detail: Float32[np.ndarray, "h w 3"], sample: Bool[np.ndarray, "h w"]) -> bool:
@@ -29,6 +33,19 @@ def is_gaussian(detail: Float32[np.ndarray, "h w 3"], sample: Bool[np.ndarray, "
         return False
     kurtosis = float(np.mean((grey - grey.mean()) ** 4) / grey.var() ** 2)
     return abs(kurtosis - NORMAL_KURTOSIS) < KURTOSIS_SPAN
+
+
+def has_lines(detail: Float32[np.ndarray, "h w 3"], sample: Bool[np.ndarray, "h w"]) -> bool:
+    """Whether a texture has gaps between boards or tiles: thin lines that are darker, or lighter, than all the rest.
+
+    Args:
+        detail: Colours without their broad shading.
+        sample: The texels that show the texture.
+    """
+    grey = (detail - broad_shading(detail, sample, LINE_PX))[sample].mean(axis=-1, dtype=np.float64)
+    if len(grey) < 2 or not grey.var() > 0.0:
+        return False
+    return bool(abs(np.mean((grey - grey.mean()) ** 3)) >= LINE_SKEWNESS * grey.std() ** 3)
 
 
 def gaussian_texture(

@@ -8,7 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.ndimage import gaussian_filter
 
-from diorama_core.architecture.texture.gaussian_texture import gaussian_texture, is_gaussian
+from diorama_core.architecture.texture.gaussian_texture import gaussian_texture, has_lines, is_gaussian
 
 SHAPE = (150, 220)
 TINT = np.array([1.0, 0.8, 0.5])
@@ -69,6 +69,15 @@ def test_grain_is_gaussian_and_lines_and_two_colours_are_not() -> None:
     assert not is_gaussian(lines + noise, everywhere)
     assert not is_gaussian(squares + noise, everywhere)
     assert not is_gaussian(np.zeros((*SHAPE, 3), np.float32), everywhere)
+
+
+def test_gaps_between_boards_are_lines_and_grain_is_not() -> None:
+    boards = grain()
+    boards[::14] -= 30.0
+    everywhere = np.ones(SHAPE, dtype=bool)
+    assert has_lines(boards, everywhere)
+    assert not has_lines(grain(), everywhere)
+    assert not has_lines(np.zeros((*SHAPE, 3), np.float32), everywhere)
 
 
 @settings(max_examples=15, deadline=None)
