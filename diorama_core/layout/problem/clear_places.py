@@ -51,7 +51,7 @@ def clear_of_places(
     points = np.vstack([surface.vertices, trimesh.sample.sample_surface(surface, _SAMPLES, seed=_SEED)[0]])
     for place in places:
         free = next((room for room in _above(place) if not _within(points, *room).any()), None)
-        if free is not None:
+        if free is not None and not _is_enclosed(free, surface):
             whole = (place[0], place[1], free[2])
             parts = tuple(piece for p in parts for piece in (_cut(p, whole) if _reaches_over(p, free) else [p]))
     return parts
@@ -89,6 +89,19 @@ def _within(
     outward, offset = _sides(outline)
     beside = (points[:, :2] @ outward.T - offset).max(axis=1)
     return np.asarray((beside < -MARGIN_M) & (points[:, 2] > low) & (points[:, 2] < high))
+
+
+def _is_enclosed(room: Room, mesh: trimesh.Trimesh) -> bool:
+    """Whether a room has a ceiling and walls on all four sides: nobody puts things into a closed cupboard."""
+    outline, low, high = room
+    if not np.isfinite(high):
+        return False
+    middle = np.array([*outline.mean(axis=0), 0.5 * (low + high)])
+    ahead = np.array([[1.0, 0.0, 0.0], [-1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, -1.0, 0.0]])
+    from diorama_core.render.raycast import Caster  # Open3D; the editor opens without it
+
+    rays = np.column_stack([np.tile(middle, (4, 1)), ahead]).astype(np.float32)
+    return bool(Caster(np.asarray(mesh.vertices), np.asarray(mesh.faces, np.int32)).first_hits(rays).found.all())
 
 
 def _reaches_over(part: ConvexPart, room: Room) -> bool:

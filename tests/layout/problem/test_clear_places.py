@@ -73,3 +73,18 @@ def test_shapes_whose_parts_leave_their_places_free_are_not_looked_at() -> None:
     assert places
     parts = convex_parts(table)
     assert clear_of_places(parts, places, lambda: pytest.fail("its mesh is not needed")) == parts
+
+
+@pytest.mark.parametrize("closed", [False, True])
+def test_a_closed_cupboard_is_solid_and_an_open_one_is_not(closed: bool) -> None:
+    panels = [((0.0, 0.0, 0.01), (0.4, 0.6, 0.02)), ((0.0, 0.0, 0.59), (0.4, 0.6, 0.02))]
+    panels += [((0.0, y, 0.3), (0.4, 0.02, 0.56)) for y in (-0.29, 0.29)]
+    panels += [((x, 0.0, 0.3), (0.02, 0.56, 0.56)) for x in ((-0.19, 0.19) if closed else (-0.19,))]
+    boxes = [trimesh.creation.box(size) for _, size in panels]
+    for box, (centre, _) in zip(boxes, panels, strict=True):
+        box.apply_translation(centre)
+    cupboard = trimesh.util.concatenate(boxes)
+    outline = np.array([[-0.17, -0.27, 0.02], [0.17, -0.27, 0.02], [0.17, 0.27, 0.02], [-0.17, 0.27, 0.02]])
+    filled = (hull_part(np.asarray(cupboard.vertices)),)
+    cleared = clear_of_places(filled, (SupportSurface(outline, 0.56, False),), lambda: cupboard)
+    assert contains(cleared, np.array([[0.0, 0.0, 0.3]])).all() == closed
