@@ -171,7 +171,8 @@
       if (looking) draw();
       else look ??= setTimeout(drawWhenThere);
     };
-    store.setState({ invalidate: mounted });
+    // Viser lowers the number of pixels where pictures are slow; a canvas that it empties would show parts of a picture.
+    store.setState({ invalidate: mounted, setDpr: () => {} });
 
     let draining = false; // what messages ask for while they are carried out, React will ask for again
     const requestRender = () => {
