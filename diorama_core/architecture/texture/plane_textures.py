@@ -134,11 +134,12 @@ def plane_textures(
         standing: Ids of the objects on the floor, at whose feet it is seen; all objects by default.
         only: Ids of the planes to make pictures of; all by default.
     """
+    planes = [plane for plane in architecture.planes if only is None or plane.id in only]
+    if not planes:
+        return {}  # the room need not be painted empty for that
     view = PhotoView(RoomPicture(inputs.photo.rgb, objects, camera, standing, filler))
     found: dict[str, np.ndarray] = {}
-    for plane in architecture.planes:
-        if only is not None and plane.id not in only:
-            continue
+    for plane in planes:
         points, pixel_m = texel_points(plane)
         seen = view.of_plane(plane, architecture.planes, points, pixel_m)
         if seen is not None and is_enough(seen.shown, pixel_m, plane):

@@ -110,6 +110,15 @@ def test_what_a_filler_painted_is_taken_for_floor_where_it_looks_like_it(shot, c
     assert share > 0.02 if accepted else share == 0
 
 
+def test_without_planes_to_paint_the_room_is_not_painted_empty(shot):
+    class Untouched:
+        def fill(self, rgb, hole):
+            pytest.fail("nothing is to be painted")
+
+    room = Architecture(shot.planes)
+    assert plane_textures(shot.inputs, shot.objects, CAMERA, room, Untouched(), only=()) == {}
+
+
 def test_the_nearest_texels_are_sharp(shot):
     floor = next(p for p in shot.planes if p.id == "floor")
     points, pixel_m = texel_points(floor)
