@@ -181,7 +181,8 @@ class ParameterFit:
 
 def can_have(name: str, value: Value, size_m: Float[np.ndarray, "3"]) -> bool:
     """Whether a shape of this depth, width and height can have a parameter's value: its drawers are for things."""
-    drawers = [v for v in value if isinstance(v, int)] if name == "bays" and isinstance(value, tuple) else []
-    if not drawers or not isinstance(value, tuple):
+    bays = value if name == "bays" and isinstance(value, tuple) else ()
+    drawers = [int(v) for v in bays if str(v).isdecimal()]
+    if not drawers:
         return True
-    return bool(size_m[1] / len(value) >= MIN_DRAWER_M[0] and size_m[2] / max(drawers) >= MIN_DRAWER_M[1])
+    return bool(size_m[1] / len(bays) >= MIN_DRAWER_M[0] and size_m[2] / max(drawers) >= MIN_DRAWER_M[1])

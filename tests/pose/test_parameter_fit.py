@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from diorama_core.library.boards import base_id
-from diorama_core.library.furniture.measures import made_by_id, values_of
+from diorama_core.library.furniture.measures import made_by_id, parameters, values_of
 from diorama_core.pose.parameter_fit import can_have
 from tests.pose.test_made_to_measure import DESIGNS, fitted
 
@@ -29,10 +29,10 @@ def test_a_shape_that_agrees_worse_when_it_is_built_is_built_with_what_agrees_be
 @pytest.mark.parametrize(
     ("name", "value", "possible"),
     [
-        ("bays", (3, 3), False),
-        ("bays", (3,), True),
-        ("bays", (6,), False),
-        ("bays", ("door", 3), False),
+        ("bays", ("3", "3"), False),
+        ("bays", ("3",), True),
+        ("bays", ("6",), False),
+        ("bays", ("door", "3"), False),
         ("bays", ("door", "door"), True),
         ("panes", (3, 3), True),
         ("drawers", 9, True),
@@ -40,3 +40,8 @@ def test_a_shape_that_agrees_worse_when_it_is_built_is_built_with_what_agrees_be
 )
 def test_a_small_cabinet_has_no_drawers_that_nothing_fits_into(name: str, value: object, possible: bool) -> None:
     assert can_have(name, value, np.array([0.33, 0.34, 0.38])) is possible
+
+
+def test_the_drawers_of_designs_are_told_as_these_tests_tell_them() -> None:
+    bays = next(p for p in parameters("dresser-white-four") if p.name == "bays")
+    assert ("3", "3") in bays.used
