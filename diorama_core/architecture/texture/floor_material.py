@@ -41,6 +41,8 @@ _OF_SHADE = 0.75
 """What a shade of a colour at the feet of things says for it, beside the colour itself."""
 _SHADE_COVER = 1.5
 """A dark colour is another's shade when the lighter one, darkened, is about the same and covers so much more."""
+_SKY_LIT = 0.5
+"""How much of its chroma a colour keeps at least in the shade."""
 _BLACK_L = 16.0
 """Darkening moves a colour of CIELAB towards L = -16, a = b = 0: the cube root of its definition."""
 _WHITE_SHARE = 95.0
@@ -279,9 +281,16 @@ def _lit(best: int, found: Float[np.ndarray, "k 3"], covers: Float[np.ndarray, "
 
 
 def _shades_of(colour: Float[np.ndarray, "3"], lab: Float[np.ndarray, "n 3"]) -> Bool[np.ndarray, "n"]:
-    """Which colours are what a shadow makes of one: before the feet of things most are."""
+    """Which colours are what a shadow makes of one: before the feet of things most are.
+
+    In the shade of the sun the sky's light is left, which takes most of a warm colour's hue away.
+    """
     darkened = colour[1:] * ((lab[:, :1] + _BLACK_L) / (colour[0] + _BLACK_L))
-    return np.asarray((np.abs(darkened - lab[:, 1:]) < _CELL_LAB[1:]).all(axis=1) & (lab[:, 0] < colour[0] - _SHADOW_L))
+    kept = (lab[:, 1:] * darkened).sum(axis=1) / np.maximum((darkened**2).sum(axis=1), 1e-9)
+    shaded = darkened * np.clip(kept, _SKY_LIT, 1.0)[:, None]
+    return np.asarray(
+        (np.abs(shaded - lab[:, 1:]) < _CELL_LAB[1:]).all(axis=1) & (lab[:, 0] < colour[0] - _CELL_LAB[0] / 2)
+    )
 
 
 def _cells(lab: Float[np.ndarray, "n 3"], weight: Float[np.ndarray, "n"]) -> Float[np.ndarray, "k 3"]:

@@ -169,3 +169,24 @@ def test_a_skirting_board_along_a_strip_of_floor_is_no_pattern_of_it_and_inlays_
 
 def strip_texels(colours: np.ndarray, seen: np.ndarray) -> np.ndarray:
     return floor_texels(colours, seen, np.ones((SIZE, SIZE)), seen & False, PIXEL_M)
+
+
+def test_boards_in_the_sun_are_the_floor_though_things_stand_in_the_grey_shade():
+    """Where the sun does not reach, the sky's blue light leaves less of the boards' orange."""
+    colours = floor((253.0, 181.0, 129.0))
+    shade = np.zeros((SIZE, SIZE), dtype=bool)
+    shade[:, 40:80] = True
+    colours[shade] = floor((188.0, 150.0, 122.0), seed=1)[shade]
+    contact = np.zeros((SIZE, SIZE), dtype=bool)
+    contact[90:110, 45:75] = True
+    own = texels(colours, contact)
+    assert own[:, 90:].mean() > 0.95
+    assert not own[:, 45:75].any()
+
+
+def test_a_grey_floor_beside_as_much_of_orange_boards_is_no_shade_of_them():
+    colours = floor((188.0, 150.0, 122.0))
+    colours[:, :80] = floor((253.0, 181.0, 129.0), seed=1)[:, :80]
+    contact = np.zeros((SIZE, SIZE), dtype=bool)
+    contact[90:110, 100:180] = True
+    assert texels(colours, contact)[:, 90:].mean() > 0.95
