@@ -13,6 +13,7 @@ import manifold3d
 import numpy as np
 from jaxtyping import Float
 
+from diorama_core.architecture.open_sides import with_open_sides_moved
 from diorama_core.errors import EditRefused
 from diorama_core.geometry.planes import clip_polygon, in_polygon
 from diorama_core.library import taxonomy
@@ -54,8 +55,9 @@ def containing_room(scene: Scene, *, reasoned: bool = False, feet_seen: Collecti
         if not wall.seen:
             scene = _given_way(scene, wall.id, standing)
         scene = _drawn_out(scene, wall.id)
-    prints = [_footprint(scene, o) for o in standing]
-    return _with_ceiling(_with_floor_under(scene, [p for p in prints if len(p) >= 3]))
+    prints = [p for o in standing if len(p := _footprint(scene, o)) >= 3]
+    scene = with_open_sides_moved(scene, _beside_floor(floor, prints))
+    return _with_ceiling(_with_floor_under(scene, prints))
 
 
 def without_floor_behind_walls(scene: Scene, known: Plane) -> Scene:
@@ -254,16 +256,22 @@ def _box_footprint(item: SceneObject) -> Float[np.ndarray, "4 2"]:
 def _with_floor_under(scene: Scene, prints: list[Float[np.ndarray, "_ 2"]]) -> Scene:
     floor = scene.architecture.floor
     assert floor is not None
-    here = manifold3d.CrossSection([floor.polygon[:, :2]], manifold3d.FillRule.NonZero)
-    missing = [p for p in prints if (_area(p) - (_section(p) ^ here).area()) > _MIN_AREA_M2]
+    missing = _beside_floor(floor, prints)
     if not missing:
         return scene
-    union = manifold3d.CrossSection.batch_boolean([here, *map(_section, missing)], manifold3d.OpType.Add)
+    sections = [_section(floor.polygon[:, :2]), *map(_section, missing)]
+    union = manifold3d.CrossSection.batch_boolean(sections, manifold3d.OpType.Add)
     outlines = union.to_polygons()
     outer = [o for o in outlines if _signed_area(o) > 0]
     # Footprints away from the floor are reached by the hull of both.
     outline = outer[0] if len(outer) == 1 else union.hull().to_polygons()[0]
     return _with_floor_outline(scene, floor, outline)
+
+
+def _beside_floor(floor: Plane, prints: list[Float[np.ndarray, "_ 2"]]) -> list[Float[np.ndarray, "_ 2"]]:
+    """The footprints that are not on the floor altogether."""
+    here = _section(floor.polygon[:, :2])
+    return [p for p in prints if _area(p) - (_section(p) ^ here).area() > _MIN_AREA_M2]
 
 
 def _with_floor_outline(scene: Scene, floor: Plane, outline: Float[np.ndarray, "k 2"]) -> Scene:
