@@ -31,7 +31,7 @@ PROMISING = 0.8
 STEPS, ROUNDS = (0.03, 0.015), 3
 """Of the fits of single values: they begin where the shape fits with other ones."""
 FINELY = 0.25
-"""By so much at most the finer steps raise a score, as a rule a fifth of it: values that need more are not fitted on."""
+"""Finer steps raise a score by no more than this, mostly by a fifth of it: values that need more are not fitted on."""
 MIN_DRAWER_M = (0.2, 0.08)
 """Width and height of the front of a drawer, at least."""
 PASSES, MAX_VARIANTS = 2, 32
