@@ -107,8 +107,9 @@ def photo_appearance(
     falls = irradiance_map(replace(scene, light=light), scene.camera, library)
     materials: dict[str, tuple[PhotoMaterial, ...]] = {}
     pictures: dict[str, Picture] = {}
-    for one in seen:
-        made = [(_face_material(one.item, face), face.picture) for face in one.faces] + _surfaces(one, rgb, falls)
+    surfaces = each(lambda one: _surfaces(one, rgb, falls), seen)
+    for one, of_slots in zip(seen, surfaces, strict=True):
+        made = [(_face_material(one.item, face), face.picture) for face in one.faces] + of_slots
         materials[one.item.id] = tuple(material for material, _ in made)
         pictures |= {m.texture: picture for m, picture in made if m.texture is not None and picture is not None}
     materials = shared_materials(

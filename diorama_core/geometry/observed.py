@@ -4,12 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Protocol, runtime_checkable
 
 import numpy as np
 from jaxtyping import Bool, Float
 
-from diorama_core.geometry.silhouette import PoseBatch, ShapeCaster
+from diorama_core.geometry.projection import NEAR_M
+from diorama_core.geometry.silhouette import Hits, PoseBatch, ShapeCaster
 from diorama_core.geometry.window import Window, soft_iou
 from diorama_core.scene.types import Camera
 
@@ -66,7 +68,45 @@ class Observed:
 
     def silhouettes(self, caster: ShapeCaster, poses: PoseBatch) -> Bool[np.ndarray, "p n"]:
         """The cells whose centres the posed shape covers."""
-        return caster.covers(self.origin_world, self.directions_world, poses)
+        part = self._part_around(caster, poses)
+        covered = np.zeros((len(poses), *self._grid.shape[:2]), dtype=bool)
+        rays = self._grid[part].reshape(-1, 3)
+        covered[:, *part] = caster.covers(self.origin_world, rays, poses).reshape(covered[:, *part].shape)
+        return covered.reshape(len(poses), -1)
+
+    def hits(self, caster: ShapeCaster, poses: PoseBatch) -> Hits:
+        """What the rays through the cells' centres meet of a shape under every pose."""
+        part = self._part_around(caster, poses)
+        met = caster.cast(self.origin_world, self._grid[part].reshape(-1, 3), poses)
+
+        def whole(values: np.ndarray, nothing: object) -> np.ndarray:
+            filled = np.full((len(poses), *self._grid.shape[:2], *values.shape[2:]), nothing, values.dtype)
+            filled[:, *part] = values.reshape(filled[:, *part].shape)
+            return filled.reshape(len(poses), -1, *values.shape[2:])
+
+        depth, normals, triangles = whole(met.depth_m, np.inf), whole(met.normals_object, 0), whole(met.triangles, 0)
+        return Hits(depth, normals, triangles, self.directions_world, poses)
+
+    @property
+    def _grid(self) -> Float[np.ndarray, "c c 3"]:
+        """The rays by row and column."""
+        return self.directions_world.reshape(self.window.cells, self.window.cells, 3)
+
+    @cached_property
+    def _to_cells(self) -> Float[np.ndarray, "3 3"]:
+        """Turns a direction into (column, row, 1) times its depth: rays go on evenly along rows and columns."""
+        grid, last = self._grid, self.window.cells - 1
+        across, down = (grid[0, last] - grid[0, 0]) / last, (grid[last, 0] - grid[0, 0]) / last
+        return np.linalg.inv(np.stack([across, down, grid[0, 0]], axis=1))
+
+    def _part_around(self, caster: ShapeCaster, poses: PoseBatch) -> tuple[slice, slice]:
+        """Rows and columns of all cells that the shape's box may cover in any pose: rays beside it meet nothing."""
+        cells = self.window.cells
+        corners = poses.by_coordinate(caster.corners).reshape(3, -1) - self.origin_world[:, None]
+        column, row, depth = self._to_cells @ corners
+        if depth.min() <= NEAR_M:
+            return slice(0, cells), slice(0, cells)
+        return _within(row / depth, cells), _within(column / depth, cells)
 
     def agreement(self, silhouettes: Bool[np.ndarray, "p n"]) -> Float[np.ndarray, "p"]:
         """Intersection over union with the mask where there is evidence, 0 to 1.
@@ -77,6 +117,12 @@ class Observed:
         if self.mask_trust < 1.0:
             weight = np.where(open_below(silhouettes, self.window.cells), _OF_OPENINGS * weight, weight)
         return soft_iou(self.covered, silhouettes.astype(np.float64), weight)
+
+
+def _within(places: Float[np.ndarray, "n"], cells: int) -> slice:
+    """Cells between the least and the greatest place, and one more on either side for what rounding hides."""
+    first, last = np.clip([np.floor(places.min()) - 1, np.ceil(places.max()) + 2], 0, cells).astype(int)
+    return slice(int(first), int(max(first, last)))
 
 
 def open_below(silhouettes: Bool[np.ndarray, "p n"], cells: int) -> Bool[np.ndarray, "p n"]:

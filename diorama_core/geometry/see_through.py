@@ -11,6 +11,7 @@ filled counts, and not whether two thin rods meet.
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import cv2
 import numpy as np
@@ -81,13 +82,21 @@ class SeeThrough:
 
     def agreement(self, silhouettes: Bool[np.ndarray, "p n"]) -> Float[np.ndarray, "p"]:
         """How well shapes fill the same places, 0 to 1; cells as in the window."""
-        target = self._blurred((self.shown * self.weight)[None])[0]
-        return soft_iou(target, self._blurred(silhouettes * self.weight), np.ones(len(target)))
+        return soft_iou(
+            self._target,
+            self._blurred(np.where(silhouettes, self.weight.astype(np.float32), np.float32(0))),
+            np.ones(len(self._target)),
+        )
 
-    def _blurred(self, filled: Float[np.ndarray, "p n"]) -> Float[np.ndarray, "p n"]:
+    @cached_property
+    def _target(self) -> Float[np.ndarray, "n"]:
+        """What shapes should fill."""
+        return self._blurred((self.shown * self.weight)[None])[0]
+
+    def _blurred(self, filled: Float[np.ndarray, "p n"] | Float32[np.ndarray, "p n"]) -> Float[np.ndarray, "p n"]:
         cells = self.window.cells
         sigma = BLUR * cells
-        grids = filled.reshape(-1, cells, cells).astype(np.float32)
+        grids = filled.reshape(-1, cells, cells).astype(np.float32, copy=False)
         blurred = [cv2.GaussianBlur(g, (0, 0), sigma, borderType=cv2.BORDER_CONSTANT) for g in grids]
         return np.asarray(blurred, dtype=np.float64).reshape(filled.shape)
 

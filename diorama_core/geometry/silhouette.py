@@ -21,6 +21,8 @@ from diorama_core.geometry.open3d_import import o3d
 from diorama_core.geometry.projection import NEAR_M, frustum_slack
 from diorama_core.scene.types import Camera, box_corners
 
+ALL_CORES = 0
+"""Threads of Open3D. It keeps the interpreter locked while it casts: ours wait meanwhile, and leave it their cores."""
 _MIN_EXTENT_M = 1e-4
 _HULL_DIRECTIONS = 48
 
@@ -109,6 +111,14 @@ class ShapeCaster:
         self._cast(np.array([[9.0, 9.0, 9.0, 1.0, 0.0, 0.0]], np.float32))  # builds the tree here, not under threads
 
     @cached_property
+    def corners(self) -> Float[np.ndarray, "8 3"]:
+        """Of the box that bounds it."""
+        if not len(self._vertices):
+            return box_corners(self.size_m)
+        low, high = self._vertices.min(axis=0), self._vertices.max(axis=0)
+        return box_corners(high - low) + (high + low) / 2
+
+    @cached_property
     def hull(self) -> tuple[Float[np.ndarray, "h 3"], Int[np.ndarray, "e 2"]]:
         """Corners and edges of the (slightly simplified) convex hull."""
         return _hull(self._vertices, self.size_m)
@@ -119,7 +129,7 @@ class ShapeCaster:
         return is_circle(self._vertices[:, :2])
 
     def _cast(self, rays: Float[np.ndarray, "n 6"]) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        answer = self._scene.cast_rays(o3d.core.Tensor(rays), nthreads=1)
+        answer = self._scene.cast_rays(o3d.core.Tensor(rays), nthreads=ALL_CORES)
         return answer["t_hit"].numpy(), answer["primitive_normals"].numpy(), answer["primitive_ids"].numpy()
 
     def covers(
@@ -127,7 +137,7 @@ class ShapeCaster:
     ) -> Bool[np.ndarray, "p r"]:
         """Whether every ray meets the shape under every pose: faster than `cast`, where that is all."""
         rays = _rays(origin_world, directions_world, poses)
-        met = self._scene.test_occlusions(o3d.core.Tensor(rays.reshape(-1, 6)), tnear=NEAR_M, nthreads=1)
+        met = self._scene.test_occlusions(o3d.core.Tensor(rays.reshape(-1, 6)), tnear=NEAR_M, nthreads=ALL_CORES)
         return np.asarray(met.numpy().reshape(rays.shape[:2]))
 
     def cast(
@@ -154,9 +164,12 @@ def _rays(
 ) -> Float32[np.ndarray, "p r 6"]:
     """The rays in the shape's own frame, for every pose."""
     to_object = poses.R.transpose(0, 2, 1) / poses.scale[:, :, None]
+    origins = to_object @ (origin_world - poses.position)[..., None]
+    directions = directions_world @ to_object.transpose(0, 2, 1)
     rays = np.empty((len(poses), len(directions_world), 6), np.float32)
-    rays[..., :3] = (to_object @ (origin_world - poses.position)[..., None])[:, None, :, 0]
-    rays[..., 3:] = directions_world @ to_object.transpose(0, 2, 1)
+    for axis in range(3):  # one coordinate of all rays at once: three of one ray are too few for numpy's loops
+        rays[..., axis] = origins[:, axis]
+        rays[..., 3 + axis] = directions[..., axis]
     return rays
 
 

@@ -3,11 +3,35 @@
 from __future__ import annotations
 
 import gc
+import importlib
+import sys
+from types import ModuleType
+from typing import Any
 
 GARBAGE_EVERY = 10_000
 """New objects between two searches for garbage: nearly all that importing makes stays, so the usual 700 cost time."""
+LATER = ("networkx",)
+"""What trimesh loads for functions that are rarely called; that takes longer than trimesh itself."""
 
 
 def load_quickly() -> None:
-    """Look for garbage less often."""
+    """Look for garbage less often, and load trimesh without what it rarely needs."""
     gc.set_threshold(GARBAGE_EVERY)
+    if "trimesh" in sys.modules:
+        return
+    stand_ins = {name: _LoadedOnUse(name) for name in LATER if name not in sys.modules}
+    sys.modules.update(stand_ins)
+    try:
+        importlib.import_module("trimesh")
+    finally:
+        for name in stand_ins:
+            del sys.modules[name]
+
+
+class _LoadedOnUse(ModuleType):
+    """Stands for a module until somebody asks for one of its names."""
+
+    def __getattr__(self, name: str) -> Any:
+        if name.startswith("__"):  # what the import system asks of every module
+            raise AttributeError(name)
+        return getattr(importlib.import_module(self.__name__), name)

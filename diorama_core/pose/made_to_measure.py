@@ -25,7 +25,7 @@ from diorama_core.artefacts import (
     RankedShapes,
 )
 from diorama_core.geometry.silhouette import ShapeCaster
-from diorama_core.library.furniture.measures import Value, can_be_made, can_be_turned, made_id
+from diorama_core.library.furniture.measures import Value, can_be_made, can_be_turned, made_id, varied
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.library.stretch import EVEN, relative_scale
 from diorama_core.pose.fitted_choice import FittedChoice
@@ -79,7 +79,8 @@ class MadeToMeasure:
         posed = self._best_fitting(posed, seen)
         pose_of = {p.object_id: p.candidates[0].pose for p in posed if p.candidates}
         seen = {i: replace(one, pose=pose_of[i]) for i, one in seen.items()}
-        made = each(lambda members: self._of_set(members, seen), _sets(posed), progress, "Making shapes to measure")
+        longest_first = sorted(_sets(posed), key=lambda members: -_variants(members))  # no thread waits for a last one
+        made = each(lambda members: self._of_set(members, seen), longest_first, progress, "Making shapes to measure")
         found = {object_id: candidate for of_set in made for object_id, candidate in of_set.items()}
         return tuple(_with_first(p, found[p.object_id]) if p.object_id in found else p for p in posed)
 
@@ -192,6 +193,11 @@ def _sets(posed: Sequence[PosedCandidates]) -> list[list[PosedCandidates]]:
             best = one.candidates[0]
             found.setdefault((best.shape_id, np.round(best.pose.scale, 3).tobytes()), []).append(one)
     return list(found.values())
+
+
+def _variants(members: Sequence[PosedCandidates]) -> int:
+    """About how often a set is set against the picture: for every value of a parameter, each of its objects is."""
+    return len(members) * sum(len(values) for _, values in varied(members[0].candidates[0].shape_id))
 
 
 def _with_first(posed: PosedCandidates, first: Candidate) -> PosedCandidates:

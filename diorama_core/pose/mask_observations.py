@@ -73,7 +73,7 @@ class Evidence:
 
     def hits(self, caster: ShapeCaster, poses: PoseBatch) -> Hits:
         """What the rays of the object's window meet of a shape under every pose."""
-        return caster.cast(self.seen.origin_world, self.seen.directions_world, poses)
+        return self.seen.hits(caster, poses)
 
     def errors_of(self, caster: ShapeCaster, hits: Hits) -> Float[np.ndarray, "p"]:
         """As `errors`, of a shape that the rays have met."""

@@ -88,11 +88,14 @@ def fitted_pose(
     if evidence.surface is None and evidence.seen.mask_trust < MIN_TRUST:
         return pose
     start = pose.scale if near.scale is None else near.scale
-    cost = float(_costs(evidence, caster, _Moves([pose.R_world_object], [pose.position], [pose.scale]), start)[0])
+    cost: float | None = None
     for step in near.steps:
         for _ in range(near.rounds):
             moves = _neighbours(pose, np.asarray(shape_size_m), step, _resizings(resize, caster.round_from_above))
+            if cost is None:  # compared along with its first neighbours: one comparison takes long by itself
+                moves.add(pose.R_world_object, pose.position, pose.scale)
             costs = _costs(evidence, caster, moves, start)
+            cost = float(costs[-1]) if cost is None else cost
             best = int(np.argmin(costs))
             if costs[best] >= cost - GAIN:
                 break

@@ -30,6 +30,8 @@ PROMISING = 0.8
 """Values that agree worse than the best so far by more than this in its pose are not fitted."""
 STEPS, ROUNDS = (0.03, 0.015), 3
 """Of the fits of single values: they begin where the shape fits with other ones."""
+FINELY = 0.25
+"""Finer steps raise a score by no more than this, mostly by a fifth of it: values that need more are not fitted on."""
 MIN_DRAWER_M = (0.2, 0.08)
 """Width and height of the front of a drawer, at least."""
 PASSES, MAX_VARIANTS = 2, 32
@@ -97,7 +99,8 @@ class ParameterFit:
         own = np.asarray(best.shape_size_m)
         if not self._may_be_built(best.shape_id):
             return None
-        as_is = self._fit(self._variant(best.shape_id), own, poses, best.pose.scale)
+        retrieved = self._variant(best.shape_id)
+        as_is = self._fit(retrieved, own, self._at(retrieved, poses, best.pose.scale), best.pose.scale)
         size = np.round(own * as_is.poses[0].scale, 3)
         if not can_be_made(best.shape_id, size):
             return None
@@ -135,10 +138,10 @@ class ParameterFit:
                 variants = {v: self._variant(made_id(design_id, size_m, {**changes, name: v})) for v in others}
                 roughly = {v: self._at(variant, best.poses, start) for v, variant in variants.items()}
                 promising = [v for v in others if roughly[v].score > best.score - PROMISING]
-                tried = {v: self._fit(variants[v], size_m, best.poses, start) for v in promising}
+                enough = (best.score if changes else max(best.score, as_is)) + self._worth
+                tried = {v: self._fit(variants[v], size_m, roughly[v], start, enough) for v in promising}
                 value = max(tried, key=lambda v: tried[v].score, default=None)
-                own = best.score if changes else max(best.score, as_is)
-                if value is not None and tried[value].score > own + self._worth:
+                if value is not None and tried[value].score > enough:
                     changes, best = {**changes, name: value}, tried[value]
             if changes == before_pass:
                 break
@@ -164,15 +167,23 @@ class ParameterFit:
         self,
         variant: _Variant,
         size_m: Float[np.ndarray, "3"],
-        poses: Sequence[Pose],
+        roughly: _Fit,
         start: Float[np.ndarray, "3"],
+        enough: float = -np.inf,
     ) -> _Fit:
-        near = Near(start, STEPS, ROUNDS)
-        found = [
-            fitted_pose(o.evidence, variant.caster, p, size_m, resize=self.resize, near=near)
-            for o, p in zip(self.seen, poses, strict=True)
-        ]
-        return self._at(variant, found, start)
+        """The variant in the poses that fit best near rough ones; not finely where it would not score enough anyway."""
+        fit = roughly
+        for step in STEPS:
+            near = Near(start, (step,), ROUNDS)
+            poses = [
+                fitted_pose(o.evidence, variant.caster, p, size_m, resize=self.resize, near=near)
+                for o, p in zip(self.seen, fit.poses, strict=True)
+            ]
+            if any(pose is not before for pose, before in zip(poses, fit.poses, strict=True)):
+                fit = self._at(variant, poses, start)
+            if fit.score < enough - FINELY:
+                break
+        return fit
 
     def _may_be_built(self, shape_id: str) -> bool:
         built_in = record_of(self.library, shape_id).source == BUILT_IN

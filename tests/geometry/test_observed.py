@@ -6,8 +6,10 @@ from dataclasses import dataclass
 
 import numpy as np
 import pytest
+import trimesh
 
 from diorama_core.geometry.observed import loads_of, observe, observe_among, open_below, without_loads
+from diorama_core.geometry.silhouette import PoseBatch, ShapeCaster
 from tests.synthetic_rooms import look
 
 CELLS, BOX = 24, (40.0, 30.0, 100.0, 110.0)
@@ -87,3 +89,29 @@ def test_a_load_that_would_leave_nothing_leaves_the_mask_as_it_is() -> None:
 def test_loads_lie_on_a_thing_or_on_what_lies_on_it() -> None:
     assert loads_of((None, 0, 1, None, 3), 0) == (1, 2)
     assert loads_of((1, 0), 0) == (1,)
+
+
+PLACES = [(0.0, 3.0, 1.0), (-0.7, 2.0, 0.4), (1.2, 1.6, 1.5), (0.0, 0.2, 1.2), (0.0, -3.0, 1.0)]
+"""In the middle, on either side of the window, around the camera, and behind it."""
+
+
+@pytest.mark.parametrize("places", [*([place] for place in PLACES), PLACES[:3], PLACES])
+def test_rays_that_are_left_out_would_meet_nothing(places):
+    of, count = seen(1.0), len(places)
+    caster = ShapeCaster(trimesh.creation.icosphere(3, 0.4))
+    turns = np.tile(np.eye(3), (count, 1, 1))
+    poses = PoseBatch(turns, np.array(places), np.tile([1.3, 0.6, 1.0], (count, 1)))
+    every = caster.cast(of.origin_world, of.directions_world, poses)
+    hits = of.hits(caster, poses)
+    assert np.array_equal(of.silhouettes(caster, poses), every.covered)
+    assert np.array_equal(hits.depth_m, every.depth_m)
+    assert np.array_equal(hits.normals_world, every.normals_world)
+    assert np.array_equal(hits.triangles[hits.covered], every.triangles[every.covered])
+
+
+def test_a_shape_in_the_middle_of_the_window_is_met():
+    of = seen(1.0)
+    pose = PoseBatch(np.eye(3)[None], of.origin_world[None] + 3.0 * of.directions_world[[300]], np.ones((1, 3)))
+    covered = of.silhouettes(ShapeCaster(trimesh.creation.icosphere(3, 0.1)), pose)[0]
+    assert covered[300]
+    assert 0 < covered.sum() < CELLS**2 / 4

@@ -1,8 +1,10 @@
-"""Garbage is looked for less often once a program is about to load much."""
+"""Garbage is looked for less often, and less is imported, once a program is about to load much."""
 
 from __future__ import annotations
 
 import gc
+import subprocess
+import sys
 
 from diorama_core.io.quick_imports import GARBAGE_EVERY, load_quickly
 
@@ -16,3 +18,19 @@ def test_garbage_is_looked_for_less_often() -> None:
         assert gc.isenabled()
     finally:
         gc.set_threshold(*before)
+
+
+PROGRAM = """
+import sys
+from diorama_core.io.quick_imports import LATER, load_quickly
+load_quickly()
+import trimesh
+assert "trimesh" in sys.modules and not set(LATER) & set(sys.modules), sorted(set(LATER) & set(sys.modules))
+assert trimesh.graph.nx.Graph([(1, 2)]).number_of_edges() == 1
+assert set(LATER) <= set(sys.modules)
+import networkx.algorithms
+"""
+
+
+def test_what_trimesh_rarely_needs_is_loaded_when_it_does() -> None:
+    subprocess.run([sys.executable, "-c", PROGRAM], check=True)

@@ -7,7 +7,10 @@ import pytest
 
 from diorama_core.library.boards import base_id
 from diorama_core.library.furniture.measures import made_by_id, parameters, values_of
+from diorama_core.pose import parameter_fit
+from diorama_core.pose.outline_fit import Near, fitted_pose
 from diorama_core.pose.parameter_fit import can_have
+from diorama_core.scene.types import Pose
 from tests.pose.test_made_to_measure import DESIGNS, fitted
 
 
@@ -45,3 +48,20 @@ def test_a_small_cabinet_has_no_drawers_that_nothing_fits_into(name: str, value:
 def test_the_drawers_of_designs_are_told_as_these_tests_tell_them() -> None:
     bays = next(p for p in parameters("dresser-white-four") if p.name == "bays")
     assert ("3", "3") in bays.used
+
+
+def test_what_finer_steps_bring_is_not_enough_for_what_needs_more(monkeypatch: pytest.MonkeyPatch) -> None:
+    taken: list[tuple[float, ...]] = []
+
+    def counted(*args: object, near: Near, **settings: object) -> Pose:
+        taken.append(near.steps)
+        return fitted_pose(*args, near=near, **settings)  # type: ignore[arg-type]
+
+    monkeypatch.setattr(parameter_fit, "fitted_pose", counted)
+    quickly = fitted("table-walnut-splay", "table-oak-classic", scale=(0.94, 0.94, 1.0))
+    few = len(taken)
+    monkeypatch.setattr(parameter_fit, "FINELY", np.inf)
+    thoroughly = fitted("table-walnut-splay", "table-oak-classic", scale=(0.94, 0.94, 1.0))
+    assert thoroughly.shape_id == quickly.shape_id
+    assert np.array_equal(thoroughly.pose.matrix, quickly.pose.matrix)
+    assert few < 0.8 * (len(taken) - few)

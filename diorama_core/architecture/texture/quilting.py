@@ -139,7 +139,8 @@ def _blended(
     seen: Bool[np.ndarray, "b b"],
 ) -> Float32[np.ndarray, "b b 3"]:
     """Known detail that turns into the new block's over a few texels; what was really seen stays."""
-    inward = cv2.distanceTransform(np.pad(known.astype(np.uint8), 1, mode="edge"), cv2.DIST_L2, 3)[1:-1, 1:-1]
+    framed = cv2.copyMakeBorder(known.astype(np.uint8), 1, 1, 1, 1, cv2.BORDER_REPLICATE)
+    inward = cv2.distanceTransform(framed, cv2.DIST_L2, 3)[1:-1, 1:-1]
     keep = np.clip(inward / 5.0, 0.0, 1.0)
     keep[seen] = 1.0
     return np.asarray(keep[..., None] * old + (1.0 - keep[..., None]) * new, dtype=np.float32)

@@ -53,13 +53,14 @@ def solve(problems: Problems, start: Float[np.ndarray, "n 6"], view: View, itera
     damping = np.full(len(problems), 1e-2)
     active, moved = np.arange(len(problems)), np.arange(len(problems))
     slopes = _Slopes(np.empty((len(problems), UNKNOWNS)), np.empty((len(problems), UNKNOWNS, UNKNOWNS)))
+    plain = problems.without_outlines()
     for _ in range(iterations):
         if not len(active):
             break
         anew = np.intersect1d(active, moved, assume_unique=True)  # a row that stayed has the slopes that it had
         if len(anew):
             known = _Values(r[anew], inset[anew])
-            slopes.put(anew, _slopes(problems.rows(anew), unknowns[anew], known, view))
+            slopes.put(anew, _slopes(plain.rows(anew), unknowns[anew], known, view))
         part, here = problems.rows(active), unknowns[active]
         bounds = low[active], high[active]
         there = np.clip(here + _step(slopes.rows(active), here, damping[active], bounds), *bounds)
@@ -113,10 +114,10 @@ class _Slopes:
 
 
 def _slopes(problems: Problems, unknowns: Float[np.ndarray, "n 6"], here: _Values, view: View) -> _Slopes:
-    """Gradients and normal matrices, with derivatives by forward differences."""
+    """Gradients and normal matrices, with derivatives by forward differences; outlines are not needed."""
     count = len(problems)
     probes = (unknowns[None] + _STEP * np.eye(UNKNOWNS)[:, None]).reshape(-1, UNKNOWNS)
-    repeated = problems.without_outlines().rows(np.tile(np.arange(count), UNKNOWNS))
+    repeated = problems.rows(np.tile(np.arange(count), UNKNOWNS))
     inset = np.tile(here.inset_px, (UNKNOWNS, 1))
     values = residuals(probes, repeated, view, inset).reshape(UNKNOWNS, count, -1)
     jacobian = ((values - here.residuals) / _STEP).transpose(1, 2, 0)
