@@ -54,21 +54,21 @@ def install() -> None:
         return lambda item: _first_calls_checked(item, checks_all(typechecker=typechecker))
 
     jaxtyping.jaxtyped = jaxtyped  # type: ignore[assignment]  # the hook takes it by this name
-    _import_hook._optimized_cache_from_source = _compiled_at
+    _import_hook._optimized_cache_from_source = compiled_at
     jaxtyping.install_import_hook(PACKAGES, f"{__name__}.check")
 
 
 _OURS = tuple(str(Path(__file__).resolve().parents[1] / package) for package in PACKAGES)
-_checked_compiled_at = _import_hook._optimized_cache_from_source
+_apart = _import_hook._optimized_cache_from_source
 
 
-def _compiled_at(checks: str, /, path: str, debug_override: bool | None = None) -> str:
+def compiled_at(checks: str, /, path: str, debug_override: bool | None = None) -> str:
     """Where the compiled form of a file lies: Diorama's with the checks apart, that of all others where it always does.
 
     jaxtyping keeps whatever a checked module imports apart too, so that other packages would be compiled twice.
     """
     if str(path).startswith(_OURS):
-        return _checked_compiled_at(checks, path, debug_override)
+        return _apart(checks, path, debug_override)
     return cache_from_source(path, debug_override)
 
 
