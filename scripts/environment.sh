@@ -59,8 +59,9 @@ install() {
         say "Installing Diorama into .venv (once; a few minutes)…"
         # The pip that comes with Python 3.11 reads the lists of files of all packages three times as slowly as today's.
         .venv/bin/python -m pip install --quiet --disable-pip-version-check --upgrade pip || say "pip stays as it is."
-        .venv/bin/python -m pip install --quiet --disable-pip-version-check --constraint constraints.txt "$@" \
-            --editable ".${extras:+[$extras]}" || { say "The installation failed; the lines above say why."; exit 1; }
+        PYTHONWARNINGS=ignore .venv/bin/python -m pip install --quiet --disable-pip-version-check \
+            --constraint constraints.txt "$@" --editable ".${extras:+[$extras]}" ||
+            { say "The installation failed; the lines above say why."; exit 1; }
         rm -f .venv/.installed-"${extras:-core}"-*
         touch "$stamp"
     fi
