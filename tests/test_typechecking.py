@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import random
 from collections.abc import Callable
+from importlib.util import cache_from_source
 from typing import Any
 
 import numpy as np
@@ -11,6 +12,7 @@ import pytest
 from jaxtyping import Float, TypeCheckError
 
 from diorama_app.web import html
+from diorama_core.geometry import planes
 from diorama_core.geometry.planes import fit_plane
 from diorama_core.geometry.projection import cuboid_corners
 from diorama_core.io.limited import LimitedProcess
@@ -33,6 +35,12 @@ SQUARE = np.array([[0.0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]])
 def test_wrong_arrays_raise(arguments: tuple[Any, ...]) -> None:
     with pytest.raises(TypeCheckError, match="cuboid_corners"):
         cuboid_corners(*arguments)
+
+
+def test_compiled_files_with_checks_lie_beside_those_without_and_other_packages_have_one() -> None:
+    ours = planes.__file__
+    assert typechecking.compiled_at("x", ours) != cache_from_source(ours)
+    assert typechecking.compiled_at("x", np.__file__) == cache_from_source(np.__file__)
 
 
 def test_wrong_fields_of_values_raise() -> None:

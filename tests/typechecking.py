@@ -15,11 +15,16 @@ import warnings
 from collections.abc import Callable
 from dataclasses import is_dataclass
 from functools import cache, wraps
+from importlib.util import cache_from_source
+from pathlib import Path
 from types import CodeType, FunctionType
 from typing import Any, get_args, get_type_hints
 from unittest import mock
 
 import jaxtyping
+from jaxtyping import _import_hook
+
+PACKAGES = ("diorama_core", "diorama_app")
 
 items = random.Random(0)
 """Chooses which item of a list is checked; apart from the tests' own chance, and seeded for each test."""
@@ -49,7 +54,22 @@ def install() -> None:
         return lambda item: _first_calls_checked(item, checks_all(typechecker=typechecker))
 
     jaxtyping.jaxtyped = jaxtyped  # type: ignore[assignment]  # the hook takes it by this name
-    jaxtyping.install_import_hook(["diorama_core", "diorama_app"], f"{__name__}.check")
+    _import_hook._optimized_cache_from_source = compiled_at
+    jaxtyping.install_import_hook(PACKAGES, f"{__name__}.check")
+
+
+_OURS = tuple(str(Path(__file__).resolve().parents[1] / package) for package in PACKAGES)
+_apart = _import_hook._optimized_cache_from_source
+
+
+def compiled_at(checks: str, /, path: str, debug_override: bool | None = None) -> str:
+    """Where the compiled form of a file lies: Diorama's with the checks apart, that of all others where it always does.
+
+    jaxtyping keeps whatever a checked module imports apart too, so that other packages would be compiled twice.
+    """
+    if str(path).startswith(_OURS):
+        return _apart(checks, path, debug_override)
+    return cache_from_source(path, debug_override)
 
 
 def begin_test(*, unchecked: bool) -> None:
