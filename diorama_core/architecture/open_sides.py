@@ -113,15 +113,15 @@ def _going_on(wall: Plane, sides: Sequence[_Side], reach_m: Float[np.ndarray, "s
         height = (wall.polygon[:, :2] - side.start) @ side.outward
         places = (wall.polygon[:, :2] - side.start) @ side.along
         at_end = (np.abs(height) < NEAR_M) & (np.minimum(np.abs(places), np.abs(places - side.length_m)) < NEAR_M)
-        if at_end.any() and not _meets_another(wall, wall.polygon[at_end], walls):
+        if at_end.any() and not meets_a_wall(wall, wall.polygon[at_end], walls, NEAR_M):
             polygon[at_end] += reached / away * level
     return wall if np.array_equal(polygon, wall.polygon) else replace(wall, polygon=polygon)
 
 
-def _meets_another(wall: Plane, corners: Float[np.ndarray, "k 3"], walls: Sequence[Plane]) -> bool:
-    """Whether corners of a wall are on another wall."""
+def meets_a_wall(wall: Plane, corners: Float[np.ndarray, "k 3"], walls: Sequence[Plane], within_m: float) -> bool:
+    """Whether all of some corners of a wall are at corners of another one."""
     return any(
-        bool((np.linalg.norm(other.polygon[:, None] - corners[None], axis=2).min(axis=0) < NEAR_M).all())
+        bool((np.linalg.norm(other.polygon[:, None] - corners[None], axis=2).min(axis=0) < within_m).all())
         for other in walls
         if other.id != wall.id
     )

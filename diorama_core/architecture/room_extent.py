@@ -13,7 +13,7 @@ import manifold3d
 import numpy as np
 from jaxtyping import Float
 
-from diorama_core.architecture.open_sides import with_open_sides_moved
+from diorama_core.architecture.open_sides import meets_a_wall, with_open_sides_moved
 from diorama_core.errors import EditRefused
 from diorama_core.geometry.planes import clip_polygon, in_polygon
 from diorama_core.library import taxonomy
@@ -206,24 +206,16 @@ def _drawn_out(scene: Scene, wall_id: str) -> Scene:
     along = wall.polygon @ level
     needed = np.concatenate([o.corners_world @ level for o in hanging])
     polygon = wall.polygon.copy()
+    seen = [other for other in scene.architecture.by_role("wall") if other.seen]
     for end, reach in ((along.min(), needed.min() - _MARGIN_M), (along.max(), needed.max() + _MARGIN_M)):
         at_end = np.abs(along - end) < _JOINED_M
         beyond = (reach - end) * np.sign(end - along.mean())
-        if beyond > 0.0 and not _meets_a_wall(scene, wall, wall.polygon[at_end]):
+        if beyond > 0.0 and not meets_a_wall(wall, wall.polygon[at_end], seen, _JOINED_M):
             polygon[at_end] += (reach - end) * level
     if np.array_equal(polygon, wall.polygon):
         return scene
     planes = tuple(replace(p, polygon=polygon) if p.id == wall_id else p for p in scene.architecture.planes)
     return replace(scene, architecture=Architecture(planes))
-
-
-def _meets_a_wall(scene: Scene, wall: Plane, corners: Float[np.ndarray, "k 3"]) -> bool:
-    """Whether corners of a wall are on another wall that was seen."""
-    return any(
-        bool((np.linalg.norm(other.polygon[:, None] - corners[None], axis=2).min(axis=0) < _JOINED_M).all())
-        for other in scene.architecture.by_role("wall")
-        if other.id != wall.id and other.seen
-    )
 
 
 def _behind(item: SceneObject, wall: Plane, inward_m: float = 0.0) -> float:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import pytest
 
@@ -53,9 +55,9 @@ def test_the_drawers_of_designs_are_told_as_these_tests_tell_them() -> None:
 def test_what_finer_steps_bring_is_not_enough_for_what_needs_more(monkeypatch: pytest.MonkeyPatch) -> None:
     taken: list[tuple[float, ...]] = []
 
-    def counted(*args: object, near: Near, **settings: object) -> Pose:
+    def counted(*args: Any, near: Near, **settings: Any) -> Pose:
         taken.append(near.steps)
-        return fitted_pose(*args, near=near, **settings)  # type: ignore[arg-type]
+        return fitted_pose(*args, near=near, **settings)
 
     monkeypatch.setattr(parameter_fit, "fitted_pose", counted)
     quickly = fitted("table-walnut-splay", "table-oak-classic", scale=(0.94, 0.94, 1.0))
