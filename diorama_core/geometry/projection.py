@@ -89,12 +89,25 @@ def frustum_slack(points: Float[np.ndarray, "3 *n"], k: Intrinsics) -> Float[np.
     )
 
 
+def frustum_normals(k: Intrinsics) -> Float[np.ndarray, "5 3"]:
+    """Gradients of `frustum_slack` by the point, in the same order."""
+    return np.array(
+        [
+            [0.0, 0.0, 1.0],
+            [k.fx, 0.0, k.cx],
+            [-k.fx, 0.0, k.width - k.cx],
+            [0.0, k.fy, k.cy],
+            [0.0, -k.fy, k.height - k.cy],
+        ]
+    )
+
+
 def _clipped_bounds(
     corners: Float[np.ndarray, "n 8 3"], slack: Float[np.ndarray, "5 8 n"], k: Intrinsics
 ) -> tuple[Float[np.ndarray, "n 4"], Bool[np.ndarray, "n"]]:
     """Bounds of the clipped edges, of the near plane's cut, and of the picture's corners that the cuboid covers."""
     points = _by_coordinate(corners)
-    a, b = _edges().T
+    a, b = edges_of_cuboid().T
     low, high = _segment_bounds(points[:, a], points[:, b], slack[:, a], slack[:, b], k)
     outside = slack < 0
     near = slack[0]
@@ -127,21 +140,29 @@ def _segment_bounds(
     k: Intrinsics,
 ) -> tuple[Float[np.ndarray, "2 n"], Float[np.ndarray, "2 n"]]:
     """Least and greatest pixels of the parts of segments inside the frustum; infinite where nothing is."""
-    span = start_slack - end_slack
-    crossing = start_slack / np.where(np.abs(span) < 1e-12, 1e-12, span)
-    enter = np.where(start_slack < 0, np.where(end_slack < 0, 2.0, crossing), 0.0).max(axis=0)
-    leave = np.where(end_slack < 0, np.where(start_slack < 0, -1.0, crossing), 1.0).min(axis=0)
+    enters, leaves = clip_ends(start_slack, end_slack)
+    enter, leave = enters.max(axis=0), leaves.min(axis=0)
     retained = np.concatenate([enter <= leave] * 2)
     way = end - start
     pixels = _project(np.concatenate([start + enter * way, start + leave * way], axis=1), k)
     return np.where(retained, pixels, np.inf).min(axis=1), np.where(retained, pixels, -np.inf).max(axis=1)
 
 
+def clip_ends(
+    start_slack: Float[np.ndarray, "5 s n"], end_slack: Float[np.ndarray, "5 s n"]
+) -> tuple[Float[np.ndarray, "5 s n"], Float[np.ndarray, "5 s n"]]:
+    """Where segments come in and go out at every plane, as shares of their lengths; entering after it left is out."""
+    span = start_slack - end_slack
+    crossing = start_slack / np.where(np.abs(span) < 1e-12, 1e-12, span)
+    enter = np.where(start_slack < 0, np.where(end_slack < 0, 2.0, crossing), 0.0)
+    return enter, np.where(end_slack < 0, np.where(start_slack < 0, -1.0, crossing), 1.0)
+
+
 def _near_cut_bounds(
     points: Float[np.ndarray, "3 8 n"], near: Float[np.ndarray, "8 n"], k: Intrinsics
 ) -> tuple[Float[np.ndarray, "2 n"], Float[np.ndarray, "2 n"]]:
     """Bounds of the polygon in which the near plane cuts cuboids: its sides are no edges of the cuboids."""
-    a, b = _edges().T
+    a, b = edges_of_cuboid().T
     cut = (near[a] < 0) != (near[b] < 0)
     share = near[a] / np.where(cut, near[a] - near[b], 1.0)
     ends = points[:, a] + share * (points[:, b] - points[:, a])
@@ -168,14 +189,14 @@ def _covers_rays(corners: Float[np.ndarray, "n 8 3"], rays_xy: Float[np.ndarray,
 
 
 @cache
-def _edges() -> Int[np.ndarray, "12 2"]:
+def edges_of_cuboid() -> Int[np.ndarray, "12 2"]:
     """Pairs of corner indices that differ in one axis."""
     return np.array([(i, i | (1 << axis)) for i in range(8) for axis in range(3) if not i & (1 << axis)])
 
 
 @cache
 def _edge_pairs_of_faces() -> Int[np.ndarray, "36 2"]:
-    """Pairs of indices into `_edges` whose edges lie in one face; a plane's cut through a face joins such a pair."""
-    edges = _edges()
+    """Pairs of indices into `edges_of_cuboid`, of edges in one face; a plane's cut through a face joins such a pair."""
+    edges = edges_of_cuboid()
     in_face = [((edges >> axis & 1) == side).all(axis=1) for axis in range(3) for side in (0, 1)]
     return np.array([pair for face in in_face for pair in combinations(np.flatnonzero(face), 2)])

@@ -18,7 +18,7 @@ from __future__ import annotations
 from dataclasses import dataclass, fields, replace
 
 import numpy as np
-from jaxtyping import Float
+from jaxtyping import Bool, Float
 
 from diorama_core.geometry.projection import NEAR_M, cuboid_corners, visible_bounds
 from diorama_core.scene.types import Intrinsics
@@ -38,6 +38,8 @@ WALL_NEARER_LOG_SIGMA = 0.06
 CUT_NEAR_M = 0.2
 FAR_M = 6.0
 FAR_LOG_SIGMA = 0.15
+MIN_ROOM_M, MIN_BACK_M = 0.02, 0.05
+"""Bases have so much room on their supporters, and backs are so far from the camera, at least."""
 UNTOLD = 1e6
 """A sigma that means that nothing is known."""
 
@@ -155,34 +157,53 @@ def corners_camera(boxes: Cuboids, camera_height_m: Float[np.ndarray, "n"], view
     return corners @ view.R_world_camera
 
 
-def residuals(
+@dataclass(frozen=True, eq=False)
+class Values:
+    """What the rows' cuboids come to."""
+
+    residuals: Float[np.ndarray, "n r"]
+    """Everything that speaks against them, in sigmas: their squares sum to a row's cost."""
+    inset_px: Float[np.ndarray, "n 4"]
+    """By how much the objects' outlines stay within their cuboids."""
+    bounds_px: Float[np.ndarray, "n 4"]
+    """Of the cuboids in the picture."""
+    visible: Bool[np.ndarray, "n"]
+    """Whether they are in the picture at all."""
+
+    def rows(self, chosen: np.ndarray) -> Values:
+        """The chosen rows."""
+        return Values(self.residuals[chosen], self.inset_px[chosen], self.bounds_px[chosen], self.visible[chosen])
+
+    def put(self, chosen: np.ndarray, anew: Values) -> None:
+        """Replace the chosen rows."""
+        self.residuals[chosen], self.inset_px[chosen] = anew.residuals, anew.inset_px
+        self.bounds_px[chosen], self.visible[chosen] = anew.bounds_px, anew.visible
+
+
+def residuals(unknowns: Float[np.ndarray, "n 6"], problems: Problems, view: View) -> Float[np.ndarray, "n r"]:
+    """Everything that speaks against a row's cuboid, in sigmas."""
+    return values(unknowns, problems, view).residuals
+
+
+def values(
     unknowns: Float[np.ndarray, "n 6"],
     problems: Problems,
     view: View,
     inset_px: Float[np.ndarray, "n 4"] | None = None,
-) -> Float[np.ndarray, "n r"]:
-    """Everything that speaks against a row's cuboid, in sigmas: their squares sum to its cost.
+) -> Values:
+    """What the rows come to at these unknowns.
 
     `inset_px` is by how much the objects' outlines stay within their cuboids here or nearby, where it is known: it
     hardly changes with small steps.
     """
-    return residuals_and_inset(unknowns, problems, view, inset_px)[0]
-
-
-def residuals_and_inset(
-    unknowns: Float[np.ndarray, "n 6"],
-    problems: Problems,
-    view: View,
-    inset_px: Float[np.ndarray, "n 4"] | None = None,
-) -> tuple[Float[np.ndarray, "n r"], Float[np.ndarray, "n 4"]]:
-    """As `residuals`, with the inset that they were taken with."""
     boxes = cuboids(unknowns, problems, view)
     corners = corners_camera(boxes, problems.camera_height_m, view)
     if inset_px is None:
         inset_px = _unfilled(boxes, corners, problems, view)
+    bounds, visible = visible_bounds(corners, view.intrinsics)
     found = np.concatenate(
         [
-            _edges(corners, inset_px, problems, view),
+            edge_residuals(bounds, visible, inset_px, problems, view),
             _cut_off(corners, problems, view),
             np.einsum("nij,nj->ni", problems.whitening, unknowns[:, 2:5] - problems.log_size),
             unknowns[:, 5:6],
@@ -193,7 +214,7 @@ def residuals_and_inset(
         ],
         axis=1,
     )
-    return found, inset_px
+    return Values(found, inset_px, bounds, visible)
 
 
 def _cut_off(corners: Float[np.ndarray, "n 8 3"], problems: Problems, view: View) -> Float[np.ndarray, "n 2"]:
@@ -235,11 +256,17 @@ def _unfilled(
     return inset
 
 
-def _edges(
-    corners: Float[np.ndarray, "n 8 3"], unfilled: Float[np.ndarray, "n 4"], problems: Problems, view: View
+def edge_residuals(
+    bounds: Float[np.ndarray, "n 4"],
+    visible: Bool[np.ndarray, "n"],
+    unfilled: Float[np.ndarray, "n 4"],
+    problems: Problems,
+    view: View,
 ) -> Float[np.ndarray, "n 4"]:
-    """How far the projected box is from the observed one, edge by edge; lenient as far as something hides the rest."""
-    bounds, visible = visible_bounds(corners, view.intrinsics)
+    """How far the projected box is from the observed one, edge by edge; lenient as far as something hides the rest.
+
+    Each residual depends on its own edge of `bounds` alone.
+    """
     k = view.intrinsics
     border = np.abs(bounds - [0.0, 0.0, k.width, k.height]) < 1e-6
     inward = np.array([1.0, 1.0, -1.0, -1.0])
@@ -280,7 +307,7 @@ def _outside_footprint(boxes: Cuboids, problems: Problems) -> Float[np.ndarray, 
     along, across = np.abs(np.cos(turn)), np.abs(np.sin(turn))
     depth, width = boxes.size_m[:, 0], boxes.size_m[:, 1]
     reach = 0.5 * np.stack([along * depth + across * width, across * depth + along * width], axis=-1)
-    room = np.maximum(np.stack([half_depth, half_width], axis=-1) - reach, 0.02)
+    room = np.maximum(np.stack([half_depth, half_width], axis=-1) - reach, MIN_ROOM_M)
     return np.maximum(np.abs(offset) - room, 0.0) / problems.footprint_sigma_m[:, None]
 
 
@@ -294,8 +321,12 @@ def _off_wall(boxes: Cuboids, problems: Problems) -> Float[np.ndarray, "n 1"]:
     """Whether the object's back lies in its wall, which is no nearer than the things that stand before it."""
     front = np.stack([np.cos(boxes.yaw_rad), np.sin(boxes.yaw_rad)], axis=-1)
     back = (boxes.centre[:, :2] * front).sum(axis=1) - boxes.size_m[:, 0] / 2
-    ratio = np.maximum(-back, 0.05) / problems.wall_m
+    ratio = np.maximum(-back, MIN_BACK_M) / problems.wall_m
     off = np.log(ratio)
+    return (off / wall_sigmas(off, problems))[:, None]
+
+
+def wall_sigmas(off: Float[np.ndarray, "n"], problems: Problems) -> Float[np.ndarray, "n"]:
+    """Of backs that are nearer than their walls, and of those behind, by the sign of `off`."""
     nearer = np.minimum(problems.wall_sigma, np.maximum(WALL_NEARER_LOG_SIGMA, problems.wall_sigma / 5))
-    sigma = np.where((off < 0) & (problems.wall_sigma < UNTOLD), nearer, problems.wall_sigma)
-    return (off / sigma)[:, None]
+    return np.where((off < 0) & (problems.wall_sigma < UNTOLD), nearer, problems.wall_sigma)

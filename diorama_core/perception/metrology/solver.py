@@ -7,9 +7,9 @@ from dataclasses import dataclass
 import numpy as np
 from jaxtyping import Float
 
-from diorama_core.perception.metrology.problem import UNKNOWNS, Problems, View, residuals, residuals_and_inset, stacked
+from diorama_core.perception.metrology.problem import UNKNOWNS, Problems, Values, View, stacked, values
+from diorama_core.perception.metrology.slopes import jacobian
 
-_STEP = 1e-5
 _LONGEST_STEP = 0.7
 """Largest change of any unknown in one iteration."""
 _MIN_GAIN = 1e-3
@@ -48,8 +48,8 @@ def solve(problems: Problems, start: Float[np.ndarray, "n 6"], view: View, itera
     """Minimise every row's cost from its start; rows that have settled are left alone."""
     low, high = _bounds(problems)
     unknowns = np.clip(start, low, high)
-    r, inset = residuals_and_inset(unknowns, problems, view)
-    cost = _cost(r)
+    at = values(unknowns, problems, view)
+    cost = _cost(at)
     damping = np.full(len(problems), 1e-2)
     active, moved = np.arange(len(problems)), np.arange(len(problems))
     slopes = _Slopes(np.empty((len(problems), UNKNOWNS)), np.empty((len(problems), UNKNOWNS, UNKNOWNS)))
@@ -59,18 +59,17 @@ def solve(problems: Problems, start: Float[np.ndarray, "n 6"], view: View, itera
             break
         anew = np.intersect1d(active, moved, assume_unique=True)  # a row that stayed has the slopes that it had
         if len(anew):
-            known = _Values(r[anew], inset[anew])
-            slopes.put(anew, _slopes(plain.rows(anew), unknowns[anew], known, view))
+            slopes.put(anew, _slopes(plain.rows(anew), unknowns[anew], at.rows(anew), view))
         part, here = problems.rows(active), unknowns[active]
         bounds = low[active], high[active]
         there = np.clip(here + _step(slopes.rows(active), here, damping[active], bounds), *bounds)
-        r_there, inset_there = residuals_and_inset(there, part, view)
-        reached = _cost(r_there)
+        at_there = values(there, part, view)
+        reached = _cost(at_there)
         gain = cost[active] - reached
         better = gain > 0
         moved = active[better]
         unknowns[moved], cost[moved] = there[better], reached[better]
-        r[moved], inset[moved] = r_there[better], inset_there[better]
+        at.put(moved, at_there.rows(better))
         damping[active] = np.where(better, damping[active] * 0.3, damping[active] * 6.0)
         active = active[(~better & (damping[active] < 1e5)) | (gain > _MIN_GAIN)]
     return Solutions(problems, unknowns, cost + problems.extra)
@@ -85,16 +84,8 @@ def _bounds(problems: Problems) -> tuple[Float[np.ndarray, "n 6"], Float[np.ndar
     return low, high
 
 
-def _cost(r: Float[np.ndarray, "n r"]) -> Float[np.ndarray, "n"]:
-    return (r**2).sum(axis=1)
-
-
-@dataclass(frozen=True, eq=False)
-class _Values:
-    """What is known of the rows where they are."""
-
-    residuals: Float[np.ndarray, "n r"]
-    inset_px: Float[np.ndarray, "n 4"]
+def _cost(at: Values) -> Float[np.ndarray, "n"]:
+    return np.asarray((at.residuals**2).sum(axis=1))
 
 
 @dataclass(frozen=True, eq=False)
@@ -113,15 +104,11 @@ class _Slopes:
         self.gradient[chosen], self.normal[chosen] = anew.gradient, anew.normal
 
 
-def _slopes(problems: Problems, unknowns: Float[np.ndarray, "n 6"], here: _Values, view: View) -> _Slopes:
-    """Gradients and normal matrices, with derivatives by forward differences; outlines are not needed."""
-    count = len(problems)
-    probes = (unknowns[None] + _STEP * np.eye(UNKNOWNS)[:, None]).reshape(-1, UNKNOWNS)
-    repeated = problems.rows(np.tile(np.arange(count), UNKNOWNS))
-    inset = np.tile(here.inset_px, (UNKNOWNS, 1))
-    values = residuals(probes, repeated, view, inset).reshape(UNKNOWNS, count, -1)
-    jacobian = ((values - here.residuals) / _STEP).transpose(1, 2, 0)
-    return _Slopes(np.einsum("nri,nr->ni", jacobian, here.residuals), np.einsum("nri,nrj->nij", jacobian, jacobian))
+def _slopes(problems: Problems, unknowns: Float[np.ndarray, "n 6"], here: Values, view: View) -> _Slopes:
+    """Gradients and normal matrices."""
+    found = jacobian(problems, unknowns, here, view)
+    turned = found.transpose(0, 2, 1)
+    return _Slopes((turned @ here.residuals[..., None])[..., 0], turned @ found)
 
 
 def _step(

@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from diorama_core.artefacts import DetectedObject
 from diorama_core.perception.metrology.box_observations import gather
 from diorama_core.perception.metrology.priors import size_modes
-from diorama_core.perception.metrology.problem import Problems, View, residuals, residuals_and_inset
+from diorama_core.perception.metrology.problem import Problems, View, residuals, values
 from diorama_core.perception.metrology.rows import row
 from diorama_core.perception.metrology.solver import solve
 from diorama_core.scene.types import Intrinsics, box_corners
@@ -34,7 +34,7 @@ def unknowns(distance_m: float, scale: float = 1.0) -> np.ndarray:
 
 
 def inset_px(distance_m: float, problems: Problems) -> np.ndarray:
-    return residuals_and_inset(unknowns(distance_m), problems, VIEW)[1]
+    return values(unknowns(distance_m), problems, VIEW).inset_px
 
 
 @settings(max_examples=25, deadline=None)

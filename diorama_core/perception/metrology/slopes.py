@@ -1,0 +1,180 @@
+"""How the residuals of `problem` change with the unknowns, in closed form as far as the picture is concerned."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from jaxtyping import Bool, Float
+
+from diorama_core.geometry.extreme_points import extreme_points
+from diorama_core.perception.metrology.problem import (
+    CUT_NEAR_M,
+    FAR_LOG_SIGMA,
+    MIN_BACK_M,
+    MIN_ROOM_M,
+    UNKNOWNS,
+    Cuboids,
+    Problems,
+    Values,
+    View,
+    corners_camera,
+    cuboids,
+    edge_residuals,
+    values,
+    wall_sigmas,
+)
+from diorama_core.scene.types import box_corners
+
+_STEP = 1e-5
+
+
+def jacobian(
+    problems: Problems, unknowns: Float[np.ndarray, "n 6"], here: Values, view: View
+) -> Float[np.ndarray, "n r 6"]:
+    """Derivatives of every residual; outlines are not needed, insets are taken to stay.
+
+    Where the near plane cuts a cuboid, or where nothing of it is seen, they are forward differences.
+    """
+    boxes = cuboids(unknowns, problems, view)
+    corners = corners_camera(boxes, problems.camera_height_m, view)
+    frame = _Frame.of(boxes, problems, view)
+    edges, told = _edges(corners, frame, here, problems, view)
+    found = np.zeros((len(problems), here.residuals.shape[1], UNKNOWNS))
+    found[:, :4] = edges
+    found[:, 4:6] = _cut_off(corners, frame, problems, view)
+    found[:, 6:9, 2:5] = problems.whitening
+    found[:, 9, 5] = 1.0
+    found[:, 10, 4] = boxes.size_m[:, 2] / problems.top_sigma_m
+    found[:, 10, 5] = problems.base_sigma_m / problems.top_sigma_m
+    found[:, 11:, :4] = _on_the_plan(boxes, here, problems, view)
+    rest = np.flatnonzero(~told)
+    if len(rest):
+        found[rest] = _by_differences(problems.rows(rest), unknowns[rest], here.rows(rest), view)
+    return found
+
+
+@dataclass(frozen=True, eq=False)
+class _Frame:
+    """How points that are fixed to the cuboids move in the camera frame."""
+
+    aside: Float[np.ndarray, "3 n"]
+    """With the sideways tangent."""
+    away: Float[np.ndarray, "3 n"]
+    """With the logarithm of the distance."""
+    axes: Float[np.ndarray, "3 3 n"]
+    """With the logarithms of depth, width and height: each for a point one extent from the axis' origin."""
+    up: Float[np.ndarray, "3 n"]
+    """With the height of the base in sigmas."""
+
+    @classmethod
+    def of(cls, boxes: Cuboids, problems: Problems, view: View) -> _Frame:
+        """The frame of every row."""
+        R, heading = view.R_world_camera, view.heading
+        plan = boxes.centre[:, :2]
+        forward = plan @ heading
+        right = R[0] * heading[1] - R[1] * heading[0]
+        c, s = np.cos(boxes.yaw_rad), np.sin(boxes.yaw_rad)
+        x, y, z = R[..., None]
+        depth, width, height = boxes.size_m.T
+        axes = np.stack([(c * x + s * y) * depth, (c * y - s * x) * width, z * height])
+        return cls(right[:, None] * forward, (plan @ R[:2]).T, axes, z * problems.base_sigma_m)
+
+    def rows(self, chosen: np.ndarray) -> _Frame:
+        """The frame of the chosen rows."""
+        return _Frame(*(v[..., chosen] for v in (self.aside, self.away, self.axes, self.up)))
+
+    def moved(self, unit: Float[np.ndarray, "3 p n"]) -> Float[np.ndarray, "6 3 p n"]:
+        """Derivatives by every unknown of points of a unit box; the heights of boxes do not move their bases."""
+        found = np.empty((UNKNOWNS, 3, *unit.shape[1:]))
+        found[0], found[1], found[5] = self.aside[:, None], self.away[:, None], self.up[:, None]
+        found[2], found[3] = unit[0] * self.axes[0, :, None], unit[1] * self.axes[1, :, None]
+        found[4] = (unit[2] + 0.5) * self.axes[2, :, None]
+        return found
+
+
+def _edges(
+    corners: Float[np.ndarray, "n 8 3"],
+    frame: _Frame,
+    here: Values,
+    problems: Problems,
+    view: View,
+) -> tuple[Float[np.ndarray, "n 4 6"], Bool[np.ndarray, "n"]]:
+    """Of the four sides of the projected box, and where they are told."""
+    at = extreme_points(corners, here.bounds_px, here.visible, view.intrinsics)
+    of_bounds = at.slopes(frame.moved(at.unit), view.intrinsics)
+    there = edge_residuals(here.bounds_px + _STEP, here.visible, here.inset_px, problems, view)
+    by_bound = (there - here.residuals[:, :4]) / _STEP
+    return (by_bound.T * of_bounds).transpose(2, 1, 0), at.told
+
+
+def _cut_off(
+    corners: Float[np.ndarray, "n 8 3"], frame: _Frame, problems: Problems, view: View
+) -> Float[np.ndarray, "n 2 6"]:
+    """Of how much lies outside the picture: that goes with the corner that lies farthest out."""
+    k = view.intrinsics
+    extent = problems.box_px[:, 2:] - problems.box_px[:, :2]
+    x, y, z = np.ascontiguousarray(corners.transpose(2, 1, 0))
+    near = z <= CUT_NEAR_M
+    depth = np.maximum(z, CUT_NEAR_M)
+    found = np.zeros((len(corners), 2, UNKNOWNS))
+    unit = box_corners((1.0, 1.0, 1.0)).T
+    for axis, (across, f, c, size) in enumerate(((x, k.fx, k.cx, k.width), (y, k.fy, k.cy, k.height))):
+        pixel = across / depth * f + c
+        outside = np.maximum(-pixel, pixel - size)
+        corner = outside.argmax(axis=0)[None]
+        out = np.take_along_axis(outside, corner, axis=0)[0]
+        over = np.flatnonzero(out > 0.0)
+        if not len(over):
+            continue
+        chosen = corner[:, over]
+        dx, dz = frame.rows(over).moved(unit[:, chosen])[:, [axis, 2], 0].transpose(1, 0, 2)
+        at = [np.take_along_axis(v[:, over], chosen, axis=0)[0] for v in (across, depth, pixel, near)]
+        slope = f * (dx - np.where(at[3], 0.0, at[0] / at[1] * dz)) / at[1] * np.where(at[2] < 0, -1.0, 1.0)
+        found[over, axis] = (slope / (extent[over, axis] + out[over]) / problems.cut_sigma[over]).T
+    return found
+
+
+def _on_the_plan(boxes: Cuboids, here: Values, problems: Problems, view: View) -> Float[np.ndarray, "n 4 4"]:
+    """Of the base's place on its supporter, of the back at its wall and of the distance, by all but heights."""
+    plan, (depth, width) = boxes.centre[:, :2], boxes.size_m[:, :2].T
+    forward = plan @ view.heading
+    right = np.array([view.heading[1], -view.heading[0]])
+    moved = np.stack([forward[:, None] * right, plan], axis=-1)  # of the centre, by place aside and away
+    found = np.zeros((len(plan), 4, 4))
+    x, y, yaw, half_depth, half_width = problems.footprint.T
+    c, s = np.cos(yaw), np.sin(yaw)
+    turn = boxes.yaw_rad - yaw
+    along, across = np.abs(np.cos(turn)), np.abs(np.sin(turn))
+    off = plan - np.stack([x, y], axis=-1)
+    for axis, (u, v, half, by_depth, by_width) in enumerate(
+        ((c, s, half_depth, along * depth, across * width), (-s, c, half_width, across * depth, along * width))
+    ):
+        inside = half - 0.5 * (by_depth + by_width) > MIN_ROOM_M
+        outward = np.sign(u * off[:, 0] + v * off[:, 1])
+        found[:, axis, :2] = outward[:, None] * (u[:, None] * moved[:, 0] + v[:, None] * moved[:, 1])
+        found[:, axis, 2:] = np.where(inside[:, None], 0.5 * np.stack([by_depth, by_width], axis=-1), 0.0)
+        found[:, axis] *= ((here.residuals[:, 11 + axis] > 0.0) / problems.footprint_sigma_m)[:, None]
+    front = np.stack([np.cos(boxes.yaw_rad), np.sin(boxes.yaw_rad)], axis=-1)
+    ahead = 0.5 * depth - (plan * front).sum(axis=1)
+    found[:, 2, :2] = -(front[:, :, None] * moved).sum(axis=1)
+    found[:, 2, 2] = 0.5 * depth
+    found[:, 2] *= (
+        (ahead > MIN_BACK_M) / (np.maximum(ahead, MIN_BACK_M) * wall_sigmas(here.residuals[:, 13], problems))
+    )[:, None]
+    away = (plan**2).sum(axis=1)
+    found[:, 3, :2] = (plan[:, :, None] * moved).sum(axis=1) * ((here.residuals[:, 14] > 0.0) / (away * FAR_LOG_SIGMA))[
+        :, None
+    ]
+    return found
+
+
+def _by_differences(
+    problems: Problems, unknowns: Float[np.ndarray, "n 6"], here: Values, view: View
+) -> Float[np.ndarray, "n r 6"]:
+    count = len(problems)
+    probes = (unknowns[None] + _STEP * np.eye(UNKNOWNS)[:, None]).reshape(-1, UNKNOWNS)
+    repeated = problems.rows(np.tile(np.arange(count), UNKNOWNS))
+    inset = np.tile(here.inset_px, (UNKNOWNS, 1))
+    there = values(probes, repeated, view, inset).residuals.reshape(UNKNOWNS, count, -1)
+    return np.asarray(((there - here.residuals) / _STEP).transpose(1, 2, 0))
