@@ -7,6 +7,7 @@ Image arrays have the photo's height and width (h w); `Photo` is already rotated
 from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 
 import numpy as np
 from jaxtyping import Bool, Float, Float32, Int32, UInt8
@@ -146,6 +147,11 @@ class DetectedObject(ArrayValue):
     """`SeenKinds.form`; empty where it was not looked at."""
     meanings: tuple[tuple[str, float], ...] = ()
     """Kinds that its word may mean here with their probabilities, likeliest first; empty where it means one."""
+
+    @cached_property
+    def pixels(self) -> int:
+        """Area of the mask."""
+        return int(np.count_nonzero(self.mask))
 
 
 @dataclass(frozen=True, eq=False)

@@ -261,9 +261,9 @@ def hiding(
 
     Without the larger ones, which may as well lie below or stand behind it, it is where something surely does.
     """
-    hidden, area = np.zeros(found.mask.shape, dtype=bool), np.count_nonzero(found.mask)
+    hidden, area = np.zeros(found.mask.shape, dtype=bool), found.pixels
     for other in objects:
-        smaller = np.count_nonzero(other.mask) < area
+        smaller = other.pixels < area
         if other.id != found.id and (smaller or not smaller_only):
             hidden |= other.mask if smaller else other.mask & ~found.mask
     radius = max(1, round(MASK_MARGIN * max(hidden.shape)))

@@ -135,13 +135,14 @@ def slot_pixels(
     beside = view.of(background) & (view.slot < 0)
     seeds = _own_colours(lab, of_slots, beside)
     found = []
-    near = {index: mine & _alike(lab, seeds[index]) for index, mine in of_slots.items()}
+    like = {index: _alike(lab, seeds[index]) for index in of_slots}
+    near = {index: mine & like[index] for index, mine in of_slots.items()}
     for index, mine in of_slots.items():
         unlike = [k for k in of_slots if slots[k].role != slots[index].role and _is_near(seeds[k] - seeds[index])]
         crossed = _is_vivid(seeds[index]) and any(near[k].sum() >= CROSSED * near[index].sum() for k in unlike)
-        behind = index in lost and _is_vivid(seeds[index]) and _covers(lab, beside, seeds[index]) >= BEHIND
+        behind = index in lost and _is_vivid(seeds[index]) and _covers(like[index], beside) >= BEHIND
         foreign = [k for k in of_slots if k != index and not _is_near(seeds[k] - seeds[index])]
-        before = _is_before_all(lab, mine, [of_slots[k] for k in foreign], seeds[index])
+        before = _is_before_all(like[index], mine, [of_slots[k] for k in foreign])
         if near[index].sum() >= MIN_SHARE * mine.sum() and not crossed and not behind and not before:
             found.append(SlotPixels(slots[index], index, near[index], mine))
     return tuple(found)
@@ -181,38 +182,37 @@ def _own_colours(
     for index, mine in of_slots.items():
         others = [(of_slots[k], seeds[k]) for k in of_slots if k != index]
         own = []
+        shares = []
         for seed in options[index]:
-            share, pixels = _share(lab, mine, seed), float(_alike(lab, seed)[mine].sum())
+            near = _alike(lab, seed)
+            share, pixels = _share(near, mine), np.count_nonzero(near & mine)
             alike = [where for where, main in others if _is_near(main - seed)]
-            elsewhere = [_share(lab, w, seed) for w in alike if float(_alike(lab, seed)[w].sum()) >= pixels]
-            elsewhere.append(_covers(lab, beside, seed) / BESIDE)
+            elsewhere = [_share(near, where) for where in alike if np.count_nonzero(near & where) >= pixels]
+            elsewhere.append(_covers(near, beside) / BESIDE)
             own.append(share / max([share, *elsewhere, 1e-9]))
+            shares.append(share)
         chosen = int(np.argmax(own))
         main = options[index][chosen]
-        as_good = [seed for seed, score in zip(options[index], own, strict=True) if score >= AS_GOOD * own[chosen]]
-        much = [seed for seed in as_good if _share(lab, mine, seed) >= MIN_OUTLINED]
+        as_good = [k for k, score in enumerate(own) if score >= AS_GOOD * own[chosen]]
+        much = [options[index][k] for k in as_good if shares[k] >= MIN_OUTLINED]
         seeds[index] = unveiled(main, [s for s in much if s[0] <= main[0] or _is_not_behind(lab, mine, beside, s)])
     return seeds
 
 
 def _is_before_all(
-    lab: Float32[np.ndarray, "gh gw 3"],
-    mine: Bool[np.ndarray, "gh gw"],
-    foreign: Sequence[Bool[np.ndarray, "gh gw"]],
-    seed: np.ndarray,
+    alike: Bool[np.ndarray, "gh gw"], mine: Bool[np.ndarray, "gh gw"], foreign: Sequence[Bool[np.ndarray, "gh gw"]]
 ) -> bool:
     """Whether a slot's colour is of something before the object: on it in part, and as much on slots of other colours.
 
     Args:
-        lab: The photo.
+        alike: Pixels of about its colour.
         mine: The slot.
         foreign: The slots of other colours.
-        seed: Its colour.
     """
-    share = _share(lab, mine, seed)
+    share = _share(alike, mine)
     if share >= MOSTLY or not foreign:
         return False
-    return share < CLEARLY_OWN * _share(lab, np.any(foreign, axis=0), seed)
+    return share < CLEARLY_OWN * _share(alike, np.any(foreign, axis=0))
 
 
 def _is_not_behind(
@@ -230,9 +230,9 @@ def _is_vivid(seed: np.ndarray) -> bool:
     return bool(np.hypot(*seed[1:]) >= COLOURED)
 
 
-def _covers(lab: Float32[np.ndarray, "gh gw 3"], where: Bool[np.ndarray, "gh gw"], seed: np.ndarray) -> float:
-    """Share of a region that has about a colour; 0 of one too small to tell."""
-    return _share(lab, where, seed) if where.sum() >= MIN_PIXELS else 0.0
+def _covers(alike: Bool[np.ndarray, "gh gw"], where: Bool[np.ndarray, "gh gw"]) -> float:
+    """Share of a region that is among pixels of about one colour; 0 of one too small to tell."""
+    return _share(alike, where) if np.count_nonzero(where) >= MIN_PIXELS else 0.0
 
 
 def _colours_of(lab: Float32[np.ndarray, "gh gw 3"], mine: Bool[np.ndarray, "gh gw"]) -> list[Float32[np.ndarray, "3"]]:
@@ -258,8 +258,8 @@ def _colours_of(lab: Float32[np.ndarray, "gh gw 3"], mine: Bool[np.ndarray, "gh 
     return found
 
 
-def _share(lab: Float32[np.ndarray, "gh gw 3"], where: Bool[np.ndarray, "gh gw"], seed: np.ndarray) -> float:
-    return float(_alike(lab, seed)[where].mean())
+def _share(alike: Bool[np.ndarray, "gh gw"], where: Bool[np.ndarray, "gh gw"]) -> float:
+    return float(alike[where].mean())
 
 
 def _alike(lab: Float32[np.ndarray, "gh gw 3"], seed: np.ndarray) -> Bool[np.ndarray, "gh gw"]:

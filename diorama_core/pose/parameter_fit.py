@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
+from functools import cached_property
 
 import numpy as np
 from jaxtyping import Float
@@ -62,12 +63,21 @@ class _Fit:
 class _Variant:
     """A design as it is built, to be compared with the picture."""
 
-    caster: ShapeCaster
-    shape: Shape | None
-    """With the surfaces on which things lie; None where none does."""
+    shape_id: str
+    library: ShapeLibrary
+
+    @cached_property
+    def caster(self) -> ShapeCaster:
+        """Its form."""
+        return ShapeCaster(self.library.mesh(self.shape_id))
+
+    @cached_property
+    def shape(self) -> Shape:
+        """With the surfaces on which things lie."""
+        return self.library.shape(self.shape_id)
 
     def score(self, seen: SeenObject, pose: Pose, start: Float[np.ndarray, "3"]) -> float:
-        """How well it agrees with one object and with what lies on that: a logarithm, higher is better.
+        """How well it agrees with one object, whatever lies on that: a logarithm, higher is better.
 
         Args:
             seen: The object.
@@ -75,9 +85,11 @@ class _Variant:
             start: Its scale from before any fit.
         """
         cost = seen.outline_weight * float(resizing_cost(seen.evidence.seen, (pose.scale / start)[None])[0])
-        if self.shape is not None:
-            cost += level_cost(self.shape, pose, seen.carried)
         return seen.score(self.caster, pose) - cost
+
+    def level_cost(self, seen: SeenObject, pose: Pose) -> float:
+        """What the things that lie on the object say against it."""
+        return level_cost(self.shape, pose, seen.carried) if seen.carried else 0.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -136,8 +148,9 @@ class ParameterFit:
                 others = [v for v in values if v != changes.get(name) and can_have(name, v, size_m)][:left]
                 left -= len(others)
                 variants = {v: self._variant(made_id(design_id, size_m, {**changes, name: v})) for v in others}
-                roughly = {v: self._at(variant, best.poses, start) for v, variant in variants.items()}
-                promising = [v for v in others if roughly[v].score > best.score - PROMISING]
+                least = best.score - PROMISING
+                roughly = {v: self._at(variant, best.poses, start, least) for v, variant in variants.items()}
+                promising = [v for v in others if roughly[v].score > least]
                 enough = (best.score if changes else max(best.score, as_is)) + self._worth
                 tried = {v: self._fit(variants[v], size_m, roughly[v], start, enough) for v in promising}
                 value = max(tried, key=lambda v: tried[v].score, default=None)
@@ -155,13 +168,16 @@ class ParameterFit:
         return WORTH if all(one.mask_confidence >= 1.0 for one in self.seen) else WORTH_OF_UNSURE
 
     def _variant(self, shape_id: str) -> _Variant:
-        carries = any(one.carried for one in self.seen)
-        return _Variant(ShapeCaster(self.library.mesh(shape_id)), self.library.shape(shape_id) if carries else None)
+        return _Variant(shape_id, self.library)
 
-    def _at(self, variant: _Variant, poses: Sequence[Pose], start: Float[np.ndarray, "3"]) -> _Fit:
-        return _Fit(
-            float(np.mean([variant.score(o, p, start) for o, p in zip(self.seen, poses, strict=True)])), tuple(poses)
-        )
+    def _at(
+        self, variant: _Variant, poses: Sequence[Pose], start: Float[np.ndarray, "3"], least: float = -np.inf
+    ) -> _Fit:
+        """The variant in these poses; one that does not score `least` anyway is not searched for its levels."""
+        scores = np.array([variant.score(o, p, start) for o, p in zip(self.seen, poses, strict=True)])
+        if scores.mean() >= least:
+            scores -= [variant.level_cost(o, p) for o, p in zip(self.seen, poses, strict=True)]
+        return _Fit(float(scores.mean()), tuple(poses))
 
     def _fit(
         self,
