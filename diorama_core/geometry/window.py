@@ -39,22 +39,29 @@ class Window:
 
     def coverage(self, mask: Bool[np.ndarray, "h w"]) -> Float[np.ndarray, "n"]:
         """Share of every cell's area that the mask covers, exactly; nothing outside the photo is covered."""
+        if not mask[self._pixels(*mask.shape)].any():
+            return np.zeros(self.cells**2)
         return np.clip(self.means(mask.astype(np.uint8)), 0.0, 1.0)
 
     def means(self, image: Shaped[np.ndarray, "h w *c"]) -> Float[np.ndarray, "n *c"]:
         """The mean of an image of numbers over every cell's area, exactly; outside the photo it is 0."""
-        height, width = image.shape[:2]
-        x1, y1, x2, y2 = self.bounds_px
-        left, top = int(np.clip(np.floor(x1), 0, width)), int(np.clip(np.floor(y1), 0, height))
-        right, bottom = int(np.clip(np.ceil(x2), left, width)), int(np.clip(np.ceil(y2), top, height))
-        if right == left or bottom == top:
+        part = rows, columns = self._pixels(*image.shape[:2])
+        if rows.start == rows.stop or columns.start == columns.stop:
             return np.zeros((self.cells**2, *image.shape[2:]))
-        total = cv2.integral(np.ascontiguousarray(image[top:bottom, left:right]), sdepth=cv2.CV_64F)
+        x1, y1, x2, y2 = self.bounds_px
+        total = cv2.integral(np.ascontiguousarray(image[part]), sdepth=cv2.CV_64F)
         lines = np.linspace(0.0, 1.0, self.cells + 1)
-        sums = _at(total, y1 + (y2 - y1) * lines - top, x1 + (x2 - x1) * lines - left)
+        sums = _at(total, y1 + (y2 - y1) * lines - rows.start, x1 + (x2 - x1) * lines - columns.start)
         areas = np.diff(np.diff(sums, axis=0), axis=1)
         cell = (x2 - x1) * (y2 - y1) / self.cells**2
         return areas.reshape(self.cells**2, *image.shape[2:]) / max(cell, 1e-12)
+
+    def _pixels(self, height: int, width: int) -> tuple[slice, slice]:
+        """Rows and columns of a photo of this size of which any part lies in the window."""
+        x1, y1, x2, y2 = self.bounds_px
+        left, top = int(np.clip(np.floor(x1), 0, width)), int(np.clip(np.floor(y1), 0, height))
+        right, bottom = int(np.clip(np.ceil(x2), left, width)), int(np.clip(np.ceil(y2), top, height))
+        return slice(top, bottom), slice(left, right)
 
     def sample(self, image: Shaped[np.ndarray, "h w *c"]) -> Shaped[np.ndarray, "n *c"]:
         """The image's pixel under every cell's centre; the nearest one where the centre is outside."""

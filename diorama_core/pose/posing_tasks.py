@@ -26,6 +26,7 @@ from diorama_core.pose.hypotheses import Anchor, anchor_of
 from diorama_core.pose.mask_observations import Evidence
 from diorama_core.pose.measured import MeasuredObject, foot_height_m
 from diorama_core.pose.surface import measured_surface, noise_of
+from diorama_core.render.grid import each
 
 _TELLS = 0.5
 """What colours must say beside a mask for it to tell who of a set differs (`SeeThrough.share`)."""
@@ -110,7 +111,8 @@ def posing_tasks(
         wall_samples(depth, geometry.camera, items),
         noise_of(depth),
     )
-    return [scene.task(i, kinds[item.id], cells) for i, item in enumerate(items) if item.id in kinds]
+    posed = [i for i, item in enumerate(items) if item.id in kinds]
+    return each(lambda i: scene.task(i, kinds[items[i].id], cells), posed)
 
 
 @dataclass(frozen=True, eq=False)
@@ -143,23 +145,24 @@ class _Surroundings:
         anchor = anchor_of(cuboid, on_wall, camera.position[:2] - cuboid.centre[:2])
         facings = {kind: self._facing(i, kind, anchor if on_wall else None) for kind in kinds}
         centres = np.array([c.centre for c in self.cuboids]).reshape(-1, 3)
-        windows = [
-            observe_among(camera, self.items, centres, self.parents, i, count)
-            for count in (*cells, cells_for(item.box))
-        ]
+        parents = self.parents
+        windows = [observe_among(camera, self.items, centres, parents, i, count) for count in cells]
         surfaces = [measured_surface(depth, seen, item.mask, self.noise) for seen in windows]
         rgb, closed = self.inputs.photo.rgb, item.category in NEVER_OPEN
         coarse, fine = (
             Evidence(camera, w, facings[kinds[0]], s, None if closed or s is not None else SeeThrough.of(rgb, w))
-            for w, s in zip(windows[:2], surfaces[:2], strict=True)
+            for w, s in zip(windows, surfaces, strict=True)
         )
         foot_m = foot_height_m(depth, item.mask, camera) if held_by == "floor" else None
         measured = MeasuredObject.of(item.mask, fine, cuboid, anchor, self.walls, foot_m)
         details = None if measured is None else Details.of(rgb, windows[1])
         close = None
-        if measured is not None and surfaces[2] is not None:
-            close = AppearanceLikelihood.of(rgb, item.mask, windows[2], surfaces[2], cuboid.size_m)
-        carried = tuple(self.cuboids[j] for j, parent in enumerate(self.parents) if parent == i)
+        if measured is not None:
+            near = observe_among(camera, self.items, centres, parents, i, cells_for(item.box))
+            surface = measured_surface(depth, near, item.mask, self.noise)
+            if surface is not None:
+                close = AppearanceLikelihood.of(rgb, item.mask, near, surface, cuboid.size_m)
+        carried = tuple(self.cuboids[j] for j, parent in enumerate(parents) if parent == i)
         return PosingTask(item, cuboid, anchor, carried, coarse, fine, measured, close, details, facings)
 
     def _facing(self, i: int, kind: str, on_wall: Anchor | None) -> Facing:

@@ -17,6 +17,7 @@ from diorama_core.pose.facing import Facing
 from diorama_core.pose.inner_edges import InnerEdges
 from diorama_core.pose.mask_observations import Evidence
 from diorama_core.pose.surface import measured_surface, noise_of
+from diorama_core.render.grid import each
 from diorama_core.scene.types import Pose
 
 CELLS = 56
@@ -85,18 +86,17 @@ def seen_objects(
     parent_of = {s.child: s.parent for s in geometry.supports}
     parents = [positions.get(parent_of.get(o.id, "")) for o in items]
     noise = noise_of(depth)
-    found = {}
-    for k, item in enumerate(items):
-        if item.id not in pose_of:
-            continue
+
+    def seen(k: int) -> SeenObject | None:
+        item = items[k]
         window = observe_among(geometry.camera, items, centres, parents, k, CELLS, loads_apart=True)
         if float((window.covered * window.weight).sum()) < MIN_CELLS:
-            continue
+            return None
         surface = measured_surface(depth, window, item.mask, noise)
         closed = surface is not None or item.category in NEVER_OPEN
         colours = None if closed else SeeThrough.of(inputs.photo.rgb, window)
         evidence = Evidence(geometry.camera, window, Facing(()), surface, colours)
-        found[item.id] = SeenObject(
+        return SeenObject(
             evidence,
             InnerEdges.of(inputs.photo.rgb, window),
             pose_of[item.id],
@@ -105,4 +105,6 @@ def seen_objects(
             item.category,
             tuple(cuboid_of[o.id] for o, parent in zip(items, parents, strict=True) if parent == k),
         )
-    return found
+
+    shown = [k for k, item in enumerate(items) if item.id in pose_of]
+    return {items[k].id: one for k, one in zip(shown, each(seen, shown), strict=True) if one is not None}
