@@ -10,6 +10,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
+from itertools import chain, repeat
 
 import numpy as np
 from jaxtyping import Float
@@ -142,22 +143,22 @@ class ParameterFit:
         """
         changes: dict[str, Value] = {}
         best, left = self._at(self._variant(made_id(design_id, size_m, changes)), poses, start), MAX_VARIANTS
-        for _ in range(PASSES):
-            before_pass = dict(changes)
-            for name, values in varied(design_id):
-                others = [v for v in values if v != changes.get(name) and can_have(name, v, size_m)][:left]
-                left -= len(others)
-                variants = {v: self._variant(made_id(design_id, size_m, {**changes, name: v})) for v in others}
-                least = best.score - PROMISING
-                roughly = {v: self._at(variant, best.poses, start, least) for v, variant in variants.items()}
-                promising = [v for v in others if roughly[v].score > least]
-                enough = (best.score if changes else max(best.score, as_is)) + self._worth
-                tried = {v: self._fit(variants[v], size_m, roughly[v], start, enough) for v in promising}
-                value = max(tried, key=lambda v: tried[v].score, default=None)
-                if value is not None and tried[value].score > enough:
-                    changes, best = {**changes, name: value}, tried[value]
-            if changes == before_pass:
-                break
+        parameters, unchanged = tuple(varied(design_id)), 0
+        for name, values in chain.from_iterable(repeat(parameters, PASSES)):
+            if unchanged == len(parameters):
+                break  # each was tried beside the values that all others have now
+            others = [v for v in values if v != changes.get(name) and can_have(name, v, size_m)][:left]
+            left -= len(others)
+            variants = {v: self._variant(made_id(design_id, size_m, {**changes, name: v})) for v in others}
+            least = best.score - PROMISING
+            roughly = {v: self._at(variant, best.poses, start, least) for v, variant in variants.items()}
+            promising = [v for v in others if roughly[v].score > least]
+            enough = (best.score if changes else max(best.score, as_is)) + self._worth
+            tried = {v: self._fit(variants[v], size_m, roughly[v], start, enough) for v in promising}
+            value = max(tried, key=lambda v: tried[v].score, default=None)
+            unchanged += 1
+            if value is not None and tried[value].score > enough:
+                changes, best, unchanged = {**changes, name: value}, tried[value], 0
         return changes, best
 
     @property
