@@ -9,8 +9,10 @@ from collections import Counter
 from dataclasses import replace
 from functools import cache
 
+from diorama_app.projects.example import EXAMPLE
 from diorama_core.library.boards import base_id
 from diorama_core.library.catalogue import built_in_library
+from diorama_core.project.storage import Project
 from diorama_core.scene.types import Scene
 from diorama_core.synthesis.splits import Subset
 
@@ -21,6 +23,11 @@ def few_shapes(*scenes: Scene) -> Subset:
     """The first built-in shapes of every kind, and those of the scenes."""
     first = _first_of_every_kind()
     return replace(first, ids=first.ids | {base_id(o.shape_id) for scene in scenes for o in scene.objects})
+
+
+def example_scene() -> Scene:
+    """The room that comes with Diorama."""
+    return Project.open(EXAMPLE / "project").load_scene()
 
 
 @cache
