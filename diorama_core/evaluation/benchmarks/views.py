@@ -143,9 +143,7 @@ class RoomView:
     camera: Camera
 
 
-def photographed(
-    case: Case, library: ShapeLibrary, count: int, size: tuple[int, int] = SIZE
-) -> tuple[RoomView, ...]:
+def photographed(case: Case, library: ShapeLibrary, count: int, size: tuple[int, int] = SIZE) -> tuple[RoomView, ...]:
     """Pictures of a case's room from different places: first one with enough objects, then those that share most of
     its objects.
 
