@@ -16,10 +16,11 @@ from diorama_app.serve import Running
 from diorama_core.scene.types import Scene, SceneObject
 from tests.conftest import SHARED
 from tests.e2e.browser import EditorPage
+from tests.few_shapes import example_scene, few_shapes
 
 pytestmark = [pytest.mark.browser, pytest.mark.slow]
 
-MARKED = 6
+MARKED = 3
 """Boxes of the photo, or its build would be most of the test's time."""
 BUILD_S = 300
 """A build takes some fifteen seconds of two free cores; test machines are often busy."""
@@ -71,13 +72,13 @@ def test_the_example_is_there_and_is_swapped_moved_undone_optimised_and_download
 
 
 def test_a_photo_with_boxes_becomes_a_scene(
-    with_example: Running, visit: Callable[[Running], EditorPage], tmp_path: Path
+    serve: Callable[..., Running], visit: Callable[[Running], EditorPage], tmp_path: Path
 ) -> None:
     photo, all_boxes = _photo_with_boxes()
     boxes = tmp_path / "boxes.json"
     boxes.write_text(json.dumps(json.loads(all_boxes.read_text())[:MARKED]))
-    editor = visit(with_example)
-    session = with_example.session
+    editor = visit(serve(library=few_shapes(example_scene())))
+    session = editor.session
     example = session.scene
 
     editor.tab("Photo")

@@ -227,6 +227,7 @@ def test_the_running_job_is_in_view_in_every_tab_with_what_it_found(editor: Edit
     go_on.set()
 
 
+@pytest.mark.slow
 def test_a_dead_server_is_told_and_the_page_goes_on_by_itself(
     context, serve: Callable[..., Running], visit: Callable[[Running], EditorPage], tmp_path
 ) -> None:

@@ -14,7 +14,8 @@ from playwright.sync_api import expect
 from diorama_core.project.further_photos import save_photos
 from tests.e2e.browser import LEARN_MS, EditorPage
 from tests.e2e.conftest import StartServer, keep_picture
-from tests.multiview.two_photos import project_of, two_photos, with_camera
+from tests.few_shapes import few_shapes
+from tests.multiview.two_photos import SMALL, project_of, two_photos, with_camera
 
 pytest.importorskip("pycolmap", reason="needs pycolmap (pip install 'diorama[photos]')")
 pytestmark = [pytest.mark.browser, pytest.mark.slow]
@@ -26,7 +27,7 @@ def test_a_photo_of_the_same_room_is_added_looked_through_and_undone(
     photos = two_photos()
     project = project_of(photos, tmp_path / "projects" / "room")
     Image.fromarray(photos.second.photo.rgb).save(tmp_path / "beside.png")
-    editor = visit(serve(project.folder))
+    editor = visit(serve(project.folder, few_shapes(photos.scene)))
     before = editor.session.scene
     editor.tab("Photo")
     editor.upload("Add a photo of this room", tmp_path / "beside.png")
@@ -67,12 +68,12 @@ def test_a_photo_of_the_same_room_is_added_looked_through_and_undone(
 def test_a_rebuild_keeps_the_other_photo_of_the_room(
     serve: StartServer, visit: Callable[..., EditorPage], tmp_path: Path
 ) -> None:
-    photos = two_photos()
+    photos = two_photos(SMALL)
     project = project_of(photos, tmp_path / "projects" / "room")
     boxes = {b.label.replace(" ", "_"): b.box for b in photos.second.boxes}
     seen = tuple((name, box) for name, box in boxes.items() if photos.scene.has_object(name))
     save_photos(project, (replace(with_camera(photos), seen=seen),))
-    editor = visit(serve(project.folder))
+    editor = visit(serve(project.folder, few_shapes(photos.scene)))
     before = editor.session.scene
     (beside,) = editor.session.further_photos
     assert beside.camera is not None

@@ -17,6 +17,7 @@ from diorama_core.scene.types import SceneObject
 from tests.e2e.browser import EditorPage
 from tests.e2e.conftest import ARTEFACTS, keep_picture
 from tests.e2e.hand import Hand
+from tests.few_shapes import example_scene, few_shapes
 
 pytestmark = [pytest.mark.browser, pytest.mark.slow]
 
@@ -29,7 +30,7 @@ SOFA, RUG = (875.0, 565.0), (640.0, 800.0, 1240.0, 940.0)
 @pytest.fixture
 def hand(context, serve: Callable[..., Running], request: pytest.FixtureRequest) -> Iterator[Hand]:
     """A stranger before the start page."""
-    editor = EditorPage.open(context, serve(), newcomer=True)
+    editor = EditorPage.open(context, serve(library=few_shapes(example_scene())), newcomer=True)
     expect(editor.page.locator("#dio-start")).to_be_visible(timeout=30_000)
     hand = Hand(editor)
     yield hand

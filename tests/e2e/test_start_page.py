@@ -115,6 +115,7 @@ def test_a_server_with_a_project_shows_it_at_once_and_the_start_page_when_asked(
     page.page.close()
 
 
+@pytest.mark.slow
 def test_the_tour_waits_while_somebody_types(context, serve: Callable[..., Running]) -> None:
     editor = EditorPage.open(context, serve())
     page, tour = editor.page, editor.page.get_by_role("dialog", name="Tour")

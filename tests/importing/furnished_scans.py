@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from functools import cache
 
 from diorama_core.evaluation.benchmarks.cases import furnished, recipe
@@ -10,6 +11,7 @@ from diorama_core.library.record import ShapeLibrary
 from diorama_core.scene.types import Scene
 from diorama_core.synthesis.scan import ScanFrame, scanned
 from diorama_core.synthesis.splits import split_library
+from tests.few_shapes import few_shapes
 from tests.made_once import made_once
 
 
@@ -26,5 +28,6 @@ def living_room() -> tuple[Scene, tuple[ScanFrame, ...]]:
 
 
 def searched() -> ShapeLibrary:
-    """Shapes that are not in the room."""
-    return split_library(built_in_library(), "train", "validation")
+    """A few shapes that are not in the room."""
+    few = few_shapes()
+    return replace(few, ids=few.ids - split_library(built_in_library(), "test").ids)

@@ -27,6 +27,7 @@ from diorama_core.scene.types import Scene
 from diorama_core.synthesis.artefacts import photo_only
 from diorama_core.synthesis.splits import split_library
 from diorama_core.synthesis.truth import TruthView
+from tests.few_shapes import few_shapes
 from tests.importing.roomplan_files import TO_SCAN, write_scan_of
 
 KNOWN = frozenset(kind for kinds in KINDS.values() for kind in kinds)
@@ -43,7 +44,7 @@ def room(number: int = 0) -> tuple[Scene, TruthView, np.ndarray]:
 
 
 def joined(opened: Opened, inputs: Inputs) -> Opened:
-    library = built_in_library()
+    library = few_shapes(opened.scene)
     return with_photo_of_scan(
         opened, inputs, library, lambda given: embedded_stages(given, library),
         lambda free: recipe("feasible", library, free, depth_measured=True),

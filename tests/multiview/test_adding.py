@@ -22,15 +22,16 @@ from diorama_core.scene.room_edits import move_plane
 from diorama_core.scene.types import Camera, Scene
 from diorama_core.synthesis.artefacts import photo_only
 from diorama_core.synthesis.splits import split_library
+from tests.few_shapes import few_shapes
 from tests.multiview.two_photos import SMALL, AsItIs, two_photos, with_camera
 
 
 def choose(inputs: Inputs) -> Stages:
-    return embedded_stages(inputs, built_in_library())
+    return embedded_stages(inputs, few_shapes())
 
 
 def added(scene: Scene, movable: frozenset[str]) -> Added:
-    photos, library = two_photos(SMALL), built_in_library()
+    photos, library = two_photos(SMALL), few_shapes(scene)
     known = photos_of_scene(scene, photos.first, ())
     return with_photo(
         scene, known, with_camera(photos), movable, movable, library, choose,
@@ -89,7 +90,7 @@ def marked(view: RoomView, name: str, camera: Camera) -> FurtherPhoto:
 @cache
 def made_views() -> tuple[RoomView, ...]:
     """A room photographed from four places."""
-    return tuple(photographed(recipe_of_rooms(3, 1, 101)[0], split_library(built_in_library(), "test"), 4))
+    return tuple(photographed(recipe_of_rooms(3, 1, 101)[0], split_library(built_in_library(), "test"), 4, SMALL))
 
 
 def marked_photos() -> list[FurtherPhoto]:
@@ -116,7 +117,7 @@ def test_walls_that_nobody_moved_go_to_what_photos_show_on_them() -> None:
     wall = there.support_of("door_1").parent
     true_m = there.plane(wall).offset
     scene = move_plane(there, wall, 0.2)
-    known = photos_of_scene(scene, photos[0].inputs, tuple(photos[1:3]))
+    known = photos_of_scene(scene, photos[0].inputs, (photos[1],))
     free = frozenset([*(o.id for o in scene.objects), *(p.id for p in scene.architecture.planes)])
 
     def offset(movable: frozenset[str]) -> float:

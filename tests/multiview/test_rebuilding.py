@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 
 from diorama_core.artefacts import FurtherPhoto, Inputs
-from diorama_core.library.catalogue import built_in_library
 from diorama_core.multiview.rebuilding import carried, with_photos_again
 from diorama_core.pipeline.stages import Stages, embedded_stages
 from diorama_core.scene.types import Camera, yaw_rotation
+from tests.few_shapes import few_shapes
 from tests.multiview.rooms import camera
 from tests.multiview.two_photos import SMALL, AsItIs, two_photos, with_camera
 
@@ -35,7 +35,8 @@ def test_a_camera_follows_turn_place_and_scale() -> None:
 
 @pytest.mark.slow
 def test_photos_join_the_new_scene_or_are_named() -> None:
-    photos, library = two_photos(SMALL), built_in_library()
+    photos = two_photos(SMALL)
+    library = few_shapes(photos.scene)
     scene, beside = photos.scene, with_camera(photos)
     grey = replace(photos.second, photo=replace(photos.second.photo, rgb=np.full_like(photos.second.photo.rgb, 128)))
     blank = FurtherPhoto("blank", replace(grey, boxes=(), instances=None, instance_boxes=()), photos.camera)

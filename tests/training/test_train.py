@@ -14,7 +14,7 @@ from diorama_core.models.own_weights import CARD, DETECTOR, NAMER, OUTLINER
 from diorama_core.models.recogniser import Recogniser, box_crop, box_geometry
 from diorama_core.models.runtime import SessionPool
 from diorama_core.progress import Progress
-from diorama_core.training import pictures, shape_views
+from diorama_core.training import pictures, shape_views, train
 from diorama_core.training.detector import Detector
 from diorama_core.training.export import export_detector, export_namer, export_outliner, write_card
 from diorama_core.training.naming import Namer
@@ -32,6 +32,8 @@ from diorama_core.training.windows import WindowFiles, Windows, _packed
 from tests.training.test_augment import picture
 
 KINDS = 5
+SMALL = (96, 64)
+"""Of the detector's pictures: what a step does to a network is the same with few pixels."""
 
 
 @pytest.fixture
@@ -71,7 +73,10 @@ def trainer(kind: str, files: PictureFiles, path: Path, steps: int) -> Trainer:
 
 @pytest.mark.slow
 @pytest.mark.parametrize("kind", ["detector", "namer", "outliner"])
-def test_a_run_goes_on_where_it_stopped(kind: str, files: PictureFiles, tmp_path: Path) -> None:
+def test_a_run_goes_on_where_it_stopped(
+    kind: str, files: PictureFiles, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(train, "SIZE", SMALL)
     whole = trainer(kind, files, tmp_path / "whole.pt", 4).run(Progress())
     first = trainer(kind, files, tmp_path / "parts.pt", 4)
     first.schedule = Schedule(4, 2, save_every=2)

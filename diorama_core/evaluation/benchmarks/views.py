@@ -143,7 +143,7 @@ class RoomView:
     camera: Camera
 
 
-def photographed(case: Case, library: ShapeLibrary, count: int) -> tuple[RoomView, ...]:
+def photographed(case: Case, library: ShapeLibrary, count: int, size: tuple[int, int] = SIZE) -> tuple[RoomView, ...]:
     """Pictures of a case's room from different places: first one with enough objects, then those that share most of
     its objects.
 
@@ -152,8 +152,8 @@ def photographed(case: Case, library: ShapeLibrary, count: int) -> tuple[RoomVie
     """
     scene = furnished(case, library)
     studio = Studio(scene, library)
-    cameras = sample_cameras(scene, library, case.seed, count, SIZE)
-    views = [RoomView(studio.view(c, SIZE, with_empty_room=False), c) for c in cameras]
+    cameras = sample_cameras(scene, library, case.seed, count, size)
+    views = [RoomView(studio.view(c, size, with_empty_room=False), c) for c in cameras]
     first = next((v for v in views if len(v.truth.asked) >= MIN_ASKED), views[0])
     rest = [v for v in views if v is not first]
     rest.sort(key=lambda v: -len(set(v.truth.asked) & set(first.truth.asked)))

@@ -14,11 +14,11 @@ from diorama_app.session.session import EditorSession
 from diorama_core.artefacts import Inputs, LabelledBox, Photo
 from diorama_core.errors import EditRefused, InputError
 from diorama_core.importing.scene_import import import_scene
-from diorama_core.library.catalogue import built_in_library
 from diorama_core.project.further_photos import load_photos
 from diorama_core.scene.types import Scene
 from diorama_core.synthesis.artefacts import photo_only
 from tests.app.small_room import plain_photo
+from tests.few_shapes import few_shapes
 from tests.importing.roomplan_files import write_scan_of
 from tests.importing.test_photo_of_scan import KNOWN as SCANNED
 from tests.importing.test_photo_of_scan import room as scanned_room
@@ -129,7 +129,7 @@ def test_the_first_photo_of_a_scan_brings_looks_and_new_things(
 ) -> None:
     room, truth, _ = scanned_room()
     before = import_scene(write_scan_of(tmp_path / "room.json", room)).opened.scene
-    session.library = built_in_library()
+    session.library = few_shapes(before)
     session.document.open(before, None, ())
     whole = photo_only(truth)
     marked = tuple(b for b in whole.boxes if b.category in SCANNED or b.category in ("door", "window", "plant"))

@@ -25,6 +25,7 @@ from diorama_core.scene.types import Camera, Intrinsics, Pose, Scene, SceneObjec
 from diorama_core.synthesis import furnished_room, render_truth, sample_cameras
 from diorama_core.synthesis.artefacts import true_supports
 from diorama_core.synthesis.truth import moved
+from tests.few_shapes import few_shapes
 
 SIZE = (320, 240)
 
@@ -45,7 +46,7 @@ def ssdb(tmp_path_factory):
         for e in true_supports(view)
     }
     (folder / "gt.json").write_text(json.dumps(records))
-    return folder.parent, len(records)
+    return folder.parent, room, len(records)
 
 
 def _scan2cad_model(item: SceneObject) -> dict[str, object]:
@@ -72,7 +73,6 @@ def test_a_folder_of_scan2cad_is_built_and_fills_the_table_by_category(tmp_path)
     library = built_in_library()
     room = furnished_room(3, "office", library, clutter=2)
     view = render_truth(room, sample_cameras(room, library, 1, 1, SIZE)[0], library, SIZE, with_empty_room=False)
-    # Of few kinds: for each that is met first, all shapes of the library are seen from all sides.
     seen = [o for o in view.scene.objects if o.mask_id is not None and o.category in ("chair", "desk", "monitor")]
     instances = np.where(np.isin(view.inputs.instances, [o.mask_id for o in seen]), view.inputs.instances, 0)
     root, k = tmp_path / "scans" / "scene0000_00", view.camera.intrinsics
@@ -87,7 +87,7 @@ def test_a_folder_of_scan2cad_is_built_and_fills_the_table_by_category(tmp_path)
     still = {"translation": [0.0, 0.0, 0.0], "rotation": [1.0, 0.0, 0.0, 0.0], "scale": [1.0, 1.0, 1.0]}
     record = {"id_scan": "scene0000_00", "trs": still, "aligned_models": [_scan2cad_model(o) for o in seen]}
     (tmp_path / "full_annotations.json").write_text(json.dumps([record]))
-    bench = run("scan2cad", tmp_path, library, 3)
+    bench = run("scan2cad", tmp_path, few_shapes(view.scene), 3)
     (result,) = bench.results
     assert result.failure == ""
     assert result.asked == len(seen)
@@ -107,8 +107,8 @@ def test_kinds_of_things_have_scan2cads_classes(ours, theirs):
 
 
 def test_a_folder_of_ssdb_is_built_and_measured(ssdb):
-    folder, count = ssdb
-    bench = run("ssdb", folder, built_in_library(), 3)
+    folder, room, count = ssdb
+    bench = run("ssdb", folder, few_shapes(room), 3)
     (result,) = bench.results
     assert result.failure == ""
     assert (result.asked, result.found) == (count, count)

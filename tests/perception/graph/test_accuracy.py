@@ -45,19 +45,10 @@ def test_supporters_are_right_from_a_photo_alone(views: list[TruthView]) -> None
     assert count.accuracy >= AT_LEAST, count.mistakes
 
 
-def test_the_bench_gives_a_row_for_each_kind_of_input() -> None:
-    bench = relations_bench.run(built_in_library(), scenes=1, seed=3)
-    table = bench.tables()[0]
-    for name in (relations_bench.WITH_DEPTH, relations_bench.PHOTO_ALONE):
-        row = table.row(name)
-        assert isinstance(row["objects"], int)
-        assert row["objects"] > 0
-        assert isinstance(row["accuracy"], float)
-        assert 0.5 <= row["accuracy"] <= 1.0
-    assert bench.to_json()["rooms"] == 1
+@pytest.fixture(scope="module")
+def benched() -> relations_bench.RelationsBench:
+    """One room, about which a language model is asked too."""
 
-
-def test_a_language_model_s_times_and_costs_are_rows_of_their_own() -> None:
     def answer(request: dict[str, Any]) -> str:
         if "room_type" not in str(request):
             return json.dumps({"classes": ["chair"]})
@@ -66,11 +57,31 @@ def test_a_language_model_s_times_and_costs_are_rows_of_their_own() -> None:
     stub = StubLmm(["no JSON at first", answer])
     with answering(stub):
         settings = LmmSettings(stub.address, "stub", votes=2, price_per_million=(2.0, 10.0))
-        bench = relations_bench.run(built_in_library(), scenes=1, seed=3, language_model=settings)
-    assert [name for name, _ in bench.counts] == [
+        return relations_bench.run(built_in_library(), scenes=1, seed=3, language_model=settings)
+
+
+def test_the_bench_gives_a_row_for_each_kind_of_input(benched: relations_bench.RelationsBench) -> None:
+    table = benched.tables()[0]
+    for name in (relations_bench.WITH_DEPTH, relations_bench.PHOTO_ALONE):
+        row = table.row(name)
+        assert isinstance(row["objects"], int)
+        assert row["objects"] > 0
+        assert isinstance(row["accuracy"], float)
+        assert 0.5 <= row["accuracy"] <= 1.0
+    assert benched.to_json()["rooms"] == 1
+
+
+def test_without_a_language_model_it_has_no_rows() -> None:
+    assert [name for name, _ in relations_bench.run(built_in_library(), scenes=0).counts] == [
+        relations_bench.WITH_DEPTH, relations_bench.PHOTO_ALONE,
+    ]  # fmt: skip
+
+
+def test_a_language_model_s_times_and_costs_are_rows_of_their_own(benched: relations_bench.RelationsBench) -> None:
+    assert [name for name, _ in benched.counts] == [
         relations_bench.WITH_DEPTH, relations_bench.PHOTO_ALONE, relations_bench.BY_MODEL,
     ]  # fmt: skip
-    costs = bench.tables()[1]
+    costs = benched.tables()[1]
     first, second, both = (
         costs.row(name) for name in (relations_bench.WHAT_IS_THERE, relations_bench.WHAT_HOLDS_WHAT, "both")
     )
@@ -80,5 +91,5 @@ def test_a_language_model_s_times_and_costs_are_rows_of_their_own() -> None:
     assert both["cost"] == pytest.approx(4 * (1000 * 2.0 + 50 * 10.0) / 1e6)
     assert isinstance(both["seconds"], float)
     assert both["seconds"] > 0
-    free = relations_bench.costs_table("stub", [replace(a, cost=None) for a in bench.asked])
+    free = relations_bench.costs_table("stub", [replace(a, cost=None) for a in benched.asked])
     assert free.row("both")["cost"] is None, "without prices there is no cost"

@@ -1,0 +1,40 @@
+"""A library of few shapes of every kind, for builds whose choice among many is not what a test asks about.
+
+What is met in a photo is compared with all shapes of its kind, each of which is first seen from all sides.
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from dataclasses import replace
+from functools import cache
+
+from diorama_app.projects.example import EXAMPLE
+from diorama_core.library.boards import base_id
+from diorama_core.library.catalogue import built_in_library
+from diorama_core.project.storage import Project
+from diorama_core.scene.types import Scene
+from diorama_core.synthesis.splits import Subset
+
+OF_A_KIND = 4
+
+
+def few_shapes(*scenes: Scene) -> Subset:
+    """The first built-in shapes of every kind, and those of the scenes."""
+    first = _first_of_every_kind()
+    return replace(first, ids=first.ids | {base_id(o.shape_id) for scene in scenes for o in scene.objects})
+
+
+def example_scene() -> Scene:
+    """The room that comes with Diorama."""
+    return Project.open(EXAMPLE / "project").load_scene()
+
+
+@cache
+def _first_of_every_kind() -> Subset:
+    library, met, chosen = built_in_library(), Counter[str](), list[str]()
+    for shape in library.shapes():
+        met[shape.category] += 1
+        if met[shape.category] <= OF_A_KIND:
+            chosen.append(shape.id)
+    return Subset(library, frozenset(chosen), "few")
