@@ -18,7 +18,7 @@ from scipy.spatial import ConvexHull, QhullError
 
 from diorama_core.geometry.circle import is_circle
 from diorama_core.geometry.open3d_import import o3d
-from diorama_core.geometry.projection import NEAR_M, frustum_slack
+from diorama_core.geometry.projection import NEAR_M, edges_of_cuboid, frustum_slack
 from diorama_core.scene.types import Camera, box_corners
 
 ALL_CORES = 0
@@ -196,13 +196,7 @@ def _hull(vertices: np.ndarray, size_m: np.ndarray) -> tuple[Float[np.ndarray, "
             sides = hull.simplices[:, [0, 1, 1, 2, 0, 2]].reshape(-1, 2)
             return vertices[extreme], np.unique(np.sort(sides, axis=1), axis=0)
     middle = (vertices.max(axis=0) + vertices.min(axis=0)) / 2 if len(vertices) else np.zeros(3)
-    return box_corners(size_m) + middle, BOX_EDGES
-
-
-BOX_EDGES: Int[np.ndarray, "12 2"] = np.array(
-    [(a, a | bit) for a in range(8) for bit in (1, 2, 4) if not a & bit], dtype=np.int64
-)
-"""Edges of `scene.types.box_corners`."""
+    return box_corners(size_m) + middle, edges_of_cuboid()
 
 
 def clipped_bounds(

@@ -24,6 +24,10 @@ from diorama_core.geometry.projection import NEAR_M, cuboid_corners, visible_bou
 from diorama_core.scene.types import Intrinsics
 
 UNKNOWNS = 6
+EDGES, CUT, SIZES, BASE, TOP, FOOTPRINT, WALL, FAR = (
+    slice(0, 4), slice(4, 6), slice(6, 9), 9, 10, slice(11, 13), 13, 14,
+)  # fmt: skip
+"""Columns of `Values.residuals`."""
 ROBUST_BEYOND = 2.0
 """Residuals beyond this many sigmas count linearly."""
 HIDDEN_DENSITY = 0.25

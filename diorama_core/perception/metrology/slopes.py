@@ -9,11 +9,19 @@ from jaxtyping import Bool, Float
 
 from diorama_core.geometry.extreme_points import extreme_points
 from diorama_core.perception.metrology.problem import (
+    BASE,
+    CUT,
     CUT_NEAR_M,
+    EDGES,
+    FAR,
     FAR_LOG_SIGMA,
+    FOOTPRINT,
     MIN_BACK_M,
     MIN_ROOM_M,
+    SIZES,
+    TOP,
     UNKNOWNS,
+    WALL,
     Cuboids,
     Problems,
     Values,
@@ -41,13 +49,16 @@ def jacobian(
     frame = _Frame.of(boxes, problems, view)
     edges, told = _edges(corners, frame, here, problems, view)
     found = np.zeros((len(problems), here.residuals.shape[1], UNKNOWNS))
-    found[:, :4] = edges
-    found[:, 4:6] = _cut_off(corners, frame, problems, view)
-    found[:, 6:9, 2:5] = problems.whitening
-    found[:, 9, 5] = 1.0
-    found[:, 10, 4] = boxes.size_m[:, 2] / problems.top_sigma_m
-    found[:, 10, 5] = problems.base_sigma_m / problems.top_sigma_m
-    found[:, 11:, :4] = _on_the_plan(boxes, here, problems, view)
+    plan = _on_the_plan(boxes, view)
+    found[:, EDGES] = edges
+    found[:, CUT] = _cut_off(corners, frame, problems, view)
+    found[:, SIZES, 2:5] = problems.whitening
+    found[:, BASE, 5] = 1.0
+    found[:, TOP, 4] = boxes.size_m[:, 2] / problems.top_sigma_m
+    found[:, TOP, 5] = problems.base_sigma_m / problems.top_sigma_m
+    found[:, FOOTPRINT, :4] = _outside_footprint(boxes, plan, here.residuals[:, FOOTPRINT], problems)
+    found[:, WALL, :3] = _off_wall(boxes, plan, here.residuals[:, WALL], problems)
+    found[:, FAR, :2] = _too_far(boxes, plan, here.residuals[:, FAR])
     rest = np.flatnonzero(~told)
     if len(rest):
         found[rest] = _by_differences(problems.rows(rest), unknowns[rest], here.rows(rest), view)
@@ -104,7 +115,7 @@ def _edges(
     at = extreme_points(corners, here.bounds_px, here.visible, view.intrinsics)
     of_bounds = at.slopes(frame.moved(at.unit), view.intrinsics)
     there = edge_residuals(here.bounds_px + _STEP, here.visible, here.inset_px, problems, view)
-    by_bound = (there - here.residuals[:, :4]) / _STEP
+    by_bound = (there - here.residuals[:, EDGES]) / _STEP
     return (by_bound.T * of_bounds).transpose(2, 1, 0), at.told
 
 
@@ -135,38 +146,50 @@ def _cut_off(
     return found
 
 
-def _on_the_plan(boxes: Cuboids, here: Values, problems: Problems, view: View) -> Float[np.ndarray, "n 4 4"]:
-    """Of the base's place on its supporter, of the back at its wall and of the distance, by all but heights."""
-    plan, (depth, width) = boxes.centre[:, :2], boxes.size_m[:, :2].T
-    forward = plan @ view.heading
-    right = np.array([view.heading[1], -view.heading[0]])
-    moved = np.stack([forward[:, None] * right, plan], axis=-1)  # of the centre, by place aside and away
-    found = np.zeros((len(plan), 4, 4))
+def _on_the_plan(boxes: Cuboids, view: View) -> Float[np.ndarray, "n 2 2"]:
+    """How the centres move on the floor: x and y by the sideways tangent and by the logarithm of the distance."""
+    plan, right = boxes.centre[:, :2], np.array([view.heading[1], -view.heading[0]])
+    return np.stack([(plan @ view.heading)[:, None] * right, plan], axis=-1)
+
+
+def _outside_footprint(
+    boxes: Cuboids, plan: Float[np.ndarray, "n 2 2"], here: Float[np.ndarray, "n 2"], problems: Problems
+) -> Float[np.ndarray, "n 2 4"]:
+    """Of the base's place on its supporter, by place, depth and width."""
+    depth, width = boxes.size_m[:, :2].T
     x, y, yaw, half_depth, half_width = problems.footprint.T
     c, s = np.cos(yaw), np.sin(yaw)
     turn = boxes.yaw_rad - yaw
     along, across = np.abs(np.cos(turn)), np.abs(np.sin(turn))
-    off = plan - np.stack([x, y], axis=-1)
+    off = boxes.centre[:, :2] - np.stack([x, y], axis=-1)
+    found = np.zeros((len(depth), 2, 4))
     for axis, (u, v, half, by_depth, by_width) in enumerate(
         ((c, s, half_depth, along * depth, across * width), (-s, c, half_width, across * depth, along * width))
     ):
-        inside = half - 0.5 * (by_depth + by_width) > MIN_ROOM_M
+        fits = half - 0.5 * (by_depth + by_width) > MIN_ROOM_M
         outward = np.sign(u * off[:, 0] + v * off[:, 1])
-        found[:, axis, :2] = outward[:, None] * (u[:, None] * moved[:, 0] + v[:, None] * moved[:, 1])
-        found[:, axis, 2:] = np.where(inside[:, None], 0.5 * np.stack([by_depth, by_width], axis=-1), 0.0)
-        found[:, axis] *= ((here.residuals[:, 11 + axis] > 0.0) / problems.footprint_sigma_m)[:, None]
+        found[:, axis, :2] = outward[:, None] * (u[:, None] * plan[:, 0] + v[:, None] * plan[:, 1])
+        found[:, axis, 2:] = np.where(fits[:, None], 0.5 * np.stack([by_depth, by_width], axis=-1), 0.0)
+    return found * ((here > 0.0) / problems.footprint_sigma_m[:, None])[..., None]
+
+
+def _off_wall(
+    boxes: Cuboids, plan: Float[np.ndarray, "n 2 2"], here: Float[np.ndarray, "n"], problems: Problems
+) -> Float[np.ndarray, "n 3"]:
+    """Of the back's distance from its wall, by place and depth."""
     front = np.stack([np.cos(boxes.yaw_rad), np.sin(boxes.yaw_rad)], axis=-1)
-    ahead = 0.5 * depth - (plan * front).sum(axis=1)
-    found[:, 2, :2] = -(front[:, :, None] * moved).sum(axis=1)
-    found[:, 2, 2] = 0.5 * depth
-    found[:, 2] *= (
-        (ahead > MIN_BACK_M) / (np.maximum(ahead, MIN_BACK_M) * wall_sigmas(here.residuals[:, 13], problems))
-    )[:, None]
-    away = (plan**2).sum(axis=1)
-    found[:, 3, :2] = (plan[:, :, None] * moved).sum(axis=1) * ((here.residuals[:, 14] > 0.0) / (away * FAR_LOG_SIGMA))[
-        :, None
-    ]
-    return found
+    ahead = 0.5 * boxes.size_m[:, 0] - (boxes.centre[:, :2] * front).sum(axis=1)
+    moved = np.column_stack([-(front[:, :, None] * plan).sum(axis=1), 0.5 * boxes.size_m[:, 0]])
+    return moved * ((ahead > MIN_BACK_M) / (np.maximum(ahead, MIN_BACK_M) * wall_sigmas(here, problems)))[:, None]
+
+
+def _too_far(
+    boxes: Cuboids, plan: Float[np.ndarray, "n 2 2"], here: Float[np.ndarray, "n"]
+) -> Float[np.ndarray, "n 2"]:
+    """Of the distance, by place."""
+    centre = boxes.centre[:, :2]
+    outward = (centre[:, :, None] * plan).sum(axis=1)
+    return outward * ((here > 0.0) / ((centre**2).sum(axis=1) * FAR_LOG_SIGMA))[:, None]
 
 
 def _by_differences(

@@ -12,14 +12,13 @@ from hypothesis import strategies as st
 from diorama_core.artefacts import DetectedObject
 from diorama_core.perception.metrology.box_observations import gather
 from diorama_core.perception.metrology.priors import size_modes
-from diorama_core.perception.metrology.problem import Problems, View, residuals, values
+from diorama_core.perception.metrology.problem import EDGES, Problems, View, residuals, values
 from diorama_core.perception.metrology.rows import row
 from diorama_core.perception.metrology.solver import solve
 from diorama_core.scene.types import Intrinsics, box_corners
 
 K = Intrinsics(640, 480, 540.0, 540.0, 320.0, 240.0)
 VIEW = View(K, np.array([[1.0, 0, 0], [0, -0.17, 0.985], [0, -0.985, -0.17]]))
-EDGES = slice(0, 4)
 WHOLE = np.tile(box_corners((1.0, 1.0, 1.0)), (5, 1))
 """An outline that fills its cuboid."""
 

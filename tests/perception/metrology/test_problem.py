@@ -9,10 +9,18 @@ from diorama_core.geometry.projection import cuboid_corners, visible_bounds
 from diorama_core.perception.metrology.box_observations import gather
 from diorama_core.perception.metrology.priors import SizeMode
 from diorama_core.perception.metrology.problem import (
+    BASE,
+    CUT,
+    EDGES,
+    FAR,
+    FOOTPRINT,
     HIDDEN_DENSITY,
     HIDDEN_REACH,
     INVISIBLE_PENALTY,
     ROBUST_BEYOND,
+    SIZES,
+    TOP,
+    WALL,
     Problems,
     View,
     corners_camera,
@@ -29,9 +37,6 @@ SIZE = np.array([0.6, 0.9, 0.8])
 CENTRE = np.array([0.3, 3.0, 0.4])
 ASIDE = CENTRE + np.array([1.9, 0.0, 0.0])
 HEIGHT = 1.5
-EDGES, CUT, SIZES, BASE, TOP, FOOTPRINT, WALL, FAR = (
-    slice(0, 4), slice(4, 6), slice(6, 9), 9, 10, slice(11, 13), 13, 14,
-)  # fmt: skip
 
 
 def unknowns(centre=CENTRE, size=SIZE, view: View = VIEW) -> np.ndarray:
