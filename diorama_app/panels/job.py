@@ -40,7 +40,7 @@ class JobStrip:
         self._tell(
             {
                 "title": status.title,
-                "percent": round(100 * status.fraction, 1),
+                "percent": round(100 * status.fraction),
                 "stage": status.message[:1].upper() + status.message[1:],
                 "left": time_left(status, time.monotonic()),
                 "found": " · ".join(status.found[-FOUND_SHOWN:]),
