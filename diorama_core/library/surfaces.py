@@ -9,7 +9,7 @@ dropped, 10th percentile of the free height).
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeVar
 
 import numpy as np
 import trimesh
@@ -40,6 +40,9 @@ SEAM_STEP_M = 0.05
 """Open surfaces whose heights differ by less may be joined."""
 SEAM_FILL = 0.9
 """Joined surfaces fill at least this share of their common outline."""
+
+
+Places = TypeVar("Places", int, np.ndarray)
 
 
 @dataclass(frozen=True)
@@ -155,10 +158,10 @@ def _regions(spots: _Spots, caster: RaycastingScene) -> list[Int[np.ndarray, "_"
     steps = [(k * di, k * dj) for k in range(1, reach + 1) for di, dj in ((1, 0), (0, 1), (1, 1), (1, -1))]
     pairs = []
     for (di, dj), dz in ((step, dz) for step in steps for dz in (-1, 0, 1)):
-        wanted = _cell_key(spots.cell[:, 0] + di, spots.cell[:, 1] + dj, bins + dz)
+        wanted = in_order + _cell_key(di, dj, dz)  # in order, too, which takes a fraction of the time
         at = np.minimum(np.searchsorted(in_order, wanted), n - 1)
         found = np.flatnonzero(in_order[at] == wanted)
-        pairs.append((found, order[at[found]]))
+        pairs.append((order[found], order[at[found]]))
     a, b = (np.concatenate(side) for side in zip(*pairs, strict=True))
     passable = ~_walled_off(spots, caster, a, b)
     a, b = a[passable], b[passable]
@@ -191,7 +194,8 @@ def _walled_off(
     return walled
 
 
-def _cell_key(i: Int[np.ndarray, "s"], j: Int[np.ndarray, "s"], level: Int[np.ndarray, "s"]) -> Int[np.ndarray, "s"]:
+def _cell_key(i: Places, j: Places, level: Places) -> Places:
+    """A number that orders places by cell and level; that of a sum of places is the sum of theirs."""
     return (i * 100_000 + j) * 100_000 + level
 
 
