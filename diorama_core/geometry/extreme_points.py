@@ -71,14 +71,11 @@ def extreme_points(
     slack = frustum_slack(points, k)
     outside = slack < 0
     cut = np.flatnonzero(outside.any(axis=(0, 1)))
-    whole = np.ones(count, dtype=bool)
-    whole[cut] = False
     told, fixed = np.ones(count, dtype=bool), np.zeros((4, count), dtype=bool)
-    unit, camera, edge, side = (np.zeros((3, 4, count)) for _ in range(4))
-    camera[2] = 1.0
+    edge, side = np.zeros((3, 4, count)), np.zeros((3, 4, count))
     corner = _extremes(_pixels(points, k), np.ones((8, count), dtype=bool))
-    unit[:] = box_corners((1.0, 1.0, 1.0)).T[:, corner]
-    camera[:, :, whole] = np.take_along_axis(points, corner[None], axis=1)[:, :, whole]
+    unit = box_corners((1.0, 1.0, 1.0)).T[:, corner]
+    camera = np.take_along_axis(points, corner[None], axis=1)
     if len(cut):
         told[cut] = visible[cut] & ~outside[0][:, cut].any(axis=0)
         fixed[:, cut] = (np.abs(bounds_px[cut] - [0.0, 0.0, k.width, k.height]) < _AT_BORDER_PX).T

@@ -48,7 +48,7 @@ def photo_colours(rgb: UInt8[np.ndarray, "h w 3"], objects: tuple[DetectedObject
     colour of its material.
     """
     kernel = np.ones((5, 5), np.uint8)
-    by_area = sorted(objects, key=lambda o: int(o.mask.sum()))
+    by_area = sorted(objects, key=lambda o: o.pixels)
     colours: dict[str, Colour] = {}
     nearer = np.zeros(rgb.shape[:2], dtype=bool)
     for item in by_area:
@@ -70,7 +70,7 @@ def shared_by_sets(
     The member whose mask is surest speaks for all that are of about its colour, that are hardly seen, or that have no
     colour; of those that clearly differ, the surest speaks for the next ones.
     """
-    sure = {o.id: (o.mask_confidence * float(np.sqrt(o.mask.sum())), o.id) for o in objects}
+    sure = {o.id: (o.mask_confidence * float(np.sqrt(o.pixels)), o.id) for o in objects}
     sets: dict[tuple[str, str], list[str]] = {}
     for item in objects:
         if item.category in SETS and item.id in shape_of:

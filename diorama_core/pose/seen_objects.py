@@ -100,7 +100,7 @@ def seen_objects(
             evidence,
             InnerEdges.of(inputs.photo.rgb, window),
             pose_of[item.id],
-            int(item.mask.sum()),
+            item.pixels,
             item.mask_confidence,
             item.category,
             tuple(cuboid_of[o.id] for o, parent in zip(items, parents, strict=True) if parent == k),

@@ -74,7 +74,7 @@ def observed(inputs: Inputs, objects: tuple[DetectedObject, ...], geometry: Obje
 def owner_map(objects: list[DetectedObject], shape: tuple[int, int]) -> Int32[np.ndarray, "h w"]:
     """Index of the object at every pixel, -1 for the room; smaller objects lie over larger ones."""
     owners = np.full(shape, -1, np.int32)
-    for index in sorted(range(len(objects)), key=lambda i: -int(objects[i].mask.sum())):
+    for index in sorted(range(len(objects)), key=lambda i: -objects[i].pixels):
         owners[objects[index].mask] = index
     return owners
 
