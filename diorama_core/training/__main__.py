@@ -28,9 +28,9 @@ from diorama_core.training.train import (
 from diorama_core.training.windows import WindowFiles, make_windows
 
 NETWORKS = ("detector", "namer", "outliner")
-DETECTOR_SCHEDULE = Schedule(steps=6000, batch=16)
-NAMER_SCHEDULE = Schedule(steps=8000, batch=64)
-OUTLINER_SCHEDULE = Schedule(steps=4000, batch=32)
+DETECTOR_SCHEDULE = Schedule(steps=12000, batch=24)
+NAMER_SCHEDULE = Schedule(steps=8000, batch=128)
+OUTLINER_SCHEDULE = Schedule(steps=20000, batch=64)
 
 
 def main() -> int:
@@ -67,6 +67,8 @@ def _parser() -> argparse.ArgumentParser:
     train.add_argument("--checkpoints", type=Path, required=True)
     train.add_argument("--steps", type=int)
     train.add_argument("--threads", type=int, default=2)
+    train.add_argument("--device", choices=("cpu", "cuda"), default="cpu")
+    train.add_argument("--workers", type=int, default=1, help="processes that prepare batches (default: %(default)s)")
     export = steps.add_parser("export", help="write the trained networks as ONNX graphs")
     export.set_defaults(run=_export)
     export.add_argument("networks", choices=("recogniser", "outliner"))
@@ -98,20 +100,23 @@ def _shapes(a: argparse.Namespace) -> None:
 
 def _train(a: argparse.Namespace) -> None:
     torch.set_num_threads(a.threads)
-    trainer = _trainer(a.network, a.pictures, a.checkpoints, a.steps)
+    trainer = _trainer(a.network, a.pictures, a.checkpoints, a.steps, a.device, a.workers)
     trainer.run(_told())
     print(f"{a.network}: {trainer.step} steps: {trainer.checkpoint}")
 
 
-def _trainer(network: str, pictures: Path, checkpoints: Path, steps: int | None) -> Trainer:
+def _trainer(
+    network: str, pictures: Path, checkpoints: Path, steps: int | None, device: str = "cpu", workers: int = 1
+) -> Trainer:
     checkpoints.mkdir(parents=True, exist_ok=True)
     path = checkpoints / f"{network}.pt"
     if network == "outliner":
-        return outliner_trainer(WindowFiles.of(pictures), OUTLINER_SCHEDULE.lasting(steps), path)
+        return outliner_trainer(WindowFiles.of(pictures), OUTLINER_SCHEDULE.lasting(steps), path, device, workers)
     files, kinds = PictureFiles.of(pictures), len(category_names(built_in_library()))
     if network == "detector":
-        return detector_trainer(files, kinds, DETECTOR_SCHEDULE.lasting(steps), path)
-    return namer_trainer(files, ShapeViewFiles.of(pictures), kinds, NAMER_SCHEDULE.lasting(steps), path)
+        return detector_trainer(files, kinds, DETECTOR_SCHEDULE.lasting(steps), path, device, workers)
+    shapes = ShapeViewFiles.of(pictures)
+    return namer_trainer(files, shapes, kinds, NAMER_SCHEDULE.lasting(steps), path, device, workers)
 
 
 def _export(a: argparse.Namespace) -> None:

@@ -31,7 +31,7 @@ class Detector(nn.Module):
         width: channels of the first stage.
     """
 
-    def __init__(self, kinds: int, width: int = 32) -> None:
+    def __init__(self, kinds: int, width: int = 48) -> None:
         super().__init__()
         w = width
         self.stem = nn.Sequential(convolution(3, w // 2, 3, 2), convolution(w // 2, w, 3, 2), Residual(w))

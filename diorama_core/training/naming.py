@@ -28,7 +28,7 @@ class Namer(nn.Module):
         width: channels of the first stage.
     """
 
-    def __init__(self, kinds: int, width: int = 40) -> None:
+    def __init__(self, kinds: int, width: int = 64) -> None:
         super().__init__()
         w = width
         self.features = nn.Sequential(

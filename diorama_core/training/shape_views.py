@@ -26,7 +26,7 @@ from diorama_core.training.pictures import category_names
 from diorama_core.training.rooms import any_colour
 
 SIDE = 112
-VIEWS = 6
+VIEWS = 12
 TURN_RAD, ANY_SIDE = 0.7, 0.15
 """Standard deviation of a view's turn from the front, and the share of views from any side: people picture fronts."""
 ELEVATION_RAD = (0.0, 0.65)

@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 import copy
-from collections.abc import Callable, Sequence
-from concurrent.futures import Future, ThreadPoolExecutor
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
@@ -13,6 +12,7 @@ import numpy as np
 import torch
 from jaxtyping import Float32, UInt8
 from torch import Tensor, nn
+from torch.utils.data import DataLoader, Dataset
 
 from diorama_core.models.recogniser import box_crop, box_geometry, places
 from diorama_core.progress import Progress
@@ -28,7 +28,7 @@ from diorama_core.training.windows import WindowFiles
 SIZE = (320, 256)
 """Width and height of the detector's training pictures; 32 divides both."""
 AHEAD = 3
-"""Batches prepared while one is learnt from."""
+"""Batches that each worker prepares while others are learnt from."""
 
 
 @dataclass(frozen=True)
@@ -54,16 +54,29 @@ class Schedule:
         return self.rate * rise * max(fall, 0.0)
 
 
+@dataclass(frozen=True)
+class Batches(Dataset[tuple[Tensor, ...]]):
+    """The batch of every step, made from the step's own generator."""
+
+    batch_of: Callable[[np.random.Generator], tuple[Tensor, ...]]
+    seed: int
+
+    def __getitem__(self, step: int) -> tuple[Tensor, ...]:
+        return self.batch_of(np.random.default_rng((self.seed, step)))
+
+
 @dataclass
 class Trainer:
     """One network, its optimiser and its averaged weights.
 
     Args:
         network: what learns.
-        loss: of a batch, and words about its terms.
+        loss: of a batch, and words about its terms; it finds both on the device.
         batch_of: makes the batch of a step from that step's generator.
         schedule: how long.
         checkpoint: where the state is saved, and read from where it exists.
+        device: where it learns: "cpu" or "cuda".
+        workers: processes that prepare batches; the result does not depend on them.
     """
 
     network: nn.Module
@@ -71,17 +84,20 @@ class Trainer:
     batch_of: Callable[[np.random.Generator], tuple[Tensor, ...]]
     schedule: Schedule
     checkpoint: Path
+    device: str = "cpu"
+    workers: int = 1
     averaged: nn.Module = field(init=False)
     step: int = field(init=False, default=0)
 
     def __post_init__(self) -> None:
+        self.network.to(self.device)
         for value in self.network.parameters():
             if value.dim() == 4:  # convolutions are faster with the channels last
                 value.data = value.data.contiguous(memory_format=torch.channels_last)
         self.averaged = copy.deepcopy(self.network).eval()
         self._optimiser = torch.optim.AdamW(self.network.parameters(), lr=self.schedule.rate, weight_decay=0.02)
         if self.checkpoint.exists():
-            saved = torch.load(self.checkpoint, weights_only=True)
+            saved = torch.load(self.checkpoint, map_location=self.device, weights_only=True)
             self.network.load_state_dict(saved["network"])
             self.averaged.load_state_dict(saved["averaged"])
             self._optimiser.load_state_dict(saved["optimiser"])
@@ -93,28 +109,32 @@ class Trainer:
         Raises:
             Cancelled: on request; the next run goes on from the last checkpoint.
         """
-        with ThreadPoolExecutor(1) as pool:
-            waiting = [self._prepare(pool, self.step + k) for k in range(AHEAD)]
-            while self.step < self.schedule.steps:
-                batch = waiting.pop(0).result()
-                waiting.append(self._prepare(pool, self.step + AHEAD))
-                words = self._learn(batch)
-                self.step += 1
-                if self.step % 20 == 0:
-                    progress.report(self.step / self.schedule.steps, f"step {self.step}: {words}")
-                if self.step % self.schedule.save_every == 0 or self.step == self.schedule.steps:
-                    self._save()
+        for batch in self._batches():
+            words = self._learn(tuple(part.to(self.device, non_blocking=True) for part in batch))
+            self.step += 1
+            if self.step % 20 == 0:
+                progress.report(self.step / self.schedule.steps, f"step {self.step}: {words}")
+            if self.step % self.schedule.save_every == 0 or self.step == self.schedule.steps:
+                self._save()
         return self.averaged
 
-    def _prepare(self, pool: ThreadPoolExecutor, step: int) -> Future[tuple[Tensor, ...]]:
-        return pool.submit(self.batch_of, np.random.default_rng((self.schedule.seed, step)))
+    def _batches(self) -> Iterable[tuple[Tensor, ...]]:
+        return DataLoader(
+            Batches(self.batch_of, self.schedule.seed),
+            batch_size=None,
+            sampler=range(self.step, self.schedule.steps),
+            num_workers=self.workers,
+            prefetch_factor=AHEAD,
+            multiprocessing_context="fork",  # what makes batches is not copied
+            pin_memory=self.device == "cuda",
+        )
 
     def _learn(self, batch: tuple[Tensor, ...]) -> str:
         self.network.train()
         torch.manual_seed(self.schedule.seed + self.step)  # dropout goes on as if the run had not stopped
         for group in self._optimiser.param_groups:
             group["lr"] = self.schedule.rate_at(self.step)
-        with torch.autocast("cpu", torch.bfloat16):
+        with torch.autocast(self.device, torch.bfloat16):
             total, words = self.loss(self.network, batch)
         self._optimiser.zero_grad(set_to_none=True)
         total.backward()  # type: ignore[no-untyped-call]  # torch annotates its result only
@@ -145,10 +165,12 @@ class Trainer:
         part.replace(self.checkpoint)
 
 
-def detector_trainer(files: PictureFiles, kinds: int, schedule: Schedule, checkpoint: Path) -> Trainer:
+def detector_trainer(
+    files: PictureFiles, kinds: int, schedule: Schedule, checkpoint: Path, device: str = "cpu", workers: int = 1
+) -> Trainer:
     """Everything needed to train the detector."""
     torch.manual_seed(schedule.seed)
-    centres, strides = (torch.from_numpy(a) for a in places(*SIZE))
+    centres, strides = (torch.from_numpy(a).to(device) for a in places(*SIZE))
 
     def batch_of(rng: np.random.Generator) -> tuple[Tensor, ...]:
         return detector_batch(files, schedule.batch, rng)
@@ -157,7 +179,7 @@ def detector_trainer(files: PictureFiles, kinds: int, schedule: Schedule, checkp
         found = detector_loss(network(batch[0]), batch[1], batch[2], centres, strides)
         return found.total, f"score {found.score:.3f}, box {found.box:.3f}, kind {found.kind:.3f}"
 
-    return Trainer(Detector(kinds), loss, batch_of, schedule, checkpoint)
+    return Trainer(Detector(kinds), loss, batch_of, schedule, checkpoint, device, workers)
 
 
 def detector_batch(files: PictureFiles, count: int, rng: np.random.Generator) -> tuple[Tensor, Tensor, Tensor]:
@@ -175,7 +197,13 @@ def detector_batch(files: PictureFiles, count: int, rng: np.random.Generator) ->
 
 
 def namer_trainer(
-    files: PictureFiles, shapes: ShapeViewFiles, kinds: int, schedule: Schedule, checkpoint: Path
+    files: PictureFiles,
+    shapes: ShapeViewFiles,
+    kinds: int,
+    schedule: Schedule,
+    checkpoint: Path,
+    device: str = "cpu",
+    workers: int = 1,
 ) -> Trainer:
     """Everything needed to train the namer.
 
@@ -185,10 +213,12 @@ def namer_trainer(
         kinds: number of categories.
         schedule: how long.
         checkpoint: where the state goes.
+        device: where it learns.
+        workers: processes that prepare batches.
     """
     torch.manual_seed(schedule.seed + 1)
     statistics, of_forms = BoxStatistics.of(files, kinds), shapes.form_statistics(kinds)
-    asked, weights = torch.from_numpy(of_forms.asked), [torch.from_numpy(w) for w in of_forms.weights]
+    asked, weights = torch.from_numpy(of_forms.asked), [torch.from_numpy(w).to(device) for w in of_forms.weights]
 
     def batch_of(rng: np.random.Generator) -> tuple[Tensor, ...]:
         crops, geometry, right, forms = namer_batch(files, shapes, statistics, schedule.batch, rng)
@@ -198,7 +228,7 @@ def namer_trainer(
         found = naming_loss(network(batch[0], batch[1]), batch[2], batch[3], weights)
         return found.total, f"loss {found.total.detach():.3f}, kind right {found.kind:.2f}, form {found.form:.2f}"
 
-    return Trainer(Namer(kinds), loss, batch_of, schedule, checkpoint)
+    return Trainer(Namer(kinds), loss, batch_of, schedule, checkpoint, device, workers)
 
 
 def namer_batch(
@@ -231,7 +261,9 @@ def namer_batch(
     )
 
 
-def outliner_trainer(files: WindowFiles, schedule: Schedule, checkpoint: Path) -> Trainer:
+def outliner_trainer(
+    files: WindowFiles, schedule: Schedule, checkpoint: Path, device: str = "cpu", workers: int = 1
+) -> Trainer:
     """Everything needed to train the outliner."""
     torch.manual_seed(schedule.seed + 2)
 
@@ -242,7 +274,7 @@ def outliner_trainer(files: WindowFiles, schedule: Schedule, checkpoint: Path) -
         value = outline_loss(network(batch[0]), batch[1])
         return value, f"loss {float(value.detach()):.3f}"
 
-    return Trainer(OutlineNetwork(), loss, batch_of, schedule, checkpoint)
+    return Trainer(OutlineNetwork(), loss, batch_of, schedule, checkpoint, device, workers)
 
 
 def _crop(picture: LabelledPicture, k: int, rng: np.random.Generator) -> tuple[np.ndarray, np.ndarray]:

@@ -86,7 +86,7 @@ def store(tmp_path: Path) -> ModelStore:
 
 @pytest.fixture
 def photo(rng: np.random.Generator) -> Photo:
-    rgb = rng.integers(100, 140, (HEIGHT, WIDTH, 3)).astype(np.uint8)
+    rgb = rng.integers(115, 125, (HEIGHT, WIDTH, 3)).astype(np.uint8)
     rgb[48:82, 44:88] = (200, 60, 40)
     return Photo(rgb, "room.png", (WIDTH, HEIGHT))
 
