@@ -1,4 +1,4 @@
-"""`python -m diorama_core.training pictures | shapes | windows | train | export | score`."""
+"""`python -m diorama_core.training pictures | shapes | windows | train | export | join | score`."""
 
 from __future__ import annotations
 
@@ -14,6 +14,7 @@ from diorama_core.models.own_weights import CARD, DETECTOR, NAMER, OUTLINER
 from diorama_core.models.recogniser import Recogniser
 from diorama_core.progress import Progress
 from diorama_core.training.export import export_detector, export_namer, export_outliner, write_card
+from diorama_core.training.joined import join_namers
 from diorama_core.training.picture_files import PictureFiles
 from diorama_core.training.pictures import category_names, make_pictures
 from diorama_core.training.score import score
@@ -75,6 +76,10 @@ def _parser() -> argparse.ArgumentParser:
     export.add_argument("--pictures", type=Path, required=True, help="of the outliner: the folder of windows")
     export.add_argument("--checkpoints", type=Path, required=True)
     export.add_argument("-o", "--output", type=Path, required=True)
+    join = steps.add_parser("join", help="make one namer of several, which says the mean of what they say")
+    join.set_defaults(run=_join)
+    join.add_argument("namers", type=Path, nargs="+")
+    join.add_argument("-o", "--output", type=Path, required=True)
     scores = steps.add_parser("score", help="measure exported networks on annotated photos")
     scores.set_defaults(run=_score)
     scores.add_argument("annotations", type=Path)
@@ -140,6 +145,11 @@ def _export_recogniser(a: argparse.Namespace) -> None:
         detector={"steps": detector.step, "batch": detector.schedule.batch, "seed": detector.schedule.seed},
         namer={"steps": namer.step, "batch": namer.schedule.batch, "seed": namer.schedule.seed},
     )
+
+
+def _join(a: argparse.Namespace) -> None:
+    join_namers(a.namers, a.output)
+    print(f"namer written: {a.output}")
 
 
 def _score(a: argparse.Namespace) -> None:
