@@ -1,15 +1,15 @@
-"""Many independent pieces of work on many cores: a pool of processes here, or Ray on other machines.
+"""Many independent pieces of work on many cores: a pool of processes here, or Ray on other machines; or two threads.
 
-The same function runs in both. It must be importable by name (defined at the top of a module) and its items and results
-must be picklable. One piece that fails, or kills the process it runs in, never stops the others.
+The same function runs in the first two. It must be importable by name (defined at the top of a module) and its items
+and results must be picklable. One piece that fails, or kills the process it runs in, never stops the others.
 """
 
 from __future__ import annotations
 
 import os
 import threading
-from collections.abc import Callable, Iterable, Iterator
-from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, ThreadPoolExecutor, wait
 from concurrent.futures.process import BrokenProcessPool
 from dataclasses import dataclass
 from itertools import islice
@@ -17,6 +17,7 @@ from multiprocessing import get_context, parent_process
 from typing import Any, Generic, Protocol, TypeVar, runtime_checkable
 
 from diorama_core.errors import DioramaError, InputError, UnavailableError
+from diorama_core.progress import Progress
 
 Item = TypeVar("Item")
 Result = TypeVar("Result")
@@ -240,3 +241,27 @@ class RayWorkers:
             return Done(item, None, error.cause if isinstance(error.cause, Exception) else error)
         except RayError as error:
             return Done(item, None, WorkerDied(f"the process ended without an answer ({type(error).__name__})"))
+
+
+def each(
+    work: Callable[[Item], Result], items: Sequence[Item], progress: Progress | None = None, message: str = ""
+) -> list[Result]:
+    """Work on all items, two at a time; results in order, so that threads change nothing.
+
+    Args:
+        work: Done with each item.
+        items: What there is to do.
+        progress: Told after every item; `Cancelled` drops the items that have not begun.
+        message: What is told.
+    """
+    results: list[Result] = []
+    with ThreadPoolExecutor(max_workers=2) as pool:
+        try:
+            for result in pool.map(work, items):
+                results.append(result)
+                if progress is not None:
+                    progress.report(len(results) / len(items), message)
+        except BaseException:
+            pool.shutdown(cancel_futures=True)
+            raise
+    return results

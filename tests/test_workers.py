@@ -3,6 +3,7 @@ from __future__ import annotations
 import os
 import subprocess
 import sys
+import threading
 import time
 from collections.abc import Iterator
 from functools import partial
@@ -11,7 +12,7 @@ from pathlib import Path
 import pytest
 
 from diorama_core.errors import InputError, LibraryError
-from diorama_core.workers import LocalWorkers, RayWorkers, WorkerDied, Workers, workers
+from diorama_core.workers import LocalWorkers, RayWorkers, WorkerDied, Workers, each, workers
 from tests.processes import runs
 from tests.waiting import until
 
@@ -124,3 +125,16 @@ def test_a_process_that_dies_takes_nothing_of_the_others_with_it(tmp_path: Path)
     done = {d.item: d for d in LocalWorkers(2).map(partial(kill_first_time, tmp_path), range(6))}
     assert isinstance(done[1].error, WorkerDied)
     assert [done[n].value for n in (0, 2, 3, 4, 5)] == [1] * 5, "each was begun once"
+
+
+def test_each_works_in_order_by_two_threads_and_errors_arrive() -> None:
+    names = set()
+
+    def work(k: int) -> int:
+        names.add(threading.current_thread().name)
+        return k * k
+
+    assert each(work, range(50)) == [k * k for k in range(50)]
+    assert len(names) <= 2
+    with pytest.raises(ZeroDivisionError):
+        each(lambda k: 1 // k, [1, 0])

@@ -34,8 +34,8 @@ from diorama_core.library.record import ShapeLibrary
 from diorama_core.library.slots import Slot, slots_of
 from diorama_core.library.stretch import relative_scale, stretched_parts
 from diorama_core.library.taxonomy import LAMPS
-from diorama_core.render.grid import each
 from diorama_core.scene.types import Camera, PhotoMaterial, RoomLight, Scene, SceneObject
+from diorama_core.workers import each
 
 MASK_MARGIN = 0.004
 """Widening of what stands before an object, as a share of the photo's longer side."""

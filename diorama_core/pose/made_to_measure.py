@@ -35,8 +35,8 @@ from diorama_core.pose.seen_objects import SeenObject, seen_objects
 from diorama_core.pose.turned_profile import turned
 from diorama_core.progress import Progress
 from diorama_core.protocols import PoseStage
-from diorama_core.render.grid import each
 from diorama_core.scene.types import Candidate, Pose
+from diorama_core.workers import each
 
 MIN_PIXELS = 900
 """Of objects of fewer pixels only place and size are fitted: their parts are a pixel or two."""

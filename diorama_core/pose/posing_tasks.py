@@ -26,7 +26,7 @@ from diorama_core.pose.hypotheses import Anchor, anchor_of
 from diorama_core.pose.mask_observations import Evidence
 from diorama_core.pose.measured import MeasuredObject, foot_height_m
 from diorama_core.pose.surface import measured_surface, noise_of
-from diorama_core.render.grid import each
+from diorama_core.workers import each
 
 _TELLS = 0.5
 """What colours must say beside a mask for it to tell who of a set differs (`SeeThrough.share`)."""

@@ -17,8 +17,8 @@ from diorama_core.pose.facing import Facing
 from diorama_core.pose.inner_edges import InnerEdges
 from diorama_core.pose.mask_observations import Evidence
 from diorama_core.pose.surface import measured_surface, noise_of
-from diorama_core.render.grid import each
 from diorama_core.scene.types import Pose
+from diorama_core.workers import each
 
 CELLS = 56
 """Resolution at which shapes are compared with the picture, both ways."""

@@ -1,20 +1,13 @@
-"""What every pixel of a view sees, as images; and work on pictures in bands of rows, two at a time."""
+"""What every pixel of a view sees, as images, and bands of their rows."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
-from typing import TypeVar
 
 import numpy as np
 from jaxtyping import Bool, Float32, Int
 
-from diorama_core.progress import Progress
 from diorama_core.render.raycast import View
-
-Item = TypeVar("Item")
-Result = TypeVar("Result")
 
 
 @dataclass(frozen=True, eq=False)
@@ -60,27 +53,3 @@ def pixel_footprint(view: View, depth: Float32[np.ndarray, "h w"]) -> Float32[np
 def bands(height: int, rows: int = 48) -> list[slice]:
     """Rows in groups small enough for the processor's cache."""
     return [slice(start, min(start + rows, height)) for start in range(0, height, rows)]
-
-
-def each(
-    work: Callable[[Item], Result], items: Sequence[Item], progress: Progress | None = None, message: str = ""
-) -> list[Result]:
-    """Work on all items, two at a time; results in order, so that threads change nothing.
-
-    Args:
-        work: Done with each item.
-        items: What there is to do.
-        progress: Told after every item; `Cancelled` drops the items that have not begun.
-        message: What is told.
-    """
-    results: list[Result] = []
-    with ThreadPoolExecutor(max_workers=2) as pool:
-        try:
-            for result in pool.map(work, items):
-                results.append(result)
-                if progress is not None:
-                    progress.report(len(results) / len(items), message)
-        except BaseException:
-            pool.shutdown(cancel_futures=True)
-            raise
-    return results

@@ -14,7 +14,7 @@ from diorama_core.geometry.vectors import unit
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.progress import Progress
 from diorama_core.render.filters import as_bytes, tone_mapped
-from diorama_core.render.grid import bands, each
+from diorama_core.render.grid import bands
 from diorama_core.render.lighting import Effort, Lighting, room_lighting, studio
 from diorama_core.render.raycast import OrthographicView, PinholeView, View
 from diorama_core.render.scene_light import with_settings
@@ -23,6 +23,7 @@ from diorama_core.render.world import World, scene_world
 from diorama_core.scene.frames import UP_WORLD
 from diorama_core.scene.support import descendants
 from diorama_core.scene.types import Camera, Intrinsics, Scene
+from diorama_core.workers import each
 
 DEFAULT_SIZE = (1024, 768)
 LARGEST_DEFAULT_PX = 1280

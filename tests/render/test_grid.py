@@ -1,11 +1,9 @@
 from __future__ import annotations
 
-import threading
-
 import numpy as np
 import pytest
 
-from diorama_core.render.grid import Grid, bands, each, pixel_footprint
+from diorama_core.render.grid import Grid, bands, pixel_footprint
 from diorama_core.render.raycast import OrthographicView, PinholeView
 from tests.synthetic_rooms import look
 
@@ -15,19 +13,6 @@ def test_bands_cover_every_row_once(height: int, rows: int) -> None:
     covered = np.concatenate([np.arange(height)[band] for band in bands(height, rows)])
     np.testing.assert_array_equal(covered, np.arange(height))
     assert max(b.stop - b.start for b in bands(height, rows)) <= rows
-
-
-def test_work_is_done_in_order_by_two_threads_and_errors_arrive() -> None:
-    names = set()
-
-    def work(k: int) -> int:
-        names.add(threading.current_thread().name)
-        return k * k
-
-    assert each(work, range(50)) == [k * k for k in range(50)]
-    assert len(names) <= 2
-    with pytest.raises(ZeroDivisionError):
-        each(lambda k: 1 // k, [1, 0])
 
 
 def test_a_part_is_a_view_of_the_same_memory() -> None:
