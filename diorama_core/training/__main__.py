@@ -8,7 +8,7 @@ from pathlib import Path
 
 import torch
 
-from diorama_core.errors import DioramaError
+from diorama_core.errors import DioramaError, InputError, UnavailableError
 from diorama_core.library.catalogue import built_in_library
 from diorama_core.models.own_weights import CARD, DETECTOR, NAMER, OUTLINER
 from diorama_core.models.recogniser import Recogniser
@@ -104,6 +104,10 @@ def _shapes(a: argparse.Namespace) -> None:
 
 
 def _train(a: argparse.Namespace) -> None:
+    if a.workers < 1:
+        raise InputError(f"--workers {a.workers}: at least one process prepares batches; give 1 or more")
+    if a.device == "cuda" and not torch.cuda.is_available():
+        raise UnavailableError("--device cuda: PyTorch sees no card here; train with --device cpu")
     torch.set_num_threads(a.threads)
     trainer = _trainer(a.network, a.pictures, a.checkpoints, a.steps, a.device, a.workers)
     trainer.run(_told())
