@@ -1,4 +1,4 @@
-"""The form of a shape in the words that people annotate: its top, its base, arms, doors and drawers.
+"""The form of a shape in the words that people annotate: its top, its base, arms, back, upholstery, doors and drawers.
 
 Read off the geometry at the size at which the shape stands, so that a round table stretched to twice its width is oval.
 Doors and drawers are counted by the joints of built-in shapes; of other shapes nobody knows them.
@@ -6,7 +6,7 @@ Doors and drawers are counted by the joints of built-in shapes; of other shapes 
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 import cv2
 import numpy as np
@@ -14,9 +14,10 @@ import trimesh
 from jaxtyping import Bool, Float, Int8
 
 from diorama_core.library.furniture.articulation import articulation
+from diorama_core.library.slots import Slot
 from diorama_core.library.taxonomy import broad, with_kin
 
-MEASURED = ("top", "base", "arms", "doors", "drawers")
+MEASURED = ("top", "base", "arms", "doors", "drawers", "upholstered", "open back")
 """Attributes that a shape's design can tell; others of an annotation are not compared."""
 VALUES: Mapping[str, tuple[str | int, ...]] = {
     "top": ("rectangular", "square", "round", "oval"),
@@ -24,10 +25,15 @@ VALUES: Mapping[str, tuple[str | int, ...]] = {
     "arms": ("no", "yes"),
     "doors": (0, 1, 2, 3, 4),
     "drawers": (0, 1, 2, 3, 4, 5, 6),
+    "upholstered": ("no", "yes"),
+    "open back": ("no", "yes"),
 }
 """What each may be; the last count stands for more, too."""
 _TABLES = with_kin("table", "coffee table", "side table", "desk", "console table", "night stand", "stool", "ottoman")
 _SEATS = with_kin("chair", "office chair", "armchair", "sofa", "bench")
+_BACKED = with_kin("chair", "office chair")
+_HARD_OR_SOFT = with_kin("chair", "office chair", "armchair", "bench", "stool")
+"""Kinds of seats some of which have open backs, and some of which are upholstered: no sofa is without."""
 _SAMPLES = 6000
 _TOP_SLAB = 0.06
 """Of the height: what counts as the top."""
@@ -49,10 +55,17 @@ _BEFORE = (0.05, 0.3)
 """Of the depth from the middle: before the back, and behind the front edge."""
 _ARM_RISE = 0.1
 """Of the height: by how much armrests are higher than the seat."""
+_SOFT = 0.3
+"""Of the surface: fabric and leather of what is upholstered; a pad on a wooden seat is less."""
+_BACK_RISE, _MIN_BACK = 0.1, 0.12
+"""Of the height: above the seat, where nothing but the back is left, and how high a back is at least."""
+_OPEN_BACK = 0.8
+"""A back that fills less of the outline around it, seen from the front, is seen through."""
+_DRAWN_PX = 128
 
 
 def form_of(
-    shape_id: str, category: str, mesh: trimesh.Trimesh, size_m: Float[np.ndarray, "3"]
+    shape_id: str, category: str, mesh: trimesh.Trimesh, size_m: Float[np.ndarray, "3"], slots: Sequence[Slot]
 ) -> dict[str, str | int]:
     """What the design of a shape tells of its form; attributes that its kind does not have are left out.
 
@@ -61,6 +74,7 @@ def form_of(
         category: its kind.
         mesh: in the canonical frame at scale 1 (+X front, +Z up, centred).
         size_m: at which it stands.
+        slots: its materials (`library.slots.slots_of`).
     """
     found: dict[str, str | int] = {}
     points = _surface_points(mesh) * (np.asarray(size_m) / np.maximum(mesh.extents, 1e-6))
@@ -70,6 +84,11 @@ def form_of(
         found["base"] = _base(points, size_m, seat=category in _SEATS)
     if category in _SEATS:
         found["arms"] = _arms(points, size_m)
+    if category in _BACKED and (back := _filled_back(mesh)) is not None:
+        found["open back"] = "yes" if back < _OPEN_BACK else "no"
+    if category in _HARD_OR_SOFT:
+        soft = sum(slot.area_m2 for slot in slots if slot.role in ("fabric", "leather"))
+        found["upholstered"] = "yes" if soft >= _SOFT * sum(slot.area_m2 for slot in slots) > 0 else "no"
     moving = articulation(shape_id)
     if category not in _SEATS:
         names = [] if moving is None else [joint.name for joint in moving.joints]
@@ -78,7 +97,7 @@ def form_of(
     return found
 
 
-def value_indices(form: Mapping[str, str | int]) -> Int8[np.ndarray, "5"]:
+def value_indices(form: Mapping[str, str | int]) -> Int8[np.ndarray, "7"]:
     """Place of each attribute's value in `VALUES`, in the order of `MEASURED`; -1 where it has none."""
     found = np.full(len(MEASURED), -1, np.int8)
     for k, name in enumerate(MEASURED):
@@ -162,3 +181,22 @@ def _arms(points: Float[np.ndarray, "n 3"], size_m: Float[np.ndarray, "3"]) -> s
     if not len(side) or not len(seat):
         return "no"
     return "yes" if np.quantile(side, 0.98) - np.quantile(seat, 0.98) > _ARM_RISE * size_m[2] else "no"
+
+
+def _filled_back(mesh: trimesh.Trimesh) -> float | None:
+    """Share of the outline around a seat's back that is not seen through from the front; None where it has none."""
+    points, low, size = _surface_points(mesh), mesh.bounds[0], np.maximum(mesh.extents, 1e-9)
+    depth, aside = (points[:, 0] - low[0]) / size[0] - 0.5, np.abs((points[:, 1] - low[1]) / size[1] - 0.5) * 2
+    seat = points[(depth > _BEFORE[0]) & (depth < _BEFORE[1]) & (aside < _MIDDLE), 2]
+    above = float(np.quantile(seat, 0.98)) + _BACK_RISE * size[2] if len(seat) else np.inf
+    if mesh.bounds[1, 2] - above < _MIN_BACK * size[2]:
+        return None
+    triangles = mesh.triangles
+    behind = (triangles[:, :, 0].mean(axis=1) - low[0]) / size[0] - 0.5 < _BEFORE[0]
+    flat = triangles[behind & (triangles[:, :, 2].max(axis=1) > above)][:, :, 1:]
+    at = (flat - [low[1], above]) / [size[1], mesh.bounds[1, 2] - above] * (_DRAWN_PX - 1)
+    drawn = np.zeros((_DRAWN_PX, _DRAWN_PX), np.uint8)
+    for triangle in np.rint(at).astype(np.int32):
+        cv2.fillConvexPoly(drawn, triangle, 1)
+    around = cv2.contourArea(cv2.convexHull(np.argwhere(drawn).astype(np.int32))) if drawn.any() else 0.0
+    return float(drawn.sum()) / around if around > 0 else None

@@ -28,8 +28,8 @@ STRIDES = (8, 16, 32)
 CROP_SIDE = 96
 MARGIN = 0.12
 """Of the box's size, on every side of a crop: what a thing stands on tells what it is."""
-SEEN_MARGINS = (0.06, 0.12, 0.2)
-"""A box is looked at with each of these, as it is and mirrored: boxes are drawn more or less close."""
+SEEN_WITH = ((0.06, False), (0.12, True), (0.2, False))
+"""Margins with which a box is looked at, as boxes are drawn more or less close, and whether the picture is mirrored."""
 FILL = 114
 AREAS_PX = (320 * 256, 512 * 384)
 """The photo is looked at in each of these sizes: large things are found in the first, small ones in the second."""
@@ -130,12 +130,12 @@ class Recogniser:
         return self.look(rgb, boxes).kinds
 
     def look(self, rgb: UInt8[np.ndarray, "h w 3"], boxes: Float[np.ndarray, "n 4"]) -> Looks:
-        """What is in every box: the mean of what closer and wider crops tell, as they are and mirrored."""
+        """What is in every box: the mean of what closer and wider crops tell, one of them mirrored."""
         if not len(boxes):
             return Looks(np.zeros((0, len(self.categories))), np.zeros((0, sum(self.form_values))))
         height, width = rgb.shape[:2]
         where = np.stack([box_geometry(box, width, height) for box in boxes])
-        looks = [look for margin in SEEN_MARGINS for look in self._look(rgb, boxes, where, margin)]
+        looks = [self._look(rgb, boxes, where, margin, mirrored) for margin, mirrored in SEEN_WITH]
         return Looks(np.mean([k.kinds for k in looks], axis=0), np.mean([k.forms for k in looks], axis=0))
 
     def _look(
@@ -144,17 +144,15 @@ class Recogniser:
         boxes: Float[np.ndarray, "n 4"],
         where: Float32[np.ndarray, "n 6"],
         margin: float,
-    ) -> list[Looks]:
+        mirrored: bool,
+    ) -> Looks:
         crops = np.stack([box_crop(rgb, box, margin) for box in boxes]).transpose(0, 3, 1, 2).astype(np.float32) / 255.0
-        turned = where * np.array([-1, 1, 1, 1, 1, 1], np.float32)
-        session, looks = self.pool.get(self.namer), []
-        for c, g in ((crops, where), (crops[..., ::-1], turned)):
-            side = session.run(
-                {"crops": np.ascontiguousarray(c), "geometry": g}, {"kinds": (len(g), None), "forms": (len(g), None)}
-            )
-            forms = _form_probabilities(side["forms"].astype(np.float64), self.form_values)
-            looks.append(Looks(softmax(side["kinds"].astype(np.float64), axis=1), forms))
-        return looks
+        if mirrored:
+            crops, where = crops[..., ::-1], where * np.array([-1, 1, 1, 1, 1, 1], np.float32)
+        inputs = {"crops": np.ascontiguousarray(crops), "geometry": where}
+        shapes = {"kinds": (len(boxes), None), "forms": (len(boxes), None)}
+        said = {k: v.astype(np.float64) for k, v in self.pool.get(self.namer).run(inputs, shapes).items()}
+        return Looks(softmax(said["kinds"], axis=1), _form_probabilities(said["forms"], self.form_values))
 
 
 def _form_probabilities(logits: Float[np.ndarray, "n f"], form_values: tuple[int, ...]) -> Float[np.ndarray, "n f"]:

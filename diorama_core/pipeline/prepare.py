@@ -122,8 +122,8 @@ def _prepare(name: str, wanted: _Wanted, shape_ids: Sequence[str]) -> list[tuple
                 parts_of_shape(library, shape)
             if wanted.views:
                 similarity.prepare(shape)
-                shape_form(shape, appearance)
-                usual_form_factor(shape, appearance)
+                shape_form(library, shape, appearance)
+                usual_form_factor(library, shape, appearance)
             if wanted.templates:
                 retained.get(library, shape)
         except DioramaError as error:

@@ -146,8 +146,8 @@ class HierarchicalRetrieval:
                 if isinstance(similarity, EmbeddedSimilarity):
                     similarity.prepare(shape)
                 appearance = self._appearance(shape)
-                shape_form(shape, appearance)
-                usual_form_factor(shape, appearance)
+                shape_form(self.library, shape, appearance)
+                usual_form_factor(self.library, shape, appearance)
                 _ = appearance.caster
 
     def _pools(
@@ -201,8 +201,10 @@ class HierarchicalRetrieval:
         What the label describes is as usual as can be.
         """
         appearance = self._appearance(shape)
-        seen = seen_form_factor(shape_form(shape, appearance), item.seen_form) if item.seen_form else 1.0
-        return seen if described or item.mask_confidence >= 1.0 else seen * usual_form_factor(shape, appearance)
+        seen = seen_form_factor(shape_form(self.library, shape, appearance), item.seen_form) if item.seen_form else 1.0
+        if described or item.mask_confidence >= 1.0:
+            return seen
+        return seen * usual_form_factor(self.library, shape, appearance)
 
     def _weights(self, item: _Observation) -> tuple[float, float, float]:
         """Weights of size, outline and appearance for an object with this visibility."""

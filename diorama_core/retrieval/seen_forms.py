@@ -1,4 +1,4 @@
-"""What the picture of a thing says about its form: which top and base, arms, how many doors and drawers."""
+"""What the picture of a thing says about its form: which top and base, arms, back, how many doors and drawers."""
 
 from __future__ import annotations
 
@@ -11,7 +11,8 @@ from jaxtyping import Float
 
 from diorama_core.geometry.shape_appearance import ShapeAppearance
 from diorama_core.library.form import MEASURED, VALUES, form_of, value_indices
-from diorama_core.library.record import Shape
+from diorama_core.library.record import Shape, ShapeLibrary
+from diorama_core.library.slots import slots_of
 from diorama_core.retrieval.feature_cache import cached_features, has_features
 
 _SAYS = 0.2
@@ -19,16 +20,19 @@ _SAYS = 0.2
 _FLOOR = 0.03
 """Added to every probability: the namer learnt from rendered pictures and is too sure of itself on photos."""
 
-FORM_FEATURES = "form-1"
+FORM_FEATURES = "form-2"
 """Cache key; to be changed with what `library.form` measures."""
 
 
-def shape_form(shape: Shape, appearance: ShapeAppearance, folder: Path | None = None) -> Mapping[str, str | int]:
+def shape_form(
+    library: ShapeLibrary, shape: Shape, appearance: ShapeAppearance, folder: Path | None = None
+) -> Mapping[str, str | int]:
     """The form of a shape at its own size (`library.form.form_of`), values beyond those of `VALUES` left out.
 
     It is kept on disk, since doors and drawers are counted on a shape that is built for this alone.
 
     Args:
+        library: where it is.
         shape: whose.
         appearance: its triangles.
         folder: cache folder of features; `features` in Diorama's cache folder by default.
@@ -36,7 +40,9 @@ def shape_form(shape: Shape, appearance: ShapeAppearance, folder: Path | None = 
 
     def found() -> Float[np.ndarray, "1 n"]:
         mesh = trimesh.Trimesh(appearance.vertices, appearance.faces, process=False)
-        return value_indices(form_of(shape.id, shape.category, mesh, np.asarray(shape.size_m)))[None].astype(float)
+        slots = slots_of(library.parts(shape.id))
+        form = form_of(shape.id, shape.category, mesh, np.asarray(shape.size_m), slots)
+        return value_indices(form)[None].astype(float)
 
     indices = cached_features(FORM_FEATURES, shape, found, folder)[0].astype(int).tolist()
     return {name: VALUES[name][k] for name, k in zip(MEASURED, indices, strict=True) if 0 <= k < len(VALUES[name])}

@@ -16,7 +16,7 @@ from jaxtyping import Int32, UInt8
 from diorama_core.geometry.rows import cells_of
 from diorama_core.geometry.shape_appearance import ShapeAppearance
 from diorama_core.library.form import FULL_RECTANGLE
-from diorama_core.library.record import Shape
+from diorama_core.library.record import Shape, ShapeLibrary
 from diorama_core.library.taxonomy import with_kin
 from diorama_core.retrieval.feature_cache import cached_features
 from diorama_core.retrieval.seen_forms import shape_form
@@ -68,7 +68,7 @@ OUTLINE_FEATURES, SIDE_FEATURES, LEGS_FEATURES = "outline-2", "side-1", "legs-1"
 """Cache keys; to be changed with what is measured under them."""
 
 
-def usual_form_factor(shape: Shape, appearance: ShapeAppearance) -> float:
+def usual_form_factor(library: ShapeLibrary, shape: Shape, appearance: ShapeAppearance) -> float:
     """What a shape's score is multiplied by: 1 for the usual base, top or outline of its kind, less for rare ones.
 
     What has to be drawn for it is kept on disk.
@@ -82,7 +82,7 @@ def usual_form_factor(shape: Shape, appearance: ShapeAppearance) -> float:
     sides = next((shares for kinds, shares in _SIDES if shape.category in kinds), None)
     if bases is None and tops is None and sides is None:
         return 1.0
-    of_form = zip((bases, tops, sides), (*_form(shape, appearance), _side(shape, appearance)), strict=True)
+    of_form = zip((bases, tops, sides), (*_form(library, shape, appearance), _side(shape, appearance)), strict=True)
     usual = [shares.get(form, _RARE) / max(shares.values()) for shares, form in of_form if shares is not None]
     return float(np.prod(usual) ** _SAYS)
 
@@ -91,9 +91,9 @@ def _plant(shape: Shape) -> str:
     return "other" if _OTHER_PLANTS & set(shape.caption.lower().split()) else "leafy"
 
 
-def _form(shape: Shape, appearance: ShapeAppearance) -> tuple[str, str]:
+def _form(library: ShapeLibrary, shape: Shape, appearance: ShapeAppearance) -> tuple[str, str]:
     """Base and top."""
-    form = shape_form(shape, appearance)
+    form = shape_form(library, shape, appearance)
     base = str(form.get("base", "none"))
     if base == "four legs" and shape.category == "chair" and _kept(LEGS_FEATURES, shape, lambda: _cross(appearance)):
         base = _CROSSED_LEGS

@@ -73,7 +73,7 @@ class NamingLoss:
 def naming_loss(
     logits: tuple[Float[Tensor, "b k"], Float[Tensor, "b f"]],
     kinds: Int[Tensor, "b"],
-    forms: Int[Tensor, "b 5"],
+    forms: Int[Tensor, "b 7"],
     form_weights: Sequence[Float[Tensor, "_"]],
 ) -> NamingLoss:
     """Cross entropy of the kind and of every attribute of form.

@@ -14,6 +14,7 @@ from PIL import Image
 from diorama_core.errors import InputError, LibraryError, SceneError
 from diorama_core.library.form import MEASURED, form_of, value_indices
 from diorama_core.library.record import ShapeLibrary
+from diorama_core.library.slots import slots_of
 from diorama_core.progress import Progress
 from diorama_core.scene.types import SceneObject
 from diorama_core.scene.values import ArrayValue
@@ -44,7 +45,7 @@ class LabelledPicture(ArrayValue):
     """Index into `category_names`."""
     pixels: Int[np.ndarray, "n"]
     """Visible pixels of each object."""
-    forms: Int8[np.ndarray, "n 5"]
+    forms: Int8[np.ndarray, "n 7"]
     """Each object's form (`library.form.value_indices`); -1 where it has none or nobody noted it."""
 
 
@@ -121,9 +122,10 @@ def _photographed(seed: int, library: ShapeLibrary, names: tuple[str, ...]) -> t
     return tuple(pictures)
 
 
-def _form(item: SceneObject, library: ShapeLibrary) -> Int8[np.ndarray, "5"]:
+def _form(item: SceneObject, library: ShapeLibrary) -> Int8[np.ndarray, "7"]:
     shape = library.shape(item.shape_id)
-    return value_indices(form_of(shape.id, shape.category, library.mesh(shape.id), item.size_m))
+    slots = slots_of(library.parts(shape.id))
+    return value_indices(form_of(shape.id, shape.category, library.mesh(shape.id), item.size_m, slots))
 
 
 def visible_boxes(

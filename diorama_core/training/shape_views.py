@@ -17,6 +17,7 @@ from jaxtyping import Bool, Float32, Int8, UInt8
 from diorama_core.errors import InputError
 from diorama_core.library.form import MEASURED, VALUES, form_of, value_indices
 from diorama_core.library.record import Shape, ShapeLibrary
+from diorama_core.library.slots import slots_of
 from diorama_core.models.recogniser import CROP_SIDE, FILL, MARGIN
 from diorama_core.progress import Progress
 from diorama_core.render.views import StudioView, render_shape
@@ -46,7 +47,7 @@ class ShapeViews(ArrayValue):
     rgba: UInt8[np.ndarray, "n s s 4"]
     category: int
     """Index into `category_names`."""
-    form: Int8[np.ndarray, "5"]
+    form: Int8[np.ndarray, "7"]
     """`library.form.value_indices` at its own size."""
 
 
@@ -75,7 +76,7 @@ def make_shape_views(folder: Path, library: ShapeLibrary, progress: Progress | N
 class FormStatistics(ArrayValue):
     """Which attributes of form tell shapes of a kind apart, and how common their values are."""
 
-    asked: Bool[np.ndarray, "k 5"]
+    asked: Bool[np.ndarray, "k 7"]
     """Whether an attribute varies among the shapes of a kind."""
     weights: tuple[Float32[np.ndarray, "_"], ...]
     """For every attribute, those of its values: rare ones count more."""
@@ -260,7 +261,13 @@ def _seen(shape: Shape, library: ShapeLibrary, kind: int) -> ShapeViews:
         view = StudioView(float(turn), float(rng.uniform(*ELEVATION_RAD)))
         colour = any_colour(rng) if rng.random() < RECOLOURED else None
         pictures.append(render_shape(library, shape.id, (SIDE, SIDE), view, paint=(colour, None)))
-    form = form_of(shape.id, shape.category, library.mesh(shape.id), np.asarray(shape.size_m))
+    form = form_of(
+        shape.id,
+        shape.category,
+        library.mesh(shape.id),
+        np.asarray(shape.size_m),
+        slots_of(library.parts(shape.id)),
+    )
     return ShapeViews(np.stack(pictures), kind, value_indices(form))
 
 

@@ -7,13 +7,15 @@ import pytest
 
 from diorama_core.library.catalogue import built_in_library
 from diorama_core.library.form import agrees, compared, form_of
+from diorama_core.library.slots import slots_of
 
 LIBRARY = built_in_library()
 
 
 def form(shape_id: str, stretch=(1.0, 1.0, 1.0)):
     shape = LIBRARY.shape(shape_id)
-    return form_of(shape_id, shape.category, LIBRARY.mesh(shape_id), np.array(shape.size_m) * stretch)
+    size_m, slots = np.array(shape.size_m) * stretch, slots_of(LIBRARY.parts(shape_id))
+    return form_of(shape_id, shape.category, LIBRARY.mesh(shape_id), size_m, slots)
 
 
 @pytest.mark.parametrize(
@@ -51,6 +53,23 @@ def test_a_round_table_stretched_is_oval() -> None:
 )  # fmt: skip
 def test_arms(shape_id, arms) -> None:
     assert form(shape_id)["arms"] == arms
+
+
+@pytest.mark.parametrize(
+    ("shape_id", "upholstered", "open_back"),
+    [("chair-ladder-walnut", "no", "yes"), ("chair-padded-tan", "yes", "no"), ("chair-shell-white", "no", "no"),
+     ("chair-wire-black", "yes", "yes"), ("office-chair-bankers-oak", "no", "yes")],
+)  # fmt: skip
+def test_upholstery_and_backs(shape_id, upholstered, open_back) -> None:
+    found = form(shape_id)
+    assert (found["upholstered"], found["open back"]) == (upholstered, open_back)
+
+
+def test_a_stool_has_no_back_and_sofas_are_all_alike_in_both() -> None:
+    stool = form("stool-plush-blush")
+    assert stool["upholstered"] == "yes"
+    assert "open back" not in stool
+    assert not {"upholstered", "open back"} & set(form("sofa-grey-three"))
 
 
 @pytest.mark.parametrize("shape_id", ["chair-tub-pedestal-blush", "chair-shell-tulip-white"])

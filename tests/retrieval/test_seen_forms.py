@@ -32,7 +32,7 @@ def seen(**sure: str | int) -> list[float]:
 
 
 def form(shape_id: str) -> dict[str, str | int]:
-    return dict(shape_form(LIBRARY.shape(shape_id), appearance_of(LIBRARY.parts(shape_id))))
+    return dict(shape_form(LIBRARY, LIBRARY.shape(shape_id), appearance_of(LIBRARY.parts(shape_id))))
 
 
 def test_the_form_that_was_seen_scores_higher() -> None:
@@ -68,7 +68,7 @@ def test_a_form_is_measured_once_for_all_processes(tmp_path: Path, monkeypatch: 
     shape = LIBRARY.shape("night-stand-white-open")
     appearance = appearance_of(LIBRARY.parts(shape.id))
     assert not has_form(shape, tmp_path)
-    first = shape_form(shape, appearance, tmp_path)
+    first = shape_form(LIBRARY, shape, appearance, tmp_path)
     assert has_form(shape, tmp_path)
     monkeypatch.setattr(feature_cache, "_CACHE", LruCache(4))  # as another process
 
@@ -76,4 +76,4 @@ def test_a_form_is_measured_once_for_all_processes(tmp_path: Path, monkeypatch: 
         raise AssertionError("the form is on disk")
 
     monkeypatch.setattr(seen_forms, "form_of", never)
-    assert shape_form(shape, appearance, tmp_path) == first
+    assert shape_form(LIBRARY, shape, appearance, tmp_path) == first

@@ -12,7 +12,7 @@ LIBRARY = built_in_library()
 
 
 def factor(shape_id: str) -> float:
-    return usual_form_factor(LIBRARY.shape(shape_id), appearance_of(LIBRARY.parts(shape_id)))
+    return usual_form_factor(LIBRARY, LIBRARY.shape(shape_id), appearance_of(LIBRARY.parts(shape_id)))
 
 
 @pytest.mark.parametrize(

@@ -19,7 +19,7 @@ def picture(seed: int) -> LabelledPicture:
     x, y = (int(v) for v in rng.integers(5, 30, 2))
     rgb[y : y + 20, x : x + 30] = 240
     box = np.array([[x, y, x + 30, y + 20]], np.float32)
-    return LabelledPicture(rgb, box, np.array([3]), np.array([600]), np.full((1, 5), -1, np.int8))
+    return LabelledPicture(rgb, box, np.array([3]), np.array([600]), np.full((1, 7), -1, np.int8))
 
 
 @given(seed=st.integers(0, 10_000), mosaic=st.booleans())

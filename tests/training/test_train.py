@@ -49,7 +49,7 @@ def shape_files(folder: Path) -> ShapeViewFiles:
     for kind in (1, 3):
         rgba = rng.integers(0, 255, (2, 40, 40, 4)).astype(np.uint8)
         rgba[:, 8:32, 12:28, 3] = 255
-        views = ShapeViews(rgba, kind, np.array([0, kind, -1, 0, 2], np.int8))
+        views = ShapeViews(rgba, kind, np.array([0, kind, -1, 0, 2, 1, -1], np.int8))
         (folder / f"shape_{kind:016d}.npz").write_bytes(shape_views._packed(views))
     return ShapeViewFiles.of(folder)
 
