@@ -55,8 +55,8 @@ _BEFORE = (0.05, 0.3)
 """Of the depth from the middle: before the back, and behind the front edge."""
 _ARM_RISE = 0.1
 """Of the height: by how much armrests are higher than the seat."""
-_SOFT = 0.3
-"""Of the surface: fabric and leather of what is upholstered; a pad on a wooden seat is less."""
+_SOFT, _KNOWN = 0.3, 0.5
+"""Of the surface: fabric and leather of what is upholstered (a pad on wood is less), and what has to be known."""
 _BACK_RISE, _MIN_BACK = 0.1, 0.12
 """Of the height: above the seat, where nothing but the back is left, and how high a back is at least."""
 _OPEN_BACK = 0.8
@@ -86,9 +86,8 @@ def form_of(
         found["arms"] = _arms(points, size_m)
     if category in _BACKED and (back := _filled_back(mesh)) is not None:
         found["open back"] = "yes" if back < _OPEN_BACK else "no"
-    if category in _HARD_OR_SOFT:
-        soft = sum(slot.area_m2 for slot in slots if slot.role in ("fabric", "leather"))
-        found["upholstered"] = "yes" if soft >= _SOFT * sum(slot.area_m2 for slot in slots) > 0 else "no"
+    if category in _HARD_OR_SOFT and (soft := _soft_share(slots)) is not None:
+        found["upholstered"] = "yes" if soft >= _SOFT else "no"
     moving = articulation(shape_id)
     if category not in _SEATS:
         names = [] if moving is None else [joint.name for joint in moving.joints]
@@ -181,6 +180,14 @@ def _arms(points: Float[np.ndarray, "n 3"], size_m: Float[np.ndarray, "3"]) -> s
     if not len(side) or not len(seat):
         return "no"
     return "yes" if np.quantile(side, 0.98) - np.quantile(seat, 0.98) > _ARM_RISE * size_m[2] else "no"
+
+
+def _soft_share(slots: Sequence[Slot]) -> float | None:
+    """Fabric and leather's share of the surface; None where it is not known what most of it is made of."""
+    whole = sum(slot.area_m2 for slot in slots)
+    if not sum(slot.area_m2 for slot in slots if slot.role != "material") > _KNOWN * whole:
+        return None
+    return sum(slot.area_m2 for slot in slots if slot.role in ("fabric", "leather")) / whole
 
 
 def _filled_back(mesh: trimesh.Trimesh) -> float | None:

@@ -7,7 +7,7 @@ import pytest
 
 from diorama_core.library.catalogue import built_in_library
 from diorama_core.library.form import agrees, compared, form_of
-from diorama_core.library.slots import slots_of
+from diorama_core.library.slots import Slot, slots_of
 
 LIBRARY = built_in_library()
 
@@ -70,6 +70,15 @@ def test_a_stool_has_no_back_and_sofas_are_all_alike_in_both() -> None:
     assert stool["upholstered"] == "yes"
     assert "open back" not in stool
     assert not {"upholstered", "open back"} & set(form("sofa-grey-three"))
+
+
+def test_of_materials_that_nobody_named_nothing_is_said() -> None:
+    mesh, size_m = LIBRARY.mesh("chair-padded-tan"), np.array(LIBRARY.shape("chair-padded-tan").size_m)
+    unknown = Slot("material", "material", ("body",), 2.0, main=True)
+    for slots in ((), (unknown,), (unknown, Slot("fabric", "fabric", ("seat",), 1.0, main=False))):
+        found = form_of("own-chair", "chair", mesh, size_m, slots)
+        assert "upholstered" not in found
+        assert found["open back"] == "no"
 
 
 @pytest.mark.parametrize("shape_id", ["chair-tub-pedestal-blush", "chair-shell-tulip-white"])
