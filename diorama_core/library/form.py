@@ -32,8 +32,8 @@ VALUES: Mapping[str, tuple[str | int, ...]] = {
 _TABLES = with_kin("table", "coffee table", "side table", "desk", "console table", "night stand", "stool", "ottoman")
 _SEATS = with_kin("chair", "office chair", "armchair", "sofa", "bench")
 _BACKED = with_kin("chair", "office chair")
-_HARD_OR_SOFT = with_kin("chair", "office chair", "armchair", "bench", "stool")
-"""Kinds of seats some of which have open backs, and some of which are upholstered: no sofa is without."""
+_HARD_OR_SOFT = with_kin("chair", "office chair", "bench", "stool")
+"""Kinds of seats some of which have open backs, and some of which are upholstered: hardly an easy seat is without."""
 _SAMPLES = 6000
 _TOP_SLAB = 0.06
 """Of the height: what counts as the top."""

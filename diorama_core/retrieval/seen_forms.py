@@ -20,7 +20,7 @@ _SAYS = 0.2
 _FLOOR = 0.03
 """Added to every probability: the namer learnt from rendered pictures and is too sure of itself on photos."""
 
-FORM_FEATURES = "form-2"
+FORM_FEATURES = "form-3"
 """Cache key; to be changed with what `library.form` measures."""
 
 
