@@ -14,7 +14,8 @@ import trimesh
 from jaxtyping import Bool, Float, Int8
 
 from diorama_core.library.furniture.articulation import articulation
-from diorama_core.library.slots import Slot
+from diorama_core.library.record import Shape, ShapeLibrary
+from diorama_core.library.slots import Slot, slots_of
 from diorama_core.library.taxonomy import broad, with_kin
 
 MEASURED = ("top", "base", "arms", "doors", "drawers", "upholstered", "open back")
@@ -94,6 +95,12 @@ def form_of(
         found["doors"] = sum(name.startswith("door") for name in names)
         found["drawers"] = sum(name.startswith("drawer") for name in names)
     return found
+
+
+def form_at(library: ShapeLibrary, shape: Shape, size_m: Float[np.ndarray, "3"]) -> dict[str, str | int]:
+    """The form (`form_of`) of a shape of a library at the size at which it stands."""
+    slots = slots_of(library.parts(shape.id))
+    return form_of(shape.id, shape.category, library.mesh(shape.id), np.asarray(size_m), slots)
 
 
 def value_indices(form: Mapping[str, str | int]) -> Int8[np.ndarray, "7"]:

@@ -12,9 +12,8 @@ from jaxtyping import Float32, Int, Int8, Int32, UInt8
 from PIL import Image
 
 from diorama_core.errors import InputError, LibraryError, SceneError
-from diorama_core.library.form import MEASURED, form_of, value_indices
+from diorama_core.library.form import MEASURED, form_at, value_indices
 from diorama_core.library.record import ShapeLibrary
-from diorama_core.library.slots import slots_of
 from diorama_core.progress import Progress
 from diorama_core.scene.types import SceneObject
 from diorama_core.scene.values import ArrayValue
@@ -124,8 +123,7 @@ def _photographed(seed: int, library: ShapeLibrary, names: tuple[str, ...]) -> t
 
 def _form(item: SceneObject, library: ShapeLibrary) -> Int8[np.ndarray, "7"]:
     shape = library.shape(item.shape_id)
-    slots = slots_of(library.parts(shape.id))
-    return value_indices(form_of(shape.id, shape.category, library.mesh(shape.id), item.size_m, slots))
+    return value_indices(form_at(library, shape, item.size_m))
 
 
 def visible_boxes(

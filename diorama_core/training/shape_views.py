@@ -15,9 +15,8 @@ import numpy as np
 from jaxtyping import Bool, Float32, Int8, UInt8
 
 from diorama_core.errors import InputError
-from diorama_core.library.form import MEASURED, VALUES, form_of, value_indices
+from diorama_core.library.form import MEASURED, VALUES, form_at, value_indices
 from diorama_core.library.record import Shape, ShapeLibrary
-from diorama_core.library.slots import slots_of
 from diorama_core.models.recogniser import CROP_SIDE, FILL, MARGIN
 from diorama_core.progress import Progress
 from diorama_core.render.views import StudioView, render_shape
@@ -261,13 +260,7 @@ def _seen(shape: Shape, library: ShapeLibrary, kind: int) -> ShapeViews:
         view = StudioView(float(turn), float(rng.uniform(*ELEVATION_RAD)))
         colour = any_colour(rng) if rng.random() < RECOLOURED else None
         pictures.append(render_shape(library, shape.id, (SIDE, SIDE), view, paint=(colour, None)))
-    form = form_of(
-        shape.id,
-        shape.category,
-        library.mesh(shape.id),
-        np.asarray(shape.size_m),
-        slots_of(library.parts(shape.id)),
-    )
+    form = form_at(library, shape, np.asarray(shape.size_m))
     return ShapeViews(np.stack(pictures), kind, value_indices(form))
 
 

@@ -6,16 +6,15 @@ import numpy as np
 import pytest
 
 from diorama_core.library.catalogue import built_in_library
-from diorama_core.library.form import agrees, compared, form_of
-from diorama_core.library.slots import Slot, slots_of
+from diorama_core.library.form import agrees, compared, form_at, form_of
+from diorama_core.library.slots import Slot
 
 LIBRARY = built_in_library()
 
 
 def form(shape_id: str, stretch=(1.0, 1.0, 1.0)):
     shape = LIBRARY.shape(shape_id)
-    size_m, slots = np.array(shape.size_m) * stretch, slots_of(LIBRARY.parts(shape_id))
-    return form_of(shape_id, shape.category, LIBRARY.mesh(shape_id), size_m, slots)
+    return form_at(LIBRARY, shape, np.array(shape.size_m) * stretch)
 
 
 @pytest.mark.parametrize(

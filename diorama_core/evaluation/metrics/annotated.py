@@ -11,9 +11,8 @@ from jaxtyping import Float
 from diorama_core.evaluation.adapters.photo_annotations import AnnotatedObject
 from diorama_core.evaluation.metrics.colour import perceived_difference
 from diorama_core.evaluation.metrics.photo_agreement import shape_iou
-from diorama_core.library.form import compared, form_of
+from diorama_core.library.form import compared, form_at
 from diorama_core.library.record import ShapeLibrary, record_of
-from diorama_core.library.slots import slots_of
 from diorama_core.scene.types import Camera, Scene, SceneObject
 
 FRONT_TOLERANCE_DEG = 45.0
@@ -99,10 +98,7 @@ def measured(
     """
     shape = record_of(library, item.shape_id)
     among = {record_of(library, c.shape_id).category for c in item.candidates} | {shape.category}
-    design: Mapping[str, str | int] = {}
-    if annotated.attributes:
-        slots = slots_of(library.parts(shape.id))
-        design = form_of(shape.id, shape.category, library.mesh(shape.id), item.size_m, slots)
+    design = form_at(library, shape, item.size_m) if annotated.attributes else {}
     return ObjectResult(
         photo,
         index,
