@@ -29,7 +29,7 @@ from diorama_core.layout.problem.supports import (
     surfaces_below,
 )
 from diorama_core.library import taxonomy
-from diorama_core.library.company import SELDOM_CARRIED, often_carried
+from diorama_core.library.company import SELDOM_CARRIED, STACKED_ON, often_carried
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.scene import edits
 from diorama_core.scene.frames import UP_WORLD
@@ -223,10 +223,13 @@ def _better(
         cost, limit = _gap(scene, library, item, other) + odd, _tolerance(scene, item, other, noise)
         cost = min(cost, inside) if other.parent in entered else cost
         beneath = scene.support_of(other.parent)
-        between = beneath is not None and beneath.parent == edge.parent and _is_thin(scene, other.parent, limit)
-        between = between and edge.relation == "placed on"
+        between = beneath is not None and beneath.parent == edge.parent and edge.relation == "placed on"
         between = between and (
-            _is_over(scene, library, item, other) if noise.measured else carries_things(scene.object(other.parent))
+            _is_over(scene, library, item, other, limit)
+            and (_is_set_down(item) or _is_thin(scene, other.parent, limit))
+            if noise.measured
+            else _is_thin(scene, other.parent, limit)
+            and (carries_things(scene.object(other.parent)) or _is_over(scene, library, item, other))
         )
         # Against a measured gap that is many times as large, a foot that is hidden does not count.
         reached = np.inf if noise.measured else max(limit, UNUSUAL_M * unusual)
@@ -249,11 +252,15 @@ def _may_stand(
     return scene.has_object(other.parent) and other.relation == "placed on" and _is_over(scene, library, item, other)
 
 
-def _is_over(scene: Scene, library: ShapeLibrary, item: SceneObject, edge: Support) -> bool:
-    """Whether an object's middle is over the place on which an edge puts it: beside a thin thing it lies on another."""
+def _is_over(scene: Scene, library: ShapeLibrary, item: SceneObject, edge: Support, most_m: float = np.inf) -> bool:
+    """Whether an object's middle is over the place on which an edge puts it: beside a thin thing it lies on another.
+
+    A place higher than `most_m` above the lowest point of what it belongs to is not meant.
+    """
     parent = scene.object(edge.parent)
-    surface = choose_surface(scene, item, edge, library.shape(parent.shape_id))
-    return outside_m(surface.in_world(parent.pose), item.pose.position) == 0.0
+    place = choose_surface(scene, item, edge, library.shape(parent.shape_id)).in_world(parent.pose)
+    height = place.level - float((parent.corners_world @ UP_WORLD).min())
+    return height <= most_m and outside_m(place, item.pose.position) == 0.0
 
 
 def _is_thin(scene: Scene, object_id: str, limit_m: float) -> bool:
@@ -305,7 +312,9 @@ def _is_odd_company(scene: Scene, item: SceneObject, edge: Support) -> bool:
     """Whether an edge puts an object on what hardly ever carries its kind."""
     if not scene.has_object(edge.parent):
         return False
-    return often_carried(item.category, scene.object(edge.parent).category) <= SELDOM_CARRIED
+    carrier = taxonomy.resolve(scene.object(edge.parent).category).category
+    small = carrier.mount == "surface" and not carrier.supports_objects and carrier.name not in STACKED_ON
+    return small or often_carried(item.category, carrier.name) <= SELDOM_CARRIED
 
 
 def _entered(scene: Scene, library: ShapeLibrary, item: SceneObject, edge: Support, *, sits: bool) -> dict[str, float]:

@@ -68,6 +68,9 @@ CARRIED: tuple[Carried, ...] = (
 CARRIED_KINDS: frozenset[str] = frozenset(kind for row in CARRIED for kind in row.kinds)
 """All that lies on other things now and then, whatever else it stands on."""
 
+STACKED_ON: frozenset[str] = with_kin("books", "box", "tray", "plate")
+"""Small things that lie on others and on which others are put."""
+
 SELDOM_CARRIED, HARDLY_CARRIED = 0.3, 0.08
 """The same of kinds that lie on things and are not named, and of those that stand on floors or hang."""
 

@@ -164,6 +164,29 @@ def test_a_cup_measured_over_a_plate_is_on_the_plate_and_beside_it_on_the_table(
     assert checked.support_of(plate).parent == table
 
 
+def test_books_measured_over_the_lowest_board_of_a_shelf_are_on_it_and_not_on_the_floor(room: Room) -> None:
+    shelf = room.put("bookshelf_7", (0.0, 1.0, 0.6))
+    board = float(room.scene().object(shelf).corners_world[:, 2].min())
+    places = LIBRARY.shape("bookshelf_7").surfaces
+    board += 0.5 * room.objects[0].size_m[2] + min(float(place.polygon[0, 2]) for place in places)
+    books = room.put("books_18", (0.0, 1.0, board + 0.01 + 0.5 * LIBRARY.shape("books_18").size_m[2]))
+    scene = room.scene(camera=looking_north())
+    assert 0.0 < board < 0.1
+    assert checked_supports(scene, LIBRARY, MEASURED, shapes_clear=False)[0].support_of(books).parent == shelf
+
+
+@pytest.mark.parametrize(("kind", "on_it"), [("plate", True), ("keyboard", False)])
+def test_a_cup_reasoned_to_be_in_a_plate_is_on_it(room: Room, kind: str, *, on_it: bool) -> None:
+    table = room.put("table_0", (0.0, 0.0, 0.37))
+    top = float(room.scene().object(table).corners_world[:, 2].max())
+    flat = 0.02 / LIBRARY.shape("box_24").size_m[2]
+    plate = room.put("box_24", (0.0, 0.0, top + 0.01), on=table, scale=(0.7, 0.7, flat))
+    room.objects[-1] = replace(room.objects[-1], category=kind)
+    cup = room.put("cup_21", (0.02, 0.0, top + 0.5 * LIBRARY.shape("cup_21").size_m[2]), on=table)
+    scene = room.scene(camera=looking_north())
+    assert (checked_supports(scene, LIBRARY, REASONED)[0].support_of(cup).parent == plate) == on_it
+
+
 def test_a_laptop_far_above_its_chair_rests_on_the_desk_below_it_although_its_foot_is_hidden(room: Room) -> None:
     chair = room.put("chair_4", (0.0, 0.9, 0.45))
     desk = room.put("table_0", (0.0, 1.2, 0.37))

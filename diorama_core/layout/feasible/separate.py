@@ -8,7 +8,7 @@ the many axes is chosen decides everything; so for two compounds that touch the 
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from jaxtyping import Bool, Float, Int
@@ -144,6 +144,7 @@ def _wall_rows(problem: Problem, structure: Structure, bodies: Bodies, J: np.nda
     fixed = {(i, w) for i, w, _ in problem.adheres}
     starts = np.searchsorted(bodies.owner, np.arange(problem.count))
     radius = 0.5 * np.linalg.norm(problem.shape_size * structure.scale, axis=1)
+    settled = replace(problem, R=structure.R, p=structure.p, scale=structure.scale)
     in_room = in_polygon(structure.p[:, :2], problem.floor_outline)
     for w, wall in enumerate(problem.walls if problem.count else ()):
         if not wall.seen:
@@ -154,6 +155,7 @@ def _wall_rows(problem: Problem, structure: Structure, bodies: Bodies, J: np.nda
         reached = problem.free & (beside <= radius) & (ahead >= -radius - 0.5)
         reached &= ~(in_room & (beside > 0) & (ahead < 0))
         reached &= np.array([problem.on_plane[i] != wall.id and (i, w) not in fixed for i in range(problem.count)])
+        reached[[i for i in np.flatnonzero(reached) if settled.passes(wall, int(i))]] = False
         nearest = np.minimum.reduceat((bodies.vertices @ wall.normal).min(axis=1), starts)
         rows.append(np.einsum("c,ncv->nv", wall.normal, J[reached]))
         need.append(wall.offset - nearest[reached])

@@ -13,6 +13,7 @@ import numpy as np
 from jaxtyping import Bool, Float, Int
 
 from diorama_core.geometry.convex import ConvexPart
+from diorama_core.geometry.planes import in_polygon
 from diorama_core.geometry.sat import PackedParts, pack_parts
 from diorama_core.layout.problem.footing import box_footing, footing_of
 from diorama_core.layout.problem.parts import parts_of_shape
@@ -31,6 +32,10 @@ from diorama_core.library.record import ShapeLibrary
 from diorama_core.scene.support import descendants
 from diorama_core.scene.types import Plane, Pose, Scene, SceneObject, Support
 
+BEHIND_M = 0.02
+"""Walls are placed so exactly."""
+_BOX_GRID = np.stack(np.meshgrid(*3 * [np.linspace(-0.5, 0.5, 5)]), axis=-1).reshape(-1, 3)
+"""Points of a box of extents 1."""
 FIRM_SHARE = 0.55
 """Rigid share of a soft object's extent: pillows sink into one another."""
 
@@ -130,9 +135,19 @@ class Problem:
             surface = plane_surface(wall)
             beside = float((surface.outward @ self.p[index] - surface.offset).max())
             ahead = float(wall.normal @ self.p[index]) - wall.offset
-            if wall.seen and self.on_plane[index] != wall.id and beside <= radius and 0.0 <= ahead <= radius:
+            near = beside <= radius and 0.0 <= ahead <= radius
+            if wall.seen and self.on_plane[index] != wall.id and near and not self.passes(wall, index):
                 found.append(wall)
         return tuple(found)
+
+    def passes(self, wall: Plane, index: int) -> bool:
+        """Whether an object lies in the room where it is behind a wall's plane: beside the end of a wall that stands
+        into the room."""
+        corners = self.p[index] + (_BOX_GRID * self.shape_size[index] * self.scale[index]) @ self.R[index].T
+        behind = corners[corners @ wall.normal < wall.offset - BEHIND_M]
+        surface = plane_surface(wall)
+        beside = (behind @ surface.outward.T - surface.offset).max(axis=1) > -BEHIND_M
+        return len(behind) > 0 and bool((beside & in_polygon(behind[:, :2], self.floor_outline)).all())
 
     def poses(
         self, R: Float[np.ndarray, "n 3 3"], p: Float[np.ndarray, "n 3"], scale: Float[np.ndarray, "n 3"]

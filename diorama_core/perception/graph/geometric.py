@@ -13,6 +13,7 @@ import numpy as np
 from jaxtyping import Float
 
 from diorama_core.artefacts import DetectedObject, Inputs, ObjectGeometry, SceneGraph
+from diorama_core.library.company import STACKED_ON
 from diorama_core.library.taxonomy import UNKNOWN, Category
 from diorama_core.perception.graph.object_observations import Observed, observed
 from diorama_core.progress import Progress
@@ -122,7 +123,10 @@ def _carried_cost(obj: Observed, other: Observed) -> float:
     """How badly an object would rest on another's top, seat or shelves."""
     if other.category.name in _RUGS:
         return _on_rug_cost(obj, other)
-    cost = 0.0 if other.category.supports_objects or other.category is UNKNOWN else _CARRIES_NOTHING_COST
+    above = obj.below.get(other.id, 0.0)
+    carries = other.category.supports_objects or other.category is UNKNOWN
+    stacked = above if other.category.name in STACKED_ON else 0.0
+    cost = 0.0 if carries else _CARRIES_NOTHING_COST * (1.0 - stacked)
     levels = [(other.top_m, _TOP_GAP_M, 0.0)]
     seat = other.category.seat_height_m
     if seat is not None and seat < other.top_m:
@@ -133,7 +137,7 @@ def _carried_cost(obj: Observed, other: Observed) -> float:
     outside = _outside(obj.footprint, other.footprint)
     area, theirs = (float(np.prod(t.footprint[1] - t.footprint[0])) for t in (obj, other))
     larger = _LARGER_COST * min(max(np.log(max(area, 1e-4) / max(theirs, 1e-4)), 0.0), 1.0)
-    return float(cost + gap + 5.0 * outside + larger + _BELOW_WEIGHT * (1.0 - obj.below.get(other.id, 0.0)))
+    return float(cost + gap + 5.0 * outside + larger + _BELOW_WEIGHT * (1.0 - above))
 
 
 def _on_rug_cost(obj: Observed, rug: Observed) -> float:

@@ -10,7 +10,7 @@ from jaxtyping import Float
 
 from diorama_core.geometry.projection import cuboid_corners
 from diorama_core.library import taxonomy
-from diorama_core.library.company import often_carried
+from diorama_core.library.company import STACKED_ON, often_carried
 from diorama_core.library.taxonomy import AGAINST_WALLS, PORTABLE, UNKNOWN, Category, Mount, with_kin
 from diorama_core.perception.metrology.arrangement import arrange, distinct
 from diorama_core.perception.metrology.box_observations import BoxObservations
@@ -58,15 +58,20 @@ _AT_CARRIER_COST = 4.0
 """For a portable thing on the floor that ends on what often carries such things: it would do so by chance."""
 _USUAL, _COMPANY_TRUST = 4.0, 0.5
 """How often a carrier's usual loads lie on it (`company.CARRIED`), and how much less of that is held against others."""
+_STACKED_COST = -3.0
+"""Of a thing that lies on a small one that lies on others: what is behind that one would end right there by chance."""
+_SEEN_UNDER = 0.6
+"""It lies there only where so much of what is seen just under it is the other."""
 _BEFORE_COST = 10.0
 """Of a thing on the floor that ends before another whose lower end is nearer: it would stand in the other's place."""
 _THROUGH_TOP_COST = 10.0
 """Of a thing on the floor that would be seen through a piece of furniture's top."""
+_RUGS = with_kin("rug")
 _FIXED_TO_WALLS = frozenset({"door", "window", "curtain", "radiator"})
 _LARGE = (
     _FIXED_TO_WALLS
     | with_kin("sofa", "bed", "wardrobe", "table", "desk", "bathtub", "piano", "dresser", "bookshelf", "refrigerator")
-    | with_kin("rug")
+    | _RUGS
 ) - PORTABLE
 """Things that never stand on others."""
 _HUNG_CARRIERS = frozenset({"shelves"})
@@ -132,7 +137,9 @@ def place_all(observations: BoxObservations, view: View, height_m: float) -> tup
     carriers = {**floor, **{i: best[i] for i in hung if i in best}}
     best = _cheaper(best, _supported(observations, view, height_m, carriers, room, others))
     needed = {p.supporter for p in best.values() if p.supporter >= 0}
-    return tuple(carriers[i] if i in needed else best[i] for i in range(len(observations)))
+    best |= {i: carriers[i] for i in needed}
+    best = _cheaper(best, _stacked(observations, view, height_m, best))
+    return tuple(best[i] for i in range(len(observations)))
 
 
 def _not_through_tops(
@@ -257,6 +264,32 @@ def _supported(
     return best
 
 
+def _stacked(
+    observations: BoxObservations, view: View, height_m: float, placed: Mapping[int, Placement]
+) -> dict[int, Placement]:
+    """The cheapest way to put small things on small things that lie on others: a cup on books."""
+    best: dict[int, Placement] = {}
+    for index in range(len(observations)):
+        below = _small_carrier(observations, index)
+        if below is None or placed[below].supporter < 0:
+            continue
+        rows = place_on(observations, index, below, placed[below].cuboid, height_m, _STACKED_COST)
+        best[index] = readings_of(solve_all(rows, view), observations, view)[index].placement(0, below)
+    return best
+
+
+def _small_carrier(observations: BoxObservations, index: int) -> int | None:
+    """The small carrier of which the picture shows most just under a thing; None where that is little."""
+    category = observations.categories[index]
+    if category.mount != "surface" and category.name not in PORTABLE:
+        return None
+    carriers = [j for j, c in enumerate(observations.categories) if c.name in STACKED_ON]
+    lower = [j for j in carriers if observations.box_px[j, 3] > observations.box_px[index, 3]]
+    under = observations.beside[index, :, 3]
+    below = max(supporters_of(observations, index, lower), key=lambda j: float(under[j]), default=None)
+    return below if below is not None and under[below] >= _SEEN_UNDER else None
+
+
 def _supported_rows(
     observations: BoxObservations, index: int, carriers: Mapping[int, Placement], room: Extent, height_m: float
 ) -> list[tuple[int, list[Problems]]]:
@@ -268,11 +301,13 @@ def _supported_rows(
     if np.isfinite(on_top) and category.name not in _LARGE:
         for parent in parents:
             cost = on_top + _unlikely_parent_cost(category, observations.categories[parent])
+            if observations.categories[parent].name in _RUGS:  # what lies on it is as good as on the floor
+                cost += _floor_cost(observations, index)
             options.append((parent, place_on(observations, index, parent, carriers[parent].cuboid, height_m, cost)))
     on_wall = _SCREEN_ON_WALL_COST if category.name in _SCREENS else _held_cost(observations, index, "wall")
     if category is UNKNOWN and observations.fill[index] < _MIN_FLAT_FILL:
         on_wall += _NOT_FLAT_COST
-    if category.mount == "surface" and parents:
+    if category.mount == "surface" and (parents or _small_carrier(observations, index) is not None):
         on_wall += _BESIDE_ITS_SUPPORTER_COST
     if category.name not in _LARGE or category.name in _FIXED_TO_WALLS:
         options.append((WALL, place_on_wall(observations, index, height_m, room, on_wall)))
@@ -310,7 +345,7 @@ def _averted_costs(problems: Problems, boxes: Cuboids, observations: BoxObservat
 def _floor_cost(observations: BoxObservations, index: int) -> float:
     category = observations.categories[index]
     cost = _SCREEN_ON_FLOOR_COST if category.name in _SCREENS else _held_cost(observations, index, "floor")
-    parents = _possible_parents(observations, index)
+    parents = _carriers(observations, index)
     if category.mount == "surface" and parents:
         cost += _BESIDE_ITS_SUPPORTER_COST
     if category.name in PORTABLE and any(_often_carries(observations, j, index) for j in parents):
@@ -324,6 +359,11 @@ def _floor_cost(observations: BoxObservations, index: int) -> float:
 def _often_carries(observations: BoxObservations, parent: int, index: int) -> bool:
     carrier = observations.categories[parent]
     return carrier.supports_objects and often_carried(observations.categories[index].name, carrier.name) > 1.0
+
+
+def _carriers(observations: BoxObservations, index: int) -> list[int]:
+    """What may hold a thing above the floor."""
+    return [j for j in _possible_parents(observations, index) if observations.categories[j].name not in _RUGS]
 
 
 def _possible_parents(observations: BoxObservations, index: int) -> list[int]:

@@ -40,7 +40,7 @@ _BACK_SHARE = {("bed", "pillow"): 0.45}
 _SEATS = frozenset({"pillow", "toy", "books", "laptop", "basket", "box"})
 _ODD_ON_SEAT_COST = 6.0
 """Of anything else lying on a seat or a bed: one in twenty."""
-_SHELVED = with_kin("bookshelf", "shelves", "tv stand", "cabinet", "desk")
+_SHELVED = with_kin("bookshelf", "shelves", "tv stand", "cabinet", "desk", "night stand", "side table", "coffee table")
 _USUAL_MIDDLE_M = {
     "picture": 1.5,
     "mirror": 1.45,

@@ -19,6 +19,15 @@ def placed(*items: RequestedObject, height_m: float = 1.5) -> tuple[Placement, .
     return place_all(gather(seen(items, R, height_m), K.width, K.height), VIEW, height_m)
 
 
+def outlined(*items: RequestedObject) -> tuple[Placement, ...]:
+    """The same where masks fill the boxes."""
+    objects = seen(items, R, 1.5)
+    for item in objects:
+        x1, y1, x2, y2 = (round(v) for v in item.box)
+        item.mask[y1:y2, x1:x2] = True
+    return place_all(gather(objects, K.width, K.height), VIEW, 1.5)
+
+
 def test_every_object_gets_its_supporter_and_place() -> None:
     found = placed(*ROOM)
     assert [p.index for p in found] == list(range(len(ROOM)))
@@ -77,6 +86,33 @@ def test_a_plant_on_furniture_does_not_make_the_room_larger() -> None:
     picture = RequestedObject("picture", (0.0, 3.3, 1.6), (0.03, 0.8, 0.6))
     with_plant, without = placed(sideboard, picture, plant), placed(sideboard, picture)
     assert with_plant[1].cuboid.centre[0] == pytest.approx(without[1].cuboid.centre[0], abs=0.02)
+
+
+def test_what_lies_on_a_table_is_not_on_the_rug_below_it() -> None:
+    """On the rug it would be farther away and not lower in the picture; people do not put tablets on rugs."""
+    rug = RequestedObject("rug", (0.0, 2.2, 0.005), (1.6, 1.9, 0.01))
+    table = RequestedObject("coffee table", (0.0, 1.9, 0.2), (0.6, 1.05, 0.4))
+    tablet = RequestedObject("tablet", (0.2, 2.12, 0.41), (0.2, 0.14, 0.012))
+    assert placed(rug, table, tablet)[2].supporter == 1
+
+
+def test_a_photo_frame_is_on_the_lower_board_of_its_night_stand() -> None:
+    stand = RequestedObject("night stand", (0.4, 2.75, 0.35), (0.42, 0.5, 0.7))
+    frame = RequestedObject("photo frame", (0.42, 2.62, 0.3), (0.09, 0.17, 0.21))
+    found = placed(ROOM[0], stand, frame)[2]
+    assert found.supporter == 1
+    assert found.cuboid.base_m[0] == pytest.approx(0.195, abs=0.1)
+
+
+def test_a_cup_is_on_the_books_that_are_seen_below_it_and_on_no_cup() -> None:
+    table = RequestedObject("table", (0.1, 2.1, 0.37), (0.85, 1.4, 0.74))
+    pile = RequestedObject("books", (0.2, 2.2, 0.84), (0.2, 0.28, 0.2))
+    cup = RequestedObject("cup", (0.2, 2.2, 0.99), (0.09, 0.09, 0.1))
+    found = outlined(table, pile, cup)
+    assert [p.supporter for p in found] == [FLOOR, 0, 1]
+    assert found[2].cuboid.base_m[0] == pytest.approx(found[1].cuboid.top_m[0], abs=0.06)
+    other = RequestedObject("cup", (0.2, 2.2, 0.84), (0.2, 0.28, 0.2))
+    assert outlined(table, other, cup)[2].supporter == 0
 
 
 def test_large_objects_never_stand_on_others() -> None:
