@@ -217,7 +217,7 @@ def _better(
     contradicted = gap > _tolerance(scene, item, edge, noise) or unusual
     options = []
     for other in _candidates(scene, library, item):
-        odd = 0.0 if noise.measured else UNUSUAL_M * _is_odd_company(scene, item, other)
+        odd = UNUSUAL_M * (_holds_nothing(scene, other) if noise.measured else _is_odd_company(scene, item, other))
         if other.parent == edge.parent or closes_cycle({s.child: s for s in scene.supports}, item.id, other.parent):
             continue
         cost, limit = _gap(scene, library, item, other) + odd, _tolerance(scene, item, other, noise)
@@ -312,9 +312,16 @@ def _is_odd_company(scene: Scene, item: SceneObject, edge: Support) -> bool:
     """Whether an edge puts an object on what hardly ever carries its kind."""
     if not scene.has_object(edge.parent):
         return False
+    seldom = often_carried(item.category, scene.object(edge.parent).category) <= SELDOM_CARRIED
+    return seldom or _holds_nothing(scene, edge)
+
+
+def _holds_nothing(scene: Scene, edge: Support) -> bool:
+    """Whether an edge puts something on a thing that people put on others and nothing on: on the foot of a monitor."""
+    if not scene.has_object(edge.parent):
+        return False
     carrier = taxonomy.resolve(scene.object(edge.parent).category).category
-    small = carrier.mount == "surface" and not carrier.supports_objects and carrier.name not in STACKED_ON
-    return small or often_carried(item.category, carrier.name) <= SELDOM_CARRIED
+    return carrier.mount == "surface" and not carrier.supports_objects and carrier.name not in STACKED_ON
 
 
 def _entered(scene: Scene, library: ShapeLibrary, item: SceneObject, edge: Support, *, sits: bool) -> dict[str, float]:

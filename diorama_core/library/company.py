@@ -71,6 +71,12 @@ CARRIED_KINDS: frozenset[str] = frozenset(kind for row in CARRIED for kind in ro
 STACKED_ON: frozenset[str] = with_kin("books", "box", "tray", "plate")
 """Small things that lie on others and on which others are put."""
 
+WITH_BOARDS: frozenset[str] = with_kin(
+    "bookshelf", "shelves", "cabinet", "tv stand", "desk", "wardrobe", "night stand", "sideboard", "coffee table",
+    "side table",
+)  # fmt: skip
+"""Furniture in which things are found as well as on it: on boards below its top."""
+
 SELDOM_CARRIED, HARDLY_CARRIED = 0.3, 0.08
 """The same of kinds that lie on things and are not named, and of those that stand on floors or hang."""
 

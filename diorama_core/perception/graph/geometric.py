@@ -13,7 +13,7 @@ import numpy as np
 from jaxtyping import Float
 
 from diorama_core.artefacts import DetectedObject, Inputs, ObjectGeometry, SceneGraph
-from diorama_core.library.company import STACKED_ON
+from diorama_core.library.company import STACKED_ON, WITH_BOARDS
 from diorama_core.library.taxonomy import UNKNOWN, Category
 from diorama_core.perception.graph.object_observations import Observed, observed
 from diorama_core.progress import Progress
@@ -42,9 +42,9 @@ _BELOW_WEIGHT = 3.0
 """Of what is seen just below the object."""
 _BELIEF_COST = 1.5
 """Of contradicting the geometry stage."""
+_WITHIN_RUG = 3.0
+"""What standing within a rug speaks for being on it, against the floor."""
 _RUGS = frozenset({"rug"})
-_OPEN = frozenset({"bookshelf", "shelves", "cabinet", "tv stand", "desk", "wardrobe", "night stand", "sideboard"})
-"""Objects are found inside these."""
 
 
 @dataclass(frozen=True)
@@ -131,7 +131,7 @@ def _carried_cost(obj: Observed, other: Observed) -> float:
     seat = other.category.seat_height_m
     if seat is not None and seat < other.top_m:
         levels.append((seat, _INNER_GAP_M, 0.0))
-    if other.category.name in _OPEN and other.bottom_m + 0.05 < obj.bottom_m < other.top_m - 0.05:
+    if other.category.name in WITH_BOARDS and other.bottom_m - 0.05 < obj.bottom_m < other.top_m - 0.05:
         levels.append((obj.bottom_m, _INNER_GAP_M, 0.8))
     gap = min(_gap_cost(abs(obj.bottom_m - z), usual) + extra for z, usual, extra in levels)
     outside = _outside(obj.footprint, other.footprint)
@@ -141,10 +141,11 @@ def _carried_cost(obj: Observed, other: Observed) -> float:
 
 
 def _on_rug_cost(obj: Observed, rug: Observed) -> float:
-    """A rug carries what stands within it, at the floor's height."""
+    """A rug carries what stands within it, at the floor's height, where nothing else is seen just below."""
     outside = _outside(obj.footprint, rug.footprint)
     on_rug = obj.below.get(rug.id, 0.0)
-    return float(_gap_cost(max(obj.bottom_m, 0.0), _FLOOR_GAP_M) - 3.0 + 8.0 * outside + _BELOW_WEIGHT * (1 - on_rug))
+    within = _WITHIN_RUG * min(on_rug + obj.hidden_below, 1.0)
+    return float(_gap_cost(max(obj.bottom_m, 0.0), _FLOOR_GAP_M) - within + 8.0 * outside + _BELOW_WEIGHT * (1 - on_rug))
 
 
 def _outside(child: Float[np.ndarray, "2 2"], parent: Float[np.ndarray, "2 2"]) -> float:

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from jaxtyping import Float
 
+from diorama_core.library.company import WITH_BOARDS
 from diorama_core.library.taxonomy import AGAINST_WALLS, PORTABLE, UNKNOWN, with_kin
 from diorama_core.perception.metrology.box_observations import BoxObservations
 from diorama_core.perception.metrology.priors import (
@@ -40,7 +41,6 @@ _BACK_SHARE = {("bed", "pillow"): 0.45}
 _SEATS = frozenset({"pillow", "toy", "books", "laptop", "basket", "box"})
 _ODD_ON_SEAT_COST = 6.0
 """Of anything else lying on a seat or a bed: one in twenty."""
-_SHELVED = with_kin("bookshelf", "shelves", "tv stand", "cabinet", "desk", "night stand", "side table", "coffee table")
 _USUAL_MIDDLE_M = {
     "picture": 1.5,
     "mirror": 1.45,
@@ -176,7 +176,7 @@ def _levels(observations: BoxObservations, parent: int, tall: float, odd: bool) 
             leaning,
             (tall, _SEAT_SIGMA_M, cost + (_ODD_ON_BACK_COST if odd else _BACK_COST)),
         ]
-    if category.name in _SHELVED:
+    if category.name in WITH_BOARDS:
         inner = [(share * tall, 0.06 * tall, _INNER_LEVEL_COST) for share in (0.15, 0.4, 0.65)]
         return [top, *inner]
     if category is UNKNOWN:
