@@ -19,7 +19,7 @@ from diorama_core.geometry.silhouette import PoseBatch
 from diorama_core.library.catalogue import default_cache_dir
 from diorama_core.library.hyponyms import is_named
 from diorama_core.library.record import Shape, ShapeLibrary
-from diorama_core.library.taxonomy import NEVER_OPEN, UNKNOWN, category, with_kin
+from diorama_core.library.taxonomy import NEVER_OPEN, UNKNOWN, Mount, category, with_kin
 from diorama_core.progress import Progress
 from diorama_core.retrieval.appearance_similarity import (
     EMBEDDED_FEATURES,
@@ -48,7 +48,7 @@ _MIN_SIMILARITY = 0.25
 _GUESSED_SIZE = 0.5
 """Reduced weight of a size that was not observed but taken from the category's prior."""
 _MIN_VOICE = 0.1
-_MOUNTS = {"wall": ("wall",), "ceiling": ("ceiling",)}
+_MOUNTS: Mapping[str, tuple[Mount, ...]] = {"wall": ("wall",), "ceiling": ("ceiling",)}
 _OTHER_MOUNT, _OTHER_MOUNT_OF_UNNAMED = 0.1, 0.5
 """How likely a thing is of a kind that is held otherwise than it is; what holds one without a name is guessed too."""
 _KINDS, _KINDS_OF_UNNAMED = 3, 7
@@ -242,12 +242,22 @@ def _senses(
     parent_of = {s.child: s.parent for s in geometry.supports}
     found: list[Mapping[str, float]] = []
     for item, cuboid, senses in zip(objects, cuboids, by_box, strict=True):
-        mounts = _MOUNTS.get(parent_of.get(item.id, "floor"), ("floor", "surface"))
         named = is_named(item.label)
+        mounts = _mounts_at(parent_of.get(item.id), named=named)
         other = _OTHER_MOUNT if named else _OTHER_MOUNT_OF_UNNAMED
         sized = as_measured(senses, cuboid.size_m) if named else senses
         found.append({kind: p * (1.0 if category(kind).mount in mounts else other) for kind, p in sized.items()})
     return with_neighbours(found, objects, cuboids, geometry.supports)
+
+
+def _mounts_at(parent: str | None, *, named: bool) -> tuple[Mount, ...]:
+    """How kinds are held of which something is that the geometry found there.
+
+    What a person calls a pillow may lie on the floor; what nobody named is likelier something that stands there.
+    """
+    if parent == "floor" and not named:
+        return ("floor",)
+    return _MOUNTS.get(parent or "", ("floor", "surface"))
 
 
 def _mean_senses(senses: Sequence[Mapping[str, float]]) -> dict[str, float]:

@@ -10,7 +10,8 @@ import pytest
 from diorama_core.artefacts import LabelledBox
 from diorama_core.geometry.see_through import SeeThrough
 from diorama_core.progress import Progress
-from diorama_core.retrieval.hierarchical import HierarchicalRetrieval, _best
+from diorama_core.retrieval.hierarchical import HierarchicalRetrieval, _best, _senses
+from diorama_core.scene.types import Support
 from tests.pose.rooms import LIBRARY, Room, camera_at, random_room, standing
 
 STAGE = HierarchicalRetrieval(LIBRARY)
@@ -60,6 +61,20 @@ def test_an_unnamed_object_is_taken_for_something_of_its_size_plain_boxes_among_
     found = STAGE.retrieve(room.inputs, objects, room.geometry, Progress())
     assert "carton" in [shape for shape, _ in found[0].ranked[:2]]
     assert len(found[1].ranked) > 1
+
+
+@pytest.mark.parametrize(("label", "parent", "lies"), [("thing", "floor", False), ("thing", "sofa_1", True)])
+def test_what_nobody_named_and_stands_on_the_floor_is_less_likely_of_a_kind_that_lies_on_others(
+    label: str, parent: str, *, lies: bool
+) -> None:
+    room = Room(camera_at(), (standing("carton", 0.0, 3.0, 10.0),), (0,))
+    seen = (("pillow", 0.5), ("ottoman", 0.5))
+    item = replace(room.objects[0], category="object", label=label, looks_like=seen)
+    held = replace(room.geometry, supports=(Support(item.id, parent),))
+    floor = replace(room.geometry, supports=())
+    senses, plain = (_senses((item,), room.geometry.cuboids, g)[0] for g in (held, floor))
+    ratio = (senses["pillow"] / senses["ottoman"]) / (plain["pillow"] / plain["ottoman"])
+    assert ratio == pytest.approx(1.0 if lies else 0.5)
 
 
 def test_alike_objects_share_their_best_shape() -> None:

@@ -145,7 +145,9 @@ def _on_rug_cost(obj: Observed, rug: Observed) -> float:
     outside = _outside(obj.footprint, rug.footprint)
     on_rug = obj.below.get(rug.id, 0.0)
     within = _WITHIN_RUG * min(on_rug + obj.hidden_below, 1.0)
-    return float(_gap_cost(max(obj.bottom_m, 0.0), _FLOOR_GAP_M) - within + 8.0 * outside + _BELOW_WEIGHT * (1 - on_rug))
+    return float(
+        _gap_cost(max(obj.bottom_m, 0.0), _FLOOR_GAP_M) - within + 8.0 * outside + _BELOW_WEIGHT * (1 - on_rug)
+    )
 
 
 def _outside(child: Float[np.ndarray, "2 2"], parent: Float[np.ndarray, "2 2"]) -> float:

@@ -8,7 +8,7 @@ import numpy as np
 from jaxtyping import Float
 
 from diorama_core.library.company import WITH_BOARDS
-from diorama_core.library.taxonomy import AGAINST_WALLS, PORTABLE, UNKNOWN, with_kin
+from diorama_core.library.taxonomy import AGAINST_WALLS, PORTABLE, UNKNOWN
 from diorama_core.perception.metrology.box_observations import BoxObservations
 from diorama_core.perception.metrology.priors import (
     SizeMode,
