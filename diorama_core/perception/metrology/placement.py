@@ -137,9 +137,8 @@ def place_all(observations: BoxObservations, view: View, height_m: float) -> tup
     carriers = {**floor, **{i: best[i] for i in hung if i in best}}
     best = _cheaper(best, _supported(observations, view, height_m, carriers, room, others))
     needed = {p.supporter for p in best.values() if p.supporter >= 0}
-    best |= {i: carriers[i] for i in needed}
-    best = _cheaper(best, _stacked(observations, view, height_m, best))
-    return tuple(best[i] for i in range(len(observations)))
+    stacked = _stacked(observations, view, height_m, {**best, **{i: carriers[i] for i in needed}})
+    return tuple(stacked[i] for i in range(len(observations)))
 
 
 def _not_through_tops(
@@ -267,15 +266,17 @@ def _supported(
 def _stacked(
     observations: BoxObservations, view: View, height_m: float, placed: Mapping[int, Placement]
 ) -> dict[int, Placement]:
-    """The cheapest way to put small things on small things that lie on others: a cup on books."""
-    best: dict[int, Placement] = {}
-    for index in range(len(observations)):
+    """The same with small things on small things that lie on others, where that is cheaper: a cup on books."""
+    found, holding = dict(placed), {p.supporter for p in placed.values()}
+    for index in np.argsort(-observations.box_px[:, 3], kind="stable").tolist():  # what is below first
         below = _small_carrier(observations, index)
-        if below is None or placed[below].supporter < 0:
+        if below is None or found[below].supporter < 0 or index in holding:
             continue
-        rows = place_on(observations, index, below, placed[below].cuboid, height_m, _STACKED_COST)
-        best[index] = readings_of(solve_all(rows, view), observations, view)[index].placement(0, below)
-    return best
+        rows = place_on(observations, index, below, found[below].cuboid, height_m, _STACKED_COST)
+        on_it = readings_of(solve_all(rows, view), observations, view)[index].placement(0, below)
+        if on_it.cost < found[index].cost:
+            found[index] = on_it
+    return found
 
 
 def _small_carrier(observations: BoxObservations, index: int) -> int | None:
