@@ -222,15 +222,7 @@ def _better(
             continue
         cost, limit = _gap(scene, library, item, other) + odd, _tolerance(scene, item, other, noise)
         cost = min(cost, inside) if other.parent in entered else cost
-        beneath = scene.support_of(other.parent)
-        between = beneath is not None and beneath.parent == edge.parent and edge.relation == "placed on"
-        between = between and (
-            _is_over(scene, library, item, other, limit)
-            and (_is_set_down(item) or _is_thin(scene, other.parent, limit))
-            if noise.measured
-            else _is_thin(scene, other.parent, limit)
-            and (carries_things(scene.object(other.parent)) or _is_over(scene, library, item, other))
-        )
+        between = _is_between(scene, library, item, edge, other, noise)
         # Against a measured gap that is many times as large, a foot that is hidden does not count.
         reached = np.inf if noise.measured else max(limit, UNUSUAL_M * unusual)
         most = (
@@ -241,6 +233,23 @@ def _better(
         if cost <= max(most, inside):
             options.append((cost, other.parent, other))
     return min(options, key=lambda option: option[:2])[2] if options else None
+
+
+def _is_between(
+    scene: Scene, library: ShapeLibrary, item: SceneObject, edge: Support, other: Support, noise: ObservationNoise
+) -> bool:
+    """Whether what an edge puts an object on lies on the object's supporter and, right under it, hardly higher.
+
+    Measured, the lowest board of a shelf is such a place too, for what people set down.
+    """
+    beneath = scene.support_of(other.parent)
+    if edge.relation != "placed on" or beneath is None or beneath.parent != edge.parent:
+        return False
+    limit = _tolerance(scene, item, other, noise)
+    thin = _is_thin(scene, other.parent, limit)
+    if noise.measured:
+        return (thin or _is_set_down(item)) and _is_over(scene, library, item, other, limit)
+    return thin and (carries_things(scene.object(other.parent)) or _is_over(scene, library, item, other))
 
 
 def _may_stand(
