@@ -138,7 +138,8 @@ def _placed(structure: Structure, problem: Problem, i: int) -> Surface | None:
 def _wall_rows(problem: Problem, structure: Structure, bodies: Bodies, J: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Every object stays in front of the walls it could reach, as far as those were seen.
 
-    Round the corner of a wall that stands into the room an object is behind that wall's plane and rightly so.
+    Round the corner of a wall that stands into the room an object is behind that wall's plane and rightly so: one whose
+    middle is there, although it reaches behind the wall itself, and one that only passes the wall's end.
     """
     rows, need = [np.zeros((0, J.shape[2]))], [np.zeros(0)]
     fixed = {(i, w) for i, w, _ in problem.adheres}

@@ -127,7 +127,7 @@ class Problem:
     def walls_near(self, index: int) -> tuple[Plane, ...]:
         """The seen walls that an object could reach, beyond their ends too, and before which it was observed.
 
-        The one it is on is left out.
+        The one it is on is left out, and those whose ends it passes.
         """
         found = []
         radius = 0.5 * float(np.linalg.norm(self.shape_size[index] * self.scale[index]))
@@ -141,10 +141,12 @@ class Problem:
         return tuple(found)
 
     def passes(self, wall: Plane, index: int) -> bool:
-        """Whether an object lies in the room where it is behind a wall's plane: beside the end of a wall that stands
-        into the room."""
-        corners = self.p[index] + (_BOX_GRID * self.shape_size[index] * self.scale[index]) @ self.R[index].T
-        behind = corners[corners @ wall.normal < wall.offset - BEHIND_M]
+        """Whether an object is beside the end of a wall that stands into the room.
+
+        What of it is behind the wall's plane is in the room then, round the corner.
+        """
+        points = self.p[index] + (_BOX_GRID * self.shape_size[index] * self.scale[index]) @ self.R[index].T
+        behind = points[points @ wall.normal < wall.offset - BEHIND_M]
         surface = plane_surface(wall)
         beside = (behind @ surface.outward.T - surface.offset).max(axis=1) > -BEHIND_M
         return len(behind) > 0 and bool((beside & in_polygon(behind[:, :2], self.floor_outline)).all())
