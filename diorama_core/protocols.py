@@ -3,7 +3,7 @@
 ```
 (Photo -> recognition -> detection, depth prediction ->)
 Inputs -> camera -> objects (-> naming) -> geometry (-> graph) -> architecture -> depth -> retrieval -> pose
--> Scene -> layout
+-> Scene -> layout (-> refinement)
 ```
 
 With measured depth, camera and geometry read it; from a photo alone they reason from vanishing points, contact
@@ -364,6 +364,37 @@ class LayoutStage(Protocol):
         Returns:
             The scene with other poses, and a report: costs by name before and after, seconds, and reasons where
             something could not be achieved.
+
+        Raises:
+            Cancelled: on request; the scene that was given is unchanged.
+            LibraryError: a shape cannot be read.
+        """
+        ...
+
+
+@runtime_checkable
+class RefinementStage(Protocol):
+    """Fits a finished layout to the picture."""
+
+    def refine(
+        self,
+        scene: Scene,
+        report: LayoutReport,
+        observed: Scene,
+        objects: Sequence[DetectedObject],
+        progress: Progress,
+    ) -> tuple[Scene, LayoutReport]:
+        """Change poses so that the objects, seen together, agree better with their masks.
+
+        Args:
+            scene: after the layout; objects that are `locked` stay where they are.
+            report: of the layout.
+            observed: the scene before the layout, with the same objects.
+            objects: what was detected in the photo; the ids are those of the scene's objects.
+            progress: reports and cancellation.
+
+        Returns:
+            The scene with other poses, and the report of its layout as it is then.
 
         Raises:
             Cancelled: on request; the scene that was given is unchanged.

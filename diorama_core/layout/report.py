@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
-from jaxtyping import Float
+from jaxtyping import Bool, Float
 
 from diorama_core.geometry.sat import pair_axes, place_bodies
 from diorama_core.layout import gradients
@@ -32,7 +32,8 @@ def measure(
     boxes per object, tucked chairs included. `moved_m`: mean distance from the observed positions. `e_...`: the
     published costs.
     """
-    aligned, placed, inside = _structure(problem, R, p, scale)
+    supported = [surface is not None for surface in problem.surface]
+    aligned, placed, inside = held(problem, R, p, scale)[supported].T
     depths = part_overlaps(problem, R, p, scale)
     moved = np.linalg.norm(p - problem.p, axis=1)
     return {
@@ -86,10 +87,13 @@ def _share(good: np.ndarray) -> float:
     return float(good.mean()) if len(good) else 1.0
 
 
-def _structure(
-    problem: Problem, R: np.ndarray, p: np.ndarray, scale: np.ndarray
-) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Whether each supported object is aligned, placed and inside its support."""
+def held(
+    problem: Problem,
+    R: Float[np.ndarray, "n 3 3"],
+    p: Float[np.ndarray, "n 3"],
+    scale: Float[np.ndarray, "n 3"],
+) -> Bool[np.ndarray, "n 3"]:
+    """Whether each object is aligned with its support, on it and inside its bounds; so where nothing supports it."""
     volumes = Volumes.of(problem)
     here, supported = volumes.at(R, p, scale), volumes.supported
     size, contact = problem.shape_size[supported] * scale[supported], problem.contact[supported]
@@ -103,7 +107,10 @@ def _structure(
     past = np.matmul(here.outward, centre[..., None])[..., 0] + reach - here.offset
     half = 0.5 * (np.abs(np.matmul(here.normal[:, None, :], own)[:, 0]) * size).sum(axis=1)
     top = (p[supported] * here.normal).sum(axis=1) - here.level + half
-    return aligned, placed, (past <= INSIDE_M).all(axis=1) & (top <= here.clearance + INSIDE_M)
+    inside = (past <= INSIDE_M).all(axis=1) & (top <= here.clearance + INSIDE_M)
+    found = np.ones((problem.count, 3), dtype=bool)
+    found[supported] = np.column_stack([aligned, placed, inside])
+    return found
 
 
 def _box_overlap(problem: Problem, R: np.ndarray, p: np.ndarray, scale: np.ndarray) -> float:
@@ -122,14 +129,21 @@ def part_overlaps(
     R: Float[np.ndarray, "n 3 3"],
     p: Float[np.ndarray, "n 3"],
     scale: Float[np.ndarray, "n 3"],
+    *,
+    only: int | None = None,
 ) -> dict[tuple[int, int], float]:
-    """Depth in metres by which convex parts of two objects overlap, for the pairs that do; supporters left out."""
+    """Depth in metres by which convex parts of two objects overlap, for the pairs that do; supporters left out.
+
+    With `only`, the pairs of this one object.
+    """
     bodies = place_bodies(problem.packed, R, p, scale)
     if not problem.count:
         return {}
     starts = np.searchsorted(bodies.owner, np.arange(problem.count))
     low, high = np.minimum.reduceat(bodies.low, starts), np.maximum.reduceat(bodies.high, starts)
     near = ((low[:, None] < high[None]) & (low[None] < high[:, None])).all(axis=2) & ~problem.kin
+    if only is not None:
+        near &= (np.arange(problem.count) == only)[:, None] | (np.arange(problem.count) == only)
     near_parts = np.triu(near, 1)[bodies.owner[:, None], bodies.owner[None]]
     near_parts &= ((bodies.low[:, None] < bodies.high[None]) & (bodies.low[None] < bodies.high[:, None])).all(axis=2)
     a, b = np.nonzero(near_parts)

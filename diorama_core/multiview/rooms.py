@@ -332,6 +332,7 @@ def _with_joint_cuboids(read: ReadPhoto, index: int, tracks: Sequence[Track]) ->
         objects=GivenObjects(objects),
         geometry=GivenCuboids(read.camera, cuboids),
         layout=AsObserved(),
+        refinement=None,
     )
 
 

@@ -36,4 +36,5 @@ def acdc_stages(base: Stages, has_depth: bool, library: ShapeLibrary) -> Stages:
         retrieval=MatchedByLooks(library, similarity),
         pose=DiscreteTurns(views),
         layout=Settled(),
+        refinement=None,
     )

@@ -151,8 +151,14 @@ def build_scene(
         if observed.objects:
             step = progress.part(0.85, 1.0)
             step.report(0.0, "layout…")
-            scene, report = stages.layout.optimise(observed, step, preview)
+            scene, report = stages.layout.optimise(observed, step.part(0.0, 0.5), preview)
             runner.runs.append(StageRun("layout", repr(stages.layout), report.seconds, cached=False))
+            if stages.refinement is not None:
+                step.report(0.5, "refinement…")
+                settled_s, seen_objects = report.seconds, found["furniture_objects"]
+                scene, report = stages.refinement.refine(scene, report, observed, seen_objects, step.part(0.5, 1.0))
+                took = report.seconds - settled_s
+                runner.runs.append(StageRun("refinement", repr(stages.refinement), took, cached=False))
             scene = set_metrics(scene, report.after)
         appearance = seen.result()
         textures = {name: picture for name, picture in textures.items() if name not in moved} | repainted.result()

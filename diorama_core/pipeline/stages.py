@@ -9,6 +9,7 @@ from diorama_core.architecture.single_view.stage import PhotoRoom
 from diorama_core.architecture.texture.empty_room import EmptyRoomFiller
 from diorama_core.artefacts import Inputs
 from diorama_core.layout.recipes import recipe as layout_recipe
+from diorama_core.layout.refinement.stage import MaskRefinement
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.perception.camera.estimate import EmbeddedCamera
 from diorama_core.perception.camera.given_attitude import with_given_attitude
@@ -32,6 +33,7 @@ from diorama_core.protocols import (
     ObjectStage,
     PoseStage,
     RecognitionStage,
+    RefinementStage,
     RetrievalStage,
 )
 from diorama_core.retrieval.hierarchical import HierarchicalRetrieval
@@ -52,7 +54,7 @@ class Stages:
     pose: PoseStage
     layout: LayoutStage
     recognition: RecognitionStage | None = None
-    """Names kinds of objects to detect; optional, as are the next five."""
+    """Names kinds of objects to detect; optional, as are the next six."""
     detection: DetectionStage | None = None
     """Proposes boxes where the user gave none."""
     depth_prediction: DepthPredictionStage | None = None
@@ -63,6 +65,8 @@ class Stages:
     """Says what objects look like; without it, words, sizes and places decide."""
     filler: EmptyRoomFiller | None = None
     """Inpaints furniture for the planes' textures; without it each plane is continued by itself."""
+    refinement: RefinementStage | None = None
+    """Fits the finished layout to the photo's masks; without it the layout stays as its recipe left it."""
 
 
 @dataclass(frozen=True)
@@ -87,4 +91,5 @@ def embedded_stages(inputs: Inputs, library: ShapeLibrary, *, recipe: str = DEFA
         layout=layout_recipe(recipe, library, depth_measured=measured, sizes_reasoned=not measured),
         graph=GeometricGraph() if measured else None,
         naming=own_naming(),
+        refinement=MaskRefinement.of(library, depth_measured=measured) if recipe == DEFAULT_RECIPE else None,
     )

@@ -82,7 +82,7 @@ def test_correcting_nothing_gives_the_same_scene_byte_for_byte(room: Room) -> No
 
     again = build_project(project, inputs, LIBRARY)
     assert project.scene_path.read_bytes() == scene_file
-    assert all(run.cached for run in again.runs if run.stage != "layout")
+    assert all(run.cached for run in again.runs if run.stage not in ("layout", "refinement"))
 
     assert len(built.scene.objects) == 3
     for item in built.objects:
@@ -150,4 +150,4 @@ def test_every_step_takes_what_an_earlier_one_gives() -> None:
         assert step.gives not in known
         known.add(step.gives)
     fields = set(Stages.__dataclass_fields__)
-    assert {s.name for s in PLAN if isinstance(s, StageStep)} == fields - {"layout", "filler"}
+    assert {s.name for s in PLAN if isinstance(s, StageStep)} == fields - {"layout", "refinement", "filler"}

@@ -251,7 +251,7 @@ def build_case(
             stages = way.stages(inputs, searched)
         if "shape" in way.truth:  # the true shapes are not among those searched
             everything = embedded_stages(inputs, library)
-            stages = replace(stages, pose=everything.pose, layout=everything.layout)
+            stages = replace(stages, pose=everything.pose, layout=everything.layout, refinement=everything.refinement)
         stages = substituted(stages, view, way.truth)
         known = library if "shape" in way.truth else searched
         built = build_scene(inputs, known, stages=stages, progress=Progress(token=progress.token))

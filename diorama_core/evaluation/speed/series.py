@@ -28,7 +28,18 @@ from diorama_core.synthesis.cameras import sample_cameras
 from diorama_core.synthesis.layout_rooms import box_library, generate_room
 from diorama_core.synthesis.truth import Studio
 
-STAGES = ("camera", "objects", "geometry", "graph", "architecture", "depth", "retrieval", "pose", "layout")
+STAGES = (
+    "camera",
+    "objects",
+    "geometry",
+    "graph",
+    "architecture",
+    "depth",
+    "retrieval",
+    "pose",
+    "layout",
+    "refinement",
+)
 MEGAPIXELS, OBJECTS, SHAPES = "megapixels", "objects", "shapes"
 FEATURES = 512
 """Numbers in a shape's feature, as the picture networks give."""

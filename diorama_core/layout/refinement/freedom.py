@@ -1,0 +1,102 @@
+"""How an object may still move, grow and turn where it rests, and poses near its own that keep to that."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from jaxtyping import Bool, Float
+
+from diorama_core.geometry.planes import plane_axes
+from diorama_core.geometry.rotations import yaw_rotations
+from diorama_core.geometry.silhouette import PoseBatch
+from diorama_core.layout.problem.problem import Problem
+from diorama_core.layout.problem.supports import Surface, is_wall_like
+
+_TURN_SHARE = 2.0
+"""An object turns by so many radians for a step by the whole of its distance."""
+_MIN_SLOPE = 0.3
+"""Directions that a wall leaves less of than this are given up."""
+
+
+@dataclass(frozen=True, eq=False)
+class Freedom:
+    """What the support and the walls of an object leave it."""
+
+    directions: Float[np.ndarray, "d 3"]
+    """Unit, world: along its support, and along the walls that it touches."""
+    pinned: Float[np.ndarray, "3"]
+    """Point of its box, in half extents, that touches supports and walls and stays put when it is resized."""
+    resized: Bool[np.ndarray, "3"]
+    """Which of its extents may change."""
+    turns: bool
+    """Whether it may turn about the vertical."""
+
+    def steps(self, move_m: float, share: float) -> Float[np.ndarray, "k f"]:
+        """No change, then one step either way for every freedom, and for all extents together.
+
+        Args:
+            move_m: length of a step along a direction.
+            share: by which an extent changes in a step; a turn is in proportion.
+        """
+        extents = int(self.resized.sum())
+        length = [*len(self.directions) * [move_m], *extents * [share], *int(self.turns) * [_TURN_SHARE * share]]
+        single = np.diag(length)
+        as_a_whole = np.zeros((int(extents > 1), len(length)))
+        as_a_whole[:, len(self.directions) : len(self.directions) + extents] = share
+        ways = np.concatenate([single, as_a_whole])
+        return np.concatenate([np.zeros((1, len(length))), ways, -ways])
+
+    def poses(
+        self,
+        R: Float[np.ndarray, "3 3"],
+        p: Float[np.ndarray, "3"],
+        scale: Float[np.ndarray, "3"],
+        size: Float[np.ndarray, "3"],
+        changes: Float[np.ndarray, "k f"],
+    ) -> PoseBatch:
+        """The poses that differ so from one.
+
+        Args:
+            R: its rotation.
+            p: its centre.
+            scale: its scale.
+            size: extents of the object at scale 1.
+            changes: metres along the directions, logarithms of the extents that may change, and the turn in radians.
+        """
+        count = len(changes)
+        along, grown, turn = np.split(changes, np.cumsum([len(self.directions), int(self.resized.sum())]), axis=1)
+        rotations = yaw_rotations(turn[:, 0]) @ R if self.turns else np.tile(R, (count, 1, 1))
+        scales = np.tile(scale, (count, 1))
+        scales[:, self.resized] *= np.exp(grown)
+        shift = np.einsum("kij,kj->ki", rotations, self.pinned * size * (scales - scale) / 2)
+        return PoseBatch(rotations, p + along @ self.directions - shift, scales)
+
+
+def freedom(problem: Problem, i: int, surface: Surface, *, sized: bool) -> Freedom:
+    """What is left to an object of a layout that is settled.
+
+    Args:
+        problem: the settled layout.
+        i: index of the object.
+        surface: where it rests, in the world.
+        sized: whether its size is not its own to change.
+    """
+    walls = [(problem.walls[w], face) for k, w, face in problem.adheres if k == i]
+    grounded = bool(problem.grounded[i])
+    directions = list(plane_axes(surface.normal))[: 1 if grounded else 2]
+    for wall, _ in walls:
+        level = [d - float(d @ wall.normal) * wall.normal for d in directions]
+        directions = [d / np.linalg.norm(d) for d in level if np.linalg.norm(d) > _MIN_SLOPE]
+        if len(directions) == 2 and abs(float(directions[0] @ directions[1])) > 1.0 - _MIN_SLOPE:
+            directions = directions[:1]
+    pinned = problem.contact[i] + sum((face for _, face in walls), np.zeros(3))
+    pinned[2] -= float(grounded)
+    loaded = bool((problem.parent == i).any())
+    upright = np.abs(problem.contact[i]) > 0.5
+    return Freedom(
+        np.array(directions).reshape(-1, 3),
+        np.clip(pinned, -1.0, 1.0),
+        np.zeros(3, dtype=bool) if sized else ~upright if loaded else np.ones(3, dtype=bool),
+        turns=not walls and not loaded and not is_wall_like(surface) and bool(upright[2]),
+    )

@@ -1,0 +1,63 @@
+"""How far another pose of an object is from what was observed of it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from jaxtyping import Float
+
+from diorama_core.geometry.silhouette import PoseBatch
+from diorama_core.scene.types import Pose
+
+WEIGHT = 0.005
+"""What one standard deviation counts, against the whole agreement of one mask."""
+OUTLIER = 5.0
+"""Farther than so many standard deviations away, where the layout had to put an object, costs no more."""
+TURN_RAD = 0.1
+"""Standard deviation of an observed turn."""
+
+
+@dataclass(frozen=True)
+class Precision:
+    """Standard deviations of what was observed of an object."""
+
+    distance_m: float
+    """Of its distance from the camera, in metres."""
+    distance_share: float
+    """The same as a share of the distance."""
+    size_share: float
+    """Of each of its extents."""
+    sizes_follow: bool
+    """Whether sizes follow distances, because a photo alone gave both."""
+
+
+MEASURED = Precision(distance_m=0.01, distance_share=0.0, size_share=0.03, sizes_follow=False)
+"""With measured depth."""
+REASONED = Precision(distance_m=0.0, distance_share=0.033, size_share=0.05, sizes_follow=True)
+"""From a photo alone."""
+
+
+@dataclass(frozen=True, eq=False)
+class PosePrior:
+    """One observed pose."""
+
+    eye: Float[np.ndarray, "3"]
+    """The camera's position."""
+    observed: Pose
+    precision: Precision
+
+    def cost(self, poses: PoseBatch) -> Float[np.ndarray, " p"]:
+        """Of other poses, in shares of the agreement of one mask."""
+        distance = float(np.linalg.norm(self.observed.position - self.eye))
+        nearer = np.log(np.linalg.norm(poses.position - self.eye, axis=1) / distance)
+        grown = np.log(poses.scale / self.observed.scale)
+        if self.precision.sizes_follow:
+            grown = grown - nearer[:, None]
+        cosine = (np.einsum("pij,ij->p", poses.R, self.observed.R_world_object) - 1.0) / 2.0
+        sigma = float(np.hypot(self.precision.distance_m / distance, self.precision.distance_share))
+        deviations = np.column_stack(
+            [nearer / sigma, np.arccos(np.clip(cosine, -1.0, 1.0)) / TURN_RAD, grown / self.precision.size_share]
+        )
+        squares = np.minimum(deviations**2, OUTLIER**2)
+        return WEIGHT * (squares[:, 0] + squares[:, 1] + squares[:, 2:].mean(axis=1))

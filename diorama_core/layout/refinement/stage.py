@@ -1,0 +1,118 @@
+"""Objects of a finished layout fitted to the photo's masks: they slide, turn and grow a little where they rest.
+
+Shapes were posed one by one, and supports, walls and neighbours have moved them since. Here all are seen together, each
+hiding what is behind it, and every step is one that the layout allows: contact stays, and nothing overlaps.
+"""
+
+from __future__ import annotations
+
+import time
+from collections import Counter
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from diorama_core.artefacts import DetectedObject, LayoutReport
+from diorama_core.geometry.silhouette import PoseBatch, ShapeCaster
+from diorama_core.layout.feasible.photo_observations import disagreements
+from diorama_core.layout.problem.problem import Problem, build_problem
+from diorama_core.layout.refinement.pixel_grid import PixelGrid
+from diorama_core.layout.refinement.posed_picture import PosedPicture
+from diorama_core.layout.refinement.prior import MEASURED, REASONED, PosePrior, Precision
+from diorama_core.layout.refinement.search import Search
+from diorama_core.layout.report import measure
+from diorama_core.layout.what_got_worse import disagreement_in_words
+from diorama_core.library.record import ShapeLibrary
+from diorama_core.progress import Progress
+from diorama_core.scene import edits
+from diorama_core.scene.types import Camera, Scene
+
+TOUCHING_M = 0.004
+"""What is so near to a wall stays against it."""
+
+
+GIVEN = 1.0
+"""Confidence of a mask that a person gave: its box, which is drawn round it, says nothing more."""
+OUTLINED = 0.4
+"""What a mask counts that was found in a box; the box, which was drawn or looked at by a person, counts the rest."""
+
+
+@dataclass(frozen=True)
+class MaskRefinement:
+    """Moves objects within their supports until they cover their masks best."""
+
+    library: ShapeLibrary
+    precision: Precision
+
+    @classmethod
+    def of(cls, library: ShapeLibrary, *, depth_measured: bool) -> MaskRefinement:
+        """As is right for measured depth, or for a photo alone."""
+        return cls(library, MEASURED if depth_measured else REASONED)
+
+    def refine(
+        self,
+        scene: Scene,
+        report: LayoutReport,
+        observed: Scene,
+        objects: Sequence[DetectedObject],
+        progress: Progress,
+    ) -> tuple[Scene, LayoutReport]:
+        """The scene in poses that cover the masks better; see `protocols.RefinementStage`."""
+        begun = time.perf_counter()
+        detected = {o.id: o for o in objects}
+        problem = build_problem(scene, self.library, adherence_m=TOUCHING_M)
+        found = [detected.get(name) for name in problem.ids]
+        if scene.camera is None or all(item is None for item in found):
+            return scene, report
+        seen = [observed.object(name).pose for name in problem.ids]
+        priors = [PosePrior(scene.camera.position, pose, self.precision) for pose in seen]
+        picture = self._picture(scene, scene.camera, problem, found)
+        none = np.zeros(4)
+        boxes = np.array([none if o is None else o.box for o in found], dtype=np.float64)
+        trust = np.array([0.0 if o is None else _trust(o) for o in found])
+        poses = Search(problem, picture, priors, boxes, trust, _in_sets(observed, problem.ids)).poses(progress)
+        as_observed = replace(
+            problem,
+            R=np.array([pose.R_world_object for pose in seen]),
+            p=np.array([pose.position for pose in seen]),
+            scale=np.array([pose.scale for pose in seen]),
+        )
+        seconds = report.seconds + time.perf_counter() - begun
+        refined = edits.place(scene, problem.poses(poses.R, poses.position, poses.scale))
+        return refined, _updated(replace(report, seconds=seconds), as_observed, scene.camera, poses)
+
+    def _picture(
+        self, scene: Scene, camera: Camera, problem: Problem, found: Sequence[DetectedObject | None]
+    ) -> PosedPicture:
+        masks = [None if item is None else item.mask for item in found]
+        height, width = next(mask.shape for mask in masks if mask is not None)
+        grid = PixelGrid.of(camera, width, height)
+        shapes = [scene.object(name).shape_id for name in problem.ids]
+        casters = {name: ShapeCaster(self.library.mesh(name)) for name in set(shapes)}
+        poses = PoseBatch(problem.R, problem.p, problem.scale)
+        return PosedPicture.of(grid, grid.labels(masks), [casters[name] for name in shapes], poses)
+
+
+def _trust(found: DetectedObject) -> float:
+    """What a mask counts against the object's box."""
+    return 1.0 if found.mask_confidence == GIVEN else OUTLINED * found.mask_confidence
+
+
+def _in_sets(observed: Scene, ids: Sequence[str]) -> list[bool]:
+    """Whether each object is exactly as large as another of its shape: things of one set stay alike."""
+    sizes = {o.id: (o.shape_id, *o.pose.scale.tolist()) for o in observed.objects}
+    alike = Counter(sizes.values())
+    return [alike[sizes[name]] > 1 for name in ids]
+
+
+def _updated(report: LayoutReport, observed: Problem, camera: Camera, poses: PoseBatch) -> LayoutReport:
+    """The report of a layout whose objects are in other poses now."""
+    apart = disagreements(observed, camera, poses.R, poses.position, poses.scale)
+    outdated = set(map(disagreement_in_words, report.disagreements))
+    return replace(
+        report,
+        after=measure(observed, poses.R, poses.position, poses.scale),
+        reasons=(*(r for r in report.reasons if r not in outdated), *map(disagreement_in_words, apart)),
+        disagreements=apart,
+    )
