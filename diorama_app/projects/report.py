@@ -25,7 +25,7 @@ def write_arrangements(room: Reconstruction, count: int, progress: Progress) -> 
     assert room.project is not None
     assert room.built is not None
     assert room.stages is not None
-    observed, layout = room.built.observed, room.stages.layout
+    observed, layout, refinement = room.built.observed, room.stages.layout, room.stages.refinement
     similarity, names = EmbeddedSimilarity(room.library), ["scene.json"]
 
     def alike(a: str, b: str) -> float:
@@ -35,7 +35,10 @@ def write_arrangements(room: Reconstruction, count: int, progress: Progress) -> 
     for rank in range(1, different):
         if len(names) >= count:
             break
-        arranged, report = layout.optimise(arrangement(observed, rank, alike), replace(progress, start=0.0, end=1.0))
+        other, whole = arrangement(observed, rank, alike), replace(progress, start=0.0, end=1.0)
+        arranged, report = layout.optimise(other, whole)
+        if refinement is not None:
+            arranged, report = refinement.refine(arranged, report, other, room.built.objects, whole)
         if _overlaps(report) > _overlaps(room.layout):
             continue  # these shapes have no room beside one another here; the next may
         name = f"arrangements/scene_{len(names) + 1}.json"

@@ -15,6 +15,7 @@ from diorama_core.pipeline.runner import StageRun
 from diorama_core.pipeline.stages import embedded_stages
 from diorama_core.progress import Progress
 from diorama_core.project.storage import Project
+from diorama_core.protocols import RefinementStage
 from diorama_core.retrieval import appearance_similarity
 from diorama_core.scene.schema import scene_from_json
 from diorama_core.scene.types import Scene
@@ -47,14 +48,16 @@ def room(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
     monkeypatch.setattr(appearance_similarity, "EmbeddedSimilarity", Unlike)
     project: Project = make_project(tmp_path / "room")
 
-    def made(*pairs: int):
+    def made(*pairs: int, refinement: RefinementStage | None = None):
         built, library = replace(built_scene(furnished_scene()), runs=RUNS, notes=("a note",)), PlainLibrary()
         return Reconstruction(
             scene=replace(furnished_scene(), metrics=(("structure", 1.0),)),
             library=library,
             textures={},
             built=built,
-            stages=replace(embedded_stages(built.inputs, library), layout=CountingLayout(*pairs)),
+            stages=replace(
+                embedded_stages(built.inputs, library), layout=CountingLayout(*pairs), refinement=refinement
+            ),
             layout=LayoutReport("feasible", {}, {"overlapping_pairs": 1.0}, 0.1),
             project=project,
         )
@@ -71,6 +74,17 @@ def test_other_arrangements_are_written_unless_they_have_less_room(room) -> None
     second = scene_from_json((built.project.folder / names[1]).read_text())
     assert second.object("table_1").shape_id == "table_b"
     assert dict(second.metrics) == {"overlapping_pairs": 1.0}
+
+
+def test_other_arrangements_are_fitted_to_the_masks_as_the_first_one_is(room) -> None:
+    class Marking:
+        def refine(self, scene, report, observed, objects, progress):
+            assert [o.shape_id for o in observed.objects] == [o.shape_id for o in scene.objects]
+            return scene, replace(report, after={**report.after, "objects_seen": float(len(objects))})
+
+    built = room(1, 0, refinement=Marking())
+    second = scene_from_json((built.project.folder / write_arrangements(built, 2, Progress())[1]).read_text())
+    assert dict(second.metrics)["objects_seen"] == float(len(built.built.objects))
 
 
 def test_an_arrangement_in_which_more_overlaps_is_left_out(room) -> None:
