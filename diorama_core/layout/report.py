@@ -136,9 +136,9 @@ def part_overlaps(
 
     With `only`, the pairs of this one object.
     """
-    bodies = place_bodies(problem.packed, R, p, scale)
-    if not problem.count:
+    if not problem.count or (only is not None and not _has_neighbour(problem, only, R, p, scale)):
         return {}
+    bodies = place_bodies(problem.packed, R, p, scale)
     starts = np.searchsorted(bodies.owner, np.arange(problem.count))
     low, high = np.minimum.reduceat(bodies.low, starts), np.maximum.reduceat(bodies.high, starts)
     near = ((low[:, None] < high[None]) & (low[None] < high[:, None])).all(axis=2) & ~problem.kin
@@ -154,3 +154,11 @@ def part_overlaps(
             pair = (int(bodies.owner[block.a[k]]), int(bodies.owner[block.b[k]]))
             depths[pair] = max(depths.get(pair, 0.0), float(depth[k]))
     return depths
+
+
+def _has_neighbour(problem: Problem, i: int, R: np.ndarray, p: np.ndarray, scale: np.ndarray) -> bool:
+    """Whether the upright box around an object's parts meets that of another from which it should be apart."""
+    starts = np.searchsorted(problem.packed.owner, np.arange(problem.count))
+    reach = np.maximum.reduceat(np.abs(problem.packed.vertices).max(axis=1), starts) * scale
+    half = np.matmul(np.abs(R), reach[..., None])[..., 0]
+    return bool(((np.abs(p - p[i]) < half + half[i]).all(axis=1) & ~problem.kin[i]).any())

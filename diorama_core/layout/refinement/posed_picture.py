@@ -5,11 +5,31 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+import cv2
 import numpy as np
-from jaxtyping import Float, Float32, Int
+from jaxtyping import Bool, Float, Float32, Int
 
 from diorama_core.geometry.silhouette import PoseBatch, ShapeCaster
 from diorama_core.layout.refinement.pixel_grid import PixelGrid, Window
+
+_SLANTED = 3.0
+"""The depth of a slanted surface changes by up to so many times what the object moves by."""
+
+
+@dataclass(frozen=True, eq=False)
+class Rest:
+    """What is seen without one object."""
+
+    window: Window
+    """Where that object is seen."""
+    depth_m: Float32[np.ndarray, "h w"]
+    """Of the nearest other there; infinite for none."""
+    index: Int[np.ndarray, "h w"]
+    """Which one that is; -1 for none."""
+    pixels: Int[np.ndarray, " n"]
+    """That show each object, in the whole picture."""
+    right: Int[np.ndarray, " n"]
+    """Those of them that its mask covers, too."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -17,14 +37,8 @@ class Look:
     """One object in several poses among the others as they are."""
 
     index: int
-    window: Window
-    """Where the object is seen in any of the poses."""
-    depth_m: Float32[np.ndarray, "p h w"]
-    """Of the object alone there."""
-    pixels: Int[np.ndarray, "p n"]
-    """That show each object."""
-    right: Int[np.ndarray, "p n"]
-    """Those of them that its mask covers, too."""
+    poses: PoseBatch
+    rest: Rest
     agreement: Float[np.ndarray, "p n"]
     """Intersection over union of every object's pixels and its mask."""
     bounds_px: Float[np.ndarray, "p 4"]
@@ -53,7 +67,8 @@ class PosedPicture:
             own = poses[np.array([i])]
             window = grid.window(caster.bounds_px(grid.camera, own))
             if window is not None:
-                depth[i][window] = _cast(grid, caster, window, own)[0]
+                rays = grid.rays[window]
+                depth[i][window] = _cast(grid, caster, rays.reshape(-1, 3), own).reshape(rays.shape[:2])
         return cls(grid, wanted, casters, depth)
 
     def __post_init__(self) -> None:
@@ -67,53 +82,85 @@ class PosedPicture:
         return self._wanted_pixels
 
     def look(self, i: int, poses: PoseBatch) -> Look | None:
-        """What is seen of object i in several poses, of which the first is its present one; None where nothing is."""
+        """What is seen of object i in several poses near its present one, which is the first; None where nothing is."""
         bounds = self.casters[i].bounds_px(self.grid.camera, poses)
         window = self.grid.window(bounds)
         if window is None:
             return None
-        depth = _cast(self.grid, self.casters[i], window, poses)
-        nearest, behind, pixels, right = self._without(i, window)
-        wanted = self.wanted[window]
-        pixels, right = np.tile(pixels, (len(poses), 1)), np.tile(right, (len(poses), 1))
-        for k, covered in enumerate(depth < nearest):
-            lost = behind[covered]
-            pixels[k] -= self._counts(lost)
-            right[k] -= self._counts(lost[lost == wanted[covered]])
-            pixels[k, i], right[k, i] = len(lost), np.count_nonzero(wanted[covered] == i)
+        rest = self._without(i, window)
+        here = self.depth_m[i][window]
+        moved_px, moved_m, nearest_m = self._farthest_move(i, poses)
+        alone = np.abs(rest.depth_m - np.where(np.isfinite(here), here, 0.0)) > _SLANTED * moved_m
+        open_to_change = ~(alone & _inside(np.isfinite(here), moved_px)) & (rest.depth_m > nearest_m)
+        depth = np.repeat(here[None], len(poses), axis=0)
+        rays = self.grid.rays[window][open_to_change]
+        depth[1:, open_to_change] = _cast(self.grid, self.casters[i], rays, poses[1:])
+        seen = [self._with(i, rest, own) for own in depth]
+        pixels, right = np.array([p for p, _ in seen]), np.array([r for _, r in seen])
         agreement = right / np.maximum(pixels + self.wanted_pixels - right, 1)
-        return Look(i, window, depth, pixels, right, agreement, bounds)
+        return Look(i, poses, rest, agreement, bounds)
 
     def replace(self, look: Look, chosen: int) -> None:
         """Let the object of a look be seen in one of its poses from now on."""
-        i = look.index
+        i, window, rays = look.index, look.rest.window, self.grid.rays[look.rest.window]
+        own = _cast(self.grid, self.casters[i], rays.reshape(-1, 3), look.poses[np.array([chosen])])
         self.depth_m[i] = np.inf
-        self.depth_m[i][look.window] = look.depth_m[chosen]
-        self._pixels, self._right = look.pixels[chosen], look.right[chosen]
+        self.depth_m[i][window] = own.reshape(rays.shape[:2])
+        self._pixels, self._right = self._with(i, look.rest, self.depth_m[i][window])
+
+    def _farthest_move(self, i: int, poses: PoseBatch) -> tuple[float, float, float]:
+        """How far a corner of an object's box is from where it is in the first pose, and how near it can be.
+
+        Returns:
+            Pixels of the grid, infinitely many for what reaches behind the camera; metres; and the least depth.
+        """
+        corners = poses.apply(self.casters[i].corners)
+        moved_m = float(np.linalg.norm(corners - corners[0], axis=2).max())
+        nearest_m = float(self.grid.camera.to_camera(corners.reshape(-1, 3))[:, 2].min())
+        if nearest_m <= 0.0:
+            return np.inf, moved_m, nearest_m
+        pixels = self.grid.camera.project(corners.reshape(-1, 3)).reshape(*corners.shape[:2], 2)
+        moved_px = float(np.linalg.norm(pixels - pixels[0], axis=2).max())
+        return moved_px / self.grid.step, moved_m, nearest_m
 
     def _counts(self, labels: Int[np.ndarray, "*s"]) -> Int[np.ndarray, " n"]:
         return np.bincount(labels[labels >= 0], minlength=len(self.casters))
 
-    def _without(self, i: int, window: Window) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
-        """What is seen without object i, which is seen within the window only.
-
-        Returns:
-            In the window the depth of the nearest other (infinite for none) and its index (-1), and in the whole
-            picture the pixels and the right pixels of every object.
-        """
+    def _without(self, i: int, window: Window) -> Rest:
+        """What is seen without object i, which is seen within the window only."""
         others = np.flatnonzero(np.arange(len(self.casters)) != i)
         here, wanted = self.depth_m[(slice(None), *window)], self.wanted[window]
         depth, behind = _nearest(here[others], others)
         shown = np.where(here[i] < depth, i, behind)
         pixels = self._pixels - self._counts(shown) + self._counts(behind)
         right = self._right - self._counts(shown[shown == wanted]) + self._counts(behind[behind == wanted])
-        return depth, behind, pixels, right
+        return Rest(window, depth, behind, pixels, right)
+
+    def _with(
+        self, i: int, rest: Rest, depth_m: Float32[np.ndarray, "h w"]
+    ) -> tuple[Int[np.ndarray, " n"], Int[np.ndarray, " n"]]:
+        """Pixels and right pixels of every object with object i at such depths in its window."""
+        covered = depth_m < rest.depth_m
+        lost, wanted = rest.index[covered], self.wanted[rest.window][covered]
+        pixels, right = rest.pixels - self._counts(lost), rest.right - self._counts(lost[lost == wanted])
+        pixels[i], right[i] = len(lost), np.count_nonzero(wanted == i)
+        return pixels, right
 
 
-def _cast(grid: PixelGrid, caster: ShapeCaster, window: Window, poses: PoseBatch) -> Float32[np.ndarray, "p h w"]:
-    rays = grid.rays[window]
-    hits = caster.cast(grid.camera.position, rays.reshape(-1, 3), poses)
-    return hits.depth_m.astype(np.float32).reshape(len(poses), *rays.shape[:2])
+def _cast(
+    grid: PixelGrid, caster: ShapeCaster, rays: Float[np.ndarray, "r 3"], poses: PoseBatch
+) -> Float32[np.ndarray, "p r"]:
+    return caster.cast(grid.camera.position, rays, poses).depth_m.astype(np.float32)
+
+
+def _inside(covered: Bool[np.ndarray, "h w"], margin: float) -> Bool[np.ndarray, "h w"]:
+    """Pixels so far inside a mask that they remain in it when it moves by less than the margin."""
+    reach = int(np.ceil(margin)) + 1 if np.isfinite(margin) else max(covered.shape)
+    if 2 * reach >= min(covered.shape):
+        return np.zeros_like(covered)
+    kernel = np.ones((2 * reach + 1, 2 * reach + 1), np.uint8)
+    eroded = cv2.erode(covered.astype(np.uint8), kernel, borderType=cv2.BORDER_CONSTANT, borderValue=0)
+    return np.asarray(eroded, dtype=bool)
 
 
 def _nearest(

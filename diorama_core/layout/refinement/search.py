@@ -17,10 +17,12 @@ from diorama_core.layout.refinement.prior import PosePrior
 from diorama_core.layout.refinement.room_left import RoomLeft
 from diorama_core.progress import Progress
 
-SHARES = (0.03, 0.03, 0.015, 0.015)
-"""By how much of its size a step changes an object, round by round."""
+SHARES = (0.08, 0.04, 0.02, 0.01)
+"""By how much of its size a step changes an object: large ones first."""
+ROUNDS = 2
+"""How often objects take turns at each; who finds no step to make leaves its turn out."""
 STEPS = 2
-"""Most steps of an object a round."""
+"""Most steps of an object in its turn."""
 MOVE_SHARE = 0.6
 """A step that moves an object does so by this much of its distance, times the share."""
 FARTHEST_M = 4.0
@@ -54,12 +56,22 @@ class Search:
         seen = self.picture.wanted_pixels >= MIN_PIXELS
         movable = [int(i) for i in np.flatnonzero(seen & problem.free) if problem.surface[i] is not None]
         for number, share in enumerate(SHARES):
-            for turn, i in enumerate(movable):
-                progress.report((number + turn / len(movable)) / len(SHARES), "fitting objects to their masks")
-                for _ in range(STEPS):
-                    if not self._step(room, poses, i, share, seen):
-                        break
+            moving = movable
+            for part in range(ROUNDS):
+                begun = (number + part / ROUNDS) / len(SHARES)
+                progress.report(begun, "fitting objects to their masks")
+                moving = [i for i in moving if self._moves(room, poses, i, share, seen, progress)]
         return poses
+
+    def _moves(
+        self, room: RoomLeft, poses: PoseBatch, i: int, share: float, seen: np.ndarray, progress: Progress
+    ) -> bool:
+        """Make a few steps of one object; whether there was one to make."""
+        progress.check()
+        steps = 0
+        while steps < STEPS and self._step(room, poses, i, share, seen):
+            steps += 1
+        return steps > 0
 
     def _step(self, room: RoomLeft, poses: PoseBatch, i: int, share: float, seen: np.ndarray) -> bool:
         """Make an object's best step for which there is room, in `poses` and the picture; whether there is one."""

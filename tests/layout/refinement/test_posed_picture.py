@@ -65,9 +65,32 @@ def test_a_look_counts_what_a_new_picture_does(room: Room) -> None:
         again = picture.look(0, current[np.array([0])])
         assert still is not None
         assert again is not None
-        assert (still.pixels == again.pixels).all()
-        assert (still.right == again.right).all()
+        assert (still.rest.pixels == again.rest.pixels).all()
+        assert (still.rest.right == again.rest.right).all()
+        assert still.agreement == pytest.approx(again.agreement)
         assert look.agreement[1 + turn % 3] == pytest.approx(again.agreement[0])
+
+
+def test_small_moves_are_seen_as_exactly_as_large_ones(room: Room) -> None:
+    low = room.put("box_24", (0.0, 0.0, 0.15), scale=(2.0, 2.0, 1.0))
+    room.put("box_24", (0.0, 0.0, 0.4), on=low, scale=(1.0, 1.0, 2 / 3))
+    room.put("box_24", (0.3, 0.8, 0.3), scale=(2.0, 1.0, 2.0))
+    scene = room.scene(camera=looking_down())
+    picture, poses = picture_of(scene, [o.mask for o in seen_objects(scene, room.library)], room)
+    for i in range(3):
+        moves = np.concatenate([np.zeros((1, 3)), 0.02 * np.eye(3), -0.02 * np.eye(3)])
+        near, far = (
+            PoseBatch(
+                np.repeat(poses.R[i][None], len(moves) + more, axis=0),
+                poses.position[i] + np.concatenate([moves, np.full((more, 3), 1.0)]),
+                np.repeat(poses.scale[i][None], len(moves) + more, axis=0),
+            )
+            for more in (0, 1)
+        )
+        look, whole = picture.look(i, near), picture.look(i, far)  # the far pose has every ray cast
+        assert look is not None
+        assert whole is not None
+        assert look.agreement == pytest.approx(whole.agreement[:-1])
 
 
 def test_what_is_outside_the_photo_is_not_looked_at(room: Room) -> None:
