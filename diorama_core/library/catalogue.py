@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import os
 from dataclasses import replace
-from functools import cache
+from functools import cache, lru_cache
 from pathlib import Path
 
 import numpy as np
@@ -78,8 +78,20 @@ def _users_cache_dir() -> Path:
 
 
 def built_in_library(cache_dir: Path | None = None) -> BuiltInLibrary:
-    """The library that comes with Diorama, caching under `cache_dir` (default: `default_cache_dir()`)."""
-    return BuiltInLibrary(furniture.designs(), (cache_dir or default_cache_dir()) / "shapes")
+    """The library that comes with Diorama, caching under `cache_dir` (default: `default_cache_dir()`).
+
+    Who names no folder gets the one library of this process, with the shapes that others asked it for.
+    """
+    return _library_of_process(default_cache_dir()) if cache_dir is None else _library_in(cache_dir)
+
+
+def _library_in(cache_dir: Path) -> BuiltInLibrary:
+    return BuiltInLibrary(furniture.designs(), cache_dir / "shapes")
+
+
+@lru_cache(maxsize=1)
+def _library_of_process(cache_dir: Path) -> BuiltInLibrary:
+    return _library_in(cache_dir)
 
 
 class BuiltInLibrary:
