@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+from collections.abc import Callable
 from dataclasses import replace
 from functools import cache, lru_cache
 from pathlib import Path
@@ -82,16 +83,16 @@ def built_in_library(cache_dir: Path | None = None) -> BuiltInLibrary:
 
     Who names no folder gets the one library of this process, with the shapes that others asked it for.
     """
-    return _library_of_process(default_cache_dir()) if cache_dir is None else _library_in(cache_dir)
+    if cache_dir is None:
+        return _library_of_process(furniture.designs, default_cache_dir())
+    return _library_in(furniture.designs, cache_dir)
 
 
-def _library_in(cache_dir: Path) -> BuiltInLibrary:
-    return BuiltInLibrary(furniture.designs(), cache_dir / "shapes")
+def _library_in(designs: Callable[[], tuple[Design, ...]], cache_dir: Path) -> BuiltInLibrary:
+    return BuiltInLibrary(designs(), cache_dir / "shapes")
 
 
-@lru_cache(maxsize=1)
-def _library_of_process(cache_dir: Path) -> BuiltInLibrary:
-    return _library_in(cache_dir)
+_library_of_process = lru_cache(maxsize=1)(_library_in)
 
 
 class BuiltInLibrary:
