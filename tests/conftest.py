@@ -20,6 +20,7 @@ from tests import made_once, typechecking
 if typechecking.wanted():  # before anything of Diorama is imported
     typechecking.install()
 
+from diorama_core.architecture.texture import plane_textures
 from diorama_core.artefacts import Inputs
 from diorama_core.perception.inputs import ReadInputs, read_inputs
 
@@ -30,6 +31,11 @@ settings.load_profile("deterministic")
 
 UNCHECKED_FOLDERS = frozenset()
 """Folders whose newest tests still pass values that annotations do not allow; take one out after mending its tests."""
+
+FULL_PICTURES = ("architecture", "texture")
+"""Whose tests ask about the pictures of planes themselves. In others those have a quarter of the texels a side: to make
+full ones takes four tenths of a build from a small photo."""
+FULL_PX = {name: getattr(plane_textures, name) for name in ("MAX_SIDE_PX", "MAX_CEILING_PX")}
 
 SHARED = Path(__file__).resolve().parents[2] / "shared"
 
@@ -142,9 +148,14 @@ def pytest_collection_finish() -> None:
 
 @pytest.hookimpl(tryfirst=True)
 def pytest_runtest_setup(item: pytest.Item) -> None:
-    """Shapes and types are checked as the test's folder and markers say, and the same items of lists every time."""
-    folder = item.path.relative_to(Path(__file__).parent).parts[0]
-    unchecked = folder in UNCHECKED_FOLDERS or item.get_closest_marker("unchecked") is not None
+    """Shapes and types are checked as the test's folder and markers say, and the same items of lists every time.
+
+    Pictures of planes are small but where they are asked about.
+    """
+    folders = item.path.relative_to(Path(__file__).parent).parts
+    for name, side_px in FULL_PX.items():
+        setattr(plane_textures, name, side_px if folders[:2] == FULL_PICTURES else side_px // 4)
+    unchecked = folders[0] in UNCHECKED_FOLDERS or item.get_closest_marker("unchecked") is not None
     typechecking.begin_test(unchecked=unchecked)
 
 

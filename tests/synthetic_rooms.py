@@ -96,7 +96,9 @@ def shoot(camera: Camera, planes, cuboids=(), categories=(), noise: float = 0.0,
     rgb = PALETTE[which % len(PALETTE)].astype(float)
     instances = np.zeros(depth.shape, np.int32)
     for index, item in enumerate(cuboids, 1):
-        t, normals = cast_box(origin, rays, item.R_world_object, item.centre, item.size_m)
+        window = _window(camera, item)
+        t, normals = np.full(depth.shape, np.inf), np.zeros(rays.shape)
+        t[window], normals[window] = cast_box(origin, rays[window], item.R_world_object, item.centre, item.size_m)
         nearer = t < depth
         shade = 60 + 50 * np.abs(normals @ np.array([0.3, 0.6, 1.0]))
         colour = np.array([1.0, 0.5 + 0.1 * (index % 5), 0.4]) * shade[..., None]
@@ -110,6 +112,17 @@ def shoot(camera: Camera, planes, cuboids=(), categories=(), noise: float = 0.0,
     names = tuple(categories) or ("cabinet",) * len(cuboids)
     objects = tuple(_detected(i, c, n, instances) for i, (c, n) in enumerate(zip(cuboids, names, strict=True), 1))
     return Shot(inputs, camera, tuple(planes), tuple(cuboids), tuple(o for o in objects if o is not None))
+
+
+def _window(camera: Camera, item: Cuboid) -> tuple[slice, slice]:
+    """Rows and columns among which a cuboid is seen; all where it reaches behind the camera."""
+    corners = item.corners_world
+    if camera.to_camera(corners)[:, 2].min() < 0.05:
+        return slice(None), slice(None)
+    pixels = camera.project(corners)
+    low, high = np.maximum(np.floor(pixels.min(axis=0)) - 1, 0).astype(int), np.ceil(pixels.max(axis=0)) + 1
+    columns, rows = (slice(a, max(a, b)) for a, b in zip(low.tolist(), high.astype(int).tolist(), strict=True))
+    return rows, columns
 
 
 def _detected(index: int, item: Cuboid, category: str, instances: np.ndarray) -> DetectedObject | None:

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import json
 import os
+from collections.abc import Callable
 from dataclasses import replace
-from functools import cache
+from functools import cache, lru_cache
 from pathlib import Path
 
 import numpy as np
@@ -78,8 +79,20 @@ def _users_cache_dir() -> Path:
 
 
 def built_in_library(cache_dir: Path | None = None) -> BuiltInLibrary:
-    """The library that comes with Diorama, caching under `cache_dir` (default: `default_cache_dir()`)."""
-    return BuiltInLibrary(furniture.designs(), (cache_dir or default_cache_dir()) / "shapes")
+    """The library that comes with Diorama, caching under `cache_dir` (default: `default_cache_dir()`).
+
+    Who names no folder gets the one library of this process, with the shapes that others asked it for.
+    """
+    if cache_dir is None:
+        return _library_of_process(furniture.designs, default_cache_dir())
+    return _library_in(furniture.designs, cache_dir)
+
+
+def _library_in(designs: Callable[[], tuple[Design, ...]], cache_dir: Path) -> BuiltInLibrary:
+    return BuiltInLibrary(designs(), cache_dir / "shapes")
+
+
+_library_of_process = lru_cache(maxsize=1)(_library_in)
 
 
 class BuiltInLibrary:

@@ -65,7 +65,7 @@ def prepare_library(
         LibraryError: when there is no such library.
     """
     progress, pool = progress or Progress(), pool or workers()
-    library = open_library(name)
+    library = open_library(name, anew=True)
     shapes = library.shapes()
     wanted = _Wanted(parts, views, templates)
     missing = [s.id for s in shapes if not wanted.is_prepared(library, s)]
@@ -110,7 +110,7 @@ def _appearances() -> Path:
 
 def _prepare(name: str, wanted: _Wanted, shape_ids: Sequence[str]) -> list[tuple[str, str]]:
     """Prepare some shapes; returns those that could not be, and why."""
-    library, retained = open_library(name), TemplateCache(cached=1)
+    library, retained = open_library(name, anew=True), TemplateCache(cached=1)
     similarity = EmbeddedSimilarity(library)
     failures = []
     for shape_id in shape_ids:

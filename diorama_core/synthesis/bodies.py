@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Collection
 from dataclasses import dataclass, field
-from functools import lru_cache
+from functools import cached_property, lru_cache
 from typing import Any
 
 import fcl
@@ -13,11 +13,13 @@ from jaxtyping import Float
 
 from diorama_core.geometry.open3d_import import o3d
 from diorama_core.library.record import Shape, ShapeLibrary
-from diorama_core.scene.types import Pose
+from diorama_core.scene.types import Pose, box_corners
 from diorama_core.scene.values import Vector3
 
 LIFT_M = 1e-3
 """Resting objects are tested this much above their place, so that contact is not collision."""
+ROUNDED_M = 1e-4
+"""Shapes reach no farther beyond the sizes that their records state."""
 
 
 @dataclass(frozen=True)
@@ -43,7 +45,7 @@ class Bodies:
     """What has been placed so far, ready to be collided with."""
 
     library: ShapeLibrary = field(repr=False)
-    _placed: dict[str, tuple[fcl.CollisionObject, np.ndarray]] = field(default_factory=dict, repr=False)
+    _placed: dict[str, _Posed] = field(default_factory=dict, repr=False)
 
     def add(self, object_id: str, item: Item, pose: Pose) -> None:
         """Place a body for good."""
@@ -57,22 +59,49 @@ class Bodies:
         self, item: Item, pose: Pose, *, ignore: Collection[str] = (), lift: Vector3 = (0.0, 0.0, LIFT_M)
     ) -> str | None:
         """Id of a placed body whose surface the posed item would cut, or None."""
-        body, bounds = self._posed(item, pose, np.asarray(lift, dtype=np.float64))
+        body = self._posed(item, pose, np.asarray(lift, dtype=np.float64))
         request, result = fcl.CollisionRequest(), fcl.CollisionResult()
-        for name, (other, box) in self._placed.items():
-            if name in ignore or (bounds[0] > box[1]).any() or (box[0] > bounds[1]).any():
+        for name, other in self._placed.items():
+            if name in ignore or (body.low > other.high).any() or (other.low > body.high).any():
                 continue
-            if fcl.collide(body, other, request, result):
+            if fcl.collide(body.triangles, other.triangles, request, result):
                 return name
         return None
 
-    def _posed(self, item: Item, pose: Pose, lift: np.ndarray) -> tuple[fcl.CollisionObject, np.ndarray]:
-        model, corners = _model(_Mesh(self.library, item.shape.id), item.scale)
-        at = pose.position + lift
-        world = corners @ pose.R_world_object.T + at
-        return fcl.CollisionObject(model, fcl.Transform(pose.R_world_object, at)), np.stack(
-            [world.min(axis=0), world.max(axis=0)]
-        )
+    def _posed(self, item: Item, pose: Pose, lift: np.ndarray) -> _Posed:
+        return _Posed(self.library, item, pose.R_world_object, pose.position + lift)
+
+
+@dataclass(frozen=True, eq=False)
+class _Posed:
+    """An item at a place. Its triangles are asked for only where its box meets another's: most of what is tried stands
+    alone, and to build a shape takes as long as hundreds of boxes.
+    """
+
+    library: ShapeLibrary
+    item: Item
+    R_world_item: Float[np.ndarray, "3 3"]
+    at: Float[np.ndarray, "3"]
+
+    @cached_property
+    def _corners(self) -> Float[np.ndarray, "8 3"]:
+        return box_corners(self.item.size_m + 2.0 * ROUNDED_M) @ self.R_world_item.T + self.at
+
+    @cached_property
+    def low(self) -> Float[np.ndarray, "3"]:
+        """Of its box in the world."""
+        return np.asarray(self._corners.min(axis=0))
+
+    @cached_property
+    def high(self) -> Float[np.ndarray, "3"]:
+        """Of its box in the world."""
+        return np.asarray(self._corners.max(axis=0))
+
+    @cached_property
+    def triangles(self) -> fcl.CollisionObject:
+        """What collides."""
+        model = _model(_Mesh(self.library, self.item.shape.id), self.item.scale)
+        return fcl.CollisionObject(model, fcl.Transform(self.R_world_item, self.at))
 
 
 @dataclass(frozen=True)
@@ -95,16 +124,14 @@ class _Mesh:
 
 
 @lru_cache(maxsize=512)
-def _model(mesh: _Mesh, scale: tuple[float, float, float]) -> tuple[fcl.BVHModel, Float[np.ndarray, "8 3"]]:
+def _model(mesh: _Mesh, scale: tuple[float, float, float]) -> fcl.BVHModel:
     vertices, faces = mesh.arrays()
     vertices = vertices * scale
     model = fcl.BVHModel()
     model.beginModel(len(vertices), len(faces))
     model.addSubModel(vertices, faces)
     model.endModel()
-    low, high = vertices.min(axis=0), vertices.max(axis=0)
-    corners = np.array([[(low, high)[(k >> axis) & 1][axis] for axis in range(3)] for k in range(8)])
-    return model, corners
+    return model
 
 
 @lru_cache(maxsize=512)

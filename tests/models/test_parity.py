@@ -153,10 +153,17 @@ def test_hq_sam_draws_the_same_masks(hq_sam: tuple[Any, Path, Path], photo: np.n
     boxes = np.array([[20.0, 30.0, 100.0, 110.0], [40.0, 10.0, 90.0, 60.0]])
     prepared = SamImageProcessorPil()(Image.fromarray(photo), return_tensors="pt")
     inner_h, inner_w = (int(v) for v in prepared["reshaped_input_sizes"][0])
-    for box, prompted in zip(boxes, facade.masks(photo, boxes), strict=True):
-        scaled = torch.from_numpy(box).float() * torch.tensor([inner_w / width, inner_h / height] * 2)
+    scaled = torch.from_numpy(boxes).float() * torch.tensor([inner_w / width, inner_h / height] * 2)
+    with torch.no_grad():
+        embeddings, inside = model.get_image_embeddings(prepared["pixel_values"])
+    for box, prompted in zip(scaled, facade.masks(photo, boxes), strict=True):
         with torch.no_grad():
-            out = model(pixel_values=prepared["pixel_values"], input_boxes=scaled[None, None], multimask_output=True)
+            out = model(
+                image_embeddings=embeddings,
+                intermediate_embeddings=inside,
+                input_boxes=box[None, None],
+                multimask_output=True,
+            )
         best = int(out.iou_scores[0, 0].argmax())
         masks = SamImageProcessorPil().post_process_masks(
             out.pred_masks, prepared["original_sizes"], prepared["reshaped_input_sizes"]

@@ -25,6 +25,9 @@ MARGIN_M = 0.008
 """So far within a place's sides they may still rise: outlines are as fine as the grid that they were found on."""
 MAX_SIDES = 12
 """Outlines with more corners are cut with an inscribed outline of so many."""
+WELL_INSIDE_M = 0.002
+"""A point so far from all sides of a body is found where the body allows it."""
+_STEPS = 40
 _SAMPLES = 4000
 _SEED = 0
 
@@ -133,20 +136,39 @@ def _cut(part: ConvexPart, room: Room) -> list[ConvexPart]:
 
 def _clipped(vertices: Float[np.ndarray, "v 3"], half_spaces: Float[np.ndarray, "h 4"]) -> Float[np.ndarray, "n 3"]:
     """Corners of what of a convex body is inside half-spaces (normal . x + offset <= 0); none where nothing is."""
+    deepest = (vertices @ half_spaces[:, :3].T + half_spaces[:, 3]).min(axis=0)
+    if (deepest > -THINNEST_M).any():  # nothing as thick as that is inside
+        return np.zeros((0, 3))
     try:
         planes = np.vstack([ConvexHull(vertices).equations, half_spaces])
     except (QhullError, ValueError):
         return np.zeros((0, 3))
-    # The centre of the largest ball inside.
-    rows = np.column_stack([planes[:, :3], np.ones(len(planes))])
-    ball = linprog([0.0, 0.0, 0.0, -1.0], rows, -planes[:, 3], bounds=[(None, None)] * 3 + [(0.0, None)]).x
-    if ball is None or ball[3] < THINNEST_M / 2:
+    inside = _point_inside(planes, vertices.mean(axis=0))
+    if inside is None:
         return np.zeros((0, 3))
     try:
-        corners = HalfspaceIntersection(planes, ball[:3]).intersections
+        corners = HalfspaceIntersection(planes, inside).intersections
     except QhullError:
         return np.zeros((0, 3))
     return np.unique(np.round(corners, 9), axis=0)
+
+
+def _point_inside(planes: Float[np.ndarray, "h 4"], start: Float[np.ndarray, "3"]) -> Float[np.ndarray, "3"] | None:
+    """A point inside half-spaces (unit normal . x + offset <= 0); None where what is inside is thinner than a part.
+
+    Steps back from one plane after another (Agmon 1954) mostly end well inside; where they do not, the largest ball
+    is sought, which takes thirty times as long.
+    """
+    point = start
+    for _ in range(_STEPS):
+        over = planes[:, :3] @ point + planes[:, 3]
+        worst = int(over.argmax())
+        if over[worst] <= -WELL_INSIDE_M:
+            return point
+        point = point - (over[worst] + 2.0 * WELL_INSIDE_M) * planes[worst, :3]
+    rows = np.column_stack([planes[:, :3], np.ones(len(planes))])
+    ball = linprog([0.0, 0.0, 0.0, -1.0], rows, -planes[:, 3], bounds=[(None, None)] * 3 + [(0.0, None)]).x
+    return None if ball is None or ball[3] < THINNEST_M / 2 else np.asarray(ball[:3])
 
 
 def _not_contained(clouds: list[Float[np.ndarray, "_ 3"]]) -> list[Float[np.ndarray, "_ 3"]]:

@@ -65,25 +65,27 @@ def create_library(name: str) -> StoredLibrary:
     return StoredLibrary(library_folder(name), create=True)
 
 
-def open_library(name: str) -> ShapeLibrary:
+def open_library(name: str, *, anew: bool = False) -> ShapeLibrary:
     """A library by name.
 
     Args:
         name: `built-in`; the name or the path of a stored library; or several joined by `+` (`built-in+mine`), of which
             the first wins where two shapes share an id.
+        anew: With nothing in memory yet, for those who care what is on disk.
 
     Raises:
         LibraryError: when one of them does not exist.
     """
-    libraries = [_single(part.strip()) for part in name.split("+")]
+    libraries = [_single(part.strip(), anew) for part in name.split("+")]
     return libraries[0] if len(libraries) == 1 else CombinedLibrary(libraries)
 
 
-def _single(name: str) -> ShapeLibrary:
+def _single(name: str, anew: bool) -> ShapeLibrary:
     if name == BUILT_IN:
-        from diorama_core.library.catalogue import built_in_library  # takes a moment, so only when it is asked for
+        # Takes a moment, so only when it is asked for.
+        from diorama_core.library.catalogue import built_in_library, default_cache_dir
 
-        return built_in_library()
+        return built_in_library(default_cache_dir() if anew else None)
     folder = library_folder(name)
     if not (folder / "library.sqlite").exists():
         known = ", ".join((BUILT_IN, *stored_libraries()))
