@@ -1,7 +1,8 @@
 """Extends unseen floor and walls to contain the observed objects.
 
 The extent of a floor or an unseen wall is assumed; the place of an object is observed. So assumptions yield to
-objects, not objects to assumptions. Observed walls do not move.
+objects, not objects to assumptions. Observed walls do not move; with measured depth, what has something behind it was
+no observed wall.
 """
 
 from __future__ import annotations
@@ -32,6 +33,10 @@ _MIN_AREA_M2 = 1e-4
 _JOINED_M = 0.02
 _BEHIND_SHARE = 0.1
 """What stands behind a wall with a smaller share of its footprint only touches it."""
+_CLEARLY_M = 0.05
+"""What is measured so far behind a wall is behind it."""
+_DOUBTED = 0.3
+"""Confidence of a wall behind which something was measured: it was not seen (`scene.types.SEEN_CONFIDENCE`)."""
 _FAR_M = 100.0
 """Farther behind a wall than any room reaches."""
 
@@ -51,6 +56,8 @@ def containing_room(scene: Scene, *, reasoned: bool = False, feet_seen: Collecti
     if reasoned:
         scene = _at_backs(scene, feet_seen)
     standing = [o for o in scene.objects if (edge := scene.support_of(o.id)) is not None and edge.parent == floor.id]
+    if not reasoned:
+        scene = _doubted(scene, standing)
     for wall in scene.architecture.by_role("wall"):
         if not wall.seen:
             scene = _given_way(scene, wall.id, standing)
@@ -174,6 +181,25 @@ def _agreed(
     apart = np.abs(tried[:, None] - backs) @ certainty
     past = np.maximum(tried[:, None] - others, 0.0) @ others_certainty
     return float(tried[np.argmin(apart + past + _HOLD * np.abs(tried))])
+
+
+def _doubted(scene: Scene, standing: Sequence[SceneObject]) -> Scene:
+    """Walls behind which the middle of something that stands on the floor was measured are guesses: a front of
+    furniture that nobody marked was taken for them, or they end before it."""
+    doubted = {p.id for p in scene.architecture.planes if p.seen and any(_is_behind(o, p) for o in standing)}
+    if not doubted:
+        return scene
+    planes = (replace(p, confidence=_DOUBTED) if p.id in doubted else p for p in scene.architecture.planes)
+    return replace(scene, architecture=Architecture(tuple(planes)))
+
+
+def _is_behind(item: SceneObject, plane: Plane) -> bool:
+    """Whether an object's middle is clearly behind a wall, between its ends."""
+    if plane.role != "wall" or float(item.pose.position @ plane.normal) - plane.offset > -_CLEARLY_M:
+        return False
+    level = np.cross([0.0, 0.0, 1.0], plane.normal)
+    along, reach = plane.polygon @ level, float(item.pose.position @ level)
+    return bool(along.min() < reach < along.max())
 
 
 def _given_way(scene: Scene, wall_id: str, standing: list[SceneObject]) -> Scene:

@@ -49,6 +49,22 @@ def test_an_assumed_wall_gives_way_and_a_seen_one_does_not() -> None:
         assert behind >= scene.plane("wall_1").offset - 1e-6
 
 
+def test_with_measured_depth_a_wall_that_has_something_behind_it_pushes_nothing() -> None:
+    room = Room(LIBRARY)
+    room.put("box_24", (0.0, 2.7, 0.15))
+    room.put("box_24", (1.6, 2.7, 0.15))  # beside its end
+    observed = room.scene(architecture=sliver(0.95), camera=looking_north(5.0))
+    for reasoned in (False, True):
+        scene = containing_room(observed, reasoned=reasoned)
+        assert scene.plane("wall_1").seen == reasoned
+    measured = containing_room(observed)
+    settled = FeasibleRecipe(LIBRARY, depth_measured=True).optimise(measured, Progress())[0]
+    for item in measured.objects:
+        assert np.linalg.norm(settled.object(item.id).pose.position - item.pose.position) < 0.02
+    beside = replace(observed, objects=observed.objects[1:], supports=observed.supports[1:])
+    assert containing_room(beside).plane("wall_1").seen
+
+
 def test_a_room_that_contains_everything_is_left_alone() -> None:
     room = Room(LIBRARY)
     room.put("box_24", (0.0, 2.0, 0.15))
@@ -197,7 +213,7 @@ def test_floor_drawn_out_behind_a_wall_goes_when_nothing_stands_on_it_any_more()
     behind = room.put("box_24", (0.2, 3.2, 0.15))
     known = sliver(0.95).floor
     assert known is not None
-    drawn = containing_room(room.scene(architecture=sliver(0.95), camera=looking_north(5.0)))
+    drawn = containing_room(room.scene(architecture=sliver(0.95), camera=looking_north(5.0)), reasoned=True)
     assert drawn.architecture.floor.polygon[:, 1].max() > 3.0
     assert without_floor_behind_walls(drawn, known) is drawn  # it still stands there
 
