@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from jaxtyping import Bool, Float
+from jaxtyping import Float
 
 from diorama_core.geometry.planes import plane_axes
 from diorama_core.geometry.rotations import yaw_rotations
@@ -27,8 +27,8 @@ class Freedom:
     """Unit, world: along its support, and along the walls that it touches."""
     pinned: Float[np.ndarray, "3"]
     """Point of its box, in half extents, that touches supports and walls and stays put when it is resized."""
-    resized: Bool[np.ndarray, "3"]
-    """Which of its extents may change."""
+    extents: Float[np.ndarray, "e 3"]
+    """Which of its extents may change, each by itself or several alike."""
     turns: bool
     """Whether it may turn about the vertical."""
 
@@ -39,7 +39,7 @@ class Freedom:
             move_m: length of a step along a direction.
             share: by which an extent changes in a step; a turn is in proportion.
         """
-        extents = int(self.resized.sum())
+        extents = len(self.extents)
         length = [*len(self.directions) * [move_m], *extents * [share], *int(self.turns) * [_TURN_SHARE * share]]
         single = np.diag(length)
         as_a_whole = np.zeros((int(extents > 1), len(length)))
@@ -62,18 +62,17 @@ class Freedom:
             p: its centre.
             scale: its scale.
             size: extents of the object at scale 1.
-            changes: metres along the directions, logarithms of the extents that may change, and the turn in radians.
+            changes: metres along the directions, logarithms of the extents, and the turn in radians.
         """
         count = len(changes)
-        along, grown, turn = np.split(changes, np.cumsum([len(self.directions), int(self.resized.sum())]), axis=1)
+        along, grown, turn = np.split(changes, np.cumsum([len(self.directions), len(self.extents)]), axis=1)
         rotations = yaw_rotations(turn[:, 0]) @ R if self.turns else np.tile(R, (count, 1, 1))
-        scales = np.tile(scale, (count, 1))
-        scales[:, self.resized] *= np.exp(grown)
+        scales = scale * np.exp(grown @ self.extents)
         shift = np.einsum("kij,kj->ki", rotations, self.pinned * size * (scales - scale) / 2)
         return PoseBatch(rotations, p + along @ self.directions - shift, scales)
 
 
-def freedom(problem: Problem, i: int, surface: Surface, *, sized: bool) -> Freedom:
+def freedom(problem: Problem, i: int, surface: Surface, *, sized: bool, is_round: bool) -> Freedom:
     """What is left to an object of a layout that is settled.
 
     Args:
@@ -81,6 +80,7 @@ def freedom(problem: Problem, i: int, surface: Surface, *, sized: bool) -> Freed
         i: index of the object.
         surface: where it rests, in the world.
         sized: whether its size is not its own to change.
+        is_round: whether its outline from above is a circle, which it remains.
     """
     walls = [(problem.walls[w], face) for k, w, face in problem.adheres if k == i]
     grounded = bool(problem.grounded[i])
@@ -94,9 +94,11 @@ def freedom(problem: Problem, i: int, surface: Surface, *, sized: bool) -> Freed
     pinned[2] -= float(grounded)
     loaded = bool((problem.parent == i).any())
     upright = np.abs(problem.contact[i]) > 0.5
+    extents = np.array([[1.0, 1.0, 0.0], [0.0, 0.0, 1.0]]) if is_round else np.eye(3)
+    kept = extents @ (upright & loaded) > 0.0
     return Freedom(
         np.array(directions).reshape(-1, 3),
         np.clip(pinned, -1.0, 1.0),
-        np.zeros(3, dtype=bool) if sized else ~upright if loaded else np.ones(3, dtype=bool),
+        extents[~kept & (not sized)],
         turns=not walls and not loaded and not is_wall_like(surface) and bool(upright[2]),
     )

@@ -114,7 +114,8 @@ class Search:
         assert surface is not None, "what nothing holds does not move"
         if parent >= 0:
             surface = surface.at(poses.R[parent], poses.position[parent], poses.scale[parent])
-        return freedom(self.problem, i, surface, sized=self.sized[i])
+        is_round = self.picture.casters[i].round_from_above
+        return freedom(self.problem, i, surface, sized=self.sized[i], is_round=is_round)
 
 
 @dataclass(frozen=True, eq=False)

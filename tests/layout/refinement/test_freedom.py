@@ -11,14 +11,16 @@ from tests.layout.refinement.views import looking_down
 from tests.layout.small_rooms import Room
 
 
-def of(scene: Scene, room: Room, name: str, *, sized: bool = False) -> tuple[Freedom, Problem, int]:
+def of(
+    scene: Scene, room: Room, name: str, *, sized: bool = False, is_round: bool = False
+) -> tuple[Freedom, Problem, int]:
     problem = build_problem(scene, room.library, adherence_m=0.004)
     i = problem.ids.index(name)
     surface, parent = problem.surface[i], int(problem.parent[i])
     assert surface is not None
     if parent >= 0:
         surface = surface.at(problem.R[parent], problem.p[parent], problem.scale[parent])
-    return freedom(problem, i, surface, sized=sized), problem, i
+    return freedom(problem, i, surface, sized=sized, is_round=is_round), problem, i
 
 
 def changed_corners(free: Freedom, problem: Problem, i: int, changes: np.ndarray) -> np.ndarray:
@@ -33,7 +35,7 @@ def test_what_stands_free_moves_turns_and_grows_on_the_floor(room: Room) -> None
     scene = edits.place(scene, {box: scene.object(box).pose.moved((0.0, 0.0, height / 2))})
     free, problem, i = of(scene, room, box)
     assert len(free.directions) == 2
-    assert free.resized.all()
+    assert len(free.extents) == 3
     assert free.turns
     rng = np.random.default_rng(3)
     corners = changed_corners(free, problem, i, 0.1 * rng.standard_normal((20, 6)))
@@ -60,10 +62,10 @@ def test_what_carries_something_keeps_its_height(room: Room) -> None:
     low = room.put("box_24", (0.5, 0.5, 0.15))
     top = room.put("box_24", (0.5, 0.5, 0.45), on=low, scale=(0.5, 0.5, 0.5))
     scene = room.scene(camera=looking_down())
-    assert list(of(scene, room, low)[0].resized) == [True, True, False]
+    np.testing.assert_array_equal(of(scene, room, low)[0].extents, np.eye(3)[:2])
     assert not of(scene, room, low)[0].turns
-    assert of(scene, room, top)[0].resized.all()
-    assert not of(scene, room, top, sized=True)[0].resized.any()
+    assert len(of(scene, room, top)[0].extents) == 3
+    assert len(of(scene, room, top, sized=True)[0].extents) == 0
 
 
 def test_steps_are_either_way_of_every_freedom_and_of_all_extents_together(room: Room) -> None:
@@ -78,3 +80,11 @@ def test_steps_are_either_way_of_every_freedom_and_of_all_extents_together(room:
 def room_with_one_box(room: Room) -> Scene:
     room.put("box_24", (0.5, 0.5, 0.15), id="box")
     return room.scene(camera=looking_down())
+
+
+def test_what_is_round_remains_round(room: Room) -> None:
+    free, problem, i = of(room_with_one_box(room), room, "box", is_round=True)
+    changes = 0.1 * np.random.default_rng(1).standard_normal((10, free.steps(0.1, 0.02).shape[1]))
+    poses = free.poses(problem.R[i], problem.p[i], problem.scale[i], problem.shape_size[i], changes)
+    assert poses.scale[:, 0] == pytest.approx(poses.scale[:, 1])
+    assert np.ptp(poses.scale[:, 2] / poses.scale[:, 0]) > 0.05
