@@ -18,7 +18,7 @@ METHODS = [
 
 
 def test_there_is_one_method_per_stage() -> None:
-    assert len(METHODS) == 13
+    assert len(METHODS) == 14
 
 
 @pytest.mark.parametrize("method", METHODS, ids=lambda m: m.__qualname__)
