@@ -74,10 +74,15 @@ def resting_heights(extent: Extent, category: Category) -> list[float]:
 def grounded(
     extents: dict[str, Extent], categories: dict[str, Category], edges: tuple[Support, ...]
 ) -> dict[str, Extent]:
-    """The boxes reaching down to what holds them: the floor, or the supporter's top or seat."""
+    """The boxes reaching down to what holds them: the floor, or the supporter's top or seat.
+
+    What people put on furniture and is seen well above the floor stays as it is: nobody marked what is below it.
+    """
     out = dict(extents)
     for edge in edges:
         extent = extents[edge.child]
+        if edge.parent == "floor" and categories[edge.child].mount == "surface" and extent.low[2] > ON_FLOOR_M:
+            continue
         if edge.parent == "floor":
             out[edge.child] = _with_bottom(extent, 0.0)
         elif edge.parent in extents:

@@ -79,3 +79,13 @@ def test_boxes_reach_down_to_what_holds_them() -> None:
     assert boxes["lamp"].high[2] == EXTENTS["lamp"].high[2]
     flat = grounded({"table": at(0, -0.3, (1, 1, 0.1))}, CATEGORIES, (Support("table", "floor"),))
     assert flat["table"].high[2] == pytest.approx(0.02)
+
+
+def test_what_people_put_on_furniture_stays_where_it_was_seen_where_nothing_is_marked_below() -> None:
+    extents = {"tray": at(0.0, 0.73, (0.36, 0.36, 0.04)), "cup": at(2.0, 0.1, (0.08, 0.08, 0.1))}
+    names = {key: category(key) for key in extents}
+    edges = supporters(extents, names)
+    assert {e.parent for e in edges} == {"floor"}
+    boxes = grounded(extents, names, edges)
+    assert boxes["tray"].low[2] == pytest.approx(0.73)
+    assert boxes["cup"].low[2] == 0.0
