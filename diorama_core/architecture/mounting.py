@@ -8,10 +8,13 @@ import numpy as np
 from jaxtyping import Float
 
 from diorama_core.artefacts import ArchitectureEstimate, Cuboid, ObjectGeometry
+from diorama_core.provenance import ScaleSource
 from diorama_core.scene.types import Camera, Plane
 
 MIN_SCALE, MAX_SCALE = 0.7, 1.4
 """Limit of rescaling an object to reach its wall; layout covers the rest."""
+MEASURED_SCALE = 1.15
+"""With measured depth, what would have to be rescaled by more was not measured on that wall, and stays where it was."""
 LONGEST_CORD = 1.8
 """A lamp that does not reach the ceiling is stretched upwards to at most this multiple of its height."""
 CLEAR_OF_WALL_M = 0.05
@@ -77,18 +80,23 @@ def mounted_on_walls(geometry: ObjectGeometry, room: ArchitectureEstimate) -> Ob
     """
     planes = {p.id: p for p in room.architecture.by_role("wall")}
     wall_of = {s.child: planes[s.parent] for s in room.supports if s.relation == "mounted on" and s.parent in planes}
+    measured = geometry.source in (ScaleSource.DEPTH, ScaleSource.DEPTH_WITHOUT_FLOOR)
+    most = MEASURED_SCALE if measured else np.inf
     cuboids = tuple(
-        _brought_to(c, wall_of[c.object_id], geometry.camera) if c.object_id in wall_of else c for c in geometry.cuboids
+        _brought_to(c, wall_of[c.object_id], geometry.camera, most) if c.object_id in wall_of else c
+        for c in geometry.cuboids
     )
     return replace(geometry, cuboids=cuboids)
 
 
-def _brought_to(cuboid: Cuboid, wall: Plane, camera: Camera) -> Cuboid:
+def _brought_to(cuboid: Cuboid, wall: Plane, camera: Camera, most: float) -> Cuboid:
     eye = camera.position
     nearest = float(((cuboid.corners_world - eye) @ wall.normal).min())
     if nearest > -1e-6:
         return cuboid
     scale = (wall.offset - float(eye @ wall.normal)) / nearest
+    if not 1.0 / most <= scale <= most:
+        return cuboid
     drop = float(eye[2] - cuboid.corners_world[:, 2].min())
     above_floor = max(1.0, float(eye[2]) / drop) if drop > 1e-6 else MAX_SCALE
     scale = min(max(scale, MIN_SCALE), MAX_SCALE, above_floor)

@@ -15,9 +15,9 @@ CAMERA = look(10, 5)
 ROOM = box_room(-2.0, 2.0, 4.0, 2.6)
 
 
-def hung(item, relation="mounted on", parent="back"):
+def hung(item, relation="mounted on", parent="back", source=ScaleSource.GIVEN):
     edge = Support(item.object_id, parent, relation)
-    geometry = ObjectGeometry(CAMERA, (item,), (edge,), ScaleSource.GIVEN)
+    geometry = ObjectGeometry(CAMERA, (item,), (edge,), source)
     (found,) = mounted_on_walls(
         geometry, ArchitectureEstimate(Architecture(ROOM), (edge,), 1.0, RoomSource(RoomMethod.GIVEN))
     ).cuboids
@@ -35,6 +35,12 @@ def test_touches_the_wall_and_projects_alike(y):
 def test_does_not_grow_beyond_belief():
     picture = cuboid("picture", (0.1, 1.0, 1.6), (0.04, 0.4, 0.3), yaw_deg=-90)
     np.testing.assert_allclose(hung(picture).size_m, MAX_SCALE * picture.size_m)
+
+
+def test_what_was_measured_far_before_the_wall_stays_there():
+    cup, picture = (cuboid("cup", (0.3, y, 1.0), (0.1, 0.1, 0.1)) for y in (2.0, 3.7))
+    np.testing.assert_array_equal(hung(cup, source=ScaleSource.DEPTH).centre, cup.centre)
+    assert hung(picture, source=ScaleSource.DEPTH).corners_world[:, 1].max() == pytest.approx(4.0, abs=1e-9)
 
 
 def test_a_door_stays_on_the_floor():
