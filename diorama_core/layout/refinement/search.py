@@ -27,6 +27,9 @@ MOVE_SHARE = 0.6
 """A step that moves an object does so by this much of its distance, times the share."""
 FARTHEST_M = 4.0
 """Steps of what is farther away are no longer."""
+MAX_GROWTH = 1.4
+"""An extent becomes at most so many times as long as the layout made it, or as short: what its mask asks beyond that is
+for another place or shape."""
 MIN_PIXELS = 8
 """An object whose mask is smaller says nothing."""
 MIN_GAIN = 1e-4
@@ -107,6 +110,7 @@ class Search:
         boxes = np.nan_to_num(box_iou(look.bounds_px, self.boxes_px[i]))
         value = look.agreement @ (self.trust * seen) + (1.0 - self.trust[i]) * boxes - self.priors[i].cost(near)
         gain = value - value[0]
+        gain[(np.abs(np.log(near.scale / self.problem.scale[i])) > np.log(MAX_GROWTH)).any(axis=1)] = -np.inf
         return _best_first([_Try(float(gain[k]), near, int(k), look) for k in np.flatnonzero(gain > MIN_GAIN)])
 
     def _freedom(self, poses: PoseBatch, i: int) -> Freedom:

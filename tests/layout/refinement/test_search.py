@@ -8,10 +8,10 @@ from diorama_core.layout.problem.problem import build_problem
 from diorama_core.layout.refinement.pixel_grid import PixelGrid
 from diorama_core.layout.refinement.posed_picture import PosedPicture
 from diorama_core.layout.refinement.prior import MEASURED, PosePrior
-from diorama_core.layout.refinement.search import Search
+from diorama_core.layout.refinement.search import MAX_GROWTH, Search
 from diorama_core.progress import Progress
 from diorama_core.scene import edits
-from diorama_core.scene.types import Scene
+from diorama_core.scene.types import Pose, Scene
 from tests.layout.refinement.views import looking_down, seen_objects
 from tests.layout.small_rooms import Room
 
@@ -20,7 +20,9 @@ def settled(room: Room) -> Scene:
     return FeasibleRecipe(room.library).optimise(room.scene(camera=looking_down()), Progress())[0]
 
 
-def found(room: Room, scene: Scene, masks: dict[str, np.ndarray], trust: float = 1.0) -> dict[str, np.ndarray]:
+def found(
+    room: Room, scene: Scene, masks: dict[str, np.ndarray], trust: float = 1.0, observed: Scene | None = None
+) -> dict[str, np.ndarray]:
     """Where each object is after the search."""
     assert scene.camera is not None
     problem = build_problem(scene, room.library, adherence_m=0.004)
@@ -34,7 +36,8 @@ def found(room: Room, scene: Scene, masks: dict[str, np.ndarray], trust: float =
         rows, columns = np.nonzero(masks[item.id])
         if len(rows):
             row[:] = columns.min(), rows.min(), columns.max() + 1, rows.max() + 1
-    priors = [PosePrior(scene.camera.position, o.pose, MEASURED) for o in items]
+    seen = [(observed or scene).object(o.id).pose for o in items]
+    priors = [PosePrior(scene.camera.position, pose, MEASURED) for pose in seen]
     sized = [False] * len(items)
     after = Search(problem, picture, priors, boxes, np.full(len(items), trust), sized).poses(Progress())
     return dict(zip(problem.ids, after.position, strict=True))
@@ -68,3 +71,13 @@ def test_what_is_hidden_by_what_moves_counts_too(room: Room) -> None:
     few = empty.copy()
     few[masks["before"]] = np.arange(masks["before"].sum()) % 3 == 0
     assert found(room, aside, {**masks, "before": few})["before"][0] < aside.object("before").pose.position[0] - 0.05
+
+
+def test_no_mask_makes_an_object_much_larger_than_the_layout_did(room: Room) -> None:
+    room.put("box_24", (0.0, 0.4, 0.15), id="box")
+    scene = settled(room)
+    pose = scene.object("box").pose
+    larger = edits.place(scene, {"box": Pose(pose.R_world_object, pose.position, 1.8 * np.array(pose.scale))})
+    height = 2.0 * found(room, scene, masks_of(larger, room), observed=larger)["box"][2]
+    as_it_was = room.library.shape("box_24").size_m[2]
+    assert 1.15 * as_it_was < height <= MAX_GROWTH * as_it_was + 1e-9
