@@ -211,6 +211,7 @@ def photo_observations(
     *,
     depth_weight: float,
     measured: bool = False,
+    boxes: bool = True,
     visible: VisiblePoints = MappingProxyType({}),
 ) -> PhotoObservations:
     """What the camera sees of the observed layout.
@@ -220,12 +221,14 @@ def photo_observations(
         camera: what looks at it.
         depth_weight: how much a metre along the viewing ray counts against a metre across.
         measured: whether distances were measured, or only reasoned.
+        boxes: whether the photo's boxes say more of where objects are than their poses; not of a scene that a person
+            or a layout has left as it is.
         visible: points of the objects that are seen.
     """
     points = _outline_points(problem)
     posed = _posed_bounds_px(problem, camera)
     bounds, hidden = _pictured(problem, camera, posed)
-    if measured:  # masks and depth, to which shapes were fitted, say more than boxes
+    if measured or not boxes:  # masks and depth, to which shapes were fitted, say more than boxes
         bounds = posed
     return PhotoObservations(
         camera=camera,

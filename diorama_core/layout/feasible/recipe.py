@@ -194,7 +194,14 @@ class FeasibleRecipe:
         if camera is None or self._across <= 1.0:
             return None
         weight = self.depth_weight * self.weights.distance
-        return photo_observations(problem, camera, depth_weight=weight, measured=self.depth_measured, visible=visible)
+        return photo_observations(
+            problem,
+            camera,
+            depth_weight=weight,
+            measured=self.depth_measured,
+            boxes=self.sizes_reasoned,
+            visible=visible,
+        )
 
     def _outline_cost(self, problem: Problem) -> Float[np.ndarray, " n"]:
         """What a metre of outline counts, by object: moving it across the viewing ray."""

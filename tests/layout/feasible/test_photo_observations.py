@@ -213,3 +213,15 @@ def test_what_came_out_to_its_loads_is_not_made_smaller_again(room: Room) -> Non
     kept = seen.no_smaller(wider, wider > problem.scale)
     np.testing.assert_allclose(kept.least[0], [1.2, 1 / MAX_STRETCH, 1 / MAX_STRETCH])
     np.testing.assert_array_equal(kept.most, seen.most)
+
+
+def test_boxes_of_the_photo_move_what_was_built_from_it_and_nothing_that_was_settled(room: Room) -> None:
+    name = room.put("box_24", (0.0, 0.5, 0.15), scale=(1.0, 2.0, 1.0))
+    scene = room.scene(camera=looking_north())
+    x1, y1, x2, y2 = outline(scene, name)
+    box = (x1 + 0.12 * (x2 - x1), y1, x2 - 0.12 * (x2 - x1), y2)
+    seen = replace(scene, objects=(replace(scene.object(name), box_px=box),))
+    built, again = (solve(seen, sizes_reasoned=reasoned).object(name).pose for reasoned in (True, False))
+    assert built.scale[0] < 0.95 * scene.object(name).pose.scale[0] or built.scale[1] < 0.95 * 2.0
+    np.testing.assert_allclose(again.scale, scene.object(name).pose.scale, rtol=1e-6)
+    np.testing.assert_allclose(again.position, scene.object(name).pose.position, atol=1e-6)
