@@ -184,8 +184,10 @@ def _agreed(
 
 
 def _doubted(scene: Scene, standing: Sequence[SceneObject]) -> Scene:
-    """Walls behind which the middle of something that stands on the floor was measured are guesses: a front of
-    furniture that nobody marked was taken for them, or they end before it."""
+    """The scene with walls as guesses behind which the middle of something that stands on the floor was measured.
+
+    The front of furniture that nobody marked was taken for such a wall, or it ends before the object.
+    """
     doubted = {p.id for p in scene.architecture.planes if p.seen and any(_is_behind(o, p) for o in standing)}
     if not doubted:
         return scene
@@ -195,11 +197,15 @@ def _doubted(scene: Scene, standing: Sequence[SceneObject]) -> Scene:
 
 def _is_behind(item: SceneObject, plane: Plane) -> bool:
     """Whether an object's middle is clearly behind a wall, between its ends."""
-    if plane.role != "wall" or float(item.pose.position @ plane.normal) - plane.offset > -_CLEARLY_M:
-        return False
-    level = np.cross([0.0, 0.0, 1.0], plane.normal)
-    along, reach = plane.polygon @ level, float(item.pose.position @ level)
-    return bool(along.min() < reach < along.max())
+    ahead_m = float(item.pose.position @ plane.normal) - plane.offset
+    return plane.role == "wall" and ahead_m < -_CLEARLY_M and _is_between_ends(item, plane)
+
+
+def _is_between_ends(item: SceneObject, wall: Plane) -> bool:
+    """Whether an object's middle is before or behind a wall, rather than beside it."""
+    along = np.cross([0.0, 0.0, 1.0], wall.normal)
+    spread = wall.polygon @ along
+    return bool(spread.min() < float(item.pose.position @ along) < spread.max())
 
 
 def _given_way(scene: Scene, wall_id: str, standing: list[SceneObject]) -> Scene:
@@ -248,9 +254,7 @@ def _behind(item: SceneObject, wall: Plane, inward_m: float = 0.0) -> float:
     """Height of an object's hindmost corner before a wall, where that is less than the height at which it is wanted;
     that height for other objects, and for those beside the wall or behind it.
     """
-    along = np.cross([0.0, 0.0, 1.0], wall.normal)
-    spread, reach = wall.polygon @ along, float(item.pose.position @ along)
-    if not spread.min() < reach < spread.max() or float(item.pose.position @ wall.normal) < wall.offset:
+    if not _is_between_ends(item, wall) or float(item.pose.position @ wall.normal) < wall.offset:
         return inward_m
     return min(float((item.corners_world @ wall.normal).min()) - wall.offset, inward_m)
 

@@ -14,7 +14,7 @@ from diorama_core.layout.problem.problem import Problem
 from diorama_core.layout.problem.supports import Surface, is_wall_like
 
 _TURN_SHARE = 2.0
-"""An object turns by so many radians for a step by the whole of its distance."""
+"""An object turns by so many radians, times the share of the step."""
 _MIN_SLOPE = 0.3
 """Directions that a wall leaves less of than this are given up."""
 

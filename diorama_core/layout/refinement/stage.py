@@ -30,8 +30,6 @@ from diorama_core.scene.types import Camera, Scene
 
 TOUCHING_M = 0.004
 """What is so near to a wall stays against it."""
-
-
 GIVEN = 1.0
 """Confidence of a mask that a person gave: its box, which is drawn round it, says nothing more."""
 OUTLINED = 0.4
