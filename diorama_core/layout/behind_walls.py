@@ -56,7 +56,7 @@ def before_wall(
         share, parent = nearer
         held = edits.attach(_along_sight(scene, item, share), Support(item.id, parent))
         return held, f"support changed: {behind} and rests on {label_of(scene, parent)}"
-    if item.category not in taxonomy.PORTABLE and taxonomy.resolve(item.category).category.mount != "surface":
+    if not taxonomy.lies_on_furniture(taxonomy.resolve(item.category).category.name):
         return None  # a cabinet whose foot is hidden would hang in the air
     at_wall = edits.attach(
         _along_sight(scene, item, _share_before(scene, item, wall)), Support(item.id, wall.id, "mounted on")

@@ -87,7 +87,8 @@ def is_out_of_reach(
 
     Where distances were reasoned only its height tells: over what it was seen follows from what holds it.
     """
-    if item.locked or is_soft(item) or taxonomy.resolve(item.category).category.mount != "surface":
+    kind = taxonomy.resolve(item.category).category.name
+    if item.locked or is_soft(item) or not taxonomy.lies_on_furniture(kind):
         return False
     if scene.has_plane(edge.parent):
         plane = plane_surface(scene.plane(edge.parent))

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from diorama_core.library.taxonomy import PORTABLE, UNKNOWN, category, with_kin
+from diorama_core.library.taxonomy import UNKNOWN, lies_on_furniture, with_kin
 
 
 @dataclass(frozen=True)
@@ -86,8 +86,7 @@ def often_carried(kind: str, carrier: str) -> float:
     row = next((row for row in CARRIED if carrier in row.carriers), None)
     if row is None or kind == UNKNOWN.name:
         return 1.0
-    lies = category(kind).mount == "surface" or kind in PORTABLE
-    return row.kinds.get(kind, SELDOM_CARRIED if lies else HARDLY_CARRIED)
+    return row.kinds.get(kind, SELDOM_CARRIED if lies_on_furniture(kind) else HARDLY_CARRIED)
 
 
 ROOMS: Mapping[str, frozenset[str]] = {

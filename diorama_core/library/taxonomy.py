@@ -309,6 +309,11 @@ NEVER_OPEN = with_kin(
 """What nobody looks through: what has the colours of its surroundings within it, has them itself."""
 
 
+def lies_on_furniture(name: str) -> bool:
+    """Whether people put things of a category on furniture: what lies there only, and what is portable."""
+    return category(name).mount == "surface" or name in PORTABLE
+
+
 def is_furniture(name: str) -> bool:
     """Whether a category is what people call furniture: it stands on the floor, and is no lamp, plant, basket or rug."""
     return category(name).mount == "floor" and name not in PORTABLE | LAMPS and broad(name) != "rug"

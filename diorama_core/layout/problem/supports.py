@@ -328,7 +328,8 @@ def _most_plausible(
 
     What was seen in a photo clearly away from all of them is held by something that is not marked.
     """
-    mount = taxonomy.resolve(item.category).category.mount
+    kind = taxonomy.resolve(item.category).category
+    mount, lies = kind.mount, taxonomy.lies_on_furniture(kind.name)
     options: list[tuple[float, str, Support]] = []
     for plane in scene.architecture.planes:
         usual = {"floor": "floor", "surface": "floor", "wall": "wall", "ceiling": "ceiling"}[mount]
@@ -341,9 +342,9 @@ def _most_plausible(
         if mount == "ceiling" or closes_cycle(edges, item.id, other.id):
             continue
         for world in surfaces_below(item, other, shape):
-            cost = misfit(item, world) + (_ON_OBJECT_M if mount == "surface" else 0.4)
+            cost = misfit(item, world) + (_ON_OBJECT_M if lies else 0.4)
             options.append((cost, other.id, Support(item.id, other.id)))
-    if item.box_px is not None and mount == "surface":
+    if item.box_px is not None and lies:
         options = [option for option in options if option[0] <= OUT_OF_REACH_M + _ON_OBJECT_M]
     return min(options, key=lambda o: o[:2])[2] if options else None
 

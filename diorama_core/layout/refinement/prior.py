@@ -13,7 +13,10 @@ from diorama_core.scene.types import Pose
 WEIGHT = 0.005
 """What one standard deviation counts, against the whole agreement of one mask."""
 OUTLIER = 5.0
-"""Farther than so many standard deviations away, where the layout had to put an object, costs no more."""
+"""More standard deviations than that in turn or size, to which the layout had to change an object, cost no more."""
+LINEAR = 2.0
+"""Beyond so many standard deviations, distance costs by their number and no longer by its square: what the layout had
+to push away comes back as far as there is room."""
 TURN_RAD = 0.1
 """Standard deviation of an observed turn."""
 
@@ -60,4 +63,6 @@ class PosePrior:
             [nearer / sigma, np.arccos(np.clip(cosine, -1.0, 1.0)) / TURN_RAD, grown / self.precision.size_share]
         )
         squares = np.minimum(deviations**2, OUTLIER**2)
-        return WEIGHT * (squares[:, 0] + squares[:, 1] + squares[:, 2:].mean(axis=1))
+        away = np.abs(deviations[:, 0])
+        distant = np.where(away <= LINEAR, away**2, LINEAR * (2.0 * away - LINEAR))
+        return WEIGHT * (distant + squares[:, 1] + squares[:, 2:].mean(axis=1))

@@ -11,7 +11,7 @@ from jaxtyping import Float
 from diorama_core.geometry.projection import cuboid_corners
 from diorama_core.library import taxonomy
 from diorama_core.library.company import STACKED_ON, often_carried
-from diorama_core.library.taxonomy import AGAINST_WALLS, PORTABLE, UNKNOWN, Category, Mount, with_kin
+from diorama_core.library.taxonomy import AGAINST_WALLS, PORTABLE, UNKNOWN, Category, Mount, lies_on_furniture, with_kin
 from diorama_core.perception.metrology.arrangement import arrange, distinct
 from diorama_core.perception.metrology.box_observations import BoxObservations
 from diorama_core.perception.metrology.carried_costs import CarriedCosts
@@ -282,7 +282,7 @@ def _stacked(
 def _small_carrier(observations: BoxObservations, index: int) -> int | None:
     """The small carrier of which the picture shows most just under a thing; None where that is little."""
     category = observations.categories[index]
-    if category.mount != "surface" and category.name not in PORTABLE:
+    if not lies_on_furniture(category.name):
         return None
     carriers = [j for j, c in enumerate(observations.categories) if c.name in STACKED_ON]
     lower = [j for j in carriers if observations.box_px[j, 3] > observations.box_px[index, 3]]
