@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
-from jaxtyping import Bool, Float
+from jaxtyping import Float
 
 from diorama_core.geometry.sat import pair_axes, place_bodies
 from diorama_core.layout import gradients
@@ -16,6 +16,8 @@ ALIGNED_RAD = float(np.deg2rad(1.0))
 PLACED_M = 1e-3
 INSIDE_M = 1e-3
 """Corners may leave their surface by this much and still count as inside."""
+USUAL_ERRORS = np.array([ALIGNED_RAD, PLACED_M, INSIDE_M])
+"""Up to these `support_errors` an object is aligned with its support, on it and inside its bounds."""
 
 
 def measure(
@@ -33,7 +35,7 @@ def measure(
     published costs.
     """
     supported = [surface is not None for surface in problem.surface]
-    aligned, placed, inside = held(problem, R, p, scale)[supported].T
+    aligned, placed, inside = (support_errors(problem, R, p, scale)[supported] <= USUAL_ERRORS).T
     depths = part_overlaps(problem, R, p, scale)
     moved = np.linalg.norm(p - problem.p, axis=1)
     return {
@@ -87,29 +89,32 @@ def _share(good: np.ndarray) -> float:
     return float(good.mean()) if len(good) else 1.0
 
 
-def held(
+def support_errors(
     problem: Problem,
     R: Float[np.ndarray, "n 3 3"],
     p: Float[np.ndarray, "n 3"],
     scale: Float[np.ndarray, "n 3"],
-) -> Bool[np.ndarray, "n 3"]:
-    """Whether each object is aligned with its support, on it and inside its bounds; so where nothing supports it."""
+) -> Float[np.ndarray, "n 3"]:
+    """How far each object is from resting on its support: radians by which it is tilted, metres by which it is off the
+    surface, and metres by which it leaves the bounds and the clearance of that; 0 where nothing supports it.
+    """
     volumes = Volumes.of(problem)
     here, supported = volumes.at(R, p, scale), volumes.supported
     size, contact = problem.shape_size[supported] * scale[supported], problem.contact[supported]
     own = R[supported]
     outward = np.matmul(own, contact[..., None])[..., 0]
     centre = p[supported] + np.matmul(own, (contact * size / 2)[..., None])[..., 0]
-    aligned = (outward * here.normal).sum(axis=1) <= -np.cos(ALIGNED_RAD)
-    placed = np.abs((centre * here.normal).sum(axis=1) - here.level) <= PLACED_M
+    tilted = np.arccos(np.clip(-(outward * here.normal).sum(axis=1), -1.0, 1.0))
+    off = np.abs((centre * here.normal).sum(axis=1) - here.level)
     reach = np.array([reach_of(problem.footing[i], R[i], scale[i], m) for i, m in zip(supported, here.outward)])
     reach = reach.reshape(here.offset.shape)
     past = np.matmul(here.outward, centre[..., None])[..., 0] + reach - here.offset
     half = 0.5 * (np.abs(np.matmul(here.normal[:, None, :], own)[:, 0]) * size).sum(axis=1)
     top = (p[supported] * here.normal).sum(axis=1) - here.level + half
-    inside = (past <= INSIDE_M).all(axis=1) & (top <= here.clearance + INSIDE_M)
-    found = np.ones((problem.count, 3), dtype=bool)
-    found[supported] = np.column_stack([aligned, placed, inside])
+    # Squares, so that what hangs over on all sides is best in the middle.
+    outside = np.linalg.norm(np.maximum(np.column_stack([past, top - here.clearance]), 0.0), axis=1)
+    found = np.zeros((problem.count, 3))
+    found[supported] = np.column_stack([tilted, off, outside])
     return found
 
 

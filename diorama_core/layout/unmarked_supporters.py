@@ -20,6 +20,7 @@ from diorama_core.layout.problem.supports import (
     label_of,
     outside_m,
     plane_surface,
+    reaches,
     resting_cost,
 )
 from diorama_core.library import taxonomy
@@ -27,8 +28,6 @@ from diorama_core.library.record import ShapeLibrary
 from diorama_core.scene import edits
 from diorama_core.scene.types import Scene, SceneObject, Support
 
-BESIDE_M = 0.06
-"""What was measured with its middle farther beside a place than this does not rest there either."""
 REASONED_M = 0.3
 """The distance from a place for heights that were reasoned from a photo alone."""
 
@@ -87,8 +86,9 @@ def is_out_of_reach(
 
     Where distances were reasoned only its height tells: over what it was seen follows from what holds it.
     """
-    kind = taxonomy.resolve(item.category).category.name
-    if item.locked or is_soft(item) or not taxonomy.lies_on_furniture(kind):
+    kind = taxonomy.resolve(item.category).category
+    movable = not item.locked and not is_soft(item) and taxonomy.lies_on_furniture(kind.name)
+    if not movable or (kind.mount != "surface" and scene.has_plane(edge.parent)):
         return False
     if scene.has_plane(edge.parent):
         plane = plane_surface(scene.plane(edge.parent))
@@ -99,10 +99,9 @@ def is_out_of_reach(
     place = choose_surface(scene, item, edge, library.shape(parent.shape_id)).in_world(parent.pose)
     if edge.relation == "mounted on":
         return resting_cost(scene, item, edge, place) > OUT_OF_REACH_M
-    gap = abs(float((item.corners_world @ place.normal).min()) - place.level)
-    if not measured:
-        return gap > REASONED_M
-    return gap > OUT_OF_REACH_M or outside_m(place, item.pose.position) > BESIDE_M
+    if measured:
+        return not reaches(item, place)
+    return abs(float((item.corners_world @ place.normal).min()) - place.level) > REASONED_M
 
 
 def _is_within(item: SceneObject, other: SceneObject) -> bool:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -68,6 +70,30 @@ def test_what_was_measured_beside_a_table_is_not_on_it(room: Room) -> None:
     cup = room.put("cup_21", (depth / 2 + 0.1, 1.0, top + height / 2), on=table)
     scene = room.scene(camera=looking_north())
     assert left_where_seen(scene, LIBRARY, MEASURED)[0].support_of(cup) is None
+
+
+def test_half_of_what_is_long_may_be_beside_a_table(room: Room) -> None:
+    table = room.put("table_0", (0.0, 1.0, 0.37))
+    depth, _, top = room.objects[0].size_m
+    size = room.library.shape("books_18").size_m
+    long = 0.6 / size[0]
+    row = room.put("books_18", (depth / 2 + 0.1, 1.0, top + size[2] / 2), on=table, scale=(long, 1.0, 1.0))
+    scene = room.scene(camera=looking_north())
+    assert left_where_seen(scene, LIBRARY, MEASURED)[0].support_of(row) is not None
+
+
+def test_a_plant_in_the_air_over_a_table_stays_there_and_one_over_the_floor_comes_down(room: Room) -> None:
+    table = room.put("table_0", (0.0, 1.0, 0.37))
+    above = room.put("cup_21", (0.0, 1.0, 1.6), on=table, box_px=BOX_PX)
+    low = room.put("cup_21", (1.5, 1.0, 0.8), on="floor", box_px=BOX_PX)
+    scene = room.scene(camera=looking_north())
+    potted = tuple(replace(o, category="plant") if o.id in (above, low) else o for o in scene.objects)
+    left, _ = left_where_seen(replace(scene, objects=potted), LIBRARY, MEASURED)
+    assert left.support_of(above) is None
+    assert left.support_of(low) is not None
+    settled, _ = FeasibleRecipe(LIBRARY, depth_measured=True).optimise(left, Progress())
+    assert np.allclose(settled.object(above).pose.position, left.object(above).pose.position, atol=1e-6)
+    assert settled.object(low).corners_world[:, 2].min() == pytest.approx(0.0, abs=1e-6)
 
 
 def test_furniture_keeps_its_floor(room: Room) -> None:

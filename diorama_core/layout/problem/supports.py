@@ -24,6 +24,9 @@ SMALLEST_CLEARANCE = 0.75
 """A place with less than this share of an object's height above it is chosen only where there is no other."""
 OUT_OF_REACH_M = 0.12
 """What was measured farther from its place than this does not rest there: sizes do not differ by so much."""
+BESIDE_M, BESIDE_SHARE = 0.06, 0.25
+"""What was measured with its middle farther beside a place than this, and than this share of its width, does not rest
+there either."""
 _ON_OBJECT_M = 0.15
 """Added to the gap to another object, of things that people put on others: the floor is surer."""
 NEAR_SURFACE_M = 0.1
@@ -203,6 +206,14 @@ def box_misfit(corners: Float[np.ndarray, "8 3"], size: Float[np.ndarray, "3"], 
     return gap + outside_m(surface, corners.mean(axis=0)) + 0.5 * over + squeezed + 0.5 * _too_wide(size, surface)
 
 
+def reaches(item: SceneObject, surface: Surface) -> bool:
+    """Whether an object was measured so near to a surface (world) that it may rest there."""
+    corners = item.corners_world
+    gap = abs(float((corners @ surface.normal).min()) - surface.level)
+    wide = max(float(np.ptp(corners @ axis)) for axis in plane_axes(surface.normal))
+    return gap <= OUT_OF_REACH_M and outside_m(surface, item.pose.position) <= max(BESIDE_M, BESIDE_SHARE * wide)
+
+
 def _too_wide(size: Float[np.ndarray, "3"], surface: Surface) -> float:
     """How much a box exceeds the surface in the narrower direction, metres."""
     widths = sorted(size)[1:]
@@ -330,6 +341,7 @@ def _most_plausible(
     """
     kind = taxonomy.resolve(item.category).category
     mount, lies = kind.mount, taxonomy.lies_on_furniture(kind.name)
+    seen_loose = item.box_px is not None and lies
     options: list[tuple[float, str, Support]] = []
     for plane in scene.architecture.planes:
         usual = {"floor": "floor", "surface": "floor", "wall": "wall", "ceiling": "ceiling"}[mount]
@@ -337,15 +349,15 @@ def _most_plausible(
             continue
         edge = Support(item.id, plane.id, "placed on" if plane.role == "floor" else "mounted on")
         cost = resting_cost(scene, item, edge, plane_surface(plane))
-        options.append((cost + (0.0 if plane.role == usual else 0.3), plane.id, edge))
+        if not seen_loose or cost <= OUT_OF_REACH_M:
+            options.append((cost + (0.0 if plane.role == usual else 0.3), plane.id, edge))
     for other, shape in zip(objects, shapes):
         if mount == "ceiling" or closes_cycle(edges, item.id, other.id):
             continue
         for world in surfaces_below(item, other, shape):
-            cost = misfit(item, world) + (_ON_OBJECT_M if lies else 0.4)
-            options.append((cost, other.id, Support(item.id, other.id)))
-    if item.box_px is not None and lies:
-        options = [option for option in options if option[0] <= OUT_OF_REACH_M + _ON_OBJECT_M]
+            if not seen_loose or reaches(item, world):
+                cost = misfit(item, world) + (_ON_OBJECT_M if lies else 0.4)
+                options.append((cost, other.id, Support(item.id, other.id)))
     return min(options, key=lambda o: o[:2])[2] if options else None
 
 

@@ -13,6 +13,8 @@ from diorama_core.geometry.silhouette import PoseBatch
 from diorama_core.layout.problem.problem import Problem
 from diorama_core.layout.problem.supports import Surface, is_wall_like
 
+SHARES_OF_WAY = (1.0, 0.5, 0.25)
+"""Of the way to a place, which are tried at once: what stands in between is no obstacle."""
 _TURN_SHARE = 2.0
 """An object turns by so many radians, times the share of the step."""
 _MIN_SLOPE = 0.3
@@ -46,6 +48,12 @@ class Freedom:
         as_a_whole[:, len(self.directions) : len(self.directions) + extents] = share
         ways = np.concatenate([single, as_a_whole])
         return np.concatenate([np.zeros((1, len(length))), ways, -ways])
+
+    def steps_toward(self, p: Float[np.ndarray, "3"], place: Float[np.ndarray, "3"]) -> Float[np.ndarray, "k f"]:
+        """From a centre all the way to a place, as far as it may go there, and parts of that way."""
+        steps = np.zeros((len(SHARES_OF_WAY), len(self.directions) + len(self.extents) + int(self.turns)))
+        steps[:, : len(self.directions)] = np.outer(SHARES_OF_WAY, self.directions @ (place - p))
+        return steps
 
     def poses(
         self,

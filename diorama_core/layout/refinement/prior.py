@@ -50,6 +50,11 @@ class PosePrior:
     observed: Pose
     precision: Precision
 
+    def was_pushed_away(self, position: Float[np.ndarray, "3"]) -> bool:
+        """Whether a position is farther from a measured one than is usual."""
+        usual = LINEAR * self.precision.distance_m
+        return usual > 0.0 and float(np.linalg.norm(position - self.observed.position)) > usual
+
     def cost(self, poses: PoseBatch) -> Float[np.ndarray, " p"]:
         """Of other poses, in shares of the agreement of one mask."""
         distance = float(np.linalg.norm(self.observed.position - self.eye))

@@ -5,10 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from jaxtyping import Bool, Float
+from jaxtyping import Float
 
 from diorama_core.layout.problem.problem import Problem
-from diorama_core.layout.report import held, part_overlaps
+from diorama_core.layout.report import USUAL_ERRORS, part_overlaps, support_errors
 from diorama_core.scene.types import box_corners
 
 _TOUCHING_M = 1e-6
@@ -20,8 +20,8 @@ class RoomLeft:
 
     problem: Problem
     """The settled layout."""
-    held: Bool[np.ndarray, "n 3"]
-    """Whether each object is aligned with its support, on it and inside its bounds; so where nothing supports it."""
+    support_errors: Float[np.ndarray, "n 3"]
+    """Most that each object may be tilted on its support, off it and beyond its bounds: as is usual, or as it was."""
     overlaps_m: dict[tuple[int, int], float]
     """Depths of the overlaps that were left."""
 
@@ -29,15 +29,16 @@ class RoomLeft:
     def of(cls, problem: Problem) -> RoomLeft:
         """What is left around the objects of a settled layout."""
         poses = problem.R, problem.p, problem.scale
-        return cls(problem, held(problem, *poses), part_overlaps(problem, *poses))
+        errors = np.maximum(support_errors(problem, *poses) + _TOUCHING_M, USUAL_ERRORS)
+        return cls(problem, errors, part_overlaps(problem, *poses))
 
     def allows(
         self, i: int, R: Float[np.ndarray, "n 3 3"], p: Float[np.ndarray, "n 3"], scale: Float[np.ndarray, "n 3"]
     ) -> bool:
         """Whether object i may be where it is among all others."""
         affected = [i, *np.flatnonzero(self.problem.parent == i)]
-        lost = self.held[affected] & ~held(self.problem, R, p, scale)[affected]
-        if lost.any() or self._through_wall(i, R, p, scale):
+        worse = support_errors(self.problem, R, p, scale)[affected] > self.support_errors[affected]
+        if worse.any() or self._through_wall(i, R, p, scale):
             return False
         depths = part_overlaps(self.problem, R, p, scale, only=i)
         return all(depth <= self.overlaps_m.get(pair, 0.0) + _TOUCHING_M for pair, depth in depths.items())

@@ -90,8 +90,11 @@ class Search:
     def _better(self, poses: PoseBatch, i: int, share: float, seen: np.ndarray) -> list[_Try]:
         """Poses of one object that are better than its own, the best first: single changes, and several together."""
         free = self._freedom(poses, i)
-        distance = float(np.linalg.norm(poses.position[i] - self.priors[i].eye))
+        prior, place = self.priors[i], poses.position[i]
+        distance = float(np.linalg.norm(place - prior.eye))
         changes = free.steps(MOVE_SHARE * share * min(distance, FARTHEST_M), share)
+        if prior.was_pushed_away(place):
+            changes = np.concatenate([changes, free.steps_toward(place, prior.observed.position)])
         single = self._tries(poses, i, free, changes, seen)
         if not single:
             return []

@@ -77,6 +77,16 @@ def test_steps_are_either_way_of_every_freedom_and_of_all_extents_together(room:
     assert (steps == [0.0, 0.0, 0.02, 0.02, 0.02, 0.0]).all(axis=1).any()
 
 
+def test_steps_toward_a_place_lead_there_along_the_support(room: Room) -> None:
+    free, problem, i = of(room_with_one_box(room), room, "box")
+    place = problem.p[i] + np.array([0.4, -0.2, 0.3])
+    changes = free.steps_toward(problem.p[i], place)
+    poses = free.poses(problem.R[i], problem.p[i], problem.scale[i], problem.shape_size[i], changes)
+    assert poses.position[0] == pytest.approx([place[0], place[1], problem.p[i, 2]])
+    assert poses.position[1] == pytest.approx(problem.p[i] + [0.2, -0.1, 0.0])
+    assert (poses.scale == problem.scale[i]).all()
+
+
 def room_with_one_box(room: Room) -> Scene:
     room.put("box_24", (0.5, 0.5, 0.15), id="box")
     return room.scene(camera=looking_down())

@@ -46,3 +46,11 @@ def test_what_carries_something_does_not_leave_it_in_the_air(room: Room) -> None
     assert not allowed(problem, "low", (0.3, 0.0, 0.0))
     assert not allowed(problem, "on top", (0.3, 0.0, 0.0))
     assert np.isclose(problem.p[0, 2], problem.shape_size[0, 2] / 2)
+
+
+def test_what_hangs_over_an_edge_does_not_leave_it_farther(room: Room) -> None:
+    low = room.put("box_24", (0.0, 0.0, 0.15), id="low")
+    room.put("box_24", (0.0, 0.0, 0.45), on=low, id="on top", scale=(2.0, 2.0, 0.5))
+    problem = settled(room)
+    assert allowed(problem, "on top", (0.0, 0.0, 0.0))
+    assert not allowed(problem, "on top", (0.05, 0.0, 0.0), grown=1.0)
