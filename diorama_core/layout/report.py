@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
-from jaxtyping import Float
+from jaxtyping import Bool, Float
 
 from diorama_core.geometry.sat import pair_axes, place_bodies
 from diorama_core.layout import gradients
@@ -136,17 +136,25 @@ def part_overlaps(
     scale: Float[np.ndarray, "n 3"],
     *,
     only: int | None = None,
+    supporters: bool = False,
 ) -> dict[tuple[int, int], float]:
-    """Depth in metres by which convex parts of two objects overlap, for the pairs that do; supporters left out.
+    """Depth in metres by which convex parts of two objects overlap, for the pairs that do.
 
-    With `only`, the pairs of this one object.
+    Args:
+        problem: the objects.
+        R: their rotations.
+        p: their centres.
+        scale: their scales.
+        only: the pairs of this one object.
+        supporters: with the pairs of an object and what holds it up, which touch; rugs and soft things are left out.
     """
-    if not problem.count or (only is not None and not _has_neighbour(problem, only, R, p, scale)):
+    apart = ~(np.eye(problem.count, dtype=bool) | problem.yielding if supporters else problem.kin)
+    if not problem.count or (only is not None and not _has_neighbour(problem, only, R, p, scale, apart)):
         return {}
     bodies = place_bodies(problem.packed, R, p, scale)
     starts = np.searchsorted(bodies.owner, np.arange(problem.count))
     low, high = np.minimum.reduceat(bodies.low, starts), np.maximum.reduceat(bodies.high, starts)
-    near = ((low[:, None] < high[None]) & (low[None] < high[:, None])).all(axis=2) & ~problem.kin
+    near = ((low[:, None] < high[None]) & (low[None] < high[:, None])).all(axis=2) & apart
     if only is not None:
         near &= (np.arange(problem.count) == only)[:, None] | (np.arange(problem.count) == only)
     near_parts = np.triu(near, 1)[bodies.owner[:, None], bodies.owner[None]]
@@ -161,9 +169,11 @@ def part_overlaps(
     return depths
 
 
-def _has_neighbour(problem: Problem, i: int, R: np.ndarray, p: np.ndarray, scale: np.ndarray) -> bool:
+def _has_neighbour(
+    problem: Problem, i: int, R: np.ndarray, p: np.ndarray, scale: np.ndarray, apart: Bool[np.ndarray, "n n"]
+) -> bool:
     """Whether the upright box around an object's parts meets that of another from which it should be apart."""
     starts = np.searchsorted(problem.packed.owner, np.arange(problem.count))
     reach = np.maximum.reduceat(np.abs(problem.packed.vertices).max(axis=1), starts) * scale
     half = np.matmul(np.abs(R), reach[..., None])[..., 0]
-    return bool(((np.abs(p - p[i]) < half + half[i]).all(axis=1) & ~problem.kin[i]).any())
+    return bool(((np.abs(p - p[i]) < half + half[i]).all(axis=1) & apart[i]).any())

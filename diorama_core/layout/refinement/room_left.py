@@ -30,7 +30,7 @@ class RoomLeft:
         """What is left around the objects of a settled layout."""
         poses = problem.R, problem.p, problem.scale
         errors = np.maximum(support_errors(problem, *poses) + _TOUCHING_M, USUAL_ERRORS)
-        return cls(problem, errors, part_overlaps(problem, *poses))
+        return cls(problem, errors, part_overlaps(problem, *poses, supporters=True))
 
     def allows(
         self, i: int, R: Float[np.ndarray, "n 3 3"], p: Float[np.ndarray, "n 3"], scale: Float[np.ndarray, "n 3"]
@@ -40,7 +40,7 @@ class RoomLeft:
         worse = support_errors(self.problem, R, p, scale)[affected] > self.support_errors[affected]
         if worse.any() or self._through_wall(i, R, p, scale):
             return False
-        depths = part_overlaps(self.problem, R, p, scale, only=i)
+        depths = part_overlaps(self.problem, R, p, scale, only=i, supporters=True)
         return all(depth <= self.overlaps_m.get(pair, 0.0) + _TOUCHING_M for pair, depth in depths.items())
 
     def _through_wall(self, i: int, R: np.ndarray, p: np.ndarray, scale: np.ndarray) -> bool:

@@ -5,6 +5,7 @@ import numpy as np
 from diorama_core.layout.feasible.recipe import FeasibleRecipe
 from diorama_core.layout.problem.problem import Problem, build_problem
 from diorama_core.layout.refinement.room_left import RoomLeft
+from diorama_core.layout.report import part_overlaps
 from diorama_core.progress import Progress
 from tests.layout.small_rooms import Room
 
@@ -54,3 +55,16 @@ def test_what_hangs_over_an_edge_does_not_leave_it_farther(room: Room) -> None:
     problem = settled(room)
     assert allowed(problem, "on top", (0.0, 0.0, 0.0))
     assert not allowed(problem, "on top", (0.05, 0.0, 0.0), grown=1.0)
+
+
+def test_what_is_on_a_lower_board_overlaps_the_sides_and_not_what_is_beside_it(room: Room) -> None:
+    shelf = room.put("bookshelf_6", (0.0, 0.0, 0.9), id="shelf")
+    place, half = room.library.shape("bookshelf_6").surfaces[1], room.library.shape("cup_21").size_m[2] / 2
+    room.put("cup_21", (0.0, 0.0, 0.9 + place.height_m + half), on=shelf, id="cup")
+    problem = settled(room)
+    through, p = problem.ids.index("cup"), problem.p.copy()
+    p[through, 1] += 0.5 * room.library.shape("bookshelf_6").size_m[1]
+    poses = problem.R, p, problem.scale
+    assert part_overlaps(problem, *poses, only=through, supporters=True)[0, 1] > 0.01
+    assert not part_overlaps(problem, *poses, only=through)
+    assert not part_overlaps(problem, problem.R, problem.p, problem.scale, supporters=True)
