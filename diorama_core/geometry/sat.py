@@ -11,7 +11,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from jaxtyping import Float, Int
+from jaxtyping import Bool, Float, Int
 
 from diorama_core.geometry.convex import ConvexPart
 from diorama_core.geometry.cross import cross
@@ -61,6 +61,13 @@ class PackedParts:
     edges: Float[np.ndarray, "b e 3"]
     simple: np.ndarray
     owner: Int[np.ndarray, " b"]
+
+    def of(self, objects: Bool[np.ndarray, " n"]) -> PackedParts:
+        """The parts of some of the objects."""
+        rows = objects[self.owner]
+        return PackedParts(
+            self.vertices[rows], self.normals[rows], self.edges[rows], self.simple[rows], self.owner[rows]
+        )
 
 
 def pack_parts(parts: Sequence[Sequence[ConvexPart]]) -> PackedParts:

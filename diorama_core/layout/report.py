@@ -149,16 +149,17 @@ def part_overlaps(
         supporters: with the pairs of an object and what holds it up, which touch; rugs and soft things are left out.
     """
     apart = ~(np.eye(problem.count, dtype=bool) | problem.yielding if supporters else problem.kin)
-    if not problem.count or (only is not None and not _has_neighbour(problem, only, R, p, scale, apart)):
-        return {}
-    bodies = place_bodies(problem.packed, R, p, scale)
-    starts = np.searchsorted(bodies.owner, np.arange(problem.count))
-    low, high = np.minimum.reduceat(bodies.low, starts), np.maximum.reduceat(bodies.high, starts)
-    near = ((low[:, None] < high[None]) & (low[None] < high[:, None])).all(axis=2) & apart
+    packed = problem.packed
     if only is not None:
-        near &= (np.arange(problem.count) == only)[:, None] | (np.arange(problem.count) == only)
-    near_parts = np.triu(near, 1)[bodies.owner[:, None], bodies.owner[None]]
-    near_parts &= ((bodies.low[:, None] < bodies.high[None]) & (bodies.low[None] < bodies.high[:, None])).all(axis=2)
+        near = _neighbours(problem, only, R, p, scale) & apart[only]
+        packed = packed.of(near | (np.arange(problem.count) == only))
+    bodies = place_bodies(packed, R, p, scale)
+    near_parts = np.triu(apart, 1)[bodies.owner[:, None], bodies.owner[None]]
+    if only is not None:
+        near_parts &= (bodies.owner[:, None] == only) | (bodies.owner[None] == only)
+    for axis in range(3):
+        low, high = bodies.low[:, axis], bodies.high[:, axis]
+        near_parts &= (low[:, None] < high[None]) & (low[None] < high[:, None])
     a, b = np.nonzero(near_parts)
     depths: dict[tuple[int, int], float] = {}
     for block in pair_axes(bodies, a, b):
@@ -169,11 +170,7 @@ def part_overlaps(
     return depths
 
 
-def _has_neighbour(
-    problem: Problem, i: int, R: np.ndarray, p: np.ndarray, scale: np.ndarray, apart: Bool[np.ndarray, "n n"]
-) -> bool:
-    """Whether the upright box around an object's parts meets that of another from which it should be apart."""
-    starts = np.searchsorted(problem.packed.owner, np.arange(problem.count))
-    reach = np.maximum.reduceat(np.abs(problem.packed.vertices).max(axis=1), starts) * scale
-    half = np.matmul(np.abs(R), reach[..., None])[..., 0]
-    return bool(((np.abs(p - p[i]) < half + half[i]).all(axis=1) & apart[i]).any())
+def _neighbours(problem: Problem, i: int, R: np.ndarray, p: np.ndarray, scale: np.ndarray) -> Bool[np.ndarray, " n"]:
+    """Objects of which the upright box around their parts meets that of object i."""
+    half = np.matmul(np.abs(R), (problem.reach * scale)[..., None])[..., 0]
+    return (np.abs(p - p[i]) < half + half[i]).all(axis=1)

@@ -100,6 +100,13 @@ class Problem:
         return len(self.ids)
 
     @cached_property
+    def reach(self) -> Float[np.ndarray, "n 3"]:
+        """Half extents of a box around each object's centre that contains its parts, at scale 1, its own axes."""
+        found = np.zeros((self.count, 3))
+        np.maximum.at(found, self.packed.owner, np.abs(self.packed.vertices).max(axis=1))
+        return found
+
+    @cached_property
     def top_down(self) -> tuple[int, ...]:
         """Object indices, supporters before what they support."""
         depth = [len(self.chain(i)) for i in range(self.count)]
