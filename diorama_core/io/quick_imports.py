@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import atexit
 import gc
 import importlib
 import sys
@@ -10,13 +11,20 @@ from typing import Any
 
 GARBAGE_EVERY = 10_000
 """New objects between two searches for garbage: nearly all that importing makes stays, so the usual 700 cost time."""
+SWITCH_S = 1e-4
+"""Time for which a thread keeps the interpreter while another waits: numpy gives it up with every large array, and gets
+it back after the usual 5 ms only, however short its own work was."""
 LATER = ("networkx",)
 """What trimesh loads for functions that are rarely called; that takes longer than trimesh itself."""
 
 
 def load_quickly() -> None:
-    """Look for garbage less often, and load trimesh without what it rarely needs."""
+    """Look for garbage less often, not at all when the program ends, let threads take turns more often, and load trimesh
+    without what it rarely needs.
+    """
+    sys.setswitchinterval(SWITCH_S)
     gc.set_threshold(GARBAGE_EVERY)
+    atexit.register(gc.freeze)  # the last search, through all that was imported, takes a fifth of a second
     if "trimesh" in sys.modules:
         return
     stand_ins = {name: _LoadedOnUse(name) for name in LATER if name not in sys.modules}

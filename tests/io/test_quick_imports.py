@@ -9,15 +9,31 @@ import sys
 from diorama_core.io.quick_imports import GARBAGE_EVERY, load_quickly
 
 
-def test_garbage_is_looked_for_less_often() -> None:
-    before = gc.get_threshold()
+def test_garbage_is_looked_for_less_often_and_threads_take_turns_more_often() -> None:
+    before, turns = gc.get_threshold(), sys.getswitchinterval()
     gc.set_threshold(700, *before[1:])  # other tests of this process may have called it
+    sys.setswitchinterval(0.005)
     try:
         load_quickly()
         assert gc.get_threshold() == (GARBAGE_EVERY, *before[1:])
         assert gc.isenabled()
+        assert sys.getswitchinterval() < 0.001
     finally:
         gc.set_threshold(*before)
+        sys.setswitchinterval(turns)
+
+
+ENDING = """
+import atexit, gc
+atexit.register(lambda: print(gc.get_freeze_count()))
+from diorama_core.io.quick_imports import load_quickly
+load_quickly()
+"""
+
+
+def test_nothing_is_searched_for_garbage_when_the_program_ends() -> None:
+    ended = subprocess.run([sys.executable, "-c", ENDING], check=True, capture_output=True, text=True)
+    assert int(ended.stdout) > 10_000
 
 
 PROGRAM = """
