@@ -19,7 +19,7 @@ LATER = ("networkx",)
 
 
 def load_quickly() -> None:
-    """Look for garbage less often, not at all when the program ends, let threads take turns more often, and load trimesh
+    """Look for garbage less often, and not when the program ends; let threads take turns more often; and load trimesh
     without what it rarely needs.
     """
     sys.setswitchinterval(SWITCH_S)
