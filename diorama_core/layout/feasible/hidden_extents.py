@@ -172,8 +172,10 @@ def reaching_in_m(
         beside = (low[others] >= half[others]).any() or (high[others] <= -half[others]).any()
         along = corners @ (R.T @ outward)
         reaches = float(half[axis] - along.min())
-        # What goes on beyond the face comes from outside; what is within the box does not.
-        if not beside and reaches > 0.0 and float(along.max()) > half[axis]:
+        # What goes on beyond the face comes from outside. What is within the box does not, unless something that is not
+        # marked stands there and holds it.
+        from_outside = float(along.max()) > half[axis] or problem.surface[j] is None
+        if not beside and reaches > 0.0 and from_outside:
             deepest = max(deepest, min(reaches + APART_M, _exit_m(problem, i, j, p, scale, outward)))
     return deepest
 

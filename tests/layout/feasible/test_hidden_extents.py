@@ -72,6 +72,26 @@ def test_an_end_goes_on_under_its_load(room: Room) -> None:
     np.testing.assert_array_equal(after.scale, before.scale)
 
 
+@pytest.mark.parametrize("held", [False, True])
+def test_a_hidden_end_stops_before_what_stands_within_it_on_something_that_is_not_marked(
+    room: Room, held: bool
+) -> None:
+    far = room.put(BOX, (0.3, 1.0, 0.15), yaw=-np.pi / 2, id="far")
+    near = room.put(BOX, (0.02, 0.6, 0.15), yaw=-np.pi / 2, id="near")
+    cup = room.put("cup_21", (0.16, 1.0, 0.2), on="floor" if held else None, id="cup")
+    camera = looking_north()
+    scene = room.scene(camera=camera)
+    boxes = {name: outline(scene, name) for name in (far, near, cup)}
+    boxes[far][0] = max(boxes[far][0], boxes[near][2])
+    boxed = tuple(replace(o, box_px=tuple(boxes[o.id])) for o in scene.objects)
+    problem = build_problem(replace(scene, objects=boxed), room.library)
+    after = ending_before_neighbours(problem, photo_observations(problem, camera, depth_weight=1.0))
+    k, c = problem.ids.index(far), problem.ids.index(cup)
+    assert (problem.surface[c] is not None) == held
+    assert (after.scale[k, 1] == problem.scale[k, 1]) == held
+    assert bool(part_overlaps(after, after.R, after.p, after.scale)) == held
+
+
 def hung(room: Room, top_m: float, *, cut: bool) -> tuple[Problem, Problem]:
     """A box on the far wall of a room 2.6 m high, whose upper end may be above the picture; before and after."""
     size = room.library.shape(BOX).size_m
