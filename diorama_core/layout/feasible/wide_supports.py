@@ -22,6 +22,9 @@ from diorama_core.layout.problem.supports import Surface
 
 MIN_BEYOND_M = 0.005
 """Loads that reach less beyond an edge are brought back."""
+INNER_SHARE = 0.15
+"""An edge that is farther from the supporter's side, as a share of the extent, is that of a divider: no longer table
+would put it where the load was seen."""
 
 
 def reaching_loads(problem: Problem, structure: Structure, eye: Float[np.ndarray, "3"] | None) -> Problem:
@@ -78,7 +81,8 @@ def _needed(
     beyond = float(outward @ centre) + reach + INSET_M - edge
     half = 0.5 * float(problem.shape_size[j, axis] * structure.scale[j, axis])
     back = float(outward @ structure.p[j]) - half
-    if beyond <= MIN_BEYOND_M or 2.0 * reach > edge - back or not _is_near(place, outward, centre):
+    within = back + 2.0 * half - edge > INNER_SHARE * 2.0 * half
+    if beyond <= MIN_BEYOND_M or within or 2.0 * reach > edge - back or not _is_near(place, outward, centre):
         return 1.0
     return 1.0 + beyond / max(edge - back, 1e-6)
 

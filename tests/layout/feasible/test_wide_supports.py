@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -9,6 +11,7 @@ from diorama_core.layout.feasible.photo_observations import MAX_STRETCH
 from diorama_core.layout.feasible.structure import exact_structure
 from diorama_core.layout.feasible.wide_supports import reaching_loads
 from diorama_core.layout.problem.problem import Problem, build_problem
+from diorama_core.layout.problem.supports import Surface
 from diorama_core.synthesis.layout_rooms import box_library
 from tests.layout.feasible.test_photo_observations import looking_north
 from tests.layout.small_rooms import Room
@@ -69,3 +72,17 @@ def test_from_a_photo_alone_a_load_is_where_its_line_of_sight_meets_its_place(ro
     room.supports.clear()
     _, reasoned = reached(room, 0.02, above_m=0.04, eye=eye)
     assert sides(reasoned)[1] > sides(measured)[1] + 0.02
+
+
+@pytest.mark.parametrize(("share", "comes_out"), [(0.8, True), (0.5, False)])
+def test_no_side_comes_out_for_a_divider_that_is_far_from_it(room: Room, share: float, comes_out: bool) -> None:
+    table = room.put("table_0", (0.0, 0.6, 0.37), id="a-table")
+    right = share * float(room.objects[0].corners_world[:, 0].max())
+    room.put("vase_20", (right + 0.01, 0.6, 0.88), on=table, id="b-vase")
+    problem = build_problem(room.scene(camera=looking_north()), LIBRARY)
+    structure = exact_structure(problem)
+    place = structure.surface[1]
+    assert place is not None
+    narrow = Surface.of(place.polygon * [share, 1.0, 1.0], place.normal, place.clearance_m, of_plane=False)
+    after = reaching_loads(problem, replace(structure, surface=(structure.surface[0], narrow)), None)
+    assert (after.scale != problem.scale).any() == comes_out
