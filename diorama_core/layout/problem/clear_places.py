@@ -17,8 +17,9 @@ from scipy.spatial import ConvexHull, HalfspaceIntersection, QhullError
 from diorama_core.geometry.convex import THINNEST_M, ConvexPart, simplest_part
 from diorama_core.library.record import SupportSurface
 
-RISES_M = (0.002, 0.01)
-"""What rises less above a place is below what rests there: above flat places, and above those that are hardly flat."""
+RISES_M = (0.002, 0.01, 0.05)
+"""What rises less above a place is below what rests there, or around its foot: above flat places, above those that are
+hardly flat, and above those with the grates of a stove, the rim of a tray or a quilt that gives way."""
 REACHES_M = 0.01
 """Parts that reach less over a place are left as they are."""
 MARGIN_M = 0.008
@@ -56,7 +57,8 @@ def clear_of_places(
         free = next((room for room in _above(place) if not _within(points, *room).any()), None)
         if free is not None and not _is_enclosed(free, surface):
             whole = (place[0], place[1], free[2])
-            parts = tuple(piece for p in parts for piece in (_cut(p, whole) if _reaches_over(p, free) else [p]))
+            over = _above(place)[0]
+            parts = tuple(piece for p in parts for piece in (_cut(p, whole) if _reaches_over(p, over) else [p]))
     return parts
 
 
@@ -78,11 +80,10 @@ def _sides(outline: Float[np.ndarray, "k 2"]) -> tuple[Float[np.ndarray, "s 2"],
     return outward, (outward * outline[long]).sum(axis=1)
 
 
-def _above(place: Room) -> tuple[Room, Room]:
-    """The room over a place of a flat shape, and of one that is hardly flat."""
+def _above(place: Room) -> tuple[Room, ...]:
+    """The room over a place where less and less rises from it, the lowest first: see `RISES_M`."""
     outline, level, top = place
-    flat, rough = ((outline, level + rise, top - RISES_M[1]) for rise in RISES_M)
-    return flat, rough
+    return tuple((outline, level + rise, top - RISES_M[1]) for rise in RISES_M)
 
 
 def _within(

@@ -67,6 +67,23 @@ def test_what_stands_on_a_place_stays() -> None:
     assert clear_of_places(parts, (place,), lambda: worktop) == parts
 
 
+@pytest.mark.parametrize(("bar_m", "gives_way"), [(0.03, True), (0.08, False)])
+def test_grates_give_way_to_what_stands_between_them_and_high_bars_do_not(bar_m: float, gives_way: bool) -> None:
+    top = trimesh.creation.box([0.6, 0.6, 0.04])
+    guard = trimesh.creation.box([0.04, 0.6, 0.12])
+    guard.apply_translation([-0.32, 0.0, 0.08])
+    bars = [trimesh.creation.box([0.5, 0.01, bar_m]) for _ in range(4)]
+    for k, bar in enumerate(bars):
+        bar.apply_translation([0.0, -0.21 + 0.14 * k, 0.02 + bar_m / 2])
+    stove = trimesh.util.concatenate([top, guard, *bars])
+    outline = np.array([[-0.28, -0.3, 0.02], [0.3, -0.3, 0.02], [0.3, 0.3, 0.02], [-0.28, 0.3, 0.02]])
+    place = SupportSurface(outline, float("inf"), False)
+    cleared = clear_of_places((hull_part(np.asarray(stove.vertices)),), (place,), lambda: stove)
+    between = np.array([[0.0, 0.0, 0.03], [0.1, 0.14, 0.03]])
+    assert contains(cleared, between).any() != gives_way
+    assert contains(cleared, trimesh.sample.sample_surface(guard, 200, seed=1)[0]).mean() > 0.99
+
+
 def test_shapes_whose_parts_leave_their_places_free_are_not_looked_at() -> None:
     table = trimesh.creation.box([1.0, 0.6, 0.7])
     places = support_surfaces(table)
