@@ -17,9 +17,11 @@ from scipy.spatial import ConvexHull, HalfspaceIntersection, QhullError
 from diorama_core.geometry.convex import THINNEST_M, ConvexPart, simplest_part
 from diorama_core.library.record import SupportSurface
 
-RISES_M = (0.002, 0.01, 0.05)
-"""What rises less above a place is below what rests there, or around its foot: above flat places, above those that are
-hardly flat, and above those with the grates of a stove, the rim of a tray or a quilt that gives way."""
+RISES_M = (0.002, 0.01)
+"""What rises less above a place is below what rests there: above flat places, and above those that are hardly flat."""
+AROUND_FEET_M = 0.05
+"""What rises less above a place of furniture on which people put things is around their feet: the grates of a stove, the
+rim of a tray."""
 REACHES_M = 0.01
 """Parts that reach less over a place are left as they are."""
 MARGIN_M = 0.008
@@ -37,7 +39,11 @@ Room = tuple[Float[np.ndarray, "k 2"], float, float]
 
 
 def clear_of_places(
-    parts: tuple[ConvexPart, ...], surfaces: Sequence[SupportSurface], mesh: Callable[[], trimesh.Trimesh]
+    parts: tuple[ConvexPart, ...],
+    surfaces: Sequence[SupportSurface],
+    mesh: Callable[[], trimesh.Trimesh],
+    *,
+    carries: bool = False,
 ) -> tuple[ConvexPart, ...]:
     """The parts without what of them is over places above which the mesh leaves room.
 
@@ -47,17 +53,20 @@ def clear_of_places(
         parts: convex bodies that contain the shape, in its own frame.
         surfaces: its places.
         mesh: gives its geometry, which most shapes need not be asked for.
+        carries: whether people put things on its places rather than sit on them.
     """
     places = [(_inscribed(np.asarray(s.polygon)[:, :2]), s.height_m, s.height_m + s.clearance_m) for s in surfaces]
-    if not any(_reaches_over(part, _above(place)[0]) for part in parts for place in places):
+    if not any(_reaches_over(part, _above(place, RISES_M[0])) for part in parts for place in places):
         return parts
+    rises = (*RISES_M, AROUND_FEET_M) if carries else RISES_M
     surface = mesh()
     points = np.vstack([surface.vertices, trimesh.sample.sample_surface(surface, _SAMPLES, seed=_SEED)[0]])
     for place in places:
-        free = next((room for room in _above(place) if not _within(points, *room).any()), None)
+        rooms = (_above(place, rise) for rise in rises)
+        free = next((room for room in rooms if not _within(points, *room).any()), None)
         if free is not None and not _is_enclosed(free, surface):
             whole = (place[0], place[1], free[2])
-            over = _above(place)[0]
+            over = _above(place, RISES_M[0]) if carries else free
             parts = tuple(piece for p in parts for piece in (_cut(p, whole) if _reaches_over(p, over) else [p]))
     return parts
 
@@ -80,10 +89,10 @@ def _sides(outline: Float[np.ndarray, "k 2"]) -> tuple[Float[np.ndarray, "s 2"],
     return outward, (outward * outline[long]).sum(axis=1)
 
 
-def _above(place: Room) -> tuple[Room, ...]:
-    """The room over a place where less and less rises from it, the lowest first: see `RISES_M`."""
+def _above(place: Room, rise_m: float) -> Room:
+    """The room over a place, above what rises from it so far."""
     outline, level, top = place
-    return tuple((outline, level + rise, top - RISES_M[1]) for rise in RISES_M)
+    return outline, level + rise_m, top - RISES_M[1]
 
 
 def _within(

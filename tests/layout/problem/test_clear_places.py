@@ -67,8 +67,12 @@ def test_what_stands_on_a_place_stays() -> None:
     assert clear_of_places(parts, (place,), lambda: worktop) == parts
 
 
-@pytest.mark.parametrize(("bar_m", "gives_way"), [(0.03, True), (0.08, False)])
-def test_grates_give_way_to_what_stands_between_them_and_high_bars_do_not(bar_m: float, gives_way: bool) -> None:
+@pytest.mark.parametrize(
+    ("bar_m", "carries", "gives_way"), [(0.03, True, True), (0.08, True, False), (0.03, False, False)]
+)
+def test_grates_give_way_to_what_stands_between_them_and_high_bars_and_seats_do_not(
+    bar_m: float, carries: bool, gives_way: bool
+) -> None:
     top = trimesh.creation.box([0.6, 0.6, 0.04])
     guard = trimesh.creation.box([0.04, 0.6, 0.12])
     guard.apply_translation([-0.32, 0.0, 0.08])
@@ -78,7 +82,7 @@ def test_grates_give_way_to_what_stands_between_them_and_high_bars_do_not(bar_m:
     stove = trimesh.util.concatenate([top, guard, *bars])
     outline = np.array([[-0.28, -0.3, 0.02], [0.3, -0.3, 0.02], [0.3, 0.3, 0.02], [-0.28, 0.3, 0.02]])
     place = SupportSurface(outline, float("inf"), False)
-    cleared = clear_of_places((hull_part(np.asarray(stove.vertices)),), (place,), lambda: stove)
+    cleared = clear_of_places((hull_part(np.asarray(stove.vertices)),), (place,), lambda: stove, carries=carries)
     between = np.array([[0.0, 0.0, 0.03], [0.1, 0.14, 0.03]])
     assert contains(cleared, between).any() != gives_way
     assert contains(cleared, trimesh.sample.sample_surface(guard, 200, seed=1)[0]).mean() > 0.99
