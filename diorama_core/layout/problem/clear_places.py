@@ -20,8 +20,8 @@ from diorama_core.library.record import SupportSurface
 RISES_M = (0.002, 0.01)
 """What rises less above a place is below what rests there: above flat places, and above those that are hardly flat."""
 AROUND_FEET_M = 0.05
-"""What rises less above a place of furniture on which people put things is around their feet: the grates of a stove, the
-rim of a tray."""
+"""What rises less above a place of furniture on which people put things is around their feet: the grates of a stove,
+the rim of a tray."""
 REACHES_M = 0.01
 """Parts that reach less over a place are left as they are."""
 MARGIN_M = 0.008
