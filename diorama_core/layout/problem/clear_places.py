@@ -47,7 +47,7 @@ def clear_of_places(
 ) -> tuple[ConvexPart, ...]:
     """The parts without what of them is over places above which the mesh leaves room.
 
-    Together they contain the mesh but for what rises over a place so little that things are put down on it.
+    Together they contain the mesh but for what rises over a place so little that things are put down on or within it.
 
     Args:
         parts: convex bodies that contain the shape, in its own frame.
@@ -65,9 +65,8 @@ def clear_of_places(
         rooms = (_above(place, rise) for rise in rises)
         free = next((room for room in rooms if not _within(points, *room).any()), None)
         if free is not None and not _is_enclosed(free, surface):
-            whole = (place[0], place[1], free[2])
-            over = _above(place, RISES_M[0]) if carries else free
-            parts = tuple(piece for p in parts for piece in (_cut(p, whole) if _reaches_over(p, over) else [p]))
+            whole, flat = (place[0], place[1], free[2]), _above(place, RISES_M[0])
+            parts = tuple(piece for p in parts for piece in (_cut(p, whole) if _reaches_over(p, flat) else [p]))
     return parts
 
 
