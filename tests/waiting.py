@@ -6,7 +6,7 @@ import time
 from collections.abc import Callable
 
 
-def until(holds: Callable[[], object], what: object = "", *, seconds: float = 20.0) -> None:
+def until(holds: Callable[[], object], what: object = "", *, seconds: float = 60.0) -> None:
     """Wait until something holds, looking a hundred times a second; `what` is said when it never does."""
     deadline = time.monotonic() + seconds
     while not holds():

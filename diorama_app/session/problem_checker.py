@@ -115,7 +115,7 @@ class Checker:
                 self._thread.start()
             self._condition.notify_all()
 
-    def wait(self, timeout_s: float = 10.0) -> bool:
+    def wait(self, timeout_s: float = 60.0) -> bool:
         """Block until the newest scene is checked."""
         with self._condition:
             return self._condition.wait_for(lambda: self._scene is None and not self._busy, timeout_s)

@@ -45,7 +45,7 @@ class Reader:
             self._waiting[client_id] = self._waiting.get(client_id, 0) + 1
         self._pool.submit(self._read, upload, client_id, post, then)
 
-    def wait(self, timeout_s: float = 30.0) -> bool:
+    def wait(self, timeout_s: float = 60.0) -> bool:
         """Block until what was asked for is read; False when that took too long."""
         done = threading.Event()
         self._pool.submit(done.set)

@@ -108,7 +108,7 @@ class UiThread:
         with self._changed:
             return sum(len(q) for q in self._queues.values()) + len(self._delayed)
 
-    def wait(self, timeout_s: float = 10.0) -> bool:
+    def wait(self, timeout_s: float = 60.0) -> bool:
         """Block until nothing is left to do; False when that took too long."""
         with self._changed:
             return self._changed.wait_for(

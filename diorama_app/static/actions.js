@@ -1,21 +1,18 @@
-// What is done to the panels' HTML, told through a hidden field of viser's. viser sends only the newest of values that
-// change fast, so the field says everything of the last seconds, numbered.
+// What is done to the panels' HTML, told as the value of a hidden field of viser's. The message goes out at once: viser's
+// own fields share one sender, which keeps only the newest of what all of them say within 50 ms. The program may read the
+// field after the next message, so each says everything of the last seconds, numbered.
 (() => {
   const REPEATED_MS = 3000, REPEATED = 40;
-  const setValue = Object.getOwnPropertyDescriptor(HTMLInputElement.prototype, "value").set;
   const said = new Map();
   let number = 0;
-  window.__dioSend = (id, what, argument, event) => {
-    const label = document.querySelector(`label[for="${id}"]`);
-    const field = label?.closest(".mantine-Flex-root").querySelector("input");
-    if (!field) return;
+  window.__dioSend = (uuid, what, argument, event) => {
     const now = performance.now();
-    const latest = (said.get(id) ?? []).filter((action) => now - action.at < REPEATED_MS).slice(1 - REPEATED);
+    const latest = (said.get(uuid) ?? []).filter((action) => now - action.at < REPEATED_MS).slice(1 - REPEATED);
     const add = Boolean(event.shiftKey || event.ctrlKey || event.metaKey);
     latest.push({ do: what, arg: argument || "", add, at: now, number: ++number });
-    said.set(id, latest);
-    setValue.call(field, JSON.stringify(latest));
-    field.dispatchEvent(new Event("input", { bubbles: true }));
+    said.set(uuid, latest);
+    const updates = { value: JSON.stringify(latest) };
+    window.__viserMutable.sendMessage({ type: "GuiUpdateMessage", uuid, updates });
   };
 
   // Where a redraw takes away what is pressed before it is let go, browsers send its click to what is around it: the

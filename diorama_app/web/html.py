@@ -1,8 +1,8 @@
 """Pieces of HTML for the panels: escaped text, one style sheet, and a way for clicks in HTML to reach Python.
 
-viser's panels have no tree and no picture grid. A piece of HTML carries `data-do` attributes; one inline handler writes
-what was clicked into a hidden text field beside it, and that field's change arrives here. The page sends only the
-newest of values that change fast, so the field says the latest actions, numbered, and each is told once.
+viser's panels have no tree and no picture grid. A piece of HTML carries `data-do` attributes; one inline handler sends
+what was clicked as the value of a hidden text field beside it, and that field's change arrives here. The field may have
+its next value before it is read, so it says the latest actions, numbered, and each is told once.
 """
 
 from __future__ import annotations

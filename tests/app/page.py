@@ -95,9 +95,9 @@ class Page(viser.GuiApi):
 
     def settle(self) -> None:
         """Wait until everything asked for is done; what was uploaded is read in a process of its own."""
-        assert self.client.session.ui_thread.wait(20.0)
+        assert self.client.session.ui_thread.wait(60.0)
         assert self.client.session.reader.wait()
-        assert self.client.session.ui_thread.wait(20.0)
+        assert self.client.session.ui_thread.wait(60.0)
 
     def _told(self, handle: Any) -> None:
         event = viser.GuiEvent(self.client.viser_client, self.client.id, handle)

@@ -65,7 +65,7 @@ import diorama_app.serve as serving
 create_server = serving.create_server
 def listening(**settings):
     server = create_server(**settings)
-    socket.create_connection(("127.0.0.1", server.get_port()), timeout=10).close()
+    socket.create_connection(("127.0.0.1", server.get_port()), timeout=60).close()
     print(*[m for m in {NOT_BEFORE_LISTENING!r} if m in sys.modules])
     return server
 
@@ -116,7 +116,7 @@ def test_what_the_first_upload_needs_is_learnt_beside_and_ends_with_the_server(m
     time.sleep(0.3)  # the process is started meanwhile, of which nothing tells
     assert beside.is_alive()
     stopped.set()
-    beside.join(timeout=10.0)
+    beside.join(timeout=60.0)
     assert not beside.is_alive()
 
 

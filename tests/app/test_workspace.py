@@ -56,7 +56,7 @@ def test_only_who_asked_goes_to_another_project(workspace: Workspace, tmp_path: 
     people = [LocalClient(session.server, number) for number in (0, 1)]
     for person in people:
         session.ui_thread.post(lambda person=person: session.joined(person))
-    assert session.ui_thread.wait(30.0)
+    assert session.ui_thread.wait(60.0)
     went: list[tuple[int, str]] = []
     for number, client in session.clients.items():
         client.go_to = lambda name, number=number: went.append((number, name))

@@ -76,7 +76,7 @@ class WirePage:
         self.messages.append({"type": kind, "at": time.monotonic()})
         del self.messages[:-2000]
 
-    def wait_for(self, found: Callable[[], Any], timeout_s: float = 20.0) -> Any:
+    def wait_for(self, found: Callable[[], Any], timeout_s: float = 60.0) -> Any:
         """Wait until something is true of what arrived."""
         with self._changed:
             assert self._changed.wait_for(found, timeout_s), "it never came"

@@ -33,7 +33,7 @@ SIZE = (1100, 640)
 QUERY = "?fixedDpr=0.25"
 """Of a page's address: the 3D view has a quarter of the screen's pixels a side, which software draws in half the time.
 What is asked of the picture is its colours; everything else on the page is as sharp as ever."""
-PATIENCE_MS = 30_000
+PATIENCE_MS = 60_000
 LEARN_MS = 300_000
 """The first model of one's own is compared with all built-in shapes, which takes half a minute of a free core once."""
 

@@ -76,6 +76,25 @@ def test_edits_told_at_once_are_all_made(editor: EditorPage, busy: threading.Eve
     editor.until(lambda: np.allclose(size(editor), (0.95, 1.5, 0.7), atol=1e-3), "all three are written")
 
 
+def test_actions_of_several_panels_at_once_are_all_made(editor: EditorPage) -> None:
+    editor.row("dining table").click()
+    expect(editor.page.get_by_label("Size: Width")).to_be_visible()
+    editor.settle()
+    keeps = editor.client.preferences.keep_colour
+    editor.page.evaluate(
+        """() => {
+            const width = document.querySelector('[aria-label="Size: Width"]');
+            width.value = "1.5";
+            width.dispatchEvent(new Event("change", { bubbles: true }));
+            for (const press of ["[data-do=finish][data-arg=gloss]", "[data-do=keep]"])
+                document.querySelector(`.dio ${press}`).click();
+        }"""
+    )
+    editor.until(lambda: np.isclose(size(editor)[1], 1.5), "the width is written")
+    editor.until(lambda: editor.session.scene.object("table_1").finish == "gloss", "the finish is chosen")
+    editor.until(lambda: editor.client.preferences.keep_colour != keeps, "the colour is kept or not")
+
+
 def test_undo_in_a_field_whose_value_was_told_is_the_scenes(editor: EditorPage) -> None:
     editor.row("dining table").click()
     field = editor.page.get_by_label("Size: Width")

@@ -142,7 +142,7 @@ def test_projects_are_saved_reopened_and_exported(editor: EditorPage, tmp_path: 
     editor.button("Delete").click()
     editor.until(lambda: not session.scene.has_object("lamp_1"))
     saved = Project.open(projects / "demo")
-    editor.until(lambda: not saved.load_scene().has_object("lamp_1"), "saved by itself", seconds=3)
+    editor.until(lambda: not saved.load_scene().has_object("lamp_1"), "saved by itself")
     editor.tab("Export")
     with editor.page.expect_download() as download:
         editor.button("Export .glb").click()
@@ -177,9 +177,7 @@ def test_the_photo_view_stands_where_the_photo_was_taken(editor: EditorPage) -> 
     editor.page.get_by_role("slider", name="Photo over model").fill("100")
     editor.until(lambda: view.photo.comparing, "the photo lies over the model")
     brown = camera.position + camera.rays(np.array([340.0, 310.0]))
-    editor.until(
-        lambda: np.allclose(editor.mean_colour(brown), (120, 80, 50), atol=25), "its picture is drawn", seconds=5
-    )
+    editor.until(lambda: np.allclose(editor.mean_colour(brown), (120, 80, 50), atol=25), "its picture is drawn")
     editor.tool("Room").click()
     editor.until(lambda: not view.photo.comparing and not view.camera.through_photo, "the model alone again")
 

@@ -264,7 +264,7 @@ def test_a_language_model_lists_and_mends() -> None:
     }
     vase = {"do": "insert", "what": "vase", "count": 1, "places": [{"relation": "on", "targets": ["side_table_1"]}]}
     with answering(StubLmm([json.dumps(listed), json.dumps({"edits": [vase]}), json.dumps({"edits": []})])) as stub:
-        settings_ = LmmSettings(stub.address, "stub", timeout_s=5.0)
+        settings_ = LmmSettings(stub.address, "stub", timeout_s=60.0)
         made = scene_from_text("a place to talk", built_in_library(), language_model=settings_)
     counts = Counter(o.category for o in made.scene.objects)
     assert (counts["armchair"], counts["side table"], counts["vase"]) == (2, 1, 1)
@@ -275,7 +275,7 @@ def test_a_language_model_lists_and_mends() -> None:
 @pytest.mark.parametrize("answer", ["nonsense", 500, json.dumps({"room": "moon", "objects": []})])
 def test_bad_replies_leave_the_room_to_the_grammar(answer: str | int) -> None:
     with answering(StubLmm([answer])) as stub:
-        settings_ = LmmSettings(stub.address, "stub", timeout_s=5.0, re_asks=0)
+        settings_ = LmmSettings(stub.address, "stub", timeout_s=60.0, re_asks=0)
         made = scene_from_text("a sofa", built_in_library(), language_model=settings_)
     assert any(o.category == "sofa" for o in made.scene.objects)
     assert any("was not used" in note for note in made.notes)
@@ -309,7 +309,7 @@ def test_an_image_endpoint_makes_the_picture() -> None:
 def test_a_bad_image_endpoint_is_one_clear_line(case: str) -> None:
     picture = {"not base64": "%%%", "not a picture": base64.b64encode(b"hello").decode()}.get(case, "")
     with answering(StubLmm([400 if case == "refuses" else "yes"], picture=picture)) as stub:
-        settings_ = ImageSettings(stub.address, "painter", timeout_s=5.0)
+        settings_ = ImageSettings(stub.address, "painter", timeout_s=60.0)
         with pytest.raises((UnavailableError, InputError)) as error:
             picture_of("a kitchen", settings_)
     assert "\n" not in str(error.value)

@@ -143,7 +143,7 @@ def test_large_requests_are_refused_before_they_are_read(client: Client) -> None
     host, port = client.url.removeprefix("http://").split(":")
     head = f"POST /v1/jobs HTTP/1.1\r\nHost: {host}:{port}\r\nContent-Type: multipart/form-data; boundary=x\r\n"
     for line in (f"Content-Length: {MAX_BODY_BYTES + 1}", "Content-Length: many"):
-        with socket.create_connection((host, int(port)), timeout=20) as connection:
+        with socket.create_connection((host, int(port)), timeout=60) as connection:
             connection.sendall(f"{head}{line}\r\n\r\n".encode())
             status = int(connection.recv(1000).split()[1])
         assert status in (400, 413)

@@ -28,7 +28,7 @@ def gestures(session: EditorSession, client: Client) -> Gestures:
 
 
 def settle(session: EditorSession) -> None:
-    assert session.ui_thread.wait(20.0)
+    assert session.ui_thread.wait(60.0)
 
 
 def pick(gestures: Gestures, object_id: str, modifier: pointer.Modifier | None = None, at=pointer.MIDDLE) -> None:

@@ -61,7 +61,7 @@ def pull(session: EditorSession, name: str, by_m: float, phases=("start", "updat
 def send(session: EditorSession, node, phase: str, grabbed, hand, modifier=None) -> None:
     visitor = session.clients[0].viser_client
     asyncio.run(node._impl.drag_cb[0].callback(pointer.dragged(visitor, node, phase, grabbed, hand, modifier=modifier)))
-    assert session.ui_thread.wait(20.0)
+    assert session.ui_thread.wait(60.0)
 
 
 def test_every_face_has_a_handle_in_its_middle(session, handles) -> None:

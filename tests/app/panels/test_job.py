@@ -23,10 +23,10 @@ def running(session):
             progress.report(0.5, "Half <way>")
 
     session.jobs.start("optimise", "Tidying & such", work)
-    assert told.wait(10.0)
+    assert told.wait(60.0)
     yield
     go_on.set()
-    session.jobs.wait(10.0)
+    session.jobs.wait(60.0)
 
 
 def test_nothing_is_shown_while_nothing_runs(page: Page, client) -> None:
@@ -42,7 +42,7 @@ def test_a_running_job_shows_its_progress_and_can_be_cancelled(session, page: Pa
     assert "&quot;percent&quot;: 50," in page.html
     assert "&quot;pause&quot;: &quot;&quot;" in page.html
     page.send(page.field("·"), "cancel", "")
-    assert session.jobs.wait(10.0)
+    assert session.jobs.wait(60.0)
     page.settle()
     strip.refresh()
     assert "__dioJob(null)" in page.html
@@ -82,13 +82,13 @@ def test_what_was_found_so_far_is_kept(session, page: Page, client) -> None:
         progress.part(0.0, 0.2).found("9 objects")
         progress.found("3 walls")
         told.set()
-        assert go_on.wait(10.0)
+        assert go_on.wait(60.0)
 
     session.jobs.start("build", "Building", work)
-    assert told.wait(20.0)
+    assert told.wait(60.0)
     strip = JobStrip(page, client)
     strip.refresh()
     assert "9 objects \\u00b7 3 walls" in page.html
     assert "Outlining" in page.html
     go_on.set()
-    assert session.jobs.wait(10.0)
+    assert session.jobs.wait(60.0)

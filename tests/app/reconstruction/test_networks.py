@@ -55,7 +55,7 @@ def hub(monkeypatch: pytest.MonkeyPatch) -> Iterator[Hub]:
 
 def _told(client: Client) -> list[str]:
     """What was shown as an error, once the job and the desk are done."""
-    assert client.session.jobs.wait(30.0)
+    assert client.session.jobs.wait(60.0)
     assert client.session.ui_thread.wait()
     viser_client = client.viser_client
     assert isinstance(viser_client, LocalClient)

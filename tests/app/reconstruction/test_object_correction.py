@@ -64,7 +64,7 @@ def asked(monkeypatch: pytest.MonkeyPatch) -> list[dict]:
 
 def finish(session) -> None:
     assert session.jobs.wait(60.0)
-    assert session.ui_thread.wait(20.0)
+    assert session.ui_thread.wait(60.0)
 
 
 def test_what_was_missed_is_added_and_selected(session, client, asked) -> None:

@@ -88,7 +88,7 @@ def test_a_photo_that_does_not_join_is_one_line_and_nothing_is_lost(session: Edi
     client.view.notice = lambda message, kind: said.append(message)
     join_photo(client)
     assert session.jobs.wait(60.0)
-    assert session.ui_thread.wait(20.0)
+    assert session.ui_thread.wait(60.0)
     assert any(line.startswith("grey does not join") for line in said), said
     assert session.scene is scene
     assert session.further_photos == photos
@@ -116,7 +116,7 @@ def test_the_first_photo_of_a_scan_is_marked_and_one_of_elsewhere_changes_nothin
     client.view.notice = lambda message, kind: said.append(message)
     join_photo(client)
     assert session.jobs.wait(60.0)
-    assert session.ui_thread.wait(20.0)
+    assert session.ui_thread.wait(60.0)
     assert any(line.startswith("grey.png does not join the scan") for line in said), said
     assert session.scene is scene
     session.undo(client)
@@ -136,7 +136,7 @@ def test_the_first_photo_of_a_scan_brings_looks_and_new_things(
     take_photo(client, "room.jpg", replace(whole, boxes=marked))
     join_photo(client)
     assert session.jobs.wait(400.0)
-    assert session.ui_thread.wait(20.0)
+    assert session.ui_thread.wait(60.0)
     scene = session.scene
     assert scene.camera is not None
     assert {o.id for o in before.objects} < {o.id for o in scene.objects}

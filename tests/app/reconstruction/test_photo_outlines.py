@@ -10,7 +10,7 @@ from diorama_core.errors import EditRefused
 
 def finish(session) -> None:
     assert session.jobs.wait(60.0)
-    assert session.ui_thread.wait(20.0)
+    assert session.ui_thread.wait(60.0)
 
 
 def test_what_was_found_in_the_photo_is_outlined_once(session, client, monkeypatch) -> None:

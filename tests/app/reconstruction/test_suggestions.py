@@ -141,4 +141,4 @@ def test_without_weights_nothing_is_suggested(monkeypatch: pytest.MonkeyPatch, t
     assert suggestions.outline(BOX) is None
     told: queue.Queue[LabelledBox | None] = queue.Queue()
     suggestions.at(20.0, 20.0, (), told.put)
-    assert told.get(timeout=20) is None
+    assert told.get(timeout=60) is None

@@ -33,7 +33,7 @@ def test_whoever_caused_it_is_drawn_at_once_and_the_others_soon(ui_thread) -> No
     redraws.ask(people, people[1])
     assert [len(p.drawn) for p in people] == [0, 1, 0]
     time.sleep(2 * EVERY_S)  # in which anybody would be drawn a second time
-    assert ui_thread.wait(5.0)
+    assert ui_thread.wait(60.0)
     assert [len(p.drawn) for p in people] == [1, 1, 1]
 
 
@@ -45,7 +45,7 @@ def test_many_edits_in_a_moment_are_drawn_a_few_times_and_the_last_is_seen(ui_th
         redraws.ask([one], one)
     asked = time.monotonic()
     time.sleep(2.5 * EVERY_S)  # in which what is too much would be drawn
-    assert ui_thread.wait(5.0)
+    assert ui_thread.wait(60.0)
     assert len(one.drawn) <= 2 + (asked - began) / EVERY_S
     assert one.drawn[-1] >= asked or len(one.drawn) == 1
     assert all(b - a > 0.8 * EVERY_S for a, b in zip(one.drawn, one.drawn[1:], strict=False))
@@ -56,5 +56,5 @@ def test_who_went_away_is_not_drawn(ui_thread) -> None:
     redraws = Redraws(ui_thread, lambda i: i == 1)
     redraws.ask([gone, there], gone)
     until(lambda: there.drawn, "who is there is drawn")
-    assert ui_thread.wait(5.0)
+    assert ui_thread.wait(60.0)
     assert (gone.drawn, len(there.drawn)) == ([], 1)

@@ -36,5 +36,5 @@ def test_shapes_become_ready_once_each_and_a_broken_one_stops_nothing(library: C
     assert not preparer.ready(["broken"])
     assert sorted(library.asked) == ["broken", "chair_a", "lamp_a"]
     preparer.stop()
-    preparer._thread.join(5.0)
+    preparer._thread.join(60.0)
     assert not preparer._thread.is_alive()

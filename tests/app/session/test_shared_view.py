@@ -40,7 +40,7 @@ def test_a_shape_that_cannot_be_read_is_said_as_it_is(
 
 def test_the_shapes_of_the_scene_are_readied(session: EditorSession) -> None:
     session.refresh()
-    assert session.ui_thread.wait(20.0)
+    assert session.ui_thread.wait(60.0)
     shapes = [o.shape_id for o in session.scene.objects]
     assert not session.preparer.ready(["chair_c"])
     until(lambda: session.preparer.ready(shapes))
@@ -83,5 +83,5 @@ def test_who_clicks_the_photos_camera_asks_to_look_through_it(
     assert [camera.name for camera in shown] == ["", "_1"]
     for camera in shown:
         camera.on_click()
-    assert session.ui_thread.wait(20.0)
+    assert session.ui_thread.wait(60.0)
     assert asked == [(client, None), (client, "beside")]

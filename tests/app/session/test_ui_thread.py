@@ -30,10 +30,10 @@ def blocked(ui_thread: UiThread) -> threading.Event:
 
     def block() -> None:
         begun.set()
-        go.wait(10.0)
+        go.wait(60.0)
 
     ui_thread.post(block)
-    assert begun.wait(10.0)
+    assert begun.wait(60.0)
     return go
 
 

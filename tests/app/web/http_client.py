@@ -14,7 +14,7 @@ from websockets.sync.client import connect
 def fetch(server: viser.ViserServer, path: str = "/", **headers: str) -> tuple[int, dict[str, str]]:
     request = urllib.request.Request(f"http://127.0.0.1:{server.get_port()}{path}", headers=headers)
     try:
-        with urllib.request.urlopen(request, timeout=10) as reply:
+        with urllib.request.urlopen(request, timeout=60) as reply:
             return reply.status, dict(reply.headers)
     except urllib.error.HTTPError as error:
         return error.code, dict(error.headers)
@@ -36,6 +36,6 @@ def raw_status(server: viser.ViserServer, path: str, headers: dict[str, str]) ->
     lines = [f"GET {path} HTTP/1.1", *(f"{k}: {v}" for k, v in headers.items())]
     if "Host" not in headers:
         lines.append(f"Host: 127.0.0.1:{server.get_port()}")
-    with socket.create_connection(("127.0.0.1", server.get_port()), timeout=10) as page:
+    with socket.create_connection(("127.0.0.1", server.get_port()), timeout=60) as page:
         page.sendall(("\r\n".join(lines) + "\r\n\r\n").encode("latin-1"))
         return int(page.recv(100).split()[1])

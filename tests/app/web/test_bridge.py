@@ -40,7 +40,7 @@ def home():
     thread.start()
     yield loop
     loop.call_soon_threadsafe(loop.stop)
-    thread.join(5.0)
+    thread.join(60.0)
     loop.close()
 
 

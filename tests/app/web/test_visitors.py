@@ -73,10 +73,10 @@ def test_the_address_that_is_printed_answers_and_lets_in(host: str) -> None:
     made = create_server(host=host, port=0, label="test", visitors=Visitors(host, token))
     try:
         address = page_address(host, made.get_port(), token)
-        with urllib.request.urlopen(address, timeout=10) as reply:
+        with urllib.request.urlopen(address, timeout=60) as reply:
             assert reply.status == 200
         if token is not None:
             with pytest.raises(urllib.error.HTTPError, match="403"):
-                urllib.request.urlopen(page_address(host, made.get_port(), None), timeout=10)
+                urllib.request.urlopen(page_address(host, made.get_port(), None), timeout=60)
     finally:
         stop_server(made)
