@@ -103,9 +103,9 @@ class FeasibleRecipe:
                 program = build_program(wanted, structure, *self._costs(wanted, scene.camera))
             check = self._watcher(scene, program, progress, preview)
             found = _apart(program, self.rounds, check, seen_before, self._farther(program, scene.camera))
-            # Smaller objects that overlap as much as before have become smaller in vain.
-            if best is None or len(found.stuck) < len(best[2].stuck):
-                best = (wanted, program, found)
+            if best is not None and len(found.stuck) >= len(best[2].stuck):
+                break  # smaller objects that overlap as much as before have become smaller in vain
+            best = (wanted, program, found)
             if not found.stuck:
                 break
             wanted = _smaller(wanted, structure, found)

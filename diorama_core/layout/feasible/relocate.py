@@ -69,7 +69,8 @@ def cheapest_spot(
     steps = directions @ np.linalg.pinv(lever).T
     moving = np.abs(program.J[:, :, columns]).max(axis=(1, 2)) > 1e-9
     limit = _limits(program, y, columns, steps)
-    for reach in reaches_m:
+    farthest = float(limit.max())
+    for reach in (min(reach, farthest) for k, reach in enumerate(reaches_m) if k == 0 or reaches_m[k - 1] < farthest):
         far = _free_distances(program, y, moving, directions, reach)
         tried = y + np.zeros((len(far), 1))
         tried[:, columns] += np.where(np.isfinite(far), far, 0.0)[:, None] * steps
