@@ -42,7 +42,7 @@ LINES = 14
 """Number of longest lines per axis that are tried as feet of walls."""
 MAX_PUSH_M = 2.0
 """Walls give way to objects by at most this: what is farther out is a mistake."""
-PUSH_WEIGHT, ENOUGH_OUT_M = 1.5, 0.5
+PUSH_WEIGHT, ENOUGH_OUT_M = 3.0, 0.5
 """How much a sure wall's place counts beside a sure object's; and the protrusion beyond which more says no more."""
 CLEARANCE_M = 0.02
 MEASURED = 0.95

@@ -2,7 +2,7 @@
 
 `stage` is the public face; `box_observations` reads the boxes, `priors` the sizes, `problem` and `solver` state and
 solve the batch, `floor` scans the camera's height, `supported_objects` and `placement` decide what holds what,
-`supported_votes` mends the height by what was placed on other things, `reading` sums up.
+`reading` sums up.
 """
 
 from diorama_core.perception.metrology.stage import SingleViewMetrology

@@ -46,8 +46,6 @@ class HeightScan:
     """Of the height, from the curve's width at its minimum."""
     cost: float
     """At the minimum, the height's own prior included."""
-    costs: Float[np.ndarray, "13"]
-    """At each of `HEIGHTS_M`."""
 
 
 def stands_on_floor(category: Category) -> bool:
@@ -68,8 +66,8 @@ def scan_heights(observations: BoxObservations, view: View) -> HeightScan:
     if voters:
         rows = stacked([p for i in voters for p in _scan_rows(observations, i)])
         total = total + _votes(rows, observations, view)
-    log_height, log_sigma, cost = parabola_minimum(log_heights, total)
-    return HeightScan(float(np.exp(log_height)), log_sigma, cost, total)
+    log_height, log_sigma, cost = _parabola_minimum(log_heights, total)
+    return HeightScan(float(np.exp(log_height)), log_sigma, cost)
 
 
 def place_on_floor(
@@ -119,23 +117,21 @@ def _scan_rows(observations: BoxObservations, index: int) -> list[Problems]:
 def _votes(rows: Problems, observations: BoxObservations, view: View) -> Float[np.ndarray, "13"]:
     """Sum over objects of how badly all their readings together fit at every height."""
     total = np.zeros(len(HEIGHTS_M))
-    found = costs_at_heights(rows, HEIGHTS_M, observations, view)
+    found = _costs_at_heights(rows, observations, view)
     for index, cost in found.items():
         most = _DOUBTFUL_CAP if observations.categories[index].name in _MAYBE_ELSEWHERE else _CAP
-        total += np.minimum(cost, most) * share_of_vote(index, found, observations)
+        total += np.minimum(cost, most) * _share_of_vote(index, found, observations)
     return total
 
 
-def share_of_vote(index: int, voters: Collection[int], observations: BoxObservations) -> float:
+def _share_of_vote(index: int, voters: Collection[int], observations: BoxObservations) -> float:
     """How much one object's vote counts beside those of others of its kind."""
     name = observations.categories[index].name
     alike = sum(observations.categories[i].name == name for i in voters)
     return 1 / (1 + (alike - 1) * ALIKE)
 
 
-def costs_at_heights(
-    rows: Problems, heights_m: Float[np.ndarray, "h"], observations: BoxObservations, view: View
-) -> dict[int, Float[np.ndarray, "h"]]:
+def _costs_at_heights(rows: Problems, observations: BoxObservations, view: View) -> dict[int, Float[np.ndarray, "13"]]:
     """For every object how badly all its readings together fit at every height of the camera.
 
     `rows` come in runs of one assumption at every height. A solution made larger with the camera's height projects
@@ -150,33 +146,31 @@ def costs_at_heights(
     for k in np.argsort(-first.cost, kind="stable"):
         cost[own[k]], unknowns[own[k]] = first.cost[k], first.unknowns[k]
     for step in (1, -1):
-        start = _from_neighbours(unknowns, heights_m, step)
+        start = _from_neighbours(unknowns, step)
         again_solved = solve(rows, start, view, _CONTINUED_ITERATIONS)
         better = again_solved.cost < cost
         cost = np.where(better, again_solved.cost, cost)
         unknowns = np.where(better[:, None], again_solved.unknowns, unknowns)
     found = {}
-    slots = np.searchsorted(heights_m, rows.camera_height_m - 1e-9)
+    slots = np.searchsorted(HEIGHTS_M, rows.camera_height_m - 1e-9)
     for index in np.unique(rows.item).astype(int):
         mine = rows.item == index
-        best = np.full(len(heights_m), -np.inf)
+        best = np.full(len(HEIGHTS_M), -np.inf)
         np.logaddexp.at(best, slots[mine], -0.5 * cost[mine])
         found[int(index)] = -2.0 * best
     return found
 
 
-def _from_neighbours(
-    unknowns: Float[np.ndarray, "n 6"], heights_m: Float[np.ndarray, "h"], step: int
-) -> Float[np.ndarray, "n 6"]:
+def _from_neighbours(unknowns: Float[np.ndarray, "n 6"], step: int) -> Float[np.ndarray, "n 6"]:
     """For every row the solution at the next height of its run, scaled to its own height."""
-    by_run = unknowns.reshape(-1, len(heights_m), UNKNOWNS)
-    place = np.clip(np.arange(len(heights_m)) + step, 0, len(heights_m) - 1)
+    by_run = unknowns.reshape(-1, len(HEIGHTS_M), UNKNOWNS)
+    place = np.clip(np.arange(len(HEIGHTS_M)) + step, 0, len(HEIGHTS_M) - 1)
     start = by_run[:, place].reshape(-1, UNKNOWNS).copy()
-    start[:, 1:5] += np.tile(np.log(heights_m / heights_m[place]), len(by_run))[:, None]
+    start[:, 1:5] += np.tile(np.log(HEIGHTS_M / HEIGHTS_M[place]), len(by_run))[:, None]
     return start
 
 
-def parabola_minimum(x: Float[np.ndarray, "n"], y: Float[np.ndarray, "n"]) -> tuple[float, float, float]:
+def _parabola_minimum(x: Float[np.ndarray, "n"], y: Float[np.ndarray, "n"]) -> tuple[float, float, float]:
     """The parabola through the lowest sample and its neighbours: place, sigma and value of its minimum."""
     i = int(np.clip(np.argmin(y), 1, len(x) - 2))
     a, b, c = np.polyfit(x[i - 1 : i + 2] - x[i], y[i - 1 : i + 2], 2)

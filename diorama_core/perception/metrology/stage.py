@@ -13,15 +13,12 @@ from diorama_core.perception.metrology.floor import HeightScan, scan_heights
 from diorama_core.perception.metrology.placement import CEILING, FLOOR, WALL, Placement, place_all
 from diorama_core.perception.metrology.problem import View
 from diorama_core.perception.metrology.reading import confidence_of, foot_seen, heading_and_size
-from diorama_core.perception.metrology.supported_votes import with_votes_of_supported
 from diorama_core.progress import Progress
 from diorama_core.provenance import ScaleSource
 from diorama_core.scene.types import Camera, Relation, Support, yaw_rotation
 
 _COST_WEIGHT = 0.003
 """How much a squared sigma of the objects counts against a camera hypothesis's score."""
-_SAME_HEIGHT = 0.005
-"""Heights whose logarithms differ by less need no objects placed anew."""
 _PARENT_NAMES = {FLOOR: "floor", WALL: "wall", CEILING: "ceiling"}
 
 
@@ -46,10 +43,6 @@ class SingleViewMetrology:
         view = View(hypothesis.intrinsics, hypothesis.R_world_camera)
         progress.report(0.6, "Placing objects")
         placements = place_all(observations, view, scan.height_m)
-        voted = with_votes_of_supported(scan, placements, observations, view)
-        if abs(np.log(voted.height_m / scan.height_m)) > _SAME_HEIGHT:
-            progress.report(0.8, "Placing objects")
-            scan, placements = voted, place_all(observations, view, voted.height_m)
         progress.report(1.0, "Objects measured")
         return ObjectGeometry(
             camera=_camera(hypothesis, scan.height_m),
