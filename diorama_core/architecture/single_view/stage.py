@@ -184,9 +184,9 @@ def _joined(chain: Chain, k: int, ends: Float[np.ndarray, "r1"], eye: Float[np.n
 def _push(wall: WallCandidate, first: float, last: float, cues: RoomCues, sure: float) -> float:
     """How far, in metres, a wall gives way to the objects within its headings.
 
-    Every object pulls by its confidence as far as it protrudes, the wall resists by how sure it is; either may be
-    wholly wrong, so that much farther says little more. What could stand on furniture and would be wholly behind the
-    wall is not where it seems to be.
+    Every object pulls by its confidence as far as it protrudes, and by the share of it that does, since where it ends
+    behind is a guess; the wall resists by how sure it is. Either may be wholly wrong, so that much farther says little
+    more. What could stand on furniture and would be wholly behind the wall is not where it seems to be.
     """
     eye = cues.camera.position[:2]
     outs, weights = [0.0], [0.0]
@@ -199,10 +199,10 @@ def _push(wall: WallCandidate, first: float, last: float, cues: RoomCues, sure: 
         elsewhere = portable and through.min() > 0.0
         if not beside and not elsewhere and 0.0 < through.max() < MAX_PUSH_M:
             outs.append(float(through.max()) + CLEARANCE_M)
-            weights.append(float(weight))
+            weights.append(float(weight * min(1.0, through.max() / np.ptp(through))))
     out = np.array(outs)
     left = np.clip(out - out[:, None], 0.0, ENOUGH_OUT_M)
-    resistance = PUSH_WEIGHT * sure * ENOUGH_OUT_M * np.log1p(out / ENOUGH_OUT_M)
+    resistance = PUSH_WEIGHT * sure**2 * ENOUGH_OUT_M * np.log1p(out / ENOUGH_OUT_M)
     return outs[int(np.argmin(left @ np.array(weights) + resistance))]
 
 
