@@ -152,16 +152,17 @@ class Client:
 
     def select(self, ids: Iterable[str]) -> None:
         """Select exactly these objects, in this order."""
-        self.selection = tuple(i for i in dict.fromkeys(ids) if self.session.scene.has_object(i))
-        self.surface = None
-        if len(self.session.clients) == 1:  # where several work, undo must not select what another one had selected
-            self.session.document.note_selection(self.selection)
-        self.session.refresh_panels(self)
+        self._choose(ids, None)
 
     def select_surface(self, plane_id: str | None) -> None:
         """Choose a wall, the floor or the ceiling in place of objects."""
-        self.select(())
+        self._choose((), plane_id)
+
+    def _choose(self, ids: Iterable[str], plane_id: str | None) -> None:
+        self.selection = tuple(i for i in dict.fromkeys(ids) if self.session.scene.has_object(i))
         self.surface = plane_id if plane_id is not None and self.session.scene.has_plane(plane_id) else None
+        if len(self.session.clients) == 1:  # where several work, undo must not select what another one had selected
+            self.session.document.note_selection(self.selection)
         self.session.refresh_panels(self)
 
     def toggle(self, object_id: str) -> None:

@@ -10,14 +10,14 @@
     scale: ["Scale picture", "Click both ends of a length that you know."],
     shift: ["Move picture", "Drag the picture."],
   };
-  let tool = null, points = [], hover = null, dragged = null;
+  let tool = null, points = [], hover = null, dragged = null, hinted = null; // a hint stays until something is done
 
   // -- the picture below ---------------------------------------------------------------------------------------------
   let picture = null, upload = null, awaited = false;
   const remember = () => P.send("picture", picture && { at: picture.at, metres: picture.metres });
   const given = (news) => {
     [picture, upload] = [news.picture, news.upload];
-    if (awaited && picture) [awaited, tool, points] = [false, "scale", []];
+    if (awaited && picture) [awaited, tool, points, hinted] = [false, "scale", [], null];
     if (P.about()) P.redraw();
   };
   const take = (file) => {
@@ -57,9 +57,12 @@
   };
 
   // -- tools ---------------------------------------------------------------------------------------------------------
-  const hint = (words) => { const line = document.querySelector("#dio-plan-tools p"); if (line) line.textContent = words; };
+  const hint = (words) => {
+    hinted = words;
+    P.redraw();
+  };
   const choose = (name) => {
-    [tool, points, hover, dragged] = [tool === name ? null : name, [], null, null];
+    [tool, points, hover, dragged, hinted] = [tool === name ? null : name, [], null, null, null];
     P.redraw();
   };
   const away = (point, a, b) => {
@@ -92,6 +95,7 @@
     if (tool === "room") {
       if (points.length > 2 && pixels(at, points[0]) < CLOSE_PX) return close();
       points.push(corner(at));
+      hinted = null;
     } else if (tool === "scale") {
       points.push(at);
       if (points.length === 2) askLength(points);
@@ -121,7 +125,7 @@
   addEventListener("keydown", (event) => {
     if (!tool || !P.about() || event.target.matches?.("input, textarea")) return;
     const act = { Escape: () => choose(null), Enter: tool === "room" && close,
-      Backspace: points.length && (() => { points.pop(); P.redraw(); }) }[event.key];
+      Backspace: points.length && (() => { points.pop(); hinted = null; P.redraw(); }) }[event.key];
     if (!act) return;
     event.stopImmediatePropagation();
     event.preventDefault();
@@ -145,7 +149,7 @@
       for (const name of ["scale", "shift"]) press(TOOLS[name][0], tool === name, () => choose(name));
       press("Remove picture", false, () => { picture = null; remember(); choose(null); });
     } else press("Picture below", false, () => file.click());
-    bar.append(row, file, Object.assign(document.createElement("p"), { textContent: tool ? TOOLS[tool][1] : "" }));
+    bar.append(row, file, Object.assign(document.createElement("p"), { textContent: hinted ?? (tool ? TOOLS[tool][1] : "") }));
     bar.querySelector("p").setAttribute("role", "status");
     return bar;
   };

@@ -29,13 +29,16 @@ def select_chair(editor: EditorPage) -> None:
     editor.until(lambda: selection(editor) == ("chair_2",), "the chair is selected")
 
 
-def test_click_selects_shift_click_adds_and_an_empty_click_clears(editor: EditorPage) -> None:
+def test_click_selects_shift_click_adds_and_a_click_on_the_floor_chooses_it_instead(editor: EditorPage) -> None:
     select_chair(editor)
     expect(editor.button("Duplicate")).to_be_visible()
     editor.click_world(scene(editor).object("table_1").pose.apply(np.array([0.2, -0.4, 0.37])), modifiers=("Shift",))
     editor.until(lambda: selection(editor) == ("chair_2", "table_1"), "the table is selected too")
     editor.click_world(np.array([1.2, 0.2, 0.0]))
-    editor.until(lambda: selection(editor) == (), "nothing is selected")
+    editor.until(lambda: selection(editor) == (), "no object is selected")
+    assert editor.client.surface == "floor"
+    expect(editor.button("Herringbone")).to_be_visible()
+    editor.page.keyboard.press("Escape")
     expect(editor.page.get_by_text("Click an object")).to_be_visible()
 
 

@@ -178,7 +178,11 @@ def test_a_room_is_drawn_corner_by_corner(plan: EditorPage) -> None:
     for corner in outline[:2]:
         page.mouse.click(*on_plan(plan, corner))
     page.keyboard.press("Enter")
-    expect(page.locator("#dio-plan-tools p")).to_have_text("A room has at least three corners.")
+    hint = page.locator("#dio-plan-tools p")
+    expect(hint).to_have_text("A room has at least three corners.")
+    page.mouse.move(*on_plan(plan, outline[2]))
+    plan.settle()
+    expect(hint).to_have_text("A room has at least three corners.")
     for corner in outline[2:]:
         page.mouse.click(*on_plan(plan, corner))
     page.keyboard.press("Enter")
