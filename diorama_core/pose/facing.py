@@ -1,7 +1,7 @@
 """Priors on headings where the photo is ambiguous: costs of a heading, 0 for the expected one.
 
 Sofas, beds and cabinets turn their backs to a wall and their fronts to the room; chairs face the table they are
-drawn up to; screens face whoever looks at them.
+drawn up to; screens face whoever looks at them; books on a shelf show their spines.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ _TOWARD_VIEWER = frozenset(
     {"monitor", "television", "laptop", "picture", "photo frame", "mirror", "clock", "keyboard", "microwave"}
 )
 _NO_FRONT = with_kin(
-    *("plant", "vase", "bowl", "cup", "bottle", "basket", "trash can", "rug", "box", "books", "pillow"),
+    *("plant", "vase", "bowl", "cup", "bottle", "basket", "trash can", "rug", "box", "pillow"),
     *("table", "coffee table", "side table", "ottoman", "lamp", "floor lamp", "ceiling lamp"),
     *("candle", "fruit", "kettle", "cooking pot", "utensils", "cutting board", "soap dispenser", "toilet brush"),
     *("sculpture", "globe", "blanket", "towel", "umbrella stand", "drum", "dumbbells", "exercise ball", "yoga mat"),
@@ -40,6 +40,7 @@ _TOWARD_CAMERA = {
     "bed": 1.5,
     "object": 0.6,
     "toy": 0.8,
+    "books": 0.8,
 }
 """Log odds of an object showing its front rather than its back; cupboards are hardly seen from behind."""
 _FRONTAL = 0.25
@@ -48,6 +49,9 @@ _STORAGE = with_kin(
     *("cabinet", "sideboard", "dresser", "wardrobe", "bookshelf", "shelves", "tv stand", "refrigerator"),
     *("kitchen counter", "night stand", "console table", "filing cabinet"),
 )
+_SHELVES = with_kin("bookshelf", "shelves")
+_SPINES_OUT = 3.0
+"""Books on shelves show their spines."""
 _AGAINST_WALLS = 2.0
 """Storage has its back to a wall rather than other furniture."""
 _ROW_GAP_M, _ROW_RATIO, _IN_A_ROW = 0.3, 1.5, 1.0
@@ -134,6 +138,8 @@ def facing_of(
         return Facing(((4.0, _unit(out_of_wall)),))
     if kind == "pillow" and carrier is not None:
         return _leaning(cuboid, carrier, broad(categories.get(carrier.object_id, "")) == "bed", toward_camera)
+    if kind == "books" and carrier is not None and categories.get(carrier.object_id) in _SHELVES:
+        return Facing(((_SPINES_OUT, _front_of(carrier, toward_camera)),))
     if kind in _NO_FRONT:
         return Facing(())
     if kind in _TOWARD_VIEWER:
@@ -152,6 +158,12 @@ def facing_of(
     if len(cuboids) >= 3 and np.linalg.norm(middle) > 0.3:
         preferences.append((0.3, _unit(middle)))
     return Facing(tuple(preferences), (((1.0 - _FRONTAL) * shown, toward_camera),))
+
+
+def _front_of(cuboid: Cuboid, toward_camera: Float[np.ndarray, "2"]) -> Float[np.ndarray, "2"]:
+    """The end of a cuboid's depth that the camera sees."""
+    front = _axes_xy(cuboid)[0][0]
+    return front if front @ toward_camera >= 0 else -front
 
 
 def _leaning(pillow: Cuboid, carrier: Cuboid, on_bed: bool, toward_camera: Float[np.ndarray, "2"]) -> Facing:

@@ -46,6 +46,14 @@ def test_a_pillow_on_a_sofa_looks_across_its_length() -> None:
     assert best_deg("pillow", pillow, {"sofa": sofa}, sofa) == 0
 
 
+@pytest.mark.parametrize("shelf_deg", [-90.0, 90.0])
+def test_books_show_their_spines_as_their_shelf_its_front(shelf_deg: float) -> None:
+    shelf = cuboid("shelf", -2.0, 2.5, (0.3, 1.0, 1.8), shelf_deg)
+    books = cuboid("books", -2.0, 2.5, (0.2, 0.3, 0.25), 0.0)
+    assert best_deg("books", books, {"bookshelf": shelf}, shelf) == -90
+    assert best_deg("books", cuboid("books", 0.2, 2.5, (0.2, 0.3, 0.25)), {}) == -90, "toward the camera elsewhere"
+
+
 @pytest.mark.parametrize("turn_deg", [0.0, 90.0])
 def test_a_front_that_is_known_is_where_objects_face(turn_deg: float) -> None:
     known = replace(cuboid("desk", 0.0, 3.0, turn_deg=turn_deg), front_known=True)
