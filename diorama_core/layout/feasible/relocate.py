@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 from jaxtyping import Bool, Float
@@ -70,8 +71,10 @@ def cheapest_spot(
     moving = np.abs(program.J[:, :, columns]).max(axis=(1, 2)) > 1e-9
     limit = _limits(program, y, columns, steps)
     farthest = float(limit.max())
-    for reach in (min(reach, farthest) for k, reach in enumerate(reaches_m) if k == 0 or reaches_m[k - 1] < farthest):
-        far = _free_distances(program, y, moving, directions, reach)
+    for looked, reach in pairwise((-np.inf, *reaches_m)):
+        if looked >= farthest:
+            break
+        far = _free_distances(program, y, moving, directions, min(reach, farthest))
         tried = y + np.zeros((len(far), 1))
         tried[:, columns] += np.where(np.isfinite(far), far, 0.0)[:, None] * steps
         cost = np.where(far <= np.minimum(limit, reach), program.cost(tried), np.inf)
