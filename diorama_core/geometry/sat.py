@@ -19,7 +19,7 @@ from diorama_core.geometry.cross import cross
 _DEGENERATE = 1e-6
 """Cross products shorter than this (of unit vectors) give no axis."""
 _AT_ONCE = 512
-"""Pairs whose axes are found together: more of them leave the processor's cache."""
+"""Pairs whose axes are found together: bodies of many faces pad only their own block, and memory is bounded."""
 
 
 @dataclass(frozen=True, eq=False)
