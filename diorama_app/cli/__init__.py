@@ -30,6 +30,10 @@ def main(argv: Sequence[str] | None = None) -> int:
     # Small problems run faster on one thread than on two that wait for each other.
     os.environ.setdefault("OMP_NUM_THREADS", "1")
     arguments = _parser().parse_args(argv)
+    if arguments.command == "build":
+        from diorama_core.pipeline.beside import prepare_processes
+
+        prepare_processes()
     if arguments.command in LOAD_MUCH:
         load_quickly()
     logging.basicConfig(level=logging.DEBUG if arguments.verbose else logging.ERROR, stream=sys.stderr)

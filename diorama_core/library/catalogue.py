@@ -8,6 +8,7 @@ from collections.abc import Callable
 from dataclasses import replace
 from functools import cache, lru_cache
 from pathlib import Path
+from pickle import PicklingError
 
 import numpy as np
 import platformdirs
@@ -95,6 +96,12 @@ def _library_in(designs: Callable[[], tuple[Design, ...]], cache_dir: Path) -> B
 _library_of_process = lru_cache(maxsize=1)(_library_in)
 
 
+@lru_cache(maxsize=2)
+def _opened(cache_dir: Path) -> BuiltInLibrary:
+    """The library of a process that was sent one."""
+    return built_in_library() if cache_dir == default_cache_dir() else built_in_library(cache_dir)
+
+
 class BuiltInLibrary:
     """Shapes from parametric designs. Implements `ShapeLibrary`; safe to share between threads.
 
@@ -119,6 +126,12 @@ class BuiltInLibrary:
 
     def __repr__(self) -> str:
         return f"BuiltInLibrary({len(self._designs)} shapes)"
+
+    def __reduce__(self) -> tuple[Callable[[Path], BuiltInLibrary], tuple[Path]]:
+        """Other processes open their own; raises `PicklingError` for one of designs that they cannot know."""
+        if self._designs.keys() != {d.id for d in furniture.designs()}:
+            raise PicklingError(f"{self!r} is not the library that comes with Diorama")
+        return _opened, (self._folder.parent,)
 
     def shapes(self) -> tuple[Shape, ...]:
         """All records in a stable order, without support surfaces."""

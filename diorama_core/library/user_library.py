@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import threading
+from collections.abc import Callable
 
 import trimesh
 
@@ -28,6 +29,10 @@ class UserLibrary:
 
     def __repr__(self) -> str:
         return repr(self._library)
+
+    def __reduce__(self) -> tuple[Callable[[ShapeLibrary], ShapeLibrary], tuple[ShapeLibrary]]:
+        """Other processes get what it holds now; it does not grow there."""
+        return _unchanged, (self._library,)
 
     def own(self) -> StoredLibrary:
         """Where uploads are kept, made when there is none yet; raises `LibraryError` when it cannot be written."""
@@ -71,6 +76,10 @@ class UserLibrary:
         """The picture that came with the shape, where its library keeps one."""
         retained = getattr(self._library, "thumbnail", None)
         return None if retained is None else retained(shape_id)
+
+
+def _unchanged(library: ShapeLibrary) -> ShapeLibrary:
+    return library
 
 
 class ShapeRecords:

@@ -34,12 +34,14 @@ from diorama_core.layout.unmarked_supporters import left_where_seen, over_what_m
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.perception.illuminant import Illuminant
 from diorama_core.pipeline.assemble import assemble
+from diorama_core.pipeline.beside import prepare_processes
 from diorama_core.pipeline.colours import photo_colours, room_illuminant, shared_by_sets
 from diorama_core.pipeline.look_ahead import looking_ahead
 from diorama_core.pipeline.plan import Artefacts, evaluate
 from diorama_core.pipeline.provenance_text import camera_sentence, geometry_sentence, graph_sentence, room_sentence
 from diorama_core.pipeline.runner import Runner, StageRun
 from diorama_core.pipeline.stages import Stages, embedded_stages
+from diorama_core.processes import there
 from diorama_core.progress import Progress
 from diorama_core.protocols import Preview
 from diorama_core.scene.edits import set_metrics
@@ -102,6 +104,7 @@ def build_scene(
         Cancelled: on request; finished stages stay in the cache.
         DioramaError: with the reason, when a stage cannot do its work.
     """
+    prepare_processes()
     stages = stages or embedded_stages(inputs, library)
     progress = progress or Progress()
     runner = Runner(cache)
@@ -114,30 +117,15 @@ def build_scene(
     room = replace(room, architecture=_in_white_light(room.architecture, illuminant))
     floors = {p.id for p in room.architecture.by_role("floor")}
     standing = {edge.child for edge in room.supports if edge.parent in floors}
-    only = None if plane_pictures else ()
-    with ThreadPoolExecutor(1) as beside:  # the planes' pictures need nothing of the shapes
-        painted = beside.submit(
-            plane_textures,
-            balanced,
-            found["objects"],
-            geometry.camera,
-            room.architecture,
-            stages.filler,
-            standing,
-            only,
-        )
-        found = evaluate(stages, found, ("posed",), runner, progress.part(0.45, 0.85))
-        textures = painted.result()
+    found = evaluate(stages, found, ("posed",), runner, progress.part(0.45, 0.85))
     shaped = _observed({**found, "architecture": room}, balanced, library)
     feet_seen = frozenset(c.object_id for c in geometry.cuboids if c.foot_seen)
-    contained, changed = prepared(shaped, library, REASONED if inputs.depth_m is None else MEASURED, feet_seen)
-    observed = _textured(contained, textures)
-    moved = _moved_planes(room.architecture, observed.architecture)
-    with ThreadPoolExecutor(1) as beside:  # what things look like is all the same to the layout
+    observed, changed = prepared(shaped, library, REASONED if inputs.depth_m is None else MEASURED, feet_seen)
+    with ThreadPoolExecutor(2) as beside:  # what things look like is all the same to the layout
         seen = beside.submit(
-            photo_appearance, balanced.photo.rgb, found["furniture_objects"], observed, library, illuminant.rgb
+            there, photo_appearance, balanced.photo.rgb, found["furniture_objects"], observed, library, illuminant.rgb
         )
-        repainted = beside.submit(
+        painted = beside.submit(
             plane_textures,
             balanced,
             found["objects"],
@@ -145,7 +133,7 @@ def build_scene(
             observed.architecture,
             stages.filler,
             standing,
-            moved if plane_pictures else (),
+            None if plane_pictures else (),
         )
         scene, report = observed, None
         if observed.objects:
@@ -161,7 +149,7 @@ def build_scene(
                 runner.runs.append(StageRun("refinement", repr(stages.refinement), took, cached=False))
             scene = set_metrics(scene, report.after)
         appearance = seen.result()
-        textures = {name: picture for name, picture in textures.items() if name not in moved} | repainted.result()
+        textures = painted.result()
     scene, observed = (_textured(appearance.applied(s), textures) for s in (scene, observed))
     if room.architecture.floor is not None:
         trimmed = without_floor_behind_walls(scene, room.architecture.floor)
@@ -234,12 +222,6 @@ def _at_given_height(scene: Scene, camera_height_m: float | None) -> Scene:
     if camera_height_m is None or scene.camera is None:
         return scene
     return rescale_to_length(scene, float(scene.camera.position[2]) - floor_height(scene), camera_height_m)
-
-
-def _moved_planes(before: Architecture, after: Architecture) -> frozenset[str]:
-    """Ids of the planes that are not where they were: the photo shows other parts of them."""
-    known = {p.id: p.polygon for p in before.planes}
-    return frozenset(p.id for p in after.planes if p.id not in known or not np.array_equal(known[p.id], p.polygon))
 
 
 def _textured(scene: Scene, textures: Mapping[str, object]) -> Scene:

@@ -45,7 +45,7 @@ class FittedChoice:
 
     library: ShapeLibrary = field(repr=False)
 
-    def best_first(self, one: PosedCandidates, seen: SeenObject, *, outlined: bool) -> PosedCandidates:
+    def best_first(self, one: PosedCandidates, seen: SeenObject, outlined: bool) -> PosedCandidates:
         """The candidates with the best first, all of them as they were.
 
         Args:

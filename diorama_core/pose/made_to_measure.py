@@ -33,10 +33,10 @@ from diorama_core.pose.outline_fit import Near, fitted_pose
 from diorama_core.pose.parameter_fit import ParameterFit
 from diorama_core.pose.seen_objects import SeenObject, seen_objects
 from diorama_core.pose.turned_profile import turned
+from diorama_core.processes import each_there
 from diorama_core.progress import Progress
 from diorama_core.protocols import PoseStage
 from diorama_core.scene.types import Candidate, Pose
-from diorama_core.workers import each
 
 MIN_PIXELS = 900
 """Of objects of fewer pixels only place and size are fitted: their parts are a pixel or two."""
@@ -80,7 +80,9 @@ class MadeToMeasure:
         pose_of = {p.object_id: p.candidates[0].pose for p in posed if p.candidates}
         seen = {i: replace(one, pose=pose_of[i]) for i, one in seen.items()}
         longest_first = sorted(_sets(posed), key=lambda members: -_variants(members))  # no thread waits for a last one
-        made = each(lambda members: self._of_set(members, seen), longest_first, progress, "Making shapes to measure")
+        shown = [{m.object_id: seen[m.object_id] for m in members if m.object_id in seen} for members in longest_first]
+        tasks = list(zip(longest_first, shown, strict=True))
+        made = each_there(self._of_set, tasks, progress, "Making shapes to measure")
         found = {object_id: candidate for of_set in made for object_id, candidate in of_set.items()}
         return tuple(_with_first(p, found[p.object_id]) if p.object_id in found else p for p in posed)
 
@@ -95,17 +97,17 @@ class MadeToMeasure:
         shared = Counter(p.candidates[0].shape_id for p in posed if p.candidates)
         choice = FittedChoice(self.library)
 
-        def chosen(one: PosedCandidates) -> PosedCandidates:
+        def agreed(one: PosedCandidates) -> bool:
             shown = seen.get(one.object_id)
-            if shown is None or (shared[one.candidates[0].shape_id] > 1 and shown.may_have_agreed):
-                return one
-            return choice.best_first(one, shown, outlined=shown.mask_confidence >= SURE_MASK)
+            return shown is None or (shared[one.candidates[0].shape_id] > 1 and shown.may_have_agreed)
 
-        return tuple(each(chosen, posed))
+        free = [one for one in posed if not agreed(one)]
+        tasks = [(one, seen[one.object_id], seen[one.object_id].mask_confidence >= SURE_MASK) for one in free]
+        chosen = {one.object_id: one for one in each_there(choice.best_first, tasks)}
+        return tuple(chosen.get(one.object_id, one) for one in posed)
 
-    def _of_set(self, members: Sequence[PosedCandidates], seen: Mapping[str, SeenObject]) -> dict[str, Candidate]:
+    def _of_set(self, members: Sequence[PosedCandidates], shown: Mapping[str, SeenObject]) -> dict[str, Candidate]:
         """The first candidates of objects of one shape and size; none where none of them is seen well enough."""
-        shown = {m.object_id: seen[m.object_id] for m in members if m.object_id in seen}
         if not shown:
             return {}
         clear = {i: one for i, one in shown.items() if one.pixels >= MIN_PIXELS}

@@ -3,9 +3,7 @@
 from __future__ import annotations
 
 import hashlib
-import os
 from collections.abc import Mapping, Sequence
-from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -27,6 +25,7 @@ from diorama_core.pose.posing_tasks import PosingTask, kinds_of_shapes, posing_t
 from diorama_core.pose.refine import BoxFit
 from diorama_core.pose.sets import shared_scales
 from diorama_core.pose.turns import TurnSearch
+from diorama_core.processes import each_there
 from diorama_core.progress import Progress
 from diorama_core.scene.types import Candidate, Pose
 
@@ -121,15 +120,8 @@ class RenderAndCompare:
             kinds_of_shapes(objects, ranked, records),
             (self.coarse_cells, self.fine_cells),
         )
-        found = []
-        with ThreadPoolExecutor(min(os.cpu_count() or 1, _MAX_THREADS)) as threads:
-            underway = [threads.submit(self._pose_object, task, ranked[task.item.id], records) for task in tasks]
-            try:
-                for index, (task, posed) in enumerate(zip(tasks, underway, strict=True)):
-                    progress.report(index / len(tasks), f"Posing: {task.item.label}")
-                    found.append(posed.result())
-            finally:
-                threads.shutdown(wait=False, cancel_futures=True)
+        pieces = [(task, ranked[task.item.id], {i: records[i] for i, _ in ranked[task.item.id]}) for task in tasks]
+        found = each_there(self._pose_object, pieces, progress, "Posing objects")
         ranks = agreed_ranks(
             [task.item.category for task in tasks],
             [{posed.shape.id: posed.rank for posed in of_one} for of_one in found],

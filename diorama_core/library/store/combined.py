@@ -30,6 +30,10 @@ class CombinedLibrary:
     def __repr__(self) -> str:
         return " + ".join(map(repr, self._libraries))
 
+    def __reduce__(self) -> tuple[type[CombinedLibrary], tuple[tuple[ShapeLibrary, ...]]]:
+        """Other processes list it themselves."""
+        return CombinedLibrary, (self._libraries,)
+
     def shapes(self) -> tuple[Shape, ...]:
         """All records, without support surfaces."""
         self._refresh()

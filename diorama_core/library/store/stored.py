@@ -5,7 +5,8 @@ from __future__ import annotations
 import hashlib
 import io
 import threading
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
+from functools import lru_cache
 from pathlib import Path
 
 import numpy as np
@@ -56,6 +57,10 @@ class StoredLibrary:
 
     def __repr__(self) -> str:
         return f"StoredLibrary({self.folder.name!r}, {len(self)} shapes)"
+
+    def __reduce__(self) -> tuple[Callable[[Path], StoredLibrary], tuple[Path]]:
+        """Other processes open it themselves, once."""
+        return _opened, (self.folder,)
 
     def __len__(self) -> int:
         return self._records.count()
@@ -165,6 +170,11 @@ class StoredLibrary:
     def _unlink(self, models: Iterable[str]) -> None:
         for model in models:
             self._model_path(model).unlink(missing_ok=True)
+
+
+@lru_cache(maxsize=4)
+def _opened(folder: Path) -> StoredLibrary:
+    return StoredLibrary(folder)
 
 
 def _loaded(glb: bytes, shape_id: str) -> trimesh.Scene:
