@@ -25,6 +25,7 @@ from diorama_core.pose.render_and_compare import RenderAndCompare
 from diorama_core.processes import are_ready, each_there, prepare, there
 from diorama_core.progress import Progress, ProgressEvent
 from tests.processes import runs
+from tests.waiting import until
 
 pytestmark = pytest.mark.skipif(cpu_count() < 2, reason="one core: there are no processes beside")
 
@@ -59,10 +60,7 @@ def killed_elsewhere(here: int) -> str:
 @pytest.fixture
 def ready() -> None:
     prepare(load)
-    deadline = time.monotonic() + 60.0
-    while not are_ready():
-        assert time.monotonic() < deadline, "no process has begun"
-        time.sleep(0.02)
+    until(are_ready)
 
 
 def test_work_is_done_in_another_process(ready: None) -> None:
@@ -135,10 +133,7 @@ def test_they_end_with_a_process_that_is_killed() -> None:
     assert runs(beside)
     started.kill()
     started.wait()
-    deadline = time.monotonic() + 60.0
-    while runs(beside):
-        assert time.monotonic() < deadline, "it is still there"
-        time.sleep(0.1)
+    until(lambda: not runs(beside))
 
 
 def test_libraries_of_ones_own_are_sent_with_the_others(

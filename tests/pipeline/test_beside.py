@@ -1,0 +1,25 @@
+"""The processes that share the work of a build have loaded what they need."""
+
+from __future__ import annotations
+
+import sys
+
+import pytest
+from loky import cpu_count
+
+from diorama_core.pipeline.beside import prepare_processes
+from diorama_core.processes import are_ready, there
+from tests.waiting import until
+
+
+def loaded(name: str) -> bool:
+    return name in sys.modules
+
+
+@pytest.mark.skipif(cpu_count() < 2, reason="one core: there are no processes beside")
+def test_the_work_of_a_build_is_loaded_before_it_is_sent() -> None:
+    prepare_processes()
+    until(are_ready)
+    for module in ("diorama_core.appearance.photo_appearance", "diorama_core.pose.made_to_measure", "open3d"):
+        assert there(loaded, module)
+    assert not there(loaded, "diorama_app")
