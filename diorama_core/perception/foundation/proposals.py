@@ -20,7 +20,7 @@ from diorama_core.retrieval.seen_kinds import as_it_looks
 
 CONFIDENT, LIKELY = 0.55, 0.45
 """Scores from which a build uses a box unseen, and from which a person is shown one."""
-MOST = 10
+MOST = 20
 MIN_SIDE_PX = 8.0
 SAME_IOU = 0.5
 """Two boxes that overlap at least so much are one object's."""
