@@ -11,6 +11,7 @@ import logging
 import os
 import threading
 import time
+import warnings
 from collections import deque
 from collections.abc import Callable, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor
@@ -31,6 +32,8 @@ MAX_PROCESSES = 3
 """More gain little: the longest piece of work ends last."""
 IDLE_S = 300.0
 """Time without work after which they end."""
+MAX_GROWTH_BYTES = 8e8
+"""One that has become larger by so much is replaced: shapes that were asked for stay in its memory."""
 ORPHAN_S = 1.0
 """Time between two looks at whether the process that started one is still there."""
 
@@ -47,7 +50,14 @@ class _Kept:
         """Start them, unless they are there."""
         if self.count < 1:
             return
-        self._pool = get_reusable_executor(self.count, timeout=IDLE_S, initializer=_begin, initargs=(load,))
+        warnings.filterwarnings("ignore", "A worker (stopped|was restarted)", UserWarning)  # that is what is wanted
+        self._pool = get_reusable_executor(
+            self.count,
+            timeout=IDLE_S,
+            initializer=_begin,
+            initargs=(load,),
+            env={"LOKY_MAX_MEMORY_LEAK_SIZE": str(MAX_GROWTH_BYTES)},
+        )
         self._started = self._pool.submit(_nothing)
 
     @property
