@@ -20,6 +20,8 @@ _STRETCH_FLAT = float(np.log(3.0))
 _THIN_M = 0.08
 _THIN_SHARE = 0.1
 """Of the largest extent: frames, panels and rugs come in any thickness."""
+_THICKER = 3.0
+"""How much thicker than it was made a flat shape may stand for a thing without a name: no rug is as high as a table."""
 _DEGENERATE_M = 1e-3
 _OWN_SIZE_FACTOR = 1.3
 """Whatever its kind's usual size, a shape may be this much smaller or larger than it was made."""
@@ -88,7 +90,7 @@ class SizeLimits:
     @cached_property
     def thin(self) -> Bool[np.ndarray, "3"]:
         """Axes along which objects of this shape come in any thickness."""
-        return self.shape_size_m <= max(_THIN_M, _THIN_SHARE * float(self.shape_size_m.max()))
+        return _thin(self.shape_size_m)
 
     def scale_for(self, wanted_m: Float[np.ndarray, "*p 3"]) -> Float[np.ndarray, "*p 3"]:
         """Per-axis scales nearest to giving the shape the wanted size, within the limits."""
@@ -114,6 +116,10 @@ class SizeLimits:
         return np.log(scale[..., shaped]).std(axis=-1)
 
 
+def _thin(size_m: Float[np.ndarray, "3"]) -> Bool[np.ndarray, "3"]:
+    return np.asarray(size_m <= max(_THIN_M, _THIN_SHARE * float(size_m.max())))
+
+
 def sides_log_of(symmetry: SymmetryFold, category_name: str, *, round: bool) -> float:
     """How far the horizontal scales of a shape may differ: what looks the same after a quarter turn is no long one.
 
@@ -131,7 +137,7 @@ def sides_log_of(symmetry: SymmetryFold, category_name: str, *, round: bool) -> 
 
 def _category_range(category_name: str, observed_m: np.ndarray, own_m: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     if category_name == UNKNOWN.name:
-        return np.full(3, 0.02), np.full(3, 4.0)
+        return np.full(3, 0.02), np.where(_thin(own_m), np.maximum(_THICKER * own_m, _THIN_M), 4.0)
     prior = _nearest_prior(category(category_name).priors, np.log(np.clip(observed_m, 1e-3, 10.0)))
     least = np.exp(prior.log_median_xyz - _SIGMAS * prior.log_sigma_xyz)
     most = np.exp(prior.log_median_xyz + _SIGMAS * prior.log_sigma_xyz)

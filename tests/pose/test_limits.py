@@ -72,3 +72,10 @@ def test_what_is_round_stays_round_and_what_is_square_becomes_no_long_one(x, y, 
 def test_unnamed_things_and_those_with_a_front_come_in_all_proportions() -> None:
     assert sides_log_of(4, "object", round=False) == np.inf
     assert sides_log_of(2, "table", round=False) == np.inf
+
+
+def test_a_flat_shape_for_a_thing_without_a_name_stays_flat() -> None:
+    rug = SizeLimits.of((1.6, 2.3, 0.02), "object", np.array([0.7, 1.1, 0.4]))
+    height = float(rug.scale_for(np.array([0.7, 1.1, 0.4]))[2] * 0.02)
+    assert height <= 0.08
+    assert SizeLimits.of((0.4, 0.5, 0.4), "object", np.array([0.7, 1.1, 0.9])).max_m[2] == 4.0
