@@ -13,8 +13,8 @@ from pathlib import Path
 from threading import Lock
 
 import pytest
-from loky import cpu_count
 
+from diorama_core import processes
 from diorama_core.errors import Cancelled, InputError
 from diorama_core.library.catalogue import built_in_library
 from diorama_core.library.ingest.sink import Ingested
@@ -26,8 +26,6 @@ from diorama_core.processes import are_ready, each_there, prepare, there
 from diorama_core.progress import Progress, ProgressEvent
 from tests.processes import runs
 from tests.waiting import until
-
-pytestmark = pytest.mark.skipif(cpu_count() < 2, reason="one core: there are no processes beside")
 
 
 def load() -> None:
@@ -57,8 +55,16 @@ def killed_elsewhere(here: int) -> str:
     return "done"
 
 
+@pytest.fixture(autouse=True)
+def _two_processors(monkeypatch: pytest.MonkeyPatch) -> None:
+    if (os.cpu_count() or 1) < 2:
+        pytest.skip("one processor: there are no processes beside")
+    monkeypatch.setenv("LOKY_MAX_CPU_COUNT", "2")
+    monkeypatch.setattr(processes, "_KEPT", processes._Kept())
+
+
 @pytest.fixture
-def ready() -> None:
+def ready(_two_processors: None) -> None:
     prepare(load)
     until(are_ready)
 
@@ -79,6 +85,15 @@ def test_results_come_in_order_from_here_and_there(ready: None) -> None:
 
 def test_what_cannot_be_sent_is_done_here(ready: None) -> None:
     assert there(process_of, Lock()) == os.getpid()
+
+
+def test_one_processor_has_no_process_beside(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("LOKY_MAX_CPU_COUNT", "1")
+    monkeypatch.setattr(processes, "_KEPT", processes._Kept())
+    prepare(load)
+    assert not are_ready()
+    assert there(process_of, None) == os.getpid()
+    assert each_there(doubled, [(k,) for k in range(5)]) == [0, 2, 4, 6, 8]
 
 
 def test_errors_pass_through(ready: None) -> None:

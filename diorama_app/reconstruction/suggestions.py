@@ -137,11 +137,11 @@ class Suggestions:
 
     def _proposed(self) -> None:
         from diorama_core.models.recogniser import own_recogniser
-        from diorama_core.perception.foundation.proposals import LIKELY, OwnDetection, joined_boxes
+        from diorama_core.perception.foundation.proposals import LIKELY, MOST_SHOWN, OwnDetection, joined_boxes
         from diorama_core.progress import Progress
 
         known = self._everyday()
-        own = OwnDetection(own_recogniser(), LIKELY).detect(self.photo, (), Progress())
+        own = OwnDetection(own_recogniser(), LIKELY, MOST_SHOWN).detect(self.photo, (), Progress())
         self._boxes = joined_boxes(known, own)
 
     def _trace(self, box: Box) -> None:

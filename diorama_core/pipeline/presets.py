@@ -36,6 +36,8 @@ from diorama_core.perception.foundation.outlines import PromptedMasks
 from diorama_core.perception.foundation.proposals import (
     CONFIDENT,
     LIKELY,
+    MOST,
+    MOST_SHOWN,
     JoinedDetection,
     OwnDetection,
     clickable,
@@ -153,16 +155,16 @@ def detection_stage(store: ModelStore, choice: NetworkChoice | None = None) -> D
     return found or own
 
 
-def own_detection(threshold: float = CONFIDENT) -> OwnDetection | None:
+def own_detection(threshold: float = CONFIDENT, most: int = MOST) -> OwnDetection | None:
     """The detector that comes with Diorama; None where its weights were left out."""
-    return OwnDetection(own_recogniser(), threshold) if has_own_recogniser() else None
+    return OwnDetection(own_recogniser(), threshold, most) if has_own_recogniser() else None
 
 
 def detection_routes(store: ModelStore | None = None) -> Mapping[str, DetectionStage]:
     """Every way to boxes on this machine, by name, to be compared: each detector, and the one that is used."""
     store = store or ModelStore.default()
     routes = {i: network_stages.detector(store, network(i)) for i in DETECTORS if store.has(network(i))}
-    own = own_detection(LIKELY)
+    own = own_detection(LIKELY, MOST_SHOWN)
     if own is not None:
         routes["own, likely"], routes["own, confident"] = own, replace(own, threshold=CONFIDENT)
     used = detection_stage(store)
@@ -217,7 +219,7 @@ def propose_boxes(
     stage = detection_stage(store)
     if stage is None:
         return None
-    likely = own_detection(LIKELY)
+    likely = own_detection(LIKELY, MOST_SHOWN)
     if isinstance(stage, OwnDetection) and likely is not None:
         stage = likely
     elif isinstance(stage, JoinedDetection) and likely is not None:

@@ -20,7 +20,8 @@ from diorama_core.retrieval.seen_kinds import as_it_looks
 
 CONFIDENT, LIKELY = 0.55, 0.45
 """Scores from which a build uses a box unseen, and from which a person is shown one."""
-MOST = 20
+MOST, MOST_SHOWN = 20, 10
+"""How many boxes a build uses at most, and how many a person is shown, who clicks on what is missing."""
 MIN_SIDE_PX = 8.0
 SAME_IOU = 0.5
 """Two boxes that overlap at least so much are one object's."""
