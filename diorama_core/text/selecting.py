@@ -106,7 +106,7 @@ class Selector:
         of_all_sorts = [o for o in objects if o.category.split()[-1] == noun == phrase.category]
         if phrase.every or (phrase.plural and len(found) < 2):
             found = of_all_sorts or found  # "every lamp" is also those that stand on the floor and hang
-        found = found or [o for o in objects if o.category.split()[-1] == noun] or labelled
+        found = found or [o for o in objects if o.category.endswith(noun)] or labelled  # an armchair is a chair, too
         if not found:
             raise EditRefused(f"there is no {phrase.category} in this scene; it has: {self.inventory()}")
         return self._looking(found, phrase.appearance, words)

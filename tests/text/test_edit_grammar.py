@@ -176,6 +176,14 @@ def test_of_several_with_one_label_none_is_taken_unasked(living: Scene) -> None:
         edits_of("remove the picture", replace(living, objects=alike), built_in_library())
 
 
+def test_armchairs_are_chairs_where_there_are_no_others(living: Scene) -> None:
+    sofa = living.object("sofa_1")
+    only = replace(living, objects=tuple(replace(o, category="armchair") if o is sofa else o for o in living.objects))
+    assert Selector(only, built_in_library()).objects("all chairs") == ("sofa_1",)
+    with pytest.raises(EditRefused, match="there is no chair"):
+        Selector(living, built_in_library()).objects("all chairs")
+
+
 def test_all_and_some_of_a_kind(dining: Scene) -> None:
     library = built_in_library()
     every = edits_of("make all chairs wooden", dining, library)[0]
