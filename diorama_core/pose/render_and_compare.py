@@ -37,8 +37,6 @@ _RETRIEVAL_WITH_DEPTH = 4.0
 """What retrieval says beside `Evidence.log_likelihood` where depth was measured: that tells shapes apart."""
 _MIN_STANDING = -1.0
 """What holds an object may be mistaken: that a shape does not stand there says at most so much against it, as a log."""
-_MAX_THREADS = 4
-"""Objects posed side by side: casting and array work let go of the interpreter, the rest of it does not."""
 _FACES_BETTER = 0.3
 """Cost by which a hypothesis must face more usually than the best ones to be refined although it fits worse so far."""
 _LOSS_FOR_A_SET = 0.02
