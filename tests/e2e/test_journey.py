@@ -93,7 +93,6 @@ def test_a_photo_with_boxes_becomes_a_scene(
     marked = len(session.inputs.boxes)
     editor.dismiss_notices()
     editor.button("Build scene").click()
-    expect(editor.page.get_by_text("Building the scene")).to_be_visible()
     editor.until(lambda: session.jobs.status is None and session.scene is not before, "built", seconds=BUILD_S)
     assert len(session.scene.objects) >= 0.9 * marked
     assert session.scene.architecture.floor is not None
