@@ -16,6 +16,7 @@ from collections import deque
 from collections.abc import Callable, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor
 from concurrent.futures.process import BrokenProcessPool
+from multiprocessing import parent_process
 from pickle import PicklingError
 from typing import Any, TypeVar
 
@@ -42,17 +43,22 @@ class _Kept:
     """The processes of this one."""
 
     def __init__(self) -> None:
-        self.count = min(cpu_count() - 1, MAX_PROCESSES)
         self._pool: Any = None
         self._started: Future[None] | None = None
 
+    @property
+    def count(self) -> int:
+        """How many there may be; a process that is one of several, which share the processors already, has none."""
+        return 0 if parent_process() is not None else min(cpu_count() - 1, MAX_PROCESSES)
+
     def start(self, load: Callable[[], None]) -> None:
         """Start them, unless they are there."""
-        if self.count < 1:
+        count = self.count
+        if count < 1:
             return
         warnings.filterwarnings("ignore", "A worker (stopped|was restarted)", UserWarning)  # that is what is wanted
         self._pool = get_reusable_executor(
-            self.count,
+            count,
             timeout=IDLE_S,
             initializer=_begin,
             initargs=(load,),
@@ -131,7 +137,7 @@ def each_there(
             if told is not None:
                 told.report(1.0 - len(waiting) / len(arguments), message)
 
-    others = min(_KEPT.count, len(arguments) - 1)
+    others = max(min(_KEPT.count, len(arguments) - 1), 0)
     with ThreadPoolExecutor(max(others, 1)) as threads:
         try:
             beside = [threads.submit(draw, there, None) for _ in range(others)]

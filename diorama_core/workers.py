@@ -174,7 +174,8 @@ def _done(item: Item, future: Future[Result]) -> Done[Item, Result]:
 
 
 def _call(function: Callable[[Item], Result], item: Item) -> Result:
-    """Ray takes plain functions only, and callers also bring partial ones."""
+    """Ray takes plain functions only, and callers also bring partial ones. Other pieces use the other processors."""
+    os.environ.setdefault("LOKY_MAX_CPU_COUNT", "1")
     return function(item)
 
 

@@ -24,6 +24,7 @@ from diorama_core.pose.made_to_measure import MadeToMeasure
 from diorama_core.pose.render_and_compare import RenderAndCompare
 from diorama_core.processes import are_ready, each_there, prepare, there
 from diorama_core.progress import Progress, ProgressEvent
+from diorama_core.workers import LocalWorkers
 from tests.processes import runs
 from tests.waiting import until
 
@@ -94,6 +95,15 @@ def test_one_processor_has_no_process_beside(monkeypatch: pytest.MonkeyPatch) ->
     assert not are_ready()
     assert there(process_of, None) == os.getpid()
     assert each_there(doubled, [(k,) for k in range(5)]) == [0, 2, 4, 6, 8]
+
+
+def test_a_process_that_is_one_of_several_starts_no_more(ready: None) -> None:
+    assert there(how_many, None) == 0
+    assert [done.unwrap() for done in LocalWorkers(2).map(how_many, [None])] == [0]
+
+
+def how_many(_: object) -> int:
+    return processes._Kept().count
 
 
 def test_errors_pass_through(ready: None) -> None:
