@@ -77,10 +77,7 @@ class Jobs:
     def cancel(self) -> None:
         """Ask the running job to stop; it does at its next check."""
         self._token.cancel()
-        status = self._status
-        if status is not None:
-            self._status = replace(status, cancelling=True, message="Stopping")
-            self._on_change(self._status)
+        self._change(lambda status: replace(status, cancelling=True, message="Stopping"))
 
     def wait(self, timeout_s: float) -> bool:
         """Block until no job runs; False when that took too long."""
@@ -90,12 +87,24 @@ class Jobs:
         return self._status is None
 
     def _report(self, event: ProgressEvent) -> None:
-        status = self._status
-        if status is not None and not status.cancelling:
+        def told(status: JobStatus) -> JobStatus:
+            if status.cancelling:
+                return status
             found = (*status.found, event.found) if event.found else status.found
             message = status.message if event.found else event.message
-            self._status = replace(status, fraction=event.fraction, message=message, found=found)
-            self._on_change(self._status)
+            return replace(status, fraction=event.fraction, message=message, found=found)
+
+        self._change(told)
+
+    def _change(self, changed: Callable[[JobStatus], JobStatus]) -> None:
+        """Change the running job's status, if one still runs: one that just ended must not come back."""
+        with self._lock:
+            before = self._status
+            if before is None:
+                return
+            after = self._status = changed(before)
+        if after is not before:
+            self._on_change(after)
 
     def _run(self, work: Callable[[Progress], None], progress: Progress) -> None:
         status = self._status
@@ -115,5 +124,6 @@ class Jobs:
                 status.kind, error=f"{status.title} failed unexpectedly; nothing was changed (see the log)"
             )
         finally:
-            self._status = None
+            with self._lock:
+                self._status = None
         self._on_end(outcome)

@@ -206,17 +206,18 @@ def test_a_picture_lies_below_and_is_scaled_by_a_known_length(plan: EditorPage, 
         page.mouse.click(box["x"] + share * box["width"], box["y"] + box["height"] / 2)
     page.get_by_label("True length between the two points").fill("2 m")
     page.keyboard.press("Enter")
-    metre = np.subtract(on_plan(plan, np.array([1.0, 0.0])), on_plan(plan, np.array([0.0, 0.0])))[0]
 
-    def width() -> float:
+    def width_m() -> float:
         box = picture.bounding_box()  # none while it is drawn anew
-        return 0.0 if box is None else float(box["width"])
+        # The plan is fitted to the page's size, which may still change: what a metre is is asked each time.
+        metre = np.subtract(on_plan(plan, np.array([1.0, 0.0])), on_plan(plan, np.array([0.0, 0.0])))[0]
+        return 0.0 if box is None else float(box["width"] / metre)
 
-    plan.until(lambda: abs(width() - 4 * metre) < 0.02 * metre, "scaled")
+    plan.until(lambda: abs(width_m() - 4.0) < 0.02, "scaled")
     plan.load()  # it is the project's, not this page's
     page.keyboard.press("7")
     expect(picture).to_be_visible()
-    plan.until(lambda: abs(width() - 4 * metre) < 0.02 * metre, "as it was scaled")
+    plan.until(lambda: abs(width_m() - 4.0) < 0.02, "as it was scaled")
     page.get_by_role("button", name="Remove picture").click()
     expect(picture).to_have_count(0)
 

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import threading
 import time
+from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -17,7 +19,7 @@ from diorama_app.panels.outliner import tree_html
 from diorama_app.panels.room_size import RoomSize
 from diorama_app.panels.supports import supporters
 from diorama_app.session.client import Client
-from diorama_app.session.jobs import Jobs, Outcome
+from diorama_app.session.jobs import Jobs, JobStatus, Outcome
 from diorama_app.session.session import EditorSession
 from diorama_app.session.ui_thread import UiThread
 from diorama_core.errors import EditRefused, InputError
@@ -195,6 +197,26 @@ def test_the_desk_works_in_order_and_keeps_only_the_newest_of_a_key() -> None:
     assert errors[0] == "no"
     assert "log" in errors[1]
     ui_thread.stop()
+
+
+def test_a_job_that_ends_while_it_is_cancelled_has_ended(monkeypatch: pytest.MonkeyPatch) -> None:
+    def slowly(status: JobStatus, **changes: Any) -> JobStatus:
+        time.sleep(0.1)  # the job's thread ends meanwhile
+        return replace(status, **changes)
+
+    monkeypatch.setattr("diorama_app.session.jobs.replace", slowly)
+    jobs = Jobs(lambda status: None, lambda outcome: None)
+
+    def work(progress: Progress) -> None:
+        while True:
+            progress.check()
+            time.sleep(0.001)
+
+    jobs.start("export", "Exporting", work)
+    jobs.cancel()
+    assert jobs.wait(60.0)
+    jobs.start("export", "Exporting", lambda progress: None)
+    assert jobs.wait(60.0)
 
 
 def test_one_job_at_a_time_and_cancel_ends_it() -> None:
