@@ -28,7 +28,9 @@
     tell();
     const { change, arg, do: action } = field.dataset;
     last = { field, change, arg, do: action, at: performance.now(), typed: null };
-    if (field.matches("input")) setTimeout(() => document.activeElement === field && field.select());
+    // Not over what was typed meanwhile: keys come before a timer that waits.
+    const select = () => { if (document.activeElement === field && last?.field === field && last.typed === null) field.select(); };
+    if (field.matches("input")) setTimeout(select);
   });
   addEventListener("input", (event) => {
     if (last?.field === event.target) Object.assign(last, { typed: event.target.value, at: performance.now(), untold: false });

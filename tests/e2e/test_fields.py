@@ -67,6 +67,24 @@ def test_a_field_drawn_anew_is_written_when_it_is_left(editor: EditorPage, busy:
     editor.until(lambda: np.isclose(size(editor)[0], 0.95), "the depth is written")
 
 
+def test_a_field_is_selected_whole_but_not_over_what_is_typed_at_once(editor: EditorPage) -> None:
+    editor.row("dining table").click()
+    field = editor.page.get_by_label("Size: Width")
+    shown = field.input_value()
+    focused = """(field, typed) => {
+        field.blur();
+        field.focus();
+        if (typed) {
+            field.value = typed;
+            field.dispatchEvent(new Event("input", { bubbles: true }));
+        }
+        return new Promise((told) => setTimeout(() => told(field.selectionEnd - field.selectionStart), 50));
+    }"""
+    assert field.evaluate(focused, "") == len(shown)
+    editor.page.get_by_label("Size: Depth").focus()
+    assert field.evaluate(focused, "0.9") == 0
+
+
 def test_edits_told_at_once_are_all_made(editor: EditorPage, busy: threading.Event) -> None:
     for axis, value in (("Width", "1.5"), ("Depth", "0.95"), ("Height", "0.7")):
         field = editor.page.get_by_label(f"Size: {axis}")
