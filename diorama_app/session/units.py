@@ -23,7 +23,7 @@ def parse_length(words: str, unit: Unit) -> float:
     """
     rest = words.strip().replace("′", "'").replace("″", '"').replace("’", "'").replace("”", '"')
     sign = -1.0 if rest.startswith("-") else 1.0
-    rest = rest.lstrip("+-").strip()
+    rest = re.sub(r"^(?=[.,]\d)", "0", rest.lstrip("+-").strip())  # .95 is 0.95
     total, parts, previous = 0.0, 0, ""
     while rest:
         found = _PART.match(rest)

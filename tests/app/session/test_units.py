@@ -27,6 +27,8 @@ def test_what_is_written_reads_as_the_same_length(metres: float, unit: str) -> N
         ("5' 3", "ft-in", 1.6002),
         ("-40mm", "m", -0.04),
         ("1,25", "m", 1.25),
+        (".95", "m", 0.95),
+        ("-.5 m", "cm", -0.5),
     ],
     ids=str,
 )
@@ -34,7 +36,7 @@ def test_lengths_as_people_write_them(words: str, unit: str, metres: float) -> N
     assert parse_length(words, unit) == pytest.approx(metres)
 
 
-@pytest.mark.parametrize("words", ["", "two", "1.2 parsecs", "3/0"])
+@pytest.mark.parametrize("words", ["", "two", "1.2 parsecs", "3/0", "1.5.5", "."])
 def test_what_is_no_length_is_said_so(words: str) -> None:
     with pytest.raises(InputError):
         parse_length(words, "m")
