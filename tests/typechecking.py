@@ -74,12 +74,11 @@ def compiled_at(checks: str, /, path: str, debug_override: bool | None = None) -
 
 def begin_test(*, unchecked: bool) -> None:
     """Check the first calls again, and the same items of lists every time."""
-    for calls in _counted:
-        calls[0] = 0
-    _counted.clear()
-    for function, checking in _called.values():
+    while _counted:
+        _counted.pop()[0] = 0
+    while _called:  # threads of a test before may still call
+        _, (function, checking) = _called.popitem()
         function.__code__ = checking
-    _called.clear()
     items.seed(0)
     jaxtyping.config.update("jaxtyping_disable", unchecked)
 
