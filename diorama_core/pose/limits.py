@@ -8,6 +8,7 @@ from functools import cached_property
 import numpy as np
 from jaxtyping import Bool, Float
 
+from diorama_core.geometry.openings import OPENING_CATEGORIES, STANDS_OUT_M
 from diorama_core.library.record import SymmetryFold
 from diorama_core.library.taxonomy import UNKNOWN, SizePrior, category, with_kin
 
@@ -83,6 +84,8 @@ class SizeLimits:
         least, most = _category_range(category_name, observed_m, own)
         if measured:
             most[2] = max(most[2], observed_m[2])
+        elif category_name in OPENING_CATEGORIES:  # its frame is in the wall: only what stands out is seen
+            least[0] = most[0] = STANDS_OUT_M
         flat = category_name in FLAT and not measured  # measured proportions tell which frame it is
         stretch = _STRETCH_FLAT if flat else _STRETCH_BOXY if category_name in BOXY else _STRETCH_SHAPED
         return cls(own, least, most, stretch, sides_log, flat)

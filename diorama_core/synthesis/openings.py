@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from diorama_core.geometry.openings import STANDS_OUT_M
 from diorama_core.geometry.wall_line import WallLine
 from diorama_core.synthesis.bodies import Item
 from diorama_core.synthesis.furnisher import Furnisher
@@ -11,8 +12,6 @@ from diorama_core.synthesis.plan import footprint
 
 DOOR_SWING_M = 0.95
 WINDOW_REACH_M = 0.45
-DEEPEST_FRAME_M = 0.06
-"""Frames are set into the wall; only this much of them stands out into the room."""
 
 
 def add_door(f: Furnisher, wall: WallLine | None = None) -> str | None:
@@ -72,7 +71,7 @@ def _dress(f: Furnisher, wall: WallLine, t: float, window: Item) -> None:
 
 def _sunk(item: Item) -> Item:
     depth = item.shape.size_m[0]
-    return Item(item.shape, (min(1.0, DEEPEST_FRAME_M / depth), item.scale[1], item.scale[2]))
+    return Item(item.shape, (min(1.0, STANDS_OUT_M / depth), item.scale[1], item.scale[2]))
 
 
 def _shuffled(f: Furnisher) -> list[WallLine]:

@@ -8,6 +8,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from diorama_core.geometry.openings import OPENING_CATEGORIES
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.library.taxonomy import category
 from diorama_core.scene.types import Scene
@@ -19,8 +20,6 @@ EXTRAS = (10, 24)
 """Lowest and highest number of objects that are added without regard to the kind of the room."""
 RECOLOURED = 0.6
 """Share of the objects that get a colour of chance: shapes and pictures must be told apart by form."""
-BUILT_IN = ("door", "window")
-"""Parts of walls; the grammar places them."""
 
 
 def varied_room(seed: int, library: ShapeLibrary) -> Scene:
@@ -35,7 +34,7 @@ def varied_room(seed: int, library: ShapeLibrary) -> Scene:
 
 
 def _extras(f: Furnisher, rng: np.random.Generator) -> None:
-    names = sorted({s.category for s in f.library.shapes()} - set(BUILT_IN))
+    names = sorted({s.category for s in f.library.shapes()} - set(OPENING_CATEGORIES))
     seen = Counter(o.category for o in f.objects)
     weights = np.array([1.0 / (1.0 + 2.0 * seen[n]) for n in names])
     for name in rng.choice(names, size=int(rng.integers(*EXTRAS)), p=weights / weights.sum()):

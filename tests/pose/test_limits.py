@@ -7,6 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from diorama_core.geometry.openings import STANDS_OUT_M
 from diorama_core.library.taxonomy import CATEGORIES
 from diorama_core.pose.limits import SizeLimits, sides_log_of
 
@@ -43,6 +44,14 @@ def test_a_measured_height_is_plausible_however_tall() -> None:
     tall = np.array([0.7, 0.7, 0.75])
     assert SizeLimits.of((0.7, 0.7, 0.42), "coffee table", tall).max_m[2] == pytest.approx(0.6)
     assert SizeLimits.of((0.7, 0.7, 0.42), "coffee table", tall, measured=True).max_m[2] == pytest.approx(0.75)
+
+
+@pytest.mark.parametrize("name", ["door", "window"])
+def test_a_frame_stands_out_of_its_wall_as_far_as_all_do_where_only_a_photo_shows_it(name) -> None:
+    shape, seen = (0.11, 0.9, 1.9), np.array([0.12, 0.8, 1.8])
+    assert (SizeLimits.of(shape, name, seen).scale_for(seen) * shape)[0] == pytest.approx(STANDS_OUT_M)
+    measured = SizeLimits.of(shape, name, seen, measured=True)
+    assert (measured.scale_for(seen) * shape)[0] == pytest.approx(0.12)
 
 
 def test_flat_things_come_in_all_proportions_where_only_a_photo_shows_them() -> None:

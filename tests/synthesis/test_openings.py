@@ -3,7 +3,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from diorama_core.synthesis.openings import DEEPEST_FRAME_M, DOOR_SWING_M, add_door, add_window
+from diorama_core.geometry.openings import STANDS_OUT_M
+from diorama_core.synthesis.openings import DOOR_SWING_M, add_door, add_window
 from tests.synthesis.box_rooms import furnisher, sound
 
 
@@ -14,7 +15,7 @@ def test_a_door_stands_on_the_floor_near_an_end_of_a_wall(seed: int) -> None:
     edge = f.supports[-1]
     wall = next(w for w in f.plan.walls if w.id == edge.parent)
     assert door.corners_world[:, 2].min() == pytest.approx(0.0, abs=1e-6)
-    assert door.size_m[0] <= DEEPEST_FRAME_M + 1e-9
+    assert door.size_m[0] <= STANDS_OUT_M + 1e-9
     t = (door.pose.position[:2] - wall.start) @ wall.along
     assert min(t, wall.length_m - t) < door.size_m[1] / 2 + 0.55
     sound(f)

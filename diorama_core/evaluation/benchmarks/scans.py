@@ -18,6 +18,7 @@ from jaxtyping import Float
 from diorama_core.evaluation.benchmarks.cases import Case, LeftOut, furnished, made, recipe
 from diorama_core.evaluation.reports.intervals import bootstrap_interval
 from diorama_core.evaluation.reports.tables import Column, Row, Table
+from diorama_core.geometry.openings import OPENING_CATEGORIES
 from diorama_core.importing.measured_cloud import measured_cloud
 from diorama_core.importing.measured_room import MeasuredRoom, opened_room
 from diorama_core.importing.point_files import read_points
@@ -35,8 +36,7 @@ MIN_SIZE_M = 0.3
 """Smaller things are not asked for."""
 MAX_OFF_M = 0.3
 """From an opening's middle to its truth's."""
-OPENINGS = ("door", "window")
-NOT_ASKED = (*OPENINGS, "curtain", "rug", "blinds")
+NOT_ASKED = (*OPENING_CATEGORIES, "curtain", "rug", "blinds")
 WAYS = ("size alone", "size, shape and what stands around", "size, shape, what stands around, and photos")
 
 
@@ -158,8 +158,8 @@ def scored(name: str, way: str, truth: Scene, scene: Scene, seconds: float) -> S
     pairs = max((_pairs(things, objects) for objects in turned), key=len)
     best = max(turned, key=lambda objects: len(_pairs(things, objects)))
     right = sum(broad(a.category) == broad(b.category) for a, b in pairs)
-    openings = [o for o in truth.objects if o.category in OPENINGS]
-    cut = [o for o in best if o.category in OPENINGS]
+    openings = [o for o in truth.objects if o.category in OPENING_CATEGORIES]
+    cut = [o for o in best if o.category in OPENING_CATEGORIES]
     met = sum(any(_same_opening(o, c) for c in cut) for o in openings)
     false = sum(not any(_same_opening(o, c) for o in openings) for c in cut)
     return ScanResult(name, way, len(things), len(pairs), right, len(openings), met, false, seconds)
