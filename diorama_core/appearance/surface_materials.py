@@ -10,7 +10,7 @@ import numpy as np
 from jaxtyping import Bool, Float, Float32, UInt8
 
 from diorama_core.appearance.light import Shade
-from diorama_core.appearance.lit_colour import unveiled
+from diorama_core.appearance.lit_colour import is_shade, unveiled
 from diorama_core.appearance.plainness import shows_plain
 from diorama_core.appearance.surface_view import SurfaceView
 from diorama_core.appearance.texture_example import Example, best_example, tileable
@@ -186,8 +186,10 @@ def _own_colours(
         for seed in options[index]:
             near = _alike(lab, seed)
             share, pixels = _share(near, mine), np.count_nonzero(near & mine)
-            alike = [where for where, main in others if _is_near(main - seed)]
-            elsewhere = [_share(near, where) for where in alike if np.count_nonzero(near & where) >= pixels]
+            alike = [(near, where) for where, main in others if _is_near(main - seed)]
+            # The lit side of a neighbour is its colour, too; what is darker may be something black.
+            alike += [(near | _alike(lab, main), where) for where, main in others if is_shade(main, seed)]
+            elsewhere = [_share(of, where) for of, where in alike if np.count_nonzero(of & where) >= pixels]
             elsewhere.append(_covers(near, beside) / BESIDE)
             own.append(share / max([share, *elsewhere, 1e-9]))
             shares.append(share)
