@@ -2,8 +2,10 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+import cv2
 import numpy as np
 
+from diorama_core.appearance.lit_colour import is_shade
 from diorama_core.appearance.surface_materials import (
     MIN_LINEAR,
     MIN_OF_WHOLE,
@@ -147,6 +149,20 @@ def test_a_large_slot_keeps_its_colour_where_a_small_one_crosses_it() -> None:
     found = colours_of(rgb, view, slots)
     np.testing.assert_allclose(found["fabric"], red, atol=2)
     assert "wood" not in found
+
+
+def test_the_lit_side_of_a_neighbours_wood_is_no_colour_of_a_cushion() -> None:
+    view, slots, rgb, _, _ = seen()
+    frame, cushion = (view.slot == index_of(slots, role) for role in ("fabric", "wood"))
+    shaded, lit, cloth = (94, 62, 43), (230, 164, 119), (120, 178, 208)
+    assert is_shade(*(cv2.cvtColor(np.array([[c]], np.float32) / 255, cv2.COLOR_RGB2Lab)[0, 0] for c in (shaded, lit)))
+    rgb[frame] = shaded
+    places = np.argwhere(cushion)
+    share = np.argsort(np.argsort(places[:, 1], kind="stable")) / len(places)
+    rgb[tuple(places[share < 0.41].T)] = lit
+    rgb[tuple(places[(share >= 0.41) & (share < 0.79)].T)] = cloth
+    rgb[tuple(places[share >= 0.79].T)] = shaded
+    np.testing.assert_allclose(colours_of(rgb, view, slots)["wood"], cloth, atol=2)
 
 
 def test_what_lies_before_two_slots_is_no_colour_of_either() -> None:
