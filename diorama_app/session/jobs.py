@@ -47,7 +47,10 @@ class Outcome:
 
 
 class Jobs:
-    """Runs at most one job. `on_change` and `on_end` are called from the job's thread."""
+    """Runs at most one job.
+
+    `on_change` is called from the thread that starts, reports or cancels the job, `on_end` from the job's own.
+    """
 
     def __init__(self, on_change: Callable[[JobStatus], None], on_end: Callable[[Outcome], None]) -> None:
         self._on_change = on_change

@@ -201,7 +201,8 @@ def test_the_desk_works_in_order_and_keeps_only_the_newest_of_a_key() -> None:
 
 def test_a_job_that_ends_while_it_is_cancelled_has_ended(monkeypatch: pytest.MonkeyPatch) -> None:
     def slowly(status: JobStatus, **changes: Any) -> JobStatus:
-        time.sleep(0.1)  # the job's thread ends meanwhile
+        (job,) = (thread for thread in threading.enumerate() if thread.name == "job export")
+        job.join(0.1)  # it ends meanwhile, or waits for what is changed
         return replace(status, **changes)
 
     monkeypatch.setattr("diorama_app.session.jobs.replace", slowly)
@@ -210,7 +211,6 @@ def test_a_job_that_ends_while_it_is_cancelled_has_ended(monkeypatch: pytest.Mon
     def work(progress: Progress) -> None:
         while True:
             progress.check()
-            time.sleep(0.001)
 
     jobs.start("export", "Exporting", work)
     jobs.cancel()
