@@ -11,6 +11,7 @@ from dataclasses import replace
 import numpy as np
 from jaxtyping import Float
 
+from diorama_core.geometry.openings import OPENING_CATEGORIES
 from diorama_core.geometry.sun import daylight
 from diorama_core.render.appearance import Surface
 from diorama_core.scene.types import Scene, SceneObject
@@ -28,7 +29,6 @@ WARM: tuple[float, float, float] = (1.0, 0.78, 0.54)
 """Linear colour of a bulb of about 3000 K."""
 SHADE_GLOW = 0.4
 """Of the shade of a lamp that shines, where 1 is white."""
-PANE_CATEGORIES = ("window", "door")
 PANE_GLOW = 0.45
 """Of a pane before the noon sky, where 1 is white."""
 
@@ -64,7 +64,7 @@ def as_lit(item: SceneObject, surfaces: tuple[Surface, ...], scene: Scene) -> tu
         if settings.lamps_on is None:
             return surfaces
         return _shaded(surfaces) if item.id in settings.lamps_on else _glowing(surfaces, np.zeros(3))
-    if item.category in PANE_CATEGORIES and settings.hour is not None:
+    if item.category in OPENING_CATEGORIES and settings.hour is not None:
         return _glowing(surfaces, PANE_GLOW * daylight(settings.hour, settings.north_rad).sky)
     return surfaces
 

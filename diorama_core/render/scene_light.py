@@ -7,13 +7,14 @@ from dataclasses import replace
 import numpy as np
 from jaxtyping import Float
 
+from diorama_core.geometry.openings import OPENING_CATEGORIES
 from diorama_core.geometry.sun import Daylight, daylight
 from diorama_core.geometry.unseen_walls import closed_room
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.library.stretch import relative_scale
 from diorama_core.render.appearance import Material, Surface, shape_surfaces
 from diorama_core.render.direct_light import DirectLight, LampLight, SunLight
-from diorama_core.render.lamps import LAMP_LUMENS, PANE_CATEGORIES, WARM, lamp_place, shining_lamps
+from diorama_core.render.lamps import LAMP_LUMENS, WARM, lamp_place, shining_lamps
 from diorama_core.render.lighting import Lighting
 from diorama_core.render.raycast import Caster
 from diorama_core.render.world import World, placed_surfaces
@@ -88,7 +89,7 @@ def _daytime(scene: Scene, outside: Daylight, bounds: Float[np.ndarray, "2 3"]) 
 def _blockers(scene: Scene, library: ShapeLibrary, without: set[int]) -> Caster:
     """Objects, walls and the ceiling, without what lets light through: panes, clear glass, and lamps that shine."""
     placed = [p for p in placed_surfaces(scene, library) if p.instance not in without]
-    panes = {number for number, o in enumerate(scene.objects) if o.category in PANE_CATEGORIES}
+    panes = {number for number, o in enumerate(scene.objects) if o.category in OPENING_CATEGORIES}
     return World(
         [replace(p, surfaces=tuple(_bare(s) for s in _solid(p.surfaces, window=p.instance in panes))) for p in placed]
     ).shadow_caster()

@@ -15,6 +15,7 @@ import numpy as np
 from diorama_core.editing.positioning import Positioner
 from diorama_core.editing.relations import OF_ROOM, Relation, is_met
 from diorama_core.editing.room_frame import RoomFrame
+from diorama_core.geometry.openings import OPENING_CATEGORIES
 from diorama_core.library.record import Shape, ShapeLibrary
 from diorama_core.library.taxonomy import broad
 from diorama_core.progress import Progress
@@ -137,7 +138,7 @@ class _Composer:
     def _place(
         self, k: int, request: RequestedObject, shapes: Sequence[Shape], wanted: Sequence[RequestedObject]
     ) -> None:
-        if request.category in ("window", "door"):
+        if request.category in OPENING_CATEGORIES:
             there = [o.id for o in self.scene.objects if o.category == request.category][: request.count]
             self.ids[k] = there
             self.missing[k] = request.count - len(there)
@@ -252,7 +253,7 @@ class _Composer:
         fixed = {i for rows in self.in_rows.values() for i in rows.ids}
         for object_id in (i for i in involved if i not in fixed):
             item = self.scene.object(object_id)
-            if item.category in ("window", "door") or broad(item.category) == "rug":
+            if item.category in OPENING_CATEGORIES or broad(item.category) == "rug":
                 continue
             before = self.scene
             number = len(self._unmet())

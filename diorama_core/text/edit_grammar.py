@@ -12,6 +12,7 @@ from typing import Literal
 
 from diorama_core.editing.relations import RelationKind
 from diorama_core.errors import EditRefused
+from diorama_core.geometry.openings import OPENING_CATEGORIES
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.library.taxonomy import category
 from diorama_core.scene.types import Scene
@@ -214,7 +215,7 @@ def _places(selector: Selector, places: Sequence[Placing]) -> list[Place]:
             found.append(Place(relation="against wall", targets=[]))
         else:
             targets = list(selector.targets(place.words))
-            openings = all(selector.scene.object(t).category in ("window", "door") for t in targets)
+            openings = all(selector.scene.object(t).category in OPENING_CATEGORIES for t in targets)
             by = place.kind == "under" and openings  # under a window is at it, on the floor
             found.append(Place(relation="near" if by else place.kind, targets=targets))
     return found
@@ -374,7 +375,7 @@ def _insert(selector: Selector, clause: str, rest: str) -> Edit:
     if phrase is None or not phrase.label:
         words = unknown or head or clause
         raise EditRefused(f"“{words}” is not understood; for example: {EXAMPLES}")
-    if category(phrase.category).name in ("door", "window"):
+    if category(phrase.category).name in OPENING_CATEGORIES:
         raise EditRefused(f"a {phrase.category} is part of the room, which edits by words leave as it is")
     return Insert(
         what=" ".join((*phrase.appearance, phrase.label)), count=phrase.count, places=_places(selector, places)

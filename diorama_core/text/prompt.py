@@ -6,6 +6,7 @@ import re
 from dataclasses import dataclass, field, replace
 
 from diorama_core.editing.relations import OF_ROOM, SEATS, RelationKind
+from diorama_core.geometry.openings import OPENING_CATEGORIES
 from diorama_core.library.taxonomy import broad, category, is_furniture, resolve
 from diorama_core.synthesis import RoomKind
 from diorama_core.text.customs import USUAL
@@ -286,7 +287,7 @@ def _place(reading: _Reading, index: int | None, place: Placing, clause: str) ->
         elif request.count == 1:
             reading.objects[index] = replace(request, count=2)
     kind: RelationKind = place.kind
-    if kind in ("under", "beside") and set(targets) <= {"window", "door"}:
+    if kind in ("under", "beside") and set(targets) <= set(OPENING_CATEGORIES):
         kind = "near"
     if (
         kind in ("beside", "in front of")
@@ -356,7 +357,7 @@ def _target(reading: _Reading, words: str, own: int | None, kind: RelationKind) 
     kin = kin or next(
         (o.category for o in reading.objects if o.category.endswith(f" {phrase.category}") and phrase.definite), None
     )
-    if kin is None and phrase.category not in ("window", "door"):
+    if kin is None and phrase.category not in OPENING_CATEGORIES:
         # "A lamp on each night stand" means at least two.
         count = max(phrase.count, 2) if phrase.every else phrase.count
         reading.objects.append(_requested(phrase, count))

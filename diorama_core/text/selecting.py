@@ -10,6 +10,7 @@ import numpy as np
 from diorama_core.editing.relations import Relation, is_met
 from diorama_core.editing.room_frame import RoomFrame
 from diorama_core.errors import EditRefused
+from diorama_core.geometry.openings import OPENING_CATEGORIES
 from diorama_core.library.record import ShapeLibrary, record_of
 from diorama_core.library.taxonomy import broad, category, is_furniture, with_kin
 from diorama_core.scene.support import descendants
@@ -95,7 +96,7 @@ class Selector:
 
     def _named(self, phrase: NounPhrase, words: str) -> list[SceneObject]:
         if not phrase.label:
-            inside = [o for o in self.scene.objects if o.category not in ("door", "window")]
+            inside = [o for o in self.scene.objects if o.category not in OPENING_CATEGORIES]
             furniture = [o for o in inside if "furniture" not in words or is_furniture(o.category)]
             return self._looking(furniture, phrase.appearance, words)
         objects = self.scene.objects

@@ -18,6 +18,7 @@ from diorama_core.editing.footprints import footprint_of, footprints, within
 from diorama_core.editing.placing import places_of
 from diorama_core.editing.relations import OF_ROOM, Relation, RelationKind, is_met
 from diorama_core.editing.room_frame import RoomFrame
+from diorama_core.geometry.openings import OPENING_CATEGORIES
 from diorama_core.layout.problem.supports import outside_m
 from diorama_core.library.record import ShapeLibrary, record_of
 from diorama_core.library.taxonomy import broad, category, with_kin
@@ -83,7 +84,7 @@ def measure(asked: Asked, scene: Scene, library: ShapeLibrary) -> TextScene:
             failures.append(f"{there} of {number} {name}")
     looks = _looks(asked, scene, library, failures)
     objects, room = _relations(asked, scene, frame, failures)
-    standing = [o for o in scene.objects if o.category not in ("door", "window")]
+    standing = [o for o in scene.objects if o.category not in OPENING_CATEGORIES]
     held = sum(_is_supported(scene, library, o) for o in standing)
     hit = {i for pair in Collisions(library).of(scene, [o.id for o in standing]) for i in pair}
     beyond = [o for o in standing if not within(footprint_of(o)[None], frame.outline, OUTSIDE_M)[0]]
@@ -136,7 +137,7 @@ def _relations(
         number = asked.counts.get(name, 1)
         met = sum(_holds(scene, o, kind, targets, frame) for o in _named(scene, name))
         good = met >= number
-        tally = to_room if kind in OF_ROOM or set(targets) <= {"window", "door"} else between
+        tally = to_room if kind in OF_ROOM or set(targets) <= set(OPENING_CATEGORIES) else between
         tally[0] += good
         tally[1] += 1
         if not good:
