@@ -41,8 +41,10 @@ def selected(client) -> SceneObject:
 
 
 def test_only_own_models_are_offered_for_correction(client, page: Page, model) -> None:
+    page.settle()
     assert "Guessed: box; one unit is 0.01 m; 60 % sure which side is up" in page.html
     client.select(["chair_1"])
+    page.settle()
     assert "Your model" not in page.html
 
 
