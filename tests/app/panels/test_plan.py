@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from diorama_app.panels.plan import Plan, ShapeOutlines
+from diorama_app.session.client import Client
 from diorama_app.session.units import format_length
 from diorama_core.editing.plan_edits import corners, wall_feet
 from tests.app.page import Page
@@ -19,6 +20,12 @@ def plan(client, page: Page) -> Plan:
     made = Plan(page, client)
     client.panels = [made]
     return made
+
+
+def refresh(client: Client, plan: Plan, page: Page) -> None:
+    """As the program does it: on the UI thread, where the outlines that were looked for ask for it, too."""
+    client.post(plan.refresh)
+    page.settle()
 
 
 def told(page: Page) -> dict[str, Any] | None:
@@ -37,17 +44,17 @@ def do(page: Page, what: str, arg: object) -> None:
 
 
 def test_nothing_is_told_while_it_is_not_looked_at(client, page: Page, plan: Plan) -> None:
-    plan.refresh()
+    refresh(client, plan, page)
     assert told(page) is None
     client.plan = True
-    plan.refresh()
+    refresh(client, plan, page)
     assert told(page) is not None
 
 
 def test_what_is_told_is_what_the_scene_says(session, client, page: Page, plan: Plan) -> None:
     client.plan = True
     client.select(["table_1"])
-    plan.refresh()
+    refresh(client, plan, page)
     news = told(page)
     assert news is not None
     assert {w["id"]: w["length"] for w in news["walls"]} == {
@@ -60,7 +67,7 @@ def test_what_is_told_is_what_the_scene_says(session, client, page: Page, plan: 
 
 def test_it_selects_moves_and_sets_lengths_with_undo(session, client, page: Page, plan: Plan) -> None:
     client.plan = True
-    plan.refresh()
+    refresh(client, plan, page)
     do(page, "select", ["chair_1", False])
     assert client.selection == ("chair_1",)
     before = session.scene.object("chair_1").pose.position
@@ -94,7 +101,7 @@ def test_what_is_no_edit_is_refused_and_changes_nothing(
     session, client, page: Page, plan: Plan, what: str, arg: object
 ) -> None:
     client.plan = True
-    plan.refresh()
+    refresh(client, plan, page)
     before = session.scene
     do(page, what, arg)
     assert session.scene is before
