@@ -87,7 +87,7 @@ class TurnSearch:
         turned = self._turned(best, turns)
         fit = replace(self.measured.fit(self.limits), yaw_sigma_rad=_FIXED_YAW_RAD)
         both = turned.and_also(fit.refined(self.appearance.caster, turned))
-        scores = self._compared_closely(both, exact=True)
+        scores = self._compared_closely(both, exact=True) + self.measured.log_likelihood(both, self.limits)
         count = len(turns)
         better = np.where(scores[count:] > scores[:count], np.arange(count) + count, np.arange(count))
         likely = np.exp(scores[better] - scores[better].max())
@@ -120,4 +120,5 @@ class TurnSearch:
         errors, nothing = self.observations.errors(self.appearance.caster, poses), np.zeros(len(poses))
         usual = self.observations.log_scores(errors, poses, nothing, nothing, self.limits)
         more_habit = _HABIT_STRENGTH * self.observations.facing.cost(poses.R)
-        return usual + self.believed * self.close.log_likelihoods(self.appearance, poses) - more_habit
+        stands = self.measured.log_likelihood(poses, self.limits)
+        return usual + stands + self.believed * self.close.log_likelihoods(self.appearance, poses) - more_habit

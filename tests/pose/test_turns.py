@@ -7,6 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from diorama_core.artefacts import RankedShapes
 from diorama_core.geometry.observed import observe
 from diorama_core.geometry.shape_appearance import appearance_of
 from diorama_core.geometry.silhouette import PoseBatch
@@ -95,6 +96,17 @@ def test_a_tripod_is_right_in_each_of_its_three_turns() -> None:
         found = posed(room, photo_of(room))
         assert error_deg(room, found) < 15.0
         assert found.confidence > 0.6
+
+
+@pytest.mark.parametrize(("thing", "shape_id", "yaw_deg"), [("chair", "sofa", -70), ("tripod", "carton", -90)])
+def test_what_fits_badly_whichever_way_it_is_turned_stays_before_the_wall(thing: str, shape_id: str, yaw_deg) -> None:
+    item = standing(thing, 0.1, 4.0, yaw_deg)
+    wall = standing("carton", 0.0, 4.1 + item.size_m[0] / 2, -90, (0.25, 16.0, 7.5))
+    room = Room(camera_at(1.4, 14.0), (item, wall), (0, 0))
+    ranked = (RankedShapes("o0", ((shape_id, 1.0),)),)
+    stage = RenderAndCompare(LIBRARY)
+    (found,) = stage.pose(room.inputs, room.objects[:1], room.geometry, room.depth(True), ranked, Progress())
+    assert np.linalg.norm(found.candidates[0].pose.position[:2] - item.pose.position[:2]) < 0.15
 
 
 def appearance_likelihood(room: Room, rgb: np.ndarray) -> AppearanceLikelihood:
