@@ -180,6 +180,25 @@ def test_what_lies_before_two_slots_is_no_colour_of_either() -> None:
     assert found.get("wood", np.zeros(3)).min() < 200
 
 
+def test_a_wall_seen_past_a_frame_is_not_before_its_white_cushion() -> None:
+    view, slots, rgb, _, _ = seen()
+    frame, cushion = (view.slot == index_of(slots, role) for role in ("fabric", "wood"))
+    shaded, lit, white = (94, 62, 43), (230, 164, 119), (228, 229, 229)
+    rgb[:], rgb[-50:] = white, (120, 140, 160)  # the wall, and a third of the floor
+    for part, colours in (
+        (frame, ((0.74, shaded), (1.0, white))),
+        (cushion, ((0.38, lit), (0.74, white), (1.0, shaded))),
+    ):
+        places = np.argwhere(part)
+        share, begin = np.argsort(np.argsort(places[:, 1], kind="stable")) / len(places), 0.0
+        for end, colour in colours:
+            rgb[tuple(places[(share >= begin) & (share < end)].T)] = colour
+            begin = end
+    found = colours_of(rgb, view, slots, view.slot < 0)
+    np.testing.assert_allclose(found["fabric"], shaded, atol=2)
+    np.testing.assert_allclose(found["wood"], white, atol=2)
+
+
 def test_two_materials_of_one_pale_colour_are_both_read() -> None:
     view, slots, rgb, _, _ = seen()
     rgb[view.slot >= 0] = (225, 222, 218)
