@@ -20,6 +20,10 @@ from diorama_core.scene.types import Camera, yaw_rotation
 
 _TURNS = 24
 _ALL_WAYS = ((False, False), (True, False), (False, True), (True, True))
+_ELSEWHERE = 4.0
+"""What speaks against a pose that shares nothing with a sure box and nothing with the picture, as a logarithm."""
+_STEPS = 8
+"""Points along each side of a box's plan that tell how much of it another covers."""
 _FOOT_PX = 8
 """So many of a mask's pixels are its lowest."""
 _FLOATS_M = 0.05
@@ -82,6 +86,21 @@ class MeasuredObject:
         size_m = limits.shape_size_m
         return self.contact.log_likelihood(poses, size_m) + self.bounds.log_likelihood(poses, size_m)
 
+    def elsewhere_cost(
+        self, poses: PoseBatch, limits: SizeLimits, errors: Float[np.ndarray, " p"]
+    ) -> Float[np.ndarray, " p"]:
+        """What speaks against poses away from the measured box, the more the worse they agree with the picture.
+
+        A shape that fits badly wherever it is put does not tell where its thing is; then the box does.
+
+        Args:
+            poses: of the shape.
+            limits: its size.
+            errors: 0 to 1 (`Evidence.errors`).
+        """
+        shared = _shared_share(poses, limits.shape_size_m, self.cuboid)
+        return _ELSEWHERE * self.cuboid.confidence * errors**2 * (1.0 - shared)
+
     def hypotheses(self, symmetry: SymmetryFold, limits: SizeLimits) -> Hypotheses:
         """Turns all around, each set against the measured points; where a part may be hidden, also from behind."""
         count = max(_TURNS // symmetry, 1)
@@ -108,6 +127,19 @@ class MeasuredObject:
         even = np.exp(np.log(best.scale[0][~limits.thin]).mean()) if not limits.thin.all() else 1.0
         scale = np.where(limits.thin, best.scale[0], even)
         return PoseBatch(R, np.tile(best.position[0], (len(R), 1)), np.tile(scale, (len(R), 1)))
+
+
+def _shared_share(poses: PoseBatch, shape_size_m: Float[np.ndarray, "3"], cuboid: Cuboid) -> Float[np.ndarray, " p"]:
+    """Intersection over union of poses' boxes with a cuboid, all upright; of their plans by a grid of points."""
+    steps = (np.arange(_STEPS) + 0.5) / _STEPS - 0.5
+    grid = np.stack(np.meshgrid(steps, steps, [0.0]), axis=-1).reshape(-1, 3)
+    size, half = poses.scale * shape_size_m, 0.5 * cuboid.size_m
+    points = poses.position[:, None] + np.einsum("pij,pkj->pki", poses.R, size[:, None] * grid)
+    inside = (np.abs((points - cuboid.centre) @ cuboid.R_world_object)[..., :2] <= half[:2]).all(axis=2).mean(axis=1)
+    low = np.maximum(poses.position[:, 2] - 0.5 * size[:, 2], cuboid.centre[2] - half[2])
+    high = np.minimum(poses.position[:, 2] + 0.5 * size[:, 2], cuboid.centre[2] + half[2])
+    shared = inside * size[:, 0] * size[:, 1] * np.maximum(high - low, 0.0)
+    return np.asarray(shared / (size.prod(axis=1) + float(np.prod(cuboid.size_m)) - shared))
 
 
 def foot_height_m(depth: DepthMap, mask: Bool[np.ndarray, "h w"], camera: Camera) -> float | None:

@@ -242,6 +242,7 @@ class RenderAndCompare:
         scores = task.fine.log_scores(errors, both, off_axis, misfit, tried.limits)
         if task.measured is not None:
             scores = scores + task.measured.log_likelihood(both, tried.limits)
+            scores = scores - task.measured.elsewhere_cost(both, tried.limits, errors)
         chosen = int(np.argmax(scores))
         return both[chosen : chosen + 1], float(errors[chosen]), float(scores[chosen])
 

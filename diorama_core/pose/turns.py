@@ -121,4 +121,5 @@ class TurnSearch:
         usual = self.observations.log_scores(errors, poses, nothing, nothing, self.limits)
         more_habit = _HABIT_STRENGTH * self.observations.facing.cost(poses.R)
         stands = self.measured.log_likelihood(poses, self.limits)
+        stands = stands - self.measured.elsewhere_cost(poses, self.limits, errors)
         return usual + stands + self.believed * self.close.log_likelihoods(self.appearance, poses) - more_habit

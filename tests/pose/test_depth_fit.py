@@ -159,3 +159,31 @@ def test_an_object_that_is_measured_above_the_floor_does_not_stand_on_it() -> No
     points = lifted.points.span(np.eye(3)[None])[0][0, 2]
     assert lifted.contact.anchor.point_world[2] == pytest.approx(min(float(points), 0.3), abs=0.06)
     assert measured(room, floor_foot_m=0.01).contact.anchor.point_world[2] == pytest.approx(0.0, abs=1e-6)
+
+
+def test_poses_away_from_the_measured_box_cost_as_much_as_they_disagree() -> None:
+    room = Room(camera_at(), (standing("desk", 0.2, 2.6, 30.0),), (1,))
+    shape, seen = LIBRARY.shape("desk"), measured(room)
+    limits = SizeLimits.of(shape.size_m, shape.category, room.geometry.cuboids[0].size_m)
+    true = room.placed[0].pose
+    width = shape.size_m[1] * true.scale[1]
+    along = true.R_world_object[:, 1] * width
+    places = np.array([true.position, true.position + 0.5 * along, true.position + 1.5 * along])
+    poses = PoseBatch(np.tile(true.R_world_object, (3, 1, 1)), places, np.tile(true.scale, (3, 1)))
+    cost = seen.elsewhere_cost(poses, limits, np.full(3, 0.9))
+    assert cost[0] == pytest.approx(0.0, abs=1e-9)
+    assert cost[1] == pytest.approx(2 / 3 * cost[2]), "half of either box is a third of both"
+    assert cost[2] > 2.0
+    np.testing.assert_allclose(seen.elsewhere_cost(poses, limits, np.full(3, 0.3)), cost / 9)
+
+
+@settings(max_examples=25, deadline=None)
+@given(st.floats(-180, 180), st.floats(-1, 1), st.floats(-1, 1), st.floats(0.5, 2.0))
+def test_no_box_is_nearer_to_the_measured_one_than_itself(yaw: float, x: float, y: float, scale: float) -> None:
+    room = Room(camera_at(), (standing("desk", 0.2, 2.6, 30.0),), (0,))
+    shape, seen = LIBRARY.shape("desk"), measured(room)
+    limits = SizeLimits.of(shape.size_m, shape.category, room.geometry.cuboids[0].size_m)
+    pose = PoseBatch(yaw_rotation(np.deg2rad(yaw))[None], np.array([[x, 2.0 + y, 0.4]]), np.full((1, 3), scale))
+    (cost,) = seen.elsewhere_cost(pose, limits, np.ones(1))
+    (most,) = seen.elsewhere_cost(PoseBatch(pose.R, pose.position + 100.0, pose.scale), limits, np.ones(1))
+    assert -1e-9 <= cost <= most + 1e-9
