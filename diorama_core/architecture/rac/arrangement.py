@@ -13,6 +13,7 @@ from itertools import combinations
 import numpy as np
 from jaxtyping import Bool, Float, Int
 
+from diorama_core.geometry.rows import unique_rows
 from diorama_core.scene.types import Camera
 
 MIN_AREA_PX = 0.5
@@ -72,7 +73,8 @@ class Arrangement:
         forms = np.array([line.form for line in self.lines]).reshape(-1, 3)
         signs: Bool[np.ndarray, "n l"] = pixels @ forms[:, :2].T + forms[:, 2] > 0
         known = {cell.sides: k for k, cell in enumerate(self.cells)}
-        return np.array([known.get(tuple(row.tolist()), -1) for row in signs], dtype=int)
+        first, kind = unique_rows(signs)
+        return np.array([known.get(tuple(signs[k].tolist()), -1) for k in first], dtype=int)[kind]
 
 
 def inverse_depths(

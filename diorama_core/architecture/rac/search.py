@@ -77,11 +77,10 @@ def labelled(costs: Float[np.ndarray, "c p"], borders: Sequence[Sequence[Border]
     pairs = [(a, b) for a, of_cell in enumerate(borders) for b in of_cell]
     switches, between = cells * planes, len(pairs)
     one_each = sparse.hstack([sparse.kron(sparse.eye(cells), np.ones((1, planes))), sparse.csr_array((cells, between))])
-    rows = [_beside(a, border, k, costs.shape, between) for k, (a, border) in enumerate(pairs)]
     visible = np.isfinite(costs).ravel()
     constraints = [LinearConstraint(one_each, 1.0, 1.0)]
-    if rows:
-        constraints.append(LinearConstraint(sparse.vstack(rows), -np.inf, 0.0))
+    if pairs:
+        constraints.append(LinearConstraint(_neighbouring(pairs, cells, planes), -np.inf, 0.0))
     solved = milp(
         np.concatenate([np.where(visible, costs.ravel(), 0.0), [0.5 * border.length for _, border in pairs]]),
         integrality=np.concatenate([np.ones(switches), np.zeros(between)]),
@@ -94,11 +93,18 @@ def labelled(costs: Float[np.ndarray, "c p"], borders: Sequence[Sequence[Border]
     return tuple(int(p) for p in solved.x[:switches].reshape(cells, planes).argmax(axis=1))
 
 
-def _beside(cell: int, border: Border, number: int, shape: tuple[int, int], between: int) -> sparse.csr_array:
-    """Rows, each at most 0: own plane less those of the other cell that may meet it; own less other's less the edge."""
-    cells, planes = shape
-    own, other = (sparse.kron(sparse.eye(1, cells, k), np.eye(planes)) for k in (cell, border.other))
-    others = sparse.kron(sparse.eye(1, cells, border.other), border.allowed.astype(float))
-    edge = sparse.kron(sparse.eye(1, between, number), np.ones((planes, 1)))
-    none = sparse.csr_array((planes, between))
-    return sparse.csr_array(sparse.vstack([sparse.hstack([own - others, none]), sparse.hstack([own - other, -edge])]))
+def _neighbouring(pairs: Sequence[tuple[int, Border]], cells: int, planes: int) -> sparse.csr_array:
+    """Rows, each at most 0, for every border: own plane less those of the other cell that may meet it, for each plane;
+    then own plane less the other's less the edge."""
+    here = np.array([cell for cell, _ in pairs])[:, None]
+    there = np.array([border.other for _, border in pairs])[:, None]
+    number, plane = np.arange(len(pairs))[:, None], np.arange(planes)
+    may_meet, of_edge = 2 * planes * number + plane, 2 * planes * number + planes + plane
+    own, other = here * planes + plane, there * planes + plane
+    edge = np.broadcast_to(cells * planes + number, own.shape)
+    at, mine, theirs = np.nonzero([border.allowed for _, border in pairs])
+    rows = [may_meet, may_meet[at, mine], of_edge, of_edge, of_edge]
+    columns = [own, other[at, theirs], own, other, edge]
+    values = [np.full(c.shape, sign) for c, sign in zip(columns, (1.0, -1.0, 1.0, -1.0, -1.0), strict=True)]
+    row, column, value = (np.concatenate([x.ravel() for x in part]) for part in (rows, columns, values))
+    return sparse.csr_array((value, (row, column)), shape=(2 * planes * len(pairs), cells * planes + len(pairs)))
