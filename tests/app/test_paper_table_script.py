@@ -4,15 +4,19 @@ from __future__ import annotations
 
 import importlib.util
 import json
+from dataclasses import replace
 from pathlib import Path
 from types import ModuleType
 
 import pytest
 import torch
 
+from diorama_core.artefacts import Inputs
 from diorama_core.evaluation.benchmarks import system
 from diorama_core.evaluation.benchmarks.system import WAYS
 from diorama_core.models.store import ModelStore
+from diorama_core.synthesis.truth import TruthView
+from tests.few_marked import few_marked
 from tests.few_shapes import few_shapes
 from tests.models import tiny_networks, tiny_sams
 
@@ -79,6 +83,16 @@ class _Moge(torch.nn.Module):
         return rays * floor.clamp(max=4.0), normals, 1.0 + nothing, torch.ones(1) + 0.0 * nothing.sum()
 
 
+MARKED = ("sofa", "coffee table", "picture", "cup")
+"""Of the trial's room: one thing on the floor that is large and one before it, one at a wall and one on another."""
+
+
+def few_of(view: TruthView) -> Inputs:
+    """True masks of few things."""
+    inputs = system.masks_only(view)
+    return few_marked(inputs, [b.box for _, b in inputs.instance_boxes if b.category in MARKED])
+
+
 @pytest.mark.slow
 @pytest.mark.unchecked
 def test_a_trial_on_a_processor_runs_to_its_end(
@@ -97,6 +111,7 @@ def test_a_trial_on_a_processor_runs_to_its_end(
     tiny_networks.install(store, "migan", [tiny_networks.migan(folder / "p.onnx")])
     parts = system.split_library
     monkeypatch.setattr(system, "split_library", lambda whole, *of: few_shapes() if len(of) > 1 else parts(whole, *of))
+    monkeypatch.setattr(system, "WAYS", {**WAYS, "published": replace(WAYS["published"], inputs=few_of)})
     rows = "published"  # without patch features, which see forty views of every shape
     assert script.main(["--cpu", "--scenes", "1", "--seeds", "0", "--given", rows, "--out", str(tmp_path)]) == 0
     told = json.loads((tmp_path / "paper-table.json").read_text())
