@@ -3,16 +3,20 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import cache
 
 import pytest
 
 from diorama_core.evaluation.benchmarks import views
-from diorama_core.evaluation.benchmarks.cases import Case, LeftOut
+from diorama_core.evaluation.benchmarks.cases import Case, LeftOut, recipe
 from diorama_core.evaluation.benchmarks.views import ALONE, RoomView, ViewsBench, ViewsResult, photographed, run
 from diorama_core.evaluation.metrics.pose import Alignment
 from diorama_core.library.catalogue import built_in_library
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.synthesis.splits import split_library
+from tests.few_marked import few_marked
+from tests.few_shapes import few_shapes
+from tests.multiview.two_photos import SMALL
 
 
 def result(case: str, way: str, acc: float, count: int, failure: str = "") -> ViewsResult:
@@ -30,8 +34,17 @@ def test_rooms_count_by_their_objects_and_failures_are_told() -> None:
     assert ViewsBench(rows).to_json()["scenes"][2]["failure"] == "it broke"
 
 
+SEED = 38
+
+
+@cache
+def pictures() -> tuple[RoomView, ...]:
+    """Of the first room of a series, from two places."""
+    return photographed(recipe(1, 1, SEED)[0], split_library(built_in_library(), "test"), 2, SMALL)
+
+
 def test_pictures_show_one_room_from_different_places() -> None:
-    first, second = photographed(Case(3, "kitchen"), split_library(built_in_library(), "test"), 2)
+    first, second = pictures()
     assert set(first.truth.asked) & set(second.truth.asked)
     assert ((first.camera.position - second.camera.position) ** 2).sum() > 0.04
 
@@ -42,24 +55,27 @@ MARKED = 4
 
 def marked(case: Case, library: ShapeLibrary, count: int) -> tuple[RoomView, ...]:
     """The pictures of a case in which few things are marked."""
-    pictures = photographed(case, library, count)
-    first, further = pictures[0].truth.asked, pictures[1].truth.asked
+    assert (case, count) == (recipe(1, 1, SEED)[0], 2)
+    first, further = (view.truth.asked for view in pictures())
     chosen = sorted(first, key=lambda k: k not in further)[:MARKED]
 
     def few(view: RoomView) -> RoomView:
         inputs, scene = view.truth.inputs, view.truth.scene
         boxes = {scene.objects[k].box_px for k in chosen}
         objects = [o if k in chosen else replace(o, mask_id=None, box_px=None) for k, o in enumerate(scene.objects)]
-        inputs = replace(inputs, boxes=tuple(b for b in inputs.boxes if b.box in boxes))
-        return replace(view, truth=replace(view.truth, scene=replace(scene, objects=tuple(objects)), inputs=inputs))
+        truth = replace(view.truth, scene=replace(scene, objects=tuple(objects)), inputs=few_marked(inputs, boxes))
+        return replace(view, truth=truth)
 
-    return tuple(few(v) for v in pictures)
+    return tuple(few(v) for v in pictures())
 
 
 @pytest.mark.slow
 def test_a_room_is_built_from_two_photos(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(views, "photographed", marked)
-    bench = run(built_in_library(), 1, 38, counts=(2,))
+    monkeypatch.setattr(
+        views, "split_library", lambda whole, *of: few_shapes() if len(of) > 1 else split_library(whole, *of)
+    )
+    bench = run(built_in_library(), 1, SEED, counts=(2,))
     assert [r.way for r in bench.results] == [ALONE, "2 photos with their cameras"]
     assert all(not r.failure for r in bench.results)
     assert bench.results[1].own.count == MARKED
