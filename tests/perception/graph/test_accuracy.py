@@ -15,7 +15,7 @@ from diorama_core.perception.language.client import LmmSettings
 from diorama_core.synthesis import ROOM_KINDS, TruthView, furnished_room, render_truth, sample_cameras
 from tests.perception.language.stub_lmm import StubLmm, answering
 
-SIZE = (480, 360)
+SIZE = (320, 240)
 SEEDS = range(6)
 AT_LEAST = 0.85
 """Over 24 rooms it is .90 with and without depth (`diorama bench relations`); of six it varies by some .04."""
