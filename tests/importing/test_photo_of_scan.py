@@ -29,6 +29,7 @@ from diorama_core.synthesis.splits import split_library
 from diorama_core.synthesis.truth import TruthView
 from tests.few_shapes import few_shapes
 from tests.importing.roomplan_files import TO_SCAN, write_scan_of
+from tests.made_once import made_once
 
 KNOWN = frozenset(kind for kinds in KINDS.values() for kind in kinds)
 
@@ -37,7 +38,8 @@ KNOWN = frozenset(kind for kinds in KINDS.values() for kind in kinds)
 def room(number: int = 0) -> tuple[Scene, TruthView, np.ndarray]:
     """A furnished room, a photo of it, and where that was taken, in the room's own frame."""
     case = recipe_of_rooms(number + 1, 1, 0)[number]
-    view = photographed(case, split_library(built_in_library(), "test"), 1)[0]
+    tested = split_library(built_in_library(), "test")
+    view = made_once(f"photo of {case.name}", lambda: photographed(case, tested, 1)[0])
     there = view.camera.T_world_camera @ np.linalg.inv(view.truth.camera.T_world_camera)
     scene = view.truth.scene
     return moved_to_room(scene, there), view.truth, view.camera.position
