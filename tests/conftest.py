@@ -22,7 +22,9 @@ if typechecking.wanted():  # before anything of Diorama is imported
 
 from diorama_core.architecture.texture import plane_textures
 from diorama_core.artefacts import Inputs
+from diorama_core.library import catalogue
 from diorama_core.perception.inputs import ReadInputs, read_inputs
+from tests import shared_solids
 
 gc.disable()  # until all tests are collected: what is imported stays
 
@@ -123,9 +125,11 @@ def derived_files(tmp_path_factory: pytest.TempPathFactory) -> Path:
 def _own_folders(tmp_path_factory: pytest.TempPathFactory) -> Iterator[None]:
     """Caches and libraries of this run go to temporary folders, and no file waits until it has reached the disk: what
     is written need not outlast the machine's power. That it is asked for is tested in `tests/io/test_atomic.py`.
+    Solids of built-in shapes, which most tests need, are built once for all processes.
     """
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(os, "fsync", lambda descriptor: None)
+        patch.setattr(catalogue, "built_once", shared_solids.built_once)
         patch.setenv("DIORAMA_CACHE", str(derived_files(tmp_path_factory)))
         patch.setenv("DIORAMA_LIBRARIES", str(tmp_path_factory.mktemp("libraries")))
         if "PYTEST_XDIST_WORKER" in os.environ:

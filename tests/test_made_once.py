@@ -5,6 +5,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from diorama_core.library import furniture
+from diorama_core.library.furniture import latest
+from tests import shared_solids
 from tests.made_once import FOLDER, made_once
 
 
@@ -34,3 +37,14 @@ def test_what_fails_is_not_there(tmp_path: Path, monkeypatch: pytest.MonkeyPatch
     with pytest.raises(ZeroDivisionError):
         made_once("number", lambda: 1 // 0)
     assert made_once("number", lambda: 1) == 1
+
+
+def test_solids_that_were_read_are_those_that_were_built(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv(FOLDER, str(tmp_path))
+    design = next(d for d in furniture.designs() if d.category == "bed")
+    read, built = shared_solids.built_once(design), latest.built_once(design)
+    assert len(list(tmp_path.glob("*.pickle"))) == 1
+    assert [material for material, _ in read] == [material for material, _ in built]
+    for (_, one), (_, other) in zip(read, built, strict=True):
+        for name in ("vertices", "faces", "normals", "uv"):
+            np.testing.assert_array_equal(getattr(one, name), getattr(other, name), strict=True)
