@@ -41,6 +41,7 @@ class PhotoCamera:
         self._figures: dict[str, float] = {}
         """Of that camera."""
         self._used = False
+        """Whether one of its fields was changed: the list stays open from then on, whatever is drawn anew."""
 
     def refresh(self) -> None:
         """Draw the camera's figures; typed ones wait for the button."""
@@ -84,6 +85,7 @@ class PhotoCamera:
     def _do(self, action: Action) -> None:
         client = self._client
         if action.do == "height":
+            self._used = True
             set_camera_height(client, parse_length(action.pair[1], client.preferences.unit))
         elif action.do in FIELDS:
             self._try({**self._typed, action.do: _degrees(action.pair[1])})
