@@ -26,8 +26,15 @@ FINDINGS = """async (rules) => {
 TABS = ("Scene", "Photo", "Arrange", "Project", "Object", "Library", "Export")
 
 
+NAMED = """() => [...document.querySelectorAll('.mantine-Flex-root label[for]')].every((label) =>
+    [...label.closest('.mantine-Flex-root').querySelectorAll('input:not([type=hidden]), textarea, [role=slider]')]
+        .every((field) => field.hasAttribute('aria-label')))"""
+"""The page gives the fields of a tab that was just opened their names five times a second."""
+
+
 def findings(editor: EditorPage, rules: list[str]) -> list[str]:
     editor.settle()
+    editor.page.wait_for_function(NAMED)
     found: list[str] = editor.page.evaluate(FINDINGS, rules)
     return found
 
