@@ -141,8 +141,7 @@ def slot_pixels(
         unlike = [k for k in of_slots if slots[k].role != slots[index].role and _is_near(seeds[k] - seeds[index])]
         crossed = _is_vivid(seeds[index]) and any(near[k].sum() >= CROSSED * near[index].sum() for k in unlike)
         behind = index in lost and _is_vivid(seeds[index]) and _covers(like[index], beside) >= BEHIND
-        foreign = [k for k in of_slots if k != index and not _is_near(seeds[k] - seeds[index])]
-        others = [of_slots[k] for k in foreign]
+        others = [of_slots[k] for k in of_slots if k != index and not _is_near(seeds[k] - seeds[index])]
         # A colour of the background is on other slots where one looks past them.
         before = _covers(like[index], beside) < BEHIND and _is_before_all(like[index], mine, others)
         if near[index].sum() >= MIN_SHARE * mine.sum() and not crossed and not behind and not before:

@@ -98,8 +98,8 @@ class MeasuredObject:
             limits: its size.
             errors: 0 to 1 (`Evidence.errors`).
         """
-        shared = _shared_share(poses, limits.shape_size_m, self.cuboid)
-        return _ELSEWHERE * self.cuboid.confidence * errors**2 * (1.0 - shared)
+        iou = _upright_iou(poses, limits.shape_size_m, self.cuboid)
+        return _ELSEWHERE * self.cuboid.confidence * errors**2 * (1.0 - iou)
 
     def hypotheses(self, symmetry: SymmetryFold, limits: SizeLimits) -> Hypotheses:
         """Turns all around, each set against the measured points; where a part may be hidden, also from behind."""
@@ -129,7 +129,7 @@ class MeasuredObject:
         return PoseBatch(R, np.tile(best.position[0], (len(R), 1)), np.tile(scale, (len(R), 1)))
 
 
-def _shared_share(poses: PoseBatch, shape_size_m: Float[np.ndarray, "3"], cuboid: Cuboid) -> Float[np.ndarray, " p"]:
+def _upright_iou(poses: PoseBatch, shape_size_m: Float[np.ndarray, "3"], cuboid: Cuboid) -> Float[np.ndarray, " p"]:
     """Intersection over union of poses' boxes with a cuboid, all upright; of their plans by a grid of points."""
     steps = (np.arange(_STEPS) + 0.5) / _STEPS - 0.5
     grid = np.stack(np.meshgrid(steps, steps, [0.0]), axis=-1).reshape(-1, 3)

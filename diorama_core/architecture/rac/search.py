@@ -94,8 +94,10 @@ def labelled(costs: Float[np.ndarray, "c p"], borders: Sequence[Sequence[Border]
 
 
 def _neighbouring(pairs: Sequence[tuple[int, Border]], cells: int, planes: int) -> sparse.csr_array:
-    """Rows, each at most 0, for every border: own plane less those of the other cell that may meet it, for each plane;
-    then own plane less the other's less the edge."""
+    """Rows, each at most 0, for every border and plane.
+
+    First own plane less those of the other cell that may meet it; then own plane less the other's less the edge.
+    """
     here = np.array([cell for cell, _ in pairs])[:, None]
     there = np.array([border.other for _, border in pairs])[:, None]
     number, plane = np.arange(len(pairs))[:, None], np.arange(planes)
