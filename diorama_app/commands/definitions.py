@@ -198,7 +198,7 @@ def _several(session: EditorSession) -> tuple[Command, ...]:
         chosen = client.need_selection()
         axis, _ = client.view.camera.screen_axis("right")
         names = editing.names_of(session.scene, chosen)
-        session.edit(f"mirror {names}", lambda s: arranging.mirror(s, chosen, axis), by=client)
+        session.edit(f"mirror {names}", lambda s: arranging.mirror(s, chosen, axis, session.library), by=client)
 
     return (
         Command("align_left", "Align left", align("left", "right", "low"), None, None, "Align left edges"),

@@ -10,6 +10,8 @@ import numpy as np
 from jaxtyping import Float
 
 from diorama_core.errors import EditRefused
+from diorama_core.library.hands import other_hand
+from diorama_core.library.record import ShapeLibrary
 from diorama_core.scene import edits
 from diorama_core.scene.support import descendants
 from diorama_core.scene.types import Pose, Scene, yaw_rotation
@@ -48,14 +50,23 @@ def widest_axis(scene: Scene, ids: Sequence[str]) -> Float[np.ndarray, "3"]:
     return np.array([1.0, 0.0, 0.0]) if spread[0] >= spread[1] else np.array([0.0, 1.0, 0.0])
 
 
-def mirror(scene: Scene, ids: Sequence[str], axis: Float[np.ndarray, "3"]) -> Scene:
-    """Reflect the arrangement of objects about its own middle: places and headings, not the shapes themselves."""
+def mirror(scene: Scene, ids: Sequence[str], axis: Float[np.ndarray, "3"], library: ShapeLibrary) -> Scene:
+    """Reflect the arrangement of objects about its own middle: places, headings, and shapes with a left and a right.
+
+    What stands on them is reflected with them. One's own models with a left and a right keep them: only built-in
+    designs can be built the other way round.
+    """
     chosen = _movable(scene, ids, least=1)
     spans = np.array([_span(scene, i, axis) for i in chosen])
     middle = float((spans[:, 0].min() + spans[:, 1].max()) / 2)
+    riding = {d for i in chosen for d in descendants(scene, i)}
+    image = {o.id: reflected(o.pose, axis, middle) for o in scene.objects if o.id in {*chosen, *riding}}
     for i in chosen:
-        scene = edits.move(scene, i, reflected(scene.object(i).pose, axis, middle))
-    return scene
+        scene = edits.move(scene, i, image[i])
+    scene = edits.place(scene, {i: image[i] for i in riding})
+    shapes = {i: other_hand(library, scene.object(i).shape_id) for i in image}
+    objects = tuple(replace(o, shape_id=shapes.get(o.id) or o.shape_id) for o in scene.objects)
+    return replace(scene, objects=objects)
 
 
 def reflected(pose: Pose, axis: Float[np.ndarray, "3"], at: float) -> Pose:

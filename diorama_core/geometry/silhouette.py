@@ -95,6 +95,15 @@ class Hits:
         away = (normals * self.directions_world).sum(axis=-1) > 0
         return np.where(self.covered[..., None], np.where(away[..., None], -normals, normals), 0.0)
 
+    def normals_along(self, others_world: Float[np.ndarray, "r 3"]) -> Float[np.ndarray, "p r"]:
+        """Products of `normals_world` with another vector of every ray, without making them."""
+        to_world = self.poses.R / self.poses.scale[:, None, :]
+        normals = self.normals_object @ to_world.transpose(0, 2, 1)
+        lengths = np.sqrt(np.einsum("pri,pri->pr", normals, normals))
+        along = np.einsum("pri,ri->pr", normals, others_world) / np.maximum(lengths, 1e-12)
+        away = np.einsum("pri,ri->pr", normals, self.directions_world) > 0
+        return np.where(self.covered, np.where(away, -along, along), 0.0)
+
 
 class ShapeCaster:
     """A mesh prepared for rays."""

@@ -24,7 +24,7 @@ from diorama_core.progress import Progress
 T = TypeVar("T")
 log = logging.getLogger(__name__)
 
-CODE_VERSION = "24"
+CODE_VERSION = "25"
 """Raised when a change of code must invalidate every saved result."""
 CACHED_PER_STAGE = 4
 """Number of cached results per stage on disk, so that undoing a correction is instant."""

@@ -29,7 +29,7 @@ from diorama_core.library.furniture.measures import Value, can_be_made, can_be_t
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.library.stretch import EVEN, relative_scale
 from diorama_core.pose.fitted_choice import FittedChoice
-from diorama_core.pose.outline_fit import Near, fitted_pose
+from diorama_core.pose.outline_fit import COARSE, FINE, WIDE, fitted_pose
 from diorama_core.pose.parameter_fit import ParameterFit
 from diorama_core.pose.seen_objects import SeenObject, seen_objects
 from diorama_core.pose.turned_profile import turned
@@ -41,7 +41,7 @@ from diorama_core.scene.types import Candidate, Pose
 MIN_PIXELS = 900
 """Of objects of fewer pixels only place and size are fitted: their parts are a pixel or two."""
 SURE_MASK = 0.9
-"""The outline of a mask that is trusted less tells no profile."""
+"""The outline of a mask that is trusted less tells no profile, and no place to a hundredth."""
 
 
 @dataclass(frozen=True)
@@ -169,7 +169,11 @@ class MadeToMeasure:
             before = best.pose.scale * own / size
         if seen is not None:
             caster = ShapeCaster(self.library.mesh(shape_id))
-            pose = fitted_pose(seen.evidence, caster, pose, size, resize=resize, near=Near(before))
+            sure = seen.mask_confidence >= SURE_MASK
+            near = replace(COARSE if sure else WIDE, scale=before)
+            pose = fitted_pose(seen.evidence, caster, pose, size, resize=resize, near=near)
+            if sure:
+                pose = fitted_pose(seen.fine, caster, pose, size, resize=resize, near=replace(FINE, scale=before))
         whole = size * pose.scale
         uneven = relative_scale(whole / own) != EVEN
         if changes is None or not (changes or uneven) or not can_be_made(best.shape_id, whole):

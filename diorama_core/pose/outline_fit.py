@@ -25,9 +25,9 @@ STEPS = (0.06, 0.03, 0.015)
 """Of an extent, and radians, from coarse to fine."""
 ROUNDS = 5
 """Moves at each of them, as long as they help: sides, place and turn may all be a little off."""
-GAIN = 0.01
+GAIN, FINE_GAIN = 0.01, 0.003
 """Of the cost, a logarithm: less is no better."""
-NOISE_FLOOR = 0.03
+NOISE_FLOOR, FINE_NOISE_FLOOR = 0.03, 0.01
 """Disagreement, 0 to 1, below which two poses count as equal: the resolution of the outlines."""
 RESIZED_SIGMA = 0.3
 """Standard deviation of an extent's logarithm against where it was, of things that are seen whole."""
@@ -46,9 +46,16 @@ class Near:
     """The size from before any fit, from which it goes; None where the fit begins with it."""
     steps: tuple[float, ...] = STEPS
     rounds: int = ROUNDS
+    gain: float = GAIN
+    noise_floor: float = NOISE_FLOOR
 
 
 WIDE = Near()
+COARSE, FINE = (
+    Near(steps=STEPS[:2]),
+    Near(steps=(0.015, 0.0075), rounds=3, gain=FINE_GAIN, noise_floor=FINE_NOISE_FLOOR),
+)
+"""A fit in two parts, the second with outlines of a finer resolution."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -94,21 +101,21 @@ def fitted_pose(
             moves = _neighbours(pose, np.asarray(shape_size_m), step, _resizings(resize, caster.round_from_above))
             if cost is None:  # compared along with its first neighbours: one comparison takes long by itself
                 moves.add(pose.R_world_object, pose.position, pose.scale)
-            costs = _costs(evidence, caster, moves, start)
+            costs = _costs(evidence, caster, moves, start, near.noise_floor)
             cost = float(costs[-1]) if cost is None else cost
             best = int(np.argmin(costs))
-            if costs[best] >= cost - GAIN:
+            if costs[best] >= cost - near.gain:
                 break
             cost, pose = float(costs[best]), Pose(moves.R[best], moves.position[best], moves.scale[best])
     return pose
 
 
 def _costs(
-    evidence: Evidence, caster: ShapeCaster, moves: _Moves, start: Float[np.ndarray, "3"]
+    evidence: Evidence, caster: ShapeCaster, moves: _Moves, start: Float[np.ndarray, "3"], noise_floor: float
 ) -> Float[np.ndarray, "p"]:
     """Disagreement with the picture and distance from the size at the start, as logarithms."""
     poses = _batch(moves)
-    agreement = np.log(evidence.errors(caster, poses) + NOISE_FLOOR)
+    agreement = np.log(evidence.errors(caster, poses) + noise_floor)
     return agreement + resizing_cost(evidence.seen, poses.scale / start)
 
 

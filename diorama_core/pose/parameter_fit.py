@@ -17,6 +17,8 @@ from jaxtyping import Float
 
 from diorama_core.geometry.silhouette import ShapeCaster
 from diorama_core.library.furniture.measures import Value, can_be_made, made_id, varied
+from diorama_core.library.furniture.reshaping import MIRRORED
+from diorama_core.library.hands import other_hand
 from diorama_core.library.record import BUILT_IN, Shape, ShapeLibrary, record_of
 from diorama_core.pose.levels import level_cost
 from diorama_core.pose.outline_fit import Near, fitted_pose, resizing_cost
@@ -145,6 +147,8 @@ class ParameterFit:
         changes: dict[str, Value] = {}
         best, left = self._at(self._variant(made_id(design_id, size_m, changes)), poses, start), MAX_VARIANTS
         parameters, unchanged = tuple(varied(design_id)), 0
+        if other_hand(self.library, design_id) is not None:
+            parameters = ((MIRRORED, (True,)), *parameters)
         for name, values in chain.from_iterable(repeat(parameters, PASSES)):
             if unchanged == len(parameters):
                 break  # each was tried beside the values that all others have now

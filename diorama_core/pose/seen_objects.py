@@ -20,8 +20,8 @@ from diorama_core.pose.surface import measured_surface, noise_of
 from diorama_core.scene.types import Pose
 from diorama_core.workers import each
 
-CELLS = 56
-"""Resolution at which shapes are compared with the picture, both ways."""
+CELLS, FINE_CELLS = 56, 84
+"""Resolutions at which shapes are compared with the picture and set in place in the end, both ways."""
 NOISE_FLOOR = 0.03
 """Disagreement below which two shapes count as equal: the resolution of the outlines."""
 OUTLINE, OUTLINE_WITH_DEPTH = 1.8, 2.0
@@ -37,6 +37,8 @@ class SeenObject:
     """One object with what the picture says of it."""
 
     evidence: Evidence
+    fine: Evidence
+    """At a finer resolution."""
     edges: InnerEdges
     pose: Pose
     pixels: int
@@ -87,17 +89,22 @@ def seen_objects(
     parents = [positions.get(parent_of.get(o.id, "")) for o in items]
     noise = noise_of(depth)
 
-    def seen(k: int) -> SeenObject | None:
+    def evidence(k: int, cells: int) -> Evidence:
         item = items[k]
-        window = observe_among(geometry.camera, items, centres, parents, k, CELLS, loads_apart=True)
-        if float((window.covered * window.weight).sum()) < MIN_CELLS:
-            return None
+        window = observe_among(geometry.camera, items, centres, parents, k, cells, loads_apart=True)
         surface = measured_surface(depth, window, item.mask, noise)
         closed = surface is not None or item.category in NEVER_OPEN
         colours = None if closed else SeeThrough.of(inputs.photo.rgb, window)
-        evidence = Evidence(geometry.camera, window, Facing(()), surface, colours)
+        return Evidence(geometry.camera, window, Facing(()), surface, colours)
+
+    def seen(k: int) -> SeenObject | None:
+        item, coarse = items[k], evidence(k, CELLS)
+        window = coarse.seen
+        if float((window.covered * window.weight).sum()) < MIN_CELLS:
+            return None
         return SeenObject(
-            evidence,
+            coarse,
+            evidence(k, FINE_CELLS),
             InnerEdges.of(inputs.photo.rgb, window),
             pose_of[item.id],
             item.pixels,

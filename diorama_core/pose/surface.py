@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
-from jaxtyping import Bool, Float, Float32
+from jaxtyping import Bool, Float, Float32, Int
 
 from diorama_core.artefacts import DepthMap
 from diorama_core.geometry.observed import Observed
@@ -60,13 +61,19 @@ class MeasuredSurface:
 
     def agreement(self, hits: Hits) -> Float[np.ndarray, "p"]:
         """0 to 1: nearness of depth and of normals over the object's measured cells."""
-        met = np.where(hits.covered, hits.depth_m, 0.0)
-        near = np.where(hits.covered, np.exp(-(((met - self.depth_m) / self.tolerance_m) ** 2)), 0.0)
-        if self.normals_share < _MIN_NORMALS_SHARE:
-            return (near @ self.weight) / max(float(self.weight.sum()), 1e-9)
-        aligned = np.clip(np.einsum("pni,ni->pn", hits.normals_world, self.normals_world), 0.0, 1.0)
-        score = (1 - self.normals_share) * near + self.normals_share * aligned
-        return (score @ self.weight) / max(float(self.weight.sum()), 1e-9)
+        told, weight = self._told, self.weight[self._told]
+        depth, covered = hits.depth_m[:, told], hits.covered[:, told]
+        off = (np.where(covered, depth, 0.0) - self.depth_m[told]) / self.tolerance_m[told]
+        score = np.where(covered, np.exp(-(off**2)), 0.0)
+        if self.normals_share >= _MIN_NORMALS_SHARE:
+            aligned = hits.of_rays(told).normals_along(self.normals_world[told])
+            score = (1 - self.normals_share) * score + self.normals_share * np.clip(aligned, 0.0, 1.0)
+        return (score @ weight) / max(float(weight.sum()), 1e-9)
+
+    @cached_property
+    def _told(self) -> Int[np.ndarray, " k"]:
+        """The object's measured cells: only they are compared."""
+        return np.flatnonzero(self.weight > 0)
 
     def hides(self, hits: Hits) -> Bool[np.ndarray, "p n"]:
         """Where something was measured in front of the shape, so that the cell is no observation of it."""

@@ -18,8 +18,8 @@ from jaxtyping import Bool, Float
 from diorama_core.geometry.observed import Observed
 from diorama_core.geometry.projection import NEAR_M
 from diorama_core.geometry.silhouette import ShapeCaster
-from diorama_core.library.furniture.girth import KNOTS, MAX_PERCENT, MIN_PERCENT, NAME
 from diorama_core.library.furniture.measures import can_be_made, can_be_turned, made_id
+from diorama_core.library.furniture.reshaping import GIRTH, KNOTS, MAX_PERCENT, MIN_PERCENT
 from diorama_core.library.record import BUILT_IN, ShapeLibrary, record_of
 from diorama_core.pose.mask_observations import Evidence
 from diorama_core.pose.outline_fit import fitted_pose, resizing_cost
@@ -172,7 +172,7 @@ def turned(
     size = _widened(mesh, np.ptp(mesh.bounds, axis=0) * poses[0].scale, girth)
     if not can_be_made(shape_id, size):
         return None
-    made = made_id(shape_id, size, {NAME: girth})
+    made = made_id(shape_id, size, {GIRTH: girth})
     caster = ShapeCaster(library.mesh(made))
     alone = len(poses) == 1
     fitted = [
@@ -189,7 +189,7 @@ def turned(
     if not can_be_made(shape_id, whole):
         return None
     at_scale = tuple(Pose(p.R_world_object, p.position, np.ones(3)) for p in fitted)
-    return Turned(made_id(shape_id, whole, {NAME: girth}), whole, at_scale, now)
+    return Turned(made_id(shape_id, whole, {GIRTH: girth}), whole, at_scale, now)
 
 
 def _widened(mesh: trimesh.Trimesh, size_m: Float[np.ndarray, "3"], girth: tuple[int, ...]) -> Float[np.ndarray, "3"]:

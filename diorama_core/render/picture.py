@@ -6,7 +6,7 @@ import re
 from collections.abc import Mapping
 
 import numpy as np
-from jaxtyping import Float, UInt8
+from jaxtyping import Float, Int32, UInt8
 
 from diorama_core.errors import InputError, SceneError
 from diorama_core.geometry.openings import with_openings
@@ -16,7 +16,7 @@ from diorama_core.progress import Progress
 from diorama_core.render.filters import as_bytes, tone_mapped
 from diorama_core.render.grid import bands
 from diorama_core.render.lighting import Effort, Lighting, room_lighting, studio
-from diorama_core.render.raycast import OrthographicView, PinholeView, View
+from diorama_core.render.raycast import OrthographicView, PinholeView, View, pixel_centres
 from diorama_core.render.scene_light import with_settings
 from diorama_core.render.shading import Shot, shoot
 from diorama_core.render.world import World, scene_world
@@ -77,6 +77,21 @@ def picture(
     shot = shoot(world, blockers, source, light, effort, progress.part(0.1, 1.0))
     exposure = np.float32(scene.light_settings.exposure)
     return np.concatenate(each(lambda band: _developed(shot, band, exposure), bands(source.height)))
+
+
+def instances_seen(
+    scene: Scene, library: ShapeLibrary, *, view: str = "photo", size: tuple[int, int] | None = None
+) -> Int32[np.ndarray, "h w"]:
+    """What every pixel of a picture shows: index in `scene.objects`, planes after them, -1 for the background.
+
+    Glass hides what is behind it; arguments and errors as for `picture`.
+    """
+    source = scene_view(scene, view, size)
+    world = scene_world(with_openings(scene), library, without=_behind(scene, source))
+    hits = world.caster.first_hits(source.rays(pixel_centres(source.width, source.height)))
+    shown = np.full(hits.found.shape, -1, dtype=np.int32)
+    shown[hits.found] = world.instances(hits.triangle[hits.found])
+    return shown
 
 
 def scene_lighting(scene: Scene, world: World, view: View) -> Lighting:

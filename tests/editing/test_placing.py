@@ -16,10 +16,11 @@ from diorama_core.editing.dragging import GRID_M, Slide, snapped_pose
 from diorama_core.editing.placing import against_wall, hits_along, insertion, places_of, seated, spot_in_view
 from diorama_core.errors import EditRefused
 from diorama_core.geometry.openings import with_openings
+from diorama_core.library.catalogue import built_in_library
 from diorama_core.library.record import Shape
 from diorama_core.scene import edits
 from diorama_core.scene.support import check_scene
-from diorama_core.scene.types import Pose, Scene, Support
+from diorama_core.scene.types import Pose, Scene, SceneObject, Support
 from tests.app.small_room import PlainLibrary, furnished_scene
 
 LIBRARY = PlainLibrary()
@@ -120,11 +121,28 @@ def test_aligned_distributed_and_mirrored() -> None:
     even = arranging.distribute(scene, ids, x)
     spans = sorted((even.object(i).corners_world[:, 0].min(), even.object(i).corners_world[:, 0].max()) for i in ids)
     assert spans[1][0] - spans[0][1] == pytest.approx(spans[2][0] - spans[1][1])
-    twice = arranging.mirror(arranging.mirror(scene, ids, x), ids, x)
-    for i in ids:
+    once = arranging.mirror(scene, ids, x, LIBRARY)
+    twice = arranging.mirror(once, ids, x, LIBRARY)
+    lamp, table = (once.object(i).pose.position[0] for i in ("lamp_1", "table_1"))
+    was = [scene.object(i).pose.position[0] for i in ("lamp_1", "table_1")]
+    assert lamp - table == pytest.approx(was[1] - was[0]), "what stands on it is reflected too"
+    for i in [*ids, "lamp_1"]:
         np.testing.assert_allclose(twice.object(i).pose.matrix, scene.object(i).pose.matrix, atol=1e-9)
     with pytest.raises(EditRefused, match="select three"):
         arranging.distribute(scene, ids[:2], x)
+
+
+def test_mirrored_desks_have_their_drawers_at_the_other_side() -> None:
+    library = built_in_library()
+    shape = library.shape("desk-office-grey")
+    pose = Pose.upright((0.5, 2.0, shape.size_m[2] / 2), 0.4)
+    desk = SceneObject("desk_1", "desk", "desk", shape.id, shape.size_m, pose)
+    scene, x = Scene(objects=(desk,)), np.array([1.0, 0.0, 0.0])
+    once = arranging.mirror(scene, ["desk_1"], x, library)
+    assert once.object("desk_1").shape_id.endswith(";mirrored=yes")
+    twice = arranging.mirror(once, ["desk_1"], x, library).object("desk_1")
+    assert twice.shape_id == desk.shape_id
+    np.testing.assert_allclose(twice.pose.matrix, pose.matrix, atol=1e-9)
 
 
 def test_copies_keep_standing_on_copies_and_paste_into_another_room() -> None:

@@ -39,6 +39,9 @@ def test_rays_in_the_shape_s_frame_see_what_a_renderer_sees(yaw, x, y, sx, sz) -
     assert np.abs(hits.depth_m[0] - truth.depth_m.ravel())[both].max() < 1e-2
     agreement = (hits.normals_world[0] * truth.normals_world.reshape(-1, 3)).sum(axis=1)[both]
     assert np.mean(agreement > 0.99) > 0.97
+    others = np.random.default_rng(0).normal(size=(len(directions), 3))
+    along = (hits.normals_world[0] * others).sum(axis=1)
+    assert hits.normals_along(others)[0] == pytest.approx(along, abs=1e-5)
 
 
 def test_bounds_of_the_hull_are_those_of_the_vertices() -> None:

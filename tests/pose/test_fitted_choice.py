@@ -24,7 +24,7 @@ def order(true_id: str, ids: tuple[str, ...], outlined: bool = True) -> tuple[st
     )
     k = evidence.camera.intrinsics
     edges = InnerEdges.of(np.full((k.height, k.width, 3), 90, np.uint8), evidence.seen)
-    one = SeenObject(evidence, edges, pose, 5000, 1.0, "vase")
+    one = SeenObject(evidence, evidence, edges, pose, 5000, 1.0, "vase")
     out = CHOICE.best_first(PosedCandidates("o", tuple(found), 0.9), one, outlined=outlined)
     assert all(np.isfinite(c.score) for c in out.candidates)
     return tuple(c.shape_id for c in out.candidates)

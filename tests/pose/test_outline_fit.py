@@ -13,7 +13,7 @@ from diorama_core.geometry.observed import observe
 from diorama_core.geometry.silhouette import PoseBatch, ShapeCaster
 from diorama_core.pose.facing import Facing
 from diorama_core.pose.mask_observations import Evidence
-from diorama_core.pose.outline_fit import fitted_pose
+from diorama_core.pose.outline_fit import COARSE, FINE, fitted_pose
 from diorama_core.pose.surface import measured_surface
 from diorama_core.provenance import DepthSource
 from diorama_core.render.raycast import render_buffers
@@ -26,12 +26,12 @@ TRUE = Pose.upright((0.2, 3.2, SIZE[2] / 2), np.deg2rad(-60.0))
 CASTER = ShapeCaster(LIBRARY.mesh("table"))
 
 
-def evidence(measured: bool, trust: float = 1.0) -> Evidence:
+def evidence(measured: bool, trust: float = 1.0, cells: int = 56) -> Evidence:
     seen = render_buffers([(LIBRARY.mesh("table"), TRUE.matrix)], CAMERA)
     mask = seen.instance == 0
     rows, columns = np.nonzero(mask)
     box = (float(columns.min()), float(rows.min()), float(columns.max() + 1), float(rows.max() + 1))
-    window = observe(CAMERA, box, mask, trust, (), 56)
+    window = observe(CAMERA, box, mask, trust, (), cells)
     depth = DepthMap(seen.depth_m, seen.normals_world, DepthSource.MEASURED if measured else DepthSource.RENDERED)
     return Evidence(CAMERA, window, Facing(()), measured_surface(depth, window, mask, 0.0))
 
@@ -53,6 +53,14 @@ def test_a_pose_a_little_off_comes_nearer(measured: bool) -> None:
     found = fitted_pose(of, CASTER, off(), SIZE, resize=True)
     assert error_of(of, found) < 0.5 * error_of(of, off())
     assert found.position[2] - 0.5 * SIZE[2] * found.scale[2] == pytest.approx(0.0, abs=1e-9)
+
+
+@pytest.mark.parametrize("measured", [False, True])
+def test_a_second_fit_to_finer_outlines_comes_nearer_still(measured: bool) -> None:
+    fine = evidence(measured, cells=84)
+    coarse = fitted_pose(evidence(measured), CASTER, off(), SIZE, resize=True, near=COARSE)
+    found = fitted_pose(fine, CASTER, coarse, SIZE, resize=True, near=FINE)
+    assert error_of(fine, found) < 0.9 * error_of(fine, coarse)
 
 
 def test_one_of_a_set_keeps_its_size() -> None:

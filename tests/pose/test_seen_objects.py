@@ -20,7 +20,7 @@ def table(measured: bool, trust: float = 1.0) -> SeenObject:
     k = CAMERA.intrinsics
     of = evidence(measured, trust)
     edges = InnerEdges.of(np.full((k.height, k.width, 3), 90, np.uint8), of.seen)
-    return SeenObject(of, edges, TRUE, 5000, trust, "table")
+    return SeenObject(of, of, edges, TRUE, 5000, trust, "table")
 
 
 @pytest.mark.parametrize("measured", [False, True])

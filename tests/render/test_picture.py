@@ -10,7 +10,7 @@ import pytest
 from diorama_core.errors import Cancelled, InputError, SceneError
 from diorama_core.progress import CancelToken, Progress, ProgressEvent
 from diorama_core.render.lighting import Effort
-from diorama_core.render.picture import BACKGROUND_SRGB, picture, scene_view
+from diorama_core.render.picture import BACKGROUND_SRGB, instances_seen, picture, scene_view
 from diorama_core.render.raycast import PinholeView
 from diorama_core.scene.types import Architecture, Plane, Scene, SurfaceFinish
 from tests.primitives import PrimitiveLibrary, box_room, eye_camera, furnished_room, place
@@ -41,6 +41,18 @@ def test_photo_view_puts_objects_where_the_camera_sees_them() -> None:
     assert redness(image[pixel_of(scene, "b")]) > 80, "the red ball"
     without = picture(replace(scene, objects=scene.objects[:3]), LIBRARY, size=SMALL, effort=QUICK)
     assert redness(without[pixel_of(scene, "b")]) < 80
+
+
+def test_what_a_pixel_shows_is_told_without_light() -> None:
+    scene = furnished_room(LIBRARY)
+    shown = instances_seen(scene, LIBRARY, size=SMALL)
+    assert shown.shape == (120, 160)
+    assert set(range(len(scene.objects))) <= set(np.unique(shown).tolist())
+    ball = next(k for k, item in enumerate(scene.objects) if item.id == "b")
+    assert shown[pixel_of(scene, "b")] == ball
+    planes = np.unique(shown[shown >= len(scene.objects)]) - len(scene.objects)
+    assert len(planes)
+    assert all(0 <= p < len(scene.architecture.planes) for p in planes)
 
 
 def test_hidden_objects_are_not_drawn() -> None:

@@ -2,8 +2,9 @@
 
 The true shape of every object is removed from the library, so that the nearest other one is retrieved and fitted. What
 the two steps bring is measured on the same poses: how near the shape comes to the true one, how well its outline lies
-on the true outline, and how far the colours of the visible faces are from the photo's in a blurred picture. Pictures of
-scenes show white light (`render.lighting.room_lighting`), so the photo is compared as white light would have it.
+on the true outline, and how far the colours of the visible faces are from the photo's in a blurred picture (where
+the photo and both models show the object: what hangs behind its wall shows none). Pictures of scenes show white light
+(`render.lighting.room_lighting`), so the photo is compared as white light would have it.
 """
 
 from __future__ import annotations
@@ -43,7 +44,7 @@ from diorama_core.pipeline.assemble import assemble
 from diorama_core.pipeline.colours import photo_colours, room_illuminant, shared_by_sets
 from diorama_core.pose import MadeToMeasure, RenderAndCompare
 from diorama_core.progress import Progress
-from diorama_core.render.picture import picture
+from diorama_core.render.picture import instances_seen, picture
 from diorama_core.retrieval.hierarchical import HierarchicalRetrieval
 from diorama_core.scene.types import Camera, Pose, Scene, SceneObject
 from diorama_core.synthesis.artefacts import TrueShapes
@@ -202,13 +203,15 @@ def _one_room(
     if show is not None:
         show(f"{name}, {given}", cv2.resize(balanced, SIZE, interpolation=cv2.INTER_AREA), flat, dressed)
     differences = [_difference(balanced, shown) for shown in (flat, dressed)]
+    shown = [(scene, instances_seen(scene, library, size=SIZE)) for scene in (before, after)]
     of_mask = {str(view.scene.objects[k].mask_id): k for k in view.asked}
     found = []
     for item in seen.objects:
         index = of_mask.get(str(item.mask_id))
         if index is not None and before.has_object(item.id):
             pair = before.object(item.id), after.object(item.id)
-            colours = _colours(view, index, seen.geometry.camera, pair, differences, library)
+            own = [pixels == _index(scene, item.id) for scene, pixels in shown]
+            colours = _colours(view, index, own, differences)
             found.append(_measured(name, given, view, index, pair, seen.geometry.camera, colours, library))
     true_light = main_light(room_light(view.scene), np.array([view.scene.objects[k].pose.position for k in view.asked]))
     off_deg = light_error_deg(true_light, view.camera, look.light, seen.geometry.camera)
@@ -283,28 +286,21 @@ def _difference(photo: Picture, shown: Picture) -> Float[np.ndarray, "h w"]:
 def _colours(
     view: TruthView,
     index: int,
-    camera: Camera,
-    pair: tuple[SceneObject, SceneObject],
+    own: Sequence[Bool[np.ndarray, "h w"]],
     differences: Sequence[Float[np.ndarray, "h w"]],
-    library: ShapeLibrary,
 ) -> tuple[float | None, float | None]:
-    """Mean differences where the photo shows the object and both models have it."""
+    """Mean differences where the photo and both models (`own`) show the object, and nothing before it."""
     mask = (view.object_ids == index).astype(np.uint8)
     visible = cv2.resize(mask, SIZE, interpolation=cv2.INTER_NEAREST).astype(bool)
-    k = view.camera.intrinsics
-    rows, columns = np.nonzero(visible)
-    if len(rows) < MIN_PIXELS:
-        return None, None
-    pixels = (np.stack([columns, rows], axis=1) + 0.5) * (k.width / SIZE[0], k.height / SIZE[1])
-    there = np.ones(len(rows), dtype=bool)
-    for item in pair:
-        batch = PoseBatch(item.pose.R_world_object[None], item.pose.position[None], np.asarray(item.pose.scale)[None])
-        caster = ShapeCaster(library.mesh(item.shape_id))
-        there &= caster.cast(camera.position, camera.rays(pixels), batch).covered[0]
+    there = np.logical_and.reduce([visible, *own])
     if there.sum() < MIN_PIXELS:
         return None, None
-    before, after = (float(d[rows[there], columns[there]].mean()) for d in differences)
+    before, after = (float(d[there].mean()) for d in differences)
     return before, after
+
+
+def _index(scene: Scene, object_id: str) -> int:
+    return next(k for k, item in enumerate(scene.objects) if item.id == object_id)
 
 
 def _for_an_object(times: Sequence[tuple[float, float, int]]) -> tuple[float, float]:

@@ -6,7 +6,7 @@ what the designs of the same builder (its family) use, numbers also a little bey
 
 `night-stand-cane+made-420x480x600.base=plinth.bays=door,2` is the design `night-stand-cane` at that size in millimetres
 with these two parameters changed. Nothing has to be stored: libraries derive such a shape from the one it is named after.
-Bodies of revolution have one parameter more, whatever their builder: their `girth` along the height.
+Some changes are of the whole form, whatever builds it (`reshaping`): its girth along the height, and its mirror image.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ from jaxtyping import Float
 
 from diorama_core.errors import LibraryError
 from diorama_core.library import furniture
-from diorama_core.library.furniture import girth
+from diorama_core.library.furniture import reshaping
 from diorama_core.library.furniture.model import Design
 from diorama_core.library.record import ROUND, SymmetryFold
 
@@ -147,7 +147,7 @@ def can_be_turned(design_id: str) -> bool:
 
 def is_turned(shape_id: str) -> bool:
     """Whether an id says that its shape has another girth than its design."""
-    return is_made(shape_id) and f";{girth.NAME}=" in shape_id
+    return is_made(shape_id) and f";{reshaping.GIRTH}=" in shape_id
 
 
 def can_be_made(design_id: str, size_m: Float[np.ndarray, "3"]) -> bool:
@@ -181,14 +181,15 @@ def made_to_measure(base: Design, size_m: Float[np.ndarray, "3"], changes: Mappi
     size, factors = _millimetres(size_m), _millimetres(size_m) / (_MILLI * np.asarray(base.size_m))
     if not can_be_made(base.id, size_m):
         raise LibraryError(f"'{base.id}' cannot be made {'x'.join(f'{v:.0f}' for v in size)} mm large")
-    known, own = {p.name: p for p in parameters(base.id)}, values_of(base)
+    known, own = {p.name: p for p in parameters(base.id)}, {**reshaping.AS_BUILT, **values_of(base)}
     for name, value in changes.items():
-        allowed = _may_be_girth(base, value) if name == girth.NAME else name in known and known[name].allows(value)
+        whole = name in reshaping.NAMES
+        allowed = reshaping.may_be(base, name, value) if whole else name in known and known[name].allows(value)
         if not allowed:
             raise LibraryError(f"'{base.id}' cannot be made with {name} {_told(value)}")
     changed = {name: value for name, value in sorted(changes.items()) if own.get(name) != value}
     options = {**base.options, **{n: _as_given(base, n, v) for n, v in changed.items()}}
-    turned = girth.NAME in changed
+    whole = bool(changed.keys() & reshaping.NAMES)
     words = [f"{size[0]:.0f}x{size[1]:.0f}x{size[2]:.0f}", *(f"{n}={_told(v)}" for n, v in changed.items())]
     x, y, z = (float(v) / _MILLI for v in size)
     return replace(
@@ -196,9 +197,9 @@ def made_to_measure(base: Design, size_m: Float[np.ndarray, "3"], changes: Mappi
         id=f"{base.id}{MARK}{';'.join(words)}",
         caption=f"{base.caption}, made to measure",
         size_m=(x, y, z),
-        builder=girth.girthed if turned else base.builder,
-        options={**options, "builder": base.builder} if turned else options,
-        symmetry=_symmetry(base, factors, bool(changed.keys() - {girth.NAME})),
+        builder=reshaping.reshaped if whole else base.builder,
+        options={**options, "builder": base.builder} if whole else options,
+        symmetry=_symmetry(base, factors, bool(changed.keys() - {reshaping.GIRTH})),
         mass_kg=None if base.mass_kg is None else round(base.mass_kg * float(np.prod(factors)), 3),
     )
 
@@ -209,20 +210,37 @@ def made_by_id(shape_id: str, base: Design) -> Design:
     Raises:
         LibraryError: when it is not one that `made_to_measure` gives.
     """
+    design = made_to_measure(base, *_stated(shape_id, base))
+    if design.id != shape_id:
+        raise LibraryError(f"'{shape_id}' does not say how '{base.id}' is made")
+    return design
+
+
+def mirror_image(shape_id: str) -> str | None:
+    """The id of a built-in design, made to measure or not, with left and right changed; None where it may not be."""
+    base = _designs().get(_base(shape_id))
+    if base is None or base.symmetry != 1:
+        return None
+    size_m, changes = _stated(shape_id, base) if is_made(shape_id) else (np.asarray(base.size_m), {})
+    if changes.pop(reshaping.MIRRORED, False):
+        plain = not changes and (size_m == np.asarray(base.size_m)).all()
+        return base.id if plain else made_id(base.id, size_m, changes)
+    return made_id(base.id, size_m, {**changes, reshaping.MIRRORED: True})
+
+
+def _stated(shape_id: str, base: Design) -> tuple[Float[np.ndarray, "3"], dict[str, Value]]:
+    """The size and the changed parameters that an id states; errors as for `made_by_id`."""
     words = shape_id.split(MARK, 1)[1].split(";")
     size = _SIZE.fullmatch(words[0])
     stated = [word.partition("=") for word in words[1:]]
     known = {p.name: p for p in parameters(base.id)}
-    if size is None or any(not equals or name not in {*known, girth.NAME} for name, equals, _ in stated):
+    if size is None or any(not equals or name not in {*known, *reshaping.NAMES} for name, equals, _ in stated):
         raise LibraryError(f"'{shape_id}' does not say how '{base.id}' is made")
     changes = {
-        name: _read_girth(text, shape_id) if name == girth.NAME else _read(known[name], text, shape_id)
+        name: _read_whole(name, text, shape_id) if name in reshaping.NAMES else _read(known[name], text, shape_id)
         for name, _, text in stated
     }
-    design = made_to_measure(base, np.array([int(v) for v in size.groups()]) / _MILLI, changes)
-    if design.id != shape_id:
-        raise LibraryError(f"'{shape_id}' does not say how '{base.id}' is made")
-    return design
+    return np.array([int(v) for v in size.groups()]) / _MILLI, changes
 
 
 def _as_given(base: Design, name: str, value: Value) -> Any:
@@ -267,17 +285,11 @@ def _read(parameter: Parameter, text: str, shape_id: str) -> Value:
     raise LibraryError(f"'{shape_id}': {parameter.name} cannot be '{text[:40]}'")
 
 
-def _may_be_girth(base: Design, value: Value) -> bool:
-    percents = value if isinstance(value, tuple) else ()
-    within = all(isinstance(v, int) and girth.MIN_PERCENT <= v <= girth.MAX_PERCENT for v in percents)
-    return base.symmetry == ROUND and len(percents) == girth.KNOTS and within
-
-
-def _read_girth(text: str, shape_id: str) -> tuple[int, ...]:
-    words = text.split(",")
-    if not all(word.isdecimal() and len(word) <= 3 for word in words):
-        raise LibraryError(f"'{shape_id}': {girth.NAME} cannot be '{text[:40]}'")
-    return tuple(int(word) for word in words)
+def _read_whole(name: str, text: str, shape_id: str) -> Value:
+    value = reshaping.read(name, text)
+    if value is None:
+        raise LibraryError(f"'{shape_id}': {name} cannot be '{text[:40]}'")
+    return value
 
 
 def _plain(value: Any) -> Value | None:

@@ -1,65 +1,13 @@
-"""Girth: bodies of revolution made wider and narrower along their height, as on a lathe.
-
-A design that looks the same from all around is known by its profile, and a picture tells the profile of such a thing
-whichever side it shows. The profile is changed by factors at equally spaced heights with a smooth curve through them, so
-that walls, lips and feet stay what they are.
-"""
+"""Solids cut at a height, so that there is something to bend there."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from dataclasses import replace
-from typing import Any
-
 import numpy as np
 from jaxtyping import Float, Int
-from scipy.interpolate import PchipInterpolator
 
-from diorama_core.library.furniture.model import Part, Parts, Size
 from diorama_core.library.furniture.solids import Solid, unit
 
-NAME = "girth"
-"""Of the parameter in ids."""
-KNOTS = 13
-"""Heights at which the girth is told, from the foot to the top."""
-MIN_PERCENT, MAX_PERCENT = 15, 400
 _ON_PLANE_M = 1e-6
-
-
-def girthed(size: Size, *, builder: Callable[..., Parts], girth: Sequence[int], **options: Any) -> Parts:
-    """What another builder makes, wider and narrower along its height.
-
-    Args:
-        size: As for the other builder.
-        builder: Of a body of revolution.
-        girth: Percent at `KNOTS` heights.
-        options: As for the other builder.
-    """
-    parts = builder(size, **options)
-    points = np.concatenate([p.solid.vertices for p in parts])
-    low, high = points.min(axis=0), points.max(axis=0)
-    axis_xy, heights = (low + high)[:2] / 2, np.linspace(low[2], high[2], KNOTS)
-    curve = PchipInterpolator(heights, np.asarray(girth, dtype=np.float64) / 100.0)
-    return [_bent(part, curve, axis_xy, heights[1:-1]) for part in parts]
-
-
-def _bent(
-    part: Part, curve: PchipInterpolator, axis_xy: Float[np.ndarray, "2"], knots: Float[np.ndarray, " k"]
-) -> Part:
-    """A part with its distance from the axis multiplied by the curve; normals by the inverse transpose of that map.
-
-    It is cut at the knots, so that there is something to bend between two corners of a profile.
-    """
-    solid = part.solid
-    for height in knots:
-        solid = cut(solid, float(height))
-    z = solid.vertices[:, 2]
-    factor, slope = curve(z), curve.derivative()(z)
-    away = solid.vertices[:, :2] - axis_xy
-    vertices = np.column_stack([axis_xy + away * factor[:, None], z])
-    across = solid.normals[:, :2] / factor[:, None]
-    normals = np.column_stack([across, solid.normals[:, 2] - slope * (away * across).sum(axis=1)])
-    return replace(part, solid=replace(solid, vertices=vertices, normals=unit(normals)))
 
 
 def cut(solid: Solid, height: float) -> Solid:
