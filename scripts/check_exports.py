@@ -23,6 +23,7 @@ from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
+import cv2
 import numpy as np
 from export_scenes import Source, from_scan, from_text, made, projects
 from PIL import Image
@@ -30,6 +31,7 @@ from PIL import Image
 from diorama_app.projects.formats import EXPORT_FORMATS
 from diorama_core.export import export_scene
 from diorama_core.export.blender import blender_python, missing_blender
+from diorama_core.export.environment import environment_of
 from diorama_core.export.gathering import ExportOptions, ExportScene, gather
 from diorama_core.export.stability import stability
 from diorama_core.geometry.openings import OPENING_CATEGORIES
@@ -177,6 +179,14 @@ def triangle_count(gathered: ExportScene) -> int:
     return sum(gathered.meshes[x.mesh].triangles for x in (*gathered.planes, *gathered.objects))
 
 
+def check_hdr(path: Path, gathered: ExportScene) -> list[str]:
+    read = cv2.imread(str(path), cv2.IMREAD_ANYDEPTH | cv2.IMREAD_COLOR)
+    if read is None or read.shape[1] != 2 * read.shape[0]:
+        return ["no latitude-longitude map"]
+    off = float(np.abs(read[..., ::-1] - environment_of(gathered)).max())
+    return [] if off <= 0.01 else [f"off by {off:.3f}"]
+
+
 def check_ply(path: Path, gathered: ExportScene) -> list[str]:
     import open3d
 
@@ -286,6 +296,7 @@ CHECKS: dict[str, tuple[str, str, str, Callable[[Path, ExportScene], list[str]]]
     "urdf": (".urdf", "ROS, PyBullet", "loaded in MuJoCo", check_mujoco),
     "sdf": (".sdf", "Gazebo", "every file and link is there", check_sdf),
     "obj": (".zip", "any 3D program", "read by trimesh: names, triangles", check_obj),
+    "hdr": (".hdr", "Unity, Blender, three.js", "read by OpenCV: the radiance that was written", check_hdr),
     "ply": (".ply", "MeshLab", "read by Open3D: triangles", check_ply),
     "stl": (".stl", "slicers", "read by trimesh: triangles", check_stl),
     "scene-state": (".zip", "SceneEval", "objects and models", check_state),

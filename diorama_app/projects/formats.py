@@ -50,6 +50,7 @@ GUIDES: Mapping[str, Guide] = {
     "usdc": Guide(MODELS, "Isaac Sim, Blender, Unreal, Maya", _USD),
     "usda": Guide(MODELS, "the same programs, as readable text", _USD),
     "obj": Guide(MODELS, "nearly every 3D program", _TEXTURED),
+    "hdr": Guide(MODELS, "Unity, Blender, three.js, as light and reflections beside a GLB", frozenset()),
     "ply": Guide(MODELS, "MeshLab, CloudCompare, Open3D", _SHAPES),
     "stl": Guide(MODELS, "slicers for 3D printers", _SHAPES),
     "mjcf": Guide(SIMULATORS, "MuJoCo, dm_control", _BODIES),

@@ -111,6 +111,7 @@ _TABLE = (
         "blend:write_blend",
         check="blender:missing_blender",
     ),
+    Format("hdr", "Environment map", (".hdr",), "the light from all sides of the room", "environment:write_hdr"),
     Format("ply", "PLY mesh", (".ply",), "one mesh with vertex colours", "ply:write_ply"),
     Format("stl", "STL for printing", (".stl",), "bare triangles in millimetres", "stl:write_stl"),
     Format(

@@ -133,6 +133,8 @@ class ExportScene:
     """The whole scene as it was given, for formats that carry it to be read back."""
     library: ShapeLibrary
     options: ExportOptions = EVERYTHING
+    textures: Mapping[str, Picture] = field(default_factory=dict)
+    """Pictures of the planes and of the objects' materials from the photo, by name, as large as they are written."""
     photo: Picture | None = None
     provenance: Mapping[str, Any] = field(default_factory=dict)
     """Where the scene comes from, as JSON values: program, photo, profile, warnings."""
@@ -229,6 +231,7 @@ def gather(
         scene=scene,
         library=library,
         options=options,
+        textures=textures,
         photo=photo,
         provenance=dict(provenance or {}),
     )

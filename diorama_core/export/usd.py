@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import json
 import tempfile
+import zipfile
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -17,10 +18,18 @@ from pxr import Gf, Kind, Sdf, Tf, Usd, UsdGeom
 
 from diorama_core.errors import ExportError
 from diorama_core.export.colliders import physical_scene
+from diorama_core.export.environment import NITS, as_picture, environment_of
 from diorama_core.export.files import Entry, companion_folder, whole_file, write_package
 from diorama_core.export.gathering import ExportObject, ExportScene, rigid_inverse
-from diorama_core.export.pictures import encoded_picture
-from diorama_core.export.usd_materials import StageMaterials, add_camera, add_light, add_main_light, add_surfaces
+from diorama_core.export.pictures import encoded_picture, png_bytes
+from diorama_core.export.usd_materials import (
+    StageMaterials,
+    add_camera,
+    add_environment,
+    add_light,
+    add_main_light,
+    add_surfaces,
+)
 from diorama_core.export.usd_physics import add_physics, limb_path
 from diorama_core.export.usd_values import place
 from diorama_core.progress import Progress
@@ -47,12 +56,14 @@ def write_usdz(gathered: ExportScene, path: Path, progress: Progress | None = No
         stage, pictures = build_stage(gathered, "textures", progress, up_axis="Y")
         layer = Path(folder) / "scene.usdc"
         stage.GetRootLayer().Export(str(layer))
-        with whole_file(path) as temporary, Sdf.ZipFileWriter.CreateNew(str(temporary)) as package:
-            package.AddFile(str(layer), layer.name)
-            for name, content in pictures:
-                file = Path(folder) / Path(name).name
-                file.write_bytes(content)
-                package.AddFile(str(file), name)
+        with whole_file(path) as temporary:
+            with Sdf.ZipFileWriter.CreateNew(str(temporary)) as package:
+                package.AddFile(str(layer), layer.name)
+                for name, content in pictures:
+                    file = Path(folder) / Path(name).name
+                    file.write_bytes(content)
+                    package.AddFile(str(file), name)
+            _check_whole(temporary, path)
 
 
 def _write_layer(gathered: ExportScene, path: Path, progress: Progress) -> None:
@@ -67,6 +78,16 @@ def _write_layer(gathered: ExportScene, path: Path, progress: Progress) -> None:
             yield path.name, layer.read_bytes()
 
         write_package(path, path.name, entries())
+
+
+def _check_whole(package: Path, path: Path) -> None:
+    """USD says nothing where a disk is too full for a package: its table of contents, which comes last, is missing.
+
+    Raises:
+        ExportError: the file, which was to become `path`, is not whole.
+    """
+    if not zipfile.is_zipfile(package):
+        raise ExportError(f"cannot write {path}: the package is not whole; free some space or choose another disk")
 
 
 @contextmanager
@@ -108,12 +129,17 @@ def build_stage(
         add_camera(stage, f"{ROOT}/PhotoCamera", gathered.camera)
     if gathered.main_light is not None:
         add_main_light(stage, f"{ROOT}/MainLight", gathered.main_light)
+    pictures: list[Entry] = []
+    if gathered.options.only is None and gathered.planes:
+        environment, brightest = as_picture(environment_of(gathered, progress))
+        name = f"{textures}/environment.png"
+        add_environment(stage, f"{ROOT}/Environment", name, NITS * brightest)
+        pictures.append((name, png_bytes(environment)))
     for light in gathered.lights:
         owner = gathered.object(light.owner)
         T = rigid_inverse(owner.T_world) @ light.T_world
         add_light(stage, f"{object_path(owner)}/Light", light, T)
     add_physics(stage, gathered, physical_scene(gathered))
-    pictures = []
     for name, picture in materials.pictures():
         progress.check()
         pictures.append((name, encoded_picture(picture)))

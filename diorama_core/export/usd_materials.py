@@ -213,3 +213,23 @@ def add_main_light(stage: Usd.Stage, path: str, light: MainLight) -> None:
     made.CreateNormalizeAttr(True)
     made.CreateColorAttr(Gf.Vec3f(*light.colour))
     place(made, light.T_world)
+
+
+T_SCENE_DOME = np.array([[1.0, 0, 0, 0], [0, 0, -1, 0], [0, 1, 0, 0], [0, 0, 0, 1]])
+"""A dome's pole is +Y of its own frame, and its map's middle column looks along +Z."""
+
+
+def add_environment(stage: Usd.Stage, path: str, picture: str, nits: float) -> None:
+    """The light from all sides, below a root whose frame is the scene's.
+
+    Args:
+        stage: Where it is added.
+        path: Of its prim.
+        picture: Name of the map's file, relative to the stage's; its middle column looks along -Y of the scene.
+        nits: Luminance of the picture's white.
+    """
+    made = UsdLux.DomeLight.Define(stage, path)
+    made.CreateTextureFileAttr(Sdf.AssetPath(picture))
+    made.CreateTextureFormatAttr(UsdLux.Tokens.latlong)
+    made.CreateIntensityAttr(nits)
+    place(made, T_SCENE_DOME)

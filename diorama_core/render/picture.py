@@ -16,7 +16,7 @@ from diorama_core.progress import Progress
 from diorama_core.render.filters import as_bytes, tone_mapped
 from diorama_core.render.grid import bands
 from diorama_core.render.lighting import Effort, Lighting, room_lighting, studio
-from diorama_core.render.raycast import OrthographicView, PinholeView, View, pixel_centres
+from diorama_core.render.raycast import Caster, OrthographicView, PinholeView, View, pixel_centres
 from diorama_core.render.scene_light import with_settings
 from diorama_core.render.shading import Shot, shoot
 from diorama_core.render.world import World, scene_world
@@ -71,12 +71,26 @@ def picture(
     without = _behind(scene, source)
     opened = with_openings(scene)
     world = scene_world(opened, library, textures=textures, photographed=photographed, without=without)
-    count = len(scene.objects)
-    blockers = world.shadow_caster(without=range(count, count + len(scene.architecture.planes)))
-    light = light or with_settings(scene_lighting(scene, world, source), opened, library, _room_bounds(scene, world))
+    own, blockers = lit(scene, opened, library, world, source)
+    light = light or own
     shot = shoot(world, blockers, source, light, effort, progress.part(0.1, 1.0))
     exposure = np.float32(scene.light_settings.exposure)
     return np.concatenate(each(lambda band: _developed(shot, band, exposure), bands(source.height)))
+
+
+def lit(scene: Scene, opened: Scene, library: ShapeLibrary, world: World, view: View) -> tuple[Lighting, Caster]:
+    """The light of a scene as a person set it, or its own, and what casts shadows in it.
+
+    Args:
+        scene: As it is.
+        opened: With openings in its walls (`with_openings`).
+        library: Where its shapes are.
+        world: Of the opened scene.
+        view: Lights from above left of it a scene that has no light.
+    """
+    count = len(scene.objects)
+    blockers = world.shadow_caster(without=range(count, count + len(scene.architecture.planes)))
+    return with_settings(scene_lighting(scene, world, view), opened, library, _room_bounds(scene, world)), blockers
 
 
 def instances_seen(
