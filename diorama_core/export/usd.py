@@ -122,7 +122,7 @@ def build_stage(
         root.AddRotateXOp().Set(-90.0)
     _describe(root.GetPrim(), gathered)
     materials = StageMaterials(stage, textures)
-    _prototypes(stage, gathered, materials, progress)
+    _prototypes(stage, gathered, materials, progress.part(0.0, 0.8))
     _architecture(stage, gathered, materials)
     _objects(stage, gathered)
     if gathered.camera is not None:
@@ -131,7 +131,7 @@ def build_stage(
         add_main_light(stage, f"{ROOT}/MainLight", gathered.main_light)
     pictures: list[Entry] = []
     if gathered.options.only is None and gathered.planes:
-        environment, brightest = as_picture(environment_of(gathered, progress))
+        environment, brightest = as_picture(environment_of(gathered, progress.part(0.8, 1.0)))
         name = f"{textures}/environment.png"
         add_environment(stage, f"{ROOT}/Environment", name, NITS * brightest)
         pictures.append((name, png_bytes(environment)))

@@ -64,7 +64,8 @@ def panorama(
     for number, forward in enumerate(SIDES):
         view = PinholeView(_face(centre, forward, side))
         light, blockers = lit(scene, opened, library, world, view)
-        shot = shoot(world, blockers, view, light, effort, progress.part(number / 6, (number + 1) / 6))
+        progress.report(number / len(SIDES), "looking around the room")
+        shot = shoot(world, blockers, view, light, effort, Progress(token=progress.token))
         beyond = ambient(view.all_rays()[..., 3:].reshape(-1, 3), light).reshape(side, side, 3)
         radiance = shot.radiance + beyond * (1.0 - shot.coverage[..., None])
         p = away @ view.camera.T_world_camera[:3, :3]
