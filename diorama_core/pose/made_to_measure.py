@@ -40,8 +40,6 @@ from diorama_core.scene.types import Candidate, Pose
 
 MIN_PIXELS = 900
 """Of objects of fewer pixels only place and size are fitted: their parts are a pixel or two."""
-SURE_MASK = 0.9
-"""The outline of a mask that is trusted less tells no profile, and no place to a hundredth."""
 
 
 @dataclass(frozen=True)
@@ -102,7 +100,7 @@ class MadeToMeasure:
             return shown is None or (shared[one.candidates[0].shape_id] > 1 and shown.may_have_agreed)
 
         free = [one for one in posed if not agreed(one)]
-        tasks = [(one, seen[one.object_id], seen[one.object_id].mask_confidence >= SURE_MASK) for one in free]
+        tasks = [(one, seen[one.object_id]) for one in free]
         chosen = {one.object_id: one for one in each_there(choice.best_first, tasks)}
         return tuple(chosen.get(one.object_id, one) for one in posed)
 
@@ -132,7 +130,7 @@ class MadeToMeasure:
     ) -> dict[str, Candidate] | None:
         """Objects of one shape with the profile that the picture shows; None where they agree as well without."""
         best = members[0].candidates[0]
-        sure = {i: one.evidence for i, one in shown.items() if one.mask_confidence >= SURE_MASK}
+        sure = {i: one.evidence for i, one in shown.items() if one.is_surely_outlined}
         if not sure or not can_be_turned(best.shape_id):
             return None
         before = [e.error(ShapeCaster(self.library.mesh(placed[i].shape_id)), placed[i].pose) for i, e in sure.items()]
@@ -169,10 +167,9 @@ class MadeToMeasure:
             before = best.pose.scale * own / size
         if seen is not None:
             caster = ShapeCaster(self.library.mesh(shape_id))
-            sure = seen.mask_confidence >= SURE_MASK
-            near = replace(COARSE if sure else WIDE, scale=before)
+            near = replace(COARSE if seen.is_surely_outlined else WIDE, scale=before)
             pose = fitted_pose(seen.evidence, caster, pose, size, resize=resize, near=near)
-            if sure:
+            if seen.is_surely_outlined:
                 pose = fitted_pose(seen.fine, caster, pose, size, resize=resize, near=replace(FINE, scale=before))
         whole = size * pose.scale
         uneven = relative_scale(whole / own) != EVEN

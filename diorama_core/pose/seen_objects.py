@@ -28,6 +28,8 @@ OUTLINE, OUTLINE_WITH_DEPTH = 1.8, 2.0
 """How much outline and depth say, as a factor of a logarithm; an outline counts as much as its mask is trusted."""
 EDGES = 1.0
 """How much the inner edges say beside that."""
+SURE_MASK = 0.9
+"""Confidence from which on a mask's outline is exact."""
 MIN_CELLS = 100.0
 """Objects of which fewer cells are seen tell nothing of their parts."""
 
@@ -52,6 +54,11 @@ class SeenObject:
     def may_have_agreed(self) -> bool:
         """Whether objects like this one took one shape together."""
         return self.category in SETS or (self.mask_confidence < 1.0 and self.evidence.surface is None)
+
+    @property
+    def is_surely_outlined(self) -> bool:
+        """Whether its outline tells a profile, which shape it is, and its place to a hundredth."""
+        return self.mask_confidence >= SURE_MASK
 
     @property
     def outline_weight(self) -> float:

@@ -24,8 +24,8 @@ def order(true_id: str, ids: tuple[str, ...], outlined: bool = True) -> tuple[st
     )
     k = evidence.camera.intrinsics
     edges = InnerEdges.of(np.full((k.height, k.width, 3), 90, np.uint8), evidence.seen)
-    one = SeenObject(evidence, evidence, edges, pose, 5000, 1.0, "vase")
-    out = CHOICE.best_first(PosedCandidates("o", tuple(found), 0.9), one, outlined=outlined)
+    one = SeenObject(evidence, evidence, edges, pose, 5000, 1.0 if outlined else 0.8, "vase")
+    out = CHOICE.best_first(PosedCandidates("o", tuple(found), 0.9), one)
     assert all(np.isfinite(c.score) for c in out.candidates)
     return tuple(c.shape_id for c in out.candidates)
 
