@@ -2,10 +2,10 @@
 
 Shapes are ranked in the poses in which they were compared as wholes. A design whose profile or size is another is a bad
 match there and the right one afterwards: what round things look like is known only when their profile was measured. So
-where the first candidate does not fit well at its best, others are fitted too. A sure outline tells which one it is:
-the likeliest bodies of revolution are fitted, of which a few are enough, since all get the same profile; shapes with a
-left and a right, which may be the mirror image of the thing; and those that agree best as they stand. From one that is
-not sure the next ones are, where the first fits badly in a photo alone.
+where the first candidate does not fit well at its best, others are fitted too: the likeliest bodies of revolution, of
+which a few are enough, since all get the same profile; shapes with a left and a right, which may be the mirror image of
+the thing; and the next ones, where the first fits badly in a photo alone.
+Measured depth has told them from one another already, with what is seen within the outline (`details`).
 """
 
 from __future__ import annotations
@@ -21,34 +21,20 @@ from diorama_core.geometry.silhouette import ShapeCaster
 from diorama_core.library.furniture.measures import can_be_turned
 from diorama_core.library.hands import other_hand
 from diorama_core.library.record import ShapeLibrary
-from diorama_core.pose.outline_fit import COARSE, fitted_pose
+from diorama_core.pose.outline_fit import fitted_pose
 from diorama_core.pose.seen_objects import SeenObject
 from diorama_core.pose.turned_profile import turned
 from diorama_core.scene.types import Candidate
 
-GOOD_FIT = 0.12
+GOOD_FIT = 0.08
 """Disagreement with the picture, 0 to 1, below which the first candidate stays."""
 POOR_FIT = 0.3
-"""Disagreement from which on the next ones are fitted from a photo alone where the outline is not sure."""
-COMPARED, TURNED, UNEVEN, LIKELY = 3, 2, 2, 2
-"""Candidates that are fitted in that case; bodies of revolution, shapes with a left and a right, and those that agree
-best as they stand, that are fitted whenever the outline is sure."""
-
-
-@dataclass(frozen=True)
-class _Weights:
-    """What is said of a candidate, as factors of logarithms."""
-
-    rank: float
-    """By its rank from before the fit."""
-    fit: float
-    """By how well it fits."""
-    first: float
-    """By its being the first: what a fit of its parameters brings it."""
-
-
-UNSURE, SURE = _Weights(1.0, 2.0, 0.0), _Weights(0.25, 4.0, 0.5)
-"""Which shape a thing is, a sure outline tells better than anything from before."""
+"""Disagreement from which on the next ones are fitted from a photo alone."""
+COMPARED, TURNED, UNEVEN = 3, 2, 2
+"""Candidates that are fitted in that case; bodies of revolution, and shapes with a left and a right, that are fitted
+whenever the outline is sure."""
+OF_RANK, OF_FIT = 1.0, 2.0
+"""What the ranks from before the fit and the fits themselves say of them, as factors of logarithms."""
 OF_EDGES = 1.0
 """What the correlation of inner edges says beside them: books on a top and what a mask missed change its outline.
 Less of a thing that is hidden."""
@@ -70,27 +56,16 @@ class FittedChoice:
             one: Candidates, best first so far; at least one.
             seen: The object.
         """
-        candidates, sure = one.candidates, seen.is_surely_outlined
-        first, first_score = self._fitted(candidates[0], seen)
+        outlined = seen.is_surely_outlined
+        first, first_score = self._fitted(one.candidates[0], seen)
         if first < GOOD_FIT:
             return one
-        others = set(_round_ones(candidates)) | set(self._uneven(candidates)) | set(self._likely(candidates, seen))
-        if not sure:
-            by_rank = seen.evidence.surface is None and first >= POOR_FIT
-            others = set(range(1, min(COMPARED, len(candidates)))) if by_rank else set()
-        scores = {k: self._fitted(candidates[k], seen)[1] for k in sorted(others - {0})}
-        scores[0] = first_score + (SURE if sure else UNSURE).first
+        by_rank = seen.evidence.surface is None and first >= POOR_FIT
+        others = {*_compared(one.candidates, by_rank, outlined), *(self._uneven(one.candidates) if outlined else ())}
+        scores = {0: first_score, **{k: self._fitted(one.candidates[k], seen)[1] for k in others}}
         best = max(scores, key=lambda k: (scores[k], -k))
-        return replace(one, candidates=(candidates[best], *candidates[:best], *candidates[best + 1 :]))
-
-    def _likely(self, candidates: Sequence[Candidate], seen: SeenObject) -> list[int]:
-        """The next candidates that agree best as they stand, and by their ranks."""
-        scores = {
-            k: self._score(c, seen.evidence.error(ShapeCaster(self.library.mesh(c.shape_id)), c.pose), SURE)
-            for k, c in enumerate(candidates)
-            if k
-        }
-        return sorted(scores, key=lambda k: -scores[k])[:LIKELY]
+        rest = (*one.candidates[:best], *one.candidates[best + 1 :])
+        return replace(one, candidates=(one.candidates[best], *rest))
 
     def _uneven(self, candidates: Sequence[Candidate]) -> list[int]:
         """The next candidates whose mirror image is another shape: none of them was compared as that."""
@@ -105,7 +80,7 @@ class FittedChoice:
         evidence, size = seen.evidence, np.asarray(candidate.shape_size_m)
         hands = [i for i in (candidate.shape_id, other_hand(self.library, candidate.shape_id)) if i is not None]
         casters = [ShapeCaster(self.library.mesh(hand)) for hand in hands]
-        poses = [fitted_pose(evidence, c, candidate.pose, size, resize=True, near=COARSE) for c in casters]
+        poses = [fitted_pose(evidence, c, candidate.pose, size, resize=True) for c in casters]
         errors = [evidence.error(c, p) for c, p in zip(casters, poses, strict=True)]
         best = int(np.argmin(errors))
         error, caster, pose = errors[best], casters[best], poses[best]
@@ -113,14 +88,12 @@ class FittedChoice:
         if found is not None:
             error = found.error
         edges = (1.0 - evidence.seen.hidden_share) * seen.edges_in(caster, pose)
-        weights = SURE if seen.is_surely_outlined else UNSURE
-        return error, self._score(candidate, error, weights) + OF_EDGES * edges
-
-    @staticmethod
-    def _score(candidate: Candidate, error: float, weights: _Weights) -> float:
-        of_rank = weights.rank * float(np.log(max(candidate.score, _NO_SCORE)))
-        return of_rank - weights.fit * float(np.log(error + NOISE_FLOOR))
+        of_rank = OF_RANK * float(np.log(max(candidate.score, _NO_SCORE)))
+        return error, of_rank - OF_FIT * float(np.log(error + NOISE_FLOOR)) + OF_EDGES * edges
 
 
-def _round_ones(candidates: Sequence[Candidate]) -> list[int]:
-    return [k for k, c in enumerate(candidates) if can_be_turned(c.shape_id)][:TURNED]
+def _compared(candidates: Sequence[Candidate], by_rank: bool, outlined: bool) -> list[int]:
+    """Which candidates are fitted beside the first: the next ones, and bodies of revolution."""
+    next_ones = range(1, min(COMPARED, len(candidates))) if by_rank else ()
+    round_ones = [k for k, c in enumerate(candidates) if can_be_turned(c.shape_id)][:TURNED] if outlined else []
+    return sorted({*next_ones, *round_ones} - {0})

@@ -29,10 +29,8 @@ GAIN, FINE_GAIN = 0.01, 0.003
 """Of the cost, a logarithm: less is no better."""
 NOISE_FLOOR, FINE_NOISE_FLOOR = 0.03, 0.01
 """Disagreement, 0 to 1, below which two poses count as equal: the resolution of the outlines."""
-RESIZED_SIGMA, RESIZED_SIGMA_OF_SURE = 0.3, 0.6
-"""Standard deviations of an extent's logarithm against where it was, of things that are seen whole: of those with a
-doubtful and with a sure outline."""
-SURE_TRUST = 0.9
+RESIZED_SIGMA = 0.3
+"""Standard deviation of an extent's logarithm against where it was, of things that are seen whole."""
 OF_BORDER = 2.0
 """A box has two opposite pairs of sides: half of it on the photo's border leaves an extent open."""
 MIN_SEEN = 0.05
@@ -123,8 +121,7 @@ def _costs(
 
 def resizing_cost(seen: Observed, factors: Float[np.ndarray, "p 3"]) -> Float[np.ndarray, "p"]:
     """What speaks against extents that are so many times what they were, as a logarithm; nearly all where it is cut."""
-    whole = RESIZED_SIGMA_OF_SURE if seen.mask_trust >= SURE_TRUST else RESIZED_SIGMA
-    sigma = whole * max(1.0 - OF_BORDER * seen.border_share - seen.hidden_share, MIN_SEEN)
+    sigma = RESIZED_SIGMA * max(1.0 - OF_BORDER * seen.border_share - seen.hidden_share, MIN_SEEN)
     return np.asarray(0.5 * (np.log(factors) ** 2).sum(axis=1) / sigma**2)
 
 
