@@ -51,10 +51,8 @@ class Near:
 
 
 WIDE = Near()
-COARSE, FINE = (
-    Near(steps=STEPS[:2]),
-    Near(steps=(0.015, 0.0075), rounds=3, gain=FINE_GAIN, noise_floor=FINE_NOISE_FLOOR),
-)
+COARSE = Near(steps=STEPS[:2])
+FINE = Near(steps=(0.015, 0.0075), rounds=3, gain=FINE_GAIN, noise_floor=FINE_NOISE_FLOOR)
 """A fit in two parts, the second with outlines of a finer resolution."""
 
 

@@ -40,7 +40,7 @@ class SeenObject:
 
     evidence: Evidence
     fine: Evidence
-    """At a finer resolution."""
+    """At a finer resolution where its outline is sure."""
     edges: InnerEdges
     pose: Pose
     pixels: int
@@ -111,7 +111,7 @@ def seen_objects(
             return None
         return SeenObject(
             coarse,
-            evidence(k, FINE_CELLS),
+            evidence(k, FINE_CELLS) if item.mask_confidence >= SURE_MASK else coarse,
             InnerEdges.of(inputs.photo.rgb, window),
             pose_of[item.id],
             item.pixels,

@@ -39,12 +39,6 @@ class Joint:
         R = axis_rotation(axis, angle_deg)
         return replace(self, origin=_vector(R @ self.origin), axis=_vector(R @ self.axis))
 
-    def mirrored(self) -> Joint:
-        """Reflected with its parts in the plane y = 0: it opens as it did, to the other side."""
-        x, y, z = self.origin
-        signs = (1.0, -1.0, 1.0) if self.kind == "slide" else (-1.0, 1.0, -1.0)
-        return replace(self, origin=(x, -y, z), axis=_vector(np.array(self.axis) * signs))
-
 
 def door_hinge(front: float, y: float, side: int) -> Joint:
     """The hinge of a leaf whose front is the plane x = `front`, at its edge `y`; `side` +1 is its left (y high).

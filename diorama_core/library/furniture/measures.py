@@ -184,7 +184,7 @@ def made_to_measure(base: Design, size_m: Float[np.ndarray, "3"], changes: Mappi
     known, own = {p.name: p for p in parameters(base.id)}, {**reshaping.AS_BUILT, **values_of(base)}
     for name, value in changes.items():
         whole = name in reshaping.NAMES
-        allowed = reshaping.may_be(base, name, value) if whole else name in known and known[name].allows(value)
+        allowed = _may_be_whole(base, name, value) if whole else name in known and known[name].allows(value)
         if not allowed:
             raise LibraryError(f"'{base.id}' cannot be made with {name} {_told(value)}")
     changed = {name: value for name, value in sorted(changes.items()) if own.get(name) != value}
@@ -283,6 +283,14 @@ def _read(parameter: Parameter, text: str, shape_id: str) -> Value:
     except ValueError:
         pass
     raise LibraryError(f"'{shape_id}': {parameter.name} cannot be '{text[:40]}'")
+
+
+def _may_be_whole(base: Design, name: str, value: Value) -> bool:
+    if name == reshaping.MIRRORED:
+        return value is True and base.symmetry == 1
+    percents = value if isinstance(value, tuple) else ()
+    within = all(isinstance(v, int) and reshaping.MIN_PERCENT <= v <= reshaping.MAX_PERCENT for v in percents)
+    return base.symmetry == ROUND and len(percents) == reshaping.KNOTS and within
 
 
 def _read_whole(name: str, text: str, shape_id: str) -> Value:

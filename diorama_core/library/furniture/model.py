@@ -40,11 +40,6 @@ class Part:
         joint = None if self.joint is None else self.joint.turned(axis, angle_deg)
         return replace(self, solid=self.solid.turned(axis, angle_deg), joint=joint)
 
-    def mirrored(self) -> Part:
-        """Reflected in the plane y = 0: left is right."""
-        joint = None if self.joint is None else self.joint.mirrored()
-        return replace(self, solid=self.solid.mirrored(), joint=joint)
-
 
 Parts = list[Part]
 

@@ -17,9 +17,8 @@ from jaxtyping import Float
 from scipy.interpolate import PchipInterpolator
 
 from diorama_core.library.furniture.cutting import cut
-from diorama_core.library.furniture.model import Design, Part, Parts, Size
+from diorama_core.library.furniture.model import Part, Parts, Size
 from diorama_core.library.furniture.solids import unit
-from diorama_core.library.record import ROUND
 
 GIRTH, MIRRORED = "girth", "mirrored"
 """Names of the parameters in ids."""
@@ -31,15 +30,6 @@ Whole = bool | tuple[int, ...]
 """What one of these parameters may be."""
 AS_BUILT: Mapping[str, Whole] = {GIRTH: (100,) * KNOTS}
 """Values that change nothing."""
-
-
-def may_be(base: Design, name: str, value: object) -> bool:
-    """Whether a design may have a value of one of these parameters."""
-    if name == MIRRORED:
-        return value is True and base.symmetry == 1
-    percents = value if isinstance(value, tuple) else ()
-    within = all(isinstance(v, int) and MIN_PERCENT <= v <= MAX_PERCENT for v in percents)
-    return base.symmetry == ROUND and len(percents) == KNOTS and within
 
 
 def read(name: str, text: str) -> Whole | None:
@@ -69,7 +59,7 @@ def reshaped(
     """
     parts = builder(size, **options)
     if mirrored:
-        parts = [part.mirrored() for part in parts]
+        parts = [_mirrored(part) for part in parts]
     if girth is None:
         return parts
     points = np.concatenate([p.solid.vertices for p in parts])
@@ -77,6 +67,17 @@ def reshaped(
     axis_xy, heights = (low + high)[:2] / 2, np.linspace(low[2], high[2], KNOTS)
     curve = PchipInterpolator(heights, np.asarray(girth, dtype=np.float64) / 100.0)
     return [_bent(part, curve, axis_xy, heights[1:-1]) for part in parts]
+
+
+def _mirrored(part: Part) -> Part:
+    """A part reflected in the plane y = 0; what moves opens as it did, to the other side."""
+    joint = part.joint
+    if joint is not None:
+        (x, y, z), (along_x, along_y, along_z) = joint.origin, joint.axis
+        # A turn is reflected by the axis' image turned about: right-handed angles keep their sign.
+        sign = 1.0 if joint.kind == "slide" else -1.0
+        joint = replace(joint, origin=(x, -y, z), axis=(sign * along_x, -sign * along_y, sign * along_z))
+    return replace(part, solid=part.solid.mirrored(), joint=joint)
 
 
 def _bent(
