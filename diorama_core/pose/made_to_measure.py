@@ -167,9 +167,9 @@ class MadeToMeasure:
             before = best.pose.scale * own / size
         if seen is not None:
             caster = ShapeCaster(self.library.mesh(shape_id))
-            near = replace(COARSE if seen.is_surely_outlined else WIDE, scale=before)
+            near = replace(COARSE if seen.has_given_mask else WIDE, scale=before)
             pose = fitted_pose(seen.evidence, caster, pose, size, resize=resize, near=near)
-            if seen.is_surely_outlined:
+            if seen.has_given_mask:
                 pose = fitted_pose(seen.fine, caster, pose, size, resize=resize, near=replace(FINE, scale=before))
         whole = size * pose.scale
         uneven = relative_scale(whole / own) != EVEN

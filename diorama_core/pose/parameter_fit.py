@@ -171,7 +171,7 @@ class ParameterFit:
         """By how much a changed parameter must agree better."""
         if self._with_depth:
             return WORTH_WITH_DEPTH
-        return WORTH if all(one.mask_confidence >= 1.0 for one in self.seen) else WORTH_OF_UNSURE
+        return WORTH if all(one.has_given_mask for one in self.seen) else WORTH_OF_UNSURE
 
     @property
     def _with_depth(self) -> bool:

@@ -28,8 +28,8 @@ OUTLINE, OUTLINE_WITH_DEPTH = 1.8, 2.0
 """How much outline and depth say, as a factor of a logarithm; an outline counts as much as its mask is trusted."""
 EDGES = 1.0
 """How much the inner edges say beside that."""
-SURE_MASK = 0.9
-"""Confidence from which on a mask's outline is exact."""
+SURE_MASK, GIVEN_MASK = 0.9, 1.0
+"""Confidence from which on a mask's outline tells a profile, and that of a mask that was given."""
 MIN_CELLS = 100.0
 """Objects of which fewer cells are seen tell nothing of their parts."""
 
@@ -40,7 +40,7 @@ class SeenObject:
 
     evidence: Evidence
     fine: Evidence
-    """At a finer resolution where its outline is sure."""
+    """At a finer resolution where its mask was given."""
     edges: InnerEdges
     pose: Pose
     pixels: int
@@ -57,8 +57,13 @@ class SeenObject:
 
     @property
     def is_surely_outlined(self) -> bool:
-        """Whether its outline tells a profile, which shape it is, and its place to a hundredth."""
+        """Whether its outline tells a profile."""
         return self.mask_confidence >= SURE_MASK
+
+    @property
+    def has_given_mask(self) -> bool:
+        """Whether its outline tells its place to a hundredth, and its parts."""
+        return self.mask_confidence >= GIVEN_MASK
 
     @property
     def outline_weight(self) -> float:
@@ -111,7 +116,7 @@ def seen_objects(
             return None
         return SeenObject(
             coarse,
-            evidence(k, FINE_CELLS) if item.mask_confidence >= SURE_MASK else coarse,
+            evidence(k, FINE_CELLS) if item.mask_confidence >= GIVEN_MASK else coarse,
             InnerEdges.of(inputs.photo.rgb, window),
             pose_of[item.id],
             item.pixels,
