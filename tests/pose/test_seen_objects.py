@@ -40,3 +40,11 @@ def test_only_what_comes_in_sets_or_is_not_surely_outlined_may_have_agreed_on_a_
     assert not table(measured=False).may_have_agreed
     assert table(measured=False, trust=0.9).may_have_agreed
     assert replace(table(measured=False), category="chair").may_have_agreed
+
+
+def test_an_outline_of_our_own_may_tell_a_profile_but_no_place_to_a_hundredth() -> None:
+    ours, given = table(measured=False, trust=0.95), table(measured=False)
+    assert ours.is_surely_outlined
+    assert given.is_surely_outlined
+    assert not ours.has_given_mask
+    assert given.has_given_mask
