@@ -10,6 +10,7 @@ import hashlib
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -55,7 +56,8 @@ def open_foreign(path: Path, sink: ShapeSink, progress: Progress, known: KnownSh
         InputError: the file cannot be read or has nothing in it.
         LibraryError: a shape cannot be kept.
     """
-    readers = {".glb": parts_of_gltf, ".gltf": parts_of_gltf, ".sh3d": parts_of_sweet_home}
+    sweet_home = partial(parts_of_sweet_home, progress=progress)
+    readers = {".glb": parts_of_gltf, ".gltf": parts_of_gltf, ".sh3d": sweet_home}
     parts = readers.get(path.suffix.lower(), parts_of_usd)(path)
     if not parts:
         raise InputError(f"{path.name} has no geometry in it; export the scene again")

@@ -8,6 +8,7 @@ Without depth, the mesh beside them is taken.
 
 from __future__ import annotations
 
+import io
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -19,7 +20,10 @@ from PIL import Image
 
 from diorama_core.errors import DioramaError, InputError, UnavailableError
 from diorama_core.importing.cloud_units import Unit, likely_unit
-from diorama_core.io.bounded import megabytes, shortened
+from diorama_core.io.bounded import megabytes, read_bytes, shortened
+from diorama_core.io.contained import ContainedFiles
+from diorama_core.library.ingest.limits import DEFAULT_LIMITS
+from diorama_core.library.ingest.references import GuardedResolver, References
 from diorama_core.multiview.posed_photos import PosedPhoto, read_poses
 from diorama_core.scene.types import Camera
 
@@ -102,12 +106,19 @@ def _readers() -> Mapping[str, Callable[[Path], PointCloud]]:
 
 
 def _from_ply(path: Path) -> PointCloud:
-    loaded = trimesh.load(path, process=False)
+    loaded = _loaded(path)
     if isinstance(loaded, trimesh.Trimesh) and len(loaded.vertices):  # points are spread by square metres
         unit = likely_unit(np.asarray(loaded.vertices, np.float64), None)
         loaded.apply_scale(unit.metres)
         return PointCloud(_points_of(loaded), None, _unit_note(unit))
     return _in_metres(PointCloud(_points_of(loaded), None))
+
+
+def _loaded(path: Path) -> object:
+    """A mesh or a point cloud; what it refers to is read below its own folder only."""
+    references = References(path.parent, path.parent, DEFAULT_LIMITS)
+    content = io.BytesIO(read_bytes(path, MAX_BYTES, InputError, "thin it out first"))
+    return trimesh.load(content, file_type=path.suffix[1:].lower(), resolver=GuardedResolver(references), process=False)
 
 
 def _in_metres(cloud: PointCloud) -> PointCloud:
@@ -176,23 +187,24 @@ class _Frame:
 
 def _frames(folder: Path) -> dict[str, _Frame]:
     """Depth by the name of its photo."""
-    found = {}
-    for path in sorted((folder / "keyframes" / "depth").glob("*.png")):
+    files, found = ContainedFiles(folder, InputError), {}
+    for path in filter(files.holds, sorted((folder / "keyframes" / "depth").glob("*.png"))):
         sure = folder / "keyframes" / "confidence" / path.name
         frames = folder / "keyframes"
         pictures = [frames / name / f"{path.stem}.jpg" for name in ("corrected_images", "images")]
-        picture = next((p for p in pictures if p.is_file()), pictures[-1])
-        found[path.stem] = _Frame(path, sure if sure.is_file() else None, picture)
-    for path in sorted(folder.glob("depth_*.png")):
+        picture = next(filter(files.holds, pictures), pictures[-1])
+        found[path.stem] = _Frame(path, sure if files.holds(sure) else None, picture)
+    for path in filter(files.holds, sorted(folder.glob("depth_*.png"))):
         number = path.stem.removeprefix("depth_")
         sure = folder / f"conf_{number}.png"
         picture = folder / f"frame_{number}.jpg"
-        found[f"frame_{number}"] = _Frame(path, sure if sure.is_file() else None, picture)
+        found[f"frame_{number}"] = _Frame(path, sure if files.holds(sure) else None, picture)
     return found
 
 
 def _mesh_in(folder: Path) -> Path | None:
-    return next((path for name in MESH_NAMES for path in sorted(folder.glob(name))), None)
+    files = ContainedFiles(folder, InputError)
+    return next((path for name in MESH_NAMES for path in sorted(folder.glob(name)) if files.holds(path)), None)
 
 
 def _from_folder(folder: Path) -> PointCloud:
@@ -203,7 +215,7 @@ def _from_folder(folder: Path) -> PointCloud:
     if mesh is None:
         raise InputError(f"{folder} holds neither depth nor a mesh of a scanner app; export 'raw data' or 'all data'")
     up = np.array([0.0, 1.0, 0.0])  # glTF by its standard, the apps' OBJ as ARKit's world
-    return PointCloud(_points_of(trimesh.load(mesh, process=False)), None if mesh.suffix == ".ply" else up)
+    return PointCloud(_points_of(_loaded(mesh)), None if mesh.suffix == ".ply" else up)
 
 
 def _from_depth(folder: Path, frames: Mapping[str, _Frame]) -> PointCloud:
@@ -216,7 +228,8 @@ def _from_depth(folder: Path, frames: Mapping[str, _Frame]) -> PointCloud:
     step = max(1, round(np.sqrt(len(used) * 256 * 192 / MAX_POINTS)))
     rows = [_points_of_frame(p, frames[Path(p.name).stem], step) for p in used]
     photos = [ScanPhoto(frame.picture, frame.depth, p.camera) for p in used if (frame := frames[Path(p.name).stem])]
-    pictured = tuple(p for p in photos if p.picture.is_file())
+    files = ContainedFiles(folder, InputError)
+    pictured = tuple(p for p in photos if files.holds(p.picture))
     return PointCloud(np.vstack(rows), poses.up, (f"{len(used)} frames with depth", *poses.notes), pictured)
 
 

@@ -8,7 +8,9 @@ import tempfile
 import xml.etree.ElementTree as ET
 import zipfile
 import zlib
-from pathlib import Path
+from collections.abc import Sequence
+from pathlib import Path, PurePosixPath
+from urllib.parse import unquote
 
 import numpy as np
 import trimesh
@@ -17,8 +19,12 @@ from jaxtyping import Float
 from diorama_core.errors import DioramaError, InputError
 from diorama_core.importing.parts import Part
 from diorama_core.io.bounded import shortened
+from diorama_core.io.contained import ContainedFiles
+from diorama_core.io.xml_text import parse_xml
 from diorama_core.library.ingest.limits import DEFAULT_LIMITS
 from diorama_core.library.ingest.models import SUFFIXES, read_model
+from diorama_core.progress import Progress
+from diorama_core.scene.schema import MAX_ITEMS
 
 M_PER_CM = 0.01
 MODEL_TO_PART = np.array([[1.0, 0, 0, 0], [0, 0, -1.0, 0], [0, 1.0, 0, 0], [0, 0, 0, 1.0]])
@@ -26,18 +32,31 @@ MODEL_TO_PART = np.array([[1.0, 0, 0, 0], [0, 0, -1.0, 0], [0, 1.0, 0, 0], [0, 0
 FURNITURE = ("pieceOfFurniture", "doorOrWindow", "light")
 THIN_M = 0.02
 XML_BYTES = 64 * 2**20
+MAX_FILES = 5000
+"""That are taken out of the archive: models, and what lies beside them in it."""
 
 
-def parts_of_sweet_home(path: Path) -> tuple[Part, ...]:
-    """Objects, walls and floors of a home; raises `InputError` when it cannot be read."""
+def parts_of_sweet_home(path: Path, progress: Progress | None = None) -> tuple[Part, ...]:
+    """Objects, walls and floors of a home.
+
+    Args:
+        path: The file.
+        progress: Told of each piece of furniture.
+
+    Raises:
+        InputError: it cannot be read, or holds more than a scene does.
+        Cancelled: on request.
+    """
+    progress = progress or Progress()
     try:
         with zipfile.ZipFile(path) as archive, tempfile.TemporaryDirectory() as folder:
             home = _home(archive, path)
-            size = sum(entry.file_size for entry in archive.infolist())
-            if size > DEFAULT_LIMITS.file_bytes:
-                raise InputError(f"{path.name} unpacks to {size / 2**20:.0f} MB; the limit is 512 MB")
-            archive.extractall(folder)  # zipfile keeps names inside the folder
-            pieces = [_piece(p, Path(folder)) for p in home.iter() if p.tag in FURNITURE and _visible(p)]
+            furniture = [p for p in home.iter() if p.tag in FURNITURE and _visible(p)]
+            _take_out(archive, furniture, Path(folder), path)
+            pieces = []
+            for piece in furniture:
+                progress.report(0.0, f"reading {shortened(piece.get('name', piece.tag))}")
+                pieces.append(_piece(piece, ContainedFiles(Path(folder), InputError)))
     except (
         zipfile.BadZipFile,
         zlib.error,
@@ -55,18 +74,30 @@ def parts_of_sweet_home(path: Path) -> tuple[Part, ...]:
     return (*pieces, *walls, *rooms)
 
 
+def _take_out(archive: zipfile.ZipFile, furniture: Sequence[ET.Element], folder: Path, path: Path) -> None:
+    """Put the models of the furniture, and what lies beside them in the archive, into a folder."""
+    places = {PurePosixPath(unquote(p.get("model", ""))).parent for p in furniture if p.get("model")}
+    wanted = [e for e in archive.infolist() if not e.is_dir() and PurePosixPath(e.filename).parent in places]
+    if len(wanted) > MAX_FILES:
+        raise InputError(f"{path.name} has {len(wanted):,} files beside its models; up to {MAX_FILES:,} are read")
+    size = sum(entry.file_size for entry in wanted)
+    if size > DEFAULT_LIMITS.file_bytes:
+        raise InputError(f"{path.name} unpacks to {size / 2**20:.0f} MB; the limit is 512 MB")
+    archive.extractall(folder, wanted)  # zipfile keeps names inside the folder
+
+
 def _home(archive: zipfile.ZipFile, path: Path) -> ET.Element:
     if "Home.xml" not in archive.namelist():
         raise InputError(f"{path.name} has no Home.xml; save it with Sweet Home 3D 5.3 or newer")
     if archive.getinfo("Home.xml").file_size > XML_BYTES:
         raise InputError(f"{path.name}: its Home.xml is too large")
-    text = archive.read("Home.xml")
-    if b"<!ENTITY" in text:
-        raise InputError(f"{path.name}: its Home.xml defines entities, which are not read")
-    try:
-        return ET.fromstring(text)
-    except ET.ParseError as error:
-        raise InputError(f"{path.name}: its Home.xml is damaged ({error})") from error
+    home = parse_xml(archive.read("Home.xml"), f"{path.name}: its Home.xml", InputError)
+    count = sum(e.tag in (*FURNITURE, "wall", "room") for e in home.iter())
+    if count > MAX_ITEMS:
+        raise InputError(
+            f"{path.name} has {count:,} pieces, walls and rooms; up to {MAX_ITEMS:,} are read: save a part"
+        )
+    return home
 
 
 def _visible(piece: ET.Element) -> bool:
@@ -86,10 +117,10 @@ def _number(element: ET.Element, name: str, default: float | None = None) -> flo
     return number
 
 
-def _piece(piece: ET.Element, folder: Path) -> Part:
+def _piece(piece: ET.Element, files: ContainedFiles) -> Part:
     """A piece's model, turned upright and stretched to the size that the home gives it."""
     sides = [_number(piece, k) * M_PER_CM for k in ("width", "depth", "height")]
-    scene = _model(piece, folder)
+    scene = _model(piece, files)
     low, high = scene.bounds
     stretch = np.eye(4)
     stretch[:3, :3] = np.diag(np.array(sides) / np.maximum(high - low, 1e-6))
@@ -103,12 +134,12 @@ def _piece(piece: ET.Element, folder: Path) -> Part:
     return Part(piece.get("name", piece.tag), scene, T, yaw_rad=yaw, front="-y")
 
 
-def _model(piece: ET.Element, folder: Path) -> trimesh.Scene:
+def _model(piece: ET.Element, files: ContainedFiles) -> trimesh.Scene:
     """The model in the part's frame; a box where the home keeps it in a format that is not read."""
-    model = folder / piece.get("model", "")
-    if piece.get("model") and model.is_file() and model.suffix.lower() in SUFFIXES:
+    name = piece.get("model", "")
+    if PurePosixPath(name).suffix.lower() in SUFFIXES:
         try:
-            scene = read_model(model, folder).scene
+            scene = read_model(files.path(name), files.root).scene
             turn = np.eye(4)
             turn[:3, :3] = np.array(piece.get("modelRotation", "1 0 0 0 1 0 0 0 1").split(), float).reshape(3, 3)
             if scene.bounds is not None and np.isfinite(turn).all():

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -15,6 +16,7 @@ from diorama_core.errors import InputError, UnavailableError
 from diorama_core.importing.gltf import CAMERA_AXES, Z_UP
 from diorama_core.importing.marked import MarkedFile, ObjectNode, as_bytes, as_ids, as_mapping
 from diorama_core.io.bounded import megabytes, shortened
+from diorama_core.io.contained import ContainedFiles
 from diorama_core.library.ingest.limits import DEFAULT_LIMITS
 
 MARK = "diorama"
@@ -70,7 +72,7 @@ def _stay_beside(path: Path) -> None:
     """Refuse layers outside the file's folder: a received file must not name what else is on this machine."""
     from pxr import Sdf
 
-    folder = path.resolve().parent
+    files = ContainedFiles(path.resolve().parent, InputError)
     waiting, seen = [str(path.resolve())], set[str]()
     while waiting:
         name = waiting.pop()
@@ -83,10 +85,11 @@ def _stay_beside(path: Path) -> None:
                 continue  # within the layer itself
             other = layer.ComputeAbsolutePath(asset)
             place = Path(other.partition("[")[0])  # of "room.usdz[chair.usdc]" the package
-            if place.exists() and not place.resolve().is_relative_to(folder):
+            if not os.path.lexists(place):
+                continue
+            if not files.holds(place):
                 raise InputError(f"{path.name} refers to a file outside its folder ({shortened(asset)}); put it beside")
-            if place.is_file():
-                waiting.append(other)
+            waiting.append(other)
 
 
 def read_marked_usd(path: Path) -> MarkedFile | None:

@@ -21,6 +21,7 @@ from scipy.spatial.transform import Rotation
 
 from diorama_core.errors import InputError
 from diorama_core.io.bounded import megabytes, read_json, shortened
+from diorama_core.io.contained import ContainedFiles
 from diorama_core.scene.types import Camera, Intrinsics
 
 MAX_BYTES = 512_000_000
@@ -235,7 +236,7 @@ def _size_beside(file: Path, K: Float[np.ndarray, "3 3"]) -> tuple[int, int]:
     from PIL import Image
 
     picture = file.with_suffix(".jpg")
-    if picture.is_file():
+    if ContainedFiles(file.parent, InputError).holds(picture):
         try:
             with Image.open(picture, formats=("JPEG",)) as opened:
                 return opened.size

@@ -12,6 +12,7 @@ import trimesh
 from diorama_core.errors import InputError
 from diorama_core.importing import sweethome
 from diorama_core.importing.sweethome import THIN_M, parts_of_sweet_home
+from diorama_core.progress import Progress
 
 WALL = '<wall xStart="0" yStart="0" xEnd="400" yEnd="0" thickness="10"/>'
 ROOM = '<room><point x="0" y="0"/><point x="400" y="0"/><point x="400" y="300"/><point x="0" y="300"/></room>'
@@ -103,12 +104,52 @@ def test_damaged_and_encrypted_archives_are_refused(tmp_path: Path) -> None:
     path.write_bytes(bytes(data))
     with pytest.raises(InputError, match="no Sweet Home 3D file"):
         parts_of_sweet_home(path)
-    clash = home(tmp_path, WALL, ("a", b"file"), ("a/b", b"inside it"))
-    with pytest.raises(InputError, match="no Sweet Home 3D file"):
-        parts_of_sweet_home(clash)
+    piece = PIECE.format('model="a/b/c.stl"') + PIECE.format('model="a/b.stl"')
+    clash = home(tmp_path, piece, ("a/b.stl", b"file"), ("a/b.stl/c.stl", b"in it"), ("a/b.stl/", b""))
+    assert len(parts_of_sweet_home(clash)) == 2
 
 
 def test_names_that_climb_stay_inside(tmp_path: Path) -> None:
     outside = tmp_path.parent / "escaped.txt"
     parts(tmp_path, WALL, ("../../../../../../../../" + str(outside)[1:], b"out"))
     assert not outside.exists()
+
+
+def stl(side: float) -> bytes:
+    return trimesh.creation.cone(side, 2.0 * side).export(file_type="stl")
+
+
+@pytest.mark.parametrize(
+    "name", ["{}", "../{}", "0/../../../../../../../../../../{}", "%2E%2E/{}", "file://{}", "\\{}"]
+)
+def test_models_are_read_out_of_the_home_only(tmp_path: Path, name: str) -> None:
+    """A home named a model by its place on the disk, and got it."""
+    secret = tmp_path / "secret.stl"
+    secret.write_bytes(stl(0.5))
+    piece = PIECE.format(f'model="{name.format(secret)}"')
+    (read,) = parts(tmp_path, piece)
+    assert len(read.scene.to_geometry().faces) == 12, "a box stands for what is not in the home"
+
+
+def test_pieces_of_one_home_are_as_many_as_a_scene_holds(tmp_path: Path) -> None:
+    """80,000 walls kept the reader busy for a minute without a word."""
+    with pytest.raises(InputError, match=r"has 80,000 pieces, walls and rooms; up to 5,000 are read"):
+        parts(tmp_path, WALL * 80_000)
+
+
+def test_only_what_models_need_is_unpacked(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """60,000 small entries took 20 seconds to unpack."""
+    many = [(f"other/{i}.txt", b"") for i in range(500)]
+    taken: list[str] = []
+    monkeypatch.setattr(zipfile.ZipFile, "_extract_member", lambda self, e, *a: taken.append(e.filename))
+    parts(tmp_path, PIECE.format('model="0/cone.stl"'), ("0/cone.stl", stl(0.5)), ("0/cone.mtl", b""), *many)
+    assert sorted(taken) == ["0/cone.mtl", "0/cone.stl"]
+    monkeypatch.setattr(sweethome, "MAX_FILES", 400)
+    with pytest.raises(InputError, match="has 500 files beside its models"):
+        parts(tmp_path, PIECE.format('model="other/cone.stl"'), *many)
+
+
+def test_each_piece_is_progress(tmp_path: Path) -> None:
+    told: list[str] = []
+    parts_of_sweet_home(home(tmp_path, PIECE.format("") * 3), Progress(lambda event: told.append(event.message)))
+    assert told == ["reading Chair"] * 3

@@ -16,9 +16,10 @@ from PIL import Image
 
 from diorama_core.errors import LibraryError
 from diorama_core.io.bounded import parse_json
+from diorama_core.io.contained import shown
 from diorama_core.io.glb import GlbError, is_glb, split_glb, write_glb
 from diorama_core.library.ingest.limits import Limits
-from diorama_core.library.ingest.references import References, shown
+from diorama_core.library.ingest.references import References
 
 Json = dict[str, Any]
 

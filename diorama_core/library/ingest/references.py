@@ -3,22 +3,20 @@
 from __future__ import annotations
 
 import io
-import re
 import warnings
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
-from urllib.parse import unquote
 
 import trimesh
 from PIL import Image
 
 from diorama_core.errors import LibraryError
 from diorama_core.io import bounded
+from diorama_core.io.contained import ContainedFiles, shown
 from diorama_core.library.ingest.limits import Limits
 
-_SCHEME = re.compile(r"^[a-zA-Z][a-zA-Z0-9+.-]+:")
 IMAGE_FORMATS = ("PNG", "JPEG", "WEBP", "BMP", "TGA", "TIFF", "GIF")
 IMAGE_SUFFIXES = frozenset({".png", ".jpg", ".jpeg", ".webp", ".bmp", ".tga", ".tif", ".tiff", ".gif"})
 
@@ -49,7 +47,8 @@ class References:
         Raises:
             LibraryError: when it lies outside the folder, is a web address, is too large or does not exist.
         """
-        return read_bytes(self._resolved(name), self.limits)
+        files = ContainedFiles(self.root, LibraryError)
+        return read_bytes(files.path_or_beside(name, self.folder), self.limits)
 
     def image(self, name: str) -> bytes | None:
         """A referenced picture, or None with a warning when it is missing, unsafe, broken or too large."""
@@ -72,34 +71,6 @@ class References:
         """Remember a repair, once."""
         if message not in self.warnings:
             self.warnings.append(message)
-
-    def _resolved(self, name: str) -> Path:
-        plain = unquote(name).replace("\\", "/").strip()
-        base = plain.rsplit("/", 1)[-1]
-        if "\0" in plain or not base or base in (".", ".."):
-            raise LibraryError(f"{shown(name)} is no file name")
-        if re.match(r"^[a-zA-Z][a-zA-Z0-9+.-]+://", plain):
-            raise LibraryError(f"{shown(name)} is a web address; nothing is downloaded")
-        absolute = (
-            plain.startswith("/") or _SCHEME.match(plain) is not None or re.match(r"^[a-zA-Z]:", plain) is not None
-        )
-        inside = None if absolute else self._inside(self.folder / plain)
-        if inside is not None and inside.is_file():
-            return inside
-        beside = self._inside(self.folder / base)
-        if beside is not None and beside.is_file():
-            return beside
-        if absolute or inside is None:
-            raise LibraryError(f"{shown(name)} points outside the folder that was added")
-        raise LibraryError(f"{shown(name)} is missing")
-
-    def _inside(self, path: Path) -> Path | None:
-        """The real path when it stays within the root, links followed."""
-        try:
-            real = path.resolve()
-        except (OSError, RuntimeError):  # a circle of links
-            return None
-        return real if real.is_relative_to(self.root.resolve()) else None
 
 
 class GuardedResolver(trimesh.resolvers.Resolver):  # type: ignore[misc]  # untyped base
@@ -150,9 +121,3 @@ def image_problem(data: bytes, limits: Limits) -> str:
     if width * height > limits.image_pixels:
         return f"would unpack to {width} x {height} pixels"
     return ""
-
-
-def shown(name: str) -> str:
-    """A foreign name, safe and short enough for one line."""
-    plain = "".join(c if c.isprintable() else "?" for c in name)
-    return f"'{plain if len(plain) <= 80 else plain[:77] + '...'}'"

@@ -8,7 +8,7 @@ from PIL import Image
 
 from diorama_core.errors import LibraryError
 from diorama_core.library.ingest.limits import Limits
-from diorama_core.library.ingest.references import GuardedResolver, References, image_problem, read_bytes, shown
+from diorama_core.library.ingest.references import GuardedResolver, References, image_problem, read_bytes
 
 
 def picture(side: int = 8, kind: str = "PNG") -> bytes:
@@ -106,8 +106,3 @@ def test_loaders_get_files_through_the_same_door(references: References) -> None
     assert [w.split(":")[0] for w in references.warnings] == ["left out", "texture left out"]
     with pytest.raises(NotImplementedError):
         resolver.write("wood.bin", b"")
-
-
-def test_foreign_names_are_shown_short_and_printable() -> None:
-    assert shown("a\x1b[31m\nb") == "'a?[31m?b'"
-    assert len(shown("x" * 500)) == 82
