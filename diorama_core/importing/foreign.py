@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import hashlib
 import re
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
@@ -56,8 +56,11 @@ def open_foreign(path: Path, sink: ShapeSink, progress: Progress, known: KnownSh
         InputError: the file cannot be read or has nothing in it.
         LibraryError: a shape cannot be kept.
     """
-    sweet_home = partial(parts_of_sweet_home, progress=progress)
-    readers = {".glb": parts_of_gltf, ".gltf": parts_of_gltf, ".sh3d": sweet_home}
+    readers: dict[str, Callable[[Path], tuple[Part, ...]]] = {
+        ".glb": parts_of_gltf,
+        ".gltf": parts_of_gltf,
+        ".sh3d": partial(parts_of_sweet_home, progress=progress),
+    }
     parts = readers.get(path.suffix.lower(), parts_of_usd)(path)
     if not parts:
         raise InputError(f"{path.name} has no geometry in it; export the scene again")
