@@ -3,25 +3,17 @@
 from __future__ import annotations
 
 import argparse
-import json
 import sys
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Protocol, runtime_checkable
+from typing import TYPE_CHECKING, Any
 
 from diorama_app.cli.arguments import command, progress_bar
+from diorama_app.cli.bench_output import Bench, show_bench, write_json, write_text
+from diorama_app.cli.bench_photos import add_photos
 from diorama_core.errors import InputError
 
 if TYPE_CHECKING:
     from diorama_core.evaluation.benchmarks.look import Picture, Show
-
-
-@runtime_checkable
-class _Bench(Protocol):
-    """What every bench returns."""
-
-    def tables(self) -> Any: ...
-
-    def to_json(self) -> dict[str, object]: ...
 
 
 TABLES = (
@@ -87,20 +79,8 @@ def add_bench(commands: Any) -> None:
                 help="allowed slowdown as a factor (default: %(default)s)",
             )
             one.add_argument("--quick", action="store_true", help="small quantities only, about a minute")
-    _add_photos(tables)
+    add_photos(tables)
     _add_recognition(tables)
-
-
-def _add_photos(tables: Any) -> None:
-    example = "diorama bench photos annotations.json --photos pictures"
-    one = command(tables, "photos", _bench_photos, "Photos against what a person annotated in them.", example)
-    one.add_argument("annotations", type=Path, metavar="ANNOTATIONS", help="boxes, kinds, colours, fronts... (JSON)")
-    one.add_argument("--photos", type=Path, required=True, metavar="DIR", help="pictures named by the annotations' ids")
-    one.add_argument("--unnamed", action="store_true", help="give the boxes without their words")
-    one.add_argument("--only", nargs="+", default=(), metavar="ID", help="take these photos only")
-    one.add_argument("--stages", type=Path, metavar="DIR", help="keep stage results, so that a later run resumes")
-    one.add_argument("--json", type=Path, metavar="FILE", help="write the tables and every thing as JSON too")
-    one.add_argument("--markdown", type=Path, metavar="FILE", help="write the tables as Markdown, or into their place")
 
 
 def _add_recognition(tables: Any) -> None:
@@ -120,7 +100,7 @@ def _bench_recognition(a: argparse.Namespace) -> None:
         raise InputError(f"{a.photos}: there is no such folder; give the folder of the annotated pictures")
     with progress_bar() as progress:
         bench = recognition.run(a.annotations, a.photos, detection_routes(), namers(), clickers(), progress)
-    _show(bench, a)
+    show_bench(bench, a)
 
 
 def _bench_layout(a: argparse.Namespace) -> None:
@@ -129,8 +109,8 @@ def _bench_layout(a: argparse.Namespace) -> None:
     _check(a)
     with progress_bar() as progress:
         bench = run(scenes=a.scenes, seed=a.seed, progress=progress)
-    _write(a.json, bench.to_json())
-    _write_text(a, bench.to_markdown())
+    write_json(a.json, bench.to_json())
+    write_text(a, bench.to_markdown())
     print(bench.to_markdown())
 
 
@@ -152,7 +132,7 @@ def _bench_rooms(a: argparse.Namespace) -> None:
     _check(a)
     library = built_in_library()
     with progress_bar() as progress:
-        bench: _Bench
+        bench: Bench
         if a.table == "architecture":
             bench = architecture_bench.run(library, a.scenes, parse_seeds(a.seeds, a.seed), progress)
         elif a.table == "retrieval":
@@ -168,7 +148,7 @@ def _bench_rooms(a: argparse.Namespace) -> None:
             bench = scans_bench.run(library, a.scenes, a.seed, progress)
         else:
             bench = pose_bench.run(library, a.scenes, a.seed, progress)
-    _show(bench, a)
+    show_bench(bench, a)
 
 
 def _look_writer(folder: Path | None) -> Show | None:
@@ -214,9 +194,9 @@ def _bench_system(a: argparse.Namespace) -> None:
             offered=a.offered,
             physics=a.physics,
             show=show,
-            after_room=lambda so_far: _write(a.json, so_far.to_json()),
+            after_room=lambda so_far: write_json(a.json, so_far.to_json()),
         )
-    _show(bench, a)
+    show_bench(bench, a)
 
 
 def _bench_dataset(a: argparse.Namespace) -> None:
@@ -230,29 +210,7 @@ def _bench_dataset(a: argparse.Namespace) -> None:
         raise InputError(f"{a.path}: there is no such folder; give the local copy of {a.dataset}")
     with progress_bar() as progress:
         bench = local_bench.run(a.dataset, a.path, built_in_library(), a.scenes, progress)
-    _show(bench, a)
-
-
-def _bench_photos(a: argparse.Namespace) -> None:
-    from diorama_core.evaluation.benchmarks import photos as photos_bench
-    from diorama_core.library.catalogue import built_in_library
-
-    if not a.photos.is_dir():
-        raise InputError(f"{a.photos}: there is no such folder; give the folder of the annotated pictures")
-    with progress_bar() as progress:
-        bench = photos_bench.run(
-            a.annotations,
-            a.photos,
-            built_in_library(),
-            named=not a.unnamed,
-            only=tuple(a.only),
-            cache=a.stages,
-            progress=progress,
-        )
-    _show(bench, a)
-    for result in bench.results:
-        if result.failure:
-            print(f"diorama: {result.photo} failed: {result.failure}", file=sys.stderr)
+    show_bench(bench, a)
 
 
 def _bench_survey(a: argparse.Namespace) -> None:
@@ -265,7 +223,7 @@ def _bench_survey(a: argparse.Namespace) -> None:
         bench, sheet = rooms_bench.run(built_in_library(), a.scenes, a.seed, progress)
     if a.sheet:
         write_picture(a.sheet, sheet)
-    _show(bench, a)
+    show_bench(bench, a)
     for name, faults in bench.faulty_views:
         print(f"{name}: {', '.join(faults)}")
 
@@ -280,7 +238,7 @@ def _bench_text(a: argparse.Namespace) -> None:
         bench, sheet = text_bench.run(built_in_library(), a.scenes, a.seed, progress, pictures=a.sheet is not None)
     if sheet is not None:
         write_picture(a.sheet, sheet)
-    _show(bench, a)
+    show_bench(bench, a)
     for prompt in bench.prompts:
         if prompt.result.failures or prompt.notes:
             print(f"{prompt.prompt}: {'; '.join((*prompt.result.failures, *prompt.notes))}")
@@ -300,7 +258,7 @@ def _bench_speed(a: argparse.Namespace) -> int:
     if a.keep:
         retained = committed_figures(a.keep) if a.keep.exists() else {}  # a quick run and a full one keep other figures
         write_atomically(a.keep, regression_bytes({**retained, **bench.figures()}), error=InputError)
-    _show(bench, a)
+    show_bench(bench, a)
     worse = slower(bench.figures(), before, a.tolerance)
     for name, times in worse.items():
         print(
@@ -312,32 +270,3 @@ def _bench_speed(a: argparse.Namespace) -> int:
 def _check(a: argparse.Namespace) -> None:
     if a.scenes < 1:
         raise InputError(f"--scenes {a.scenes}: ask for at least one")
-
-
-def _show(bench: _Bench, a: argparse.Namespace) -> None:
-    _write(a.json, bench.to_json())
-    text = "\n".join(table.to_markdown() for table in bench.tables())
-    _write_text(a, text)
-    print(text)
-
-
-def _write(path: Path | None, document: dict[str, object]) -> None:
-    from diorama_core.io.atomic import write_atomically
-
-    if path:
-        write_atomically(path, json.dumps(document, indent=1).encode(), error=InputError)
-
-
-def _write_text(a: argparse.Namespace, text: str) -> None:
-    """Write tables into a file: between `<!-- bench NAME -->` and `<!-- end NAME -->` where it has them, else whole."""
-    from diorama_core.io.atomic import write_atomically
-
-    if not a.markdown:
-        return
-    begin, end = f"\n<!-- bench {a.table} -->\n", f"\n<!-- end {a.table} -->\n"  # each on a line of its own
-    there = a.markdown.read_text() if a.markdown.exists() else ""
-    if begin in there and end in there:
-        before, _, after = there.partition(begin)
-        rest = f"\n{after}".partition(end)[2]  # an empty section has one line break for both marks
-        text = f"{before}{begin}\n{text.strip()}\n{end}{rest}"
-    write_atomically(a.markdown, text.encode(), error=InputError)

@@ -62,6 +62,13 @@ class AnnotatedPhoto(BaseModel):
     """Width and height of the original file."""
     objects: Annotated[tuple[AnnotatedObject, ...], Field(alias="things")]
 
+    def scaled(self, size: tuple[int, int]) -> AnnotatedPhoto:
+        """The annotation of the photo resized to a width and height."""
+        sx, sy = size[0] / self.size[0], size[1] / self.size[1]
+        boxes = [(x1 * sx, y1 * sy, x2 * sx, y2 * sy) for x1, y1, x2, y2 in (o.bbox for o in self.objects)]
+        objects = [o.model_copy(update={"bbox": box}) for o, box in zip(self.objects, boxes, strict=True)]
+        return self.model_copy(update={"size": size, "objects": tuple(objects)})
+
 
 class PhotoRecord(BaseModel):
     """What a `photos.json` beside the photos says of one."""

@@ -1,295 +1,270 @@
 """Photos against what a person annotated in them: kinds, form, colours, fronts, what carries what, outlines, ghosts.
 
-Every photo is built from the annotated boxes with their plain words, or without words. Ghosts are what nobody marked
-and what is smeared over the floor nevertheless: the share of its picture that differs from the floor's colour by
-more than `GHOST_DIFFERENCE` (CIEDE2000): smears are dark, so lightness counts in full. It is measured twice: of the
-floor as it is built, and of floors made while every second object that stands on the floor is kept back, one half after
-the other, against the colour that the floor has when nothing is.
+Every photo is built from the annotated boxes with their plain words, or without words; as it is, and under
+perturbations that should not change much (`photo_perturbations`). Settings may be other than the usual ones, for each
+fold of photos by itself, so that what was fitted on the others is judged on photos that it has not seen.
 """
 
 from __future__ import annotations
 
-import json
-import logging
-import time
-from collections.abc import Sequence
-from dataclasses import asdict, dataclass, replace
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import asdict, dataclass, field, replace
+from functools import partial
 from pathlib import Path
 
+import cv2
 import numpy as np
-from jaxtyping import Float, UInt8
+from jaxtyping import UInt8
+from pydantic import TypeAdapter, ValidationError
 
-from diorama_core.architecture.texture.colours import coloured
-from diorama_core.architecture.texture.plane_textures import plane_textures
-from diorama_core.artefacts import DetectedObject, Inputs
-from diorama_core.errors import Cancelled, InputError
-from diorama_core.evaluation.adapters.photo_annotations import (
-    AnnotatedPhoto,
-    picture_of,
-    read_annotations,
-    read_intrinsics,
+from diorama_core.errors import InputError
+from diorama_core.evaluation.adapters.photo_annotations import picture_of, read_annotations, read_intrinsics
+from diorama_core.evaluation.benchmarks.photo_build import PhotoResult, PhotoTask, build_photo
+from diorama_core.evaluation.benchmarks.photo_tables import (
+    folds_table,
+    form_table,
+    fronts_table,
+    overall_table,
+    perturbed_tables,
 )
-from diorama_core.evaluation.metrics.annotated import ObjectResult, measured, not_built
-from diorama_core.evaluation.metrics.colour import delta_e_2000, lab_of
-from diorama_core.evaluation.metrics.visible_colours import visible_colours
-from diorama_core.evaluation.reports.tables import Column, Row, Table, Value
+from diorama_core.evaluation.reports.tables import Table
+from diorama_core.io.bounded import read_json
 from diorama_core.library.record import ShapeLibrary
-from diorama_core.perception.inputs import read_inputs
-from diorama_core.pipeline.run import Built, build_scene
 from diorama_core.progress import Progress
+from diorama_core.workers import workers
 
-log = logging.getLogger(__name__)
-
-GHOST_DIFFERENCE = 10.0
-_UNNAMED = "object"
-_TEXELS = 40_000
-"""Of the floor's picture that are looked at, evenly spread."""
+SHEET_COLUMNS = 2
+_CAPTION_PX = 18
+_MAX_BYTES = 100_000_000
+"""Results of some ten thousand photos."""
+_RESULTS = TypeAdapter(list[PhotoResult])
+_SETTINGS = TypeAdapter(dict[str, float])
 
 
 @dataclass(frozen=True)
-class PhotoResult:
-    """One photo."""
+class PhotoSource:
+    """A file of annotations and the folder of its photos."""
 
-    photo: str
-    objects: tuple[ObjectResult, ...]
-    ghosts: float | None = None
-    """Share of the floor's picture; None where the floor has no picture."""
-    ghosts_unmarked: float | None = None
-    """The same of floors made without half of what stands on them; None where the photo shows no floor."""
-    seconds: float = 0.0
-    """Processor time."""
-    failure: str = ""
+    annotations: Path
+    """As `adapters.photo_annotations` describes it."""
+    photos: Path
+    """Pictures named by id, with `photos.json` for known intrinsics where there is one."""
+
+
+@dataclass(frozen=True)
+class PhotoPlan:
+    """Which builds a run makes."""
+
+    tasks: tuple[PhotoTask, ...]
+    """The photos as they are, then perturbed ones."""
+    missing: tuple[str, ...] = ()
+    """Annotated photos that the folders do not have."""
+    named: bool = True
+    folds: Mapping[str, int] = field(default_factory=dict)
+    """Fold of each photo; empty without folds."""
+    fitted: bool = False
+    """Whether each fold has settings of its own."""
 
 
 @dataclass(frozen=True)
 class PhotosBench:
     """Results of all photos."""
 
+    plan: PhotoPlan
     results: tuple[PhotoResult, ...]
-    missing: tuple[str, ...]
-    """Annotated photos that the folder does not have."""
-    named: bool
+    """Of the tasks that are done, in their order."""
 
     @property
-    def objects(self) -> tuple[ObjectResult, ...]:
-        """Of all photos."""
-        return tuple(annotated for result in self.results for annotated in result.objects)
+    def plain(self) -> tuple[PhotoResult, ...]:
+        """Photos as they are."""
+        return tuple(r for r in self.results if not r.perturbation)
 
     def tables(self) -> tuple[Table, ...]:
-        """All photos together, loose words by themselves, every photo, and the attributes of form."""
-        return (_table(self), _form_table(self.objects))
+        """All photos, fronts by kind, attributes of form; folds and perturbations where they were asked for."""
+        tables = [overall_table(self.plain, named=self.plan.named, missing=self.plan.missing)]
+        tables += [fronts_table(self.plain), form_table(self.plain)]
+        if self.plan.folds:
+            count = max(self.plan.folds.values()) + 1
+            folds = [[r for r in self.plain if self.plan.folds[r.photo] == k] for k in range(count)]
+            tables.append(folds_table([fold for fold in folds if fold], fitted=self.plan.fitted))
+        names = dict.fromkeys(r.perturbation for r in self.results if r.perturbation)
+        if names:
+            of = {name: [r for r in self.results if r.perturbation == name] for name in names}
+            tables += perturbed_tables(self.plain, of)
+        return tuple(tables)
 
     def to_json(self) -> dict[str, object]:
         """Tables, every photo and every object."""
         return {
             "bench": "photos",
-            "named": self.named,
-            "missing": list(self.missing),
+            "named": self.plan.named,
+            "missing": list(self.plan.missing),
             "tables": [t.to_json() for t in self.tables()],
             "photos": [asdict(r) for r in self.results],
         }
 
 
-def run(
-    annotations: Path,
-    photos: Path,
-    library: ShapeLibrary,
+def plan(
+    sources: Sequence[PhotoSource],
     *,
     named: bool = True,
     only: Sequence[str] = (),
+    perturbations: Sequence[str] = (),
+    folds: int = 0,
+    settings: Sequence[Mapping[str, float]] = (),
     cache: Path | None = None,
-    progress: Progress | None = None,
-) -> PhotosBench:
-    """Build every annotated photo that the folder has; failures count as wrong.
+    tiles: Path | None = None,
+) -> PhotoPlan:
+    """Every annotated photo that a folder has, as it is and under each perturbation.
 
     Args:
-        annotations: file as `adapters.photo_annotations` describes it.
-        photos: folder of pictures named by id, with `photos.json` for known intrinsics where there is one.
-        library: where shapes come from.
+        sources: annotations with their photos; ids must differ.
         named: whether boxes come with their plain words.
         only: ids of photos to take; all where empty.
+        perturbations: names of `photo_perturbations.PERTURBATIONS`.
+        folds: into how many folds the photos are dealt, in the order of their ids; none where 0.
+        settings: values of the stages' settings, as `pipeline.settings` names them: none, one for all photos, or one
+            for each fold.
         cache: folder for stage results, one folder a photo; a later run resumes from them.
-        progress: reports and cancellation.
+        tiles: folder for a picture of every build; none where None.
 
     Raises:
-        InputError: when the annotations cannot be read, or the folder has none of the photos.
+        InputError: annotations that cannot be read, the same id twice, no photo at all, or settings that are not as
+            many as the folds.
+    """
+    if len(settings) > 1 and len(settings) != folds:
+        raise InputError(f"{len(settings)} files of settings for {folds} folds: give one for all, or one for each fold")
+    found: dict[str, PhotoTask] = {}
+    missing: list[str] = []
+    for source in sources:
+        intrinsics = read_intrinsics(source.photos)
+        for name, photo in read_annotations(source.annotations).items():
+            path = picture_of(source.photos, name)
+            if only and name not in only:
+                continue
+            if name in found:
+                raise InputError(f"{source.annotations}: {name} is in an earlier file too; give ids that differ")
+            if path is None:
+                missing.append(name)
+            else:
+                found[name] = PhotoTask(name, path, photo, intrinsics.get(name), named)
+    if not found:
+        folders = ", ".join(str(source.photos) for source in sources)
+        raise InputError(f"{folders}: none of the {len(missing)} annotated photos is there; name pictures by their ids")
+    fold_of = {name: k % folds for k, name in enumerate(sorted(found))} if folds else {}
+    own = {name: settings[fold_of[name] if len(settings) > 1 else 0] for name in found} if settings else {}
+    tasks = [
+        _changed(replace(task, settings=own.get(name, {})), change, cache, tiles)
+        for change in ("", *perturbations)
+        for name, task in found.items()
+    ]
+    return PhotoPlan(tuple(tasks), tuple(missing), named, fold_of, len(settings) > 1)
+
+
+def _changed(task: PhotoTask, change: str, cache: Path | None, tiles: Path | None) -> PhotoTask:
+    """The task under a perturbation, with places of its own for what it writes."""
+    title = "-".join(part for part in (task.name, "" if task.named else "unnamed", change) if part)
+    return replace(
+        task,
+        perturbation=change,
+        cache=None if cache is None else cache / title,
+        tile=None if tiles is None else tiles / f"{title}.jpg",
+    )
+
+
+def run(
+    asked: PhotoPlan,
+    library: ShapeLibrary,
+    *,
+    known: Sequence[PhotoResult] = (),
+    processes: int = 1,
+    after_photo: Callable[[PhotosBench], None] | None = None,
+    progress: Progress | None = None,
+) -> PhotosBench:
+    """Build every photo of a plan; failures count as wrong.
+
+    Args:
+        asked: as `plan` makes it.
+        library: where shapes come from.
+        known: results of an earlier run; those of the same code, photos and settings are taken over.
+        processes: photos built at once.
+        after_photo: called with the results so far after every photo, so that an interrupted run has some.
+        progress: reports and cancellation.
     """
     progress = progress or Progress()
-    known = {name: photo for name, photo in read_annotations(annotations).items() if not only or name in only}
-    intrinsics = read_intrinsics(photos)
-    pictures = {name: picture_of(photos, name) for name in known}
-    present = {name: path for name, path in pictures.items() if path is not None}
-    missing = tuple(name for name in known if name not in present)
-    if not present:
-        raise InputError(f"{photos}: none of the {len(known)} annotated photos is there; name pictures by their ids")
-    results = []
-    for k, (name, path) in enumerate(present.items()):
-        folder = None if cache is None else cache / (name if named else f"{name}-{_UNNAMED}")
-        part = progress.part(k / len(present), (k + 1) / len(present))
-        part.report(0.0, name)
-        results.append(_result(name, known[name], path, intrinsics.get(name), library, named, folder, part))
+    of_key = {r.key: r for r in known if not r.failure}
+    done = {task.title: of_key[key] for task in asked.tasks if (key := task.key()) in of_key and _drawn(task)}
+    waiting = [task for task in asked.tasks if task.title not in done]
+
+    def take(task: PhotoTask, result: PhotoResult) -> None:
+        done[task.title] = result
+        progress.report(len(done) / len(asked.tasks), f"{len(done)} of {len(asked.tasks)}: {task.title}")
+        if after_photo is not None:
+            after_photo(so_far())
+
+    def so_far() -> PhotosBench:
+        return PhotosBench(asked, tuple(done[task.title] for task in asked.tasks if task.title in done))
+
+    if processes > 1:
+        for piece in workers(None, processes).map(partial(build_photo, library=library), waiting):
+            take(piece.item, piece.unwrap())
+            progress.check()
+    else:
+        for k, task in enumerate(waiting):
+            part = progress.part(len(done) / len(asked.tasks), (len(done) + 1) / len(asked.tasks))
+            part.report(0.0, f"{task.title} ({k + 1} of {len(waiting)})")
+            take(task, build_photo(task, library, part))
     progress.report(1.0, "done")
-    return PhotosBench(tuple(results), missing, named)
+    return so_far()
 
 
-def _result(
-    name: str,
-    photo: AnnotatedPhoto,
-    path: Path,
-    intrinsics: tuple[float, float, float, float] | None,
-    library: ShapeLibrary,
-    named: bool,
-    cache: Path | None,
-    progress: Progress,
-) -> PhotoResult:
-    begun = time.process_time()
-    try:
-        inputs = _inputs(photo, path, intrinsics, named)
-        built = build_scene(inputs, library, cache=cache, progress=progress)
-        spent = time.process_time() - begun
-        objects = _objects(name, photo, built, library)
-        return PhotoResult(name, objects, floor_ghosts(built), ghosts_unmarked(built), spent)
-    except Cancelled:
-        raise
-    except Exception as error:  # whatever goes wrong, the photo counts as failed and the others go on
-        log.warning("%s failed: %s", name, error)
-        wrong = tuple(not_built(name, i, annotated) for i, annotated in enumerate(photo.objects))
-        spent = time.process_time() - begun
-        return PhotoResult(name, wrong, None, None, spent, f"{type(error).__name__}: {error}")
+def _drawn(task: PhotoTask) -> bool:
+    return task.tile is None or task.tile.is_file()
 
 
-def _inputs(
-    photo: AnnotatedPhoto, path: Path, intrinsics: tuple[float, float, float, float] | None, named: bool
-) -> Inputs:
-    boxes = [{"bbox": annotated.bbox, "class": annotated.word if named else _UNNAMED} for annotated in photo.objects]
-    inputs = read_inputs(path, intrinsics=intrinsics, boxes=json.dumps(boxes).encode()).inputs
-    if inputs.photo.original_size != photo.size:
-        stated, found = ("{} x {}".format(*size) for size in (photo.size, inputs.photo.original_size))
-        raise InputError(f"{path}: the annotations are of a picture of {stated} pixels, this one has {found}")
-    return inputs
+def read_results(path: Path) -> list[PhotoResult]:
+    """The photos of an earlier run's JSON; none where there is no such file.
 
-
-def _objects(name: str, photo: AnnotatedPhoto, built: Built, library: ShapeLibrary) -> tuple[ObjectResult, ...]:
-    """Objects are numbered by their mask ids in the order of the boxes."""
-    by_index = {o.mask_id - 1: o for o in built.scene.objects if o.mask_id is not None}
-    index_of = {item.id: index for index, item in by_index.items()}
-    furniture = {o.mask_id - 1 for o in built.objects}
-    shown = visible_colours(built.scene, library, built.textures)
-    in_light = {key: built.illuminant.lit(colour) for key, colour in shown.items()}
-    return tuple(
-        measured(name, i, annotated, by_index[i], built.scene, library, index_of, in_light.get(by_index[i].id))
-        if i in by_index
-        else not_built(name, i, annotated, opening=i not in furniture)
-        for i, annotated in enumerate(photo.objects)
-    )
-
-
-def floor_ghosts(built: Built) -> float | None:
-    """Share of the floor's picture that is not of its colour; None where it has no picture."""
-    floor = built.scene.architecture.floor
-    picture = None if floor is None else built.textures.get(floor.id)
-    return None if picture is None else ghost_share(picture, usual_colour(picture))
-
-
-def ghosts_unmarked(built: Built) -> float | None:
-    """Share of the floor's picture that is not of its colour when half of what stands on it was not marked.
-
-    Mean over both halves; None where nothing stands on the floor. A floor without a picture is of its plain colour.
+    Raises:
+        InputError: the file is something else.
     """
-    room = built.architecture
-    floor = room.architecture.floor
-    if floor is None:
-        return None
-    standing = [edge.child for edge in room.supports if edge.parent == floor.id]
-    known = built.textures.get(floor.id)
-    colour = np.array(floor.colour) if known is None else usual_colour(known)
-    marked = [tuple(o for o in built.objects if o.id not in standing[k::2]) for k in (0, 1)]
-    pictures = [_floor_picture(built, objects, frozenset(standing)) for objects in marked if len(standing) > 1]
-    return _mean([ghost_share(picture, colour) for picture in pictures])
+    if not path.exists():
+        return []
+    document = read_json(path, InputError, most=_MAX_BYTES)
+    try:
+        return _RESULTS.validate_python(document["photos"] if isinstance(document, dict) else document)
+    except (KeyError, ValidationError) as error:
+        raise InputError(f"{path}: it holds no results of annotated photos; give another name") from error
 
 
-def _floor_picture(
-    built: Built, objects: tuple[DetectedObject, ...], standing: frozenset[str]
-) -> UInt8[np.ndarray, "_ _ 3"]:
-    room, camera = built.architecture.architecture, built.geometry.camera
-    photo = replace(built.inputs.photo, rgb=built.illuminant.balanced(built.inputs.photo.rgb))
-    inputs = replace(built.inputs, photo=photo)
-    room = replace(room, planes=coloured(room.planes, inputs.photo.rgb, camera, objects))
-    assert room.floor is not None
-    plain = np.rint(255 * np.array(room.floor.colour)).astype(np.uint8)[None, None]
-    alone = {room.floor.id}
-    return plane_textures(inputs, objects, camera, room, standing=standing, only=alone).get(room.floor.id, plain)
+def read_settings(path: Path) -> dict[str, float]:
+    """A JSON object of settings' names and values.
+
+    Raises:
+        InputError: the file is something else.
+    """
+    try:
+        return _SETTINGS.validate_python(read_json(path, InputError, most=_MAX_BYTES))
+    except ValidationError as error:
+        raise InputError(f'{path}: settings are an object such as {{"layout.weights.outline": 2.0}}') from error
 
 
-def usual_colour(picture: UInt8[np.ndarray, "h w 3"]) -> Float[np.ndarray, "3"]:
-    """Median colour, sRGB 0 to 1."""
-    return np.asarray(np.median(_spread(picture), axis=0))
+def sheet(bench: PhotosBench) -> UInt8[np.ndarray, "_ _ 3"]:
+    """All pictures of the builds in a grid, each under its name; builds that failed have none.
+
+    Raises:
+        InputError: no build has a picture.
+    """
+    pictures = ((task.title, cv2.imread(str(task.tile))) for task in bench.plan.tasks if task.tile is not None)
+    tiles = [_captioned(picture[..., ::-1], title) for title, picture in pictures if picture is not None]
+    if not tiles:
+        raise InputError("no photo was built, so there is nothing to show in a sheet")
+    tiles += [np.full_like(tiles[0], 255)] * (-len(tiles) % SHEET_COLUMNS)
+    rows = [np.concatenate(tiles[k : k + SHEET_COLUMNS], axis=1) for k in range(0, len(tiles), SHEET_COLUMNS)]
+    return np.concatenate(rows)
 
 
-def ghost_share(picture: UInt8[np.ndarray, "h w 3"], colour: Float[np.ndarray, "3"]) -> float:
-    """Share of a picture that differs from a colour (sRGB 0 to 1) by more than `GHOST_DIFFERENCE`."""
-    pixels = lab_of(_spread(picture))
-    wanted = np.broadcast_to(lab_of(colour[None]), pixels.shape)
-    return float((delta_e_2000(pixels, wanted) > GHOST_DIFFERENCE).mean())
-
-
-def _spread(picture: UInt8[np.ndarray, "h w 3"]) -> Float[np.ndarray, "n 3"]:
-    """At most about `_TEXELS` pixels, evenly spread, 0 to 1."""
-    return np.asarray(picture.reshape(-1, 3)[:: max(picture.shape[0] * picture.shape[1] // _TEXELS, 1)] / 255.0)
-
-
-COLUMNS = (
-    Column("objects", "d"), Column("kind first", better="↑"), Column("among", better="↑"), Column("form", better="↑"),
-    Column("colour", ".1f", "↓"), Column("no colour", better="↓"), Column("front", better="↑"),
-    Column("supporter", better="↑"), Column("box IoU", better="↑"), Column("ghosts", better="↓"),
-    Column("unmarked", better="↓"), Column("time s", ".1f", "↓"),
-)  # fmt: skip
-
-
-def _table(bench: PhotosBench) -> Table:
-    loose = [annotated for annotated in bench.objects if annotated.loose]
-    mean_of = [r for r in bench.results if not r.failure]
-    overall = _values(bench.objects)
-    ghosts, unmarked = _mean([r.ghosts for r in mean_of]), _mean([r.ghosts_unmarked for r in mean_of])
-    seconds = _mean([r.seconds for r in mean_of])
-    rows = [
-        Row("all", (*overall, ghosts, unmarked, seconds)),
-        Row("loose words", (*_values(loose), None, None, None)),
-        *(Row(r.photo, (*_values(r.objects), r.ghosts, r.ghosts_unmarked, r.seconds)) for r in bench.results),
-    ]
-    words = "plain words" if bench.named else "no words"
-    notes = [f"not in the folder: {', '.join(bench.missing)}"] if bench.missing else []
-    notes += [f"{r.photo} failed: {r.failure}" for r in bench.results if r.failure]
-    note = "Photos that fail count as wrong. " + "; ".join(notes)
-    return Table(f"Annotated photos, {words}", COLUMNS, tuple(rows), note.strip())
-
-
-def _values(objects: Sequence[ObjectResult]) -> tuple[Value, ...]:
-    """The columns that are of objects: colours by their median, everything else by its mean."""
-    differences = [t.colour_difference for t in objects if t.colour_difference is not None]
-    return (
-        len(objects),
-        _mean([t.kind_first for t in objects]),
-        _mean([t.kind_among for t in objects]),
-        _mean([right for t in objects for right in t.form.values()]),
-        float(np.median(differences)) if differences else None,
-        _mean([None if t.has_colour is None else not t.has_colour for t in objects]),
-        _mean([t.front for t in objects]),
-        _mean([t.supporter for t in objects]),
-        _mean([t.iou for t in objects]),
-    )
-
-
-def _form_table(objects: Sequence[ObjectResult]) -> Table:
-    of: dict[str, list[bool]] = {}
-    for annotated in objects:
-        for name, right in annotated.form.items():
-            of.setdefault(name, []).append(right)
-    rows = tuple(Row(name, (len(right), _mean(right))) for name, right in sorted(of.items()))
-    note = "Of objects whose annotation and whose chosen shape's design both state the attribute."
-    return Table("Form", (Column("objects", "d"), Column("right", better="↑")), rows, note)
-
-
-def _mean(values: Sequence[float | None]) -> float | None:
-    known = [v for v in values if v is not None]
-    return float(np.mean(known)) if known else None
+def _captioned(tile: UInt8[np.ndarray, "h w 3"], words: str) -> UInt8[np.ndarray, "_ w 3"]:
+    bar = np.full((_CAPTION_PX, tile.shape[1], 3), 255, np.uint8)
+    cv2.putText(bar, words, (6, 13), cv2.FONT_HERSHEY_SIMPLEX, 0.42, (20, 20, 20), 1, cv2.LINE_AA)
+    return np.concatenate([bar, tile])

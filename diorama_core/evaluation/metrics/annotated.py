@@ -89,7 +89,7 @@ def measured(
     Args:
         photo: the photo's id.
         index: the object's place in the photo's list.
-        annotated: the annotation.
+        annotated: the annotation, in pixels of the scene's camera.
         item: what was built.
         scene: the whole, for the camera and what carries what.
         library: where its shapes are from.
@@ -114,7 +114,7 @@ def measured(
         colour_difference=_colour_difference(annotated, shown),
         front_error_deg=_front_error_deg(annotated, item, scene.camera, shape.symmetry),
         supporter=None if annotated.on is None else _carrier(scene, item.id, index_of) == annotated.on,
-        iou=None if item.box_px is None else shape_iou(scene, item.id, item.box_px, library),
+        iou=shape_iou(scene, item.id, annotated.bbox, library),
     )
 
 

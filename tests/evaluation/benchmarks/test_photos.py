@@ -6,14 +6,13 @@ import json
 import logging
 from pathlib import Path
 
-import numpy as np
 import pytest
 from PIL import Image
 
 from diorama_app.cli import main
 from diorama_core.errors import InputError
 from diorama_core.evaluation.adapters.photo_annotations import picture_of, read_annotations
-from diorama_core.evaluation.benchmarks.photos import ghost_share, run, usual_colour
+from diorama_core.evaluation.benchmarks.photos import PhotoSource, plan, run
 from diorama_core.library.catalogue import built_in_library
 from diorama_core.synthesis import furnished_room, render_truth, sample_cameras
 
@@ -47,26 +46,56 @@ def made(tmp_path_factory):
 
 
 def test_photos_are_measured_and_failures_do_not_stop_the_others(made, capsys, caplog, tmp_path):
+    """Once perturbed, in folds and with a sheet, then again from the JSON."""
     path, folder, count = made
+    words = ["bench", "photos", str(path), "--photos", str(folder), "--json", str(tmp_path / "out.json")]
+    words += ["--perturbed", "dropped", "--folds", "2", "--sheet", str(tmp_path / "sheet.jpg")]
     with caplog.at_level(logging.ERROR):
-        words = ["bench", "photos", str(path), "--photos", str(folder), "--json", str(tmp_path / "out.json")]
         assert main(words) == 0
     shown = capsys.readouterr()
     document = json.loads((tmp_path / "out.json").read_text())
     assert document["missing"] == ["absent"]
     assert "not in the folder: absent" in shown.out
-    assert len([line for line in shown.err.splitlines() if "other failed" in line]) == 1
-    of = {photo["photo"]: photo for photo in document["photos"]}
-    assert len(of["made"]["objects"]) == count
-    assert of["made"]["failure"] == ""
-    assert any(annotated["kind_first"] for annotated in of["made"]["objects"])
-    assert all(annotated["iou"] == 0.0 for annotated in of["other"]["objects"])
-    assert "annotations are of a picture of 10 x 10 pixels" in of["other"]["failure"]
+    assert [line.split(" failed")[0] for line in shown.err.splitlines() if "failed: " in line] == [
+        "diorama: other",
+        "diorama: other, dropped",
+    ]
+    of = {(photo["photo"], photo["perturbation"]): photo for photo in document["photos"]}
+    built, failed = of["made", ""], of["other", ""]
+    assert [len(of["made", change]["objects"]) for change in ("", "dropped")] == [count, count - 1]
+    assert built["failure"] == ""
+    assert any(annotated["kind_first"] for annotated in built["objects"])
+    assert all(annotated["iou"] == 0.0 for annotated in failed["objects"])
+    assert "annotations are of a picture of 10 x 10 pixels" in failed["failure"]
+    titles = [table["title"] for table in document["tables"]]
+    assert titles[1:] == ["Fronts by kind", "Form", "Folds of photos", "Perturbed photos", "What perturbations change"]
+    with Image.open(tmp_path / "sheet.jpg") as sheet:
+        assert sheet.width > 2000
+    assert main(words) == 0
+    again = {(p["photo"], p["perturbation"]): p for p in json.loads((tmp_path / "out.json").read_text())["photos"]}
+    assert again["made", "dropped"]["seconds"] == of["made", "dropped"]["seconds"]  # not built anew
+    capsys.readouterr()
+
+
+def test_every_fold_may_have_settings_of_its_own(made):
+    path, folder, _ = made
+    sources = [PhotoSource(path, folder)]
+    planned = plan(sources, folds=2, settings=[{"layout.rounds": 1.0}, {"layout.rounds": 2.0}])
+    assert planned.folds == {"made": 0, "other": 1}
+    assert [task.settings for task in planned.tasks] == [{"layout.rounds": 1.0}, {"layout.rounds": 2.0}]
+    with pytest.raises(InputError, match="3 files of settings for 2 folds"):
+        plan(sources, folds=2, settings=[{}, {}, {}])
+
+
+def test_ids_of_several_files_must_differ(made):
+    path, folder, _ = made
+    with pytest.raises(InputError, match="made is in an earlier file too"):
+        plan([PhotoSource(path, folder)] * 2)
 
 
 def test_a_folder_without_any_of_them_is_an_error(made, tmp_path):
     with pytest.raises(InputError, match="none of the 3 annotated photos"):
-        run(made[0], tmp_path, built_in_library())
+        plan([PhotoSource(made[0], tmp_path)])
 
 
 @pytest.mark.parametrize(
@@ -82,18 +111,6 @@ def test_broken_annotations_are_said_in_one_line(objects, said, tmp_path):
     path.write_text(json.dumps({"p": {"size": [9, 9], "objects": objects}}))
     with pytest.raises(InputError, match=said):
         read_annotations(path)
-
-
-def test_ghosts_are_what_differs_from_the_floor():
-    floor = np.full((100, 100, 3), (150, 120, 90), np.uint8)
-    colour = usual_colour(floor)
-    assert ghost_share(floor, colour) == 0.0
-    floor[:50, :40] = (40, 90, 60)
-    assert ghost_share(floor, colour) == pytest.approx(0.2)
-    floor[:50, :40] = (75, 60, 45)  # a dark smear of the floor's own hue
-    assert ghost_share(floor, colour) == pytest.approx(0.2)
-    floor[:50, :40] = (135, 108, 80)
-    assert ghost_share(floor, colour) == 0.0
 
 
 def test_the_projects_own_annotations_can_be_read_and_name_known_kinds():
@@ -113,7 +130,7 @@ def test_a_real_photo_has_the_right_kinds(shared, tmp_path):
     few.write_text(json.dumps({"sunrgbd_corridor": {**document, "things": things}}))
     if picture_of(folder, "sunrgbd_corridor") is None:
         pytest.skip("the photo sunrgbd_corridor is not here")
-    bench = run(few, folder, built_in_library(), only=("sunrgbd_corridor",))
+    bench = run(plan([PhotoSource(few, folder)]), built_in_library())
     row = bench.tables()[0].row("all")
     assert row["kind first"] > 0.7
     assert row["supporter"] > 0.7

@@ -41,7 +41,7 @@ def test_fronts_are_0_toward_the_camera_90_to_the_right_180_away_270_left(yaw_de
 def test_what_is_compared() -> None:
     item = placed("chair-slat-oak", -60, (1.0, 0.0, 0.0), others=("office-chair-mesh-black",))
     scene = Scene(camera=CAMERA, objects=(item,))
-    stated = annotated(front=0, colour=(255, 0, 0), attributes={"arms": "no"})
+    stated = annotated(bbox=item.box_px, front=0, colour=(255, 0, 0), attributes={"arms": "no"})
     found = measured("p", 0, stated, item, scene, LIBRARY, {}, np.array([1.0, 0.0, 0.0]))
     assert found.loose
     assert (found.kind_first, found.kind_among) == (False, True)

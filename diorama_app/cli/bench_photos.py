@@ -1,0 +1,115 @@
+"""`diorama bench photos`: annotated photos, as they are, perturbed, and in folds."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from diorama_app.cli.arguments import command, progress_bar
+from diorama_app.cli.bench_output import show_bench, write_json
+from diorama_core.errors import InputError
+
+if TYPE_CHECKING:
+    from diorama_core.evaluation.benchmarks.photos import PhotoPlan, PhotoSource
+
+
+def add_photos(tables: Any) -> None:
+    """Declare `diorama bench photos`."""
+    example = "diorama bench photos annotations.json --photos pictures"
+    one = command(tables, "photos", _bench_photos, "Photos against what a person annotated in them.", example)
+    one.add_argument(
+        "annotations", type=Path, nargs="+", metavar="ANNOTATIONS", help="boxes, kinds, colours, fronts... (JSON)"
+    )
+    one.add_argument(
+        "--photos",
+        type=Path,
+        nargs="+",
+        required=True,
+        metavar="DIR",
+        help="pictures named by the annotations' ids: one folder for each file of annotations",
+    )
+    one.add_argument("--unnamed", action="store_true", help="give the boxes without their words")
+    one.add_argument("--only", nargs="+", default=(), metavar="ID", help="take these photos only")
+    one.add_argument(
+        "--perturbed",
+        nargs="?",
+        const="",
+        metavar="NAME,...",
+        help="perturbed photos too: mirrored, jittered, dropped, exposed, rolled, cropped, blurred (default: all)",
+    )
+    one.add_argument("--folds", type=int, default=0, metavar="K", help="figures of K folds of the photos")
+    one.add_argument(
+        "--settings",
+        type=Path,
+        nargs="+",
+        default=(),
+        metavar="FILE",
+        help="other values of settings (JSON): one file for all photos, or one for each fold, fitted on the others",
+    )
+    one.add_argument("--workers", type=int, default=1, metavar="N", help="photos built at once (default: %(default)s)")
+    one.add_argument("--stages", type=Path, metavar="DIR", help="keep stage results, so that a later run resumes")
+    one.add_argument(
+        "--json", type=Path, metavar="FILE", help="write the results as JSON too; a later run resumes them"
+    )
+    one.add_argument("--markdown", type=Path, metavar="FILE", help="write the tables as Markdown, or into their place")
+    one.add_argument("--sheet", type=Path, metavar="FILE", help="write a sheet of photos beside their scenes")
+
+
+def _bench_photos(a: argparse.Namespace) -> None:
+    from diorama_core.evaluation.benchmarks import photos as photos_bench
+    from diorama_core.evaluation.benchmarks.case_pictures import write_picture
+    from diorama_core.library.catalogue import built_in_library
+
+    asked = _plan(a)
+    known = photos_bench.read_results(a.json) if a.json else []
+    with progress_bar() as progress:
+        bench = photos_bench.run(
+            asked,
+            built_in_library(),
+            known=known,
+            processes=a.workers,
+            after_photo=lambda so_far: write_json(a.json, so_far.to_json()),
+            progress=progress,
+        )
+    show_bench(bench, a)
+    for result in bench.results:
+        if result.failure:
+            print(f"diorama: {result.title} failed: {result.failure}", file=sys.stderr)
+    if a.sheet:
+        write_picture(a.sheet, photos_bench.sheet(bench))
+
+
+def _plan(a: argparse.Namespace) -> PhotoPlan:
+    from diorama_core.evaluation.benchmarks import photos as photos_bench
+    from diorama_core.evaluation.benchmarks.photo_perturbations import perturbations_named
+
+    if a.folds < 0 or a.folds == 1:
+        raise InputError(f"--folds {a.folds}: ask for at least two")
+    if a.workers < 1:
+        raise InputError(f"--workers {a.workers}: ask for at least one")
+    names = () if a.perturbed is None else perturbations_named([n for n in a.perturbed.split(",") if n])
+    return photos_bench.plan(
+        _sources(a.annotations, a.photos),
+        named=not a.unnamed,
+        only=tuple(a.only),
+        perturbations=names,
+        folds=a.folds,
+        settings=[photos_bench.read_settings(path) for path in a.settings],
+        cache=a.stages,
+        tiles=a.sheet.with_suffix("") if a.sheet else None,
+    )
+
+
+def _sources(annotations: Sequence[Path], photos: Sequence[Path]) -> list[PhotoSource]:
+    from diorama_core.evaluation.benchmarks.photos import PhotoSource
+
+    if len(photos) not in (1, len(annotations)):
+        raise InputError(f"--photos: {len(photos)} folders for {len(annotations)} files; give one folder for each file")
+    for folder in photos:
+        if not folder.is_dir():
+            raise InputError(f"{folder}: there is no such folder; give the folder of the annotated pictures")
+    folders = photos if len(photos) > 1 else [*photos] * len(annotations)
+    return [PhotoSource(*pair) for pair in zip(annotations, folders, strict=True)]

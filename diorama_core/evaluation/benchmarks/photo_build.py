@@ -1,0 +1,169 @@
+"""One annotated photo: built, perhaps perturbed, and compared with its annotation. Runs in a process of its own."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import logging
+import time
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+
+import cv2
+from jaxtyping import UInt8
+from numpy import ndarray
+
+from diorama_core.errors import Cancelled, InputError
+from diorama_core.evaluation.adapters.photo_annotations import AnnotatedPhoto
+from diorama_core.evaluation.benchmarks.case_pictures import write_picture
+from diorama_core.evaluation.benchmarks.photo_perturbations import AnnotatedInputs, perturbed
+from diorama_core.evaluation.metrics.annotated import ObjectResult, measured, not_built
+from diorama_core.evaluation.metrics.floor_ghosts import floor_ghosts, ghosts_unmarked
+from diorama_core.evaluation.metrics.visible_colours import visible_colours
+from diorama_core.io.code_key import code_key
+from diorama_core.library.record import ShapeLibrary
+from diorama_core.perception.inputs import read_inputs
+from diorama_core.pipeline.run import Built, build_scene
+from diorama_core.pipeline.settings import with_settings
+from diorama_core.pipeline.stages import embedded_stages
+from diorama_core.progress import Progress
+from diorama_core.render.compare import side_by_side
+from diorama_core.render.picture import picture
+
+log = logging.getLogger(__name__)
+
+_UNNAMED = "object"
+TILE_PX = (400, 300)
+"""Of the photo and of its scene in a sheet."""
+
+
+@dataclass(frozen=True)
+class PhotoTask:
+    """One build: a photo, its annotation, and what is changed."""
+
+    name: str
+    path: Path
+    annotation: AnnotatedPhoto
+    """In pixels of the original file."""
+    intrinsics: tuple[float, float, float, float] | None = None
+    named: bool = True
+    """Whether boxes come with their plain words."""
+    perturbation: str = ""
+    """A name of `PERTURBATIONS`; none where empty."""
+    settings: Mapping[str, float] = field(default_factory=dict)
+    """Fields of the stages' settings that have other values, as `pipeline.settings` names them."""
+    cache: Path | None = None
+    """Folder for stage results."""
+    tile: Path | None = None
+    """Where the photo beside its scene is written."""
+
+    @property
+    def title(self) -> str:
+        """The photo with its perturbation."""
+        return _title(self.name, self.perturbation)
+
+    def key(self) -> str:
+        """Names the result: changes with the photo, the annotation, what is changed, and the code."""
+        picture = hashlib.sha256(self.path.read_bytes()).hexdigest()
+        changed = (self.named, self.perturbation, sorted(self.settings.items()), self.intrinsics)
+        text = f"{code_key(__name__)} {picture} {self.annotation.model_dump_json()} {changed}"
+        return hashlib.sha256(text.encode()).hexdigest()[:24]
+
+
+@dataclass(frozen=True)
+class PhotoResult:
+    """One photo."""
+
+    photo: str
+    objects: tuple[ObjectResult, ...]
+    ghosts: float | None = None
+    """Share of the floor's picture; None where the floor has no picture."""
+    ghosts_unmarked: float | None = None
+    """The same of floors made without half of what stands on them; None where the photo shows no floor."""
+    seconds: float = 0.0
+    """Processor time."""
+    failure: str = ""
+    perturbation: str = ""
+    key: str = ""
+    """`PhotoTask.key` of the build."""
+
+    @property
+    def title(self) -> str:
+        """The photo with its perturbation."""
+        return _title(self.photo, self.perturbation)
+
+
+def _title(photo: str, perturbation: str) -> str:
+    return f"{photo}, {perturbation}" if perturbation else photo
+
+
+def build_photo(task: PhotoTask, library: ShapeLibrary, progress: Progress | None = None) -> PhotoResult:
+    """Build and compare one photo; whatever goes wrong, it counts as failed and everything in it as wrong.
+
+    Raises:
+        Cancelled: on request.
+    """
+    begun = time.process_time()
+    key = task.key()
+    try:
+        case = annotated_inputs(task)
+        stages = with_settings(embedded_stages(case.inputs, library), task.settings)
+        built = build_scene(case.inputs, library, stages=stages, cache=task.cache, progress=progress)
+        spent = time.process_time() - begun
+        objects = _objects(task.name, case, built, library)
+        if task.tile is not None:
+            write_picture(task.tile, _tile(case, built, library))
+        ghosts = floor_ghosts(built), ghosts_unmarked(built)
+        return PhotoResult(task.name, objects, *ghosts, spent, "", task.perturbation, key)
+    except Cancelled:
+        raise
+    except Exception as error:  # whatever goes wrong, the photo counts as failed and the others go on
+        log.warning("%s failed: %s", task.title, error)
+        wrong = tuple(not_built(task.name, i, annotated) for i, annotated in enumerate(task.annotation.objects))
+        spent = time.process_time() - begun
+        return PhotoResult(
+            task.name, wrong, None, None, spent, f"{type(error).__name__}: {error}", task.perturbation, key
+        )
+
+
+def annotated_inputs(task: PhotoTask) -> AnnotatedInputs:
+    """What the build is given, with the annotation in the same pixels.
+
+    Raises:
+        InputError: the picture cannot be read, or is not of the annotated size.
+    """
+    stated = task.annotation
+    boxes = [{"bbox": o.bbox, "class": o.word if task.named else _UNNAMED} for o in stated.objects]
+    inputs = read_inputs(task.path, intrinsics=task.intrinsics, boxes=json.dumps(boxes).encode()).inputs
+    if inputs.photo.original_size != stated.size:
+        expected, found = ("{} x {}".format(*size) for size in (stated.size, inputs.photo.original_size))
+        raise InputError(f"{task.path}: the annotations are of a picture of {expected} pixels, this one has {found}")
+    size = (inputs.photo.width, inputs.photo.height)
+    case = AnnotatedInputs(inputs, stated.scaled(size), tuple(range(len(stated.objects))))
+    return perturbed(case, task.perturbation) if task.perturbation else case
+
+
+def _objects(name: str, case: AnnotatedInputs, built: Built, library: ShapeLibrary) -> tuple[ObjectResult, ...]:
+    """Objects are numbered by their mask ids in the order of the boxes, results as in the photo's own annotation."""
+    by_index = {o.mask_id - 1: o for o in built.scene.objects if o.mask_id is not None}
+    index_of = {item.id: index for index, item in by_index.items()}
+    furniture = {o.mask_id - 1 for o in built.objects}
+    shown = visible_colours(built.scene, library, built.textures)
+    in_light = {key: built.illuminant.lit(colour) for key, colour in shown.items()}
+    results = (
+        measured(name, i, annotated, by_index[i], built.scene, library, index_of, in_light.get(by_index[i].id))
+        if i in by_index
+        else not_built(name, i, annotated, opening=i not in furniture)
+        for i, annotated in enumerate(case.annotation.objects)
+    )
+    return tuple(replace(result, index=k) for k, result in zip(case.indices, results, strict=True))
+
+
+def _tile(case: AnnotatedInputs, built: Built, library: ShapeLibrary) -> UInt8[ndarray, "h w 3"]:
+    """The photo, its scene from the same place, and the scene from outside."""
+    photo = cv2.resize(case.inputs.photo.rgb, TILE_PX, interpolation=cv2.INTER_AREA)
+    for view in ("photo", "orbit:30"):
+        seen = picture(built.scene, library, view=view, size=TILE_PX, textures=built.textures)
+        photo = side_by_side(photo, seen, gap=4)
+    return photo

@@ -1,0 +1,159 @@
+"""Tables of annotated photos: all together, fronts by kind, form, folds, and the figures that perturbations change."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from diorama_core.evaluation.benchmarks.photo_build import PhotoResult
+from diorama_core.evaluation.metrics.annotated import ObjectResult
+from diorama_core.evaluation.reports.intervals import paired_interval, statistic_interval
+from diorama_core.evaluation.reports.tables import Column, Row, Table, Value
+
+Results = Sequence[PhotoResult]
+
+
+@dataclass(frozen=True)
+class Figure:
+    """One figure of some photos."""
+
+    column: Column
+    of: Callable[[Results], float | None]
+    """None where the annotations state nothing to compare with."""
+
+
+def _mean(values: Sequence[float | None]) -> float | None:
+    known = [v for v in values if v is not None]
+    return float(np.mean(known)) if known else None
+
+
+def _median(values: Sequence[float | None]) -> float | None:
+    known = [v for v in values if v is not None]
+    return float(np.median(known)) if known else None
+
+
+def _of_objects(
+    value: Callable[[ObjectResult], float | None], pooled: Callable[[Sequence[float | None]], float | None] = _mean
+) -> Callable[[Results], float | None]:
+    return lambda results: pooled([value(o) for r in results for o in r.objects])
+
+
+def _form(results: Results) -> float | None:
+    return _mean([right for r in results for o in r.objects for right in o.form.values()])
+
+
+def _of_photos(value: Callable[[PhotoResult], float | None]) -> Callable[[Results], float | None]:
+    return lambda results: _mean([value(r) for r in results if not r.failure])
+
+
+OF_OBJECTS = (
+    Figure(Column("kind first", better="↑"), _of_objects(lambda o: o.kind_first)),
+    Figure(Column("among", better="↑"), _of_objects(lambda o: o.kind_among)),
+    Figure(Column("loose", better="↑"), _of_objects(lambda o: o.kind_first if o.loose else None)),
+    Figure(Column("form", better="↑"), _form),
+    Figure(Column("colour", ".1f", "↓"), _of_objects(lambda o: o.colour_difference, _median)),
+    Figure(Column("no colour", better="↓"), _of_objects(lambda o: None if o.has_colour is None else not o.has_colour)),
+    Figure(Column("front", better="↑"), _of_objects(lambda o: o.front)),
+    Figure(Column("supporter", better="↑"), _of_objects(lambda o: o.supporter)),
+    Figure(Column("box IoU", better="↑"), _of_objects(lambda o: o.iou)),
+)
+OF_PHOTOS = (
+    Figure(Column("ghosts", better="↓"), _of_photos(lambda r: r.ghosts)),
+    Figure(Column("unmarked", better="↓"), _of_photos(lambda r: r.ghosts_unmarked)),
+    Figure(Column("time s", ".1f", "↓"), _of_photos(lambda r: r.seconds)),
+)
+FIGURES = (*OF_OBJECTS, *OF_PHOTOS)
+_OBJECTS = Column("objects", "d")
+_INTERVALS = "In brackets the 90 % interval (bootstrap over photos)."
+
+
+def overall_table(results: Results, *, named: bool, missing: Sequence[str] = ()) -> Table:
+    """All photos together, then every photo."""
+    spans = tuple(statistic_interval(results, figure.of) for figure in OF_OBJECTS)
+    rows = [
+        Row("all", _values(results), intervals=(None, *spans, *(None for _ in OF_PHOTOS))),
+        *(Row(r.photo, _values([r])) for r in results),
+    ]
+    notes = [f"not in the folder: {', '.join(missing)}"] if missing else []
+    notes += [f"{r.title} failed: {r.failure}" for r in results if r.failure]
+    note = f"{_INTERVALS} Photos that fail count as wrong. {'; '.join(notes)}"
+    columns = (_OBJECTS, *(figure.column for figure in FIGURES))
+    return Table(f"Annotated photos, {_words(named)}", columns, tuple(rows), note.strip())
+
+
+def fronts_table(results: Results) -> Table:
+    """Fronts by the true kind, the most frequent first."""
+    of: dict[str, list[bool]] = {}
+    for annotated in (o for r in results for o in r.objects):
+        if annotated.front is not None:
+            of.setdefault(annotated.kind, []).append(annotated.front)
+    kinds = sorted(of, key=lambda kind: (-len(of[kind]), kind))
+    rows = tuple(Row(kind, (len(of[kind]), _mean(of[kind]))) for kind in kinds)
+    return Table("Fronts by kind", (_OBJECTS, Column("front", better="↑")), rows, "Right within 45 degrees.")
+
+
+def form_table(results: Results) -> Table:
+    """The attributes of form."""
+    of: dict[str, list[bool]] = {}
+    for annotated in (o for r in results for o in r.objects):
+        for name, right in annotated.form.items():
+            of.setdefault(name, []).append(right)
+    rows = tuple(Row(name, (len(right), _mean(right))) for name, right in sorted(of.items()))
+    note = "Of objects whose annotation and whose chosen shape's design both state the attribute."
+    return Table("Form", (_OBJECTS, Column("right", better="↑")), rows, note)
+
+
+def folds_table(folds: Sequence[Results], *, fitted: bool) -> Table:
+    """The figures of each fold of photos, and their mean and spread."""
+    named = [(f"fold {k + 1}", _values(fold)) for k, fold in enumerate(folds)]
+    values = [[row[c] for _, row in named] for c in range(len(FIGURES) + 1)]
+    known = [[float(v) for v in column if isinstance(v, (int, float))] for column in values]
+    mean: tuple[Value, ...] = (round(float(np.mean(known[0]))), *(_mean(column) for column in known[1:]))
+    spread: tuple[Value, ...] = (None, *(float(np.std(c, ddof=1)) if len(c) > 1 else None for c in known[1:]))
+    rows = (*(Row(name, row) for name, row in named), Row("mean", mean), Row("spread", spread))
+    note = "Settings of each fold were fitted on the others." if fitted else "Every fold with the same settings."
+    columns = (_OBJECTS, *(figure.column for figure in FIGURES))
+    return Table("Folds of photos", columns, rows, f"{note} Spread: standard deviation over folds.")
+
+
+def perturbed_tables(plain: Results, perturbed: Mapping[str, Results]) -> tuple[Table, Table]:
+    """The figures under each perturbation, and their differences from the same objects in the photos as they are."""
+    columns = (_OBJECTS, *(figure.column for figure in OF_OBJECTS))
+    of_photo = {r.photo: r for r in plain}
+    rows, differences = [Row("as they are", _values(plain)[: len(columns)])], []
+    for name, results in perturbed.items():
+        pairs = [(_restricted(of_photo[r.photo], r), r) for r in results if r.photo in of_photo]
+        before, after = [a for a, _ in pairs], [b for _, b in pairs]
+        rows.append(Row(name, _values(after)[: len(columns)]))
+        changes = [_difference(figure.of(after), figure.of(before)) for figure in OF_OBJECTS]
+        spans = [paired_interval(before, after, figure.of) for figure in OF_OBJECTS]
+        differences.append(Row(name, (_count(after), *changes), intervals=(None, *spans)))
+    note = f"Perturbed less unperturbed, of the same objects. {_INTERVALS}"
+    return (
+        Table("Perturbed photos", columns, tuple(rows)),
+        Table("What perturbations change", columns, tuple(differences), note),
+    )
+
+
+def _restricted(plain: PhotoResult, perturbed: PhotoResult) -> PhotoResult:
+    """The plain result of the objects, and the attributes of them, that the perturbed one has too."""
+    places = {o.index for o in perturbed.objects}
+    return replace(plain, objects=tuple(o for o in plain.objects if o.index in places))
+
+
+def _values(results: Results) -> tuple[Value, ...]:
+    return (_count(results), *(figure.of(results) for figure in FIGURES))
+
+
+def _count(results: Results) -> int:
+    return sum(len(r.objects) for r in results)
+
+
+def _difference(after: float | None, before: float | None) -> float | None:
+    return None if after is None or before is None else after - before
+
+
+def _words(named: bool) -> str:
+    return "plain words" if named else "no words"

@@ -1,0 +1,50 @@
+"""Settings by name: the numbers of the stages are fields of frozen values, addressed as `layout.weights.outline`."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import fields, is_dataclass, replace
+from typing import Any, TypeVar
+
+from diorama_core.errors import InputError
+from diorama_core.pipeline.stages import Stages
+
+T = TypeVar("T")
+
+
+def settings_of(stages: Stages) -> dict[str, float]:
+    """Every number that a stage, or a value within it, has as a field; by name, in the order of the stages."""
+    return dict(_numbers(stages, ""))
+
+
+def with_settings(stages: Stages, values: Mapping[str, float]) -> Stages:
+    """The stages with other values in some fields; whole numbers stay whole.
+
+    Raises:
+        InputError: a name that is none of `settings_of`.
+    """
+    known = settings_of(stages)
+    for name in values:
+        if name not in known:
+            raise InputError(f"{name}: the stages have no such setting; there are {', '.join(known)}")
+    for name, value in values.items():
+        stages = _replaced(stages, name.split("."), value)
+    return stages
+
+
+def _numbers(value: Any, prefix: str) -> Iterator[tuple[str, float]]:
+    for f in fields(value):
+        held, name = getattr(value, f.name), f"{prefix}{f.name}"
+        if isinstance(held, (int, float)) and not isinstance(held, bool):
+            yield name, held
+        elif is_dataclass(held) and not isinstance(held, type):
+            yield from _numbers(held, f"{name}.")
+
+
+def _replaced(value: T, names: list[str], number: float) -> T:
+    held = getattr(value, names[0])
+    if len(names) > 1:
+        new: Any = _replaced(held, names[1:], number)
+    else:
+        new = round(number) if isinstance(held, int) else float(number)
+    return replace(value, **{names[0]: new})  # type: ignore[type-var]  # `_numbers` found it in a dataclass
