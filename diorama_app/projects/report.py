@@ -11,7 +11,10 @@ from diorama_core.errors import ProjectError
 from diorama_core.io.atomic import write_atomically
 from diorama_core.perception.foundation.proposals import JoinedDetection, OwnDetection, left_out
 from diorama_core.pipeline.arrangements import arrangement, arrangement_count
+from diorama_core.pipeline.plan import evaluate
 from diorama_core.pipeline.provenance_text import camera_sentence
+from diorama_core.pipeline.runner import Runner
+from diorama_core.pipeline.steps import LaidOut
 from diorama_core.progress import Progress
 from diorama_core.scene import edits
 from diorama_core.scene.schema import scene_to_json
@@ -25,7 +28,7 @@ def write_arrangements(room: Reconstruction, count: int, progress: Progress) -> 
     assert room.project is not None
     assert room.built is not None
     assert room.stages is not None
-    observed, layout, refinement = room.built.observed, room.stages.layout, room.stages.refinement
+    observed = room.built.observed
     similarity, names = EmbeddedSimilarity(room.library), ["scene.json"]
 
     def alike(a: str, b: str) -> float:
@@ -36,13 +39,12 @@ def write_arrangements(room: Reconstruction, count: int, progress: Progress) -> 
         if len(names) >= count:
             break
         other, whole = arrangement(observed, rank, alike), replace(progress, start=0.0, end=1.0)
-        arranged, report = layout.optimise(other, whole)
-        if refinement is not None:
-            arranged, report = refinement.refine(arranged, report, other, room.built.objects, whole)
-        if _overlaps(report) > _overlaps(room.layout):
+        known = {"observed": other, "furniture_objects": room.built.objects}
+        arranged: LaidOut = evaluate(room.stages, known, ("refined",), Runner(), whole)["refined"]
+        if arranged.report is None or _overlaps(arranged.report) > _overlaps(room.layout):
             continue  # these shapes have no room beside one another here; the next may
         name = f"arrangements/scene_{len(names) + 1}.json"
-        text = scene_to_json(edits.set_metrics(arranged, report.after))
+        text = scene_to_json(edits.set_metrics(arranged.scene, arranged.report.after))
         write_atomically(room.project.folder / name, text.encode(), error=ProjectError)
         names.append(name)
     return tuple(names)

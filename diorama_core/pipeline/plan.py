@@ -6,76 +6,58 @@ plan, each restricted to the artefacts it wants. An artefact that the caller giv
 
 from __future__ import annotations
 
-import logging
-from collections.abc import Callable, Iterable, Mapping
-from dataclasses import dataclass
+from collections.abc import Iterable, Sequence
+from concurrent.futures import Future, ThreadPoolExecutor
+from contextlib import ExitStack
+from functools import partial
 from typing import Any
 
 from diorama_core.architecture.before_walls import drawn_before_walls
 from diorama_core.architecture.mounting import snap_mounted_objects
 from diorama_core.architecture.walls.passages import without_openings
 from diorama_core.artefacts import Inputs
-from diorama_core.errors import UnavailableError
+from diorama_core.layout.backs_to_walls import with_backs_to_walls
+from diorama_core.layout.clear_shapes import clear_shapes
+from diorama_core.layout.fitted_boards import fitted_boards
+from diorama_core.layout.holding_shapes import holding_shapes
+from diorama_core.layout.support_check import checked_supports
+from diorama_core.layout.unmarked_supporters import left_where_seen, over_what_may_hold_them
 from diorama_core.perception.graph.apply import with_graph
 from diorama_core.perception.metrology.within_walls import measured_within_walls
+from diorama_core.pipeline.assemble import assemble
 from diorama_core.pipeline.findings import finding
+from diorama_core.pipeline.look_ahead import looking_ahead
 from diorama_core.pipeline.network_inputs import with_network_inputs
 from diorama_core.pipeline.runner import Runner
+from diorama_core.pipeline.scene_steps import (
+    appearance,
+    balanced_inputs,
+    dressed,
+    finished,
+    illuminant,
+    in_containing_room,
+    in_white_light,
+    laid_out,
+    object_colours,
+    on_floor,
+    plane_pictures,
+    position_noise,
+    refined,
+)
 from diorama_core.pipeline.stages import ProposalStages, Stages
+from diorama_core.pipeline.steps import (
+    Artefacts,
+    Corrected,
+    Correction,
+    Derivation,
+    LaidOut,
+    LayoutStep,
+    StageStep,
+    Step,
+)
 from diorama_core.progress import Progress
 from diorama_core.retrieval.seen_kinds import with_seen_kinds
 from diorama_core.retrieval.word_senses import with_word_senses
-
-log = logging.getLogger(__name__)
-
-Artefacts = Mapping[str, Any]
-"""Artefacts by the names that `PLAN` uses."""
-
-
-@dataclass(frozen=True)
-class StageStep:
-    """A method of one stage; its result is cached, and None where the optional stage is absent or not needed."""
-
-    name: str
-    """Field of `Stages`, name in progress reports and stem of the cached file."""
-    method: str
-    takes: tuple[str, ...]
-    gives: str
-    share: float
-    """Of the time that a build takes, roughly."""
-    needed: Callable[[Inputs], bool] = lambda given: True
-    """Whether it runs for what the user gave."""
-    dispensable: bool = False
-    """Whether the others go on without its result when it is not available."""
-
-    def evaluate(self, stages: Stages | ProposalStages, known: Artefacts, runner: Runner, progress: Progress) -> Any:
-        """The stage's result for the artefacts that are known."""
-        stage = getattr(stages, self.name)
-        if stage is None or not self.needed(known["given"]):
-            return None
-        artefacts = tuple(known[name] for name in self.takes)
-        try:
-            return runner.run(self.name, stage, getattr(stage, self.method), artefacts, progress)
-        except UnavailableError as error:
-            if not self.dispensable:
-                raise
-            runner.lost.append(f"{self.name}: left out ({error})")
-            log.warning("%s", runner.lost[-1])
-            return None
-
-
-@dataclass(frozen=True)
-class Derivation:
-    """A pure function between stages, too cheap to be cached."""
-
-    function: Callable[..., Any]
-    takes: tuple[str, ...]
-    gives: str
-    share: float = 0.0
-
-    def evaluate(self, stages: Stages | ProposalStages, known: Artefacts, runner: Runner, progress: Progress) -> Any:
-        """The function's value for the artefacts that are known."""
-        return self.function(*(known[name] for name in self.takes))
 
 
 def lacks_boxes(given: Inputs) -> bool:
@@ -88,7 +70,14 @@ def lacks_depth(given: Inputs) -> bool:
     return given.depth_m is None
 
 
-PLAN: tuple[StageStep | Derivation, ...] = (
+MAX_BESIDE = 2
+"""Threads for steps beside the others; there are two such steps."""
+LOOKS_AHEAD = "shapes"
+"""The artefact whose stage loads what it will need while earlier steps leave a processor idle."""
+DEFAULTS: Artefacts = {"preview": None}
+"""What a caller need not give."""
+
+PLAN: tuple[Step, ...] = (
     Derivation(lambda given: given.photo, ("given",), "photo"),
     Derivation(lambda given: given.intrinsics, ("given",), "given_intrinsics"),
     StageStep("recognition", "recognise", ("photo",), "words", 0.01, lacks_boxes, dispensable=True),
@@ -117,6 +106,67 @@ PLAN: tuple[StageStep | Derivation, ...] = (
     StageStep("depth", "depth", ("inputs", "furniture_objects", "geometry", "architecture"), "depth", 0.05),
     StageStep("retrieval", "retrieve", ("inputs", "furniture_objects", "geometry"), "shapes", 0.1),
     StageStep("pose", "pose", ("inputs", "furniture_objects", "geometry", "depth", "shapes"), "posed", 0.2),
+    # The room's and the objects' colours are those that white light would show.
+    Derivation(illuminant, ("inputs", "objects", "architecture", "geometry"), "illuminant"),
+    Derivation(balanced_inputs, ("inputs", "illuminant"), "balanced_inputs"),
+    Derivation(in_white_light, ("architecture", "illuminant"), "white_room"),
+    Derivation(object_colours, ("balanced_inputs", "furniture_objects", "posed"), "colours"),
+    Derivation(assemble, ("furniture_objects", "geometry", "white_room", "posed", "library", "colours"), "posed_scene"),
+    # Supports, shapes and the room come to agree with the objects. Heights reasoned from a photo alone do not tell
+    # boards from one another.
+    Derivation(position_noise, ("inputs",), "noise"),
+    Derivation(Corrected, ("posed_scene",), "uncorrected"),
+    Correction(
+        lambda scene, library, noise: over_what_may_hold_them(scene, library),
+        ("uncorrected", "library", "noise"),
+        "over_supporters",
+        measured=True,
+    ),
+    Correction(holding_shapes, ("over_supporters", "library", "noise"), "in_holding_shapes", measured=True),
+    Correction(
+        partial(checked_supports, shapes_clear=False),
+        ("in_holding_shapes", "library", "noise"),
+        "on_measured_supports",
+        measured=True,
+    ),
+    Correction(clear_shapes, ("on_measured_supports", "library", "noise"), "in_clear_shapes", measured=True),
+    Correction(checked_supports, ("in_clear_shapes", "library", "noise"), "on_checked_supports"),
+    Correction(
+        lambda scene, library, noise: with_backs_to_walls(scene, noise),
+        ("on_checked_supports", "library", "noise"),
+        "at_walls",
+        measured=False,
+    ),
+    Correction(
+        lambda scene, library, noise: fitted_boards(scene, library, reasoned=not noise.measured),
+        ("at_walls", "library", "noise"),
+        "on_fitted_boards",
+    ),
+    Correction(left_where_seen, ("on_fitted_boards", "library", "noise"), "on_near_supports"),
+    Correction(in_containing_room, ("on_near_supports", "library", "noise", "geometry"), "corrected"),
+    Derivation(lambda corrected: corrected.scene, ("corrected",), "observed"),
+    # What things look like is all the same to the layout.
+    Derivation(
+        appearance,
+        ("balanced_inputs", "furniture_objects", "observed", "library", "illuminant"),
+        "appearance",
+        beside=True,
+    ),
+    Derivation(on_floor, ("white_room",), "standing"),
+    Derivation(lambda stages: stages.filler, ("stages",), "filler"),
+    Derivation(
+        plane_pictures,
+        ("balanced_inputs", "objects", "geometry", "observed", "filler", "standing"),
+        "plane_pictures",
+        beside=True,
+    ),
+    Derivation(LaidOut, ("observed",), "not_laid_out"),
+    LayoutStep("layout", laid_out, ("not_laid_out", "preview"), "laid_out", 0.08),
+    LayoutStep("refinement", refined, ("laid_out", "observed", "furniture_objects"), "refined", 0.06),
+    Derivation(finished, ("refined", "appearance", "plane_pictures", "white_room", "inputs"), "finished"),
+    Derivation(lambda finished: finished.scene, ("finished",), "scene"),
+    Derivation(lambda finished: finished.textures, ("finished",), "textures"),
+    Derivation(dressed, ("observed", "appearance", "plane_pictures"), "dressed_observed"),
 )
 
 
@@ -142,24 +192,41 @@ def evaluate(
         KeyError: an artefact is wanted that no step gives.
     """
     progress = progress or Progress()
-    steps = _steps_for(set(wanted), given)
+    known: dict[str, Any] = {**DEFAULTS, "stages": stages, **given}
+    steps = _steps_for(set(wanted), known)
     whole = sum(step.share for step in steps) or 1.0
-    known, done = dict(given), 0.0
-    for step in steps:
-        part = progress.part(done / whole, (done + step.share) / whole)
-        known[step.gives] = step.evaluate(stages, known, runner, part)
-        part.found(finding(step.gives, known[step.gives]))
-        done += step.share
+    done, begun = 0.0, dict[str, Future[Any]]()
+    with _looking_ahead(stages, steps, known) as ahead, ThreadPoolExecutor(MAX_BESIDE) as threads:
+        for step in steps:
+            known |= {name: begun.pop(name).result() for name in step.takes if name in begun}
+            part = progress.part(done / whole, (done + step.share) / whole)
+            done += step.share
+            if step.beside:
+                begun[step.gives] = threads.submit(step.evaluate, stages, dict(known), runner, part)
+                continue
+            if step.gives == LOOKS_AHEAD:
+                ahead.close()
+            known[step.gives] = step.evaluate(stages, known, runner, part)
+            part.found(finding(step.gives, known[step.gives]))
+        known |= {name: future.result() for name, future in begun.items()}
     return known
 
 
-def _steps_for(wanted: set[str], given: Artefacts) -> list[StageStep | Derivation]:
+def _looking_ahead(stages: Stages | ProposalStages, steps: Sequence[Step], known: Artefacts) -> ExitStack:
+    """While it lasts, what retrieval will need is loaded; nothing where retrieval is not among the later steps."""
+    stack = ExitStack()
+    if isinstance(stages, Stages) and any(step.gives == LOOKS_AHEAD for step in steps[1:]):
+        stack.enter_context(looking_ahead(stages.retrieval, known["given"].boxes))
+    return stack
+
+
+def _steps_for(wanted: set[str], known: Artefacts) -> list[Step]:
     """The steps that lead to the wanted artefacts, in the plan's order."""
-    missing = wanted - given.keys()
-    steps: list[StageStep | Derivation] = []
+    missing = wanted - known.keys()
+    steps: list[Step] = []
     for step in reversed(PLAN):
         if step.gives in missing:
-            missing = (missing - {step.gives}) | (set(step.takes) - given.keys())
+            missing = (missing - {step.gives}) | (set(step.takes) - known.keys())
             steps.append(step)
     if missing:
         raise KeyError(f"no step gives {', '.join(sorted(missing))}")

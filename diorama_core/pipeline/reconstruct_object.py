@@ -13,23 +13,21 @@ from pathlib import Path
 import numpy as np
 from jaxtyping import Bool, Float, UInt8
 
-from diorama_core.appearance.photo_appearance import photo_appearance
 from diorama_core.artefacts import DetectedObject, Inputs, LabelledBox, ObjectGeometry, PosedCandidates
 from diorama_core.errors import InputError
 from diorama_core.library.record import ShapeLibrary
-from diorama_core.pipeline.colours import photo_colours, room_illuminant
 from diorama_core.pipeline.fallback import with_usable_networks
-from diorama_core.pipeline.plan import Artefacts, evaluate
+from diorama_core.pipeline.plan import evaluate
 from diorama_core.pipeline.presets import stages_for
 from diorama_core.pipeline.runner import Runner
 from diorama_core.pipeline.stages import Stages
+from diorama_core.pipeline.steps import Artefacts
 from diorama_core.progress import Progress
 from diorama_core.protocols import ObjectStage
 from diorama_core.retrieval.seen_kinds import with_seen_kinds
 from diorama_core.retrieval.word_senses import with_word_senses
 from diorama_core.scene.types import (
     Camera,
-    Candidate,
     Plane,
     PlaneRole,
     Pose,
@@ -134,12 +132,12 @@ def _reconstructed(
         built = evaluate(stages, photo, ("posed",), runner, progress.part(0.5, 1.0))
         candidates = next((p for p in built["posed"] if p.object_id == object_id and p.candidates), None)
         if candidates is not None:
-            return _found(scene, library, known, built, candidates, as_built=True)
+            return _found(stages, scene, library, known, built, candidates, as_built=True)
     detected = _segmented(stages.objects, photo["inputs"], box, mask, object_id, progress.part(0.5, 0.6))
     found, posed = _posed_alone(stages, photo, detected, progress.part(0.6, 1.0))
     if posed is None:
         raise InputError(f"nothing in the library is like a {box.label}; call it something plainer")
-    return _found(scene, library, detected, found, posed, as_built=False)
+    return _found(stages, scene, library, detected, found, posed, as_built=False)
 
 
 def _says(known: DetectedObject, box: LabelledBox, mask: Bool[np.ndarray, "h w"] | None) -> bool:
@@ -187,6 +185,7 @@ def _posed_alone(
 
 
 def _found(
+    stages: Stages,
     scene: Scene,
     library: ShapeLibrary,
     detected: DetectedObject,
@@ -200,30 +199,21 @@ def _found(
     floor = scene.architecture.floor
     level = 0.0 if floor is None else float(floor.polygon[:, 2].mean())
     to_scene = _Similarity.between(geometry.camera, scene.camera, level)
-    here: tuple[Candidate, ...] = tuple(replace(c, pose=to_scene.pose(c.pose)) for c in posed.candidates)
-    best = here[0]
-    room = photo["architecture"].architecture
-    illuminant = room_illuminant(photo["inputs"], photo["objects"], room, geometry.camera)
-    balanced = illuminant.balanced(photo["inputs"].photo.rgb)
-    category = detected.category if detected.category != "object" else library.shape(best.shape_id).category
-    item = SceneObject(
-        id=detected.id,
-        label=detected.label,
-        category=category,
-        shape_id=best.shape_id,
-        shape_size_m=best.shape_size_m,
-        pose=best.pose,
-        candidates=here,
-        box_px=detected.box,
-        confidence=posed.confidence,
-        colour=photo_colours(balanced, (detected,)).get(detected.id),
-    )
+    here = tuple(replace(c, pose=to_scene.pose(c.pose)) for c in posed.candidates)
+    alone = {
+        **{name: photo[name] for name in ("inputs", "objects", "architecture", "geometry")},
+        "library": library,
+        "furniture_objects": (detected,),
+        "posed": (replace(posed, candidates=here),),
+    }
+    one = evaluate(stages, alone, ("posed_scene",), Runner(None))
+    item: SceneObject = replace(one["posed_scene"].objects[0], mask_id=None)
     parent = next((s.parent for s in geometry.supports if s.child == detected.id), "floor")
-    alone = Scene(camera=scene.camera, objects=(item,))
     objects = (detected, *(o for o in photo["objects"] if o.id != detected.id))
-    appearance = photo_appearance(balanced, objects, alone, library, illuminant.rgb)
-    item = appearance.applied(alone).objects[0]
-    return Found(item, _edge(scene, item, parent), detected, appearance.pictures, as_built)
+    shown = {**one, "furniture_objects": objects, "observed": Scene(camera=scene.camera, objects=(item,))}
+    look = evaluate(stages, shown, ("appearance",), Runner(None))["appearance"]
+    item = look.applied(shown["observed"]).objects[0]
+    return Found(item, _edge(scene, item, parent), detected, look.pictures, as_built)
 
 
 def _edge(scene: Scene, item: SceneObject, parent: str) -> Support | None:

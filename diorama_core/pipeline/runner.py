@@ -53,7 +53,14 @@ class Runner:
     _fingerprints: dict[int, tuple[Any, str]] = field(default_factory=dict)
 
     def run(
-        self, name: str, stage: object, call: Callable[..., T], artefacts: tuple[Any, ...], progress: Progress
+        self,
+        name: str,
+        stage: object,
+        call: Callable[..., T],
+        artefacts: tuple[Any, ...],
+        progress: Progress,
+        *,
+        saved: bool = True,
     ) -> T:
         """`call(*artefacts, progress)`, or its saved result.
 
@@ -63,12 +70,13 @@ class Runner:
             call: the bound stage method.
             artefacts: everything the result depends on.
             progress: this stage's part of the job; checked for cancellation before it starts.
+            saved: whether its result is saved, and may be a saved one.
         """
         started = time.perf_counter()
         progress.report(0.0, f"{name}…")
         path = (
             None
-            if self.folder is None
+            if self.folder is None or not saved
             else self.folder / f"{name.replace(' ', '_')}-{self._key(name, stage, artefacts)}.zip"
         )
         result = _read(path, get_type_hints(call).get("return", Any))

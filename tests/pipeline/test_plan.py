@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from pathlib import Path
+from threading import Event
+from typing import Any
 
 import numpy as np
 import pytest
@@ -12,12 +14,14 @@ import pytest
 from diorama_core.artefacts import Inputs, LabelledBox
 from diorama_core.editing.reconstructed import replaced
 from diorama_core.geometry.planes import plane_rectangle
-from diorama_core.pipeline.plan import PLAN, StageStep, evaluate
+from diorama_core.pipeline import plan
+from diorama_core.pipeline.plan import DEFAULTS, PLAN, evaluate
 from diorama_core.pipeline.presets import stages_for
 from diorama_core.pipeline.reconstruct_object import reconstruct_object
 from diorama_core.pipeline.run import Built
 from diorama_core.pipeline.runner import Runner
 from diorama_core.pipeline.stages import Stages, embedded_stages
+from diorama_core.pipeline.steps import Derivation, LayoutStep, StageStep
 from diorama_core.progress import Progress
 from diorama_core.project.build import build_project
 from diorama_core.project.storage import Project
@@ -130,7 +134,8 @@ def test_only_the_steps_that_lead_to_what_is_wanted_run() -> None:
     inputs, calls = room_inputs(depth=False), list[str]()
     plain = embedded_stages(inputs, LIBRARY)
     counted = {s.name: getattr(plain, s.name) for s in PLAN if isinstance(s, StageStep)}
-    stages = replace(plain, **{n: Counting(stage, calls) for n, stage in counted.items() if stage is not None})
+    counting: dict[str, Any] = {n: Counting(stage, calls) for n, stage in counted.items() if stage is not None}
+    stages = replace(plain, **counting)
     known = evaluate(stages, {"given": inputs}, ("outlined_objects",), Runner(None), Progress())
     assert calls == ["segment"]
     evaluate(stages, known, ("supported_geometry",), Runner(None), Progress())
@@ -144,10 +149,48 @@ def test_an_unknown_artefact_is_named() -> None:
 
 
 def test_every_step_takes_what_an_earlier_one_gives() -> None:
-    known = {"given"}
+    known = {"given", "library", "stages", *DEFAULTS}
     for step in PLAN:
         assert set(step.takes) <= known, step
         assert step.gives not in known
         known.add(step.gives)
     fields = set(Stages.__dataclass_fields__)
-    assert {s.name for s in PLAN if isinstance(s, StageStep)} == fields - {"layout", "refinement", "filler"}
+    assert {s.name for s in PLAN if isinstance(s, StageStep | LayoutStep)} == fields - {"filler"}
+
+
+def test_a_step_beside_the_others_is_waited_for_where_it_is_needed() -> None:
+    inputs, free, order = room_inputs(depth=False), Event(), list[str]()
+
+    def slow(stages: Stages) -> str:
+        order.append("slow begun")
+        assert free.wait(60.0), "the step after it waited for it"
+        order.append("slow done")
+        return "slow"
+
+    def other(stages: Stages) -> str:
+        free.set()
+        return "other"
+
+    def both(one: str, two: str) -> str:
+        order.append("both known")
+        return one + two
+
+    steps = (
+        Derivation(slow, ("stages",), "slow", beside=True),
+        Derivation(other, ("stages",), "other"),
+        Derivation(both, ("slow", "other"), "both"),
+    )
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(plan, "PLAN", steps)
+        found = evaluate(embedded_stages(inputs, LIBRARY), {"given": inputs}, ("both",), Runner(None))
+    assert found["both"] == "slowother"
+    assert order == ["slow begun", "slow done", "both known"]
+
+
+def test_the_plan_ends_at_the_scene_that_a_build_gives(room: Room) -> None:
+    built = room.built
+    assert built.stages is not None
+    given = {"given": room.inputs, "library": LIBRARY}
+    found = evaluate(built.stages, given, ("scene", "textures"), Runner(room.project.stages_folder))
+    assert scene_to_json(found["scene"]) == scene_to_json(built.scene)
+    assert found["textures"].keys() == built.textures.keys()

@@ -19,15 +19,13 @@ import numpy as np
 import trimesh
 from jaxtyping import Bool, Float, UInt8
 
-from diorama_core.appearance.photo_appearance import photo_appearance
-from diorama_core.artefacts import PosedCandidates
+from diorama_core.appearance.photo_appearance import PhotoAppearance
 from diorama_core.errors import Cancelled
 from diorama_core.evaluation.benchmarks.cases import attempted, recipe
 from diorama_core.evaluation.benchmarks.pose_comparison import (
     ESTIMATED_DEPTH,
     REMOVED,
     TRUE_DEPTH,
-    Seen,
     inputs_with,
     predict,
     shapes_of,
@@ -40,8 +38,6 @@ from diorama_core.geometry.silhouette import PoseBatch, ShapeCaster
 from diorama_core.geometry.window import Window
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.library.stretch import relative_scale, stretched_parts
-from diorama_core.pipeline.assemble import assemble
-from diorama_core.pipeline.colours import photo_colours, room_illuminant, shared_by_sets
 from diorama_core.pose import MadeToMeasure, RenderAndCompare
 from diorama_core.progress import Progress
 from diorama_core.render.picture import instances_seen, picture
@@ -192,10 +188,11 @@ def _one_room(
     start = time.process_time()
     made = fit.fitted(posed, seen.inputs, seen.objects, seen.geometry, seen.depth, Progress())
     made_s = time.process_time() - start
-    before, after = _coloured(seen, posed, library), _coloured(seen, made, library)
-    balanced, light_rgb = _balanced(seen)
+    fitted, known = (seen.evaluated(("posed_scene",), posed=p, library=library) for p in (posed, made))
+    before, after, balanced = fitted["posed_scene"], known["posed_scene"], known["balanced_inputs"].photo.rgb
+    dressing = replace(seen, known={**known, "observed": after})
     start = time.process_time()
-    look = photo_appearance(balanced, seen.objects, after, library, light_rgb)
+    look: PhotoAppearance = dressing.evaluated(("appearance",))["appearance"]
     materials_s = time.process_time() - start
     after = look.applied(after)
     flat = picture(replace(before, light=after.light), library, size=SIZE)
@@ -216,19 +213,6 @@ def _one_room(
     true_light = main_light(room_light(view.scene), np.array([view.scene.objects[k].pose.position for k in view.asked]))
     off_deg = light_error_deg(true_light, view.camera, look.light, seen.geometry.camera)
     return found, (made_s, materials_s, len(seen.objects)), off_deg
-
-
-def _balanced(seen: Seen) -> tuple[Picture, tuple[float, float, float]]:
-    """The photo in white light, and the colour of its light."""
-    illuminant = room_illuminant(seen.inputs, seen.objects, seen.room.architecture, seen.geometry.camera)
-    return illuminant.balanced(seen.inputs.photo.rgb), illuminant.rgb
-
-
-def _coloured(seen: Seen, posed: tuple[PosedCandidates, ...], library: ShapeLibrary) -> Scene:
-    """The scene in flat colours: that of each object's pixels on its main material."""
-    shapes = {p.object_id: p.candidates[0].shape_id for p in posed if p.candidates}
-    colours = shared_by_sets(photo_colours(_balanced(seen)[0], seen.objects), seen.objects, shapes)
-    return assemble(seen.objects, seen.geometry, seen.room, posed, library, colours)
 
 
 def _measured(

@@ -7,12 +7,13 @@ of a table is the solver alone.
 from __future__ import annotations
 
 import hashlib
+from collections.abc import Iterable
 from dataclasses import dataclass, field, replace
+from typing import Any, cast
 
 import numpy as np
 
 from diorama_core.artefacts import (
-    ArchitectureEstimate,
     DepthMap,
     DetectedObject,
     Inputs,
@@ -23,10 +24,10 @@ from diorama_core.artefacts import (
 from diorama_core.evaluation.metrics.pose import Alignment, object_alignment, scene_alignment
 from diorama_core.evaluation.metrics.scene import as_placed, in_true_world, matched, relation_accuracy, structure_of
 from diorama_core.library.record import ShapeLibrary
-from diorama_core.pipeline.assemble import assemble
 from diorama_core.pipeline.plan import evaluate
 from diorama_core.pipeline.runner import Runner
-from diorama_core.pipeline.stages import embedded_stages
+from diorama_core.pipeline.stages import Stages, embedded_stages
+from diorama_core.pipeline.steps import Artefacts
 from diorama_core.pose import RenderAndCompare
 from diorama_core.pose.correspondence.solvers import HALF_GRID, CorrespondencePose, Kind
 from diorama_core.progress import Progress
@@ -113,15 +114,38 @@ def pose_scores(view: TruthView, scene: Scene | None, library: ShapeLibrary) -> 
 class Seen:
     """What a pose stage is given of one picture, with the room that its poses are put into."""
 
-    inputs: Inputs
-    objects: tuple[DetectedObject, ...]
-    geometry: ObjectGeometry
-    room: ArchitectureEstimate
-    depth: DepthMap
+    stages: Stages
+    known: Artefacts
+    """What was found so far, by the names of the pipeline's plan."""
+
+    @property
+    def inputs(self) -> Inputs:
+        """What was given."""
+        return cast(Inputs, self.known["inputs"])
+
+    @property
+    def objects(self) -> tuple[DetectedObject, ...]:
+        """What was outlined."""
+        return cast(tuple[DetectedObject, ...], self.known["furniture_objects"])
+
+    @property
+    def geometry(self) -> ObjectGeometry:
+        """The objects' cuboids, and the camera."""
+        return cast(ObjectGeometry, self.known["geometry"])
+
+    @property
+    def depth(self) -> DepthMap:
+        """Depth of the photo."""
+        return cast(DepthMap, self.known["depth"])
 
     def scene(self, posed: tuple[PosedCandidates, ...], library: ShapeLibrary) -> Scene:
-        """The scene before any layout."""
-        return assemble(self.objects, self.geometry, self.room, posed, library, {})
+        """The scene before any layout, without colours."""
+        uncoloured = {"white_room": self.known["architecture"], "colours": {}}
+        return cast(Scene, self.evaluated(("posed_scene",), posed=posed, library=library, **uncoloured)["posed_scene"])
+
+    def evaluated(self, wanted: Iterable[str], **given: Any) -> Artefacts:
+        """What follows from this and what is given besides, by the pipeline's plan."""
+        return evaluate(self.stages, {**self.known, **given}, wanted, Runner(None))
 
 
 def predict(inputs: Inputs, library: ShapeLibrary) -> Seen:
@@ -130,8 +154,8 @@ def predict(inputs: Inputs, library: ShapeLibrary) -> Seen:
     Raises:
         DioramaError: with the reason, when a stage cannot do its work.
     """
-    found = evaluate(embedded_stages(inputs, library), {"given": inputs}, ("depth",), Runner(None))
-    return Seen(found["inputs"], found["furniture_objects"], found["geometry"], found["architecture"], found["depth"])
+    stages = embedded_stages(inputs, library)
+    return Seen(stages, evaluate(stages, {"given": inputs}, ("depth",), Runner(None)))
 
 
 def inputs_with(view: TruthView, depth: str) -> Inputs:

@@ -1,0 +1,168 @@
+"""Functions of the plan's last steps: from posed candidates to the finished scene."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from jaxtyping import UInt8
+
+from diorama_core.appearance.photo_appearance import PhotoAppearance, photo_appearance
+from diorama_core.architecture.room_extent import containing_room, without_floor_behind_walls
+from diorama_core.architecture.texture.empty_room import EmptyRoomFiller
+from diorama_core.architecture.texture.plane_textures import plane_textures
+from diorama_core.architecture.texture.refit import refitted_textures
+from diorama_core.artefacts import ArchitectureEstimate, DetectedObject, Inputs, ObjectGeometry, PosedCandidates
+from diorama_core.layout.noise import MEASURED, REASONED, ObservationNoise
+from diorama_core.library.record import ShapeLibrary
+from diorama_core.perception.illuminant import Illuminant
+from diorama_core.pipeline.colours import photo_colours, room_illuminant, shared_by_sets
+from diorama_core.pipeline.steps import LaidOut
+from diorama_core.processes import there
+from diorama_core.progress import Progress
+from diorama_core.protocols import LayoutStage, Preview, RefinementStage
+from diorama_core.scene.edits import set_metrics
+from diorama_core.scene.room_edits import floor_height, rescale_to_length
+from diorama_core.scene.types import Scene
+
+Pictures = Mapping[str, UInt8[np.ndarray, "_ _ 3"]]
+
+
+@dataclass(frozen=True)
+class FinishedScene:
+    """The scene and the pictures of its planes and materials, by name."""
+
+    scene: Scene
+    textures: Pictures
+
+
+def illuminant(
+    inputs: Inputs, objects: tuple[DetectedObject, ...], room: ArchitectureEstimate, geometry: ObjectGeometry
+) -> Illuminant:
+    """The photo's light, by the planes of the room."""
+    return room_illuminant(inputs, objects, room.architecture, geometry.camera)
+
+
+def balanced_inputs(inputs: Inputs, light: Illuminant) -> Inputs:
+    """The inputs with the photo as white light would have it."""
+    return replace(inputs, photo=replace(inputs.photo, rgb=light.balanced(inputs.photo.rgb)))
+
+
+def in_white_light(room: ArchitectureEstimate, light: Illuminant) -> ArchitectureEstimate:
+    """The room in the colours that it would have in white light."""
+    coloured = [(plane, light.albedo(np.array(plane.colour))) for plane in room.architecture.planes]
+    planes = tuple(replace(p, colour=(float(c[0]), float(c[1]), float(c[2]))) for p, c in coloured)
+    return replace(room, architecture=replace(room.architecture, planes=planes))
+
+
+def object_colours(
+    balanced: Inputs, objects: tuple[DetectedObject, ...], posed: Sequence[PosedCandidates]
+) -> dict[str, tuple[float, float, float]]:
+    """The colours of objects in the photo in white light, shared by sets, by object id."""
+    shape_of = {p.object_id: p.candidates[0].shape_id for p in posed if p.candidates}
+    return shared_by_sets(photo_colours(balanced.photo.rgb, objects), objects, shape_of)
+
+
+def position_noise(inputs: Inputs) -> ObservationNoise:
+    """How far observed positions can be trusted."""
+    return REASONED if inputs.depth_m is None else MEASURED
+
+
+def in_containing_room(scene: Scene, library: ShapeLibrary, noise: ObservationNoise, geometry: ObjectGeometry) -> Scene:
+    """The scene in a room around all of its objects.
+
+    Args:
+        scene: before its layout.
+        library: where shapes come from.
+        noise: of the observed positions.
+        geometry: says whose lower ends the photo shows.
+    """
+    feet_seen = frozenset(c.object_id for c in geometry.cuboids if c.foot_seen)
+    return containing_room(scene, reasoned=not noise.measured, feet_seen=feet_seen)
+
+
+def on_floor(room: ArchitectureEstimate) -> frozenset[str]:
+    """Ids of the objects that the room's estimate puts on a floor."""
+    floors = {p.id for p in room.architecture.by_role("floor")}
+    return frozenset(edge.child for edge in room.supports if edge.parent in floors)
+
+
+def appearance(
+    balanced: Inputs, objects: tuple[DetectedObject, ...], scene: Scene, library: ShapeLibrary, light: Illuminant
+) -> PhotoAppearance:
+    """What the photo shows of the objects, from a process beside this one where there is one."""
+    return there(photo_appearance, balanced.photo.rgb, objects, scene, library, light.rgb)
+
+
+def plane_pictures(
+    balanced: Inputs,
+    objects: tuple[DetectedObject, ...],
+    geometry: ObjectGeometry,
+    scene: Scene,
+    filler: EmptyRoomFiller | None,
+    standing: frozenset[str],
+) -> Pictures:
+    """The pictures of floor, walls and ceiling that are seen well enough, by plane id.
+
+    Args:
+        balanced: the photo in white light.
+        objects: what hides the room.
+        geometry: has the photo's camera.
+        scene: before its layout.
+        filler: paints what stands in the room out of the photo, where there is one.
+        standing: ids of the objects on the floor.
+    """
+    return plane_textures(balanced, objects, geometry.camera, scene.architecture, filler, standing)
+
+
+def laid_out(stage: LayoutStage, observed: LaidOut, preview: Preview | None, progress: Progress) -> LaidOut:
+    """The scene after the layout optimiser."""
+    return LaidOut(*stage.optimise(observed.scene, progress, preview))
+
+
+def refined(
+    stage: RefinementStage,
+    arranged: LaidOut,
+    observed: Scene,
+    objects: Sequence[DetectedObject],
+    progress: Progress,
+) -> LaidOut:
+    """The layout fitted to the photo's masks."""
+    assert arranged.report is not None
+    return LaidOut(*stage.refine(arranged.scene, arranged.report, observed, objects, progress))
+
+
+def dressed(scene: Scene, look: PhotoAppearance, of_planes: Pictures) -> Scene:
+    """The scene with the photo's materials, whose planes show the pictures that there are, by plane id."""
+    scene = look.applied(scene)
+    planes = tuple(replace(p, texture=p.id if p.id in of_planes else None) for p in scene.architecture.planes)
+    return replace(scene, architecture=replace(scene.architecture, planes=planes))
+
+
+def finished(
+    refined: LaidOut, look: PhotoAppearance, of_planes: Pictures, room: ArchitectureEstimate, inputs: Inputs
+) -> FinishedScene:
+    """The scene as a person gets it: measured, in the photo's materials, its floor trimmed, in the given scale.
+
+    Args:
+        refined: after its layout.
+        look: what the photo shows of the objects.
+        of_planes: the pictures of planes, by plane id.
+        room: before it was drawn out around the objects.
+        inputs: may give the camera's height.
+    """
+    scene = refined.scene if refined.report is None else set_metrics(refined.scene, refined.report.after)
+    scene, textures = dressed(scene, look, of_planes), dict(of_planes)
+    if room.architecture.floor is not None:
+        trimmed = without_floor_behind_walls(scene, room.architecture.floor)
+        scene, cut = refitted_textures(scene, trimmed, textures)
+        textures |= cut
+    return FinishedScene(_at_given_height(scene, inputs.camera_height_m), textures | dict(look.pictures))
+
+
+def _at_given_height(scene: Scene, camera_height_m: float | None) -> Scene:
+    """The scene in the scale that a person gave."""
+    if camera_height_m is None or scene.camera is None:
+        return scene
+    return rescale_to_length(scene, float(scene.camera.position[2]) - floor_height(scene), camera_height_m)
