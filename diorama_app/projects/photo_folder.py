@@ -14,7 +14,7 @@ from pathlib import Path
 from diorama_app.projects.options import BuildOptions, PhotoFiles
 from diorama_core.errors import InputError
 from diorama_core.io.bounded import read_json, shortened
-from diorama_core.pipeline.runner import CODE_VERSION
+from diorama_core.io.code_key import code_key
 
 PHOTOS = frozenset((".jpg", ".jpeg", ".png", ".webp", ".avif", ".bmp", ".tif", ".tiff", ".gif", ".ppm", ".jp2"))
 SIDE_FILES = {
@@ -23,6 +23,8 @@ SIDE_FILES = {
     "depth": (".depth.png", ".depth.npy", ".depth.exr"),
     "camera": (".camera.json",),
 }
+_BUILDERS = ("diorama_core.pipeline.presets", "diorama_core.pipeline.run")
+"""Modules that choose and run the stages of a build."""
 MAX_CAMERA_BYTES = 100_000
 MAX_NUMBER = 1e9
 """Of pixels or degrees."""
@@ -56,7 +58,7 @@ class FolderPhoto:
         Raises:
             InputError: a file cannot be read.
         """
-        content = hashlib.sha256(f"{CODE_VERSION} {options!r}".encode())
+        content = hashlib.sha256(f"{code_key(*_BUILDERS)} {options!r}".encode())
         try:
             for kind, path in (("photo", self.photo), *self.side_files):
                 with path.open("rb") as stream:

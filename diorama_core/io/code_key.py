@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import hashlib
 import re
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from functools import cache
 from pathlib import Path
 
@@ -19,16 +19,12 @@ _IMPORT = re.compile(rf"(?:from ({PACKAGE}[.\w]*) import (?:\(([^)]*)\)|([^\n#]*
 _NAME = re.compile(r"\w+")
 
 
-@cache
-def code_key(module: str) -> str:
-    """A hash of the source of a module and of all that it imports, the same in every process.
+def code_key(*modules: str) -> str:
+    """A hash of the source of modules and of all that they import, the same in every process.
 
     A module outside of the package is named by itself: its source is not this package's to follow.
     """
-    sources = package_sources()
-    used = sources.closure(module)
-    texts = (f"{name} {sources.digest(name)}" for name in sorted(used))
-    return hashlib.sha256("\n".join((module, *texts)).encode()).hexdigest()[:24]
+    return package_sources().key(modules)
 
 
 @cache
@@ -49,10 +45,19 @@ class Sources:
         self._files: dict[str, Path | None] = {}
         self._texts: dict[str, str] = {}
         self._imports: dict[str, frozenset[str]] = {}
+        self._keys: dict[tuple[str, ...], str] = {}
 
-    def closure(self, module: str) -> frozenset[str]:
-        """The module and all modules that it imports, directly or not; none where it is not of the package."""
-        found, waiting = set[str](), [module]
+    def key(self, modules: Iterable[str]) -> str:
+        """A hash of the source of modules and of all that they import."""
+        named = tuple(sorted(set(modules)))
+        if named not in self._keys:
+            texts = (f"{name} {self.digest(name)}" for name in sorted(self.closure(*named)))
+            self._keys[named] = hashlib.sha256("\n".join((*named, *texts)).encode()).hexdigest()[:24]
+        return self._keys[named]
+
+    def closure(self, *modules: str) -> frozenset[str]:
+        """The modules and all modules that they import, directly or not; those elsewhere are left out."""
+        found, waiting = set[str](), list(modules)
         while waiting:
             name = waiting.pop()
             if name not in found and not name.startswith(SHAPES) and self._file(name) is not None:

@@ -1,4 +1,4 @@
-"""Runs stages: each result is cached under the hash of its inputs, settings and weights.
+"""Runs stages: each result is cached under the hash of its inputs, settings, weights and source.
 
 A run that was cancelled or killed leaves the finished stages' files, so the next run resumes after them.
 Correcting one artefact re-runs only what is downstream, because only those keys change.
@@ -7,25 +7,25 @@ Correcting one artefact re-runs only what is downstream, because only those keys
 from __future__ import annotations
 
 import hashlib
+import inspect
 import logging
 import os
 import time
-from collections.abc import Callable
-from dataclasses import dataclass, field
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, field, is_dataclass
 from pathlib import Path
 from typing import Any, TypeVar, get_type_hints
 
 from diorama_core.errors import ProjectError
 from diorama_core.io.atomic import write_atomically
 from diorama_core.io.bounded import read_bytes
+from diorama_core.io.code_key import Sources, package_sources
 from diorama_core.pipeline import codec
 from diorama_core.progress import Progress
 
 T = TypeVar("T")
 log = logging.getLogger(__name__)
 
-CODE_VERSION = "25"
-"""Raised when a change of code must invalidate every saved result."""
 CACHED_PER_STAGE = 4
 """Number of cached results per stage on disk, so that undoing a correction is instant."""
 
@@ -91,7 +91,7 @@ class Runner:
         return result
 
     def _key(self, name: str, stage: object, artefacts: tuple[Any, ...]) -> str:
-        parts = [CODE_VERSION, name, repr(stage), *(self._fingerprint(a) for a in artefacts)]
+        parts = [stage_code(stage), name, repr(stage), *(self._fingerprint(a) for a in artefacts)]
         return hashlib.sha256("\n".join(parts).encode()).hexdigest()[:24]
 
     def _fingerprint(self, artefact: Any) -> str:
@@ -100,6 +100,23 @@ class Runner:
             known = (artefact, codec.fingerprint(artefact))
             self._fingerprints[id(artefact)] = known
         return known[1]
+
+
+def stage_code(stage: object, sources: Sources | None = None) -> str:
+    """A hash of the source that a stage runs: its class's module, those of what it holds, and all that they import.
+
+    Args:
+        stage: its fields are followed, and those of dataclasses within.
+        sources: where modules are read; those of the running package by default.
+    """
+    return (sources or package_sources()).key((type(stage).__module__, *_modules_held(stage)))
+
+
+def _modules_held(value: object) -> Iterator[str]:
+    for inner in getattr(value, "__dict__", {}).values():
+        yield (inner if inspect.isroutine(inner) else type(inner)).__module__ or ""
+        if is_dataclass(inner) and not isinstance(inner, type):
+            yield from _modules_held(inner)
 
 
 def _read(path: Path | None, expected: Any) -> Any:

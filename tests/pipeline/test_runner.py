@@ -7,7 +7,12 @@ import pytest
 
 from diorama_core.artefacts import LabelledBox
 from diorama_core.errors import Cancelled
-from diorama_core.pipeline.runner import CACHED_PER_STAGE, Runner
+from diorama_core.io.code_key import Sources
+from diorama_core.library.catalogue import built_in_library
+from diorama_core.perception.metrology import SingleViewMetrology
+from diorama_core.pipeline import runner as runner_module
+from diorama_core.pipeline.runner import CACHED_PER_STAGE, Runner, stage_code
+from diorama_core.pose import MadeToMeasure, RenderAndCompare
 from diorama_core.progress import CancelToken, Progress, ProgressEvent
 
 BOX = LabelledBox((0, 0, 4, 4), "chair", "chair")
@@ -46,6 +51,44 @@ def test_other_inputs_or_settings_run_again(tmp_path: Path) -> None:
     assert run(tmp_path, Widen(), OTHER)[1] is False
     assert run(tmp_path, Widen(by=2.0), BOX)[1] is False
     assert run(tmp_path, Widen(), BOX)[1] is True
+
+
+class Edited(Sources):
+    """The package with one more line in one module."""
+
+    def __init__(self, module: str) -> None:
+        super().__init__(Path(runner_module.__file__).parents[2])
+        self.module = f"diorama_core.{module}"
+
+    def _text(self, module: str) -> str:
+        return super()._text(module) + ("ADDED = 1\n" if module == self.module else "")
+
+
+@pytest.mark.parametrize(
+    ("stage", "used", "not_used"),
+    [
+        (SingleViewMetrology(), "perception.metrology.rows", "export.gltf"),
+        (SingleViewMetrology(), "geometry.projection", "pose.turns"),
+        (MadeToMeasure(RenderAndCompare(built_in_library()), built_in_library()), "pose.turns", "layout.exact"),
+    ],
+)
+def test_an_edit_of_what_a_stage_uses_changes_its_code_and_one_elsewhere_does_not(stage, used, not_used) -> None:
+    before = stage_code(stage)
+    assert stage_code(stage, Edited(used)) != before
+    assert stage_code(stage, Edited(not_used)) == before
+
+
+def test_an_edit_of_a_stage_runs_it_again(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    stage = SingleViewMetrology()
+
+    def cached() -> bool:
+        runner = Runner(tmp_path)
+        runner.run("geometry", stage, Widen().widen, (BOX,), Progress())
+        return runner.runs[0].cached
+
+    assert [cached(), cached()] == [False, True]
+    monkeypatch.setattr(runner_module, "package_sources", lambda: Edited("perception.metrology.rows"))
+    assert cached() is False
 
 
 def test_a_damaged_result_is_computed_again(tmp_path: Path) -> None:
