@@ -15,7 +15,7 @@ from pathlib import Path
 import viser
 
 from diorama_app.app import Editor
-from diorama_app.projects.manage import find_project
+from diorama_app.projects.manage import address_of, find_project
 from diorama_app.session.connected_client import ConnectedClient
 from diorama_app.web.viser_adapter import create_server_without_port, stop_server
 from diorama_core.errors import DioramaError
@@ -48,6 +48,9 @@ class Workspace:
         self._front: viser.ViserServer | None = None
         """The server that has the port."""
         self._asked_for: dict[Editor, float] = {}
+        self._timer: threading.Timer | None = None
+        self._left_meanwhile = False
+        """Whether pages were closed since the timer began."""
 
     def begin(self, server: viser.ViserServer, project: Project | None) -> Editor:
         """Put the first editor on the server that has the port."""
@@ -65,7 +68,7 @@ class Workspace:
     def first(self) -> str | None:
         """The project of an address that names none."""
         project = self._editors[0].session.project if self._editors else None
-        return None if project is None else project.folder.name
+        return None if project is None else address_of(project.folder)
 
     def server(self, name: str) -> viser.ViserServer | None:
         """The server of a project by the name of its folder; None where it cannot be opened."""
@@ -96,7 +99,7 @@ class Workspace:
             editor = self._of(project)
         if message:
             editor.session.greeting = (message, "good")
-        client.go_to(project.folder.name)
+        client.go_to(address_of(project.folder))
 
     def picture(self, name: str) -> Future[bytes | None]:
         """The picture of a shape that one of the pages shows."""
@@ -132,7 +135,7 @@ class Workspace:
         with self._lock:
             for editor in self._editors:
                 project = editor.session.project
-                if project is not None and project.folder.name == name:
+                if project is not None and address_of(project.folder) == name:
                     self._asked_for[editor] = time.monotonic()
                     return editor
             folder = find_project(self._projects_dir, name)
@@ -173,6 +176,18 @@ class Workspace:
         return editor
 
     def _left(self) -> None:
-        timer = threading.Timer(CLOSED_AFTER_S + 1.0, self.close_unused)
-        timer.daemon = True
-        timer.start()
+        """A page was closed: look a while later whether its project is still needed. One timer, however many left."""
+        with self._lock:
+            if self._timer is not None and self._timer.is_alive():
+                self._left_meanwhile = True
+                return
+            self._timer = threading.Timer(CLOSED_AFTER_S + 1.0, self._look_for_unused)
+            self._timer.daemon = True
+            self._timer.start()
+
+    def _look_for_unused(self) -> None:
+        self.close_unused()
+        with self._lock:
+            again, self._left_meanwhile, self._timer = self._left_meanwhile, False, None
+        if again:
+            self._left()

@@ -14,8 +14,8 @@ at a random moment of the time that the work takes. Then its files are read as t
 - `library` adds models; a killed run resumes. Every shape that is listed reads back; a finished library has them all.
 - `uploads` decodes uploads. The decoding process ends with the program.
 
-Prints a line a kind; `wrong` counts what cannot be read, has other content than promised, or is left running. Exits
-with 1 when anything is.
+Needs pytest and hypothesis. Prints a line a kind; `wrong` counts what cannot be read, has other content than promised,
+or is left running. Exits with 1 when anything is.
 """
 
 from __future__ import annotations
@@ -40,6 +40,7 @@ os.environ["OMP_NUM_THREADS"] = "1"  # threads do not survive a fork
 import numpy as np
 import trimesh
 
+import scripts.needs  # noqa: F401  # ends with a line where a package is missing
 from diorama_app.projects.uploads import Upload, read_packed
 from diorama_app.session.autosave import Autosave
 from diorama_app.session.recovery import Recovery

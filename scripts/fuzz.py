@@ -2,9 +2,10 @@
 
     python scripts/fuzz.py [--seconds 60] [--seed 0] [--only scene,stage] [--keep FOLDER]
 
-Samples and damage are in `tests/fuzzing`; a short round with a fixed seed is among the tests. Prints a line a parser:
-how many inputs, how many were read, refused, and refused wrongly, the longest time and message. Inputs that are
-refused wrongly are written to --keep; the smallest belongs into `tests/fuzzing/corpus`.
+Needs pytest, hypothesis and usd-core. Samples and damage are in `tests/fuzzing`; a short round with a fixed seed is
+among the tests. Prints a line a parser: how many inputs, how many were read, refused, and refused wrongly, the longest
+time and message. Inputs that are refused wrongly are written to --keep; the smallest belongs into
+`tests/fuzzing/corpus`.
 """
 
 from __future__ import annotations
@@ -18,6 +19,7 @@ from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 
+import scripts.needs  # noqa: F401  # ends with a line where a package is missing
 from tests.fuzzing.parsers import PARSERS
 from tests.fuzzing.rounds import Round
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import io
 import logging
 import os
 import sys
@@ -20,6 +21,7 @@ from diorama_app.cli.scenes import add_build, add_export, add_optimise, add_pict
 from diorama_app.cli.text import add_text
 from diorama_core.errors import Cancelled, DioramaError
 from diorama_core.io.quick_imports import load_quickly
+from diorama_core.io.text import clean_strings
 
 LOAD_MUCH = ("build", "optimise", "export", "import", "picture", "text", "edit", "library", "bench")
 """Commands that need most libraries whatever they are told."""
@@ -29,7 +31,12 @@ def main(argv: Sequence[str] | None = None) -> int:
     """Run one command; returns the exit status: 0 done, 1 failed with one clear line, 2 bad usage, 130 stopped."""
     # Small problems run faster on one thread than on two that wait for each other.
     os.environ.setdefault("OMP_NUM_THREADS", "1")
+    for stream in (sys.stdout, sys.stderr):
+        if isinstance(stream, io.TextIOWrapper):
+            stream.reconfigure(errors="backslashreplace")  # a file's name may hold bytes that are no text
     arguments = _parser().parse_args(argv)
+    for name, value in vars(arguments).items():
+        setattr(arguments, name, clean_strings(value))  # words; paths stay the bytes that they are
     if arguments.command == "build":
         from diorama_core.pipeline.beside import prepare_processes
 

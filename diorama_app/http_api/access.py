@@ -2,16 +2,22 @@
 
 from __future__ import annotations
 
+import asyncio
 import json
+import logging
+import time
 from collections.abc import Awaitable, Callable, MutableMapping
 from typing import Any
 from urllib.parse import quote
 
+from fastapi import HTTPException
 from websockets.datastructures import Headers
 from websockets.http11 import Request
 
 from diorama_app.web.upload_limits import MAX_UPLOAD_BYTES
 from diorama_app.web.visitors import Visitors
+
+log = logging.getLogger(__name__)
 
 Scope = MutableMapping[str, Any]
 Receive = Callable[[], Awaitable[MutableMapping[str, Any]]]
@@ -21,7 +27,13 @@ Application = Callable[[Scope, Receive, Send], Awaitable[None]]
 MAX_BODY_BYTES = MAX_UPLOAD_BYTES
 """Of one request: photo, depth and masks together."""
 MAX_BODIES = 4
-"""Requests with a body at a time."""
+"""Requests whose bodies are taken or worked on at a time; one that has sent nothing yet takes no place."""
+MAX_REQUESTS = 500
+"""At a time. One that waits for a job's end holds a connection and no thread."""
+STALLED_S = 10.0
+"""A body of which nothing comes for so long is given up."""
+MIN_BYTES_S, GRACE_S = 20_000.0, 20.0
+"""A body that comes more slowly, after the first seconds, is given up, too: a slow network sends five times as much."""
 HEADERS = (
     (b"cache-control", b"no-store"),
     (b"x-content-type-options", b"nosniff"),
@@ -29,16 +41,12 @@ HEADERS = (
 )
 
 
-class BodyTooLargeError(Exception):
-    """More was sent than was announced, or is taken."""
-
-
 class Guard:
     """ASGI middleware: refuses strangers, large bodies and too many at once, with one JSON line each."""
 
     def __init__(self, app: Application, visitors: Visitors) -> None:
         self._app, self._visitors = app, visitors
-        self._bodies = 0
+        self._bodies = self._requests = 0
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
         """Refuse a request, or hand it on."""
@@ -49,17 +57,27 @@ class Guard:
         if reason is not None:
             await answer(send, status, reason)
             return
-        has_body = scope["method"] not in ("GET", "HEAD", "DELETE")
-        if has_body and self._bodies >= MAX_BODIES:
-            await answer(send, 503, "other uploads are under way; try again in a moment")
+        if self._requests >= MAX_REQUESTS:
+            await answer(send, 503, "too many requests are under way; try again in a moment")
             return
-        self._bodies += has_body
+        self._requests += 1
+        told, body = _Told(send), _Body(self, receive)
         try:
-            await self._app(scope, _bounded(receive), _with_headers(send))
-        except BodyTooLargeError as error:
-            await answer(send, 413, str(error))
+            await self._app(scope, body, told)
+        except HTTPException as error:
+            await told.answer(error.status_code, str(error.detail))
+        except Exception:  # the one place for what nobody expected: whoever asks gets a line, the log the rest
+            log.exception("%s %s failed", scope["method"], quote(scope["path"]))
+            await told.answer(500, "internal error; the server's log says more")
         finally:
-            self._bodies -= has_body
+            self._requests -= 1
+            self._bodies -= body.has_place
+
+    def take_place(self) -> None:
+        """Count a body that has begun; refuses one too many."""
+        if self._bodies >= MAX_BODIES:
+            raise HTTPException(503, "other uploads are under way; try again in a moment", {"Retry-After": "5"})
+        self._bodies += 1
 
     def _refusal(self, scope: Scope) -> tuple[int, str | None]:
         try:
@@ -85,6 +103,7 @@ async def answer(send: Send, status: int, reason: str) -> None:
     headers = [(b"content-type", b"application/json"), (b"content-length", str(len(body)).encode()), *HEADERS]
     headers += [(b"www-authenticate", b"Bearer")] if status == 401 else []
     headers += [(b"retry-after", b"5")] if status == 503 else []
+    headers += [(b"connection", b"close")] if status in (408, 413) else []
     await send({"type": "http.response.start", "status": status, "headers": headers})
     await send({"type": "http.response.body", "body": body})
 
@@ -98,24 +117,49 @@ def _address(scope: Scope, headers: dict[str, str]) -> str:
     return f"{quote(scope['path'])}?{query}"
 
 
-def _bounded(receive: Receive) -> Receive:
-    taken = 0
+class _Body:
+    """What a request sends: in bounded time, of bounded size, and counted from its first byte on."""
 
-    async def bounded() -> MutableMapping[str, Any]:
-        nonlocal taken
-        message = await receive()
-        taken += len(message.get("body", b""))
-        if taken > MAX_BODY_BYTES:
-            raise BodyTooLargeError(too_large(taken))
+    def __init__(self, guard: Guard, receive: Receive) -> None:
+        self._guard, self._receive = guard, receive
+        self.has_place = False
+        self._ended = False
+        self._taken, self._began = 0, time.monotonic()
+
+    async def __call__(self) -> MutableMapping[str, Any]:
+        """The next part; after the last one, only the end of the connection comes."""
+        if self._ended:
+            return await self._receive()
+        left = GRACE_S + self._taken / MIN_BYTES_S - (time.monotonic() - self._began)
+        try:
+            message = await asyncio.wait_for(self._receive(), max(0.0, min(STALLED_S, left)))
+        except TimeoutError as error:
+            raise HTTPException(408, "the request did not go on; send it again", {"Connection": "close"}) from error
+        content = message.get("body", b"")
+        self._ended = not message.get("more_body", False)
+        self._taken += len(content)
+        if content and not self.has_place:
+            self._guard.take_place()
+            self.has_place = True
+        if self._taken > MAX_BODY_BYTES:
+            raise HTTPException(413, too_large(self._taken), {"Connection": "close"})
         return message
 
-    return bounded
 
+class _Told:
+    """Hands on an answer with the headers that every one has, and can give one of its own while none has begun."""
 
-def _with_headers(send: Send) -> Send:
-    async def sent(message: MutableMapping[str, Any]) -> None:
+    def __init__(self, send: Send) -> None:
+        self._send = send
+        self._begun = False
+
+    async def __call__(self, message: MutableMapping[str, Any]) -> None:
         if message["type"] == "http.response.start":
+            self._begun = True
             message = {**message, "headers": [*message["headers"], *HEADERS]}
-        await send(message)
+        await self._send(message)
 
-    return sent
+    async def answer(self, status: int, reason: str) -> None:
+        """Tell an error; one that comes within an answer can only be logged."""
+        if not self._begun:
+            await answer(self._send, status, reason)

@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
+import asyncio
 import io
+import re
 import tempfile
-import threading
-from collections.abc import Iterator
-from contextlib import contextmanager
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
@@ -14,25 +13,29 @@ from fastapi import APIRouter, FastAPI, File, Form, HTTPException, Query, Reques
 from fastapi.exceptions import RequestValidationError
 from fastapi.responses import JSONResponse
 from PIL import Image
-from pydantic import BaseModel, Field
+from starlette.concurrency import run_in_threadpool
 from starlette.exceptions import HTTPException as StarletteHTTPException
 
 import diorama_core as diorama
 from diorama_app.http_api.access import Guard
-from diorama_app.http_api.jobs import Job, JobQueue, JobStateError, QueueFullError, State, UnknownJobError, Upload
+from diorama_app.http_api.answers import FormatAnswer, JobAnswer, JobList, Problem, answer_of
+from diorama_app.http_api.jobs import JobQueue, JobStateError, QueueFullError, UnknownJobError, Upload
 from diorama_app.projects import uploads as sent
 from diorama_app.projects.formats import EXPORT_FORMATS
 from diorama_app.web.visitors import Visitors
 from diorama_core.errors import DioramaError, ExportError, InputError, ProjectError, UnavailableError
+from diorama_core.export import Format
 from diorama_core.export.gathering import ExportOptions
 from diorama_core.io.bounded import read_json
+from diorama_core.io.text import clean_text
 
 ABOUT = """Photos of rooms become 3D scenes. Send a photo to `/v1/jobs`, ask for the job until its state is `done`, and
 fetch its scene, a picture or a file for other programs. Lengths are metres and +Z is up, if a format does not say
 otherwise. Every error is `{"error": "one line"}`."""
 BINARY = {"schema": {"type": "string", "format": "binary"}}
 MAX_AT_ONCE = 2
-"""Scenes that are drawn or exported at a time; others wait."""
+"""Scenes that are drawn or exported at a time; others wait, without a thread."""
+_PLAIN_NAME = re.compile(r"[A-Za-z0-9._-]{1,100}")
 MAX_WAIT_S = 60.0
 STATUS: dict[type[DioramaError], int] = {
     UnknownJobError: 404,
@@ -44,46 +47,13 @@ STATUS: dict[type[DioramaError], int] = {
 }
 
 
-class Problem(BaseModel):
-    """Every error."""
-
-    error: str = Field(description="What was wrong and what to do, in one line.")
-
-
-class JobAnswer(BaseModel):
-    """A job: one photo's way to a scene. It is also a project of the editor, in the server's folder."""
-
-    id: str
-    state: State
-    progress: float = Field(ge=0, le=1, description="Share of the work that is done.")
-    message: str = Field(description="What is happening now.")
-    created: str = Field(description="Local time of the server, ISO 8601.")
-    seconds: float | None = Field(description="What the build took; null before its end.")
-    error: str | None = Field(description="Why it failed; null where it did not.")
-    objects: int | None = Field(description="Number of objects of the scene; null where there is none yet.")
-    notes: list[str] = Field(description="What to know about the inputs and the result.")
-
-
-class JobList(BaseModel):
-    """Jobs, newest first."""
-
-    jobs: list[JobAnswer]
-
-
-class FormatAnswer(BaseModel):
-    """A format of `export`."""
-
-    name: str
-    title: str
-    suffix: str
-
-
 def _errors(*statuses: int) -> dict[int | str, dict[str, Any]]:
     words = {
         400: "The request cannot be read.",
         401: "The token is missing or wrong.",
         403: "The host or origin is refused.",
         404: "There is no such job, scene or format.",
+        408: "The request did not go on.",
         409: "The job's state does not allow it.",
         413: "The request is too large.",
         422: "An input cannot be used.",
@@ -96,12 +66,11 @@ def _errors(*statuses: int) -> dict[int | str, dict[str, Any]]:
 
 
 router = APIRouter(prefix="/v1", responses=_errors())
-_heavy = threading.BoundedSemaphore(MAX_AT_ONCE)
 Profile = Literal["auto", "embedded", "foundation"]
 Recipe = Literal["feasible", "paper", "all-in-one"]
 
 
-@router.post("/jobs", status_code=202, operation_id="create_job", responses=_errors(400, 413, 422, 429, 503))
+@router.post("/jobs", status_code=202, operation_id="create_job", responses=_errors(400, 408, 413, 422, 429, 503))
 def create_job(
     request: Request,
     photo: Annotated[UploadFile, File(description="JPEG, PNG, WebP, TIFF and others.")],
@@ -118,7 +87,7 @@ def create_job(
     recipe: Annotated[Recipe, Form(description="The layout optimiser.")] = "feasible",
 ) -> JobAnswer:
     """Send a photo, with what is known of it, and queue its build."""
-    name = Path(photo.filename or "photo").name
+    name = Path(clean_text(photo.filename or "photo")).name or "photo"
     files: dict[Upload, UploadFile | None] = {"photo": photo, "masks": masks, "depth": depth}
     content = {kind: file.file.read() for kind, file in files.items() if file is not None}
     upload = sent.Upload(
@@ -128,23 +97,23 @@ def create_job(
         depth_scale=depth_scale,
         intrinsics=None if intrinsics is None else _four_numbers(intrinsics),
         fov_deg=fov_deg,
-        boxes=None if boxes is None else boxes.encode(),
+        boxes=None if boxes is None else clean_text(boxes).encode(),
         masks=content.get("masks"),
     )
     queue = _queue(request)
     read = sent.decoded(upload, queue.decoder)
-    return _answer(queue, queue.add(name, read, content, profile, recipe))
+    return answer_of(queue, queue.add(name, read, content, profile, recipe))
 
 
 @router.get("/jobs", operation_id="list_jobs")
 def list_jobs(request: Request) -> JobList:
     """All jobs, newest first."""
     queue = _queue(request)
-    return JobList(jobs=[_answer(queue, job) for job in queue.jobs()])
+    return JobList(jobs=[answer_of(queue, job) for job in queue.jobs()])
 
 
 @router.get("/jobs/{job_id}", operation_id="get_job", responses=_errors(404, 422))
-def get_job(
+async def get_job(
     request: Request,
     job_id: str,
     wait_s: Annotated[
@@ -153,14 +122,14 @@ def get_job(
 ) -> JobAnswer:
     """How far a job is."""
     queue = _queue(request)
-    return _answer(queue, queue.wait(job_id, wait_s))
+    return await run_in_threadpool(answer_of, queue, await queue.wait(job_id, wait_s))
 
 
 @router.post("/jobs/{job_id}/cancel", operation_id="cancel_job", responses=_errors(404, 409, 422))
 def cancel_job(request: Request, job_id: str) -> JobAnswer:
     """Stop a job that waits or runs; one that runs stops within seconds. Its project stays."""
     queue = _queue(request)
-    return _answer(queue, queue.cancel(job_id))
+    return answer_of(queue, queue.cancel(job_id))
 
 
 @router.delete(
@@ -179,7 +148,11 @@ def delete_job(request: Request, job_id: str) -> Response:
 @router.get("/jobs/{job_id}/scene", operation_id="get_scene", responses=_errors(404, 422, 500))
 def get_scene(request: Request, job_id: str) -> dict[str, Any]:
     """The scene file of a finished job; docs/scene-file.md describes it."""
-    return read_json(_finished(request, job_id) / "scene.json", ProjectError)
+    path = _finished(request, job_id) / "scene.json"
+    document = read_json(path, ProjectError)
+    if not isinstance(document, dict):
+        raise ProjectError(f"{path} is no scene file; build the scene again")
+    return document
 
 
 @router.get(
@@ -188,7 +161,7 @@ def get_scene(request: Request, job_id: str) -> dict[str, Any]:
     response_class=Response,
     responses={200: {"content": {"image/png": BINARY}, "description": "The picture."}, **_errors(404, 422, 500)},
 )
-def get_picture(
+async def get_picture(
     request: Request,
     job_id: str,
     view: Annotated[str, Query(description="photo, planes, top, front or orbit:DEG.", max_length=40)] = "photo",
@@ -197,11 +170,9 @@ def get_picture(
 ) -> Response:
     """A picture of a finished job's scene."""
     folder = _finished(request, job_id)
-    with _one_of_few():
-        rgb = diorama.render(diorama.load(folder), view=view, size=(width, height))
-    content = io.BytesIO()
-    Image.fromarray(rgb).save(content, "PNG")
-    return Response(content.getvalue(), media_type="image/png")
+    async with request.app.state.few:
+        content = await run_in_threadpool(_picture, folder, view, (width, height))
+    return Response(content, media_type="image/png")
 
 
 @router.get(
@@ -213,7 +184,7 @@ def get_picture(
         **_errors(404, 422, 500, 501),
     },
 )
-def export_scene(
+async def export_scene(
     request: Request,
     job_id: str,
     format_name: str,
@@ -225,11 +196,10 @@ def export_scene(
         raise HTTPException(404, f"there is no format {format_name!r}; see /v1/formats")
     folder, format_ = _finished(request, job_id), EXPORT_FORMATS[format_name]
     options = ExportOptions(ceiling=ceiling, max_texture_px=texture_size)
-    with _one_of_few(), tempfile.TemporaryDirectory() as place:
-        path = Path(place, f"{job_id}{format_.suffixes[0]}")
-        diorama.export(diorama.load(folder), path, format=format_, options=options)
-        content = path.read_bytes()
-    named = {"Content-Disposition": f'attachment; filename="{path.name}"'}
+    name = f"{job_id if _PLAIN_NAME.fullmatch(job_id) else 'scene'}{format_.suffixes[0]}"
+    async with request.app.state.few:
+        content = await run_in_threadpool(_exported, folder, name, format_, options)
+    named = {"Content-Disposition": f'attachment; filename="{name}"'}
     return Response(content, media_type="application/octet-stream", headers=named)
 
 
@@ -251,6 +221,7 @@ def create_app(queue: JobQueue, visitors: Visitors) -> FastAPI:
     described = app.openapi
     app.openapi = lambda: _with_files(described())
     app.state.queue = queue
+    app.state.few = asyncio.Semaphore(MAX_AT_ONCE)
     app.include_router(router)
     app.add_middleware(Guard, visitors=visitors)
     for kind in (DioramaError, RequestValidationError, StarletteHTTPException):
@@ -271,36 +242,30 @@ def _with_files(document: dict[str, Any]) -> dict[str, Any]:
 def _told(request: Request, error: Exception) -> Response:
     """An error as its one line, with the status that fits."""
     if isinstance(error, StarletteHTTPException):
-        return JSONResponse({"error": str(error.detail)}, error.status_code)
+        return JSONResponse({"error": clean_text(str(error.detail))}, error.status_code, error.headers)
     if isinstance(error, RequestValidationError):
         first = error.errors()[0]
         where = ".".join(str(part) for part in first["loc"][1:]) or "the request"
-        return JSONResponse({"error": f"{where}: {first['msg']}"}, 422)
+        return JSONResponse({"error": clean_text(f"{where}: {first['msg']}")}, 422)
     status = next((status for kind, status in STATUS.items() if isinstance(error, kind)), 500)
-    return JSONResponse({"error": " ".join(str(error).split())}, status)
+    return JSONResponse({"error": clean_text(" ".join(str(error).split()))}, status)
 
 
 def _queue(request: Request) -> JobQueue:
     return request.app.state.queue
 
 
-def _answer(queue: JobQueue, job: Job) -> JobAnswer:
-    progress, info = queue.progress(job.id), _info(queue, job)
-    return JobAnswer(
-        id=job.id,
-        state=job.state,
-        progress=progress.fraction,
-        message=progress.message,
-        created=job.created,
-        seconds=job.seconds,
-        error=job.error,
-        objects=len(queue.project(job.id).load_scene().objects) if job.state == "done" else None,
-        notes=[str(note) for note in info.get("notes") or info.get("warnings") or ()],
-    )
+def _picture(folder: Path, view: str, size: tuple[int, int]) -> bytes:
+    content = io.BytesIO()
+    Image.fromarray(diorama.render(diorama.load(folder), view=view, size=size)).save(content, "PNG")
+    return content.getvalue()
 
 
-def _info(queue: JobQueue, job: Job) -> dict[str, Any]:
-    return queue.project(job.id).info()
+def _exported(folder: Path, name: str, format_: Format, options: ExportOptions) -> bytes:
+    with tempfile.TemporaryDirectory() as place:
+        path = Path(place, name)
+        diorama.export(diorama.load(folder), path, format=format_, options=options)
+        return path.read_bytes()
 
 
 def _finished(request: Request, job_id: str) -> Path:
@@ -318,9 +283,3 @@ def _four_numbers(text: str) -> tuple[float, float, float, float]:
     except ValueError:
         raise InputError(f"intrinsics {text[:60]!r}: give four numbers in pixels, fx,fy,cx,cy") from None
     return fx, fy, cx, cy
-
-
-@contextmanager
-def _one_of_few() -> Iterator[None]:
-    with _heavy:
-        yield

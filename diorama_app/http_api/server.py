@@ -8,12 +8,14 @@ from pathlib import Path
 import uvicorn
 
 import diorama_core as diorama
+from diorama_app.http_api.connections import Connection
 from diorama_app.http_api.jobs import JobQueue
 from diorama_app.http_api.routes import create_app
 from diorama_app.web.visitors import LOOPBACK_NAMES, Visitors, page_address, with_token
 from diorama_core.errors import InputError
 
-MAX_CONNECTIONS = 64
+MAX_CONNECTIONS = 1000
+"""Open ones, waiting ones included; `access.MAX_REQUESTS` refuses earlier, and in JSON."""
 IDLE_S = 15
 
 
@@ -42,6 +44,7 @@ def serve_api(*, projects_dir: Path, host: str, port: int, token: str | None, li
         log_level="warning",
         limit_concurrency=MAX_CONNECTIONS,
         timeout_keep_alive=IDLE_S,
+        http=Connection,
         server_header=False,
         ws="none",
     )

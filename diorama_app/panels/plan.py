@@ -156,7 +156,7 @@ class Plan:
     def _do(self, action: Action) -> None:
         client, session = self._client, self._client.session
         try:
-            arg = json.loads(action.arg)
+            arg = action.parsed
             match action.do:
                 case "select":
                     self._select(arg[0], add=bool(arg[1]))

@@ -6,7 +6,7 @@ import base64
 import io
 import time
 from collections.abc import Callable
-from functools import partial
+from functools import lru_cache, partial
 from pathlib import Path
 
 import viser
@@ -28,6 +28,8 @@ from diorama_core.project.storage import Project
 
 RECENT = 12
 PICTURE_SIZE = (96, 72)
+MAX_PICTURES = 500
+"""Kept in memory, 3 kB each."""
 COPY = (
     '<svg width="14" height="14" viewBox="0 0 24 24" fill="none" stroke="currentColor" stroke-width="2" '
     'style="display:block"><rect x="8" y="8" width="12" height="12" rx="2"/><path d="M16 4H6a2 2 0 0 0-2 2v10"/></svg>'
@@ -41,7 +43,6 @@ class Projects:
         self, gui: viser.GuiApi, client: Client, commands: CommandTable, take_photo: Callable[[str, bytes], None]
     ) -> None:
         self._client = client
-        self._pictures: dict[tuple[str, float], str] = {}
         self._status = LiveHtml(gui, self._act)
         save = gui.add_button("Save now", color=QUIET_COLOUR, hint=commands["save"].tooltip)
         on_press(save, lambda: client.post(lambda: commands["save"].run(client)))
@@ -83,7 +84,7 @@ class Projects:
         if session.binned in binned:
             gone = text(project_care.name_of(session.binned))
             undelete = f'<div class="job card warn"><span class="words">{gone} is in the bin.</span>'
-            undelete += button("Restore", "unbin", session.binned.name) + "</div>"
+            undelete += button("Restore", "unbin", project_care.address_of(session.binned)) + "</div>"
         bin_of = "".join(_binned_row(place) for place in binned[:RECENT] if place != session.binned)
         if bin_of:
             bin_of = f"<details><summary class='dim'>Bin</summary>{bin_of}</details>"
@@ -96,12 +97,12 @@ class Projects:
         name = text(project_care.name_of(folder))
         on = "on" if current else ""
         return (
-            f'<div class="row tall {on}" data-do="open" data-arg="{text(folder.name)}">'
+            f'<div class="row tall {on}" data-do="open" data-arg="{text(project_care.address_of(folder))}">'
             f'{self._picture(folder)}<span class="name" title="{name}"><b>{name}</b>'
             f'<span class="dim">{when}</span></span>'
-            + ("" if current else button("Open", "open", folder.name))
-            + button(COPY, "copy", folder.name, title="Duplicate")
-            + ("" if current else button("✕", "bin", folder.name, title="Move to the bin"))
+            + ("" if current else button("Open", "open", project_care.address_of(folder)))
+            + button(COPY, "copy", project_care.address_of(folder), title="Duplicate")
+            + ("" if current else button("✕", "bin", project_care.address_of(folder), title="Move to the bin"))
             + "</div>"
         )
 
@@ -109,10 +110,7 @@ class Projects:
         path = folder / "photo.jpg"
         if not path.exists():
             return ""
-        key = (str(path), path.stat().st_mtime)
-        if key not in self._pictures:
-            self._pictures[key] = _small_picture(path)
-        return self._pictures[key]
+        return _small_picture(path, path.stat().st_mtime_ns)
 
     def _act(self, action: Action) -> None:
         self._client.post(lambda: self._do(action))
@@ -136,7 +134,7 @@ class Projects:
 
     def _bring_back(self, name: str) -> None:
         session = self._client.session
-        place = next((p for p in project_care.in_bin(session.projects_dir) if p.name == name), None)
+        place = next((p for p in project_care.in_bin(session.projects_dir) if project_care.address_of(p) == name), None)
         if place is None:
             raise EditRefused("that project no longer exists")
         folder = project_care.out_of_bin(place, session.projects_dir)
@@ -146,7 +144,7 @@ class Projects:
     def _with_listed(self, do: str, name: str) -> None:
         client, session = self._client, self._client.session
         # Only a name that is listed: the page must not reach outside the projects' folder.
-        folder = next((f for f in project_care.recent_projects(session.projects_dir) if f.name == name), None)
+        folder = project_care.find_project(session.projects_dir, name)
         if folder is None:
             raise EditRefused("that project no longer exists")
         if do == "copy":
@@ -189,14 +187,20 @@ def _what_becomes_of_changes(session: EditorSession) -> str:
 
 def _binned_row(place: Path) -> str:
     name = text(project_care.name_of(place))
-    return f'<div class="row"><span class="name">{name}</span>' + button("Restore", "unbin", place.name) + "</div>"
+    return (
+        f'<div class="row"><span class="name">{name}</span>'
+        + button("Restore", "unbin", project_care.address_of(place))
+        + "</div>"
+    )
 
 
 def _is_open(session: EditorSession, folder: Path) -> bool:
     return session.project is not None and session.project.folder.resolve() == folder.resolve()
 
 
-def _small_picture(path: Path) -> str:
+@lru_cache(maxsize=MAX_PICTURES)
+def _small_picture(path: Path, written_ns: int) -> str:
+    """A project's photo as it was written then, small; the same for all pages."""
     try:
         picture = read_picture(path, ProjectError, most_pixels=8_000_000, within=PICTURE_SIZE)
     except ProjectError:

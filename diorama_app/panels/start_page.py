@@ -14,7 +14,7 @@ from pathlib import Path
 import viser
 
 from diorama_app.panels.upload_field import hidden_upload
-from diorama_app.projects.manage import name_of, recent_projects
+from diorama_app.projects.manage import address_of, find_project, name_of, recent_projects
 from diorama_app.reconstruction.opening_job import open_file
 from diorama_app.reconstruction.starting_rooms import LIVING_ROOM, open_example, start_empty_room
 from diorama_app.reconstruction.text_to_scene import describe_room
@@ -138,7 +138,7 @@ class StartPage:
     def _visit(self, name: str) -> None:
         session = self._client.session
         # Only a name that is listed: the page must not reach outside the projects' folder.
-        folder = next((f for f in recent_projects(session.projects_dir) if f.name == name), None)
+        folder = find_project(session.projects_dir, name)
         if folder is None:
             raise EditRefused("that project no longer exists")
         self.close()
@@ -182,7 +182,7 @@ class StartPage:
 
     def _earlier(self) -> str:
         folders = recent_projects(self._client.session.projects_dir)[:RECENT]
-        rows = "".join(button(text(name_of(f)), "project", f.name, title="Open this project") for f in folders)
+        rows = "".join(button(text(name_of(f)), "project", address_of(f), title="Open this project") for f in folders)
         return f'<div class="earlier">{rows}</div>' if rows else '<p class="dim">No projects yet.</p>'
 
 

@@ -11,6 +11,7 @@ from diorama_app.panels.fields import show_if
 from diorama_app.session.client import Client
 from diorama_app.web.html import text
 from diorama_app.web.viser_adapter import component_uuid
+from diorama_core.io.text import clean_text
 
 Take = Callable[[str, bytes], None]
 """Takes name and content of a file."""
@@ -39,7 +40,7 @@ class UploadField:
 
         async def uploaded(event: viser.GuiEvent[viser.GuiUploadButtonHandle]) -> None:
             file = event.target.value
-            client.post(lambda: take(file.name, file.content))
+            client.post(lambda: take(clean_text(file.name), file.content))
 
         self.handle.on_upload(uploaded)
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import time
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
@@ -18,6 +17,7 @@ from diorama_app.projects.report import build_report
 from diorama_core.errors import DioramaError, ProjectError
 from diorama_core.io.atomic import write_atomically
 from diorama_core.io.bounded import read_json
+from diorama_core.io.documents import write_json
 from diorama_core.progress import Progress
 from diorama_core.workers import Done, WorkerDied, Workers
 
@@ -100,7 +100,7 @@ def build_photo(photo: FolderPhoto, options: BuildOptions, output: Path) -> Phot
     _draw(room, project / PICTURE)
     seconds = time.perf_counter() - began
     report["seconds"] = round(seconds, 2)
-    write_atomically(project / RECORD, json.dumps({"key": key, "report": report}).encode(), error=ProjectError)
+    write_json(project / RECORD, {"key": key, "report": report}, ProjectError, most=MAX_RECORD_BYTES)
     return PhotoResult(photo.photo, project, report, seconds=seconds)
 
 

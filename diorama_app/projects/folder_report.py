@@ -5,9 +5,11 @@ from __future__ import annotations
 import base64
 import html
 import io
+import os
 from collections import Counter
 from collections.abc import Sequence
 from pathlib import Path
+from urllib.parse import quote
 
 from PIL import Image
 
@@ -15,6 +17,7 @@ from diorama_app.projects.folder_build import PhotoResult
 from diorama_core.errors import DioramaError, ProjectError
 from diorama_core.io.atomic import write_atomically
 from diorama_core.io.bounded import read_picture
+from diorama_core.io.text import clean_text
 
 WIDTH_PX = 460
 _STYLE = """
@@ -53,7 +56,7 @@ def write_report(path: Path, results: Sequence[PhotoResult], remarks: Sequence[s
         *(_scene(r, path.parent) for r in done),
         "</body></html>",
     ]
-    write_atomically(path, "\n".join(parts).encode(), error=ProjectError)
+    write_atomically(path, clean_text("\n".join(parts)).encode(), error=ProjectError)
 
 
 def _failure(result: PhotoResult) -> str:
@@ -72,13 +75,14 @@ def _scene(result: PhotoResult, folder: Path) -> str:
     when = f"{report.get('seconds', result.seconds):.0f} s"
     when += ", in an earlier run" if result.kept else ", second try" * (result.tries > 1)
     where = html.escape(result.project.relative_to(folder).as_posix(), quote=True)
+    address = quote(os.fsencode(result.project.relative_to(folder).as_posix()))
     lines = "".join(f"<li>{html.escape(str(note))}</li>" for note in report["notes"])
     notes = f'<details class="dim"><summary>Notes ({len(report["notes"])})</summary><ul>{lines}</ul></details>'
     notes = notes if lines else ""
     return (
         f'<article id="{html.escape(result.project.name, quote=True)}"><h2>{html.escape(result.photo.name)}</h2>'
         f'<p class="dim">{_count(len(report["objects"]), "object")}, {_count(walls, "wall")} · {when} · '
-        f'<a href="{where}/scene.json">{where}</a></p>'
+        f'<a href="{address}/scene.json">{where}</a></p>'
         f'<div class="pictures">{_picture(result.project / "photo.jpg", "the photo")}'
         f"{_picture(result.picture, 'the scene')}</div>"
         f"<p>{html.escape(contents)}</p>{notes}</article>"

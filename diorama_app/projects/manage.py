@@ -2,30 +2,47 @@
 
 from __future__ import annotations
 
+import os
 import shutil
+import stat
+import tempfile
 import time
 from pathlib import Path
 
 from diorama_core.errors import DioramaError, ProjectError
+from diorama_core.io.text import clean_text, file_label
 from diorama_core.project.storage import Project, read_scene
 from diorama_core.scene.types import Scene
 
 BIN = ".bin"
 """Deleted projects stay here until the folder is emptied by hand."""
+MAX_NAME = 80
+"""Characters of a name that a person gives."""
+MAX_COPIES = 10_000
+"""Of one project; each is a folder with a number."""
 
 
 def recent_projects(projects_dir: Path) -> list[Path]:
     """Folders of projects that have a scene or a photo, last touched first."""
     try:
-        folders = [f for f in projects_dir.iterdir() if (f / "project.json").exists() and _has_content(Project(f))]
+        folders = [f for f in projects_dir.iterdir() if not f.name.startswith(".") and _is_listed(f)]
     except OSError:
         return []
     return sorted(folders, key=touched, reverse=True)
 
 
+def _is_listed(folder: Path) -> bool:
+    return (folder / "project.json").exists() and _has_content(Project(folder))
+
+
 def find_project(projects_dir: Path, name: str) -> Path | None:
     """The folder of a listed project by its name; None for any other, as the name comes from an address."""
-    return next((folder for folder in recent_projects(projects_dir) if folder.name == name), None)
+    return next((folder for folder in recent_projects(projects_dir) if address_of(folder) == name), None)
+
+
+def address_of(folder: Path) -> str:
+    """What a project is called in an address and by pages: its folder's name as text, whatever bytes that is."""
+    return file_label(folder.name)
 
 
 def touched(folder: Path) -> float:
@@ -49,12 +66,12 @@ def name_of(folder: Path) -> str:
     try:
         return Project.open(folder).name
     except DioramaError:
-        return folder.name
+        return address_of(folder)
 
 
 def rename_project(project: Project, name: str) -> None:
     """Rename a project; its folder does not change."""
-    words = " ".join(name.split())[:80]
+    words = " ".join(clean_text(name).split())[:MAX_NAME]
     if not words:
         raise ProjectError("a project needs a name; type at least one character")
     project.update_info(name=words)
@@ -62,18 +79,32 @@ def rename_project(project: Project, name: str) -> None:
 
 def duplicate_project(folder: Path, projects_dir: Path) -> Project:
     """A copy beside it, under the next free name."""
-    number = next(n for n in range(2, 10_000) if not (projects_dir / f"{folder.name}-{n}").exists())
+    number = next((n for n in range(2, MAX_COPIES) if not (projects_dir / f"{folder.name}-{n}").exists()), None)
+    if number is None:
+        raise ProjectError(f"there are {MAX_COPIES} copies of {address_of(folder)}; rename or delete some of them")
     target = projects_dir / f"{folder.name}-{number}"
     try:
-        shutil.copytree(folder, target, ignore=shutil.ignore_patterns("backups", ".*"))
-    except OSError as error:
-        raise ProjectError(f"cannot copy to {target} ({error.strerror}); free some space") from error
-    copy = Project.open(target)
-    for path in (copy.scene_path, copy.stages_folder / "inputs.zip"):
-        if path.exists():
-            path.touch()
-    rename_project(copy, f"{name_of(folder)} {number}")
-    return copy
+        # Copied beside and renamed, so that a copy cut short is never taken for a project.
+        with tempfile.TemporaryDirectory(prefix=".copy-", dir=projects_dir) as part:
+            made = Path(part) / target.name
+            shutil.copytree(folder, made, ignore=_not_copied)
+            copy = Project.open(made)
+            for path in (copy.scene_path, copy.stages_folder / "inputs.zip"):
+                if path.exists():
+                    path.touch()
+            rename_project(copy, f"{name_of(folder)} {number}")
+            made.rename(target)
+    except OSError as error:  # `shutil.Error` has a list of reasons and no `strerror`
+        reason = error.strerror or "some of its files cannot be read"
+        raise ProjectError(f"cannot copy to {target} ({reason}); free some space") from error
+    return Project.open(target)
+
+
+def _not_copied(folder: str, names: list[str]) -> set[str]:
+    """Earlier versions, hidden files, and what is neither a file nor a folder: links, pipes and devices."""
+    kinds = {name: os.lstat(os.path.join(folder, name)).st_mode for name in names}
+    odd = {name for name, mode in kinds.items() if not (stat.S_ISREG(mode) or stat.S_ISDIR(mode))}
+    return odd | {name for name in names if name == "backups" or name.startswith(".")}
 
 
 def to_bin(folder: Path, projects_dir: Path) -> Path:
@@ -98,7 +129,10 @@ def out_of_bin(place: Path, projects_dir: Path) -> Path:
     folder = projects_dir / place.name.rsplit("-", 1)[0]
     if folder.exists():
         raise ProjectError(f"{folder.name} exists again; rename or delete it first")
-    place.rename(folder)
+    try:
+        place.rename(folder)
+    except OSError as error:
+        raise ProjectError(f"{folder.name} cannot be taken out of the bin ({error.strerror})") from error
     return folder
 
 

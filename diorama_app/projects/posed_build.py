@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import shutil
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -11,7 +10,8 @@ import diorama_core as diorama
 from diorama_app.projects.options import BuildOptions
 from diorama_app.projects.photo_folder import FolderPhoto
 from diorama_core.artefacts import FurtherPhoto, Inputs
-from diorama_core.errors import InputError
+from diorama_core.errors import InputError, ProjectError
+from diorama_core.io.atomic import write_atomically
 from diorama_core.layout.recipes import recipe
 from diorama_core.multiview.found_poses import UnposedPhoto, find_poses
 from diorama_core.multiview.posed_photos import PosedPhoto, Poses
@@ -139,7 +139,7 @@ def _save(
     folder = project.folder / "photos"
     folder.mkdir(exist_ok=True)
     for name, path, _ in read:
-        shutil.copyfile(path, folder / name)
+        write_atomically(folder / name, path.read_bytes(), error=ProjectError)  # a link there is replaced, not followed
     cameras = [
         {
             "photo": name,

@@ -8,7 +8,7 @@ from typing import Any
 from diorama_core.api import Reconstruction
 from diorama_core.artefacts import LayoutReport
 from diorama_core.errors import ProjectError
-from diorama_core.io.atomic import write_atomically
+from diorama_core.io.documents import write_document
 from diorama_core.perception.foundation.proposals import JoinedDetection, OwnDetection, left_out
 from diorama_core.pipeline.arrangements import arrangement, arrangement_count
 from diorama_core.pipeline.plan import evaluate
@@ -17,7 +17,7 @@ from diorama_core.pipeline.runner import Runner
 from diorama_core.pipeline.steps import LaidOut
 from diorama_core.progress import Progress
 from diorama_core.scene import edits
-from diorama_core.scene.schema import scene_to_json
+from diorama_core.scene.schema import scene_from_json, scene_to_json
 
 
 def write_arrangements(room: Reconstruction, count: int, progress: Progress) -> tuple[str, ...]:
@@ -45,7 +45,7 @@ def write_arrangements(room: Reconstruction, count: int, progress: Progress) -> 
             continue  # these shapes have no room beside one another here; the next may
         name = f"arrangements/scene_{len(names) + 1}.json"
         text = scene_to_json(edits.set_metrics(arranged.scene, arranged.report.after))
-        write_atomically(room.project.folder / name, text.encode(), error=ProjectError)
+        write_document(room.project.folder / name, text.encode(), scene_from_json, ProjectError)
         names.append(name)
     return tuple(names)
 

@@ -1,7 +1,8 @@
 """Stores changes that are not saved to their project yet, so that a crash or a full disk does not lose them.
 
 Every change is noted at once and forgotten when the project's own file has it, less than a second later. What a later
-session finds is what an earlier one could not save.
+session finds is what an earlier one could not save. A note's name holds a digest of the scene that it follows, so that
+no clock decides which of them is newer.
 """
 
 from __future__ import annotations
@@ -9,17 +10,19 @@ from __future__ import annotations
 import contextlib
 import hashlib
 import logging
+import os
 import time
 import uuid
 from dataclasses import dataclass
 from pathlib import Path
 
 from diorama_core.errors import DioramaError, ProjectError
-from diorama_core.io.atomic import remove_leftovers, write_atomically
+from diorama_core.io.atomic import remove_leftovers
 from diorama_core.io.bounded import MAX_JSON_BYTES, read_bytes
+from diorama_core.io.documents import write_document
 from diorama_core.library.catalogue import default_cache_dir
 from diorama_core.project.storage import Project, read_scene
-from diorama_core.scene.schema import scene_to_json
+from diorama_core.scene.schema import scene_from_json, scene_to_json
 from diorama_core.scene.types import Scene
 
 log = logging.getLogger(__name__)
@@ -43,6 +46,15 @@ class Unsaved:
         """The time, for people."""
         return time.strftime("%d %b %H:%M", time.localtime(self.at))
 
+    @property
+    def is_settled(self) -> bool:
+        """Whether no other program is about to save it."""
+        return abs(time.time() - self.at) > SETTLED_S
+
+    def follows(self, saved: str) -> bool:
+        """Whether it is what came after the scene of this digest, and not before it."""
+        return self.path.stem.split("-")[2:] in ([], [saved])
+
     def scene(self) -> Scene:
         """What was unsaved; raises `SceneError` when it cannot be read."""
         return read_scene(self.path)
@@ -62,59 +74,70 @@ class Recovery:
 
     def note(self, project: Project, scene: Scene) -> bool:
         """Remember a change before it is saved; False when it cannot be kept here."""
+        path = self._folder / f"{_place(project)}-{self._session}-{_saved_digest(project)}.json"
         try:
-            write_atomically(self._path(project, self._session), scene_to_json(scene).encode())
+            write_document(path, scene_to_json(scene).encode(), scene_from_json, ProjectError)
         except (OSError, ValueError, DioramaError) as error:
             log.warning("unsaved changes cannot be stored in %s (%s)", self._folder, error)
             return False
+        self._forget(project, but=path)
         return True
 
     def forget(self, project: Project) -> None:
         """The project's own file has everything."""
-        try:
-            self._path(project, self._session).unlink(missing_ok=True)
-        except OSError as error:
-            log.warning("%s cannot be removed (%s)", self._path(project, self._session), error)
+        self._forget(project)
+
+    def _forget(self, project: Project, but: Path | None = None) -> None:
+        for path in self._folder.glob(f"{_place(project)}-{self._session}*.json"):
+            try:
+                if path != but:
+                    path.unlink(missing_ok=True)
+            except OSError as error:
+                log.warning("%s cannot be removed (%s)", path, error)
 
     def left_behind(self, project: Project) -> Unsaved | None:
         """The newest change of an earlier session that the project's own file does not have."""
-        try:
-            saved_at = project.scene_path.stat().st_mtime if project.scene_path.exists() else 0.0
-            saved = read_bytes(project.scene_path, MAX_JSON_BYTES, ProjectError) if saved_at else b""
-        except (OSError, ProjectError):
-            saved_at, saved = 0.0, b""
-        found = [u for u in self._of_others(project) if saved_at < u.at < time.time() - SETTLED_S]
+        saved = _saved_digest(project)
+        found = [u for u in self._of_others(project) if u.is_settled and u.follows(saved)]
         newest = max(found, key=lambda u: u.at, default=None)
-        try:
-            return newest if newest is None or read_bytes(newest.path, MAX_JSON_BYTES, ProjectError) != saved else None
-        except ProjectError:
-            return None
+        return None if newest is None or _digest(newest.path) == saved else newest
 
     def clean_up(self, project: Project) -> None:
-        """Remove what no session will ask for again: older than what is saved, or a month old, and parts of files.
+        """Remove what no session will ask for again: what was saved since, or is a month old, and parts of files.
 
         Only for who has the project's lock: another's unsaved changes are being saved.
         """
-        saved_at = project.scene_path.stat().st_mtime if project.scene_path.exists() else 0.0
-        now = time.time()
+        saved = _saved_digest(project)
         for unsaved in self._of_others(project):
-            if unsaved.at < saved_at and now - unsaved.at > SETTLED_S:
+            if unsaved.is_settled and not unsaved.follows(saved):
                 unsaved.discard()
         for path in self._folder.glob("*.json"):
             with contextlib.suppress(OSError):
-                if now - path.stat().st_mtime > FORGOTTEN_S:
+                if time.time() - path.stat().st_mtime > FORGOTTEN_S:
                     path.unlink()
         remove_leftovers(self._folder)
         remove_leftovers(project.folder)
 
     def _of_others(self, project: Project) -> list[Unsaved]:
         found = []
-        for path in self._folder.glob(self._path(project, "*").name):
+        for path in self._folder.glob(f"{_place(project)}-*.json"):
             with contextlib.suppress(OSError):  # its session may be removing it
-                if path != self._path(project, self._session):
+                if path.stem.split("-")[1] != self._session:
                     found.append(Unsaved(path, path.stat().st_mtime))
         return found
 
-    def _path(self, project: Project, session: str) -> Path:
-        place = hashlib.sha256(str(project.folder.resolve()).encode()).hexdigest()[:16]
-        return self._folder / f"{place}-{session}.json"
+
+def _place(project: Project) -> str:
+    return hashlib.sha256(os.fsencode(project.folder.resolve())).hexdigest()[:16]
+
+
+def _saved_digest(project: Project) -> str:
+    return _digest(project.scene_path)
+
+
+def _digest(path: Path) -> str:
+    """Of a scene file's content; `none` where it cannot be read."""
+    try:
+        return hashlib.sha256(read_bytes(path, MAX_JSON_BYTES, ProjectError)).hexdigest()[:16]
+    except ProjectError:
+        return "none"

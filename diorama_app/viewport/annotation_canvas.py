@@ -228,7 +228,7 @@ class _Told:
 def _event(action: Action, size: tuple[int, int]) -> Event | None:
     """What a page says was done; None for what is no event."""
     try:
-        arg = json.loads(action.arg)
+        arg = action.parsed
         match action.do:
             case "draw":
                 return Drawn(_box(arg, size))

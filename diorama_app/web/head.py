@@ -15,5 +15,5 @@ def with_head(page: bytes) -> bytes:
     """The page with our title, styles and scripts before everything that viser brings."""
     styles = b"".join(b"\n<style>" + style.read_bytes() + b"</style>" for style in STYLES)
     scripts = b"".join(b"\n<script>" + script.read_bytes() + b"</script>" for script in SCRIPTS)
-    page = re.sub(rb"<title>.*?</title>", b"<title>" + TITLE + b"</title>", page, count=1, flags=re.DOTALL)
+    page = re.sub(rb"<title>.*?</title>", lambda _: b"<title>" + TITLE + b"</title>", page, count=1, flags=re.DOTALL)
     return page.replace(b"<head>", b"<head>" + styles + scripts, 1)

@@ -16,6 +16,7 @@ from typing import Any
 import viser
 
 from diorama_app.web.viser_adapter import component_uuid
+from diorama_core.io.text import clean_strings
 
 OnAction = Callable[["Action"], None]
 
@@ -194,10 +195,18 @@ class Action:
     """Shift, Ctrl or Cmd was held."""
 
     @property
+    def parsed(self) -> Any:
+        """The argument as a JSON value, its strings cleaned; raises `ValueError` where it is none."""
+        try:
+            return clean_strings(json.loads(self.arg))
+        except RecursionError as error:
+            raise ValueError("brackets within brackets") from error
+
+    @property
     def pair(self) -> tuple[str, str]:
         """Two words in one argument: (argument, new value) of a change, (dragged, onto) of a drop."""
         try:
-            first, second = json.loads(self.arg)
+            first, second = self.parsed
         except (ValueError, TypeError):
             return "", ""
         return str(first), str(second)
@@ -310,6 +319,7 @@ def switch(name: str, hint: str, arg: object, *, on: bool = False, disabled: boo
 def _read_actions(value: str) -> list[tuple[int, Action]]:
     """The page's latest actions with their numbers: a message that overtakes another repeats what that one said."""
     try:
-        return [(int(m["number"]), Action(str(m["do"]), str(m["arg"]), bool(m["add"]))) for m in json.loads(value)]
-    except (ValueError, KeyError, TypeError):
+        said = clean_strings(json.loads(value))
+        return [(int(m["number"]), Action(str(m["do"]), str(m["arg"]), bool(m["add"]))) for m in said]
+    except (ValueError, KeyError, TypeError, OverflowError, RecursionError):
         return []  # typed by hand, or by a page that is not ours

@@ -87,7 +87,8 @@ def _page(glb: bytes, scene: ExportScene) -> str:
         except FileNotFoundError as error:
             raise UnavailableError("viser's web client is missing; install viser again from its wheel") from error
     title = html.escape(scene.name)
-    page = re.sub(r"<title>.*?</title>", f"<title>{title}</title>", page, count=1, flags=re.DOTALL)
+    # As a function: in a template, a backslash of the name would be an escape.
+    page = re.sub(r"<title>.*?</title>", lambda _: f"<title>{title}</title>", page, count=1, flags=re.DOTALL)
     return page.replace("<head>", f"<head>{NOTICE}{BACKGROUND}", 1)
 
 

@@ -18,8 +18,10 @@ import time
 import weakref
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
+from types import SimpleNamespace
 from typing import Any
 
+import msgspec.msgpack
 import viser
 import websockets.asyncio.server
 from viser import _messages
@@ -32,6 +34,7 @@ from diorama_app.web.requests import HttpHandler, Pictures, Projects, paced, pro
 from diorama_app.web.upload_limits import RunningUpload, why_refused
 from diorama_app.web.visitors import Visitors
 from diorama_core.errors import InputError
+from diorama_core.io.text import clean_strings
 
 UPLOAD_STALLED_S = 60.0
 """An upload idle for this long is dropped when its slot is needed."""
@@ -70,6 +73,15 @@ class _Buffer(_infra.AsyncMessageBuffer):  # type: ignore[misc]  # viser's modul
     flush_event: asyncio.Event = field(default_factory=_LoopEvent)
 
 
+def packed(value: Any) -> bytes:
+    """What viser sends, as bytes; a half character anywhere in it becomes a sign instead of ending the connection."""
+    try:
+        return msgspec.msgpack.encode(value)
+    except UnicodeEncodeError:
+        return msgspec.msgpack.encode(clean_strings(value))
+
+
+_infra.msgspec = SimpleNamespace(msgpack=SimpleNamespace(encode=packed))  # all that this module of viser's takes of it
 _infra.AsyncMessageBuffer = _Buffer  # each connection makes its own by this name
 
 

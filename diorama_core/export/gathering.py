@@ -22,6 +22,7 @@ from diorama_core.export.photo_textures import MAX_PHOTO_TEXTURES_PX, bounded_pi
 from diorama_core.export.pictures import Picture, photo_text
 from diorama_core.export.sharing import SharedAppearance
 from diorama_core.geometry.openings import with_openings
+from diorama_core.io.text import clean_text
 from diorama_core.library.opening import OpenedShapes
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.library.stretch import relative_scale
@@ -221,7 +222,7 @@ def gather(
         objects.append(_node(scene, library, item, painted[paint], shown, labels))
     lights = lights_of(scene, [o.item for o in objects], {o.id: meshes[o.mesh].surfaces for o in objects})
     return ExportScene(
-        name=name,
+        name=clean_text(name),
         objects=tuple(objects),
         planes=tuple(planes),
         meshes=meshes,

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import re
 
+from diorama_core.io.text import clean_text
+
 
 class Labels:
     """Gives out names, slugs and keys, each of them unique among its kind."""
@@ -15,7 +17,7 @@ class Labels:
 
     def name(self, text: str) -> str:
         """A readable name."""
-        return unique_name(text or "object", self._names, " ")
+        return unique_name(clean_text(text) or "object", self._names, " ")
 
     def slug(self, text: str) -> str:
         """An identifier of a node."""

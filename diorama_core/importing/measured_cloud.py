@@ -253,7 +253,8 @@ def _lines(points: Float[np.ndarray, "n 3"], top_m: float, axis: int) -> list[fl
     count = max(1, round((high - low + 2 * APART_M) / LINE_M))
     column = np.clip(((band[:, axis] - low + APART_M) / LINE_M).astype(int), 0, count - 1)
     along = ((band[:, other] - band[:, other].min()) / SPAN_M).astype(int)
-    level = ((band[:, 2] - base) / SPAN_M).astype(int)
+    # Where next to nothing is above furniture, the band is all points, and begins below.
+    level = np.maximum((band[:, 2] - base) / SPAN_M, 0.0).astype(int)
     filled = np.zeros((count, along.max() + 1, level.max() + 1), bool)
     filled[column, along, level] = True
     filled[1:] |= filled[:-1]  # a wall may lie on the border of two columns

@@ -21,6 +21,7 @@ from diorama_core.errors import ProjectError
 from diorama_core.geometry import camera_attitude
 from diorama_core.io.arrays import array_of, entry
 from diorama_core.io.bounded import parse_json, shortened
+from diorama_core.io.text import clean_strings
 from diorama_core.io.typed import as_member, field_types, fits
 from diorama_core.scene import light_settings, types
 
@@ -80,7 +81,7 @@ def dump(value: Any) -> bytes:
     tree = _encode(value, arrays)
     buffer = io.BytesIO()
     with zipfile.ZipFile(buffer, "w") as archive:
-        archive.writestr(zipfile.ZipInfo("tree.json"), json.dumps(tree, allow_nan=False))
+        archive.writestr(zipfile.ZipInfo("tree.json"), json.dumps(clean_strings(tree), allow_nan=False))
         for i, array in enumerate(arrays):
             raw = io.BytesIO()
             np.lib.format.write_array(raw, array, allow_pickle=False)

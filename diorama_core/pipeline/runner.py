@@ -127,7 +127,8 @@ def _read(path: Path | None, expected: Any) -> Any:
         result = codec.load(read_bytes(path, codec.MAX_BYTES, ProjectError), expected)
     except ProjectError as error:
         log.warning("%s: %s", path.name, error)
-        path.unlink(missing_ok=True)
+        if not path.parent.is_symlink():
+            path.unlink(missing_ok=True)
         return None
     os.utime(path)
     return result
@@ -139,6 +140,9 @@ def _write(path: Path | None, result: Any) -> None:
         return
     write_atomically(path, codec.dump(result), error=ProjectError)
     stem = path.name.rsplit("-", 1)[0]
-    siblings = sorted(path.parent.glob(f"{stem}-*.zip"), key=lambda p: p.stat().st_mtime, reverse=True)
-    for old in siblings[CACHED_PER_STAGE:]:
+    if path.parent.is_symlink():
+        return  # results of somebody else may lie there
+    siblings = [p for p in path.parent.glob(f"{stem}-*.zip") if len(p.name) == len(path.name) and not p.is_symlink()]
+    newest_first = sorted((p for p in siblings if p != path), key=lambda p: p.stat().st_mtime, reverse=True)
+    for old in newest_first[CACHED_PER_STAGE - 1 :]:
         old.unlink(missing_ok=True)

@@ -8,9 +8,9 @@ every object and the corners that it gave every plane: an object at another pose
 
 from __future__ import annotations
 
-import json
 import logging
 from collections.abc import Iterable, Sequence
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -20,6 +20,7 @@ from diorama_core.artefacts import FurtherPhoto
 from diorama_core.errors import ProjectError
 from diorama_core.io.atomic import write_atomically
 from diorama_core.io.bounded import read_bytes, read_json, shortened
+from diorama_core.io.documents import write_document, write_json
 from diorama_core.pipeline import codec
 from diorama_core.project.storage import Project, jpeg
 from diorama_core.scene.types import Plane, Pose, Scene, SceneObject
@@ -29,6 +30,7 @@ log = logging.getLogger(__name__)
 MAX_PHOTOS = 64
 MAX_POSES = 8
 """Of one object: after an undo, those of earlier builds are the program's, too."""
+MAX_NOTED_BYTES = 32_000_000
 SAME_M = 1e-4
 PLANE = "plane "
 """Before the ids of planes among those of objects, which have no blanks."""
@@ -44,7 +46,8 @@ def save_photos(project: Project, photos: Sequence[FurtherPhoto], saved: Sequenc
         if any(photo is one for one in saved):
             continue
         folder = project.folder / "photos"
-        write_atomically(folder / f"{photo.name}.zip", codec.dump(photo), error=ProjectError)
+        path = folder / f"{photo.name}.zip"
+        write_document(path, codec.dump(photo), partial(_photo_of, name=path.stem), ProjectError, most=codec.MAX_BYTES)
         picture = folder / f"{photo.name}.jpg"
         if not picture.exists():
             write_atomically(picture, jpeg(photo.inputs.photo.rgb), error=ProjectError)
@@ -59,13 +62,17 @@ def load_photos(project: Project) -> tuple[tuple[FurtherPhoto, ...], tuple[str, 
     for name in names[:MAX_PHOTOS] if isinstance(names, list) else []:
         path = project.folder / "photos" / f"{Path(str(name)).name}.zip"
         try:
-            photo: FurtherPhoto = codec.load(read_bytes(path, codec.MAX_BYTES, ProjectError), FurtherPhoto)
-            if photo.name != path.stem:  # which names the files that are written
-                raise ProjectError(f"it is the photo {shortened(photo.name)!r}")
-            found.append(photo)
+            found.append(_photo_of(read_bytes(path, codec.MAX_BYTES, ProjectError), path.stem))
         except ProjectError as error:
             damage.append(f"{path}: this photo cannot be read back ({error}); add it again")
     return tuple(found), tuple(damage)
+
+
+def _photo_of(data: bytes, name: str) -> FurtherPhoto:
+    photo: FurtherPhoto = codec.load(data, FurtherPhoto)
+    if photo.name != name:  # which names the files that are written
+        raise ProjectError(f"it is the photo {shortened(photo.name)!r}")
+    return photo
 
 
 def note_placed(project: Project, scene: Scene) -> None:
@@ -77,12 +84,10 @@ def note_placed(project: Project, scene: Scene) -> None:
     known = _noted(project, "placed.json")
     now = {o.id: _with(_row(o.pose), known.get(o.id, [])) for o in scene.objects}
     now |= {PLANE + p.id: _with(_corners(p), known.get(PLANE + p.id, [])) for p in scene.architecture.planes}
-    path = project.stages_folder / "placed.json"
-    write_atomically(path, json.dumps({**known, **now}).encode(), error=ProjectError)
+    write_json(project.stages_folder / "placed.json", {**known, **now}, ProjectError, most=MAX_NOTED_BYTES)
     looks = _noted(project, "looks.json")
     made = {o.id: _with(_look(o), looks.get(o.id, [])) for o in scene.objects}
-    path = project.stages_folder / "looks.json"
-    write_atomically(path, json.dumps({**looks, **made}).encode(), error=ProjectError)
+    write_json(project.stages_folder / "looks.json", {**looks, **made}, ProjectError, most=MAX_NOTED_BYTES)
 
 
 def still_placed(project: Project, scene: Scene) -> frozenset[str]:
@@ -105,7 +110,7 @@ def _noted(project: Project, name: str) -> dict[str, list[list[Any]]]:
     if not path.exists():
         return {}
     try:
-        document = read_json(path, ProjectError, most=32_000_000)
+        document = read_json(path, ProjectError, most=MAX_NOTED_BYTES)
     except ProjectError as error:
         log.warning("%s; nothing is moved that was built before", error)
         return {}

@@ -7,7 +7,6 @@ from __future__ import annotations
 
 import contextlib
 import getpass
-import json
 import os
 import socket
 import time
@@ -17,11 +16,12 @@ from types import TracebackType
 from filelock import FileLock, Timeout
 
 from diorama_core.errors import ProjectError
-from diorama_core.io.atomic import write_atomically
 from diorama_core.io.bounded import read_json, shortened
+from diorama_core.io.documents import write_json
 
 LOCK = ".diorama.lock"
 OWNER = ".diorama-owner.lock"
+MAX_OWNER_BYTES = 10_000
 
 
 class ProjectLockedError(ProjectError):
@@ -61,7 +61,7 @@ class ProjectLock:
             "since": time.strftime("%d %b %H:%M"),
         }
         try:
-            write_atomically(folder / OWNER, json.dumps(about).encode(), error=ProjectError)
+            write_json(folder / OWNER, about, ProjectError, most=MAX_OWNER_BYTES)
         except ProjectError:
             self._lock.release()
             raise
@@ -85,7 +85,7 @@ class ProjectLock:
 def owner(folder: Path) -> str:
     """Who has a project's lock, in words."""
     try:
-        about = read_json(folder / OWNER, ProjectError, most=10_000)
+        about = read_json(folder / OWNER, ProjectError, most=MAX_OWNER_BYTES)
         words = f"{about['what']} of {about['who']} on {about['host']} (process {about['process']}, {about['since']})"
         return shortened(words, 150)
     except (ProjectError, LookupError, TypeError):

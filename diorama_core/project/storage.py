@@ -6,7 +6,6 @@ Every write goes to a temporary file that is renamed, so the folder is whole at 
 from __future__ import annotations
 
 import io
-import json
 import logging
 import time
 from collections.abc import Mapping, Sequence
@@ -22,16 +21,17 @@ from PIL import Image
 from diorama_core.artefacts import Inputs, Photo
 from diorama_core.errors import ProjectError, SceneError
 from diorama_core.io.atomic import write_atomically
-from diorama_core.io.bounded import MAX_JSON_BYTES, read_bytes, read_json, read_picture, shortened
+from diorama_core.io.bounded import MAX_JSON_BYTES, parse_json, read_bytes, read_picture, shortened
+from diorama_core.io.documents import write_document, write_json
+from diorama_core.io.text import file_label
 from diorama_core.pipeline import codec
 from diorama_core.pipeline.runner import StageRun
+from diorama_core.project.backups import Backups
 from diorama_core.scene.schema import scene_from_json, scene_to_json
 from diorama_core.scene.types import Scene
 
 FORMAT = "diorama-project"
 VERSION = 1
-MAX_BACKUPS = 20
-BACKUP_EVERY_S = 60.0
 MAX_INFO_BYTES = 4_000_000
 MAX_NAME = 120
 MAX_UPLOAD_BYTES = 256 * 1024 * 1024
@@ -64,7 +64,9 @@ class Project:
             raise ProjectError(f"{folder} is a file, not a folder; choose another place for the project")
         if project.folder.exists() and not all(_is_leftover(f) for f in project.folder.iterdir()):
             raise ProjectError(f"{folder} holds other files and is not a project; choose a new or an empty folder")
-        project._write_info({"name": name or project.folder.name, "created": time.strftime("%Y-%m-%dT%H:%M:%S")})
+        project._write_info(
+            {"name": name or file_label(project.folder.name), "created": time.strftime("%Y-%m-%dT%H:%M:%S")}
+        )
         return project
 
     @classmethod
@@ -86,7 +88,7 @@ class Project:
     def name(self) -> str:
         """What people call the project."""
         name = self.info().get("name")
-        return shortened(name, MAX_NAME) if isinstance(name, str) and name else self.folder.name
+        return shortened(name if isinstance(name, str) and name else file_label(self.folder.name), MAX_NAME)
 
     @property
     def library_name(self) -> str:
@@ -123,7 +125,8 @@ class Project:
 
     def save_inputs(self, inputs: Inputs, warnings: Sequence[str] = ()) -> None:
         """Keep what the user gave, the photo also as a picture for people."""
-        write_atomically(self.stages_folder / "inputs.zip", codec.dump(inputs), error=ProjectError)
+        path = self.stages_folder / "inputs.zip"
+        write_document(path, codec.dump(inputs), _inputs_of, ProjectError, most=codec.MAX_BYTES)
         write_atomically(self.folder / "photo.jpg", jpeg(inputs.photo.rgb), error=ProjectError)
         self.update_info(photo=inputs.photo.name, warnings=list(warnings))
 
@@ -133,11 +136,9 @@ class Project:
         if not path.exists():
             return None
         try:
-            inputs = codec.load(read_bytes(path, codec.MAX_BYTES, ProjectError), Inputs)
-            _check_sizes(inputs)
+            return _inputs_of(read_bytes(path, codec.MAX_BYTES, ProjectError))
         except ProjectError as error:
             raise ProjectError(f"{path}: the photo cannot be read back ({error}); build the project again") from error
-        return inputs
 
     @property
     def has_scene(self) -> bool:
@@ -165,9 +166,10 @@ class Project:
 
     def save_scene(self, scene: Scene) -> bool:
         """Write `scene.json`; the previous one is kept among the backups (at most one a minute): True when it is."""
-        text = scene_to_json(scene)
-        new_version = self._back_up(emptied=not scene.objects)
-        write_atomically(self.scene_path, text.encode(), error=ProjectError)
+        content = scene_to_json(scene).encode()
+        emptied = not scene.objects
+        new_version = self.has_scene and Backups(self.folder / "backups").keep(self.scene_path, at_once=emptied)
+        write_document(self.scene_path, content, scene_from_json, ProjectError)
         return new_version
 
     def load_scene(self) -> Scene:
@@ -196,7 +198,7 @@ class Project:
 
     def backups(self) -> tuple[Path, ...]:
         """Earlier scene files, newest first."""
-        return tuple(sorted((self.folder / "backups").glob("scene-*.json"), reverse=True))
+        return Backups(self.folder / "backups").paths()
 
     def save_stage_runs(self, runs: Sequence[StageRun]) -> None:
         """Record which stage used what, and how long it took."""
@@ -240,22 +242,7 @@ class Project:
             "version": VERSION,
             **{k: v for k, v in info.items() if k not in ("format", "version")},
         }
-        write_atomically(self._info_path, json.dumps(document, indent=1).encode(), error=ProjectError)
-
-    def _back_up(self, *, emptied: bool) -> bool:
-        if not self.scene_path.exists():
-            return False
-        known = self.backups()
-        recent = bool(known) and time.time() - known[0].stat().st_mtime < BACKUP_EVERY_S
-        if recent and not emptied:
-            return False
-        stamp = time.strftime("%Y%m%d-%H%M%S") + f"-{time.time_ns() % 1_000_000_000:09d}"
-        backup = self.folder / "backups" / f"scene-{stamp}.json"
-        content = read_bytes(self.scene_path, MAX_JSON_BYTES, ProjectError)
-        write_atomically(backup, content, error=ProjectError)
-        for old in self.backups()[MAX_BACKUPS:]:
-            old.unlink(missing_ok=True)
-        return True
+        write_json(self._info_path, document, ProjectError, most=MAX_INFO_BYTES, indent=1)
 
 
 def read_scene(path: Path) -> Scene:
@@ -270,7 +257,8 @@ def read_scene(path: Path) -> Scene:
 @lru_cache(maxsize=128)
 def _info(path: Path, written_ns: int, size: int, inode: int) -> Mapping[str, Any]:
     """The content of a `project.json` as it was written then; asked for at every redraw of a page."""
-    info = read_json(path, ProjectError, most=MAX_INFO_BYTES, advice="restore it or build the project again")
+    data = read_bytes(path, MAX_INFO_BYTES, ProjectError)
+    info = parse_json(data, str(path), ProjectError, advice="restore it or build the project again")
     if not isinstance(info, dict) or info.get("format") != FORMAT:
         raise ProjectError(f"{path} is not a Diorama project file; restore it from a copy")
     version = info.get("version")
@@ -281,12 +269,14 @@ def _info(path: Path, written_ns: int, size: int, inode: int) -> Mapping[str, An
     return info
 
 
-def _check_sizes(inputs: Inputs) -> None:
-    """Everything that lies pixel on pixel over the photo has its size; raises `ProjectError` otherwise."""
+def _inputs_of(data: bytes) -> Inputs:
+    """What the user gave, where everything that lies pixel on pixel over the photo has its size."""
+    inputs: Inputs = codec.load(data, Inputs)
     size = inputs.photo.rgb.shape[:2]
     maps = (inputs.depth_m, inputs.instances, inputs.normals_camera)
     if min(size) < 1 or any(m is not None and m.shape[:2] != size for m in maps):
         raise ProjectError("depth or masks have another size than the photo")
+    return inputs
 
 
 def _is_leftover(path: Path) -> bool:

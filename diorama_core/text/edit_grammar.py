@@ -10,9 +10,12 @@ import re
 from collections.abc import Callable, Sequence
 from typing import Literal
 
+from pydantic import ValidationError
+
 from diorama_core.editing.relations import RelationKind
 from diorama_core.errors import EditRefused
 from diorama_core.geometry.openings import OPENING_CATEGORIES
+from diorama_core.io.bounded import shortened
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.library.taxonomy import category
 from diorama_core.scene.types import Scene
@@ -67,6 +70,8 @@ _AND_SO = frozenset({"of", "more", "new", "another", "please", "also", "and", "p
 _SCALES = {"twice": 2.0, "double": 2.0, "half": 0.5}
 EXAMPLES = "make all chairs wooden; move the lamp beside the sofa; remove everything on the desk; a rug under the table"
 MAX_COMMAND_CHARS = 1000
+MAX_LINE = 380
+"""Characters of a refusal."""
 
 
 def clauses_of(command: str) -> tuple[str, ...]:
@@ -98,6 +103,20 @@ def edits_of(
     Raises:
         EditRefused: the clause is not understood, or names what is not there; one line that says which.
     """
+    try:
+        return _edits_of(clause, scene, library, last, selected)
+    except ValidationError as error:  # the limits of an edit: lengths of words, numbers of copies
+        first = error.errors(include_url=False, include_input=False)[0]
+        where = shortened(" ".join(str(part) for part in first["loc"]), 40)
+        said = shortened(clause, 60)
+        raise EditRefused(f"“{said}”: {where}: {shortened(first['msg'].lower())}; say it in fewer words") from error
+    except EditRefused as refused:  # which quotes words that may be very long
+        raise EditRefused(shortened(str(refused), MAX_LINE)) from refused
+
+
+def _edits_of(
+    clause: str, scene: Scene, library: ShapeLibrary, last: Sequence[str], selected: Sequence[str]
+) -> tuple[Edit, ...]:
     selector = Selector(scene, library, last, selected)
     counted = counted_edits(selector, clause)
     if counted is not None:

@@ -7,12 +7,14 @@ from typing import Annotated, Literal
 from pydantic import BaseModel, ConfigDict, Field
 
 from diorama_core.editing.relations import RelationKind
+from diorama_core.scene.schema import MAX_ITEMS
 
 MAX_EDITS = 60
 MAX_COPIES = 12
 MAX_WORD_CHARS, MAX_ID_CHARS = 120, 200
 Words = Annotated[str, Field(max_length=MAX_WORD_CHARS)]
-Ids = Annotated[list[Annotated[str, Field(max_length=MAX_ID_CHARS)]], Field(max_length=500)]
+Id = Annotated[str, Field(max_length=MAX_ID_CHARS)]
+Ids = Annotated[list[Id], Field(max_length=MAX_ITEMS)]
 
 
 class _Strict(BaseModel):
@@ -53,7 +55,7 @@ class Shift(_Strict):
     """Away from the viewer."""
     up_m: Annotated[float, Field(ge=-5, le=5)] = 0.0
     """Of what hangs."""
-    toward: Words = ""
+    toward: Id = ""
     """Id of an object; empty where none is meant."""
     toward_m: Annotated[float, Field(ge=-20, le=20)] = 0.0
     """Toward that object along the floor; away from it where negative."""
@@ -64,7 +66,7 @@ class Turn(_Strict):
 
     do: Literal["turn"] = "turn"
     objects: Ids
-    toward: Words = ""
+    toward: Id = ""
     """Id of an object; empty for a turn by degrees."""
     degrees: Annotated[float, Field(ge=-360, le=360)] = 0.0
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import threading
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -12,6 +13,7 @@ from diorama_core.editing.clipboard import copied
 from diorama_core.errors import DioramaError
 from tests.app.people import LocalClient, join
 from tests.app.small_room import PlainLibrary, make_project
+from tests.waiting import until
 
 
 @pytest.fixture
@@ -81,3 +83,18 @@ def test_what_nobody_looks_at_is_closed_after_a_while(workspace: Workspace) -> N
     workspace.close_unused(at_once=True)
     assert [e.session.project.name for e in workspace.editors] == ["first"]
     assert workspace.server("second") is not None, "and opened again when somebody comes"
+
+
+def test_many_who_leave_wait_in_one_thread(workspace: Workspace, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Each page that was closed left a thread behind for a minute."""
+    before = threading.active_count()
+    for _ in range(120):
+        workspace._left()
+    assert threading.active_count() <= before + 1
+    looked: list[int] = []
+    monkeypatch.setattr(workspace, "close_unused", lambda: looked.append(1))
+    assert workspace._timer is not None
+    workspace._timer.cancel()
+    monkeypatch.setattr("diorama_app.workspace.CLOSED_AFTER_S", -1.0)
+    workspace._look_for_unused()
+    until(lambda: len(looked) >= 2, "whoever left while the timer ran is looked after, too")

@@ -1,5 +1,7 @@
 from __future__ import annotations
 
+from contextlib import suppress
+
 import numpy as np
 import pytest
 from shapely.geometry import Polygon
@@ -96,3 +98,14 @@ def test_things_of_a_thin_scan_stay_whole(every: int) -> None:
     found = sorted((sorted(b.size_m) for b in room.boxes), key=max)
     true = sorted((sorted(f.size_m) for f in FURNITURE), key=max)
     assert np.abs(np.array(found) - np.array(true)).max() < 0.12
+
+
+@pytest.mark.parametrize("top", [0.55, 0.8, 1.0])
+def test_a_low_cloud_with_stray_points_below_its_floor_is_a_room_or_one_line(top: float) -> None:
+    """With next to nothing above furniture the band of walls is all points, and began below the array of its levels."""
+    rng = np.random.default_rng(771)
+    floor = np.column_stack([rng.uniform(0, 4, (4000, 2)), rng.normal(0, 0.01, 4000)])
+    few = np.column_stack([rng.uniform(0, 4, (150, 2)), rng.uniform(0, top, 150)])
+    stray = np.column_stack([rng.uniform(0, 4, (3, 2)), np.full(3, -0.49)])
+    with suppress(InputError):
+        measured_cloud(PointCloud(np.vstack([floor, few, stray]), UP))

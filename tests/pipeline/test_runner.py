@@ -1,5 +1,6 @@
 from __future__ import annotations
 
+import os
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -11,7 +12,7 @@ from diorama_core.io.code_key import Sources
 from diorama_core.library.catalogue import built_in_library
 from diorama_core.perception.metrology import SingleViewMetrology
 from diorama_core.pipeline import runner as runner_module
-from diorama_core.pipeline.runner import CACHED_PER_STAGE, Runner, stage_code
+from diorama_core.pipeline.runner import CACHED_PER_STAGE, Runner, _read, _write, stage_code
 from diorama_core.pose import MadeToMeasure, RenderAndCompare
 from diorama_core.progress import CancelToken, Progress, ProgressEvent
 
@@ -133,3 +134,28 @@ def test_progress_of_parts_is_on_the_whole_jobs_scale() -> None:
     part = Progress(events.append).part(0.5, 1.0).part(0.0, 0.5)
     part.report(1.0, "half of the second half")
     assert events[0].fraction == pytest.approx(0.75)
+
+
+def test_results_in_a_folder_of_somebody_else_are_never_deleted(tmp_path: Path) -> None:
+    """A received project may have a link in place of its folder of stage results."""
+    theirs = tmp_path / "theirs"
+    theirs.mkdir()
+    names = [f"widen-{i:024x}.zip" for i in range(9)] + ["widen-notes.zip"]
+    for name in names:
+        (theirs / name).write_bytes(b"theirs")
+    (tmp_path / "stages").symlink_to(theirs)
+    for i in range(3):
+        _write(tmp_path / "stages" / f"widen-{i + 100:024x}.zip", ())
+        assert _read(tmp_path / "stages" / names[i], tuple) is None
+    assert all((theirs / name).read_bytes() == b"theirs" for name in names)
+
+
+def test_what_was_just_written_stays_whatever_the_clock_says(tmp_path: Path) -> None:
+    for i in range(6):
+        path = tmp_path / f"widen-{i:024x}.zip"
+        _write(path, ())
+        os.utime(path, (4e9, 4e9))
+    newest = tmp_path / f"widen-{99:024x}.zip"
+    _write(newest, ())
+    assert newest.exists()
+    assert len(list(tmp_path.glob("*.zip"))) == CACHED_PER_STAGE

@@ -2,13 +2,14 @@ from __future__ import annotations
 
 import json
 import os
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
 
 from diorama_core.errors import ProjectError, SceneError
-from diorama_core.project import storage
+from diorama_core.project import backups
 from diorama_core.project.storage import Project
 from diorama_core.scene.types import Scene
 from tests.pipeline.test_codec import example_inputs
@@ -43,11 +44,11 @@ def test_an_emptied_scene_can_be_taken_back(tmp_path: Path) -> None:
 
 
 def test_backups_rotate(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(storage, "BACKUP_EVERY_S", 0.0)
+    monkeypatch.setattr(backups, "BACKUP_EVERY_S", 0.0)
     project = Project.create(tmp_path / "room")
-    for _ in range(storage.MAX_BACKUPS + 5):
-        project.save_scene(_stack())
-    assert len(project.backups()) == storage.MAX_BACKUPS
+    for number in range(backups.MAX_BACKUPS + 5):
+        project.save_scene(replace(_stack(), metrics={"number": float(number)}))
+    assert len(project.backups()) == backups.MAX_BACKUPS
 
 
 def test_a_folder_with_other_objects_is_left_alone(tmp_path: Path) -> None:

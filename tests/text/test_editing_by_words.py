@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -93,3 +94,57 @@ def test_the_schema_is_strict_and_the_prompt_names_every_object(dining: Scene) -
 def test_endless_commands_are_refused(dining: Scene, tmp_path: Path) -> None:
     with pytest.raises(EditRefused, match="characters"):
         propose_edits("remove " * 400, dining, built_in_library())
+
+
+def _refusal(command: str, scene: Scene) -> str:
+    """Why a command is refused; empty where it is done."""
+    try:
+        propose_edits(command, scene, built_in_library(), selected=tuple(o.id for o in scene.objects[-1:]))
+    except EditRefused as refused:
+        return str(refused)
+    return ""
+
+
+def _crowd(scene: Scene, count: int, label: str = "armchair", category: str = "armchair") -> Scene:
+    """The scene with many objects of one kind, far from everything."""
+    item = next(o for o in scene.objects if o.category == "chair")
+    many = [replace(item, id=f"{category}_{n}", label=label, category=category) for n in range(1, count + 1)]
+    return replace(scene, objects=(*scene.objects, *many))
+
+
+def test_an_edit_may_be_of_as_many_objects_as_a_scene_has(dining: Scene) -> None:
+    """More than 500 were an internal error."""
+    crowd = _crowd(dining, 600)
+    proposed = propose_edits("make all armchairs red", crowd, built_in_library())
+    assert sum(o.colour is not None for o in proposed.scene.objects if o.category == "armchair") == 600
+
+
+@pytest.mark.parametrize(
+    "command",
+    [
+        "add a " + "very " * 40 + "large red sofa",
+        "replace the table with a " + "big " * 40 + "table",
+        "make the table " + "light " * 40 + "blue",
+        "paint the walls " + "dark " * 40 + "green",
+        "add " + "a nice " * 60 + "lamp",
+        "change all chairs into " + "small " * 60,
+        "turn the table toward the " + "old " * 60 + "chair",
+        "put a vase on the " + "x" * 500,
+        "add 5000000000000000000000 chairs",
+        "move the table " + "9" * 300 + " m to the left",
+    ],
+)
+def test_long_commands_are_done_or_refused_in_one_line(dining: Scene, command: str) -> None:
+    line = _refusal(command, dining)
+    assert len(line) < 400
+    assert "\n" not in line
+
+
+def test_objects_of_long_names_are_done_or_refused_in_one_line(dining: Scene) -> None:
+    crowd = _crowd(dining, 2, label="armchair " * 50)
+    for command in (
+        "make the armchair wooden",
+        "replace the armchair with a stool",
+        "turn the armchair toward the table",
+    ):
+        assert "\n" not in _refusal(command, crowd)

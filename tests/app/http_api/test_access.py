@@ -5,6 +5,7 @@ import json
 
 import pytest
 
+from diorama_app.http_api import access
 from diorama_app.http_api.access import MAX_BODIES, MAX_BODY_BYTES, Guard
 from diorama_app.web.visitors import Visitors
 
@@ -61,6 +62,52 @@ def test_a_body_that_grows_beyond_its_announcement_is_cut_off() -> None:
 
 def test_only_so_many_bodies_at_once() -> None:
     guard = Guard(served, Visitors("127.0.0.1"))
-    guard._bodies = MAX_BODIES
-    assert ask(guard, HOST, method="POST")[0] == 503
+    for _ in range(MAX_BODIES):
+        guard.take_place()
+    assert ask(guard, HOST, method="POST", parts=(b"x",))[0] == 503
+    assert ask(guard, HOST, method="POST")[0] == 200, "what has no body, such as a cancel, needs no place"
     assert ask(guard, HOST)[0] == 200
+
+
+def test_silent_and_dripping_bodies_are_given_up_and_hold_no_place(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Four uploads that sent nothing kept every other one, and every cancel, out for 40 seconds."""
+    monkeypatch.setattr(access, "STALLED_S", 0.05)
+    monkeypatch.setattr(access, "GRACE_S", 0.3)
+
+    async def trouble(drip: bool) -> tuple[int, int]:
+        guard, sent = Guard(served, Visitors("127.0.0.1")), []
+
+        async def receive():
+            if not drip:
+                await asyncio.sleep(30.0)
+            await asyncio.sleep(0.02)
+            return {"type": "http.request", "body": b"x" if drip else b"", "more_body": True}
+
+        async def send(message):
+            sent.append(message)
+
+        scope = {"type": "http", "method": "POST", "path": "/v1/jobs", "query_string": b"", "headers": [HOST]}
+        uploads = [asyncio.create_task(guard(scope, receive, send)) for _ in range(MAX_BODIES)]
+        await asyncio.sleep(0.04)
+        held = guard._bodies
+        await asyncio.gather(*uploads)
+        assert {m["status"] for m in sent if "status" in m} == {408}
+        assert (b"connection", b"close") in sent[0]["headers"]
+        return held, guard._bodies
+
+    assert asyncio.run(trouble(drip=False)) == (0, 0), "silent ones hold no place"
+    assert asyncio.run(trouble(drip=True)) == (MAX_BODIES, 0)
+
+
+def test_what_nobody_expected_is_one_json_line_and_logged(caplog: pytest.LogCaptureFixture) -> None:
+    async def broken(scope, receive, send) -> None:
+        raise ZeroDivisionError("in a place that nobody thought of")
+
+    status, told = ask(Guard(broken, Visitors("127.0.0.1")), HOST)
+    assert (status, told) == (500, {"error": "internal error; the server's log says more"})
+    assert "nobody thought of" in caplog.text
+
+
+def test_too_many_requests_are_refused(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(access, "MAX_REQUESTS", 0)
+    assert ask(Guard(served, Visitors("127.0.0.1")), HOST)[0] == 503

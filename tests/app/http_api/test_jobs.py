@@ -1,15 +1,25 @@
 from __future__ import annotations
 
+import asyncio
 import json
+import shutil
+import threading
+import time
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
+from fastapi import FastAPI
 
 from diorama_app.http_api import jobs
+from diorama_app.http_api.job import Job
 from diorama_app.http_api.jobs import MAX_TRIES, JobQueue, JobStateError, QueueFullError, UnknownJobError
+from diorama_app.http_api.routes import create_app
+from diorama_app.web.visitors import Visitors
 from diorama_core.perception.inputs import read_inputs
+from diorama_core.progress import Progress
 from diorama_core.project.storage import Project
-from tests.app.small_room import PlainLibrary
+from tests.app.small_room import PlainLibrary, furnished_scene, make_project
 from tests.cli.room_photo import write_room
 
 
@@ -59,7 +69,195 @@ def test_a_build_that_ends_its_server_is_not_begun_for_ever(tmp_path: Path) -> N
     queue = _queue(tmp_path / "projects")
     assert queue.job(job.id).state == "queued"
     queue.start()
-    over = queue.wait(job.id, 20.0)
+    over = asyncio.run(queue.wait(job.id, 20.0))
     queue.close()
     assert over.state == "failed"
     assert "ended 2 times" in (over.error or "")
+
+
+async def _asked(app: FastAPI, method: str, path: str) -> tuple[int, dict]:
+    """What an application answers, without a server."""
+    sent: list[dict] = []
+    way, _, query = path.partition("?")
+    scope = {
+        "type": "http",
+        "method": method,
+        "path": way,
+        "raw_path": way.encode(),
+        "query_string": query.encode(),
+        "headers": [(b"host", b"127.0.0.1:8090")],
+        "http_version": "1.1",
+        "scheme": "http",
+    }
+
+    async def receive() -> dict:
+        return {"type": "http.request", "body": b"", "more_body": False}
+
+    async def send(message: dict) -> None:
+        sent.append(message)
+
+    await app(scope, receive, send)
+    body = b"".join(m.get("body", b"") for m in sent[1:])
+    headers = dict(sent[0]["headers"])
+    if headers.get(b"content-type") == b"application/json":
+        return sent[0]["status"], json.loads(body)
+    return sent[0]["status"], {k.decode(): v.decode("latin-1") for k, v in headers.items()}
+
+
+def _ask(queue: JobQueue, method: str, path: str) -> tuple[int, dict]:
+    return asyncio.run(_asked(create_app(queue, Visitors("127.0.0.1")), method, path))
+
+
+def _done(projects: Path, name: str) -> Path:
+    """A project with a scene and a finished job."""
+    project = make_project(projects / name)
+    project.update_info(job={"created": "2026-11-28T03:00:00", "state": "done"})
+    return project.folder
+
+
+def _damage(folder: Path, kind: str) -> None:
+    """What may happen to a job's project while the server runs."""
+    match kind:
+        case "gone":
+            shutil.rmtree(folder)
+        case "moved":
+            folder.rename(folder.with_name("elsewhere"))
+        case "info cut":
+            (folder / "project.json").write_text("{")
+        case "info of others":
+            (folder / "project.json").write_text("[]")
+        case "scene gone":
+            (folder / "scene.json").unlink()
+        case "scene cut":
+            (folder / "scene.json").write_text("{")
+        case "scene a folder":
+            (folder / "scene.json").unlink()
+            (folder / "scene.json").mkdir()
+        case "notes are no list":
+            Project(folder).update_info(notes=7)
+        case "notes of anything":
+            Project(folder).update_info(notes=[{"a": 1}, None, "x" * 10_000, "half \ud800"])
+
+
+DAMAGES = (
+    "gone",
+    "moved",
+    "info cut",
+    "info of others",
+    "scene gone",
+    "scene cut",
+    "scene a folder",
+    "notes are no list",
+    "notes of anything",
+)
+
+
+@pytest.mark.parametrize("kind", DAMAGES)
+def test_one_damaged_job_does_not_hide_the_others(tmp_path: Path, kind: str) -> None:
+    """A project that was damaged or moved made the list of all jobs an internal error."""
+    _done(tmp_path, "good")
+    bad = _done(tmp_path, "bad")
+    queue = _queue(tmp_path)
+    _damage(bad, kind)
+    status, told = _ask(queue, "GET", "/v1/jobs")
+    assert status == 200
+    jobs = {job["id"]: job for job in told["jobs"]}
+    assert (jobs["good"]["error"], jobs["good"]["objects"] > 0) == (None, True)
+    assert jobs["bad"]["state"] == "done"
+    assert (jobs["bad"]["error"] is None) == kind.startswith("notes")
+    assert all(len(note) <= 300 for note in jobs["bad"]["notes"])
+    assert _ask(queue, "GET", "/v1/jobs/bad") == (200, jobs["bad"])
+    for way in ("scene", "picture", "export/glb"):
+        status, told = _ask(queue, "GET", f"/v1/jobs/bad/{way}")
+        assert status == 200 or ("error" in told and "\n" not in told["error"]), (way, told)
+
+
+@pytest.mark.parametrize(
+    "job", [{"seconds": float("1e400")}, {"error": "x" * 5000}, {"created": 7}, {"seconds": "nan"}]
+)
+def test_a_noted_job_of_odd_values_is_none(tmp_path: Path, job: dict) -> None:
+    folder = _done(tmp_path, "odd")
+    document = json.loads((folder / "project.json").read_text())
+    (folder / "project.json").write_text(json.dumps(document | {"job": document["job"] | job}))
+    assert _ask(_queue(tmp_path), "GET", "/v1/jobs") == (200, {"jobs": []})
+
+
+@pytest.mark.parametrize("name", ["запись", 'a"b', "b\udce9te", "with space"])
+def test_a_job_in_a_folder_of_any_name_is_exported(tmp_path: Path, name: str) -> None:
+    """A name that is no Latin-1 could not be put into a header; a quote ended the file's name there."""
+    project = Project(_done(tmp_path, name))
+    project.save_scene(replace(furnished_scene(), objects=(), supports=()))  # of no shapes, which a library would have
+    queue = _queue(tmp_path)
+    (job,) = _ask(queue, "GET", "/v1/jobs")[1]["jobs"]
+    status, headers = asyncio.run(
+        _asked(create_app(queue, Visitors("127.0.0.1")), "GET", f"/v1/jobs/{job['id']}/export/svg")
+    )
+    assert (status, headers["content-disposition"]) == (200, 'attachment; filename="scene.svg"')
+
+
+def test_patient_pollers_hold_no_thread(tmp_path: Path) -> None:
+    """Forty of them, as many as there are threads for requests, kept everybody else waiting for 42 seconds."""
+    job = _add(_queue(tmp_path), tmp_path)
+    queue = _queue(tmp_path)
+
+    async def crowd() -> tuple[float, set[str]]:
+        app = create_app(queue, Visitors("127.0.0.1"))
+        pollers = [asyncio.create_task(_asked(app, "GET", f"/v1/jobs/{job.id}?wait_s=50")) for _ in range(100)]
+        await asyncio.sleep(0.1)
+        began, threads = time.monotonic(), threading.active_count()
+        assert (await _asked(app, "GET", "/v1/formats"))[0] == 200
+        took = time.monotonic() - began
+        assert threading.active_count() <= threads + 1
+        queue.cancel(job.id)
+        return took, {told["state"] for _, told in await asyncio.gather(*pollers)}
+
+    took, states = asyncio.run(asyncio.wait_for(crowd(), 30.0))
+    assert states == {"cancelled"}, "whoever waits is told at once"
+    assert took < 10.0
+
+
+def test_a_job_can_be_cancelled_at_any_moment(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Between being taken from the queue and being begun, a job was in neither state."""
+
+    def build(job: Job, folder: Path, library: object, progress: Progress) -> None:
+        for _ in range(200):
+            progress.check()
+            time.sleep(0.005)
+
+    monkeypatch.setattr(jobs, "build_job", build)
+    queue = _queue(tmp_path / "projects")
+    queue.start()
+    states = []
+    for number in range(25):
+        job = _add(queue, tmp_path)
+        time.sleep(0.0004 * number)
+        assert queue.cancel(job.id).state in ("running", "cancelled")
+        states.append(asyncio.run(queue.wait(job.id, 20.0)).state)
+    queue.close()
+    assert set(states) == {"cancelled"}
+
+
+def test_a_build_that_ends_in_anything_leaves_the_queue_alive(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def build(job: Job, folder: Path, library: object, progress: Progress) -> None:
+        (folder / "project.json").unlink()  # the state can be noted nowhere any more
+        raise MemoryError("no more")
+
+    monkeypatch.setattr(jobs, "build_job", build)
+    queue = _queue(tmp_path / "projects")
+    queue.start()
+    for _ in range(2):
+        over = asyncio.run(queue.wait(_add(queue, tmp_path).id, 20.0))
+        assert over.state == "failed"
+    queue.close()
+
+
+def test_what_cannot_be_deleted_stays_a_job(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    _done(tmp_path, "room")
+    queue = _queue(tmp_path)
+
+    def refused(path: Path) -> None:
+        raise PermissionError(13, "Permission denied")
+
+    monkeypatch.setattr(jobs.shutil, "rmtree", refused)
+    assert _ask(queue, "DELETE", "/v1/jobs/room") == (500, {"error": "room cannot be deleted (Permission denied)"})
+    assert queue.job("room").state == "done"

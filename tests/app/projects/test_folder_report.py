@@ -1,5 +1,6 @@
 from __future__ import annotations
 
+import os
 import re
 from pathlib import Path
 
@@ -33,3 +34,17 @@ def test_failures_come_first_and_every_picture_is_inside(tmp_path: Path) -> None
     assert len(re.findall(r'src="data:image/jpeg;base64,[A-Za-z0-9+/=]{200,}"', page)) == 2
     assert page.count("cannot be shown") == 2, "pictures of the other are gone"
     assert not re.search(r'src="(?!data:)|<script|<link', page)
+
+
+def test_names_of_any_bytes_are_in_the_report(tmp_path: Path) -> None:
+    """One photo with a name that is no UTF-8 ended the build of a folder before its report."""
+    folder = tmp_path / os.fsdecode(b"caf\xe9 #1")
+    report = {"objects": [], "planes": [], "notes": [os.fsdecode(b"a note on caf\xe9")]}
+    results = (
+        PhotoResult(folder.with_suffix(".jpg"), folder, report),
+        PhotoResult(folder.with_suffix(".png"), folder, error=os.fsdecode(b"no caf\xe9")),
+    )
+    write_report(tmp_path / "report.html", results, (os.fsdecode(b"\xe9"),))
+    page = (tmp_path / "report.html").read_text()
+    assert 'href="caf%E9%20%231/scene.json"' in page
+    assert page.count("caf\ufffd") >= 4

@@ -167,7 +167,7 @@ def test_leftovers_are_removed_when_their_time_is_over(project: Project, tmp_pat
     superseded = next((tmp_path / "unsaved").glob("*.json"))
     day_ago = time.time() - 86400.0
     os.utime(superseded, (day_ago, day_ago))
-    project.save_scene(furnished_scene())
+    project.save_scene(edits.rename(furnished_scene(), "chair_1", "stool"))
     parts = [project.folder / ".scene.json.abc.part", project.folder / "stages" / ".x.zip.abc.part"]
     for part in parts:
         part.write_bytes(b"half")
@@ -191,3 +191,45 @@ def test_a_damaged_unsaved_copy_is_not_in_the_way(project: Project, tmp_path: Pa
     assert found is not None
     with pytest.raises(SceneError):
         found.scene()
+
+
+@pytest.mark.parametrize("ahead_s", [-10 * 365 * 86400.0, -3600.0, 3600.0, 10 * 365 * 86400.0])
+def test_no_clock_decides_what_is_newer(project: Project, tmp_path: Path, ahead_s: float) -> None:
+    """After a flight west the scene's time lay ahead, and the copy of what was not saved was deleted."""
+    crashed, later = Recovery(tmp_path / "unsaved"), Recovery(tmp_path / "unsaved")
+    crashed.note(project, renamed())
+    (noted,) = (tmp_path / "unsaved").glob("*.json")
+    minute_ago, then = time.time() - 60.0, time.time() + ahead_s
+    os.utime(noted, (minute_ago, minute_ago))
+    os.utime(project.scene_path, (then, then))
+    later.clean_up(project)
+    found = later.left_behind(project)
+    assert found is not None
+    assert found.scene() == renamed()
+    project.save_scene(edits.rename(furnished_scene(), "chair_1", "stool"))
+    os.utime(project.scene_path, (then, then))
+    assert later.left_behind(project) is None, "something newer is saved"
+    later.clean_up(project)
+    assert not noted.exists()
+
+
+def test_a_session_keeps_one_note_of_a_project(project: Project, tmp_path: Path) -> None:
+    here = Recovery(tmp_path / "unsaved")
+    for number in range(3):
+        project.save_scene(edits.rename(furnished_scene(), "chair_1", f"stool {number}"))
+        here.note(project, renamed())
+    assert len(list((tmp_path / "unsaved").glob("*.json"))) == 1
+    here.forget(project)
+    assert not list((tmp_path / "unsaved").glob("*.json"))
+
+
+def test_notes_of_earlier_programs_are_found(project: Project, tmp_path: Path) -> None:
+    old, here = Recovery(tmp_path / "unsaved"), Recovery(tmp_path / "unsaved")
+    old.note(project, renamed())
+    (noted,) = (tmp_path / "unsaved").glob("*.json")
+    former = noted.rename(noted.with_name("-".join(noted.stem.split("-")[:2]) + ".json"))
+    minute_ago = time.time() - 30.0
+    os.utime(former, (minute_ago, minute_ago))
+    found = here.left_behind(project)
+    assert found is not None
+    assert found.scene() == renamed()

@@ -14,7 +14,7 @@ from diorama_app.session.session import EditorSession
 from diorama_app.web.viser_adapter import create_server, stop_server
 from diorama_app.web.visitors import Visitors
 from diorama_core.errors import DioramaError, EditRefused
-from diorama_core.project import storage
+from diorama_core.project import backups
 from diorama_core.project.storage import Project
 from diorama_core.scene.edits import rename as renamed
 from tests.app.people import join
@@ -80,7 +80,7 @@ def test_the_second_may_edit_when_the_first_has_let_go(new_room: NewRoom, tmp_pa
 def test_a_damaged_scene_opens_with_the_newest_version_that_can_be_read(
     new_room: NewRoom, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(storage, "BACKUP_EVERY_S", 0.0)
+    monkeypatch.setattr(backups, "BACKUP_EVERY_S", 0.0)
     project = make_project(tmp_path / "projects" / "demo")
     project.save_scene(renamed(furnished_scene(), "chair_1", "throne"))
     project.save_scene(renamed(furnished_scene(), "chair_1", "newer"))

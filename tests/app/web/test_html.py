@@ -8,7 +8,7 @@ import viser
 from hypothesis import given
 from hypothesis import strategies as st
 
-from diorama_app.web.html import Action, LiveHtml, button, run_once, switch, text
+from diorama_app.web.html import Action, LiveHtml, _read_actions, button, run_once, switch, text
 from tests.app.page import Page
 
 
@@ -107,3 +107,13 @@ def test_a_switch_says_its_state_and_its_name_alone() -> None:
     assert 'aria-checked="false"' in off
     assert "disabled" in off
     assert "disabled" not in on
+
+
+def test_half_characters_of_a_page_are_replaced_where_they_enter() -> None:
+    said = json.dumps([{"number": 1, "do": "rename", "arg": json.dumps(["", "caf\udce9"]), "add": False}])
+    ((_, action),) = _read_actions(said)
+    assert action.pair == ("", "caf\ufffd")
+    assert action.parsed == ["", "caf\ufffd"]
+    for odd in ("[" * 100_000, '[{"number": 1e999, "do": "a", "arg": "", "add": 0}]', "{", "7"):
+        assert _read_actions(odd) == []
+        assert Action("do", odd, False).pair == ("", "")

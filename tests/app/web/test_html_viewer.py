@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import html
 import re
 
 import pytest
@@ -23,6 +24,14 @@ def test_the_page_names_the_scene_and_its_viewer(tmp_path, capsys) -> None:
     assert not re.search(r"<(script|link)[^>]+(src|href)=.?https?:", page)
     printed = capsys.readouterr().out.splitlines()
     assert {line for line in printed if "Server stopped" not in line} == set()  # a server of an earlier test may say so
+
+
+@pytest.mark.parametrize("name", [r"C:\temp\1 \g<0>", "half \udce9", "\\"])
+def test_any_name_becomes_the_title_as_it_is(tmp_path, name: str) -> None:
+    """The name was taken for a template, in which a backslash begins an escape."""
+    write_html(gather(furnished_room(LIBRARY), LIBRARY, name=name), tmp_path / "room.html")
+    title = html.escape(name.replace("\udce9", "\ufffd"))
+    assert f"<title>{title}</title>" in (tmp_path / "room.html").read_text()
 
 
 def test_cancelling_leaves_nothing(tmp_path) -> None:

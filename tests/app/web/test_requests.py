@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import asyncio
 import gzip
 import socket
 import time
@@ -11,7 +12,9 @@ from concurrent.futures import Future
 import pytest
 import viser
 
+from diorama_app.web import viser_adapter
 from diorama_app.web.head import SCRIPTS
+from diorama_app.web.requests import MESSAGES_AT_ONCE, MESSAGES_PER_S, paced
 from diorama_app.web.viser_adapter import create_server, stop_server
 from diorama_app.web.visitors import Visitors
 from tests.app.web.http_client import fetch, raw_status
@@ -100,3 +103,30 @@ def test_a_page_that_is_closed_while_its_picture_is_made_is_no_error(caplog: pyt
     assert fetch(made, "/pictures/table.png")[0] == 200
     stop_server(made)
     assert not [record.message for record in caplog.records if record.levelname == "ERROR"]
+
+
+def test_messages_of_one_connection_are_taken_at_a_pace() -> None:
+    class Connection:
+        async def recv(self) -> bytes:
+            return b""
+
+    async def read(connection: Connection) -> None:
+        for _ in range(MESSAGES_AT_ONCE + 90):
+            await connection.recv()
+
+    began = time.monotonic()
+    asyncio.run(paced(read)(Connection()))
+    assert time.monotonic() - began > 0.9 * 90 / MESSAGES_PER_S
+
+
+def test_every_connection_is_paced(monkeypatch: pytest.MonkeyPatch) -> None:
+    """With the pace switched off, no test failed."""
+    handlers: list[object] = []
+
+    def noted(handler):
+        handlers.append(handler)
+        return paced(handler)
+
+    monkeypatch.setattr(viser_adapter, "paced", noted)
+    stop_server(create_server(host="127.0.0.1", port=0, label="test", visitors=Visitors("127.0.0.1")))
+    assert len(handlers) == 1

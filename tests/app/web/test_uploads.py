@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import signal
 import time
 from collections.abc import Iterator
 from pathlib import Path
@@ -22,6 +23,8 @@ from tests.app.wire import WirePage
 from tests.io.test_bombs import png
 from tests.waiting import until
 
+PATIENCE_S = 240
+"""Of one test; a busy machine takes a minute."""
 BUTTONS = ("Upload a photo", "Add boxes (JSON)", "Add depth (PNG or NPY)", "Add masks (PNG)", "New from a photo")
 
 
@@ -31,6 +34,20 @@ def running(tmp_path: Path) -> Iterator[Running]:
     made = start(project=project.folder, projects_dir=tmp_path / "projects", low_graphics=True, library=PlainLibrary())
     yield made
     made.stop()
+
+
+@pytest.fixture(autouse=True)
+def patience() -> Iterator[None]:
+    """Where a cap is missing, the servers wait for bytes that never come: a failure, not a wait without end."""
+
+    def over(*_: object) -> None:
+        raise TimeoutError("this test takes too long")
+
+    before = signal.signal(signal.SIGALRM, over)
+    signal.alarm(PATIENCE_S)
+    yield
+    signal.alarm(0)
+    signal.signal(signal.SIGALRM, before)
 
 
 def in_flight(running: Running) -> dict[str, dict]:

@@ -2,15 +2,22 @@
 
 from __future__ import annotations
 
+import inspect
+import re
 import socket
 import time
 from collections.abc import Iterator
 
+import msgspec
 import pytest
 import viser
+import websockets
+import zstandard
 from viser import _messages
+from viser.infra import _infra
+from websockets.sync.client import connect
 
-from diorama_app.web.viser_adapter import create_server, stop_server
+from diorama_app.web.viser_adapter import create_server, packed, stop_server
 from diorama_app.web.visitors import Visitors
 from diorama_core.errors import InputError
 from tests.app.web.http_client import connects, fetch
@@ -101,3 +108,24 @@ def test_drawing_from_many_threads_never_disturbs_the_loop() -> None:
 
     assert asyncio.run(asyncio.wait_for(wait_for_messages(), 20.0)) == 600, "every message arrives"
     assert touched <= {threading.get_ident()}
+
+
+def test_one_half_character_does_not_blank_the_page_for_everybody(server: viser.ViserServer) -> None:
+    """A folder with a name that is no UTF-8 ended every connection before its page was drawn."""
+    server.gui.add_markdown("b\udce9te and \ud83d\ude00")
+    server.gui.add_markdown("the last thing on the page")
+    protocol = websockets.Subprotocol(f"viser-v{viser.__version__}")
+    with connect(f"ws://127.0.0.1:{server.get_port()}/", subprotocols=[protocol]) as page:
+        came = b""
+        while b"the last thing on the page" not in came:
+            message = page.recv(timeout=10.0)
+            assert isinstance(message, bytes)
+            size = int.from_bytes(message[8:16], "little")
+            came += zstandard.ZstdDecompressor().decompress(message[16 : 16 + size])
+    assert "b\ufffdte and \U0001f600".encode() in came
+
+
+def test_what_viser_packs_goes_through_one_place() -> None:
+    used = set(re.findall(r"(?<!import )msgspec[\w.]+", inspect.getsource(_infra)))
+    assert used == {"msgspec.msgpack.encode"}
+    assert packed({"plain": 1}) == msgspec.msgpack.encode({"plain": 1})

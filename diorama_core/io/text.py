@@ -1,0 +1,38 @@
+"""Text from outside (arguments, file names, page actions, uploads) as text that can be shown and written."""
+
+from __future__ import annotations
+
+from typing import Any
+
+REPLACEMENT = "\ufffd"
+"""Stands for what is no character."""
+_KEPT = "\t\n\r"
+_CONTROLS = {code: REPLACEMENT for code in (*range(32), *range(127, 160)) if chr(code) not in _KEPT}
+
+
+def clean_text(text: str) -> str:
+    """The text with half characters and control characters replaced; halves that belong together become one."""
+    if text.isascii() and text.isprintable():
+        return text
+    whole = text.encode("utf-16-le", "surrogatepass").decode("utf-16-le", "replace")
+    return whole.translate(_CONTROLS)
+
+
+def clean_strings(value: Any) -> Any:
+    """A value as JSON has it (or of tuples and bytes) with every string in it cleaned, keys included."""
+    match value:
+        case str():
+            return clean_text(value)
+        case dict():
+            return {clean_strings(key): clean_strings(one) for key, one in value.items()}
+        case list():
+            return [clean_strings(one) for one in value]
+        case tuple():
+            return tuple(clean_strings(one) for one in value)
+    return value
+
+
+def file_label(name: str) -> str:
+    """A file's name as text that differs for different names: bytes that are no UTF-8 are written as `\\xe9`."""
+    known = "".join(c if not 0xDC80 <= ord(c) <= 0xDCFF else f"\\x{ord(c) - 0xDC00:02x}" for c in name)
+    return clean_text(known)

@@ -1,0 +1,274 @@
+"""Small defects put into the modules that keep the promises of docs/reliability.md: does a test fail for each?
+
+    python scripts/mutants.py [--only backups,contained] [--sample 20] [--seed 0] [--minutes 60]
+
+A mutant is a module with one change: a comparison with its neighbour, `and` for `or`, a condition negated, a number one
+more, a value not returned, a call or an error left out. The module's own tests run in a fork of this process that has
+loaded the libraries; a mutant that they pass has survived, and its line is printed. Constants at the top of modules,
+words for people and what is logged are left alone: they are settings and prose. Needs the packages of the tests.
+"""
+
+from __future__ import annotations
+
+import argparse
+import ast
+import contextlib
+import copy
+import os
+import random
+import signal
+import sys
+import time
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from importlib import import_module
+from importlib.machinery import SourceFileLoader
+from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
+
+import scripts.needs  # noqa: F401  # ends with a line where a package is missing
+
+ROOT = Path(__file__).resolve().parents[1]
+LIBRARIES = ("pytest", "hypothesis", "numpy", "scipy.spatial", "pydantic", "jaxtyping", "beartype", "PIL.Image")
+MORE_LIBRARIES = ("trimesh", "shapely", "filelock", "viser", "fastapi", "uvicorn")
+PATIENCE = 6.0
+"""Times as long as the tests take without a defect: a mutant that takes longer is found."""
+MIN_PATIENCE_S = 60.0
+
+GUARDED: dict[str, tuple[str, ...]] = {
+    "diorama_core/io/atomic.py": ("tests/io/test_atomic.py",),
+    "diorama_core/io/bounded.py": ("tests/io/test_bounded.py", "tests/project/test_hostile.py"),
+    "diorama_core/io/contained.py": ("tests/io/test_contained.py",),
+    "diorama_core/io/documents.py": ("tests/io/test_documents.py",),
+    "diorama_core/io/text.py": ("tests/io/test_text.py",),
+    "diorama_core/io/xml_text.py": ("tests/io/test_xml_text.py",),
+    "diorama_core/io/typed.py": ("tests/io/test_typed.py",),
+    "diorama_core/io/arrays.py": ("tests/io/test_arrays.py",),
+    "diorama_core/io/derived.py": ("tests/io/test_derived.py",),
+    "diorama_core/io/limited.py": ("tests/io/test_limited.py",),
+    "diorama_core/project/backups.py": ("tests/project/test_backups.py", "tests/project/test_storage.py"),
+    "diorama_core/project/lock.py": ("tests/project/test_lock.py",),
+    "diorama_core/project/storage.py": (
+        "tests/project/test_storage.py",
+        "tests/project/test_hostile.py",
+        "tests/project/test_written_is_readable.py",
+    ),
+    "diorama_core/project/further_photos.py": ("tests/project/test_further_photos.py",),
+    "diorama_core/pipeline/runner.py": ("tests/pipeline/test_runner.py",),
+    "diorama_core/scene/history.py": ("tests/scene/test_history.py",),
+    "diorama_app/session/recovery.py": ("tests/app/session/test_recovery.py",),
+    "diorama_app/session/autosave.py": ("tests/app/session/test_recovery.py", "tests/app/session/test_autosave.py"),
+    "diorama_app/session/ui_thread.py": ("tests/app/session/test_ui_thread.py",),
+    "diorama_app/projects/manage.py": ("tests/app/projects/test_manage.py", "tests/app/test_care.py"),
+    "diorama_app/http_api/access.py": ("tests/app/http_api/test_access.py",),
+    "diorama_app/http_api/answers.py": ("tests/app/http_api/test_jobs.py",),
+    "diorama_app/http_api/connections.py": ("tests/app/http_api/test_connections.py",),
+    "diorama_app/http_api/job.py": ("tests/app/http_api/test_jobs.py",),
+    "diorama_app/http_api/jobs.py": ("tests/app/http_api/test_jobs.py", "tests/app/http_api/test_stateful_jobs.py"),
+    "diorama_app/web/requests.py": ("tests/app/web/test_requests.py",),
+    "diorama_app/web/upload_limits.py": ("tests/app/web/test_upload_limits.py",),
+    "diorama_app/web/visitors.py": ("tests/app/web/test_visitors.py",),
+}
+
+COMPARED: dict[type[ast.cmpop], type[ast.cmpop]] = {
+    ast.Lt: ast.LtE,
+    ast.LtE: ast.Lt,
+    ast.Gt: ast.GtE,
+    ast.GtE: ast.Gt,
+    ast.Eq: ast.NotEq,
+    ast.NotEq: ast.Eq,
+    ast.In: ast.NotIn,
+    ast.NotIn: ast.In,
+    ast.Is: ast.IsNot,
+    ast.IsNot: ast.Is,
+}
+COMPUTED: dict[type[ast.operator], type[ast.operator]] = {
+    ast.Add: ast.Sub,
+    ast.Sub: ast.Add,
+    ast.Mult: ast.Div,
+    ast.FloorDiv: ast.Mult,
+}
+
+
+@dataclass(frozen=True)
+class Mutant:
+    """One defect: the node that is changed, as the module's tree is walked, and what becomes of it."""
+
+    number: int
+    line: int
+    before: str
+    after: str
+    tree: ast.Module = field(repr=False)
+
+
+def mutants_of(source: str) -> list[Mutant]:
+    """Every small defect of a module."""
+    tree = ast.parse(source)
+    found: list[Mutant] = []
+    for number in sorted(_changeable(tree)):
+        for way in range(2):
+            changed = copy.deepcopy(tree)
+            node, parent, place = _located(changed)[number]
+            before = ast.unparse(node)
+            new = _changed(node, way)
+            if new is None:
+                continue
+            _put(parent, place, new)
+            ast.fix_missing_locations(changed)
+            found.append(Mutant(number, node.lineno, before, ast.unparse(new), changed))
+    return found
+
+
+def _located(tree: ast.Module) -> list[tuple[ast.AST, ast.AST, tuple[str, int | None]]]:
+    """Every node with the one above it and its place there, in a fixed order."""
+    rows: list[tuple[ast.AST, ast.AST, tuple[str, int | None]]] = []
+    for parent in ast.walk(tree):
+        for name, value in ast.iter_fields(parent):
+            if isinstance(value, ast.AST):
+                rows.append((value, parent, (name, None)))
+            elif isinstance(value, list):
+                rows += [(v, parent, (name, i)) for i, v in enumerate(value) if isinstance(v, ast.AST)]
+    return rows
+
+
+def _put(parent: ast.AST, place: tuple[str, int | None], node: ast.AST) -> None:
+    name, index = place
+    if index is None:
+        setattr(parent, name, node)
+    else:
+        getattr(parent, name)[index] = node
+
+
+def _changeable(tree: ast.Module) -> set[int]:
+    """Numbers of the nodes within functions, without annotations, decorators, words and what is logged."""
+    left_out: set[int] = set()
+    within: set[int] = set()
+    for node in ast.walk(tree):
+        if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef):
+            within |= {id(n) for statement in node.body for n in ast.walk(statement)}
+            outside = [node.args, *node.decorator_list, *([node.returns] if node.returns else [])]
+            left_out |= {id(n) for part in outside for n in ast.walk(part)}
+        elif isinstance(node, ast.AnnAssign):
+            left_out |= {id(n) for n in ast.walk(node.annotation)}
+        elif isinstance(node, ast.JoinedStr) or (isinstance(node, ast.Expr) and _is_prose(node.value)):
+            left_out |= {id(n) for n in ast.walk(node)}
+    return {number for number, (node, _, _) in enumerate(_located(tree)) if id(node) in within - left_out}
+
+
+def _is_prose(node: ast.AST) -> bool:
+    """Whether a statement is a docstring, or something that is logged."""
+    logged = isinstance(node, ast.Call) and ast.unparse(node.func).split(".")[0] in ("log", "logging", "print")
+    return logged or isinstance(node, ast.Constant)
+
+
+def _changed(node: ast.AST, way: int) -> ast.AST | None:
+    """The node with a defect, or None where there is none of this kind."""
+    match node:
+        case ast.Compare(ops=[op]) if type(op) in COMPARED and way == 0:
+            return ast.Compare(node.left, [COMPARED[type(op)]()], node.comparators)
+        case ast.BoolOp() if way == 0:
+            return ast.BoolOp(ast.Or() if isinstance(node.op, ast.And) else ast.And(), node.values)
+        case ast.UnaryOp(op=ast.Not()) if way == 0:
+            return node.operand
+        case ast.If() | ast.While() if way == 0 and not isinstance(node.test, ast.Compare | ast.UnaryOp | ast.Constant):
+            made = copy.copy(node)
+            made.test = ast.UnaryOp(ast.Not(), node.test)
+            return made
+        case ast.Constant(value=bool() as value) if way == 0:
+            return ast.Constant(not value)
+        case ast.Constant(value=int() | float() as value) if way == 0 and not isinstance(value, bool):
+            return ast.Constant(value + 1)
+        case ast.BinOp(op=op) if type(op) in COMPUTED and way == 0:
+            return ast.BinOp(node.left, COMPUTED[type(op)](), node.right)
+        case ast.Return(value=value) if way == 1 and value is not None and not isinstance(value, ast.Constant):
+            return ast.Return(ast.Constant(None))
+        case ast.Expr(value=ast.Call() | ast.Await()) if way == 1:
+            return ast.Pass()
+        case ast.Raise() if way == 1:
+            return ast.Pass()
+    return None
+
+
+def tests_pass(path: Path, tests: tuple[str, ...], tree: ast.Module | None, patience_s: float) -> bool | None:
+    """Whether a module's tests pass with this defect in it; None when they take too long."""
+    process = os.fork()
+    if process == 0:
+        _run_tests(path, tests, tree)
+    until = time.monotonic() + patience_s
+    while time.monotonic() < until:
+        done, status = os.waitpid(process, os.WNOHANG)
+        if done:
+            return os.waitstatus_to_exitcode(status) == 0
+        time.sleep(0.05)
+    with contextlib.suppress(ProcessLookupError):
+        os.killpg(process, signal.SIGKILL)
+    os.waitpid(process, 0)
+    return None
+
+
+def _run_tests(path: Path, tests: tuple[str, ...], tree: ast.Module | None) -> None:
+    """In the fork: load the changed module in the place of its file, and run the tests."""
+    os.setpgid(0, 0)
+    os.environ["DIORAMA_CHECK_SHAPES"] = "0"
+    quiet = os.open(os.devnull, os.O_WRONLY)
+    os.dup2(quiet, 1)
+    os.dup2(quiet, 2)
+    code = None if tree is None else compile(tree, str(path), "exec")
+    load = SourceFileLoader.get_code
+
+    def get_code(self: SourceFileLoader, name: str) -> object:
+        return code if code is not None and Path(self.path) == path else load(self, name)
+
+    setattr(SourceFileLoader, "get_code", get_code)  # noqa: B010  # a method to mypy
+    import pytest
+
+    os.chdir(ROOT)
+    status = pytest.main(["-x", "-q", "-p", "no:cacheprovider", *tests])
+    os._exit(0 if status == pytest.ExitCode.OK else 1)
+
+
+def chosen(options: argparse.Namespace) -> Iterator[tuple[Path, tuple[str, ...], list[Mutant], int]]:
+    """The modules that were asked for, with a sample of their mutants and how many there are."""
+    for module, tests in GUARDED.items():
+        if options.only and Path(module).stem not in options.only.split(","):
+            continue
+        every = mutants_of((ROOT / module).read_text())
+        sample = random.Random(options.seed).sample(every, min(options.sample or len(every), len(every)))
+        yield ROOT / module, tests, sorted(sample, key=lambda m: m.number), len(every)
+
+
+def main() -> int:
+    parser = argparse.ArgumentParser(description=(__doc__ or "").partition("\n")[0])
+    parser.add_argument("--only", default="", help="names of modules, with commas (default: all that are guarded)")
+    parser.add_argument("--sample", type=int, default=0, help="mutants of each module (default: all)")
+    parser.add_argument("--seed", type=int, default=0, help="of the samples")
+    parser.add_argument("--minutes", type=float, default=1e6, help="begin no module after so long")
+    options = parser.parse_args()
+    for library in (*LIBRARIES, *MORE_LIBRARIES):
+        import_module(library)
+    until, total, survived = time.monotonic() + 60.0 * options.minutes, 0, 0
+    for path, tests, mutants, count in chosen(options):
+        if time.monotonic() > until:
+            break
+        began = time.monotonic()
+        if not tests_pass(path, tests, None, 1e4):
+            print(f"{path.relative_to(ROOT)}: its tests fail without a defect", flush=True)
+            return 2
+        patience_s = max(MIN_PATIENCE_S, PATIENCE * (time.monotonic() - began))
+        alive = [m for m in mutants if tests_pass(path, tests, m.tree, patience_s)]
+        total, survived = total + len(mutants), survived + len(alive)
+        print(f"{path.relative_to(ROOT)}: {len(mutants)} of {count} mutants, {len(alive)} survived", flush=True)
+        for mutant in alive:
+            print(f"  line {mutant.line}: {_short(mutant.before)}  ->  {_short(mutant.after)}", flush=True)
+    print(f"{total} mutants, {survived} survived ({100.0 * survived / max(total, 1):.1f} %, asked: at most 5)")
+    return 0
+
+
+def _short(code: str) -> str:
+    line = " ".join(code.split())
+    return line if len(line) <= 90 else f"{line[:89]}…"
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,41 @@
+from __future__ import annotations
+
+import os
+
+from hypothesis import given
+from hypothesis import strategies as st
+
+from diorama_core.io.text import REPLACEMENT, clean_strings, clean_text, file_label
+
+ANY_TEXT = st.text(st.characters(categories=None, codec=None), max_size=40)  # halves and controls included
+
+
+@given(ANY_TEXT)
+def test_clean_text_can_be_written_and_stays_as_it_is_when_cleaned_again(text: str) -> None:
+    clean = clean_text(text)
+    assert clean.encode().decode() == clean
+    assert not any(ord(c) < 32 and c not in "\t\n\r" for c in clean)
+    assert clean_text(clean) == clean
+
+
+@given(st.text(st.characters(exclude_categories=("Cs", "Cc")), max_size=40))
+def test_text_stays_as_it_is(text: str) -> None:
+    assert clean_text(text) == text
+
+
+def test_halves_that_belong_together_become_one_character() -> None:
+    assert clean_text("a\ud83d\ude00b") == "a\U0001f600b"
+    assert clean_text("a\ud83db\udce9") == f"a{REPLACEMENT}b{REPLACEMENT}"
+    assert clean_text("a\0b\x1b[31m") == f"a{REPLACEMENT}b{REPLACEMENT}[31m"
+
+
+def test_every_string_of_a_value_is_cleaned() -> None:
+    half = "\ud800"
+    value = {half: [half, (half, 1, None)], "plain": {"a": half}, "bytes": memoryview(b"x")}
+    found = clean_strings(value)
+    assert found == {REPLACEMENT: [REPLACEMENT, (REPLACEMENT, 1, None)], "plain": {"a": REPLACEMENT}, "bytes": b"x"}
+
+
+def test_names_of_files_differ_as_the_files_do() -> None:
+    names = [os.fsdecode(name) for name in (b"b\xe9te", b"b\xe8te", "b\u00eate".encode())]
+    assert [file_label(name) for name in names] == ["b\\xe9te", "b\\xe8te", "b\u00eate"]
