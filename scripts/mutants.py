@@ -4,7 +4,7 @@
 
 A mutant is a module with one change: a comparison with its neighbour, `and` for `or`, a condition negated, a number one
 more, a value not returned, a call or an error left out. The module's own tests run in a fork of this process that has
-loaded the libraries; a mutant that they pass has survived, and its line is printed. Constants at the top of modules,
+loaded everything; a mutant that they pass has survived, and its line is printed. Constants at the top of modules,
 words for people and what is logged are left alone: they are settings and prose. Needs the packages of the tests.
 """
 
@@ -22,16 +22,15 @@ import time
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 from importlib import import_module
-from importlib.machinery import SourceFileLoader
 from pathlib import Path
+from types import CodeType, ModuleType
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 
 import scripts.needs  # noqa: F401  # ends with a line where a package is missing
 
 ROOT = Path(__file__).resolve().parents[1]
-LIBRARIES = ("pytest", "hypothesis", "numpy", "scipy.spatial", "pydantic", "jaxtyping", "beartype", "PIL.Image")
-MORE_LIBRARIES = ("trimesh", "shapely", "filelock", "viser", "fastapi", "uvicorn")
+LIBRARIES = ("pytest", "hypothesis", "diorama_core")
 PATIENCE = 6.0
 """Times as long as the tests take without a defect: a mutant that takes longer is found."""
 MIN_PATIENCE_S = 60.0
@@ -208,24 +207,43 @@ def tests_pass(path: Path, tests: tuple[str, ...], tree: ast.Module | None, pati
 
 
 def _run_tests(path: Path, tests: tuple[str, ...], tree: ast.Module | None) -> None:
-    """In the fork: load the changed module in the place of its file, and run the tests."""
+    """In the fork: put the changed functions and classes in the place of those that are loaded, and run the tests."""
     os.setpgid(0, 0)
-    os.environ["DIORAMA_CHECK_SHAPES"] = "0"
     quiet = os.open(os.devnull, os.O_WRONLY)
     os.dup2(quiet, 1)
     os.dup2(quiet, 2)
-    code = None if tree is None else compile(tree, str(path), "exec")
-    load = SourceFileLoader.get_code
-
-    def get_code(self: SourceFileLoader, name: str) -> object:
-        return code if code is not None and Path(self.path) == path else load(self, name)
-
-    setattr(SourceFileLoader, "get_code", get_code)  # noqa: B010  # a method to mypy
     import pytest
 
-    os.chdir(ROOT)
+    if tree is not None:
+        _replace(_module_of(path), compile(tree, str(path), "exec"))
     status = pytest.main(["-x", "-q", "-p", "no:cacheprovider", *tests])
     os._exit(0 if status == pytest.ExitCode.OK else 1)
+
+
+def _module_of(path: Path) -> ModuleType:
+    return import_module(".".join(path.relative_to(ROOT).with_suffix("").parts))
+
+
+def _replace(module: ModuleType, code: CodeType) -> None:
+    """Execute a module's changed code in it; whoever had imported a function or a class of it gets the new one."""
+    before = {
+        name: value for name, value in vars(module).items() if getattr(value, "__module__", "") == module.__name__
+    }
+    exec(code, vars(module))
+    new = {id(value): vars(module)[name] for name, value in before.items()}
+    for name, other in list(sys.modules.items()):
+        if name.partition(".")[0] in ("diorama_core", "diorama_app") and other is not module:
+            for attribute, value in list(vars(other).items()):
+                if id(value) in new:
+                    setattr(other, attribute, new[id(value)])
+
+
+def _load(tests: tuple[str, ...]) -> None:
+    """Import what tests import of the program, so that no fork has to."""
+    for test in tests:
+        for statement in ast.walk(ast.parse((ROOT / test).read_text())):
+            if isinstance(statement, ast.ImportFrom) and (statement.module or "").startswith("diorama"):
+                import_module(str(statement.module))
 
 
 def chosen(options: argparse.Namespace) -> Iterator[tuple[Path, tuple[str, ...], list[Mutant], int]]:
@@ -245,12 +263,16 @@ def main() -> int:
     parser.add_argument("--seed", type=int, default=0, help="of the samples")
     parser.add_argument("--minutes", type=float, default=1e6, help="begin no module after so long")
     options = parser.parse_args()
-    for library in (*LIBRARIES, *MORE_LIBRARIES):
+    os.environ["DIORAMA_CHECK_SHAPES"] = "0"
+    os.chdir(ROOT)
+    for library in LIBRARIES:
         import_module(library)
     until, total, survived = time.monotonic() + 60.0 * options.minutes, 0, 0
     for path, tests, mutants, count in chosen(options):
         if time.monotonic() > until:
+            print(f"{path.relative_to(ROOT)} and what follows: no time", flush=True)
             break
+        _load(tests)
         began = time.monotonic()
         if not tests_pass(path, tests, None, 1e4):
             print(f"{path.relative_to(ROOT)}: its tests fail without a defect", flush=True)

@@ -45,8 +45,14 @@ OBJECTS = 40
 WARM_UP = 0.2
 API = 0.1
 """Of the people, those that are programs."""
+BUSY = "is still running"
+"""What a page says where another job is under way."""
 SETTLED_S = 75.0
 """After which a project that nobody looks at is closed."""
+
+
+class BusyError(Exception):
+    """Another person's job is under way in the project."""
 
 
 class Figures:
@@ -56,11 +62,17 @@ class Figures:
         self._lock = threading.Lock()
         self.seconds = defaultdict[str, list[float]](list)
         self.failed = defaultdict[str, list[str]](list)
+        self.busy = defaultdict[str, int](int)
+        """Refused, since another person's job was under way in the project."""
 
     def timed(self, kind: str, act: Callable[[], object]) -> None:
         began = time.monotonic()
         try:
             act()
+        except BusyError:
+            with self._lock:
+                self.busy[kind] += 1
+            return
         except Exception as error:  # counted, and the person goes on
             with self._lock:
                 self.failed[kind].append(f"{type(error).__name__}: {str(error)[:100]}")
@@ -151,10 +163,10 @@ class Person:
 
     def export(self) -> None:
         name = str(self.chance.choice(["glb", "svg", "obj", "usdz", "sh3d"]))
-        before = {p: p.stat().st_mtime_ns for p in (self.folder / "exports").glob("*")}
+        began = time.monotonic()
         self._act('data-do="export"', "choose", name)
         self._act('data-do="export"', "export", "")
-        _until(lambda: any(before.get(p) != p.stat().st_mtime_ns for p in (self.folder / "exports").glob("[!.]*")))
+        self._until(lambda: any(m["at"] > began and "StartDownload" in m["type"] for m in list(self.page.messages)))
 
     def photo(self) -> None:
         """One more photo of the room."""
@@ -163,7 +175,7 @@ class Person:
         if count >= 6:
             return  # enough for a project
         self._send("Add a photo of this room", f"more-{self.chance.integers(10**9)}.png", _png(count))
-        _until(lambda: len(list(folder.glob("*.zip"))) > count)
+        self._until(lambda: len(list(folder.glob("*.zip"))) > count)
 
     def scan(self) -> None:
         self._send("Open a file", f"scan-{self.own}.ply", _scan(int(self.chance.integers(100))))
@@ -176,10 +188,17 @@ class Person:
         page, self.page = self.page, WirePage(self.port, query=f"?project={folder.name}")
         try:
             self.page.set(self.page.element("Build scene", "Button"), True)
-            _until((folder / "scene.json").exists)
+            self._until((folder / "scene.json").exists)
         finally:
             self.page.close()
             self.page = page
+
+    def _until(self, holds: Callable[[], object]) -> None:
+        """Wait, unless the page says that a job of somebody else is under way."""
+        count = len(self.page.notices)
+        _until(lambda: holds() or any(BUSY in n for n in self.page.notices[count:]))
+        if not holds():
+            raise BusyError
 
     def _send(self, label: str, name: str, content: bytes) -> None:
         self.before = {p.name for p in self.folder.parent.iterdir()}
@@ -193,7 +212,7 @@ class Person:
             whole = "scene.json" if scene else "stages/inputs.zip"
             return next((p for p in new if (p / whole).exists() and (p / "project.json").exists()), None)
 
-        _until(found)
+        self._until(found)
         folder = found()
         assert folder is not None
         return folder
@@ -279,10 +298,10 @@ def measure(options: argparse.Namespace, folders: list[Path], editor: Any, servi
 
 
 def told(figures: Figures, people: list[Person], states: Any) -> int:
-    for kind in sorted({*figures.seconds, *figures.failed}):
+    for kind in sorted({*figures.seconds, *figures.failed, *figures.busy}):
         taken, failed = np.array(figures.seconds[kind]) * 1e3, figures.failed[kind]
         times = f"median {np.median(taken):.0f} ms, p95 {np.percentile(taken, 95):.0f} ms" if len(taken) else "never"
-        print(f"{kind:9} {len(taken):5} done, {len(failed)} failed; {times}")
+        print(f"{kind:9} {len(taken):5} done, {len(failed)} failed, {figures.busy[kind]} while busy; {times}")
         for line in sorted(set(failed))[:5]:
             print(f"          {line}")
     before, warm, after, left = states
