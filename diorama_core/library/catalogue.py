@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import os
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import replace
 from functools import cache, lru_cache
 from pathlib import Path
@@ -30,40 +30,12 @@ from diorama_core.library.furniture.model import Design, mesh_of
 from diorama_core.library.furniture.solids import Solid
 from diorama_core.library.record import Shape, SupportSurface, usual_contact_faces
 from diorama_core.library.surfaces import SURFACES_VERSION, support_surfaces
+from diorama_core.library.taxonomy import column
 
 GLB_VERSION = 1
 """Of the models' files: raise it when what `_glb` writes for the same parts changes."""
 
-BULK_DENSITY: dict[str, float] = {
-    "chair": 28, "office chair": 35, "armchair": 40, "stool": 45, "bench": 60, "sofa": 40, "ottoman": 70, "table": 45,
-    "coffee table": 55, "side table": 60, "desk": 45, "bed": 32, "night stand": 140, "dresser": 140, "cabinet": 120,
-    "sideboard": 110, "console table": 60, "tv stand": 110, "bookshelf": 90, "wardrobe": 75, "refrigerator": 100,
-    "stove": 150, "washing machine": 220, "kitchen counter": 120, "sink": 90, "toilet": 150, "bathtub": 100,
-    "floor lamp": 22, "lamp": 30, "ceiling lamp": 30, "television": 90, "monitor": 100, "laptop": 100,
-    "computer": 220, "keyboard": 350, "microwave": 250, "pillow": 25, "books": 500, "plant": 25, "vase": 250,
-    "bowl": 180, "cup": 350, "bottle": 600, "clock": 200, "box": 60, "basket": 40, "trash can": 45, "picture": 250,
-    "mirror": 350, "shelves": 110, "curtain": 12, "window": 250, "door": 350, "radiator": 330, "rug": 200, "piano": 190,
-    "fireplace": 180, "heater": 110, "fan": 30, "ceiling fan": 14, "air conditioner": 160,
-    "glass": 250, "plate": 500, "tray": 200, "jar": 350, "fruit": 300,
-    "chandelier": 12, "wall lamp": 60, "candle": 250,
-    "kettle": 150, "toaster": 170, "coffee machine": 220, "blender": 160, "cooking pot": 150, "utensils": 300,
-    "cutting board": 600,
-    "mouse": 250, "tablet": 800, "smartphone": 1500, "printer": 180, "speaker": 280, "record player": 150,
-    "telephone": 200, "router": 100, "remote control": 500, "game console": 350,
-    "photo frame": 250, "floor mirror": 70, "vanity mirror": 120, "mantel clock": 400, "grandfather clock": 160,
-    "whiteboard": 90, "bulletin board": 200, "sculpture": 500, "globe": 60,
-    "blinds": 60, "bath mat": 200, "blanket": 80, "towel": 120, "shower": 60, "toilet brush": 150,
-    "toilet paper": 120, "soap dispenser": 250, "bathroom scale": 800,
-    "laundry basket": 35, "suitcase": 120, "backpack": 60, "handbag": 70, "umbrella stand": 60, "guitar": 25,
-    "drum": 90, "bicycle": 14, "exercise machine": 60, "yoga mat": 30, "dumbbells": 900, "exercise ball": 8,
-    "hanging plant": 20,
-    "toy": 60, "object": 100,
-    "rocking chair": 28, "recliner": 48, "bar stool": 50, "high chair": 26, "sectional sofa": 26, "chaise longue": 32,
-    "day bed": 35, "bean bag": 12, "vanity table": 80, "bunk bed": 30, "crib": 32, "changing table": 75,
-    "filing cabinet": 170, "display cabinet": 95, "shoe cabinet": 110, "locker": 90, "pantry cabinet": 90, "chest": 110,
-    "wine rack": 80, "coat rack": 30, "room divider": 25, "wall oven": 165, "range hood": 70, "dryer": 130,
-    "dishwasher": 150, "kitchen island": 110, "wall cabinet": 110, "bar cart": 45,
-}  # fmt: skip
+BULK_DENSITY: Mapping[str, float] = column("density")
 """Kilograms per cubic metre of bounding box: a rough guess for physics, from weighing catalogues' furniture."""
 SCENE_BYTES = 256e6
 """Of the arrays of models that stay in memory."""

@@ -16,7 +16,7 @@ from jaxtyping import Bool, Float, Int8
 from diorama_core.library.furniture.articulation import articulation
 from diorama_core.library.record import Shape, ShapeLibrary
 from diorama_core.library.slots import Slot, slots_of
-from diorama_core.library.taxonomy import broad, with_kin
+from diorama_core.library.taxonomy import broad, having
 
 MEASURED = ("top", "base", "arms", "doors", "drawers", "upholstered", "open back")
 """Attributes that a shape's design can tell; others of an annotation are not compared."""
@@ -30,10 +30,8 @@ VALUES: Mapping[str, tuple[str | int, ...]] = {
     "open back": ("no", "yes"),
 }
 """What each may be; the last count stands for more, too."""
-_TABLES = with_kin("table", "coffee table", "side table", "desk", "console table", "night stand", "stool", "ottoman")
-_SEATS = with_kin("chair", "office chair", "armchair", "sofa", "bench")
-_BACKED = with_kin("chair", "office chair")
-_HARD_OR_SOFT = with_kin("chair", "office chair", "bench", "stool")
+_TABLES, _SEATS = having("table_form"), having("seat") - having("table_form")
+_BACKED, _HARD_OR_SOFT = having("back_varies"), having("drawn_up")
 """Kinds of seats some of which have open backs, and some of which are upholstered: hardly an easy seat is without."""
 _SAMPLES = 6000
 _TOP_SLAB = 0.06

@@ -12,25 +12,13 @@ from functools import cache
 
 from diorama_core.library.labels import plain_word
 from diorama_core.library.loose_words import MEANINGS
-from diorama_core.library.taxonomy import CATEGORIES, UNKNOWN
+from diorama_core.library.taxonomy import CATEGORIES, UNKNOWN, column
 
 _SPECIAL_SHARE = 0.08
 """Of a category's name where no row says more: what all its special kinds have together."""
 
 _RARE = 0.15
-FREQUENCIES: Mapping[str, float] = {
-    "chair": 10, "pillow": 9, "picture": 7, "table": 4, "lamp": 4, "cabinet": 3, "books": 4, "box": 4, "sofa": 3,
-    "plant": 3.5, "window": 2.5, "door": 2, "curtain": 2.5, "bed": 2, "night stand": 2.5, "coffee table": 2,
-    "side table": 2, "vase": 3, "bottle": 2.5, "cup": 2.5, "bowl": 1.5, "rug": 2.5, "ceiling lamp": 2.5,
-    "floor lamp": 1.5, "wall lamp": 1, "chandelier": 0.7, "desk": 1.5, "office chair": 2, "armchair": 2,
-    "monitor": 1.8, "keyboard": 0.8, "laptop": 0.8, "television": 1.2, "tv stand": 0.8, "mirror": 1.2, "clock": 0.8,
-    "shelves": 1.5, "bookshelf": 1.8, "dresser": 1.3, "wardrobe": 1, "sideboard": 0.8, "blanket": 1.2, "towel": 1,
-    "basket": 0.8, "trash can": 1, "stool": 0.8, "ottoman": 0.7, "bench": 0.5, "refrigerator": 0.5, "stove": 0.5,
-    "microwave": 0.4, "sink": 0.6, "toilet": 0.3, "kitchen counter": 1, "wall cabinet": 1, "whiteboard": 0.4,
-    "photo frame": 0.6, "toy": 0.8, "handbag": 0.4, "backpack": 0.4, "candle": 0.5, "sculpture": 0.6,
-    "console table": 0.5, "filing cabinet": 0.4, "display cabinet": 0.4, "plate": 0.6, "glass": 0.6, "radiator": 0.4,
-    "blinds": 0.6, "bar stool": 0.5, "washing machine": 0.3, "computer": 0.4, "printer": 0.3, "speaker": 0.5,
-}  # fmt: skip
+FREQUENCIES: Mapping[str, float] = column("frequency")
 """How often a thing in a room is of a kind, of a hundred; `_RARE` for the others: what something without a name is."""
 
 

@@ -8,8 +8,10 @@ from __future__ import annotations
 
 import difflib
 import re
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cache
+from typing import Any
 
 from diorama_core.library.kind_rows import PATH, Trait, read_rows
 from diorama_core.library.kind_rows import Category as Category
@@ -78,6 +80,7 @@ def broad(name: str) -> str:
     return next((c.kin for c in CATEGORIES if c.name == name and c.kin), name)
 
 
+@cache
 def with_kin(*names: str) -> frozenset[str]:
     """These categories and all the special kinds of them."""
     return frozenset(names) | {c.name for c in CATEGORIES if c.kin in names}
@@ -87,6 +90,13 @@ def with_kin(*names: str) -> frozenset[str]:
 def having(trait: Trait) -> frozenset[str]:
     """Names of the categories that have a trait."""
     return frozenset(c.name for c in CATEGORIES if trait in c.traits)
+
+
+@cache
+def column(name: str) -> Mapping[str, Any]:
+    """Values of a column of the table by category, of those that have one."""
+    values = ((c.name, getattr(c, name)) for c in CATEGORIES)
+    return {category: value for category, value in values if value is not None}
 
 
 AGAINST_WALLS = having("back_at_wall")

@@ -19,7 +19,7 @@ from diorama_core.geometry.silhouette import PoseBatch
 from diorama_core.library.catalogue import default_cache_dir
 from diorama_core.library.hyponyms import is_named
 from diorama_core.library.record import Shape, ShapeLibrary
-from diorama_core.library.taxonomy import NEVER_OPEN, UNKNOWN, Mount, category, with_kin
+from diorama_core.library.taxonomy import NEVER_OPEN, UNKNOWN, Mount, category, having
 from diorama_core.progress import Progress
 from diorama_core.retrieval.appearance_similarity import (
     EMBEDDED_FEATURES,
@@ -40,7 +40,7 @@ from diorama_core.scene.types import Support, yaw_rotation
 _SIMILAR_LOG_SIZE = 0.45
 _SIMILAR_LOG_SIZE_OF_SEATS = 0.8
 """Seats in one room are usually of a set, so that different sizes are rather errors of measurement."""
-_SEATS = with_kin("chair", "office chair", "stool", "armchair")
+_SEATS = having("single_seat")
 _UNNAMED_OUTLINE, _UNNAMED_SIZE = 3.0, 0.5
 """Increased weight of the outline, and reduced weight of the guessed size, of an object without a name."""
 _OWN_EVIDENCE = 0.4

@@ -15,9 +15,9 @@ from math import fsum
 import numpy as np
 from jaxtyping import Bool, Float
 
-from diorama_core.library.company import CARRIED, HARDLY_CARRIED, ROOMS, SELDOM_CARRIED
+from diorama_core.library.company import CARRIES_AS, HARDLY_CARRIED, ROOMS, SELDOM_CARRIED
 from diorama_core.library.hyponyms import meanings
-from diorama_core.library.taxonomy import CATEGORIES, UNKNOWN, category
+from diorama_core.library.taxonomy import CATEGORIES, UNKNOWN, category, column
 from diorama_core.scene.values import ArrayValue
 
 Box = tuple[float, float, float, float]
@@ -163,18 +163,17 @@ def _together() -> Float[np.ndarray, "k k"]:
     names, index = _names(), _index()
     lies = np.array([category(name).mount == "surface" for name in names])
     ratio = np.ones((len(names), len(names)))
-    for row in CARRIED:
-        for carrier in sorted(row.carriers):
-            column = np.where(lies, SELDOM_CARRIED, HARDLY_CARRIED)
-            column[[index[kind] for kind in row.kinds]] = list(row.kinds.values())
-            ratio[:, index[carrier]] = column
+    for carrier, like in CARRIES_AS.items():
+        loads = {kind: often[like] for kind, often in column("lies_on").items() if like in often}
+        ratio[:, index[carrier]] = np.where(lies, SELDOM_CARRIED, HARDLY_CARRIED)
+        ratio[[index[kind] for kind in loads], index[carrier]] = list(loads.values())
     return np.where(_carriers(), 1.0, _NO_CARRIER) * ratio / (_frequency() @ ratio)
 
 
 @cache
 def _carriers() -> Bool[np.ndarray, "k"]:
     """Which kinds carry things."""
-    return np.isin(_names(), [carrier for row in CARRIED for carrier in row.carriers])
+    return np.isin(_names(), list(CARRIES_AS))
 
 
 @cache

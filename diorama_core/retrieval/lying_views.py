@@ -10,7 +10,7 @@ from collections.abc import Sequence
 import numpy as np
 from jaxtyping import Float
 
-from diorama_core.library.taxonomy import Category, SizePrior, category, with_kin
+from diorama_core.library.taxonomy import Category, SizePrior, category, column
 from diorama_core.retrieval.box_views import (
     CERTAIN,
     DISTANCES_M,
@@ -28,7 +28,7 @@ _REACH_M, _REACH_SHARE = 0.15, 0.05
 """How far before and behind a carrier a thing on it may seem to be: by itself, and for every metre of distance."""
 _LEVEL_SIGMA = 0.15
 """Of the height of a top or seat, as a share of it."""
-_BOARDS = with_kin("bookshelf", "shelves")
+_BOARDS = frozenset(kind for kind, like in column("carries_as").items() if like == "bookshelf")
 """Things lie at any height of them."""
 _RAISED_M, _RAISED_SIGMA_M = {"surface": 0.75, "wall": 1.45, "ceiling": 2.3}, 0.35
 """Heights of carriers that do not stand on the floor."""

@@ -7,14 +7,13 @@ from those of their neighbours, a few times (mean field); all things' own eviden
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from math import fsum, prod
 from typing import Literal
 
 import numpy as np
 
 from diorama_core.artefacts import Cuboid, DetectedObject
-from diorama_core.library.taxonomy import with_kin
+from diorama_core.library.taxonomy import category, with_kin
 from diorama_core.scene.types import Support
 
 Relation = Literal["on it", "near", "behind it", "beside it"]
@@ -23,46 +22,6 @@ Relation = Literal["on it", "near", "behind it", "beside it"]
 _NEAR_M = 0.8
 _ROUNDS = 3
 """After so many updates beliefs hardly change."""
-_COMPUTERS = frozenset({"monitor", "computer", "laptop", "keyboard", "mouse", "printer"})
-_DESKS = with_kin("desk")
-_SOFAS = with_kin("sofa")
-_LOUNGE_SEATS = frozenset({"armchair", "recliner", "rocking chair"})
-_KITCHEN = frozenset({"stove", "sink", "dishwasher", "refrigerator", "kitchen counter", "range hood", "microwave"})
-
-
-@dataclass(frozen=True)
-class Companion:
-    """Kinds that are seldom without another one, and so likelier where it is, and less likely where it is not."""
-
-    kinds: frozenset[str]
-    others: frozenset[str]
-    where: Relation
-    often: float
-    """Share of things of the kinds that photos show with one of the others there."""
-    usual: float
-    """The same share of things that are mistaken for them."""
-
-
-COMPANIONS = (
-    Companion(frozenset({"office chair"}), _DESKS | _COMPUTERS, "near", 0.8, 0.2),
-    Companion(frozenset({"filing cabinet"}), _DESKS | _COMPUTERS, "near", 0.4, 0.2),
-    Companion(_DESKS, _COMPUTERS, "on it", 0.6, 0.12),
-    Companion(frozenset({"tv stand"}), frozenset({"television", "game console"}), "on it", 0.7, 0.1),
-    Companion(frozenset({"night stand"}), with_kin("bed"), "near", 0.8, 0.2),
-    Companion(frozenset({"coffee table"}), _SOFAS, "behind it", 0.7, 0.3),
-    Companion(frozenset({"side table"}), _SOFAS | _LOUNGE_SEATS | with_kin("bed"), "beside it", 0.6, 0.2),
-    Companion(frozenset({"kitchen counter"}), frozenset({"stove", "sink", "dishwasher"}), "near", 0.5, 0.15),
-    Companion(frozenset({"chair"}), frozenset({"table"}), "near", 0.7, 0.45),
-    Companion(
-        _LOUNGE_SEATS, frozenset({"coffee table", "sofa", "side table", "fireplace", "floor lamp"}), "near", 0.6, 0.3
-    ),
-    Companion(_DESKS, frozenset({"office chair"}), "near", 0.5, 0.15),
-    Companion(frozenset({"bar stool"}), frozenset({"kitchen island", "kitchen counter"}), "near", 0.75, 0.25),
-    Companion(frozenset({"sideboard", "display cabinet"}), frozenset({"table"}), "near", 0.4, 0.2),
-    Companion(frozenset({"dresser"}), with_kin("bed"), "near", 0.6, 0.3),
-    Companion(frozenset({"wall cabinet", "pantry cabinet"}), _KITCHEN, "near", 0.6, 0.2),
-)
-"""Rough shares in photos of homes and offices; the other may be outside the picture."""
 
 
 def with_neighbours(
@@ -110,12 +69,11 @@ def _updated(
 ) -> Mapping[str, float]:
     """One object's belief, by itself and by what is on it and near it."""
     likely = dict(alone)
-    for row in COMPANIONS:
-        kinds = row.kinds & likely.keys()
-        if kinds:
-            present = _any(row.others, there[row.where])
+    for kind in likely:
+        for row in category(kind).seldom_without or ():
+            present = _any(with_kin(*row.others), there[row.where])
             factor = present * row.often / row.usual + (1.0 - present) * (1.0 - row.often) / (1.0 - row.usual)
-            likely |= {kind: likely[kind] * factor for kind in kinds}
+            likely[kind] *= factor
     return _normalised(likely)
 
 

@@ -14,7 +14,7 @@ import numpy as np
 from jaxtyping import Float
 
 from diorama_core.library.record import Shape, ShapeLibrary
-from diorama_core.library.taxonomy import CATEGORIES, UNKNOWN, broad, category
+from diorama_core.library.taxonomy import CATEGORIES, UNKNOWN, broad, category, column
 from diorama_core.scene.values import ArrayValue
 
 _ENOUGH = 4
@@ -41,67 +41,7 @@ _EACH_KIND = 2
 _SAME_SIZE_LOG = 0.4
 _MIN_M = 0.01
 
-RELATED: dict[str, tuple[str, ...]] = {
-    "chair": ("office chair", "armchair", "stool"),
-    "office chair": ("chair", "armchair"),
-    "armchair": ("sofa", "chair"),
-    "stool": ("ottoman", "chair", "side table"),
-    "bench": ("ottoman", "coffee table", "sofa"),
-    "sofa": ("armchair", "bench"),
-    "ottoman": ("stool", "box", "bench"),
-    "table": ("desk", "coffee table", "console table"),
-    "coffee table": ("side table", "table", "bench"),
-    "side table": ("night stand", "coffee table", "stool"),
-    "desk": ("table", "console table"),
-    "bed": ("sofa",),
-    "night stand": ("side table", "cabinet", "dresser"),
-    "dresser": ("cabinet", "sideboard", "night stand"),
-    "cabinet": ("dresser", "sideboard", "wardrobe", "bookshelf"),
-    "sideboard": ("cabinet", "dresser", "tv stand"),
-    "console table": ("table", "desk", "sideboard"),
-    "tv stand": ("sideboard", "cabinet", "console table"),
-    "bookshelf": ("cabinet", "wardrobe", "shelves"),
-    "wardrobe": ("cabinet", "bookshelf", "refrigerator"),
-    "refrigerator": ("wardrobe", "cabinet"),
-    "stove": ("washing machine", "kitchen counter", "cabinet"),
-    "washing machine": ("stove", "cabinet", "box"),
-    "range hood": ("shelves", "microwave"),
-    "wall cabinet": ("shelves", "cabinet"),
-    "kitchen counter": ("sideboard", "cabinet", "table"),
-    "sink": ("kitchen counter", "cabinet", "bowl"),
-    "toilet": ("stool", "ottoman"),
-    "bathtub": ("sink", "box"),
-    "floor lamp": ("lamp", "plant"),
-    "lamp": ("floor lamp", "vase"),
-    "ceiling lamp": ("lamp",),
-    "television": ("monitor", "picture"),
-    "monitor": ("television", "laptop"),
-    "laptop": ("monitor", "books"),
-    "computer": ("box", "microwave"),
-    "keyboard": ("books", "laptop"),
-    "microwave": ("box", "computer", "stove"),
-    "pillow": ("ottoman", "box"),
-    "books": ("box", "laptop"),
-    "plant": ("vase", "floor lamp"),
-    "vase": ("bottle", "cup", "plant"),
-    "bowl": ("cup", "basket"),
-    "cup": ("vase", "bowl", "bottle"),
-    "bottle": ("vase", "cup"),
-    "clock": ("picture", "mirror"),
-    "box": ("basket", "ottoman"),
-    "basket": ("trash can", "box"),
-    "trash can": ("basket", "box"),
-    "picture": ("mirror", "window"),
-    "mirror": ("picture", "window"),
-    "shelves": ("bookshelf", "console table"),
-    "curtain": ("window", "picture"),
-    "window": ("picture", "mirror"),
-    "door": ("wardrobe", "picture"),
-    "radiator": ("cabinet", "box"),
-    "rug": ("books", "picture"),
-    "piano": ("desk", "sideboard", "console table"),
-    "toy": ("box", "vase"),
-}
+RELATED: Mapping[str, tuple[str, ...]] = column("related")
 """Near kinds of each broad category, nearest first."""
 
 
@@ -125,14 +65,7 @@ def _alike_in_size(name: str) -> tuple[str, ...]:
     return tuple(others[i].name for i in np.argsort(unlike, kind="stable")[:_SUBSTITUTES])
 
 
-USUAL = frozenset(
-    {
-        *("chair", "armchair", "office chair", "stool", "sofa", "ottoman", "bench", "bed", "night stand", "dresser"),
-        *("table", "coffee table", "side table", "desk", "cabinet", "sideboard", "bookshelf", "wardrobe", "tv stand"),
-        *("plant", "floor lamp", "lamp", "ceiling lamp", "vase", "books", "basket", "picture", "mirror", "shelves"),
-        *("television", "pillow", "curtain", "bowl", "cup"),
-    }
-)
+USUAL = frozenset(c.name for c in CATEGORIES if c.usual)
 """What an unnamed thing in a room most likely is; the rest are found in kitchens, bathrooms and offices."""
 
 

@@ -17,38 +17,28 @@ from diorama_core.geometry.rows import cells_of
 from diorama_core.geometry.shape_appearance import ShapeAppearance
 from diorama_core.library.form import FULL_RECTANGLE
 from diorama_core.library.record import Shape, ShapeLibrary
-from diorama_core.library.taxonomy import with_kin
+from diorama_core.library.taxonomy import category, having, with_kin
 from diorama_core.retrieval.feature_cache import cached_features
 from diorama_core.retrieval.seen_forms import shape_form
 
 _CROSSED_LEGS = "crossed legs"
-_SEAT = {"four legs": 0.75, "sled": 0.08, "five-star": 0.07, "pedestal": 0.06, _CROSSED_LEGS: 0.03, "plinth": 0.02}
-_OFFICE_SEAT = {"five-star": 0.8, "four legs": 0.1, "pedestal": 0.05, "sled": 0.05}
-_EASY_SEAT = {"four legs": 0.7, "plinth": 0.12, "pedestal": 0.08, "sled": 0.06, "panel": 0.04}
-_TABLE = {"four legs": 0.7, "pedestal": 0.12, "panel": 0.08, "sled": 0.05, "plinth": 0.03}
-_LOW_TABLE = {"four legs": 0.65, "plinth": 0.12, "panel": 0.1, "sled": 0.07, "pedestal": 0.06}
-_SMALL_TABLE = {"four legs": 0.6, "pedestal": 0.2, "plinth": 0.08, "sled": 0.05, "panel": 0.05}
-_BASES: tuple[tuple[frozenset[str], Mapping[str, float]], ...] = (
-    (with_kin("office chair"), _OFFICE_SEAT),
-    (with_kin("armchair"), _EASY_SEAT),
-    (with_kin("chair", "bench"), _SEAT),
-    (with_kin("coffee table", "console table"), _LOW_TABLE),
-    (with_kin("side table", "stool"), _SMALL_TABLE),
-    (with_kin("table", "desk"), _TABLE),
-)
+_BASES: Mapping[str, Mapping[str, float]] = {
+    "office seat": {"five-star": 0.8, "four legs": 0.1, "pedestal": 0.05, "sled": 0.05},
+    "easy seat": {"four legs": 0.7, "plinth": 0.12, "pedestal": 0.08, "sled": 0.06, "panel": 0.04},
+    "seat": {"four legs": 0.75, "sled": 0.08, "five-star": 0.07, "pedestal": 0.06, _CROSSED_LEGS: 0.03, "plinth": 0.02},
+    "low table": {"four legs": 0.65, "plinth": 0.12, "panel": 0.1, "sled": 0.07, "pedestal": 0.06},
+    "small table": {"four legs": 0.6, "pedestal": 0.2, "plinth": 0.08, "sled": 0.05, "panel": 0.05},
+    "table": {"four legs": 0.7, "pedestal": 0.12, "panel": 0.08, "sled": 0.05, "plinth": 0.03},
+}
+"""Shares of bases, by what a kind's row says of its base."""
 _TOPS: Mapping[str, float] = {"rectangular": 0.6, "square": 0.6, "round": 0.25, "oval": 0.1}
-_TABLES = with_kin("table", "desk", "coffee table", "side table", "console table", "night stand")
+_TABLES = having("table_form") - having("seat")
 _FLAT = {"rectangular": 0.93, "other": 0.07}
 """Of what hangs flat on walls or stands in frames: round, oval and free outlines, several in a row, panes."""
-_MIRRORS = frozenset({"mirror", "floor mirror"})
-_FLAT_KINDS = with_kin("picture", "window") | _MIRRORS
+_MIRRORS = with_kin("mirror")
+_FLAT_KINDS = having("framed")
 _MIN_PANE = 0.02
 """Share of the outline that a pane of a mirror has at least."""
-_SIDES: tuple[tuple[frozenset[str], Mapping[str, float]], ...] = (
-    (with_kin("sofa", "sectional sofa"), {"closed": 0.88, "open": 0.12}),
-    (with_kin("armchair"), {"closed": 0.65, "open": 0.35}),
-)
-"""Padded arms, and frames that are seen through below the arms."""
 _PLANTS = {"leafy": 0.9, "other": 0.1}
 _OTHER_PLANTS = frozenset(
     {"cactus", "bonsai", "succulents", "christmas", "fir", "bell", "plumes", "grasses", "blossom"}
@@ -77,9 +67,11 @@ def usual_form_factor(library: ShapeLibrary, shape: Shape, appearance: ShapeAppe
         return float((_FLAT[_outline(shape, appearance)] / max(_FLAT.values())) ** _SAYS)
     if shape.category == "plant":
         return float((_PLANTS[_plant(shape)] / max(_PLANTS.values())) ** _SAYS)
-    bases = next((shares for kinds, shares in _BASES if shape.category in kinds), None)
+    row = category(shape.category)
+    bases = None if row.base is None else _BASES[row.base]
     tops = _TOPS if shape.category in _TABLES else None
-    sides = next((shares for kinds, shares in _SIDES if shape.category in kinds), None)
+    closed = row.closed_sides
+    sides = None if closed is None else {"closed": closed, "open": 1.0 - closed}
     if bases is None and tops is None and sides is None:
         return 1.0
     of_form = zip((bases, tops, sides), (*_form(library, shape, appearance), _side(shape, appearance)), strict=True)

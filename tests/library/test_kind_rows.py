@@ -1,15 +1,20 @@
 """Rows of the table of kinds: what every row must say, and what is said of a row that is wrong."""
 
+from typing import get_args
+
 import numpy as np
 import pytest
 
+from diorama_core.appearance.flat_faces import MAIN
 from diorama_core.errors import LibraryError
-from diorama_core.library.kind_rows import read_rows
+from diorama_core.library.kind_rows import Trait, read_rows
 from diorama_core.library.kinds import modes_of_kind
+from diorama_core.library.slots import Role
 from diorama_core.library.taxonomy import CATEGORIES, UNKNOWN, broad, category, having, resolve, with_kin
 
-CHAIR = "[chair]\nsizes = [[0.9, 0.5, 0.5, 0.1, 0.1, 0.1]]\ntraits = ['supports_objects', 'quarter_turns_free']\n"
-ROCKER = "[rocker]\nkin = 'chair'\nsizes = [[1.0, 0.7, 0.9, 0.1, 0.1, 0.1]]\n"
+CHAIR = "[chair]\ndensity = 28\nsizes = [[0.9, 0.5, 0.5, 0.1, 0.1, 0.1]]\n"
+CHAIR += "traits = ['supports_objects', 'quarter_turns_free']\n"
+ROCKER = "[rocker]\nkin = 'chair'\nsizes = [[1.0, 0.7, 0.9, 0.1, 0.1, 0.1]]\ndensity = 30\n"
 
 
 def test_every_name_and_every_synonym_means_one_category():
@@ -57,11 +62,45 @@ def test_traits_come_from_kin_unless_lacking():
     assert "kitchen island" not in having("back_at_wall")
 
 
+def test_columns_come_from_kin_unless_given():
+    chair = CHAIR + "tucked_under = ['table']\nfloor_before_m = 0.4\nfrequency = 5\n"
+    special = read_rows(chair + ROCKER + "tucked_under = []\n")[1]
+    assert special.tucked_under == ()
+    assert special.floor_before_m == 0.4
+    assert special.frequency is None, "how usual a kind is says nothing of its special kinds"
+
+
+@pytest.mark.parametrize("row", CATEGORIES, ids=lambda row: row.name)
+def test_every_kind_that_a_row_names_exists(row):
+    named = {
+        *(
+            row.kin,
+            row.added_host,
+            row.carries_as,
+            *(row.also_said_of or {}),
+            *(row.related or ()),
+            *(row.lies_on or {}),
+        ),
+        *(*(row.usual_hosts or ()), *(row.instead or ()), *(row.tucked_under or ())),
+        *(kind for _, targets in row.usual_relations or () for kind in targets),
+        *(kind for company in row.seldom_without or () for kind in company.others),
+    } - {"", None}
+    assert named <= {c.name for c in CATEGORIES}
+    assert row.name not in (row.related or ())
+    assert row.face is None or set(row.face) <= {*get_args(Role), MAIN}
+
+
+def test_every_trait_has_kinds_and_tells_them_apart():
+    found = {trait: having(trait) for trait in get_args(Trait)}
+    assert all(found.values())
+    assert len(set(found.values())) == len(found)
+
+
 @pytest.mark.parametrize(
     ("table", "said"),
     [
         (CHAIR + "colour = 'red'\n", "row 'chair', column 'colour'"),
-        ("[chair]\nsizes = [[0.9, 0.5]]\n", "row 'chair', column 'sizes.0.2'"),
+        ("[chair]\ndensity = 28\nsizes = [[0.9, 0.5]]\n", "row 'chair', column 'sizes.0.2'"),
         (CHAIR.replace("soft", "x") + ROCKER + "traits = ['sofft']\n", "row 'rocker', column 'traits.0'"),
         (CHAIR + "mount = 'sky'\n", "row 'chair', column 'mount'"),
         (ROCKER, "row 'rocker': kin 'chair' must be"),
