@@ -20,23 +20,14 @@ from diorama_core.appearance.rectify import Rectified, face_homography, is_cut, 
 from diorama_core.artefacts import DetectedObject
 from diorama_core.geometry.projection import box_iou
 from diorama_core.library.slots import Slot, rectangle_of, slots_of
+from diorama_core.library.taxonomy import category, column
 from diorama_core.scene.types import Camera, SceneObject, TextureLayout
 
 MAIN = "main"
 FACES: Mapping[str, tuple[tuple[str, ...], TextureLayout]] = {
-    **dict.fromkeys(("picture", "photo frame"), (("picture",), "front")),
-    **dict.fromkeys(("television", "monitor", "laptop", "tablet"), (("screen", "picture"), "front")),
-    **dict.fromkeys(("clock", "mantel clock", "grandfather clock"), (("dial",), "front")),
-    **dict.fromkeys(("whiteboard", "bulletin board", "curtain", "blinds"), ((MAIN,), "front")),
-    "pillow": ((MAIN,), "front"),
-    **dict.fromkeys(("rug", "bath mat", "yoga mat"), ((MAIN,), "top")),
-    "door": ((MAIN, "pane", "metal"), "front"),
-    "window": (("pane",), "front"),
+    kind: (roles, category(kind).face_side) for kind, roles in column("face").items()
 }
-"""By category: roles of the slots that have the face (or the main slot), and which way it faces.
-
-A door's handle wears what the photo shows in its place, or there would be two: one in the picture and one before it.
-"""
+"""By category: roles of the slots that have the face (or the main slot), and which way it faces."""
 NOT_RECTANGULAR = frozenset({"pillow"})
 """Of their rectangle only what their mask holds is theirs."""
 COVERS = ("leather", "paint", "fabric", "paper", "material")

@@ -7,10 +7,10 @@ from collections.abc import Mapping, Sequence
 import cv2
 import numpy as np
 
-from diorama_core.library.taxonomy import LAMPS, with_kin
+from diorama_core.library.taxonomy import having
 from diorama_core.scene.types import PhotoMaterial
 
-SETS = with_kin("chair", "office chair", "stool") | LAMPS
+SETS = having("sets_appearance")
 """Categories whose equal shapes in one room are a set."""
 _AGREE = 18.0
 """Colours of a set this near each other (CIELAB, lightness at half weight) are one colour in other light."""

@@ -26,10 +26,7 @@ from diorama_core.scene import edits
 from diorama_core.scene.frames import UP_WORLD
 from diorama_core.scene.types import Plane, Pose, Scene, SceneObject, Support
 
-NEVER_HANGS = taxonomy.with_kin(
-    *("chair", "office chair", "armchair", "stool", "bench", "sofa", "ottoman", "bed", "dresser", "wardrobe"),
-    *("table", "coffee table", "side table", "desk", "floor lamp", "refrigerator", "washing machine", "stove"),
-)
+NEVER_HANGS = taxonomy.having("never_hangs")
 """What stands on the floor wherever it is."""
 BEHIND = 0.9
 """An object is behind a wall that is nearer than this share of its distance."""

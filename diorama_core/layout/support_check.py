@@ -11,6 +11,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from diorama_core.geometry.openings import OPENING_CATEGORIES
 from diorama_core.layout.behind_walls import NEVER_HANGS, UPRIGHT, before_wall
 from diorama_core.layout.noise import ObservationNoise
 from diorama_core.layout.on_walls import moved_to_wall
@@ -43,11 +44,11 @@ MEASURED_GAP = 0.25
 """Share of the tolerance beyond which a measured gap before a wall is one: what would close it is a move or a guess."""
 MEASURED_PARALLEL = float(np.cos(np.deg2rad(8.0)))
 """What was measured turned farther from a wall touches it with an edge: it does not stand against it."""
-_IN_WALLS = frozenset({"door", "window"})
+_IN_WALLS = frozenset(OPENING_CATEGORIES)
 """From a photo alone it is surer that these are in a wall than how far away they are; measured doors may stand open."""
-_WALKED_ON = taxonomy.with_kin("rug")
+_WALKED_ON = taxonomy.having("rug")
 """What furniture stands on and is on the floor nevertheless."""
-_SOMETIMES_HANGS = frozenset({"television", "monitor", "lamp", "clock", "speaker", "plant", "towel", "utensils"})
+_SOMETIMES_HANGS = taxonomy.having("sometimes_hangs")
 """Of the kinds that are set down on things."""
 SHORTEST_ON_PLACE = 0.3
 """An object that reaches down through the place on which it rests keeps at least this share of its height above it."""

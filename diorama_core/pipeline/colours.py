@@ -12,11 +12,11 @@ from diorama_core.appearance.light import SHINING
 from diorama_core.appearance.sets import SETS, Colour, leaders
 from diorama_core.architecture.texture.colours import GRID_PX, object_pixels, visible_planes
 from diorama_core.artefacts import DetectedObject, Inputs
-from diorama_core.library.taxonomy import LAMPS
+from diorama_core.library.taxonomy import LAMPS, having
 from diorama_core.perception.illuminant import Illuminant, estimate_illuminant
 from diorama_core.scene.types import Architecture, Camera
 
-KEEP_THEIR_OWN = frozenset({"picture", "mirror", "window", "plant", "books", "clock"})
+KEEP_THEIR_OWN = having("own_colours")
 """Categories whose look is not one colour of one main material."""
 _BIN = 20.0
 _BINS = 16

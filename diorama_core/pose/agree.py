@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 
-from diorama_core.library.taxonomy import LAMPS, UNKNOWN, with_kin
+from diorama_core.library.taxonomy import UNKNOWN, having
 
 _OWN_SHARE = 0.35
 _ABSENT = -0.7
@@ -17,7 +17,7 @@ MAX_LOSS_OF_SURE_OUTLINES = 1.0
 """And of things that come in no sets where their masks are sure: these show it, too."""
 MAX_LOSS_WHERE_COLOURS_TELL = 0.5
 """And of things that are told from what is seen through and past them."""
-SETS = with_kin("chair", "office chair", "stool", "armchair", "night stand", "ottoman") | LAMPS
+SETS = having("sets_pose")
 """What comes in sets; books and pictures of one room are different ones."""
 
 

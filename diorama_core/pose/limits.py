@@ -10,7 +10,7 @@ from jaxtyping import Bool, Float
 
 from diorama_core.geometry.openings import OPENING_CATEGORIES, STANDS_OUT_M
 from diorama_core.library.record import SymmetryFold
-from diorama_core.library.taxonomy import UNKNOWN, SizePrior, category, with_kin
+from diorama_core.library.taxonomy import UNKNOWN, SizePrior, category, having
 
 _SIGMAS = 2.3
 _STRETCH_SHAPED = float(np.log(1.28))
@@ -27,28 +27,11 @@ _DEGENERATE_M = 1e-3
 _OWN_SIZE_FACTOR = 1.3
 """Whatever its kind's usual size, a shape may be this much smaller or larger than it was made."""
 
-BOXY = with_kin(
-    *("bench", "table", "desk", "coffee table", "side table", "console table", "kitchen counter", "bed", "sofa"),
-    *("ottoman", "night stand", "dresser", "cabinet", "sideboard", "tv stand", "bookshelf", "wardrobe", "shelves"),
-    *("refrigerator", "stove", "washing machine", "microwave", "sink", "bathtub", "piano", "radiator"),
-    *("television", "monitor", "computer", "keyboard", "books", "box", "rug", "object"),
-    *("picture", "mirror", "curtain", "window", "door"),
-)
+BOXY = having("any_proportions")
 """Categories that come in all proportions; the others keep theirs more strictly."""
 
-FLAT = with_kin("picture", "mirror", "window", "curtain", "rug")
+FLAT = having("flat_piece")
 """Categories of one flat piece that is made in any proportions: a tall narrow picture is no row of small ones."""
-
-_HARD_LIMITS_M: dict[str, tuple[int, float, float]] = {
-    "chair": (2, 0.7, 1.2),
-    "office chair": (2, 0.7, 1.2),
-    "armchair": (2, 0.65, 1.2),
-    "table": (2, 0.35, 1.1),
-    "coffee table": (2, 0.3, 0.6),
-    "desk": (2, 0.6, 1.1),
-    "sofa": (1, 1.2, 3.0),
-}
-"""(axis, least, most) of plausible sizes of a category, in metres."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -141,14 +124,15 @@ def sides_log_of(symmetry: SymmetryFold, category_name: str, *, round: bool) -> 
 def _category_range(category_name: str, observed_m: np.ndarray, own_m: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     if category_name == UNKNOWN.name:
         return np.full(3, 0.02), np.where(_thin(own_m), np.maximum(_THICKER * own_m, _THIN_M), 4.0)
-    prior = _nearest_prior(category(category_name).priors, np.log(np.clip(observed_m, 1e-3, 10.0)))
+    row = category(category_name)
+    prior = _nearest_prior(row.priors, np.log(np.clip(observed_m, 1e-3, 10.0)))
     least = np.exp(prior.log_median_xyz - _SIGMAS * prior.log_sigma_xyz)
     most = np.exp(prior.log_median_xyz + _SIGMAS * prior.log_sigma_xyz)
     least = np.maximum(np.minimum(least, own_m / _OWN_SIZE_FACTOR), _DEGENERATE_M)
     most = np.maximum(most, own_m * _OWN_SIZE_FACTOR)
-    if category_name in _HARD_LIMITS_M:
-        axis, low, high = _HARD_LIMITS_M[category_name]
-        least[axis], most[axis] = max(least[axis], low), min(most[axis], high)
+    for axis, plausible in ((1, row.plausible_width_m), (2, row.plausible_height_m)):
+        if plausible is not None:
+            least[axis], most[axis] = max(least[axis], plausible[0]), min(most[axis], plausible[1])
     return least, most
 
 

@@ -14,7 +14,7 @@ from jaxtyping import Bool, Float, Float32, Int
 
 from diorama_core.artefacts import Cuboid, DetectedObject
 from diorama_core.geometry.segments import line_segments_px
-from diorama_core.library.taxonomy import AGAINST_WALLS, CATEGORIES, PORTABLE, UNKNOWN, category, with_kin
+from diorama_core.library.taxonomy import CATEGORIES, PORTABLE, UNKNOWN, category, having
 from diorama_core.scene.types import Camera
 
 AXIS_TOLERANCE_RAD = np.deg2rad(4.0)
@@ -48,7 +48,7 @@ PRIOR_MEDIAN_M = np.array([4.2, 3.5, 2.6])
 PRIOR_LOG_SIGMA = np.array([0.45, 0.5, 0.18])
 PROTRUSION_SCALE_M = 0.25
 
-BACKED = AGAINST_WALLS | with_kin("desk")
+BACKED = having("backs_wall_in_photos")
 """What usually has a wall behind it."""
 _WALL_CATEGORIES = frozenset(c.name for c in CATEGORIES if c.mount in ("wall", "ceiling"))
 

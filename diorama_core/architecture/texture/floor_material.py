@@ -16,7 +16,7 @@ from jaxtyping import Bool, Float, Float32, UInt8
 
 from diorama_core.architecture.texture.quilting import broad_shading
 from diorama_core.artefacts import DetectedObject
-from diorama_core.library.taxonomy import with_kin
+from diorama_core.library.taxonomy import having
 
 _CELL_LAB = np.array([14.0, 8.0, 8.0])
 """Colours within about this much are one material in light and shade."""
@@ -28,7 +28,7 @@ _MEAN_SHIFTS = 12
 _SAMPLES = 4000
 _CONTACT_BAND = (0.012, 0.06)
 """Before the feet of things, beyond their contact shadows: distances below masks, as shares of the photo's height."""
-_RUGS = with_kin("rug")
+_RUGS = having("rug")
 _QUANTILES = (0.16, 0.84)
 """Of a normal distribution, one standard deviation to either side."""
 _WITHOUT_CONTACT = 0.15

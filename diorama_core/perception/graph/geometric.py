@@ -13,8 +13,9 @@ import numpy as np
 from jaxtyping import Float
 
 from diorama_core.artefacts import DetectedObject, Inputs, ObjectGeometry, SceneGraph
+from diorama_core.geometry.openings import OPENING_CATEGORIES
 from diorama_core.library.company import STACKED_ON, WITH_BOARDS
-from diorama_core.library.taxonomy import UNKNOWN, Category
+from diorama_core.library.taxonomy import UNKNOWN, Category, having
 from diorama_core.perception.graph.object_observations import Observed, observed
 from diorama_core.progress import Progress
 from diorama_core.scene.types import Relation, Support
@@ -28,10 +29,7 @@ _PRIOR: dict[str, tuple[float, float, float, float]] = {
     "ceiling": (9.0, 9.0, 5.0, 0.0),
 }
 _UNNAMED_PRIOR = (1.0, 0.5, 2.0, 5.0)
-_NEVER_ON_OBJECTS = frozenset({"door", "window", "curtain", "radiator", "wardrobe", "bed", "sofa", "bathtub"}).union(
-    ["toilet", "refrigerator", "piano", "kitchen counter", "desk"]
-)
-_ALWAYS_ON_WALL = frozenset({"door", "window"})
+_NEVER_ON_OBJECTS = having("never_on_objects")
 _CARRIES_NOTHING_COST = 5.0
 _LARGER_COST = 4.0
 """Of lying on something whose footprint is much smaller."""
@@ -94,7 +92,7 @@ def _priors(category: Category) -> tuple[float, float, float, float]:
     if category is UNKNOWN:
         return _UNNAMED_PRIOR
     prior = _PRIOR[category.mount]
-    return (9.0, 9.0, 0.0, 9.0) if category.name in _ALWAYS_ON_WALL else prior
+    return (9.0, 9.0, 0.0, 9.0) if category.name in OPENING_CATEGORIES else prior
 
 
 def _gap_cost(gap_m: float, usual_m: float) -> float:

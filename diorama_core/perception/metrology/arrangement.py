@@ -9,7 +9,7 @@ from __future__ import annotations
 import numpy as np
 from jaxtyping import Float
 
-from diorama_core.library.taxonomy import Category, with_kin
+from diorama_core.library.taxonomy import Category, having
 from diorama_core.perception.metrology.problem import Cuboids
 
 _MAX_READINGS = 5
@@ -21,8 +21,7 @@ _OVERLAP_COST = 14.0
 """Of one footprint lying wholly in another."""
 _TUCKED_COST = 4.0
 """The same for seats under tables."""
-_SEATS = with_kin("chair", "office chair", "stool", "armchair", "bench", "ottoman", "trash can")
-_TABLES = with_kin("table", "desk", "coffee table", "side table", "kitchen counter", "console table")
+_SEATS, _TABLES = having("under_tables"), having("legroom")
 _FLAT_M = 0.05
 _ROUNDS = 6
 

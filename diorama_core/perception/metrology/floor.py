@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from jaxtyping import Float
 
-from diorama_core.library.taxonomy import PORTABLE, UNKNOWN, Category, with_kin
+from diorama_core.library.taxonomy import PORTABLE, UNKNOWN, Category, having
 from diorama_core.perception.metrology.box_observations import BoxObservations
 from diorama_core.perception.metrology.priors import SizeMode, standing_costs
 from diorama_core.perception.metrology.problem import UNKNOWNS, UNTOLD, Problems, View, stacked
@@ -29,7 +29,7 @@ _ODD_ANGLES_DEG = (30.0, -30.0, 60.0, -60.0)
 _SCAN_ITERATIONS = 10
 _CONTINUED_ITERATIONS = 5
 _FARTHER = 1.6
-TELL_LITTLE = PORTABLE | with_kin("rug")
+TELL_LITTLE = PORTABLE | having("rug")
 """Things that vote on the camera's height only where nothing else does: they may stand on furniture, or be as large as
 they like and half hidden by what stands on them."""
 ALIKE = 0.7

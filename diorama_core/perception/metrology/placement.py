@@ -11,7 +11,17 @@ from jaxtyping import Float
 from diorama_core.geometry.projection import cuboid_corners
 from diorama_core.library import taxonomy
 from diorama_core.library.company import STACKED_ON, often_carried
-from diorama_core.library.taxonomy import AGAINST_WALLS, PORTABLE, UNKNOWN, Category, Mount, lies_on_furniture, with_kin
+from diorama_core.library.taxonomy import (
+    AGAINST_WALLS,
+    PORTABLE,
+    UNKNOWN,
+    Category,
+    Mount,
+    column,
+    having,
+    lies_on_furniture,
+)
+from diorama_core.library.taxonomy import category as find_category
 from diorama_core.perception.metrology.arrangement import arrange, distinct
 from diorama_core.perception.metrology.box_observations import BoxObservations
 from diorama_core.perception.metrology.carried_costs import CarriedCosts
@@ -50,7 +60,7 @@ _HARDLY = 1e-4
 _MIN_FLAT_FILL = 0.7
 _NOT_FLAT_COST = 6.0
 """Of an unnamed thing on a wall whose mask leaves much of its box empty: pictures and boards do not."""
-_SCREENS = frozenset({"television", "monitor"})
+_SCREENS = having("screen")
 _SCREEN_ON_WALL_COST, _SCREEN_ON_FLOOR_COST = 3.0, 12.0
 _BESIDE_ITS_SUPPORTER_COST = 20.0
 """For a thing on the floor, or on a wall, that belongs on something its box rests in."""
@@ -66,19 +76,15 @@ _BEFORE_COST = 10.0
 """Of a thing on the floor that ends before another whose lower end is nearer: it would stand in the other's place."""
 _THROUGH_TOP_COST = 10.0
 """Of a thing on the floor that would be seen through a piece of furniture's top."""
-_RUGS = with_kin("rug")
-_FIXED_TO_WALLS = frozenset({"door", "window", "curtain", "radiator"})
-_LARGE = (
-    _FIXED_TO_WALLS
-    | with_kin("sofa", "bed", "wardrobe", "table", "desk", "bathtub", "piano", "dresser", "bookshelf", "refrigerator")
-    | _RUGS
-) - PORTABLE
+_RUGS = having("rug")
+_FIXED_TO_WALLS = having("fixed_to_wall")
+_LARGE = having("large")
 """Things that never stand on others."""
-_HUNG_CARRIERS = frozenset({"shelves"})
+_HUNG_CARRIERS = frozenset(kind for kind in column("carries_as") if find_category(kind).mount == "wall")
 """What hangs on walls and carries things."""
 _SURE_COST = 12.0
 """Things on the floor that cost less than this tell how far the room reaches."""
-SETS = with_kin("chair", "office chair", "stool", "night stand", "ottoman", "table", "desk")
+SETS = having("sets_metrology")
 """What often comes in sets of one shape on the floor of one room."""
 SET_SIGMA = 0.05
 """Of the logarithms of a set's extents: how well those that are seen well are measured."""

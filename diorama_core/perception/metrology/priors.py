@@ -6,6 +6,7 @@ of the kinds that it looks like, or else of the usual furniture; each such readi
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import cache
 
@@ -14,29 +15,12 @@ from jaxtyping import Float
 
 from diorama_core.library.kind_sizes import sizes_of_kind
 from diorama_core.library.kinds import outline_of
-from diorama_core.library.taxonomy import PORTABLE, UNKNOWN, Mount, SizePrior, category
+from diorama_core.library.taxonomy import PORTABLE, UNKNOWN, Mount, SizePrior, category, column
 
-_ALSO = {
-    "table": (("coffee table", 1.5), ("side table", 2.5)),
-    "sofa": (("armchair", 2.5),),
-    "chair": (("armchair", 3.0),),
-    "cabinet": (("dresser", 0.5), ("wardrobe", 2.0)),
-    "plant": (("vase", 2.0),),
-    "lamp": (("floor lamp", 4.0),),
-}
+_ALSO: Mapping[str, Mapping[str, float]] = column("also_said_of")
 """Category: further categories it is used for, with the cost of that reading."""
 
-_UNNAMED = {
-    "chair": 0.0,
-    "armchair": 1.0,
-    "sofa": 1.0,
-    "table": 1.0,
-    "coffee table": 1.0,
-    "dresser": 1.5,
-    "night stand": 1.0,
-    "bed": 1.5,
-    "wardrobe": 4.5,
-}
+_UNNAMED: Mapping[str, float] = column("unnamed_cost")
 """What unnamed furniture may be that nobody looked at, with the cost of the rarer kinds."""
 _UNNAMED_WIDENED = 1.3
 _UNNAMED_ANYTHING_COST = 6.0
@@ -78,7 +62,7 @@ def size_modes(name: str, meanings: tuple[tuple[str, float], ...] = ()) -> tuple
         return (*(_modes_held(meanings, "floor") or _usual_furniture()), _mode(UNKNOWN.name, _UNNAMED_ANYTHING_COST))
     if meanings:
         return _own_modes(name) + _modes_of_meanings(name, meanings)
-    return _own_modes(name) + tuple(_mode(kind, cost) for kind, cost in _ALSO.get(name, ()))
+    return _own_modes(name) + tuple(_mode(kind, cost) for kind, cost in _ALSO.get(name, {}).items())
 
 
 def _usual_furniture() -> tuple[SizeMode, ...]:

@@ -10,7 +10,7 @@ import numpy as np
 from jaxtyping import Bool, Float
 
 from diorama_core.artefacts import DetectedObject
-from diorama_core.library.taxonomy import with_kin
+from diorama_core.library.taxonomy import having
 from diorama_core.perception.metrology.problem import Cuboids, Problems, View, corners_camera
 
 DIAGONALS: Float[np.ndarray, "4 2"] = np.array([[-1.0, -1.0], [1.0, -1.0], [-1.0, 1.0], [1.0, 1.0]])
@@ -22,11 +22,7 @@ _BEYOND_SIGMA_GUESSED = 0.12
 """The same for masks that are not the user's own."""
 _EMPTY_SIGMA_SOLID = 0.13
 _EMPTY_SIGMA = 0.35
-_SOLID = with_kin(
-    *("dresser", "cabinet", "sideboard", "night stand", "wardrobe", "refrigerator", "stove", "washing machine"),
-    *("tv stand", "bookshelf", "box", "picture", "mirror", "door", "window", "television", "kitchen counter"),
-    "ottoman",
-)
+_SOLID = having("solid")
 """Categories whose things fill their cuboids."""
 _MIN_CONFIDENCE = 0.5
 _CAP = 10.0

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
 from jaxtyping import Float
 
 from diorama_core.library.company import WITH_BOARDS
-from diorama_core.library.taxonomy import AGAINST_WALLS, PORTABLE, UNKNOWN
+from diorama_core.library.taxonomy import AGAINST_WALLS, PORTABLE, UNKNOWN, column, having
 from diorama_core.perception.metrology.box_observations import BoxObservations
 from diorama_core.perception.metrology.priors import (
     SizeMode,
@@ -38,18 +39,10 @@ _FLAT_M = 0.2
 """A door thinner than this along an axis is in the wall across that axis."""
 _BACK_SHARE = {("bed", "pillow"): 0.45}
 """Pillows lie at the head of a bed: in this share of its depth."""
-_SEATS = frozenset({"pillow", "toy", "books", "laptop", "basket", "box"})
+_ON_SEATS = having("on_seats")
 _ODD_ON_SEAT_COST = 6.0
 """Of anything else lying on a seat or a bed: one in twenty."""
-_USUAL_MIDDLE_M = {
-    "picture": 1.5,
-    "mirror": 1.45,
-    "clock": 1.8,
-    "window": 1.5,
-    "curtain": 1.2,
-    "shelves": 1.5,
-    "radiator": 0.4,
-}
+_USUAL_MIDDLE_M: Mapping[str, float] = column("middle_height_m")
 _WALL_TOP_M, _WALL_TOP_SIGMA_M = 2.0, 0.5
 _MIDDLE_M, _MIDDLE_SIGMA_M = 1.4, 0.4
 
@@ -122,7 +115,8 @@ def place_on(
     footprint = _resting_place(parent_cuboid, _BACK_SHARE.get(names, 1.0))
     rows = []
     soft = (
-        observations.categories[parent].seat_height_m is not None and observations.categories[index].name not in _SEATS
+        observations.categories[parent].seat_height_m is not None
+        and observations.categories[index].name not in _ON_SEATS
     )
     for base, sigma, level_cost in _levels(observations, parent, tall, soft):
         for mode in supported_modes(names[1], observations.meanings[index]):
