@@ -84,7 +84,7 @@ def _on(client: Client, shape: Shape, new_id: str, parent: SceneObject) -> Scene
     small = size[0] * size[1] <= SMALL_SHARE * parent.size_m[0] * parent.size_m[1] and size[2] <= SMALL_HEIGHT_M
     if category.mount != "surface" and not (category.mount == "floor" and small):
         return None
-    if broad(parent.category) in (*SEATS, "bed") and not category.soft:
+    if (parent.category in SEATS or broad(parent.category) == "bed") and not category.soft:
         return None
     top = parent.pose.position + parent.pose.R_world_object[:, 2] * parent.size_m[2] / 2
     pose = Pose.upright(top + np.array([0.0, 0.0, size[2] / 2]), parent.pose.yaw_rad)

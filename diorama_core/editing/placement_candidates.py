@@ -10,12 +10,12 @@ from jaxtyping import Bool, Float
 
 from diorama_core.editing.collisions import WALKED_ON_M
 from diorama_core.editing.footprints import footprint_of, gaps, overlapping, within
-from diorama_core.editing.habits import TUCKED, carries, host_cost, pushed_under, stands
+from diorama_core.editing.habits import carries, host_cost, pushed_under, stands
 from diorama_core.editing.placing import places_of
 from diorama_core.editing.relations import Relation, Stances
 from diorama_core.editing.room_frame import RoomFrame
 from diorama_core.library.record import ShapeLibrary
-from diorama_core.library.taxonomy import broad, category
+from diorama_core.library.taxonomy import broad, category, having
 from diorama_core.scene.types import Pose, Scene, SceneObject, Support, yaw_rotation
 
 WALL_GAP_M = 0.015
@@ -92,8 +92,8 @@ def _on_floor(scene: Scene, item: SceneObject, relations: Sequence[Relation], fr
     support = None if frame.floor_id is None else Support(item.id, frame.floor_id)
     base = np.full(count, frame.floor_m)
     supports: list[Support | None] = [support] * count
-    if item.category != "rug":
-        for rug in (o for o in scene.objects if broad(o.category) == "rug"):
+    if item.category not in having("rug"):
+        for rug in (o for o in scene.objects if o.category in having("rug")):
             on = np.array(within(quads, footprint_of(rug), 0.001))
             base[on] = float(rug.corners_world[:, 2].max())
             for k in np.flatnonzero(on):
@@ -172,7 +172,7 @@ def _blocked(
     if item.size_m[2] < WALKED_ON_M:
         return hit
     under = {t for r in relations if r.kind == "under" for t in r.targets}
-    tucked = TUCKED.get(broad(item.category), ())
+    tucked = pushed_under(item)
     for other in scene.objects:
         low, high = float(other.corners_world[:, 2].min()), float(other.corners_world[:, 2].max())
         if other.size_m[2] < WALKED_ON_M or low > item.size_m[2] + 0.01 or high < 0.02 or other.hidden:
@@ -199,7 +199,7 @@ def _on_objects(scene: Scene, item: SceneObject, hosts: Sequence[str], library: 
         steps = [np.linspace(a, b, max(3, min(13, int((b - a) / 0.05)))) for a, b in zip(low, high, strict=True)]
         xs, ys = np.meshgrid(*steps)
         flat = np.column_stack([xs.ravel(), ys.ravel()])
-        yaws = [0.0, np.pi / 2] if item.size_m[1] > np.ptp(local[:, 1]) or broad(item.category) == "rug" else [0.0]
+        yaws = [0.0, np.pi / 2] if item.size_m[1] > np.ptp(local[:, 1]) or item.category in having("rug") else [0.0]
         places = np.concatenate([flat] * len(yaws)) @ R.T + host.pose.position[:2]
         turns = np.repeat(yaws, len(flat)) + host.pose.yaw_rad
         stances = Stances(item.size_m, places, turns)
@@ -209,9 +209,9 @@ def _on_objects(scene: Scene, item: SceneObject, hosts: Sequence[str], library: 
         middle = 0.5 * (low + high)
         off = np.abs(np.concatenate([flat] * len(yaws)) - middle) / np.maximum((high - low) / 2, 0.05)
         extra = 0.15 * off.sum(axis=1) + 0.4 * ~np.array(within(quads, outline, 0.01))
-        if item.category in ("lamp", "monitor", "television", "computer", "plant", "vase", "clock", "speaker"):
+        if item.category in having("along_the_back"):
             extra += 0.3 * (np.concatenate([flat] * len(yaws))[:, 0] - low[0]) / max(float(high[0] - low[0]), 0.05)
-        if item.category in ("keyboard", "laptop", "book", "plate", "mouse"):
+        if item.category in having("near_the_edge"):
             extra += 0.3 * (high[0] - np.concatenate([flat] * len(yaws))[:, 0]) / max(float(high[0] - low[0]), 0.05)
         for child in scene.children_of(place.parent):
             other = scene.object(child)

@@ -10,11 +10,11 @@ from jaxtyping import Float
 
 from diorama_core.editing.collisions import WALKED_ON_M
 from diorama_core.editing.footprints import Quads, footprint_of, footprints, overlapping, to_outline, within
-from diorama_core.editing.habits import AT_WALLS, FREE_STANDING, MID_WALL, belongs_before, stands
+from diorama_core.editing.habits import AT_WALLS, MID_WALL, belongs_before, stands
 from diorama_core.editing.placement_candidates import Candidates
-from diorama_core.editing.relations import NO_FRONT, Relation, Stances, is_long, relation_cost
+from diorama_core.editing.relations import NO_SIDE, Relation, Stances, is_long, relation_cost
 from diorama_core.editing.room_frame import RoomFrame, door_floors, front_floor
-from diorama_core.library.taxonomy import broad, category
+from diorama_core.library.taxonomy import broad, category, having
 from diorama_core.scene.types import Pose, Scene, SceneObject
 
 USUAL_WEIGHT = 0.6
@@ -55,7 +55,7 @@ def placement_costs(
         return cost
     if candidates.supports and candidates.supports[0] is not None and scene.has_object(candidates.supports[0].parent):
         host = scene.object(candidates.supports[0].parent)
-        if broad(host.category) != "rug":
+        if host.category not in having("rug"):
             return cost
     return cost + _habits(scene, item, stances, (*relations, *usual), frame)
 
@@ -90,25 +90,24 @@ def _habits(
     """Backs to walls, ways to doors, and floor before what is opened or sat on."""
     quads, kind = stances.quads, broad(item.category)
     cost = np.zeros(len(quads))
-    if kind == "rug":
+    if item.category in having("rug"):
         return cost + 0.05 * np.linalg.norm(stances.places - frame.middle, axis=1)
     cost += _in_the_way(scene, item, quads, relations) + _askew(item, stances, frame)
     free = any(r.kind in ("in middle", "around", "facing", "between", "opposite") for r in relations)
-    walled = bool({kind, item.category} & AT_WALLS) and item.category not in FREE_STANDING
-    walled = walled and not (free and kind == "desk")
+    walled = item.category in AT_WALLS and not (free and kind == "desk")
     wall_cost = relation_cost(Relation("against wall"), stances, item.category, {}, frame) if frame.walls else 0.0
     if walled:
         cost += 0.9 * np.minimum(wall_cost, 2.0)
-        if kind in MID_WALL:
+        if item.category in MID_WALL:
             cost += 0.5 * _off_middle(stances, frame)
-    elif kind in ("plant", "floor lamp", "basket", "trash can", "coat rack", "guitar"):
+    elif item.category in having("in_corner"):
         cost += 0.25 * np.minimum(to_outline(stances.places, frame.outline), 2.0)
-    elif kind in ("table", "coffee table") or item.category in FREE_STANDING:
+    elif item.category in having("mid_room"):
         cost += 0.25 * np.linalg.norm(stances.places - frame.middle, axis=1) * (kind == "table")
         cost += 0.8 * np.maximum(
             0.9 - to_outline(stances.places, frame.outline) + 0.3 * float(item.size_m[:2].max()), 0.0
         )
-    elif kind in ("armchair", "chair", "stool", "bench", "ottoman") and not relations:
+    elif item.category in having("seat") and not relations:
         inward = frame.middle - stances.places
         away = np.arctan2(inward[:, 1], inward[:, 0])
         cost += 0.3 * np.abs(np.arctan2(np.sin(stances.yaws_rad - away), np.cos(stances.yaws_rad - away)))
@@ -186,7 +185,7 @@ def _beside_siblings(
         theirs = (other.pose.position[:2] - target.pose.position[:2]) @ R
         if relation.kind == "beside" and float(np.abs(theirs).max()) < float(target.size_m[:2].max()) / 2 + 1.0:
             cost += 0.5 * (np.sign(local[:, 1]) == np.sign(theirs[1]))
-            if broad(item.category) not in NO_FRONT:
+            if item.category not in NO_SIDE:
                 cost += 0.25 * (1.0 - np.cos(stances.yaws_rad - other.pose.yaw_rad))
         elif relation.kind == "around":
             lengths = np.maximum(np.linalg.norm(local, axis=1) * float(np.linalg.norm(theirs)), 1e-6)

@@ -15,7 +15,7 @@ from jaxtyping import Float
 
 from diorama_core.editing.footprints import Points, Quad, Quads, footprint_of, footprints, gaps
 from diorama_core.editing.room_frame import RoomFrame
-from diorama_core.library.taxonomy import broad, category
+from diorama_core.library.taxonomy import broad, category, having
 from diorama_core.scene.support import ancestors
 from diorama_core.scene.types import Scene, SceneObject
 
@@ -36,23 +36,16 @@ MIDDLE_SHARE = 0.2
 """The middle of a room is this share of its extents."""
 FACING_RAD = float(np.radians(30.0))
 FACING_REACH_M = 4.0
-WATCHING_REACH_M, SCREENS = 7.0, frozenset({"television", "tv stand", "whiteboard"})
+WATCHING_REACH_M = 7.0
 SEATS_FACING_M = 1.1
 SEAT_COST = 1.5
 """Of a metre from one's own place at a table; wishes are judged without it, so another place is as good for them."""
-SEATS = ("chair", "armchair", "stool", "office chair", "sofa", "bench", "ottoman")
-BEFORE_M = {"ottoman": 0.3, "bench": 0.3, "coffee table": 0.45, "stool": 0.5}
-"""How far before something these are used; farther off they are only somewhere in the room."""
+SEATS = having("seat")
 BETWEEN_BEDS_M = 0.7
 """Beds side by side lie the same way, with a way to get up and a night stand between them."""
-TOO_HOT_M = {"fireplace": 0.8}
-"""Before these nobody sits nearer."""
 LONG_RATIO = 1.25
 """What is longer than wide by this has a long side, which lies along what it stands before."""
-NO_FRONT = frozenset({
-    "plant", "rug", "ceiling lamp", "floor lamp", "lamp", "vase", "ottoman", "stool", "basket", "coffee table", "table",
-    "side table", "trash can", "box",
-})  # fmt: skip
+NO_SIDE = having("no_side")
 """Categories that look alike from all sides: anything beside them is beside them."""
 
 
@@ -157,7 +150,7 @@ def _to_target(
         return heading / FACING_RAD + off_side + np.abs(gap - BETWEEN_BEDS_M) / 0.6
     if kind == "beside":
         far = np.maximum(gap - SIDE_GAP_M, 0.0) / 0.3
-        if broad(target.category) in NO_FRONT:
+        if target.category in NO_SIDE:
             return far + 0.15 * gap
         off_side = np.maximum(np.abs(local[:, 0]) - half[0], 0.0) / max(half[0], 0.2)
         ahead = np.maximum(np.abs(local[:, 0]) - 0.8 * half[0], 0.0)
@@ -231,8 +224,9 @@ def _to_target(
 
 def _at_use(name: str, target: SceneObject, gap_m: Float[np.ndarray, "n"]) -> Float[np.ndarray, "n"]:
     """Footstools are before the seat, benches at the bed's foot, and nobody sits in the fire."""
-    far = 0.6 * np.maximum(gap_m - BEFORE_M.get(broad(name), np.inf), 0.0)
-    return far + 0.6 * np.maximum(TOO_HOT_M.get(broad(target.category), 0.0) - gap_m, 0.0)
+    within_m, too_hot_m = category(name).used_within_m, category(target.category).too_hot_m or 0.0
+    far = 0.0 if within_m is None else 0.6 * np.maximum(gap_m - within_m, 0.0)
+    return far + 0.6 * np.maximum(too_hot_m - gap_m, 0.0)
 
 
 def is_long(size_m: Float[np.ndarray, "3"]) -> bool:
@@ -249,7 +243,7 @@ def _across(stances: Stances, target: SceneObject) -> Float[np.ndarray, "n"]:
 
 
 def _is_seat(name: str) -> bool:
-    return broad(name) in SEATS
+    return name in SEATS
 
 
 def _too_near(name: str, target: SceneObject, gap_m: Float[np.ndarray, "n"]) -> Float[np.ndarray, "n"]:
@@ -261,7 +255,7 @@ def _too_near(name: str, target: SceneObject, gap_m: Float[np.ndarray, "n"]) -> 
 
 def _too_far(apart_m: Float[np.ndarray, "n"], name: str, target: SceneObject) -> Float[np.ndarray, "n"]:
     """People talk across a few metres, and watch a screen across more: it stays at its wall in a large room."""
-    watched = {broad(name), broad(target.category)} & SCREENS
+    watched = {name, target.category} & having("watched")
     return np.maximum(apart_m - (WATCHING_REACH_M if watched else FACING_REACH_M), 0.0) / 0.5
 
 

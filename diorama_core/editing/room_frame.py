@@ -11,7 +11,7 @@ from jaxtyping import Float
 
 from diorama_core.editing.footprints import Quad, footprints
 from diorama_core.geometry.wall_line import WallLine
-from diorama_core.library.taxonomy import broad
+from diorama_core.library.taxonomy import category
 from diorama_core.scene.room_edits import floor_height
 from diorama_core.scene.types import Plane, Scene, SceneObject
 
@@ -23,12 +23,6 @@ JOINED_M = 0.15
 """Ends of two stretches of wall nearer than this meet in a corner."""
 SWING_M = 0.9
 """Floor that a door needs on either side."""
-FRONT_M = {
-    "bed": 0.0, "sofa": 0.45, "armchair": 0.35, "chair": 0.0, "desk": 0.6, "wardrobe": 0.6, "dresser": 0.5,
-    "cabinet": 0.5, "sideboard": 0.5, "bookshelf": 0.5, "tv stand": 0.5, "refrigerator": 0.7, "stove": 0.7,
-    "kitchen counter": 0.7, "sink": 0.6, "toilet": 0.5, "washing machine": 0.6, "fireplace": 0.6, "piano": 0.6,
-}  # fmt: skip
-"""Floor that people need before furniture of a kind, to sit down, to open it, to stand at it."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -118,7 +112,7 @@ def _run(plane: Plane) -> WallRun | None:
 
 def front_floor(item: SceneObject, free_m: float | None = None) -> Quad | None:
     """The floor that people need before an object; None where they need none."""
-    depth = FRONT_M.get(item.category, FRONT_M.get(broad(item.category), 0.0)) if free_m is None else free_m
+    depth = category(item.category).floor_before_m or 0.0 if free_m is None else free_m
     if depth <= 0.0:
         return None
     yaw = item.pose.yaw_rad

@@ -17,23 +17,12 @@ from diorama_core.export.files import whole_file
 from diorama_core.export.gathering import ExportMesh, ExportObject, ExportScene
 from diorama_core.export.wall_lines import Opening, WallLine, wall_lines
 from diorama_core.io.srgb import linear_to_srgb, srgb_to_linear
+from diorama_core.library.taxonomy import column
 from diorama_core.progress import Progress
 from diorama_core.render.appearance import Material
 from diorama_core.scene.types import Plane
 
-CLASSES = {
-    "door": "IfcDoor",
-    "window": "IfcWindow",
-    "lamp": "IfcLightFixture",
-    "floor lamp": "IfcLightFixture",
-    "ceiling lamp": "IfcLightFixture",
-    "wall lamp": "IfcLightFixture",
-    "chandelier": "IfcLightFixture",
-    "sink": "IfcSanitaryTerminal",
-    "toilet": "IfcSanitaryTerminal",
-    "bathtub": "IfcSanitaryTerminal",
-    "shower": "IfcSanitaryTerminal",
-}
+CLASSES: Mapping[str, str] = column("ifc_class")
 """Classes of categories; all others are furniture."""
 THROUGH_M = 0.05
 """Openings reach this far through their wall on both sides."""

@@ -22,7 +22,7 @@ from diorama_core.importing.gltf import Z_UP
 from diorama_core.importing.measured_room import MeasuredBox, MeasuredOpening, MeasuredRoom, MeasuredWall
 from diorama_core.io.bounded import read_json, shortened
 from diorama_core.library.hyponyms import meanings
-from diorama_core.library.taxonomy import UNKNOWN, resolve
+from diorama_core.library.taxonomy import UNKNOWN, column, resolve
 
 MAX_JSON_BYTES = 64_000_000
 REACH_M = 10_000.0
@@ -33,41 +33,8 @@ MAX_PARTS = 5_000
 BOX_FROM_SURFACE = np.array([[0.0, 1.0, 0.0], [0.0, 0.0, 1.0], [1.0, 0.0, 0.0]])
 """Columns are our box axes (front, left, up) in RoomPlan's axes (width, up, front)."""
 KINDS: Mapping[str, Mapping[str, float]] = {
-    "storage": {
-        "cabinet": 1.0,
-        "wardrobe": 1.0,
-        "dresser": 1.0,
-        "bookshelf": 1.0,
-        "sideboard": 1.0,
-        "wall cabinet": 1.0,
-        "kitchen counter": 1.0,
-        "tv stand": 0.5,
-        "night stand": 0.7,
-        "shelves": 0.3,
-        "pantry cabinet": 0.5,
-    },
-    "refrigerator": {"refrigerator": 1.0},
-    "stove": {"stove": 1.0},
-    "bed": {"bed": 1.0, "bunk bed": 0.1, "crib": 0.1},
-    "sink": {"sink": 1.0},
-    "washerDryer": {"washing machine": 1.0, "dryer": 0.5},
-    "toilet": {"toilet": 1.0},
-    "bathtub": {"bathtub": 1.0},
-    "oven": {"stove": 0.6, "wall oven": 1.0},
-    "dishwasher": {"dishwasher": 1.0},
-    "table": {
-        "table": 1.0,
-        "coffee table": 1.0,
-        "desk": 0.7,
-        "side table": 0.7,
-        "night stand": 0.3,
-        "console table": 0.3,
-    },
-    "sofa": {"sofa": 1.0, "sectional sofa": 0.5, "armchair": 0.7, "bench": 0.1},
-    "chair": {"chair": 1.0, "office chair": 0.5, "armchair": 0.5, "stool": 0.3, "bar stool": 0.2},
-    "fireplace": {"fireplace": 1.0},
-    "television": {"television": 1.0},
-    "stairs": {"object": 1.0},
+    word: {kind: shares[word] for kind, shares in column("roomplan").items() if word in shares}
+    for word in dict.fromkeys(word for shares in column("roomplan").values() for word in shares)
 }
 """What RoomPlan's categories may be here; within a category sizes decide."""
 ATTRIBUTES: Mapping[str, str] = {

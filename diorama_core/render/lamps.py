@@ -13,17 +13,11 @@ from jaxtyping import Float
 
 from diorama_core.geometry.openings import OPENING_CATEGORIES
 from diorama_core.geometry.sun import daylight
+from diorama_core.library.taxonomy import column
 from diorama_core.render.appearance import Surface
 from diorama_core.scene.types import Scene, SceneObject
 
-LAMP_LUMENS: Mapping[str, float] = {
-    "lamp": 450.0,
-    "floor lamp": 800.0,
-    "wall lamp": 400.0,
-    "ceiling lamp": 1100.0,
-    "chandelier": 1600.0,
-    "candle": 12.0,
-}
+LAMP_LUMENS: Mapping[str, float] = column("lumens")
 """Luminous flux of a usual lamp of each category; categories that are not listed give no light."""
 WARM: tuple[float, float, float] = (1.0, 0.78, 0.54)
 """Linear colour of a bulb of about 3000 K."""

@@ -11,7 +11,7 @@ from diorama_core.editing.positioning import Positioner
 from diorama_core.editing.relations import SEATS, Relation
 from diorama_core.errors import EditRefused
 from diorama_core.library.record import Shape, ShapeLibrary, record_of
-from diorama_core.library.taxonomy import broad
+from diorama_core.library.taxonomy import having
 from diorama_core.scene import edits
 from diorama_core.scene.types import Pose, Scene, SceneObject
 from diorama_core.text.edit_looks import looking_like
@@ -43,7 +43,7 @@ def inserted(positioner: Positioner, scene: Scene, edit: Insert, relations: Sequ
     missed: list[str] = []
     for copy in range(edit.count):
         options, lacking = _options(positioner.library, phrase, relations, targets)
-        if broad(phrase.category) in SEATS and not phrase.appearance:
+        if phrase.category in SEATS and not phrase.appearance:
             there = dict.fromkeys(o.shape_id for o in scene.objects if o.category == phrase.category)
             options = (*(record_of(positioner.library, i) for i in there), *options)  # seats are of a set
         if not options:
@@ -84,7 +84,7 @@ def _options(
 
     shapes, lacking = fitting_shapes(library, kind, label, appearance, usable)
     shapes, lacking = (shapes, lacking) if shapes else fitting_shapes(library, kind, label, appearance)
-    if broad(kind) == "rug" and targets and any(r.kind in ("under", "around") for r in relations):
+    if kind in having("rug") and targets and any(r.kind in ("under", "around") for r in relations):
         need = np.sort(np.ptp(np.concatenate([t.corners_world[:, :2] for t in targets]), axis=0)) + 2 * RUG_MARGIN_M
         wide = tuple(s for s in shapes if (np.sort(s.size_m[:2]) >= need - 0.1).all())
         shapes = wide or tuple(sorted(shapes, key=lambda s: -float(np.prod(s.size_m[:2]))))

@@ -7,9 +7,9 @@ from dataclasses import dataclass, field, replace
 
 from diorama_core.editing.relations import OF_ROOM, SEATS, RelationKind
 from diorama_core.geometry.openings import OPENING_CATEGORIES
-from diorama_core.library.taxonomy import broad, category, is_furniture, resolve
+from diorama_core.library.taxonomy import broad, category, having, is_furniture, resolve
 from diorama_core.synthesis import RoomKind
-from diorama_core.text.customs import USUAL
+from diorama_core.text.customs import usual_relations_of
 from diorama_core.text.phrases import MAX_OF_A_KIND, NUMBERS, NounPhrase, Placing, noun_phrase, split_places
 from diorama_core.text.rows import with_marks
 
@@ -242,7 +242,7 @@ def _times(reading: _Reading, category: str) -> int:
     if reading.hosts is None:
         return 1
     host = reading.objects[reading.hosts]
-    usual = USUAL.get(category, USUAL.get(broad(category), ()))
+    usual = usual_relations_of(category)
     return host.count if any({host.category, broad(host.category)} & set(names) for _, names in usual) else 1
 
 
@@ -250,7 +250,7 @@ def _add_seats(reading: _Reading, room: RoomKind, text: str) -> None:
     """Chairs for as many as a table or a dining room is for, where none are asked for."""
     said = _SEATS_FOR.search(text)
     table = next((o.category for o in reading.objects if broad(o.category) == "table"), None)
-    seated = any(broad(o.category) in ("chair", "stool", "bench", "armchair") for o in reading.objects)
+    seated = any(o.category in SEATS for o in reading.objects)
     if said is None or seated or (table is None and room != "dining"):
         return
     count = int(said[1]) if said[1].isdigit() else NUMBERS[said[1]]
@@ -289,11 +289,7 @@ def _place(reading: _Reading, index: int | None, place: Placing, clause: str) ->
     kind: RelationKind = place.kind
     if kind in ("under", "beside") and set(targets) <= set(OPENING_CATEGORIES):
         kind = "near"
-    if (
-        kind in ("beside", "in front of")
-        and broad(request.category) in ("chair", "office chair", "stool", "bench")
-        and _sat_at(targets[0])
-    ):
+    if kind in ("beside", "in front of") and request.category in having("drawn_up") and _sat_at(targets[0]):
         kind = "around"
     _wish(reading, index, Wish(kind, tuple(targets)))
 
@@ -338,9 +334,9 @@ def _meant(reading: _Reading, own: int | None, kind: RelationKind, several: bool
         return next((name for name in before if is_furniture(name)), before[0])
     carriers = [name for name in before if category(name).supports_objects]
     what = reading.objects[own].category if own is not None else ""
-    usual = {name for said, names in USUAL.get(what, ()) if said == "on" for name in names}
+    usual = {name for said, names in (usual_relations_of(what) if what else ()) if said == "on" for name in names}
     # A lamp is on the table rather than on one of its chairs, a cushion on a chair.
-    unsat = [name for name in carriers if broad(name) not in SEATS or broad(name) in usual]
+    unsat = [name for name in carriers if name not in SEATS or broad(name) in usual]
     return next(iter([*unsat, *carriers]), before[0])
 
 

@@ -7,9 +7,9 @@ from dataclasses import replace
 
 from diorama_core.editing.relations import LONG_RATIO, SEATS, Relation
 from diorama_core.library.record import Shape
-from diorama_core.library.taxonomy import broad, category
+from diorama_core.library.taxonomy import broad, category, having
 from diorama_core.scene.types import Scene
-from diorama_core.text.customs import USUAL
+from diorama_core.text.customs import usual_relations_of
 from diorama_core.text.prompt import RequestedObject, Wish
 
 _FIRST = ("bed", "sofa", "kitchen counter", "bathtub", "desk", "table", "wardrobe", "tv stand", "piano", "bookshelf")
@@ -51,7 +51,7 @@ def placement_order(wanted: Sequence[RequestedObject]) -> list[int]:
 
     mounts = {"floor": 0, "ceiling": 2, "wall": 2, "surface": 3}
     depth = {k: _depth(k, wanted, ()) for k in range(len(wanted))}
-    rug = {k: 1.5 if broad(o.category) == "rug" else 0.0 for k, o in enumerate(wanted)}
+    rug = {k: 1.5 if o.category in having("rug") else 0.0 for k, o in enumerate(wanted)}
     return sorted(
         range(len(wanted)),
         key=lambda k: (max(mounts[category(wanted[k].category).mount], rug[k]), depth[k], size(k), k),
@@ -114,7 +114,7 @@ def _depth(k: int, wanted: Sequence[RequestedObject], seen: tuple[int, ...]) -> 
     own = stands_between(wanted[k], wanted)
     named = {t for w in wanted[k].wishes for t in w.targets} - {own}
     named |= {o.category for o in wanted if wanted[k].category == stands_between(o, wanted)}
-    for _, targets in USUAL.get(wanted[k].category, USUAL.get(broad(wanted[k].category), ())):
+    for _, targets in usual_relations_of(wanted[k].category):
         named |= {t for t in targets if t != own and not _asks_for(t, wanted[k].category, wanted, ())}
     named -= {wanted[k].category, broad(wanted[k].category)}
     below = [
@@ -153,11 +153,11 @@ def usual_relations(scene: Scene, request: RequestedObject, copy: int) -> list[R
     said = {w.kind for w in request.wishes}
     found: list[Relation] = []
     for wish in request.wishes:
-        if wish.kind == "in front of" and broad(request.category) in SEATS and "bed" not in wish.targets:
+        if wish.kind == "in front of" and request.category in SEATS and "bed" not in wish.targets:
             found += [Relation("facing", targets)] if (targets := targets_of(scene, wish, copy)) else []
     if copy and broad(request.category) == "bed" and not said & _APART:
         found += [Relation("beside", (there[0],)) for there in (_of_kind(scene, request.category),) if there]
-    for kind, names in USUAL.get(request.category, USUAL.get(broad(request.category), ())):
+    for kind, names in usual_relations_of(request.category):
         if kind in said or (said and kind in ("in corner", "above", "on") and request.category != "television"):
             continue
         if said & {"in corner", "against wall"} and kind in ("beside", "near", "under", "in front of"):

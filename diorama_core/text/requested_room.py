@@ -15,7 +15,7 @@ from diorama_core.synthesis.furnisher import Furnisher
 from diorama_core.synthesis.grammar import RECIPES
 from diorama_core.synthesis.openings import add_door, add_window
 from diorama_core.synthesis.plan import room_plan
-from diorama_core.text.customs import ESSENTIALS, HOSTS, stands_in_for
+from diorama_core.text.customs import ESSENTIALS, stands_in_for
 from diorama_core.text.placed_rows import rows_of
 from diorama_core.text.prompt import RequestedObject, RoomRequest
 
@@ -38,7 +38,7 @@ def with_essentials(request: RoomRequest) -> tuple[list[RequestedObject], tuple[
                 added.append(name)
     carriers = {o.category for o in asked if category(o.category).supports_objects and broad(o.category) != "rug"}
     for one in list(asked):
-        host = HOSTS.get(broad(one.category))
+        host = category(broad(one.category)).added_host
         if host is None or carriers or any(w.kind == "on" for w in one.wishes):
             continue
         host = "night stand" if host == "side table" and request.room == "bedroom" else host

@@ -9,10 +9,10 @@ import numpy as np
 from diorama_core.editing.relations import SEATS, is_long
 from diorama_core.library.language import size_request
 from diorama_core.library.record import Shape, ShapeLibrary
-from diorama_core.library.taxonomy import broad
+from diorama_core.library.taxonomy import broad, having
 from diorama_core.scene import edits
 from diorama_core.scene.types import Scene
-from diorama_core.text.customs import USUAL
+from diorama_core.text.customs import usual_relations_of
 from diorama_core.text.looks import fitting_shapes, has_look, look_of
 from diorama_core.text.phrases import MAX_OF_A_KIND
 from diorama_core.text.prompt import RequestedObject
@@ -51,11 +51,11 @@ def requested_shapes(
     shapes, _ = fitting_shapes(library, request.category, request.label, request.appearance, usable)
     shapes = shapes or fitting_shapes(library, request.category, request.label, request.appearance)[0]
     under = {t for w in request.wishes if w.kind == "under" for t in w.targets}
-    if broad(request.category) == "rug":
+    if request.category in having("rug"):
         shapes = tuple(s for s in shapes if float(np.prod(s.size_m[:2])) > (2.4 if under else 1.6)) or shapes
     if not shapes:
         return ()
-    seats = sum(o.count for o in wanted if broad(o.category) in SEATS and _stand_around(o, request.category))
+    seats = sum(o.count for o in wanted if o.category in SEATS and _stand_around(o, request.category))
     if broad(request.category) == "table" and seats > 2:
         roomy = tuple(s for s in shapes if _seats(s) >= seats)
         shapes = roomy or tuple(sorted(shapes, key=lambda s: -float(sum(s.size_m[:2])))[:3])
@@ -90,4 +90,4 @@ def _stand_around(seats: RequestedObject, name: str) -> bool:
     """Whether seats are wished, or usually stand, around something."""
     if seats.wishes:
         return any(w.kind == "around" and name in w.targets for w in seats.wishes)
-    return any(kind == "around" and name in names for kind, names in USUAL.get(broad(seats.category), ()))
+    return any(kind == "around" and name in names for kind, names in usual_relations_of(seats.category))

@@ -11,15 +11,15 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from PIL import Image
 
-from diorama_core.editing.relations import Relation, is_met
+from diorama_core.editing.relations import RELATION_KINDS, Relation, is_met
 from diorama_core.editing.room_frame import RoomFrame
 from diorama_core.errors import InputError, UnavailableError
 from diorama_core.library.catalogue import built_in_library
-from diorama_core.library.taxonomy import category
+from diorama_core.library.taxonomy import CATEGORIES, category
 from diorama_core.perception.language.client import LmmSettings
 from diorama_core.scene.support import check_scene
 from diorama_core.text.compose import composed_room
-from diorama_core.text.customs import ESSENTIALS, HOSTS, USUAL, stands_in_for
+from diorama_core.text.customs import ESSENTIALS, stands_in_for, usual_relations_of
 from diorama_core.text.finish import finished
 from diorama_core.text.language import LOOKS
 from diorama_core.text.pictures import ImageSettings, picture_of
@@ -229,9 +229,9 @@ def test_what_has_no_place_is_named() -> None:
 
 
 def test_customs_name_known_categories() -> None:
-    named = {n for rows in USUAL.values() for _, names in rows for n in names}
-    named |= {*USUAL, *HOSTS, *HOSTS.values(), *(n for rows in ESSENTIALS.values() for n, _ in rows)}
-    assert all(category(n).name == n for n in named)
+    assert all(category(n).name == n for rows in ESSENTIALS.values() for n, _ in rows)
+    assert {kind for c in CATEGORIES for kind, _ in usual_relations_of(c.name)} < set(RELATION_KINDS)
+    assert usual_relations_of("recliner") == usual_relations_of("armchair")
     assert stands_in_for("office chair", frozenset({"stool"}))
     assert not stands_in_for("stove", frozenset({"table"}))
 
