@@ -23,9 +23,10 @@ from diorama_app.web.html import button, text
 from diorama_core.artefacts import Box, Inputs, LabelledBox, Photo
 from diorama_core.editing.input_corrections import labelled_box, same_object, with_box_at, without_box
 from diorama_core.errors import InputError
-from diorama_core.library.taxonomy import CATEGORIES
+from diorama_core.library.taxonomy import CATEGORIES, column, is_furniture
 
-COMMON = ("chair", "table", "sofa", "armchair", "bed", "desk", "coffee table", "lamp", "cabinet", "bookshelf")
+COMMON = tuple(sorted(filter(is_furniture, column("frequency")), key=lambda kind: -column("frequency")[kind])[:10])
+"""Furniture that rooms have most of."""
 NAMES = (*COMMON, *sorted({c.name for c in CATEGORIES} - {*COMMON, "object"}))
 
 

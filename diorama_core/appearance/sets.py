@@ -10,7 +10,7 @@ import numpy as np
 from diorama_core.library.taxonomy import having
 from diorama_core.scene.types import PhotoMaterial
 
-SETS = having("sets_appearance")
+SETS = having("in_sets")
 """Categories whose equal shapes in one room are a set."""
 _AGREE = 18.0
 """Colours of a set this near each other (CIELAB, lightness at half weight) are one colour in other light."""

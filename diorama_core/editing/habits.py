@@ -5,10 +5,11 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from diorama_core.editing.relations import Relation
+from diorama_core.library.company import often_carried, usual_carriers
 from diorama_core.library.taxonomy import broad, category, having
 from diorama_core.scene.types import Scene, SceneObject
 
-AT_WALLS = having("walled")
+OFTEN_AT_WALLS = having("often_at_wall")
 """Categories whose back belongs to a wall."""
 MID_WALL = having("mid_wall")
 """What stands in the middle of its wall rather than in a corner."""
@@ -21,9 +22,9 @@ def carries(item: SceneObject) -> bool:
 
 def host_cost(item: SceneObject, host: SceneObject) -> float:
     """How unlikely it is that people put one on the other."""
-    usual = category(item.category).usual_hosts or ()
-    if broad(host.category) in usual:
-        return 0.1 * usual.index(broad(host.category))
+    usual = usual_carriers(item.category)
+    if host.category in usual:
+        return 0.6 - 0.6 * often_carried(item.category, host.category) / often_carried(item.category, usual[0])
     return 0.6 + (0.4 if host.size_m[2] > 1.3 else 0.0)
 
 
@@ -36,8 +37,8 @@ def belongs_before(item: SceneObject, host: SceneObject, relations: Sequence[Rel
     """Whether an object is meant to be on the floor before another: its seat, its table, or as wished."""
     if broad(host.category) in pushed_under(item):
         return True
-    pairs = (("coffee table", "sofa"), ("coffee table", "armchair"), ("ottoman", "armchair"), ("ottoman", "sofa"))
-    if (broad(item.category), broad(host.category)) in pairs or item.category in having("rug"):
+    before = [targets for kind, targets in category(item.category).usual_relations or () if kind == "in front of"]
+    if any(broad(host.category) in targets for targets in before) or item.category in having("rug"):
         return True
     return any(
         host.id in r.targets or item.id in r.targets for r in relations if r.kind in ("in front of", "around", "facing")

@@ -10,9 +10,9 @@ from jaxtyping import Float
 
 from diorama_core.editing.collisions import WALKED_ON_M
 from diorama_core.editing.footprints import Quads, footprint_of, footprints, overlapping, to_outline, within
-from diorama_core.editing.habits import AT_WALLS, MID_WALL, belongs_before, stands
+from diorama_core.editing.habits import MID_WALL, OFTEN_AT_WALLS, belongs_before, stands
 from diorama_core.editing.placement_candidates import Candidates
-from diorama_core.editing.relations import NO_SIDE, Relation, Stances, is_long, relation_cost
+from diorama_core.editing.relations import NO_FRONT, Relation, Stances, is_long, relation_cost
 from diorama_core.editing.room_frame import RoomFrame, door_floors, front_floor
 from diorama_core.library.taxonomy import broad, category, having
 from diorama_core.scene.types import Pose, Scene, SceneObject
@@ -94,7 +94,7 @@ def _habits(
         return cost + 0.05 * np.linalg.norm(stances.places - frame.middle, axis=1)
     cost += _in_the_way(scene, item, quads, relations) + _askew(item, stances, frame)
     free = any(r.kind in ("in middle", "around", "facing", "between", "opposite") for r in relations)
-    walled = item.category in AT_WALLS and not (free and kind == "desk")
+    walled = item.category in OFTEN_AT_WALLS and not (free and kind == "desk")
     wall_cost = relation_cost(Relation("against wall"), stances, item.category, {}, frame) if frame.walls else 0.0
     if walled:
         cost += 0.9 * np.minimum(wall_cost, 2.0)
@@ -185,7 +185,7 @@ def _beside_siblings(
         theirs = (other.pose.position[:2] - target.pose.position[:2]) @ R
         if relation.kind == "beside" and float(np.abs(theirs).max()) < float(target.size_m[:2].max()) / 2 + 1.0:
             cost += 0.5 * (np.sign(local[:, 1]) == np.sign(theirs[1]))
-            if item.category not in NO_SIDE:
+            if item.category not in NO_FRONT:
                 cost += 0.25 * (1.0 - np.cos(stances.yaws_rad - other.pose.yaw_rad))
         elif relation.kind == "around":
             lengths = np.maximum(np.linalg.norm(local, axis=1) * float(np.linalg.norm(theirs)), 1e-6)

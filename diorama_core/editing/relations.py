@@ -45,7 +45,7 @@ BETWEEN_BEDS_M = 0.7
 """Beds side by side lie the same way, with a way to get up and a night stand between them."""
 LONG_RATIO = 1.25
 """What is longer than wide by this has a long side, which lies along what it stands before."""
-NO_SIDE = having("no_side")
+NO_FRONT = having("no_front")
 """Categories that look alike from all sides: anything beside them is beside them."""
 
 
@@ -150,7 +150,7 @@ def _to_target(
         return heading / FACING_RAD + off_side + np.abs(gap - BETWEEN_BEDS_M) / 0.6
     if kind == "beside":
         far = np.maximum(gap - SIDE_GAP_M, 0.0) / 0.3
-        if target.category in NO_SIDE:
+        if target.category in NO_FRONT:
             return far + 0.15 * gap
         off_side = np.maximum(np.abs(local[:, 0]) - half[0], 0.0) / max(half[0], 0.2)
         ahead = np.maximum(np.abs(local[:, 0]) - 0.8 * half[0], 0.0)

@@ -22,12 +22,13 @@ from shapely.geometry import MultiPolygon, Polygon, box
 from shapely.ops import unary_union
 
 from diorama_core.errors import InputError
+from diorama_core.geometry.openings import OPENING_CATEGORIES
 from diorama_core.importing.measured_room import MeasuredBox, MeasuredOpening, MeasuredRoom, MeasuredWall
 from diorama_core.importing.point_files import PointCloud
 from diorama_core.importing.scanned_openings import scanned_openings
 from diorama_core.importing.scanned_tops import apart_from_tops
 from diorama_core.library.company import CARRIED_KINDS
-from diorama_core.library.taxonomy import CATEGORIES
+from diorama_core.library.taxonomy import CATEGORIES, UNKNOWN
 from diorama_core.scene.types import yaw_rotation
 
 MAX_REACH_M = 60.0
@@ -79,7 +80,7 @@ MAX_BOXES = 200
 AT_WALL_M = 0.4
 GUESS = 0.4
 """Confidence in a kind that no word tells."""
-UNLIKELY = ("object", "door", "window", "curtain", "rug", "wall")
+UNLIKELY = (UNKNOWN.name, *OPENING_CATEGORIES, "curtain", "rug")
 
 
 @dataclass(frozen=True, eq=False)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from functools import cache
 
 from diorama_core.library.taxonomy import UNKNOWN, category, column, having, lies_on_furniture
 
@@ -35,3 +36,22 @@ ROOMS: Mapping[str, frozenset[str]] = {
     for room in sorted({room for rooms in column("rooms").values() for room in rooms})
 }
 """Kinds that are met more often in a room of a type than elsewhere."""
+
+
+@cache
+def usual_carriers(kind: str) -> tuple[str, ...]:
+    """What things of a kind are put on, the likeliest first: where they lie more often than they are met at all."""
+    found = {carrier: often_carried(kind, carrier) for carrier in CARRIES_AS if kind != UNKNOWN.name}
+    likely = sorted(found, key=lambda carrier: (-found[carrier], CARRIES_AS[carrier] != carrier, category(carrier).kin))
+    return tuple(carrier for carrier in likely if found[carrier] > 1.0)
+
+
+def carrier_in(kind: str, room: str) -> str | None:
+    """What a thing of a kind is most likely put on in a room of a type; None for what is not put on furniture."""
+    at_home, usual = ROOMS.get(room, frozenset()), column("frequency")
+    carriers = [carrier for carrier in usual_carriers(kind) if not category(carrier).kin]
+    return max(
+        carriers,
+        key=lambda carrier: (often_carried(kind, carrier) * (1 + (carrier in at_home)), usual.get(carrier, 0.0)),
+        default=None,
+    )

@@ -23,9 +23,8 @@ Trait = Literal[
     "supports_objects",  # people put objects on it, so that its shapes must come empty
     "quarter_turns_free",  # often stands at odd angles to the room (chairs, plants)
     "soft",  # gives way: lies against and partly in other soft objects
-    "back_at_wall",  # its back stands at a wall, in photos of any room
-    "backs_wall_in_photos",  # the same or nearly so: a wall may be looked for behind it
-    "walled",  # people put its back to a wall where there is room
+    "back_at_wall",  # its back stands at a wall
+    "often_at_wall",  # people put its back to a wall where there is room
     "mid_wall",  # stands in the middle of its wall rather than in a corner
     "in_corner",  # stands at the edge of a room
     "mid_room",  # has free floor all around
@@ -41,20 +40,15 @@ Trait = Literal[
     "under_tables",  # often stands partly under a table
     "legroom",  # seats and bins stand partly under it
     "seldom_loaded",  # carries things only where somebody says so
-    "no_front",  # set down any way round
-    "no_side",  # what is beside it may be on any side
+    "no_front",  # looks alike from all sides, and is set down any way round
     "watched",  # people sit across a room from it
     "screen",  # shows pictures, on a stand or on a wall
     "fixed_to_wall",  # never stands free
-    "large",  # never stands on other objects, but for rugs
-    "never_on_objects",  # likewise, in the graph of supports
+    "never_on_objects",  # never stands on other objects, but for rugs
     "never_hangs",  # stands on the floor wherever it is
     "sometimes_hangs",  # is set down on things, and now and then hung up
-    "sets_metrology",  # those of one room are often of one size
-    "sets_pose",  # those of one room are often of one shape
-    "sets_appearance",  # those of one room with one shape are of one colour
+    "in_sets",  # those of one room are often of one shape, size and colour
     "solid",  # fills its cuboid
-    "on_seats",  # lies on seats
     "own_colours",  # its look is not one colour of one main material
     "any_proportions",  # comes in all proportions
     "flat_piece",  # one flat piece in any proportions: a tall narrow picture is no row of small ones
@@ -67,7 +61,7 @@ Trait = Literal[
 """A yes-or-no property of a kind; special kinds have those of their kin, but for the ones that their rows lack."""
 
 FROM_KIN = frozenset({
-    "carries_as", "floor_before_m", "tucked_under", "used_within_m", "too_hot_m", "usual_hosts", "seldom_without",
+    "carries_as", "floor_before_m", "tucked_under", "used_within_m", "too_hot_m", "seldom_without",
     "face", "ifc_class", "usual_relations", "base", "closed_sides",
 })  # fmt: skip
 """Columns that a special kind has from its kin where its own row does not give them."""
@@ -163,11 +157,7 @@ class Category:
     carries_as: str | None = None
     """The kind whose loads lie on it: its own name, or that of furniture that is loaded alike."""
     lies_on: Mapping[str, float] | None = None
-    """How many times more often it lies on what carries as these than it is met at all."""
-    usual_hosts: tuple[str, ...] | None = None
-    """What it is put on, the likeliest first."""
-    added_host: str | None = None
-    """Added for it where a prompt names nothing that could carry it."""
+    """How many times more often it lies on what carries as these than it is met at all; what people put it on, too."""
     instead: tuple[str, ...] | None = None
     """Kinds that do what it does for a room."""
     usual_relations: tuple[tuple[str, tuple[str, ...]], ...] | None = None
@@ -242,8 +232,8 @@ def _with_kin(name: str, row: dict[str, Any], rows: dict[str, Any]) -> dict[str,
     kin = rows.get(row["kin"], {"kin": ""})
     if "kin" in kin:
         raise LibraryError(f"kinds.toml, row '{name}': kin '{row['kin']}' must be the row of a broad kind")
-    traits, lacks, given = set(row.get("traits", ())), set(row.get("lacks", ())), set(kin.get("traits", ()))
-    idle = (traits & given) | (lacks - given)
+    traits, lacks, given = row.get("traits", []), set(row.get("lacks", ())), set(kin.get("traits", ()))
+    idle = (set(traits) & given) | (lacks - given)
     if idle:
         raise LibraryError(f"kinds.toml, row '{name}': {', '.join(sorted(idle))} says what its kin says already")
-    return {c: kin[c] for c in FROM_KIN & kin.keys()} | row | {"traits": traits | (given - lacks)}
+    return {c: kin[c] for c in FROM_KIN & kin.keys()} | row | {"traits": [*traits, *sorted(given - lacks)]}

@@ -17,7 +17,7 @@ MAX_LOSS_OF_SURE_OUTLINES = 1.0
 """And of things that come in no sets where their masks are sure: these show it, too."""
 MAX_LOSS_WHERE_COLOURS_TELL = 0.5
 """And of things that are told from what is seen through and past them."""
-SETS = having("sets_pose")
+SETS = having("in_sets")
 """What comes in sets; books and pictures of one room are different ones."""
 
 

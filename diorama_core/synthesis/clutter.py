@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from diorama_core.library.record import Shape
+from diorama_core.library.taxonomy import having
 from diorama_core.synthesis.bodies import Item
 from diorama_core.synthesis.furnisher import Furnisher
 from diorama_core.synthesis.groups import on_top
@@ -58,10 +59,7 @@ HABITS: dict[str, Habit] = {
 }  # fmt: skip
 """By the category that carries."""
 
-ALONG_THE_BACK = (
-    "lamp", "vase", "plant", "basket", "box", "microwave", "clock", "photo frame", "vanity mirror", "speaker",
-    "coffee machine", "printer", "record player", "sculpture", "router",
-)  # fmt: skip
+ALONG_THE_BACK = having("along_the_back")
 """Objects that stand at the back of a surface; the rest lies anywhere."""
 NEVER_AT_ANGLES = ("microwave", "computer", "box", "clock", "coffee machine", "printer", "record player")
 

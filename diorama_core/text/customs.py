@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import cast
 
 from diorama_core.editing.relations import RelationKind
+from diorama_core.library.company import usual_carriers
 from diorama_core.library.taxonomy import category as find_category
 from diorama_core.library.taxonomy import with_kin
 from diorama_core.synthesis import RoomKind
@@ -34,6 +35,7 @@ def stands_in_for(category: str, present: frozenset[str]) -> bool:
 
 def usual_relations_of(kind: str) -> tuple[tuple[RelationKind, tuple[str, ...]], ...]:
     """How objects of a category stand where nobody says: relations in the order of their weight, and their targets."""
-    return tuple(
-        (cast(RelationKind, relation), targets) for relation, targets in find_category(kind).usual_relations or ()
-    )
+    row = find_category(kind)
+    on = usual_carriers(kind) if row.mount == "surface" else ()
+    stands = ((cast(RelationKind, relation), targets) for relation, targets in row.usual_relations or ())
+    return (*((("on", on),) if on else ()), *stands)

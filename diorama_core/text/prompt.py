@@ -250,7 +250,7 @@ def _add_seats(reading: _Reading, room: RoomKind, text: str) -> None:
     """Chairs for as many as a table or a dining room is for, where none are asked for."""
     said = _SEATS_FOR.search(text)
     table = next((o.category for o in reading.objects if broad(o.category) == "table"), None)
-    seated = any(o.category in SEATS for o in reading.objects)
+    seated = any(o.category in having("drawn_up") for o in reading.objects)
     if said is None or seated or (table is None and room != "dining"):
         return
     count = int(said[1]) if said[1].isdigit() else NUMBERS[said[1]]
@@ -307,8 +307,11 @@ def _each_other(reading: _Reading, index: int | None, kind: RelationKind) -> Non
         _wish(reading, index - 1, Wish(kind, (own.category,)))
 
 
+_SAT_AT = frozenset(name for seat in having("drawn_up") for name in category(seat).tucked_under or ())
+
+
 def _sat_at(category: str) -> bool:
-    return broad(category) in ("table", "desk", "kitchen counter")
+    return broad(category) in _SAT_AT
 
 
 def _wish(reading: _Reading, index: int | None, wish: Wish) -> None:

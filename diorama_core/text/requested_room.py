@@ -6,6 +6,7 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
+from diorama_core.library.company import carrier_in
 from diorama_core.library.record import Shape, ShapeLibrary
 from diorama_core.library.taxonomy import broad, category
 from diorama_core.scene.types import Scene
@@ -38,10 +39,9 @@ def with_essentials(request: RoomRequest) -> tuple[list[RequestedObject], tuple[
                 added.append(name)
     carriers = {o.category for o in asked if category(o.category).supports_objects and broad(o.category) != "rug"}
     for one in list(asked):
-        host = category(broad(one.category)).added_host
+        host = carrier_in(one.category, request.room) if category(one.category).mount == "surface" else None
         if host is None or carriers or any(w.kind == "on" for w in one.wishes):
             continue
-        host = "night stand" if host == "side table" and request.room == "bedroom" else host
         asked.append(RequestedObject(host, host, min(one.count, 2)))
         added.append(host)
         carriers.add(host)

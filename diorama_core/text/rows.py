@@ -14,7 +14,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from jaxtyping import Float
 
-from diorama_core.library.taxonomy import broad
+from diorama_core.library.taxonomy import broad, having
 from diorama_core.scene.types import Pose, SceneObject, yaw_rotation
 
 _COUNTS = {"a": 1, "an": 1, "one": 1, "single": 1, "long": 1, "two": 2, "three": 3, "four": 4, "five": 5, "six": 6,
@@ -131,7 +131,7 @@ class Rows:
             return 0.02 if self._sat_at else ACROSS_M
         if self._sat_at:
             return WAY_AT_DESKS_M
-        return WAY_AT_SEATS_M if broad(self.category) in ("chair", "stool", "armchair", "office chair") else WAY_M
+        return WAY_AT_SEATS_M if self.category in having("single_seat") else WAY_M
 
     def as_one(self, one: SceneObject) -> SceneObject:
         """The block as one object: one of them, stretched over all."""

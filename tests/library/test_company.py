@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from diorama_core.library.company import CARRIED_KINDS, CARRIES_AS, ROOMS, often_carried
+from diorama_core.library.company import CARRIED_KINDS, CARRIES_AS, ROOMS, carrier_in, often_carried, usual_carriers
 from diorama_core.library.taxonomy import CATEGORIES, category, column
 
 
@@ -28,3 +28,17 @@ def test_how_often_kinds_lie_on_carriers() -> None:
     assert often_carried("heater", "bed") > often_carried("sofa", "bed")
     assert often_carried("vase", "door") == often_carried("object", "bed") == 1.0
     assert {c.name for c in CATEGORIES} > set(CARRIES_AS)
+
+
+def test_what_people_put_things_on_follows_from_what_lies_where() -> None:
+    assert usual_carriers("monitor")[0] == usual_carriers("keyboard")[0] == "desk"
+    assert usual_carriers("lamp")[:3] == ("night stand", "sideboard", "side table")
+    assert usual_carriers("wardrobe") == usual_carriers("object") == ()
+
+
+def test_what_is_added_for_a_thing_is_at_home_in_the_room() -> None:
+    assert carrier_in("lamp", "bedroom") == "night stand"
+    assert carrier_in("lamp", "living") == "side table"
+    assert carrier_in("kettle", "living") == "kitchen counter"
+    assert carrier_in("bowl", "corridor") == "table"
+    assert carrier_in("sofa", "living") is None

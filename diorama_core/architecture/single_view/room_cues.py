@@ -48,7 +48,7 @@ PRIOR_MEDIAN_M = np.array([4.2, 3.5, 2.6])
 PRIOR_LOG_SIGMA = np.array([0.45, 0.5, 0.18])
 PROTRUSION_SCALE_M = 0.25
 
-BACKED = having("backs_wall_in_photos")
+BACKED = having("often_at_wall") - having("seat")
 """What usually has a wall behind it."""
 _WALL_CATEGORIES = frozenset(c.name for c in CATEGORIES if c.mount in ("wall", "ceiling"))
 

@@ -42,7 +42,7 @@ _BELIEF_COST = 1.5
 """Of contradicting the geometry stage."""
 _WITHIN_RUG = 3.0
 """What standing within a rug speaks for being on it, against the floor."""
-_RUGS = frozenset({"rug"})
+_RUGS = having("rug")
 
 
 @dataclass(frozen=True)

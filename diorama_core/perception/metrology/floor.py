@@ -34,7 +34,7 @@ TELL_LITTLE = PORTABLE | having("rug")
 they like and half hidden by what stands on them."""
 ALIKE = 0.7
 """How far the sizes of two things of a kind in one room are the same surprise: sets have one vote, not one each."""
-_MAYBE_ELSEWHERE = frozenset({UNKNOWN.name, "box", "plant", "basket", "sink"})
+_MAYBE_ELSEWHERE = PORTABLE | {UNKNOWN.name, "sink"}
 
 
 @dataclass(frozen=True, eq=False)

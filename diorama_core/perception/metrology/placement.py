@@ -78,13 +78,13 @@ _THROUGH_TOP_COST = 10.0
 """Of a thing on the floor that would be seen through a piece of furniture's top."""
 _RUGS = having("rug")
 _FIXED_TO_WALLS = having("fixed_to_wall")
-_LARGE = having("large")
+_NEVER_ON_OBJECTS = having("never_on_objects")
 """Things that never stand on others."""
 _HUNG_CARRIERS = frozenset(kind for kind in column("carries_as") if find_category(kind).mount == "wall")
 """What hangs on walls and carries things."""
 _SURE_COST = 12.0
 """Things on the floor that cost less than this tell how far the room reaches."""
-SETS = having("sets_metrology")
+SETS = having("in_sets")
 """What often comes in sets of one shape on the floor of one room."""
 SET_SIGMA = 0.05
 """Of the logarithms of a set's extents: how well those that are seen well are measured."""
@@ -305,7 +305,7 @@ def _supported_rows(
     options: list[tuple[int, list[Problems]]] = []
     on_top = _held_cost(observations, index, "on top")
     parents = _possible_parents(observations, index)
-    if np.isfinite(on_top) and category.name not in _LARGE:
+    if np.isfinite(on_top) and category.name not in _NEVER_ON_OBJECTS:
         for parent in parents:
             cost = on_top + _unlikely_parent_cost(category, observations.categories[parent])
             if observations.categories[parent].name in _RUGS:  # what lies on it is as good as on the floor
@@ -316,7 +316,7 @@ def _supported_rows(
         on_wall += _NOT_FLAT_COST
     if category.mount == "surface" and (parents or _small_carrier(observations, index) is not None):
         on_wall += _BESIDE_ITS_SUPPORTER_COST
-    if category.name not in _LARGE or category.name in _FIXED_TO_WALLS:
+    if category.name not in _NEVER_ON_OBJECTS or category.name in _FIXED_TO_WALLS:
         options.append((WALL, place_on_wall(observations, index, height_m, room, on_wall)))
     below = _held_cost(observations, index, "ceiling")
     if np.isfinite(below):

@@ -8,8 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 from jaxtyping import Float
 
-from diorama_core.library.company import WITH_BOARDS
-from diorama_core.library.taxonomy import AGAINST_WALLS, PORTABLE, UNKNOWN, column, having
+from diorama_core.library.company import SELDOM_CARRIED, WITH_BOARDS, often_carried
+from diorama_core.library.taxonomy import AGAINST_WALLS, PORTABLE, UNKNOWN, column
 from diorama_core.perception.metrology.box_observations import BoxObservations
 from diorama_core.perception.metrology.priors import (
     SizeMode,
@@ -39,7 +39,6 @@ _FLAT_M = 0.2
 """A door thinner than this along an axis is in the wall across that axis."""
 _BACK_SHARE = {("bed", "pillow"): 0.45}
 """Pillows lie at the head of a bed: in this share of its depth."""
-_ON_SEATS = having("on_seats")
 _ODD_ON_SEAT_COST = 6.0
 """Of anything else lying on a seat or a bed: one in twenty."""
 _USUAL_MIDDLE_M: Mapping[str, float] = column("middle_height_m")
@@ -114,11 +113,8 @@ def place_on(
     names = (observations.categories[parent].name, observations.categories[index].name)
     footprint = _resting_place(parent_cuboid, _BACK_SHARE.get(names, 1.0))
     rows = []
-    soft = (
-        observations.categories[parent].seat_height_m is not None
-        and observations.categories[index].name not in _ON_SEATS
-    )
-    for base, sigma, level_cost in _levels(observations, parent, tall, soft):
+    odd = observations.categories[parent].seat_height_m is not None and often_carried(*names[::-1]) <= SELDOM_CARRIED
+    for base, sigma, level_cost in _levels(observations, parent, tall, odd):
         for mode in supported_modes(names[1], observations.meanings[index]):
             raised = standing_costs(names[1], mode)[1] - (FLOOR_OBJECT_COST if names[1] in PORTABLE else 0.0)
             for turn in (0.0,) if mode.square else (0.0, np.pi / 2):
@@ -134,7 +130,7 @@ def place_on(
                         base_sigma_m=sigma,
                         footprint=footprint,
                         footprint_sigma_m=_FOOTPRINT_SIGMA_M,
-                        extra=mode.cost + raised + level_cost + cost + (_ODD_ON_SEAT_COST if soft else 0.0),
+                        extra=mode.cost + raised + level_cost + cost + (_ODD_ON_SEAT_COST if odd else 0.0),
                     )
                 )
     return rows
