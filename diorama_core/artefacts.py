@@ -265,12 +265,27 @@ class RankedShapes:
 
 
 @dataclass(frozen=True)
+class TermShare:
+    """What one term says for a decision about one object."""
+
+    object_id: str
+    decision: str
+    """What was decided: "front"."""
+    term: str
+    nats: float
+    """By how much it prefers the choice to the likeliest other one; negative where it speaks against it."""
+    sentence: str
+
+
+@dataclass(frozen=True)
 class PosedCandidates:
     """The ranked shapes of one object, each posed; `confidence` speaks of the best."""
 
     object_id: str
     candidates: tuple[Candidate, ...]
     confidence: float
+    reasons: tuple[TermShare, ...] = ()
+    """What decided which way it faces."""
 
 
 @dataclass(frozen=True)

@@ -86,7 +86,7 @@ class Sources:
     def _text(self, module: str) -> str:
         if module not in self._texts:
             path = self._file(module)
-            self._texts[module] = "" if path is None else path.read_text(encoding="utf-8")
+            self._texts[module] = "" if path is None else path.read_text(encoding="utf-8") + _data_beside(path)
         return self._texts[module]
 
     def _file(self, module: str) -> Path | None:
@@ -95,3 +95,9 @@ class Sources:
             places = (folder.with_suffix(".py"), folder / "__init__.py")
             self._files[module] = next((p for p in places if p.is_file()), None)
         return self._files[module]
+
+
+def _data_beside(module: Path) -> str:
+    """The text of the data file that is a module's own by its name: fitted weights."""
+    data = module.with_suffix(".json")
+    return data.read_text(encoding="utf-8") if data.is_file() else ""

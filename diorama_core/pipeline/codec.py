@@ -48,6 +48,7 @@ _CLASSES: dict[str, type] = {
         artefacts.SceneGraph,
         artefacts.ArchitectureEstimate,
         artefacts.RankedShapes,
+        artefacts.TermShare,
         artefacts.PosedCandidates,
         artefacts.LayoutReport,
         camera_attitude.CameraAttitude,

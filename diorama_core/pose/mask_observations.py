@@ -9,12 +9,12 @@ from functools import cached_property
 import numpy as np
 from jaxtyping import Bool, Float
 
+from diorama_core.arrangement.facing.evidence import NO_COSTS, HeadingCosts
 from diorama_core.geometry.observed import Observed
 from diorama_core.geometry.projection import box_iou
 from diorama_core.geometry.see_through import SeeThrough
 from diorama_core.geometry.silhouette import Hits, PoseBatch, ShapeCaster
 from diorama_core.geometry.window import soft_iou
-from diorama_core.pose.facing import Facing
 from diorama_core.pose.limits import SizeLimits
 from diorama_core.pose.surface import MeasuredSurface
 from diorama_core.scene.types import Camera, Pose
@@ -34,7 +34,6 @@ _OF_SURE_OUTLINE = 0.4
 """And how much more it counts when shapes are compared: which one it is, is seen in the outline."""
 _NOISE_FLOOR = 0.03
 """Error below which two poses count as equal: the resolution of the silhouettes."""
-_FACING_STRENGTH = 0.7
 _STRETCH_SIGMA, _STRETCH_SIGMA_OF_FLAT = 0.3, 1.0
 _ENLARGED_SIGMA = 0.2
 _ENLARGED_SIGMA_REASONED = 0.5
@@ -53,11 +52,12 @@ class Evidence:
 
     camera: Camera
     seen: Observed
-    facing: Facing
     surface: MeasuredSurface | None
     """None where depth was not measured."""
     see_through: SeeThrough | None = None
     """Where one looks past the object; None where its mask tells."""
+    facing: HeadingCosts = NO_COSTS
+    """What the room says of its headings, once that is known."""
 
     def errors(self, caster: ShapeCaster, poses: PoseBatch) -> Float[np.ndarray, "p"]:
         """0 (agrees entirely) to 1: weighted disagreement of silhouette, box, depth and normals."""
@@ -138,7 +138,7 @@ class Evidence:
         """What speaks against poses whatever the picture shows: unusual headings and uneven stretching."""
         sigma = _STRETCH_SIGMA_OF_FLAT if limits.any_proportions else _STRETCH_SIGMA
         stretched = 0.5 * (limits.stretch(poses.scale) / sigma) ** 2
-        return _FACING_STRENGTH * self.facing.cost(poses.R) + stretched
+        return self.facing.cost(poses.R) + stretched
 
     def enlarged_cost(self, scale: Float[np.ndarray, "3"], limits: SizeLimits) -> float:
         """What speaks against a shape that had to become much larger or smaller than it was made, from a photo alone.

@@ -7,11 +7,11 @@ from dataclasses import dataclass, replace
 import numpy as np
 from jaxtyping import Bool, Float
 
+from diorama_core.arrangement.facing.evidence import WallSamples
 from diorama_core.artefacts import Cuboid, DepthMap
 from diorama_core.geometry.silhouette import PoseBatch
 from diorama_core.library.record import SymmetryFold
 from diorama_core.pose.depth_fit import MIN_RAYS, NOISE_REACH, SURE_CONTACT_M, Contact, DepthFit, Outline, SeenPoints
-from diorama_core.pose.facing import WallSamples
 from diorama_core.pose.hypotheses import Anchor, Hypotheses
 from diorama_core.pose.limits import SizeLimits
 from diorama_core.pose.mask_observations import Evidence

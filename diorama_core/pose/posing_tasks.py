@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from diorama_core.arrangement.facing.evidence import HeadingCosts, WallSamples
 from diorama_core.artefacts import Cuboid, DepthMap, DetectedObject, Inputs, ObjectGeometry
 from diorama_core.geometry.observed import observe_among
 from diorama_core.geometry.see_through import SeeThrough
@@ -21,7 +22,6 @@ from diorama_core.pose.agree import (
 )
 from diorama_core.pose.appearance_likelihood import AppearanceLikelihood, cells_for
 from diorama_core.pose.details import Details
-from diorama_core.pose.facing import Facing, WallSamples, facing_of, wall_samples
 from diorama_core.pose.hypotheses import Anchor, anchor_of
 from diorama_core.pose.mask_observations import Evidence
 from diorama_core.pose.measured import MeasuredObject, foot_height_m
@@ -49,14 +49,14 @@ class PosingTask:
     """Where depth was measured."""
     details: Details | None
     """Where depth was measured: doubtful poses put a shape's edges and parts elsewhere."""
-    facings: Mapping[str, Facing]
-    """Of a thing without a name how it would face as each kind that its shapes are of."""
 
-    def as_kind(self, kind: str) -> PosingTask:
-        """The task with the facing of a kind, where the thing has no name."""
-        if kind not in self.facings:
-            return self
-        facing = self.facings[kind]
+    @property
+    def hangs(self) -> bool:
+        """Whether it is held by a wall."""
+        return abs(float(self.anchor.axis_world[2])) < 0.5
+
+    def with_facing(self, facing: HeadingCosts) -> PosingTask:
+        """The task once it is known what the room says of its headings."""
         return replace(self, coarse=replace(self.coarse, facing=facing), fine=replace(self.fine, facing=facing))
 
     @property
@@ -70,12 +70,12 @@ class PosingTask:
         return np.inf if self.item.mask_confidence < 1.0 or in_sets else MAX_LOSS_OF_SURE_OUTLINES
 
 
-def kinds_of_shapes(
+def likeliest_kinds(
     objects: Sequence[DetectedObject], ranked: Mapping[str, tuple[tuple[str, float], ...]], records: Mapping[str, Shape]
-) -> dict[str, tuple[str, ...]]:
-    """What every object with shapes may be, likeliest first: what its word means, or the kinds of its shapes."""
+) -> dict[str, str]:
+    """What every object with shapes most likely is: what its word means, or the kind of its first shape."""
     return {
-        o.id: (o.category,) if is_named(o.label) else tuple(dict.fromkeys(records[i].category for i, _ in ranked[o.id]))
+        o.id: o.category if is_named(o.label) else records[ranked[o.id][0][0]].category
         for o in objects
         if o.id in ranked
     }
@@ -86,8 +86,9 @@ def posing_tasks(
     objects: tuple[DetectedObject, ...],
     geometry: ObjectGeometry,
     depth: DepthMap,
-    kinds: Mapping[str, tuple[str, ...]],
+    kinds: Mapping[str, str],
     cells: tuple[int, int],
+    walls: WallSamples,
 ) -> list[PosingTask]:
     """One task for every object that has a cuboid and kinds, in the order of `objects`.
 
@@ -96,8 +97,9 @@ def posing_tasks(
         objects: all of the photo.
         geometry: their cuboids, and what carries what.
         depth: of the photo.
-        kinds: by object what it may be, likeliest first.
+        kinds: by object what it most likely is.
         cells: resolutions at which all hypotheses, and the best ones, are compared.
+        walls: where walls are seen.
     """
     cuboid_of = {c.object_id: c for c in geometry.cuboids}
     items = [o for o in objects if o.id in cuboid_of]
@@ -107,8 +109,7 @@ def posing_tasks(
         depth,
         items,
         [cuboid_of[o.id] for o in items],
-        {o.id: kinds[o.id][0] if o.id in kinds else o.category for o in items},
-        wall_samples(depth, geometry.camera, items),
+        walls,
         noise_of(depth),
     )
     posed = [i for i, item in enumerate(items) if item.id in kinds]
@@ -124,8 +125,6 @@ class _Surroundings:
     depth: DepthMap
     items: Sequence[DetectedObject]
     cuboids: Sequence[Cuboid]
-    likeliest: dict[str, str]
-    """Kind by object."""
     walls: WallSamples
     noise: float
     """Of measured depth (`surface.noise_of`)."""
@@ -137,20 +136,19 @@ class _Surroundings:
         parent_of = {s.child: s.parent for s in self.geometry.supports}
         return [positions.get(parent_of.get(o.id, "")) for o in self.items]
 
-    def task(self, i: int, kinds: tuple[str, ...], cells: tuple[int, int]) -> PosingTask:
-        """Of one object."""
+    def task(self, i: int, kind: str, cells: tuple[int, int]) -> PosingTask:
+        """One object's, as a kind."""
         item, cuboid, camera, depth = self.items[i], self.cuboids[i], self.geometry.camera, self.depth
         held_by = next((s.parent for s in self.geometry.supports if s.child == item.id), None)
-        on_wall = held_by == "wall" and category(self.likeliest[item.id]).mount != "floor"
+        on_wall = held_by == "wall" and category(kind).mount != "floor"
         anchor = anchor_of(cuboid, on_wall, camera.position[:2] - cuboid.centre[:2])
-        facings = {kind: self._facing(i, kind, anchor if on_wall else None) for kind in kinds}
         centres = np.array([c.centre for c in self.cuboids]).reshape(-1, 3)
         parents = self.parents
         windows = [observe_among(camera, self.items, centres, parents, i, count) for count in cells]
         surfaces = [measured_surface(depth, seen, item.mask, self.noise) for seen in windows]
         rgb, closed = self.inputs.photo.rgb, item.category in NEVER_OPEN
         coarse, fine = (
-            Evidence(camera, w, facings[kinds[0]], s, None if closed or s is not None else SeeThrough.of(rgb, w))
+            Evidence(camera, w, s, None if closed or s is not None else SeeThrough.of(rgb, w))
             for w, s in zip(windows, surfaces, strict=True)
         )
         foot_m = foot_height_m(depth, item.mask, camera) if held_by == "floor" else None
@@ -163,19 +161,4 @@ class _Surroundings:
             if surface is not None:
                 close = AppearanceLikelihood.of(rgb, item.mask, near, surface, cuboid.size_m)
         carried = tuple(self.cuboids[j] for j, parent in enumerate(parents) if parent == i)
-        return PosingTask(item, cuboid, anchor, carried, coarse, fine, measured, close, details, facings)
-
-    def _facing(self, i: int, kind: str, on_wall: Anchor | None) -> Facing:
-        """How one object would face as a kind, the others being what they most likely are."""
-        parents, likeliest = self.parents, self.likeliest
-        lying = [
-            c
-            for c, p, o in zip(self.cuboids, parents, self.items, strict=True)
-            if p == i and likeliest[o.id] == "pillow"
-        ]
-        out_of_wall, parent = None if on_wall is None else on_wall.axis_world[:2], parents[i]
-        carrier = None if parent is None else self.cuboids[parent]
-        camera = self.geometry.camera
-        return facing_of(
-            kind, self.cuboids[i], self.cuboids, likeliest, camera, self.walls, out_of_wall, lying, carrier
-        )
+        return PosingTask(item, cuboid, anchor, carried, coarse, fine, measured, close, details)

@@ -3,17 +3,18 @@
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
 
 import numpy as np
-from jaxtyping import Float, Int
+from jaxtyping import Float
 
+from diorama_core.arrangement.facing.solve import solve
+from diorama_core.arrangement.facing.weights import FacingWeights, facing_weights
 from diorama_core.artefacts import DepthMap, DetectedObject, Inputs, ObjectGeometry, PosedCandidates, RankedShapes
 from diorama_core.geometry.shape_appearance import SHARED_APPEARANCES, ShapeAppearance
 from diorama_core.geometry.silhouette import PoseBatch, ShapeCaster
 from diorama_core.library.catalogue import default_cache_dir
-from diorama_core.library.hyponyms import is_named
 from diorama_core.library.record import ROUND, Shape, ShapeLibrary
 from diorama_core.library.taxonomy import category
 from diorama_core.pose.agree import agreed_ranks
@@ -21,53 +22,24 @@ from diorama_core.pose.hypotheses import Hypotheses, hypotheses_for, unlike_best
 from diorama_core.pose.levels import level_cost
 from diorama_core.pose.limits import SizeLimits, sides_log_of
 from diorama_core.pose.measured import MeasuredObject
-from diorama_core.pose.posing_tasks import PosingTask, kinds_of_shapes, posing_tasks
+from diorama_core.pose.posed_shapes import PosedShape, candidates_of, ordered_shapes
+from diorama_core.pose.posing_tasks import PosingTask, likeliest_kinds, posing_tasks
 from diorama_core.pose.refine import BoxFit
+from diorama_core.pose.room_evidence import Trials, TriedShape, facing_room, powers, wall_samples
 from diorama_core.pose.sets import shared_scales
 from diorama_core.pose.turns import TurnSearch
 from diorama_core.processes import each_there
 from diorama_core.progress import Progress
-from diorama_core.scene.types import Candidate, Pose
+from diorama_core.scene.types import Pose
 
-_POWERS = (1.5, 0.6)
-"""How much retrieval and pose say about which shape is best: the picture's outline alone would ignore colours."""
-_POWERS_OF_UNNAMED = (3.0, 0.6)
-"""The same for a thing without a name: shapes of many kinds compete, and some unlike thing always has its outline."""
 _RETRIEVAL_WITH_DEPTH = 4.0
 """What retrieval says beside `Evidence.log_likelihood` where depth was measured: that tells shapes apart."""
 _MIN_STANDING = -1.0
 """What holds an object may be mistaken: that a shape does not stand there says at most so much against it, as a log."""
-_FACES_BETTER = 0.3
-"""Cost by which a hypothesis must face more usually than the best ones to be refined although it fits worse so far."""
+_LEFT_UNREFINED = 0.5
+"""What poses gain by being refined, as a logarithm, in the middle."""
 _LOSS_FOR_A_SET = 0.02
 """Additional image error allowed for an object to take the size of its set."""
-
-
-@dataclass(frozen=True, eq=False)
-class _Tried:
-    """One shape with its hypotheses compared at the coarse resolution."""
-
-    shape: Shape
-    liked: float
-    """By retrieval: a logarithm, 0 for the shape it likes best."""
-    appearance: ShapeAppearance
-    limits: SizeLimits
-    hypotheses: Hypotheses
-    scores: Float[np.ndarray, "p"]
-
-
-@dataclass(frozen=True, eq=False)
-class _Posed:
-    """One shape's best pose."""
-
-    shape: Shape
-    pose: Pose
-    error: float
-    """Disagreement with the picture, 0 to 1."""
-    rank: float
-    """By which the shapes of one object are ordered: a logarithm, higher is better."""
-    doubt: float = 0.0
-    """How nearly as well it fits when turned otherwise: 0 to 1."""
 
 
 @dataclass(frozen=True)
@@ -91,9 +63,10 @@ class RenderAndCompare:
     """How many of each promising shape where depth was measured."""
     promising: int = 4
     """Shapes that the coarse comparison likes best; where depth was measured the others are looked at less."""
+    facing: FacingWeights = field(default_factory=facing_weights)
 
     def __repr__(self) -> str:
-        words = "\n".join(f"{s.id} {s.content_hash}" for s in self.library.shapes())
+        words = "\n".join(f"{s.id} {s.content_hash}" for s in self.library.shapes()) + repr(self.facing)
         shapes = hashlib.sha256(words.encode()).hexdigest()[:12]
         settings = (self.coarse_cells, self.fine_cells, self.refined, self.refined_with_depth, self.promising)
         return f"RenderAndCompare({shapes}, {', '.join(map(str, settings))})"
@@ -108,30 +81,43 @@ class RenderAndCompare:
         progress: Progress,
     ) -> tuple[PosedCandidates, ...]:
         """Posed candidates, best first, of every object that has a cuboid and at least one ranked shape."""
-        ranked = {r.object_id: r.ranked for r in shapes if r.ranked}
-        records = {s.id: s for s in self.library.shapes()}
-        tasks = posing_tasks(
-            inputs,
-            objects,
-            geometry,
-            depth,
-            kinds_of_shapes(objects, ranked, records),
-            (self.coarse_cells, self.fine_cells),
-        )
-        pieces = [(task, ranked[task.item.id], {i: records[i] for i, _ in ranked[task.item.id]}) for task in tasks]
-        found = each_there(self._pose_object, pieces, progress, "Posing objects")
+        trials = self.trials(inputs, objects, geometry, depth, shapes, progress.part(0.0, 0.5))
+        facings = solve(trials.room, self.facing)
+        tasks = [task.with_facing(facings.costs_of(task.item.id)) for task in trials.tasks]
+        pieces = list(zip(tasks, trials.tried, strict=True))
+        found = each_there(self._pose_object, pieces, progress.part(0.5, 1.0), "Posing objects")
         ranks = agreed_ranks(
             [task.item.category for task in tasks],
             [{posed.shape.id: posed.rank for posed in of_one} for of_one in found],
             [task.fine.confidence(0.0, 1.0) for task in tasks],
             [task.max_loss for task in tasks],
         )
-        ordered = [_ordered(of_one, order) for of_one, order in zip(found, ranks, strict=True)]
+        ordered = [ordered_shapes(of_one, order) for of_one, order in zip(found, ranks, strict=True)]
         firsts = self._evened(tasks, [of_one[0] for of_one in ordered])
         ordered = [(first, *of_one[1:]) for first, of_one in zip(firsts, ordered, strict=True)]
-        return tuple(_candidates(*one) for one in zip(tasks, ordered, ranks, strict=True))
+        return tuple(candidates_of(*one, facings) for one in zip(tasks, ordered, ranks, strict=True))
 
-    def _evened(self, tasks: Sequence[PosingTask], chosen: Sequence[_Posed]) -> list[_Posed]:
+    def trials(
+        self,
+        inputs: Inputs,
+        objects: tuple[DetectedObject, ...],
+        geometry: ObjectGeometry,
+        depth: DepthMap,
+        shapes: tuple[RankedShapes, ...],
+        progress: Progress,
+    ) -> Trials:
+        """What is known before it is decided which way objects face; arguments as of `pose`."""
+        ranked = {r.object_id: r.ranked for r in shapes if r.ranked}
+        records = {s.id: s for s in self.library.shapes()}
+        kinds = likeliest_kinds(objects, ranked, records)
+        walls = wall_samples(depth, geometry.camera, objects)
+        cells = (self.coarse_cells, self.fine_cells)
+        tasks = posing_tasks(inputs, objects, geometry, depth, kinds, cells, walls)
+        pieces = [(task, [(records[i], score) for i, score in ranked[task.item.id]]) for task in tasks]
+        tried = each_there(self._try_shapes, pieces, progress, "Trying poses")
+        return Trials(tasks, tried, facing_room(geometry, kinds, tasks, tried, walls))
+
+    def _evened(self, tasks: Sequence[PosingTask], chosen: Sequence[PosedShape]) -> list[PosedShape]:
         """The chosen poses, those of one set equally large where that fits the picture hardly worse."""
         if not tasks:
             return []
@@ -146,49 +132,48 @@ class RenderAndCompare:
         )
         return [self._rescaled(*one) for one in zip(tasks, chosen, scales, strict=True)]
 
-    def _rescaled(self, task: PosingTask, posed: _Posed, scale: Float[np.ndarray, "3"]) -> _Posed:
+    def _rescaled(self, task: PosingTask, posed: PosedShape, scale: Float[np.ndarray, "3"]) -> PosedShape:
         if np.array_equal(scale, posed.pose.scale):
             return posed
         R, axis = posed.pose.R_world_object, task.anchor.axis_world
         grown = 0.5 * float(np.abs(axis @ R) @ ((scale - posed.pose.scale) * posed.shape.size_m))
         poses = PoseBatch(R[None], (posed.pose.position + grown * axis)[None], scale[None])
-        error = float(task.fine.errors(self._compare(posed.shape).caster, poses)[0])
+        error = float(task.fine.errors(self._appearance(posed.shape).caster, poses)[0])
         return replace(posed, pose=_only(poses), error=error) if error <= posed.error + _LOSS_FOR_A_SET else posed
 
-    def _compare(self, shape: Shape) -> ShapeAppearance:
+    def _appearance(self, shape: Shape) -> ShapeAppearance:
         folder = default_cache_dir() / "appearances"
         return SHARED_APPEARANCES.get(shape.content_hash, folder, lambda: self.library.parts(shape.id))
 
-    def _pose_object(
-        self, task: PosingTask, ranked: tuple[tuple[str, float], ...], records: Mapping[str, Shape]
-    ) -> tuple[_Posed, ...]:
+    def _try_shapes(self, task: PosingTask, ranked: Sequence[tuple[Shape, float]]) -> tuple[TriedShape, ...]:
+        """Every shape's hypotheses with what the picture alone says of them."""
         best = max(max(score for _, score in ranked), 1e-9)
-        tasks = [task.as_kind(records[i].category) for i, _ in ranked]
-        liked = [float(np.log(max(score / best, 1e-6))) for _, score in ranked]
-        tried = [self._try_shape(t, records[i], how) for t, (i, _), how in zip(tasks, ranked, liked, strict=True)]
+        return tuple(self._try_shape(task, s, float(np.log(max(score / best, 1e-6)))) for s, score in ranked)
+
+    def _pose_object(self, task: PosingTask, compared: Sequence[TriedShape]) -> tuple[PosedShape, ...]:
+        tried = [replace(t, scores=t.scores - task.coarse.facing.cost(t.hypotheses.poses.R)) for t in compared]
         if task.measured is None:
-            posed = [self._pose_by_outline(t, one) for t, one in zip(tasks, tried, strict=True)]
-            return tuple(self._with_levels(task, one) for one in posed)
+            return tuple(self._with_levels(task, self._pose_by_outline(task, one)) for one in tried)
         order = sorted(range(len(tried)), key=lambda k: -float(tried[k].scores.max()))
         promising = set(order[: self.promising])
         posed = [
-            self._with_levels(task, self._pose_by_depth(t, task.measured, one, k in promising))
-            for k, (t, one) in enumerate(zip(tasks, tried, strict=True))
+            self._with_levels(task, self._pose_by_depth(task, task.measured, one, k in promising))
+            for k, one in enumerate(tried)
         ]
         first = max(range(len(posed)), key=lambda k: posed[k].rank)
-        turned = self._turned_all_around(tasks[first], task.measured, tried[first], posed[first])
+        turned = self._turned_all_around(task, task.measured, tried[first], posed[first])
         posed[first] = turned if turned is posed[first] else self._with_levels(task, turned)
         return tuple(posed)
 
-    def _with_levels(self, task: PosingTask, posed: _Posed) -> _Posed:
+    def _with_levels(self, task: PosingTask, posed: PosedShape) -> PosedShape:
         """Ranked by the levels of what it carries, too."""
         if not task.carried:
             return posed
         cost = level_cost(self.library.shape(posed.shape.id), posed.pose, task.carried)
         return replace(posed, rank=posed.rank - cost)
 
-    def _try_shape(self, task: PosingTask, shape: Shape, liked: float) -> _Tried:
-        appearance = self._compare(shape)
+    def _try_shape(self, task: PosingTask, shape: Shape, liked: float) -> TriedShape:
+        appearance = self._appearance(shape)
         name = task.item.category
         depth_known = task.measured is not None
         sides = sides_log_of(shape.symmetry, name, round=appearance.caster.round_from_above)
@@ -200,17 +185,19 @@ class RenderAndCompare:
         scores = task.coarse.log_scores(errors, tried.poses, tried.off_axis_rad, tried.misfit, limits)
         if task.measured is not None:
             scores = scores + task.measured.bounds.log_likelihood(tried.poses, limits.shape_size_m)
-        return _Tried(shape, liked, appearance, limits, tried, scores)
+        return TriedShape(shape, liked, limits, tried, scores)
 
-    def _pose_by_outline(self, task: PosingTask, tried: _Tried) -> _Posed:
-        best = _worth_refining(tried.scores, task.fine.facing.cost(tried.hypotheses.poses.R), self.refined)
+    def _pose_by_outline(self, task: PosingTask, tried: TriedShape) -> PosedShape:
+        best = np.argsort(-tried.scores, kind="stable")[: self.refined]
         poses, error, score = self._chosen(task, tried, tried.hypotheses[best])
-        of_retrieval, of_pose = _POWERS if is_named(task.item.label) else _POWERS_OF_UNNAMED
+        of_retrieval, of_pose = powers(task.item.label)
         cost = task.fine.enlarged_cost(poses.scale[0], tried.limits) + task.fine.sure_outline_cost(error)
-        cost -= task.fine.seen_past(tried.appearance.caster, poses)
-        return _Posed(tried.shape, _only(poses), error, of_retrieval * tried.liked + of_pose * score - cost)
+        cost -= task.fine.seen_past(self._appearance(tried.shape).caster, poses)
+        return PosedShape(tried.shape, _only(poses), error, of_retrieval * tried.liked + of_pose * score - cost)
 
-    def _pose_by_depth(self, task: PosingTask, measured: MeasuredObject, tried: _Tried, promising: bool) -> _Posed:
+    def _pose_by_depth(
+        self, task: PosingTask, measured: MeasuredObject, tried: TriedShape, promising: bool
+    ) -> PosedShape:
         """Unlike hypotheses are refined; the best one is also tried turned by quarters in its place."""
         fold, size_m = tried.shape.symmetry, tried.limits.shape_size_m
         count = self.refined_with_depth if promising else self.refined
@@ -221,30 +208,51 @@ class RenderAndCompare:
             nothing = np.zeros(len(turned))
             other = self._chosen(task, tried, Hypotheses(turned, nothing, nothing))
             poses, error, score = max((poses, error, score), other, key=lambda found: found[2])
-        return _Posed(tried.shape, _only(poses), error, _rank(task, measured, tried, poses, error))
+        return PosedShape(tried.shape, _only(poses), error, self._rank(task, measured, tried, poses, error))
 
-    def _turned_all_around(self, task: PosingTask, measured: MeasuredObject, tried: _Tried, posed: _Posed) -> _Posed:
+    def _turned_all_around(
+        self, task: PosingTask, measured: MeasuredObject, tried: TriedShape, posed: PosedShape
+    ) -> PosedShape:
         """The pose with its turn compared closely."""
         if tried.shape.symmetry == ROUND or task.close is None:
             return posed
         start, fold = _batch(posed.pose), tried.shape.symmetry
-        search = TurnSearch.of(task.close, task.fine, measured, tried.appearance, tried.limits, fold, start)
+        appearance = self._appearance(tried.shape)
+        search = TurnSearch.of(task.close, task.fine, measured, appearance, tried.limits, fold, start)
         poses, doubt = search.best(start)
-        error = float(task.fine.errors(tried.appearance.caster, poses)[0])
-        rank = _rank(task, measured, tried, poses, error)
-        return _Posed(tried.shape, _only(poses), error, rank, doubt)
+        error = float(task.fine.errors(appearance.caster, poses)[0])
+        rank = self._rank(task, measured, tried, poses, error)
+        return PosedShape(tried.shape, _only(poses), error, rank, doubt)
 
-    def _chosen(self, task: PosingTask, tried: _Tried, start: Hypotheses) -> tuple[PoseBatch, float, float]:
+    def _chosen(self, task: PosingTask, tried: TriedShape, start: Hypotheses) -> tuple[PoseBatch, float, float]:
         """The best of some poses and their refinements, with its error and score."""
-        both = start.poses.and_also(self._refined(task, tried.appearance.caster, tried.limits, start.poses))
-        errors = task.fine.errors(tried.appearance.caster, both)
+        both, errors, scores = self._finely(task, tried, start)
+        chosen = int(np.argmax(scores))
+        return both[chosen : chosen + 1], float(errors[chosen]), float(scores[chosen])
+
+    def _finely(
+        self, task: PosingTask, tried: TriedShape, start: Hypotheses
+    ) -> tuple[PoseBatch, Float[np.ndarray, "p"], Float[np.ndarray, "p"]]:
+        """Some poses and their refinements, with errors and scores."""
+        caster = self._appearance(tried.shape).caster
+        both = start.poses.and_also(self._refined(task, caster, tried.limits, start.poses))
+        errors = task.fine.errors(caster, both)
         off_axis, misfit = np.tile(start.off_axis_rad, 2), np.tile(start.misfit, 2)
         scores = task.fine.log_scores(errors, both, off_axis, misfit, tried.limits)
         if task.measured is not None:
             scores = scores + task.measured.log_likelihood(both, tried.limits)
             scores = scores - task.measured.elsewhere_cost(both, tried.limits, errors)
-        chosen = int(np.argmax(scores))
-        return both[chosen : chosen + 1], float(errors[chosen]), float(scores[chosen])
+        return both, errors, scores
+
+    def compared_finely(self, task: PosingTask, tried: TriedShape, count: int) -> TriedShape:
+        """A tried shape with its best unlike poses refined beside the others, which are worth a little less then."""
+        fold, size_m = tried.shape.symmetry, tried.limits.shape_size_m
+        start = tried.hypotheses[unlike_best(tried.hypotheses.poses, tried.scores, fold, size_m, count)]
+        both, _, scores = self._finely(task, tried, start)
+        refined = Hypotheses(both, np.tile(start.off_axis_rad, 2), np.tile(start.misfit, 2))
+        others = tried.scores - tried.scores.max() + scores.max() - _LEFT_UNREFINED
+        found = tried.hypotheses.and_also(refined)
+        return replace(tried, hypotheses=found, scores=np.concatenate([others, scores]))
 
     def _refined(self, task: PosingTask, caster: ShapeCaster, limits: SizeLimits, start: PoseBatch) -> PoseBatch:
         if task.measured is not None:
@@ -254,25 +262,17 @@ class RenderAndCompare:
         fit = BoxFit(task.fine.camera, task.fine.seen, task.anchor, limits, float(yaw_sigma), foot_seen)
         return fit.refined(caster, start)
 
-
-def _rank(task: PosingTask, measured: MeasuredObject, tried: _Tried, poses: PoseBatch, error: float) -> float:
-    """What retrieval, the picture and what holds the object say of a posed shape, where depth was measured."""
-    similarity = task.fine.log_likelihood(error, poses.scale[0], tried.limits)
-    stands = max(float(measured.log_likelihood(poses, tried.limits)[0]), _MIN_STANDING)
-    told = 0.0
-    if task.details is not None:
-        told = task.details.log_likelihood(tried.appearance, task.fine.hits(tried.appearance.caster, poses))
-    return _RETRIEVAL_WITH_DEPTH * tried.liked + similarity + stands + told
-
-
-def _worth_refining(
-    scores: Float[np.ndarray, "p"], facing_cost: Float[np.ndarray, "p"], count: int
-) -> Int[np.ndarray, "k"]:
-    """Indices of the best hypotheses, and of the best one of those that face more usually than they do."""
-    order = np.argsort(-scores, kind="stable")
-    best, others = order[:count], order[count:]
-    usual = others[facing_cost[others] < facing_cost[best].min() - _FACES_BETTER]
-    return np.concatenate([best, usual[:1]])
+    def _rank(
+        self, task: PosingTask, measured: MeasuredObject, tried: TriedShape, poses: PoseBatch, error: float
+    ) -> float:
+        """What retrieval, the picture and what holds the object say of a posed shape, where depth was measured."""
+        similarity = task.fine.log_likelihood(error, poses.scale[0], tried.limits)
+        stands = max(float(measured.log_likelihood(poses, tried.limits)[0]), _MIN_STANDING)
+        told = 0.0
+        if task.details is not None:
+            appearance = self._appearance(tried.shape)
+            told = task.details.log_likelihood(appearance, task.fine.hits(appearance.caster, poses))
+        return _RETRIEVAL_WITH_DEPTH * tried.liked + similarity + stands + told
 
 
 def _batch(pose: Pose) -> PoseBatch:
@@ -281,19 +281,3 @@ def _batch(pose: Pose) -> PoseBatch:
 
 def _only(poses: PoseBatch) -> Pose:
     return Pose(poses.R[0], poses.position[0], poses.scale[0])
-
-
-def _ordered(found: Sequence[_Posed], ranks: Mapping[str, float]) -> tuple[_Posed, ...]:
-    return tuple(sorted(found, key=lambda posed: (-ranks[posed.shape.id], posed.shape.id)))
-
-
-def _candidates(task: PosingTask, ordered: Sequence[_Posed], ranks: Mapping[str, float]) -> PosedCandidates:
-    """The posed shapes of one object; scores are relative to the best one's agreement with the picture."""
-    best = ordered[0]
-    top = ranks[best.shape.id]
-    candidates = tuple(
-        Candidate(p.shape.id, p.shape.size_m, float(np.exp(ranks[p.shape.id] - top) * (1.0 - best.error)), p.pose)
-        for p in ordered
-    )
-    confidence = task.fine.confidence(best.error, task.cuboid.confidence) * (1.0 - 0.5 * best.doubt)
-    return PosedCandidates(task.item.id, candidates, confidence)

@@ -13,7 +13,6 @@ from diorama_core.geometry.see_through import SeeThrough
 from diorama_core.geometry.silhouette import PoseBatch, ShapeCaster
 from diorama_core.library.taxonomy import NEVER_OPEN
 from diorama_core.pose.agree import SETS
-from diorama_core.pose.facing import Facing
 from diorama_core.pose.inner_edges import InnerEdges
 from diorama_core.pose.mask_observations import Evidence
 from diorama_core.pose.surface import measured_surface, noise_of
@@ -107,7 +106,7 @@ def seen_objects(
         surface = measured_surface(depth, window, item.mask, noise)
         closed = surface is not None or item.category in NEVER_OPEN
         colours = None if closed else SeeThrough.of(inputs.photo.rgb, window)
-        return Evidence(geometry.camera, window, Facing(()), surface, colours)
+        return Evidence(geometry.camera, window, surface, colours)
 
     def seen(k: int) -> SeenObject | None:
         item, coarse = items[k], evidence(k, CELLS)

@@ -22,7 +22,7 @@ _STEPS = 24
 _REFINED = 3
 _RIVAL_RAD = float(np.deg2rad(45.0))
 """A pose turned farther than this is another reading of the picture, not a correction."""
-_HABIT_STRENGTH = 1.0
+_HABIT_STRENGTH = 1.4
 """What objects usually do says this much more beside evidence that is summed: hardly a cupboard shows its back."""
 _NEARBY_RAD = np.deg2rad(np.arange(-60.0, 61.0, 12.0))
 _RIGHT_RAD = float(np.deg2rad(20.0))

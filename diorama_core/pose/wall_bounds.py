@@ -7,9 +7,9 @@ from dataclasses import dataclass
 import numpy as np
 from jaxtyping import Float
 
+from diorama_core.arrangement.facing.evidence import WallSamples
 from diorama_core.geometry.silhouette import PoseBatch
 from diorama_core.pose.depth_fit import SeenPoints
-from diorama_core.pose.facing import WallSamples
 
 _SIGMA_M = 0.05
 """How far a shape's box reaches into a wall that its object stands against."""

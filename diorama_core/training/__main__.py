@@ -1,19 +1,24 @@
-"""`python -m diorama_core.training pictures | shapes | windows | train | export | join | score`."""
+"""`python -m diorama_core.training pictures | shapes | windows | train | export | join | score | facings`."""
 
 from __future__ import annotations
 
 import argparse
+import json
 import sys
 from pathlib import Path
 
 import torch
 
+from diorama_core.arrangement.facing.weights import PATH as WEIGHTS
 from diorama_core.errors import DioramaError, InputError, UnavailableError
+from diorama_core.evaluation.benchmarks.photos import PhotoSource, plan
+from diorama_core.io.atomic import write_atomically
 from diorama_core.library.catalogue import built_in_library
 from diorama_core.models.own_weights import CARD, DETECTOR, NAMER, OUTLINER
 from diorama_core.models.recogniser import Recogniser
 from diorama_core.progress import Progress
 from diorama_core.training.export import export_detector, export_namer, export_outliner, write_card
+from diorama_core.training.facings import FacingModel, as_settings, beginning, certificate, gathered
 from diorama_core.training.joined import join_namers
 from diorama_core.training.picture_files import PictureFiles
 from diorama_core.training.pictures import category_names, make_pictures
@@ -85,6 +90,14 @@ def _parser() -> argparse.ArgumentParser:
     scores.add_argument("annotations", type=Path)
     scores.add_argument("--photos", type=Path, required=True)
     scores.add_argument("--networks", type=Path, required=True, help="folder written by export")
+    facings = steps.add_parser("facings", help="fit the weights that decide which way objects face")
+    facings.set_defaults(run=_facings)
+    facings.add_argument("annotations", type=Path, nargs="+")
+    facings.add_argument("--photos", type=Path, nargs="+", required=True, help="one folder for each file")
+    facings.add_argument("--stages", type=Path, help="keep stage results, as `diorama bench photos` does")
+    facings.add_argument("--folds", type=int, default=5, help="of the photos (default: %(default)s)")
+    facings.add_argument("--settings", type=Path, help="folder for each fold's weights, for bench photos --settings")
+    facings.add_argument("-o", "--output", type=Path, default=WEIGHTS, help="weights with what they are worth")
     return p
 
 
@@ -159,6 +172,20 @@ def _join(a: argparse.Namespace) -> None:
 def _score(a: argparse.Namespace) -> None:
     for table in score(a.annotations, a.photos, Recogniser.of(a.networks)).tables():
         print(table.to_markdown())
+
+
+def _facings(a: argparse.Namespace) -> None:
+    torch.set_num_threads(1)
+    sources = [PhotoSource(*source) for source in zip(a.annotations, a.photos, strict=True)]
+    model = FacingModel(gathered(plan(sources, cache=a.stages), built_in_library(), _told()))
+    given = " ".join(path.name for path in a.annotations)
+    found = certificate(model, f"python -m diorama_core.training facings {given}", a.folds)
+    write_atomically(a.output, json.dumps(found, indent=1).encode())
+    for k in range(a.folds if a.settings else 0):
+        weights = as_settings(model.fitted(beginning(), ~model.fold(k, a.folds)))
+        settings = {f"pose.stage.facing.{name}": weight for name, weight in weights.items()}
+        write_atomically(a.settings / f"fold{k}.json", json.dumps(settings, indent=1).encode())
+    print(f"weights written: {a.output}")
 
 
 def _told() -> Progress:

@@ -9,11 +9,11 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from diorama_core.arrangement.facing.evidence import WallSamples
 from diorama_core.artefacts import DepthMap
 from diorama_core.geometry.observed import observe_among
 from diorama_core.geometry.silhouette import PoseBatch, ShapeCaster
 from diorama_core.pose.depth_fit import DepthFit, Outline, SeenPoints
-from diorama_core.pose.facing import Facing, WallSamples
 from diorama_core.pose.hypotheses import anchor_of
 from diorama_core.pose.limits import SizeLimits
 from diorama_core.pose.mask_observations import Evidence
@@ -34,7 +34,7 @@ def measured(
     seen = observe_among(room.camera, room.objects, centres, [None] * len(centres), index, 56)
     depth = depth or room.depth(True)
     surface = measured_surface(depth, seen, item.mask, noise_of(depth))
-    evidence = Evidence(room.camera, seen, Facing(()), surface)
+    evidence = Evidence(room.camera, seen, surface)
     anchor = anchor_of(cuboid, False, room.camera.position[:2] - cuboid.centre[:2])
     found = MeasuredObject.of(item.mask, evidence, cuboid, anchor, NO_WALLS, floor_foot_m)
     assert found is not None

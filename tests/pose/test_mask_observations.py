@@ -8,7 +8,6 @@ import pytest
 from diorama_core.geometry.observed import observe_among
 from diorama_core.geometry.see_through import SeeThrough
 from diorama_core.geometry.silhouette import PoseBatch, ShapeCaster
-from diorama_core.pose.facing import Facing
 from diorama_core.pose.limits import SizeLimits
 from diorama_core.pose.mask_observations import Evidence
 from tests.pose.rooms import LIBRARY, Room, camera_at, standing
@@ -19,7 +18,7 @@ def evidence() -> Evidence:
     """A chair's outline from a photo alone."""
     room = Room(camera_at(), (standing("chair", 0.2, 2.6, 30.0),), (0,))
     centres = np.array([c.centre for c in room.geometry.cuboids])
-    return Evidence(room.camera, observe_among(room.camera, room.objects, centres, [None], 0, 32), Facing(()), None)
+    return Evidence(room.camera, observe_among(room.camera, room.objects, centres, [None], 0, 32), None)
 
 
 def enlarged_cost(evidence: Evidence, shape_size_m: tuple[float, float, float], scale: tuple[float, ...]) -> float:

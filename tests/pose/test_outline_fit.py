@@ -11,7 +11,6 @@ import trimesh
 from diorama_core.artefacts import DepthMap
 from diorama_core.geometry.observed import observe
 from diorama_core.geometry.silhouette import PoseBatch, ShapeCaster
-from diorama_core.pose.facing import Facing
 from diorama_core.pose.mask_observations import Evidence
 from diorama_core.pose.outline_fit import COARSE, FINE, fitted_pose
 from diorama_core.pose.surface import measured_surface
@@ -33,7 +32,7 @@ def evidence(measured: bool, trust: float = 1.0, cells: int = 56) -> Evidence:
     box = (float(columns.min()), float(rows.min()), float(columns.max() + 1), float(rows.max() + 1))
     window = observe(CAMERA, box, mask, trust, (), cells)
     depth = DepthMap(seen.depth_m, seen.normals_world, DepthSource.MEASURED if measured else DepthSource.RENDERED)
-    return Evidence(CAMERA, window, Facing(()), measured_surface(depth, window, mask, 0.0))
+    return Evidence(CAMERA, window, measured_surface(depth, window, mask, 0.0))
 
 
 def error_of(of: Evidence, pose: Pose) -> float:
@@ -91,7 +90,7 @@ def test_what_is_round_from_above_stays_round() -> None:
     mask = seen.instance == 0
     rows, columns = np.nonzero(mask)
     box = (float(columns.min()), float(rows.min()), float(columns.max() + 1), float(rows.max() + 1))
-    of = Evidence(CAMERA, observe(CAMERA, box, mask, 1.0, (), 56), Facing(()), None)
+    of = Evidence(CAMERA, observe(CAMERA, box, mask, 1.0, (), 56), None)
     small = Pose(true.R_world_object, true.position, np.array([0.85, 0.85, 1.0]))
     found = fitted_pose(of, ShapeCaster(drum), small, size, resize=True)
     assert found.scale[0] == pytest.approx(found.scale[1])

@@ -11,7 +11,6 @@ from diorama_core.geometry.observed import observe
 from diorama_core.library.boards import base_id
 from diorama_core.library.catalogue import built_in_library
 from diorama_core.library.furniture.measures import is_turned, made_id
-from diorama_core.pose.facing import Facing
 from diorama_core.pose.mask_observations import Evidence
 from diorama_core.pose.turned_profile import is_revolution, profile_m, turned
 from diorama_core.render.raycast import render_buffers
@@ -36,7 +35,7 @@ def seen(true_id: str, hidden_left: bool = False) -> tuple[Evidence, Pose]:
     if hidden_left:
         before[:, : int((box[0] + box[2]) / 2)] = True
     window = observe(CAMERA, box, mask & ~before, 1.0, (before,), 56)
-    return Evidence(CAMERA, window, Facing(()), None), pose
+    return Evidence(CAMERA, window, None), pose
 
 
 def as_large(shape_id: str, pose: Pose, true_id: str) -> Pose:

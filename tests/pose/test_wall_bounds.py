@@ -7,9 +7,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from diorama_core.arrangement.facing.evidence import WallSamples
 from diorama_core.geometry.silhouette import PoseBatch
 from diorama_core.pose.depth_fit import SeenPoints
-from diorama_core.pose.facing import WallSamples
 from diorama_core.pose.wall_bounds import WallBounds
 from diorama_core.scene.types import yaw_rotation
 

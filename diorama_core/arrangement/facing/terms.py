@@ -1,0 +1,270 @@
+"""What speaks for headings, whatever the picture shows: each term is one small function.
+
+A term gives every heading of an object (or every pair of headings of two objects) an agreement of at most 1; its
+weight, fitted by `python -m diorama_core.training facings`, makes nats of it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+
+import numpy as np
+from jaxtyping import Float
+
+from diorama_core.arrangement.facing.evidence import HEADINGS, FacingRoom, unit
+from diorama_core.library.taxonomy import broad, with_kin
+
+Agreement = Float[np.ndarray, "24"]
+PairAgreement = Float[np.ndarray, "24 24"]
+
+SEATS = with_kin("chair", "office chair", "stool", "bench")
+LOUNGE = with_kin("sofa", "armchair")
+TABLES = with_kin("table", "desk", "kitchen counter", "piano", "console table", "side table")
+LOW_TABLES = with_kin("coffee table")
+SCREENS = with_kin("monitor", "television", "laptop")
+INPUTS = frozenset({"keyboard", "mouse"})
+STORAGE = with_kin(
+    *("cabinet", "sideboard", "dresser", "wardrobe", "bookshelf", "shelves", "tv stand", "refrigerator"),
+    *("kitchen counter", "night stand", "console table", "filing cabinet"),
+)
+BEDS = with_kin("bed")
+SHELVES = with_kin("bookshelf", "shelves")
+NO_FRONT = with_kin(
+    *("plant", "vase", "bowl", "cup", "bottle", "basket", "rug", "box"),
+    *("table", "coffee table", "side table", "ottoman", "lamp", "floor lamp", "ceiling lamp"),
+    *("candle", "fruit", "kettle", "cooking pot", "utensils", "cutting board", "soap dispenser", "toilet brush"),
+    *("sculpture", "globe", "blanket", "umbrella stand", "drum", "dumbbells", "exercise ball", "yoga mat"),
+    "ceiling fan",
+)
+"""Set down any way round."""
+AT_TABLE_M, AT_LOW_TABLE_M = 0.9, 1.6
+"""Gaps within which a seat is drawn up to a table, as people pull chairs out and legs need room."""
+COMPANY_M = 4.0
+"""Within which sofas face a television or each other, screens their seats: across a living room."""
+BESIDE_M = 0.5
+"""Gaps within which things stand side by side."""
+WALL_REACH_M, WALL_BESIDE_M, WALL_FADES_M = 0.7, 3.0, 0.4
+"""Within which a wall is behind an object, to either side of it, and the gap at which it says a third as much."""
+MIN_WALL_SAMPLES = 10
+ROW_RATIO = 1.5
+"""From which length to depth on storage faces across its length."""
+
+
+@dataclass(frozen=True)
+class Term:
+    """One reason to face somewhere; agreements of single objects, of pairs, or both."""
+
+    name: str
+    """Its field of `weights.FacingWeights`."""
+    sentence: str
+    one: Callable[[FacingRoom, int], Agreement | None] | None = None
+    pair: Callable[[FacingRoom, int, int], PairAgreement | None] | None = None
+
+
+def toward(room: FacingRoom, i: int, direction: Float[np.ndarray, "2"]) -> Agreement:
+    """1 for the heading in a direction, -1 for the one away from it: the cosine between them."""
+    return np.asarray(room.objects[i].directions @ direction)
+
+
+def shown(kinds: frozenset[str] | None) -> Callable[[FacingRoom, int], Agreement | None]:
+    """Photos show fronts of some kinds: away from the camera is unlikely, sideways hardly less so than toward it."""
+
+    def one(room: FacingRoom, i: int) -> Agreement | None:
+        own = room.objects[i].kind
+        if own not in kinds if kinds is not None else own in SEATS | STORAGE | SCREENS | LOUNGE | NO_FRONT:
+            return None
+        cosine = toward(room, i, room.toward_camera(i))
+        return 0.25 * cosine + 0.75 * np.minimum(cosine, 0.0)
+
+    return one
+
+
+def at_table(room: FacingRoom, i: int) -> Agreement | None:
+    """A seat faces the table or desk that it is drawn up to, square to the side where it stands."""
+    if room.objects[i].kind not in SEATS | LOUNGE:
+        return None
+    table = room.nearest(i, TABLES if room.objects[i].kind in SEATS else LOW_TABLES, _table_reach_m(room, i))
+    return None if table is None else toward(room, i, square_to(room, i, table))
+
+
+def _table_reach_m(room: FacingRoom, i: int) -> float:
+    return AT_TABLE_M if room.objects[i].kind in SEATS else AT_LOW_TABLE_M
+
+
+def square_to(room: FacingRoom, i: int, table: int) -> Float[np.ndarray, "2"]:
+    """From an object to a table, across the side of the table beside which it stands; aslant at a corner."""
+    other = room.objects[table]
+    offset = other.centre[:2] - room.objects[i].centre[:2]
+    local = other.axes[:2] @ offset
+    beyond = np.sign(local) * np.maximum(np.abs(local) - 0.5 * other.size_m[:2], 0.0)
+    if not beyond.any():
+        share = np.abs(local) / np.maximum(other.size_m[:2], 1e-6)
+        beyond = np.where(share == share.max(), local, 0.0)
+    return unit(beyond @ other.axes[:2])
+
+
+def at_company(room: FacingRoom, i: int) -> Agreement | None:
+    """Sofas and armchairs face the television, or the middle of the other sofas and armchairs."""
+    if room.objects[i].kind not in LOUNGE:
+        return None
+    watched = room.nearest(i, frozenset({"television"}), COMPANY_M)
+    others = [watched] if watched is not None else _lounge_near(room, i)
+    if not others:
+        return None
+    middle = np.mean([room.objects[j].centre[:2] for j in others], axis=0)
+    return toward(room, i, unit(middle - room.objects[i].centre[:2]))
+
+
+def _lounge_near(room: FacingRoom, i: int) -> list[int]:
+    return [j for j, o in enumerate(room.objects) if j != i and o.kind in LOUNGE and room.gap_m(i, j) < COMPANY_M]
+
+
+def at_user(room: FacingRoom, i: int) -> Agreement | None:
+    """A screen faces the keyboard before it, or the nearest seat."""
+    item = room.objects[i]
+    if item.kind not in SCREENS or item.carrier is None:
+        return None
+    keyboards = room.loads(item.carrier, INPUTS) or room.loads(i, INPUTS)
+    user = min(keyboards, key=lambda j: float(np.linalg.norm(room.objects[j].centre - item.centre)), default=None)
+    if user is None:
+        seats = LOUNGE | BEDS if item.kind == "television" else SEATS
+        user = room.nearest(i, seats, COMPANY_M if item.kind == "television" else AT_LOW_TABLE_M)
+    return None if user is None else toward(room, i, unit(room.objects[user].centre[:2] - item.centre[:2]))
+
+
+def at_seat(room: FacingRoom, i: int) -> Agreement | None:
+    """A desk's front is where its chair is."""
+    if room.objects[i].kind not in with_kin("desk", "piano"):
+        return None
+    seat = room.nearest(i, SEATS, AT_TABLE_M)
+    return None if seat is None else toward(room, i, -square_to(room, seat, i))
+
+
+def back_at_wall(kinds: frozenset[str] | None) -> Callable[[FacingRoom, int], Agreement | None]:
+    """The back is at a wall that is seen, less so the farther it is from there."""
+
+    def one(room: FacingRoom, i: int) -> Agreement | None:
+        item = room.objects[i]
+        if item.kind in NO_FRONT | SCREENS | SEATS or (item.kind in STORAGE | BEDS) != (kinds is not None):
+            return None
+        found = sum((_wall_behind(room, i, axis) * (item.directions @ axis) for axis in item.axes), np.zeros(HEADINGS))
+        return found / max(1.0, float(np.abs(found).max()))
+
+    return one
+
+
+def _wall_behind(room: FacingRoom, i: int, direction: Float[np.ndarray, "2"]) -> float:
+    """How near a wall is behind an object that faces in a direction, 0 to 1."""
+    item = room.objects[i]
+    offset = room.walls.points_xy - (item.centre[:2] - direction * item.reach_m(direction))
+    gap = -(offset @ direction)
+    side = np.abs(offset @ np.array([-direction[1], direction[0]]))
+    near = (room.walls.normals_xy @ direction > 0.9) & (gap > -0.3) & (gap < WALL_REACH_M) & (side < WALL_BESIDE_M)
+    return float(np.exp(-np.abs(np.median(gap[near])) / WALL_FADES_M)) if near.sum() >= MIN_WALL_SAMPLES else 0.0
+
+
+def out_of_wall(room: FacingRoom, i: int) -> Agreement | None:
+    """What hangs on a wall looks out of it."""
+    direction = room.objects[i].out_of_wall
+    return None if direction is None else toward(room, i, direction)
+
+
+def as_measured(room: FacingRoom, i: int) -> Agreement | None:
+    """What was told of its front holds."""
+    return toward(room, i, room.objects[i].axes[0]) if room.objects[i].front_known else None
+
+
+def leaning(room: FacingRoom, i: int) -> Agreement | None:
+    """Pillows lean on the head of a bed, or on the back of a seat: across its length, to the camera's side."""
+    item = room.objects[i]
+    if item.kind != "pillow" or item.carrier is None:
+        return None
+    carrier = room.objects[item.carrier]
+    on_bed = carrier.kind in BEDS
+    long = int(np.argmax(carrier.size_m[:2]))
+    axis = carrier.axes[long if on_bed else 1 - long]
+    inward = carrier.centre[:2] - item.centre[:2] if on_bed else room.toward_camera(i)
+    return toward(room, i, axis if axis @ inward >= 0 else -axis)
+
+
+def away_from_pillows(room: FacingRoom, i: int) -> Agreement | None:
+    """Pillows lie at the head of a bed and the back of a sofa."""
+    item = room.objects[i]
+    pillows = room.loads(i, frozenset({"pillow"}))
+    if not pillows:
+        return None
+    offset = np.mean([room.objects[j].centre[:2] for j in pillows], axis=0) - item.centre[:2]
+    strength = min(float(np.linalg.norm(offset)) / (0.3 * float(item.size_m[:2].mean())), 1.0)
+    return strength * toward(room, i, max(item.axes, key=lambda axis: float(-offset @ axis)))
+
+
+def at_middle(room: FacingRoom, i: int) -> Agreement | None:
+    """Furniture faces the middle of what is in the room; seats face what they serve."""
+    item = room.objects[i]
+    if len(room.objects) < 3 or item.carrier is not None or item.kind in NO_FRONT | SEATS | LOUNGE:
+        return None
+    middle = np.mean([o.centre[:2] for o in room.objects], axis=0) - item.centre[:2]
+    return toward(room, i, unit(middle)) if np.linalg.norm(middle) > 0.3 else None
+
+
+def as_carrier(room: FacingRoom, i: int, j: int) -> PairAgreement | None:
+    """What stands on furniture with a front faces as that does; books show their spines."""
+    child, parent = room.objects[i], room.objects[j]
+    if child.carrier != j or child.kind in NO_FRONT | {"pillow"} or parent.kind in NO_FRONT:
+        return None
+    return np.asarray(child.directions @ parent.directions.T)
+
+
+def side_by_side(room: FacingRoom, i: int, j: int) -> PairAgreement | None:
+    """Things of a kind side by side face alike: chairs in a row, monitors on a desk, cabinets along a wall."""
+    a, b = room.objects[i], room.objects[j]
+    alike = broad(a.kind) == broad(b.kind) or (a.kind in STORAGE and b.kind in STORAGE)
+    if not alike or a.kind in NO_FRONT or i > j or room.gap_m(i, j) > BESIDE_M or a.carrier != b.carrier:
+        return None
+    offset = unit(b.centre[:2] - a.centre[:2])
+    beside = np.sqrt(np.outer(1 - (a.directions @ offset) ** 2, 1 - (b.directions @ offset) ** 2))
+    return np.asarray(beside * (a.directions @ b.directions.T))
+
+
+def as_bed(room: FacingRoom, i: int, j: int) -> PairAgreement | None:
+    """A night stand faces as the bed beside it."""
+    a, b = room.objects[i], room.objects[j]
+    if a.kind != "night stand" or b.kind not in BEDS or room.gap_m(i, j) > BESIDE_M:
+        return None
+    return np.asarray(a.directions @ b.directions.T)
+
+
+TERMS: tuple[Term, ...] = (
+    Term("shown_seats", "photos show fronts of seats", shown(SEATS)),
+    Term("shown_sofas", "photos show fronts of sofas and armchairs", shown(LOUNGE)),
+    Term("shown_storage", "photos show fronts of cupboards", shown(STORAGE)),
+    Term("shown_screens", "screens face who looks at them", shown(SCREENS)),
+    Term("shown_others", "photos show fronts", shown(None)),
+    Term("at_table", "seats face the table that they are drawn up to", at_table),
+    Term("at_company", "sofas face the television or each other", at_company),
+    Term("at_user", "screens face the keyboard or seat that uses them", at_user),
+    Term("at_seat", "a desk's front is where its chair is", at_seat),
+    Term("back_at_wall", "cupboards and beds turn their backs to a wall", back_at_wall(STORAGE | BEDS)),
+    Term("back_at_wall_others", "backs are at walls", back_at_wall(None)),
+    Term("out_of_wall", "what hangs on a wall looks out of it", out_of_wall),
+    Term("as_told", "the front was told", as_measured),
+    Term("leaning", "pillows lean on the back of what they lie on", leaning),
+    Term("away_from_pillows", "pillows lie at the head of a bed and the back of a sofa", away_from_pillows),
+    Term("at_middle", "furniture faces the middle of the room", at_middle),
+    Term("as_carrier", "what stands on furniture faces as that does", pair=as_carrier),
+    Term("side_by_side", "things of a kind side by side face alike", pair=side_by_side),
+    Term("as_bed", "a night stand faces as its bed", pair=as_bed),
+)
+
+
+def pairs_of(room: FacingRoom, term: Term) -> Iterator[tuple[int, int, PairAgreement]]:
+    """All pairs of objects about which a term says something, with their agreements."""
+    if term.pair is None:
+        return
+    count = len(room.objects)
+    for i in range(count):
+        for j in range(count):
+            found = term.pair(room, i, j) if i != j else None
+            if found is not None:
+                yield i, j, found
