@@ -64,7 +64,7 @@ from diorama_app.viewport.client_view import set_theme
 from diorama_core.editing.collisions import Collisions
 from diorama_core.errors import DioramaError
 from diorama_core.library.record import ShapeLibrary
-from diorama_core.library.user_library import UserLibrary
+from diorama_core.library.user_library import ProjectShapes, UserLibrary
 from diorama_core.project.storage import Project
 
 log = logging.getLogger(__name__)
@@ -86,7 +86,7 @@ class Editor:
         self, server: viser.ViserServer, library: ShapeLibrary, projects_dir: Path, *, low_graphics: bool
     ) -> None:
         self.server = server
-        library = library if isinstance(library, UserLibrary) else UserLibrary(library)
+        library = ProjectShapes(library if isinstance(library, UserLibrary) else UserLibrary(library))
         self.session = EditorSession(server, library, projects_dir, Client, low_graphics=low_graphics)
         self.session.viewport.light(low_graphics=low_graphics)
         self.views = Views(self.session)

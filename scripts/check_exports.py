@@ -35,7 +35,8 @@ from diorama_core.export.environment import environment_of
 from diorama_core.export.gathering import ExportOptions, ExportScene, gather
 from diorama_core.export.stability import stability
 from diorama_core.geometry.openings import OPENING_CATEGORIES
-from diorama_core.importing.opening import marked_file, open_marked
+from diorama_core.importing.forms import marked_file
+from diorama_core.importing.opening import open_marked
 from diorama_core.importing.sweethome import parts_of_sweet_home
 from diorama_core.library.catalogue import built_in_library
 from diorama_core.library.record import ShapeLibrary
@@ -231,7 +232,7 @@ def check_sh3d(path: Path, gathered: ExportScene) -> list[str]:
     with zipfile.ZipFile(path) as archive:
         names, root = set(archive.namelist()), ET.fromstring(archive.read("Home.xml"))
     found = [f"{p.get('model')} is missing" for p in root.iter() if p.get("model") and p.get("model") not in names]
-    parts = [p for p in parts_of_sweet_home(path) if p.name not in ("wall", "floor")]
+    parts = [p for p in parts_of_sweet_home(path)[0] if p.name not in ("wall", "floor")]
     if len(parts) != len(gathered.objects):
         return [*found, f"{len(parts)} pieces"]
     floor = gathered.scene.architecture.floor

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import shutil
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -11,8 +12,9 @@ from diorama_core.errors import InputError
 
 if TYPE_CHECKING:
     from diorama_core.importing.opening import Opened
-    from diorama_core.importing.scene_import import Imported
+    from diorama_core.library.record import ShapeLibrary
     from diorama_core.progress import Progress
+    from diorama_core.project.storage import Project
 
 
 def add_import(commands: Any) -> None:
@@ -38,43 +40,68 @@ def add_import(commands: Any) -> None:
 
 
 def _import(a: argparse.Namespace) -> None:
-    from diorama_core.importing.apart import imported_apart
     from diorama_core.project.storage import Project
 
     if (a.output / "scene.json").exists():
         raise InputError(f"{a.output} has a scene already; choose a new folder")
     if a.boxes is not None and a.photo is None:
         raise InputError("--boxes says what is in a photo; name it with --photo")
-    with progress_bar() as progress:
-        part = progress if a.photo is None else progress.part(0.0, 0.2)
-        imported = imported_apart(a.file, a.library, part)
-        opened = imported.opened
-        warnings: tuple[str, ...] = ()
-        if a.photo is not None:
-            opened, warnings = _with_photo(a, imported, progress.part(0.2, 1.0))
+    existed = a.output.exists()
     project = Project.create(a.output, name=a.file.stem)
-    project.update_info(library=imported.library_name)
-    project.save_textures(opened.textures)
-    if opened.inputs is not None:
-        project.save_inputs(opened.inputs)
-    project.save_scene(opened.scene)
+    try:
+        opened, warnings = _imported_into(project, a)
+    except BaseException:
+        _clear(project, keep_folder=existed)
+        raise
     for line in (*warnings, *opened.changes):
         print_note(line)
     scene = opened.scene
     print(f"{a.output}: {len(scene.objects)} objects, {len(scene.architecture.planes)} planes")
 
 
-def _with_photo(a: argparse.Namespace, imported: Imported, progress: Progress) -> tuple[Opened, tuple[str, ...]]:
-    """The scan with what the photo shows, and warnings about the photo."""
+def _imported_into(project: Project, a: argparse.Namespace) -> tuple[Opened, tuple[str, ...]]:
+    """The file's scene in a new project, read back, and warnings."""
     import diorama_core as diorama
+    from diorama_core.importing.apart import imported_apart
+
+    warnings: tuple[str, ...] = ()
+    with progress_bar() as progress:
+        part = progress if a.photo is None else progress.part(0.0, 0.2)
+        imported = imported_apart(a.file, project.shapes_folder, a.library, part)
+        opened = imported.opened
+        project.update_info(library=imported.library_name)
+        library = diorama.open_library(project.library_name)
+        if a.photo is not None:
+            opened, warnings = _with_photo(a, opened, library, progress.part(0.2, 1.0))
+    project.save_textures(opened.textures)
+    if opened.inputs is not None:
+        project.save_inputs(opened.inputs)
+    project.save_scene(opened.scene)
+    for item in project.load_scene().objects:  # what an import reports as a success can be opened
+        library.shape(item.shape_id)
+    return opened, warnings
+
+
+def _clear(project: Project, *, keep_folder: bool) -> None:
+    """Leave nothing of a project that did not come about."""
+    for path in project.folder.iterdir():
+        shutil.rmtree(path, ignore_errors=True) if path.is_dir() else path.unlink(missing_ok=True)
+    if not keep_folder:
+        project.folder.rmdir()
+
+
+def _with_photo(
+    a: argparse.Namespace, opened: Opened, library: ShapeLibrary, progress: Progress
+) -> tuple[Opened, tuple[str, ...]]:
+    """The scan with what the photo shows, and warnings about the photo."""
     from diorama_core.importing.photo_of_scan import with_photo_of_scan
     from diorama_core.layout.recipes import recipe
     from diorama_core.perception.inputs import read_inputs
     from diorama_core.pipeline.presets import stages_for
 
-    read, library = read_inputs(a.photo, boxes=a.boxes), diorama.open_library(imported.library_name)
+    read = read_inputs(a.photo, boxes=a.boxes)
     opened = with_photo_of_scan(
-        imported.opened,
+        opened,
         read.inputs,
         library,
         lambda inputs: stages_for("auto", inputs, library),

@@ -4,8 +4,11 @@ from __future__ import annotations
 
 import argparse
 import json
+import shutil
 import sys
-from dataclasses import asdict
+from collections import Counter
+from collections.abc import Sequence
+from dataclasses import asdict, replace
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -15,12 +18,13 @@ from diorama_app.cli.arguments import command, positive, progress_bar
 from diorama_core.errors import InputError
 
 if TYPE_CHECKING:
-    from diorama_core.library.ingest.adding import Added
+    from diorama_core.library.ingest.adding import Added, Trouble
     from diorama_core.library.record import Shape
 
 AXES = ("+x", "-x", "+y", "-y", "+z", "-z")
 UNITS = {"m": 1.0, "cm": 0.01, "mm": 0.001, "in": 0.0254, "inch": 0.0254, "ft": 0.3048}
 DATASETS = ("auto", "none", "objaverse-lvis", "shapenetcore", "hssd", "3d-future", "abo")
+TABLE_ROWS = 60
 SHOWN = 20
 """Lines of each kind in the report; `--json` has all."""
 
@@ -31,7 +35,7 @@ def add_adding(actions: Any) -> None:
         actions,
         "add",
         _add,
-        "Take a folder of models into a library: GLB, glTF, OBJ with MTL, PLY, STL; FBX with 'diorama[fbx]'.",
+        "Take a folder of models into a library: GLB, glTF, OBJ with MTL, PLY, STL, DAE, 3MF, 3DS, zip, USD, FBX.",
         "diorama library add ~/models --name mine",
     )
     p.add_argument("folder", type=Path, metavar="DIR", help="searched with all folders in it; links are not followed")
@@ -71,7 +75,7 @@ def _add(a: argparse.Namespace) -> None:
     from diorama_core.library.datasets import as_sources, dataset_named, recognised
     from diorama_core.library.ingest.adding import add_models, model_files, read_table, sources
     from diorama_core.library.ingest.guess import Given
-    from diorama_core.library.store import create_library
+    from diorama_core.library.store import create_library, library_folder
     from diorama_core.render.thumbnails import thumbnail
     from diorama_core.workers import workers
 
@@ -89,14 +93,19 @@ def _add(a: argparse.Namespace) -> None:
             raise InputError(f"{a.table}: there is no model {absent[0]!r} in {folder}; paths are relative to it")
         found = sources(folder, paths, given, table)
     if not found:
-        raise InputError(f"{folder}: no model lies there; GLB, glTF, OBJ, PLY, STL and FBX are read")
+        raise InputError(f"{folder}: no model lies there, but {_what_lies_in(folder, skipped)}; {_formats()} are read")
     name = a.name or folder.name.lower().replace(" ", "-")
     pool = workers(a.ray, a.workers)
+    place = library_folder(name)
+    existed = place.exists()
     library = create_library(name)
     with progress_bar() as progress:
         report = add_models(
             found, library, pool, painter=partial(thumbnail, size=160), skipped=skipped, progress=progress
         )
+    if not report.added and not existed:
+        library.close()
+        shutil.rmtree(place, ignore_errors=True)
     if a.json:
         print(json.dumps(_as_json(report, name), default=str))
     else:
@@ -105,26 +114,72 @@ def _add(a: argparse.Namespace) -> None:
         raise InputError(f"none of {len(report.failed)} models could be used; the reasons are above")
 
 
+def _formats() -> str:
+    from diorama_core.library.ingest.models import MODEL_FORMS
+
+    return ", ".join(form.name for form in MODEL_FORMS)
+
+
+def _what_lies_in(folder: Path, skipped: Sequence[Trouble]) -> str:
+    """The files of a folder without models, by what they are or by their endings."""
+    if skipped:
+        return "; ".join(_by_reason(skipped))
+    endings = Counter(p.suffix.lower() or p.name for p in folder.rglob("*") if p.is_file())
+    return ", ".join(f"{count} {ending}" for ending, count in endings.most_common(6)) or "nothing at all"
+
+
 def _as_json(report: Added, name: str) -> dict[str, Any]:
-    return {"library": name, **asdict(report)}
+    return {"library": name, **asdict(replace(report, shapes=()))}
 
 
 def _print_report(report: Added, name: str) -> None:
     for title, lines in (
-        ("not supported", [f"{t.path}: {t.reason}" for t in report.skipped]),
+        ("not read", _by_reason(report.skipped)),
         ("repaired", _by_note(report)),
         ("unsure how it stands or what it is", list(report.unsure)),
-        ("refused", [f"{t.path}: {t.reason}" for t in report.failed]),
+        ("refused", _by_reason(report.failed)),
     ):
         for line in lines[:SHOWN]:
             print(f"{title}: {line}", file=sys.stderr)
         if len(lines) > SHOWN:
             print(f"{title}: and {len(lines) - SHOWN} more", file=sys.stderr)
+    for row in _table(report):
+        print(row)
     before = f", {report.retained} were there already" if report.retained else ""
     refused = f", {len(report.failed)} refused" if report.failed else ""
     print(f"{name}: {len(report.added)} shapes added{before}{refused}")
     if report.added:
         print(f"Use them: diorama build PHOTO -o ROOM --library {name} (or --library {name}+built-in)")
+
+
+def _by_reason(troubles: Sequence[Trouble]) -> list[str]:
+    """Each reason once, with the files that it is about."""
+    files: dict[tuple[str, str], list[Path]] = {}
+    for trouble in troubles:
+        reason = trouble.reason.replace(str(trouble.path), trouble.path.name)
+        general = reason.replace(trouble.path.name, "the file")
+        files.setdefault((trouble.path.suffix.lower(), general), []).append(trouble.path)
+    lines = []
+    for (suffix, reason), paths in files.items():
+        names = ", ".join(p.name for p in paths[:3]) + (f" and {len(paths) - 3} more" if len(paths) > 3 else "")
+        lines.append(f"{paths[0]}: {reason}" if len(paths) == 1 else f"{len(paths)} {suffix} files: {reason} ({names})")
+    return lines
+
+
+def _table(report: Added) -> list[str]:
+    """What was added: kind, size and how its file was read, a line each."""
+    unsure = set(report.unsure)
+    rows = []
+    for shape in report.shapes[:TABLE_ROWS]:
+        depth, width, height = shape.size_m
+        read = "" if shape.guess is None else f"up {shape.guess.up.value}, front {shape.guess.front.value}, "
+        unit = "" if shape.guess is None else f"unit {shape.guess.unit.value} m"
+        mark = "  unsure" if shape.id in unsure else ""
+        rows.append(
+            f"{shape.id:<28} {shape.category:<16} {width:.2f} x {depth:.2f} x {height:.2f} m  {read}{unit}{mark}"
+        )
+    left = len(report.shapes) - TABLE_ROWS
+    return [*rows, f"and {left} more: diorama library list --library NAME"] if left > 0 else rows
 
 
 def _by_note(report: Added) -> list[str]:

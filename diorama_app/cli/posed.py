@@ -38,7 +38,11 @@ def build_posed(a: argparse.Namespace, options: BuildOptions) -> None:
         print_note(remark)
     with progress_bar() as progress:
         find = str(a.poses) == FIND
-        poses = poses_from_photos(photos, progress.part(0.0, 0.1)) if find else read_poses(a.poses)
+        poses = (
+            poses_from_photos(photos, progress.part(0.0, 0.1))
+            if find
+            else read_poses(a.poses, [p.photo for p in photos])
+        )
         built = build_posed_photos(photos, poses, options, a.output, progress.part(0.1 if find else 0.0, 1.0))
     scene = built.room.scene
     several = sum(len(track.boxes) > 1 for track in built.room.tracks)

@@ -47,7 +47,7 @@ def _serve(a: argparse.Namespace) -> None:
 
     name = a.library
     if name is None:
-        name = "built-in" if a.project is None else Project.open(a.project).library_name
+        name = "built-in" if a.project is None else Project.open(a.project).shared_library_name
     serve(
         project=a.project,
         library=name,

@@ -21,7 +21,7 @@ from diorama_app.session.client import Client
 from diorama_app.session.session import EditorSession
 from diorama_app.web.html import Action, LiveHtml, button, text
 from diorama_core.errors import EditRefused, ProjectError
-from diorama_core.importing.opening import SUFFIXES
+from diorama_core.importing.forms import SUFFIXES
 from diorama_core.io.bounded import read_picture
 from diorama_core.project.lock import ProjectLock
 from diorama_core.project.storage import Project

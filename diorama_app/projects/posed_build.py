@@ -16,6 +16,7 @@ from diorama_core.layout.recipes import recipe
 from diorama_core.multiview.found_poses import UnposedPhoto, find_poses
 from diorama_core.multiview.posed_photos import PosedPhoto, Poses
 from diorama_core.multiview.rooms import JoinedRoom, PosedInputs, build_room, in_room
+from diorama_core.multiview.turned_cameras import quarters_of, upright_camera
 from diorama_core.perception.inputs import read_inputs
 from diorama_core.pipeline.presets import stages_for
 from diorama_core.pipeline.stages import Stages
@@ -75,7 +76,7 @@ def build_posed_photos(
     for photo, posed in pairs:
         inputs, warnings = _inputs(photo)
         notes += [f"{photo.photo.name}: {line}" for line in warnings]
-        read.append((photo.photo.name, photo.photo, _posed(photo, inputs, posed)))
+        read.append((photo.photo.name, photo.photo, _posed(photo, inputs, posed, stored=poses.stored_pixels)))
     read.sort(key=lambda row: (-len(row[2].inputs.boxes), row[0]))
 
     def choose(inputs: Inputs) -> Stages:
@@ -116,9 +117,14 @@ def _inputs(photo: FolderPhoto) -> tuple[Inputs, tuple[str, ...]]:
     return read.inputs, read.warnings
 
 
-def _posed(photo: FolderPhoto, inputs: Inputs, posed: PosedPhoto) -> PosedInputs:
-    k = posed.camera.intrinsics
+def _posed(photo: FolderPhoto, inputs: Inputs, posed: PosedPhoto, *, stored: bool) -> PosedInputs:
+    """A photo with its camera, which is turned with it where it is the camera of the picture as it is stored."""
     width, height = inputs.photo.width, inputs.photo.height
+    quarters, k = quarters_of(photo.photo), posed.camera.intrinsics
+    lies = abs(k.height / k.width * height / width - 1.0) <= MAX_ASPECT_OFF and abs(k.width / k.height - 1.0) > 0.01
+    if (quarters % 2 and lies) or (quarters == 2 and stored):
+        posed = replace(posed, camera=upright_camera(posed.camera, quarters))
+    k = posed.camera.intrinsics
     if abs(k.width / k.height * height / width - 1.0) > MAX_ASPECT_OFF:
         raise InputError(
             f"{photo.photo.name} has {width} x {height} pixels, its camera {k.width} x {k.height}: another picture?"

@@ -11,13 +11,13 @@ from diorama_app.session.client import Client
 from diorama_app.session.session import EditorSession
 from diorama_core.errors import InputError
 from diorama_core.importing.apart import read_apart
-from diorama_core.importing.opening import SUFFIXES, Opened
+from diorama_core.importing.forms import SUFFIXES
+from diorama_core.importing.opening import Opened
 from diorama_core.io.atomic import write_atomically
-from diorama_core.library.boards import base_id
-from diorama_core.library.user_library import OWN, UserLibrary
+from diorama_core.library.user_library import OWN, ProjectShapes, UserLibrary
 from diorama_core.progress import Progress
 from diorama_core.project.lock import ProjectLock
-from diorama_core.project.storage import Project
+from diorama_core.project.storage import OWN_SHAPES, Project
 
 MAX_NOTES = 40
 
@@ -39,35 +39,35 @@ def open_file(client: Client, name: str, content: bytes) -> None:
         raise InputError(f"{file_name} is no scene that can be opened; choose a {', '.join(SUFFIXES)} file")
 
     def work(progress: Progress) -> None:
-        opened = _read(session, file_name, content, progress.part(0.0, 0.9))
-        progress.report(0.9, "saving the project")
-        project = _saved(session, Path(file_name).stem, file_name, opened)
+        with tempfile.TemporaryDirectory(prefix="upload-") as folder:
+            shapes = Path(folder) / "shapes"
+            opened = _read(session, Path(folder) / file_name, shapes, content, progress.part(0.0, 0.9))
+            progress.report(0.9, "saving the project")
+            project = _saved(session, file_name, opened, shapes)
         client.post(lambda: _show(client, project, file_name))
 
     session.jobs.start("import", f"Opening {file_name}", work)
 
 
-def _read(session: EditorSession, name: str, content: bytes, progress: Progress) -> Opened:
+def _read(session: EditorSession, path: Path, shapes: Path, content: bytes, progress: Progress) -> Opened:
     """The scene in a file, read in a process of its own with limited memory."""
-    known = frozenset(shape.id for shape in session.library.shapes())
-    with tempfile.TemporaryDirectory(prefix="upload-") as folder:
-        path = Path(folder) / name
-        write_atomically(path, content, error=InputError)
-        opened = read_apart(path, known, progress)
-    taken_in = not {base_id(o.shape_id) for o in opened.scene.objects} <= known
-    if taken_in and isinstance(session.library, UserLibrary):
-        session.library.own()  # from now on it lists what the other process took in
-    return opened
+    library = session.library
+    shared = library.shared if isinstance(library, ProjectShapes) else library
+    write_atomically(path, content, error=InputError)
+    return read_apart(path, shapes, frozenset(shape.id for shape in shared.shapes()), progress)
 
 
-def _saved(session: EditorSession, stem: str, file_name: str, opened: Opened) -> Project:
-    """A new project with the scene; none is left behind when it cannot be saved."""
+def _saved(session: EditorSession, file_name: str, opened: Opened, shapes: Path) -> Project:
+    """A new project with the scene and its shapes; none is left behind when it cannot be saved."""
+    stem = Path(file_name).stem
     folder = fresh_folder(session.projects_dir, stem)
     try:
         project = Project.create(folder, name=stem)
         with ProjectLock(folder, "the editor"):
             notes = [f"opened from {file_name}", *opened.changes[:MAX_NOTES]]
-            project.update_info(library=_library_name(session, opened), notes=notes)
+            if shapes.is_dir():
+                shutil.copytree(shapes, project.shapes_folder)
+            project.update_info(library=_library_name(session, opened, own=shapes.is_dir()), notes=notes)
             project.save_textures(opened.textures)
             if opened.inputs is not None:
                 project.save_inputs(opened.inputs)
@@ -79,12 +79,13 @@ def _saved(session: EditorSession, stem: str, file_name: str, opened: Opened) ->
     return project
 
 
-def _library_name(session: EditorSession, opened: Opened) -> str:
-    """The library by which commands find the shapes: that of the open project, with one's own models where needed."""
-    named = "built-in" if session.project is None else session.project.library_name
+def _library_name(session: EditorSession, opened: Opened, *, own: bool) -> str:
+    """The library by which commands find the shapes: that of the open project, a person's models, the file's shapes."""
+    names = ("built-in" if session.project is None else session.project.shared_library_name).split("+")
     library = session.library
-    own = isinstance(library, UserLibrary) and any(library.has_own(o.shape_id) for o in opened.scene.objects)
-    return f"{named}+{OWN}" if own and OWN not in named.split("+") else named
+    if isinstance(library, UserLibrary) and any(library.has_own(o.shape_id) for o in opened.scene.objects):
+        names.append(OWN)
+    return "+".join(dict.fromkeys([*names, *([OWN_SHAPES] if own else [])]))
 
 
 def _show(client: Client, project: Project, file_name: str) -> None:

@@ -41,7 +41,7 @@ from diorama_core.editing.clipboard import Clip
 from diorama_core.errors import DioramaError, EditRefused
 from diorama_core.io.bounded import shortened
 from diorama_core.library.record import ShapeLibrary
-from diorama_core.library.user_library import ShapeRecords
+from diorama_core.library.user_library import ProjectShapes, ShapeRecords
 from diorama_core.project.storage import Project
 from diorama_core.scene.schema import check_limits
 from diorama_core.scene.types import Pose, Scene
@@ -316,6 +316,8 @@ class EditorSession:
         """
         read = read_project(project)
         scene, inputs = read.scene, read.inputs
+        if isinstance(self.library, ProjectShapes):
+            self.library.show(project.shapes_folder)
         self.autosave.flush()
         if self._access.take(project):
             with contextlib.suppress(OSError):  # leftovers that cannot be removed disturb nobody

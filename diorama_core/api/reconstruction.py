@@ -118,7 +118,9 @@ def save(reconstruction: Reconstruction, folder: Path | str) -> None:
         project.save_scene(reconstruction.scene)
         return
     inputs, built = reconstruction.inputs, reconstruction.built
-    if reconstruction.library_name is not None:
+    if own is not None:
+        project.take_shapes(own)
+    elif reconstruction.library_name is not None:
         project.update_info(library=reconstruction.library_name)
     if inputs is not None:
         project.save_inputs(inputs, reconstruction.warnings)

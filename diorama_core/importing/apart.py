@@ -18,18 +18,18 @@ MAX_QUIET_S = 90.0
 R = TypeVar("R")
 
 
-def imported_apart(path: Path, library_name: str | None, progress: Progress) -> Imported:
+def imported_apart(path: Path, shapes: Path, library_name: str | None, progress: Progress) -> Imported:
     """`import_scene` in a process of its own; it raises the same, and `InputError` where that process had to end."""
-    return _apart(path, _imported, path, library_name, progress=progress)
+    return _apart(path, _imported, path, shapes, library_name, progress=progress)
 
 
-def read_apart(path: Path, known: frozenset[str], progress: Progress) -> Opened:
+def read_apart(path: Path, shapes: Path, known: frozenset[str], progress: Progress) -> Opened:
     """`read_scene` in a process of its own; it raises the same, and `InputError` where that process had to end."""
-    return _apart(path, read_scene, path, known, progress=progress)
+    return _apart(path, read_scene, path, shapes, known, progress=progress)
 
 
-def _imported(path: Path, library_name: str | None, progress: Progress) -> Imported:
-    return import_scene(path, library_name=library_name, progress=progress)
+def _imported(path: Path, shapes: Path, library_name: str | None, progress: Progress) -> Imported:
+    return import_scene(path, shapes, library_name=library_name, progress=progress)
 
 
 def _apart(path: Path, read: Callable[..., R], *args: Any, progress: Progress) -> R:

@@ -8,9 +8,8 @@ from __future__ import annotations
 
 import hashlib
 import re
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -18,12 +17,14 @@ import numpy as np
 from diorama_core.errors import InputError, LibraryError
 from diorama_core.importing.marked import MarkedFile
 from diorama_core.importing.opening import Opened
-from diorama_core.importing.parts import Part, parts_of_gltf, parts_of_usd, shape_parts
+from diorama_core.importing.part import Part
+from diorama_core.importing.parts import shape_parts
 from diorama_core.importing.room import room_of, supports_of
-from diorama_core.importing.sweethome import parts_of_sweet_home
+from diorama_core.library.ingest.convention import UNKNOWN
 from diorama_core.library.ingest.guess import Given, axis_vector
 from diorama_core.library.ingest.known_shapes import KnownShapes, known_shapes
-from diorama_core.library.ingest.models import UNKNOWN, RawModel
+from diorama_core.library.ingest.models import RawModel
+from diorama_core.library.ingest.names import words_of
 from diorama_core.library.ingest.shaping import Source, ingest_model
 from diorama_core.library.ingest.sink import Ingested, ShapeSink
 from diorama_core.library.record import Shape
@@ -43,25 +44,22 @@ class _Shaped:
     pose: Pose
 
 
-def open_foreign(path: Path, sink: ShapeSink, progress: Progress, known: KnownShapes | None = None) -> Opened:
-    """A scene from a file of another program.
+def scene_of_parts(
+    parts: Sequence[Part], path: Path, sink: ShapeSink, progress: Progress, known: KnownShapes | None = None
+) -> Opened:
+    """A scene from the parts of a file of another program.
 
     Args:
-        path: GLB, glTF, USD or Sweet Home 3D.
+        parts: Of the file, in the world.
+        path: The file, for names.
         sink: Takes the shapes in.
         progress: Where parts are counted and cancelling is noticed.
         known: Shapes to compare with; the built-in ones by default.
 
     Raises:
-        InputError: the file cannot be read or has nothing in it.
+        InputError: the file has nothing in it.
         LibraryError: a shape cannot be kept.
     """
-    readers: dict[str, Callable[[Path], tuple[Part, ...]]] = {
-        ".glb": parts_of_gltf,
-        ".gltf": parts_of_gltf,
-        ".sh3d": partial(parts_of_sweet_home, progress=progress),
-    }
-    parts = readers.get(path.suffix.lower(), parts_of_usd)(path)
     if not parts:
         raise InputError(f"{path.name} has no geometry in it; export the scene again")
     room = room_of(parts)
@@ -124,7 +122,7 @@ def _taken_in(part: Part, path: Path, sink: ShapeSink, known: KnownShapes) -> _S
 def _ingested(part: Part, shape_id: str, path: Path, given: Given, known: KnownShapes) -> Ingested:
     raw = RawModel(part.unturned, (part.name,), UNKNOWN, ())
     source = Source(Path(f"{part.name.replace('/', ' ')}.glb"), Path(), shape_id, f"{path.name} {shape_id}", given)
-    return ingest_model(raw, source, known)
+    return ingest_model(raw, source, known, square=False)
 
 
 def _pose(part: Part, record: Shape) -> Pose:
@@ -151,6 +149,12 @@ def _known_copy(part: Part, shaped: Sequence[_Shaped]) -> _Shaped | None:
     return None
 
 
+def _label(name: str) -> str:
+    """The last part of a path of names that says something."""
+    parts = [part for part in name.split("/") if part]
+    return next((part for part in reversed(parts) if words_of(part)), parts[-1] if parts else "")
+
+
 def _objects(shaped: Sequence[_Shaped]) -> tuple[SceneObject, ...]:
     taken: set[str] = set()
     made = []
@@ -160,7 +164,7 @@ def _objects(shaped: Sequence[_Shaped]) -> tuple[SceneObject, ...]:
         while f"{stem}-{number}" in taken:
             number += 1
         taken.add(f"{stem}-{number}")
-        label = one.part.name or one.record.category
+        label = _label(one.part.name) or one.record.category
         made.append(
             SceneObject(f"{stem}-{number}", label, one.record.category, one.record.id, one.record.size_m, one.pose)
         )

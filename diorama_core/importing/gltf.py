@@ -22,11 +22,10 @@ from diorama_core.io.bounded import shortened
 from diorama_core.library.ingest.gltf import container
 from diorama_core.library.ingest.limits import DEFAULT_LIMITS
 from diorama_core.library.ingest.references import IMAGE_FORMATS, References, read_bytes
+from diorama_core.library.ingest.usd_stage import Z_UP
 
 Json = dict[str, Any]
 MARK = "diorama"
-Z_UP = np.array([[1.0, 0, 0, 0], [0, 0, -1.0, 0], [0, 1.0, 0, 0], [0, 0, 0, 1.0]])
-"""glTF's frame (+Y up) to the world's."""
 CAMERA_AXES = np.diag([1.0, -1.0, -1.0, 1.0])
 """glTF cameras look along their -z with y up; ours along +z with y down."""
 

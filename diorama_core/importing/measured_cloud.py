@@ -23,10 +23,17 @@ from shapely.ops import unary_union
 
 from diorama_core.errors import InputError
 from diorama_core.geometry.openings import OPENING_CATEGORIES
-from diorama_core.importing.measured_room import MeasuredBox, MeasuredOpening, MeasuredRoom, MeasuredWall
-from diorama_core.importing.point_files import PointCloud
+from diorama_core.importing.measured_types import (
+    MeasuredBox,
+    MeasuredFloor,
+    MeasuredOpening,
+    MeasuredRoom,
+    MeasuredWall,
+)
+from diorama_core.importing.point_cloud import PointCloud
 from diorama_core.importing.scanned_openings import scanned_openings
 from diorama_core.importing.scanned_tops import apart_from_tops
+from diorama_core.importing.upright import LEVEL_M, likely_up, sharpness
 from diorama_core.library.company import CARRIED_KINDS
 from diorama_core.library.taxonomy import CATEGORIES, UNKNOWN
 from diorama_core.scene.types import yaw_rotation
@@ -35,8 +42,6 @@ MAX_REACH_M = 60.0
 FARTHEST_M = 1e8
 """From the file's zero: surveyors' grids are within 10,000 km."""
 VOXEL_M = 0.03
-LEVEL_M = 0.02
-"""Of the histogram of heights."""
 LEVEL_SHARE = 0.3
 """Of the densest level that another one has to be a floor or a ceiling."""
 LEVEL_PEAK = 1.5
@@ -68,6 +73,8 @@ MIN_TOP_M = 0.12
 """Of what lies on something."""
 STANDS_M = 0.35
 """So far above the floor thin legs may go unseen."""
+TABLE_M, BOARD_M, MIN_BOARD_M = (0.35, 1.1), 0.12, 0.4
+"""Heights of boards that stand on legs, how thick they are at most, and the least shorter side."""
 SQUARE_RAD = float(np.radians(10.0))
 WALL_SHARE = 0.85
 """Of the room's height: what is thinner than `OFF_M` and reaches so high is a wall."""
@@ -123,26 +130,17 @@ def measured_cloud(cloud: PointCloud) -> MeasuredRoom:
     if left_out:
         notes.append(f"{left_out} smaller things were left out")
     photos = tuple(p.moved(T) for p in cloud.photos)
-    return MeasuredRoom(walls, boxes, openings, floor=ring, floor_m=0.0, notes=tuple(notes), photos=photos)
+    return MeasuredRoom(walls, boxes, openings, floors=(MeasuredFloor(ring, 0.0),), notes=tuple(notes), photos=photos)
 
 
 def _upright_axes(cloud: PointCloud) -> Float[np.ndarray, "3 3"]:
     """The rotation to +Z up: as the format says, or along the axis across which levels are densest."""
-    up = cloud.up
-    if up is None:
-        up = np.eye(3)[max((2, 1), key=lambda axis: _sharpness(cloud.points[:, axis], LEVEL_M))]
+    up = likely_up(cloud.points) if cloud.up is None else cloud.up
     z = up / np.linalg.norm(up)
     x = np.array([1.0, 0.0, 0.0]) if abs(z[0]) < 0.9 else np.array([0.0, 0.0, 1.0])
     x = x - (x @ z) * z
     x /= np.linalg.norm(x)
     return np.stack([x, np.cross(z, x), z])
-
-
-def _sharpness(values: Float[np.ndarray, "n"], step: float) -> float:
-    """How much of all values lies in few bins."""
-    low, high = np.quantile(values, [0.005, 0.995])
-    counts, _ = np.histogram(values, np.arange(low - 0.1, high + 0.1 + step, step))
-    return float((counts.astype(float) ** 2).sum()) / max(len(values), 1) ** 2
 
 
 def _thinned(points: Float[np.ndarray, "n 3"]) -> Float[np.ndarray, "m 3"]:
@@ -209,7 +207,7 @@ def _heading(points: Float[np.ndarray, "n 3"], top_m: float) -> float:
 
     def sharp(angle: float) -> float:
         turned = plan @ yaw_rotation(-angle)[:2, :2].T
-        return sum(_sharpness(turned[:, axis], LINE_M) for axis in (0, 1))
+        return sum(sharpness(turned[:, axis], LINE_M) for axis in (0, 1))
 
     coarse = max(np.radians(np.arange(0.0, 90.0, 1.0)), key=sharp)
     return float(max(coarse + np.radians(np.arange(-1.0, 1.01, 0.1)), key=sharp))
@@ -347,6 +345,13 @@ def _is_clear_of_walls(points: Float[np.ndarray, "n 3"], room: _Room) -> bool:
     return bool(room.outline.exterior.distance(around) > HANGS_CLEAR_M)
 
 
+def _is_board(points: Float[np.ndarray, "n 3"], room: _Room) -> bool:
+    """Whether points are a level board at a table's height, away from walls: its legs are too thin to be seen."""
+    x, y, thickness = np.ptp(points, axis=0)
+    at_height = TABLE_M[0] < float(points[:, 2].min()) < TABLE_M[1]
+    return bool(at_height and thickness < BOARD_M and min(x, y) > MIN_BOARD_M and _is_clear_of_walls(points, room))
+
+
 def _is_thing(points: Float[np.ndarray, "n 3"]) -> bool:
     """Whether what lies on something is large enough, and no few points of a larger thing's edge."""
     return len(points) >= 2 * MIN_CELLS and _middle_extent(points) >= MIN_TOP_M
@@ -356,7 +361,8 @@ def _box(points: Float[np.ndarray, "n 3"], room: _Room) -> MeasuredBox:
     """The upright box around a thing, its back at the wall that it stands at."""
     low, high = float(points[:, 2].min()), float(points[:, 2].max())
     hangs = low > LOWEST_LAMP_SHARE * room.top_m and _is_clear_of_walls(points, room)
-    low, high = 0.0 if low < STANDS_M else low, room.top_m if hangs else high
+    stands = low < STANDS_M or _is_board(points, room)
+    low, high = 0.0 if stands else low, room.top_m if hangs else high
     plan = points[:, :2]
     (cx, cy), (a, b), degrees = cv2.minAreaRect(plan.astype(np.float32))
     turn = np.radians(degrees)

@@ -6,17 +6,23 @@ from __future__ import annotations
 import re
 from collections import Counter
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field, replace
-from typing import Literal
+from dataclasses import replace
 
 import numpy as np
 from jaxtyping import Float
-from shapely.geometry import MultiPoint, MultiPolygon, Point, Polygon
-from shapely.ops import polygonize, snap, unary_union
+from shapely.geometry import Point, Polygon
 
 from diorama_core.geometry.openings import STANDS_OUT_M, with_hole
+from diorama_core.importing.measured_types import MeasuredBox, MeasuredOpening, MeasuredRoom
 from diorama_core.importing.opening import Opened
-from diorama_core.importing.point_files import ScanPhoto
+from diorama_core.importing.storeys import (
+    ceiling_planes,
+    floor_below,
+    floor_planes,
+    inner_face,
+    measured_storeys,
+)
+from diorama_core.library.kind_sizes import is_possible
 from diorama_core.library.record import Shape, ShapeLibrary
 from diorama_core.library.taxonomy import UNKNOWN, category
 from diorama_core.retrieval.pools import RetrievalQuery, pool_for, size_cost
@@ -28,71 +34,6 @@ KEEP = 8
 RESTS_M = 0.08
 """How far the bottom of a box may be off what it stands on."""
 AT_WALL_M = 0.15
-CORNER_M = 0.25
-"""Ends of walls that are so near meet in a corner, where the file has no floor."""
-INSIDE_M = 0.3
-"""So far from a wall one is in the room, on one side of it."""
-LEVEL_M = 0.05
-"""Walls whose tops differ by less carry a level ceiling."""
-
-
-@dataclass(frozen=True, eq=False)
-class MeasuredWall:
-    """A flat wall: corners of its middle plane in the world, in order, either way round."""
-
-    id: str
-    polygon: Float[np.ndarray, "n 3"]
-    thickness_m: float = 0.0
-    """Of a slab, half of which is on the room's side of the corners; 0 where they are on the surface."""
-
-
-@dataclass(frozen=True, eq=False)
-class MeasuredOpening:
-    """A door, a window, or a hole in a wall."""
-
-    kind: Literal["door", "window", "opening"]
-    centre: Float[np.ndarray, "3"]
-    width_m: float
-    height_m: float
-    wall: str | None = None
-    """Id of its wall, where the file names it; otherwise the nearest one is taken."""
-
-
-@dataclass(frozen=True, eq=False)
-class MeasuredBox:
-    """A box with a thing in it."""
-
-    label: str
-    kinds: Mapping[str, float]
-    """Categories that it may be of, with how often its word means each; sizes decide among them."""
-    R_world_box: Float[np.ndarray, "3 3"]
-    """Axes of the box in the world: x to the front, z up."""
-    centre: Float[np.ndarray, "3"]
-    size_m: Float[np.ndarray, "3"]
-    """Along x (depth), y (width), z (height)."""
-    confidence: float = 1.0
-    points: Float[np.ndarray, "n 3"] | None = None
-    """Of the thing's surface, in the world, where it was scanned."""
-    kinds_know_size: bool = False
-    """Whether the shares of its kinds say already how usual its size is for each."""
-    fits: Mapping[str, float] = field(default_factory=dict)
-    """How well shapes agree with the points, by id, 0 to 1; those that were not compared agree as the worst of them."""
-
-
-@dataclass(frozen=True, eq=False)
-class MeasuredRoom:
-    """Everything that was measured. World frame: +Z up, metres."""
-
-    walls: tuple[MeasuredWall, ...]
-    boxes: tuple[MeasuredBox, ...]
-    openings: tuple[MeasuredOpening, ...] = ()
-    floor: Float[np.ndarray, "n 2"] | None = None
-    """Outline, where the file has one."""
-    floor_m: float | None = None
-    """Height of the floor; the lowest corner of the walls where None."""
-    notes: tuple[str, ...] = field(default=())
-    photos: tuple[ScanPhoto, ...] = ()
-    """Taken while the room was measured, their cameras in the world."""
 
 
 def opened_room(room: MeasuredRoom, library: ShapeLibrary) -> Opened:
@@ -101,18 +42,25 @@ def opened_room(room: MeasuredRoom, library: ShapeLibrary) -> Opened:
     A front that looks into a wall it touches is turned round. Boxes stand on the floor, on what is right below them, or
     hang on the wall that they touch.
     """
-    floor_m = _floor_height(room)
-    outline = _outline(room)
-    walls = tuple(_wall(w, outline) for w in room.walls)
+    storeys = measured_storeys(room)
+    walls = tuple(inner_face(w, storeys) for w in room.walls)
     walls, unused = _with_passages(walls, room.openings)
-    planes = (*_floor(outline, floor_m), *walls, *_ceiling(outline, walls))
-    boxes = [_facing_the_room(_resting(b, floor_m), walls) for b in room.boxes]
+    floors = floor_planes(storeys)
+    ceilings, remarks = ceiling_planes(storeys, walls)
+    planes = (*floors, *walls, *ceilings)
+    below = [floor_below(b.centre, float(b.size_m[2]), storeys) for b in room.boxes]
+    boxes = [
+        _facing_the_room(_resting(b, storeys[k].height_m) if k is not None else b, walls)
+        for b, k in zip(room.boxes, below, strict=True)
+    ]
     names = _Names()
-    holders = [_held(index, boxes, planes, floor_m) for index in range(len(boxes))]
+    holders = [
+        _held(index, boxes, planes, floors[k] if k is not None and floors else None) for index, k in enumerate(below)
+    ]
     objects = [_object(names, box, held, library) for box, held in zip(boxes, holders, strict=True)]
     ids = [o.id for o in objects]
     supports = [_support(ids, index, held) for index, held in enumerate(holders)]
-    notes = list(room.notes)
+    notes = [*room.notes, *remarks]
     for opening in room.openings:
         wall = _wall_of(opening, walls)
         if wall is None or opening in unused:
@@ -123,7 +71,7 @@ def opened_room(room: MeasuredRoom, library: ShapeLibrary) -> Opened:
         item = _hung(names, opening, wall, library)
         objects.append(item)
         supports.append(Support(item.id, wall.id, "mounted on", child_face="back"))
-    held = tuple(s for s in supports if s is not None and (s.parent != "floor" or outline is not None))
+    held = tuple(s for s in supports if s is not None)
     scene = Scene(None, Architecture(planes), tuple(objects), held)
     check_scene(scene)
     return Opened(scene, changes=tuple(notes))
@@ -142,6 +90,11 @@ def likeliest_kind(kinds: Mapping[str, float], size_m: Float[np.ndarray, "3"]) -
     return {kind: value / total for kind, value in found.items()}
 
 
+def possible_kinds(kinds: Mapping[str, float], size_m: Float[np.ndarray, "3"]) -> dict[str, float]:
+    """Those kinds that can be so large along every side."""
+    return {kind: share for kind, share in kinds.items() if is_possible(kind, size_m)}
+
+
 class _Names:
     def __init__(self) -> None:
         self._counts: Counter[str] = Counter()
@@ -150,71 +103,6 @@ class _Names:
         stem = re.sub(r"[^a-z0-9]+", "-", word.lower()).strip("-") or "object"
         self._counts[stem] += 1
         return f"{stem}-{self._counts[stem]}"
-
-
-def _floor_height(room: MeasuredRoom) -> float:
-    if room.floor_m is not None:
-        return room.floor_m
-    lowest = [float(w.polygon[:, 2].min()) for w in room.walls] or [
-        float(b.centre[2] - b.size_m[2] / 2) for b in room.boxes
-    ]
-    return min(lowest, default=0.0)
-
-
-def _outline(room: MeasuredRoom) -> Polygon | None:
-    """The floor seen from above: as measured, enclosed by the walls, or around everything."""
-    if room.floor is not None and Polygon(room.floor).is_valid and Polygon(room.floor).area > 0:
-        return Polygon(room.floor)
-    ends = [w.polygon[:, :2] for w in room.walls]
-    lines = MultiPoint(np.vstack(ends)) if ends else None
-    if lines is not None:
-        segments = [MultiPoint(e).convex_hull for e in ends]
-        for index in range(1, len(segments)):
-            segments[index] = snap(segments[index], unary_union(segments[:index]), CORNER_M)
-        rooms = list(polygonize(unary_union([s for s in segments if s.geom_type == "LineString"])))
-        if rooms:
-            whole = unary_union(rooms)
-            return max(whole.geoms, key=lambda p: p.area) if isinstance(whole, MultiPolygon) else whole
-    corners = [_corners(b)[:, :2] for b in room.boxes] + ends
-    hull = MultiPoint(np.vstack(corners)).convex_hull if corners else None
-    return hull if isinstance(hull, Polygon) else None
-
-
-def _floor(outline: Polygon | None, floor_m: float) -> tuple[Plane, ...]:
-    if outline is None:
-        return ()
-    ring = _ring(outline)
-    return (Plane("floor", "floor", np.column_stack([ring, np.full(len(ring), floor_m)])),)
-
-
-def _ring(outline: Polygon) -> Float[np.ndarray, "n 2"]:
-    """Corners counter-clockwise seen from above."""
-    ring = np.asarray(outline.exterior.coords)[:-1, :2]
-    return ring if outline.exterior.is_ccw else ring[::-1]
-
-
-def _ceiling(outline: Polygon | None, walls: Sequence[Plane]) -> tuple[Plane, ...]:
-    """A level ceiling where all walls are as high."""
-    tops = [float(w.polygon[:, 2].max()) for w in walls]
-    if outline is None or len(tops) < 3 or np.ptp(tops) > LEVEL_M:
-        return ()
-    ring = _ring(outline)[::-1]
-    return (Plane("ceiling", "ceiling", np.column_stack([ring, np.full(len(ring), float(np.median(tops)))])),)
-
-
-def _wall(wall: MeasuredWall, outline: Polygon | None) -> Plane:
-    """The wall's inner face, seen counter-clockwise from inside the room."""
-    plane = Plane(wall.id, "wall", wall.polygon)
-    normal, centre = plane.normal, plane.centre
-    if outline is not None:
-        ahead, behind = (outline.contains(Point((centre + side * INSIDE_M * normal)[:2])) for side in (1, -1))
-        middle = np.asarray(outline.representative_point().coords)[0]
-        inward = ahead if ahead != behind else (middle - centre[:2]) @ normal[:2] > 0
-        if not inward:
-            plane, normal = replace(plane, polygon=wall.polygon[::-1]), -normal
-    if wall.thickness_m == 0.0:
-        return plane
-    return replace(plane, polygon=plane.polygon + normal * wall.thickness_m / 2, thickness=wall.thickness_m)
 
 
 def _resting(box: MeasuredBox, floor_m: float) -> MeasuredBox:
@@ -242,7 +130,9 @@ def _gap(box: MeasuredBox, direction: Float[np.ndarray, "3"], walls: Sequence[Pl
     gaps = [
         abs(float(w.normal @ face) - w.offset)
         for w in walls
-        if w.normal @ direction < -0.94 and _beside(w, face, box.size_m[1] / 2)
+        if w.normal @ direction < -0.94
+        and _beside(w, face, box.size_m[1] / 2)
+        and w.polygon[:, 2].min() < box.centre[2] < w.polygon[:, 2].max()
     ]
     return min(gaps, default=np.inf)
 
@@ -254,12 +144,7 @@ def _beside(wall: Plane, point: Float[np.ndarray, "3"], reach_m: float) -> bool:
     return bool(span.min() - reach_m < point @ along < span.max() + reach_m)
 
 
-def _corners(box: MeasuredBox) -> Float[np.ndarray, "8 3"]:
-    signs = np.array([[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)])
-    return box.centre + (0.5 * signs * box.size_m) @ box.R_world_box.T
-
-
-def _held(index: int, boxes: Sequence[MeasuredBox], planes: Sequence[Plane], floor_m: float) -> str:
+def _held(index: int, boxes: Sequence[MeasuredBox], planes: Sequence[Plane], floor: Plane | None) -> str:
     """What holds a box up: the floor, the ceiling, a wall, or the number of another box."""
     box = boxes[index]
     low, high = (float(box.centre[2] + side * box.size_m[2] / 2) for side in (-1, 1))
@@ -272,10 +157,11 @@ def _held(index: int, boxes: Sequence[MeasuredBox], planes: Sequence[Plane], flo
     ]
     if below:
         return str(max(below)[1])
-    if low - floor_m < RESTS_M:
-        return "floor"
-    if any(p.role == "ceiling" and abs(p.centre[2] - high) < RESTS_M for p in planes):
-        return "ceiling"
+    if floor is not None and low - float(floor.centre[2]) < RESTS_M:
+        return floor.id
+    above = [p.id for p in planes if p.role == "ceiling" and abs(p.centre[2] - high) < RESTS_M and _covers(p, box)]
+    if above:
+        return above[0]
     near = [(_gap(box, -box.R_world_box[:, 0], [w]), w.id) for w in planes if w.role == "wall"]
     return min(near)[1] if near and min(near)[0] < AT_WALL_M else "nothing"
 
@@ -283,23 +169,28 @@ def _held(index: int, boxes: Sequence[MeasuredBox], planes: Sequence[Plane], flo
 def _support(ids: Sequence[str], index: int, held: str) -> Support | None:
     if held == "nothing":
         return None
-    if held == "floor":
-        return Support(ids[index], "floor")
+    if held.startswith("floor"):
+        return Support(ids[index], held)
     if held.isdecimal():
         return Support(ids[index], ids[int(held)])
-    return Support(ids[index], held, "mounted on", child_face="top" if held == "ceiling" else "back")
+    return Support(ids[index], held, "mounted on", child_face="top" if held.startswith("ceiling") else "back")
 
 
 def _mount(held: str) -> str:
     """Where kinds are found that are held so: a wall, the ceiling, or else the floor."""
-    return "floor" if held in ("floor", "nothing") or held.isdecimal() else "ceiling" if held == "ceiling" else "wall"
+    stands = held.startswith("floor") or held == "nothing" or held.isdecimal()
+    return "floor" if stands else "ceiling" if held.startswith("ceiling") else "wall"
+
+
+def _covers(plane: Plane, box: MeasuredBox) -> bool:
+    return bool(Polygon(plane.polygon[:, :2]).buffer(RESTS_M).contains(Point(box.centre[:2])))
 
 
 def _object(names: _Names, box: MeasuredBox, held: str, library: ShapeLibrary) -> SceneObject:
     mount = _mount(held)
     held_so = ("floor", "surface") if mount == "floor" else (mount,)
     mounted = {k: v for k, v in box.kinds.items() if category(k).mount in held_so}
-    possible = mounted or box.kinds or {UNKNOWN.name: 1.0}
+    possible = possible_kinds(mounted, box.size_m) or possible_kinds(box.kinds, box.size_m) or {UNKNOWN.name: 1.0}
     senses = dict(possible) if box.kinds_know_size else likeliest_kind(possible, box.size_m)
     kind = max(senses, key=lambda k: (senses[k], k))
     query = RetrievalQuery(kind, box.size_m, False, mount, senses)

@@ -1,10 +1,9 @@
-"""One door for every file a scene can come from."""
+"""A scene from a file, with its pictures, notes and photo."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -13,16 +12,9 @@ from jaxtyping import UInt8
 from diorama_core.artefacts import Inputs, LabelledBox, Photo
 from diorama_core.errors import InputError
 from diorama_core.importing.marked import MarkedFile
-from diorama_core.importing.point_files import CLOUD_SUFFIXES
 from diorama_core.importing.restore import restored
 from diorama_core.perception.input_photo import read_photo, read_source
 from diorama_core.scene.types import Architecture, Scene
-
-GLTF_SUFFIXES = (".glb", ".gltf")
-USD_SUFFIXES = (".usd", ".usda", ".usdc", ".usdz")
-SUFFIXES = (*GLTF_SUFFIXES, *USD_SUFFIXES, ".sh3d", ".json", *CLOUD_SUFFIXES)
-"""Endings of files that can be opened as scenes."""
-
 
 MAX_PHOTO_PX = 8192
 """Longest side of a photo; a larger one does not fit its camera any more."""
@@ -51,22 +43,6 @@ class Opened:
             return None
         camera = self.scene.camera
         return Inputs(self.photo, self.boxes, intrinsics=None if camera is None else camera.intrinsics)
-
-
-def marked_file(path: Path) -> MarkedFile | None:
-    """What Diorama wrote into a file; None when it comes from another program.
-
-    Raises:
-        InputError: the file is missing, of a kind that is not read, or damaged.
-        UnavailableError: an optional library is missing.
-    """
-    path = Path(path)
-    if not path.is_file():
-        raise InputError(f"{path} does not exist or is no scan; name a GLB, USD, Sweet Home 3D, RoomPlan or point file")
-    reader = _readers().get(path.suffix.lower())
-    if reader is None:
-        raise InputError(f"{path}: scenes are read from {', '.join(SUFFIXES)}; export one of these")
-    return reader(path)
 
 
 def open_marked(file: MarkedFile) -> Opened:
@@ -99,15 +75,3 @@ def _photo(file: MarkedFile, scene: Scene) -> tuple[Photo | None, tuple[str, ...
     if camera is not None and (camera.intrinsics.width, camera.intrinsics.height) != (photo.width, photo.height):
         return None, (f"{name} is not of the camera's size; it was left out",)
     return photo, ()
-
-
-def _readers() -> dict[str, Callable[[Path], MarkedFile | None]]:
-    from diorama_core.importing.gltf import read_marked_gltf
-    from diorama_core.importing.usd import read_marked_usd
-
-    return {
-        **dict.fromkeys(GLTF_SUFFIXES, read_marked_gltf),
-        **dict.fromkeys(USD_SUFFIXES, read_marked_usd),
-        ".sh3d": lambda path: None,
-        ".json": lambda path: None,
-    }

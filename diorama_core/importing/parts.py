@@ -5,23 +5,19 @@ from __future__ import annotations
 import hashlib
 import re
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
-from functools import cached_property
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import trimesh
-from jaxtyping import Float, Int
-from trimesh.visual.material import PBRMaterial
-from trimesh.visual.texture import TextureVisuals
+from jaxtyping import Float
 
 from diorama_core.errors import InputError, LibraryError
-from diorama_core.importing.gltf import Z_UP
+from diorama_core.importing.flat_parts import joined_flat_parts
 from diorama_core.importing.marked import MarkedFile
-from diorama_core.importing.usd import matrix_of, opened_stage, usd_errors, world_of
-from diorama_core.library.ingest.limits import DEFAULT_LIMITS
+from diorama_core.importing.part import Part
 from diorama_core.library.ingest.models import read_model
+from diorama_core.library.ingest.usd_meshes import usd_scene
+from diorama_core.library.ingest.usd_stage import Z_UP, opened_stage, usd_errors, world_of
 from diorama_core.scene.types import SceneObject
 
 LARGEST_OBJECT_M = 3.5
@@ -30,51 +26,12 @@ TOUCH_M = 0.03
 """Parts of one object are no farther apart than this."""
 UPRIGHT = 0.999
 HUGE_M, USUAL_M = 100.0, 60.0
-REACH = 1e8
-"""Coordinates in the file's unit are smaller than this."""
-
-
-@dataclass(frozen=True, eq=False)
-class Part:
-    """One object of a file."""
-
-    name: str
-    scene: trimesh.Scene
-    """Geometry in the world: +Z up, metres."""
-    M_world: Float[np.ndarray, "4 4"]
-    """The node's frame to the world."""
-    key: str | None = None
-    """Equal for copies of one geometry; None where unknown."""
-    yaw_rad: float = 0.0
-    """How far its own axes are turned about up: shapes are taken in along their own axes."""
-    front: str | None = None
-    """Own axis that its front looks along, where the file says so."""
-    category: str | None = None
-
-    @cached_property
-    def whole(self) -> trimesh.Trimesh:
-        """All geometry as one mesh."""
-        return self.scene.to_geometry()
-
-    @property
-    def turn(self) -> Float[np.ndarray, "3 3"]:
-        """Own axes to the world's."""
-        c, s = np.cos(self.yaw_rad), np.sin(self.yaw_rad)
-        return np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
-
-    @property
-    def unturned(self) -> trimesh.Scene:
-        """The geometry along the part's own axes."""
-        scene, T = self.scene.copy(), np.eye(4)
-        T[:3, :3] = self.turn.T
-        scene.apply_transform(T)
-        return scene
 
 
 def parts_of_gltf(path: Path) -> tuple[Part, ...]:
     """Objects of a GLB or glTF file; raises `InputError` when it cannot be read."""
     scene = _model(path)
-    return _split(scene, Z_UP @ _unit(scene))
+    return split_scene(scene, Z_UP @ _unit(scene))
 
 
 def shape_parts(path: Path, marked: MarkedFile, item: SceneObject) -> Part | None:
@@ -97,7 +54,7 @@ def parts_of_usd(path: Path) -> tuple[Part, ...]:
     """Objects of a USD or USDZ file; raises `InputError` when it cannot be read."""
     stage = opened_stage(path)
     with usd_errors(path):
-        return _split(_usd_scene(stage), world_of(stage))
+        return split_scene(usd_scene(stage), world_of(stage))
 
 
 def _model(path: Path) -> trimesh.Scene:
@@ -114,8 +71,11 @@ def _unit(scene: trimesh.Scene) -> Float[np.ndarray, "4 4"]:
     return np.diag([factor, factor, factor, 1.0])
 
 
-def _split(scene: trimesh.Scene, to_world: Float[np.ndarray, "4 4"]) -> tuple[Part, ...]:
-    """Nodes that are one object each: what touches and is not larger than furniture stays together."""
+def split_scene(scene: trimesh.Scene, to_world: Float[np.ndarray, "4 4"]) -> tuple[Part, ...]:
+    """Nodes that are one object each: what touches and is not larger than furniture stays together.
+
+    A flat part flush with a side or the top of another part is a piece of it: the screen of a television.
+    """
     children = scene.graph.transforms.children
     boxes = {str(n): _box(scene, n, to_world) for n in scene.graph.nodes_geometry}
     parts: list[Part] = []
@@ -139,7 +99,7 @@ def _split(scene: trimesh.Scene, to_world: Float[np.ndarray, "4 4"]) -> tuple[Pa
             if own:
                 parts.append(_part(scene, node, own, node, to_world))
             waiting += reversed(loose)
-    return tuple(parts)
+    return joined_flat_parts(parts)
 
 
 def _own(children: dict[str, Sequence[str]], node: str, boxes: Mapping[str, object]) -> list[str]:
@@ -207,98 +167,3 @@ def _yaw(M_root: Float[np.ndarray, "4 4"], to_world: Float[np.ndarray, "4 4"]) -
         if axes[2, 2] > UPRIGHT:
             return float(np.arctan2(axes[1, 0], axes[0, 0]))
     return 0.0
-
-
-def _usd_scene(stage: Any) -> trimesh.Scene:
-    """Meshes of a stage with one plain material each, as a scene in the stage's frame."""
-    from pxr import Usd, UsdGeom
-
-    scene, triangles = trimesh.Scene(), 0
-    scope = Usd.TraverseInstanceProxies(Usd.PrimDefaultPredicate)
-    for prim in Usd.PrimRange(stage.GetPseudoRoot(), scope):
-        imaged = UsdGeom.Imageable(prim)
-        if not prim.IsA(UsdGeom.Mesh) or imaged.ComputePurpose() not in ("default", "render"):
-            continue
-        if imaged.ComputeVisibility() == UsdGeom.Tokens.invisible:
-            continue
-        mesh = _usd_mesh(UsdGeom.Mesh(prim))
-        triangles += 0 if mesh is None else len(mesh.faces)
-        if triangles > DEFAULT_LIMITS.triangles or len(scene.geometry) > DEFAULT_LIMITS.nodes:
-            raise InputError(
-                f"the file has more than {DEFAULT_LIMITS.triangles:,} triangles or {DEFAULT_LIMITS.nodes:,} meshes; "
-                "export a part of it"
-            )
-        if mesh is not None:
-            parent = _chain(scene, prim)
-            scene.add_geometry(
-                mesh, node_name=str(prim.GetPath()), geom_name=str(prim.GetPath()), parent_node_name=parent
-            )
-    return scene
-
-
-def _chain(scene: trimesh.Scene, prim: Any) -> str:
-    """Nodes for the prims above a mesh, which keep the stage's groups; they carry no transform of their own."""
-    paths = list(prim.GetPath().GetPrefixes())
-    above = scene.graph.base_frame
-    for path in paths[:-1]:
-        if str(path) not in scene.graph.nodes:
-            scene.graph.update(frame_to=str(path), frame_from=above, matrix=np.eye(4))
-        above = str(path)
-    return str(above)
-
-
-def _usd_mesh(mesh: Any) -> trimesh.Trimesh | None:
-    from pxr import UsdGeom
-
-    points = np.array(mesh.GetPointsAttr().Get() or [], dtype=np.float64).reshape(-1, 3)
-    counts = np.array(mesh.GetFaceVertexCountsAttr().Get() or [], dtype=int)
-    corners = np.array(mesh.GetFaceVertexIndicesAttr().Get() or [], dtype=int)
-    if not len(points) or not len(counts):
-        return None
-    faces = _fans(counts, corners)
-    if len(faces) and not 0 <= faces.min() <= faces.max() < len(points):
-        raise ValueError("a mesh names points that it does not have")
-    world = matrix_of(UsdGeom.XformCache().GetLocalToWorldTransform(mesh.GetPrim()))
-    if (np.linalg.det(world[:3, :3]) < 0) != (mesh.GetOrientationAttr().Get() == "leftHanded"):
-        faces = faces[:, ::-1]
-    material = PBRMaterial(
-        name="material", baseColorFactor=[*_usd_colour(mesh), 1.0], roughnessFactor=0.7, metallicFactor=0.0
-    )
-    placed = trimesh.transform_points(points, world)
-    if not (np.abs(placed) < REACH).all():
-        raise ValueError("a mesh is not anywhere near")
-    return trimesh.Trimesh(
-        placed, faces, visual=TextureVisuals(uv=np.zeros((len(points), 2)), material=material), process=False
-    )
-
-
-def _fans(counts: Int[np.ndarray, " n"], corners: Int[np.ndarray, " k"]) -> Int[np.ndarray, "m 3"]:
-    """Polygons as triangles around their first corners.
-
-    Args:
-        counts: Corners of each polygon.
-        corners: Vertices of all corners, one polygon after the other.
-
-    Raises:
-        ValueError: When there are not as many corners as counted.
-    """
-    if counts.min() < 0 or counts.sum() != len(corners):
-        raise ValueError("a mesh does not have the corners that it counts")
-    starts, triangles = np.cumsum(counts) - counts, np.maximum(counts - 2, 0)
-    first = np.repeat(starts, triangles)
-    nth = np.arange(len(first)) - np.repeat(np.cumsum(triangles) - triangles, triangles)
-    return np.stack([corners[first], corners[first + nth + 1], corners[first + nth + 2]], axis=1)
-
-
-def _usd_colour(mesh: Any) -> tuple[float, float, float]:
-    """The bound preview material's colour, or the display colour, or grey."""
-    from pxr import UsdShade
-
-    bound = UsdShade.MaterialBindingAPI(mesh.GetPrim()).ComputeBoundMaterial()[0]
-    shader = bound.ComputeSurfaceSource()[0] if bound else None
-    found = shader.GetInput("diffuseColor").Get() if shader and shader.GetInput("diffuseColor") else None
-    if found is None:
-        shown = mesh.GetDisplayColorAttr().Get()
-        found = shown[0] if shown else (0.7, 0.7, 0.7)
-    red, green, blue = (float(min(max(c, 0.0), 1.0)) for c in found)
-    return red, green, blue

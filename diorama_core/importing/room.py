@@ -1,4 +1,5 @@
-"""The room of a foreign file: what is named floor, wall or ceiling and is flat, or a floor under everything."""
+"""The room of a foreign file: what is named floor, wall or ceiling and is flat, or has the shape of one; else a floor
+under everything."""
 
 from __future__ import annotations
 
@@ -8,8 +9,10 @@ from dataclasses import dataclass
 
 import numpy as np
 from jaxtyping import Float
+from shapely.geometry import Point, Polygon
 
-from diorama_core.importing.parts import Part
+from diorama_core.importing.part import Part
+from diorama_core.importing.room_by_shape import shell_planes, slab_role
 from diorama_core.library.taxonomy import category
 from diorama_core.scene.types import Plane, PlaneRole, Scene, SceneObject, Support
 
@@ -22,6 +25,8 @@ ROUND_M = 0.3
 RESTS_M = 0.05
 """How far an object may hover over, or sink into, what it stands on."""
 NEAR_WALL_M = 0.15
+PARALLEL = 0.9
+"""Cosine between a wall's normal and the thinner side of what hangs on it, either way."""
 _ROLES: dict[PlaneRole, str] = {"floor": r"floor|ground", "ceiling": r"ceiling|roof", "wall": r"walls?"}
 
 
@@ -36,22 +41,50 @@ class Room:
 
 def room_of(parts: Sequence[Part]) -> Room:
     """Tell the room from what stands in it."""
-    roles = [(p, _role(p)) for p in parts]
+    roles = _roles(parts)
     objects = tuple(p for p, role in roles if role is None)
     flat = [(p, role) for p, role in roles if role is not None]
     inside = objects or tuple(parts)
     middle = np.mean([p.whole.bounds.mean(axis=0) for p in inside], axis=0)
     planes: list[Plane] = []
+    notes = []
+    for part in objects:
+        shell = shell_planes(part, _middle_within(part, objects))
+        if shell is not None and not flat and not planes:
+            planes += shell
+            objects = tuple(p for p in objects if p is not part)
+            notes.append(f"{part.name} was read as the room: {', '.join(p.id for p in shell)}")
     for part, role in flat:
         number = 1 + sum(p.role == role for p in planes)
         plane = _plane(part, role, role if number == 1 and role != "wall" else f"{role}-{number}", middle)
         if not any(_same(plane, other) for other in planes):
             planes.append(plane)
-    notes = []
     if not any(p.role == "floor" for p in planes):
         planes.insert(0, _ground(parts))
         notes.append("the file has no floor: there is one under the lowest object")
     return Room(tuple(planes), objects, tuple(notes))
+
+
+def _roles(parts: Sequence[Part]) -> list[tuple[Part, PlaneRole | None]]:
+    """What each part is of the room: as it is named, and where nothing is named so, as it is shaped."""
+    named = [_role(p) for p in parts]
+    if not parts:
+        return []
+    everything = np.array(
+        [np.min([p.whole.bounds[0] for p in parts], axis=0), np.max([p.whole.bounds[1] for p in parts], axis=0)]
+    )
+    shaped = [slab_role(p, everything) if role is None else role for p, role in zip(parts, named, strict=True)]
+    free = {role for role in _ROLES if role not in named}
+    return [(p, n if n is not None else s if s in free else None) for p, n, s in zip(parts, named, shaped, strict=True)]
+
+
+def _middle_within(shell: Part, parts: Sequence[Part]) -> Float[np.ndarray, "3"]:
+    """The middle of what stands in a shell; of the shell itself where nothing does."""
+    low, high = shell.whole.bounds
+    middles = [p.whole.bounds.mean(axis=0) for p in parts if p is not shell]
+    within = [m for m in middles if (low < m).all() and (m < high).all()]
+    middle = np.mean(within, axis=0) if within else (low + high) / 2
+    return np.append(middle[:2], (low[2] + high[2]) / 2)
 
 
 def _role(part: Part) -> PlaneRole | None:
@@ -122,15 +155,22 @@ def supports_of(scene: Scene) -> tuple[Support, ...]:
     for item in scene.objects:
         wall = _wall(scene, item)
         below = _below(boxes, item.id)
-        if category(item.category).mount == "wall" and wall is not None:
+        floor = _floor_under(scene, boxes[item.id])
+        hangs = category(item.category).mount == "wall" or (below is None and floor is None)
+        if wall is not None and hangs:
             edges.append(Support(item.id, wall, "mounted on", child_face="back"))
         elif below is not None:
             edges.append(Support(item.id, below))
-        else:
-            floor = scene.architecture.floor
-            if floor is not None and abs(boxes[item.id][0, 2] - floor.centre[2]) < 2 * RESTS_M:
-                edges.append(Support(item.id, floor.id))
+        elif floor is not None:
+            edges.append(Support(item.id, floor.id))
     return tuple(edges)
+
+
+def _floor_under(scene: Scene, box: Float[np.ndarray, "2 3"]) -> Plane | None:
+    """The floor at a box's foot; of several at one height the one it is over."""
+    near = [p for p in scene.architecture.by_role("floor") if abs(box[0, 2] - p.centre[2]) < 2 * RESTS_M]
+    over = [p for p in near if Polygon(p.polygon[:, :2]).buffer(RESTS_M).contains(Point(box.mean(axis=0)[:2]))]
+    return next(iter(over or near), None)
 
 
 def _below(boxes: dict[str, Float[np.ndarray, "2 3"]], object_id: str) -> str | None:
@@ -149,6 +189,11 @@ def _below(boxes: dict[str, Float[np.ndarray, "2 3"]], object_id: str) -> str | 
 
 
 def _wall(scene: Scene, item: SceneObject) -> str | None:
-    corners = item.corners_world
-    near = [(abs(float((corners @ w.normal).min()) - w.offset), w.id) for w in scene.architecture.by_role("wall")]
+    corners, thin = item.corners_world, int(np.argmin(item.size_m[:2]))
+    back = item.pose.R_world_object[:, thin]
+    near = [
+        (abs(float((corners @ w.normal).min()) - w.offset), w.id)
+        for w in scene.architecture.by_role("wall")
+        if abs(float(back @ w.normal)) > PARALLEL
+    ]
     return min(near)[1] if near and min(near)[0] < NEAR_WALL_M else None

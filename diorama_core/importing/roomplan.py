@@ -18,14 +18,22 @@ from shapely.geometry import MultiPolygon, Polygon
 from shapely.ops import unary_union
 
 from diorama_core.errors import InputError
-from diorama_core.importing.gltf import Z_UP
-from diorama_core.importing.measured_room import MeasuredBox, MeasuredOpening, MeasuredRoom, MeasuredWall
+from diorama_core.importing.measured_types import (
+    MeasuredBox,
+    MeasuredFloor,
+    MeasuredOpening,
+    MeasuredRoom,
+    MeasuredWall,
+)
 from diorama_core.io.bounded import read_json, shortened
 from diorama_core.library.hyponyms import meanings
+from diorama_core.library.ingest.usd_stage import Z_UP
 from diorama_core.library.taxonomy import UNKNOWN, column, resolve
 
 MAX_JSON_BYTES = 64_000_000
 REACH_M = 10_000.0
+SAME_LEVEL_M = 0.3
+"""Floors whose heights differ by less are of one storey."""
 MIN_SIDE_M = 0.01
 """Of the second longest side of a thing."""
 MAX_PARTS = 5_000
@@ -76,8 +84,8 @@ def _within_reach(room: MeasuredRoom) -> bool:
     numbers += [values for box in room.boxes for values in (box.centre, box.size_m)]
     numbers += [opening.centre for opening in room.openings]
     numbers += [np.array([opening.width_m, opening.height_m]) for opening in room.openings]
-    numbers += [np.array([wall.thickness_m for wall in room.walls]), np.array(room.floor_m or 0.0)]
-    numbers += [] if room.floor is None else [room.floor]
+    numbers += [np.array([wall.thickness_m for wall in room.walls])]
+    numbers += [values for floor in room.floors for values in (floor.outline, np.array(floor.height_m))]
     return all(bool((np.abs(values) < REACH_M).all()) for values in numbers)
 
 
@@ -98,12 +106,12 @@ def _from_json(path: Path) -> MeasuredRoom | None:
         raise InputError(
             f"{path.name}: a wall or an object makes no sense ({shortened(str(error))}); export the scan again"
         ) from error
-    outline, floor_m = _joined([Polygon(f[:, :2]) for f in floors], [float(f[:, 2].mean()) for f in floors])
+    joined = _joined([Polygon(f[:, :2]) for f in floors], [float(f[:, 2].mean()) for f in floors])
     unsure = sum(box.confidence < CONFIDENCE["medium"] for box in boxes)
     curved = sum(row.get("curve") is not None for row in names["walls"])
     notes = [f"RoomPlan was unsure of {unsure} of {len(boxes)} objects"] if unsure else []
     notes += [f"{curved} curved walls are flat from end to end"] if curved else []
-    return MeasuredRoom(walls, boxes, openings, outline, floor_m, (*notes, *left_out))
+    return MeasuredRoom(walls, boxes, openings, joined, (*notes, *_storey_notes(joined), *left_out))
 
 
 def _matrix(row: Mapping[str, Any]) -> Float[np.ndarray, "4 4"]:
@@ -204,20 +212,32 @@ def _moved(M: Float[np.ndarray, "4 4"], points: Float[np.ndarray, "*n 3"]) -> Fl
     return points @ M[:3, :3].T + M[:3, 3]
 
 
-def _joined(
-    floors: Sequence[Polygon], heights_m: Sequence[float]
-) -> tuple[Float[np.ndarray, "_ 2"] | None, float | None]:
-    """The outline of all floors together, and how high they are."""
-    whole = unary_union([f.buffer(0) for f in floors])
-    largest = max(whole.geoms, key=lambda p: p.area) if isinstance(whole, MultiPolygon) else whole
-    height = float(np.median(heights_m)) if heights_m else None
-    if not isinstance(largest, Polygon) or largest.is_empty:
-        return None, height
-    return np.asarray(largest.exterior.coords)[:-1, :2], height
+def _joined(floors: Sequence[Polygon], heights_m: Sequence[float]) -> tuple[MeasuredFloor, ...]:
+    """Floors that touch at about one height are one; others are rooms and storeys of their own, the lowest first."""
+    found: list[MeasuredFloor] = []
+    left = sorted(zip(heights_m, floors, strict=True), key=lambda row: row[0])
+    while left:
+        level = [row for row in left if row[0] - left[0][0] < SAME_LEVEL_M]
+        left = left[len(level) :]
+        whole = unary_union([f.buffer(0) for _, f in level])
+        pieces = whole.geoms if isinstance(whole, MultiPolygon) else [whole]
+        height = float(np.median([h for h, _ in level]))
+        for piece in sorted(pieces, key=lambda p: -p.area):
+            if isinstance(piece, Polygon) and not piece.is_empty:
+                found.append(MeasuredFloor(np.asarray(piece.exterior.coords)[:-1, :2], height))
+    return tuple(found)
+
+
+def _storey_notes(floors: Sequence[MeasuredFloor]) -> tuple[str, ...]:
+    heights = sorted({round(f.height_m, 2) for f in floors})
+    if len(heights) > 1:
+        listed = ", ".join(f"{h:g}" for h in heights)
+        return (f"{len(heights)} storeys, whose floors are at {listed} m: each has its floor and what stands on it",)
+    return (f"a home of {len(floors)} rooms, each with its own floor",) if len(floors) > 1 else ()
 
 
 def _from_usd(path: Path) -> MeasuredRoom | None:
-    from diorama_core.importing.usd import opened_stage, usd_errors
+    from diorama_core.library.ingest.usd_stage import opened_stage, usd_errors
 
     stage = opened_stage(path)
     with usd_errors(path):
@@ -246,9 +266,9 @@ def _from_stage(stage: Any, path: Path) -> MeasuredRoom | None:
             openings.append(MeasuredOpening(kind, at[:3, 3], float(size[[0, 2]].max()), float(size[1])))
         elif word in known:
             boxes.append(_box(known[word], KINDS[known[word]], at, size, 1.0))
-    outline, floor_m = _joined([f.outline for f in floors], [f.top_m for f in floors])
+    joined = _joined([f.outline for f in floors], [f.top_m for f in floors])
     upright, left_out = _upright(boxes)
-    return MeasuredRoom(tuple(walls), upright, tuple(openings), outline, floor_m, left_out)
+    return MeasuredRoom(tuple(walls), upright, tuple(openings), joined, (*_storey_notes(joined), *left_out))
 
 
 def _usd_wall(at: Float[np.ndarray, "4 4"], size: Float[np.ndarray, "3"], number: int) -> MeasuredWall:
@@ -284,7 +304,7 @@ class _Mesh:
 def _meshes(stage: Any) -> Iterator[_Mesh]:
     from pxr import Usd, UsdGeom
 
-    from diorama_core.importing.usd import matrix_of
+    from diorama_core.library.ingest.usd_stage import matrix_of
 
     places = UsdGeom.XformCache()
     metres = float(UsdGeom.GetStageMetersPerUnit(stage))

@@ -15,8 +15,10 @@ from jaxtyping import Float
 
 from diorama_core.artefacts import DetectedObject, Photo
 from diorama_core.errors import InputError
-from diorama_core.importing.measured_room import RESTS_M, MeasuredBox, MeasuredRoom, likeliest_kind
-from diorama_core.importing.point_files import ScanPhoto, read_depth
+from diorama_core.importing.depth_frames import read_depth
+from diorama_core.importing.measured_room import RESTS_M, likeliest_kind, possible_kinds
+from diorama_core.importing.measured_types import MeasuredBox, MeasuredRoom
+from diorama_core.importing.point_cloud import ScanPhoto
 from diorama_core.importing.scanned_shapes import ScannedSurface
 from diorama_core.io.bounded import read_picture
 from diorama_core.library.hyponyms import meanings
@@ -79,7 +81,8 @@ def _fitted(box: MeasuredBox, kinds: Mapping[str, float], library: ShapeLibrary)
 def _alone(box: MeasuredBox, seen: Sequence[tuple[str, float]]) -> dict[str, float]:
     """How likely each kind is by how frequent it is, the thing's size, and its looks."""
     frequent = meanings(UNKNOWN.name, UNKNOWN.name)
-    usual = {kind: share * frequent[kind] for kind, share in box.kinds.items()}
+    possible = possible_kinds(box.kinds, box.size_m) or {UNKNOWN.name: 1.0}
+    usual = {kind: share * frequent.get(kind, 1.0) for kind, share in possible.items()}
     return as_it_looks(likeliest_kind(usual, box.size_m), seen, named=False)
 
 
@@ -128,7 +131,7 @@ def _looks(
     """For every thing the kinds that it looks like, by all photos that show it best together."""
     views: list[list[_View]] = [[] for _ in boxes]
     for number, photo in enumerate(photos):
-        depth = read_depth(photo.depth)
+        depth = read_depth(photo.depth, photo.unit_m)
         for of_box, box in zip(views, boxes, strict=True):
             view = _view(number, photo, depth, box)
             if view is not None:

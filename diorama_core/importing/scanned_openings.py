@@ -18,7 +18,7 @@ import numpy as np
 from jaxtyping import Bool, Float, UInt8
 from scipy import ndimage
 
-from diorama_core.importing.measured_room import MeasuredOpening, MeasuredWall
+from diorama_core.importing.measured_types import MeasuredOpening, MeasuredWall
 
 CELL_M, MAX_CELL_M = 0.05, 0.12
 """Of the grid on a wall, and where points are so few that a cell must be larger to hold some."""

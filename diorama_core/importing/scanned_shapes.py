@@ -11,7 +11,7 @@ from jaxtyping import Float
 from scipy.spatial import cKDTree
 
 from diorama_core.geometry.shape_appearance import SHARED_APPEARANCES
-from diorama_core.importing.measured_room import MeasuredBox
+from diorama_core.importing.measured_types import MeasuredBox
 from diorama_core.library.catalogue import default_cache_dir
 from diorama_core.library.record import Shape, ShapeLibrary
 from diorama_core.retrieval.pools import size_cost

@@ -2,20 +2,28 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+import logging
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass, replace
 from pathlib import Path
 
-from diorama_core.errors import InputError, LibraryError
-from diorama_core.importing.foreign import open_foreign, take_missing_shapes
+from diorama_core.errors import LibraryError
+from diorama_core.importing.foreign import scene_of_parts, take_missing_shapes
+from diorama_core.importing.forms import Content, SceneParts, told
 from diorama_core.importing.marked import MarkedFile
-from diorama_core.importing.measured_room import MeasuredRoom, opened_room
-from diorama_core.importing.opening import USD_SUFFIXES, Opened, marked_file, open_marked
-from diorama_core.importing.point_files import CLOUD_SUFFIXES, is_scan_folder, read_points
-from diorama_core.importing.roomplan import read_room_plan
+from diorama_core.importing.measured_room import opened_room
+from diorama_core.importing.measured_types import MeasuredRoom
+from diorama_core.importing.opening import Opened, open_marked
+from diorama_core.importing.point_cloud import PointCloud
 from diorama_core.library.boards import base_id
-from diorama_core.library.store import create_library, open_library, stored_libraries
+from diorama_core.library.record import ShapeLibrary
+from diorama_core.library.store import StoredLibrary, open_library, stored_libraries
 from diorama_core.library.user_library import OWN
 from diorama_core.progress import Progress
+from diorama_core.project.storage import OWN_SHAPES
+
+log = logging.getLogger(__name__)
 
 
 @dataclass(frozen=True, eq=False)
@@ -24,13 +32,18 @@ class Imported:
 
     opened: Opened
     library_name: str
+    """As `project.json` keeps it: `OWN_SHAPES` are those that were taken out of the file."""
 
 
-def import_scene(path: Path, *, library_name: str | None = None, progress: Progress | None = None) -> Imported:
+def import_scene(
+    path: Path, shapes: Path | None = None, *, library_name: str | None = None, progress: Progress | None = None
+) -> Imported:
     """Open a file as a scene.
 
     Args:
-        path: The file; one of another program becomes a scene of objects, its models join the user's own.
+        path: The file; one of another program becomes a scene of objects, its models become shapes of the project.
+        shapes: The project's folder of shapes (`Project.shapes_folder`), made where shapes come out of the file; None
+            where there can be none.
         library_name: Where shapes are looked up first; None takes the library the file names, or the built-in one.
         progress: Where it is reported and cancelling is noticed.
 
@@ -40,31 +53,20 @@ def import_scene(path: Path, *, library_name: str | None = None, progress: Progr
         LibraryError: no shape library of that name, or models cannot be kept.
     """
     progress = progress or Progress()
-    progress.report(0.0, f"reading {path.name}")
-    if _holds_points(path):
+    with _read(path, progress) as (place, content):
+        if isinstance(content, MarkedFile):
+            return _imported_mark(place, shapes, content, library_name, progress)
         name = library_name or "built-in"
-        return Imported(_room_of_points(path, name), name)
-    marked = marked_file(path)
-    if marked is None:
-        name = library_name or "built-in"
-        library = open_library(name)
-        measured = measured_room(path)
-        if measured is not None:
-            return Imported(opened_room(measured, library), name)
-        return Imported(open_foreign(path, create_library(OWN), progress), _with_own(name))
-    name = library_name or _known(str(marked.provenance.get("library", "built-in")))
-    library = open_library(_with_own(name) if OWN in stored_libraries() else name)
-    known = frozenset(s.id for s in library.shapes())
-    opened = _with_shapes(path, marked, known, progress)
-    complete = {base_id(o.shape_id) for o in opened.scene.objects} <= known
-    return Imported(opened, name if complete else _with_own(name))
+        opened = _opened(place, content, shapes, name, progress)
+    return Imported(opened, f"{name}+{OWN_SHAPES}" if isinstance(content, SceneParts) else name)
 
 
-def read_scene(path: Path, known: frozenset[str], progress: Progress) -> Opened:
-    """Open a file as a scene for a library that is open already; shapes it lacks join the user's own.
+def read_scene(path: Path, shapes: Path, known: frozenset[str], progress: Progress) -> Opened:
+    """Open a file as a scene for a library that is open already.
 
     Args:
         path: The file.
+        shapes: Folder of a library for the shapes that are taken out of the file; made where there are any.
         known: Ids of the shapes that the library has.
         progress: Where it is reported and cancelling is noticed.
 
@@ -73,46 +75,65 @@ def read_scene(path: Path, known: frozenset[str], progress: Progress) -> Opened:
         UnavailableError: an optional library is missing.
         LibraryError: models cannot be kept.
     """
+    with _read(path, progress) as (place, content):
+        if isinstance(content, MarkedFile):
+            return _with_shapes(place, shapes, content, known, progress)
+        return _opened(place, content, shapes, "built-in", progress)
+
+
+@contextmanager
+def _read(path: Path, progress: Progress) -> Iterator[tuple[Path, Content]]:
+    """Where a file lies, unpacked where it was an archive, and what is in it."""
     progress.report(0.0, f"reading {path.name}")
-    if _holds_points(path):
-        return _room_of_points(path, "built-in")
-    marked = marked_file(path)
-    if marked is None:
-        measured = measured_room(path)
-        if measured is not None:
-            return opened_room(measured, open_library("built-in"))
-        return open_foreign(path, create_library(OWN), progress)
-    return _with_shapes(path, marked, known, progress)
+    with told(path) as (form, place):
+        log.info("%s is read as %s", path.name, form.name)
+        yield place, form.read(place, progress)
 
 
-def _holds_points(path: Path) -> bool:
-    return (path.is_file() and path.suffix.lower() in CLOUD_SUFFIXES) or is_scan_folder(path)
+def _opened(path: Path, content: Content, shapes: Path | None, library_name: str, progress: Progress) -> Opened:
+    """A scene of what another program wrote or a scanner measured."""
+    if isinstance(content, SceneParts):
+        opened = scene_of_parts(content.parts, path, _sink(shapes), progress)
+        return replace(opened, changes=(*content.notes, *opened.changes))
+    library = open_library(library_name)
+    if isinstance(content, PointCloud):
+        return _room_of_points(content, library)
+    assert isinstance(content, MeasuredRoom)
+    return opened_room(content, library)
 
 
-def measured_room(path: Path) -> MeasuredRoom | None:
-    """The room in a file that holds measurements; None for a file with models.
+def _imported_mark(
+    path: Path, shapes: Path | None, marked: MarkedFile, library_name: str | None, progress: Progress
+) -> Imported:
+    """The scene that Diorama wrote, and the names of the libraries that have its shapes."""
+    name = library_name or _known(str(marked.provenance.get("library", "built-in")))
+    known, of_person = _ids(name), _ids(OWN) if OWN in stored_libraries() else frozenset[str]()
+    opened = _with_shapes(path, shapes, marked, known | of_person, progress)
+    used = {base_id(o.shape_id) for o in opened.scene.objects}
+    also = [OWN] if (used - known) & of_person and OWN not in name.split("+") else []
+    also += [OWN_SHAPES] if used - known - of_person else []
+    return Imported(opened, "+".join([name, *also]))
 
-    Raises:
-        InputError: the file cannot be read.
-    """
-    suffix = path.suffix.lower()
-    room = read_room_plan(path) if suffix in (*USD_SUFFIXES, ".json") else None
-    if room is None and suffix == ".json":
-        raise InputError(f"{path.name} is no scan of RoomPlan (there are no walls in it); export the scan again")
-    return room
 
-
-def _with_shapes(path: Path, marked: MarkedFile, known: frozenset[str], progress: Progress) -> Opened:
+def _with_shapes(
+    path: Path, shapes: Path | None, marked: MarkedFile, known: frozenset[str], progress: Progress
+) -> Opened:
     """What Diorama wrote; the shapes that are not known are taken out of the file."""
     opened = open_marked(marked)
     missing = {o.shape_id for o in opened.scene.objects if base_id(o.shape_id) not in known}
     if missing:
-        take_missing_shapes(path, marked, opened.scene, missing, create_library(OWN), progress)
+        take_missing_shapes(path, marked, opened.scene, missing, _sink(shapes), progress)
     return opened
 
 
-def _with_own(name: str) -> str:
-    return name if OWN in name.split("+") else f"{name}+{OWN}"
+def _sink(shapes: Path | None) -> StoredLibrary:
+    if shapes is None:
+        raise LibraryError("shapes come out of the file: name a folder for them")
+    return StoredLibrary(shapes, create=True)
+
+
+def _ids(library: str) -> frozenset[str]:
+    return frozenset(s.id for s in open_library(library).shapes())
 
 
 def _known(name: str) -> str:
@@ -124,10 +145,9 @@ def _known(name: str) -> str:
     return name
 
 
-def _room_of_points(path: Path, library: str) -> Opened:
+def _room_of_points(cloud: PointCloud, library: ShapeLibrary) -> Opened:
     # OpenCV and SciPy: the editor starts without them.
     from diorama_core.importing.measured_cloud import measured_cloud
     from diorama_core.importing.scanned_kinds import with_scanned_kinds
 
-    shapes = open_library(library)
-    return opened_room(with_scanned_kinds(measured_cloud(read_points(path)), shapes), shapes)
+    return opened_room(with_scanned_kinds(measured_cloud(cloud), library), library)

@@ -1,14 +1,19 @@
-"""Sweet Home 3D files (.sh3d): walls, floors and furniture as parts. Centimetres, plan y downward."""
+"""Sweet Home 3D files (.sh3d): walls, floors and furniture of all visible levels as parts.
+
+Centimetres, plan y downward. What a piece is, its catalogue's name for it says in any language (`catalogId`), then its
+own name, then its tag.
+"""
 
 from __future__ import annotations
 
 import lzma
 import math
+import re
 import tempfile
 import xml.etree.ElementTree as ET
 import zipfile
 import zlib
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path, PurePosixPath
 from urllib.parse import unquote
 
@@ -17,12 +22,15 @@ import trimesh
 from jaxtyping import Float
 
 from diorama_core.errors import DioramaError, InputError
-from diorama_core.importing.parts import Part
+from diorama_core.importing.part import Part
 from diorama_core.io.bounded import shortened
 from diorama_core.io.contained import ContainedFiles
 from diorama_core.io.xml_text import parse_xml
 from diorama_core.library.ingest.limits import DEFAULT_LIMITS
 from diorama_core.library.ingest.models import SUFFIXES, read_model
+from diorama_core.library.ingest.names import named_kind
+from diorama_core.library.kind_sizes import is_possible
+from diorama_core.library.taxonomy import UNKNOWN
 from diorama_core.progress import Progress
 from diorama_core.scene.schema import MAX_ITEMS
 
@@ -30,14 +38,16 @@ M_PER_CM = 0.01
 MODEL_TO_PART = np.array([[1.0, 0, 0, 0], [0, 0, -1.0, 0], [0, 1.0, 0, 0], [0, 0, 0, 1.0]])
 """Models have +Y up and +Z front; parts +Z up and, unturned, -Y front."""
 FURNITURE = ("pieceOfFurniture", "doorOrWindow", "light")
+SILL_CM = 30.0
+"""Openings that begin higher are windows."""
 THIN_M = 0.02
 XML_BYTES = 64 * 2**20
 MAX_FILES = 5000
 """That are taken out of the archive: models, and what lies beside them in it."""
 
 
-def parts_of_sweet_home(path: Path, progress: Progress | None = None) -> tuple[Part, ...]:
-    """Objects, walls and floors of a home.
+def parts_of_sweet_home(path: Path, progress: Progress | None = None) -> tuple[tuple[Part, ...], tuple[str, ...]]:
+    """Objects, walls and floors of a home, and notes about what is read otherwise than it is drawn.
 
     Args:
         path: The file.
@@ -51,12 +61,13 @@ def parts_of_sweet_home(path: Path, progress: Progress | None = None) -> tuple[P
     try:
         with zipfile.ZipFile(path) as archive, tempfile.TemporaryDirectory() as folder:
             home = _home(archive, path)
-            furniture = [p for p in home.iter() if p.tag in FURNITURE and _visible(p)]
+            levels = _levels(home)
+            furniture = [p for p in home.iter() if p.tag in FURNITURE and _visible(p) and _is_shown(p, home, levels)]
             _take_out(archive, furniture, Path(folder), path)
             pieces = []
             for piece in furniture:
                 progress.report(0.0, f"reading {shortened(piece.get('name', piece.tag))}")
-                pieces.append(_piece(piece, ContainedFiles(Path(folder), InputError)))
+                pieces.append(_piece(piece, ContainedFiles(Path(folder), InputError), _level_m(piece, levels)))
     except (
         zipfile.BadZipFile,
         zlib.error,
@@ -69,9 +80,40 @@ def parts_of_sweet_home(path: Path, progress: Progress | None = None) -> tuple[P
         # Damaged, encrypted, compressed in an unknown way, or with names that cannot be files beside each other.
         raise InputError(f"{path.name} is no Sweet Home 3D file ({shortened(str(error))}); save it again") from error
     height = _number(home, "wallHeight", 250.0)
-    walls = [_wall(w, height) for w in home.iter("wall")]
-    rooms = [_room(r) for r in home.iter("room") if len(r.findall("point")) >= 3]
-    return (*pieces, *walls, *rooms)
+    walls = [_wall(w, height, _level_m(w, levels)) for w in home.iter("wall") if _is_shown(w, home, levels)]
+    outlined = [r for r in home.iter("room") if len(r.findall("point")) >= 3 and _is_shown(r, home, levels)]
+    rooms = [_room(r, _level_m(r, levels)) for r in outlined]
+    return (*pieces, *walls, *rooms), _notes(home, levels)
+
+
+def _levels(home: ET.Element) -> dict[str, float]:
+    """Heights of the visible levels in metres, by id; none where the home has but one."""
+    shown = [e for e in home.iter("level") if e.get("viewable", "true") != "false" and _visible(e)]
+    return {e.get("id", ""): _number(e, "elevation", 0.0) * M_PER_CM for e in shown}
+
+
+def _level_m(element: ET.Element, levels: Mapping[str, float]) -> float:
+    return levels.get(element.get("level", ""), 0.0)
+
+
+def _is_shown(element: ET.Element, home: ET.Element, levels: Mapping[str, float]) -> bool:
+    """Whether an element is on a visible level, or on none."""
+    level = element.get("level", "")
+    return level in levels or all(level != e.get("id", "") for e in home.iter("level"))
+
+
+def _notes(home: ET.Element, levels: Mapping[str, float]) -> tuple[str, ...]:
+    names = [(shortened(e.get("name") or e.get("id", ""), 40), e.get("id", "") in levels) for e in home.iter("level")]
+    hidden = [name for name, shown in names if not shown]
+    notes = [f"hidden levels were left out: {', '.join(hidden)}"] if hidden else []
+    if len(levels) > 1:
+        listed = ", ".join(name for name, shown in names if shown)
+        notes.append(f"{len(levels)} levels, each at its own height: {listed}")
+    round_walls = sum(w.get("arcExtent") is not None for w in home.iter("wall"))
+    sloping = sum(w.get("heightAtEnd") is not None for w in home.iter("wall"))
+    notes += [f"{round_walls} round walls are straight from end to end"] if round_walls else []
+    notes += [f"{sloping} sloping walls are as high as at their start"] if sloping else []
+    return tuple(notes)
 
 
 def _take_out(archive: zipfile.ZipFile, furniture: Sequence[ET.Element], folder: Path, path: Path) -> None:
@@ -117,7 +159,7 @@ def _number(element: ET.Element, name: str, default: float | None = None) -> flo
     return number
 
 
-def _piece(piece: ET.Element, files: ContainedFiles) -> Part:
+def _piece(piece: ET.Element, files: ContainedFiles, level_m: float) -> Part:
     """A piece's model, turned upright and stretched to the size that the home gives it."""
     sides = [_number(piece, k) * M_PER_CM for k in ("width", "depth", "height")]
     scene = _model(piece, files)
@@ -128,10 +170,24 @@ def _piece(piece: ET.Element, files: ContainedFiles) -> Part:
     yaw = -_number(piece, "angle", 0.0)
     T = np.eye(4)
     T[:2, :2] = [[np.cos(yaw), -np.sin(yaw)], [np.sin(yaw), np.cos(yaw)]]
-    bottom = _number(piece, "elevation", 0.0) * M_PER_CM
+    bottom = level_m + _number(piece, "elevation", 0.0) * M_PER_CM
     T[:3, 3] = [_number(piece, "x") * M_PER_CM, -_number(piece, "y") * M_PER_CM, bottom + sides[2] / 2]
     scene.apply_transform(T @ stretch)
-    return Part(piece.get("name", piece.tag), scene, T, yaw_rad=yaw, front="-y")
+    name = piece.get("name") or piece.tag
+    return Part(name, scene, T, yaw_rad=yaw, front="-y", category=_category(piece, sides))
+
+
+def _category(piece: ET.Element, size_m: Sequence[float]) -> str | None:
+    """What a piece is by its catalogue's word, its name or its tag, where it can be so large; None where none says."""
+    width, depth, height = size_m
+    catalogue = re.sub(r"\d+x\d+.*$", "", piece.get("catalogId", "").partition("#")[2])
+    for name in (catalogue, piece.get("name", "")):
+        kind = named_kind(name) if name else None
+        if kind is not None and kind != UNKNOWN.name and is_possible(kind, np.array([depth, width, height])):
+            return kind
+    if piece.tag == "doorOrWindow":
+        return "window" if _number(piece, "elevation", 0.0) > SILL_CM else "door"
+    return None
 
 
 def _model(piece: ET.Element, files: ContainedFiles) -> trimesh.Scene:
@@ -150,20 +206,22 @@ def _model(piece: ET.Element, files: ContainedFiles) -> trimesh.Scene:
     return trimesh.Scene({"box": trimesh.creation.box((1.0, 1.0, 1.0))})
 
 
-def _wall(wall: ET.Element, usual_cm: float) -> Part:
+def _wall(wall: ET.Element, usual_cm: float, level_m: float) -> Part:
     start, end = (np.array([_number(wall, f"x{k}"), -_number(wall, f"y{k}")]) * M_PER_CM for k in ("Start", "End"))
     length = float(np.linalg.norm(end - start))
     thick, high = _number(wall, "thickness") * M_PER_CM, _number(wall, "height", usual_cm) * M_PER_CM
     along = (end - start) / max(length, 1e-9)
     T = np.eye(4)
     T[:2, 0], T[:2, 1] = along, [-along[1], along[0]]
-    T[:3, 3] = [*(start + end) / 2, high / 2]
+    T[:3, 3] = [*(start + end) / 2, level_m + high / 2]
     return Part("wall", trimesh.Scene({"wall": trimesh.creation.box((length, thick, high), T)}), T)
 
 
-def _room(room: ET.Element) -> Part:
+def _room(room: ET.Element, level_m: float) -> Part:
     points = np.array([[_number(p, "x"), -_number(p, "y")] for p in room.findall("point")]) * M_PER_CM
-    return Part("floor", trimesh.Scene({"floor": _slab(points)}), np.eye(4))
+    slab = _slab(points)
+    slab.apply_translation([0.0, 0.0, level_m])
+    return Part("floor", trimesh.Scene({"floor": slab}), np.eye(4))
 
 
 def _slab(points: Float[np.ndarray, "n 2"]) -> trimesh.Trimesh:

@@ -8,11 +8,46 @@ import numpy as np
 from jaxtyping import Float
 
 from diorama_core.library.kinds import KindMode, modes_of_kind, outline_of
-from diorama_core.library.taxonomy import category
+from diorama_core.library.taxonomy import UNKNOWN, category
 
 BROAD_SHARE = 0.3
 """Of the mixture that is the taxonomy's: of things unlike all in the library."""
 MAX_MODES = 3
+MAX_SIGMAS, MIN_SIGMA, OFF_ANYWAY = 2.6, 0.08, 0.22
+"""How far a side may be off a kind's usual one, in standard deviations of its logarithm, and the quarter that is
+allowed beside them: 99 % of the built-in shapes are within."""
+FLAT_KINDS = frozenset(
+    [
+        "television",
+        "monitor",
+        "tablet",
+        "smartphone",
+        "laptop",
+        "keyboard",
+        "picture",
+        "photo frame",
+        "mirror",
+        "floor mirror",
+        "whiteboard",
+        "bulletin board",
+        "clock",
+        "window",
+        "door",
+        "curtain",
+        "blinds",
+        "room divider",
+        "rug",
+        "bath mat",
+        "yoga mat",
+        "blanket",
+        "towel",
+        "books",
+        "plate",
+        "cutting board",
+        "bathroom scale",
+    ]
+)
+"""Kinds whose thinnest side may be as thin as it likes."""
 
 
 @cache
@@ -43,3 +78,31 @@ def size_density(name: str, size_m: Float[np.ndarray, "3"], sigma: float) -> flo
         nearest = float((off * np.linalg.solve(covariance, off.T).T).sum(axis=1).min())
         total += mode.share * float(np.exp(-nearest / 2) / np.sqrt(np.linalg.det(covariance)))
     return total
+
+
+def is_possible(name: str, size_m: Float[np.ndarray, "3"]) -> bool:
+    """Whether a thing of this kind can be so large, along every side, the better way round.
+
+    One gate for everything that is named by its shape or by a word: models of a library, meshes of a scene, boxes of a
+    scan. Anything is possible for "object".
+
+    Args:
+        name: of the canonical category.
+        size_m: depth, width and height, metres; width and depth may have changed places.
+    """
+    if name == UNKNOWN.name:
+        return True
+    log_size = np.log(np.maximum(size_m, 1e-6))
+    return any(
+        bool((_beyond(mode, turned, name in FLAT_KINDS) <= MAX_SIGMAS).all())
+        for mode in sizes_of_kind(name)
+        for turned in (log_size, log_size[[1, 0, 2]])
+    )
+
+
+def _beyond(mode: KindMode, log_size: Float[np.ndarray, "3"], flat: bool) -> Float[np.ndarray, "3"]:
+    """Standard deviations by which a size is off a mode, beyond what is off anyway."""
+    sigma = np.maximum(np.sqrt(np.diag(mode.covariance)), MIN_SIGMA)
+    off = log_size - mode.log_size
+    thin = flat & (np.arange(3) == mode.log_size.argmin()) & (off < 0)
+    return np.asarray(np.maximum(np.where(thin, 0.0, np.abs(off)) - OFF_ANYWAY, 0.0) / sigma)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import threading
 from collections.abc import Callable
+from pathlib import Path
 
 import trimesh
 
@@ -76,6 +77,27 @@ class UserLibrary:
         """The picture that came with the shape, where its library keeps one."""
         retained = getattr(self._library, "thumbnail", None)
         return None if retained is None else retained(shape_id)
+
+
+class ProjectShapes(UserLibrary):
+    """What one editor offers: the shared library and, before all others, the shapes of the project that it shows."""
+
+    def __init__(self, shared: UserLibrary) -> None:
+        self.shared = shared
+        self._library: ShapeLibrary = shared
+
+    def show(self, folder: Path) -> None:
+        """Offer the shapes in a project's folder, where it has any, instead of those of the project before."""
+        own = [StoredLibrary(folder)] if (folder / "library.sqlite").exists() else []
+        self._library = CombinedLibrary([*own, self.shared]) if own else self.shared
+
+    def own(self) -> StoredLibrary:
+        """Where uploads are kept; see `UserLibrary.own`."""
+        return self.shared.own()
+
+    def has_own(self, shape_id: str) -> bool:
+        """Whether a shape is one of the uploads."""
+        return self.shared.has_own(shape_id)
 
 
 def _unchanged(library: ShapeLibrary) -> ShapeLibrary:

@@ -7,7 +7,7 @@ COLMAP: https://colmap.github.io/format.html. nerfstudio: https://docs.nerf.stud
 from __future__ import annotations
 
 import struct
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
 from io import TextIOWrapper
@@ -17,11 +17,13 @@ from typing import Any, BinaryIO, Literal
 
 import numpy as np
 from jaxtyping import Float
+from PIL import Image
 from scipy.spatial.transform import Rotation
 
 from diorama_core.errors import InputError
 from diorama_core.io.bounded import megabytes, read_json, shortened
 from diorama_core.io.contained import ContainedFiles
+from diorama_core.multiview.turned_cameras import quarters_of
 from diorama_core.scene.types import Camera, Intrinsics
 
 MAX_BYTES = 512_000_000
@@ -65,17 +67,26 @@ class Poses:
     notes: tuple[str, ...] = ()
     left_out: tuple[str, ...] = ()
     """Photos that were looked at and have no camera; the notes say why."""
+    stored_pixels: bool = False
+    """Whether the cameras are those of pictures as they are stored, whatever turn their headers ask for."""
 
 
-def read_poses(path: Path) -> Poses:
+def read_poses(path: Path, photos: Sequence[Path] = ()) -> Poses:
     """Cameras from a file or a folder: `transforms.json`, a COLMAP model, or a folder of ARKit frames.
+
+    Args:
+        path: The file or the folder.
+        photos: Where a file names no sizes, they are those of the photos of its names.
 
     Raises:
         InputError: nothing of the kind is there, or it makes no sense.
     """
-    reader = _reader_of(path)
+    reader = _reader_of(path, photos)
     try:
         poses = reader(path)
+    except KeyError as error:
+        missing = shortened(str(error.args[0]) if error.args else "")
+        raise InputError(f"{path}: the cameras cannot be read: there is no {missing!r}; export them again") from error
     except (LookupError, ValueError, TypeError, AttributeError, ArithmeticError, struct.error, OSError) as error:
         raise InputError(f"{path}: the cameras cannot be read ({shortened(str(error))}); export them again") from error
     if not poses.photos:
@@ -83,11 +94,12 @@ def read_poses(path: Path) -> Poses:
     return poses
 
 
-def _reader_of(path: Path) -> Callable[[Path], Poses]:
+def _reader_of(path: Path, pictures: Sequence[Path]) -> Callable[[Path], Poses]:
     if path.is_file() and path.suffix.lower() == ".json":
-        return _nerfstudio
-    if (path / "transforms.json").is_file():
-        return lambda folder: _nerfstudio(folder / "transforms.json")
+        return lambda file: _nerfstudio(file, pictures)
+    for name in ("transforms.json", "transforms_train.json"):
+        if (path / name).is_file():
+            return partial(_in_folder, lambda file: _nerfstudio(file, pictures), path / name)
     for folder in (path, path / "sparse" / "0", path / "sparse"):
         for ending, reader in ((".bin", _colmap_binary), (".txt", _colmap_text)):
             if (folder / f"cameras{ending}").is_file() and (folder / f"images{ending}").is_file():
@@ -101,7 +113,7 @@ def _in_folder(reader: Callable[[Path], Poses], folder: Path, path: Path) -> Pos
     return reader(folder)
 
 
-def _nerfstudio(path: Path) -> Poses:
+def _nerfstudio(path: Path, pictures: Sequence[Path] = ()) -> Poses:
     document = read_json(path, InputError, most=MAX_BYTES, advice="export it again")
     frames = document["frames"]
     if not isinstance(frames, list) or len(frames) > MAX_PHOTOS:
@@ -109,16 +121,41 @@ def _nerfstudio(path: Path) -> Poses:
     photos, bent = [], 0.0
     for frame in frames:
         values = {**document, **frame}
+        if "w" not in values or "h" not in values:
+            values["w"], values["h"] = _size_of(path.parent, str(frame["file_path"]), pictures)
         if "fl_x" in values:
             fx = float(values["fl_x"])
             fy = float(values.get("fl_y", fx))
         else:
             fx = fy = 0.5 * float(values["w"]) / float(np.tan(float(values["camera_angle_x"]) / 2))
+            if "camera_angle_y" in values:
+                fy = 0.5 * float(values["h"]) / float(np.tan(float(values["camera_angle_y"]) / 2))
         k = _intrinsics(values["w"], values["h"], fx, fy, values.get("cx"), values.get("cy"))
         bent = max(bent, abs(float(values.get("k1", 0.0))), abs(float(values.get("k2", 0.0))))
         T = _rigid(np.asarray(frame["transform_matrix"], np.float64)) @ OPENCV_FROM_OPENGL
         photos.append(PosedPhoto(str(frame["file_path"]), Camera(k, T)))
     return Poses(tuple(photos), bool(document.get("metric", False)), None, _distortion(bent))
+
+
+def _size_of(folder: Path, name: str, pictures: Sequence[Path]) -> tuple[int, int]:
+    """Width and height of the picture that a frame names, with its ending or without; upright as it is shown.
+
+    Raises:
+        ValueError: there is no such picture.
+    """
+    plain = folder / name
+    beside = (
+        [plain] if plain.is_file() else sorted(plain.parent.glob(f"{plain.name}.*")) if plain.parent.is_dir() else []
+    )
+    named = [p for p in pictures if p.name == plain.name or p.stem == plain.stem or p.stem == plain.name]
+    for path in (*named, *beside):
+        try:
+            with Image.open(path) as opened:
+                width, height = opened.size
+        except (OSError, ValueError, SyntaxError, Image.DecompressionBombError):
+            continue
+        return (height, width) if quarters_of(path) % 2 else (width, height)
+    raise ValueError(f"it names no size of {name}, and there is no such photo")
 
 
 def _colmap_text(folder: Path) -> Poses:
@@ -136,7 +173,7 @@ def _colmap_text(folder: Path) -> Poses:
             raise ValueError(f"more than {MAX_PHOTOS} cameras")
         _, *numbers, camera, name = line.split(maxsplit=9)
         photos.append(PosedPhoto(name, Camera(cameras[int(camera)], _colmap_pose([float(n) for n in numbers]))))
-    return Poses(tuple(photos), False, None, _distortion(bent))
+    return Poses(tuple(photos), False, None, _distortion(bent), stored_pixels=True)
 
 
 def _lines(path: Path, *, keep_empty: bool = False) -> Iterator[str]:
@@ -175,7 +212,7 @@ def _colmap_binary(folder: Path) -> Poses:
             (points,) = struct.unpack("<Q", stream.read(8))
             stream.seek(24 * points, 1)
             photos.append(PosedPhoto(text.decode(), Camera(cameras[camera], _colmap_pose(numbers))))
-    return Poses(tuple(photos), False, None, _distortion(bent))
+    return Poses(tuple(photos), False, None, _distortion(bent), stored_pixels=True)
 
 
 def _count(stream: BinaryIO) -> int:
@@ -204,7 +241,8 @@ def _colmap_pose(numbers: list[float]) -> Float[np.ndarray, "4 4"]:
 
 
 def _polycam_files(path: Path) -> Iterator[Path]:
-    for folder in (path / "keyframes" / "corrected_cameras", path / "keyframes" / "cameras", path / "cameras"):
+    for name in ("keyframes/corrected_cameras", "keyframes/cameras", "corrected_cameras", "cameras"):
+        folder = path / name
         files = sorted(folder.glob("*.json")) if folder.is_dir() else []
         if files:
             yield from files
@@ -233,8 +271,6 @@ def _arkit(path: Path) -> Poses:
 
 def _size_beside(file: Path, K: Float[np.ndarray, "3 3"]) -> tuple[int, int]:
     """Size of the picture beside a frame's file; about twice its centre where it is not there."""
-    from PIL import Image
-
     picture = file.with_suffix(".jpg")
     if ContainedFiles(file.parent, InputError).holds(picture):
         try:

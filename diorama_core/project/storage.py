@@ -1,4 +1,5 @@
-"""A project is a folder: `project.json`, `photo.jpg`, `scene.json`, `textures/`, `stages/`, `backups/`, `exports/`.
+"""A project is a folder: `project.json`, `photo.jpg`, `scene.json`, `textures/`, `shapes/`, `stages/`, `backups/`,
+`exports/`.
 
 Every write goes to a temporary file that is renamed, so the folder is whole at any moment.
 """
@@ -7,6 +8,7 @@ from __future__ import annotations
 
 import io
 import logging
+import shutil
 import time
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass
@@ -24,6 +26,7 @@ from diorama_core.io.atomic import write_atomically
 from diorama_core.io.bounded import MAX_JSON_BYTES, parse_json, read_bytes, read_picture, shortened
 from diorama_core.io.documents import write_document, write_json
 from diorama_core.io.text import file_label
+from diorama_core.library.store import BUILT_IN, ESCAPED_PLUS
 from diorama_core.pipeline import codec
 from diorama_core.pipeline.runner import StageRun
 from diorama_core.project.backups import Backups
@@ -38,6 +41,8 @@ MAX_UPLOAD_BYTES = 256 * 1024 * 1024
 MAX_TEXTURE_PIXELS = 200_000_000
 """Of a whole scene together; the rest are shown in their plain colour."""
 
+OWN_SHAPES = "./shapes"
+"""Part of a library's name in `project.json`: the shapes in the project's own folder."""
 Upload = Literal["photo", "depth", "masks"]
 UPLOADS: tuple[Upload, ...] = ("photo", "depth", "masks")
 
@@ -92,8 +97,22 @@ class Project:
 
     @property
     def library_name(self) -> str:
-        """The library that it was built with; the built-in one where none is noted."""
-        return str(self.info().get("library", "built-in"))
+        """The library that it was built with, its own shapes included; the built-in one where none is noted."""
+        own = str(self.shapes_folder.resolve()).replace("+", ESCAPED_PLUS)
+        return "+".join(own if part == OWN_SHAPES else part for part in self._library_parts())
+
+    @property
+    def shared_library_name(self) -> str:
+        """The library without the shapes that belong to this project alone."""
+        return "+".join(part for part in self._library_parts() if part != OWN_SHAPES) or BUILT_IN
+
+    @property
+    def shapes_folder(self) -> Path:
+        """The library of the shapes that came with an imported scene, where one did."""
+        return self.folder / Path(OWN_SHAPES)
+
+    def _library_parts(self) -> list[str]:
+        return str(self.info().get("library", BUILT_IN)).split("+")
 
     @property
     def stages_folder(self) -> Path:
@@ -150,6 +169,12 @@ class Project:
         """Whether there is a photo to build from."""
         return (self.stages_folder / "inputs.zip").exists()
 
+    def take_shapes(self, other: Project) -> None:
+        """Use another project's library, with a copy of the shapes that belong to it alone."""
+        if other.shapes_folder.is_dir():
+            shutil.copytree(other.shapes_folder, self.shapes_folder, dirs_exist_ok=True)
+        self.update_info(library="+".join(other._library_parts()))
+
     def save_upload(self, kind: Upload, content: bytes) -> None:
         """Keep a file as it was given, so that others can be read together with it later."""
         write_atomically(self.folder / "uploads" / kind, content, error=ProjectError)
@@ -165,7 +190,12 @@ class Project:
         return None if inputs is None else inputs.photo
 
     def save_scene(self, scene: Scene) -> bool:
-        """Write `scene.json`; the previous one is kept among the backups (at most one a minute): True when it is."""
+        """Write `scene.json`; the previous one is kept among the backups (at most one a minute): True when it is.
+
+        Raises:
+            SceneError: the scene would not open again; nothing is written.
+            ProjectError: the folder cannot be written.
+        """
         content = scene_to_json(scene).encode()
         emptied = not scene.objects
         new_version = self.has_scene and Backups(self.folder / "backups").keep(self.scene_path, at_once=emptied)

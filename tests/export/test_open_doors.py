@@ -14,7 +14,8 @@ from diorama_core.export.gathering import ExportOptions, ExportScene, gather
 from diorama_core.export.mjcf import write_mjcf
 from diorama_core.export.sdf import write_sdf
 from diorama_core.export.urdf import write_urdf
-from diorama_core.importing.opening import marked_file, open_marked
+from diorama_core.importing.forms import marked_file
+from diorama_core.importing.opening import open_marked
 from diorama_core.library.catalogue import BuiltInLibrary, built_in_library
 from diorama_core.library.opening import can_open
 from diorama_core.scene.schema import scene_to_json

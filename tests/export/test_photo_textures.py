@@ -15,7 +15,8 @@ from diorama_core.export import FORMATS, export_scene
 from diorama_core.export.gathering import ExportOptions, gather
 from diorama_core.export.gltf import write_gathered
 from diorama_core.export.photo_textures import bounded_pictures
-from diorama_core.importing.opening import marked_file, open_marked
+from diorama_core.importing.forms import marked_file
+from diorama_core.importing.opening import open_marked
 from diorama_core.library.catalogue import built_in_library
 from diorama_core.scene.types import Architecture, PhotoMaterial, Plane, Pose, Scene, SceneObject
 from tests.export.validators import gltf_findings, needs_gltf_validator

@@ -22,9 +22,10 @@ from diorama_core.export.gathering import ExportOptions, gather
 from diorama_core.export.gltf import glb_bytes
 from diorama_core.export.usd import write_usda, write_usdc
 from diorama_core.export.usd import write_usdz as write_usd_package
+from diorama_core.importing.forms import marked_file
 from diorama_core.importing.gltf import read_marked_gltf
 from diorama_core.importing.measured_room import opened_room
-from diorama_core.importing.opening import marked_file, open_marked
+from diorama_core.importing.opening import open_marked
 from diorama_core.importing.parts import parts_of_usd
 from diorama_core.importing.room import room_of
 from diorama_core.importing.roomplan import read_room_plan

@@ -14,8 +14,9 @@ from PIL import Image
 
 from diorama_core.errors import InputError
 from diorama_core.export import export_scene
-from diorama_core.importing.foreign import open_foreign, take_missing_shapes
-from diorama_core.importing.opening import marked_file, open_marked
+from diorama_core.importing.foreign import scene_of_parts, take_missing_shapes
+from diorama_core.importing.forms import SceneParts, marked_file, told
+from diorama_core.importing.opening import open_marked
 from diorama_core.library.ingest.known_shapes import KnownShapes, known_shapes
 from diorama_core.library.store import CombinedLibrary, StoredLibrary
 from diorama_core.progress import Progress
@@ -31,7 +32,10 @@ def known(tmp_path_factory: pytest.TempPathFactory) -> KnownShapes:
 
 
 def opened(path: Path, known: KnownShapes, folder: Path):
-    return open_foreign(path, StoredLibrary(folder / "models", create=True), Progress(), known)
+    with told(path) as (form, place):
+        content = form.read(place, Progress())
+    assert isinstance(content, SceneParts)
+    return scene_of_parts(content.parts, path, StoredLibrary(folder / "models", create=True), Progress(), known)
 
 
 def unmarked(tmp_path: Path, scene: Scene) -> Path:

@@ -9,7 +9,7 @@ from shapely.geometry import Polygon
 from diorama_core.errors import InputError
 from diorama_core.importing.measured_cloud import measured_cloud
 from diorama_core.importing.measured_room import opened_room
-from diorama_core.importing.point_files import PointCloud
+from diorama_core.importing.point_cloud import PointCloud
 from diorama_core.library.catalogue import built_in_library
 from tests.importing.scans import DEPTH, FURNITURE, HEIGHT, WIDTH, room_points
 

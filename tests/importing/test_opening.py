@@ -13,8 +13,9 @@ import pytest
 from diorama_core.export import export_scene
 from diorama_core.export.gathering import ExportOptions
 from diorama_core.export.pictures import photo_text
+from diorama_core.importing.forms import marked_file
 from diorama_core.importing.marked import as_bytes
-from diorama_core.importing.opening import marked_file, open_marked
+from diorama_core.importing.opening import open_marked
 from diorama_core.scene.types import Scene
 from tests.export.scenes import scene_of
 from tests.importing.test_gltf import edit

@@ -8,7 +8,8 @@ import pytest
 
 from diorama_core.errors import InputError
 from diorama_core.importing.measured_cloud import measured_cloud
-from diorama_core.importing.measured_room import MeasuredBox, MeasuredRoom, opened_room
+from diorama_core.importing.measured_room import opened_room
+from diorama_core.importing.measured_types import MeasuredBox, MeasuredRoom
 from diorama_core.importing.point_files import read_points
 from diorama_core.importing.scanned_kinds import with_scanned_kinds
 from diorama_core.library.taxonomy import broad

@@ -6,8 +6,9 @@ import numpy as np
 import pytest
 
 from diorama_core.importing.measured_cloud import measured_cloud
-from diorama_core.importing.measured_room import MeasuredOpening, MeasuredWall, opened_room
-from diorama_core.importing.point_files import PointCloud
+from diorama_core.importing.measured_room import opened_room
+from diorama_core.importing.measured_types import MeasuredOpening, MeasuredWall
+from diorama_core.importing.point_cloud import PointCloud
 from diorama_core.importing.scanned_openings import scanned_openings
 from diorama_core.library.catalogue import built_in_library
 from diorama_core.scene.types import yaw_rotation

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 import trimesh
 
-from diorama_core.importing.measured_room import MeasuredBox
+from diorama_core.importing.measured_types import MeasuredBox
 from diorama_core.importing.scanned_shapes import ScannedSurface, unit_surface
 from diorama_core.library.catalogue import built_in_library
 from diorama_core.scene.types import yaw_rotation

@@ -29,7 +29,9 @@ def known() -> frozenset[str]:
 def test_a_scene_of_known_shapes_comes_back_through_another_process(room: Path) -> None:
     process, events = LimitedProcess(), []
     try:
-        opened = process.work("room.glb", read_scene, room, known(), progress=Progress(events.append))
+        opened = process.work(
+            "room.glb", read_scene, room, room.parent / "shapes", known(), progress=Progress(events.append)
+        )
     finally:
         process.close()
     assert opened.scene == furnished_room(PrimitiveLibrary())
@@ -41,7 +43,9 @@ def test_pictures_of_planes_come_back_too(tmp_path: Path) -> None:
     textures = {str(p.texture): np.full((8, 8, 3), 90, np.uint8) for p in scene.architecture.planes if p.texture}
     assert textures
     export_scene(scene, library, tmp_path / "room.glb", "glb", textures=textures)
-    opened = read_scene(tmp_path / "room.glb", frozenset(s.id for s in library.shapes()), Progress())
+    opened = read_scene(
+        tmp_path / "room.glb", tmp_path / "shapes", frozenset(s.id for s in library.shapes()), Progress()
+    )
     assert opened.scene == scene
     assert textures.keys() <= opened.textures.keys()
 
@@ -50,12 +54,12 @@ def test_a_cancel_before_it_begins_reads_nothing(room: Path) -> None:
     token = CancelToken()
     token.cancel()
     with pytest.raises(Cancelled):
-        read_scene(room, known(), Progress(token=token))
+        read_scene(room, room.parent / "shapes", known(), Progress(token=token))
 
 
 def test_a_broken_file_names_itself_and_not_its_folder(tmp_path: Path) -> None:
     path = tmp_path / "room.glb"
     path.write_bytes(b"glTF and then nothing")
     with pytest.raises(InputError, match=r"^room\.glb cannot be read") as caught:
-        read_scene(path, known(), Progress())
+        read_scene(path, tmp_path / "shapes", known(), Progress())
     assert str(tmp_path) not in str(caught.value)

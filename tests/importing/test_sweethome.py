@@ -29,7 +29,7 @@ def home(folder: Path, body: str, *files: tuple[str, bytes], head: str = '<home 
 
 
 def parts(folder: Path, body: str, *files: tuple[str, bytes], **more):
-    return parts_of_sweet_home(home(folder, body, *files, **more))
+    return parts_of_sweet_home(home(folder, body, *files, **more))[0]
 
 
 def test_walls_and_floors_are_in_metres_with_y_turned(tmp_path: Path) -> None:

@@ -120,7 +120,7 @@ def test_values_that_make_no_sense_are_one_line(tmp_path) -> None:
 
 
 def test_polygons_become_fans() -> None:
-    from diorama_core.importing.parts import _fans
+    from diorama_core.library.ingest.usd_meshes import _fans
 
     found = _fans(np.array([3, 5, 2, 4]), np.arange(14))
     assert found.tolist() == [[0, 1, 2], [3, 4, 5], [3, 5, 6], [3, 6, 7], [10, 11, 12], [10, 12, 13]]

@@ -20,7 +20,8 @@ from diorama_core.evaluation.reports.intervals import bootstrap_interval
 from diorama_core.evaluation.reports.tables import Column, Row, Table
 from diorama_core.geometry.openings import OPENING_CATEGORIES
 from diorama_core.importing.measured_cloud import measured_cloud
-from diorama_core.importing.measured_room import MeasuredRoom, opened_room
+from diorama_core.importing.measured_room import opened_room
+from diorama_core.importing.measured_types import MeasuredRoom
 from diorama_core.importing.point_files import read_points
 from diorama_core.importing.scanned_kinds import with_scanned_kinds
 from diorama_core.library.record import ShapeLibrary

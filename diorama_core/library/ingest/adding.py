@@ -20,22 +20,56 @@ from types import FrameType
 
 from diorama_core.errors import DioramaError, InputError, LibraryError
 from diorama_core.io.bounded import read_bytes, shortened
-from diorama_core.library.ingest.guess import Given
+from diorama_core.io.file_heads import head_of
+from diorama_core.io.other_files import OtherFile, what_else
+from diorama_core.library.ingest.convention import Convention
+from diorama_core.library.ingest.guess import MAX_METRES, MIN_METRES, Given
+from diorama_core.library.ingest.joint import Evidence, asked_of, groups_of, joint_convention
 from diorama_core.library.ingest.known_shapes import KnownShapes, known_shapes
 from diorama_core.library.ingest.limits import DEFAULT_LIMITS, Limits
-from diorama_core.library.ingest.models import NOT_READ, SUFFIXES
-from diorama_core.library.ingest.shaping import Painter, Source, confidence, ingest_file
+from diorama_core.library.ingest.models import SUFFIXES, form_of
+from diorama_core.library.ingest.shaping import Painter, Source, confidence, evidence_of, ingest_file
 from diorama_core.library.ingest.sink import Ingested, ShapeSink
+from diorama_core.library.record import Shape
 from diorama_core.progress import Progress
 from diorama_core.workers import Workers
 
-REVISION = 1
+REVISION = 2
 """Of what ingestion makes of a file: raise it when results change, so that a repeated run takes files in anew."""
 LEARNING_SHARE = 0.8
 """Of a first import's time, what goes into learning the built-in shapes."""
-UNSURE = 0.6
+UNSURE = 0.8
 """Guesses less sure than this are worth a person's look."""
 MAX_TABLE_BYTES = 64_000_000
+BESIDE = frozenset(
+    [
+        ".mtl",
+        ".bin",
+        ".png",
+        ".jpg",
+        ".jpeg",
+        ".tga",
+        ".bmp",
+        ".webp",
+        ".tif",
+        ".tiff",
+        ".gif",
+        ".dds",
+        ".ktx2",
+        ".txt",
+        ".md",
+        ".csv",
+        ".json",
+        ".html",
+        ".pdf",
+        ".url",
+        ".psd",
+        ".license",
+        ".py",
+        ".xml",
+    ]
+)
+"""What lies beside models: pictures and texts, which nobody takes for a model."""
 _COLUMNS = ("file", "up", "front", "unit", "category", "caption", "licence")
 
 
@@ -62,6 +96,8 @@ class Added:
     """Id and warnings of shapes that needed repair."""
     unsure: tuple[str, ...]
     """Ids whose guess is worth a look."""
+    shapes: tuple[Shape, ...] = ()
+    """Records of what was added, without support surfaces."""
 
 
 def model_files(folder: Path) -> tuple[tuple[Path, ...], tuple[Trouble, ...]]:
@@ -78,14 +114,38 @@ def model_files(folder: Path) -> tuple[tuple[Path, ...], tuple[Trouble, ...]]:
         folders[:] = sorted(f for f in folders if not f.startswith("."))
         for name in sorted(names):
             path = Path(here, name)
-            suffix = path.suffix.lower()
             if name.startswith(".") or path.is_symlink():
                 continue
-            if suffix in SUFFIXES:
+            if path.suffix.lower() in (*SUFFIXES, ".zip"):
                 found.append(path)
-            elif suffix in NOT_READ:
-                skipped.append(Trouble(path, f"{suffix} is not supported; convert it to GLB"))
+            else:
+                other = _other(path)
+                skipped += [Trouble(path, f"{other.name}: {other.advice}")] if other is not None else []
     return tuple(found), tuple(skipped)
+
+
+def _other(path: Path) -> OtherFile | None:
+    """What a file is that is no model, where people may have meant it as one."""
+    if path.suffix.lower() in BESIDE:
+        return None
+    try:
+        return what_else(head_of(path))
+    except InputError:
+        return None
+
+
+def members_of(path: Path) -> tuple[str, ...]:
+    """Models in a zip archive, of several formats of one model the first that is read; nothing of another file."""
+    head = head_of(path)
+    if path.suffix.lower() != ".zip" or not head.is_zip or form_of(head) is not None:
+        return ()
+    order = {suffix: k for k, suffix in enumerate(SUFFIXES)}
+    best: dict[str, str] = {}
+    for name in sorted(head.names):
+        stem, suffix = str(Path(name).with_suffix("")), Path(name).suffix.lower()
+        if suffix in order and order[suffix] < order.get(Path(best.get(stem, "")).suffix.lower(), len(order)):
+            best[stem] = name
+    return tuple(best.values())
 
 
 def sources(
@@ -104,11 +164,16 @@ def sources(
     made = []
     for path in paths:
         within = path.relative_to(folder).as_posix()
-        target = (ids or {}).get(path) or _slug(within.rsplit(".", 1)[0])
-        shape_id = next(i for i in _variants(target, path.suffix[1:].lower()) if i not in taken)
-        taken.add(shape_id)
-        known = table[within].over(given) if within in table else given
-        made.append(Source(path, folder, shape_id, _key(path, within, shape_id, known), known))
+        members = members_of(path)
+        for member in members or ("",):
+            stem = within.rsplit(".", 1)[0]
+            named = f"{stem}/{Path(member).with_suffix('').as_posix()}" if len(members) > 1 else stem
+            target = (ids or {}).get(path) or _slug(named)
+            shape_id = next(i for i in _variants(target, path.suffix[1:].lower()) if i not in taken)
+            taken.add(shape_id)
+            known = table[within].over(given) if within in table else given
+            key = _key(path, f"{within}{member}", shape_id, known)
+            made.append(Source(path, folder, shape_id, key, known, member))
     return tuple(made)
 
 
@@ -157,6 +222,7 @@ def add_models(
     have = sink.source_keys()
     waiting = [s for s in found if s.key not in have]
     learnt = _learn(progress) if waiting else 0.0
+    waiting = with_conventions(waiting, found, workers, limits, progress)
     added: list[Ingested] = []
     failed: list[Trouble] = []
     done = workers.map(partial(_work, painter=painter, limits=limits), waiting)
@@ -176,7 +242,48 @@ def add_models(
         skipped=tuple(skipped),
         repaired=tuple((i.record.id, i.warnings) for i in added if i.warnings),
         unsure=tuple(i.record.id for i in added if i.record.guess and confidence(i.record.guess) < UNSURE),
+        shapes=tuple(replace(i.record, surfaces=()) for i in added),
     )
+
+
+def with_conventions(
+    waiting: Sequence[Source], found: Sequence[Source], workers: Workers, limits: Limits, progress: Progress
+) -> list[Source]:
+    """The sources with what their whole packs say of frame and unit; some files of each pack are asked.
+
+    Args:
+        waiting: What is to be taken in.
+        found: All files, those included that are there already.
+        workers: Where files are asked.
+        limits: What is refused.
+        progress: Cancellation.
+    """
+    plain = {s.path: s for s in found if not s.member and s.given.unit_m is None and s.given.up is None}
+    groups: dict[str, list[Path]] = {}
+    for path, group in groups_of(tuple(plain), found[0].root if found else Path()).items():
+        groups.setdefault(group, []).append(path)
+    new = {s.path for s in waiting}
+    groups = {g: paths for g, paths in groups.items() if len(paths) > 1 and new.intersection(paths)}
+    asked = [plain[path] for paths in groups.values() for path in asked_of(paths)]
+    said: dict[Path, tuple[Evidence, Convention, float]] = {}
+    for piece in workers.map(partial(_asked, limits=limits), asked):
+        progress.check()
+        if piece.error is None and piece.value is not None:
+            said[piece.item.path] = piece.value
+    known: dict[Path, Convention] = {}
+    for paths in groups.values():
+        told = [said[path] for path in paths if path in said]
+        if told:
+            kept = any(MIN_METRES <= longest <= MAX_METRES for _, _, longest in told)
+            joint = replace(joint_convention(told[0][1], [evidence for evidence, _, _ in told]), kept=kept)
+            known |= dict.fromkeys(paths, joint)
+    return [replace(s, convention=known.get(s.path)) for s in waiting]
+
+
+def _asked(source: Source, limits: Limits) -> tuple[Evidence, Convention, float]:
+    _bound_memory(limits.memory_bytes)
+    with _time_limit(limits.seconds):
+        return evidence_of(source, _known(), limits)
 
 
 def _learn(progress: Progress) -> float:

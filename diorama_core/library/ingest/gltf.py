@@ -18,18 +18,16 @@ from diorama_core.errors import LibraryError
 from diorama_core.io.bounded import parse_json
 from diorama_core.io.contained import shown
 from diorama_core.io.glb import GlbError, is_glb, split_glb, write_glb
+from diorama_core.library.ingest.gltf_compressed import is_fallback, meshopt_view, undo_draco
+from diorama_core.library.ingest.gltf_materials import place_textures, use_specular_glossiness
 from diorama_core.library.ingest.limits import Limits
+from diorama_core.library.ingest.own_frame import OwnFrame, own_frame
 from diorama_core.library.ingest.references import References
 
 Json = dict[str, Any]
 
 _COMPONENTS = {5120: "<i1", 5121: "<u1", 5122: "<i2", 5123: "<u2", 5125: "<u4", 5126: "<f4"}
 _ITEMS = {"SCALAR": 1, "VEC2": 2, "VEC3": 3, "VEC4": 4, "MAT2": 4, "MAT3": 9, "MAT4": 16}
-_NEEDS_DECODER = {
-    "KHR_draco_mesh_compression": "Draco",
-    "EXT_meshopt_compression": "meshopt",
-    "KHR_meshopt_compression": "meshopt",
-}
 
 
 def packed(data: bytes, references: References, limits: Limits) -> bytes:
@@ -47,7 +45,8 @@ def packed(data: bytes, references: References, limits: Limits) -> bytes:
     try:
         _check_asset(document)
         buffers = [_buffer(row, k, binary, references) for k, row in enumerate(_rows(document, "buffers"))]
-        views = [_view(row, buffers) for row in _rows(document, "bufferViews")]
+        views = [_view(row, buffers, limits) for row in _rows(document, "bufferViews")]
+        undo_draco(document, views, limits)
         for accessor in _rows(document, "accessors"):
             _check_accessor(accessor, document, views, limits)
         _check_nodes(document, limits)
@@ -61,6 +60,11 @@ def node_names(glb: bytes) -> tuple[str, ...]:
     document, _ = _container(glb, Limits())
     rows = [row for kind in ("scenes", "nodes", "meshes", "materials") for row in document.get(kind, [])]
     return tuple(str(row["name"]) for row in rows if isinstance(row, dict) and row.get("name"))
+
+
+def frame_of_own(glb: bytes) -> OwnFrame | None:
+    """The frame of the one object that Diorama wrote into a file; None where there is none."""
+    return own_frame(_container(glb, Limits())[0])
 
 
 def container(data: bytes, limits: Limits) -> tuple[Json, bytes | None]:
@@ -99,14 +103,12 @@ def _check_asset(document: Json) -> None:
     version = str(document.get("asset", {}).get("version", ""))
     if not version.startswith("2"):
         raise LibraryError(f"glTF version {shown(version)} is not supported; save it as glTF 2.0")
-    needed = set(document.get("extensionsRequired", []))
-    for name, label in _NEEDS_DECODER.items():
-        if name in needed:
-            raise LibraryError(f"its geometry is compressed with {label}, which is not read; export it plain")
 
 
 def _buffer(row: Json, number: int, binary: bytes | None, references: References) -> bytes:
     length, uri = row["byteLength"], row.get("uri")
+    if is_fallback(row):
+        return b""
     if uri is None:
         if number != 0 or binary is None:
             raise LibraryError("a buffer names no data")
@@ -130,7 +132,10 @@ def _data_uri(uri: str) -> bytes:
         raise LibraryError("a data address is broken base64") from error
 
 
-def _view(row: Json, buffers: list[bytes]) -> bytes:
+def _view(row: Json, buffers: list[bytes], limits: Limits) -> bytes:
+    plain = meshopt_view(row, buffers, limits)
+    if plain is not None:
+        return plain
     start, length = row.get("byteOffset", 0), row["byteLength"]
     data = buffers[row["buffer"]]
     if start < 0 or length < 0 or start + length > len(data):
@@ -198,6 +203,7 @@ def _repacked(document: Json, views: list[bytes], references: References) -> byt
     for accessor in document.get("accessors", []):
         if accessor.get("normalized") and accessor["componentType"] != 5126 and "bufferView" in accessor:
             _unscale(accessor, rows, views)
+    place_textures(document, rows, views)
     for image in document.get("images", []):
         data = _image_bytes(image, views, references) or _blank_png()
         image.clear()
@@ -207,8 +213,13 @@ def _repacked(document: Json, views: list[bytes], references: References) -> byt
         rows.append({})
     for texture in document.get("textures", []):
         _use_webp(texture)
+    for material in document.get("materials", []):
+        use_specular_glossiness(material)
     parts, at = [], 0
+    for name in ("extensionsRequired", "extensionsUsed"):
+        document.pop(name, None)  # what needed them is plain now
     for row, data in zip(rows, views, strict=True):
+        row.pop("extensions", None)
         row |= {"buffer": 0, "byteOffset": at, "byteLength": len(data)}
         parts.append(data + b"\0" * (-len(data) % 4))
         at += len(parts[-1])

@@ -2,27 +2,33 @@
 
 Every combination of a category, one of the 24 orientations and a unit is scored by what the format promises, by how
 well the size fits the category, and by how much the model then looks like known shapes of that category. What the user
-or a data set knows is taken as it is.
+or a data set knows is taken as it is. A category is out where the model cannot be so large (`kind_sizes.is_possible`);
+a format that promises metres and +Y up keeps its promise, and what speaks against it makes the answer unsure.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 import trimesh
-from jaxtyping import Float, Int
+from jaxtyping import Bool, Float, Int
+from scipy.special import logsumexp
 
 from diorama_core.errors import InputError
 from diorama_core.io.bounded import shortened
 from diorama_core.library import taxonomy
+from diorama_core.library.ingest.convention import Convention
 from diorama_core.library.ingest.known_shapes import KnownShapes, relief_features
-from diorama_core.library.ingest.models import Convention
+from diorama_core.library.ingest.names import Named
 from diorama_core.library.ingest.relief import Relief, quarter_turns, turned
+from diorama_core.library.kind_sizes import is_possible
 from diorama_core.library.record import Assumption, Guess
 
 AXES = ("+x", "-x", "+y", "-y", "+z", "-z")
+PROMISED_UP = "+y"
+"""Of formats that promise a frame (glTF)."""
 UNITS = {1.0: "metres", 0.01: "centimetres", 0.001: "millimetres", 0.0254: "inches", 0.3048: "feet"}
 
 SIMILARITY = 60.0
@@ -41,6 +47,10 @@ LIKELY_OTHER, LIKELY_KNOWN = 0.0, -4.0
 """Of being no particular category against one it looks like, when it has a name that speaks of none we know."""
 UNNAMED_OTHER, UNNAMED_KNOWN = -2.5, -1.5
 """The same when it has no name at all."""
+UNTRUE_NAME = -300.0
+"""Of being none of the kinds that its name speaks of: only where it cannot be any of them."""
+MIN_METRES, MAX_METRES = 0.01, 18.0
+"""Longest sides between which a promise of metres is kept: beyond, every kind is off by a factor above 3."""
 ALIKE = 1
 """How many of the likest known shapes are asked."""
 
@@ -109,7 +119,7 @@ def guess_frame(
     mesh: trimesh.Trimesh,
     pictures: Relief,
     convention: Convention,
-    named: Mapping[str, float] | None,
+    named: Named,
     known: KnownShapes,
     given: Given,
 ) -> Frame:
@@ -119,45 +129,97 @@ def guess_frame(
         mesh: In the file's frame and unit.
         pictures: Its relief.
         convention: What its format promises.
-        named: Categories its names speak of, with logarithmic weights; None when it has no telling name at all.
+        named: Categories its names speak of.
         known: Shapes to compare it with.
         given: What need not be guessed.
 
     """
+    units = _unit_prior(convention, given, float(mesh.extents.max()))
+    table, log_extents = _table(mesh, pictures, convention, named, known, given, units)
+    return _chosen(table, quarter_turns(), list(units), log_extents, convention, given, named)
+
+
+def frame_evidence(
+    mesh: trimesh.Trimesh, pictures: Relief, named: Named, known: KnownShapes, given: Given
+) -> Float[np.ndarray, "24 u"]:
+    """How likely each turn and usual unit is by the model alone, whatever its format promises; logarithms.
+
+    Args:
+        mesh: In the file's frame and unit.
+        pictures: Its relief.
+        named: Categories its names speak of.
+        known: Shapes to compare it with.
+        given: What need not be guessed.
+    """
+    nothing = Convention("no", {}, {}, {})
+    table, _ = _table(mesh, pictures, nothing, named, known, given, dict.fromkeys(UNITS, 1.0))
+    return logsumexp(np.stack([rows[:, :-1] for rows in table.values()]), axis=0)
+
+
+def convention_prior(convention: Convention, units: Sequence[float]) -> Float[np.ndarray, "24 u"]:
+    """What a format promises of turns and units; logarithms."""
+    turns, nothing = quarter_turns(), Given()
+    frame = _frame_prior([axis_name(R[2]) for R in turns], [axis_name(R[0]) for R in turns], convention, nothing)
+    return frame[:, None] + np.log([convention.unit.get(u, 0.02) for u in units])
+
+
+def _table(
+    mesh: trimesh.Trimesh,
+    pictures: Relief,
+    convention: Convention,
+    named: Named,
+    known: KnownShapes,
+    given: Given,
+    units: Mapping[float, float],
+) -> tuple[dict[str, Float[np.ndarray, "24 _"]], Float[np.ndarray, "24 3"]]:
+    """Logarithmic scores by category, for each turn and unit and the unit that fits best; and extents by turn."""
     turns = quarter_turns()
     ups = [axis_name(R[2]) for R in turns]
     fronts = [axis_name(R[0]) for R in turns]
     features = np.stack([relief_features(turned(pictures, R)) for R in turns])
     log_extents = np.log(np.maximum(mesh.extents, 1e-9))[np.abs(turns).argmax(axis=2)]
     frame = _frame_prior(ups, fronts, convention, given) - MIRRORED * _lopsided(pictures, turns)
-    categories = _candidates(features, named, known, given)
-    units = _unit_prior(convention, given)
-    table = np.full((len(categories), len(turns), len(units) + 1), -np.inf)
-    for row, (name, weight) in enumerate(categories.items()):
+    table: dict[str, np.ndarray] = {}
+    for name, weight in _candidates(features, named.weights, known, given).items():
+        rows = table[name] = np.full((len(turns), len(units) + 1), -np.inf)
         alike = -SIMILARITY * _unlike(features, log_extents, name, known)
         for column, (unit, prior) in enumerate(units.items()):
-            table[row, :, column] = weight + alike + frame + np.log(prior) + _size_fit(log_extents + np.log(unit), name)
-        if given.unit_m is None:
+            log_sizes = log_extents + np.log(unit)
+            rows[:, column] = weight + alike + frame + np.log(prior) + _size_fit(log_sizes, name)
+            if given.category is None:
+                rows[~_possible(name, log_sizes), column] = -np.inf
+        if given.unit_m is None and len(units) > 1:
             free = _best_scale(log_extents, name)
             fit = _size_fit(log_extents + free[:, None], name)
-            table[row, :, -1] = weight + alike + frame + np.log(ANY_SCALE) + fit
-    return _chosen(table, list(categories), turns, list(units), log_extents, convention, given, bool(named))
+            rows[:, -1] = weight + alike + frame + np.log(ANY_SCALE) + fit
+    return table, log_extents
+
+
+def _possible(name: str, log_sizes: Float[np.ndarray, "24 3"]) -> Bool[np.ndarray, "24"]:
+    """For each turn, whether a thing of the kind can be so large; only which axis is up matters."""
+    found: dict[float, bool] = {}
+    for size in log_sizes:
+        if size[2] not in found:
+            found[size[2]] = is_possible(name, np.exp(size))
+    return np.array([found[size[2]] for size in log_sizes])
 
 
 def _chosen(
-    table: Float[np.ndarray, "c 24 u"],
-    categories: list[str],
+    scores: Mapping[str, Float[np.ndarray, "24 u"]],
     turns: Int[np.ndarray, "24 3 3"],
     units: list[float],
     log_extents: Float[np.ndarray, "24 3"],
     convention: Convention,
     given: Given,
-    named: bool,
+    named: Named,
 ) -> Frame:
     """The best entry of the table, and how sure each of its answers is."""
+    categories, table = list(scores), np.stack(list(scores.values()))
     posterior = np.exp(table - table.max())
     posterior /= posterior.sum()
-    best = np.unravel_index(int(table.argmax()), table.shape)
+    kept = given.up is None and convention.promises
+    allowed = [axis_name(R[2]) == PROMISED_UP for R in turns] if kept else [True] * len(turns)
+    best = np.unravel_index(int(np.where(np.array(allowed)[None, :, None], table, -np.inf).argmax()), table.shape)
     c, q, u = (int(i) for i in best)
     same_up = (turns[:, 2] == turns[q, 2]).all(axis=1)
     up, front = axis_name(turns[q, 2]), axis_name(turns[q, 0])
@@ -167,10 +229,16 @@ def _chosen(
     size_says = "its size" if u < len(units) else f"no usual unit fits: scaled to the usual size of a {categories[c]}"
     guess = Guess(
         up=_assumed(up, posterior[:, same_up].sum(), promised, given.up, given),
-        front=_assumed(front, posterior[:, q].sum() / posterior[:, same_up].sum(), "its shape", given.front, given),
+        front=_assumed(
+            front, posterior[:, q].sum() / max(posterior[:, same_up].sum(), 1e-300), "its shape", given.front, given
+        ),
         unit=_assumed(f"{unit:.6g}", posterior[..., u].sum(), promised if usual else size_says, given.unit_m, given),
         category=_assumed(
-            categories[c], posterior[c].sum(), "its name" if named else "its looks", given.category, given
+            categories[c],
+            min(posterior[c].sum(), named.certainty),
+            "its name" if named.weights else "its looks",
+            given.category,
+            given,
         ),
     )
     return Frame(turns[q], unit, categories[c], guess)
@@ -192,13 +260,15 @@ def _axis_prior(promised: Mapping[str, float], stated: str | None) -> dict[str, 
     """Logarithmic weights of the six axes; what is stated excludes the rest."""
     if stated is not None:
         return {a: 0.0 if a == stated else -np.inf for a in AXES}
-    rest = (1.0 - sum(promised.values())) / (len(AXES) - len(promised))
+    rest = (1.0 - sum(promised.values())) / max(len(AXES) - len(promised), 1)
     return {a: float(np.log(promised.get(a, rest))) for a in AXES}
 
 
-def _unit_prior(convention: Convention, given: Given) -> dict[float, float]:
+def _unit_prior(convention: Convention, given: Given, longest: float) -> dict[float, float]:
     if given.unit_m is not None:
         return {given.unit_m: 1.0}
+    if convention.promises and (MIN_METRES <= longest <= MAX_METRES or convention.kept):
+        return {1.0: 1.0}
     return {u: convention.unit.get(u, 0.02) for u in (*UNITS, *(u for u in convention.unit if u not in UNITS))}
 
 
@@ -209,7 +279,7 @@ def _candidates(
     if given.category is not None:
         return {taxonomy.resolve(given.category).category.name: 0.0}
     if named:
-        return dict(named)
+        return {taxonomy.UNKNOWN.name: UNTRUE_NAME, **named}
     other, likely = (UNNAMED_OTHER, UNNAMED_KNOWN) if named is None else (LIKELY_OTHER, LIKELY_KNOWN)
     best: dict[str, float] = {}
     unlike = np.min([np.abs(known.features - f).mean(axis=1) for f in features], axis=0)

@@ -1,11 +1,17 @@
-"""What the names in and around a model say it is: `chairDesk_02.glb`, `SM_Sofa_Leather`, `night stands/a.obj`."""
+"""What the names in and around a model say it is: `chairDesk_02.glb`, `SM_Sofa_Leather`, `night stands/a.obj`.
+
+Words are read as those of boxes are (`labels`), after the compounds that model packs write either way round. A name
+that is only near a kind, and the name of a part, leave it unsure.
+"""
 
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass
 from functools import cache
 
+from diorama_core.library.labels import understand_label
 from diorama_core.library.taxonomy import CATEGORIES, UNKNOWN
 
 _SAME = {"television": ("tv",), "bed": ("bedside",), "tv": ("television",), "fridge": ("refrigerator",)}
@@ -50,35 +56,151 @@ _EMPTY = frozenset(
         "set",
     ]
 )
+_SOLIDS = frozenset(
+    [
+        "cube",
+        "cylinder",
+        "sphere",
+        "icosphere",
+        "plane",
+        "cone",
+        "torus",
+        "circle",
+        "capsule",
+        "prim",
+        "primitive",
+        "polysurface",
+        "pcube",
+        "pcylinder",
+        "psphere",
+        "pplane",
+        "nurbs",
+        "curve",
+        "extrude",
+        "loft",
+        "chamferbox",
+        "rectangle",
+        "line",
+        "solid",
+        "shape",
+        "xform",
+        "instance",
+        "component",
+        "world",
+        "empty",
+        "null",
+        "transform",
+    ]
+)
+"""What programs call a thing that nobody named: `Cube.003`, `Cylinder12`."""
+_NUMBERED_BOX = re.compile(r"^box[_.]?\d{2,}$", re.IGNORECASE)
 MANY_WORDS, ONE_WORD, ELSEWHERE = 0.0, -1.2, -1.0
 """Logarithms of how much less a single word says than a compound, and a folder or a part than the file's own name."""
+SURE, NEARLY, OF_A_PART = 0.99, 0.75, 0.5
+"""How sure names make a kind at most: a known name of the file or its folder, one that is only near, one of a part."""
+NOTHING = frozenset(
+    [
+        "mannequin",
+        "figure",
+        "figurine",
+        "person",
+        "people",
+        "human",
+        "man",
+        "woman",
+        "boy",
+        "girl",
+        "child",
+        "character",
+        "body",
+        "torso",
+        "skeleton",
+        "avatar",
+        "soldier",
+        "zombie",
+        "animal",
+        "horse",
+        "tree",
+        "car",
+        "truck",
+        "weapon",
+        "staircase",
+        "stairs",
+        "stair",
+        "steps",
+        "railing",
+        "banister",
+        "handrail",
+        "balustrade",
+        "column",
+        "pillar",
+    ]
+)
+"""Whoever is called so furnishes no room, whatever its other words are: a mannequin's chest is no furniture."""
 
 
 def words_of(name: str) -> tuple[str, ...]:
     """Plain lower-case words of a name in any usual spelling; numbers and fillers are dropped."""
+    if _NUMBERED_BOX.match(name):  # 3ds Max's own name for a box
+        return ()
     spaced = re.sub(
         r"(?<=[a-z0-9])(?=[A-Z])|(?<=[A-Z])(?=[A-Z][a-z])|(?<=[A-Za-z])(?=\d)|(?<=\d)(?=[A-Za-z])", " ", name
     )
     words = re.findall(r"[^\W\d_]+", spaced.lower())
-    return tuple(w for w in words if w not in _EMPTY and len(w) > 1)
+    return tuple(w for w in words if w not in _EMPTY and w not in _SOLIDS and len(w) > 1)
 
 
-def named_categories(stem: str, folders: Iterable[str] = (), parts: Iterable[str] = ()) -> dict[str, float] | None:
-    """Categories that names speak of, with logarithmic weights (0 is strongest).
+@dataclass(frozen=True)
+class Named:
+    """What names say."""
+
+    weights: Mapping[str, float] | None
+    """Categories with logarithmic weights (0 is strongest). Empty when the file's name is made of words, but none of
+    them is known; None when it has no such name."""
+    certainty: float = SURE
+    """How sure a kind can be by them."""
+
+
+def named_categories(stem: str, folders: Iterable[str] = (), parts: Iterable[str] = ()) -> Named:
+    """Categories that names speak of.
 
     The file's own name is asked first; then the folders from the innermost outwards; then the names of its parts.
-    Empty when its name is made of words, but none of them is known; None when it has no such name.
     """
-    for names, less in (([stem], 0.0), (list(folders), ELSEWHERE), (list(parts), ELSEWHERE)):
+    for names, less, certainty in (([stem], 0.0, SURE), (list(folders), ELSEWHERE, SURE)):
         for name in names:
-            found = _spoken_of(words_of(name))
-            if found:
-                return {category: weight + less for category, weight in found.items()}
-    return {} if words_of(stem) else None
+            exact = _spoken_of(words_of(name))
+            near = {} if exact else _label_of(words_of(name))
+            if exact or near:
+                weights = {category: weight + less for category, weight in (exact or near).items()}
+                return Named(weights, certainty if exact else NEARLY)
+    for name in parts:
+        found = _spoken_of(words_of(name))
+        if found:
+            weights = {category: weight + ELSEWHERE for category, weight in found.items()}
+            return Named({UNKNOWN.name: ONE_WORD + ELSEWHERE, **weights}, OF_A_PART)
+    return Named({} if words_of(stem) else None)
+
+
+def named_kind(name: str) -> str | None:
+    """The one kind that a name speaks of, read as a file's name is; None where it says nothing."""
+    words = words_of(name)
+    found = _spoken_of(words) or _label_of(words)
+    return max(found, key=lambda kind: found[kind]) if found else None
+
+
+def _label_of(words: tuple[str, ...]) -> dict[str, float]:
+    """The kind that boxes of this name would be of; the head noun may come first: `cactus_small`."""
+    for end in range(len(words), 0, -1):
+        kind = understand_label(" ".join(words[:end])).category
+        if kind is not UNKNOWN:
+            return {kind.name: ONE_WORD}
+    return {}
 
 
 def _spoken_of(words: tuple[str, ...]) -> dict[str, float]:
     words = words[:8]
+    if NOTHING.intersection(words):
+        return {UNKNOWN.name: MANY_WORDS}
     known = {p: _known()[p] for p in _phrases(words) if p in _known()}
     used = {word for phrase in known if " " in phrase for word in phrase.split()}
     found: dict[str, float] = {}

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import io
 import warnings
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
+from urllib.parse import unquote
 
 import trimesh
 from PIL import Image
@@ -16,9 +17,11 @@ from diorama_core.errors import LibraryError
 from diorama_core.io import bounded
 from diorama_core.io.contained import ContainedFiles, shown
 from diorama_core.library.ingest.limits import Limits
+from diorama_core.library.ingest.obj import plain_mtl
 
-IMAGE_FORMATS = ("PNG", "JPEG", "WEBP", "BMP", "TGA", "TIFF", "GIF")
-IMAGE_SUFFIXES = frozenset({".png", ".jpg", ".jpeg", ".webp", ".bmp", ".tga", ".tif", ".tiff", ".gif"})
+IMAGE_FORMATS = ("PNG", "JPEG", "WEBP", "BMP", "TGA", "TIFF", "GIF", "DDS", "AVIF")
+IMAGE_SUFFIXES = frozenset({".png", ".jpg", ".jpeg", ".webp", ".bmp", ".tga", ".tif", ".tiff", ".gif", ".dds", ".avif"})
+KTX2 = b"\xabKTX 20\xbb"
 
 
 def read_bytes(path: Path, limits: Limits) -> bytes:
@@ -47,8 +50,7 @@ class References:
         Raises:
             LibraryError: when it lies outside the folder, is a web address, is too large or does not exist.
         """
-        files = ContainedFiles(self.root, LibraryError)
-        return read_bytes(files.path_or_beside(name, self.folder), self.limits)
+        return read_bytes(self._resolved(name), self.limits)
 
     def image(self, name: str) -> bytes | None:
         """A referenced picture, or None with a warning when it is missing, unsafe, broken or too large."""
@@ -72,6 +74,37 @@ class References:
         if message not in self.warnings:
             self.warnings.append(message)
 
+    def _resolved(self, name: str) -> Path:
+        """The file of a name; where it leads nowhere, one whose path ends as the name does, capitals or not.
+
+        A path of the author's own disk ends as the file lies here: `C:/Users/me/textures/cloth.png`.
+        """
+        files = ContainedFiles(self.root, LibraryError)
+        try:
+            return files.path_or_beside(name, self.folder)
+        except LibraryError:
+            parts = unquote(name).replace("\\", "/").strip().split("/")
+            ends = (parts[start:] for start in range(len(parts)))
+            folders = dict.fromkeys((self.folder, self.root))
+            found = (_matching(folder, end) for end in ends if "://" not in name for folder in folders)
+            alike = next((path for path in found if path is not None and files.holds(path)), None)
+            if alike is None:
+                raise
+            return alike
+
+
+def _matching(folder: Path, parts: Sequence[str]) -> Path | None:
+    """A path within a folder whose parts are named so, capitals or not."""
+    for part in parts:
+        if not part or part in (".", "..") or not folder.is_dir():
+            return None
+        exact = folder / part
+        try:
+            folder = exact if exact.exists() else next(p for p in folder.iterdir() if p.name.lower() == part.lower())
+        except (StopIteration, OSError, ValueError):
+            return None
+    return folder
+
 
 class GuardedResolver(trimesh.resolvers.Resolver):  # type: ignore[misc]  # untyped base
     """Hands referenced files to trimesh's loaders, through `References`."""
@@ -87,6 +120,7 @@ class GuardedResolver(trimesh.resolvers.Resolver):  # type: ignore[misc]  # unty
         else:
             try:
                 data = self._references.read(key)
+                data = plain_mtl(data) if key.lower().endswith(".mtl") else data
             except LibraryError as error:
                 self._references.warn(f"left out: {error}")
                 data = None
@@ -109,6 +143,8 @@ class GuardedResolver(trimesh.resolvers.Resolver):  # type: ignore[misc]  # unty
 
 def image_problem(data: bytes, limits: Limits) -> str:
     """Why a picture cannot be used, read from its header alone; empty when it can."""
+    if data.startswith(KTX2):
+        return "is KTX2 (Basis), which is not read; export the model with PNG or JPEG textures"
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", Image.DecompressionBombWarning)

@@ -18,6 +18,7 @@ from trimesh.visual.texture import TextureVisuals
 from diorama_core.errors import DioramaError, LibraryError
 from diorama_core.io.bounded import shortened
 from diorama_core.library.ingest.limits import Limits
+from diorama_core.library.ingest.thickness import THICKNESS, with_thickness
 
 _FARTHEST = 1e7
 """Coordinates beyond this (in the file's unit) are noise, not furniture."""
@@ -79,8 +80,10 @@ def _repaired(scene: trimesh.Scene, limits: Limits) -> Repaired:
     whole = Repaired(tuple(retained), ())
     if not (whole.whole.extents > 0).any() or np.sort(whole.whole.extents)[1] < 1e-9:
         raise LibraryError("it has no extent")
+    thick, was_flat = with_thickness(retained)
+    notes += [f"it was flat and got a thickness of {THICKNESS:.1%} of its longest side"] if was_flat else []
     notes += _openness(whole.whole)
-    return Repaired(tuple(retained), tuple(dict.fromkeys(notes)))
+    return Repaired(thick, tuple(dict.fromkeys(notes)))
 
 
 def _placed(scene: trimesh.Scene, notes: list[str]) -> Iterator[tuple[str, trimesh.Trimesh, Float[np.ndarray, "4 4"]]]:
@@ -138,6 +141,7 @@ def _visual(mesh: trimesh.Trimesh, faces: np.ndarray, materials: dict[int, PBRMa
         if key not in materials:
             materials[key] = _material(visual.material, limits)
         uv = visual.uv if visual.uv is not None and len(visual.uv) == len(mesh.vertices) else None
+        uv = uv if uv is None else np.asarray(uv) * _uv_scale(visual.material)
         return TextureVisuals(uv=uv if uv is not None else np.zeros((len(mesh.vertices), 2)), material=materials[key])
     if isinstance(visual, ColorVisuals) and visual.kind == "vertex":
         return visual
@@ -167,6 +171,15 @@ def _physical(found: Any) -> PBRMaterial:
     made.metallicFactor = _share(found, "pm", 0.0)
     made.roughnessFactor = _share(found, "pr", made.roughnessFactor)
     return made
+
+
+def _uv_scale(found: Any) -> Float[np.ndarray, "2"]:
+    """How often a picture repeats, where an MTL says so (`-s`)."""
+    try:
+        scale = np.array(found.kwargs["uv_scale"], dtype=float).ravel()[:2]
+    except (AttributeError, KeyError, TypeError, ValueError):
+        return np.ones(2)
+    return scale if scale.shape == (2,) and np.isfinite(scale).all() and (scale != 0).all() else np.ones(2)
 
 
 def _share(found: Any, name: str, default: float) -> float:

@@ -15,14 +15,17 @@ from trimesh.visual.texture import TextureVisuals
 from diorama_core.errors import LibraryError
 from diorama_core.library import taxonomy
 from diorama_core.library.catalogue import BULK_DENSITY
-from diorama_core.library.ingest.guess import Frame, Given, guess_frame
+from diorama_core.library.ingest.convention import Convention
+from diorama_core.library.ingest.guess import PROMISED_UP, Frame, Given, frame_evidence, guess_frame
+from diorama_core.library.ingest.joint import Evidence
 from diorama_core.library.ingest.known_shapes import KnownShapes
 from diorama_core.library.ingest.limits import DEFAULT_LIMITS, Limits
 from diorama_core.library.ingest.models import RawModel, read_model
-from diorama_core.library.ingest.names import named_categories, words_of
+from diorama_core.library.ingest.names import Named, named_categories, words_of
 from diorama_core.library.ingest.relief import relief, turned
 from diorama_core.library.ingest.repair import Repaired, repaired
 from diorama_core.library.ingest.sink import Ingested
+from diorama_core.library.ingest.squared import squaring_turn
 from diorama_core.library.ingest.symmetry import symmetry_fold
 from diorama_core.library.record import Guess, Shape, ShapeLibrary, SymmetryFold, usual_contact_faces
 from diorama_core.library.surfaces import support_surfaces
@@ -44,6 +47,15 @@ class Source:
     key: str
     """State of the file and settings (`Ingested.source_key`)."""
     given: Given = field(default_factory=Given)
+    member: str = ""
+    """The file within, where the path is a zip archive."""
+    convention: Convention | None = None
+    """What the whole pack says of its frame and unit; None leaves it to the format."""
+
+    @property
+    def stem(self) -> str:
+        """The model's own name; an archive with one model lends it its name where it has none itself."""
+        return Path(self.member).stem if self.member else self.path.stem
 
 
 @dataclass(frozen=True, eq=False)
@@ -99,7 +111,22 @@ def ingest_file(
     Raises:
         DioramaError: with the reason, when the file cannot be used.
     """
-    return ingest_model(read_model(source.path, source.root, limits), source, known, painter, limits)
+    raw = read_model(source.path, source.root, limits, source.member)
+    return ingest_model(raw, source, known, painter, limits)
+
+
+def evidence_of(
+    source: Source, known: KnownShapes, limits: Limits = DEFAULT_LIMITS
+) -> tuple[Evidence, Convention, float]:
+    """What a file says of its pack's frame and unit, what its format promises, and how long its longest side is.
+
+    Raises:
+        DioramaError: with the reason, when the file cannot be used.
+    """
+    raw = read_model(source.path, source.root, limits, source.member)
+    whole = repaired(raw.scene, limits).whole
+    said = frame_evidence(whole, relief(whole), _named(raw, source), known, source.given)
+    return said, raw.convention, float(whole.extents.max())
 
 
 def ingest_model(
@@ -108,20 +135,57 @@ def ingest_model(
     known: KnownShapes,
     painter: Painter | None = None,
     limits: Limits = DEFAULT_LIMITS,
+    *,
+    square: bool = True,
 ) -> Ingested:
-    """Take in a model that was read already; see `ingest_file`."""
-    model = repaired(raw.scene, limits)
+    """Take in a model that was read already; see `ingest_file`.
+
+    Args:
+        raw: The model.
+        source: Its file, its id, and what is known of it.
+        known: Shapes to compare it with.
+        painter: Makes the thumbnail; None makes none.
+        limits: What is refused.
+        square: Whether a model that stands turned in its file is squared; not where its own axes are known.
+    """
+    model, given, remarks = repaired(raw.scene, limits), source.given, raw.warnings
+    convention = source.convention or raw.convention
+    if raw.own is not None and given.up is None and given.front is None:
+        model = _turned_model(model, raw.own.R_file_object.T)
+        own = Given(up="+z", front="+x", unit_m=1.0, category=raw.own.category, reason="the file, which Diorama wrote")
+        given = given.over(own)
+    elif square:
+        model, note = _squared(model, convention, given)
+        remarks = (*remarks, *note)
     whole = model.whole
     pictures = relief(whole)
-    named = named_categories(source.path.stem, _folders(source), raw.names)
-    frame = guess_frame(whole, pictures, raw.convention, named, known, source.given)
+    frame = guess_frame(whole, pictures, convention, _named(raw, source), known, given)
     size = frame.unit_m * whole.extents.max()
     if not TINY_M <= size <= HUGE_M:
         raise LibraryError(f"it would be {size:.3g} m large; give its unit")
     meshes = _canonical(model, frame)
     fold = symmetry_fold(_whole(meshes), turned(pictures, frame.R_shape_file))
-    record = _record(source, raw, frame, fold)
-    return packed_shape(record, meshes, painter, source.key, (*raw.warnings, *model.warnings))
+    record = _record(source, given, frame, fold)
+    return packed_shape(record, meshes, painter, source.key, (*remarks, *model.warnings))
+
+
+def _named(raw: RawModel, source: Source) -> Named:
+    return named_categories(source.stem, _folders(source), raw.names)
+
+
+def _squared(model: Repaired, convention: Convention, given: Given) -> tuple[Repaired, tuple[str, ...]]:
+    """A model that stands turned about what may be its vertical, squared; and a line that says so."""
+    up = given.up or (PROMISED_UP if convention.promises else None)
+    R, angle = squaring_turn(model.whole, (0, 1, 2) if up is None else ("xyz".index(up[1]),))
+    if angle == 0.0:
+        return model, ()
+    return _turned_model(model, R), (f"it stood turned by {abs(np.degrees(angle)):.0f} degrees in its file",)
+
+
+def _turned_model(model: Repaired, R: Float[np.ndarray, "3 3"]) -> Repaired:
+    T = np.eye(4)
+    T[:3, :3] = R
+    return Repaired(tuple(m.copy().apply_transform(T) for m in model.meshes), model.warnings)
 
 
 def packed_shape(
@@ -187,9 +251,8 @@ def _whole(meshes: Sequence[trimesh.Trimesh]) -> trimesh.Trimesh:
     return Repaired(tuple(meshes), ()).whole
 
 
-def _record(source: Source, raw: RawModel, frame: Frame, fold: SymmetryFold) -> Shape:
-    given = source.given
-    words = " ".join(words_of(source.path.stem))
+def _record(source: Source, given: Given, frame: Frame, fold: SymmetryFold) -> Shape:
+    words = " ".join(words_of(source.stem))
     return Shape(
         id=source.id,
         category=frame.category,

@@ -14,10 +14,13 @@ from diorama_core.library.store.combined import CombinedLibrary
 from diorama_core.library.store.stored import StoredLibrary
 
 BUILT_IN = "built-in"
+ESCAPED_PLUS = "%2B"
+"""Stands for a + in the path of a library, where names are joined by +."""
 _NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9._-]{0,63}")
 
 __all__ = [
     "BUILT_IN",
+    "ESCAPED_PLUS",
     "CombinedLibrary",
     "StoredLibrary",
     "create_library",
@@ -48,7 +51,7 @@ def library_folder(name: str) -> Path:
         LibraryError: when the name is neither.
     """
     if "/" in name or os.sep in name:
-        return Path(name).expanduser()
+        return Path(name.replace(ESCAPED_PLUS, "+")).expanduser()
     if name == BUILT_IN or not _NAME.fullmatch(name):
         raise LibraryError(
             f"a stored library cannot be called {name!r}; use letters, digits, '-', '_' and '.', or a path with a '/'"

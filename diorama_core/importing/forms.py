@@ -1,0 +1,181 @@
+"""Every form in which a room, a scan or a scene comes: how it is told, and how it is read. `SCENE_FORMS` is the table.
+
+A form is told by what is in the file, not by its name alone. What no form tells is said by `other_files`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+import trimesh
+
+from diorama_core.errors import InputError, LibraryError
+from diorama_core.importing.gltf import read_marked_gltf
+from diorama_core.importing.marked import MarkedFile
+from diorama_core.importing.measured_types import MeasuredRoom
+from diorama_core.importing.part import Part
+from diorama_core.importing.parts import parts_of_gltf, parts_of_usd, split_scene
+from diorama_core.importing.point_cloud import PointCloud
+from diorama_core.importing.point_files import POINT_FORMS, PointForm, read_points
+from diorama_core.importing.roomplan import read_room_plan
+from diorama_core.importing.scan_mesh import scan_in
+from diorama_core.importing.scene_frame import frame_of_scene
+from diorama_core.importing.sweethome import parts_of_sweet_home
+from diorama_core.importing.usd import read_marked_usd
+from diorama_core.io.archives import content_of, unpacked
+from diorama_core.io.file_heads import FileHead, head_of
+from diorama_core.io.other_files import what_else
+from diorama_core.library.ingest.models import form_of, read_model
+from diorama_core.progress import Progress
+
+
+@dataclass(frozen=True, eq=False)
+class SceneParts:
+    """The objects of a file of another program, in the world."""
+
+    parts: tuple[Part, ...]
+    notes: tuple[str, ...] = ()
+
+
+Content = MarkedFile | MeasuredRoom | PointCloud | SceneParts
+
+
+@dataclass(frozen=True)
+class SceneForm:
+    """One form of a scene or a scan."""
+
+    name: str
+    files: str
+    """Endings, or what the folder is."""
+    becomes: str
+    tells: Callable[[FileHead], bool]
+    read: Callable[[Path, Progress], Content]
+    extra: str = ""
+    """Optional library that it needs."""
+
+
+@contextmanager
+def told(path: Path) -> Iterator[tuple[SceneForm, Path]]:
+    """The form of a file or folder and where it lies; an archive is unpacked for the time of the context.
+
+    Raises:
+        InputError: it does not exist, or is of no form that is read: says what it is and what to do.
+    """
+    head = head_of(path)
+    form = next((f for f in SCENE_FORMS if f.tells(head)), None)
+    if form is not None:
+        yield form, path
+        return
+    if head.is_zip and what_else(head) is None:
+        with unpacked(path) as folder, told(content_of(folder)) as found:
+            yield found
+        return
+    other = what_else(head)
+    if other is not None:
+        raise InputError(f"{path.name} is {other.name}: {other.advice}")
+    inside = f" (in it: {', '.join(head.names[:3])})" if head.names else ""
+    raise InputError(
+        f"{path.name} is nothing that is read as a room{inside}; scenes, scans and homes are: {', '.join(_names())}"
+    )
+
+
+def marked_file(path: Path) -> MarkedFile | None:
+    """What Diorama wrote into a file; None when it comes from another program.
+
+    Raises:
+        InputError: the file is missing, of a kind that is not read, or damaged.
+        UnavailableError: an optional library is missing.
+    """
+    with told(path) as (form, place):
+        content = form.read(place, Progress())
+    return content if isinstance(content, MarkedFile) else None
+
+
+def _names() -> list[str]:
+    return list(dict.fromkeys(form.name for form in SCENE_FORMS))
+
+
+def _gltf(path: Path, progress: Progress) -> Content:
+    return read_marked_gltf(path) or _scan_or_parts(parts_of_gltf(path))
+
+
+def _usd(path: Path, progress: Progress) -> Content:
+    return read_marked_usd(path) or read_room_plan(path) or _scan_or_parts(parts_of_usd(path))
+
+
+def _room_plan(path: Path, progress: Progress) -> Content:
+    room = read_room_plan(path)
+    if room is None:
+        raise InputError(f"{path.name} is no scan of RoomPlan (there are no walls in it); export the scan again")
+    return room
+
+
+def _home(path: Path, progress: Progress) -> Content:
+    return SceneParts(*parts_of_sweet_home(path, progress))
+
+
+def _model(path: Path, progress: Progress) -> Content:
+    """A scene in a format that does not say its frame: its levels and its size tell."""
+    try:
+        raw = read_model(path, path.parent)
+    except LibraryError as error:
+        raise InputError(f"{path.name}: {error}") from error
+    if not any(isinstance(g, trimesh.Trimesh) and len(g.faces) for g in raw.scene.geometry.values()):
+        points = [np.asarray(g.vertices, float) for g in raw.scene.geometry.values() if hasattr(g, "vertices")]
+        return PointCloud(np.vstack(points) if points else np.zeros((0, 3)), None)
+    to_world, notes = frame_of_scene(raw)
+    content = _scan_or_parts(split_scene(raw.scene, to_world))
+    return SceneParts(content.parts, notes) if isinstance(content, SceneParts) else content
+
+
+def _scan_or_parts(parts: tuple[Part, ...]) -> Content:
+    return scan_in(parts) or SceneParts(parts)
+
+
+def _cloud(path: Path, progress: Progress) -> Content:
+    return read_points(path)
+
+
+def _points(form: PointForm) -> SceneForm:
+    return SceneForm(form.name, form.files, "walls from the points, boxes of what stands in them", form.tells,
+                     _cloud, form.extra)  # fmt: skip
+
+
+def _is_room_plan(head: FileHead) -> bool:
+    return head.text.startswith("{") and '"walls"' in _whole_text(head)
+
+
+def _whole_text(head: FileHead) -> str:
+    """Of a JSON its keys may come in any order, so a small one is looked at whole."""
+    if head.suffix != ".json" or head.size > MAX_LOOKED_AT:
+        return head.text
+    return head.path.read_text("utf-8", "replace")
+
+
+def _is_model(*names: str) -> Callable[[FileHead], bool]:
+    return lambda head: not head.is_folder and (form := form_of(head)) is not None and form.name in names
+
+
+MAX_LOOKED_AT = 64_000_000
+OBJECTS = "Diorama's own comes back as it was; else floor, walls and objects, or a scan"
+SCENE_FORMS = (
+    SceneForm("glTF", ".glb, .gltf", OBJECTS, _is_model("glTF"), _gltf),
+    SceneForm("Sweet Home 3D", ".sh3d", "its walls, floors and furniture, level by level",
+              lambda h: h.is_zip and (h.has("/Home.xml", "/Home") or h.suffix == ".sh3d"), _home),
+    SceneForm("USD", ".usd, .usda, .usdc, .usdz", f"{OBJECTS}; RoomPlan's rooms", _is_model("USD"), _usd, "usd"),
+    SceneForm("RoomPlan", ".json", "walls, doors and windows as measured, furniture in the boxes", _is_room_plan,
+              _room_plan),
+    *(_points(form) for form in POINT_FORMS),
+    SceneForm("OBJ, FBX, Collada, 3DS", ".obj, .fbx, .dae, .3ds", "floor, walls and objects, or a scan",
+              _is_model("OBJ", "FBX", "Collada", "3DS", "OFF", "STL"), _model),
+)  # fmt: skip
+"""The first that tells a file or folder is its form."""
+SUFFIXES = (
+    *dict.fromkeys(s for form in SCENE_FORMS for s in form.files.split(", ") if s.startswith(".") and " " not in s),
+    ".zip",
+)
+"""Endings of files that may be opened; their content decides."""
