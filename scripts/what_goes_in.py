@@ -1,0 +1,59 @@
+"""Writes the tables of docs/what-goes-in.md that are made from the readers' own tables: models, scenes and scans.
+
+    python scripts/what_goes_in.py [--check]
+"""
+
+from __future__ import annotations
+
+import argparse
+import re
+import sys
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[1]
+sys.path.insert(0, str(ROOT))
+
+PAGE = ROOT / "docs" / "what-goes-in.md"
+EXTRA = "needs `diorama[{}]`"
+
+
+def tables() -> dict[str, str]:
+    """The generated parts of the page, by name."""
+    from diorama_core.importing.forms import SCENE_FORMS
+    from diorama_core.io.other_files import OTHER_FILES
+    from diorama_core.library.ingest.models import MODEL_FORMS
+
+    models = [f"| {f.name} | {', '.join(f.suffixes)} | {f.note} |" for f in MODEL_FORMS]
+    scenes = [
+        f"| {f.name} | {f.files} | {f.becomes}{'; ' + EXTRA.format(f.extra) if f.extra else ''} |" for f in SCENE_FORMS
+    ]
+    others = [f"| {f.name} | {f.advice} |" for f in OTHER_FILES]
+    return {
+        "models": "\n".join(["| format | endings | |", "|---|---|---|", *models]),
+        "scenes": "\n".join(["| what | comes as | becomes |", "|---|---|---|", *scenes]),
+        "others": "\n".join(["| what | what to do |", "|---|---|", *others]),
+    }
+
+
+def filled(page: str) -> str:
+    """The page with its generated parts made anew; everything else stays."""
+    for name, table in tables().items():
+        marks = re.compile(rf"(<!-- made: {name} -->\n).*?(<!-- end: {name} -->)", re.DOTALL)
+        page = marks.sub(lambda found, table=table: f"{found[1]}{table}\n{found[2]}", page)
+    return page
+
+
+def main() -> int:
+    parser = argparse.ArgumentParser(description=(__doc__ or "").partition("\n")[0])
+    parser.add_argument("--check", action="store_true", help="only say whether the page is up to date")
+    options = parser.parse_args()
+    page = PAGE.read_text()
+    made = filled(page)
+    if options.check:
+        return int(made != page)
+    PAGE.write_text(made)
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
