@@ -1,6 +1,6 @@
 """Writes the tables of docs/what-goes-in.md that are made from the readers' own tables: models, scenes and scans.
 
-    python scripts/what_goes_in.py [--check]
+python scripts/what_goes_in.py [--check]
 """
 
 from __future__ import annotations

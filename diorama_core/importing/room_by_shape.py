@@ -150,7 +150,8 @@ def _face(mesh: trimesh.Trimesh, chosen: np.ndarray, direction: np.ndarray, leve
 
 def _outline(triangles: Sequence[Polygon]) -> Float[np.ndarray, "n 2"]:
     """Of the largest piece that triangles cover."""
-    whole = unary_union([t.buffer(JOINS_M) for t in triangles if t.area > 0]).buffer(-JOINS_M)
+    whole = unary_union([t.buffer(JOINS_M, join_style="mitre") for t in triangles if t.area > 0])
+    whole = whole.buffer(-JOINS_M, join_style="mitre")
     largest = max(whole.geoms, key=lambda p: p.area) if isinstance(whole, MultiPolygon) else whole
     return np.asarray(largest.simplify(SAME_M / 2).exterior.coords)[:-1]
 

@@ -63,11 +63,12 @@ def ceiling_planes(storeys: Sequence[Storey], walls: Sequence[Plane]) -> tuple[t
         own = [w for w in walls if _is_of(w, storey)] if len(storeys) > 1 else walls
         tops = np.array([float(w.polygon[:, 2].max()) for w in own])
         full = tops[tops > tops.max() - HALF_WALL_M] if len(tops) else tops
-        if storey.outline is None or len(full) < 3:
+        if storey.outline is None or len(tops) < 3:
             continue
-        sloped = any(_has_slope(w) for w in own)
-        if sloped or np.ptp(full) > LEVEL_M:
+        if any(_has_slope(w) for w in own) or np.ptp(full) > LEVEL_M:
             notes.append("the ceiling slopes: its walls are read as they are, and it was left out")
+            continue
+        if len(full) < 3:
             continue
         ring = _ring(storey.outline)[::-1]
         polygon = np.column_stack([ring, np.full(len(ring), float(np.median(full)))])

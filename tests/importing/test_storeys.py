@@ -37,7 +37,9 @@ def test_every_room_and_storey_has_its_floor_and_what_stands_on_it() -> None:
     assert len(scene.architecture.by_role("ceiling")) == 3
     held = [scene.support_of(o.id) for o in scene.objects]
     assert [edge.parent for edge in held if edge is not None] == ["floor", "floor-2", "floor-3"]
-    for wall, (outline, _) in zip(scene.architecture.by_role("wall"), [r for r in rooms for _ in range(4)], strict=True):
+    for wall, (outline, _) in zip(
+        scene.architecture.by_role("wall"), [r for r in rooms for _ in range(4)], strict=True
+    ):
         inward = np.append(outline.mean(axis=0), 0.0) - wall.centre
         assert wall.normal[:2] @ inward[:2] > 0
 

@@ -21,7 +21,7 @@ def zipped(path: Path, **files: bytes) -> Path:
 
 
 def test_an_archive_is_told_by_its_bytes_and_lists_its_files(tmp_path: Path) -> None:
-    head = head_of(zipped(tmp_path / "scan.bin", keyframes__depth="", **{"__MACOSX__x": b""}))
+    head = head_of(zipped(tmp_path / "scan.bin", keyframes__depth=b""))
     assert head.is_zip
     assert head.names == ("keyframes/depth",)
 

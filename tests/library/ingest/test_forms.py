@@ -64,7 +64,9 @@ def test_pictures_are_found_as_any_system_names_them(tmp_path: Path, name: str) 
     (tmp_path / "textures").mkdir()
     Image.new("RGB", (2, 2), (200, 10, 10)).save(tmp_path / "textures" / "cloth.png")
     (tmp_path / "box.mtl").write_text(f"newmtl cloth\nmap_Kd {name}\n")
-    (tmp_path / "box.obj").write_text("mtllib Box.MTL\nusemtl cloth\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nf 1/1 2/1 3/1\n")
+    (tmp_path / "box.obj").write_text(
+        "mtllib Box.MTL\nusemtl cloth\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nf 1/1 2/1 3/1\n"
+    )
     raw = read_model(tmp_path / "box.obj", tmp_path)
     assert raw.warnings == ()
     assert next(iter(raw.scene.geometry.values())).visual.material.image is not None

@@ -71,10 +71,6 @@ def negative_offset(d: dict[str, Any]) -> None:
     d["bufferViews"][0]["byteOffset"] = -8
 
 
-def draco(d: dict[str, Any]) -> None:
-    d["extensionsRequired"] = ["KHR_draco_mesh_compression"]
-
-
 def old_version(d: dict[str, Any]) -> None:
     d["asset"]["version"] = "1.0"
 
@@ -122,7 +118,6 @@ REFUSED: list[tuple[Edit, str]] = [
     (past_the_view, "past its buffer view"),
     (past_the_buffer, "past its buffer"),
     (negative_offset, "past its buffer"),
-    (draco, "Draco"),
     (old_version, "version '1.0'"),
     (climbing, "outside the folder"),
     (absolute, "outside the folder"),
