@@ -28,6 +28,10 @@ if TYPE_CHECKING:
     import numpy as np
 
 
+WITHOUT_PHOTO = "orbit:35"
+"""View of a scene that no photo was taken of."""
+
+
 def add_serve(commands: Any) -> None:
     """Declare `diorama serve`."""
     p = command(commands, "serve", _serve, "Open the editor in the browser.", "diorama serve my-room --port 8081")
@@ -316,9 +320,9 @@ def add_picture(commands: Any) -> None:
     p.add_argument(
         "--view",
         type=view,
-        default="photo",
         metavar="photo|planes|top|front|orbit:DEG|turntable",
-        help="planes: floor, walls and ceiling drawn over the photo; turntable: a film, .mp4 or .gif (default: photo)",
+        help="planes: floor, walls and ceiling drawn over the photo; turntable: a film, .mp4 or .gif (default: photo, "
+        f"or {WITHOUT_PHOTO} where there is none)",
     )
     p.add_argument("--size", type=size, metavar="WxH", help="in pixels (default: the photo's, at most 1280 wide)")
     p.add_argument("--cycles", action="store_true", help="path-traced by Blender's Cycles, where it is installed")
@@ -333,6 +337,8 @@ def _picture(a: argparse.Namespace) -> None:
     from diorama_core.io.atomic import write_atomically
 
     room = diorama.load(a.project)
+    if a.view is None:
+        a.view = "photo" if room.scene.camera is not None else WITHOUT_PHOTO
     if a.view == "turntable":
         _turntable(room, a)
         return

@@ -9,9 +9,10 @@ import viser
 
 from diorama_app.panels.upload_field import Take, hidden_upload
 from diorama_app.session.client import Client
+from diorama_core.importing.forms import SUFFIXES
 
-MODELS = ("glb", "gltf", "obj", "ply", "stl", "fbx")
-SCENES = ("usd", "usda", "usdc", "usdz", "sh3d")
+MODELS = ("glb", "gltf", "obj", "ply", "stl", "fbx", "dae", "3mf", "3ds", "off")
+SCENES = tuple(s[1:] for s in SUFFIXES if s[1:] not in (*MODELS, "txt", "csv"))
 """A GLB may be either; dropped, it is a model, and *Open a file* takes it as a scene."""
 
 _SCRIPT = """(()=>{const to=%s,veil=document.getElementById('dio-drop')||Object.assign(document.createElement('div'),

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import logging
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
@@ -22,8 +21,6 @@ from diorama_core.library.store import StoredLibrary, open_library, stored_libra
 from diorama_core.library.user_library import OWN
 from diorama_core.progress import Progress
 from diorama_core.project.storage import OWN_SHAPES
-
-log = logging.getLogger(__name__)
 
 
 @dataclass(frozen=True, eq=False)
@@ -86,7 +83,7 @@ def _read(path: Path, progress: Progress) -> Iterator[tuple[Path, Content]]:
     """Where a file lies, unpacked where it was an archive, and what is in it."""
     progress.report(0.0, f"reading {path.name}")
     with told(path) as (form, place):
-        log.info("%s is read as %s", path.name, form.name)
+        progress.report(0.0, f"{path.name} is read as {form.name}")
         yield place, form.read(place, progress)
 
 

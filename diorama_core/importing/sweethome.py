@@ -103,7 +103,9 @@ def _is_shown(element: ET.Element, home: ET.Element, levels: Mapping[str, float]
 
 
 def _notes(home: ET.Element, levels: Mapping[str, float]) -> tuple[str, ...]:
-    names = [(shortened(e.get("name") or e.get("id", ""), 40), e.get("id", "") in levels) for e in home.iter("level")]
+    names = [
+        (shortened(str(e.get("name") or e.get("id", "")), 40), e.get("id", "") in levels) for e in home.iter("level")
+    ]
     hidden = [name for name, shown in names if not shown]
     notes = [f"hidden levels were left out: {', '.join(hidden)}"] if hidden else []
     if len(levels) > 1:

@@ -22,6 +22,7 @@ from diorama_core.pipeline import codec
 from diorama_core.project.storage import Project
 from diorama_core.scene.schema import scene_from_json, scene_to_json
 from tests.app.small_room import PlainLibrary, furnished_scene, make_project, plain_photo
+from tests.fuzzing import form_files as forms
 from tests.fuzzing import kept_files as kept
 from tests.fuzzing import measured_files as measured
 from tests.fuzzing import scene_files as files
@@ -311,6 +312,15 @@ PARSERS: dict[str, Parser] = {
     "cloud": Parser(measured.cloud_samples, _in_process(measured.read_cloud), measured.strange_cloud, round=15),
     "frame": Parser(measured.frame_samples, _in_process(measured.read_frame), measured.strange_frame, round=15),
     "plan": Parser(measured.plan_samples, _in_process(measured.read_plan), damaged),
+    "compressed": Parser(forms.compressed_samples, _in_process(forms.read_as_model(".glb")), strange_glb, round=15),
+    "backwards": Parser(lambda: (forms.OBJ_BACKWARDS,), forms.read_as_model(".obj"), damaged),
+    "dae": Parser(lambda: (forms.box("dae"),), _in_process(forms.read_as_model(".dae")), damaged, round=15),
+    "threemf": Parser(lambda: (forms.three_mf(),), _in_process(forms.read_as_model(".3mf")), strange_zip, round=15),
+    "threeds": Parser(lambda: (forms.three_ds(),), forms.read_as_model(".3ds"), damaged),
+    "off": Parser(lambda: (forms.box("off"),), forms.read_as_model(".off"), damaged),
+    "archive": Parser(forms.archives, _in_process(forms.read_archive), strange_zip, round=15),
+    "text": Parser(forms.text_clouds, _in_process(forms.read_text_points), damaged, round=15),
+    "splats": Parser(forms.splat_samples, _in_process(forms.read_splats), damaged, round=15),
     "table": Parser(measured.table_samples, measured.read_models_table, damaged),
     "further": Parser(kept.further_samples, kept.read_further, strange_zip),
     "placed": Parser(kept.placed_samples, kept.read_placed, strange_json),

@@ -195,7 +195,7 @@ def test_shapes_that_no_library_has_come_out_of_the_file(tmp_path, known: KnownS
 
 def test_files_that_are_no_scene(tmp_path) -> None:
     Image.new("RGB", (4, 4)).save(tmp_path / "photo.png")
-    with pytest.raises(InputError, match=r"\.glb"):
+    with pytest.raises(InputError, match="is a picture: build a room from it"):
         marked_file(tmp_path / "photo.png")
     with pytest.raises(InputError, match="does not exist"):
         marked_file(tmp_path / "missing.glb")
