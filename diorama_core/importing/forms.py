@@ -146,7 +146,10 @@ def _points(form: PointForm) -> SceneForm:
 
 
 def _is_room_plan(head: FileHead) -> bool:
-    return head.text.startswith("{") and '"walls"' in _whole_text(head)
+    if not head.text.startswith("{"):
+        return False
+    text = _whole_text(head)
+    return '"walls"' in text or ('"dimensions"' in text and '"transform"' in text)
 
 
 def _whole_text(head: FileHead) -> str:

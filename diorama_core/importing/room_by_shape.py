@@ -123,7 +123,7 @@ def _faces(mesh: trimesh.Trimesh) -> list[Face]:
     found: list[Face] = []
     for index in np.argsort(-areas, kind="stable"):
         normal = normals[index]
-        level = abs(normal[2]) > DIRECTION_COS
+        level = bool(abs(normal[2]) > DIRECTION_COS)
         if not left[index] or not (level or abs(normal[2]) < 0.1):
             continue
         direction = np.array([0.0, 0.0, 1.0]) if level else np.append(normal[:2] / np.linalg.norm(normal[:2]), 0.0)

@@ -108,10 +108,10 @@ def _numbered(word: str, index: int) -> str:
 
 
 def _has_slope(wall: Plane) -> bool:
-    """Whether a wall's top goes up or down: a gable has five corners."""
-    z = wall.polygon[:, 2]
-    upper = z > z.min() + 0.5 * np.ptp(z)
-    return bool(np.ptp(z[upper]) > LEVEL_M) if upper.any() else False
+    """Whether a wall has a side that is neither level nor upright: a gable has two."""
+    along = np.roll(wall.polygon, -1, axis=0) - wall.polygon
+    rises, runs = np.abs(along[:, 2]), np.linalg.norm(along[:, :2], axis=1)
+    return bool(((rises > LEVEL_M) & (runs > LEVEL_M)).any())
 
 
 def _is_of(wall: Plane, storey: Storey) -> bool:

@@ -12,7 +12,7 @@ from diorama_core.library.catalogue import built_in_library
 
 
 def ring(x: float, y: float, width: float = 3.0, depth: float = 3.0) -> np.ndarray:
-    return np.array([[x, y], [x + width, y], [x + width, y + depth], [x, y + depth]])
+    return np.array([[x, y], [x + width, y], [x + width, y + depth], [x, y + depth]], float)
 
 
 def walls(outline: np.ndarray, low: float, high: float, stem: str) -> list[MeasuredWall]:
