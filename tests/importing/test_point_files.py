@@ -116,7 +116,7 @@ def test_what_cannot_be_read_is_one_line(tmp_path: Path, monkeypatch: pytest.Mon
         read_points(write_ply(tmp_path / "none.ply", np.zeros((0, 3))))
     (tmp_path / "empty").mkdir()
     assert not is_points(head_of(tmp_path / "empty"))
-    with pytest.raises(InputError, match="neither depth nor a mesh"):
+    with pytest.raises(InputError, match="holds no points that are read"):
         read_points(tmp_path / "empty")
     folder = write_app_scan(tmp_path / "scan", "3d scanner app")
     for path in folder.glob("frame_*.json"):
