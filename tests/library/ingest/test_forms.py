@@ -28,6 +28,7 @@ from diorama_core.library.ingest.squared import squaring_turn
 from diorama_core.library.ingest.thickness import with_thickness
 from diorama_core.library.ingest.three_ds import read_3ds
 from diorama_core.library.ingest.three_mf import read_3mf
+from diorama_core.library.ingest.usd_stage import frame_of, opened_stage
 from diorama_core.library.kind_sizes import is_possible
 from tests.library.ingest.models import chair, y_up
 
@@ -218,3 +219,19 @@ def test_files_are_grouped_by_folder_and_exporter(tmp_path: Path) -> None:
     generator = json.dumps({"asset": {"version": "2.0", "generator": "Khronos glTF Blender I/O v3.2.40"}})
     (tmp_path / "a.gltf").write_text(generator)
     assert exporter_of(tmp_path / "a.gltf").startswith("khronos")
+
+
+def test_usd_says_its_frame_and_is_read_in_it(tmp_path: Path) -> None:
+    pytest.importorskip("pxr", reason="needs the extra [usd]")
+    mesh, cm = chair(), 100.0
+    points = ", ".join(f"({x * cm}, {y * cm}, {z * cm})" for x, y, z in mesh.vertices)
+    indices = ", ".join(str(k) for k in mesh.faces.reshape(-1))
+    (tmp_path / "chair.usda").write_text(
+        '#usda 1.0\n(\n    metersPerUnit = 0.01\n    upAxis = "Z"\n)\ndef Mesh "chair"\n{\n'
+        f"    int[] faceVertexCounts = [{', '.join(['3'] * len(mesh.faces))}]\n"
+        f"    int[] faceVertexIndices = [{indices}]\n    point3f[] points = [{points}]\n}}\n"
+    )
+    assert frame_of(opened_stage(tmp_path / "chair.usda")) == ("+z", 0.01)
+    raw = read_model(tmp_path / "chair.usda", tmp_path)
+    assert raw.scene.extents == pytest.approx(chair().extents * cm, rel=1e-5)
+    assert raw.convention.up["+z"] > 0.9

@@ -336,7 +336,7 @@ def test_an_obj_face_of_points_that_do_not_exist(tmp_path: Path) -> None:
 
 def test_an_unknown_format_says_what_to_do(tmp_path: Path) -> None:
     (tmp_path / "a.blend").write_bytes(b"BLENDER")
-    with pytest.raises(LibraryError, match="convert it to GLB"):
+    with pytest.raises(LibraryError, match="export GLB"):
         read(tmp_path / "a.blend")
 
 
