@@ -14,6 +14,7 @@ from diorama_core.errors import InputError, ProjectError
 from diorama_core.io.atomic import write_atomically
 from diorama_core.layout.recipes import recipe
 from diorama_core.multiview.found_poses import UnposedPhoto, find_poses
+from diorama_core.multiview.lens import straightened
 from diorama_core.multiview.posed_photos import PosedPhoto, Poses
 from diorama_core.multiview.rooms import JoinedRoom, PosedInputs, build_room, in_room
 from diorama_core.multiview.turned_cameras import quarters_of, upright_camera
@@ -120,17 +121,19 @@ def _inputs(photo: FolderPhoto) -> tuple[Inputs, tuple[str, ...]]:
 def _posed(photo: FolderPhoto, inputs: Inputs, posed: PosedPhoto, *, stored: bool) -> PosedInputs:
     """A photo with its camera, which is turned with it where it is the camera of the picture as it is stored."""
     width, height = inputs.photo.width, inputs.photo.height
-    quarters, k = quarters_of(photo.photo), posed.camera.intrinsics
+    quarters, k, lens = quarters_of(photo.photo), posed.camera.intrinsics, posed.lens
     lies = abs(k.height / k.width * height / width - 1.0) <= MAX_ASPECT_OFF and abs(k.width / k.height - 1.0) > 0.01
     if (quarters % 2 and lies) or (quarters == 2 and stored):
         posed = replace(posed, camera=upright_camera(posed.camera, quarters))
+        lens = lens.turned(quarters)
     k = posed.camera.intrinsics
     if abs(k.width / k.height * height / width - 1.0) > MAX_ASPECT_OFF:
         raise InputError(
             f"{photo.photo.name} has {width} x {height} pixels, its camera {k.width} x {k.height}: another picture?"
         )
     camera = Camera(k.scaled(width, height), posed.camera.T_world_camera)
-    return PosedInputs(replace(inputs, intrinsics=camera.intrinsics), camera)
+    straight = straightened(inputs, camera.intrinsics, lens)
+    return PosedInputs(replace(straight, intrinsics=camera.intrinsics), camera)
 
 
 def _save(

@@ -23,6 +23,7 @@ from scipy.spatial.transform import Rotation
 from diorama_core.errors import InputError
 from diorama_core.io.bounded import megabytes, read_json, shortened
 from diorama_core.io.contained import ContainedFiles
+from diorama_core.multiview.lens import STRAIGHT, Lens
 from diorama_core.multiview.turned_cameras import quarters_of
 from diorama_core.scene.types import Camera, Intrinsics
 
@@ -41,8 +42,6 @@ MODELS: Mapping[int, tuple[str, int]] = {
 }
 """COLMAP's camera models by number, with how many parameters each has."""
 _ONE_FOCAL = ("SIMPLE_PINHOLE", "SIMPLE_RADIAL", "RADIAL")
-_MILD_DISTORTION = 0.1
-"""Of the first coefficients: more bends straight lines so that boxes no longer fit."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -53,6 +52,8 @@ class PosedPhoto:
     """The file's path as the poses name it."""
     camera: Camera
     """In the world of the poses."""
+    lens: Lens = STRAIGHT
+    """What it bends."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -118,7 +119,7 @@ def _nerfstudio(path: Path, pictures: Sequence[Path] = ()) -> Poses:
     frames = document["frames"]
     if not isinstance(frames, list) or len(frames) > MAX_PHOTOS:
         raise ValueError(f"'frames' is no list of at most {MAX_PHOTOS}")
-    photos, bent = [], 0.0
+    photos = []
     for frame in frames:
         values = {**document, **frame}
         if "w" not in values or "h" not in values:
@@ -131,10 +132,12 @@ def _nerfstudio(path: Path, pictures: Sequence[Path] = ()) -> Poses:
             if "camera_angle_y" in values:
                 fy = 0.5 * float(values["h"]) / float(np.tan(float(values["camera_angle_y"]) / 2))
         k = _intrinsics(values["w"], values["h"], fx, fy, values.get("cx"), values.get("cy"))
-        bent = max(bent, abs(float(values.get("k1", 0.0))), abs(float(values.get("k2", 0.0))))
+        fisheye = "FISHEYE" in str(values.get("camera_model", "")).upper()
+        radial = tuple(float(values.get(f"k{n}", 0.0)) for n in range(1, 5 if fisheye else 4))
+        lens = Lens(radial, (float(values.get("p1", 0.0)), float(values.get("p2", 0.0))), fisheye)
         T = _rigid(np.asarray(frame["transform_matrix"], np.float64)) @ OPENCV_FROM_OPENGL
-        photos.append(PosedPhoto(str(frame["file_path"]), Camera(k, T)))
-    return Poses(tuple(photos), bool(document.get("metric", False)), None, _distortion(bent))
+        photos.append(PosedPhoto(str(frame["file_path"]), Camera(k, T), lens))
+    return Poses(tuple(photos), bool(document.get("metric", False)), None, _distortion(photos))
 
 
 def _size_of(folder: Path, name: str, pictures: Sequence[Path]) -> tuple[int, int]:
@@ -159,12 +162,10 @@ def _size_of(folder: Path, name: str, pictures: Sequence[Path]) -> tuple[int, in
 
 
 def _colmap_text(folder: Path) -> Poses:
-    cameras: dict[int, Intrinsics] = {}
-    bent = 0.0
+    cameras: dict[int, tuple[Intrinsics, Lens]] = {}
     for line in _lines(folder / "cameras.txt"):
         number, model, width, height, *parameters = line.split()
-        cameras[int(number)], own = _colmap_camera(model, int(width), int(height), [float(p) for p in parameters])
-        bent = max(bent, own)
+        cameras[int(number)] = _colmap_camera(model, int(width), int(height), [float(p) for p in parameters])
     photos: list[PosedPhoto] = []
     for line in islice(_lines(folder / "images.txt", keep_empty=True), 0, None, 2):  # every other line lists points
         if not line:
@@ -172,8 +173,9 @@ def _colmap_text(folder: Path) -> Poses:
         if len(photos) == MAX_PHOTOS:
             raise ValueError(f"more than {MAX_PHOTOS} cameras")
         _, *numbers, camera, name = line.split(maxsplit=9)
-        photos.append(PosedPhoto(name, Camera(cameras[int(camera)], _colmap_pose([float(n) for n in numbers]))))
-    return Poses(tuple(photos), False, None, _distortion(bent), stored_pixels=True)
+        k, lens = cameras[int(camera)]
+        photos.append(PosedPhoto(name, Camera(k, _colmap_pose([float(n) for n in numbers])), lens))
+    return Poses(tuple(photos), False, None, _distortion(photos), stored_pixels=True)
 
 
 def _lines(path: Path, *, keep_empty: bool = False) -> Iterator[str]:
@@ -192,15 +194,14 @@ def _opened(path: Path) -> BinaryIO:
 
 
 def _colmap_binary(folder: Path) -> Poses:
-    cameras: dict[int, Intrinsics] = {}
-    bent, photos = 0.0, []
+    cameras: dict[int, tuple[Intrinsics, Lens]] = {}
+    photos = []
     with _opened(folder / "cameras.bin") as stream:
         for _ in range(_count(stream)):
             number, model, width, height = struct.unpack("<iiQQ", stream.read(24))
             name, count = MODELS[model]
             parameters = struct.unpack(f"<{count}d", stream.read(8 * count))
-            cameras[number], own = _colmap_camera(name, width, height, list(parameters))
-            bent = max(bent, own)
+            cameras[number] = _colmap_camera(name, width, height, list(parameters))
     with _opened(folder / "images.bin") as stream:
         for _ in range(_count(stream)):
             _, *numbers, camera = struct.unpack("<i7di", stream.read(64))
@@ -211,8 +212,9 @@ def _colmap_binary(folder: Path) -> Poses:
                     raise ValueError("a photo's name does not end")
             (points,) = struct.unpack("<Q", stream.read(8))
             stream.seek(24 * points, 1)
-            photos.append(PosedPhoto(text.decode(), Camera(cameras[camera], _colmap_pose(numbers))))
-    return Poses(tuple(photos), False, None, _distortion(bent), stored_pixels=True)
+            k, lens = cameras[camera]
+            photos.append(PosedPhoto(text.decode(), Camera(k, _colmap_pose(numbers)), lens))
+    return Poses(tuple(photos), False, None, _distortion(photos), stored_pixels=True)
 
 
 def _count(stream: BinaryIO) -> int:
@@ -222,13 +224,16 @@ def _count(stream: BinaryIO) -> int:
     return int(count)
 
 
-def _colmap_camera(model: str, width: int, height: int, p: list[float]) -> tuple[Intrinsics, float]:
-    """Intrinsics, and the largest coefficient of distortion."""
+def _colmap_camera(model: str, width: int, height: int, p: list[float]) -> tuple[Intrinsics, Lens]:
+    """Intrinsics, and what the lens bends."""
     if model not in {name for name, _ in MODELS.values()}:
         raise ValueError(f"camera model {model} is not read")
     fx, fy, cx, cy = (p[0], p[0], p[1], p[2]) if model in _ONE_FOCAL else p[:4]
     rest = p[3:] if model in _ONE_FOCAL else p[4:]
-    return _intrinsics(width, height, fx, fy, cx, cy), max((abs(v) for v in rest), default=0.0)
+    k = _intrinsics(width, height, fx, fy, cx, cy)
+    if model in ("OPENCV", "FULL_OPENCV"):
+        return k, Lens((*rest[:2], *rest[4:]), (rest[2], rest[3]))
+    return k, Lens(tuple(rest), fisheye=model == "OPENCV_FISHEYE")
 
 
 def _colmap_pose(numbers: list[float]) -> Float[np.ndarray, "4 4"]:
@@ -294,10 +299,9 @@ def _rigid(T: Float[np.ndarray, "4 4"]) -> Float[np.ndarray, "4 4"]:
     return T
 
 
-def _distortion(largest: float) -> tuple[str, ...]:
-    if largest <= _MILD_DISTORTION:
-        return ()
-    return (f"the photos are distorted (coefficient {largest:.2f}) and were read as they are; undistort them first",)
+def _distortion(photos: Sequence[PosedPhoto]) -> tuple[str, ...]:
+    bent = sum(photo.lens.bends for photo in photos)
+    return (f"{bent} photos are undistorted before they are used",) if bent else ()
 
 
 Kind = Literal["text", "binary"]
