@@ -22,6 +22,7 @@ import trimesh
 from jaxtyping import Float
 
 from diorama_core.errors import DioramaError, InputError
+from diorama_core.geometry.openings import OPENING_CATEGORIES
 from diorama_core.importing.part import Part
 from diorama_core.io.bounded import shortened
 from diorama_core.io.contained import ContainedFiles
@@ -188,7 +189,8 @@ def _category(piece: ET.Element, size_m: Sequence[float]) -> str | None:
         if kind is not None and kind != UNKNOWN.name and is_possible(kind, np.array([depth, width, height])):
             return kind
     if piece.tag == "doorOrWindow":
-        return "window" if _number(piece, "elevation", 0.0) > SILL_CM else "door"
+        door, window = OPENING_CATEGORIES
+        return window if _number(piece, "elevation", 0.0) > SILL_CM else door
     return None
 
 

@@ -22,6 +22,7 @@ Mount = Literal["floor", "surface", "wall", "ceiling"]
 Trait = Literal[
     "supports_objects",  # people put objects on it, so that its shapes must come empty
     "quarter_turns_free",  # often stands at odd angles to the room (chairs, plants)
+    "flat",  # its thinnest side may be as thin as it likes
     "soft",  # gives way: lies against and partly in other soft objects
     "back_at_wall",  # its back stands at a wall
     "often_at_wall",  # people put its back to a wall where there is room
@@ -202,6 +203,11 @@ class Category:
     def quarter_turns_free(self) -> bool:
         """Whether it often stands at odd angles to the room (chairs, plants)."""
         return "quarter_turns_free" in self.traits
+
+    @property
+    def flat(self) -> bool:
+        """Whether its thinnest side may be as thin as it likes."""
+        return "flat" in self.traits
 
     @property
     def soft(self) -> bool:

@@ -16,38 +16,6 @@ MAX_MODES = 3
 MAX_SIGMAS, MIN_SIGMA, OFF_ANYWAY = 2.6, 0.08, 0.22
 """How far a side may be off a kind's usual one, in standard deviations of its logarithm, and the quarter that is
 allowed beside them: 99 % of the built-in shapes are within."""
-FLAT_KINDS = frozenset(
-    [
-        "television",
-        "monitor",
-        "tablet",
-        "smartphone",
-        "laptop",
-        "keyboard",
-        "picture",
-        "photo frame",
-        "mirror",
-        "floor mirror",
-        "whiteboard",
-        "bulletin board",
-        "clock",
-        "window",
-        "door",
-        "curtain",
-        "blinds",
-        "room divider",
-        "rug",
-        "bath mat",
-        "yoga mat",
-        "blanket",
-        "towel",
-        "books",
-        "plate",
-        "cutting board",
-        "bathroom scale",
-    ]
-)
-"""Kinds whose thinnest side may be as thin as it likes."""
 
 
 @cache
@@ -94,7 +62,7 @@ def is_possible(name: str, size_m: Float[np.ndarray, "3"]) -> bool:
         return True
     log_size = np.log(np.maximum(size_m, 1e-6))
     return any(
-        bool((_beyond(mode, turned, name in FLAT_KINDS) <= MAX_SIGMAS).all())
+        bool((_beyond(mode, turned, category(name).flat) <= MAX_SIGMAS).all())
         for mode in sizes_of_kind(name)
         for turned in (log_size, log_size[[1, 0, 2]])
     )
