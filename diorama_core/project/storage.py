@@ -93,7 +93,8 @@ class Project:
     def name(self) -> str:
         """What people call the project."""
         name = self.info().get("name")
-        return shortened(name if isinstance(name, str) and name else file_label(self.folder.name), MAX_NAME)
+        given = shortened(name, MAX_NAME) if isinstance(name, str) else ""
+        return given or shortened(file_label(self.folder.name), MAX_NAME)
 
     @property
     def library_name(self) -> str:

@@ -106,6 +106,16 @@ def test_half_characters_are_read_again_or_refused(writer: str) -> None:
         _read_all(project.folder)
 
 
+@pytest.mark.parametrize("name", ["\U0003134b", "\u200b", "\x1b"])
+def test_a_name_of_nothing_that_can_be_seen_is_none(name: str) -> None:
+    with _project() as project:
+        project.update_info(name=name)
+        assert project.name
+        with suppress(DioramaError):
+            rename_project(project, name)
+        assert project.name
+
+
 def test_a_project_of_a_photo_whose_name_is_no_utf8(tmp_path: Path) -> None:
     """Built from such a photo, a project was written that nobody could open any more."""
     read = ReadInputs(replace(example_inputs(), photo=replace(example_inputs().photo, name=f"{HALF}.jpg")), (HALF,))
