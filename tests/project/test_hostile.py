@@ -56,7 +56,7 @@ def test_no_picture_of_a_project_starts_a_program(ghostscript: Path, tmp_path: P
         project.texture("floor")
     from diorama_app.panels.projects import _small_picture
 
-    assert _small_picture(project.folder / "photo.jpg") == ""
+    assert _small_picture(project.folder / "photo.jpg", 0) == ""
     with pytest.raises(Exception), Image.open(textures / "floor.jpg") as picture:  # noqa: B017  # as trimesh would
         picture.load()
     assert not ghostscript.exists()
