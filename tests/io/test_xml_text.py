@@ -25,7 +25,11 @@ def test_depth_is_bounded_and_damage_is_one_line() -> None:
     def nested(depth: int) -> bytes:
         return b"<a>" * depth + b"</a>" * depth
 
+    beside = b"<b/>" * MAX_DEPTH  # which say nothing of how deep what follows is
     assert parse_xml(nested(MAX_DEPTH), "home", InputError).tag == "a"
+    assert len(parse_xml(b"<a>" + beside + nested(MAX_DEPTH - 1) + b"</a>", "home", InputError)) == MAX_DEPTH + 1
+    with pytest.raises(InputError, match="has elements nested"):
+        parse_xml(b"<a>" + beside + nested(MAX_DEPTH) + b"</a>", "home", InputError)
     for data in (
         nested(MAX_DEPTH + 1),
         b"<a>" * 2_000_000,
