@@ -41,14 +41,12 @@ NO_FRONT = with_kin(
 AT_TABLE_M, AT_LOW_TABLE_M = 0.9, 1.6
 """Gaps within which a seat is drawn up to a table, as people pull chairs out and legs need room."""
 COMPANY_M = 4.0
-"""Within which sofas face a television or each other, screens their seats: across a living room."""
+"""Within which a television has its viewers: across a living room."""
 BESIDE_M = 0.5
 """Gaps within which things stand side by side."""
 WALL_REACH_M, WALL_BESIDE_M, WALL_FADES_M = 0.7, 3.0, 0.4
 """Within which a wall is behind an object, to either side of it, and the gap at which it says a third as much."""
 MIN_WALL_SAMPLES = 10
-ROW_RATIO = 1.5
-"""From which length to depth on storage faces across its length."""
 
 
 @dataclass(frozen=True)
@@ -104,22 +102,6 @@ def square_to(room: FacingRoom, i: int, table: int) -> Float[np.ndarray, "2"]:
     return unit(beyond @ other.axes[:2])
 
 
-def at_company(room: FacingRoom, i: int) -> Agreement | None:
-    """Sofas and armchairs face the television, or the middle of the other sofas and armchairs."""
-    if room.objects[i].kind not in LOUNGE:
-        return None
-    watched = room.nearest(i, frozenset({"television"}), COMPANY_M)
-    others = [watched] if watched is not None else _lounge_near(room, i)
-    if not others:
-        return None
-    middle = np.mean([room.objects[j].centre[:2] for j in others], axis=0)
-    return toward(room, i, unit(middle - room.objects[i].centre[:2]))
-
-
-def _lounge_near(room: FacingRoom, i: int) -> list[int]:
-    return [j for j, o in enumerate(room.objects) if j != i and o.kind in LOUNGE and room.gap_m(i, j) < COMPANY_M]
-
-
 def at_user(room: FacingRoom, i: int) -> Agreement | None:
     """A screen faces the keyboard before it, or the nearest seat."""
     item = room.objects[i]
@@ -131,14 +113,6 @@ def at_user(room: FacingRoom, i: int) -> Agreement | None:
         seats = LOUNGE | BEDS if item.kind == "television" else SEATS
         user = room.nearest(i, seats, COMPANY_M if item.kind == "television" else AT_LOW_TABLE_M)
     return None if user is None else toward(room, i, unit(room.objects[user].centre[:2] - item.centre[:2]))
-
-
-def at_seat(room: FacingRoom, i: int) -> Agreement | None:
-    """A desk's front is where its chair is."""
-    if room.objects[i].kind not in with_kin("desk", "piano"):
-        return None
-    seat = room.nearest(i, SEATS, AT_TABLE_M)
-    return None if seat is None else toward(room, i, -square_to(room, seat, i))
 
 
 def back_at_wall(kinds: frozenset[str] | None) -> Callable[[FacingRoom, int], Agreement | None]:
@@ -188,17 +162,6 @@ def leaning(room: FacingRoom, i: int) -> Agreement | None:
     return toward(room, i, axis if axis @ inward >= 0 else -axis)
 
 
-def away_from_pillows(room: FacingRoom, i: int) -> Agreement | None:
-    """Pillows lie at the head of a bed and the back of a sofa."""
-    item = room.objects[i]
-    pillows = room.loads(i, frozenset({"pillow"}))
-    if not pillows:
-        return None
-    offset = np.mean([room.objects[j].centre[:2] for j in pillows], axis=0) - item.centre[:2]
-    strength = min(float(np.linalg.norm(offset)) / (0.3 * float(item.size_m[:2].mean())), 1.0)
-    return strength * toward(room, i, max(item.axes, key=lambda axis: float(-offset @ axis)))
-
-
 def at_middle(room: FacingRoom, i: int) -> Agreement | None:
     """Furniture faces the middle of what is in the room; seats face what they serve."""
     item = room.objects[i]
@@ -242,15 +205,12 @@ TERMS: tuple[Term, ...] = (
     Term("shown_screens", "screens face who looks at them", shown(SCREENS)),
     Term("shown_others", "photos show fronts", shown(None)),
     Term("at_table", "seats face the table that they are drawn up to", at_table),
-    Term("at_company", "sofas face the television or each other", at_company),
     Term("at_user", "screens face the keyboard or seat that uses them", at_user),
-    Term("at_seat", "a desk's front is where its chair is", at_seat),
     Term("back_at_wall", "cupboards and beds turn their backs to a wall", back_at_wall(STORAGE | BEDS)),
     Term("back_at_wall_others", "backs are at walls", back_at_wall(None)),
     Term("out_of_wall", "what hangs on a wall looks out of it", out_of_wall),
     Term("as_told", "the front was told", as_measured),
     Term("leaning", "pillows lean on the back of what they lie on", leaning),
-    Term("away_from_pillows", "pillows lie at the head of a bed and the back of a sofa", away_from_pillows),
     Term("at_middle", "furniture faces the middle of the room", at_middle),
     Term("as_carrier", "what stands on furniture faces as that does", pair=as_carrier),
     Term("side_by_side", "things of a kind side by side face alike", pair=side_by_side),

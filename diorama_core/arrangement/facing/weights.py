@@ -21,15 +21,12 @@ class FacingWeights:
     shown_screens: float
     shown_others: float
     at_table: float
-    at_company: float
     at_user: float
-    at_seat: float
     back_at_wall: float
     back_at_wall_others: float
     out_of_wall: float
     as_told: float
     leaning: float
-    away_from_pillows: float
     at_middle: float
     as_carrier: float
     side_by_side: float

@@ -13,4 +13,4 @@ def test_every_weight_is_fitted_and_says_what_leaving_it_out_costs() -> None:
     weights = asdict(facing_weights())
     assert all(weight > 0 for weight in weights.values())
     assert document["command"].startswith("python -m diorama_core.training facings")
-    assert set(document.get("change of that without a term", weights)) == set(weights)
+    assert set(document["change of that without a term"]) == set(weights)
