@@ -19,6 +19,8 @@ from diorama_core.scene.values import ArrayValue
 
 Box = tuple[float, float, float, float]
 """x1, y1, x2, y2 in photo pixels, clipped to the photo, with x1 < x2 and y1 < y2."""
+SURE_MASK = 0.95
+"""Confidence from which on a mask is taken as it is: a person gave it, or it was found without doubt."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import dataclass
 
 import cv2
 import numpy as np
@@ -10,21 +11,6 @@ from jaxtyping import Bool, Float32, UInt8
 
 from diorama_core.appearance.rectify import Rectified
 from diorama_core.architecture.texture.continuation import completed
-
-MIN_OVERLAP = 0.12
-"""Share of a picture that must be seen together with its mirror image to tell whether they are alike."""
-ALIKE = 0.35
-"""Mean difference to the mirror image, as a share of the picture's own variation, at which it is symmetric."""
-MAX_LEVELS = 16.0
-"""And at most this many levels of 255."""
-COMPLETED_SIDE_PX = 224
-"""Longer side at which what was not seen is made up."""
-WHOLLY = 0.99
-"""A reduced texel is known when so much of it was seen."""
-MOST, MUCH_MORE = 0.75, 2.0
-"""What differs by more than so many times this quantile of all differences is not carried on."""
-RIM_SHARE = 0.006
-"""Beside what is hidden so much of the longer side is given up: masks are a little small."""
 
 Picture = Float32[np.ndarray, "h w 3"]
 Mirror = Callable[[np.ndarray], np.ndarray]
@@ -36,59 +22,92 @@ MIRRORS: tuple[Mirror, ...] = (
 """Left to right, half a turn, top to bottom."""
 
 
-def completed_picture(found: Rectified, pixel_m: float) -> UInt8[np.ndarray, "h w 3"]:
+@dataclass(frozen=True)
+class CompletionSettings:
+    """Numbers of `completion`."""
+
+    min_overlap: float = 0.12
+    """Share of a picture that must be seen together with its mirror image to tell whether they are alike."""
+    alike: float = 0.35
+    """Mean difference to the mirror image, as a share of the picture's own variation, at which it is symmetric."""
+    max_levels: float = 16.0
+    """And at most this many levels of 255."""
+    completed_side_px: int = 224
+    """Longer side at which what was not seen is made up."""
+    wholly: float = 0.99
+    """A reduced texel is known when so much of it was seen."""
+    most: float = 0.75
+    much_more: float = 2.0
+    """What differs by more than so many times this quantile of all differences is not carried on."""
+    rim_share: float = 0.006
+    """Beside what is hidden so much of the longer side is given up: masks are a little small."""
+
+
+SETTINGS = CompletionSettings()
+
+
+def completed_picture(
+    found: Rectified, pixel_m: float, settings: CompletionSettings = SETTINGS
+) -> UInt8[np.ndarray, "h w 3"]:
     """The whole picture.
 
     Args:
         found: At least something of it is seen.
         pixel_m: Size of a texel.
+        settings: Numbers to work with.
     """
-    rim = round(RIM_SHARE * max(found.seen.shape))
+    rim = round(settings.rim_share * max(found.seen.shape))
     seen = cv2.erode(found.seen.astype(np.uint8), np.ones((2 * rim + 1,) * 2, np.uint8), borderValue=1).astype(bool)
     if not seen.any():
         seen = found.seen
-    colours, seen = mirrored(found.colours, seen)
+    colours, seen = mirrored(found.colours, seen, settings)
     if seen.all():
         return colours.clip(0, 255).astype(np.uint8)
-    behind = _continued(colours, seen, pixel_m)
+    behind = _continued(colours, seen, pixel_m, settings)
     share = cv2.GaussianBlur(cv2.erode(seen.astype(np.float32), np.ones((3, 3))), (0, 0), 1.5)[..., None]
     mixed = share * seen[..., None]
     return (mixed * colours + (1.0 - mixed) * behind).clip(0, 255).astype(np.uint8)
 
 
-def _continued(colours: Picture, seen: Bool[np.ndarray, "h w"], pixel_m: float) -> Picture:
+def _continued(
+    colours: Picture, seen: Bool[np.ndarray, "h w"], pixel_m: float, settings: CompletionSettings = SETTINGS
+) -> Picture:
     """The picture completed at a reduced size: what nobody saw needs no more than its material and its shade."""
     height, width = seen.shape
-    factor = min(1.0, COMPLETED_SIDE_PX / max(height, width))
+    factor = min(1.0, settings.completed_side_px / max(height, width))
     size = (max(4, round(width * factor)), max(4, round(height * factor)))
     weight = cv2.resize(seen.astype(np.float32), size, interpolation=cv2.INTER_AREA)
-    if weight.max() < WHOLLY:
+    if weight.max() < settings.wholly:
         return np.broadcast_to(np.median(colours[seen], axis=0), colours.shape).astype(np.float32)
     small = cv2.resize(colours, size, interpolation=cv2.INTER_AREA)
-    known = weight >= WHOLLY
-    usual = _usual(small, known)
+    known = weight >= settings.wholly
+    usual = _usual(small, known, settings)
     red, green, blue = (float(c) / 255.0 for c in np.median(small[usual], axis=0))
     whole = completed(small, known, (red, green, blue), pixel_m / factor, usual, ground=True)
     return cv2.resize(whole, (width, height), interpolation=cv2.INTER_LINEAR).astype(np.float32)
 
 
-def _usual(colours: Picture, known: Bool[np.ndarray, "h w"]) -> Bool[np.ndarray, "h w"]:
+def _usual(
+    colours: Picture, known: Bool[np.ndarray, "h w"], settings: CompletionSettings = SETTINGS
+) -> Bool[np.ndarray, "h w"]:
     """What is known without hems, creases and shadows: texels that differ much more than most from the median."""
     difference = np.abs(colours - np.median(colours[known], axis=0)).max(axis=-1)
-    most = float(np.quantile(difference[known], MOST))
-    return np.asarray(known & (difference <= max(MUCH_MORE * most, MAX_LEVELS)))
+    most = float(np.quantile(difference[known], settings.most))
+    return np.asarray(known & (difference <= max(settings.much_more * most, settings.max_levels)))
 
 
-def mirrored(colours: Picture, seen: Bool[np.ndarray, "h w"]) -> tuple[Picture, Bool[np.ndarray, "h w"]]:
+def mirrored(
+    colours: Picture, seen: Bool[np.ndarray, "h w"], settings: CompletionSettings = SETTINGS
+) -> tuple[Picture, Bool[np.ndarray, "h w"]]:
     """What is hidden filled in from mirror images of the picture that it is alike."""
     smooth = None
     for mirror in MIRRORS:
         other, there = mirror(colours), mirror(seen)
         both = seen & there
-        if not (there & ~seen).any() or both.mean() < MIN_OVERLAP:
+        if not (there & ~seen).any() or both.mean() < settings.min_overlap:
             continue
         smooth = _smoothed(colours) if smooth is None else smooth
-        if not _alike(smooth[both], mirror(smooth)[both]):
+        if not _alike(smooth[both], mirror(smooth)[both], settings):
             continue
         gained = there & ~seen
         share = cv2.GaussianBlur(cv2.erode(seen.astype(np.float32), np.ones((3, 3))), (0, 0), 1.5)[..., None]
@@ -102,8 +121,10 @@ def _smoothed(colours: Picture) -> Picture:
     return cv2.GaussianBlur(colours, (0, 0), max(1.0, 0.01 * max(colours.shape)))
 
 
-def _alike(a: Float32[np.ndarray, "n 3"], b: Float32[np.ndarray, "n 3"]) -> bool:
+def _alike(
+    a: Float32[np.ndarray, "n 3"], b: Float32[np.ndarray, "n 3"], settings: CompletionSettings = SETTINGS
+) -> bool:
     """Whether the smoothed colours of places and of their mirror images are nearly the same."""
     spread = float(a.std(axis=0).mean())
     difference = float(np.abs(a - b).mean())
-    return difference < MAX_LEVELS and difference < ALIKE * max(spread, 1.0)
+    return difference < settings.max_levels and difference < settings.alike * max(spread, 1.0)

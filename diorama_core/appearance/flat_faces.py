@@ -17,7 +17,7 @@ from jaxtyping import Bool, Float, UInt8
 
 from diorama_core.appearance.completion import completed_picture
 from diorama_core.appearance.rectify import Rectified, face_homography, is_cut, outline_px, rectified
-from diorama_core.artefacts import DetectedObject
+from diorama_core.artefacts import SURE_MASK, DetectedObject
 from diorama_core.geometry.projection import box_iou
 from diorama_core.library.slots import Slot, rectangle_of, slots_of
 from diorama_core.library.taxonomy import category, column
@@ -32,30 +32,42 @@ NOT_RECTANGULAR = frozenset({"pillow"})
 """Of their rectangle only what their mask holds is theirs."""
 COVERS = ("leather", "paint", "fabric", "paper", "material")
 """Roles of what books are bound in."""
-UPRIGHT, LYING = 1.15, 0.35
-"""Books stand in a row when they are so many times as high as deep, and one lies flat when it is so high against its
-shorter side; stacks show too little of any one face."""
 SEEN_THROUGH = {"screen", "pane"}
 """A shape without a slot of these roles has no such face; of other flat things the main slot has it."""
 ROUGHNESS: Mapping[str, float] = {"screen": 0.2, "pane": 0.1, "picture": 0.6, "dial": 0.5, "fabric": 0.95}
-OTHER_ROUGHNESS = 0.6
-MIN_SEEN = 0.2
-"""A face of which less is seen keeps its own picture."""
-MIN_IN_MASK = 0.4
-"""Of the face as it is posed; where less is the object's own, its picture would be of what is beside it."""
-RIM, MOSTLY = 0.014, 0.5
-"""A box that ends so near the photo's edge (as a share of its longer side; undistorted photos have frames), or where
-that much of what is just inside its side is hidden, does not end the object."""
-PALE = 245
-"""Frames are at least so bright (of 255)."""
-MIN_BOX_IOU = 0.5
-"""Boxes that overlap less tell nothing of where exactly the face is."""
-SURE_MASK = 0.95
-DARK_SIDE_PX = 8
-"""A screen that is off is of one colour, whatever is mirrored in it."""
-_FAR_PX = 20_000.0
-LIT_L, LIT_SPREAD_L = 30.0, 12.0
-"""A screen is on when its typical lightness, or its lightness' deviation, is at least this."""
+
+
+@dataclass(frozen=True)
+class FlatFaceSettings:
+    """Numbers of `flat_faces`."""
+
+    upright: float = 1.15
+    lying: float = 0.35
+    """Books stand in a row when they are so many times as high as deep, and one lies flat when it is so high against
+    its shorter side; stacks show too little of any one face."""
+    other_roughness: float = 0.6
+    min_seen: float = 0.2
+    """A face of which less is seen keeps its own picture."""
+    min_in_mask: float = 0.4
+    """Of the face as it is posed; where less is the object's own, its picture would be of what is beside it."""
+    rim: float = 0.014
+    mostly: float = 0.5
+    """A box that ends so near the photo's edge (as a share of its longer side; undistorted photos have frames), or
+    where that much of what is just inside its side is hidden, does not end the object."""
+    pale: int = 245
+    """Frames are at least so bright (of 255)."""
+    min_box_iou: float = 0.5
+    """Boxes that overlap less tell nothing of where exactly the face is."""
+    sure_mask: float = SURE_MASK
+    dark_side_px: int = 8
+    """A screen that is off is of one colour, whatever is mirrored in it."""
+    far_px: float = 20_000.0
+    lit_l: float = 30.0
+    lit_spread_l: float = 12.0
+    """A screen is on when its typical lightness, or its lightness' deviation, is at least this."""
+
+
+SETTINGS = FlatFaceSettings()
 
 
 @dataclass(frozen=True, eq=False)
@@ -75,6 +87,7 @@ def faces_of(
     hidden: Bool[np.ndarray, "h w"],
     found: DetectedObject,
     camera: Camera,
+    settings: FlatFaceSettings = SETTINGS,
 ) -> tuple[Face, ...]:
     """The faces of an object that show in the photo; none for objects without a flat face.
 
@@ -85,8 +98,9 @@ def faces_of(
         hidden: Where something else stands before it.
         found: The object in the photo.
         camera: The photo's.
+        settings: Numbers to work with.
     """
-    kind = face_kind(item.category, item.size_m)
+    kind = face_kind(item.category, item.size_m, settings)
     if kind is None:
         return ()
     roles, layout = kind
@@ -94,22 +108,24 @@ def faces_of(
     chosen = [s for s in slots if s.role in roles or (s.main and MAIN in roles)]
     if not chosen and not SEEN_THROUGH & set(roles):
         chosen = [s for s in slots if s.main]
-    by_mask = found.mask_confidence >= SURE_MASK or item.category in NOT_RECTANGULAR
-    unseen = (hidden | ~found.mask if by_mask else hidden) | pale_frame(rgb) | _outside(found)
-    made = [_face(item, parts, slot, layout, rgb, (hidden, unseen), found, camera) for slot in chosen]
+    by_mask = found.mask_confidence >= settings.sure_mask or item.category in NOT_RECTANGULAR
+    unseen = (hidden | ~found.mask if by_mask else hidden) | pale_frame(rgb, settings) | _outside(found)
+    made = [_face(item, parts, slot, layout, rgb, (hidden, unseen), found, camera, settings) for slot in chosen]
     return tuple(face for face in made if face is not None)
 
 
-def face_kind(category: str, size_m: Float[np.ndarray, "3"]) -> tuple[tuple[str, ...], TextureLayout] | None:
+def face_kind(
+    category: str, size_m: Float[np.ndarray, "3"], settings: FlatFaceSettings = SETTINGS
+) -> tuple[tuple[str, ...], TextureLayout] | None:
     """Roles of the slots that have an object's face, and which way it faces; None where it has none.
 
     Spines of a row of books face the front, the cover of one that lies flat faces up.
     """
     if category != "books":
         return FACES.get(category)
-    if size_m[2] >= UPRIGHT * size_m[0]:
+    if size_m[2] >= settings.upright * size_m[0]:
         return COVERS, "front"
-    return (COVERS, "top") if size_m[2] <= LYING * min(size_m[:2]) else None
+    return (COVERS, "top") if size_m[2] <= settings.lying * min(size_m[:2]) else None
 
 
 def _face(
@@ -121,6 +137,7 @@ def _face(
     hidden: tuple[Bool[np.ndarray, "h w"], Bool[np.ndarray, "h w"]],
     found: DetectedObject,
     camera: Camera,
+    settings: FlatFaceSettings = SETTINGS,
 ) -> Face | None:
     """The face of one slot; `hidden` is what others hide, and everything that is not to be read."""
     others, unseen = hidden
@@ -129,16 +146,23 @@ def _face(
     if H is None:
         return None
     if not is_cut(H):  # or the box in the photo does not end where the object does
-        H = box_alignment(_outline_box(item, parts, camera), found.box, sides_told(found.box, others)) @ H
-    if _share_in_mask(outline_px(H), others, found) < MIN_IN_MASK:
+        H = (
+            box_alignment(
+                _outline_box(item, parts, camera), found.box, sides_told(found.box, others, settings), settings
+            )
+            @ H
+        )
+    if _share_in_mask(outline_px(H), others, found, settings) < settings.min_in_mask:
         return None
     picture = rectified(rgb, unseen, H)
-    if picture is None or picture.seen.mean() < MIN_SEEN:
+    if picture is None or picture.seen.mean() < settings.min_seen:
         return None
-    roughness = ROUGHNESS.get(slot.role, OTHER_ROUGHNESS)
-    if "screen" in FACES.get(item.category, ((), ""))[0] and not is_lit(picture):
+    roughness = ROUGHNESS.get(slot.role, settings.other_roughness)
+    if "screen" in FACES.get(item.category, ((), ""))[0] and not is_lit(picture, settings):
         dark = np.median(picture.colours[picture.seen], axis=0).clip(0, 255).astype(np.uint8)
-        return Face(slot, layout, np.broadcast_to(dark, (DARK_SIDE_PX, DARK_SIDE_PX, 3)).copy(), roughness)
+        return Face(
+            slot, layout, np.broadcast_to(dark, (settings.dark_side_px, settings.dark_side_px, 3)).copy(), roughness
+        )
     pixel_m = float(np.linalg.norm(rectangle.across * item.pose.scale)) / picture.seen.shape[1]
     return Face(slot, layout, completed_picture(picture, pixel_m), roughness)
 
@@ -151,10 +175,15 @@ def _outside(found: DetectedObject) -> Bool[np.ndarray, "h w"]:
     return outside
 
 
-def _share_in_mask(outline: Float[np.ndarray, "n 2"], hidden: Bool[np.ndarray, "h w"], found: DetectedObject) -> float:
+def _share_in_mask(
+    outline: Float[np.ndarray, "n 2"],
+    hidden: Bool[np.ndarray, "h w"],
+    found: DetectedObject,
+    settings: FlatFaceSettings = SETTINGS,
+) -> float:
     """Share of a convex outline, as far as it is in the photo and not hidden, that is within the object's mask."""
     region = np.zeros(found.mask.shape, np.uint8)
-    cv2.fillConvexPoly(region, np.rint(np.clip(outline, -_FAR_PX, _FAR_PX)).astype(np.int32), 1)
+    cv2.fillConvexPoly(region, np.rint(np.clip(outline, -settings.far_px, settings.far_px)).astype(np.int32), 1)
     free = region.astype(bool) & ~hidden
     return float((free & found.mask).sum() / max(int(free.sum()), 1))
 
@@ -163,6 +192,7 @@ def box_alignment(
     projected: Float[np.ndarray, "4"],
     detected: tuple[float, float, float, float],
     told: tuple[bool, bool, bool, bool] = (True, True, True, True),
+    settings: FlatFaceSettings = SETTINGS,
 ) -> Float[np.ndarray, "3 3"]:
     """How pixels move and scale as an object's projected box is to become its box in the photo, as a homography.
 
@@ -172,10 +202,11 @@ def box_alignment(
         projected: The whole object's box as it is posed.
         detected: Its box in the photo.
         told: Which of its left, upper, right and lower side end the object itself (`sides_told`).
+        settings: Numbers to work with.
     """
     box = np.where(told, detected, projected)
     A = np.eye(3)
-    if float(box_iou(projected, box)) < MIN_BOX_IOU:
+    if float(box_iou(projected, box)) < settings.min_box_iou:
         return A
     for axis in (0, 1):
         low, high = projected[axis], projected[axis + 2]
@@ -184,15 +215,15 @@ def box_alignment(
     return A
 
 
-def pale_frame(rgb: UInt8[np.ndarray, "h w 3"]) -> Bool[np.ndarray, "h w"]:
+def pale_frame(rgb: UInt8[np.ndarray, "h w 3"], settings: FlatFaceSettings = SETTINGS) -> Bool[np.ndarray, "h w"]:
     """What undistorting left white along a photo's edges, with a small margin."""
     height, width = rgb.shape[:2]
-    rim = max(2, round(RIM * max(height, width)))
-    white = (rgb.min(axis=2) >= PALE).astype(np.uint8)
+    rim = max(2, round(settings.rim * max(height, width)))
+    white = (rgb.min(axis=2) >= settings.pale).astype(np.uint8)
     white[rim:-rim, rim:-rim] = 0
     _, labels = cv2.connectedComponents(white)
     lines = [labels[0], labels[-1], labels[:, 0], labels[:, -1]]
-    framed = [line[line > 0] for line in lines if (line > 0).mean() >= MOSTLY]
+    framed = [line[line > 0] for line in lines if (line > 0).mean() >= settings.mostly]
     if not framed:
         return np.zeros((height, width), dtype=bool)
     frame = np.isin(labels, np.unique(np.concatenate(framed)))
@@ -200,28 +231,28 @@ def pale_frame(rgb: UInt8[np.ndarray, "h w 3"]) -> Bool[np.ndarray, "h w"]:
 
 
 def sides_told(
-    box: tuple[float, float, float, float], hidden: Bool[np.ndarray, "h w"]
+    box: tuple[float, float, float, float], hidden: Bool[np.ndarray, "h w"], settings: FlatFaceSettings = SETTINGS
 ) -> tuple[bool, bool, bool, bool]:
     """Which sides of a box (left, upper, right, lower) end the object, and not the photo or what hides it."""
     height, width = hidden.shape
-    rim = max(2.0, RIM * max(height, width))
+    rim = max(2.0, settings.rim * max(height, width))
     at_edge = (box[0] <= rim, box[1] <= rim, box[2] >= width - rim, box[3] >= height - rim)
     x1, y1, x2, y2 = (max(round(v), 0) for v in box)
     inside = hidden[y1:y2, x1:x2]
     deep = max(1, round(rim))
     strips = (inside[:, :deep], inside[:deep], inside[:, -deep:], inside[-deep:])
     left, upper, right, lower = (
-        not edge and (strip.size == 0 or float(strip.mean()) < MOSTLY)
+        not edge and (strip.size == 0 or float(strip.mean()) < settings.mostly)
         for edge, strip in zip(at_edge, strips, strict=True)
     )
     return left, upper, right, lower
 
 
-def is_lit(screen: Rectified) -> bool:
+def is_lit(screen: Rectified, settings: FlatFaceSettings = SETTINGS) -> bool:
     """Whether a screen shows something: one that is off is dark, and has at most a dim reflection."""
     pixels = screen.colours[screen.seen][:, None].clip(0, 255) / 255.0
     lightness = cv2.cvtColor(pixels.astype(np.float32), cv2.COLOR_RGB2Lab)[..., 0]
-    return bool(np.median(lightness) >= LIT_L or lightness.std() >= LIT_SPREAD_L)
+    return bool(np.median(lightness) >= settings.lit_l or lightness.std() >= settings.lit_spread_l)
 
 
 def _outline_box(item: SceneObject, parts: trimesh.Scene, camera: Camera) -> Float[np.ndarray, "4"]:

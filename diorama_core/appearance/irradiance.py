@@ -6,6 +6,8 @@ left when that is divided out of the photo.
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import cv2
 import numpy as np
 from jaxtyping import Float32
@@ -19,16 +21,28 @@ from diorama_core.render.shading import light_map
 from diorama_core.render.world import scene_world
 from diorama_core.scene.types import Camera, Scene
 
-LONGEST_PX = 320
 EFFORT = Effort(window_rays=2, sky_rays=3)
-DARKEST, BRIGHTEST = 0.45, 1.6
-"""The scene is not exactly the room: deeper shade than this is not believed."""
-UNKNOWN = 0.9
-MAX_TINTED = 1.5
-"""A channel of the light is at most so many times stronger or weaker than its luminance."""
 
 
-def irradiance_map(scene: Scene, camera: Camera, library: ShapeLibrary) -> Float32[np.ndarray, "h w 3"]:
+@dataclass(frozen=True)
+class IrradianceSettings:
+    """Numbers of `irradiance`."""
+
+    longest_px: int = 320
+    darkest: float = 0.45
+    brightest: float = 1.6
+    """The scene is not exactly the room: deeper shade than this is not believed."""
+    unknown: float = 0.9
+    max_tinted: float = 1.5
+    """A channel of the light is at most so many times stronger or weaker than its luminance."""
+
+
+SETTINGS = IrradianceSettings()
+
+
+def irradiance_map(
+    scene: Scene, camera: Camera, library: ShapeLibrary, settings: IrradianceSettings = SETTINGS
+) -> Float32[np.ndarray, "h w 3"]:
     """The light on what each pixel of the photo sees; 1 lights a white surface white.
 
     It has the colours of what is beside: a tan sofa on orange boards looks more orange than its leather is.
@@ -37,9 +51,10 @@ def irradiance_map(scene: Scene, camera: Camera, library: ShapeLibrary) -> Float
         scene: With its light, in the poses in which the photo shows it.
         camera: The photo's; the map has its size.
         library: Where its shapes are.
+        settings: Numbers to work with.
     """
     k = camera.intrinsics
-    shrink = min(1.0, LONGEST_PX / max(k.width, k.height))
+    shrink = min(1.0, settings.longest_px / max(k.width, k.height))
     small = k.scaled(max(8, round(k.width * shrink)), max(8, round(k.height * shrink)))
     view = PinholeView(Camera(small, camera.T_world_camera))
     world = scene_world(scene, library)
@@ -47,7 +62,7 @@ def irradiance_map(scene: Scene, camera: Camera, library: ShapeLibrary) -> Float
     blockers = world.shadow_caster(without=range(count, count + len(scene.architecture.planes)))
     light = light_map(world, blockers, view, scene_lighting(scene, world, view), EFFORT)
     grey = luminance(light)
-    level = np.where(grey > 0, np.clip(grey, DARKEST, BRIGHTEST), np.float32(UNKNOWN))
+    level = np.where(grey > 0, np.clip(grey, settings.darkest, settings.brightest), np.float32(settings.unknown))
     tint = np.where(grey[..., None] > 0, light / np.maximum(grey, 1e-6)[..., None], 1.0)
-    whole = (level[..., None] * np.clip(tint, 1.0 / MAX_TINTED, MAX_TINTED)).astype(np.float32)
+    whole = (level[..., None] * np.clip(tint, 1.0 / settings.max_tinted, settings.max_tinted)).astype(np.float32)
     return np.asarray(cv2.resize(whole, (k.width, k.height), interpolation=cv2.INTER_LINEAR))

@@ -17,19 +17,29 @@ from diorama_core.scene.types import RoomLight
 
 USUAL = np.array([0.0, 0.0, 0.3])
 """Light in rooms comes more from above than from below."""
-LEVEL_SIGMA, UPRIGHT_SIGMA = 0.25, 0.1
-"""How far it differs from that along the floor, where rooms differ most, and upward: shadows below things, which look
-like light from below, are no evidence."""
-FROM_WINDOW = 0.35
-"""How much of it comes from the side of a window that is seen."""
-OF_WALLS = 4.0
-"""What walls say beside one material of an object, as a factor of deviations: they are large, flat and even."""
-MAX_LENGTH = 0.85
-ROBUST = 0.25
-"""Differences of log luminance beyond about this are shadows and other materials."""
-MIN_SAMPLES = 3
 SHINING = 190
 """Brightest channel, of 255, from which on pixels of a lamp are its light."""
+
+
+@dataclass(frozen=True)
+class EstimatedLightSettings:
+    """Numbers of `light`."""
+
+    level_sigma: float = 0.25
+    upright_sigma: float = 0.1
+    """How far it differs from that along the floor, where rooms differ most, and upward: shadows below things, which
+    look like light from below, are no evidence."""
+    from_window: float = 0.35
+    """How much of it comes from the side of a window that is seen."""
+    of_walls: float = 4.0
+    """What walls say beside one material of an object, as a factor of deviations: they are large, flat and even."""
+    max_length: float = 0.85
+    robust: float = 0.25
+    """Differences of log luminance beyond about this are shadows and other materials."""
+    min_samples: int = 3
+
+
+SETTINGS = EstimatedLightSettings()
 
 
 @dataclass(frozen=True, eq=False)
@@ -43,7 +53,10 @@ class Shade:
 
 
 def estimated_light(
-    shades: Sequence[Shade], walls: Shade | None = None, to_window: Float[np.ndarray, "3"] | None = None
+    shades: Sequence[Shade],
+    walls: Shade | None = None,
+    to_window: Float[np.ndarray, "3"] | None = None,
+    settings: EstimatedLightSettings = SETTINGS,
 ) -> RoomLight:
     """The light that explains all materials' shades best; the usual one where nothing is known.
 
@@ -51,22 +64,23 @@ def estimated_light(
         shades: Of the objects' materials.
         walls: Those of one paint.
         to_window: Unit vector from what stands in the room to where daylight comes in.
+        settings: Numbers to work with.
     """
-    told = [(s, 1.0) for s in shades if len(s.luminance) >= 2] + ([] if walls is None else [(walls, OF_WALLS)])
-    usual = USUAL if to_window is None else USUAL + FROM_WINDOW * np.array([*to_window[:2], 0.0])
-    if sum(len(s.luminance) for s, _ in told) < MIN_SAMPLES and walls is None and to_window is None:
+    told = [(s, 1.0) for s in shades if len(s.luminance) >= 2] + ([] if walls is None else [(walls, settings.of_walls)])
+    usual = USUAL if to_window is None else USUAL + settings.from_window * np.array([*to_window[:2], 0.0])
+    if sum(len(s.luminance) for s, _ in told) < settings.min_samples and walls is None and to_window is None:
         return RoomLight()
 
     def residuals(b: Float[np.ndarray, "3"]) -> Float[np.ndarray, "m"]:
-        out = [(b - usual) / (LEVEL_SIGMA, LEVEL_SIGMA, UPRIGHT_SIGMA)]
+        out = [(b - usual) / (settings.level_sigma, settings.level_sigma, settings.upright_sigma)]
         for shade, factor in told:
-            light = np.maximum(1.0 + shade.normals_world @ b, 1.0 - MAX_LENGTH)
+            light = np.maximum(1.0 + shade.normals_world @ b, 1.0 - settings.max_length)
             albedo = np.log(shade.luminance / light)
             off = albedo - np.average(albedo, weights=shade.weight)
-            out.append(factor * np.sqrt(shade.weight) * off / ROBUST)
+            out.append(factor * np.sqrt(shade.weight) * off / settings.robust)
         return np.concatenate(out)
 
     found = least_squares(residuals, usual, loss="soft_l1").x
     length = float(np.linalg.norm(found))
     x, y, z = (float(v) for v in found / max(length, 1e-9))
-    return RoomLight((x, y, z), min(length, MAX_LENGTH)) if length > 1e-3 else RoomLight()
+    return RoomLight((x, y, z), min(length, settings.max_length)) if length > 1e-3 else RoomLight()

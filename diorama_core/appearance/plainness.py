@@ -6,21 +6,31 @@ away to tell; but smooth leather is no bouclé, and where the photo would show t
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import cv2
 import numpy as np
 from jaxtyping import Bool, Float32, UInt8
 
 from diorama_core.appearance.surface_view import SurfaceView
 
-FINE = 2.0
-"""Detail is what a blur of so many cells takes away."""
-VISIBLE = 0.025
-"""Contrast, as a share of the brightness, from which on a texture would be seen."""
-MUCH_LESS = 0.5
-MIN_CELLS = 400
-"""Of the surface, away from its edges."""
-MIN_TEXELS = 8
-"""Of a texture at the photo's resolution: a smaller one averages out."""
+
+@dataclass(frozen=True)
+class PlainnessSettings:
+    """Numbers of `plainness`."""
+
+    fine: float = 2.0
+    """Detail is what a blur of so many cells takes away."""
+    visible: float = 0.025
+    """Contrast, as a share of the brightness, from which on a texture would be seen."""
+    much_less: float = 0.5
+    min_cells: int = 400
+    """Of the surface, away from its edges."""
+    min_texels: int = 8
+    """Of a texture at the photo's resolution: a smaller one averages out."""
+
+
+SETTINGS = PlainnessSettings()
 
 
 def shows_plain(
@@ -29,6 +39,7 @@ def shows_plain(
     rgb: UInt8[np.ndarray, "h w 3"],
     texture: UInt8[np.ndarray, "th tw 3"],
     tile_m: float,
+    settings: PlainnessSettings = SETTINGS,
 ) -> bool:
     """Whether a surface is much plainer in the photo than this texture would be at the photo's resolution.
 
@@ -38,25 +49,30 @@ def shows_plain(
         rgb: The photo.
         texture: The library's.
         tile_m: What one of it covers, in metres of the shape at scale 1.
+        settings: Numbers to work with.
     """
     inside = cv2.erode(near.astype(np.uint8), np.ones((5, 5), np.uint8)).astype(bool)
     cell_m = _cell_size_m(view, inside)
-    if inside.sum() < MIN_CELLS or cell_m is None:
+    if inside.sum() < settings.min_cells or cell_m is None:
         return False
     side = round(tile_m / cell_m)
-    if side < MIN_TEXELS:
+    if side < settings.min_texels:
         return False
     whole = cv2.cvtColor(texture, cv2.COLOR_RGB2GRAY).astype(np.float32)
     small = cv2.resize(whole, (side, side), interpolation=cv2.INTER_AREA) if side < min(whole.shape) else whole
-    expected = contrast(small, np.ones(small.shape, dtype=bool))
-    seen = contrast(cv2.cvtColor(np.ascontiguousarray(view.of(rgb)), cv2.COLOR_RGB2GRAY).astype(np.float32), inside)
-    return expected >= VISIBLE and seen < MUCH_LESS * expected
+    expected = contrast(small, np.ones(small.shape, dtype=bool), settings)
+    seen = contrast(
+        cv2.cvtColor(np.ascontiguousarray(view.of(rgb)), cv2.COLOR_RGB2GRAY).astype(np.float32), inside, settings
+    )
+    return expected >= settings.visible and seen < settings.much_less * expected
 
 
-def contrast(grey: Float32[np.ndarray, "h w"], where: Bool[np.ndarray, "h w"]) -> float:
+def contrast(
+    grey: Float32[np.ndarray, "h w"], where: Bool[np.ndarray, "h w"], settings: PlainnessSettings = SETTINGS
+) -> float:
     """Deviation of the fine detail in some places, as a share of their brightness."""
-    weight = cv2.GaussianBlur(where.astype(np.float32), (0, 0), FINE)
-    broad = cv2.GaussianBlur(grey * where, (0, 0), FINE) / np.maximum(weight, 1e-6)
+    weight = cv2.GaussianBlur(where.astype(np.float32), (0, 0), settings.fine)
+    broad = cv2.GaussianBlur(grey * where, (0, 0), settings.fine) / np.maximum(weight, 1e-6)
     return float((grey - broad)[where].std() / max(float(grey[where].mean()), 1.0))
 
 

@@ -8,6 +8,7 @@ import cv2
 import numpy as np
 from jaxtyping import Bool, Float, Float32, UInt8
 
+from diorama_core.geometry.projection import NEAR_M
 from diorama_core.scene.types import Camera
 
 UNIT_SQUARE = np.array([[0.0, 0.0, 1.0], [1.0, 0.0, 1.0], [1.0, 1.0, 1.0], [0.0, 1.0, 1.0]])
@@ -16,8 +17,6 @@ SIZED_BY = 32
 """Rows and columns by which the size of a rectangle in the photo is told."""
 MIN_COSINE = 0.08
 """Rectangles seen more edge-on than this are smeared and not read."""
-NEAR_M = 0.05
-"""What is nearer to the camera's plane, or behind it, is not in the photo."""
 
 
 @dataclass(frozen=True, eq=False)

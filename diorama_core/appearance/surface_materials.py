@@ -28,48 +28,60 @@ PATTERNED_ROLES = (READ_ROLES | {PRINTED}) - {"metal", "leaf"}
 """Of which a texture is taken: what metal mirrors and how leaves lie is no pattern."""
 WOVEN_ROLES: frozenset[Role] = frozenset({"fabric", "leather", "paper", "material"})
 """Of which the library's own texture gives way to a plain colour where the photo shows none; wood keeps its grain."""
-PLAIN_PX = 4
-"""Sides of the picture of a plain surface."""
 ROUGHNESS: Mapping[str, tuple[float, float]] = {
     "fabric": (0.92, 0.0), "leather": (0.45, 0.0), "wood": (0.55, 0.0), "metal": (0.35, 0.45), "stone": (0.4, 0.0),
     "paint": (0.55, 0.0), "wicker": (0.85, 0.0), "paper": (0.9, 0.0), "leaf": (0.55, 0.0), "material": (0.7, 0.0),
     "glass": (0.06, 0.0), "picture": (0.8, 0.0),
 }  # fmt: skip
 """Roughness and metalness by role; what is seen too dark to mirror that much is rougher."""
-MIN_PIXELS, MIN_SHARE = 40, 0.2
-"""A slot is read from at least so many pixels, of which such a share is of about one colour."""
 MIN_OF_WHOLE = 16
 """Pixels from which the main slot is read of a thing whose slots are too small to be told apart."""
-MIN_OUTLINED = 0.35
-"""Of the pixels where the posed shape is a mask must hold this share. Where it holds less of one slot, it has lost that
-part of the object (white bedding on a dark bed), and the slot is read where the shape shows it; where it holds less of
-the whole, mask and pose do not belong together, and the mask alone counts."""
-MIN_VISIBLE = 0.015
-"""And from at least this share of all that is seen of its object: a pose a little off misses smaller ones."""
-BESIDE = 1.3
-"""A colour is rather that of what is behind when it covers so many times more of that: much of a room is grey."""
-COLOURED, CROSSED = 25.0, 4.0
-"""Another material than its neighbour's of one vivid colour (chroma) with a neighbour of so many times its pixels is
-not read: a metal arm that crosses a red back in the picture is not red."""
-CLEARLY = 2.0
-"""A thing's lit side has a colour that covers so many times more of the thing than of the background."""
-MOSTLY, CLEARLY_OWN = 0.5, 1.5
-"""A colour that covers less than half of a slot covers so many times more of it than of all others together, or it is
-of none of them: a white board before a chair's arm and seat."""
-AS_GOOD = 0.8
-"""A colour is as good as the best when it is nearly as much the slot's own."""
-BEHIND = 0.5
-"""Nor is a part that the mask lost read, where its vivid colour covers so much of the background: legs are not red
-because the carpet below them is."""
 BIN_LAB = np.array([40.0, 20.0, 20.0])
-MIN_OF_BIN = 0.02
-"""Bins that hold less of a slot are left out."""
-NEAR_LAB = 20.0
-NORMAL_CELL = 0.35
-"""Normals within about this are one face of a shade."""
-MIN_FACE_PIXELS = 30
 MIN_LINEAR, MAX_LINEAR = 0.015, 0.9
 """Albedos of what is called black and white; soot and velvet apart nothing is a hole in the picture."""
+
+
+@dataclass(frozen=True)
+class SurfaceMaterialSettings:
+    """Numbers of `surface_materials`."""
+
+    plain_px: int = 4
+    """Sides of the picture of a plain surface."""
+    min_pixels: int = 40
+    min_share: float = 0.2
+    """A slot is read from at least so many pixels, of which such a share is of about one colour."""
+    min_outlined: float = 0.35
+    """Of the pixels where the posed shape is a mask must hold this share. Where it holds less of one slot, it has lost
+    that part of the object (white bedding on a dark bed), and the slot is read where the shape shows it; where it holds
+    less of the whole, mask and pose do not belong together, and the mask alone counts."""
+    min_visible: float = 0.015
+    """And from at least this share of all that is seen of its object: a pose a little off misses smaller ones."""
+    beside: float = 1.3
+    """A colour is rather that of what is behind when it covers so many times more of that: much of a room is grey."""
+    coloured: float = 25.0
+    crossed: float = 4.0
+    """Another material than its neighbour's of one vivid colour (chroma) with a neighbour of so many times its pixels
+    is not read: a metal arm that crosses a red back in the picture is not red."""
+    clearly: float = 2.0
+    """A thing's lit side has a colour that covers so many times more of the thing than of the background."""
+    mostly: float = 0.5
+    clearly_own: float = 1.5
+    """A colour that covers less than half of a slot covers so many times more of it than of all others together, or it
+    is of none of them: a white board before a chair's arm and seat."""
+    as_good: float = 0.8
+    """A colour is as good as the best when it is nearly as much the slot's own."""
+    behind: float = 0.5
+    """Nor is a part that the mask lost read, where its vivid colour covers so much of the background: legs are not red
+    because the carpet below them is."""
+    min_of_bin: float = 0.02
+    """Bins that hold less of a slot are left out."""
+    near_lab: float = 20.0
+    normal_cell: float = 0.35
+    """Normals within about this are one face of a shade."""
+    min_face_pixels: int = 30
+
+
+SETTINGS = SurfaceMaterialSettings()
 
 
 @dataclass(frozen=True, eq=False)
@@ -104,6 +116,7 @@ def slot_pixels(
     unhidden: Bool[np.ndarray, "h w"],
     background: Bool[np.ndarray, "h w"],
     faces: Collection[str] = (),
+    settings: SurfaceMaterialSettings = SETTINGS,
 ) -> tuple[SlotPixels, ...]:
     """The slots that are seen well enough, with the pixels of their main colours.
 
@@ -115,36 +128,41 @@ def slot_pixels(
         unhidden: Pixels in the object's box that nothing else hides; of use where the mask is doubtful.
         background: Pixels in its box that show what is behind or below it.
         faces: Names of slots whose print was read from the photo.
+        settings: Numbers to work with.
     """
     seen, colours = view.of(visible) & (view.slot >= 0), view.of(rgb)
     shown = view.of(unhidden) & (cv2.erode((view.slot >= 0).astype(np.uint8), np.ones((5, 5), np.uint8)) > 0)
-    together = seen.sum() >= MIN_OUTLINED * shown.sum()
+    together = seen.sum() >= settings.min_outlined * shown.sum()
     lab = cv2.cvtColor(np.ascontiguousarray(colours, dtype=np.float32) / 255.0, cv2.COLOR_RGB2Lab)
     of_slots: dict[int, Bool[np.ndarray, "gh gw"]] = {}
     lost: set[int] = set()
     for index, slot in enumerate(slots):
         mine, posed = seen & (view.slot == index), shown & (view.slot == index)
-        if together and mine.sum() < MIN_OUTLINED * posed.sum():
+        if together and mine.sum() < settings.min_outlined * posed.sum():
             mine = posed
             lost.add(index)
         count = int(mine.sum())
         printed = slot.role == PRINTED and slot.name not in faces
         read = printed or slot.role in READ_ROLES or (slot.main and slot.role == "glass")
-        if read and count * view.step**2 >= MIN_PIXELS and count >= MIN_VISIBLE * max(seen.sum(), shown.sum()):
+        large = count * view.step**2 >= settings.min_pixels
+        if read and large and count >= settings.min_visible * max(seen.sum(), shown.sum()):
             of_slots[index] = mine
     beside = view.of(background) & (view.slot < 0)
-    seeds = _own_colours(lab, of_slots, beside)
+    seeds = _own_colours(lab, of_slots, beside, settings)
     found = []
-    like = {index: _alike(lab, seeds[index]) for index in of_slots}
+    like = {index: _alike(lab, seeds[index], settings) for index in of_slots}
     near = {index: mine & like[index] for index, mine in of_slots.items()}
     for index, mine in of_slots.items():
-        unlike = [k for k in of_slots if slots[k].role != slots[index].role and _is_near(seeds[k] - seeds[index])]
-        crossed = _is_vivid(seeds[index]) and any(near[k].sum() >= CROSSED * near[index].sum() for k in unlike)
-        behind = index in lost and _is_vivid(seeds[index]) and _covers(like[index], beside) >= BEHIND
-        others = [of_slots[k] for k in of_slots if k != index and not _is_near(seeds[k] - seeds[index])]
+        unlike = [
+            k for k in of_slots if slots[k].role != slots[index].role and _is_near(seeds[k] - seeds[index], settings)
+        ]
+        vivid, covered = _is_vivid(seeds[index], settings), _covers(like[index], beside, settings)
+        crossed = vivid and any(near[k].sum() >= settings.crossed * near[index].sum() for k in unlike)
+        behind = index in lost and vivid and covered >= settings.behind
+        others = [of_slots[k] for k in of_slots if k != index and not _is_near(seeds[k] - seeds[index], settings)]
         # A colour of the background is on other slots where one looks past them.
-        before = _covers(like[index], beside) < BEHIND and _is_before_all(like[index], mine, others)
-        if near[index].sum() >= MIN_SHARE * mine.sum() and not crossed and not behind and not before:
+        before = covered < settings.behind and _is_before_all(like[index], mine, others, settings)
+        if near[index].sum() >= settings.min_share * mine.sum() and not crossed and not behind and not before:
             found.append(SlotPixels(slots[index], index, near[index], mine))
     return tuple(found)
 
@@ -170,6 +188,7 @@ def _own_colours(
     lab: Float32[np.ndarray, "gh gw 3"],
     of_slots: Mapping[int, Bool[np.ndarray, "gh gw"]],
     beside: Bool[np.ndarray, "gh gw"],
+    settings: SurfaceMaterialSettings = SETTINGS,
 ) -> dict[int, Float32[np.ndarray, "3"]]:
     """The colour of every slot: of those that cover much of it, the first that is not rather its neighbour's.
 
@@ -178,32 +197,37 @@ def _own_colours(
     slot's colours do, the one of which that is least true is taken. A large slot does not give up its colour because a
     small one that crosses it is all of it.
     """
-    options = {index: _colours_of(lab, mine) for index, mine in of_slots.items()}
+    options = {index: _colours_of(lab, mine, settings) for index, mine in of_slots.items()}
     seeds = {index: own[0] for index, own in options.items()}
     for index, mine in of_slots.items():
         others = [(of_slots[k], seeds[k]) for k in of_slots if k != index]
         own = []
         shares = []
         for seed in options[index]:
-            near = _alike(lab, seed)
+            near = _alike(lab, seed, settings)
             share, pixels = _share(near, mine), np.count_nonzero(near & mine)
-            alike = [(near, where) for where, main in others if _is_near(main - seed)]
+            alike = [(near, where) for where, main in others if _is_near(main - seed, settings)]
             # The lit side of a neighbour is its colour, too; what is darker may be something black.
-            alike += [(near | _alike(lab, main), where) for where, main in others if is_shade(main, seed)]
+            alike += [(near | _alike(lab, main, settings), where) for where, main in others if is_shade(main, seed)]
             elsewhere = [_share(of, where) for of, where in alike if np.count_nonzero(of & where) >= pixels]
-            elsewhere.append(_covers(near, beside) / BESIDE)
+            elsewhere.append(_covers(near, beside, settings) / settings.beside)
             own.append(share / max([share, *elsewhere, 1e-9]))
             shares.append(share)
         chosen = int(np.argmax(own))
         main = options[index][chosen]
-        as_good = [k for k, score in enumerate(own) if score >= AS_GOOD * own[chosen]]
-        much = [options[index][k] for k in as_good if shares[k] >= MIN_OUTLINED]
-        seeds[index] = unveiled(main, [s for s in much if s[0] <= main[0] or _is_not_behind(lab, mine, beside, s)])
+        as_good = [k for k, score in enumerate(own) if score >= settings.as_good * own[chosen]]
+        much = [options[index][k] for k in as_good if shares[k] >= settings.min_outlined]
+        seeds[index] = unveiled(
+            main, [s for s in much if s[0] <= main[0] or _is_not_behind(lab, mine, beside, s, settings)]
+        )
     return seeds
 
 
 def _is_before_all(
-    alike: Bool[np.ndarray, "gh gw"], mine: Bool[np.ndarray, "gh gw"], foreign: Sequence[Bool[np.ndarray, "gh gw"]]
+    alike: Bool[np.ndarray, "gh gw"],
+    mine: Bool[np.ndarray, "gh gw"],
+    foreign: Sequence[Bool[np.ndarray, "gh gw"]],
+    settings: SurfaceMaterialSettings = SETTINGS,
 ) -> bool:
     """Whether a slot's colour is of something before the object: on it in part, and as much on slots of other colours.
 
@@ -211,11 +235,12 @@ def _is_before_all(
         alike: Pixels of about its colour.
         mine: The slot.
         foreign: The slots of other colours.
+        settings: Numbers to work with.
     """
     share = _share(alike, mine)
-    if share >= MOSTLY or not foreign:
+    if share >= settings.mostly or not foreign:
         return False
-    return share < CLEARLY_OWN * _share(alike, np.any(foreign, axis=0))
+    return share < settings.clearly_own * _share(alike, np.any(foreign, axis=0))
 
 
 def _is_not_behind(
@@ -223,22 +248,27 @@ def _is_not_behind(
     mine: Bool[np.ndarray, "gh gw"],
     beside: Bool[np.ndarray, "gh gw"],
     seed: np.ndarray,
+    settings: SurfaceMaterialSettings = SETTINGS,
 ) -> bool:
     """Whether a light colour is a thing's lit side, and not the background seen beside a dark thing."""
-    exactly = np.linalg.norm(lab - seed, axis=-1) < NEAR_LAB / 2
-    return bool(beside.sum() < MIN_PIXELS or exactly[mine].mean() > CLEARLY * exactly[beside].mean())
+    exactly = np.linalg.norm(lab - seed, axis=-1) < settings.near_lab / 2
+    return bool(beside.sum() < settings.min_pixels or exactly[mine].mean() > settings.clearly * exactly[beside].mean())
 
 
-def _is_vivid(seed: np.ndarray) -> bool:
-    return bool(np.hypot(*seed[1:]) >= COLOURED)
+def _is_vivid(seed: np.ndarray, settings: SurfaceMaterialSettings = SETTINGS) -> bool:
+    return bool(np.hypot(*seed[1:]) >= settings.coloured)
 
 
-def _covers(alike: Bool[np.ndarray, "gh gw"], where: Bool[np.ndarray, "gh gw"]) -> float:
+def _covers(
+    alike: Bool[np.ndarray, "gh gw"], where: Bool[np.ndarray, "gh gw"], settings: SurfaceMaterialSettings = SETTINGS
+) -> float:
     """Share of a region that is among pixels of about one colour; 0 of one too small to tell."""
-    return _share(alike, where) if np.count_nonzero(where) >= MIN_PIXELS else 0.0
+    return _share(alike, where) if np.count_nonzero(where) >= settings.min_pixels else 0.0
 
 
-def _colours_of(lab: Float32[np.ndarray, "gh gw 3"], mine: Bool[np.ndarray, "gh gw"]) -> list[Float32[np.ndarray, "3"]]:
+def _colours_of(
+    lab: Float32[np.ndarray, "gh gw 3"], mine: Bool[np.ndarray, "gh gw"], settings: SurfaceMaterialSettings = SETTINGS
+) -> list[Float32[np.ndarray, "3"]]:
     """Medians of the bins of a coarse Lab grid that hold much of a slot, those of the colour that covers most first.
 
     Bins have grey in their middle, or whites and greys would lie in four of them. Of a colour that lies in several
@@ -247,16 +277,16 @@ def _colours_of(lab: Float32[np.ndarray, "gh gw 3"], mine: Bool[np.ndarray, "gh 
     pixels = lab[mine]
     cells = np.floor(pixels / BIN_LAB + (0.0, 0.5, 0.5))
     label, counts = cells_of(cells)
-    order = [k for k in np.argsort(-counts, kind="stable") if counts[k] >= MIN_OF_BIN * len(pixels)]
+    order = [k for k in np.argsort(-counts, kind="stable") if counts[k] >= settings.min_of_bin * len(pixels)]
     medians = {k: np.median(pixels[label == k], axis=0) for k in order}
     found: list[Float32[np.ndarray, "3"]] = []
     while order:
-        alike = {k: [j for j in order if _is_near(medians[j] - medians[k])] for k in order}
+        alike = {k: [j for j in order if _is_near(medians[j] - medians[k], settings)] for k in order}
         covers = {k: sum(int(counts[j]) for j in alike[k]) for k in order}
         group = alike[max(order, key=covers.__getitem__)]
-        if found and sum(int(counts[j]) for j in group) < MIN_SHARE * len(pixels):
+        if found and sum(int(counts[j]) for j in group) < settings.min_share * len(pixels):
             break
-        found += [medians[j] for j in group if j == group[0] or counts[j] >= MIN_SHARE * len(pixels)]
+        found += [medians[j] for j in group if j == group[0] or counts[j] >= settings.min_share * len(pixels)]
         order = [k for k in order if k not in group]
     return found
 
@@ -265,20 +295,31 @@ def _share(alike: Bool[np.ndarray, "gh gw"], where: Bool[np.ndarray, "gh gw"]) -
     return float(alike[where].mean())
 
 
-def _alike(lab: Float32[np.ndarray, "gh gw 3"], seed: np.ndarray) -> Bool[np.ndarray, "gh gw"]:
+def _alike(
+    lab: Float32[np.ndarray, "gh gw 3"], seed: np.ndarray, settings: SurfaceMaterialSettings = SETTINGS
+) -> Bool[np.ndarray, "gh gw"]:
     """Pixels of about one colour: shade varies over one surface, hue hardly."""
-    return np.asarray(_is_near(lab - seed))
+    return np.asarray(_is_near(lab - seed, settings))
 
 
-def _is_near(difference: np.ndarray) -> np.ndarray:
-    return np.asarray(np.linalg.norm(difference / (2.0, 1.0, 1.0), axis=-1) < NEAR_LAB)
+def _is_near(difference: np.ndarray, settings: SurfaceMaterialSettings = SETTINGS) -> np.ndarray:
+    return np.asarray(np.linalg.norm(difference / (2.0, 1.0, 1.0), axis=-1) < settings.near_lab)
 
 
-def shade_of(view: SurfaceView, pixels: SlotPixels, rgb: UInt8[np.ndarray, "h w 3"]) -> Shade:
-    """How bright the slot is at each of its normals."""
+def shade_of(
+    view: SurfaceView, pixels: SlotPixels, rgb: UInt8[np.ndarray, "h w 3"], settings: SurfaceMaterialSettings = SETTINGS
+) -> Shade:
+    """How bright the slot is at each of its normals.
+
+    Args:
+        view: The shape in its pose.
+        pixels: The slot's.
+        rgb: The photo.
+        settings: Numbers to work with.
+    """
     linear = luminance(srgb_to_linear(view.of(rgb)[pixels.near] / 255.0))
-    label, count = cells_of(np.round(view.normals_world[pixels.near] / NORMAL_CELL))
-    of = [label == k for k in np.flatnonzero(count >= MIN_FACE_PIXELS)]
+    label, count = cells_of(np.round(view.normals_world[pixels.near] / settings.normal_cell))
+    of = [label == k for k in np.flatnonzero(count >= settings.min_face_pixels)]
     normals = np.array([view.normals_world[pixels.near][m].mean(axis=0) for m in of]).reshape(-1, 3)
     brightness = np.array([max(float(np.median(linear[m])), 1e-4) for m in of])
     weight = np.array([float(m.mean()) for m in of])
@@ -291,6 +332,7 @@ def appearance_of(
     rgb: UInt8[np.ndarray, "h w 3"],
     light: Float32[np.ndarray, "h w 3"],
     weave: UInt8[np.ndarray, "th tw 3"] | None = None,
+    settings: SurfaceMaterialSettings = SETTINGS,
 ) -> SlotAppearance:
     """The slot's material under a light, without the gloss that a material of its role has.
 
@@ -300,6 +342,7 @@ def appearance_of(
         rgb: The photo.
         light: How much falls on every pixel of the photo.
         weave: The texture that the slot has in the library; it gives way to a plain one where the photo shows none.
+        settings: Numbers to work with.
     """
     linear = srgb_to_linear(view.of(rgb)[pixels.near] / 255.0)
     lit = view.of(light)[pixels.near]
@@ -318,7 +361,11 @@ def appearance_of(
             return SlotAppearance(pixels.slot, (red, green, blue), None, 1.0, roughness)
         plain = np.rint(255 * np.clip([red, green, blue], 0, 1)).astype(np.uint8)
         return SlotAppearance(
-            pixels.slot, (red, green, blue), np.tile(plain, (PLAIN_PX, PLAIN_PX, 1)), tile_m, roughness
+            pixels.slot,
+            (red, green, blue),
+            np.tile(plain, (settings.plain_px, settings.plain_px, 1)),
+            tile_m,
+            roughness,
         )
     texture = tileable(_in_albedo(example, albedo))
     return SlotAppearance(pixels.slot, (red, green, blue), texture, example.texel_m * texture.shape[0], roughness)

@@ -16,7 +16,7 @@ from diorama_core.scene.types import Architecture, Plane, Scene
 
 MIN_SIDE_M = 1.0
 """Shorter sides are details of an outline."""
-NEAR_M = 0.05
+ENDS_M = 0.05
 """A wall stands at a side, or ends at it, within this."""
 _PARALLEL = 0.98
 
@@ -47,7 +47,7 @@ class _Side:
         line = wall.polygon[:, :2] - self.start
         places = line @ self.along
         overlap = min(places.max(), self.length_m) - max(places.min(), 0.0)
-        return bool(np.abs(line @ self.outward).max() < NEAR_M and overlap > NEAR_M)
+        return bool(np.abs(line @ self.outward).max() < ENDS_M and overlap > ENDS_M)
 
 
 def with_open_sides_moved(scene: Scene, footprints: Sequence[Float[np.ndarray, "_ 2"]]) -> Scene:
@@ -112,8 +112,8 @@ def _going_on(wall: Plane, sides: Sequence[_Side], reach_m: Float[np.ndarray, "s
             continue
         height = (wall.polygon[:, :2] - side.start) @ side.outward
         places = (wall.polygon[:, :2] - side.start) @ side.along
-        at_end = (np.abs(height) < NEAR_M) & (np.minimum(np.abs(places), np.abs(places - side.length_m)) < NEAR_M)
-        if at_end.any() and not meets_a_wall(wall, wall.polygon[at_end], walls, NEAR_M):
+        at_end = (np.abs(height) < ENDS_M) & (np.minimum(np.abs(places), np.abs(places - side.length_m)) < ENDS_M)
+        if at_end.any() and not meets_a_wall(wall, wall.polygon[at_end], walls, ENDS_M):
             polygon[at_end] += reached / away * level
     return wall if np.array_equal(polygon, wall.polygon) else replace(wall, polygon=polygon)
 

@@ -7,6 +7,7 @@ of the room's edges and of what stands before it.
 from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Sequence
+from dataclasses import dataclass
 
 import numpy as np
 from jaxtyping import Float
@@ -17,20 +18,31 @@ from diorama_core.multiview.joint_fit import JointCuboid, PhotoBoxes
 from diorama_core.scene.room_edits import move_plane
 from diorama_core.scene.types import Architecture, Plane, Scene, yaw_rotation
 
-REACH_M = 0.4
-"""So far may a wall be from the backs of what hangs on it."""
-MOVED_M = 0.02
-"""Less is not worth moving a wall."""
-DEEPEST_M = 0.3
-"""Deeper things tell little of where their backs are."""
-MAX_SIGMA_M = 0.1
-"""Of a thing's place across the wall."""
-BESIDE_M = 0.1
-"""How far the middle of a thing may be beyond a wall's end."""
+
+@dataclass(frozen=True)
+class MountedWallsSettings:
+    """Numbers of `mounted_walls`."""
+
+    reach_m: float = 0.4
+    """So far may a wall be from the backs of what hangs on it."""
+    moved_m: float = 0.02
+    """Less is not worth moving a wall."""
+    deepest_m: float = 0.3
+    """Deeper things tell little of where their backs are."""
+    max_sigma_m: float = 0.1
+    """Of a thing's place across the wall."""
+    beside_m: float = 0.1
+    """How far the middle of a thing may be beyond a wall's end."""
+
+
+SETTINGS = MountedWallsSettings()
 
 
 def walls_at_mounted(
-    room: Architecture, mounted: Sequence[JointCuboid], movable: Collection[str] | None = None
+    room: Architecture,
+    mounted: Sequence[JointCuboid],
+    movable: Collection[str] | None = None,
+    settings: MountedWallsSettings = SETTINGS,
 ) -> Architecture:
     """The room, each wall moved to the middle of the backs of the things that surely hang on it.
 
@@ -39,12 +51,13 @@ def walls_at_mounted(
         mounted: what hangs on walls, seen by two photos or more.
         movable: ids of walls that may move; all by default. The others stay in their planes, and end where they meet
             one that moved.
+        settings: numbers to work with.
     """
     for wall in room.by_role("wall"):
         if movable is not None and wall.id not in movable:
             continue
-        gaps = [gap for thing in mounted if (gap := _gap(wall, thing, room)) is not None]
-        if not gaps or abs(float(np.median(gaps))) < MOVED_M:
+        gaps = [gap for thing in mounted if (gap := _gap(wall, thing, room, settings)) is not None]
+        if not gaps or abs(float(np.median(gaps))) < settings.moved_m:
             continue
         try:
             room = move_plane(Scene(architecture=room), wall.id, -float(np.median(gaps))).architecture
@@ -54,7 +67,10 @@ def walls_at_mounted(
 
 
 def room_holding(
-    preferred: Architecture, others: Iterable[Architecture], mounted: Sequence[JointCuboid]
+    preferred: Architecture,
+    others: Iterable[Architecture],
+    mounted: Sequence[JointCuboid],
+    settings: MountedWallsSettings = SETTINGS,
 ) -> Architecture:
     """Of several readings of a room the first of those in which the fewest things on walls are without a wall.
 
@@ -62,17 +78,18 @@ def room_holding(
         preferred: taken unless another one holds more.
         others: looked at only where the preferred one leaves something without a wall.
         mounted: what hangs on walls.
+        settings: numbers to work with.
     """
 
     def without_wall(room: Architecture) -> int:
-        return sum(not _held(room, thing) for thing in mounted)
+        return sum(not _held(room, thing, settings) for thing in mounted)
 
     return preferred if without_wall(preferred) == 0 else min((preferred, *others), key=without_wall)
 
 
-def _held(room: Architecture, thing: JointCuboid) -> bool:
+def _held(room: Architecture, thing: JointCuboid, settings: MountedWallsSettings = SETTINGS) -> bool:
     """Whether a wall is within reach of a thing in plan."""
-    reach = REACH_M + float(thing.size_m[:2].min()) / 2
+    reach = settings.reach_m + float(thing.size_m[:2].min()) / 2
     return any(_from_wall(wall, thing.centre[:2]) < reach for wall in room.by_role("wall"))
 
 
@@ -93,19 +110,21 @@ def seen_whole(sightings: Sequence[tuple[PhotoBoxes, int]]) -> bool:
     return len(sightings) > 1 and any(not photo.observations.truncated[box].any() for photo, box in sightings)
 
 
-def _gap(wall: Plane, thing: JointCuboid, room: Architecture) -> float | None:
+def _gap(
+    wall: Plane, thing: JointCuboid, room: Architecture, settings: MountedWallsSettings = SETTINGS
+) -> float | None:
     """From a wall into the room to the back of a thing that hangs on it; None where it hangs elsewhere."""
-    gaps = {w.id: gap for w in room.by_role("wall") if (gap := _distance(w, thing)) is not None}
+    gaps = {w.id: gap for w in room.by_role("wall") if (gap := _distance(w, thing, settings)) is not None}
     own = gaps.get(wall.id)
     return own if own is not None and abs(own) == min(map(abs, gaps.values())) else None
 
 
-def _distance(wall: Plane, thing: JointCuboid) -> float | None:
+def _distance(wall: Plane, thing: JointCuboid, settings: MountedWallsSettings = SETTINGS) -> float | None:
     axes = np.abs(yaw_rotation(thing.yaw_rad).T @ wall.normal)
     depth = float(axes @ thing.size_m)
     along = np.cross([0.0, 0.0, 1.0], wall.normal)
     span, at = wall.polygon @ along, float(thing.centre @ along)
     gap = float(wall.normal @ thing.centre) - depth / 2 - wall.offset
-    unsure = float(np.abs(wall.normal[:2]) @ np.array(thing.place_sigma_m)) > MAX_SIGMA_M
-    beside = span.min() - BESIDE_M < at < span.max() + BESIDE_M
-    return gap if depth < DEEPEST_M and beside and not unsure and abs(gap) < REACH_M else None
+    unsure = float(np.abs(wall.normal[:2]) @ np.array(thing.place_sigma_m)) > settings.max_sigma_m
+    beside = span.min() - settings.beside_m < at < span.max() + settings.beside_m
+    return gap if depth < settings.deepest_m and beside and not unsure and abs(gap) < settings.reach_m else None

@@ -24,25 +24,34 @@ from diorama_core.multiview.found_poses import LIKELY_FOV_RAD, UnposedPhoto, com
 from diorama_core.progress import Progress
 from diorama_core.scene.types import Camera, Intrinsics
 
-NEAR_SHARE = 0.025
-"""Of the photo's width: so near to its pixel a point of the scene's surfaces is projected where these are right."""
-MIN_POINTS = 30
-MIN_SHARE = 0.2
-"""Of the common points, whose surfaces must be right."""
-RANSAC_TURNS = 3000
-EPIPOLAR_PX = 1.5
-SURFACE_SHARE = 0.01
-"""Of the photo's width: how far off points of the surfaces usually are."""
-FOCAL_LOG_SIGMA = 0.03
-"""Of a focal length that is another photo's of the same size."""
 GUESSED_LOG_SIGMA = 0.25
-MAX_TERMS = 1500
-SCALES = (0.1, 0.1, 0.1, 1.0, 1.0, 1.0, 0.1)
-"""Of the unknowns: turn (rad), shift (m), logarithm of the focal length."""
-SEED = 20
 
 DepthAlong = Callable[[Camera, Float[np.ndarray, "n 2"]], Float[np.ndarray, "n"]]
 """Depth (m, z in camera) of the scene at pixels of a camera; not finite where nothing is hit."""
+
+
+@dataclass(frozen=True)
+class RegistrationSettings:
+    """Numbers of `registration`."""
+
+    near_share: float = 0.025
+    """Of the photo's width: so near to its pixel a point of the scene's surfaces is projected where these are right."""
+    min_points: int = 30
+    min_share: float = 0.2
+    """Of the common points, whose surfaces must be right."""
+    ransac_turns: int = 3000
+    epipolar_px: float = 1.5
+    surface_share: float = 0.01
+    """Of the photo's width: how far off points of the surfaces usually are."""
+    focal_log_sigma: float = 0.03
+    """Of a focal length that is another photo's of the same size."""
+    max_terms: int = 1500
+    scales: tuple[float, float, float, float, float, float, float] = (0.1, 0.1, 0.1, 1.0, 1.0, 1.0, 0.1)
+    """Of the unknowns: turn (rad), shift (m), logarithm of the focal length."""
+    seed: int = 20
+
+
+SETTINGS = RegistrationSettings()
 
 
 @dataclass(frozen=True, eq=False)
@@ -70,7 +79,11 @@ class CommonPoints:
 
 
 def registered_camera(
-    new: UnposedPhoto, known: Sequence[PlacedPhoto], depth_along: DepthAlong, progress: Progress | None = None
+    new: UnposedPhoto,
+    known: Sequence[PlacedPhoto],
+    depth_along: DepthAlong,
+    progress: Progress | None = None,
+    settings: RegistrationSettings = SETTINGS,
 ) -> Camera:
     """The camera of a new photo, in the room.
 
@@ -84,6 +97,7 @@ def registered_camera(
         UnavailableError: pycolmap is not installed.
         InputError: the photo does not join.
         Cancelled: on request.
+        settings: numbers to work with.
     """
     common = [
         _on_surfaces(p.camera, pixels, depth_along)
@@ -92,13 +106,13 @@ def registered_camera(
     height, width = new.rgb.shape[:2]
     alike = [p.camera.intrinsics for p in known if p.photo.rgb.shape == new.rgb.shape]
     if new.focal_px is not None:
-        focal, sigma = new.focal_px, FOCAL_LOG_SIGMA
+        focal, sigma = new.focal_px, settings.focal_log_sigma
     elif alike:
-        focal, sigma = alike[0].fx, FOCAL_LOG_SIGMA
+        focal, sigma = alike[0].fx, settings.focal_log_sigma
     else:
         focal, sigma = width / (2 * float(np.tan(LIKELY_FOV_RAD / 2))), GUESSED_LOG_SIGMA
     k = Intrinsics(width, height, focal, focal, width / 2, height / 2)
-    camera = placed_camera([c for c in common if len(c.points)], k, sigma)
+    camera = placed_camera([c for c in common if len(c.points)], k, sigma, settings)
     if camera is None:
         raise InputError(
             f"{new.name} does not join: it has too little in common with the photos that are there; "
@@ -114,41 +128,46 @@ def _on_surfaces(camera: Camera, pixels: Float[np.ndarray, "n 4"], depth_along: 
     return CommonPoints(camera, pixels[hit, :2], pixels[hit, 2:], points)
 
 
-def placed_camera(common: Sequence[CommonPoints], k: Intrinsics, focal_log_sigma: float) -> Camera | None:
+def placed_camera(
+    common: Sequence[CommonPoints], k: Intrinsics, focal_log_sigma: float, settings: RegistrationSettings = SETTINGS
+) -> Camera | None:
     """The camera that sees common points where they are seen; None where too few agree on one.
 
     Args:
         common: by known photo.
         k: intrinsics to begin with; only the focal length may change.
         focal_log_sigma: how sure it is.
+        settings: numbers to work with.
     """
-    if sum(len(c.points) for c in common) < MIN_POINTS:
+    if sum(len(c.points) for c in common) < settings.min_points:
         return None
     points, pixels = np.vstack([c.points for c in common]), np.vstack([c.new_px for c in common])
     best: tuple[int, Intrinsics, np.ndarray, np.ndarray, np.ndarray] | None = None
-    factors = np.exp(np.linspace(-1.5, 1.5, 7) * focal_log_sigma) if focal_log_sigma > FOCAL_LOG_SIGMA else (1.0,)
+    factors = (
+        np.exp(np.linspace(-1.5, 1.5, 7) * focal_log_sigma) if focal_log_sigma > settings.focal_log_sigma else (1.0,)
+    )
     for factor in factors:
         tried = replace(k, fx=k.fx * float(factor), fy=k.fy * float(factor))
-        cv2.setRNGSeed(SEED)
+        cv2.setRNGSeed(settings.seed)
         found, turn, shift, inliers = cv2.solvePnPRansac(
             points,
             pixels,
             _matrix(tried),
             None,
-            iterationsCount=RANSAC_TURNS,
-            reprojectionError=NEAR_SHARE * k.width,
+            iterationsCount=settings.ransac_turns,
+            reprojectionError=settings.near_share * k.width,
             flags=cv2.SOLVEPNP_EPNP,
         )
         if found and inliers is not None and (best is None or len(inliers) > best[0]):
             best = (len(inliers), tried, turn.ravel(), shift.ravel(), inliers.ravel())
-    if best is None or best[0] < max(MIN_POINTS, MIN_SHARE * len(points)):
+    if best is None or best[0] < max(settings.min_points, settings.min_share * len(points)):
         return None
     _, tried, turn, shift, inliers = best
     right = np.zeros(len(points), bool)
     right[inliers] = True
     ends = np.cumsum([0, *(len(c.points) for c in common)])
     supported = [right[a:b] for a, b in pairwise(ends)]
-    return _refined(common, supported, tried, turn, shift, focal_log_sigma)
+    return _refined(common, supported, tried, turn, shift, focal_log_sigma, settings)
 
 
 def _refined(
@@ -158,28 +177,31 @@ def _refined(
     turn: Float[np.ndarray, "3"],
     shift: Float[np.ndarray, "3"],
     focal_log_sigma: float,
+    settings: RegistrationSettings = SETTINGS,
 ) -> Camera:
     """The camera by epipolar lines and, much less, by the surfaces; robust against what is wrong of either."""
-    thin = [max(1, len(c.points) * len(common) // MAX_TERMS) for c in common]
+    thin = [max(1, len(c.points) * len(common) // settings.max_terms) for c in common]
     lines = [c.rows(np.arange(len(c.points)) % t == 0) for c, t in zip(common, thin, strict=True)]
     surfaces = [c.rows(s) for c, s in zip(common, supported, strict=True)]
     anchors = np.vstack([c.points for c in surfaces]), np.vstack([c.new_px for c in surfaces])
     count = sum(len(c.points) for c in lines)
     # The surfaces' errors are alike over whole pieces of furniture: together they count as a few dozen points.
-    weight = np.sqrt(MIN_POINTS / len(anchors[0]))
+    weight = np.sqrt(settings.min_points / len(anchors[0]))
 
     def off(unknowns: np.ndarray) -> np.ndarray:
         camera = _camera(k, unknowns)
         seen = camera.to_camera(anchors[0])
         kc = camera.intrinsics
         pixels = seen[:, :2] / np.maximum(seen[:, 2:], 0.05) * [kc.fx, kc.fy] + [kc.cx, kc.cy]
-        surface = weight * ((pixels - anchors[1]) / (SURFACE_SHARE * k.width)).ravel()
-        epipolar = np.concatenate([sampson_px(c.camera, camera, c.known_px, c.new_px) for c in lines]) / EPIPOLAR_PX
+        surface = weight * ((pixels - anchors[1]) / (settings.surface_share * k.width)).ravel()
+        epipolar = (
+            np.concatenate([sampson_px(c.camera, camera, c.known_px, c.new_px) for c in lines]) / settings.epipolar_px
+        )
         return np.concatenate([epipolar, surface, [unknowns[6] / focal_log_sigma * np.sqrt(count) * 0.1]])
 
     unknowns = np.array([*turn, *shift, 0.0])
     for loss in ("soft_l1", "cauchy"):  # what is still far off then is another place
-        unknowns = least_squares(off, unknowns, loss=loss, x_scale=SCALES, max_nfev=40).x
+        unknowns = least_squares(off, unknowns, loss=loss, x_scale=settings.scales, max_nfev=40).x
     return _camera(k, unknowns)
 
 

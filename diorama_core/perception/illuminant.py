@@ -17,20 +17,30 @@ from jaxtyping import Bool, Float, UInt8
 
 from diorama_core.io.srgb import linear_to_srgb, srgb_to_linear
 
-_SIDE_PX = 160
-_NORM = 6.0
-"""Of the Minkowski means: bright pixels and strong edges say most."""
-_DARK, _CLIPPED = 0.02, 0.97
-"""Linear light outside these says nothing of colour."""
-_MIN_PIXELS = 200
-_BRIGHT_SHARE = 0.5
-"""Of the walls' pixels, the brightest: the others are shaded or lit by what is beside them."""
 _EXPECTED_SIGMA = np.array([0.28, 0.06])
 """Of photographs' light, warm to cold and magenta to green."""
 _STATISTICS_SIGMA, _WALLS_SIGMA = np.array([0.28, 0.15]), np.array([0.20, 0.10])
 """Of estimates from all pixels, and from walls."""
-_STRANGE = 2.0
-"""An estimate that many sigmas off the others counts less, as a Student's t would have it."""
+
+
+@dataclass(frozen=True)
+class IlluminantSettings:
+    """Numbers of `illuminant`."""
+
+    side_px: int = 160
+    norm: float = 6.0
+    """Of the Minkowski means: bright pixels and strong edges say most."""
+    dark: float = 0.02
+    clipped: float = 0.97
+    """Linear light outside these says nothing of colour."""
+    min_pixels: int = 200
+    bright_share: float = 0.5
+    """Of the walls' pixels, the brightest: the others are shaded or lit by what is beside them."""
+    strange: float = 2.0
+    """An estimate that many sigmas off the others counts less, as a Student's t would have it."""
+
+
+SETTINGS = IlluminantSettings()
 
 
 @dataclass(frozen=True)
@@ -62,30 +72,35 @@ class Illuminant:
         return np.asarray(np.clip(linear_to_srgb(srgb_to_linear(np.asarray(srgb)) * gains), 0.0, 1.0))
 
 
-def estimate_illuminant(rgb: UInt8[np.ndarray, "h w 3"], walls: Bool[np.ndarray, "h w"] | None = None) -> Illuminant:
+def estimate_illuminant(
+    rgb: UInt8[np.ndarray, "h w 3"],
+    walls: Bool[np.ndarray, "h w"] | None = None,
+    settings: IlluminantSettings = SETTINGS,
+) -> Illuminant:
     """The light of a photo of a room.
 
     Args:
         rgb: the photo, sRGB.
         walls: pixels of its walls and ceiling, where they are known.
+        settings: numbers to work with.
     """
-    small, of_walls = _reduced(rgb, walls)
+    small, of_walls = _reduced(rgb, walls, settings)
     light = srgb_to_linear(small / 255.0)
-    usable = ((light > _DARK).all(axis=-1)) & ((light < _CLIPPED).all(axis=-1))
-    if usable.sum() < _MIN_PIXELS:
+    usable = ((light > settings.dark).all(axis=-1)) & ((light < settings.clipped).all(axis=-1))
+    if usable.sum() < settings.min_pixels:
         return Illuminant()
-    found = [(_chromaticity(_minkowski(light[usable])), _STATISTICS_SIGMA)]
+    found = [(_chromaticity(_minkowski(light[usable], settings)), _STATISTICS_SIGMA)]
     edges = np.abs(cv2.Laplacian(cv2.GaussianBlur(light, (0, 0), 1.0), cv2.CV_64F))
-    found.append((_chromaticity(_minkowski(edges[usable])), _STATISTICS_SIGMA))
-    if (usable & of_walls).sum() >= _MIN_PIXELS:
-        found.append((_chromaticity(_bright_median(light[usable & of_walls])), _WALLS_SIGMA))
-    return _of_chromaticity(_combined(found))
+    found.append((_chromaticity(_minkowski(edges[usable], settings)), _STATISTICS_SIGMA))
+    if (usable & of_walls).sum() >= settings.min_pixels:
+        found.append((_chromaticity(_bright_median(light[usable & of_walls], settings)), _WALLS_SIGMA))
+    return _of_chromaticity(_combined(found, settings))
 
 
 def _reduced(
-    rgb: UInt8[np.ndarray, "h w 3"], walls: Bool[np.ndarray, "h w"] | None
+    rgb: UInt8[np.ndarray, "h w 3"], walls: Bool[np.ndarray, "h w"] | None, settings: IlluminantSettings = SETTINGS
 ) -> tuple[UInt8[np.ndarray, "a b 3"], Bool[np.ndarray, "a b"]]:
-    scale = min(1.0, _SIDE_PX / max(rgb.shape[:2]))
+    scale = min(1.0, settings.side_px / max(rgb.shape[:2]))
     size = max(1, round(rgb.shape[1] * scale)), max(1, round(rgb.shape[0] * scale))
     small = cv2.resize(rgb, size, interpolation=cv2.INTER_AREA)
     if walls is None:
@@ -94,13 +109,13 @@ def _reduced(
     return small, share > 0.99
 
 
-def _minkowski(light: Float[np.ndarray, "n 3"]) -> Float[np.ndarray, "3"]:
-    return np.asarray((light**_NORM).mean(axis=0) ** (1.0 / _NORM))
+def _minkowski(light: Float[np.ndarray, "n 3"], settings: IlluminantSettings = SETTINGS) -> Float[np.ndarray, "3"]:
+    return np.asarray((light**settings.norm).mean(axis=0) ** (1.0 / settings.norm))
 
 
-def _bright_median(light: Float[np.ndarray, "n 3"]) -> Float[np.ndarray, "3"]:
+def _bright_median(light: Float[np.ndarray, "n 3"], settings: IlluminantSettings = SETTINGS) -> Float[np.ndarray, "3"]:
     luminance = light.mean(axis=1)
-    return np.asarray(np.median(light[luminance >= np.quantile(luminance, 1.0 - _BRIGHT_SHARE)], axis=0))
+    return np.asarray(np.median(light[luminance >= np.quantile(luminance, 1.0 - settings.bright_share)], axis=0))
 
 
 def _chromaticity(light: Float[np.ndarray, "3"]) -> Float[np.ndarray, "2"]:
@@ -116,13 +131,15 @@ def _of_chromaticity(chromaticity: Float[np.ndarray, "2"]) -> Illuminant:
     return Illuminant((red, green, blue))
 
 
-def _combined(found: list[tuple[Float[np.ndarray, "2"], Float[np.ndarray, "2"]]]) -> Float[np.ndarray, "2"]:
+def _combined(
+    found: list[tuple[Float[np.ndarray, "2"], Float[np.ndarray, "2"]]], settings: IlluminantSettings = SETTINGS
+) -> Float[np.ndarray, "2"]:
     """The posterior mean; estimates far from it are trusted less, step by step."""
     values, sigmas = (np.array(column) for column in zip(*found, strict=True))
     mean = np.zeros(2)
     for _ in range(4):
         off = (values - mean) / np.hypot(sigmas, _EXPECTED_SIGMA)
-        trust = 1.0 / (1.0 + (off / _STRANGE) ** 2)
+        trust = 1.0 / (1.0 + (off / settings.strange) ** 2)
         precision = trust / sigmas**2
         mean = (precision * values).sum(axis=0) / (precision.sum(axis=0) + 1.0 / _EXPECTED_SIGMA**2)
     return np.asarray(mean)

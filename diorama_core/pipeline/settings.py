@@ -1,4 +1,7 @@
-"""Settings by name: the numbers of the stages are fields of frozen values, addressed as `layout.weights.outline`."""
+"""Settings by name: the numbers of the stages are fields of frozen values, addressed as `layout.weights.outline`.
+
+A stage that others can do without has its own name as a setting: 0 leaves it out.
+"""
 
 from __future__ import annotations
 
@@ -13,12 +16,16 @@ T = TypeVar("T")
 
 
 def settings_of(stages: Stages) -> dict[str, float]:
-    """Every number that a stage, or a value within it, has as a field; by name, in the order of the stages."""
-    return dict(_numbers(stages, ""))
+    """Every number that a stage, or a value within it, has as a field; by name, in the order of the stages.
+
+    Optional stages that are there count 1.
+    """
+    optional = {f.name: 1.0 for f in fields(stages) if f.default is None and getattr(stages, f.name) is not None}
+    return {**optional, **dict(_numbers(stages, ""))}
 
 
 def with_settings(stages: Stages, values: Mapping[str, float]) -> Stages:
-    """The stages with other values in some fields; whole numbers stay whole.
+    """The stages with other values in some fields; whole numbers stay whole, and a stage's own name leaves it out.
 
     Raises:
         InputError: a name that is none of `settings_of`.
@@ -28,7 +35,10 @@ def with_settings(stages: Stages, values: Mapping[str, float]) -> Stages:
         if name not in known:
             raise InputError(f"{name}: the stages have no such setting; there are {', '.join(known)}")
     for name, value in values.items():
-        stages = _replaced(stages, name.split("."), value)
+        if "." in name:
+            stages = _replaced(stages, name.split("."), value)
+        elif value == 0:
+            stages = replace(stages, **{name: None})  # type: ignore[arg-type]  # an optional stage
     return stages
 
 

@@ -19,6 +19,7 @@ from diorama_core.geometry.observed import Observed
 from diorama_core.geometry.shape_appearance import ShapeAppearance
 from diorama_core.geometry.silhouette import Hits, PoseBatch
 from diorama_core.io.srgb import srgb_to_linear
+from diorama_core.pose.depth_fit import INNER_CELL
 from diorama_core.pose.surface import MeasuredSurface
 
 _MIN_CELLS, _MAX_CELLS = 16, 48
@@ -47,7 +48,6 @@ _DARKEST = 0.03
 """Linear light below which a camera tells little."""
 _ONE_COLOUR = 0.1
 """Shapes whose colours vary less are not compared by colour."""
-_WHOLE_CELL = 0.9
 _FAMILIAR_CELLS = 20.0
 _FAMILIAR_SHARE = 0.1
 """With few cells of known colour they are taken to agree as well as usual: as many cells at this share of the cost."""
@@ -120,7 +120,7 @@ class AppearanceLikelihood:
     @cached_property
     def _own(self) -> Bool[np.ndarray, "n"]:
         """Cells whose colour is the object's alone."""
-        return self.seen.covered * self.seen.weight > _WHOLE_CELL
+        return self.seen.covered * self.seen.weight > INNER_CELL
 
     def _of_place(self, hits: Hits, exact: bool) -> Float[np.ndarray, "p"]:
         """How many cells disagree: covered where the mask is not, or the other way round, or at another depth."""

@@ -25,7 +25,7 @@ MIN_RAYS = 6
 """Minimum number of measured points for a fit."""
 _MAX_RAYS = 260
 _DIRECTIONS = 16
-_WHOLE_CELL = 0.9
+INNER_CELL = 0.9
 """Cells that a mask covers by less lie on its edge, where depth belongs to either side."""
 _LOOSENESS = (4.0, 3.0, 2.0, 1.5, 1.0, 1.0, 1.0, 1.0)
 """Of every iteration: how many times wider than measured the tolerances are taken, so that far starts are drawn in."""
@@ -74,7 +74,7 @@ class SeenPoints:
             weight: 0 where nothing was measured.
             spread_m: standard deviation of the noise in the depth.
         """
-        chosen = np.flatnonzero((seen.covered >= _WHOLE_CELL) & (weight > 0))
+        chosen = np.flatnonzero((seen.covered >= INNER_CELL) & (weight > 0))
         if len(chosen) < 12:
             chosen = np.flatnonzero(weight > 0)
         chosen = chosen[:: max(1, -(-len(chosen) // _MAX_RAYS))]

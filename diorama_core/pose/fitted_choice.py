@@ -21,6 +21,7 @@ from diorama_core.geometry.silhouette import ShapeCaster
 from diorama_core.library.furniture.measures import can_be_turned
 from diorama_core.library.hands import other_hand
 from diorama_core.library.record import ShapeLibrary
+from diorama_core.pose.mask_observations import NOISE_FLOOR
 from diorama_core.pose.outline_fit import fitted_pose
 from diorama_core.pose.seen_objects import SeenObject
 from diorama_core.pose.turned_profile import turned
@@ -38,8 +39,6 @@ OF_RANK, OF_FIT = 1.0, 2.0
 OF_EDGES = 1.0
 """What the correlation of inner edges says beside them: books on a top and what a mask missed change its outline.
 Less of a thing that is hidden."""
-NOISE_FLOOR = 0.03
-"""Disagreement below which two shapes count as equal: the resolution of the outlines."""
 _NO_SCORE = 1e-3
 
 

@@ -32,7 +32,7 @@ _OF_SURE_MASK = 0.8
 """How much more the outline of a sure mask counts against the pose priors than that of a doubtful one."""
 _OF_SURE_OUTLINE = 0.4
 """And how much more it counts when shapes are compared: which one it is, is seen in the outline."""
-_NOISE_FLOOR = 0.03
+NOISE_FLOOR = 0.03
 """Error below which two poses count as equal: the resolution of the silhouettes."""
 _STRETCH_SIGMA, _STRETCH_SIGMA_OF_FLAT = 0.3, 1.0
 _ENLARGED_SIGMA = 0.2
@@ -132,7 +132,7 @@ class Evidence:
         cost = cost + 0.5 * (misfit / _MISFIT_SIGMA) ** 2
         cost = cost + 0.5 * (off_axis_rad / _OFF_AXIS_SIGMA_RAD) ** 2
         strength = 1.0 + _OF_SURE_MASK * self.seen.mask_trust**4 if self.surface is None else _STRENGTH_WITH_DEPTH
-        return -strength * np.log(errors + _NOISE_FLOOR) - cost
+        return -strength * np.log(errors + NOISE_FLOOR) - cost
 
     def habit_cost(self, poses: PoseBatch, limits: SizeLimits) -> Float[np.ndarray, "p"]:
         """What speaks against poses whatever the picture shows: unusual headings and uneven stretching."""
@@ -150,7 +150,7 @@ class Evidence:
 
     def sure_outline_cost(self, error: float) -> float:
         """What a sure mask says of a shape's disagreement beyond its score, from a photo alone."""
-        return _OF_SURE_OUTLINE * self.seen.mask_trust**4 * float(np.log(error + _NOISE_FLOOR))
+        return _OF_SURE_OUTLINE * self.seen.mask_trust**4 * float(np.log(error + NOISE_FLOOR))
 
     def seen_past(self, caster: ShapeCaster, poses: PoseBatch) -> float:
         """What colours say of one posed shape by where one looks past it, beyond its score: a logarithm, at most 0."""

@@ -18,7 +18,7 @@ from jaxtyping import Float
 
 from diorama_core.geometry.observed import Observed
 from diorama_core.geometry.silhouette import PoseBatch, ShapeCaster
-from diorama_core.pose.mask_observations import Evidence
+from diorama_core.pose.mask_observations import NOISE_FLOOR, Evidence
 from diorama_core.scene.types import Pose, yaw_rotation
 
 STEPS = (0.06, 0.03, 0.015)
@@ -27,8 +27,8 @@ ROUNDS = 5
 """Moves at each of them, as long as they help: sides, place and turn may all be a little off."""
 GAIN, FINE_GAIN = 0.01, 0.003
 """Of the cost, a logarithm: less is no better."""
-NOISE_FLOOR, FINE_NOISE_FLOOR = 0.03, 0.01
-"""Disagreement, 0 to 1, below which two poses count as equal: the resolution of the outlines."""
+FINE_NOISE_FLOOR = 0.01
+"""`NOISE_FLOOR` of finer outlines."""
 RESIZED_SIGMA = 0.3
 """Standard deviation of an extent's logarithm against where it was, of things that are seen whole."""
 OF_BORDER = 2.0

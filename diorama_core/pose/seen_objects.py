@@ -14,15 +14,13 @@ from diorama_core.geometry.silhouette import PoseBatch, ShapeCaster
 from diorama_core.library.taxonomy import NEVER_OPEN
 from diorama_core.pose.agree import SETS
 from diorama_core.pose.inner_edges import InnerEdges
-from diorama_core.pose.mask_observations import Evidence
+from diorama_core.pose.mask_observations import NOISE_FLOOR, Evidence
 from diorama_core.pose.surface import measured_surface, noise_of
 from diorama_core.scene.types import Pose
 from diorama_core.workers import each
 
 CELLS, FINE_CELLS = 56, 84
 """Resolutions at which shapes are compared with the picture and set in place in the end, both ways."""
-NOISE_FLOOR = 0.03
-"""Disagreement below which two shapes count as equal: the resolution of the outlines."""
 OUTLINE, OUTLINE_WITH_DEPTH = 1.8, 2.0
 """How much outline and depth say, as a factor of a logarithm; an outline counts as much as its mask is trusted."""
 EDGES = 1.0

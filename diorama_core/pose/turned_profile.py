@@ -21,7 +21,7 @@ from diorama_core.geometry.silhouette import ShapeCaster
 from diorama_core.library.furniture.measures import can_be_made, can_be_turned, made_id
 from diorama_core.library.furniture.reshaping import GIRTH, KNOTS, MAX_PERCENT, MIN_PERCENT
 from diorama_core.library.record import BUILT_IN, ShapeLibrary, record_of
-from diorama_core.pose.mask_observations import Evidence
+from diorama_core.pose.mask_observations import NOISE_FLOOR, Evidence
 from diorama_core.pose.outline_fit import fitted_pose, resizing_cost
 from diorama_core.scene.types import Camera, Pose
 
@@ -39,7 +39,7 @@ COVERED, KNOWN = 0.5, 0.9
 hides the object begins."""
 MAX_NARROW = 2
 """Heights at which the body may be narrower than can be made: at more of them it is no such body, or not as high."""
-MUCH_BETTER, NOISE_FLOOR = 0.85, 0.03
+MUCH_BETTER = 0.85
 """Another profile must bring the disagreement with the picture, and what two shapes may differ by, below this
 share; the lower, the more the body is resized: a glass seen from above became a bowl."""
 MAX_FACES = 5000

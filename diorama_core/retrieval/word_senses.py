@@ -11,7 +11,7 @@ the room (`kinds_together`).
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 from jaxtyping import Float
@@ -26,20 +26,34 @@ from diorama_core.retrieval.lying_views import lying_likelihoods
 from diorama_core.retrieval.seen_kinds import as_it_looks
 from diorama_core.scene.types import Intrinsics
 
-_USUAL_HEIGHT_M, _HEIGHT_SIGMA_M = 1.45, 0.3
-"""Of cameras above the floor."""
-_MEASURED_SIGMA_M = 0.15
-_UNSUPPORTED, _INSIDE = 0.15, 0.5
-"""How likely a thing lies on another one where no box is below it, and where one is all around it."""
-_SWITCH = 1.5
-"""How many times likelier it must be that a thing is held otherwise than its word says before geometry takes it so."""
-_MAJORITY = 0.5
-"""How likely another kind that is held alike must be: a wrong one's narrow size would spoil the whole room's scale."""
-_SURE = 0.4
-"""How likely a kind must be before geometry takes a thing without a name for it."""
+
+@dataclass(frozen=True)
+class WordSenseSettings:
+    """Numbers of `word_senses`."""
+
+    usual_height_m: float = 1.45
+    height_sigma_m: float = 0.3
+    """Of cameras above the floor."""
+    measured_sigma_m: float = 0.15
+    unsupported: float = 0.15
+    inside: float = 0.5
+    """How likely a thing lies on another one where no box is below it, and where one is all around it."""
+    switch: float = 1.5
+    """How many times likelier it must be that a thing is held otherwise than its word says before geometry takes it
+    so."""
+    majority: float = 0.5
+    """How likely another kind that is held alike must be: a wrong one's narrow size would spoil the whole room's
+    scale."""
+    sure: float = 0.4
+    """How likely a kind must be before geometry takes a thing without a name for it."""
 
 
-def with_word_senses(objects: tuple[DetectedObject, ...], camera: CameraEstimate) -> tuple[DetectedObject, ...]:
+SETTINGS = WordSenseSettings()
+
+
+def with_word_senses(
+    objects: tuple[DetectedObject, ...], camera: CameraEstimate, settings: WordSenseSettings = SETTINGS
+) -> tuple[DetectedObject, ...]:
     """The objects, those whose word is used loosely with the category that it most probably means here.
 
     Where a thing is held decides first, over all kinds that are held there. Among kinds that are held as the word says
@@ -47,9 +61,9 @@ def with_word_senses(objects: tuple[DetectedObject, ...], camera: CameraEstimate
     A word that is no kind's name ("stand") means the likeliest.
     """
     best = camera.best
-    senses = sense_probabilities(objects, best.intrinsics, best.R_world_camera, camera.height_m)
+    senses = sense_probabilities(objects, best.intrinsics, best.R_world_camera, camera.height_m, settings)
     return tuple(
-        replace(item, category=_chosen(item, of_word), meanings=_listed(of_word))
+        replace(item, category=_chosen(item, of_word, settings), meanings=_listed(of_word))
         for item, of_word in zip(objects, senses, strict=True)
     )
 
@@ -64,6 +78,7 @@ def sense_probabilities(
     intrinsics: Intrinsics,
     R_world_camera: Float[np.ndarray, "3 3"],
     height_m: float | None = None,
+    settings: WordSenseSettings = SETTINGS,
 ) -> list[Mapping[str, float]]:
     """For every object the kinds its word may mean, with probabilities that the boxes leave them.
 
@@ -72,10 +87,11 @@ def sense_probabilities(
         intrinsics: of the photo's camera.
         R_world_camera: how it is held; world +Z is up.
         height_m: of the camera above the floor, where that is known.
+        settings: numbers to work with.
     """
     below = carriers([item.box for item in objects])
     views = [
-        box_view(item.box, _carried(item, objects, on), intrinsics, R_world_camera)
+        box_view(item.box, _carried(item, objects, on, settings), intrinsics, R_world_camera)
         for item, on in zip(objects, below, strict=True)
     ]
     senses = [
@@ -84,7 +100,11 @@ def sense_probabilities(
     likely = [
         {kind: box_likelihood(view, kind) for kind in of_word} for view, of_word in zip(views, senses, strict=True)
     ]
-    usual, sigma = (_USUAL_HEIGHT_M, _HEIGHT_SIGMA_M) if height_m is None else (height_m, _MEASURED_SIGMA_M)
+    usual, sigma = (
+        (settings.usual_height_m, settings.height_sigma_m)
+        if height_m is None
+        else (height_m, settings.measured_sigma_m)
+    )
     said = [-0.5 * ((HEIGHTS_M - np.clip(usual, HEIGHTS_M[0], HEIGHTS_M[-1])) / sigma) ** 2]
     for of_word, of_view in zip(senses, likely, strict=True):
         said.append(np.log(sum(share * of_view[kind] for kind, share in of_word.items())))
@@ -119,26 +139,28 @@ def _as_lying(
     return found
 
 
-def _chosen(item: DetectedObject, senses: Mapping[str, float]) -> str:
+def _chosen(item: DetectedObject, senses: Mapping[str, float], settings: WordSenseSettings = SETTINGS) -> str:
     own, named = item.category, is_named(item.label)
     if own == UNKNOWN.name or (named and not names_a_kind(item.label)):
         best = max(senses, key=lambda kind: senses[kind])
-        return best if named or senses[best] > _SURE else own
+        return best if named or senses[best] > settings.sure else own
     mounts: dict[Mount, float] = {}
     for kind, share in senses.items():
         mount = category(kind).mount
         mounts[mount] = mounts.get(mount, 0.0) + share
     mount = max(mounts, key=mounts.__getitem__)
-    if mounts[mount] <= _SWITCH * mounts.get(category(own).mount, 0.0):
+    if mounts[mount] <= settings.switch * mounts.get(category(own).mount, 0.0):
         mount = category(own).mount
     best = max((kind for kind in senses if category(kind).mount == mount), key=lambda kind: senses[kind])
-    return best if mount != category(own).mount or senses[best] > _MAJORITY else own
+    return best if mount != category(own).mount or senses[best] > settings.majority else own
 
 
-def _carried(item: DetectedObject, objects: Sequence[DetectedObject], inside: int | None) -> float:
+def _carried(
+    item: DetectedObject, objects: Sequence[DetectedObject], inside: int | None, settings: WordSenseSettings = SETTINGS
+) -> float:
     if any(_stands_on(other.box, item.box) for other in objects if other is not item):
         return 1.0
-    return _UNSUPPORTED if inside is None else _INSIDE
+    return settings.unsupported if inside is None else settings.inside
 
 
 def _stands_on(below: tuple[float, float, float, float], box: tuple[float, float, float, float]) -> bool:

@@ -5,7 +5,8 @@ import numpy as np
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from diorama_core.appearance.rectify import NEAR_M, face_homography, outline_px, rectified
+from diorama_core.appearance.rectify import face_homography, outline_px, rectified
+from diorama_core.geometry.projection import NEAR_M
 from diorama_core.scene.types import Camera, Intrinsics
 
 CAMERA = Camera(Intrinsics(400, 300, 300.0, 300.0, 200.0, 150.0), np.eye(4))

@@ -36,3 +36,11 @@ def test_other_values_change_the_stage_and_so_its_key(stages):
 def test_unknown_names_are_said(stages):
     with pytest.raises(InputError, match=r"layout.weights.nothing: the stages have no such setting; there are"):
         with_settings(stages, {"layout.weights.nothing": 1.0})
+
+
+def test_an_optional_stage_is_left_out_by_its_name(stages):
+    assert settings_of(stages)["naming"] == 1.0
+    assert with_settings(stages, {"naming": 0}).naming is None
+    assert with_settings(stages, {"naming": 1}) == stages
+    with pytest.raises(InputError, match="pose: the stages have no such setting"):
+        with_settings(stages, {"pose": 0})

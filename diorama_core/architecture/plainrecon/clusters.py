@@ -6,6 +6,8 @@ Where the publication names no number, the authors' public code does.
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 from jaxtyping import Bool, Float, Int
 from scipy.spatial import cKDTree
@@ -13,16 +15,30 @@ from sklearn.cluster import DBSCAN, KMeans
 
 from diorama_core.geometry.open3d_import import o3d
 
-VOXEL_M = 0.05
-OUTLIER_NEIGHBOURS, OUTLIER_DEVIATIONS = 200, 2.0
-SEEDS = 12
 GROWTH_COSINE = float(np.cos(np.deg2rad(10.0)))
-DENSE_M, DENSE_POINTS = 0.1, 5
 MIN_POINTS = 200
 
 
+@dataclass(frozen=True)
+class PlaneClusterSettings:
+    """Numbers of `clusters`."""
+
+    voxel_m: float = 0.05
+    outlier_neighbours: int = 200
+    outlier_deviations: float = 2.0
+    seeds: int = 12
+    dense_m: float = 0.1
+    dense_points: int = 5
+
+
+SETTINGS = PlaneClusterSettings()
+
+
 def planar_clusters(
-    points: Float[np.ndarray, "n 3"], normals: Float[np.ndarray, "n 3"], seed: int = 0
+    points: Float[np.ndarray, "n 3"],
+    normals: Float[np.ndarray, "n 3"],
+    seed: int = 0,
+    settings: PlaneClusterSettings = SETTINGS,
 ) -> Int[np.ndarray, "n"]:
     """The planar piece that each point belongs to, largest direction first; -1 everywhere when there is none.
 
@@ -30,11 +46,12 @@ def planar_clusters(
         points: Of the empty room.
         normals: Unit, toward the camera.
         seed: Of K-means.
+        settings: Numbers to work with.
     """
     if len(points) < MIN_POINTS:
         return np.full(len(points), -1)
-    retained, directions = _thinned(points, normals)
-    labels = _grown(retained, directions, seed)
+    retained, directions = _thinned(points, normals, settings)
+    labels = _grown(retained, directions, seed, settings)
     if (labels < 0).all():
         return np.full(len(points), -1)
     settled = labels >= 0
@@ -43,25 +60,32 @@ def planar_clusters(
 
 
 def _thinned(
-    points: Float[np.ndarray, "n 3"], normals: Float[np.ndarray, "n 3"]
+    points: Float[np.ndarray, "n 3"], normals: Float[np.ndarray, "n 3"], settings: PlaneClusterSettings = SETTINGS
 ) -> tuple[Float[np.ndarray, "m 3"], Float[np.ndarray, "m 3"]]:
     """One point a voxel, without statistical outliers."""
     cloud = o3d.geometry.PointCloud(o3d.utility.Vector3dVector(points))
     cloud.normals = o3d.utility.Vector3dVector(normals)
-    cloud = cloud.voxel_down_sample(VOXEL_M)
-    cloud = cloud.remove_statistical_outlier(OUTLIER_NEIGHBOURS, OUTLIER_DEVIATIONS)[0]
+    cloud = cloud.voxel_down_sample(settings.voxel_m)
+    cloud = cloud.remove_statistical_outlier(settings.outlier_neighbours, settings.outlier_deviations)[0]
     directions = np.asarray(cloud.normals)
     lengths = np.linalg.norm(directions, axis=1)
     sound = lengths > 1e-6
     return np.asarray(cloud.points)[sound], directions[sound] / lengths[sound, None]
 
 
-def _grown(points: Float[np.ndarray, "n 3"], normals: Float[np.ndarray, "n 3"], seed: int) -> Int[np.ndarray, "n"]:
+def _grown(
+    points: Float[np.ndarray, "n 3"],
+    normals: Float[np.ndarray, "n 3"],
+    seed: int,
+    settings: PlaneClusterSettings = SETTINGS,
+) -> Int[np.ndarray, "n"]:
     """Seed normals from K-means; everything within the growth angle of one, parted where it is not connected."""
     labels = np.full(len(points), -1)
     if len(points) < MIN_POINTS:
         return labels
-    means = KMeans(min(SEEDS, len(np.unique(normals.round(6), axis=0))), n_init=3, random_state=seed).fit(normals)
+    means = KMeans(min(settings.seeds, len(np.unique(normals.round(6), axis=0))), n_init=3, random_state=seed).fit(
+        normals
+    )
     seeds = means.cluster_centers_ / np.maximum(np.linalg.norm(means.cluster_centers_, axis=1, keepdims=True), 1e-9)
     near = normals @ seeds.T > GROWTH_COSINE
     free, number = np.ones(len(points), dtype=bool), 0
@@ -70,17 +94,19 @@ def _grown(points: Float[np.ndarray, "n 3"], normals: Float[np.ndarray, "n 3"], 
         fullest = max(waiting, key=lambda k: int((near[:, k] & free).sum()))
         waiting.remove(fullest)
         member = near[:, fullest] & free
-        for piece in _connected(points, member):
+        for piece in _connected(points, member, settings):
             labels[piece], number = number, number + 1
         free &= ~member
     return labels
 
 
-def _connected(points: Float[np.ndarray, "n 3"], member: Bool[np.ndarray, "n"]) -> list[Int[np.ndarray, "_"]]:
+def _connected(
+    points: Float[np.ndarray, "n 3"], member: Bool[np.ndarray, "n"], settings: PlaneClusterSettings = SETTINGS
+) -> list[Int[np.ndarray, "_"]]:
     """Indices of the dense pieces of the members that are large enough, largest first."""
     chosen = np.flatnonzero(member)
     if len(chosen) < MIN_POINTS:
         return []
-    parts = DBSCAN(eps=DENSE_M, min_samples=DENSE_POINTS).fit_predict(points[chosen])
+    parts = DBSCAN(eps=settings.dense_m, min_samples=settings.dense_points).fit_predict(points[chosen])
     pieces = [chosen[parts == k] for k in range(int(parts.max()) + 1)]
     return sorted((p for p in pieces if len(p) >= MIN_POINTS), key=lambda p: -len(p))

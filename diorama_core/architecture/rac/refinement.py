@@ -11,6 +11,8 @@ search may as well have left the nearer one out: walls that are measured before 
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import cv2
 import numpy as np
 from jaxtyping import Bool, Float
@@ -21,26 +23,41 @@ from diorama_core.architecture.rac.proposals import Proposals
 from diorama_core.architecture.walls.surface import MeasuredSurface
 from diorama_core.scene.types import Camera
 
-MAX_ROUNDS = 3
-MIN_ERROR_M = 0.01
-"""The mean over the picture below which nothing is refined."""
-WRONG_M = 0.1
-"""What is measured this far from a wall does not belong to it."""
-MIN_SHARE = 2000 / (640 * 480)
-"""Of the picture that is wrong about a wall before its end is looked for. These four are as in the authors' program."""
-LINE_SAMPLES = 1.0
-"""Distance from a line, in samples of the depth grid, up to which a change of depth agrees with it."""
-MIN_AGREEING = 10
-LINE_TRIALS = 256
+
+@dataclass(frozen=True)
+class LayoutRefinementSettings:
+    """Numbers of `refinement`."""
+
+    max_rounds: int = 3
+    min_error_m: float = 0.01
+    """The mean over the picture below which nothing is refined."""
+    wrong_m: float = 0.1
+    """What is measured this far from a wall does not belong to it."""
+    min_share: float = 2000 / (640 * 480)
+    """Of the picture that is wrong about a wall before its end is looked for. These four are as in the authors'
+    program."""
+    line_samples: float = 1.0
+    """Distance from a line, in samples of the depth grid, up to which a change of depth agrees with it."""
+    min_agreeing: int = 10
+    line_trials: int = 256
 
 
-def refined_layout(layout: RoomLayout, surface: MeasuredSurface, found: Proposals, camera: Camera) -> RoomLayout:
+SETTINGS = LayoutRefinementSettings()
+
+
+def refined_layout(
+    layout: RoomLayout,
+    surface: MeasuredSurface,
+    found: Proposals,
+    camera: Camera,
+    settings: LayoutRefinementSettings = SETTINGS,
+) -> RoomLayout:
     """The layout with walls ended where the picture looks past them, as far as that explains the depth better."""
     pixels = camera.project(surface.points)
     ends: tuple[Line, ...] = ()
-    for _ in range(MAX_ROUNDS):
+    for _ in range(settings.max_rounds):
         error = depth_error_m(layout, surface, pixels)
-        new = hidden_ends(layout, surface, found, camera) if error > MIN_ERROR_M else ()
+        new = hidden_ends(layout, surface, found, camera, settings) if error > settings.min_error_m else ()
         tried = best_layout(surface, found, camera, (*ends, *new)) if new else None
         if tried is None or depth_error_m(tried, surface, pixels) >= error:
             break
@@ -56,7 +73,13 @@ def depth_error_m(layout: RoomLayout, surface: MeasuredSurface, pixels: Float[np
     return float(np.where(surface.is_object, np.maximum(before, 0.0), np.abs(before)).mean()) if len(before) else 0.0
 
 
-def hidden_ends(layout: RoomLayout, surface: MeasuredSurface, found: Proposals, camera: Camera) -> tuple[Line, ...]:
+def hidden_ends(
+    layout: RoomLayout,
+    surface: MeasuredSurface,
+    found: Proposals,
+    camera: Camera,
+    settings: LayoutRefinementSettings = SETTINGS,
+) -> tuple[Line, ...]:
     """For every wall about which the layout is wrong, the line along which the depth leaves it."""
     pixels = camera.project(surface.points)
     shown, rendered = layout.planes_at(pixels), layout.depth_at(pixels)
@@ -68,12 +91,15 @@ def hidden_ends(layout: RoomLayout, surface: MeasuredSurface, found: Proposals, 
             continue
         inverse = layout.cells.inverse_at(wall, pixels)
         behind = np.where(inverse > 0, surface.depth_m - 1.0 / np.maximum(inverse, 1e-9), -np.inf)
-        drawn_too_far = (shown == wall) & (behind > WRONG_M)
-        left_out = (found.segment == wall) & (rendered - surface.depth_m > WRONG_M)
-        if (drawn_too_far | left_out).sum() < MIN_SHARE * size[0] * size[1]:
+        drawn_too_far = (shown == wall) & (behind > settings.wrong_m)
+        left_out = (found.segment == wall) & (rendered - surface.depth_m > settings.wrong_m)
+        if (drawn_too_far | left_out).sum() < settings.min_share * size[0] * size[1]:
             continue
         # Where two walls meet the depth does not jump, and their own line is there already.
-        form = _line(_changes(pixels * scale, np.abs(behind) <= WRONG_M, behind > 2.0 * WRONG_M, size))
+        form = _line(
+            _changes(pixels * scale, np.abs(behind) <= settings.wrong_m, behind > 2.0 * settings.wrong_m, size),
+            settings,
+        )
         if form is not None:
             lines.append(Line(form * [*scale, 1.0], frozenset((wall,))))
     return tuple(lines)
@@ -96,19 +122,21 @@ def _changes(
     return np.concatenate(near)
 
 
-def _line(places: Float[np.ndarray, "n 2"]) -> Float[np.ndarray, "3"] | None:
+def _line(
+    places: Float[np.ndarray, "n 2"], settings: LayoutRefinementSettings = SETTINGS
+) -> Float[np.ndarray, "3"] | None:
     """The line that most places agree with, as a form whose normal has unit length; None where few do."""
-    if len(places) < MIN_AGREEING:
+    if len(places) < settings.min_agreeing:
         return None
     rng = np.random.default_rng(0)
-    first, second = places[rng.integers(len(places), size=(2, LINE_TRIALS))]
+    first, second = places[rng.integers(len(places), size=(2, settings.line_trials))]
     along = second - first
     length = np.linalg.norm(along, axis=1)
     normals = np.stack([-along[:, 1], along[:, 0]], axis=1) / np.maximum(length, 1e-9)[:, None]
     off = np.abs(normals @ places.T - (normals * first).sum(axis=1)[:, None])
-    agreeing = (off <= LINE_SAMPLES) & (length > 1e-9)[:, None]
+    agreeing = (off <= settings.line_samples) & (length > 1e-9)[:, None]
     best = agreeing[np.argmax(agreeing.sum(axis=1))]
-    if best.sum() < MIN_AGREEING:
+    if best.sum() < settings.min_agreeing:
         return None
     centre = places[best].mean(axis=0)
     _, axes = np.linalg.eigh(np.cov((places[best] - centre).T))

@@ -21,19 +21,29 @@ from diorama_core.architecture.texture.colours import object_pixels
 from diorama_core.artefacts import DetectedObject
 from diorama_core.scene.types import Camera
 
-HEADINGS, SLOPES = 144, 160
-STEEPEST = 6.0
-COLOUR_SIDE_PX = 400
-HORIZON_M = 8.0
-"""Floor farther away than this cannot be distinguished from the walls behind it."""
-OVERHEAD_SLOPE = 0.18
-"""Ceilings are not visible below this slope above the horizon."""
 LAB_BINS = np.array([16.0, 5.0, 5.0])
 """Widths of the histograms' cells, levels of 255."""
-UNSEEN_COLOUR = 3e-4
-CLEAREST_RATIO = 3.0
-"""Log-likelihood ratios are clipped to this."""
-ENOUGH_SEEDS = 120
+
+
+@dataclass(frozen=True)
+class LevelViewSettings:
+    """Numbers of `level_view`."""
+
+    headings: int = 144
+    slopes: int = 160
+    steepest: float = 6.0
+    colour_side_px: int = 400
+    horizon_m: float = 8.0
+    """Floor farther away than this cannot be distinguished from the walls behind it."""
+    overhead_slope: float = 0.18
+    """Ceilings are not visible below this slope above the horizon."""
+    unseen_colour: float = 3e-4
+    clearest_ratio: float = 3.0
+    """Log-likelihood ratios are clipped to this."""
+    enough_seeds: int = 120
+
+
+SETTINGS = LevelViewSettings()
 
 
 @dataclass(frozen=True, eq=False)
@@ -63,12 +73,24 @@ class LevelView:
         return np.interp(slope, self.slopes, np.arange(len(self.slopes)))
 
 
-def level_view(rgb: UInt8[np.ndarray, "h w 3"], cues: RoomCues, objects: tuple[DetectedObject, ...]) -> LevelView:
-    """The precomputed evidence for scoring walls by headings."""
+def level_view(
+    rgb: UInt8[np.ndarray, "h w 3"],
+    cues: RoomCues,
+    objects: tuple[DetectedObject, ...],
+    settings: LevelViewSettings = SETTINGS,
+) -> LevelView:
+    """The precomputed evidence for scoring walls by headings.
+
+    Args:
+        rgb: the photo.
+        cues: of the room, with the camera.
+        objects: what is not the room's.
+        settings: numbers to work with.
+    """
     camera = cues.camera
     low, high = view_headings(camera)
-    edges = np.linspace(low, high, HEADINGS + 1)
-    slopes = _slopes(camera)
+    edges = np.linspace(low, high, settings.headings + 1)
+    slopes = _slopes(camera, settings)
     middles, rows = 0.5 * (edges[1:] + edges[:-1]), 0.5 * (slopes[1:] + slopes[:-1])
     pixels, inside = projected(camera, _directions(middles, rows))
     hidden = object_pixels((rgb.shape[0], rgb.shape[1]), objects)
@@ -80,7 +102,9 @@ def level_view(rgb: UInt8[np.ndarray, "h w 3"], cues: RoomCues, objects: tuple[D
         edges_rad=edges,
         slopes=slopes,
         share=share / max(float(share.sum()), 1e-9),
-        floor_ratio=_floor_ratio(_small_lab(rgb), pixels / np.array(rgb.shape[1::-1]), free, middles, rows, cues),
+        floor_ratio=_floor_ratio(
+            _small_lab(rgb, settings), pixels / np.array(rgb.shape[1::-1]), free, middles, rows, cues, settings
+        ),
         lines=_line_shares(cues, edges, slopes),
         upright=_upright(cues, edges, slopes),
     )
@@ -98,7 +122,7 @@ def projected(
     return pixels, inside
 
 
-def _slopes(camera: Camera) -> Float[np.ndarray, "k1"]:
+def _slopes(camera: Camera, settings: LevelViewSettings = SETTINGS) -> Float[np.ndarray, "k1"]:
     k = camera.intrinsics
     rim = np.concatenate(
         [
@@ -107,8 +131,8 @@ def _slopes(camera: Camera) -> Float[np.ndarray, "k1"]:
     )  # fmt: skip
     rays = camera.rays(rim)
     slopes = rays[:, 2] / np.maximum(np.linalg.norm(rays[:, :2], axis=1), 1e-6)
-    low, high = np.arctan(np.clip([slopes.min(), slopes.max()], -STEEPEST, STEEPEST))
-    return np.asarray(np.tan(np.linspace(min(low, -0.2), max(high, 0.2), SLOPES + 1)))
+    low, high = np.arctan(np.clip([slopes.min(), slopes.max()], -settings.steepest, settings.steepest))
+    return np.asarray(np.tan(np.linspace(min(low, -0.2), max(high, 0.2), settings.slopes + 1)))
 
 
 def _directions(headings: Float[np.ndarray, "m"], slopes: Float[np.ndarray, "k"]) -> Float[np.ndarray, "m k 3"]:
@@ -127,8 +151,8 @@ def _cell_shares(
     return np.asarray(np.abs(across[..., 0] * up[..., 1] - across[..., 1] * up[..., 0]))
 
 
-def _small_lab(rgb: UInt8[np.ndarray, "h w 3"]) -> UInt8[np.ndarray, "hs ws 3"]:
-    scale = min(1.0, COLOUR_SIDE_PX / max(rgb.shape[:2]))
+def _small_lab(rgb: UInt8[np.ndarray, "h w 3"], settings: LevelViewSettings = SETTINGS) -> UInt8[np.ndarray, "hs ws 3"]:
+    scale = min(1.0, settings.colour_side_px / max(rgb.shape[:2]))
     small = cv2.resize(rgb, None, fx=scale, fy=scale, interpolation=cv2.INTER_AREA)
     return np.asarray(cv2.cvtColor(cv2.medianBlur(small, 3), cv2.COLOR_RGB2LAB))
 
@@ -140,6 +164,7 @@ def _floor_ratio(
     headings: Float[np.ndarray, "m"],
     slopes: Float[np.ndarray, "k"],
     cues: RoomCues,
+    settings: LevelViewSettings = SETTINGS,
 ) -> Float[np.ndarray, "m k"]:
     """Log-likelihood ratio of floor colours (between objects on the floor) and wall colours (at eye height)."""
     shape = np.array(lab.shape[1::-1])
@@ -147,11 +172,13 @@ def _floor_ratio(
     cells = (lab[rows.clip(0, lab.shape[0] - 1), columns.clip(0, lab.shape[1] - 1)] / LAB_BINS).astype(int)
     floor = free & _on_sure_floor(headings, slopes, cues)
     eye = float(cues.camera.position[2])
-    wall = free & ((slopes > -eye / HORIZON_M) & (slopes < OVERHEAD_SLOPE))[None]
-    if min(floor.sum(), wall.sum()) < ENOUGH_SEEDS:
+    wall = free & ((slopes > -eye / settings.horizon_m) & (slopes < settings.overhead_slope))[None]
+    if min(floor.sum(), wall.sum()) < settings.enough_seeds:
         return np.zeros(free.shape)
-    ratio = np.log(_frequency(cells, floor) + UNSEEN_COLOUR) - np.log(_frequency(cells, wall) + UNSEEN_COLOUR)
-    return np.where(free, np.clip(ratio / CLEAREST_RATIO, -1.0, 1.0), 0.0)
+    ratio = np.log(_frequency(cells, floor) + settings.unseen_colour) - np.log(
+        _frequency(cells, wall) + settings.unseen_colour
+    )
+    return np.where(free, np.clip(ratio / settings.clearest_ratio, -1.0, 1.0), 0.0)
 
 
 def _frequency(cells: Int[np.ndarray, "m k 3"], chosen: Bool[np.ndarray, "m k"]) -> Float[np.ndarray, "m k"]:

@@ -12,7 +12,8 @@ import cv2
 import numpy as np
 from jaxtyping import Bool, Float, Float32, Int
 
-from diorama_core.artefacts import Cuboid, DetectedObject
+from diorama_core.artefacts import SURE_MASK, Cuboid, DetectedObject
+from diorama_core.geometry.projection import NEAR_M
 from diorama_core.geometry.segments import line_segments_px
 from diorama_core.library.taxonomy import CATEGORIES, PORTABLE, UNKNOWN, category, having
 from diorama_core.scene.types import Camera
@@ -33,10 +34,8 @@ MIN_LEVEL = 0.25
 """Segments near the horizon do not determine a direction."""
 CROWD_SHARE, CROWD_FREE, CROWD_LOSS, CROWD_MIN = 0.12, 0.12, 3.0, 0.25
 """Dense parallel edges (bricks, boards) are down-weighted beyond this share of a window."""
-SURE_MASK = 0.95
 UNSEEN_FOOT = 0.3
 """What an object says about the walls whose distance only its size tells, against one that is seen to stand there."""
-NEAR_M = 0.05
 MAX_CEILING_M = 5.0
 
 ORIENTATION_WEIGHT = 2.0

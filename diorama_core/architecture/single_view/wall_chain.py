@@ -16,20 +16,20 @@ from jaxtyping import Float, Int
 from diorama_core.architecture.single_view.level_view import LevelView, projected, response
 from diorama_core.architecture.single_view.room_cues import (
     EDGE_THRESHOLD,
+    EDGE_WEIGHT,
     MAX_CEILING_M,
+    OBJECT_WEIGHT,
     PRIOR_LOG_SIGMA,
     PRIOR_MEDIAN_M,
+    PRIOR_WEIGHT,
     RoomCues,
 )
 
 REGION_WEIGHT = 6.0
 LINE_WEIGHT = 2.5
-EDGE_WEIGHT = 1.0
 SKIRTINGS_M = (0.06, 0.08, 0.1, 0.12)
 """Usual heights of skirting boards, whose upper edge is a line above a wall's foot as clear as the foot itself."""
 UPRIGHT_WEIGHT = 1.5
-OBJECT_WEIGHT = 0.5
-PRIOR_WEIGHT = 0.1
 PROTRUSION_M = 0.25
 BACK_WEIGHT, BACK_LOG_SIGMA, BACK_CAP = 0.1, 0.12, 2.0
 """Of a sure object's back against everything that the picture shows of the room; how well its place is known; and the

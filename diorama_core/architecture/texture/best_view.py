@@ -8,6 +8,7 @@ Lowe 2007). Then light and shade are blended broadly between them, fine detail n
 from __future__ import annotations
 
 from collections.abc import Collection, Mapping, Sequence
+from dataclasses import dataclass
 from itertools import combinations
 
 import cv2
@@ -26,25 +27,37 @@ from diorama_core.architecture.texture.plane_textures import (
 from diorama_core.architecture.texture.quilting import broad_shading
 from diorama_core.scene.types import Architecture
 
-MIN_COMMON = 200
-"""Texels from which on two photos are compared."""
-ENOUGH_COMMON = 4000
-"""More than so many make a comparison no surer."""
-DARKEST = 12.0
-"""Levels of 255: darker texels tell no ratio."""
-NO_GAIN_WEIGHT = 0.02
-"""Of every photo's own exposure beside a comparison with another photo."""
-MAX_GAIN = 2.0
-COMPARED_M = 0.06
-"""Colours are compared over about this length: walls of different photos lie a little beside each other."""
-RIM_M = 0.08
-"""Beside what hides a plane, a photo counts less."""
-DETAIL_M, SHADE_M = 0.03, 0.3
-"""Over about these lengths one photo's detail and shading goes over into another's."""
+
+@dataclass(frozen=True)
+class BestViewSettings:
+    """Numbers of `best_view`."""
+
+    min_common: int = 200
+    """Texels from which on two photos are compared."""
+    enough_common: int = 4000
+    """More than so many make a comparison no surer."""
+    darkest: float = 12.0
+    """Levels of 255: darker texels tell no ratio."""
+    no_gain_weight: float = 0.02
+    """Of every photo's own exposure beside a comparison with another photo."""
+    max_gain: float = 2.0
+    compared_m: float = 0.06
+    """Colours are compared over about this length: walls of different photos lie a little beside each other."""
+    rim_m: float = 0.08
+    """Beside what hides a plane, a photo counts less."""
+    detail_m: float = 0.03
+    shade_m: float = 0.3
+    """Over about these lengths one photo's detail and shading goes over into another's."""
+
+
+SETTINGS = BestViewSettings()
 
 
 def best_view_textures(
-    pictures: Sequence[RoomPicture], architecture: Architecture, only: Collection[str] | None = None
+    pictures: Sequence[RoomPicture],
+    architecture: Architecture,
+    only: Collection[str] | None = None,
+    settings: BestViewSettings = SETTINGS,
 ) -> dict[str, UInt8[np.ndarray, "_ _ 3"]]:
     """RGB pictures of the planes that some photo sees well enough, by plane id.
 
@@ -52,6 +65,7 @@ def best_view_textures(
         pictures: The photos; the others are brought to the exposure of the first.
         architecture: The room, with its plain colours.
         only: Ids of the planes to make pictures of; all by default.
+        settings: Numbers to work with.
     """
     photos = [PhotoView(p) for p in pictures]
     planes = [p for p in architecture.planes if only is None or p.id in only]
@@ -61,7 +75,7 @@ def best_view_textures(
         found = {k: v.of_plane(plane, architecture.planes, points, pixel_m) for k, v in enumerate(photos)}
         seen[plane.id] = {k: v for k, v in found.items() if v is not None}
     sizes = {p.id: texel_points(p)[1] for p in planes}
-    gains = exposure_gains([(views, sizes[name]) for name, views in seen.items()], len(photos))
+    gains = exposure_gains([(views, sizes[name]) for name, views in seen.items()], len(photos), settings)
     sharpness = [p.camera.intrinsics.fx * p.camera.intrinsics.fy for p in pictures]
     textures: dict[str, np.ndarray] = {}
     for plane in planes:
@@ -69,7 +83,7 @@ def best_view_textures(
         if not views or not is_enough(np.any([v.shown for v in views.values()], axis=0), pixel_m, plane):
             continue
         chosen = [(views[k], gains[k], sharpness[k]) for k in sorted(views)]
-        colours, owned, there = _blended(chosen, pixel_m)
+        colours, owned, there = _blended(chosen, pixel_m, settings)
         if there.any() and owned.any():
             ground = plane.role == "floor"
             colours = levelled(colours, owned, pixel_m) if ground else colours
@@ -78,53 +92,68 @@ def best_view_textures(
     return textures
 
 
-def exposure_gains(planes: Sequence[tuple[Mapping[int, PlaneView], float]], count: int) -> Float[np.ndarray, "c 3"]:
+def exposure_gains(
+    planes: Sequence[tuple[Mapping[int, PlaneView], float]], count: int, settings: BestViewSettings = SETTINGS
+) -> Float[np.ndarray, "c 3"]:
     """Factors on the colours of each photo that make common texels alike; the first photo's are 1.
 
     Args:
         planes: What photos, by number, show of each plane, and the size of its texels.
         count: Photos.
+        settings: Numbers to work with.
     """
     rows: list[tuple[int, int, float, np.ndarray]] = []
     for a, b in combinations(range(count), 2):
-        ratios = [_ratios(views[a], views[b], m) for views, m in planes if a in views and b in views]
+        ratios = [_ratios(views[a], views[b], m, settings) for views, m in planes if a in views and b in views]
         joined = np.concatenate(ratios) if ratios else np.zeros((0, 3))
-        if len(joined) >= MIN_COMMON:
-            rows.append((a, b, float(np.sqrt(min(len(joined), ENOUGH_COMMON) / ENOUGH_COMMON)), np.median(joined, 0)))
+        if len(joined) >= settings.min_common:
+            rows.append(
+                (
+                    a,
+                    b,
+                    float(np.sqrt(min(len(joined), settings.enough_common) / settings.enough_common)),
+                    np.median(joined, 0),
+                )
+            )
     A = np.zeros((len(rows) + count, count))
     target = np.zeros((len(rows) + count, 3))
     for row, (a, b, weight, ratio) in enumerate(rows):
         A[row, [a, b]] = weight, -weight
         target[row] = -weight * ratio
-    A[len(rows) :] = np.sqrt(NO_GAIN_WEIGHT) * np.eye(count)
+    A[len(rows) :] = np.sqrt(settings.no_gain_weight) * np.eye(count)
     logs = np.linalg.lstsq(A, target, rcond=None)[0]
-    return np.asarray(np.clip(np.exp(logs - logs[:1]), 1.0 / MAX_GAIN, MAX_GAIN))
+    return np.asarray(np.clip(np.exp(logs - logs[:1]), 1.0 / settings.max_gain, settings.max_gain))
 
 
-def _ratios(a: PlaneView, b: PlaneView, pixel_m: float) -> Float[np.ndarray, "n 3"]:
+def _ratios(
+    a: PlaneView, b: PlaneView, pixel_m: float, settings: BestViewSettings = SETTINGS
+) -> Float[np.ndarray, "n 3"]:
     """Logarithms of how many times as bright texels of one photo are as those of another."""
     both = a.own & b.own
     if not both.any():
         return np.zeros((0, 3))
-    one, other = (broad_shading(v.colours, v.own, COMPARED_M / pixel_m)[both] for v in (a, b))
-    light = (np.minimum(one, other) > DARKEST).all(axis=1)
+    one, other = (broad_shading(v.colours, v.own, settings.compared_m / pixel_m)[both] for v in (a, b))
+    light = (np.minimum(one, other) > settings.darkest).all(axis=1)
     return np.asarray(np.log(one[light] / other[light]), dtype=np.float64)
 
 
 def _blended(
-    views: Sequence[tuple[PlaneView, Float[np.ndarray, "3"], float]], pixel_m: float
+    views: Sequence[tuple[PlaneView, Float[np.ndarray, "3"], float]],
+    pixel_m: float,
+    settings: BestViewSettings = SETTINGS,
 ) -> tuple[Float32[np.ndarray, "h w 3"], Bool[np.ndarray, "h w"], Bool[np.ndarray, "h w"]]:
     """Colours, which of them are the plane's own material, and where any photo sees it.
 
     Args:
         views: Each photo's with the gains of its colours and its pixels for each radian squared.
         pixel_m: Size of a texel.
+        settings: Numbers to work with.
     """
-    scores = np.stack([_score(view, pixel_m) * sharp for view, _, sharp in views])
+    scores = np.stack([_score(view, pixel_m, settings) * sharp for view, _, sharp in views])
     best, there = scores.argmax(axis=0), scores.max(axis=0) > 0
     shape = there.shape
-    total = {m: np.zeros(shape, np.float32) for m in (DETAIL_M, SHADE_M)}
-    summed = {m: np.zeros((*shape, 3), np.float32) for m in (DETAIL_M, SHADE_M)}
+    total = {m: np.zeros(shape, np.float32) for m in (settings.detail_m, settings.shade_m)}
+    summed = {m: np.zeros((*shape, 3), np.float32) for m in (settings.detail_m, settings.shade_m)}
     owned = np.zeros(shape, dtype=bool)
     for k, (view, gain, _) in enumerate(views):
         if not view.seen.any():
@@ -132,8 +161,8 @@ def _blended(
         mine = (best == k) & view.seen
         owned |= mine & view.own
         colours = view.colours * gain.astype(np.float32)
-        shade = broad_shading(colours, view.seen, SHADE_M / pixel_m)
-        for length_m, band in ((SHADE_M, shade), (DETAIL_M, colours - shade)):
+        shade = broad_shading(colours, view.seen, settings.shade_m / pixel_m)
+        for length_m, band in ((settings.shade_m, shade), (settings.detail_m, colours - shade)):
             weight = cv2.GaussianBlur(mine.astype(np.float32), (0, 0), max(length_m / pixel_m, 0.5))
             # A trace of every photo that sees a texel: where the best one's blur ends there must be some.
             weight = (weight + 1e-6) * view.seen
@@ -143,8 +172,8 @@ def _blended(
     return np.asarray(colours, dtype=np.float32).clip(0.0, 255.0), owned, there
 
 
-def _score(view: PlaneView, pixel_m: float) -> Float[np.ndarray, "h w"]:
+def _score(view: PlaneView, pixel_m: float, settings: BestViewSettings = SETTINGS) -> Float[np.ndarray, "h w"]:
     """How well a photo sees each texel: its pixels there, fewer near what hides the plane; 0 where it is not seen."""
     padded = cv2.copyMakeBorder(view.seen.astype(np.uint8), 1, 1, 1, 1, cv2.BORDER_REPLICATE)
     inside = cv2.distanceTransform(padded, cv2.DIST_L2, 3)[1:-1, 1:-1] * pixel_m
-    return np.asarray(view.share * np.minimum(inside / RIM_M, 1.0) * view.seen, dtype=np.float64)
+    return np.asarray(view.share * np.minimum(inside / settings.rim_m, 1.0) * view.seen, dtype=np.float64)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import cv2
 import numpy as np
 from jaxtyping import Bool, Float32, UInt8
@@ -15,24 +17,34 @@ from diorama_core.architecture.texture.quilting import (
     plain_texels,
 )
 
-FADE_M = 1.2
-"""Far from what is seen, shading fades to the plane's plain colour over this length."""
-FLOOR_SHADING_M, WALL_SHADING_M = 0.25, 0.08
-"""Variation broader than this is light and shade, finer is the material's own."""
-SEAM_M = 0.25
-"""Over about this length beside what is seen, what is made up has its light and shade."""
-SEAM_LEVELS = 40.0
-"""Not that of what differs by more levels of 255 from the plane's own."""
-CALM_LEVELS = 20.0
-"""A floor's light and shade within so many levels of its main colour is carried on."""
-SAMPLE_BROADEST = 0.2
-"""Detail broader than this share of the width of what it is taken from is not made anew."""
-LINED_BLOCK_PX = 48
-"""Smaller copies of lines are a weave rather than lines."""
-BROADEST_PX = 10.0
-"""Nor what is broader than this: the shadows of window bars are as broad."""
-FLOOR_DETAIL, WALL_DETAIL = 45.0, 14.0
-"""Detail that deviates by more levels of 255 is no part of the material."""
+
+@dataclass(frozen=True)
+class ContinuationSettings:
+    """Numbers of `continuation`."""
+
+    fade_m: float = 1.2
+    """Far from what is seen, shading fades to the plane's plain colour over this length."""
+    floor_shading_m: float = 0.25
+    wall_shading_m: float = 0.08
+    """Variation broader than this is light and shade, finer is the material's own."""
+    seam_m: float = 0.25
+    """Over about this length beside what is seen, what is made up has its light and shade."""
+    seam_levels: float = 40.0
+    """Not that of what differs by more levels of 255 from the plane's own."""
+    calm_levels: float = 20.0
+    """A floor's light and shade within so many levels of its main colour is carried on."""
+    sample_broadest: float = 0.2
+    """Detail broader than this share of the width of what it is taken from is not made anew."""
+    lined_block_px: int = 48
+    """Smaller copies of lines are a weave rather than lines."""
+    broadest_px: float = 10.0
+    """Nor what is broader than this: the shadows of window bars are as broad."""
+    floor_detail: float = 45.0
+    wall_detail: float = 14.0
+    """Detail that deviates by more levels of 255 is no part of the material."""
+
+
+SETTINGS = ContinuationSettings()
 
 
 def completed(
@@ -44,6 +56,7 @@ def completed(
     *,
     ground: bool = False,
     sharp: Bool[np.ndarray, "h w"] | None = None,
+    settings: ContinuationSettings = SETTINGS,
 ) -> UInt8[np.ndarray, "h w 3"]:
     """The plane's picture: as seen, and where it was not seen, its shading spread smoothly and its detail continued.
 
@@ -59,8 +72,11 @@ def completed(
         own: Which of the seen texels show the plane's material: what may be continued.
         ground: Whether it is a floor: boards and rugs vary more, and more broadly, than walls.
         sharp: Which of the plane's own texels are seen from near enough to copy detail from; all by default.
+        settings: Numbers to work with.
     """
-    breadth_m, strongest = (FLOOR_SHADING_M, FLOOR_DETAIL) if ground else (WALL_SHADING_M, WALL_DETAIL)
+    breadth_m, strongest = (
+        (settings.floor_shading_m, settings.floor_detail) if ground else (settings.wall_shading_m, settings.wall_detail)
+    )
     if ground:
         red, green, blue = (float(c) / 255.0 for c in np.median(colours[own], axis=0))
         plain = (red, green, blue)
@@ -68,17 +84,17 @@ def completed(
     even = own
     if ground:
         # Shadows and glow at the feet of things are not carried on over the floor.
-        calm = own & (np.abs(shading - np.array(plain, np.float32) * 255.0).max(axis=-1) < CALM_LEVELS)
+        calm = own & (np.abs(shading - np.array(plain, np.float32) * 255.0).max(axis=-1) < settings.calm_levels)
         even = calm if calm.any() else own
     smooth = _pull_push(shading * even[..., None], even.astype(np.float32))
     distance = cv2.distanceTransform((~seen).astype(np.uint8), cv2.DIST_L2, 5)
-    keep = np.exp(-distance * pixel_m / FADE_M)[..., None]
+    keep = np.exp(-distance * pixel_m / settings.fade_m)[..., None]
     filled = keep * smooth + (1.0 - keep) * (np.array(plain, np.float32) * 255.0)
-    near = np.exp(-distance * pixel_m / SEAM_M)[..., None]
+    near = np.exp(-distance * pixel_m / settings.seam_m)[..., None]
     beside = broad_shading(colours, seen, breadth_m / pixel_m)
-    alike = seen & (np.abs(beside - smooth).max(axis=-1) < (CALM_LEVELS if ground else SEAM_LEVELS))
+    alike = seen & (np.abs(beside - smooth).max(axis=-1) < (settings.calm_levels if ground else settings.seam_levels))
     filled = near * _pull_push(beside * alike[..., None], alike.astype(np.float32)) + (1.0 - near) * filled
-    detail = _detail(colours - shading, own, strongest, sharp)
+    detail = _detail(colours - shading, own, strongest, sharp, settings)
     if detail is not None:
         filled = filled + detail
     # The first texels inside a mask's border still carry its rim; a soft seam hides the step.
@@ -92,16 +108,17 @@ def _detail(
     own: Bool[np.ndarray, "h w"],
     strongest: float,
     sharp: Bool[np.ndarray, "h w"] | None,
+    settings: ContinuationSettings = SETTINGS,
 ) -> Float32[np.ndarray, "h w 3"] | None:
     """Detail everywhere: copied in blocks where large ones were seen or it has lines and figures, else made anew."""
     sample = plain_texels(detail, own, strongest, sharp)
     size = block_size(sample)
     copied = size is None or size == LARGEST_BLOCK_PX or not is_gaussian(detail, sample)
-    if copied or (size is not None and size >= LINED_BLOCK_PX and has_lines(detail, sample)):
+    if copied or (size is not None and size >= settings.lined_block_px and has_lines(detail, sample)):
         return detail_continued(detail, own, strongest, source=sharp)
     # What is nearly as broad as the sample is rather light and shade.
     width = 2.0 * float(cv2.distanceTransform(np.pad(sample, 1).astype(np.uint8), cv2.DIST_L2, 5).max())
-    finer = detail - broad_shading(detail, sample, min(SAMPLE_BROADEST * width, BROADEST_PX))
+    finer = detail - broad_shading(detail, sample, min(settings.sample_broadest * width, settings.broadest_px))
     made = gaussian_texture(finer, sample)
     return np.asarray(np.where(own[..., None], detail, made), dtype=np.float32)
 

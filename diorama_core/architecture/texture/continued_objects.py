@@ -20,29 +20,43 @@ from diorama_core.geometry.rows import cells_of
 from diorama_core.scene.values import ArrayValue
 
 _CELL_LAB = np.array([14.0, 8.0, 8.0])
-_MIN_CELL_SHARE = 0.03
-"""Of an object's pixels: rarer colours are of what shines through it or stands beside it."""
-_MIN_PIXELS = 100
 _SHADE = np.array([0.5, 1.0, 1.0])
 """Weights of CIELAB's axes: light and shade vary on one thing."""
-_ALIKE_LAB = 16.0
-"""So near a colour of the object is alike."""
-_BLACK_L, _SHADE_AB, _DARKEST_SHADE = 16.0, 9.0, 0.4
-"""Darkening moves colours toward L = -16, a = b = 0 by CIELAB's definition; how near that line, and how far along it,
-the wall's own colour is found in light and shade."""
-_LARGER, _AS_BROAD, _LARGE = 1.5, 0.3, 0.1
-"""Bounds of a piece, in sides of the object's box, and of the joint, in sides of the piece."""
-_REACH = 0.03
-"""How far beyond an object's box the wall is hidden for its sake at most, as a share of the photo's longer side."""
-_GAP_M, _RIM_M = 0.06, 0.06
-"""Gaps between leaves that do not part a piece, and shadows and rims around it."""
 
 
-_MAIN_SHARE = 0.25
-"""Of an object's pixels that have a colour whose patches are looked at."""
 _EVEN_LAB = np.array([8.0, 5.0, 5.0])
-_CUT_SHARE = 0.3
-"""Of a patch of even colour that a mask holds when it has cut it in two."""
+
+
+@dataclass(frozen=True)
+class ContinuedObjectSettings:
+    """Numbers of `continued_objects`."""
+
+    min_cell_share: float = 0.03
+    """Of an object's pixels: rarer colours are of what shines through it or stands beside it."""
+    min_pixels: int = 100
+    alike_lab: float = 16.0
+    """So near a colour of the object is alike."""
+    black_l: float = 16.0
+    shade_ab: float = 9.0
+    darkest_shade: float = 0.4
+    """Darkening moves colours toward L = -16, a = b = 0 by CIELAB's definition; how near that line, and how far along
+    it, the wall's own colour is found in light and shade."""
+    larger: float = 1.5
+    as_broad: float = 0.3
+    large: float = 0.1
+    """Bounds of a piece, in sides of the object's box, and of the joint, in sides of the piece."""
+    reach: float = 0.03
+    """How far beyond an object's box the wall is hidden for its sake at most, as a share of the photo's longer side."""
+    gap_m: float = 0.06
+    rim_m: float = 0.06
+    """Gaps between leaves that do not part a piece, and shadows and rims around it."""
+    main_share: float = 0.25
+    """Of an object's pixels that have a colour whose patches are looked at."""
+    cut_share: float = 0.3
+    """Of a patch of even colour that a mask holds when it has cut it in two."""
+
+
+SETTINGS = ContinuedObjectSettings()
 
 
 @dataclass(frozen=True, eq=False)
@@ -53,33 +67,37 @@ class ObjectColours(ArrayValue):
     lab: Float32[np.ndarray, "k 3"]
 
 
-def cut_patches(rgb: UInt8[np.ndarray, "h w 3"], objects: Sequence[DetectedObject]) -> Bool[np.ndarray, "h w"]:
+def cut_patches(
+    rgb: UInt8[np.ndarray, "h w 3"], objects: Sequence[DetectedObject], settings: ContinuedObjectSettings = SETTINGS
+) -> Bool[np.ndarray, "h w"]:
     """Pixels in the boxes of objects that belong to even patches of which the masks hold a part."""
     found = np.zeros(rgb.shape[:2], dtype=bool)
     for item in objects:
         x1, y1, x2, y2 = (max(round(v), 0) for v in item.box)
         mask = item.mask[y1:y2, x1:x2]
-        if np.count_nonzero(mask) < _MIN_PIXELS:
+        if np.count_nonzero(mask) < settings.min_pixels:
             continue
         lab = cv2.cvtColor(rgb[y1:y2, x1:x2].astype(np.float32) / np.float32(255.0), cv2.COLOR_RGB2LAB)
-        for colour in _common_colours(lab[mask], _MAIN_SHARE):
+        for colour in _common_colours(lab[mask], settings.main_share):
             even = (np.abs(lab - colour) < _EVEN_LAB).all(axis=-1).astype(np.uint8)
             count, label = cv2.connectedComponents(even)
             held = np.bincount(label[mask], minlength=count) / np.maximum(
                 np.bincount(label.ravel(), minlength=count), 1
             )
             held[0] = 0.0
-            found[y1:y2, x1:x2] |= (held > _CUT_SHARE)[label] & ~mask
+            found[y1:y2, x1:x2] |= (held > settings.cut_share)[label] & ~mask
     return cv2.morphologyEx(found.astype(np.uint8), cv2.MORPH_OPEN, np.ones((3, 3), np.uint8)).astype(bool)
 
 
-def object_colours(rgb: UInt8[np.ndarray, "h w 3"], objects: Sequence[DetectedObject]) -> tuple[ObjectColours, ...]:
+def object_colours(
+    rgb: UInt8[np.ndarray, "h w 3"], objects: Sequence[DetectedObject], settings: ContinuedObjectSettings = SETTINGS
+) -> tuple[ObjectColours, ...]:
     """Of all objects that enough is seen of."""
     found = []
     for item in objects:
         pixels = rgb[item.mask]
-        if len(pixels) >= _MIN_PIXELS:
-            found.append(ObjectColours(item.box, _common_colours(_lab(pixels), _MIN_CELL_SHARE)))
+        if len(pixels) >= settings.min_pixels:
+            found.append(ObjectColours(item.box, _common_colours(_lab(pixels), settings.min_cell_share)))
     return tuple(found)
 
 
@@ -91,6 +109,7 @@ def continued_objects(
     objects: Sequence[ObjectColours],
     pixel_m: float,
     longest_px: int,
+    settings: ContinuedObjectSettings = SETTINGS,
 ) -> Bool[np.ndarray, "h w"]:
     """Texels of a wall that show more of objects than their boxes hold.
 
@@ -102,46 +121,56 @@ def continued_objects(
         objects: what hides the wall.
         pixel_m: size of a texel.
         longest_px: the photo's longer side.
+        settings: numbers to work with.
     """
     rows, columns = np.nonzero(foreign)
     found = np.zeros(foreign.shape, np.uint8)
     if not len(rows) or not own.any():
         return found.astype(bool)
     lab = _lab(colours[rows, columns])
-    lit = _is_shade(lab, _lab(np.median(colours[own], axis=0)[None])[0])
-    reach = _REACH * longest_px
+    lit = _is_shade(lab, _lab(np.median(colours[own], axis=0)[None])[0], settings)
+    reach = settings.reach * longest_px
     for item in objects:
         x1, y1, x2, y2 = item.box
         low, high = np.array([x1, y1]) - reach, np.array([x2, y2]) + reach
         beside = np.asarray(((pixels >= low) & (pixels <= high)).all(axis=1))
         if not beside.any() or not len(item.lab):
             continue
-        alike = np.flatnonzero((_distance(lab, item.lab) < _ALIKE_LAB) & ~lit)
+        alike = np.flatnonzero((_distance(lab, item.lab) < settings.alike_lab) & ~lit)
         pieces = np.zeros(foreign.shape, np.uint8)
         pieces[rows[alike], columns[alike]] = 1
-        joined = cv2.morphologyEx(pieces, cv2.MORPH_CLOSE, _square(_GAP_M, pixel_m))
+        joined = cv2.morphologyEx(pieces, cv2.MORPH_CLOSE, _square(settings.gap_m, pixel_m))
         label = cv2.connectedComponents(joined, connectivity=8)[1][rows[alike], columns[alike]]
         for piece in np.unique(label[beside[alike]]):
             of_piece = alike[label == piece]
-            if _continues(pixels[of_piece], beside[of_piece], item.box):
+            if _continues(pixels[of_piece], beside[of_piece], item.box, settings):
                 found[rows[of_piece], columns[of_piece]] = 1
-    return cv2.dilate(found, _square(_RIM_M, pixel_m)).astype(bool)
+    return cv2.dilate(found, _square(settings.rim_m, pixel_m)).astype(bool)
 
 
-def _continues(pixels: Float[np.ndarray, "n 2"], beside: Bool[np.ndarray, "n"], box: Box) -> bool:
+def _continues(
+    pixels: Float[np.ndarray, "n 2"],
+    beside: Bool[np.ndarray, "n"],
+    box: Box,
+    settings: ContinuedObjectSettings = SETTINGS,
+) -> bool:
     """Whether a piece is not much larger than an object's box, and as broad there as elsewhere."""
     extent, joint = np.ptp(pixels, axis=0), np.ptp(pixels[beside], axis=0)
     size = np.array([box[2] - box[0], box[3] - box[1]])
     return bool(
-        (extent <= _LARGER * size).all() and (joint >= _AS_BROAD * extent).any() and extent.max() >= _LARGE * size.max()
+        (extent <= settings.larger * size).all()
+        and (joint >= settings.as_broad * extent).any()
+        and extent.max() >= settings.large * size.max()
     )
 
 
-def _is_shade(lab: Float32[np.ndarray, "n 3"], of: Float32[np.ndarray, "3"]) -> Bool[np.ndarray, "n"]:
+def _is_shade(
+    lab: Float32[np.ndarray, "n 3"], of: Float32[np.ndarray, "3"], settings: ContinuedObjectSettings = SETTINGS
+) -> Bool[np.ndarray, "n"]:
     """Which colours are of the wall's own in other light, which moves them toward and away from black."""
-    scale = (lab[:, :1] + _BLACK_L) / (of[0] + _BLACK_L)
+    scale = (lab[:, :1] + settings.black_l) / (of[0] + settings.black_l)
     off = np.abs(lab[:, 1:] - scale * of[1:])
-    return np.asarray((off < _SHADE_AB).all(axis=1) & (lab[:, 0] > _DARKEST_SHADE * of[0]))
+    return np.asarray((off < settings.shade_ab).all(axis=1) & (lab[:, 0] > settings.darkest_shade * of[0]))
 
 
 def _common_colours(lab: Float32[np.ndarray, "n 3"], share: float) -> Float32[np.ndarray, "k 3"]:

@@ -7,25 +7,41 @@ goes with it: boards, tiles and carpets have joints and threads, a blurred mirro
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 from jaxtyping import Bool, Float32
 
 from diorama_core.architecture.texture.quilting import broad_shading
 from diorama_core.architecture.texture.wide_blur import wide_blur
 
-FINE_M, PATTERN_M = 0.03, 0.25
-"""Detail is finer than the first; what is broader than the second is light."""
-WITH_EDGES = 0.6
-"""A pattern has at least so much fine detail, as a share of its own variation."""
-AROUND_M = 0.3
-"""Both are compared over about this length."""
-LIGHT_M, MOST_LEVELS = 0.8, 10.0
-"""Of the light, what varies more broadly than this is left, up to so many levels of 255: a room has a brighter side."""
-_MIN_LEVELS = 0.5
+
+@dataclass(frozen=True)
+class LevelLightSettings:
+    """Numbers of `level_light`."""
+
+    fine_m: float = 0.03
+    pattern_m: float = 0.25
+    """Detail is finer than the first; what is broader than the second is light."""
+    with_edges: float = 0.6
+    """A pattern has at least so much fine detail, as a share of its own variation."""
+    around_m: float = 0.3
+    """Both are compared over about this length."""
+    light_m: float = 0.8
+    most_levels: float = 10.0
+    """Of the light, what varies more broadly than this is left, up to so many levels of 255: a room has a brighter
+    side."""
+    min_levels: float = 0.5
+
+
+SETTINGS = LevelLightSettings()
 
 
 def levelled(
-    colours: Float32[np.ndarray, "h w 3"], own: Bool[np.ndarray, "h w"], pixel_m: float
+    colours: Float32[np.ndarray, "h w 3"],
+    own: Bool[np.ndarray, "h w"],
+    pixel_m: float,
+    settings: LevelLightSettings = SETTINGS,
 ) -> Float32[np.ndarray, "h w 3"]:
     """The colours of a floor as even light shows them; meaningful where they are its own.
 
@@ -33,16 +49,17 @@ def levelled(
         colours: 0 to 255.
         own: which texels show the floor's material.
         pixel_m: size of a texel.
+        settings: numbers to work with.
     """
     if not own.any():
         return colours
-    finer = broad_shading(colours, own, FINE_M / pixel_m)
-    broad = broad_shading(colours, own, PATTERN_M / pixel_m)
+    finer = broad_shading(colours, own, settings.fine_m / pixel_m)
+    broad = broad_shading(colours, own, settings.pattern_m / pixel_m)
     main = np.median(colours[own], axis=0).astype(np.float32)
     fine, pattern = colours - finer, finer - broad
-    light = broad_shading(colours, own, LIGHT_M / pixel_m) - main
-    light = MOST_LEVELS * np.tanh(light / MOST_LEVELS)
-    kept = _share_of_material(fine, pattern, own, AROUND_M / pixel_m)
+    light = broad_shading(colours, own, settings.light_m / pixel_m) - main
+    light = settings.most_levels * np.tanh(light / settings.most_levels)
+    kept = _share_of_material(fine, pattern, own, settings.around_m / pixel_m, settings)
     return np.asarray(main + light + fine + kept[..., None] * pattern, dtype=np.float32)
 
 
@@ -51,10 +68,11 @@ def _share_of_material(
     pattern: Float32[np.ndarray, "h w 3"],
     own: Bool[np.ndarray, "h w"],
     width_px: float,
+    settings: LevelLightSettings = SETTINGS,
 ) -> Float32[np.ndarray, "h w"]:
     """How much of what varies as broadly as a pattern is one, 0 to 1, by the fine detail around."""
     around = np.stack([(fine**2).mean(axis=-1), (pattern**2).mean(axis=-1)], axis=-1)
     weight = np.maximum(wide_blur(own.astype(np.float32), width_px), 1e-4)
     energy = wide_blur(np.asarray(around * own[..., None], dtype=np.float32), width_px) / weight[..., None]
-    expected = WITH_EDGES**2 * energy[..., 1] + _MIN_LEVELS**2
-    return np.asarray(np.minimum((energy[..., 0] + _MIN_LEVELS**2) / expected, 1.0), dtype=np.float32)
+    expected = settings.with_edges**2 * energy[..., 1] + settings.min_levels**2
+    return np.asarray(np.minimum((energy[..., 0] + settings.min_levels**2) / expected, 1.0), dtype=np.float32)

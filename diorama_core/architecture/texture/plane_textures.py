@@ -19,7 +19,7 @@ from diorama_core.architecture.texture.continued_objects import (
 from diorama_core.architecture.texture.empty_room import EmptyRoomFiller
 from diorama_core.architecture.texture.floor_material import contact_pixels, floor_texels, white_level
 from diorama_core.architecture.texture.level_light import levelled
-from diorama_core.artefacts import DetectedObject, Inputs
+from diorama_core.artefacts import SURE_MASK, DetectedObject, Inputs
 from diorama_core.geometry.casting import cast_planes
 from diorama_core.geometry.planes import plane_rectangle
 from diorama_core.scene.types import Architecture, Camera, Plane
@@ -47,7 +47,6 @@ ISLAND_SHARE = 0.04
 """Pieces apart from the rest with a smaller share of all that is seen are given up too."""
 RIM = 0.008
 """Widening of what hides the room beyond its masks' own margin, as a share of the picture's longer side."""
-SURE_MASK = 0.95
 PAINTED = 1e-3
 """How much what an inpainting network painted counts beside what another photo shows."""
 SHARP, NEAREST = 0.25, 0.9

@@ -10,24 +10,33 @@ from jaxtyping import Bool, Float
 from diorama_core.architecture.walls.surface import MeasuredSurface
 from diorama_core.architecture.walls.wall_candidates import tolerance_m
 
-MIN_FLAT_SHARE = 0.004
-"""A ceiling counts as seen when this share of the measured points lies on it."""
 FLAT_COSINE = float(np.cos(np.deg2rad(13.0)))
-LEVEL_COSINE = 0.9
-"""A level ceiling's own normals scatter more than slopes are told apart from it."""
 STEEP_COSINE = float(np.cos(np.deg2rad(75.0)))
 """Slopes steeper than this are walls that lean."""
 GROWTH_COSINE = float(np.cos(np.deg2rad(12.0)))
-MIN_SLOPE_AREA_M2 = 0.5
-MIN_SLOPE_POINTS = 200
-MAX_SEEN_THROUGH = 0.08
-"""A slope through which a larger share of its points' number is seen is no ceiling."""
-LOWEST_SLOPE_M = 1.2
-"""Slopes whose middle is lower than this belong to furniture."""
-MAX_SLOPES = 4
-ALIKE_M = 0.25
-"""Slopes of about one direction nearer than this are one slope."""
 SNAP_RAD = np.deg2rad(4.0)
+
+
+@dataclass(frozen=True)
+class CeilingsSettings:
+    """Numbers of `ceilings`."""
+
+    min_flat_share: float = 0.004
+    """A ceiling counts as seen when this share of the measured points lies on it."""
+    level_cosine: float = 0.9
+    """A level ceiling's own normals scatter more than slopes are told apart from it."""
+    min_slope_area_m2: float = 0.5
+    min_slope_points: int = 200
+    max_seen_through: float = 0.08
+    """A slope through which a larger share of its points' number is seen is no ceiling."""
+    lowest_slope_m: float = 1.2
+    """Slopes whose middle is lower than this belong to furniture."""
+    max_slopes: int = 4
+    alike_m: float = 0.25
+    """Slopes of about one direction nearer than this are one slope."""
+
+
+SETTINGS = CeilingsSettings()
 
 
 @dataclass(frozen=True, eq=False)
@@ -45,20 +54,22 @@ class CeilingPiece:
         return bool(self.normal[2] < -1.0 + 1e-9)
 
 
-def find_ceilings(surface: MeasuredSurface) -> tuple[CeilingPiece, ...]:
+def find_ceilings(surface: MeasuredSurface, settings: CeilingsSettings = SETTINGS) -> tuple[CeilingPiece, ...]:
     """The flat ceiling where one is seen, then slopes, largest first."""
-    slopes = _slopes(surface)
-    height = ceiling_height(surface, without=_on_any(surface, slopes))
+    slopes = _slopes(surface, settings)
+    height = ceiling_height(surface, without=_on_any(surface, slopes), settings=settings)
     flat = () if height is None else (CeilingPiece(np.array([0.0, 0.0, -1.0]), -height, np.inf),)
     return (*flat, *slopes)
 
 
-def ceiling_height(surface: MeasuredSurface, without: Bool[np.ndarray, "n"] | None = None) -> float | None:
+def ceiling_height(
+    surface: MeasuredSurface, without: Bool[np.ndarray, "n"] | None = None, settings: CeilingsSettings = SETTINGS
+) -> float | None:
     """Height of the highest large level surface that faces down; none where there is none above the camera."""
-    down = (surface.normals[:, 2] < -LEVEL_COSINE) & ~surface.is_object
+    down = (surface.normals[:, 2] < -settings.level_cosine) & ~surface.is_object
     down &= surface.points[:, 2] > max(1.7, surface.camera_position[2] + 0.2)
     down &= ~without if without is not None else True
-    if down.sum() < MIN_FLAT_SHARE * len(down) or len(down) == 0:
+    if down.sum() < settings.min_flat_share * len(down) or len(down) == 0:
         return None
     heights, areas = surface.points[down, 2], surface.area_m2[down]
     index = (heights / 0.05).astype(int)
@@ -69,24 +80,24 @@ def ceiling_height(surface: MeasuredSurface, without: Bool[np.ndarray, "n"] | No
     return float(np.average(heights[core], weights=areas[core])) if core.any() else None
 
 
-def _slopes(surface: MeasuredSurface) -> tuple[CeilingPiece, ...]:
+def _slopes(surface: MeasuredSurface, settings: CeilingsSettings = SETTINGS) -> tuple[CeilingPiece, ...]:
     """Tilted planes overhead: the commonest direction first, its points removed, and again."""
     nz = surface.normals[:, 2]
     free = (nz < -STEEP_COSINE) & (nz > -FLAT_COSINE) & ~surface.is_object & (surface.points[:, 2] > 0.8)
     found: list[CeilingPiece] = []
-    for _ in range(2 * MAX_SLOPES):
-        if free.sum() < MIN_SLOPE_POINTS or len(found) == MAX_SLOPES:
+    for _ in range(2 * settings.max_slopes):
+        if free.sum() < settings.min_slope_points or len(found) == settings.max_slopes:
             break
         member = free & (surface.normals @ _commonest(surface, free) > GROWTH_COSINE)
-        piece, taken = _fitted(surface, member)
+        piece, taken = _fitted(surface, member, settings)
         free &= ~(taken | member)
-        if piece is not None and not any(_alike(piece, other) for other in found):
+        if piece is not None and not any(_alike(piece, other, settings) for other in found):
             found.append(piece)
     return tuple(sorted(found, key=lambda p: -p.area_m2))
 
 
-def _alike(a: CeilingPiece, b: CeilingPiece) -> bool:
-    return bool(a.normal @ b.normal > GROWTH_COSINE and abs(a.offset - b.offset) < ALIKE_M)
+def _alike(a: CeilingPiece, b: CeilingPiece, settings: CeilingsSettings = SETTINGS) -> bool:
+    return bool(a.normal @ b.normal > GROWTH_COSINE and abs(a.offset - b.offset) < settings.alike_m)
 
 
 def _commonest(surface: MeasuredSurface, free: Bool[np.ndarray, "n"]) -> Float[np.ndarray, "3"]:
@@ -100,17 +111,17 @@ def _commonest(surface: MeasuredSurface, free: Bool[np.ndarray, "n"]) -> Float[n
 
 
 def _fitted(
-    surface: MeasuredSurface, member: Bool[np.ndarray, "n"]
+    surface: MeasuredSurface, member: Bool[np.ndarray, "n"], settings: CeilingsSettings = SETTINGS
 ) -> tuple[CeilingPiece | None, Bool[np.ndarray, "n"]]:
     """The plane through most of the members, if it can be a ceiling, and the points it explains."""
     nothing = np.zeros(len(member), dtype=bool)
-    if member.sum() < MIN_SLOPE_POINTS:
+    if member.sum() < settings.min_slope_points:
         return None, nothing
     mean = surface.normals[member].mean(axis=0)
     offsets = surface.points @ (mean / np.linalg.norm(mean))
     inliers = member & (np.abs(offsets - np.median(offsets[member])) < 0.25)
     for _ in range(4):
-        if inliers.sum() < MIN_SLOPE_POINTS:
+        if inliers.sum() < settings.min_slope_points:
             return None, nothing
         normal, offset = surface.world_plane(inliers)
         near = np.abs(surface.points @ normal - offset) < tolerance_m(surface.depth_m)
@@ -119,9 +130,9 @@ def _fitted(
     beyond = surface.points @ normal < offset - 0.1 - 2.0 * tolerance_m(surface.depth_m)
     area = float(surface.area_m2[inliers].sum())
     possible = (
-        area >= MIN_SLOPE_AREA_M2
-        and beyond.sum() <= MAX_SEEN_THROUGH * inliers.sum()
-        and float(surface.points[inliers, 2].mean()) > LOWEST_SLOPE_M
+        area >= settings.min_slope_area_m2
+        and beyond.sum() <= settings.max_seen_through * inliers.sum()
+        and float(surface.points[inliers, 2].mean()) > settings.lowest_slope_m
         and float(surface.camera_position @ normal) > offset + 0.1
         and -FLAT_COSINE < normal[2] < -STEEP_COSINE
     )

@@ -11,28 +11,39 @@ from diorama_core.geometry.depth_grid import points_camera, reduced, smooth_norm
 from diorama_core.perception.camera.frames import world_frame
 from diorama_core.scene.types import Intrinsics
 
-WORKING_SIDE_PX = 240
-"""Depth is read at no more than so many pixels a side; planes need no more."""
 UP_CONE_RAD = float(np.deg2rad(50.0))
 """How far gravity may lie from the expected direction."""
 UNSUPPORTED_CONE_RAD = float(np.deg2rad(25.0))
 """The same where no floor confirms it: what faces further away is more likely a wall."""
 ALIGNED_RAD = float(np.deg2rad(12.0))
 LEVEL_RAD = float(np.deg2rad(8.0))
-MIN_LEVEL_M2 = 0.12
-"""Least area of level surface at one height that counts as a floor."""
-FLOOR_HEIGHT_M = (0.35, 30.0)
-"""Camera heights over a floor: nearer level surfaces are tables, and no hall is seen from higher up."""
-BELOW_SHARE = 0.02
-"""More than this share of all points clearly below a surface means that it is not the floor."""
-POINT_NOISE_M, DEPTH_NOISE_PER_M = 0.006, 0.003
-"""Deviation of a measured point from its surface: a constant part, and one that grows with the square of depth."""
 NORMAL_NOISE_RAD = float(np.deg2rad(3.0))
-POINTS_PER_FACT, NORMALS_PER_FACT = 10.0, 50.0
-"""So many neighbouring points, or smoothed normals, err together and count as one."""
-_MAX_TRIALS = 300
-_MAX_VOTERS = 4000
-_BIN_M = 0.02
+
+
+@dataclass(frozen=True)
+class GravityDepthSettings:
+    """Numbers of `gravity_depth`."""
+
+    working_side_px: int = 240
+    """Depth is read at no more than so many pixels a side; planes need no more."""
+    min_level_m2: float = 0.12
+    """Least area of level surface at one height that counts as a floor."""
+    floor_height_m: tuple[float, float] = (0.35, 30.0)
+    """Camera heights over a floor: nearer level surfaces are tables, and no hall is seen from higher up."""
+    below_share: float = 0.02
+    """More than this share of all points clearly below a surface means that it is not the floor."""
+    point_noise_m: float = 0.006
+    depth_noise_per_m: float = 0.003
+    """Deviation of a measured point from its surface: a constant part, and one that grows with the square of depth."""
+    points_per_fact: float = 10.0
+    normals_per_fact: float = 50.0
+    """So many neighbouring points, or smoothed normals, err together and count as one."""
+    max_trials: int = 300
+    max_voters: int = 4000
+    bin_m: float = 0.02
+
+
+SETTINGS = GravityDepthSettings()
 
 
 @dataclass(frozen=True)
@@ -58,7 +69,10 @@ class _Samples:
 
 
 def frame_from_depth(
-    depth_m: Float32[np.ndarray, "h w"], intrinsics: Intrinsics, R_expected: Float[np.ndarray, "3 3"]
+    depth_m: Float32[np.ndarray, "h w"],
+    intrinsics: Intrinsics,
+    R_expected: Float[np.ndarray, "3 3"],
+    settings: GravityDepthSettings = SETTINGS,
 ) -> DepthFrame | None:
     """Gravity from level surfaces, room axes from walls, height from the floor.
 
@@ -67,21 +81,22 @@ def frame_from_depth(
         intrinsics: Of the depth map's grid.
         R_expected: `R_world_camera` expected from lines or habit; gravity is looked for around it, and its axes serve
             where no wall is measured.
+        settings: numbers to work with.
 
     Returns:
         The frame, or None where no level surface can be seen.
     """
-    samples = _samples(depth_m, intrinsics)
-    up = _level_direction(samples, R_expected[2])
+    samples = _samples(depth_m, intrinsics, settings)
+    up = _level_direction(samples, R_expected[2], settings)
     if up is None:
         return None
-    floor = _floor(samples, up)
+    floor = _floor(samples, up, settings)
     if floor is None and up @ R_expected[2] < np.cos(UNSUPPORTED_CONE_RAD):
         return None
     if floor is not None:
         up, height = floor
     level = samples.normals @ up > np.cos(LEVEL_RAD)
-    axis, wall_share = _wall_direction(samples, up, R_expected[1])
+    axis, wall_share = _wall_direction(samples, up, R_expected[1], settings)
     return DepthFrame(
         R_world_camera=world_frame(up, axis),
         height_m=None if floor is None else height,
@@ -90,8 +105,10 @@ def frame_from_depth(
     )
 
 
-def _samples(depth_m: Float32[np.ndarray, "h w"], intrinsics: Intrinsics) -> _Samples:
-    small, k = reduced(depth_m, intrinsics, WORKING_SIDE_PX)
+def _samples(
+    depth_m: Float32[np.ndarray, "h w"], intrinsics: Intrinsics, settings: GravityDepthSettings = SETTINGS
+) -> _Samples:
+    small, k = reduced(depth_m, intrinsics, settings.working_side_px)
     points = points_camera(small, k)
     normals = smooth_normals_camera(small, k)
     known = (normals != 0).any(axis=-1)
@@ -101,7 +118,9 @@ def _samples(depth_m: Float32[np.ndarray, "h w"], intrinsics: Intrinsics) -> _Sa
     return _Samples(p, n, p[:, 2] ** 2 / (k.fx * k.fy) / slant)
 
 
-def _level_direction(samples: _Samples, up_expected: Float[np.ndarray, "3"]) -> Float[np.ndarray, "3"] | None:
+def _level_direction(
+    samples: _Samples, up_expected: Float[np.ndarray, "3"], settings: GravityDepthSettings = SETTINGS
+) -> Float[np.ndarray, "3"] | None:
     """The direction near the expected up that most measured area faces and most other area lies along.
 
     All candidates are weighed at once; the best is refined by least squares on the normals that agree.
@@ -110,13 +129,13 @@ def _level_direction(samples: _Samples, up_expected: Float[np.ndarray, "3"]) -> 
     normals, areas = samples.normals[near], _tempered(samples.areas[near])
     if len(normals) < 30:
         return None
-    candidates = normals[_spread(len(normals), _MAX_TRIALS)]
-    voters = _spread(len(normals), _MAX_VOTERS)
+    candidates = normals[_spread(len(normals), settings.max_trials)]
+    voters = _spread(len(normals), settings.max_voters)
     agreement = np.exp((normals[voters] @ candidates.T - 1.0) / np.deg2rad(5.0) ** 2)
     support = areas[voters] @ agreement * (len(normals) / len(voters))
     # Walls cross level surfaces at right angles: a direction that walls lie along is more likely up.
     others = samples.normals[~near]
-    across = others[_spread(len(others), _MAX_VOTERS)]
+    across = others[_spread(len(others), settings.max_voters)]
     along_walls = (np.abs(across @ candidates.T) < np.sin(np.deg2rad(4.0))).sum(axis=0)
     support += 0.3 * along_walls * (len(others) / max(len(across), 1))
     prior = 1.0 - 0.5 * (1.0 - candidates @ up_expected) / (1.0 - np.cos(UP_CONE_RAD))
@@ -142,27 +161,33 @@ def _tempered(areas: Float[np.ndarray, "n"]) -> Float[np.ndarray, "n"]:
     return np.sqrt(areas / areas.mean()) if len(areas) else areas
 
 
-def _floor(samples: _Samples, up: Float[np.ndarray, "3"]) -> tuple[Float[np.ndarray, "3"], float] | None:
+def _floor(
+    samples: _Samples, up: Float[np.ndarray, "3"], settings: GravityDepthSettings = SETTINGS
+) -> tuple[Float[np.ndarray, "3"], float] | None:
     """The lowest level surface of some extent with next to nothing below it: refined up, and camera height."""
     level = samples.normals @ up > np.cos(ALIGNED_RAD)
     drops = -(samples.points[level] @ up)
     if len(drops) == 0:
         return None
-    edges = np.arange(FLOOR_HEIGHT_M[0], FLOOR_HEIGHT_M[1], _BIN_M)
+    edges = np.arange(settings.floor_height_m[0], settings.floor_height_m[1], settings.bin_m)
     histogram = np.histogram(drops, bins=edges, weights=samples.areas[level])[0]
     broad = np.convolve(histogram, np.ones(5), mode="same")
-    enough = np.flatnonzero(broad > max(MIN_LEVEL_M2, 0.05 * broad.max()))
+    enough = np.flatnonzero(broad > max(settings.min_level_m2, 0.05 * broad.max()))
     all_drops = -(samples.points @ up)
     for start in enough[::-1]:
         low = max(0, start - 5)
-        height = float(edges[low + int(broad[low : start + 1].argmax())]) + 0.5 * _BIN_M
-        if (all_drops > height + 0.06 + 0.03 * height).mean() < BELOW_SHARE:
-            return _fitted_floor(samples, level, up, height)
+        height = float(edges[low + int(broad[low : start + 1].argmax())]) + 0.5 * settings.bin_m
+        if (all_drops > height + 0.06 + 0.03 * height).mean() < settings.below_share:
+            return _fitted_floor(samples, level, up, height, settings)
     return None
 
 
 def _fitted_floor(
-    samples: _Samples, level: Bool[np.ndarray, "n"], up: Float[np.ndarray, "3"], height: float
+    samples: _Samples,
+    level: Bool[np.ndarray, "n"],
+    up: Float[np.ndarray, "3"],
+    height: float,
+    settings: GravityDepthSettings = SETTINGS,
 ) -> tuple[Float[np.ndarray, "3"], float]:
     """The direction that fits the floor's points and the walls' normals best, each trusted as far as it reaches.
 
@@ -170,7 +195,7 @@ def _fitted_floor(
     are quadratic forms in the direction sought, so their sum's least eigenvector is the answer.
     """
     points = samples.points[level]
-    noise = POINT_NOISE_M + DEPTH_NOISE_PER_M * points[:, 2] ** 2
+    noise = settings.point_noise_m + settings.depth_noise_per_m * points[:, 2] ** 2
     start = up
     for _ in range(4):
         near = np.abs(points @ up + height) < 3.0 * noise
@@ -178,9 +203,9 @@ def _fitted_floor(
             break
         weights = 1.0 / noise[near] ** 2
         centre = (weights[:, None] * points[near]).sum(axis=0) / weights.sum()
-        off = (points[near] - centre) * np.sqrt(weights / POINTS_PER_FACT)[:, None]
+        off = (points[near] - centre) * np.sqrt(weights / settings.points_per_fact)[:, None]
         upright = samples.normals[np.abs(samples.normals @ up) < np.sin(LEVEL_RAD)]
-        form = off.T @ off + upright.T @ upright / (NORMAL_NOISE_RAD**2 * NORMALS_PER_FACT)
+        form = off.T @ off + upright.T @ upright / (NORMAL_NOISE_RAD**2 * settings.normals_per_fact)
         candidate = np.linalg.eigh(form)[1][:, 0]
         candidate = candidate if candidate @ start > 0 else -candidate
         if candidate @ start < np.cos(ALIGNED_RAD):
@@ -190,7 +215,10 @@ def _fitted_floor(
 
 
 def _wall_direction(
-    samples: _Samples, up: Float[np.ndarray, "3"], expected: Float[np.ndarray, "3"]
+    samples: _Samples,
+    up: Float[np.ndarray, "3"],
+    expected: Float[np.ndarray, "3"],
+    settings: GravityDepthSettings = SETTINGS,
 ) -> tuple[Float[np.ndarray, "3"], float]:
     """The horizontal direction that most upright surface faces, quarter turns free, and the share that agrees."""
     along = expected - (expected @ up) * up
@@ -199,7 +227,7 @@ def _wall_direction(
     upright = np.abs(samples.normals @ up) < np.sin(ALIGNED_RAD)
     if upright.sum() < 30:
         return along, 0.0
-    chosen = np.flatnonzero(upright)[_spread(int(upright.sum()), _MAX_VOTERS)]
+    chosen = np.flatnonzero(upright)[_spread(int(upright.sum()), settings.max_voters)]
     normals, weights = samples.normals[chosen], _tempered(samples.areas[chosen])
     headings = np.arctan2(normals @ across, normals @ along)
     trials = np.deg2rad(np.arange(-45.0, 45.0, 0.5))

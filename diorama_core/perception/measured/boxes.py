@@ -12,15 +12,24 @@ from diorama_core.artefacts import Cuboid
 from diorama_core.library.taxonomy import Category
 from diorama_core.scene.types import yaw_rotation
 
-MANHATTAN_GAIN = 0.85
-"""A box turned away from the room's axes must have less than this share of the straight box's area."""
-FREE_GAIN = 0.93
-"""The same for objects that often stand askew."""
-SHORT_OF_USUAL = 0.6
-"""A depth below this share of the usual one means that only the front was seen."""
-TOP_LAYER_M = 0.03
 MIN_SIZE_M = 0.02
-EDGE_QUANTILE = 0.01
+
+
+@dataclass(frozen=True)
+class MeasuredBoxSettings:
+    """Numbers of `boxes`."""
+
+    manhattan_gain: float = 0.85
+    """A box turned away from the room's axes must have less than this share of the straight box's area."""
+    free_gain: float = 0.93
+    """The same for objects that often stand askew."""
+    short_of_usual: float = 0.6
+    """A depth below this share of the usual one means that only the front was seen."""
+    top_layer_m: float = 0.03
+    edge_quantile: float = 0.01
+
+
+SETTINGS = MeasuredBoxSettings()
 
 
 @dataclass(frozen=True)
@@ -42,20 +51,22 @@ class Extent:
         return yaw_rotation(self.yaw_rad) @ (0.5 * (self.low + self.high))
 
 
-def observed_extent(points: Float[np.ndarray, "n 3"], category: Category) -> Extent:
+def observed_extent(
+    points: Float[np.ndarray, "n 3"], category: Category, settings: MeasuredBoxSettings = SETTINGS
+) -> Extent:
     """The box around the points: along the room's axes unless a turned one is clearly tighter."""
     flat = points[:, :2].astype(np.float32)
     angle = float(np.deg2rad(cv2.minAreaRect(flat)[2]))
     turned = (angle + np.pi / 4) % (np.pi / 2) - np.pi / 4
-    straight, other = _bounds(points, 0.0), _bounds(points, turned)
-    gain = FREE_GAIN if category.quarter_turns_free else MANHATTAN_GAIN
+    straight, other = _bounds(points, 0.0, settings), _bounds(points, turned, settings)
+    gain = settings.free_gain if category.quarter_turns_free else settings.manhattan_gain
     area, other_area = float(np.prod(straight.size[:2])), float(np.prod(other.size[:2]))
     return other if other_area < gain * area else straight
 
 
-def _bounds(points: Float[np.ndarray, "n 3"], yaw_rad: float) -> Extent:
+def _bounds(points: Float[np.ndarray, "n 3"], yaw_rad: float, settings: MeasuredBoxSettings = SETTINGS) -> Extent:
     local = points @ yaw_rotation(yaw_rad)
-    low, high = np.quantile(local, [EDGE_QUANTILE, 1.0 - EDGE_QUANTILE], axis=0)
+    low, high = np.quantile(local, [settings.edge_quantile, 1.0 - settings.edge_quantile], axis=0)
     return Extent(yaw_rad, low, high)
 
 
@@ -66,6 +77,7 @@ def completed(
     cut_off: Bool[np.ndarray, "3"],
     background: Float[np.ndarray, "m 3"],
     points: Float[np.ndarray, "n 3"],
+    settings: MeasuredBoxSettings = SETTINGS,
 ) -> Extent:
     """The box with its unseen back, and what the picture's sides cut off, added from the category's usual size.
 
@@ -76,6 +88,7 @@ def completed(
         cut_off: Whether the mask touches the picture's left, right and upper side.
         background: World points seen around the object; it does not reach through them.
         points: World points of the object; a top that is seen tells the extents.
+        settings: Numbers to work with.
     """
     R = yaw_rotation(extent.yaw_rad)
     eye = camera_position @ R
@@ -83,10 +96,12 @@ def completed(
     away = 0.5 * (low + high)[:2] - eye[:2]
     usual = usual_plan(extent.size, category)
     behind = background @ R
-    top_seen = _top_seen(points @ R, extent)
+    top_seen = _top_seen(points @ R, extent, settings)
     for axis in (0, 1):
         facing = abs(away[axis]) / max(float(np.linalg.norm(away)), 1e-9)
-        unseen_back = bool(facing > 0.5 and not top_seen[axis] and extent.size[axis] < SHORT_OF_USUAL * usual[axis])
+        unseen_back = bool(
+            facing > 0.5 and not top_seen[axis] and extent.size[axis] < settings.short_of_usual * usual[axis]
+        )
         side_cut = facing <= 0.7 and cut_off[:2].any() and extent.size[axis] < usual[axis]
         if not unseen_back and not side_cut:
             continue
@@ -102,13 +117,15 @@ def completed(
     return Extent(extent.yaw_rad, low, high)
 
 
-def _top_seen(local: Float[np.ndarray, "n 3"], extent: Extent) -> Bool[np.ndarray, "2"]:
+def _top_seen(
+    local: Float[np.ndarray, "n 3"], extent: Extent, settings: MeasuredBoxSettings = SETTINGS
+) -> Bool[np.ndarray, "2"]:
     """Along which axes the object's flat top is seen nearly from end to end."""
-    top = local[local[:, 2] > extent.high[2] - TOP_LAYER_M]
+    top = local[local[:, 2] > extent.high[2] - settings.top_layer_m]
     if len(top) < 20:
         return np.zeros(2, dtype=bool)
     span = np.ptp(np.quantile(top[:, :2], [0.02, 0.98], axis=0), axis=0)
-    return (span > 0.7 * extent.size[:2]) & (span > 3.0 * TOP_LAYER_M)
+    return (span > 0.7 * extent.size[:2]) & (span > 3.0 * settings.top_layer_m)
 
 
 def _outward(
