@@ -31,9 +31,11 @@ class Photo(ArrayValue):
     name: str
     """File name of the original, for people."""
     original_size: tuple[int, int]
-    """Width and height of the upright original; boxes and intrinsics given by users refer to it."""
+    """Width and height of the upright original without its border; boxes and intrinsics of users refer to it."""
     exif_focal_px: float | None = None
     """Focal length in pixels of `rgb`, where the file states it."""
+    offset: tuple[int, int] | None = field(default=None, metadata={"absent when none": True})
+    """Left and top of the picture in its file, pixels of the upright original, where a border was cut off."""
 
     @property
     def width(self) -> int:

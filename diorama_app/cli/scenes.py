@@ -88,16 +88,32 @@ def add_build(commands: Any) -> None:
         help="cameras of a folder's photos, which then become one room: COLMAP model, transforms.json, ARKit frames; "
         "'find' finds them by what the photos have in common",
     )
-    p.add_argument("--depth", type=Path, metavar="FILE", help="measured depth: 16-bit PNG, .npy in metres, or EXR")
-    p.add_argument("--depth-scale", type=positive, default=1000.0, help="depth PNG units a metre (default: 1000)")
+    p.add_argument("--depth", type=Path, metavar="FILE", help="measured depth: 16-bit PNG, .npy, .npz, EXR or a dump")
+    p.add_argument(
+        "--depth-scale",
+        type=positive,
+        metavar="N",
+        help="depth units a metre (default: 1000 of whole numbers and 1 of others, unless the picture contradicts it)",
+    )
+    p.add_argument(
+        "--depth-kind",
+        choices=("auto", "depth", "distance", "inverse"),
+        default="auto",
+        help="along the optical axis, along the rays, or inverse depth and disparity (default: what the picture says)",
+    )
     p.add_argument("--depth-encoding", choices=("linear", "sunrgbd"), default="linear", help="how a PNG stores depth")
     inner = p.add_mutually_exclusive_group()
     inner.add_argument("--intrinsics", type=intrinsics, metavar="fx,fy,cx,cy", help="camera intrinsics in pixels")
     inner.add_argument("--fov", type=field_of_view, metavar="DEG", help="horizontal field of view in degrees")
     p.add_argument(
-        "--boxes", type=Path, metavar="FILE", help='JSON list of {"bbox": [x1, y1, x2, y2], "class": "chair"}'
+        "--boxes",
+        type=Path,
+        metavar="FILE",
+        help='JSON list of {"bbox": [x1, y1, x2, y2], "class": "chair"}, or COCO, VOC, YOLO, LabelMe, CVAT...',
     )
-    p.add_argument("--masks", type=Path, metavar="FILE", help="PNG with one colour or id per object, black is none")
+    p.add_argument(
+        "--masks", type=Path, metavar="PATH", help="PNG with one colour or id per object, or a folder of masks"
+    )
     p.add_argument("--profile", choices=PROFILES, default="auto", help="which networks to use (default: %(default)s)")
     p.add_argument("--detector", metavar="ID", help="network that finds objects (default: the best on this machine)")
     p.add_argument("--depth-network", metavar="ID", help="network that reads depth (default: the best on this machine)")
@@ -144,6 +160,7 @@ def _build(a: argparse.Namespace) -> None:
     options = BuildOptions(
         depth_scale=a.depth_scale,
         depth_encoding=a.depth_encoding,
+        depth_kind=a.depth_kind,
         profile=a.profile,
         detector=a.detector,
         depth_network=a.depth_network,

@@ -80,7 +80,7 @@ def create_job(
     ] = None,
     masks: Annotated[UploadFile | None, File(description="PNG, one colour or id per object, black is none.")] = None,
     depth: Annotated[UploadFile | None, File(description="16-bit PNG, .npy in metres, or EXR.")] = None,
-    depth_scale: Annotated[float, Form(gt=0, description="Units of a depth PNG per metre.")] = 1000.0,
+    depth_scale: Annotated[float | None, Form(gt=0, description="Units of depth per metre; empty: inferred.")] = None,
     intrinsics: Annotated[str | None, Form(description="fx,fy,cx,cy in pixels of the upright photo.")] = None,
     fov_deg: Annotated[float | None, Form(description="Horizontal field of view, instead of intrinsics.")] = None,
     profile: Annotated[Profile, Form(description="Which networks are used.")] = "auto",

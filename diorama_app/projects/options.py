@@ -42,8 +42,9 @@ class PhotoFiles:
 class BuildOptions:
     """How scenes are built; the same for all photos of a folder."""
 
-    depth_scale: float = 1000.0
+    depth_scale: float | None = None
     depth_encoding: Literal["linear", "sunrgbd"] = "linear"
+    depth_kind: Literal["auto", "depth", "distance", "inverse"] = "auto"
     profile: Literal["auto", "embedded", "foundation"] = "auto"
     detector: str | None = None
     depth_network: str | None = None
@@ -83,6 +84,7 @@ def build_files(
         depth=files.depth,
         depth_scale=options.depth_scale,
         depth_encoding=options.depth_encoding,
+        depth_kind=options.depth_kind,
         intrinsics=files.intrinsics,
         fov_deg=files.fov_deg,
         profile=options.profile,

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 from diorama_core.io.limited import LimitedProcess
 from diorama_core.perception.inputs import ReadInputs, read_inputs
+from diorama_core.perception.inputs.depth.kinds import DepthKind
 from diorama_core.pipeline import codec
 
 
@@ -20,8 +21,9 @@ class Upload:
     masks: bytes | None = None
     intrinsics: tuple[float, float, float, float] | None = None
     fov_deg: float | None = None
-    depth_scale: float = 1000.0
-    """Units of a depth PNG per metre."""
+    depth_scale: float | None = None
+    """Units of depth per metre; None where the file and the picture say."""
+    depth_kind: DepthKind = "auto"
 
 
 def decoded(upload: Upload, process: LimitedProcess) -> ReadInputs:
@@ -45,6 +47,7 @@ def read_packed(upload: Upload) -> tuple[bytes, tuple[str, ...]]:
         name=upload.name,
         depth=upload.depth,
         depth_scale=upload.depth_scale,
+        depth_kind=upload.depth_kind,
         boxes=upload.boxes,
         masks=upload.masks,
         intrinsics=upload.intrinsics,

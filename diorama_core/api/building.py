@@ -14,8 +14,9 @@ if TYPE_CHECKING:
     from diorama_core.artefacts import Inputs
     from diorama_core.library.record import ShapeLibrary
     from diorama_core.models.store import ModelStore
-    from diorama_core.perception.input_arrays import Boxes, Depth, Masks, Picture
-    from diorama_core.perception.input_depth import DepthEncoding
+    from diorama_core.perception.inputs.arrays import Boxes, Depth, Masks, Picture
+    from diorama_core.perception.inputs.depth.kinds import DepthKind
+    from diorama_core.perception.inputs.depth.reading import DepthEncoding
     from diorama_core.pipeline.choices import NetworkChoice
     from diorama_core.pipeline.fallback import ChooseStages
     from diorama_core.pipeline.presets import Profile
@@ -33,8 +34,9 @@ def build(
     boxes: Path | str | bytes | Boxes | None = None,
     masks: Path | str | bytes | Masks | None = None,
     depth: Path | str | bytes | Depth | None = None,
-    depth_scale: float = 1000.0,
+    depth_scale: float | None = None,
     depth_encoding: DepthEncoding = "linear",
+    depth_kind: DepthKind = "auto",
     intrinsics: tuple[float, float, float, float] | None = None,
     fov_deg: float | None = None,
     profile: Profile = "auto",
@@ -50,13 +52,14 @@ def build(
 
     Args:
         photo: path or content of a picture file, or its sRGB pixels.
-        boxes: path or content of a JSON list of `{"bbox": [x1, y1, x2, y2], "class": "chair"}`, or that list; in pixels
-            of the upright original photo.
-        masks: PNG with one colour or one id per object, black or 0 for background; or an array of ids.
-        depth: z in camera: 16-bit PNG in 1 / `depth_scale` metres, `.npy` or EXR in metres, or an array of metres; 0
-            and NaN where missing.
-        depth_scale: units per metre of a PNG.
+        boxes: path or content of a file of boxes (docs/what-goes-in.md), or a list of
+            `{"bbox": [x1, y1, x2, y2], "class": "chair"}`; in pixels of the upright original photo.
+        masks: path or content of a picture with one colour or one id per object, a folder of masks, or an array of ids.
+        depth: path or content of a depth map (docs/what-goes-in.md), or an array of metres; 0 and NaN where missing.
+        depth_scale: units of depth per metre; by default whole numbers are millimetres and others metres, unless the
+            picture contradicts it.
         depth_encoding: "sunrgbd" where a PNG's bits are rotated as in SUN RGB-D.
+        depth_kind: "depth" along the optical axis, "distance" along the rays, or "inverse"; by default inferred.
         intrinsics: fx, fy, cx, cy in pixels of the upright original photo.
         fov_deg: horizontal field of view in degrees, instead of `intrinsics`.
         profile: "auto" uses the networks on this machine, "embedded" none, "foundation" insists on the paper's.
@@ -76,7 +79,7 @@ def build(
         ProjectError: `output` cannot be written, or holds something else.
         Cancelled: on request; finished stages stay in the cache of `output`.
     """
-    from diorama_core.perception import input_arrays
+    from diorama_core.perception.inputs import arrays as input_arrays
     from diorama_core.perception.inputs import read_inputs
 
     read = read_inputs(
@@ -84,6 +87,7 @@ def build(
         depth=input_arrays.depth_file(depth),
         depth_scale=depth_scale,
         depth_encoding=depth_encoding,
+        depth_kind=depth_kind,
         intrinsics=intrinsics,
         fov_deg=fov_deg,
         boxes=input_arrays.boxes_file(boxes),

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from diorama_core.artefacts import Inputs, LayoutReport
     from diorama_core.library.record import ShapeLibrary
-    from diorama_core.perception.input_arrays import Picture
+    from diorama_core.perception.inputs.arrays import Picture
     from diorama_core.pipeline.run import Built
     from diorama_core.pipeline.stages import Stages
     from diorama_core.project.storage import Project

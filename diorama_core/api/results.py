@@ -13,7 +13,7 @@ from diorama_core.errors import InputError
 if TYPE_CHECKING:
     from diorama_core.export import Format
     from diorama_core.export.gathering import ExportOptions, ExportScene
-    from diorama_core.perception.input_arrays import Picture
+    from diorama_core.perception.inputs.arrays import Picture
     from diorama_core.progress import Progress
     from diorama_core.protocols import LayoutStage, Preview
 

@@ -86,7 +86,9 @@ def labelled_box(box: Box, label: str) -> LabelledBox:
 def boxes_json(boxes: Sequence[LabelledBox], photo: Photo) -> bytes:
     """Boxes as the documented file, in pixels of the upright original."""
     sx, sy = photo.original_size[0] / photo.width, photo.original_size[1] / photo.height
-    rows = [{"bbox": [b.box[0] * sx, b.box[1] * sy, b.box[2] * sx, b.box[3] * sy], "class": b.label} for b in boxes]
+    left, top = photo.offset or (0, 0)
+    corners = [(b, left + sx * np.array(b.box[::2]), top + sy * np.array(b.box[1::2])) for b in boxes]
+    rows = [{"bbox": [*map(float, (x[0], y[0], x[1], y[1]))], "class": b.label} for b, x, y in corners]
     return json.dumps(rows).encode()
 
 

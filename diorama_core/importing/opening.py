@@ -13,7 +13,8 @@ from diorama_core.artefacts import Inputs, LabelledBox, Photo
 from diorama_core.errors import InputError
 from diorama_core.importing.marked import MarkedFile
 from diorama_core.importing.restore import restored
-from diorama_core.perception.input_photo import read_photo, read_source
+from diorama_core.perception.inputs.photos.reading import read_photo
+from diorama_core.perception.inputs.source import read_source
 from diorama_core.scene.types import Architecture, Scene
 
 MAX_PHOTO_PX = 8192
@@ -68,7 +69,7 @@ def _photo(file: MarkedFile, scene: Scene) -> tuple[Photo | None, tuple[str, ...
             f"{name} is not in the file; export it again with its photo",
         ) if "photo" in file.provenance else ()
     try:
-        photo, _ = read_photo(read_source(file.photo, "photo", name), MAX_PHOTO_PX)
+        photo = read_photo(read_source(file.photo, "photo", name), MAX_PHOTO_PX).photo
     except InputError as error:
         return None, (f"the photo in the file cannot be read: {error}",)
     camera = scene.camera

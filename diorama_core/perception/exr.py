@@ -17,6 +17,8 @@ MAGIC = b"\x76\x2f\x31\x01"
 DEPTH_CHANNELS = ("Z", "V", "Y", "depth.Z", "Depth.Z", "ViewLayer.Depth.Z", "depth.V", "Depth.V", "R")
 """Names under which renderers store depth, most telling first."""
 
+COLOURS = ("R", "G", "B")
+"""Three channels that may be one depth three times, or the x, y and z of the pixels' points."""
 MAX_PIXELS = 40_000_000
 MAX_BYTES = 1_200_000_000
 """Of all channels together, which the library decodes at once."""
@@ -29,8 +31,10 @@ class ExrError(InputError):
     """The file is damaged, or of a kind that is not read; the message says which."""
 
 
-def read_depth_channel(data: bytes) -> Float32[np.ndarray, "h w"]:
+def read_depth_channels(data: bytes) -> Float32[np.ndarray, "h w *c"]:
     """The depth channel of an EXR file as it is stored; of several parts, the first that has one.
+
+    Where only red, green and blue may hold it, all three come back: they may be equal, or the points of the pixels.
 
     Raises:
         ExrError: not an EXR file, damaged, without such a channel, or larger than a photo.
@@ -46,8 +50,8 @@ def read_depth_channel(data: bytes) -> Float32[np.ndarray, "h w"]:
         raise ExrError(str(error)) from error
 
 
-def decoded(data: bytes) -> Float32[np.ndarray, "h w"]:
-    """`read_depth_channel` in this process."""
+def decoded(data: bytes) -> Float32[np.ndarray, "h w *c"]:
+    """`read_depth_channels` in this process."""
     try:
         import OpenEXR
     except ImportError as error:
@@ -62,15 +66,18 @@ def decoded(data: bytes) -> Float32[np.ndarray, "h w"]:
         whole = OpenEXR.File(io.BytesIO(data), separate_channels=True, num_threads=0)
         if len(whole.parts) != len(headers):
             raise ValueError("the library leaves out parts that it cannot read")
-        values = np.asarray(whole.parts[part].channels[name].pixels)
+        channels = whole.parts[part].channels
+        names = [name, *(n for n in COLOURS[1:] if name == COLOURS[0] and n in channels)]
+        planes = [np.asarray(channels[n].pixels) for n in names]
     except MemoryError:
         raise
     except Exception as error:  # as above
         raise ExrError("the EXR file is truncated or damaged; save it again") from error
-    if values.ndim != 2 or values.dtype.kind not in "fu":
+    if any(p.ndim != 2 or p.dtype.kind not in "fu" or p.shape != planes[0].shape for p in planes):
         raise ExrError(f"its channel {name} is no plain picture of numbers; save depth under the name Z")
     with np.errstate(over="ignore", invalid="ignore"):
-        return values.astype(np.float32)
+        values = [p.astype(np.float32) for p in planes]
+    return np.stack(values, axis=-1) if len(values) == len(COLOURS) else values[0]
 
 
 def _checked(headers: list[dict]) -> tuple[int, str]:

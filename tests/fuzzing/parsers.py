@@ -70,7 +70,7 @@ def _photos() -> tuple[bytes, ...]:
 
 
 def _depths() -> tuple[bytes, ...]:
-    metres = np.linspace(1, 4, 96 * 64, dtype=np.float32).reshape(64, 96)
+    metres = np.linspace(4, 1, 96 * 64, dtype=np.float32).reshape(64, 96)
     npy, png = io.BytesIO(), io.BytesIO()
     np.save(npy, metres)
     Image.fromarray((metres * 1000).astype(np.uint16)).save(png, "PNG")
@@ -281,7 +281,7 @@ def _metadata(data: bytes) -> object:
 PARSERS: dict[str, Parser] = {
     "photo": Parser(_photos, _inside(as_photo), damaged),
     "depth": Parser(_depths, _inside(with_depth), damaged),
-    "exr": Parser(_exrs, exr.read_depth_channel, damaged),
+    "exr": Parser(_exrs, exr.read_depth_channels, damaged),
     "masks": Parser(_masks, _inside(with_masks), damaged),
     "boxes": Parser(_boxes, with_boxes, strange_json),
     "scene": Parser(_scenes, _used_scene, strange_json),

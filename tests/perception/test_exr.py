@@ -11,7 +11,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from diorama_core.perception.exr import ExrError, read_depth_channel
+from diorama_core.perception.exr import ExrError, read_depth_channels
 
 FILES = Path(__file__).parent / "exr"
 """24 x 20 pixels, one channel Z, written by the OpenEXR library with each compression (zips: 32 bits, others 16)."""
@@ -30,7 +30,7 @@ def written(header: dict, channels: dict, tmp_path: Path) -> bytes:
 
 @pytest.mark.parametrize("compression", COMPRESSIONS)
 def test_every_compression_gives_the_same_numbers(compression: str) -> None:
-    np.testing.assert_array_equal(read_depth_channel((FILES / f"{compression}.exr").read_bytes()), expected())
+    np.testing.assert_array_equal(read_depth_channels((FILES / f"{compression}.exr").read_bytes()), expected())
 
 
 def test_tiles_are_read(tmp_path: Path) -> None:
@@ -38,27 +38,27 @@ def test_tiles_are_read(tmp_path: Path) -> None:
     tiles.xSize = tiles.ySize = 16
     header = {"compression": OpenEXR.PIZ_COMPRESSION, "type": OpenEXR.tiledimage, "tiles": tiles}
     data = written(header, {"Z": expected()}, tmp_path)
-    np.testing.assert_array_equal(read_depth_channel(data), expected())
+    np.testing.assert_array_equal(read_depth_channels(data), expected())
 
 
 def test_the_depth_among_colours_and_of_a_second_part(tmp_path: Path) -> None:
     header = {"compression": OpenEXR.ZIP_COMPRESSION, "type": OpenEXR.scanlineimage}
     flat = np.zeros((20, 24), np.float32)
     data = written(header, {"R": flat, "G": flat, "B": flat, "depth.Z": expected()}, tmp_path)
-    np.testing.assert_array_equal(read_depth_channel(data), expected())
+    np.testing.assert_array_equal(read_depth_channels(data), expected())
     parts = [
         OpenEXR.Part({**header, "name": "colour"}, {"G": flat, "B": flat}, "colour"),
         OpenEXR.Part({**header, "name": "depth"}, {"Z": expected()}, "depth"),
     ]
     OpenEXR.File(parts).write(str(tmp_path / "parts.exr"))
-    np.testing.assert_array_equal(read_depth_channel((tmp_path / "parts.exr").read_bytes()), expected())
+    np.testing.assert_array_equal(read_depth_channels((tmp_path / "parts.exr").read_bytes()), expected())
 
 
 def test_without_depth_it_says_what_there_is(tmp_path: Path) -> None:
     header = {"compression": OpenEXR.ZIP_COMPRESSION, "type": OpenEXR.scanlineimage}
     flat = np.zeros((20, 24), np.float32)
     with pytest.raises(ExrError, match=r"none of its channels \(B, G\) is called Z"):
-        read_depth_channel(written(header, {"G": flat, "B": flat}, tmp_path))
+        read_depth_channels(written(header, {"G": flat, "B": flat}, tmp_path))
 
 
 def test_a_stated_size_beyond_any_photo_is_refused_before_memory() -> None:
@@ -66,7 +66,7 @@ def test_a_stated_size_beyond_any_photo_is_refused_before_memory() -> None:
     at = data.index(b"dataWindow\0box2i\0") + len(b"dataWindow\0box2i\0") + 4
     data[at : at + 16] = np.array([0, 0, 19_999, 19_999], "<i4").tobytes()
     with pytest.raises(ExrError, match=r"20000 x 20000 pixels|damaged"):
-        read_depth_channel(bytes(data))
+        read_depth_channels(bytes(data))
 
 
 def test_very_many_channels_are_refused_before_memory(tmp_path: Path) -> None:
@@ -77,7 +77,7 @@ def test_very_many_channels_are_refused_before_memory(tmp_path: Path) -> None:
         at = data.index(name + b"\0box2i\0") + len(name + b"\0box2i\0") + 4
         data[at : at + 16] = np.array([0, 0, 19_999, 1_999], "<i4").tobytes()
     with pytest.raises(ExrError, match=r"too many|damaged"):
-        read_depth_channel(bytes(data))
+        read_depth_channels(bytes(data))
 
 
 @settings(max_examples=150, deadline=None)
@@ -88,7 +88,7 @@ def test_damage_never_escapes_as_another_error(compression: str, data: st.DataOb
         good[data.draw(st.integers(0, len(good) - 1))] = data.draw(st.integers(0, 255))
     cut = bytes(good[: data.draw(st.integers(4, len(good)))])
     try:
-        values = read_depth_channel(cut)
+        values = read_depth_channels(cut)
     except ExrError:
         return
     assert values.dtype == np.float32
@@ -96,4 +96,4 @@ def test_damage_never_escapes_as_another_error(compression: str, data: st.DataOb
 
 def test_something_else_is_said_to_be() -> None:
     with pytest.raises(ExrError, match="not an EXR file"):
-        read_depth_channel(io.BytesIO(b"\x89PNG....").getvalue())
+        read_depth_channels(io.BytesIO(b"\x89PNG....").getvalue())

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from diorama_core.errors import InputError
-from diorama_core.perception import input_arrays
+from diorama_core.perception.inputs import arrays as input_arrays
 from diorama_core.perception.inputs import read_inputs
 
 SIZE = (60, 80)

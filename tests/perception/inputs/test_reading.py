@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from diorama_core.perception.inputs import read_inputs
-from tests.perception.input_files import WIDTH, encoded, picture, refusal
+from tests.perception.inputs.files import WIDTH, encoded, picture, refusal
 
 
 class TestIntrinsics:

@@ -12,28 +12,30 @@ from hypothesis import strategies as st
 from PIL import Image
 
 from diorama_core.errors import InputError
-from diorama_core.perception import input_photo
-from diorama_core.perception.input_photo import Source, load_pixels, open_picture, read_photo, read_source
-from diorama_core.perception.inputs import read_inputs
-from tests.perception.input_files import HEIGHT, WIDTH, box, boxes_json, claiming, depth_png, encoded, picture, refusal
+from diorama_core.perception.inputs import read_inputs, source
+from diorama_core.perception.inputs.photos.decoding import load_pixels, open_picture
+from diorama_core.perception.inputs.photos.reading import read_photo
+from diorama_core.perception.inputs.source import Source, read_source
+from tests.perception.inputs.files import HEIGHT, WIDTH, box, boxes_json, claiming, depth_png, encoded, picture, refusal
 
 ORIENTATION = 0x0112
 
 
 def photo(image: Image.Image, fmt: str = "PNG", max_side: int = 1000, **options):
-    return read_photo(Source(encoded(image, fmt, **options), "room.png"), max_side)
+    read = read_photo(Source(encoded(image, fmt, **options), "room.png"), max_side)
+    return read.photo, read.notes
 
 
 def test_paths_and_uploads_are_called_by_name(tmp_path: Path) -> None:
     (tmp_path / "a.png").write_bytes(b"abc")
-    assert read_source(tmp_path / "a.png", "photo") == Source(b"abc", "a.png")
+    assert read_source(tmp_path / "a.png", "photo") == Source(b"abc", "a.png", tmp_path / "a.png")
     assert read_source(b"abc", "depth") == Source(b"abc", "the uploaded depth")
     assert read_source(b"abc", "depth", "d.npy").name == "d.npy"
 
 
 def test_missing_empty_and_huge_files_are_refused_by_name(tmp_path: Path, monkeypatch) -> None:
     (tmp_path / "empty.png").touch()
-    monkeypatch.setattr(input_photo, "MAX_FILE_MB", 0.001)
+    monkeypatch.setattr(source, "MAX_FILE_MB", 0.001)
     for handed_in, reason in (
         (tmp_path / "gone.png", "cannot be read"),
         (tmp_path, "is a folder"),

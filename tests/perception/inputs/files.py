@@ -11,8 +11,11 @@ import numpy as np
 import pytest
 from PIL import Image
 
+from diorama_core.artefacts import Photo
 from diorama_core.errors import InputError
 from diorama_core.perception.inputs import read_inputs
+from diorama_core.perception.inputs.photos.frame import PhotoFrame
+from diorama_core.perception.inputs.photos.reading import DecodedPhoto
 
 WIDTH, HEIGHT = 96, 64
 
@@ -52,6 +55,12 @@ def npy(array: np.ndarray) -> bytes:
     stream = io.BytesIO()
     np.save(stream, array)
     return stream.getvalue()
+
+
+def decoded(width: int = WIDTH, height: int = HEIGHT, *, original: tuple[int, int] | None = None) -> DecodedPhoto:
+    """A photo of plain colour as it was read, perhaps reduced from an original."""
+    full = original or (width, height)
+    return DecodedPhoto(Photo(np.full((height, width, 3), 90, np.uint8), "photo.png", full), PhotoFrame(full))
 
 
 def refusal(*args: object, **kwargs: object) -> str:

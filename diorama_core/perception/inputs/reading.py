@@ -11,11 +11,15 @@ from pathlib import Path
 
 import numpy as np
 
-from diorama_core.artefacts import Inputs, LabelledBox, Photo
+from diorama_core.artefacts import Inputs, LabelledBox
 from diorama_core.errors import InputError
-from diorama_core.perception.input_depth import DepthEncoding, read_depth
-from diorama_core.perception.input_objects import read_boxes, read_masks
-from diorama_core.perception.input_photo import read_photo, read_source
+from diorama_core.perception.inputs.boxes.reading import read_boxes
+from diorama_core.perception.inputs.boxes.standing import is_upside_down
+from diorama_core.perception.inputs.depth.kinds import DepthKind
+from diorama_core.perception.inputs.depth.reading import DepthEncoding, DepthOptions, read_depth
+from diorama_core.perception.inputs.masks.reading import read_masks
+from diorama_core.perception.inputs.photos.reading import DecodedPhoto, read_photo
+from diorama_core.perception.inputs.source import read_folder, read_source
 from diorama_core.scene.types import Intrinsics
 
 FOV_RANGE_DEG = (15.0, 150.0)
@@ -35,8 +39,9 @@ def read_inputs(
     *,
     name: str | None = None,
     depth: Path | bytes | None = None,
-    depth_scale: float = 1000.0,
+    depth_scale: float | None = None,
     depth_encoding: DepthEncoding = "linear",
+    depth_kind: DepthKind = "auto",
     intrinsics: tuple[float, float, float, float] | None = None,
     fov_deg: float | None = None,
     boxes: Path | bytes | None = None,
@@ -48,13 +53,16 @@ def read_inputs(
     Args:
         image: The photo, a path or the bytes of an upload.
         name: What to call the photo; by default its file name.
-        depth: Measured depth: 16-bit PNG in units of 1 / `depth_scale` metres, or `.npy` or EXR in metres.
-        depth_scale: Units per metre of an integer depth.
+        depth: Measured depth in any container of `DEPTH_FORMS`.
+        depth_scale: Units of depth per metre; by default whole numbers are millimetres and others metres, unless the
+            picture contradicts it.
         depth_encoding: "sunrgbd" where a PNG's bits are rotated as in SUN RGB-D.
+        depth_kind: What the numbers are: depth along the optical axis, distance along the rays, or inverse depth; by
+            default what the picture says.
         intrinsics: fx, fy, cx, cy in pixels of the upright original photo.
         fov_deg: Horizontal field of view of the upright photo in degrees, instead of `intrinsics`.
-        boxes: JSON list of `{"bbox": [x1, y1, x2, y2], "class": "chair"}` in pixels of the upright original photo.
-        masks: PNG with one colour or one id per instance, black or 0 for background.
+        boxes: In any form of `BOX_FORMS`, by default in pixels of the upright original photo.
+        masks: In any form of `MASK_FORMS`: a picture with one colour or one id per instance, a folder, an array.
         max_side: Larger photos are reduced so that the longer side has this many pixels.
 
     Returns:
@@ -63,37 +71,41 @@ def read_inputs(
     Raises:
         InputError: one line saying what cannot be used, where, and what to do.
     """
-    photo, notes = read_photo(read_source(image, "photo", name), max_side)
-    size = (photo.width, photo.height)
-    warnings = list(notes)
-    camera = _read_intrinsics(photo, intrinsics, fov_deg)
+    decoded = read_photo(read_source(image, "photo", name), max_side)
+    photo, warnings = decoded.photo, list(decoded.notes)
+    camera = _read_intrinsics(decoded, intrinsics, fov_deg)
     depth_m, instances = None, None
+    options = DepthOptions(depth_scale, depth_encoding, depth_kind)
     labelled: tuple[LabelledBox, ...] = ()
     matched: tuple[tuple[int, LabelledBox], ...] = ()
-    if depth is not None:
-        depth_m, notes = read_depth(read_source(depth, "depth"), depth_scale, depth_encoding, size)
-        warnings += notes
     if boxes is not None:
-        labelled, notes = read_boxes(read_source(boxes, "boxes"), photo.original_size, size)
+        labelled, notes = read_boxes(read_source(boxes, "boxes"), decoded)
+        warnings += notes
+        if is_upside_down(labelled, photo.height):
+            warnings.append("the photo seems to be upside down: turn it by 180 degrees, and its boxes with it")
+    if depth is not None:
+        depth_m, notes = read_depth(read_source(depth, "depth"), options, decoded, labelled, camera)
         warnings += notes
     if masks is not None:
-        instances, matched, notes = read_masks(read_source(masks, "masks"), labelled, size)
+        instances, matched, notes = read_masks(read_folder(masks, "masks"), labelled, decoded)
         warnings += notes
     return ReadInputs(Inputs(photo, labelled, instances, matched, depth_m, camera), tuple(warnings))
 
 
 def _read_intrinsics(
-    photo: Photo, given: tuple[float, float, float, float] | None, fov_deg: float | None
+    decoded: DecodedPhoto, given: tuple[float, float, float, float] | None, fov_deg: float | None
 ) -> Intrinsics | None:
     """The user's intrinsics, carried over to the photo's pixels."""
-    width, height = photo.original_size
+    photo, (left, top, _, _) = decoded.photo, decoded.frame.margins
+    width, height = decoded.frame.full_size
     if given is not None and fov_deg is not None:
         raise InputError("--intrinsics and --fov say the same thing; give one of them")
     if fov_deg is not None:
         low, high = FOV_RANGE_DEG
         if not low <= fov_deg <= high:
             raise InputError(f"--fov {fov_deg:g}: give a horizontal field of view of {low:g} to {high:g} degrees")
-        return Intrinsics.from_fov(width, height, float(np.deg2rad(fov_deg))).scaled(photo.width, photo.height)
+        inner = Intrinsics.from_fov(*photo.original_size, float(np.deg2rad(fov_deg)))
+        return inner.scaled(photo.width, photo.height)
     if given is None:
         return None
     shown = ",".join(f"{v:g}" for v in given)
@@ -104,7 +116,7 @@ def _read_intrinsics(
         raise InputError(
             f"--intrinsics {shown}: the centre lies outside the photo ({width} x {height}); give pixels of this photo"
         )
-    camera = Intrinsics(width, height, fx, fy, cx, cy)
+    camera = Intrinsics(*photo.original_size, fx, fy, cx - left, cy - top)
     if not FOV_RANGE_DEG[0] <= np.rad2deg(camera.horizontal_fov_rad) <= FOV_RANGE_DEG[1]:
         raise InputError(
             f"--intrinsics {shown}: the focal length does not fit {width} pixels of width; give pixels of this photo"

@@ -1,0 +1,1 @@
+"""Boxes around things, in the forms that annotation tools and detectors write."""

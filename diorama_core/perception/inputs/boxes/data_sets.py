@@ -1,0 +1,124 @@
+"""COCO: data sets with their categories, and lists of results, whose boxes are x, y, width, height."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+from diorama_core.errors import InputError
+from diorama_core.io.bounded import parse_json, shortened
+from diorama_core.perception.inputs.boxes.dictionaries import box_of, score_of, word_of
+from diorama_core.perception.inputs.boxes.entry import UNNAMED, BoxEntry, BoxFile, BoxText, Size
+
+_RESULT_KEYS = frozenset({"image_id", "category_id", "area", "iscrowd", "segmentation"})
+MAX_CATEGORY_BYTES = 64_000_000
+
+
+def is_data_set(text: BoxText) -> bool:
+    """A JSON object with annotations and the images or categories that they belong to."""
+    document = text.document
+    if not isinstance(document, dict) or not _dicts(document.get("annotations")):
+        return False
+    return "images" in document or "categories" in document
+
+
+def read_data_set(text: BoxText) -> BoxFile:
+    """The boxes of the photo, by its file name where the data set holds several pictures."""
+    document: Any = text.document
+    images = [i for i in document.get("images") or () if isinstance(i, dict)]
+    image, notes = _image_of(images, text)
+    rows = [a for a in document["annotations"] if image is None or a.get("image_id") == image.get("id")]
+    file = _read(rows, _categories(document), text.source.name)
+    return BoxFile(file.entries, _size(image), notes=(*notes, *file.notes))
+
+
+def is_results(text: BoxText) -> bool:
+    """A JSON list of boxes with keys that only COCO has."""
+    rows = text.document
+    return isinstance(rows, list) and _dicts(rows) and any("bbox" in r and _RESULT_KEYS & r.keys() for r in rows)
+
+
+def read_results(text: BoxText) -> BoxFile:
+    """The boxes of the photo; their names are in another file, which is looked for beside."""
+    rows: Any = text.document
+    of_photo = _rows_of_photo(rows, text)
+    names = _categories_beside(text)
+    file = _read(of_photo, names, text.source.name)
+    needs = not names and all(e.word == UNNAMED for e in file.entries)
+    note = f"{text.source.name} holds COCO results: boxes are [x, y, width, height]"
+    if needs:
+        note += "; their names are unknown, category_id needs the file with `categories` beside it"
+    return file.with_notes(note)
+
+
+def _read(rows: Sequence[Mapping[str, Any]], names: Mapping[int, str], where: str) -> BoxFile:
+    entries = []
+    for index, row in enumerate(rows):
+        corners = box_of(row, f"{where}: annotation {index}", "sized") if row.get("bbox") else box_of(row, where)
+        if corners is not None:
+            entries.append(BoxEntry(corners, word_of(row, names), score_of(row)))
+    return BoxFile(tuple(entries))
+
+
+def _image_of(images: Sequence[Mapping[str, Any]], text: BoxText) -> tuple[Mapping[str, Any] | None, tuple[str, ...]]:
+    if len(images) < 2:
+        return (images[0] if images else None), ()
+    stem = Path(text.photo_name).stem.lower()
+    named = [i for i in images if Path(str(i.get("file_name", ""))).stem.lower() == stem]
+    if len(named) != 1:
+        raise InputError(
+            f"{text.source.name}: this COCO file is of {len(images)} pictures, none of them called "
+            f"{shortened(text.photo_name, 60)}; keep the annotations of this photo"
+        )
+    return named[0], (
+        f"{text.source.name} is of {len(images)} pictures; the boxes of {named[0]['file_name']} are used",
+    )
+
+
+def _rows_of_photo(rows: Sequence[Mapping[str, Any]], text: BoxText) -> list[Mapping[str, Any]]:
+    pictures = {str(r.get("image_id")) for r in rows}
+    if len(pictures) < 2:
+        return list(rows)
+    digits = re.findall(r"\d+", Path(text.photo_name).stem)
+    wanted = {Path(text.photo_name).stem, *digits, *(d.lstrip("0") for d in digits)}
+    found = [r for r in rows if str(r.get("image_id")) in wanted]
+    if not found:
+        raise InputError(
+            f"{text.source.name}: these COCO results are of {len(pictures)} pictures, and no image_id is that of "
+            f"{shortened(text.photo_name, 60)}; keep the results of this photo"
+        )
+    return found
+
+
+def _categories(document: Mapping[str, Any]) -> dict[int, str]:
+    rows = document.get("categories")
+    rows = rows if isinstance(rows, list) else []
+    pairs = [(r.get("id"), r.get("name")) for r in rows if isinstance(r, dict)]
+    return {number: name for number, name in pairs if isinstance(number, int) and isinstance(name, str)}
+
+
+def _categories_beside(text: BoxText) -> dict[int, str]:
+    """The names of a data set's file beside the results."""
+    for file in text.source.beside("*.json"):
+        if b'"categories"' not in file.data or len(file.data) > MAX_CATEGORY_BYTES:
+            continue
+        try:
+            document = parse_json(file.data, file.name, InputError)
+        except InputError:
+            continue  # another file of the folder, which nobody asked to read
+        if isinstance(document, dict) and (names := _categories(document)):
+            return names
+    return {}
+
+
+def _size(image: Mapping[str, Any] | None) -> Size | None:
+    values = (image.get("width"), image.get("height")) if image is not None else ()
+    if len(values) == 2 and all(isinstance(v, int | float) and 0 < v < 1e6 for v in values):
+        return int(values[0]), int(values[1])  # type: ignore[arg-type]
+    return None
+
+
+def _dicts(rows: Any) -> bool:
+    return isinstance(rows, list) and bool(rows) and all(isinstance(r, dict) for r in rows)

@@ -1,0 +1,170 @@
+"""Boxes as text, one a line: YOLO, tables with a header (CSV), KITTI, and a word with four numbers."""
+
+from __future__ import annotations
+
+import csv
+import re
+
+from diorama_core.perception.inputs.boxes.dictionaries import box_numbers, box_of, numbers, score_of, word_of
+from diorama_core.perception.inputs.boxes.entry import UNNAMED, BoxEntry, BoxFile, BoxText, Corners, Layout, from_layout
+from diorama_core.perception.inputs.boxes.lists import size_in
+from diorama_core.perception.inputs.source import Source
+
+_NAME_FILES = (
+    "classes.txt", "obj.names", "*.names", "labels.txt", "data.yaml", "*.yaml", "../data.yaml", "../classes.txt",
+    "../*.yaml",
+)  # fmt: skip
+_YAML_NAMES = re.compile(
+    r"^names\s*:\s*(?:\[(?P<flow>[^\]]*)\]|\{(?P<map>[^}]*)\}|\n(?P<block>(?:[ \t-].*(?:\n|$))+))", re.MULTILINE
+)
+_KITTI_WORDS = 15
+
+
+def is_yolo(text: BoxText) -> bool:
+    """Lines of a class number and shares of the picture: middle and size, with a confidence, or a polygon."""
+    rows = _rows(text)
+    return bool(rows) and all(_is_yolo_row(r) for r in rows)
+
+
+def read_yolo(text: BoxText) -> BoxFile:
+    """Boxes in shares of the picture, with the names of the list of classes beside the file."""
+    entries, names = [], _class_names(text.source)
+    for index, row in enumerate(_rows(text)):
+        values = [float(v) for v in row[1:]]
+        where = f"{text.source.name}: line {index + 1}"
+        if len(values) >= 6 and len(values) % 2 == 0:
+            corners: Corners | None = box_of({"points": values}, where)
+        else:
+            corners = from_layout(numbers(values[:4], where), "centred")
+        score = values[4] if len(values) == 5 else 1.0
+        word = names.get(int(float(row[0])), UNNAMED)
+        entries += [] if corners is None else [BoxEntry(corners, word, min(max(score, 0.0), 1.0))]
+    note = f"{text.source.name} is in YOLO's form; its class numbers need their names: put classes.txt beside it"
+    return BoxFile(tuple(entries), unit="shares", notes=() if names else (note,))
+
+
+def is_table(text: BoxText) -> bool:
+    """A header that names the columns of a box, and rows under it."""
+    rows = _table(text)
+    return bool(rows) and any(box is not None for box in (_table_box(r) for r in rows[:1]))
+
+
+def read_table(text: BoxText) -> BoxFile:
+    """Rows of the photo, where a column names pictures."""
+    rows = _table(text)
+    named = [r for r in rows if any(v and text.photo_name == v.rsplit("/", 1)[-1] for v in r.values())]
+    entries = []
+    for index, row in enumerate(named or rows):
+        box = _table_box(row)
+        values = numbers([0] if box is None else box[0], f"{text.source.name}: row {index + 1}")
+        corners = from_layout(values, box[1] if box is not None else "corners")
+        entries.append(BoxEntry(corners, word_of(row), score_of(_numbers_in(row))))
+    # The width of a picture is a column of its own only where the box has corners.
+    size = size_in(_numbers_in(rows[0])) if rows and "xmin" in "".join(rows[0]).lower() else None
+    return BoxFile(tuple(entries), size)
+
+
+def is_words(text: BoxText) -> bool:
+    """Lines of a word and four numbers, or KITTI's fifteen columns."""
+    rows = _rows(text)
+    return bool(rows) and all(_worded(r) is not None for r in rows)
+
+
+def read_words(text: BoxText) -> BoxFile:
+    """A word, perhaps a score, and four numbers a line."""
+    found = [(_worded(row), index) for index, row in enumerate(_rows(text))]
+    entries = [
+        BoxEntry(numbers(pair[1], f"{text.source.name}: line {index + 1}"), pair[0])
+        for pair, index in found
+        if pair is not None
+    ]
+    return BoxFile(tuple(entries), ambiguous_layout=True)
+
+
+def _rows(text: BoxText) -> list[list[str]]:
+    if not isinstance(text.document, str):
+        return []
+    lines = [line.strip() for line in text.document.splitlines()]
+    return [re.split(r"[\s,;]+", line) for line in lines if line and not line.startswith("#")]
+
+
+def _is_yolo_row(row: list[str]) -> bool:
+    values = [_number(v) for v in row]
+    if len(values) < 5 or any(v is None for v in values):
+        return False
+    number, *shares = values
+    whole = number is not None and number == int(number) and number >= 0
+    return whole and (len(shares) in (4, 5) or len(shares) % 2 == 0) and all(-0.1 <= (v or 0.0) <= 1.1 for v in shares)
+
+
+def _worded(row: list[str]) -> tuple[str, list[str]] | None:
+    """The word and the four numbers of a line."""
+    if (
+        len(row) in (_KITTI_WORDS, _KITTI_WORDS + 1)
+        and _number(row[0]) is None
+        and all(_number(v) is not None for v in row[1:])
+    ):
+        return row[0], row[4:8]
+    values = [v for v in row if _number(v) is not None]
+    words = [v for v in row if _number(v) is None]
+    if not words or len(values) not in (4, 5):
+        return None
+    return " ".join(words).strip("\"'"), values[-4:] if _number(row[0]) is None else values[:4]
+
+
+def _table(text: BoxText) -> list[dict[str, str]]:
+    if not isinstance(text.document, str):
+        return []
+    try:
+        first = text.document.split("\n", 1)[0]
+        delimiter = max(",;\t", key=first.count)
+        rows = csv.DictReader(text.document.splitlines(), delimiter=delimiter)
+        return [{str(k).strip(): str(v).strip() for k, v in row.items() if k is not None} for row in rows]
+    except csv.Error:
+        return []
+
+
+def _table_box(row: dict[str, str]) -> tuple[list[float], Layout] | None:
+    values = _numbers_in(row)
+    try:
+        found = box_numbers(values, "")
+    except Exception:  # a cell holds no number; the reader says which
+        return None
+    return None if found is None else (list(found[0]), found[1])
+
+
+def _numbers_in(row: dict[str, str]) -> dict[str, float]:
+    return {k: number for k, v in row.items() if (number := _number(v)) is not None}
+
+
+def _number(word: str) -> float | None:
+    try:
+        value = float(word)
+    except ValueError:
+        return None
+    return value if abs(value) < 1e9 else None
+
+
+def _class_names(source: Source) -> dict[int, str]:
+    """Names of class numbers: a line each, or the `names` of a YAML file."""
+    for file in source.beside(*_NAME_FILES):
+        content = file.data[:200_000].decode("utf-8", "replace")
+        names = _yaml_names(content) if file.suffix in (".yaml", ".yml") else dict(enumerate(content.split("\n")))
+        names = {k: v.strip()[:200] for k, v in names.items() if v.strip()}
+        if names:
+            return names
+    return {}
+
+
+def _yaml_names(content: str) -> dict[int, str]:
+    found = _YAML_NAMES.search(content)
+    if found is None:
+        return {}
+    if found["flow"] is not None:
+        return dict(enumerate(v.strip(" \n\"'") for v in found["flow"].split(",")))
+    rows = found["map"].split(",") if found["map"] is not None else found["block"].splitlines()
+    names = {}
+    for index, row in enumerate(rows):
+        numbered = re.match(r"\s*(\d+)\s*:\s*(.*)", row)
+        names[int(numbered[1]) if numbered else index] = (numbered[2] if numbered else row).strip(" -\"'")
+    return names

@@ -1,0 +1,107 @@
+"""XML of annotation tools: Pascal VOC and CVAT."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from xml.etree.ElementTree import Element
+
+from diorama_core.errors import InputError
+from diorama_core.io.bounded import shortened
+from diorama_core.perception.inputs.boxes.dictionaries import box_of, numbers
+from diorama_core.perception.inputs.boxes.entry import UNNAMED, BoxEntry, BoxFile, BoxText, Corners, Size
+
+
+def is_voc(text: BoxText) -> bool:
+    """Objects with a `bndbox` under `annotation`."""
+    root = text.document
+    return isinstance(root, Element) and root.tag == "annotation"
+
+
+def read_voc(text: BoxText) -> BoxFile:
+    """Boxes of Pascal VOC, whose first pixel is number 1; the bounds of polygons where there is no box.
+
+    Raises:
+        InputError: a box has no four numbers.
+    """
+    root: Element = text.document  # type: ignore[assignment]
+    entries = []
+    for index, item in enumerate(root.iter("object")):
+        box = item.find("bndbox")
+        where = f"{text.source.name}: object {index}"
+        if box is not None:
+            x1, y1, x2, y2 = numbers([box.findtext(k) for k in ("xmin", "ymin", "xmax", "ymax")], where)
+            corners: Corners | None = (x1 - 1.0, y1 - 1.0, x2, y2)
+        else:
+            points = [[_number(p.findtext("x")), _number(p.findtext("y"))] for p in item.iter("pt")]
+            corners = box_of({"points": points}, where)
+        if corners is not None:
+            entries.append(BoxEntry(corners, (item.findtext("name") or UNNAMED)[:200]))
+    size = root.find("size")
+    stated = None if size is None else _size(size.findtext("width"), size.findtext("height"))
+    return BoxFile(tuple(entries), stated)
+
+
+def is_cvat(text: BoxText) -> bool:
+    """Pictures or tracks under `annotations`."""
+    root = text.document
+    if not isinstance(root, Element) or root.tag != "annotations":
+        return False
+    return root.find("image") is not None or root.find("track") is not None
+
+
+def read_cvat(text: BoxText) -> BoxFile:
+    """Boxes and the bounds of polygons and polylines of the photo; of tracks, those of the first frame.
+
+    Raises:
+        InputError: of several pictures none is the photo, or a box has no four numbers.
+    """
+    root: Element = text.document  # type: ignore[assignment]
+    image = _image_of(root.findall("image"), text)
+    figures: list[tuple[str, Element]] = []
+    if image is not None:
+        figures = [(f.get("label") or UNNAMED, f) for f in image]
+    for track in root.findall("track"):
+        first = next((f for f in track if f.get("outside") != "1"), None)
+        figures += [] if first is None else [(track.get("label") or UNNAMED, first)]
+    entries = []
+    for index, (word, figure) in enumerate(figures):
+        corners = _figure(figure, f"{text.source.name}: figure {index}")
+        if corners is not None:
+            entries.append(BoxEntry(corners, word[:200]))
+    stated = _size(image.get("width"), image.get("height")) if image is not None else None
+    of_video = _size(root.findtext(".//original_size/width"), root.findtext(".//original_size/height"))
+    return BoxFile(tuple(entries), stated or of_video)
+
+
+def _figure(figure: Element, where: str) -> Corners | None:
+    if figure.tag == "box":
+        return numbers([figure.get(k) for k in ("xtl", "ytl", "xbr", "ybr")], where)
+    if figure.tag not in ("polygon", "polyline"):
+        return None
+    pairs = [p.split(",") for p in (figure.get("points") or "").split(";")]
+    return box_of({"points": [[_number(p[0]), _number(p[1])] for p in pairs if len(p) == 2]}, where)
+
+
+def _image_of(images: list[Element], text: BoxText) -> Element | None:
+    if len(images) < 2:
+        return images[0] if images else None
+    stem = Path(text.photo_name).stem.lower()
+    named = [i for i in images if Path(i.get("name") or "").stem.lower() == stem]
+    if len(named) != 1:
+        raise InputError(
+            f"{text.source.name}: this CVAT file is of {len(images)} pictures, none of them called "
+            f"{shortened(text.photo_name, 60)}; keep the annotations of this photo"
+        )
+    return named[0]
+
+
+def _number(word: str | None) -> float | None:
+    try:
+        return float(word or "")
+    except ValueError:
+        return None
+
+
+def _size(width: str | None, height: str | None) -> Size | None:
+    w, h = _number(width), _number(height)
+    return (int(w), int(h)) if w is not None and h is not None and 1 < w < 1e6 and 1 < h < 1e6 else None

@@ -1,0 +1,145 @@
+"""Files of annotation tools that write JSON: LabelMe, Label Studio, VGG Image Annotator."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+from typing import Any
+
+from diorama_core.errors import InputError
+from diorama_core.io.bounded import shortened
+from diorama_core.perception.inputs.boxes.dictionaries import box_of, keys_of, score_of, word_of
+from diorama_core.perception.inputs.boxes.entry import BoxEntry, BoxFile, BoxText
+from diorama_core.perception.inputs.boxes.lists import size_in
+
+
+def is_labelme(text: BoxText) -> bool:
+    """A JSON object with `shapes` that have points."""
+    shapes = text.document.get("shapes") if isinstance(text.document, dict) else None
+    return isinstance(shapes, list) and all(isinstance(s, dict) and "points" in s for s in shapes)
+
+
+def read_labelme(text: BoxText) -> BoxFile:
+    """Rectangles, and the bounds of polygons, circles and lines; points alone are left out."""
+    document: Any = text.document
+    entries, left_out = [], 0
+    for index, shape in enumerate(document["shapes"]):
+        shape = _circle_as_box(shape)
+        corners = box_of(shape, f"{text.source.name}: shape {index}")
+        if corners is None or shape.get("shape_type") == "point":
+            left_out += 1
+        else:
+            entries.append(BoxEntry(corners, word_of(shape)))
+    notes = (f"{left_out} of {text.source.name}'s shapes are points and were left out",) if left_out else ()
+    return BoxFile(tuple(entries), size_in(document), notes=notes)
+
+
+def is_label_studio(text: BoxText) -> bool:
+    """Results in percent with the size of the picture beside them, in tasks or alone."""
+    return next(_studio_results(text.document), None) is not None
+
+
+def read_label_studio(text: BoxText) -> BoxFile:
+    """Rectangles and the bounds of polygons of the photo's task.
+
+    Raises:
+        InputError: of several tasks none is the photo's.
+    """
+    results = list(_studio_results(_task_of(text)))
+    entries, size = [], None
+    for index, result in enumerate(results):
+        value = result.get("value", result)
+        corners = box_of(value, f"{text.source.name}: result {index}")
+        if corners is not None:
+            entries.append(BoxEntry(corners, word_of(value), score_of(result)))
+        size = size or size_in(result)
+    return BoxFile(tuple(entries), size, "percent")
+
+
+def is_via(text: BoxText) -> bool:
+    """Regions with `shape_attributes`, by picture."""
+    return bool(_via_pictures(text.document))
+
+
+def read_via(text: BoxText) -> BoxFile:
+    """The regions of the photo.
+
+    Raises:
+        InputError: of several pictures none is the photo.
+    """
+    pictures = _via_pictures(text.document)
+    stem = Path(text.photo_name).stem.lower()
+    named = [p for p in pictures if Path(str(p.get("filename", ""))).stem.lower() == stem]
+    if len(pictures) > 1 and len(named) != 1:
+        raise InputError(_of_others(text, len(pictures)))
+    regions = (named or pictures)[0]["regions"]
+    entries = []
+    for index, region in enumerate(regions.values() if isinstance(regions, dict) else regions):
+        shape = keys_of(region.get("shape_attributes") or {}) if isinstance(region, dict) else {}
+        if isinstance(shape.get("allpointsx"), list) and isinstance(shape.get("allpointsy"), list):
+            points = [[x, y] for x, y in zip(shape["allpointsx"], shape["allpointsy"], strict=False)]
+            shape = {"points": points}
+        corners = box_of(shape, f"{text.source.name}: region {index}")
+        if corners is not None:
+            entries.append(BoxEntry(corners, word_of(region)))
+    return BoxFile(tuple(entries))
+
+
+def _circle_as_box(shape: Mapping[str, Any]) -> Mapping[str, Any]:
+    """LabelMe's circles are a middle and a point on the line."""
+    points = shape.get("points")
+    if shape.get("shape_type") != "circle" or not isinstance(points, list) or len(points) != 2:
+        return shape
+    try:
+        (x, y), (on_x, on_y) = points
+        radius = ((on_x - x) ** 2 + (on_y - y) ** 2) ** 0.5
+    except (TypeError, ValueError, OverflowError):
+        return shape
+    return {**shape, "points": [[x - radius, y - radius], [x + radius, y + radius]]}
+
+
+def _task_of(text: BoxText) -> object:
+    tasks = text.document
+    if not isinstance(tasks, list) or sum(next(_studio_results(t), None) is not None for t in tasks) < 2:
+        return tasks
+    if all(isinstance(t, dict) and "value" in t for t in tasks):
+        return tasks  # results, not tasks
+    stem = Path(text.photo_name).stem
+    named = [t for t in tasks if isinstance(t, dict) and stem in str(t.get("data", t.get("image", "")))]
+    if len(named) != 1:
+        raise InputError(_of_others(text, len(tasks)))
+    return named[0]
+
+
+def _studio_results(value: object, level: int = 0) -> Iterator[dict[str, Any]]:
+    if level > 4:
+        return
+    if isinstance(value, list):
+        for inner in value:
+            yield from _studio_results(inner, level + 1)
+    elif isinstance(value, dict):
+        box = value.get("value", value)
+        named = isinstance(box, dict) and any(k in box for k in ("rectanglelabels", "polygonlabels", "labels"))
+        if named and "original_width" in value:
+            yield value
+            return
+        # Corrected annotations come before the predictions that they were made from.
+        for key in ("annotations", "completions", "result", "label", "bbox", "predictions"):
+            found = list(_studio_results(value.get(key), level + 1))
+            yield from found
+            if found:
+                return
+
+
+def _via_pictures(document: object) -> list[dict[str, Any]]:
+    if not isinstance(document, dict):
+        return []
+    pictures = document.get("_via_img_metadata", document)
+    found = list(pictures.values()) if isinstance(pictures, dict) else []
+    is_via_file = found and all(isinstance(p, dict) and isinstance(p.get("regions"), list | dict) for p in found)
+    return found if is_via_file else []
+
+
+def _of_others(text: BoxText, count: int) -> str:
+    shown = shortened(text.photo_name, 60)
+    return f"{text.source.name}: it is of {count} pictures, none of them called {shown}; keep what is of this photo"

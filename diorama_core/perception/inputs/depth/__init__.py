@@ -1,0 +1,1 @@
+"""Measured depth: its containers, what its numbers mean, and its size."""

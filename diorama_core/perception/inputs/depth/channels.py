@@ -1,0 +1,72 @@
+"""The one channel of an array that is depth: singleton axes dropped, and the depth of a point map found."""
+
+from __future__ import annotations
+
+import numpy as np
+from jaxtyping import Shaped
+
+from diorama_core.errors import InputError
+
+AGREEING = 0.9
+"""Correlation between a ray's slope and where its pixel is, from which an array is taken for a point map."""
+
+
+def one_channel(array: Shaped[np.ndarray, "..."], name: str) -> tuple[Shaped[np.ndarray, "h w"], tuple[str, ...]]:
+    """The depth of an array, and a note where it was one of several channels.
+
+    Args:
+        array: (h, w) with singleton axes, or a point map (h, w, 3) or (3, h, w).
+        name: of the file.
+
+    Raises:
+        InputError: it has another shape, or channels of which none is depth.
+    """
+    squeezed = _squeezed(array)
+    if squeezed.ndim == 2 and 0 not in squeezed.shape and min(squeezed.shape) > 1:
+        return squeezed, ()
+    if squeezed.ndim == 3 and squeezed.shape[0] in (3, 4) and squeezed.shape[2] > 4:
+        squeezed = np.moveaxis(squeezed, 0, -1)
+    if squeezed.ndim == 3 and squeezed.shape[2] in (3, 4) and min(squeezed.shape[:2]) > 4:
+        found = _depth_of_points(squeezed[..., :3].astype(np.float64))
+        if found is not None:
+            values, words = found
+            return values.astype(np.float32), (f"the depth is a point map; its {words} is used",)
+        if (squeezed[..., :3] == squeezed[..., :1]).all():
+            return squeezed[..., 0], ()
+    raise InputError(
+        f"{name}: depth must be two-dimensional, this has shape {tuple(array.shape)}; save one channel, z in the camera"
+    )
+
+
+def _squeezed(array: np.ndarray) -> np.ndarray:
+    axes = tuple(k for k, n in enumerate(array.shape) if n == 1)
+    return np.squeeze(array, axis=axes) if array.ndim > 2 else array
+
+
+def _depth_of_points(points: Shaped[np.ndarray, "h w 3"]) -> tuple[np.ndarray, str] | None:
+    """The channel that is depth in the camera, with its sign; None where the points are not those of a photo."""
+    height, width = points.shape[:2]
+    rows, columns = np.mgrid[:height, :width]
+    step = max(1, int(np.sqrt(height * width / 5000)))
+    some = points[::step, ::step].reshape(-1, 3)
+    u, v = columns[::step, ::step].ravel(), rows[::step, ::step].ravel()
+    for channel, sign in ((2, 1.0), (2, -1.0), (0, 1.0), (1, 1.0)):
+        z = sign * some[:, channel]
+        across, down = (k for k in range(3) if k != channel)
+        with np.errstate(all="ignore"):
+            slopes = some[:, [across, down]] / z[:, None]
+        known = np.isfinite(slopes).all(axis=1) & (z > 0)
+        if known.sum() < 50 or np.median(z[known]) <= 0:
+            continue
+        related = [abs(_correlation(slopes[known, k], pixel[known])) for k, pixel in ((0, u), (1, v))]
+        if min(related) > AGREEING:
+            return sign * points[..., channel], f"{'XYZ'[channel]} channel"
+    return None
+
+
+def _correlation(one: np.ndarray, other: np.ndarray) -> float:
+    low, high = np.percentile(one, [2, 98])
+    inside = (one >= low) & (one <= high)
+    a, b = one[inside] - one[inside].mean(), other[inside] - other[inside].mean()
+    scale = float(np.linalg.norm(a) * np.linalg.norm(b))
+    return float(a @ b) / scale if scale > 0 else 0.0

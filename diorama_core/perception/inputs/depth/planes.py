@@ -1,0 +1,158 @@
+"""How well a depth map's numbers form planes, under each reading of what they are.
+
+In the pixels of a perspective photo a plane's inverse depth is an affine function, whatever the focal length. So the
+numbers themselves are piecewise affine where they are inverse depth or disparity (with any offset), their inverses are
+where they are depth along the optical axis, and the inverses of their product with the rays' cosines are where they are
+distances along the rays.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from jaxtyping import Float
+
+MAX_PLANES = 5
+"""Floor, ceiling and three walls are all that one photo of a room shows."""
+TRIALS = 220
+MAX_POINTS = 2400
+TOLERANCES = (0.002, 0.005, 0.012, 0.03)
+"""Shares of the numbers' spread within which a number lies on a plane: of exact renderings up to noisy sensors."""
+MIN_NEW_SHARE = 0.01
+"""Of the points, for a further plane."""
+_SEED = 7
+_REACH = 0.35
+"""Share of the picture's width within which the three points of a trial lie: of one surface, mostly."""
+
+
+@dataclass(frozen=True, eq=False)
+class SampledDepth:
+    """Some of a map's measured numbers."""
+
+    x: Float[np.ndarray, "n"]
+    """Across, from the middle, in shares of the longer side."""
+    y: Float[np.ndarray, "n"]
+    """Down, likewise."""
+    values: Float[np.ndarray, "n"]
+    """As they are stored, positive."""
+
+    @property
+    def spread(self) -> float:
+        """The range of most values."""
+        low, high = np.percentile(self.values, [5, 95])
+        return max(float(high - low), 1e-9 * float(abs(high)) + 1e-12)
+
+
+@dataclass(frozen=True, eq=False)
+class PlaneFit:
+    """Planes found in a map under one reading."""
+
+    explained: float
+    """Share of the points on planes, the mean over the tolerances."""
+    planes: Float[np.ndarray, "k 3"]
+    """Coefficients of x, y and 1 of the affine functions, largest plane first."""
+    shares: Float[np.ndarray, "k"]
+    """Of the points, for each."""
+
+
+def sampled(values: Float[np.ndarray, "h w"], valid: np.ndarray) -> SampledDepth:
+    """Evenly spread valid numbers of a map."""
+    height, width = values.shape
+    step = max(1, int(np.sqrt(valid.sum() / MAX_POINTS)))
+    rows, columns = np.nonzero(valid[step // 2 :: step, step // 2 :: step])
+    rows, columns = rows * step + step // 2, columns * step + step // 2
+    side = max(height, width)
+    x, y = (columns + 0.5 - width / 2) / side, (rows + 0.5 - height / 2) / side
+    return SampledDepth(x, y, values[rows, columns].astype(np.float64))
+
+
+def planes_of(
+    sample: SampledDepth,
+    to_affine: Callable[[np.ndarray], np.ndarray],
+    to_values: Callable[[np.ndarray], np.ndarray],
+) -> PlaneFit:
+    """The planes of a map, one after another by random trials.
+
+    Args:
+        sample: the numbers.
+        to_affine: turns numbers into what is affine on planes.
+        to_values: turns that back, so that residuals of all readings are in the numbers' own unit.
+    """
+    random = np.random.default_rng(_SEED)
+    basis = np.stack([sample.x, sample.y, np.ones_like(sample.x)], axis=1)
+    affine, spread = to_affine(sample.values), sample.spread
+    left = np.ones(len(affine), bool)
+    found, shares, explained = [], [], np.zeros(len(TOLERANCES))
+    for _ in range(MAX_PLANES):
+        if left.sum() < max(30, MIN_NEW_SHARE * len(left)):
+            break
+        best = _best_plane(basis, affine, sample.values, left, spread, to_values, random)
+        if best is None:
+            break
+        plane, off = best
+        hits = np.array([(off[left] < t).sum() for t in TOLERANCES]) / len(left)
+        if hits.mean() < MIN_NEW_SHARE:
+            break
+        explained += hits
+        found.append(plane)
+        shares.append(float((off[left] < TOLERANCES[-1]).sum() / len(left)))
+        left &= off >= TOLERANCES[-1]
+    planes = np.array(found).reshape(-1, 3)
+    return PlaneFit(float(explained.mean()), planes, np.array(shares))
+
+
+def _best_plane(
+    basis: np.ndarray,
+    affine: np.ndarray,
+    values: np.ndarray,
+    left: np.ndarray,
+    spread: float,
+    to_values: Callable[[np.ndarray], np.ndarray],
+    random: np.random.Generator,
+) -> tuple[np.ndarray, np.ndarray] | None:
+    """The affine function that most of the remaining points lie on, refined, and everybody's distance from it."""
+    index = np.flatnonzero(left)
+    first = random.choice(index, TRIALS)
+    others = _near(basis, index, first, random)
+    triples = np.stack([first, *others], axis=1)
+    system = basis[triples]
+    good = np.abs(np.linalg.det(system)) > 1e-5
+    if not good.any():
+        return None
+    planes = np.linalg.solve(system[good], affine[triples[good]][..., None])[..., 0]
+    few = index[:: max(1, len(index) // 800)]
+    off = np.abs(to_values_at(to_values, basis[few] @ planes.T, few) - values[few, None]) / spread
+    score = sum((off < t).sum(axis=0) for t in TOLERANCES)
+    plane = planes[int(np.argmax(score))]
+    for tolerance in (TOLERANCES[-1], TOLERANCES[-2], TOLERANCES[-2]):
+        near = left & (_off(basis, plane, values, spread, to_values) < tolerance)
+        if near.sum() < 12:
+            break
+        plane = np.linalg.lstsq(basis[near], affine[near], rcond=None)[0]
+    return plane, _off(basis, plane, values, spread, to_values)
+
+
+def _near(basis: np.ndarray, index: np.ndarray, first: np.ndarray, random: np.random.Generator) -> list[np.ndarray]:
+    """Two further points for each first one, of several tries those that are nearest in the picture but not beside."""
+    tries = random.choice(index, (2, 6, len(first)))
+    distance = np.linalg.norm(basis[tries, :2] - basis[first, :2], axis=-1)
+    distance = np.where(distance > _REACH, distance + 1.0, -distance)
+    chosen = np.argmin(distance, axis=1)
+    return [tries[k, chosen[k], np.arange(len(first))] for k in range(2)]
+
+
+def to_values_at(to_values: Callable[[np.ndarray], np.ndarray], affine: np.ndarray, index: np.ndarray) -> np.ndarray:
+    """`to_values` of many planes at some points."""
+    return to_values(affine) if not hasattr(to_values, "at") else to_values.at(affine, index)
+
+
+def _off(
+    basis: np.ndarray,
+    plane: np.ndarray,
+    values: np.ndarray,
+    spread: float,
+    to_values: Callable[[np.ndarray], np.ndarray],
+) -> np.ndarray:
+    return np.abs(to_values(basis @ plane) - values) / spread

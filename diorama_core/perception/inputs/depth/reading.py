@@ -1,0 +1,265 @@
+"""Reading measured depth: what the file is, what its numbers mean, how long their unit is; missing is 0 afterwards."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import Literal
+
+import numpy as np
+from jaxtyping import Bool, Float32, Shaped
+
+from diorama_core.artefacts import Box, LabelledBox
+from diorama_core.errors import InputError
+from diorama_core.perception.inputs.depth.containers import DEPTH_FORMS, DepthContent, RawDepth
+from diorama_core.perception.inputs.depth.kinds import (
+    CONTRADICTION,
+    MIN_ORDER,
+    DepthKind,
+    DepthReading,
+    depth_readings,
+    rays_of,
+)
+from diorama_core.perception.inputs.depth.relative import metric_depth
+from diorama_core.perception.inputs.depth.scale import focal_of_planes, scale_evidence
+from diorama_core.perception.inputs.depth.units import unit_of
+from diorama_core.perception.inputs.depth.voids import measured
+from diorama_core.perception.inputs.form import form_of
+from diorama_core.perception.inputs.photos.reading import DecodedPhoto
+from diorama_core.perception.inputs.source import Source
+from diorama_core.scene.types import Intrinsics
+
+DepthEncoding = Literal["linear", "sunrgbd"]
+"""How a PNG's 16 bits mean distance: as they are, or rotated by three bits as in SUN RGB-D."""
+
+FARTHEST_M = 80.0
+"""Larger values mean that the sensor measured nothing."""
+ROOM_MEDIAN_M = (0.15, 20.0)
+"""Median depth of a photo of a room; outside, the unit is wrong."""
+MIN_COVERAGE = 0.01
+LOW_COVERAGE = 0.2
+CONTRADICTING_PLANES = 0.08
+"""Share of pixels by which inverse depth forms more planes, from which it would have to be what is given."""
+MIN_PIXELS = 1500
+"""Measured, from which a map is looked at: fewer do not show what planes are."""
+MORE_PLANES = 0.015
+"""Share of pixels by which planes must speak for another reading, whatever near and far say."""
+MILLIMETRES = 1000.0
+
+
+@dataclass(frozen=True)
+class DepthOptions:
+    """What a person says of a depth map."""
+
+    per_metre: float | None = None
+    """Units per metre; None for millimetres of whole numbers and metres of others, unless the picture contradicts."""
+    encoding: DepthEncoding = "linear"
+    kind: DepthKind = "auto"
+
+
+def read_depth(
+    source: Source,
+    options: DepthOptions,
+    photo: DecodedPhoto,
+    boxes: tuple[LabelledBox, ...] = (),
+    intrinsics: Intrinsics | None = None,
+) -> tuple[Float32[np.ndarray, "h w"], tuple[str, ...]]:
+    """Depth in metres at the photo's size, 0 where missing, and what was understood.
+
+    Args:
+        source: the file.
+        options: what its user says of it.
+        photo: over which it lies.
+        boxes: named things, whose sizes tell the unit.
+        intrinsics: of the photo, where they are known.
+
+    Raises:
+        InputError: when it is no depth, contradicts the picture, or its proportions are not the photo's.
+    """
+    scale = options.per_metre
+    if scale is not None and (not np.isfinite(scale) or scale <= 0):
+        raise InputError(f"--depth-scale {scale:g}: give a positive number of units per metre, 1000 for millimetres")
+    size = (photo.photo.width, photo.photo.height)
+    raw = _raw(source, photo)
+    values, laid = photo.frame.laid_over(source.name, "depth", raw.values)
+    if options.encoding == "sunrgbd" and not raw.is_float:
+        values = _unrotated(values)
+    valid, voids = measured(values, is_float=raw.is_float)
+    if valid.sum() <= MIN_COVERAGE * valid.size:
+        raise InputError(f"{source.name}: the depth is empty or nearly so; leave it out or choose another file")
+    with np.errstate(invalid="ignore", over="ignore"):
+        numbers = np.where(valid, values, 0).astype(np.float32)
+    depth, understood = _understood(source.name, numbers, valid, raw, options, _Scene.of(photo, boxes, intrinsics))
+    coverage = _check_plausible(source.name, depth, values, raw, options)
+    resized, coarse = _at_size(depth, size)
+    resized.setflags(write=False)
+    return resized, (*raw.notes, *laid, *voids, *understood, *coverage, *coarse)
+
+
+@dataclass(frozen=True)
+class _Scene:
+    """What is known beside the depth: named things in shares of the longer side, and the focal length over it."""
+
+    boxes: tuple[LabelledBox, ...]
+    focal: float | None
+
+    @classmethod
+    def of(cls, photo: DecodedPhoto, boxes: tuple[LabelledBox, ...], intrinsics: Intrinsics | None) -> _Scene:
+        """In shares of the photo's longer side."""
+        side = max(photo.photo.width, photo.photo.height)
+        shares = tuple(replace(b, box=_shares(b.box, side)) for b in boxes)
+        stated = photo.photo.exif_focal_px if intrinsics is None else intrinsics.fx
+        focal = None if stated is None else stated / side
+        return cls(shares, focal)
+
+
+def _shares(box: Box, side: int) -> Box:
+    x1, y1, x2, y2 = box
+    return x1 / side, y1 / side, x2 / side, y2 / side
+
+
+def _raw(source: Source, photo: DecodedPhoto) -> RawDepth:
+    content = DepthContent(source, photo.frame.inner_size)
+    form = form_of(DEPTH_FORMS, content)
+    if form is None:
+        raise InputError(f"{source.name}: {_what_it_is(source)}; save depth as 16-bit PNG, .npy in metres, or EXR")
+    return form.read(content)
+
+
+def _what_it_is(source: Source) -> str:
+    data = source.data
+    if data.startswith(b"\x89HDF"):
+        return "this is an HDF5 file"
+    if data.startswith(b"MATLAB"):
+        return "this is a MATLAB file"
+    if data.startswith(b"PK\x03\x04"):
+        return "this is an archive, not a depth map"
+    if source.suffix in (".raw", ".bin", ".dat"):
+        return f"a dump of {len(data)} bytes has not the photo's proportions, or is of numbers that are not read"
+    return "this is not a picture or array of depth"
+
+
+def _understood(
+    name: str,
+    numbers: Float32[np.ndarray, "h w"],
+    valid: Bool[np.ndarray, "h w"],
+    raw: RawDepth,
+    options: DepthOptions,
+    scene: _Scene,
+) -> tuple[Float32[np.ndarray, "h w"], tuple[str, ...]]:
+    """The numbers as metres along the optical axis."""
+    stated = 1.0 if raw.is_float else MILLIMETRES
+    told = options.kind == "depth" and options.per_metre is not None
+    if told or (options.kind == "auto" and valid.sum() < MIN_PIXELS):
+        return _in_metres(numbers, options.per_metre or stated), ()
+    readings = depth_readings(numbers, valid, scene.boxes, scene.focal)
+    reading, notes = _chosen(name, readings, raw, options.kind)
+    if reading.kind == "inverse":
+        depth, more = metric_depth(name, numbers, valid, reading.fit, scene.boxes, scene.focal)
+        return depth.astype(np.float32), (*notes, *more)
+    along = numbers
+    if reading.kind == "distance" and reading.focal is not None:
+        along = (numbers / rays_of(numbers.shape[0], numbers.shape[1], reading.focal)).astype(np.float32)
+    focal = scene.focal or reading.focal or focal_of_planes(reading.fit)
+    unit = unit_of(scale_evidence(along, valid, reading.fit, focal, scene.boxes), options.per_metre or stated)
+    if options.per_metre is not None:
+        doubt = f"{unit.note or unit.question}".split("; ")[0]
+        notes += (f"{doubt}: check --depth-scale",) if unit.note or unit.question else ()
+        return _in_metres(along, options.per_metre), notes
+    if unit.question:
+        raise InputError(f"{name}: {unit.question}")
+    return _in_metres(along, unit.per_metre), (*notes, *([unit.note] if unit.note else []))
+
+
+def _in_metres(numbers: Float32[np.ndarray, "h w"], per_metre: float) -> Float32[np.ndarray, "h w"]:
+    return numbers if per_metre == 1.0 else (numbers / np.float64(per_metre)).astype(np.float32)
+
+
+def _chosen(
+    name: str, readings: tuple[DepthReading, ...], raw: RawDepth, kind: DepthKind
+) -> tuple[DepthReading, tuple[str, ...]]:
+    """The reading that is used, and what to say about it.
+
+    Raises:
+        InputError: the map is inverse depth, or contradicts the picture.
+    """
+    best, of_kind = readings[0], {r.kind: r for r in readings}
+    if kind != "auto":
+        given = of_kind[kind]
+        against = best.score - given.score > CONTRADICTION
+        note = f"{name} was read as {_WORDS[kind]} as asked, but its planes look like {_WORDS[best.kind]}"
+        return given, (note,) if against else ()
+    if raw.stated_kind == "inverse" and best.kind != "inverse":
+        best = of_kind["inverse"]
+    flat, order = of_kind["inverse"].fit.explained - of_kind["depth"].fit.explained, of_kind["inverse"].order
+    if flat > CONTRADICTING_PLANES and order < MIN_ORDER:
+        raise InputError(
+            f"{name}: this contradicts the picture: walls and floor are not flat, near and far are not the photo's; "
+            "give z in the camera, or say what it is by --depth-kind"
+        )
+    clearly = (
+        best.score - of_kind["depth"].score > CONTRADICTION / 2
+        and best.fit.explained > of_kind["depth"].fit.explained + MORE_PLANES
+    )
+    if best.kind == "depth" or not clearly:
+        return of_kind["depth"], ()
+    if best.kind == "distance":
+        note = f"{name} holds distances along the rays, not along the optical axis: only so are walls and floor flat"
+        return best, (note + "; they were converted (--depth-kind depth keeps them)",)
+    raise InputError(
+        f"{name}: this is inverse depth or disparity (larger is nearer), which has no unit; give metric depth, or add "
+        "--depth-kind inverse to fit it to the things' usual sizes"
+    )
+
+
+_WORDS = {"depth": "depth along the optical axis", "distance": "distances along the rays", "inverse": "inverse depth"}
+
+
+def _unrotated(values: Shaped[np.ndarray, "*n"]) -> Shaped[np.ndarray, "*n"]:
+    """SUN RGB-D's storage undone: the 16 bits were rotated left by three."""
+    v = values.astype(np.uint32)
+    return (((v >> 3) | (v << 13)) & 0xFFFF).astype(np.uint16)
+
+
+def _check_plausible(
+    name: str,
+    depth_m: Float32[np.ndarray, "h w"],
+    raw: Shaped[np.ndarray, "h w"],
+    about: RawDepth,
+    options: DepthOptions,
+) -> tuple[str, ...]:
+    """A note about little coverage; what is too far is dropped in place."""
+    valid = depth_m[depth_m > 0]
+    median = float(np.median(valid))
+    if not ROOM_MEDIAN_M[0] <= median <= ROOM_MEDIAN_M[1]:
+        raise InputError(f"{name}: {_unit_advice(median, raw, about, options)}")
+    depth_m[depth_m > FARTHEST_M] = 0.0
+    if valid.size < LOW_COVERAGE * depth_m.size:
+        return (f"only {100 * valid.size / depth_m.size:.0f} % of the depth is measured",)
+    return ()
+
+
+def _unit_advice(median: float, raw: Shaped[np.ndarray, "h w"], about: RawDepth, options: DepthOptions) -> str:
+    read_as = f"read this way the middle depth is {median:.3g} m, which is no room"
+    if about.is_float and options.per_metre is None:
+        return f"{read_as}; the numbers must be metres, or give their units per metre by --depth-scale"
+    scale = options.per_metre or MILLIMETRES
+    if options.encoding == "linear" and not about.is_float:
+        turned = _unrotated(raw[raw > 0]) / scale
+        if ROOM_MEDIAN_M[0] <= float(np.median(turned)) <= ROOM_MEDIAN_M[1] and median > ROOM_MEDIAN_M[1]:
+            return f"{read_as}; it looks like SUN RGB-D's rotated bits: add --depth-encoding sunrgbd"
+    return f"{read_as}; set --depth-scale (units per metre, now {scale:g}) or --depth-encoding"
+
+
+def _at_size(
+    depth_m: Float32[np.ndarray, "h w"], photo_size: tuple[int, int]
+) -> tuple[Float32[np.ndarray, "_ _"], tuple[str, ...]]:
+    """Nearest neighbour, so that no depth is invented between a chair's edge and the wall behind it."""
+    height, width = depth_m.shape
+    if (width, height) == photo_size:
+        return depth_m, ()
+    import cv2  # the editor opens without it
+
+    resized = cv2.resize(np.ascontiguousarray(depth_m), photo_size, interpolation=cv2.INTER_NEAREST_EXACT)
+    if width * 2 < photo_size[0]:
+        return resized, (f"the depth ({width} x {height}) is much coarser than the photo",)
+    return resized, ()

@@ -1,0 +1,86 @@
+"""Which of the usual units a depth map has, by what the picture says of its scale."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from diorama_core.perception.inputs.depth.scale import ScaleEvidence
+
+USUAL_UNITS = {
+    1.0: "metres", 1000.0: "millimetres", 5000.0: "1/5000 m, as in TUM RGB-D", 4000.0: "1/4000 m",
+    256.0: "1/256 m", 100.0: "centimetres", 10000.0: "1/10000 m", 8000.0: "1/8000 m", 500.0: "1/500 m",
+    2000.0: "1/2000 m", 10.0: "decimetres", 39.37: "inches", 3.2808: "feet", 6553.5: "1/6553.5 m",
+    25.5: "1/25.5 m", 1000000.0: "micrometres", 512.0: "1/512 m", 128.0: "1/128 m", 200.0: "1/200 m",
+    250.0: "1/250 m", 50.0: "1/50 m",
+}  # fmt: skip
+"""Units per metre of sensors and data sets."""
+STATED_PRIOR = 4.5
+"""Nats for the unit that the container has: metres of floats, millimetres of whole numbers."""
+CONTRADICTED_BY = float(np.log(1.8))
+"""Factor beyond which the picture contradicts a unit: rooms of unusual things measure up to 1.5."""
+CERTAIN_NATS = 1.2
+"""By which one unit must be likelier than all others to be used; otherwise it is asked for."""
+TOLERANCE = 0.11
+"""Deviation of the evidence's logarithm from the true one, beside its own sigma's half: measured on known rooms."""
+MIN_THINGS = 3
+
+
+@dataclass(frozen=True)
+class Unit:
+    """Units per metre, and what to tell."""
+
+    per_metre: float
+    note: str = ""
+    question: str = ""
+    """Why the unit cannot be told, and what to give; empty where it can."""
+
+
+def unit_of(evidence: ScaleEvidence | None, stated: float) -> Unit:
+    """The unit of a map.
+
+    Args:
+        evidence: how many metres a unit is, by the picture; None where it says nothing.
+        stated: units per metre that the container has.
+    """
+    if evidence is None or evidence.things < MIN_THINGS:
+        return Unit(stated, _doubtful_height(evidence, stated))
+    seen = -evidence.log_scale
+    off = abs(seen - np.log(stated))
+    if off < CONTRADICTED_BY or off < 3.0 * evidence.sigma:
+        return Unit(stated)
+    sigma = float(np.hypot(TOLERANCE, evidence.sigma / 2))
+    nats = {u: -0.5 * ((seen - np.log(u)) / sigma) ** 2 for u in USUAL_UNITS}
+    likely = sorted(nats, key=lambda u: -nats[u])[:2]
+    height = None if evidence.floor_height is None else evidence.floor_height / stated
+    wrong = _words(stated, float(np.exp(seen)) / stated, height)
+    if nats[likely[0]] < -4.5:
+        return Unit(stated, question=f"{wrong}; its unit is unknown: give --depth-scale {np.exp(seen):.3g} or so")
+    if nats[likely[0]] - nats[likely[1]] < CERTAIN_NATS:
+        best, other = likely
+        return Unit(
+            stated,
+            question=f"{wrong}; give --depth-scale {best:g} ({USUAL_UNITS[best]}) or --depth-scale {other:g}",
+        )
+    best = likely[0]
+    return Unit(best, f"{wrong}; it was read as {USUAL_UNITS[best]} (--depth-scale {best:g})")
+
+
+def _words(stated: float, factor: float, height: float | None) -> str:
+    unit = USUAL_UNITS.get(stated, f"1/{stated:g} m")
+    camera = "" if height is None else f" and the camera {height:.1f} m above the floor"
+    times = f"{factor:.1f} times" if factor > 1 else f"1/{1 / factor:.1f} of"
+    return f"read in {unit}, things have {times} their usual size{camera}"
+
+
+def _doubtful_height(evidence: ScaleEvidence | None, stated: float) -> str:
+    """A note where only the floor says something, and nobody holds a camera so high or low."""
+    if evidence is None or evidence.floor_height is None:
+        return ""
+    height = evidence.floor_height / stated
+    if 0.4 <= height <= 3.2:
+        return ""
+    return (
+        f"by this depth the camera is {height:.1f} m above the floor; if that is wrong, give its unit by --depth-scale"
+    )

@@ -1,0 +1,138 @@
+"""Masks in one picture: a colour or a number for each object, a palette, a cut-out, or pages."""
+
+from __future__ import annotations
+
+import numpy as np
+from jaxtyping import Bool, Int32, Shaped
+from PIL import Image
+
+from diorama_core.errors import InputError
+from diorama_core.perception.inputs.masks.stack import MaskMap, painted
+from diorama_core.perception.inputs.photos.decoding import load_pixels, open_picture
+from diorama_core.perception.inputs.source import Source
+
+MAX_MASK_MEGAPIXELS = 40
+MAX_PAGES = 600
+EXACT_FORMATS = ("PNG", "TIFF", "BMP", "GIF", "WEBP", "PPM")
+VOC_VOID = 224 << 16 | 224 << 8 | 192
+"""The colour of Pascal VOC's palette for pixels that belong to nobody."""
+SMALL_ID = 128
+"""Ids of objects below it leave the type's largest number free to mean nothing."""
+DENSE = 3
+"""Ids are counted up, not chosen, where there are at least a third of so many as the largest says."""
+THIN_SHARE = 0.012
+"""Of the longer side: half the width up to which a region is an outline."""
+CUT_OUT_COLOURS = 256
+"""Under transparency more colours than these are a photo's."""
+
+
+def read_picture(source: Source) -> MaskMap:
+    """The objects of one picture.
+
+    Raises:
+        InputError: it is no picture, damaged, or of a format that blurs colours.
+    """
+    picture = open_picture(source, "mask", MAX_MASK_MEGAPIXELS)
+    if picture.format not in EXACT_FORMATS:
+        raise InputError(f"{source.name}: masks need exact colours, which {picture.format} blurs; save them as PNG")
+    if picture.format == "TIFF" and getattr(picture, "n_frames", 1) > 1:
+        return painted(_pages(picture, source), source.name, "pages")
+    load_pixels(picture, source, "mask")
+    try:
+        return _of_picture(picture, source.name)
+    except (ValueError, OSError, TypeError) as error:  # a palette that is not whole
+        raise InputError(f"{source.name}: the masks are damaged; save them again as PNG") from error
+
+
+def one_object(source: Source) -> Bool[np.ndarray, "h w"]:
+    """The object of a picture that shows only one: white on black, or cut out of the photo by transparency.
+
+    Raises:
+        InputError: it is no such picture.
+    """
+    picture = load_pixels(open_picture(source, "mask", MAX_MASK_MEGAPIXELS), source, "mask")
+    if picture.mode in ("RGBA", "LA", "PA") or "transparency" in picture.info:
+        alpha = np.asarray(picture.convert("RGBA").getchannel("A"))
+        if alpha.min() < 128:
+            return np.asarray(alpha >= 128)
+    grey = np.asarray(picture.convert("L") if picture.mode in ("1", "P", "RGB", "RGBA", "LA", "PA") else picture)
+    most = grey.max()
+    return np.asarray(grey > (most / 2 if most > 1 else 0))
+
+
+def _of_picture(picture: Image.Image, name: str) -> MaskMap:
+    if picture.mode == "P" and "transparency" not in picture.info:
+        return _palette(picture)
+    if picture.mode in ("RGBA", "LA", "PA", "P"):
+        rgba = np.array(picture.convert("RGBA"))
+        hidden = rgba[..., 3] < 128
+        if hidden.any() and len(np.unique(_numbers(rgba[..., :3])[~hidden])) > CUT_OUT_COLOURS:
+            note = f"{name} is one object cut out of the photo; its transparency is the mask"
+            return MaskMap((~hidden).astype(np.int32), (note,))
+        rgba[hidden] = 0
+        return MaskMap(_numbers(rgba[..., :3]))
+    pixels = np.asarray(picture.convert("L") if picture.mode == "1" else picture)
+    if pixels.ndim == 3:
+        return MaskMap(_numbers(pixels))
+    return without_void(pixels.astype(np.int32), int(np.iinfo(pixels.dtype).max) if pixels.dtype.kind in "iu" else 255)
+
+
+def _palette(picture: Image.Image) -> MaskMap:
+    """A palette's colours decide, unless two of its numbers look alike or none of them is black."""
+    indices = np.asarray(picture).astype(np.int32)
+    colours = _numbers(np.asarray(picture.convert("RGB")))
+    used = np.unique(indices)
+    shown = [int(colours.flat[int(np.argmax(indices == k))]) for k in used]
+    if len(set(shown)) < len(shown):
+        return without_void(indices, 255)
+    if 255 in used and VOC_VOID in shown:
+        hit = colours == VOC_VOID
+        return MaskMap(np.where(hit, 0, colours), _void_note(255, hit))
+    ids = without_void(indices, 255)
+    if ids.notes:  # 255 along the outlines of small ids, whatever its colour
+        return MaskMap(np.where(ids.values == 0, 0, colours) if 0 in shown else ids.values, ids.notes)
+    return MaskMap(colours if 0 in shown else indices)
+
+
+def without_void(ids: Int32[np.ndarray, "h w"], most: int) -> MaskMap:
+    """Ids without the type's largest number, where it marks pixels that belong to nobody.
+
+    Args:
+        ids: 0 is background.
+        most: the largest number that the file's type has.
+    """
+    void = ids == most
+    others = np.unique(ids[~void & (ids != 0)])
+    if not void.any() or not len(others) or others.max() >= SMALL_ID:
+        return MaskMap(ids)
+    if DENSE * len(others) < others.max() and not _is_thin(void):
+        return MaskMap(ids)
+    return MaskMap(np.where(void, 0, ids), _void_note(most, void))
+
+
+def _is_thin(region: Bool[np.ndarray, "h w"]) -> bool:
+    import cv2  # the editor opens without it
+
+    inside = cv2.distanceTransform(region.astype(np.uint8), cv2.DIST_L2, 3)
+    return float(np.percentile(inside[region], 95)) <= max(3.0, THIN_SHARE * max(region.shape))
+
+
+def _void_note(number: int, void: Bool[np.ndarray, "h w"]) -> tuple[str, ...]:
+    return (f"the number {number} of the masks ({void.mean():.0%}) means that pixels belong to nobody",)
+
+
+def _numbers(rgb: Shaped[np.ndarray, "h w c"]) -> Int32[np.ndarray, "h w"]:
+    """One number per colour, 0 for black."""
+    colours = rgb[..., :3].astype(np.int32)
+    return (colours[..., 0] << 16) | (colours[..., 1] << 8) | colours[..., 2]
+
+
+def _pages(picture: Image.Image, source: Source) -> list[Bool[np.ndarray, "h w"]]:
+    pages = []
+    try:
+        for page in range(min(int(getattr(picture, "n_frames", 1)), MAX_PAGES)):
+            picture.seek(page)
+            pages.append(np.asarray(picture.convert("L")) > 0)
+    except Exception as error:  # a damaged page raises almost anything
+        raise InputError(f"{source.name}: one of its pages is damaged; save the masks again") from error
+    return pages

@@ -1,0 +1,129 @@
+"""Reading instance masks, and telling which mask belongs to which box."""
+
+from __future__ import annotations
+
+import numpy as np
+from jaxtyping import Int32, Shaped
+
+from diorama_core.artefacts import Box, LabelledBox
+from diorama_core.errors import InputError
+from diorama_core.geometry.projection import box_iou
+from diorama_core.library.taxonomy import UNKNOWN
+from diorama_core.perception.inputs.form import form_of
+from diorama_core.perception.inputs.masks.table import MASK_FORMS
+from diorama_core.perception.inputs.photos.reading import DecodedPhoto
+from diorama_core.perception.inputs.source import Folder, Source
+
+MAX_OBJECTS = 500
+SPECK_SHARE = 1e-4
+"""An instance or a loose piece of one smaller than this share of the picture is a speck."""
+MIN_SPECK_PX = 20
+SOFT_COLOURS, SOFT_SHARE, SOFT_WIDTH_PX = 12, 0.1, 4.0
+"""Of smoothed outlines: how many colours there are at least, of how much of the picture, and how wide at most."""
+InstanceBoxes = tuple[tuple[int, LabelledBox], ...]
+
+
+def read_masks(
+    source: Folder | Source, boxes: tuple[LabelledBox, ...], photo: DecodedPhoto
+) -> tuple[Int32[np.ndarray, "h w"], InstanceBoxes, tuple[str, ...]]:
+    """The instance map at the photo's size, each instance's box and class, and warnings worth showing.
+
+    Ids run from 1 in the order in which instances are met from the top left.
+
+    Raises:
+        InputError: no masks in any form, of other proportions, or without any instance.
+    """
+    form = form_of(MASK_FORMS, source)
+    assert form is not None  # the last form takes any file
+    found = form.read(source)
+    values, laid = photo.frame.laid_over(source.name, "mask", found.values)
+    size = (photo.photo.width, photo.photo.height)
+    if (values.shape[1], values.shape[0]) != size:
+        values = _resized(values, size)
+    instances, dropped = _without_specks(source.name, with_hard_edges(values))
+    notes = (f"{dropped} specks of the masks were dropped",) if dropped else ()
+    instances.setflags(write=False)
+    return instances, match_instances(instances, boxes), (*found.notes, *laid, *notes)
+
+
+def with_hard_edges(values: Int32[np.ndarray, "h w"]) -> Int32[np.ndarray, "h w"]:
+    """Many colours between few, as smoothed outlines have them, given to the nearest of the few."""
+    _, inverse, counts = np.unique(values, return_inverse=True, return_counts=True)
+    large = counts >= max(MIN_SPECK_PX, SPECK_SHARE * values.size)
+    share = float(counts[~large].sum()) / values.size
+    if np.count_nonzero(~large) < SOFT_COLOURS or not large.any() or share > SOFT_SHARE:
+        return values
+    from scipy.ndimage import distance_transform_edt  # the editor opens without it
+
+    soft = ~large[inverse.reshape(values.shape)]
+    distance, (rows, columns) = distance_transform_edt(soft, return_indices=True)
+    if float(np.percentile(distance[soft], 95)) > SOFT_WIDTH_PX:
+        return values
+    return values[rows, columns]
+
+
+def _resized(values: Shaped[np.ndarray, "h w *c"], size: tuple[int, int]) -> Shaped[np.ndarray, "h2 w2 *c"]:
+    """Nearest neighbour by pixel centres."""
+    rows = ((np.arange(size[1]) + 0.5) * values.shape[0] / size[1]).astype(int)
+    columns = ((np.arange(size[0]) + 0.5) * values.shape[1] / size[0]).astype(int)
+    return values[rows[:, None], columns[None, :]]
+
+
+def _without_specks(name: str, values: Int32[np.ndarray, "h w"]) -> tuple[Int32[np.ndarray, "h w"], int]:
+    """Instances numbered from 1 without specks, and how many specks were dropped."""
+    least = max(MIN_SPECK_PX, int(SPECK_SHARE * values.size))
+    ids, first, counts = np.unique(values, return_index=True, return_counts=True)
+    large = [(f, int(i)) for i, f, c in zip(ids, first, counts, strict=True) if i != 0 and c >= least]
+    foreground = int(counts[ids != 0].sum())
+    in_specks = int(counts[(ids != 0) & (counts < least)].sum())
+    if in_specks > 0.2 * foreground or len(large) > MAX_OBJECTS:
+        raise InputError(f"{name}: {len(ids)} colours are no instance mask; give one plain colour per object on black")
+    instances = np.zeros(values.shape, dtype=np.int32)
+    dropped = int((counts[ids != 0] < least).sum())
+    for _, value in sorted(large):
+        retained, pieces = _large_pieces((values == value).astype(np.uint8), least)
+        dropped += pieces
+        if retained.any():
+            instances[retained] = instances.max() + 1
+    if not instances.any():
+        raise InputError(f"{name}: the masks hold no object; paint each object in its own colour on black")
+    return instances, dropped
+
+
+def _large_pieces(mask: np.ndarray, least: int) -> tuple[np.ndarray, int]:
+    """The mask without its loose specks, and how many there were."""
+    import cv2  # the editor opens without it
+
+    count, labels, stats, _ = cv2.connectedComponentsWithStats(mask, connectivity=8)
+    small = [k for k in range(1, count) if stats[k, cv2.CC_STAT_AREA] < least]
+    return (labels > 0) & ~np.isin(labels, small), len(small)
+
+
+def match_instances(instances: Int32[np.ndarray, "h w"], boxes: tuple[LabelledBox, ...]) -> InstanceBoxes:
+    """Each instance with the class of the box it overlaps most; "object" where it overlaps none.
+
+    The overlap is that of the mask's bounding box (IoU), so that a sofa's mask is not taken by the pillow's box inside
+    it. A box goes whole to the mask that overlaps it most; further masks of the same box keep their own extent.
+    """
+    own = {k: _extent(instances == k) for k in range(1, int(instances.max()) + 1)}
+    best: dict[int, tuple[float, int]] = {}
+    given = np.array([b.box for b in boxes], dtype=np.float64).reshape(-1, 4)
+    for k, extent in own.items():
+        overlaps = box_iou(np.array(extent), given)
+        if overlaps.size and overlaps.max() > 0:
+            best[k] = (float(overlaps.max()), int(overlaps.argmax()))
+    matched: list[tuple[int, LabelledBox]] = []
+    for k, extent in own.items():
+        if k not in best:
+            matched.append((k, LabelledBox(extent, UNKNOWN.name, UNKNOWN.name)))
+            continue
+        score, index = best[k]
+        box = boxes[index]
+        is_owner = all(o == k or i != index or (s, -o) < (score, -k) for o, (s, i) in best.items())
+        matched.append((k, box if is_owner else LabelledBox(extent, box.category, box.label, box.score)))
+    return tuple(matched)
+
+
+def _extent(mask: np.ndarray) -> Box:
+    rows, columns = np.flatnonzero(mask.any(axis=1)), np.flatnonzero(mask.any(axis=0))
+    return float(columns[0]), float(rows[0]), float(columns[-1] + 1), float(rows[-1] + 1)

@@ -1,0 +1,51 @@
+"""COCO's run lengths: counts of pixels out of and in the mask by turns, column by column, plain or packed as text."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+from jaxtyping import Bool
+
+from diorama_core.errors import InputError
+from diorama_core.perception.inputs.masks.pictures import MAX_MASK_MEGAPIXELS
+
+
+def decoded_runs(segment: Mapping[str, Any], name: str) -> Bool[np.ndarray, "h w"]:
+    """The mask of an object with `size` (height, width) and `counts`.
+
+    Raises:
+        InputError: the counts do not make up the size.
+    """
+    size, counts = segment.get("size"), segment.get("counts")
+    try:
+        height, width = (int(n) for n in size)  # type: ignore[union-attr]
+        runs = _unpacked(counts) if isinstance(counts, str) else [int(n) for n in counts]  # type: ignore[union-attr]
+    except (TypeError, ValueError, OverflowError):
+        raise InputError(f"{name}: its run lengths are damaged; export the masks again") from None
+    if height <= 0 or width <= 0 or height * width > MAX_MASK_MEGAPIXELS * 1_000_000:
+        raise InputError(f"{name}: masks of {width} x {height} pixels are no usable size; give those of the photo")
+    if min(runs, default=0) < 0 or sum(runs) != height * width:
+        raise InputError(f"{name}: run lengths of {sum(runs)} pixels are not those of {width} x {height}; export again")
+    inside = np.arange(len(runs)) % 2 == 1
+    return np.repeat(inside, runs).reshape(width, height).T
+
+
+def _unpacked(text: str) -> list[int]:
+    """The counts of COCO's text: five bits a character, lowest first, from the third count on as differences."""
+    runs: list[int] = []
+    value, shift = 0, 0
+    for letter in text:
+        bits = ord(letter) - 48
+        if not 0 <= bits < 64 or shift > 40:
+            raise ValueError(text)
+        value |= (bits & 0x1F) << shift
+        shift += 5
+        if bits & 0x20:
+            continue
+        if bits & 0x10:
+            value -= 1 << shift
+        runs.append(value + runs[-2] if len(runs) > 2 else value)
+        value, shift = 0, 0
+    return runs

@@ -1,0 +1,1 @@
+"""Photos: decoded, upright, eight bits, without frames."""

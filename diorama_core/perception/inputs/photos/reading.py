@@ -1,0 +1,202 @@
+"""Whatever a person hands in as a photo becomes an upright 8-bit RGB picture without a border, or one clear line."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from jaxtyping import UInt8
+from PIL import Image
+
+from diorama_core.artefacts import Photo
+from diorama_core.errors import InputError
+from diorama_core.perception.camera.exif import focal_from_exif
+from diorama_core.perception.inputs.photos.bits import dark_colours, eight_bits
+from diorama_core.perception.inputs.photos.borders import plain_borders
+from diorama_core.perception.inputs.photos.decoding import load_pixels, open_picture
+from diorama_core.perception.inputs.photos.frame import PhotoFrame
+from diorama_core.perception.inputs.photos.panoramas import check_perspective
+from diorama_core.perception.inputs.photos.raw import largest_picture, raw_kind
+from diorama_core.perception.inputs.source import Source
+
+MIN_SIDE_PX = 32
+MAX_ASPECT = 8.0
+BLACK_LEVEL = 12
+"""Of 255: a photo whose brightest hundredth is below shows nothing."""
+
+_EXIF_DIRECTORY = 0x8769
+_ORIENTATION = 0x0112
+_AVERAGED = ("RGB", "RGBA", "L", "LA", "CMYK", "YCbCr")
+
+
+@dataclass(frozen=True, eq=False)
+class DecodedPhoto:
+    """The photo, where its pixels are in the file, and what to tell the user."""
+
+    photo: Photo
+    frame: PhotoFrame
+    notes: tuple[str, ...] = ()
+
+
+def read_photo(source: Source, max_side: int) -> DecodedPhoto:
+    """The upright photo, reduced to `max_side`.
+
+    Raises:
+        InputError: when it cannot be used; the message says why.
+    """
+    notes: tuple[str, ...] = ()
+    orientation, kind = None, raw_kind(source.data)
+    if kind is not None:
+        source, orientation, notes = largest_picture(source, kind)
+    picture, more = _largest_page(open_picture(source), source)
+    raw_size = picture.size
+    picture.draft(None, (2 * max_side, 2 * max_side))  # JPEG decodes straight to a fraction of its size
+    load_pixels(picture, source)
+    exif = _exif(picture)
+    orientation = _orientation(exif) if orientation is None or _ORIENTATION in exif else orientation
+    upright = _upright(picture, orientation)
+    original = (raw_size[1], raw_size[0]) if orientation >= 5 else raw_size
+    _check_shape(source.name, original)
+    focal = focal_from_exif(exif, *original)
+    notes += more + check_perspective(source.name, upright, exif, has_focal=focal is not None)
+    brighter, more = dark_colours(upright, source)
+    rgb, bits = _to_rgb(_coarser(brighter, max_side), source.name)
+    reduced, smaller = _reduced(rgb, original, max_side)
+    frame = PhotoFrame(original, (0, 0, 0, 0), orientation)
+    reduced, frame, cut = _without_border(reduced, frame)
+    if any(frame.margins):
+        focal = focal_from_exif(exif, *frame.inner_size)
+    photo = Photo(
+        rgb=reduced,
+        name=source.name,
+        original_size=frame.inner_size,
+        exif_focal_px=None if focal is None else focal * max(reduced.shape[:2]) / max(frame.inner_size),
+        offset=frame.margins[:2] if any(frame.margins) else None,
+    )
+    return DecodedPhoto(photo, frame, (*notes, *more, *bits, *smaller, *cut, *_darkness(reduced)))
+
+
+def _largest_page(picture: Image.Image, source: Source) -> tuple[Image.Image, tuple[str, ...]]:
+    """Of a file of several pictures the largest, the first of equals; other formats than TIFF hold frames of a film."""
+    count = int(getattr(picture, "n_frames", 1) or 1) if picture.format in ("TIFF", "GIF", "WEBP", "PNG") else 1
+    if count < 2:
+        return picture, ()
+    if picture.format != "TIFF":
+        return picture, (f"the file holds {count} pictures; the first is used",)
+    try:
+        sizes = []
+        for page in range(min(count, 64)):
+            picture.seek(page)
+            sizes.append(picture.width * picture.height)
+        largest = int(np.argmax(sizes))
+        picture = open_picture(source)
+        picture.seek(largest)
+    except Exception as error:  # a damaged page raises almost anything
+        raise InputError(f"{source.name}: one of its {count} pictures is damaged; save the photo alone") from error
+    return picture, (
+        f"the file holds {count} pictures; number {largest + 1}, {picture.width} x {picture.height}, is used",
+    )
+
+
+def _exif(picture: Image.Image) -> Mapping[int, Any]:
+    """The header's tags, the Exif sub-directory included; empty where there is none or it is damaged."""
+    try:
+        base = picture.getexif()
+        return {**dict(base), **dict(base.get_ifd(_EXIF_DIRECTORY))}
+    except Exception:  # a damaged header must not cost the picture
+        return {}
+
+
+def _orientation(exif: Mapping[int, Any]) -> int:
+    value = exif.get(_ORIENTATION)
+    return value if isinstance(value, int) and 1 <= value <= 8 else 1
+
+
+_TRANSPOSED = {
+    2: Image.Transpose.FLIP_LEFT_RIGHT,
+    3: Image.Transpose.ROTATE_180,
+    4: Image.Transpose.FLIP_TOP_BOTTOM,
+    5: Image.Transpose.TRANSPOSE,
+    6: Image.Transpose.ROTATE_270,
+    7: Image.Transpose.TRANSVERSE,
+    8: Image.Transpose.ROTATE_90,
+}
+
+
+def _upright(picture: Image.Image, orientation: int) -> Image.Image:
+    return picture.transpose(_TRANSPOSED[orientation]) if orientation in _TRANSPOSED else picture
+
+
+def _coarser(picture: Image.Image, max_side: int) -> Image.Image:
+    """A very large picture averaged down to no less than twice what is asked for, before anything copies it."""
+    factor = max(picture.size) // (2 * max_side)
+    return picture.reduce(factor) if factor > 1 and picture.mode in _AVERAGED else picture
+
+
+def _check_shape(name: str, size: tuple[int, int]) -> None:
+    width, height = size
+    if min(size) < MIN_SIDE_PX:
+        raise InputError(
+            f"{name}: {width} x {height} pixels are too few; at least {MIN_SIDE_PX} on each side are needed"
+        )
+    if max(size) > MAX_ASPECT * min(size):
+        raise InputError(f"{name}: {width} x {height} is a strip, not a photo of a room; crop it to the room")
+
+
+def _to_rgb(picture: Image.Image, name: str) -> tuple[Image.Image, tuple[str, ...]]:
+    """Eight bits and three channels from any mode; transparency is laid on white, as viewers show it."""
+    if picture.mode == "F":
+        raise InputError(f"{name}: a picture of floating-point numbers is not a photo; save it with 8 bits per channel")
+    if picture.mode.startswith("I"):
+        eight, notes = eight_bits(np.asarray(picture))
+        return Image.fromarray(eight).convert("RGB"), notes
+    if picture.mode in ("RGBA", "LA", "PA", "RGBa", "La") or "transparency" in picture.info:
+        rgba = picture.convert("RGBA")
+        if rgba.getchannel("A").getextrema()[0] == 255:
+            return rgba.convert("RGB"), ()
+        white = Image.new("RGBA", rgba.size, (255, 255, 255, 255))
+        note = "the photo is partly transparent; it was laid on white"
+        return Image.alpha_composite(white, rgba).convert("RGB"), (note,)
+    return picture.convert("RGB"), ()
+
+
+def _reduced(
+    rgb: Image.Image, original: tuple[int, int], max_side: int
+) -> tuple[UInt8[np.ndarray, "h w 3"], tuple[str, ...]]:
+    factor = min(1.0, max_side / max(original))
+    size = (max(1, round(original[0] * factor)), max(1, round(original[1] * factor)))
+    small = rgb if rgb.size == size else rgb.resize(size, Image.Resampling.LANCZOS)
+    array = np.array(small, dtype=np.uint8)
+    array.setflags(write=False)
+    if factor == 1.0:
+        return array, ()
+    return array, (f"the photo was reduced from {original[0]} x {original[1]} to {size[0]} x {size[1]} pixels",)
+
+
+def _without_border(
+    rgb: UInt8[np.ndarray, "h w 3"], frame: PhotoFrame
+) -> tuple[UInt8[np.ndarray, "h2 w2 3"], PhotoFrame, tuple[str, ...]]:
+    """The photo without a plain border, and the note that it was cut off."""
+    margins = plain_borders(rgb)
+    if margins is None:
+        return rgb, frame, ()
+    left, top, right, bottom = margins
+    height, width = rgb.shape[:2]
+    if min(width - left - right, height - top - bottom) < MIN_SIDE_PX:
+        return rgb, frame, ()
+    inner = np.ascontiguousarray(rgb[top : height - bottom, left : width - right])
+    inner.setflags(write=False)
+    scale = frame.full_size[0] / width
+    left, top, right, bottom = (round(m * scale) for m in margins)
+    cut = PhotoFrame(frame.full_size, (left, top, right, bottom), frame.orientation)
+    words = f"left {left}, top {top}, right {right}, bottom {bottom} pixels"
+    return inner, cut, (f"a plain border around the photo was cut off ({words})",)
+
+
+def _darkness(rgb: UInt8[np.ndarray, "h w 3"]) -> tuple[str, ...]:
+    coarse = rgb[::4, ::4]
+    if float(np.percentile(coarse, 99)) >= BLACK_LEVEL:
+        return ()
+    return ("the photo is nearly black; little can be seen in it",)
