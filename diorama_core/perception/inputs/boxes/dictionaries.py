@@ -15,7 +15,8 @@ MAX_COORDINATE = 1e9
 MAX_WORD = 200
 _LISTS: tuple[tuple[str, Layout], ...] = (
     ("bbox", "corners"), ("box", "corners"), ("xyxy", "corners"), ("bboxxyxy", "corners"), ("boxxyxy", "corners"),
-    ("bbox2d", "corners"), ("rect", "corners"), ("xywh", "sized"), ("bboxxywh", "sized"), ("boundingbox", "sized"),
+    ("bbox2d", "corners"), ("box2d", "corners"), ("rect", "corners"), ("xywh", "sized"), ("bboxxywh", "sized"),
+    ("boundingbox", "sized"),
     ("boundingrect", "sized"), ("cxcywh", "centred"), ("coordinates", "corners"), ("bndbox", "corners"),
 )  # fmt: skip
 """Keys (lower case, letters and digits only) of four numbers. fiftyone's `bounding_box` holds width and height."""

@@ -12,6 +12,9 @@ from diorama_core.perception.inputs.boxes.dictionaries import box_of, keys_of, s
 from diorama_core.perception.inputs.boxes.entry import BoxEntry, BoxFile, BoxText
 from diorama_core.perception.inputs.boxes.lists import size_in
 
+MAX_NESTING = 8
+"""Of the results of a task: a task, its annotations, their results, each in a list."""
+
 
 def is_labelme(text: BoxText) -> bool:
     """A JSON object with `shapes` that have points."""
@@ -112,7 +115,7 @@ def _task_of(text: BoxText) -> object:
 
 
 def _studio_results(value: object, level: int = 0) -> Iterator[dict[str, Any]]:
-    if level > 4:
+    if level > MAX_NESTING:
         return
     if isinstance(value, list):
         for inner in value:

@@ -108,7 +108,7 @@ def read_npz(content: DepthContent) -> RawDepth:
     key = known or next(iter(maps))
     values, notes = one_channel(maps[key], name)
     kind = "inverse" if key in _RELATIVE_NAMES else None
-    values, more = _trusted(values, maps, key)
+    values, more = _trusted(values, read, key)
     return RawDepth(values, values.dtype.kind == "f", (*notes, *more), kind)
 
 
@@ -238,11 +238,11 @@ def _array(data: bytes, name: str) -> np.ndarray:
 
 
 def _trusted(
-    values: Shaped[np.ndarray, "h w"], maps: dict[str, np.ndarray], key: str
+    values: Shaped[np.ndarray, "h w"], arrays: dict[str, np.ndarray], key: str
 ) -> tuple[Shaped[np.ndarray, "h w"], tuple[str, ...]]:
     """The map without the pixels that a mask of the same file excludes."""
     for name in ("mask", "valid", "valid_mask"):
-        mask = np.squeeze(maps[name]) if name in maps and name != key else None
+        mask = np.squeeze(arrays[name]) if name in arrays and name != key else None
         if mask is not None and mask.shape == values.shape and 0 < np.count_nonzero(mask) < mask.size:
             return np.where(mask != 0, values, 0), (f"{np.mean(mask == 0):.0%} of the depth is excluded by its {name}",)
     return values, ()

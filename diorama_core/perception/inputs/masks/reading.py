@@ -48,16 +48,22 @@ def read_masks(
 
 def with_hard_edges(values: Int32[np.ndarray, "h w"]) -> Int32[np.ndarray, "h w"]:
     """Many colours between few, as smoothed outlines have them, given to the nearest of the few."""
-    _, inverse, counts = np.unique(values, return_inverse=True, return_counts=True)
-    large = counts >= max(MIN_SPECK_PX, SPECK_SHARE * values.size)
-    share = float(counts[~large].sum()) / values.size
-    if np.count_nonzero(~large) < SOFT_COLOURS or not large.any() or share > SOFT_SHARE:
+    ids, inverse = np.unique(values, return_inverse=True)
+    if len(ids) < SOFT_COLOURS:
+        return values
+    inner = np.s_[1:-1, 1:-1]
+    filled = np.ones(values[inner].shape, bool)
+    for down, across in ((0, 1), (2, 1), (1, 0), (1, 2), (0, 0), (2, 2), (0, 2), (2, 0)):
+        beside = values[down : down + filled.shape[0], across : across + filled.shape[1]]
+        filled &= beside == values[inner]
+    # The colours of smoothed outlines nowhere fill three by three pixels.
+    hard = np.isin(ids, values[inner][filled])[inverse.reshape(values.shape)]
+    if np.count_nonzero(~np.isin(ids, values[hard])) < SOFT_COLOURS or not 0.0 < (~hard).mean() <= SOFT_SHARE:
         return values
     from scipy.ndimage import distance_transform_edt  # the editor opens without it
 
-    soft = ~large[inverse.reshape(values.shape)]
-    distance, (rows, columns) = distance_transform_edt(soft, return_indices=True)
-    if float(np.percentile(distance[soft], 95)) > SOFT_WIDTH_PX:
+    distance, (rows, columns) = distance_transform_edt(~hard, return_indices=True)
+    if float(np.percentile(distance[~hard], 95)) > SOFT_WIDTH_PX:
         return values
     return values[rows, columns]
 

@@ -1,0 +1,262 @@
+"""Every form of boxes is recognised by its content, and gives the same boxes."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+
+from diorama_core.errors import InputError
+from diorama_core.perception.inputs.boxes import data_sets, lines, lists, markup, tools
+from diorama_core.perception.inputs.boxes.dictionaries import box_of, word_of
+from diorama_core.perception.inputs.boxes.reading import read_boxes
+from diorama_core.perception.inputs.boxes.table import BOX_FORMS, parsed
+from diorama_core.perception.inputs.form import form_of
+from diorama_core.perception.inputs.source import Source
+from tests.perception.inputs.files import decoded
+
+SIZE = (400, 300)
+BOXES = [(20, 30, 120, 230, "chair"), (200, 60, 380, 280, "sofa")]
+
+
+def sized(x1: float, y1: float, x2: float, y2: float) -> list[float]:
+    return [x1, y1, x2 - x1, y2 - y1]
+
+
+def shares(x1: float, y1: float, x2: float, y2: float) -> list[float]:
+    return [(x1 + x2) / 800, (y1 + y2) / 600, (x2 - x1) / 400, (y2 - y1) / 300]
+
+
+def rows(write):
+    return [write(*b) for b in BOXES]
+
+
+COCO = {
+    "images": [{"id": 7, "file_name": "photo.png", "width": 400, "height": 300}],
+    "categories": [{"id": 1, "name": "chair"}, {"id": 2, "name": "sofa"}],
+    "annotations": [
+        {"image_id": 7, "category_id": k + 1, "bbox": sized(*b[:4]), "iscrowd": 0, "area": 1}
+        for k, b in enumerate(BOXES)
+    ],
+}
+STUDIO = [
+    {
+        "data": {"image": "photo.png"},
+        "annotations": [
+            {
+                "result": [
+                    {
+                        "original_width": 400,
+                        "original_height": 300,
+                        "type": "rectanglelabels",
+                        "value": {
+                            "x": b[0] / 4,
+                            "y": b[1] / 3,
+                            "width": (b[2] - b[0]) / 4,
+                            "height": (b[3] - b[1]) / 3,
+                            "rectanglelabels": [b[4]],
+                        },
+                    }
+                    for b in BOXES
+                ]
+            }
+        ],
+    }
+]
+VIA = {
+    "photo.png1234": {
+        "filename": "photo.png",
+        "regions": rows(
+            lambda x1, y1, x2, y2, w: {
+                "shape_attributes": {"name": "rect", "x": x1, "y": y1, "width": x2 - x1, "height": y2 - y1},
+                "region_attributes": {"thing": w},
+            }
+        ),
+    }
+}
+LABELME = {
+    "shapes": rows(lambda x1, y1, x2, y2, w: {"label": w, "points": [[x2, y1], [x1, y2]], "shape_type": "rectangle"}),
+    "imageWidth": 400,
+    "imageHeight": 300,
+}
+VOC = "<annotation><size><width>400</width><height>300</height></size>{}</annotation>".format(
+    "".join(
+        rows(
+            lambda x1, y1, x2, y2, w: (
+                f"<object><name>{w}</name><bndbox><xmin>{x1 + 1}</xmin><ymin>{y1 + 1}</ymin><xmax>{x2}</xmax>"
+                f"<ymax>{y2}</ymax></bndbox></object>"
+            )
+        )
+    )
+)
+CVAT = '<annotations><image name="photo.png" width="400" height="300">{}</image></annotations>'.format(
+    "".join(rows(lambda x1, y1, x2, y2, w: f'<box label="{w}" xtl="{x1}" ytl="{y1}" xbr="{x2}" ybr="{y2}"/>'))
+)
+ROBOFLOW = {
+    "predictions": rows(
+        lambda x1, y1, x2, y2, w: {
+            "x": (x1 + x2) / 2, "y": (y1 + y2) / 2, "width": x2 - x1, "height": y2 - y1, "class": w, "confidence": 0.9,
+        }
+    ),
+    "image": {"width": 400, "height": 300},
+}  # fmt: skip
+CREATE_ML = {
+    "image": "photo.png",
+    "annotations": rows(
+        lambda x1, y1, x2, y2, w: {
+            "label": w,
+            "coordinates": {"x": (x1 + x2) / 2, "y": (y1 + y2) / 2, "width": x2 - x1, "height": y2 - y1},
+        }
+    ),
+}
+REKOGNITION = {
+    "Labels": [
+        {
+            "Name": "x",
+            "Instances": rows(
+                lambda x1, y1, x2, y2, w: {
+                    "Name": w,
+                    "BoundingBox": {
+                        "Left": x1 / 400, "Top": y1 / 300, "Width": (x2 - x1) / 400, "Height": (y2 - y1) / 300,
+                    },
+                }
+            ),
+        }
+    ]
+}  # fmt: skip
+COLUMNS = {"boxes": [list(b[:4]) for b in BOXES], "labels": ["chair", "sofa"], "scores": [0.9, 0.8]}
+TABLE = "filename,width,height,class,xmin,ymin,xmax,ymax\n" + "\n".join(
+    rows(lambda x1, y1, x2, y2, w: f"photo.png,400,300,{w},{x1},{y1},{x2},{y2}")
+)
+KITTI = "\n".join(rows(lambda x1, y1, x2, y2, w: f"{w} 0.0 0 0.0 {x1} {y1} {x2} {y2} 0 0 0 0 0 0 0"))
+
+FORMS = [
+    ("COCO data set", COCO),
+    ("LabelMe", LABELME),
+    ("Label Studio", STUDIO),
+    ("VGG Image Annotator", VIA),
+    ("list of boxes", rows(lambda x1, y1, x2, y2, w: {"bbox": [x1, y1, x2, y2], "class": w})),
+    ("list of boxes", rows(lambda a, b, c, d, w: {"label": w, "box": {"xmin": a, "ymin": b, "xmax": c, "ymax": d}})),
+    ("list of boxes", rows(lambda a, b, c, d, w: {"box_2d": [b / 0.3, a / 0.4, d / 0.3, c / 0.4], "label": w})),
+    (
+        "list of boxes",
+        rows(lambda a, b, c, d, w: {"bounding_box": [a / 400, b / 300, (c - a) / 400, (d - b) / 300], "label": w}),
+    ),
+    ("columns of boxes", COLUMNS),
+    ("columns of boxes", {"<OD>": {"bboxes": COLUMNS["boxes"], "labels": COLUMNS["labels"]}}),
+    ("object with a list of boxes", ROBOFLOW),
+    ("object with a list of boxes", CREATE_ML),
+    ("object with a list of boxes", REKOGNITION),
+    ("Pascal VOC", VOC),
+    ("CVAT", CVAT),
+    ("table of boxes", TABLE),
+    ("words and numbers", KITTI),
+]  # fmt: skip
+
+
+RECOGNISED_BY = {
+    "COCO data set": data_sets.is_data_set,
+    "LabelMe": tools.is_labelme,
+    "Label Studio": tools.is_label_studio,
+    "VGG Image Annotator": tools.is_via,
+    "list of boxes": lists.is_list,
+    "columns of boxes": lists.is_columns,
+    "object with a list of boxes": lists.is_wrapped,
+    "Pascal VOC": markup.is_voc,
+    "CVAT": markup.is_cvat,
+    "table of boxes": lines.is_table,
+    "words and numbers": lines.is_words,
+}
+
+
+@pytest.mark.parametrize("name", RECOGNISED_BY)
+def test_each_form_knows_its_own_files(name: str) -> None:
+    for written, document in FORMS:
+        text = parsed(Source(content(document), "file"), "photo.png", SIZE)
+        if written == name:
+            assert RECOGNISED_BY[name](text)
+    for strange in ("[]", "{}", "<a/>", "one line of text", "[[1]]", '[{"a": 1}]', '{"shapes": 1}'):
+        assert not RECOGNISED_BY[name](parsed(Source(strange.encode(), "file"), "photo.png", SIZE))
+
+
+def content(document: object) -> bytes:
+    return (document if isinstance(document, str) else json.dumps(document)).encode()
+
+
+@pytest.mark.parametrize(("name", "document"), FORMS, ids=[f"{k}-{n}" for k, (n, _) in enumerate(FORMS)])
+def test_every_form_gives_the_same_boxes(name: str, document: object) -> None:
+    source = Source(content(document), "file")
+    form = form_of(BOX_FORMS, parsed(source, "photo.png", SIZE))
+    assert form is not None
+    assert form.name == name
+    found, _ = read_boxes(source, decoded(*SIZE))
+    assert [b.label for b in found] == ["chair", "sofa"]
+    for box, (*expected, _) in zip(found, BOXES, strict=True):
+        assert box.box == pytest.approx(expected, abs=1e-6)
+
+
+def test_yolo_takes_its_names_from_the_file_beside(tmp_path: Path) -> None:
+    lines = "\n".join(f"{k} " + " ".join(f"{v:.6f}" for v in shares(*b[:4])) for k, b in enumerate(BOXES))
+    path = tmp_path / "labels.txt"
+    path.write_text(lines)
+    nameless, notes = read_boxes(Source(lines.encode(), path.name, path), decoded(*SIZE))
+    assert {b.label for b in nameless} == {"object"}
+    assert "classes.txt" in notes[0]
+    (tmp_path / "data.yaml").write_text("path: x\nnames:\n  0: chair\n  1: sofa\n")
+    found, notes = read_boxes(Source(lines.encode(), path.name, path), decoded(*SIZE))
+    assert [b.label for b in found] == ["chair", "sofa"]
+    assert notes == ()
+    assert found[1].box == pytest.approx(BOXES[1][:4], abs=0.01)
+
+
+def test_coco_results_are_sized_and_say_where_names_are(tmp_path: Path) -> None:
+    results = [{"image_id": 1, "category_id": k + 1, "bbox": sized(*b[:4]), "score": 0.5} for k, b in enumerate(BOXES)]
+    path = tmp_path / "results.json"
+    path.write_bytes(json.dumps(results).encode())
+    source = Source(path.read_bytes(), path.name, path)
+    found, notes = read_boxes(source, decoded(*SIZE))
+    assert found[0].box == BOXES[0][:4]
+    assert "`categories`" in notes[0]
+    (tmp_path / "instances.json").write_text(json.dumps(COCO))
+    named, _ = read_boxes(source, decoded(*SIZE))
+    assert [b.label for b in named] == ["chair", "sofa"]
+
+
+def test_a_data_set_of_many_pictures_gives_the_photo_s() -> None:
+    other = {"id": 8, "file_name": "other.png", "width": 10, "height": 10}
+    many = {**COCO, "images": [*COCO["images"], other]}
+    found, notes = read_boxes(Source(json.dumps(many).encode(), "c.json"), decoded(*SIZE))
+    assert len(found) == 2
+    assert "2 pictures" in notes[0]
+    with pytest.raises(InputError, match="none of them called"):
+        read_boxes(Source(json.dumps({**many, "images": [other, other]}).encode(), "c.json"), decoded(*SIZE))
+
+
+def test_names_under_unusual_keys_are_used_or_named() -> None:
+    known = [
+        {"bbox": [1, 1, 60, 60], "thing": "chair", "id": "a17"},
+        {"bbox": [9, 9, 80, 80], "thing": "sofa", "id": "b2"},
+    ]
+    found, notes = read_boxes(Source(json.dumps(known).encode(), "b.json"), decoded(*SIZE))
+    assert [b.label for b in found] == ["chair", "sofa"]
+    assert "'thing'" in notes[0]
+    unknown = [{"bbox": [1, 1, 60, 60], "note": "qwxz"}]
+    found, notes = read_boxes(Source(json.dumps(unknown).encode(), "b.json"), decoded(*SIZE))
+    assert found[0].label == "object"
+    assert "'note'" in notes[0]
+
+
+@pytest.mark.parametrize("document", ["<svg/>", "hello world", {"a": 1}, [1, 2], [{"x": "y"}]])
+def test_what_is_no_file_of_boxes_is_refused_with_an_example(document: object) -> None:
+    with pytest.raises(InputError, match="boxes are a JSON list"):
+        read_boxes(Source(content(document), "b"), decoded(*SIZE))
+
+
+def test_one_annotation_in_anybody_s_words() -> None:
+    assert word_of({"labelName": "sofa"}) == word_of({"type": "rectangle", "category_name": "sofa"}) == "sofa"
+    assert word_of({"category_id": 3}, {3: "lamp"}) == "lamp"
+    assert box_of({"boundingBox": {"Left": 1, "Top": 2, "Width": 3, "Height": 4}}, "") == (1, 2, 4, 6)
+    assert box_of({"polygon": [[1, 2], [5, 3], [2, 9]]}, "") == (1, 2, 5, 9)
+    assert box_of({"cx": 5, "cy": 5, "w": 2, "h": 4}, "") == (4, 3, 6, 7)
+    assert box_of({"name": "x"}, "") is None

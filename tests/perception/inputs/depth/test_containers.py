@@ -1,0 +1,98 @@
+"""The containers of depth give the same numbers."""
+
+from __future__ import annotations
+
+import io
+
+import numpy as np
+import pytest
+from PIL import Image
+
+from diorama_core.errors import InputError
+from diorama_core.perception.inputs.depth.channels import one_channel
+from diorama_core.perception.inputs.depth.containers import DEPTH_FORMS, DepthContent, RawDepth
+from diorama_core.perception.inputs.form import form_of
+from diorama_core.perception.inputs.source import Source
+from tests.perception.inputs.depth.rooms import FOCAL, HEIGHT, WIDTH, room
+from tests.perception.inputs.files import encoded, npy
+
+DEPTH, _ = room()
+MILLIMETRES = (DEPTH * 1000).astype(np.uint16)
+
+
+def read(data: bytes, name: str = "depth") -> RawDepth:
+    content = DepthContent(Source(data, name), (WIDTH * 4, HEIGHT * 4))
+    form = form_of(DEPTH_FORMS, content)
+    assert form is not None
+    return form.read(content)
+
+
+def archive(**arrays: np.ndarray) -> bytes:
+    stream = io.BytesIO()
+    np.savez(stream, **arrays)
+    return stream.getvalue()
+
+
+def point_map(*order: int) -> np.ndarray:
+    x = (np.arange(WIDTH) + 0.5 - WIDTH / 2) / WIDTH / FOCAL
+    y = (np.arange(HEIGHT) + 0.5 - HEIGHT / 2) / WIDTH / FOCAL
+    points = np.stack([DEPTH * x, DEPTH * y[:, None], DEPTH], axis=-1)
+    return np.ascontiguousarray(points[..., list(order)] if order else points)
+
+
+@pytest.mark.parametrize(
+    "data",
+    [
+        npy(DEPTH),
+        npy(DEPTH[None, None]),
+        npy(DEPTH[..., None].astype(np.float64)),
+        archive(depth=DEPTH, focallength_px=np.float32(500)),
+        archive(anything=DEPTH),
+        archive(depth=DEPTH, rgb=np.zeros((*DEPTH.shape, 3), np.uint8)),
+        encoded(Image.fromarray(DEPTH), "TIFF"),
+        DEPTH.tobytes(),
+        npy(point_map()),
+        npy(-point_map() * [-1, 1, 1]),
+        npy(np.moveaxis(point_map(), -1, 0)),
+        npy(point_map(2, 0, 1)),
+    ],
+)
+def test_floats(data: bytes) -> None:
+    found = read(data)
+    assert found.is_float
+    np.testing.assert_allclose(found.values, DEPTH, rtol=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("data", "name"),
+    [
+        (npy(MILLIMETRES), "d.npy"),
+        (npy(MILLIMETRES.astype(np.int32)), "d.npy"),
+        (archive(depth=MILLIMETRES), "d.npz"),
+        (encoded(Image.fromarray(MILLIMETRES)), "d.png"),
+        (encoded(Image.fromarray(MILLIMETRES), "TIFF"), "d.tif"),
+        (MILLIMETRES.tobytes(), "d.raw"),
+        (MILLIMETRES.astype(">u2").tobytes(), "d.bin"),
+    ],
+)
+def test_whole_numbers(data: bytes, name: str) -> None:
+    found = read(data, name)
+    assert not found.is_float
+    np.testing.assert_array_equal(found.values, MILLIMETRES)
+
+
+def test_a_mask_in_the_archive_is_kept_to_and_disparity_is_called_so() -> None:
+    mask = np.ones(DEPTH.shape, bool)
+    mask[:30] = False
+    assert (read(archive(depth=DEPTH, mask=mask)).values[:30] == 0).all()
+    assert read(archive(disparity=1 / DEPTH)).stated_kind == "inverse"
+
+
+def test_what_does_not_say_which_is_depth_is_refused() -> None:
+    with pytest.raises(InputError, match="which of its arrays"):
+        read(archive(a=DEPTH, b=DEPTH))
+    with pytest.raises(InputError, match="colours for the eye"):
+        read(encoded(Image.fromarray(np.stack([MILLIMETRES % 255] * 2 + [MILLIMETRES % 7], axis=-1).astype(np.uint8))))
+    with pytest.raises(InputError, match="two-dimensional"):
+        one_channel(np.random.default_rng(0).random((HEIGHT, WIDTH, 3)), "d")
+    assert form_of(DEPTH_FORMS, DepthContent(Source(b"hello", "d.raw"), (4, 3))) is None

@@ -1,0 +1,175 @@
+"""Every form of masks gives the same objects."""
+
+from __future__ import annotations
+
+import io
+import json
+import zipfile
+from pathlib import Path
+
+import numpy as np
+import pytest
+from PIL import Image
+
+from diorama_core.errors import InputError
+from diorama_core.perception.inputs.form import form_of
+from diorama_core.perception.inputs.masks.files import read_arrays, read_folder_of_masks, read_segments
+from diorama_core.perception.inputs.masks.pictures import VOC_VOID, read_picture, without_void
+from diorama_core.perception.inputs.masks.reading import read_masks
+from diorama_core.perception.inputs.masks.run_lengths import decoded_runs
+from diorama_core.perception.inputs.masks.stack import painted
+from diorama_core.perception.inputs.masks.table import MASK_FORMS
+from diorama_core.perception.inputs.source import Folder, Source, read_folder
+from tests.perception.inputs.files import decoded, encoded, npy
+
+HEIGHT, WIDTH = 90, 120
+LARGE, SMALL = np.zeros((HEIGHT, WIDTH), bool), np.zeros((HEIGHT, WIDTH), bool)
+LARGE[10:80, 10:90] = True
+SMALL[30:60, 50:110] = True
+IDS = np.where(SMALL, 2, np.where(LARGE, 1, 0)).astype(np.uint8)
+RGB = np.zeros((HEIGHT, WIDTH, 3), np.uint8)
+RGB[LARGE], RGB[SMALL] = (200, 30, 30), (30, 200, 30)
+
+
+def found(given: Source | Folder) -> np.ndarray:
+    return read_masks(given, (), decoded(WIDTH, HEIGHT))[0]
+
+
+def picture(image: Image.Image, name: str = "m.png", **options) -> Source:
+    return Source(encoded(image, **options), name)
+
+
+def palette(indices: np.ndarray, colours: list[tuple[int, int, int]]) -> Image.Image:
+    image = Image.fromarray(indices.astype(np.uint8), "P")
+    image.putpalette([v for c in colours for v in c])
+    return image
+
+
+def outline(mask: np.ndarray) -> np.ndarray:
+    import cv2
+
+    return cv2.dilate(mask.astype(np.uint8), np.ones((5, 5))) != cv2.erode(mask.astype(np.uint8), np.ones((5, 5)))
+
+
+def test_a_palette_s_colours_decide_not_its_order() -> None:
+    colours = [(200, 30, 30), (30, 200, 30), (0, 0, 0)]
+    np.testing.assert_array_equal(found(picture(palette((IDS + 2) % 3, colours))), found(picture(Image.fromarray(RGB))))
+
+
+def test_a_palette_without_black_or_of_equal_colours_is_ids() -> None:
+    for colours in ([(70, 1, 84), (30, 200, 30), (250, 230, 30)], [(9, 9, 9)] * 3):
+        np.testing.assert_array_equal(found(picture(palette(IDS, colours))), IDS)
+
+
+@pytest.mark.parametrize("colour", [(224, 224, 192), (255, 255, 255)])
+@pytest.mark.parametrize("ids", [(1, 2), (9, 15)])
+def test_void_outlines_belong_to_nobody(colour, ids) -> None:
+    values = np.choose(IDS, (0, *ids))
+    void = outline(LARGE) | outline(SMALL)
+    values = np.where(void, 255, values)
+    colours = [(k, 3 * k % 255, 7 * k % 255) for k in range(255)] + [colour]
+    for image in (palette(values, colours), Image.fromarray(values.astype(np.uint8))):
+        instances = found(picture(image))
+        assert instances.max() == 2
+        assert (instances[void] == 0).all()
+
+
+def test_chosen_ids_and_white_on_black_are_objects() -> None:
+    for ids in ((100, 255), (255, 7)):
+        assert without_void(np.choose(IDS, (0, *ids)).astype(np.int32), 255).notes == ()
+    assert found(picture(Image.fromarray(LARGE.astype(np.uint8) * 255))).max() == 1
+    assert VOC_VOID == 0xE0E0C0
+
+
+def test_a_cut_out_is_one_object() -> None:
+    noise = np.random.default_rng(0).integers(0, 255, (HEIGHT, WIDTH, 3)).astype(np.uint8)
+    rgba = np.dstack([noise, LARGE.astype(np.uint8) * 255])
+    np.testing.assert_array_equal(found(picture(Image.fromarray(rgba))) > 0, LARGE)
+
+
+def test_folders_archives_and_pages_of_masks(tmp_path: Path) -> None:
+    content = {"0.png": SMALL, "1.png": LARGE}
+    for name, mask in content.items():
+        (tmp_path / name).write_bytes(encoded(Image.fromarray(mask.astype(np.uint8) * 255)))
+    (tmp_path / "metadata.csv").write_text("id,area\n")
+    stream = io.BytesIO()
+    with zipfile.ZipFile(stream, "w") as archive:
+        for name in content:
+            archive.write(tmp_path / name, f"masks/{name}")
+    pages = [Image.fromarray(m.astype(np.uint8) * 255) for m in content.values()]
+    tiff = Source(encoded(pages[0], "TIFF", save_all=True, append_images=pages[1:]), "m.tif")
+    for given in (read_folder(tmp_path, "masks"), read_folder(stream.getvalue(), "masks"), tiff):
+        np.testing.assert_array_equal(found(given), IDS)
+    folder = read_folder(tmp_path, "masks")
+    assert isinstance(folder, Folder)
+    assert "smaller one is in front" in read_folder_of_masks(folder).notes[0]
+
+
+@pytest.mark.parametrize(
+    "array", [IDS, IDS.astype(np.int64), np.stack([LARGE, SMALL]), np.stack([LARGE, SMALL], axis=-1), IDS.astype(float)]
+)
+def test_arrays(array: np.ndarray) -> None:
+    np.testing.assert_array_equal(found(Source(npy(array), "m.npy")), IDS)
+    stream = io.BytesIO()
+    np.savez(stream, masks=array, scores=np.ones(2))
+    assert read_arrays(Source(stream.getvalue(), "m.npz")).values.max() == 2
+
+
+def packed(runs: list[int]) -> str:
+    """COCO's text, as its API writes it."""
+    text = ""
+    for k, run in enumerate(runs):
+        value = run - runs[k - 2] if k > 2 else run
+        more = True
+        while more:
+            bits = value & 0x1F
+            value >>= 5
+            more = value != -1 if bits & 0x10 else value != 0
+            text += chr((bits | 0x20 if more else bits) + 48)
+    return text
+
+
+def runs_of(mask: np.ndarray) -> list[int]:
+    flat = mask.T.ravel()
+    changes = np.flatnonzero(np.diff(flat)) + 1
+    runs = np.diff([0, *changes, flat.size]).tolist()
+    return [0, *runs] if flat[0] else runs
+
+
+@pytest.mark.parametrize("as_text", [True, False])
+def test_run_lengths(as_text: bool) -> None:
+    segments = [{"size": [HEIGHT, WIDTH], "counts": (packed if as_text else list)(runs_of(m))} for m in (LARGE, SMALL)]
+    np.testing.assert_array_equal(decoded_runs(segments[0], "m"), LARGE)
+    automatic = [{"segmentation": s, "area": 1, "predicted_iou": 0.9} for s in segments]
+    np.testing.assert_array_equal(found(Source(json.dumps(automatic).encode(), "m.json")), IDS)
+    with pytest.raises(InputError, match="run lengths"):
+        decoded_runs({"size": [4, 4], "counts": [3, 2]}, "m")
+
+
+def test_polygons_need_the_size_of_the_picture() -> None:
+    shapes = [{"label": "x", "shape_type": "polygon", "points": [[10, 10], [89, 10], [89, 79], [10, 79]]}]
+    document = {"shapes": shapes, "imageWidth": WIDTH, "imageHeight": HEIGHT}
+    np.testing.assert_array_equal(read_segments(Source(json.dumps(document).encode(), "m")).values > 0, LARGE)
+    with pytest.raises(InputError, match="need the size"):
+        read_segments(Source(json.dumps({"shapes": shapes}).encode(), "m"))
+
+
+def test_smoothed_outlines_are_given_to_what_is_beside() -> None:
+    import cv2
+
+    soft = cv2.GaussianBlur(RGB, (3, 3), 0)
+    hard = found(picture(Image.fromarray(RGB)))
+    instances = found(picture(Image.fromarray(soft)))
+    assert instances.max() == 2
+    assert ((instances == hard).mean()) > 0.97
+
+
+def test_forms_and_refusals() -> None:
+    assert form_of(MASK_FORMS, Source(b"[1]", "m")).name == "segments in JSON"
+    for given in (Source(b"[1]", "m.json"), Folder("empty", ())):
+        with pytest.raises(InputError, match="no mask"):
+            found(given)
+    with pytest.raises(InputError, match="different sizes"):
+        painted([np.ones((2, 2), bool), np.ones((3, 2), bool)], "m", "masks")
+    with pytest.raises(InputError, match="exact colours"):
+        read_picture(Source(encoded(Image.fromarray(RGB), "JPEG"), "m.jpg"))
