@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
-from jaxtyping import Int32, Shaped
+from jaxtyping import Bool, Int32, Shaped
 
 from diorama_core.artefacts import Box, LabelledBox
 from diorama_core.errors import InputError
@@ -51,13 +51,14 @@ def with_hard_edges(values: Int32[np.ndarray, "h w"]) -> Int32[np.ndarray, "h w"
     ids, inverse = np.unique(values, return_inverse=True)
     if len(ids) < SOFT_COLOURS:
         return values
-    inner = np.s_[1:-1, 1:-1]
-    filled = np.ones(values[inner].shape, bool)
+    height, width = values.shape
+    middle = values[1:-1, 1:-1]
+    filled: Bool[np.ndarray, "_ _"] = np.ones((height - 2, width - 2), bool)
     for down, across in ((0, 1), (2, 1), (1, 0), (1, 2), (0, 0), (2, 2), (0, 2), (2, 0)):
-        beside = values[down : down + filled.shape[0], across : across + filled.shape[1]]
-        filled &= beside == values[inner]
+        beside = values[down : down + height - 2, across : across + width - 2]
+        filled &= beside == middle
     # The colours of smoothed outlines nowhere fill three by three pixels.
-    hard = np.isin(ids, values[inner][filled])[inverse.reshape(values.shape)]
+    hard = np.isin(ids, middle[filled])[inverse.reshape(values.shape)]
     if np.count_nonzero(~np.isin(ids, values[hard])) < SOFT_COLOURS or not 0.0 < (~hard).mean() <= SOFT_SHARE:
         return values
     from scipy.ndimage import distance_transform_edt  # the editor opens without it
