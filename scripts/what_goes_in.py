@@ -1,4 +1,4 @@
-"""Writes the tables of docs/what-goes-in.md that are made from the readers' own tables: models, scenes and scans.
+"""Writes the tables of docs/what-goes-in.md that are made from the readers' own tables.
 
 python scripts/what_goes_in.py [--check]
 """
@@ -8,7 +8,12 @@ from __future__ import annotations
 import argparse
 import re
 import sys
+from collections.abc import Sequence
 from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from diorama_core.perception.inputs.form import Form
 
 ROOT = Path(__file__).resolve().parents[1]
 sys.path.insert(0, str(ROOT))
@@ -22,13 +27,24 @@ def tables() -> dict[str, str]:
     from diorama_core.importing.forms import SCENE_FORMS
     from diorama_core.io.other_files import OTHER_FILES
     from diorama_core.library.ingest.models import MODEL_FORMS
+    from diorama_core.perception.inputs.boxes.table import BOX_FORMS
+    from diorama_core.perception.inputs.depth.containers import DEPTH_FORMS
+    from diorama_core.perception.inputs.depth.units import USUAL_UNITS
+    from diorama_core.perception.inputs.masks.table import MASK_FORMS
+    from diorama_core.perception.inputs.photos.table import PHOTO_FORMS
 
     models = [f"| {f.name} | {', '.join(f.suffixes)} | {f.note} |" for f in MODEL_FORMS]
     scenes = [
         f"| {f.name} | {f.files} | {f.becomes}{'; ' + EXTRA.format(f.extra) if f.extra else ''} |" for f in SCENE_FORMS
     ]
     others = [f"| {f.name} | {f.advice} |" for f in OTHER_FILES]
+    given: dict[str, Sequence[Form[Any, Any]]] = {
+        "photos": PHOTO_FORMS, "boxes": BOX_FORMS, "masks": MASK_FORMS, "depth": DEPTH_FORMS
+    }  # fmt: skip
+    rows = {name: [f"| {f.name} | {f.written_by} | {f.understood} |" for f in forms] for name, forms in given.items()}
     return {
+        **{k: "\n".join(["| form | written by | what is read |", "|---|---|---|", *v]) for k, v in rows.items()},
+        "units": ", ".join(f"{scale:g} ({words})" for scale, words in USUAL_UNITS.items()) + ".",
         "models": "\n".join(["| format | endings | |", "|---|---|---|", *models]),
         "scenes": "\n".join(["| what | comes as | becomes |", "|---|---|---|", *scenes]),
         "others": "\n".join(["| what | what to do |", "|---|---|", *others]),

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import base64
 import io
+from collections.abc import Mapping
 from dataclasses import replace
 from typing import Literal
 
@@ -14,6 +15,7 @@ from PIL import Image
 
 from diorama_app.commands.registry import CommandTable
 from diorama_app.panels.fields import GO_COLOUR, enable, on_change, on_press, show_if, show_label
+from diorama_app.panels.input_questions import ask_unit, ask_which
 from diorama_app.panels.photo_boxes import PhotoBoxes, box_list
 from diorama_app.panels.upload_field import UploadField
 from diorama_app.projects.begin import begin_project
@@ -44,6 +46,8 @@ from diorama_core.errors import InputError
 from diorama_core.models.manifest import networks_of
 from diorama_core.models.store import ModelStore
 from diorama_core.perception.inputs import ReadInputs
+from diorama_core.perception.inputs.depth.units import UnknownUnitError
+from diorama_core.perception.inputs.sorting import Recognised
 
 SLOW_BYTES = 2_000_000
 """A file of more is announced while it is read."""
@@ -71,9 +75,9 @@ class PhotoPanel:
         self._drawn_by = LiveHtml(gui)
         self._more = gui.add_folder("More about this photo", expand_by_default=False)
         with self._more:
-            self._upload(gui, "boxes", "Add boxes (JSON)", ".json,application/json")
-            self._upload(gui, "depth", "Add depth (PNG or NPY)", "*/*")
-            self._upload(gui, "masks", "Add masks (PNG)", "image/png")
+            self._upload(gui, "boxes", "Add boxes", ".json,.xml,.txt,.csv")
+            self._upload(gui, "depth", "Add depth", "*/*")
+            self._upload(gui, "masks", "Add masks", "image/png,.npy,.npz,.zip,.json,.tif,.tiff")
             self._camera = gui.add_text("Camera", "", hint="fx,fy,cx,cy in pixels of the photo; empty: estimated")
             on_change(self._camera, self._camera_given)
         self._draw = gui.add_button("Draw boxes", color="blue", hint="Draw a box around each piece of furniture")
@@ -101,8 +105,22 @@ class PhotoPanel:
         on_press(self._join, lambda: client.post(lambda: join_photo(client)))
 
     def take(self, name: str, content: bytes) -> None:
-        """Take a picture that was dropped somewhere on the page."""
-        self._received("photo", name, content)
+        """Take a photo, boxes, masks or depth that were dropped somewhere on the page: what it is decides its way."""
+        photo = None if self._session.inputs is None else self._session.inputs.photo
+
+        def told(found: tuple[Recognised, ...]) -> None:
+            if len(found) == 1:
+                self._take_as(found[0], name, content)
+            else:
+                ask_which(self._client, name, found, lambda what: self._take_as(what, name, content))
+
+        size = None if photo is None else (photo.width, photo.height)
+        self._session.reader.recognise(content, name, size, self._client.id, self._client.post, told)
+
+    def _take_as(self, what: Recognised, name: str, content: bytes) -> None:
+        if what.sort != "photo":
+            self._client.notice(f"{name}: {what.words}, read with the open photo")
+        self._received(what.sort, name, content)
 
     def refresh(self) -> None:
         """Draw what is known of the photo."""
@@ -146,7 +164,7 @@ class PhotoPanel:
                 Upload(content, name), self._client.id, self._client.post, lambda read: self._begin(name, read, content)
             )
         else:
-            self._read_again(f"add {KINDS[kind].lower()}", **{kind: content})
+            self._read_again(f"add {KINDS[kind].lower()}", {kind: content})
         if len(content) > SLOW_BYTES:
             self._client.notice(f"Reading {name}…")
 
@@ -155,7 +173,7 @@ class PhotoPanel:
         project = begin_project(self._session.projects_dir, name, read, content)
         self._session.visit(self._client, project, " ".join(read.warnings[:3]))
 
-    def _read_again(self, label: str, **new: bytes) -> None:
+    def _read_again(self, label: str, new: Mapping[Kind, bytes], depth_scale: float | None = None) -> None:
         """Read the photo together with its other files, in the background, and keep what comes of it."""
         session, client, before = self._session, self._client, self._session.inputs
         if before is None or session.project is None:
@@ -168,6 +186,7 @@ class PhotoPanel:
             depth=new.get("depth", given.get("depth")),
             boxes=boxes,
             masks=new.get("masks", given.get("masks")),
+            depth_scale=depth_scale if "depth" in new else session.project.info().get("depth_scale"),
             intrinsics=_intrinsics(self._camera.value),
         )
         project = session.project
@@ -175,6 +194,8 @@ class PhotoPanel:
         def done(read: ReadInputs) -> None:
             if session.inputs is not before:
                 raise InputError("the photo or its boxes changed meanwhile; upload the file again")
+            if "depth" in new:
+                project.update_info(depth_scale=depth_scale)
             for kind in ("depth", "masks"):
                 if kind in new:
                     project.save_upload(kind, new[kind])
@@ -185,12 +206,15 @@ class PhotoPanel:
             )
             session.annotate(label, attitude, by=client)
 
-        session.reader.read(upload, client.id, client.post, done)
+        def ask(unknown: UnknownUnitError) -> None:
+            ask_unit(client, unknown, lambda scale: self._read_again(label, new, scale))
+
+        session.reader.read(upload, client.id, client.post, done, ask)
 
     def _camera_given(self, value: str) -> None:
         def read() -> None:
             if self._session.inputs is not None and (not value.strip() or value.count(",") == 3):
-                self._read_again("set the camera")
+                self._read_again("set the camera", {})
 
         self._client.post(read, key="camera")
 

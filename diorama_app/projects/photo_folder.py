@@ -1,7 +1,7 @@
 """A folder of photos: which they are, what lies beside each, and what its project is called.
 
-Beside `NAME.jpg` (or .png, .webp...) may lie `NAME.boxes.json`, `NAME.masks.png`, `NAME.depth.png` (or .npy, .exr) and
-`NAME.camera.json`, which holds `{"intrinsics": [fx, fy, cx, cy]}` or `{"fov_deg": 60}`.
+Beside `NAME.jpg` (or .png, .heic...) may lie `NAME.boxes.json`, `NAME.masks.png`, `NAME.depth.png` (or .npy, .exr...)
+and `NAME.camera.json`, which holds `{"intrinsics": [fx, fy, cx, cy]}` or `{"fov_deg": 60}`.
 """
 
 from __future__ import annotations
@@ -16,15 +16,29 @@ from diorama_core.errors import InputError
 from diorama_core.io.bounded import read_json, shortened
 from diorama_core.io.code_key import code_key
 
-PHOTOS = frozenset((".jpg", ".jpeg", ".png", ".webp", ".avif", ".bmp", ".tif", ".tiff", ".gif", ".ppm", ".jp2"))
+PHOTOS = frozenset(
+    (
+        ".jpg", ".jpeg", ".jpe", ".jfif", ".png", ".webp", ".avif", ".bmp", ".tif", ".tiff", ".gif", ".ppm", ".jp2",
+        ".heic", ".heif", ".hif", ".dng", ".cr2", ".cr3", ".nef", ".arw", ".raf", ".rw2", ".orf", ".pef", ".srw",
+    )
+)  # fmt: skip
+"""Ends of the names of photos, camera raw files included."""
+DATA = frozenset(
+    (
+        ".json", ".txt", ".csv", ".xml", ".yaml", ".yml", ".bin", ".md", ".html", ".log", ".ini", ".db", ".aae", ".npy",
+        ".npz", ".exr", ".ply", ".zip",
+    )
+)  # fmt: skip
+"""Ends of the names of what nobody takes for a photo; everything else that is left out is named."""
 SIDE_FILES = {
-    "boxes": (".boxes.json",),
-    "masks": (".masks.png",),
-    "depth": (".depth.png", ".depth.npy", ".depth.exr"),
+    "boxes": (".boxes.json", ".boxes.xml", ".boxes.txt"),
+    "masks": (".masks.png", ".masks.npy", ".masks.npz", ".masks.tif"),
+    "depth": (".depth.png", ".depth.npy", ".depth.exr", ".depth.npz", ".depth.tif", ".depth.raw"),
     "camera": (".camera.json",),
 }
 _BUILDERS = ("diorama_core.pipeline.presets", "diorama_core.pipeline.run")
 """Modules that choose and run the stages of a build."""
+MAX_NAMED = 8
 MAX_CAMERA_BYTES = 100_000
 MAX_NUMBER = 1e9
 """Of pixels or degrees."""
@@ -82,11 +96,22 @@ def photos_of(folder: Path) -> tuple[tuple[FolderPhoto, ...], tuple[str, ...]]:
     beside = {p for p in names if _side_of(p) is not None}
     photos = [p for p in names if p not in beside and p.suffix.lower() in PHOTOS]
     if not photos:
-        raise InputError(f"{folder} holds no photo; JPEG, PNG, WebP and TIFF are read, among others")
+        raise InputError(f"{folder} holds no photo; JPEG, PNG, HEIC, WebP and TIFF are read, among others")
     stems = Counter(p.stem for p in photos)
     found = tuple(FolderPhoto(p, p.stem if stems[p.stem] == 1 else p.name, _beside(p)) for p in photos)
     alone = sorted(beside - {path for photo in found for _, path in photo.side_files})
-    return found, tuple(f"{p.name}: there is no photo of this name; it is not used" for p in alone)
+    remarks = tuple(f"{p.name}: there is no photo of this name; it is not used" for p in alone)
+    others = [p.name for p in names if p not in beside and p not in photos and p.suffix.lower() not in DATA]
+    return found, remarks + _left_out(others)
+
+
+def _left_out(names: list[str]) -> tuple[str, ...]:
+    """A remark about files that are no photos."""
+    if not names:
+        return ()
+    more = f" and {len(names) - MAX_NAMED} more" if len(names) > MAX_NAMED else ""
+    files = "1 file is" if len(names) == 1 else f"{len(names)} files are"
+    return (f"{files} no photo that is read and left out: {', '.join(names[:MAX_NAMED])}{more}",)
 
 
 def read_camera(path: Path) -> tuple[tuple[float, float, float, float] | None, float | None]:

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from diorama_core.io.limited import LimitedProcess
 from diorama_core.perception.inputs import ReadInputs, read_inputs
 from diorama_core.perception.inputs.depth.kinds import DepthKind
+from diorama_core.perception.inputs.depth.units import UnknownUnitError
 from diorama_core.pipeline import codec
 
 
@@ -34,15 +35,35 @@ def decoded(upload: Upload, process: LimitedProcess) -> ReadInputs:
         process: where its files are decoded.
 
     Raises:
+        UnknownUnitError: the depth may have several units.
         InputError: a file cannot be read, or needs more memory or time than a file of its kind should.
     """
-    packed, warnings = process.call(upload.name, read_packed, upload)
+    answer = process.call(upload.name, read_packed, upload)
+    if isinstance(answer, DepthQuestion):
+        raise UnknownUnitError(answer.message, answer.choices)
+    packed, warnings = answer
     return ReadInputs(codec.load(packed), warnings)
 
 
-def read_packed(upload: Upload) -> tuple[bytes, tuple[str, ...]]:
-    """Checked inputs, packed, and warnings. Runs in the decoding process."""
-    read = read_inputs(
+@dataclass(frozen=True)
+class DepthQuestion:
+    """What the decoding process cannot decide: errors come back from there as words alone."""
+
+    message: str
+    choices: tuple[tuple[float, str], ...]
+
+
+def read_packed(upload: Upload) -> tuple[bytes, tuple[str, ...]] | DepthQuestion:
+    """Checked inputs, packed, and warnings, or a question. Runs in the decoding process."""
+    try:
+        read = _read(upload)
+    except UnknownUnitError as error:
+        return DepthQuestion(str(error), error.choices)
+    return codec.dump(read.inputs), read.warnings
+
+
+def _read(upload: Upload) -> ReadInputs:
+    return read_inputs(
         upload.photo,
         name=upload.name,
         depth=upload.depth,
@@ -53,4 +74,3 @@ def read_packed(upload: Upload) -> tuple[bytes, tuple[str, ...]]:
         intrinsics=upload.intrinsics,
         fov_deg=upload.fov_deg,
     )
-    return codec.dump(read.inputs), read.warnings

@@ -5,12 +5,15 @@ from __future__ import annotations
 import threading
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
+from functools import partial
 from typing import Any
 
 from diorama_app.projects.uploads import Upload, decoded
 from diorama_core.errors import EditRefused
 from diorama_core.io.limited import LimitedProcess
 from diorama_core.perception.inputs import ReadInputs
+from diorama_core.perception.inputs.depth.units import UnknownUnitError
+from diorama_core.perception.inputs.sorting import Recognised, recognised
 
 MAX_WAITING = 2
 """Uploads of one person that are read or wait for it."""
@@ -27,7 +30,14 @@ class Reader:
         self._lock = threading.Lock()
         self._waiting: dict[int, int] = {}
 
-    def read(self, upload: Upload, client_id: int, post: Post, then: Callable[[ReadInputs], None]) -> None:
+    def read(
+        self,
+        upload: Upload,
+        client_id: int,
+        post: Post,
+        then: Callable[[ReadInputs], None],
+        ask: Callable[[UnknownUnitError], None] | None = None,
+    ) -> None:
         """Decode an upload, then do something with it.
 
         Args:
@@ -35,15 +45,41 @@ class Reader:
             client_id: whose it is.
             post: runs a task where errors are told to that person.
             then: given the checked inputs, there.
+            ask: given the units that a depth map may have, there; None where that is an error.
 
         Raises:
             EditRefused: two uploads of this person are being read already.
         """
+        self._begin(client_id)
+        self._pool.submit(self._read, upload, client_id, post, then, ask)
+
+    def recognise(
+        self,
+        content: bytes,
+        name: str,
+        photo_size: tuple[int, int] | None,
+        client_id: int,
+        post: Post,
+        then: Callable[[tuple[Recognised, ...]], None],
+    ) -> None:
+        """Say what a file may be, in the decoding process, likeliest first; arguments as for `read`.
+
+        Args:
+            content: of the file.
+            name: of the file.
+            photo_size: of the photo that is open.
+            client_id: whose it is.
+            post: as for `read`.
+            then: given what it may be, there.
+        """
+        self._begin(client_id)
+        self._pool.submit(self._recognise, (content, name, photo_size), client_id, post, then)
+
+    def _begin(self, client_id: int) -> None:
         with self._lock:
             if self._waiting.get(client_id, 0) >= MAX_WAITING:
                 raise EditRefused("your last files are still being read; wait a moment and try again")
             self._waiting[client_id] = self._waiting.get(client_id, 0) + 1
-        self._pool.submit(self._read, upload, client_id, post, then)
 
     def wait(self, timeout_s: float = 60.0) -> bool:
         """Block until what was asked for is read; False when that took too long."""
@@ -56,17 +92,42 @@ class Reader:
         self._pool.shutdown(wait=False, cancel_futures=True)
         self._process.stop()
 
-    def _read(self, upload: Upload, client_id: int, post: Post, then: Callable[[ReadInputs], None]) -> None:
+    def _read(
+        self,
+        upload: Upload,
+        client_id: int,
+        post: Post,
+        then: Callable[[ReadInputs], None],
+        ask: Callable[[UnknownUnitError], None] | None,
+    ) -> None:
         try:
             read = decoded(upload, self._process)
             post(lambda: then(read))
         except Exception as error:  # raised again on the UI thread, for whoever uploaded
+            post(partial(ask, error) if ask is not None and isinstance(error, UnknownUnitError) else _raising(error))
+        finally:
+            self._end(client_id)
+
+    def _recognise(
+        self,
+        file: tuple[bytes, str, tuple[int, int] | None],
+        client_id: int,
+        post: Post,
+        then: Callable[[tuple[Recognised, ...]], None],
+    ) -> None:
+        try:
+            found = self._process.call(file[1], recognised, *file)
+            post(lambda: then(found))
+        except Exception as error:  # as above
             post(_raising(error))
         finally:
-            with self._lock:
-                self._waiting[client_id] -= 1
-                if not self._waiting[client_id]:
-                    del self._waiting[client_id]
+            self._end(client_id)
+
+    def _end(self, client_id: int) -> None:
+        with self._lock:
+            self._waiting[client_id] -= 1
+            if not self._waiting[client_id]:
+                del self._waiting[client_id]
 
 
 def _raising(error: Exception) -> Callable[[], Any]:

@@ -84,12 +84,13 @@ def labelled_box(box: Box, label: str) -> LabelledBox:
 
 
 def boxes_json(boxes: Sequence[LabelledBox], photo: Photo) -> bytes:
-    """Boxes as the documented file, in pixels of the upright original."""
+    """Boxes as a file of the documented form, in pixels of the upright original, whose size it states."""
     sx, sy = photo.original_size[0] / photo.width, photo.original_size[1] / photo.height
     left, top = photo.offset or (0, 0)
     corners = [(b, left + sx * np.array(b.box[::2]), top + sy * np.array(b.box[1::2])) for b in boxes]
     rows = [{"bbox": [*map(float, (x[0], y[0], x[1], y[1]))], "class": b.label} for b, x, y in corners]
-    return json.dumps(rows).encode()
+    size = {"width": photo.original_size[0], "height": photo.original_size[1]}
+    return json.dumps({"image": size, "boxes": rows}).encode()
 
 
 def given_outline(inputs: Inputs, box: Box) -> Bool[np.ndarray, "h w"] | None:

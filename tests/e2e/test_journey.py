@@ -88,7 +88,7 @@ def test_a_photo_with_boxes_becomes_a_scene(
     session = editor.session
     before = session.scene
     editor.page.get_by_text("More about this photo").click()
-    editor.upload("Add boxes (JSON)", boxes)
+    editor.upload("Add boxes", boxes)
     editor.until(lambda: len(session.inputs.boxes) == MARKED, "the boxes are read")
     marked = len(session.inputs.boxes)
     editor.dismiss_notices()

@@ -25,7 +25,7 @@ from tests.waiting import until
 
 PATIENCE_S = 240
 """Of one test; a busy machine takes a minute."""
-BUTTONS = ("Upload a photo", "Add boxes (JSON)", "Add depth (PNG or NPY)", "Add masks (PNG)", "New from a photo")
+BUTTONS = ("Upload a photo", "Add boxes", "Add depth", "Add masks", "New from a photo")
 
 
 @pytest.fixture

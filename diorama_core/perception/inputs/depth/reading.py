@@ -21,7 +21,7 @@ from diorama_core.perception.inputs.depth.kinds import (
 )
 from diorama_core.perception.inputs.depth.relative import metric_depth
 from diorama_core.perception.inputs.depth.scale import focal_of_planes, scale_evidence
-from diorama_core.perception.inputs.depth.units import unit_of
+from diorama_core.perception.inputs.depth.units import UnknownUnitError, unit_of
 from diorama_core.perception.inputs.depth.voids import measured
 from diorama_core.perception.inputs.form import form_of
 from diorama_core.perception.inputs.photos.reading import DecodedPhoto
@@ -166,7 +166,7 @@ def _understood(
         notes += (f"{doubt}: check --depth-scale",) if unit.note or unit.question else ()
         return _in_metres(along, options.per_metre), notes
     if unit.question:
-        raise InputError(f"{name}: {unit.question}")
+        raise UnknownUnitError(f"{name}: {unit.question}", unit.choices)
     return _in_metres(along, unit.per_metre), (*notes, *([unit.note] if unit.note else []))
 
 

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from diorama_core.errors import InputError
 from diorama_core.perception.inputs.depth.scale import ScaleEvidence
 
 USUAL_UNITS = {
@@ -27,6 +28,14 @@ TOLERANCE = 0.11
 MIN_THINGS = 3
 
 
+class UnknownUnitError(InputError):
+    """The unit of a depth map cannot be told; `choices` are the likely units per metre with their words."""
+
+    def __init__(self, message: str, choices: tuple[tuple[float, str], ...] = ()) -> None:
+        super().__init__(message)
+        self.choices = choices
+
+
 @dataclass(frozen=True)
 class Unit:
     """Units per metre, and what to tell."""
@@ -35,6 +44,8 @@ class Unit:
     note: str = ""
     question: str = ""
     """Why the unit cannot be told, and what to give; empty where it can."""
+    choices: tuple[tuple[float, str], ...] = ()
+    """Likely units per metre and their words, where it cannot be told."""
 
 
 def unit_of(evidence: ScaleEvidence | None, stated: float) -> Unit:
@@ -62,6 +73,7 @@ def unit_of(evidence: ScaleEvidence | None, stated: float) -> Unit:
         return Unit(
             stated,
             question=f"{wrong}; give --depth-scale {best:g} ({USUAL_UNITS[best]}) or --depth-scale {other:g}",
+            choices=tuple((u, USUAL_UNITS[u]) for u in (best, other, stated) if u in USUAL_UNITS),
         )
     best = likely[0]
     return Unit(best, f"{wrong}; it was read as {USUAL_UNITS[best]} (--depth-scale {best:g})")

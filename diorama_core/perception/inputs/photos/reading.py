@@ -13,12 +13,13 @@ from PIL import Image
 from diorama_core.artefacts import Photo
 from diorama_core.errors import InputError
 from diorama_core.perception.camera.exif import focal_from_exif
+from diorama_core.perception.inputs.form import form_of
 from diorama_core.perception.inputs.photos.bits import dark_colours, eight_bits
 from diorama_core.perception.inputs.photos.borders import plain_borders
 from diorama_core.perception.inputs.photos.decoding import load_pixels, open_picture
 from diorama_core.perception.inputs.photos.frame import PhotoFrame
 from diorama_core.perception.inputs.photos.panoramas import check_perspective
-from diorama_core.perception.inputs.photos.raw import largest_picture, raw_kind
+from diorama_core.perception.inputs.photos.table import PHOTO_FORMS
 from diorama_core.perception.inputs.source import Source
 
 MIN_SIDE_PX = 32
@@ -46,10 +47,10 @@ def read_photo(source: Source, max_side: int) -> DecodedPhoto:
     Raises:
         InputError: when it cannot be used; the message says why.
     """
-    notes: tuple[str, ...] = ()
-    orientation, kind = None, raw_kind(source.data)
-    if kind is not None:
-        source, orientation, notes = largest_picture(source, kind)
+    form = form_of(PHOTO_FORMS, source)
+    assert form is not None  # the last form takes any file
+    file = form.read(source)
+    source, orientation, notes = file.source, file.orientation, file.notes
     picture, more = _largest_page(open_picture(source), source)
     raw_size = picture.size
     picture.draft(None, (2 * max_side, 2 * max_side))  # JPEG decodes straight to a fraction of its size

@@ -1,0 +1,112 @@
+"""Which sort of input a file is: a photo, boxes, masks or depth of the photo that is open."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+from PIL import Image
+
+from diorama_core.errors import InputError
+from diorama_core.perception.inputs.boxes.table import BOX_FORMS, parsed
+from diorama_core.perception.inputs.depth.containers import DEPTH_FORMS, DepthContent
+from diorama_core.perception.inputs.form import form_of
+from diorama_core.perception.inputs.photos.decoding import open_picture, what_it_is
+from diorama_core.perception.inputs.photos.frame import ASPECT_TOLERANCE
+from diorama_core.perception.inputs.photos.raw import raw_kind
+from diorama_core.perception.inputs.source import Source
+
+Sort = Literal["photo", "boxes", "masks", "depth"]
+FEW_COLOURS = 80
+"""Of a picture's pixels sampled without smoothing: masks of the fullest scenes have no more, photos have thousands."""
+_SAMPLED_PX = 256
+_TEXT_STARTS = (b"[", b"{", b"<")
+
+
+@dataclass(frozen=True)
+class Recognised:
+    """What a file may be."""
+
+    sort: Sort
+    words: str
+    """For people, as in "COCO data set"."""
+
+
+def recognised(content: bytes, name: str, photo_size: tuple[int, int] | None) -> tuple[Recognised, ...]:
+    """What a file may be, likeliest first; several where its content leaves that open.
+
+    Args:
+        content: of the file.
+        name: of the file.
+        photo_size: of the photo that is open, where there is one.
+
+    Raises:
+        InputError: nothing that is read.
+    """
+    source = Source(content, name)
+    if content.startswith((b"\x93NUMPY", b"PK\x03\x04")):
+        return _of_numbers(source, photo_size)
+    picture = _picture(source)
+    if picture is not None:
+        return _of_picture(picture, source, photo_size)
+    form = form_of(DEPTH_FORMS, DepthContent(source, photo_size or (4, 3)))
+    if form is not None and not content.lstrip()[:1].startswith(_TEXT_STARTS):
+        return (Recognised("depth", form.name),)
+    return _of_text(source)
+
+
+def _of_numbers(source: Source, photo_size: tuple[int, int] | None) -> tuple[Recognised, ...]:
+    data = source.data
+    if data.startswith(b"PK") and b".npy" not in data[:300]:
+        return (Recognised("masks", "a zip archive of masks"),)
+    header = data[:200]
+    whole = any(kind in header for kind in (b"'|b1'", b"'|u1'", b"'|i1'", b"'<i4'", b"'<i8'"))
+    named = next((word for word in (b"mask", b"instance", b"segment") if word in header.lower()), None)
+    likely = [Recognised("depth", "an array of depth"), Recognised("masks", "an array of masks")]
+    if named is not None or b"'|b1'" in header:
+        return (likely[1],)
+    return (likely[1], likely[0]) if whole else (likely[0],)
+
+
+def _of_picture(picture: Image.Image, source: Source, photo_size: tuple[int, int] | None) -> tuple[Recognised, ...]:
+    photo = Recognised("photo", f"a photo ({picture.width} x {picture.height})")
+    if photo_size is None or picture.format in ("JPEG", "MPO", "HEIF", "AVIF"):
+        return (photo,)
+    if picture.mode == "F" or picture.mode.startswith("I"):
+        return (Recognised("depth", "a depth map"), Recognised("photo", "a grey photo of more than 8 bits"))
+    ratio = (picture.width / picture.height) / (photo_size[0] / photo_size[1])
+    if abs(ratio - 1.0) > ASPECT_TOLERANCE:
+        return (photo,)
+    step = max(1, max(picture.size) // _SAMPLED_PX)
+    pixels = np.asarray(picture.convert("RGBA"))[::step, ::step].reshape(-1, 4)
+    if len(np.unique(pixels, axis=0)) <= FEW_COLOURS:
+        return (Recognised("masks", "a picture of masks"),)
+    if pixels[:, 3].min() < 128:
+        return Recognised("masks", "one object cut out of the photo"), photo
+    grey = bool((pixels[:, :3] == pixels[:, :1]).all())
+    return (photo, Recognised("depth", "a depth map of 8 bits")) if grey else (photo,)
+
+
+def _of_text(source: Source) -> tuple[Recognised, ...]:
+    try:
+        form = form_of(BOX_FORMS, parsed(source, source.name, (0, 0)))
+    except InputError as error:
+        what = what_it_is(source.data)
+        raise InputError(f"{source.name}: {what}" if source.data[:1] not in _TEXT_STARTS else str(error)) from error
+    runs = b'"counts"' in source.data or b'"segmentation"' in source.data
+    masks = (Recognised("masks", "segments in JSON"),) if runs else ()
+    if form is None and not masks:
+        raise InputError(f"{source.name}: {what_it_is(source.data)}, and no boxes, masks or depth of a photo")
+    boxes = (Recognised("boxes", f"boxes ({form.name})"),) if form is not None else ()
+    return boxes + masks
+
+
+def _picture(source: Source) -> Image.Image | None:
+    """The picture, opened but not decoded; None where it is none."""
+    if raw_kind(source.data) is not None:
+        return None if source.data[:2] not in (b"II", b"MM") else open_picture(source)
+    try:
+        return open_picture(source)
+    except InputError:
+        return None

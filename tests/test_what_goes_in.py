@@ -1,0 +1,25 @@
+"""The page about what goes in is made from the readers' tables, and up to date."""
+
+from __future__ import annotations
+
+import importlib.util
+import re
+from pathlib import Path
+
+SCRIPT = Path(__file__).parents[1] / "scripts" / "what_goes_in.py"
+spec = importlib.util.spec_from_file_location("what_goes_in", SCRIPT)
+assert spec is not None
+assert spec.loader is not None
+page = importlib.util.module_from_spec(spec)
+spec.loader.exec_module(page)
+
+
+def test_the_page_is_up_to_date() -> None:
+    written = page.PAGE.read_text()
+    assert page.filled(written) == written, "run scripts/what_goes_in.py"
+
+
+def test_every_form_has_its_row() -> None:
+    made = page.tables()
+    assert {"photos", "boxes", "masks", "depth", "units", "models", "scenes"} <= set(made)
+    assert all(len(re.findall(r"^\| ", made[name], re.MULTILINE)) > 3 for name in ("photos", "boxes", "masks", "depth"))
