@@ -145,6 +145,8 @@ def _place_reached_through(library: ShapeLibrary, item: SceneObject, other: Scen
 
 def _ending_on_place(scene: Scene, library: ShapeLibrary, item: SceneObject, edge: Support) -> Scene:
     """The scene with an object that reached down through a place ending there: its top was seen, its foot was not."""
+    if not scene.has_object(edge.parent):
+        return scene  # what stands on the floor or hangs on a wall reached through no place of furniture
     place = _place_reached_through(library, item, scene.object(edge.parent))
     if place is None:
         return scene

@@ -23,6 +23,7 @@ from diorama_core.project.storage import Project
 from diorama_core.scene.schema import scene_from_json, scene_to_json
 from tests.app.small_room import PlainLibrary, furnished_scene, make_project, plain_photo
 from tests.fuzzing import form_files as forms
+from tests.fuzzing import input_files as inputs
 from tests.fuzzing import kept_files as kept
 from tests.fuzzing import measured_files as measured
 from tests.fuzzing import scene_files as files
@@ -285,6 +286,11 @@ PARSERS: dict[str, Parser] = {
     "exr": Parser(_exrs, exr.read_depth_channels, damaged),
     "masks": Parser(_masks, _inside(with_masks), damaged),
     "boxes": Parser(_boxes, with_boxes, strange_json),
+    "boxforms": Parser(inputs.box_samples, inputs.read_boxes, inputs.strange_text),
+    "depths": Parser(inputs.depth_samples, _inside(inputs.read_depth), inputs.strange_masks, round=30),
+    "maskforms": Parser(inputs.mask_samples, _inside(inputs.read_masks), inputs.strange_masks),
+    "photoforms": Parser(inputs.photo_samples, _inside(as_photo), damaged),
+    "sorting": Parser(inputs.sorting_samples, _inside(inputs.read_sort), inputs.strange_masks),
     "scene": Parser(_scenes, _used_scene, strange_json),
     "stage": Parser(_stages, _stage, strange_zip),
     "project": Parser(_infos, _as_info, strange_json),

@@ -115,7 +115,7 @@ def _categories_beside(text: BoxText) -> dict[int, str]:
 
 def _size(image: Mapping[str, Any] | None) -> Size | None:
     values = (image.get("width"), image.get("height")) if image is not None else ()
-    if len(values) == 2 and all(isinstance(v, int | float) and 0 < v < 1e6 for v in values):
+    if len(values) == 2 and all(isinstance(v, int | float) and 1 < v < 1e6 for v in values):
         return int(values[0]), int(values[1])  # type: ignore[arg-type]
     return None
 

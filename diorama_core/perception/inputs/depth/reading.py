@@ -11,6 +11,7 @@ from jaxtyping import Bool, Float32, Shaped
 from diorama_core.artefacts import Box, LabelledBox
 from diorama_core.errors import InputError
 from diorama_core.perception.inputs.depth.containers import DEPTH_FORMS, DepthContent, RawDepth
+from diorama_core.perception.inputs.depth.flips import turned, turned_over
 from diorama_core.perception.inputs.depth.kinds import (
     CONTRADICTION,
     MIN_ORDER,
@@ -88,6 +89,10 @@ def read_depth(
         raise InputError(f"{source.name}: the depth is empty or nearly so; leave it out or choose another file")
     with np.errstate(invalid="ignore", over="ignore"):
         numbers = np.where(valid, values, 0).astype(np.float32)
+    over = None if options.kind != "auto" or valid.sum() < MIN_PIXELS else turned_over(numbers, valid, photo.photo.rgb)
+    if over is not None:
+        numbers = turned(numbers, over)
+        valid, laid = numbers > 0, (*laid, f"the depth lies {over} over the photo, by the edges of both; it was turned")
     depth, understood = _understood(source.name, numbers, valid, raw, options, _Scene.of(photo, boxes, intrinsics))
     coverage = _check_plausible(source.name, depth, values, raw, options)
     resized, coarse = _at_size(depth, size)
