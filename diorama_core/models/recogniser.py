@@ -7,7 +7,7 @@ were made and how good they are.
 from __future__ import annotations
 
 import json
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cache
 from pathlib import Path
 
@@ -18,19 +18,17 @@ from scipy.special import expit, softmax
 
 from diorama_core.errors import UnavailableError
 from diorama_core.models import own_weights
+from diorama_core.models.box_crops import FILL, box_crop, box_geometry
 from diorama_core.models.boxes import Detections, clipped, fused, joined, without_doubles
+from diorama_core.models.kind_evidence import KindEvidence, own_evidence, with_evidence
 from diorama_core.models.own_weights import CARD, DETECTOR, NAMER
 from diorama_core.models.runtime import SHARED_SESSIONS, SessionPool
 from diorama_core.models.store import sha256_of
 from diorama_core.scene.values import ArrayValue
 
 STRIDES = (8, 16, 32)
-CROP_SIDE = 96
-MARGIN = 0.12
-"""Of the box's size, on every side of a crop: what a thing stands on tells what it is."""
 SEEN_WITH = ((0.06, False), (0.12, True), (0.2, False))
 """Margins with which a box is looked at, as boxes are drawn more or less close, and whether the picture is mirrored."""
-FILL = 114
 AREAS_PX = (320 * 256, 512 * 384)
 """The photo is looked at in each of these sizes: large things are found in the first, small ones in the second."""
 DOUBLE_IOU, ALIKE_IOU = 0.5, 0.7
@@ -59,6 +57,7 @@ class Recogniser:
         categories: what the outputs stand for.
         form_values: number of values of each attribute of form.
         weights: identity of both, for cache keys.
+        evidence: what a network that learnt from photos tells of the kinds; without it the namer decides alone.
     """
 
     detector: Path = field(repr=False)
@@ -67,6 +66,7 @@ class Recogniser:
     form_values: tuple[int, ...] = field(repr=False)
     weights: str = "recogniser"
     areas_px: tuple[int, ...] = AREAS_PX
+    evidence: KindEvidence | None = None
     pool: SessionPool = field(default=SHARED_SESSIONS, repr=False, compare=False)
 
     @classmethod
@@ -136,7 +136,10 @@ class Recogniser:
         height, width = rgb.shape[:2]
         where = np.stack([box_geometry(box, width, height) for box in boxes])
         looks = [self._look(rgb, boxes, where, margin, mirrored) for margin, mirrored in SEEN_WITH]
-        return Looks(np.mean([k.kinds for k in looks], axis=0), np.mean([k.forms for k in looks], axis=0))
+        kinds = np.mean([k.kinds for k in looks], axis=0)
+        if self.evidence is not None:
+            kinds = with_evidence(kinds, self.evidence.log_likelihoods(rgb, boxes))
+        return Looks(kinds, np.mean([k.forms for k in looks], axis=0))
 
     def _look(
         self,
@@ -163,12 +166,13 @@ def _form_probabilities(logits: Float[np.ndarray, "n f"], form_values: tuple[int
 
 @cache
 def own_recogniser() -> Recogniser:
-    """The recogniser whose weights come with Diorama.
+    """The recogniser whose weights come with Diorama, with evidence from a network that learnt from photos.
 
     Raises:
-        UnavailableError: when they are not there or damaged.
+        UnavailableError: when its own weights are not there or damaged.
     """
-    return Recogniser.of(own_weights.FOLDER)
+    alone = Recogniser.of(own_weights.FOLDER)
+    return replace(alone, evidence=own_evidence(alone.categories))
 
 
 def fitted(rgb: UInt8[np.ndarray, "h w 3"], area_px: int) -> tuple[Float32[np.ndarray, "1 3 h2 w2"], float]:
@@ -189,33 +193,3 @@ def places(width: int, height: int) -> tuple[Float32[np.ndarray, "n 2"], Float32
         centres.append((np.stack([x, y], axis=-1).reshape(-1, 2) + 0.5) * stride)
         strides.append(np.full(x.size, stride))
     return np.concatenate(centres).astype(np.float32), np.concatenate(strides).astype(np.float32)
-
-
-def box_crop(
-    rgb: UInt8[np.ndarray, "h w 3"], box: Float[np.ndarray, "4"], margin: float = MARGIN
-) -> UInt8[np.ndarray, "side side 3"]:
-    """The box with a margin as a square picture, its proportions kept, grey outside the photo."""
-    x1, y1, x2, y2 = (float(v) for v in box)
-    scale = CROP_SIDE / max(max(x2 - x1, y2 - y1) * (1 + 2 * margin), 1e-3)
-    cx, cy = (x1 + x2) / 2, (y1 + y2) / 2
-    reach = 0.5 * CROP_SIDE / scale + 2
-    left, top = (max(0, int(v - reach)) for v in (cx, cy))
-    part = rgb[top : int(cy + reach) + 1, left : int(cx + reach) + 1]
-    if scale < 0.5:  # linear interpolation alone would skip pixels
-        part = cv2.GaussianBlur(part, (0, 0), 0.4 / scale)
-    M = np.array(
-        [[scale, 0, CROP_SIDE / 2 - scale * (cx - left)], [0, scale, CROP_SIDE / 2 - scale * (cy - top)]], np.float32
-    )
-    size = (CROP_SIDE, CROP_SIDE)
-    return cv2.warpAffine(part, M, size, flags=cv2.INTER_LINEAR, borderValue=(FILL, FILL, FILL))
-
-
-def box_geometry(box: Float[np.ndarray, "4"], width: int, height: int) -> Float32[np.ndarray, "6"]:
-    """Where a box is and how large: middle, lower edge, logarithms of size and proportions; the picture has width 1."""
-    x1, y1, x2, y2 = np.asarray(box, dtype=np.float64) / width
-    w, h = max(x2 - x1, 1e-3), max(y2 - y1, 1e-3)
-    tall = height / width
-    return np.array(
-        [(x1 + x2) / 2 - 0.5, (y1 + y2) / (2 * tall) - 0.5, y2 / tall - 0.5, np.log(w), np.log(h), np.log(w / h)],
-        np.float32,
-    )

@@ -7,9 +7,9 @@ from dataclasses import replace
 
 from diorama_core.artefacts import DetectedObject, SeenKinds
 
-_TRUST, _TRUST_BESIDE_WORD = 0.8, 0.5
-"""Powers of the probabilities of a thing without a name, and of one whose word leaves a choice: the namer learnt from
-rendered rooms and is too sure of itself on photos, and a word has said some of what it says."""
+TRUST, _TRUST_BESIDE_WORD = 0.8, 0.7
+"""Powers of the probabilities of a thing without a name, and of one whose word leaves a choice: what its picture looks
+like is too sure of itself on photos, and a word has said some of it."""
 _FLOOR = 0.001
 """Added to every probability: of a kind that the namer rules out not everything is known."""
 
@@ -41,7 +41,7 @@ def as_it_looks(shares: Mapping[str, float], looks_like: Sequence[tuple[str, flo
     """
     if not looks_like:
         return dict(shares)
-    seen, trust = dict(looks_like), _TRUST_BESIDE_WORD if named else _TRUST
+    seen, trust = dict(looks_like), _TRUST_BESIDE_WORD if named else TRUST
     likely = {kind: share * (seen.get(kind, 0.0) + _FLOOR) ** trust for kind, share in shares.items()}
     whole = sum(likely.values())
     return {kind: value / whole for kind, value in likely.items()}

@@ -1,4 +1,4 @@
-"""`python -m diorama_core.training pictures | shapes | windows | train | export | join | score | facings`."""
+"""`python -m diorama_core.training pictures | shapes | windows | train | export | join | score | evidence | facings`."""
 
 from __future__ import annotations
 
@@ -20,6 +20,7 @@ from diorama_core.progress import Progress
 from diorama_core.training.export import export_detector, export_namer, export_outliner, write_card
 from diorama_core.training.facings import FacingModel, as_settings, beginning, certificate, gathered
 from diorama_core.training.joined import join_namers
+from diorama_core.training.kind_evidence import train as train_evidence
 from diorama_core.training.picture_files import PictureFiles
 from diorama_core.training.pictures import category_names, make_pictures
 from diorama_core.training.score import score
@@ -98,7 +99,18 @@ def _parser() -> argparse.ArgumentParser:
     facings.add_argument("--folds", type=int, default=5, help="of the photos (default: %(default)s)")
     facings.add_argument("--settings", type=Path, help="folder for each fold's weights, for bench photos --settings")
     facings.add_argument("-o", "--output", type=Path, default=WEIGHTS, help="weights with what they are worth")
+    evidence = steps.add_parser("evidence", help="fit the layer from features of photos to kinds")
+    evidence.set_defaults(run=_evidence)
+    evidence.add_argument(
+        "--photos", type=Path, nargs=2, action="append", required=True, metavar=("ANNOTATIONS", "FOLDER")
+    )
+    evidence.add_argument("-o", "--output", type=Path, required=True)
     return p
+
+
+def _evidence(a: argparse.Namespace) -> None:
+    for way in train_evidence([(marked, folder) for marked, folder in a.photos], a.output, _told()):
+        print(f"{way.way:20} first {way.first:.3f}, among five {way.among_five:.3f}, log loss {way.log_loss:.3f}")
 
 
 def _pictures(a: argparse.Namespace) -> None:

@@ -11,9 +11,9 @@ from torch import nn
 
 from diorama_core.io.atomic import write_atomically
 from diorama_core.library.form import MEASURED, VALUES
+from diorama_core.models.box_crops import CROP_SIDE
 from diorama_core.models.onnx_export import write_graph
 from diorama_core.models.outliner import SIDE
-from diorama_core.models.recogniser import CROP_SIDE
 
 
 def export_detector(network: nn.Module, path: Path) -> None:

@@ -10,8 +10,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from diorama_core.errors import UnavailableError
+from diorama_core.models.box_crops import CROP_SIDE, box_crop, box_geometry
 from diorama_core.models.own_weights import FOLDER
-from diorama_core.models.recogniser import CROP_SIDE, Recogniser, box_crop, box_geometry, fitted, own_recogniser
+from diorama_core.models.recogniser import Recogniser, fitted, own_recogniser
 
 
 @given(width=st.integers(20, 400), height=st.integers(20, 400))

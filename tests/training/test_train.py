@@ -9,9 +9,10 @@ import pytest
 import torch
 
 from diorama_core.errors import Cancelled, InputError
+from diorama_core.models.box_crops import box_crop, box_geometry
 from diorama_core.models.outliner import SIDE, Outliner, in_photo, window
 from diorama_core.models.own_weights import CARD, DETECTOR, NAMER, OUTLINER
-from diorama_core.models.recogniser import Recogniser, box_crop, box_geometry
+from diorama_core.models.recogniser import Recogniser
 from diorama_core.models.runtime import SessionPool
 from diorama_core.progress import Progress
 from diorama_core.training import pictures, shape_views, train

@@ -162,7 +162,7 @@ def run(
     rng = np.random.default_rng(CLICKS_SEED)
     for k, (name, path) in enumerate(present.items()):
         progress.report(k / len(present), name)
-        inputs, boxes = _read(path, known[name])
+        inputs, boxes = in_photo(path, known[name])
         for route, stage in routes.items():
             found[route][name] = _look(stage, inputs.photo, boxes, known[name])
         for way, namer in namers.items():
@@ -173,7 +173,8 @@ def run(
     return RecognitionBench(found, named, clicked)
 
 
-def _read(path: Path, photo: AnnotatedPhoto) -> tuple[Inputs, Float[np.ndarray, "n 4"]]:
+def in_photo(path: Path, photo: AnnotatedPhoto) -> tuple[Inputs, Float[np.ndarray, "n 4"]]:
+    """A photo as a build reads it, and the annotated boxes in its pixels."""
     inputs = read_inputs(path).inputs
     height, width = inputs.photo.rgb.shape[:2]
     scale = np.array([width, height, width, height]) / np.array([*photo.size, *photo.size])
