@@ -85,6 +85,26 @@ _NUMBER = r"(\d+(?:\.\d+)?)"
 _DIMENSIONS = re.compile(rf"{_NUMBER}\s*(?:x|×|by)\s*{_NUMBER}\s*(?:x|×|by)\s*{_NUMBER}\s*(mm|cm|m)?\b")
 
 
+_LIMIT = re.compile(
+    rf"\b(?P<word>under|below|less than|at most|up to|no more than|maximum|over|above|more than|at least|minimum)\s+"
+    rf"{_NUMBER}\s*(?P<unit>mm|cm|m)\b(?:\s+(?:in\s+)?(?P<of>wide|width|high|tall|height|deep|depth|long))?"
+)
+_LOWER_LIMITS = frozenset({"over", "above", "more than", "at least", "minimum"})
+_MEASURES = {"high": "height", "tall": "height", "height": "height", "deep": "depth", "depth": "depth"}
+"""What a number is of; of the width by default."""
+
+
+@dataclass(frozen=True)
+class SizeLimit:
+    """A size that a thing must not exceed, or must reach."""
+
+    of: str
+    """`height`, `width` or `depth`."""
+    metres: float
+    most: bool
+    """Whether it must not be larger; otherwise, not smaller."""
+
+
 @dataclass(frozen=True)
 class SizeRequest:
     """A word such as "tall": more or less of something than others of the kind have."""
@@ -143,6 +163,16 @@ def size_in(text: str) -> tuple[str, tuple[float, float, float] | None]:
     unit = _METRES[found.group(4) or ""] or (0.01 if max(width, depth, height) > 10 else 1.0)
     rest = f"{text[: found.start()]} {text[found.end() :]}"
     return rest, (depth * unit, width * unit, height * unit)
+
+
+def size_limits(text: str) -> tuple[str, tuple[SizeLimit, ...]]:
+    """Limits such as `under 50 cm` or `at least 2 m high` in a text: the text without them, and the limits."""
+    found = []
+    for match in _LIMIT.finditer(text.lower()):
+        metres = float(match.group(2)) * _METRES[match.group("unit")]
+        of = _MEASURES.get(match.group("of") or "", "width")
+        found.append(SizeLimit(of, metres, match.group("word") not in _LOWER_LIMITS))
+    return (_LIMIT.sub(" ", text.lower()) if found else text), tuple(found)
 
 
 def _singular(word: str) -> str:

@@ -1,18 +1,19 @@
-"""Finding shapes by words: "oak bookcase", "blue couch", "small round tables"."""
+"""Finding shapes by words: "oak bookcase", "blue couch under 180 cm", "keeps food cold"."""
 
 from __future__ import annotations
 
 import difflib
 import weakref
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
-from jaxtyping import Float, Int
+from jaxtyping import Bool, Float, Int
 
 from diorama_core.library import taxonomy
-from diorama_core.library.language import SizeRequest, broader, narrower, size_request, tokens
+from diorama_core.library.definitions import is_description, kinds_described
+from diorama_core.library.language import SizeLimit, SizeRequest, broader, narrower, size_limits, size_request, tokens
 from diorama_core.library.naming import TextQuery, understand
 from diorama_core.library.record import Shape, ShapeLibrary
 
@@ -30,6 +31,14 @@ SPELLING_POINTS = 0.6
 SIZE_POINTS = 0.7
 SIZE_WORD_POINTS = 0.15
 """A caption that says "tall" counts little: sizes are measured."""
+DESCRIPTION_POINTS = 4.0
+"""Of a kind whose definition has all words of a description; half of it beside an exact name."""
+MIN_DESCRIBED = 0.25
+"""Share of a description's words that a definition must have."""
+BESIDE_DESCRIPTION = 0.3
+"""Of what a word counts that tells a use and no look."""
+LIMIT_POINTS = 2.5
+"""Lost by a shape that is larger or smaller than asked: what fits comes first."""
 _SPELLING_CUTOFF = 0.8
 _MIN_SIZE_M = 0.01
 
@@ -56,17 +65,27 @@ def find(library: ShapeLibrary, text: str, k: int = 24) -> Found:
 
     Names of categories (synonyms, plurals, near names: `naming`) weigh most, then words of the caption, the style, the
     id and the shape's own synonyms, also by meaning ("wooden" finds oak) and comparative size ("small", "tall", or a
-    size such as "60 x 50 x 110 cm"). Nothing that shares neither a category nor a word with the text is found.
+    size such as "60 x 50 x 110 cm"), then limits ("under 50 cm", "at least 2 m wide"). Where the text tells what a
+    thing is for and names none ("keeps food cold"), kinds are found by their definitions (`definitions`). Nothing that
+    shares neither a category nor a word nor a use with the text is found.
     """
     return find_in(text_index(library), text, k)
 
 
 def find_in(index: TextIndex, text: str, k: int = 24) -> Found:
     """As `find`, in an index made before."""
-    query = understand(text)
+    rest, limits = size_limits(text)
+    query = understand(rest)
     if not tokens(text):
         return Found(index.shapes[:k], (0.0,) * min(k, len(index.shapes)), query)
-    scores = index.scores(query)
+    described = {kind: share for kind, share in kinds_described(rest).items() if share >= MIN_DESCRIBED}
+    if described and is_description(rest):
+        query = replace(query, categories=(), naming=(), exact=False, note="")
+    elif query.categories and not query.exact and len(query.words) < 2:
+        described = {}  # a slip of the pen
+    elif described and not query.categories:
+        query = replace(query, note="")
+    scores = index.scores(query, described, limits)
     positions = np.flatnonzero(scores > 0)
     order = positions[np.lexsort((positions, -scores[positions]))][:k]
     known = not query.categories and any(index.knows(word) for word in query.words)  # "oak" needs no noun
@@ -96,20 +115,38 @@ class TextIndex:
         self._words = {word: np.array(places) for word, places in words.items()}
         self._categories = {name: np.array(places) for name, places in categories.items()}
 
-    def scores(self, query: TextQuery) -> Float[np.ndarray, "n"]:
-        """How well each shape fits, 0 where nothing does."""
+    def scores(
+        self, query: TextQuery, described: Mapping[str, float] | None = None, limits: Sequence[SizeLimit] = ()
+    ) -> Float[np.ndarray, "n"]:
+        """How well each shape fits, 0 where nothing does.
+
+        Args:
+            query: names, words and sizes.
+            described: for kinds how far their definitions have the words.
+            limits: of sizes.
+        """
+        described = described or {}
+        named = bool(query.categories) and query.exact
         category = np.zeros(len(self.shapes))
         for name in query.categories:
             for kin in _kin(name):
                 places = self._of_category(kin)
                 category[places] = np.maximum(category[places], CATEGORY_POINTS if kin == name else KIN_POINTS)
+        if described and not named:
+            category *= 0.5  # a name that is only near beside a use that is told
         total = category.copy()
+        for kind, share in described.items():
+            places = self._of_category(kind)
+            places = places[category[places] > 0] if named else places
+            total[places] += (0.5 if named else 1.0) * DESCRIPTION_POINTS * share
         sizes: list[SizeRequest] = []
         for word in query.words:
             asked = size_request(word)
             if asked is not None:
                 sizes.append(asked)
-            total += (SIZE_WORD_POINTS if asked else WORD_POINTS) * self._word(word)
+            of_use = bool(described) and not named and not (narrower(word) or broader(word))
+            points = SIZE_WORD_POINTS if asked else WORD_POINTS * (BESIDE_DESCRIPTION if of_use else 1.0)
+            total += points * self._word(word, slips=not of_use)
         for word in query.naming:
             total += NAME_WORD_POINTS * self._word(word)
         fits = total > 0
@@ -117,6 +154,8 @@ class TextIndex:
             total[fits] += SIZE_POINTS * self._comparative(asked)[fits]
         if query.size_m is not None and (query.categories or not query.words):
             total[fits] += 2 * SIZE_POINTS * self._nearness(query.size_m)[fits]
+        for limit in limits:
+            total -= LIMIT_POINTS * ~self._within(limit)
         return np.maximum(total, np.where(fits, 1e-6, 0.0))
 
     def knows(self, word: str) -> bool:
@@ -126,7 +165,7 @@ class TextIndex:
     def _of_category(self, name: str) -> Int[np.ndarray, "m"]:
         return self._categories.get(name, np.zeros(0, int))
 
-    def _word(self, word: str) -> Float[np.ndarray, "n"]:
+    def _word(self, word: str, slips: bool = True) -> Float[np.ndarray, "n"]:
         """1 where the word is, less where something of its meaning or spelling is."""
         points = np.zeros(len(self.shapes))
         for general in broader(word):
@@ -134,7 +173,7 @@ class TextIndex:
         for kind in narrower(word):
             points[self._places(kind)] = CONCEPT_POINTS
         points[self._places(word)] = 1.0
-        if not points.any() and len(word) > 3:
+        if slips and not points.any() and len(word) > 3:
             alike = [w for w in self._words if w[0] == word[0] and abs(len(w) - len(word)) < 3]
             for near in difflib.get_close_matches(word, alike, n=1, cutoff=_SPELLING_CUTOFF):
                 points[self._places(near)] = SPELLING_POINTS
@@ -157,6 +196,12 @@ class TextIndex:
             spread = max(float(measure[places].std()), 0.05)
             relative[places] = (measure[places] - measure[places].mean()) / spread
         return np.clip(asked.sign * relative / 2, -1, 1)
+
+    def _within(self, limit: SizeLimit) -> Bool[np.ndarray, "n"]:
+        """Which shapes keep a limit."""
+        depth, width, height = np.exp(self._log_sizes).T
+        measure = {"height": height, "width": width, "depth": depth}[limit.of]
+        return measure <= limit.metres if limit.most else measure >= limit.metres
 
     def _nearness(self, size_m: tuple[float, float, float]) -> Float[np.ndarray, "n"]:
         """1 for shapes of this size, falling to 0 as extents differ."""

@@ -30,7 +30,7 @@ log = logging.getLogger(__name__)
 
 MARGIN, SQUEEZE = 0.06, 0.5
 """Around the box, and how far a long box is stretched to fill the square: a compromise between detail and shape."""
-_MEAN, _DEVIATION = np.float32([0.485, 0.456, 0.406]), np.float32([0.229, 0.224, 0.225])
+_MEAN, _DEVIATION = np.array([0.485, 0.456, 0.406], np.float32), np.array([0.229, 0.224, 0.225], np.float32)
 """Of ImageNet's pixels, 0 to 1."""
 _ELSEWHERE = 0.1
 """Share of a kind's pictures whose class the table does not foresee, spread over all classes."""

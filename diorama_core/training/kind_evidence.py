@@ -179,7 +179,8 @@ def _score(
 ) -> NamingScore:
     truth = np.concatenate([p.kinds for p in looks])
     logs = log_softmax(TRUST * np.log(seen + _NEVER) + log_frequency, axis=1)
-    names, start = [], 0
+    names: list[tuple[str, ...]] = []
+    start = 0
     for p in looks:
         names += ranked_names(kinds, seen[start : start + len(p.kinds)], p.boxes)
         start += len(p.kinds)

@@ -7,6 +7,7 @@ import pytest
 
 from diorama_core.library.catalogue import BuiltInLibrary, built_in_library
 from diorama_core.library.ingest.sink import Ingested
+from diorama_core.library.language import SizeLimit, size_limits
 from diorama_core.library.naming import understand
 from diorama_core.library.record import Shape
 from diorama_core.library.search import TextIndex, find, search
@@ -104,3 +105,24 @@ def test_the_index_follows_a_library_that_grows(tmp_path: Path) -> None:
     record = Shape("mine", "sofa", "my own settee", (0.9, 1.9, 0.8))
     store.add(Ingested(record, b"", None, "key"))
     assert search(store, "couch") == (record,)
+
+
+def test_name_colour_and_limit_of_size_in_one_query(library: BuiltInLibrary) -> None:
+    found = search(library, "small black chair under 50 cm", 4)
+    assert all("chair" in s.category and s.size_m[1] <= 0.5 for s in found)
+    assert any("black" in s.caption for s in found)
+    high = search(library, "bookshelf at least 2 m high", 3)
+    assert all(s.category == "bookshelf" and s.size_m[2] >= 2.0 for s in high)
+
+
+def test_limits_of_size_are_read_and_left_out_of_the_words() -> None:
+    rest, limits = size_limits("black chair under 50 cm and over 1.2 m tall")
+    assert rest.split() == ["black", "chair", "and"]
+    assert limits == (SizeLimit("width", 0.5, True), SizeLimit("height", 1.2, False))
+    assert size_limits("lamp under the desk") == ("lamp under the desk", ())
+
+
+def test_colours_count_in_descriptions(library: BuiltInLibrary) -> None:
+    found = search(library, "something white to keep food cold", 2)
+    assert {s.category for s in found} == {"refrigerator"}
+    assert any("white" in s.caption for s in found)
