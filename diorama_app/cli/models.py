@@ -14,6 +14,7 @@ from diorama_core.errors import UnavailableError
 
 if TYPE_CHECKING:
     from diorama_core.models.network import Network
+    from diorama_core.models.store import ModelStore
 
 
 def add_models(commands: Any) -> None:
@@ -27,7 +28,7 @@ def add_models(commands: Any) -> None:
         "what",
         nargs="*",
         default=None,
-        metavar="tiny|lite|default|paper|ID",
+        metavar="micro|tiny|lite|default|paper|ID",
         help="sets or single networks (default: tiny)",
     )
     pulls.add_argument("--yes", action="store_true", help="accept the licences without asking")
@@ -75,7 +76,7 @@ def _list(a: argparse.Namespace) -> None:
             f"{mark:<5} {row['id']:<22} {row['role']:<15} {row['size_mb']:>5} MB  {row['licence']:<13}"
             f" {', '.join(row['sets']):<22} {row['title']}{unsure}"
         )
-    print("* no published checksum: later downloads must match the first")
+    print("* unverified: no published checksum; tried on a photo when it arrives, later downloads must match the first")
 
 
 def _pull(a: argparse.Namespace) -> None:
@@ -84,7 +85,9 @@ def _pull(a: argparse.Namespace) -> None:
 
     store = ModelStore.default()
     if a.source is not None:
-        for name in store.add_folder(a.source):
+        added = store.add_folder(a.source)
+        _try(store, added)
+        for name in added:
             print(f"{name}: ready in {store.folder / name}")
         return
     chosen: dict[str, Network] = {}
@@ -92,8 +95,25 @@ def _pull(a: argparse.Namespace) -> None:
         chosen.update({n.id: n for n in _members(what)})
     with progress_bar() as progress:
         fetched = pull(store, tuple(chosen.values()), accept=_asker(a.yes), progress=progress)
+    _try(store, fetched)
     count = "1 network" if len(fetched) == 1 else f"{len(fetched)} networks"
     print(f"{count} fetched, {len(chosen) - len(fetched)} already here: {store.folder}")
+
+
+def _try(store: ModelStore, network_ids: Sequence[str]) -> None:
+    """Let networks without published checksums look at the example; those that do not work are deleted."""
+    from diorama_core.models.manifest import network
+
+    if all(network(n).verified for n in network_ids):
+        return
+    from diorama_app.projects.example import example_inputs
+    from diorama_core.pipeline.network_check import rejected
+
+    with progress_bar() as progress:
+        failed = rejected(store, network_ids, example_inputs().inputs, progress)
+    if failed:
+        told = "; ".join(f"{c.network.title}: {c.words}" for c in failed)
+        raise UnavailableError(f"these files are not what they were taken for and were deleted again: {told}")
 
 
 def _members(what: str) -> tuple[Network, ...]:

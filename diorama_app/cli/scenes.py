@@ -197,17 +197,33 @@ def _build_photo(a: argparse.Namespace, options: BuildOptions) -> None:
     else:
         print(f"{a.output}: {report['summary']}")
         if "left_out" in report:
-            print(_about_proposals(a.output, len(room.scene.objects), report["left_out"]))
+            print(_about_proposals(a.output, len(room.scene.objects), report["left_out"], _has_detector()))
         if not room.scene.objects:
             print(_invitation(a.output, detected=room.stages is not None and room.stages.detection is not None))
 
 
-def _about_proposals(project: Path, used: int, left_out: int) -> str:
-    """What to expect of a scene whose boxes nobody drew or checked."""
+def _about_proposals(project: Path, used: int, left_out: int, detector: bool) -> str:
+    """What to expect of a scene whose boxes nobody drew or checked.
+
+    Args:
+        project: its folder.
+        used: objects in the scene.
+        left_out: likely objects that were not used.
+        detector: whether a network that finds any furniture is here already.
+    """
+    more = "" if detector else ", or find more with 'diorama models pull tiny'"
     return (
         f"No boxes were given: {used} of {used + left_out} likely objects were used. "
-        f"Open it with 'diorama serve {project}' and correct the boxes, or find more with 'diorama models pull tiny'."
+        f"Open it with 'diorama serve {project}' and correct the boxes{more}."
     )
+
+
+def _has_detector() -> bool:
+    from diorama_core.models.manifest import NETWORKS
+    from diorama_core.models.store import ModelStore
+
+    store = ModelStore.default()
+    return any(store.has(n) for n in NETWORKS if n.role == "detection")
 
 
 def _invitation(project: Path, *, detected: bool) -> str:

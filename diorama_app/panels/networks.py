@@ -17,6 +17,7 @@ from diorama_core.models.store import ModelStore
 from diorama_core.pipeline.choices import StageStatus, profile_status
 
 SETS = {
+    "micro: everyday objects": "micro",
     "tiny: a photo alone": "tiny",
     "lite: fine on a laptop": "lite",
     "default: better": "default",

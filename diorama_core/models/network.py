@@ -8,8 +8,8 @@ from typing import Literal
 Role = Literal[
     "detection", "segmentation", "geometry", "foreground", "inpainting", "features", "text and image", "pose scale"
 ]
-Tier = Literal["tiny", "lite", "default", "paper"]
-TIERS: tuple[Tier, ...] = ("tiny", "lite", "default", "paper")
+Tier = Literal["micro", "tiny", "lite", "default", "paper"]
+TIERS: tuple[Tier, ...] = ("micro", "tiny", "lite", "default", "paper")
 """Sets of networks, smallest first."""
 
 
@@ -58,12 +58,17 @@ class Network:
         return sum(f.bytes or 0 for f in self.files)
 
     @property
+    def verified(self) -> bool:
+        """Whether published checksums identify all files; otherwise only what the network answers does."""
+        return all(f.sha256 for f in self.files)
+
+    @property
     def checked_by(self) -> str:
         """How a download is checked, in words for people."""
-        if all(f.sha256 for f in self.files):
+        if self.verified:
             return "published checksum"
         known = "size checked; " if all(f.bytes for f in self.files) else ""
-        return f"{known}no published checksum: held to the first download's"
+        return f"{known}unverified (no published checksum): tried on a photo, then held to the first download's"
 
     @property
     def pullable(self) -> bool:

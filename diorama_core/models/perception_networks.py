@@ -79,7 +79,7 @@ PERCEPTION_NETWORKS: tuple[Network, ...] = (
                 ("e8af074932d4ed7e232278e3055cefcdea3edf178874a3694ae292649fb464dd",),
             ),
         ),
-        tiers=("tiny", "lite", "default", "paper"),
+        tiers=("micro", "tiny", "lite", "default", "paper"),
     ),
     _owl(
         "owlv2-base-int8",

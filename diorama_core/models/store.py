@@ -14,6 +14,7 @@ import hashlib
 import json
 import os
 import shutil
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from pathlib import Path
@@ -33,6 +34,8 @@ LICENCES = "licences.json"
 FIRST_SEEN = "first-seen.json"
 MAX_RECORD_BYTES = 4_000_000
 _BLOCK = 1 << 20
+_SAME_WEIGHTS = 0.1
+"""Relative difference of size up to which files are compared by their content."""
 
 
 class FileRecord(BaseModel):
@@ -205,12 +208,13 @@ class ModelStore:
         before = {n.id for n in NETWORKS if self.has(n)}
         taken = sum(self._taken_up(source, network, file) for network in NETWORKS for file in self.missing(network))
         if not taken:
-            raise InputError(f"{source}: no file there belongs to a network that is missing; see `diorama models list`")
+            raise InputError(f"{source}: {_why_nothing(source, [n for n in NETWORKS if n.id not in before])}")
         return tuple(n.id for n in NETWORKS if n.id not in before and self.has(n))
 
     def _taken_up(self, source: Path, network: Network, file: ModelFile) -> bool:
         for found in _candidates(source, network, file):
-            digest = sha256_of(found)
+            about = found.stat()
+            digest = _digest(found, about.st_mtime_ns, about.st_size)
             if file.sha256 and digest not in (file.sha256, *file.also_sha256):
                 continue
             part = self.folder / ".part" / network.id / file.path
@@ -258,11 +262,40 @@ def _candidates(source: Path, network: Network, file: ModelFile) -> list[Path]:
     """Where a file may lie below a folder: in the repository's layout; where its content is known, anywhere."""
     name = Path(file.path).name
     places = [source / network.id / file.path, source / network.id / name]
+    if source.resolve().name in (network.id, network.repo.split("/")[-1]):  # the network's own folder
+        places += [source / file.path, source / name]
     if network.repo:
         places += [source / network.repo / file.path, source / network.repo.split("/")[-1] / file.path]
     if file.sha256:
         places += sorted(source.rglob(name))
+        places += [p for p in _files(source) if _is_about(p.stat().st_size, file.bytes)]
     return [p for p in dict.fromkeys(places) if p.is_file()]
+
+
+def _files(folder: Path) -> list[Path]:
+    return sorted(p for p in folder.rglob("*") if p.is_file())
+
+
+def _is_about(size: int, expected: int | None) -> bool:
+    """Whether a file may be another publication of the same weights, whatever it is called."""
+    return expected is not None and abs(size - expected) <= _SAME_WEIGHTS * expected
+
+
+def _why_nothing(source: Path, missing: Sequence[Network]) -> str:
+    """What is wrong with a folder that gave nothing."""
+    there = {p.name for p in _files(source)}
+    named = [(n, f) for n in missing for f in n.files if Path(f.path).name in there]
+    unsure = [(n, Path(f.path).name) for n, f in named if not f.sha256]
+    if unsure:
+        listed = ", ".join(dict.fromkeys(n.id for n, _ in unsure))
+        return (
+            f"{unsure[0][1]} has no published checksum that would tell whose it is; put it in a folder named after its "
+            f"network ({listed}) and give the folder above"
+        )
+    if named:
+        network, file = named[0]
+        return f"{Path(file.path).name} is not {network.title}'s published file (another version, or damaged)"
+    return "no file there belongs to a network that is missing; see `diorama models list`"
 
 
 def how_to_get(network: Network) -> str:

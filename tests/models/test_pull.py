@@ -193,8 +193,8 @@ def test_an_unpinned_revision_is_resolved_and_recorded(hub: Hub, store: ModelSto
 
 def test_without_a_published_checksum_later_downloads_are_supported_to_the_first(hub: Hub, store: ModelStore) -> None:
     unpublished = _network(files=(ModelFile("onnx/model.onnx", len(GRAPH)), ModelFile("tokenizer.json", len(TOKENS))))
-    assert unpublished.checked_by.startswith("size checked; no published checksum")
-    assert _network().checked_by.startswith("no published checksum")
+    assert unpublished.checked_by.startswith("size checked; unverified (no published checksum)")
+    assert _network().checked_by.startswith("unverified")
     assert _network(files=(_PLAIN,)).checked_by == "published checksum"
     _pull(store, unpublished)
     store.forget(unpublished)
@@ -237,8 +237,29 @@ def test_files_fetched_elsewhere_are_taken_up_when_their_content_is_right(
     bad = tmp_path / "bad"
     bad.mkdir()
     (bad / "lama_fp32.onnx").write_bytes(b"not lama")
-    with pytest.raises(InputError):
+    with pytest.raises(
+        InputError, match=r"lama_fp32.onnx is not LaMa's published file \(another version, or damaged\)"
+    ):
         store.add_folder(bad)
+
+
+def test_files_are_recognised_under_other_names_and_in_their_networks_own_folder(
+    tmp_path: Path, store: ModelStore, shared: Path
+) -> None:
+    renamed = tmp_path / "downloads"
+    renamed.mkdir()
+    (renamed / "detector (1).onnx").write_bytes((shared / "models" / "yolox_nano.onnx").read_bytes())
+    own = tmp_path / "slimsam"
+    own.mkdir()
+    for name in ("vision_encoder.onnx", "prompt_encoder_mask_decoder.onnx"):
+        (own / name).write_bytes(b"a graph")
+    loose = tmp_path / "loose"
+    loose.mkdir()
+    (loose / "vision_encoder.onnx").write_bytes(b"a graph")
+    with pytest.raises(InputError, match=r"vision_encoder.onnx has no published checksum .* put it in a folder named"):
+        store.add_folder(loose)
+    assert store.add_folder(own) == ("slimsam",)
+    assert store.add_folder(renamed) == ("yolox-nano",)
 
 
 def test_folders_follow_the_hubs_variables(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:

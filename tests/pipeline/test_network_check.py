@@ -12,7 +12,7 @@ from diorama_app.projects.example import example_inputs
 from diorama_core.models.manifest import NETWORKS, network
 from diorama_core.models.store import ModelStore
 from diorama_core.pipeline import network_check, network_stages
-from diorama_core.pipeline.network_check import Measurement, check_networks
+from diorama_core.pipeline.network_check import Measurement, check_networks, rejected
 from tests.models import small_graphs, tiny_networks
 from tests.models.tiny_networks import install
 
@@ -53,9 +53,11 @@ def test_the_large_detector_is_given_the_side_that_its_patches_need(tmp_path: Pa
 PICTURE = {"image": ("f", 4)}
 
 
-def _segmenter(folder: Path, logit: float) -> list[Path]:
+def _segmenter(folder: Path, share: float) -> list[Path]:
+    """Masks of stripes that fill a share of everything, whatever the box."""
+    stripes = np.where(np.arange(256) % 10 < 10 * share, 2.0, -2.0)
     features = {"image_embeddings": np.ones((1, 8, 4, 4)), "interm_embeddings.0": np.ones((1, 4, 4, 8))}
-    masks = {"iou_predictions": np.full((1, 1), 0.9), "low_res_masks": np.full((1, 1, 256, 256), logit)}
+    masks = {"iou_predictions": np.full((1, 1), 0.9), "low_res_masks": np.broadcast_to(stripes, (1, 1, 256, 256))}
     return [
         _answering(folder / "e.onnx", {"input_image": ("f", 3)}, features),
         _answering(folder / "d.onnx", small_graphs.HQ_SAM, masks),
@@ -95,7 +97,8 @@ def _answering(path: Path, inputs: Mapping[str, tuple[str, int]], outputs: Mappi
 @pytest.mark.parametrize(
     ("network_id", "made", "right", "wrong", "measured"),
     [
-        ("hq-sam-base", _segmenter, 2.0, -2.0, "share of a box within its mask"),
+        ("hq-sam-base", _segmenter, 0.6, 0.0, "share of a box within its mask"),
+        ("hq-sam-base", _segmenter, 0.6, 1.0, "share of a box within its mask"),
         ("da3-metric-large", _depth, 2.0, 200.0, "median depth"),
         ("birefnet-lite", _foreground, 300, 1024, "share of foreground"),
         ("lama", _inpainter, 170.0, 0.0, "difference of a filled hole"),
@@ -140,3 +143,18 @@ def test_a_network_of_another_kind_in_its_place_fails_with_one_line(tmp_path: Pa
     assert not check.ok
     assert "\n" not in check.words
     assert np.isfinite(check.seconds)
+
+
+def test_what_arrives_without_a_checksum_and_does_not_work_is_deleted(tmp_path: Path) -> None:
+    """A network of the same role with other graphs, taken for HQ-SAM; and one that answers as it should."""
+    store = ModelStore(tmp_path / "store")
+    encoder, _ = _segmenter(tmp_path, 0.6)
+    plain = {name: kind for name, kind in small_graphs.HQ_SAM.items() if name != "interm_embeddings"}
+    masks = {"iou_predictions": np.full((1, 1), 0.9), "low_res_masks": np.full((1, 1, 256, 256), 2.0)}
+    install(store, "hq-sam-base", [encoder, _answering(tmp_path / "other.onnx", plain, masks)])
+    (check,) = rejected(store, ("hq-sam-base",), example_inputs().inputs)
+    assert "inputs" in check.words
+    assert not store.has(network("hq-sam-base"))
+    install(store, "hq-sam-base", _segmenter(tmp_path, 0.6))
+    assert rejected(store, ("hq-sam-base", "birefnet"), example_inputs().inputs) == ()
+    assert store.has(network("hq-sam-base"))

@@ -28,6 +28,7 @@ def panel(page: Page, client, asked) -> Networks:
 
 
 def test_licences_are_accepted_before_anything_is_fetched(page, panel, asked) -> None:
+    page.write("Set", "tiny: a photo alone")
     assert "to download" in page.html
     for network in networks_of("tiny"):
         assert network.title in page.html
