@@ -115,8 +115,18 @@ def add_build(commands: Any) -> None:
         "--masks", type=Path, metavar="PATH", help="PNG with one colour or id per object, or a folder of masks"
     )
     p.add_argument("--profile", choices=PROFILES, default="auto", help="which networks to use (default: %(default)s)")
-    p.add_argument("--detector", metavar="ID", help="network that finds objects (default: the best on this machine)")
-    p.add_argument("--depth-network", metavar="ID", help="network that reads depth (default: the best on this machine)")
+    p.add_argument(
+        "--detector",
+        metavar="ID|FILE",
+        help="network that finds objects, or your own: an ONNX file of YOLO or DETR, its labels in a .txt beside it "
+        "(default: the best on this machine)",
+    )
+    p.add_argument(
+        "--depth-network",
+        metavar="ID|FILE",
+        help="network that reads depth, or your own: an ONNX file from RGB between 0 and 1 to metres "
+        "(default: the best on this machine)",
+    )
     p.add_argument(
         "--arrangements",
         type=int,

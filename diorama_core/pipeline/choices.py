@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from pathlib import Path
 
 from diorama_core.errors import InputError
 from diorama_core.models.manifest import network
@@ -48,10 +49,20 @@ JOINT_EMBEDDINGS = ("openclip-b32",)
 
 @dataclass(frozen=True)
 class NetworkChoice:
-    """Networks that the user names instead of the best one on the machine; None leaves a stage to rank."""
+    """Networks that the user names, by id or by an ONNX file of their own; None leaves a stage to rank."""
 
     detector: str | None = None
     depth: str | None = None
+
+    @property
+    def detector_file(self) -> Path | None:
+        """The user's own detector."""
+        return _file(self.detector)
+
+    @property
+    def depth_file(self) -> Path | None:
+        """The user's own depth network."""
+        return _file(self.depth)
 
     def detectors(self) -> tuple[str, ...]:
         """Ids to look for, best first.
@@ -68,6 +79,10 @@ class NetworkChoice:
             InputError: when the named one reads no depth.
         """
         return _chosen(self.depth, DEPTH_NETWORKS, "depth network")
+
+
+def _file(named: str | None) -> Path | None:
+    return Path(named) if named is not None and named.endswith(".onnx") else None
 
 
 def best_here(store: ModelStore, choices: Sequence[str]) -> Network | None:

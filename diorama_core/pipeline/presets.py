@@ -18,9 +18,11 @@ from diorama_core.architecture.from_depth import PlanarRoom
 from diorama_core.artefacts import Box, Inputs, LabelledBox, Photo
 from diorama_core.errors import UnavailableError
 from diorama_core.library.record import ShapeLibrary
+from diorama_core.models.depth import GeometryNetwork
 from diorama_core.models.foreground import Foreground
 from diorama_core.models.manifest import network
 from diorama_core.models.network import Network
+from diorama_core.models.own_files import FileDepth, FileDetector
 from diorama_core.models.own_weights import has_own_recogniser
 from diorama_core.models.recogniser import own_recogniser
 from diorama_core.models.store import ModelStore, how_to_get
@@ -30,7 +32,7 @@ from diorama_core.perception.foundation.depth_prediction import (
     NetworkDepth,
     NetworkDepthPrediction,
 )
-from diorama_core.perception.foundation.detection import EverydayDetection, OpenVocabularyDetection
+from diorama_core.perception.foundation.detection import EverydayDetection, FileDetection, OpenVocabularyDetection
 from diorama_core.perception.foundation.empty_room import EmptyRoomArchitecture
 from diorama_core.perception.foundation.outlines import PromptedMasks
 from diorama_core.perception.foundation.proposals import (
@@ -127,9 +129,7 @@ def foundation_stages(
         stages = replace(stages, objects=PromptedMasks(segmenter))
     filler = _best(store, INPAINTERS, network_stages.inpainter)
     stages = replace(stages, filler=filler)
-    depth_prediction = (
-        _best(store, choice.depth_networks(), network_stages.depth_network) if inputs.depth_m is None else None
-    )
+    depth_prediction = _depth_network(store, choice) if inputs.depth_m is None else None
     if depth_prediction is not None:
         stages = replace(
             stages,
@@ -145,8 +145,16 @@ def foundation_stages(
     return stages if lmm is None else replace(stages, graph=LanguageGraph(lmm))
 
 
+def _depth_network(store: ModelStore, choice: NetworkChoice) -> GeometryNetwork | None:
+    if choice.depth_file is not None:
+        return FileDepth.of(choice.depth_file)
+    return _best(store, choice.depth_networks(), network_stages.depth_network)
+
+
 def detection_stage(store: ModelStore, choice: NetworkChoice | None = None) -> DetectionStage | None:
     """The named detector or the best one on this machine, as a stage; the one that comes with Diorama without any."""
+    if choice is not None and choice.detector_file is not None:
+        return FileDetection(FileDetector.of(choice.detector_file))
     detectors = (choice or NetworkChoice()).detectors()
     found = None if detectors == (OWN_DETECTOR,) else _best(store, detectors, network_stages.detector)
     own = own_detection()
@@ -234,9 +242,12 @@ def propose_boxes(
 
 def _insist_on(store: ModelStore, choice: NetworkChoice) -> None:
     """Refuse a network that the user names and that is not here, instead of doing without."""
-    named_ones = (choice.detector and choice.detectors()[0], choice.depth and choice.depth_networks()[0])
+    named_ones = (
+        choice.detector and choice.detector_file is None and choice.detectors()[0],
+        choice.depth and choice.depth_file is None and choice.depth_networks()[0],
+    )
     for named in filter(None, named_ones):
-        if named != OWN_DETECTOR and not store.has(network(named)):
+        if isinstance(named, str) and named != OWN_DETECTOR and not store.has(network(named)):
             raise UnavailableError(f"{named} is not on this machine; run: diorama models pull {named}")
 
 

@@ -10,6 +10,7 @@ from diorama_core.artefacts import LabelledBox, Photo
 from diorama_core.library.taxonomy import ARCHITECTURE_WORDS, UNKNOWN, broad, resolve
 from diorama_core.models.boxes import Detections, without_doubles, without_parts_of_same
 from diorama_core.models.owlv2 import BoxDetector
+from diorama_core.models.own_files import FileDetector
 from diorama_core.models.yolox import COCO_CLASSES, Yolox
 from diorama_core.perception.foundation.vocabulary import INDOOR_WORDS
 from diorama_core.progress import Progress
@@ -75,6 +76,23 @@ class EverydayDetection:
         inside = np.array([COCO_CLASSES[k] in _IN_ROOMS for k in found.labels], dtype=bool)
         names = tuple(_WORDS.get(name, name) for name in COCO_CLASSES)
         return _labelled(found.rows(np.flatnonzero(inside)), names, self.part_share)
+
+
+@dataclass(frozen=True)
+class FileDetection:
+    """A detector that a person brings as a file; labels that name no kind of the library are left out."""
+
+    detector: FileDetector
+    threshold: float = 0.35
+    part_share: float = 0.8
+
+    def detect(self, photo: Photo, words: tuple[str, ...], progress: Progress) -> tuple[LabelledBox, ...]:
+        """Boxes of known kinds in the photo, best first; `words` is ignored."""
+        progress.report(0.0, "Looking for furniture")
+        found = self.detector.detect(photo.rgb, self.threshold)
+        names = tuple(_WORDS.get(name, name) for name in self.detector.labels)
+        known = np.array([resolve(names[k]).exact for k in found.labels], dtype=bool)
+        return _labelled(found.rows(np.flatnonzero(known)), names, self.part_share)
 
 
 def _labelled(found: Detections, names: tuple[str, ...], part_share: float) -> tuple[LabelledBox, ...]:

@@ -1,0 +1,172 @@
+"""Networks that a person brings as ONNX files: what they answer is recognised by shapes.
+
+Detectors: YOLO heads (raw YOLOX; YOLOv5 with objectness; YOLOv8 and later without) and DETR's (class logits and boxes
+relative to the picture). Depth: one map in metres from pictures between 0 and 1.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import cv2
+import numpy as np
+from jaxtyping import Float, UInt8
+from scipy.special import softmax
+
+from diorama_core.errors import InputError
+from diorama_core.geometry.depth_grid import smooth_normals_camera
+from diorama_core.io.bounded import read_bytes
+from diorama_core.models.boxes import Detections, clipped, without_doubles
+from diorama_core.models.depth import SeenDepth
+from diorama_core.models.images import IMAGENET_MEAN, IMAGENET_STD, normalised, resized
+from diorama_core.models.runtime import SHARED_SESSIONS, NetworkError, SessionPool
+from diorama_core.models.store import sha256_of
+from diorama_core.models.yolox import COCO_CLASSES, decoded, letterboxed
+from diorama_core.scene.types import Intrinsics
+
+ENDING = ".onnx"
+SIDE_PX = 640
+"""Of the square that a detector is shown where its graph leaves that open."""
+_STRIDES = (8, 16, 32)
+_MAX_LABELS_BYTES = 1_000_000
+_ANY = (..., None, None)
+
+
+@dataclass(frozen=True)
+class FileDetector:
+    """Input: an upright RGB picture, eight bits, any size. Output: boxes in its pixels with indices of `labels`."""
+
+    graph: Path = field(repr=False)
+    labels: tuple[str, ...]
+    weights: str
+    """Identity of the file, for cache keys."""
+    pool: SessionPool = field(default=SHARED_SESSIONS, repr=False, compare=False)
+
+    @classmethod
+    def of(cls, graph: Path) -> FileDetector:
+        """The network in a file; its labels, one a line, in a text file of the same name beside it, or COCO's 80.
+
+        Raises:
+            InputError: when there is no such file, or the labels cannot be read.
+        """
+        _need(graph)
+        beside = graph.with_suffix(".txt")
+        labels = COCO_CLASSES
+        if beside.is_file():
+            text = read_bytes(beside, _MAX_LABELS_BYTES, InputError).decode(errors="replace")
+            labels = tuple(line.strip() for line in text.splitlines() if line.strip())
+        return cls(graph, labels, sha256_of(graph)[:12])
+
+    def detect(self, rgb: UInt8[np.ndarray, "h w 3"], threshold: float, iou: float = 0.45) -> Detections:
+        """Everything found with at least the given score.
+
+        Raises:
+            NetworkError: when the outputs are those of no detector that is known, or of another number of labels.
+        """
+        session = self.pool.get(self.graph)
+        name = session.picture_input
+        if len(session.outputs) >= 2:
+            boxes, scores = self._detr(rgb, name, session.side_px(name, SIDE_PX))
+        else:
+            boxes, scores = self._yolo(rgb, name, session.side_px(name, SIDE_PX))
+        best, labels = scores.max(axis=1), scores.argmax(axis=1)
+        keep = np.flatnonzero(best >= threshold)
+        found = Detections(clipped(boxes[keep], rgb.shape[1], rgb.shape[0]), best[keep], labels[keep])
+        return without_doubles(found, iou, across_classes=True)
+
+    def _yolo(
+        self, rgb: UInt8[np.ndarray, "h w 3"], name: str, side: int
+    ) -> tuple[Float[np.ndarray, "n 4"], Float[np.ndarray, "n c"]]:
+        session, count = self.pool.get(self.graph), len(self.labels)
+        bgr, scale = letterboxed(rgb, side)
+        unit = np.ascontiguousarray(bgr[:, ::-1]) / np.float32(255)
+        raw = session.run({name: unit}, {session.outputs[0]: _ANY})[session.outputs[0]]
+        raw = raw.reshape(raw.shape[-2:]).astype(np.float64)
+        if raw.shape == (sum((side // s) ** 2 for s in _STRIDES), 5 + count):  # YOLOX: offsets to cells, other pixels
+            raw = session.run({name: bgr}, {session.outputs[0]: (1, *raw.shape)})[session.outputs[0]][0]
+            return decoded(raw, side) / scale, (raw[:, 4:5] * raw[:, 5:]).astype(np.float64)
+        if raw.shape[0] == 4 + count:
+            return _corners(raw[:4].T) / scale, raw[4:].T
+        if raw.shape[1] == 5 + count:
+            return _corners(raw[:, :4]) / scale, raw[:, 4:5] * raw[:, 5:]
+        raise self._unknown([raw.shape])
+
+    def _detr(
+        self, rgb: UInt8[np.ndarray, "h w 3"], name: str, side: int
+    ) -> tuple[Float[np.ndarray, "n 4"], Float[np.ndarray, "n c"]]:
+        session, count = self.pool.get(self.graph), len(self.labels)
+        pixels = normalised(resized(rgb, (side, side)), IMAGENET_MEAN, IMAGENET_STD)
+        feeds: dict[str, np.ndarray] = {name: pixels}
+        for other in session.inputs:
+            if other != name:  # DETR's pixel mask: everything is picture
+                feeds[other] = np.ones((1, side, side), np.int64)
+        found = session.run(feeds, dict.fromkeys(session.outputs[:2], _ANY))
+        rows = [found[o].reshape(found[o].shape[-2:]).astype(np.float64) for o in session.outputs[:2]]
+        boxes = next((r for r in rows if r.shape[1] == 4 and r.min() >= 0 and r.max() <= 1), None)
+        logits = next((r for r in rows if r is not boxes and r.shape[1] in (count, count + 1)), None)
+        if boxes is None or logits is None:
+            raise self._unknown([r.shape for r in rows])
+        # With a class for nothing the classes exclude each other; without one each is asked by itself.
+        scores = softmax(logits, axis=1)[:, :count] if logits.shape[1] > count else 1 / (1 + np.exp(-logits))
+        return _corners(boxes) * np.array([rgb.shape[1], rgb.shape[0]] * 2), scores
+
+    def _unknown(self, shapes: list[tuple[int, ...]]) -> NetworkError:
+        told = " and ".join(" x ".join(map(str, shape)) for shape in shapes)
+        return NetworkError(
+            self.graph,
+            f"answers {told}, which is no YOLO or DETR detector of {len(self.labels)} labels; "
+            f"put its labels, one a line, in {self.graph.with_suffix('.txt').name} beside it",
+        )
+
+
+@dataclass(frozen=True)
+class FileDepth:
+    """A network from a picture between 0 and 1 (stretched to its own size) to depth in metres."""
+
+    graph: Path = field(repr=False)
+    weights: str
+    """Identity of the file, for cache keys."""
+    usual_fov_rad: float = 1.05
+    """Horizontal, of pictures whose camera is unknown."""
+    pool: SessionPool = field(default=SHARED_SESSIONS, repr=False, compare=False)
+
+    @classmethod
+    def of(cls, graph: Path) -> FileDepth:
+        """The network in a file.
+
+        Raises:
+            InputError: when there is no such file.
+        """
+        _need(graph)
+        return cls(graph, sha256_of(graph)[:12])
+
+    def predict(self, rgb: UInt8[np.ndarray, "h w 3"], intrinsics: Intrinsics | None) -> SeenDepth:
+        """Depth and normals, which follow from it; without intrinsics a usual field of view is assumed.
+
+        Raises:
+            NetworkError: when the network answers no map of depth.
+        """
+        height, width = rgb.shape[:2]
+        k = intrinsics or Intrinsics.from_fov(width, height, self.usual_fov_rad)
+        session = self.pool.get(self.graph)
+        name = session.picture_input
+        side = session.side_px(name, SIDE_PX)
+        pixels = resized(rgb, (side, side)).astype(np.float32).transpose(2, 0, 1)[None] / np.float32(255)
+        seen = session.run({name: np.ascontiguousarray(pixels)}, {session.outputs[0]: _ANY}, gaps=True)
+        answer = seen[session.outputs[0]]
+        small = answer.reshape(answer.shape[-2:]).astype(np.float32)
+        if min(small.shape) < 2 or not (np.isfinite(small) & (small > 0)).any():
+            raise NetworkError(self.graph, "answers no depth in metres; give another file as --depth-network")
+        depth = cv2.resize(np.where(small > 0, small, 0.0).astype(np.float32), (width, height))
+        return SeenDepth(depth, smooth_normals_camera(depth, k).astype(np.float32), k)
+
+
+def _corners(boxes: Float[np.ndarray, "n 4"]) -> Float[np.ndarray, "n 4"]:
+    """Corner boxes from middles and sizes."""
+    return np.concatenate([boxes[:, :2] - boxes[:, 2:] / 2, boxes[:, :2] + boxes[:, 2:] / 2], axis=1)
+
+
+def _need(graph: Path) -> None:
+    if not graph.is_file():
+        raise InputError(f"{graph}: there is no such file; give an ONNX graph or a network's id")
