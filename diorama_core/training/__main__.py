@@ -1,4 +1,4 @@
-"""`python -m diorama_core.training pictures | shapes | windows | train | export | join | score | evidence | facings`."""
+"""`python -m diorama_core.training STEP`; `--help` lists the steps: rendering, training, exporting, fitting, scoring."""
 
 from __future__ import annotations
 
