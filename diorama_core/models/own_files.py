@@ -20,7 +20,7 @@ from diorama_core.io.bounded import read_bytes
 from diorama_core.models.boxes import Detections, clipped, without_doubles
 from diorama_core.models.depth import SeenDepth
 from diorama_core.models.images import IMAGENET_MEAN, IMAGENET_STD, normalised, resized
-from diorama_core.models.runtime import SHARED_SESSIONS, NetworkError, SessionPool
+from diorama_core.models.runtime import SHARED_SESSIONS, Dims, NetworkError, SessionPool
 from diorama_core.models.store import sha256_of
 from diorama_core.models.yolox import COCO_CLASSES, decoded, letterboxed
 from diorama_core.scene.types import Intrinsics
@@ -30,7 +30,7 @@ SIDE_PX = 640
 """Of the square that a detector is shown where its graph leaves that open."""
 _STRIDES = (8, 16, 32)
 _MAX_LABELS_BYTES = 1_000_000
-_ANY = (..., None, None)
+_ANY: Dims = (..., None, None)
 
 
 @dataclass(frozen=True)
@@ -82,7 +82,7 @@ class FileDetector:
         bgr, scale = letterboxed(rgb, side)
         unit = np.ascontiguousarray(bgr[:, ::-1]) / np.float32(255)
         raw = session.run({name: unit}, {session.outputs[0]: _ANY})[session.outputs[0]]
-        raw = raw.reshape(raw.shape[-2:]).astype(np.float64)
+        raw = _rows(raw)
         if raw.shape == (sum((side // s) ** 2 for s in _STRIDES), 5 + count):  # YOLOX: offsets to cells, other pixels
             raw = session.run({name: bgr}, {session.outputs[0]: (1, *raw.shape)})[session.outputs[0]][0]
             return decoded(raw, side) / scale, (raw[:, 4:5] * raw[:, 5:]).astype(np.float64)
@@ -102,7 +102,7 @@ class FileDetector:
             if other != name:  # DETR's pixel mask: everything is picture
                 feeds[other] = np.ones((1, side, side), np.int64)
         found = session.run(feeds, dict.fromkeys(session.outputs[:2], _ANY))
-        rows = [found[o].reshape(found[o].shape[-2:]).astype(np.float64) for o in session.outputs[:2]]
+        rows = [_rows(found[o]) for o in session.outputs[:2]]
         boxes = next((r for r in rows if r.shape[1] == 4 and r.min() >= 0 and r.max() <= 1), None)
         logits = next((r for r in rows if r is not boxes and r.shape[1] in (count, count + 1)), None)
         if boxes is None or logits is None:
@@ -155,11 +155,16 @@ class FileDepth:
         pixels = resized(rgb, (side, side)).astype(np.float32).transpose(2, 0, 1)[None] / np.float32(255)
         seen = session.run({name: np.ascontiguousarray(pixels)}, {session.outputs[0]: _ANY}, gaps=True)
         answer = seen[session.outputs[0]]
-        small = answer.reshape(answer.shape[-2:]).astype(np.float32)
+        small = _rows(answer).astype(np.float32)
         if min(small.shape) < 2 or not (np.isfinite(small) & (small > 0)).any():
             raise NetworkError(self.graph, "answers no depth in metres; give another file as --depth-network")
         depth = cv2.resize(np.where(small > 0, small, 0.0).astype(np.float32), (width, height))
         return SeenDepth(depth, smooth_normals_camera(depth, k).astype(np.float32), k)
+
+
+def _rows(answer: np.ndarray) -> Float[np.ndarray, "n m"]:
+    """Without the leading dimensions of size one."""
+    return answer.reshape(-1, answer.shape[-1]).astype(np.float64)
 
 
 def _corners(boxes: Float[np.ndarray, "n 4"]) -> Float[np.ndarray, "n 4"]:

@@ -1,4 +1,4 @@
-"""`python -m diorama_core.training STEP`; `--help` lists the steps: rendering, training, exporting, fitting, scoring."""
+"""`python -m diorama_core.training STEP`; `--help` lists them: rendering, training, exporting, scoring."""
 
 from __future__ import annotations
 
