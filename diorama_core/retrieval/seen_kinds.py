@@ -7,7 +7,7 @@ from dataclasses import replace
 
 from diorama_core.artefacts import DetectedObject, SeenKinds
 
-TRUST, _TRUST_BESIDE_WORD = 0.8, 0.7
+TRUST, _TRUST_BESIDE_WORD = 0.8, 0.5
 """Powers of the probabilities of a thing without a name, and of one whose word leaves a choice: what its picture looks
 like is too sure of itself on photos, and a word has said some of it."""
 _FLOOR = 0.001
