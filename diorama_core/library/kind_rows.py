@@ -54,6 +54,7 @@ Trait = Literal[
     "any_proportions",  # comes in all proportions
     "flat_piece",  # one flat piece in any proportions: a tall narrow picture is no row of small ones
     "framed",  # hangs flat on a wall or stands in a frame
+    "stores",  # keeps things, and shows its front to the room
     "has_boards",  # things are found in it as well as on it: on boards below its top
     "stacked_on",  # a small thing that lies on others and on which others are put
     "along_the_back",  # stands at the back of a surface

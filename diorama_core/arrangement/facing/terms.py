@@ -13,30 +13,22 @@ import numpy as np
 from jaxtyping import Float
 
 from diorama_core.arrangement.facing.evidence import HEADINGS, FacingRoom, unit
-from diorama_core.library.taxonomy import broad, with_kin
+from diorama_core.library.taxonomy import broad, having, with_kin
 
 Agreement = Float[np.ndarray, "24"]
 PairAgreement = Float[np.ndarray, "24 24"]
 
-SEATS = with_kin("chair", "office chair", "stool", "bench")
+SEATS = having("drawn_up")
 LOUNGE = with_kin("sofa", "armchair")
-TABLES = with_kin("table", "desk", "kitchen counter", "piano", "console table", "side table")
 LOW_TABLES = with_kin("coffee table")
-SCREENS = with_kin("monitor", "television", "laptop")
+TABLES = having("legroom") - LOW_TABLES | with_kin("piano")
+SCREENS = having("screen") | with_kin("laptop")
 INPUTS = frozenset({"keyboard", "mouse"})
-STORAGE = with_kin(
-    *("cabinet", "sideboard", "dresser", "wardrobe", "bookshelf", "shelves", "tv stand", "refrigerator"),
-    *("kitchen counter", "night stand", "console table", "filing cabinet"),
-)
+STORAGE = having("stores")
 BEDS = with_kin("bed")
-SHELVES = with_kin("bookshelf", "shelves")
-NO_FRONT = with_kin(
-    *("plant", "vase", "bowl", "cup", "bottle", "basket", "rug", "box"),
-    *("table", "coffee table", "side table", "ottoman", "lamp", "floor lamp", "ceiling lamp"),
-    *("candle", "fruit", "kettle", "cooking pot", "utensils", "cutting board", "soap dispenser", "toilet brush"),
-    *("sculpture", "globe", "blanket", "umbrella stand", "drum", "dumbbells", "exercise ball", "yoga mat"),
-    "ceiling fan",
-)
+SHOWN = frozenset({"towel", "trash can"})
+"""What is folded, or has a lid, shows its front."""
+NO_FRONT = having("no_front") - with_kin("pillow") - SHOWN
 """Set down any way round."""
 AT_TABLE_M, AT_LOW_TABLE_M = 0.9, 1.6
 """Gaps within which a seat is drawn up to a table, as people pull chairs out and legs need room."""
