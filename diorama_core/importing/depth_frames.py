@@ -104,7 +104,7 @@ def stray_frames(folder: Path) -> Frames:
 
 
 def tum_frames(folder: Path) -> Frames:
-    """`depth.txt` and `groundtruth.txt` with times; depth in 1/5000 m."""
+    """`depth.txt` and `groundtruth.txt` with times; depth in 1/5000 m; the motion capture's world, +Z up."""
     poses = _table(folder / "groundtruth.txt")
     listed = [line.split() for line in _text(folder / "depth.txt").splitlines() if line and line[0] != "#"]
     pictures = [line.split() for line in _text(folder / "rgb.txt").splitlines() if line and line[0] != "#"]
@@ -120,7 +120,7 @@ def tum_frames(folder: Path) -> Frames:
         picture = folder / shown[1] if shown is not None and files.holds(folder / shown[1]) else None
         camera = Camera(k, _posed(poses[nearest, 1:4], poses[nearest, 4:8]))
         frames.append(DepthFrame(depth, camera, None, picture, TUM_UNIT_M))
-    return Frames(tuple(frames), None, ("depth of TUM RGB-D, in 1/5000 m",))
+    return Frames(tuple(frames), UP_Z, ("depth of TUM RGB-D, in 1/5000 m",))
 
 
 def scannet_frames(folder: Path) -> Frames:

@@ -15,8 +15,6 @@ from diorama_core.io.bounded import megabytes, shortened
 
 MAX_UNPACKED = 4_000_000_000
 MAX_MEMBERS = 50_000
-MAX_RATIO = 2000
-"""Bytes out of a byte, beyond which an archive is a bomb."""
 
 
 @contextmanager
@@ -35,7 +33,7 @@ def unpacked(path: Path, most: int = MAX_UNPACKED) -> Iterator[Path]:
             with zipfile.ZipFile(path) as archive:
                 members = [m for m in archive.infolist() if not m.filename.startswith("__MACOSX/")]
                 size = sum(m.file_size for m in members)
-                if size > most or len(members) > MAX_MEMBERS or size > MAX_RATIO * max(path.stat().st_size, 1):
+                if size > most or len(members) > MAX_MEMBERS:
                     raise InputError(
                         f"{path.name} unpacks to {len(members)} files of {megabytes(size)}; unpack a part of it"
                     )

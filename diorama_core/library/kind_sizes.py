@@ -16,6 +16,8 @@ MAX_MODES = 3
 MAX_SIGMAS, MIN_SIGMA, OFF_ANYWAY = 2.6, 0.08, 0.22
 """How far a side may be off a kind's usual one, in standard deviations of its logarithm, and the quarter that is
 allowed beside them: 99 % of the built-in shapes are within."""
+SAID_SIGMAS = 4.0
+"""The same of what has a name: makers call a side table what is as wide as a console table."""
 
 
 @cache
@@ -48,7 +50,7 @@ def size_density(name: str, size_m: Float[np.ndarray, "3"], sigma: float) -> flo
     return total
 
 
-def is_possible(name: str, size_m: Float[np.ndarray, "3"]) -> bool:
+def is_possible(name: str, size_m: Float[np.ndarray, "3"], *, said: bool = False) -> bool:
     """Whether a thing of this kind can be so large, along every side, the better way round.
 
     One gate for everything that is named by its shape or by a word: models of a library, meshes of a scene, boxes of a
@@ -57,12 +59,14 @@ def is_possible(name: str, size_m: Float[np.ndarray, "3"]) -> bool:
     Args:
         name: of the canonical category.
         size_m: depth, width and height, metres; width and depth may have changed places.
+        said: whether somebody called it so, who is believed a little longer.
     """
+    most = SAID_SIGMAS if said else MAX_SIGMAS
     if name == UNKNOWN.name:
         return True
     log_size = np.log(np.maximum(size_m, 1e-6))
     return any(
-        bool((_beyond(mode, turned, category(name).flat) <= MAX_SIGMAS).all())
+        bool((_beyond(mode, turned, category(name).flat) <= most).all())
         for mode in sizes_of_kind(name)
         for turned in (log_size, log_size[[1, 0, 2]])
     )

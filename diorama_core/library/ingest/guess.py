@@ -187,7 +187,7 @@ def _table(
             log_sizes = log_extents + np.log(unit)
             rows[:, column] = weight + alike + frame + np.log(prior) + _size_fit(log_sizes, name)
             if given.category is None:
-                rows[~_possible(name, log_sizes), column] = -np.inf
+                rows[~_possible(name, log_sizes, said=name in (named.weights or ())), column] = -np.inf
         if given.unit_m is None and len(units) > 1:
             free = _best_scale(log_extents, name)
             fit = _size_fit(log_extents + free[:, None], name)
@@ -195,12 +195,12 @@ def _table(
     return table, log_extents
 
 
-def _possible(name: str, log_sizes: Float[np.ndarray, "24 3"]) -> Bool[np.ndarray, "24"]:
+def _possible(name: str, log_sizes: Float[np.ndarray, "24 3"], *, said: bool) -> Bool[np.ndarray, "24"]:
     """For each turn, whether a thing of the kind can be so large; only which axis is up matters."""
     found: dict[float, bool] = {}
     for size in log_sizes:
         if size[2] not in found:
-            found[size[2]] = is_possible(name, np.exp(size))
+            found[size[2]] = is_possible(name, np.exp(size), said=said)
     return np.array([found[size[2]] for size in log_sizes])
 
 
