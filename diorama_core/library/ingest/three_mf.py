@@ -16,12 +16,11 @@ from jaxtyping import Float
 
 from diorama_core.errors import LibraryError
 from diorama_core.io.xml_text import parse_xml
-from diorama_core.library.ingest.limits import Limits
+from diorama_core.library.ingest.limits import DEFAULT_LIMITS, Limits
 
 UNITS_M = {
     "micron": 1e-6, "millimeter": 1e-3, "centimeter": 1e-2, "inch": 0.0254, "foot": 0.3048, "meter": 1.0,
 }  # fmt: skip
-MAX_DEPTH = 20
 
 
 @dataclass
@@ -52,7 +51,7 @@ def read_3mf(data: bytes, limits: Limits) -> tuple[trimesh.Scene, float]:
     items = main.findall(f"{_tag(main, 'build')}/{_tag(main, 'item')}")
     placed = [(i.get("objectid", ""), _matrix(i.get("transform"))) for i in items]
     for object_id, T in placed or [(name, np.eye(4)) for name in objects.meshes]:
-        _place(scene, objects, object_id, T, 0)
+        _place(scene, objects, object_id, T, ())
     return scene, UNITS_M.get(main.get("unit", "millimeter"), 1e-3)
 
 
@@ -78,10 +77,12 @@ def _matrix(text: str | None) -> Float[np.ndarray, "4 4"]:
     return T
 
 
-def _place(scene: trimesh.Scene, objects: _Objects, name: str, T: Float[np.ndarray, "4 4"], depth: int) -> None:
-    if depth > MAX_DEPTH or len(scene.geometry) > 10_000:
+def _place(
+    scene: trimesh.Scene, objects: _Objects, name: str, T: Float[np.ndarray, "4 4"], above: tuple[str, ...]
+) -> None:
+    if name in above or len(scene.geometry) > DEFAULT_LIMITS.nodes:
         raise LibraryError("its parts refer to one another in a circle")
     if name in objects.meshes:
         scene.add_geometry(objects.meshes[name].copy(), transform=T)
     for part, T_part in objects.parts.get(name, []):
-        _place(scene, objects, part, T @ T_part, depth + 1)
+        _place(scene, objects, part, T @ T_part, (*above, name))
