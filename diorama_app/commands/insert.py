@@ -23,7 +23,7 @@ from diorama_core.editing.plan_edits import wall_feet
 from diorama_core.editing.relations import SEATS
 from diorama_core.editing.sensible_support import why_not_on
 from diorama_core.errors import EditRefused
-from diorama_core.layout.problem.supports import Surface, plane_surface
+from diorama_core.arrangement.surfaces import Surface, plane_surface
 from diorama_core.library.record import Shape
 from diorama_core.library.taxonomy import broad, resolve
 from diorama_core.scene import edits

@@ -11,7 +11,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from jaxtyping import Float
 
-from diorama_core.layout.problem.supports import Surface, object_surfaces, outside_m, plane_surface
+from diorama_core.arrangement.surfaces import Surface, object_surfaces, outside_m, plane_surface
 from diorama_core.library.record import Shape, ShapeLibrary
 from diorama_core.scene import edits
 from diorama_core.scene.support import descendants
@@ -139,7 +139,7 @@ def seated(scene: Scene, library: ShapeLibrary, object_id: str) -> Scene:
 
 
 def _box_top(item: SceneObject) -> Place:
-    from diorama_core.layout.problem.supports import convex_outline
+    from diorama_core.arrangement.surfaces import convex_outline
 
     corners = item.corners_world
     top = corners[corners[:, 2] > corners[:, 2].max() - 0.01]

@@ -11,7 +11,7 @@ from dataclasses import replace
 import numpy as np
 
 from diorama_core.layout.behind_walls import wall_before
-from diorama_core.layout.noise import ObservationNoise
+from diorama_core.arrangement.noise import ObservationNoise
 from diorama_core.library.taxonomy import AGAINST_WALLS
 from diorama_core.scene import edits
 from diorama_core.scene.types import Plane, Scene, SceneObject

@@ -10,8 +10,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from diorama_core.layout.noise import ObservationNoise
-from diorama_core.layout.problem.supports import (
+from diorama_core.arrangement.noise import ObservationNoise
+from diorama_core.arrangement.surfaces import (
     carries_things,
     is_soft,
     label_of,

@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from diorama_core.layout.holding_shapes import candidate_of, cost_of_shape, loads_of, of_one_shape, reshaped
-from diorama_core.layout.noise import ObservationNoise
+from diorama_core.arrangement.noise import ObservationNoise
 from diorama_core.layout.problem.problem import build_problem
 from diorama_core.layout.report import part_overlaps
 from diorama_core.library.record import ShapeLibrary

@@ -16,7 +16,7 @@ import numpy as np
 from jaxtyping import Float, Int
 from scipy.optimize import lsq_linear
 
-from diorama_core.layout.problem.supports import is_soft
+from diorama_core.arrangement.surfaces import is_soft
 from diorama_core.layout.sight import nearness
 from diorama_core.library import taxonomy
 from diorama_core.library.boards import BOARD_SHARE, MAX_SLOPE, MIN_SLOPE, levels_m, with_boards, without_boards

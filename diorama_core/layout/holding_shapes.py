@@ -12,8 +12,8 @@ from dataclasses import replace
 import numpy as np
 
 from diorama_core.layout.fitted_boards import fitted_shape
-from diorama_core.layout.noise import ObservationNoise
-from diorama_core.layout.problem.supports import is_soft, misfit, object_surfaces
+from diorama_core.arrangement.noise import ObservationNoise
+from diorama_core.arrangement.surfaces import is_soft, misfit, object_surfaces
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.scene.frames import UP_WORLD
 from diorama_core.scene.types import Candidate, Scene, SceneObject

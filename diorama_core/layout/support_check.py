@@ -13,9 +13,9 @@ import numpy as np
 
 from diorama_core.geometry.openings import OPENING_CATEGORIES
 from diorama_core.layout.behind_walls import NEVER_HANGS, UPRIGHT, before_wall
-from diorama_core.layout.noise import ObservationNoise
+from diorama_core.arrangement.noise import ObservationNoise
 from diorama_core.layout.on_walls import moved_to_wall
-from diorama_core.layout.problem.supports import (
+from diorama_core.arrangement.surfaces import (
     SMALLEST_CLEARANCE,
     Surface,
     carries_things,

@@ -10,8 +10,8 @@ from __future__ import annotations
 import numpy as np
 
 from diorama_core.layout.holding_shapes import gaps_m
-from diorama_core.layout.noise import ObservationNoise
-from diorama_core.layout.problem.supports import (
+from diorama_core.arrangement.noise import ObservationNoise
+from diorama_core.arrangement.surfaces import (
     OUT_OF_REACH_M,
     carries_things,
     choose_surface,

@@ -7,7 +7,7 @@ import pytest
 
 from diorama_core.layout.backs_to_walls import with_backs_to_walls
 from diorama_core.layout.feasible.recipe import FeasibleRecipe
-from diorama_core.layout.noise import REASONED
+from diorama_core.arrangement.noise import REASONED
 from diorama_core.progress import Progress
 from diorama_core.scene.types import Scene
 from diorama_core.synthesis.layout_rooms import box_library

@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from diorama_core.layout.noise import MEASURED, REASONED
+from diorama_core.arrangement.noise import MEASURED, REASONED
 from diorama_core.layout.support_check import checked_supports
 from tests.layout.feasible.test_photo_observations import LIBRARY, looking_north, outline
 from tests.layout.small_rooms import Room

@@ -5,7 +5,7 @@ from dataclasses import replace
 import pytest
 
 from diorama_core.layout.holding_shapes import holding_shapes
-from diorama_core.layout.noise import MEASURED, REASONED
+from diorama_core.arrangement.noise import MEASURED, REASONED
 from diorama_core.scene.types import Candidate, Pose, Scene
 from diorama_core.synthesis.layout_rooms import box_library
 from tests.layout.feasible.test_photo_observations import looking_north

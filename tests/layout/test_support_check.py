@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from diorama_core.layout.feasible.recipe import FeasibleRecipe
-from diorama_core.layout.noise import MEASURED, REASONED
+from diorama_core.arrangement.noise import MEASURED, REASONED
 from diorama_core.layout.support_check import checked_supports
 from diorama_core.progress import Progress
 from diorama_core.scene.types import Candidate

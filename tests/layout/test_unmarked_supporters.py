@@ -9,7 +9,7 @@ import pytest
 
 from diorama_core.layout.feasible.recipe import FeasibleRecipe
 from diorama_core.layout.holding_shapes import holding_shapes
-from diorama_core.layout.noise import MEASURED, REASONED
+from diorama_core.arrangement.noise import MEASURED, REASONED
 from diorama_core.layout.unmarked_supporters import left_where_seen, over_what_may_hold_them
 from diorama_core.progress import Progress
 from diorama_core.scene.types import Scene

@@ -19,7 +19,7 @@ from diorama_core.editing.placing import places_of
 from diorama_core.editing.relations import OF_ROOM, Relation, RelationKind, is_met
 from diorama_core.editing.room_frame import RoomFrame
 from diorama_core.geometry.openings import OPENING_CATEGORIES
-from diorama_core.layout.problem.supports import outside_m
+from diorama_core.arrangement.surfaces import outside_m
 from diorama_core.library.record import ShapeLibrary, record_of
 from diorama_core.library.taxonomy import broad, category, with_kin
 from diorama_core.scene.types import Scene, SceneObject

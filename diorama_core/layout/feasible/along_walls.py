@@ -16,7 +16,7 @@ from diorama_core.layout.feasible.hidden_extents import is_hidden
 from diorama_core.layout.feasible.photo_observations import MAX_STRETCH, UPWARD, PhotoObservations
 from diorama_core.layout.feasible.settle import PARALLEL, SHORTEST_BEFORE_WALL
 from diorama_core.layout.problem.problem import Problem
-from diorama_core.layout.problem.supports import plane_surface
+from diorama_core.arrangement.surfaces import plane_surface
 from diorama_core.scene.types import Plane
 
 

@@ -24,7 +24,7 @@ from diorama_core.layout.feasible.visible_points import (
     turned_points,
 )
 from diorama_core.layout.problem.problem import Problem
-from diorama_core.layout.problem.supports import box_misfit
+from diorama_core.arrangement.surfaces import box_misfit
 from diorama_core.scene.types import Camera, box_corners
 
 MOVED_M = 2e-3

@@ -20,7 +20,7 @@ from diorama_core.layout.feasible.quadratic import HARD, SOFT, least_distance
 from diorama_core.layout.feasible.structure import Structure
 from diorama_core.layout.problem.enclosure import may_meet
 from diorama_core.layout.problem.problem import Problem
-from diorama_core.layout.problem.supports import Surface, plane_surface
+from diorama_core.arrangement.surfaces import Surface, plane_surface
 
 APART_M = 5e-4
 """Separation asked for once two parts touched."""

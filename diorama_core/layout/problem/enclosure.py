@@ -15,7 +15,7 @@ from jaxtyping import Bool
 
 from diorama_core.geometry.sat import Bodies
 from diorama_core.layout.problem.problem import Problem
-from diorama_core.layout.problem.supports import Surface
+from diorama_core.arrangement.surfaces import Surface
 
 ABOVE_M = 0.01
 """Parts of a supporter that do not rise above a place by so much are below what rests there."""

@@ -17,7 +17,7 @@ from diorama_core.geometry.planes import in_polygon
 from diorama_core.geometry.sat import PackedParts, pack_parts
 from diorama_core.layout.problem.footing import box_footing, footing_of
 from diorama_core.layout.problem.parts import parts_of_shape
-from diorama_core.layout.problem.supports import (
+from diorama_core.arrangement.surfaces import (
     Surface,
     choose_contact,
     choose_surface,

@@ -10,7 +10,7 @@ from scipy.spatial import ConvexHull
 
 from diorama_core.geometry.planes import plane_axes
 from diorama_core.geometry.rotations import rotation_from_vector
-from diorama_core.layout.problem.supports import (
+from diorama_core.arrangement.surfaces import (
     Surface,
     choose_contact,
     choose_surface,

@@ -1,0 +1,195 @@
+"""Everything that may hold an object, and how well each agrees with where the object was observed."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Literal
+
+import numpy as np
+
+from diorama_core.arrangement.noise import ObservationNoise
+from diorama_core.arrangement.surfaces import Surface, choose_contact, object_surfaces, outside_m, plane_surface
+from diorama_core.library import taxonomy
+from diorama_core.library.record import ShapeLibrary
+from diorama_core.library.taxonomy import Category
+from diorama_core.scene.frames import UP_WORLD
+from diorama_core.scene.types import Plane, Scene, SceneObject, Support
+
+Role = Literal["floor", "wall", "ceiling", "object"]
+Box = tuple[float, float, float, float]
+"""x1, y1, x2, y2 in the photo."""
+BESIDE_WALL_M = 0.1
+"""How far beside a wall's outline a line of sight still meets it: ends of walls are not exact."""
+FARTHEST_WIDTHS = 3.0
+"""Objects that are so many widths beside each other do not hold one another."""
+
+
+@dataclass(frozen=True)
+class SupportEvidence:
+    """What is known of supports besides poses and shapes."""
+
+    believed: Mapping[str, Support] = field(default_factory=dict)
+    """By object the edge that an earlier stage decided on."""
+    below: Mapping[str, Mapping[str, float]] = field(default_factory=dict)
+    """See `lower_rims.seen_below`."""
+
+
+@dataclass(frozen=True)
+class SupportHypothesis:
+    """One thing that may hold an object."""
+
+    edge: Support
+    role: Role
+    kind: Category
+    """Of the object that is held."""
+    carrier: Category | None = None
+    """Of the object that holds it."""
+    believed: bool = False
+    """Whether an earlier stage decided so."""
+    gap: float = 0.0
+    """Distance of the touching face from the supporter, in tolerances of the observation."""
+    outside: float = 0.0
+    """How far beside the supporter the object's middle is, in its widths."""
+    turned: float = 0.0
+    """1 less the cosine between the object's front and a wall's normal."""
+    averted: bool = False
+    """Whether a wall turns its back to the line of sight."""
+    met: bool = False
+    """Whether it is the wall on which the line of sight through the object ends."""
+    below: float = 0.0
+    """Share of the object's lower rim below which the supporter is seen."""
+    foot_in_box: bool = False
+    """Whether the object's box in the photo ends within the supporter's."""
+
+
+def support_hypotheses(
+    scene: Scene, library: ShapeLibrary, noise: ObservationNoise, evidence: SupportEvidence
+) -> dict[str, tuple[SupportHypothesis, ...]]:
+    """By object everything that may hold it: the planes of the room and the other objects.
+
+    Args:
+        scene: every object in its observed pose, with the photo's camera.
+        library: where shapes come from.
+        noise: of the observed poses.
+        evidence: what else is known.
+    """
+    surfaces = {
+        o.id: tuple(
+            world
+            for place in object_surfaces(library.shape(o.shape_id), o)
+            if float((world := place.in_world(o.pose)).normal @ UP_WORLD) > np.cos(np.deg2rad(25.0))
+        )
+        for o in scene.objects
+    }
+    met = {item.id: _wall_in_sight(scene, item) for item in scene.objects}
+    return {
+        item.id: (
+            *(_on_plane(scene, item, plane, noise, evidence, met[item.id]) for plane in scene.architecture.planes),
+            *(
+                found
+                for other in scene.objects
+                if other.id != item.id
+                and (found := _on_object(scene, item, other, surfaces[other.id], noise, evidence)) is not None
+            ),
+        )
+        for item in scene.objects
+    }
+
+
+def _on_plane(
+    scene: Scene, item: SceneObject, plane: Plane, noise: ObservationNoise, evidence: SupportEvidence, met: str | None
+) -> SupportHypothesis:
+    edge = Support(item.id, plane.id, "placed on" if plane.role == "floor" else "mounted on")
+    surface = plane_surface(plane)
+    face = choose_contact(scene, item, edge, surface) * item.size_m / 2
+    touching = item.pose.position + item.pose.R_world_object @ face
+    gap_m = abs(float(surface.normal @ touching) - surface.level)
+    wall = plane.role == "wall"
+    sight = np.zeros(3) if scene.camera is None else item.pose.position - scene.camera.position
+    # How far the floor reaches is a guess where it was not seen; how high it is, is not.
+    beside_m = 0.0 if plane.role == "floor" else outside_m(surface, item.pose.position)
+    return SupportHypothesis(
+        edge,
+        plane.role,
+        taxonomy.resolve(item.category).category,
+        believed=_is_believed(scene, edge, evidence),
+        gap=gap_m / noise.tolerance_m(scene.camera, item.pose.position, plane.normal),
+        outside=beside_m / _width_m(item),
+        turned=1.0 - float(item.pose.R_world_object[:, 0] @ plane.normal) if wall else 0.0,
+        averted=wall and bool(plane.normal @ sight > 0.0),
+        met=plane.id == met,
+    )
+
+
+def _wall_in_sight(scene: Scene, item: SceneObject) -> str | None:
+    """The wall on which the line of sight through an object's middle ends; None where it leaves the known room."""
+    if scene.camera is None:
+        return None
+    eye, sight = scene.camera.position, item.pose.position - scene.camera.position
+    met: list[tuple[float, str]] = []
+    for wall in scene.architecture.by_role("wall"):
+        closing = float(wall.normal @ sight)
+        share = (wall.offset - float(wall.normal @ eye)) / closing if closing < 0.0 else -1.0
+        if share > 0.0 and outside_m(plane_surface(wall), eye + share * sight) <= BESIDE_WALL_M:
+            met.append((share, wall.id))
+    return min(met)[1] if met else None
+
+
+def _on_object(
+    scene: Scene,
+    item: SceneObject,
+    other: SceneObject,
+    places: tuple[Surface, ...],
+    noise: ObservationNoise,
+    evidence: SupportEvidence,
+) -> SupportHypothesis | None:
+    """On the place of another object that agrees best; None where it is far beside all of them."""
+    corners = item.corners_world
+    foot, height = float(corners[:, 2].min()), max(float(np.ptp(corners[:, 2])), 1e-3)
+    tolerance = noise.tolerance_m(scene.camera, item.pose.position, UP_WORLD)
+    found: list[tuple[float, int, float, float]] = []
+    for index, place in enumerate(places):
+        gap = abs(foot - place.level) / tolerance
+        outside = outside_m(place, item.pose.position) / _width_m(item)
+        over = max(height - place.clearance_m, 0.0) / height
+        found.append((min(gap, 6.0) + outside + over, index, gap, outside))
+    if not found or min(found)[3] >= FARTHEST_WIDTHS:
+        return None
+    _, _, gap, outside = min(found)
+    edge = Support(item.id, other.id)
+    return SupportHypothesis(
+        edge,
+        "object",
+        taxonomy.resolve(item.category).category,
+        taxonomy.resolve(other.category).category,
+        _is_believed(scene, edge, evidence),
+        gap,
+        outside,
+        below=evidence.below.get(item.id, {}).get(other.id, 0.0),
+        foot_in_box=_ends_within(item.box_px, other.box_px),
+    )
+
+
+def _is_believed(scene: Scene, edge: Support, evidence: SupportEvidence) -> bool:
+    """Whether an earlier stage named this supporter; which of the walls it is, stages hardly know."""
+    believed = evidence.believed.get(edge.child)
+    if believed is None:
+        return True
+    if scene.has_plane(edge.parent) and scene.has_plane(believed.parent):
+        return scene.plane(edge.parent).role == scene.plane(believed.parent).role
+    return edge.parent == believed.parent
+
+
+def _ends_within(box: Box | None, other: Box | None) -> bool:
+    """Whether a box's lower middle lies in another box, or just above it."""
+    if box is None or other is None:
+        return False
+    middle, lower = (box[0] + box[2]) / 2, box[3]
+    slack = 0.1 * (other[3] - other[1])
+    return other[0] <= middle <= other[2] and other[1] - slack <= lower <= other[3] + 0.2 * slack
+
+
+def _width_m(item: SceneObject) -> float:
+    """The larger extent of an object's footprint, as far as it can be told."""
+    return max(float(np.ptp(item.corners_world[:, :2], axis=0).max()), 0.2)

@@ -1,0 +1,136 @@
+"""What holds each object of a room: the tree of supports that agrees best with everything that is known.
+
+Every object has one supporter, a plane of the room or another object, and nothing holds itself up. So a support graph is
+an arborescence from the room, and the likeliest one is that of least total cost (Edmonds 1967).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import networkx as nx
+import numpy as np
+from jaxtyping import Float
+
+from diorama_core.arrangement.noise import ObservationNoise
+from diorama_core.arrangement.standing import standing_walls
+from diorama_core.arrangement.support_hypotheses import SupportEvidence, SupportHypothesis, support_hypotheses
+from diorama_core.arrangement.support_terms import SupportWeights, fitted_weights
+from diorama_core.library.record import ShapeLibrary
+from diorama_core.scene import edits
+from diorama_core.scene.types import Plane, Pose, Scene, SceneObject, Support
+
+NEAREST, FARTHEST = 0.4, 1.6
+"""Shares of its distance between which an object is moved along its line of sight to a supporter."""
+_ROOM = ""
+"""Root of the graph."""
+
+
+@dataclass(frozen=True)
+class SupportChoice:
+    """The supporter that was chosen for an object, and why."""
+
+    hypothesis: SupportHypothesis
+    runner_up: SupportHypothesis | None
+    shares: dict[str, float]
+    """By term, how much more speaks against the runner-up than against the choice, nats."""
+    probability: float
+    """Of the choice, all other objects staying."""
+
+    @property
+    def edge(self) -> Support:
+        """The chosen edge."""
+        return self.hypothesis.edge
+
+
+def chosen_supports(
+    hypotheses: dict[str, tuple[SupportHypothesis, ...]], weights: SupportWeights | None = None
+) -> dict[str, SupportChoice]:
+    """The support of every object that has hypotheses, such that all together cost least and there is no cycle."""
+    weights = weights or fitted_weights()
+    costs = {name: np.array([weights.cost(h) for h in of_one]) for name, of_one in hypotheses.items() if of_one}
+    graph = nx.DiGraph()
+    by_edge: dict[tuple[str, str], int] = {}
+    for name, of_one in costs.items():
+        for k in np.argsort(-of_one, kind="stable").tolist():  # of several planes the cheapest is left
+            h = hypotheses[name][k]
+            parent = h.edge.parent if h.role == "object" else _ROOM
+            by_edge[parent, name] = k
+            graph.add_edge(parent, name, weight=float(of_one[k]))
+    if not graph:
+        return {}
+    graph.add_node(_ROOM)
+    tree = nx.minimum_spanning_arborescence(graph)
+    chosen = {child: by_edge[parent, child] for parent, child in tree.edges}
+    return {name: _choice(hypotheses[name], costs[name], chosen[name], weights) for name in costs}
+
+
+def _choice(
+    of_one: tuple[SupportHypothesis, ...], costs: Float[np.ndarray, " k"], chosen: int, weights: SupportWeights
+) -> SupportChoice:
+    likely = np.exp(costs.min() - costs)
+    others = [k for k in np.argsort(costs, kind="stable").tolist() if k != chosen]
+    own = weights.shares(of_one[chosen])
+    shares = {} if not others else {n: v - own[n] for n, v in weights.shares(of_one[others[0]]).items()}
+    second = of_one[others[0]] if others else None
+    return SupportChoice(of_one[chosen], second, shares, float(likely[chosen] / likely.sum()))
+
+
+def with_chosen_supports(
+    scene: Scene,
+    library: ShapeLibrary,
+    noise: ObservationNoise,
+    evidence: SupportEvidence,
+    weights: SupportWeights | None = None,
+) -> tuple[Scene, dict[str, SupportChoice]]:
+    """The scene in which every object rests on its likeliest supporter and stands against its walls, and why.
+
+    Where distances were reasoned from a photo alone, an object whose supporter is another than the one that gave it its
+    distance moves along its line of sight to the new one: it looks the same there.
+
+    Args:
+        scene: every object in its observed pose, with the photo's camera.
+        library: where shapes come from.
+        noise: of the observed poses.
+        evidence: what else is known.
+        weights: of the terms; the fitted ones by default.
+    """
+    weights = weights or fitted_weights()
+    choices = chosen_supports(support_hypotheses(scene, library, noise, evidence), weights)
+    moved = scene
+    for name, choice in choices.items():
+        item = moved.object(name)
+        before = scene.support_of(name)
+        edge = choice.edge
+        if before is not None and before.parent == edge.parent and before.relation == edge.relation:
+            edge = replace(before, adheres_to=())
+        elif not noise.measured and choice.hypothesis.role in ("wall", "ceiling"):
+            moved = _along_sight(moved, item, _share_to_plane(moved, item, moved.plane(edge.parent)))
+        if choice.hypothesis.role == "floor":
+            edge = replace(edge, adheres_to=standing_walls(moved, moved.object(name), noise, weights.walls))
+        moved = edits.attach(moved, edge)
+    return moved, choices
+
+
+def _share_to_plane(scene: Scene, item: SceneObject, plane: Plane) -> float:
+    """The share of its distance at which an object touches a plane from the room; 1 where it is out of reach."""
+    if scene.camera is None:
+        return 1.0
+    eye = scene.camera.position
+    farthest = float(((item.corners_world - eye) @ plane.normal).min())
+    share = (plane.offset - float(eye @ plane.normal)) / farthest if farthest < 0.0 else 1.0
+    return share if NEAREST <= share <= FARTHEST else 1.0
+
+
+def _along_sight(scene: Scene, item: SceneObject, share: float) -> Scene:
+    """The scene with an object at a share of its distance and as much smaller: it looks alike in the photo."""
+    if scene.camera is None or share == 1.0:
+        return scene
+    eye = scene.camera.position
+
+    def nearer(pose: Pose) -> Pose:
+        return Pose(pose.R_world_object, eye + share * (pose.position - eye), share * pose.scale)
+
+    candidates = tuple(replace(c, pose=nearer(c.pose)) for c in item.candidates)
+    moved = replace(item, pose=nearer(item.pose), candidates=candidates)
+    return replace(scene, objects=tuple(moved if o.id == item.id else o for o in scene.objects))
