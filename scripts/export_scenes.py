@@ -10,10 +10,10 @@ from pathlib import Path
 import numpy as np
 
 from diorama_core.appearance.surface_finish import usual_finish, with_finish_pictures
+from diorama_core.arrangement.surfaces import plane_surface
 from diorama_core.editing.placing import Hit, Place, free_spot, hits_along, insertion, places_of
 from diorama_core.export.pictures import Picture
 from diorama_core.importing.scene_import import import_scene
-from diorama_core.arrangement.surfaces import plane_surface
 from diorama_core.library.record import Shape, ShapeLibrary
 from diorama_core.project.storage import Project
 from diorama_core.scene import edits

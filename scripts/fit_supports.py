@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Fits the weights of `diorama_core/arrangement/support_weights.json`: fit_supports.py ANNOTATIONS PHOTOS [...] --stages DIR
+"""Fits `diorama_core/arrangement/support_weights.json`: fit_supports.py ANNOTATIONS PHOTOS [...] --stages DIR
 
 Photos tell what carries what as people annotated it; rendered rooms (`synthesis`) tell it exactly, from their picture
 alone and with depth, and which walls things stand against. Folds keep a photo or a room whole. The file says what
@@ -91,11 +91,11 @@ def posed_scene(inputs: Inputs, library: ShapeLibrary, cache: Path) -> tuple[Sce
 
 
 def photo_questions(
-    annotations: Path, photos: Path, library: ShapeLibrary, cache: Path, columns: Sequence[str]
+    annotated: Path, photos: Path, library: ShapeLibrary, cache: Path, columns: Sequence[str]
 ) -> Iterator[Question]:
     """Of every annotated object whose supporter is annotated."""
     intrinsics = read_intrinsics(photos)
-    for name, photo in read_annotations(annotations).items():
+    for name, photo in read_annotations(annotated).items():
         path = picture_of(photos, name)
         if path is not None:
             inputs = inputs_of(photo, path, intrinsics.get(name), named=True)
@@ -287,8 +287,8 @@ def main() -> None:
     mounts, roles = ("floor", "surface", "wall", "ceiling"), ("floor", "wall", "ceiling", "object")
     columns = [*(t.name for t in TERMS), *(f"{m} kind on {r}" for m in mounts for r in roles)]
     questions, standings = room_questions(args.rooms, library, args.stages, columns)
-    for annotations, photos in zip(args.photos[::2], args.photos[1::2], strict=True):
-        questions += photo_questions(annotations, photos, library, args.stages, columns)
+    for annotated, photos in zip(args.photos[::2], args.photos[1::2], strict=True):
+        questions += photo_questions(annotated, photos, library, args.stages, columns)
     everything = np.ones(len(columns), dtype=bool)
     weights = fitted(questions, everything).round(3).tolist()
     without = {}

@@ -6,6 +6,7 @@ import numpy as np
 from jaxtyping import Float
 
 from diorama_app.session.client import Client, Placing
+from diorama_core.arrangement.surfaces import Surface, plane_surface
 from diorama_core.editing.placing import (
     DOOR,
     Hit,
@@ -23,7 +24,6 @@ from diorama_core.editing.plan_edits import wall_feet
 from diorama_core.editing.relations import SEATS
 from diorama_core.editing.sensible_support import why_not_on
 from diorama_core.errors import EditRefused
-from diorama_core.arrangement.surfaces import Surface, plane_surface
 from diorama_core.library.record import Shape
 from diorama_core.library.taxonomy import broad, resolve
 from diorama_core.scene import edits

@@ -9,10 +9,10 @@ from collections.abc import Callable, Mapping
 import numpy as np
 from jaxtyping import Float
 
+from diorama_core.arrangement.surfaces import outside_m
 from diorama_core.editing.collisions import Collisions
 from diorama_core.editing.placing import places_of
 from diorama_core.errors import DioramaError
-from diorama_core.arrangement.surfaces import outside_m
 from diorama_core.library import taxonomy
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.scene.room_edits import floor_height

@@ -14,7 +14,6 @@ import manifold3d
 import numpy as np
 from jaxtyping import Float
 
-from diorama_core.architecture.open_sides import meets_a_wall, with_open_sides_moved
 from diorama_core.errors import EditRefused
 from diorama_core.geometry.planes import clip_polygon, in_polygon
 from diorama_core.library import taxonomy
@@ -78,7 +77,6 @@ def containing_room(
             scene = _given_way(scene, wall.id, standing, settings)
         scene = _drawn_out(scene, wall.id, settings)
     prints = [p for o in standing if len(p := _footprint(scene, o, settings)) >= 3]
-    scene = with_open_sides_moved(scene, _beside_floor(floor, prints, settings))
     return _with_ceiling(_with_floor_under(scene, prints, settings), settings)
 
 
@@ -271,7 +269,7 @@ def _drawn_out(scene: Scene, wall_id: str, settings: RoomExtentSettings = SETTIN
     ):
         at_end = np.abs(along - end) < settings.joined_m
         beyond = (reach - end) * np.sign(end - along.mean())
-        if beyond > 0.0 and not meets_a_wall(wall, wall.polygon[at_end], seen, settings.joined_m):
+        if beyond > 0.0 and not _meets_a_wall(wall, wall.polygon[at_end], seen, settings.joined_m):
             polygon[at_end] += (reach - end) * level
     if np.array_equal(polygon, wall.polygon):
         return scene
@@ -348,3 +346,12 @@ def _area(polygon: Float[np.ndarray, "k 2"]) -> float:
 def _signed_area(polygon: Float[np.ndarray, "k 2"]) -> float:
     x, y = polygon[:, 0], polygon[:, 1]
     return 0.5 * float(x @ np.roll(y, -1) - np.roll(x, -1) @ y)
+
+
+def _meets_a_wall(wall: Plane, corners: Float[np.ndarray, "k 3"], walls: Sequence[Plane], within_m: float) -> bool:
+    """Whether all of some corners of a wall are at corners of another one."""
+    return any(
+        bool((np.linalg.norm(other.polygon[:, None] - corners[None], axis=2).min(axis=0) < within_m).all())
+        for other in walls
+        if other.id != wall.id
+    )

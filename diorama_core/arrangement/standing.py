@@ -84,6 +84,8 @@ def standing_walls(
     found: list[str] = []
     for value, name in sorted(odds, key=lambda pair: (-pair[0], pair[1])):
         normal = scene.plane(name).normal
-        if value > LEAST_ODDS and all(abs(float(normal @ scene.plane(other).normal)) < ASLANT_COSINE for other in found):
+        if value > LEAST_ODDS and all(
+            abs(float(normal @ scene.plane(other).normal)) < ASLANT_COSINE for other in found
+        ):
             found.append(name)
     return tuple(found)

@@ -19,8 +19,6 @@ from diorama_core.scene.types import Plane, Scene, SceneObject, Support
 Role = Literal["floor", "wall", "ceiling", "object"]
 Box = tuple[float, float, float, float]
 """x1, y1, x2, y2 in the photo."""
-BESIDE_WALL_M = 0.1
-"""How far beside a wall's outline a line of sight still meets it: ends of walls are not exact."""
 FARTHEST_WIDTHS = 3.0
 """Objects that are so many widths beside each other do not hold one another."""
 
@@ -33,6 +31,11 @@ class SupportEvidence:
     """By object the edge that an earlier stage decided on."""
     below: Mapping[str, Mapping[str, float]] = field(default_factory=dict)
     """See `lower_rims.seen_below`."""
+
+    @classmethod
+    def of(cls, scene: Scene, below: Mapping[str, Mapping[str, float]]) -> SupportEvidence:
+        """What a scene's own edges say, and what the photo shows below each object."""
+        return cls({edge.child: edge for edge in scene.supports}, below)
 
 
 @dataclass(frozen=True)
@@ -55,8 +58,6 @@ class SupportHypothesis:
     """1 less the cosine between the object's front and a wall's normal."""
     averted: bool = False
     """Whether a wall turns its back to the line of sight."""
-    met: bool = False
-    """Whether it is the wall on which the line of sight through the object ends."""
     below: float = 0.0
     """Share of the object's lower rim below which the supporter is seen."""
     foot_in_box: bool = False
@@ -82,10 +83,9 @@ def support_hypotheses(
         )
         for o in scene.objects
     }
-    met = {item.id: _wall_in_sight(scene, item) for item in scene.objects}
     return {
         item.id: (
-            *(_on_plane(scene, item, plane, noise, evidence, met[item.id]) for plane in scene.architecture.planes),
+            *(_on_plane(scene, item, plane, noise, evidence) for plane in scene.architecture.planes),
             *(
                 found
                 for other in scene.objects
@@ -98,7 +98,7 @@ def support_hypotheses(
 
 
 def _on_plane(
-    scene: Scene, item: SceneObject, plane: Plane, noise: ObservationNoise, evidence: SupportEvidence, met: str | None
+    scene: Scene, item: SceneObject, plane: Plane, noise: ObservationNoise, evidence: SupportEvidence
 ) -> SupportHypothesis:
     edge = Support(item.id, plane.id, "placed on" if plane.role == "floor" else "mounted on")
     surface = plane_surface(plane)
@@ -118,22 +118,7 @@ def _on_plane(
         outside=beside_m / _width_m(item),
         turned=1.0 - float(item.pose.R_world_object[:, 0] @ plane.normal) if wall else 0.0,
         averted=wall and bool(plane.normal @ sight > 0.0),
-        met=plane.id == met,
     )
-
-
-def _wall_in_sight(scene: Scene, item: SceneObject) -> str | None:
-    """The wall on which the line of sight through an object's middle ends; None where it leaves the known room."""
-    if scene.camera is None:
-        return None
-    eye, sight = scene.camera.position, item.pose.position - scene.camera.position
-    met: list[tuple[float, str]] = []
-    for wall in scene.architecture.by_role("wall"):
-        closing = float(wall.normal @ sight)
-        share = (wall.offset - float(wall.normal @ eye)) / closing if closing < 0.0 else -1.0
-        if share > 0.0 and outside_m(plane_surface(wall), eye + share * sight) <= BESIDE_WALL_M:
-            met.append((share, wall.id))
-    return min(met)[1] if met else None
 
 
 def _on_object(

@@ -1,7 +1,7 @@
 """What speaks against a supporter: one small function a term, all with fitted weights in nats.
 
-Weights are the maximum-likelihood fit of a conditional logit over all hypotheses of each object; `scripts/fit_supports.py`
-made them, and `support_weights.json` says on what, and what leaving each term out costs.
+Weights are the maximum-likelihood fit of a conditional logit over all hypotheses of each object, made by
+`scripts/fit_supports.py`; `support_weights.json` says on what, and what leaving each term out costs.
 """
 
 from __future__ import annotations
@@ -74,7 +74,6 @@ TERMS: tuple[SupportTerm, ...] = (
     SupportTerm("gap", "it was seen there", gap),
     SupportTerm("beside", "it was seen in front of it", beside),
     SupportTerm("turned", "its back is parallel to it", lambda h: h.turned),
-    SupportTerm("in sight", "the line of sight through it ends there", lambda h: float(h.met)),
     SupportTerm("averted", "the wall faces the camera", lambda h: float(h.averted)),
     SupportTerm("company", "a {kind} is often on a {carrier}", company),
     SupportTerm("carries nothing", "people put things on a {carrier}", carries_nothing),

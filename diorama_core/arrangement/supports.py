@@ -1,11 +1,12 @@
 """What holds each object of a room: the tree of supports that agrees best with everything that is known.
 
-Every object has one supporter, a plane of the room or another object, and nothing holds itself up. So a support graph is
-an arborescence from the room, and the likeliest one is that of least total cost (Edmonds 1967).
+Every object has one supporter, a plane of the room or another object, and nothing holds itself up. So a support graph
+is an arborescence from the room, and the likeliest one is that of least total cost (Edmonds 1967).
 """
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 
 import networkx as nx
@@ -16,6 +17,7 @@ from diorama_core.arrangement.noise import ObservationNoise
 from diorama_core.arrangement.standing import standing_walls
 from diorama_core.arrangement.support_hypotheses import SupportEvidence, SupportHypothesis, support_hypotheses
 from diorama_core.arrangement.support_terms import SupportWeights, fitted_weights
+from diorama_core.arrangement.surfaces import label_of
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.scene import edits
 from diorama_core.scene.types import Plane, Pose, Scene, SceneObject, Support
@@ -41,6 +43,17 @@ class SupportChoice:
     def edge(self) -> Support:
         """The chosen edge."""
         return self.hypothesis.edge
+
+
+@dataclass(frozen=True)
+class DecidedSupports:
+    """A scene with its supports decided."""
+
+    scene: Scene
+    choices: Mapping[str, SupportChoice]
+    """By object."""
+    notes: tuple[str, ...]
+    """What changed, in plain words."""
 
 
 def chosen_supports(
@@ -76,13 +89,13 @@ def _choice(
     return SupportChoice(of_one[chosen], second, shares, float(likely[chosen] / likely.sum()))
 
 
-def with_chosen_supports(
+def with_decided_supports(
     scene: Scene,
     library: ShapeLibrary,
     noise: ObservationNoise,
     evidence: SupportEvidence,
     weights: SupportWeights | None = None,
-) -> tuple[Scene, dict[str, SupportChoice]]:
+) -> DecidedSupports:
     """The scene in which every object rests on its likeliest supporter and stands against its walls, and why.
 
     Where distances were reasoned from a photo alone, an object whose supporter is another than the one that gave it its
@@ -109,7 +122,17 @@ def with_chosen_supports(
         if choice.hypothesis.role == "floor":
             edge = replace(edge, adheres_to=standing_walls(moved, moved.object(name), noise, weights.walls))
         moved = edits.attach(moved, edge)
-    return moved, choices
+    return DecidedSupports(moved, choices, tuple(_changes(scene, moved)))
+
+
+def _changes(before: Scene, after: Scene) -> Iterator[str]:
+    """What is held otherwise than before, in plain words."""
+    for edge in after.supports:
+        old = before.support_of(edge.child)
+        if old is not None and old.parent != edge.parent:
+            name, new, former = before.object(edge.child).label, edge.parent, old.parent
+            verb = "hangs on" if edge.relation == "mounted on" else "rests on"
+            yield f"support changed: {name} {verb} {label_of(after, new)}, not {label_of(before, former)}"
 
 
 def _share_to_plane(scene: Scene, item: SceneObject, plane: Plane) -> float:

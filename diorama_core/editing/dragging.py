@@ -12,10 +12,10 @@ from functools import cached_property
 import numpy as np
 from jaxtyping import Float
 
+from diorama_core.arrangement.surfaces import Surface, plane_surface
 from diorama_core.editing.placing import Place, fits, hits_along, inside, places_of, to_wall, within_wall
 from diorama_core.errors import EditRefused
 from diorama_core.layout.feasible.local import DragSolver
-from diorama_core.arrangement.surfaces import Surface, plane_surface
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.library.taxonomy import resolve
 from diorama_core.scene import edits

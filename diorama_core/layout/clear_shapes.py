@@ -8,12 +8,16 @@ their measured places, one of the two has another shape than the thing it stands
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 
-from diorama_core.layout.holding_shapes import candidate_of, cost_of_shape, loads_of, of_one_shape, reshaped
+import numpy as np
+
 from diorama_core.arrangement.noise import ObservationNoise
+from diorama_core.arrangement.surfaces import is_soft, misfit, object_surfaces
 from diorama_core.layout.problem.problem import build_problem
 from diorama_core.layout.report import part_overlaps
 from diorama_core.library.record import ShapeLibrary
+from diorama_core.scene.frames import UP_WORLD
 from diorama_core.scene.types import Candidate, Scene, SceneObject
 
 CLEAR_M = 0.02
@@ -22,6 +26,12 @@ OVERLAP_M = 0.03
 """Usual overlap of shapes that are a little larger than the things they stand for."""
 MAX_OVERLAP_COST = 6.0
 """Most that one overlap says against a shape: the neighbour may be wrong instead."""
+BOARD_M = 0.03
+"""Usual distance of a shape's board from that of the thing it stands for, beside the observation's noise."""
+MAX_LOAD_COST = 6.0
+"""Most that one load says against a shape: it may not stand there at all."""
+MIN_SCORE = 1e-3
+"""Of candidates, so that a logarithm exists."""
 
 
 def clear_shapes(scene: Scene, library: ShapeLibrary, noise: ObservationNoise) -> tuple[Scene, tuple[str, ...]]:
@@ -68,7 +78,7 @@ def _overlaps(scene: Scene, library: ShapeLibrary) -> dict[tuple[str, str], floa
 
 def _better(scene: Scene, library: ShapeLibrary, noise: ObservationNoise, name: str) -> tuple[float, Scene]:
     """The gain (negative, in logarithms) and the scene of the best shape for an object and those of its shape."""
-    members = next(group for group in of_one_shape(scene) if any(o.id == name for o in group))
+    members = next(group for group in _of_one_shape(scene) if any(o.id == name for o in group))
     if any(o.locked for o in members):
         return 0.0, scene
     common = set.intersection(*({c.shape_id for c in o.candidates} for o in members))
@@ -77,7 +87,7 @@ def _better(scene: Scene, library: ShapeLibrary, noise: ObservationNoise, name: 
     for shape in sorted(common - {members[0].shape_id}):
         other = scene
         for o in members:
-            other = reshaped(other, o, candidate_of(o, shape))
+            other = _reshaped(other, o, _candidate_of(o, shape))
         options.append((_cost(other, library, noise, [other.object(o.id) for o in members]) - now, shape, other))
     cost, _, best = min(options, key=lambda option: option[:2])
     return cost, best
@@ -87,9 +97,66 @@ def _cost(scene: Scene, library: ShapeLibrary, noise: ObservationNoise, members:
     names = {o.id for o in members}
     depths = [depth for pair, depth in _overlaps(scene, library).items() if names & set(pair)]
     overlap = sum(min(0.5 * (depth / OVERLAP_M) ** 2, MAX_OVERLAP_COST) for depth in depths)
-    return overlap + sum(cost_of_shape(o, _as_it_is(o), loads_of(scene, o.id), library, scene, noise) for o in members)
+    return overlap + sum(
+        _cost_of_shape(o, _as_it_is(o), _loads_of(scene, o.id), library, scene, noise) for o in members
+    )
 
 
 def _as_it_is(item: SceneObject) -> Candidate:
     score = next((c.score for c in item.candidates if c.shape_id == item.shape_id), 1.0)
     return Candidate(item.shape_id, item.shape_size_m, score, item.pose)
+
+
+def _reshaped(scene: Scene, item: SceneObject, candidate: Candidate) -> Scene:
+    """The scene with an object in another shape, and its loads where they were seen."""
+    new = replace(item, shape_id=candidate.shape_id, shape_size_m=candidate.shape_size_m, pose=candidate.pose)
+    edges = tuple(replace(s, parent_surface=None) if s.parent == item.id else s for s in scene.supports)
+    objects = tuple(new if other.id == item.id else other for other in scene.objects)
+    return replace(scene, objects=objects, supports=edges)
+
+
+def _of_one_shape(scene: Scene) -> list[list[SceneObject]]:
+    """The objects of a scene, those of one shape together."""
+    groups: dict[str, list[SceneObject]] = {}
+    for item in scene.objects:
+        groups.setdefault(item.shape_id, []).append(item)
+    return list(groups.values())
+
+
+def _loads_of(scene: Scene, object_id: str) -> list[SceneObject]:
+    """What is placed on an object and keeps its form there."""
+    edges = [s for s in scene.supports if s.parent == object_id and s.relation == "placed on"]
+    return [item for s in edges if not is_soft(item := scene.object(s.child))]
+
+
+def _candidate_of(item: SceneObject, shape_id: str) -> Candidate:
+    """The retrieved alternative of an object that is of this shape."""
+    return next(c for c in item.candidates if c.shape_id == shape_id)
+
+
+def _gaps_m(
+    item: SceneObject, candidate: Candidate, loads: Sequence[SceneObject], library: ShapeLibrary, scene: Scene
+) -> list[float]:
+    """How badly each load agrees with standing on an object in another shape."""
+    size_m, pose = candidate.shape_size_m, candidate.pose
+    other = replace(item, shape_id=candidate.shape_id, shape_size_m=size_m, pose=pose)
+    surfaces = [s.in_world(pose) for s in object_surfaces(library.shape(candidate.shape_id), other)]
+    return [min(misfit(load, surface) for surface in surfaces) for load in loads]
+
+
+def _sigma_m(scene: Scene, load: SceneObject, noise: ObservationNoise) -> float:
+    return float(np.hypot(0.5 * noise.tolerance_m(scene.camera, load.pose.position, UP_WORLD), BOARD_M))
+
+
+def _cost_of_shape(
+    item: SceneObject,
+    candidate: Candidate,
+    loads: Sequence[SceneObject],
+    library: ShapeLibrary,
+    scene: Scene,
+    noise: ObservationNoise,
+) -> float:
+    """What a shape's score and the gaps of its loads say against it: a negative logarithm."""
+    gaps = _gaps_m(item, candidate, loads, library, scene) if loads else []
+    deviations = [gap / _sigma_m(scene, load, noise) for gap, load in zip(gaps, loads, strict=True)]
+    return sum(min(0.5 * d * d, MAX_LOAD_COST) for d in deviations) - float(np.log(max(candidate.score, MIN_SCORE)))

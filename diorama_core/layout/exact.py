@@ -9,12 +9,12 @@ import manifold3d
 import numpy as np
 import trimesh
 
+from diorama_core.arrangement.surfaces import is_wall_like
 from diorama_core.errors import UnavailableError
 from diorama_core.geometry.rotations import quaternion_wxyz
 from diorama_core.geometry.sat import place_bodies
 from diorama_core.io.cache import LruCache
 from diorama_core.layout.problem.problem import Problem, build_problem
-from diorama_core.arrangement.surfaces import is_wall_like
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.scene.types import Scene
 

@@ -9,19 +9,14 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor
 from contextlib import ExitStack
-from functools import partial
 from typing import Any
 
 from diorama_core.architecture.before_walls import drawn_before_walls
 from diorama_core.architecture.mounting import snap_mounted_objects
 from diorama_core.architecture.walls.passages import without_openings
+from diorama_core.arrangement.out_of_reach import left_where_seen
 from diorama_core.artefacts import Inputs
-from diorama_core.layout.backs_to_walls import with_backs_to_walls
 from diorama_core.layout.clear_shapes import clear_shapes
-from diorama_core.layout.fitted_boards import fitted_boards
-from diorama_core.layout.holding_shapes import holding_shapes
-from diorama_core.layout.support_check import checked_supports
-from diorama_core.layout.unmarked_supporters import left_where_seen, over_what_may_hold_them
 from diorama_core.perception.graph.apply import with_graph
 from diorama_core.perception.metrology.within_walls import measured_within_walls
 from diorama_core.pipeline.assemble import assemble
@@ -32,6 +27,7 @@ from diorama_core.pipeline.runner import Runner
 from diorama_core.pipeline.scene_steps import (
     appearance,
     balanced_inputs,
+    decided_supports,
     dressed,
     finished,
     illuminant,
@@ -112,37 +108,12 @@ PLAN: tuple[Step, ...] = (
     Derivation(in_white_light, ("architecture", "illuminant"), "white_room"),
     Derivation(object_colours, ("balanced_inputs", "furniture_objects", "posed"), "colours"),
     Derivation(assemble, ("furniture_objects", "geometry", "white_room", "posed", "library", "colours"), "posed_scene"),
-    # Supports, shapes and the room come to agree with the objects. Heights reasoned from a photo alone do not tell
-    # boards from one another.
+    # What holds what is decided for all objects together, now that their shapes and the walls are known.
     Derivation(position_noise, ("inputs",), "noise"),
-    Derivation(Corrected, ("posed_scene",), "uncorrected"),
-    Correction(
-        lambda scene, library, noise: over_what_may_hold_them(scene, library),
-        ("uncorrected", "library", "noise"),
-        "over_supporters",
-        measured=True,
-    ),
-    Correction(holding_shapes, ("over_supporters", "library", "noise"), "in_holding_shapes", measured=True),
-    Correction(
-        partial(checked_supports, shapes_clear=False),
-        ("in_holding_shapes", "library", "noise"),
-        "on_measured_supports",
-        measured=True,
-    ),
-    Correction(clear_shapes, ("on_measured_supports", "library", "noise"), "in_clear_shapes", measured=True),
-    Correction(checked_supports, ("in_clear_shapes", "library", "noise"), "on_checked_supports"),
-    Correction(
-        lambda scene, library, noise: with_backs_to_walls(scene, noise),
-        ("on_checked_supports", "library", "noise"),
-        "at_walls",
-        measured=False,
-    ),
-    Correction(
-        lambda scene, library, noise: fitted_boards(scene, library, reasoned=not noise.measured),
-        ("at_walls", "library", "noise"),
-        "on_fitted_boards",
-    ),
-    Correction(left_where_seen, ("on_fitted_boards", "library", "noise"), "on_near_supports"),
+    Derivation(decided_supports, ("posed_scene", "library", "noise", "furniture_objects"), "supports"),
+    Derivation(lambda supports: Corrected(supports.scene, supports.notes), ("supports",), "supported"),
+    Correction(clear_shapes, ("supported", "library", "noise"), "in_clear_shapes", measured=True),
+    Correction(left_where_seen, ("in_clear_shapes", "library", "noise"), "on_near_supports"),
     Correction(in_containing_room, ("on_near_supports", "library", "noise", "geometry"), "corrected"),
     Derivation(lambda corrected: corrected.scene, ("corrected",), "observed"),
     # What things look like is all the same to the layout.

@@ -13,8 +13,11 @@ from diorama_core.architecture.room_extent import containing_room, without_floor
 from diorama_core.architecture.texture.empty_room import EmptyRoomFiller
 from diorama_core.architecture.texture.plane_textures import plane_textures
 from diorama_core.architecture.texture.refit import refitted_textures
+from diorama_core.arrangement.lower_rims import seen_below
+from diorama_core.arrangement.noise import MEASURED, REASONED, ObservationNoise
+from diorama_core.arrangement.support_hypotheses import SupportEvidence
+from diorama_core.arrangement.supports import DecidedSupports, with_decided_supports
 from diorama_core.artefacts import ArchitectureEstimate, DetectedObject, Inputs, ObjectGeometry, PosedCandidates
-from diorama_core.layout.noise import MEASURED, REASONED, ObservationNoise
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.perception.illuminant import Illuminant
 from diorama_core.pipeline.colours import photo_colours, room_illuminant, shared_by_sets
@@ -67,6 +70,21 @@ def object_colours(
 def position_noise(inputs: Inputs) -> ObservationNoise:
     """How far observed positions can be trusted."""
     return REASONED if inputs.depth_m is None else MEASURED
+
+
+def decided_supports(
+    scene: Scene, library: ShapeLibrary, noise: ObservationNoise, objects: tuple[DetectedObject, ...]
+) -> DecidedSupports:
+    """What holds each object of a posed scene.
+
+    Args:
+        scene: every object in its best candidate's pose, with the supports that were believed so far.
+        library: where shapes come from.
+        noise: of the observed positions.
+        objects: of the photo, with their masks.
+    """
+    below = seen_below({item.id: item.mask for item in objects})
+    return with_decided_supports(scene, library, noise, SupportEvidence.of(scene, below))
 
 
 def in_containing_room(scene: Scene, library: ShapeLibrary, noise: ObservationNoise, geometry: ObjectGeometry) -> Scene:

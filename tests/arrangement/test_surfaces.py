@@ -8,8 +8,6 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.spatial import ConvexHull
 
-from diorama_core.geometry.planes import plane_axes
-from diorama_core.geometry.rotations import rotation_from_vector
 from diorama_core.arrangement.surfaces import (
     Surface,
     choose_contact,
@@ -25,6 +23,8 @@ from diorama_core.arrangement.surfaces import (
     plane_surface,
     wall_faces,
 )
+from diorama_core.geometry.planes import plane_axes
+from diorama_core.geometry.rotations import rotation_from_vector
 from diorama_core.library.record import Shape, SupportSurface
 from diorama_core.scene.types import Architecture, Plane, Pose, Scene, SceneObject, Support, yaw_rotation
 from tests.layout.small_rooms import Room, tilted

@@ -13,13 +13,13 @@ import cv2
 import numpy as np
 from jaxtyping import Bool, UInt8
 
+from diorama_core.arrangement.surfaces import outside_m
 from diorama_core.editing.collisions import WALKED_ON_M, Collisions
 from diorama_core.editing.footprints import footprint_of, footprints, within
 from diorama_core.editing.placing import places_of
 from diorama_core.editing.relations import OF_ROOM, Relation, RelationKind, is_met
 from diorama_core.editing.room_frame import RoomFrame
 from diorama_core.geometry.openings import OPENING_CATEGORIES
-from diorama_core.arrangement.surfaces import outside_m
 from diorama_core.library.record import ShapeLibrary, record_of
 from diorama_core.library.taxonomy import broad, category, with_kin
 from diorama_core.scene.types import Scene, SceneObject

@@ -14,9 +14,9 @@ import numpy as np
 from jaxtyping import Float
 from scipy.optimize import lsq_linear
 
+from diorama_core.arrangement.surfaces import Surface, box_misfit, is_wall_like
 from diorama_core.layout.feasible.photo_observations import LOAD_M, MAX_STRETCH, UPWARD, PhotoObservations
 from diorama_core.layout.problem.problem import Problem
-from diorama_core.arrangement.surfaces import Surface, box_misfit, is_wall_like
 from diorama_core.scene.types import box_corners
 
 HIDDEN = 0.2

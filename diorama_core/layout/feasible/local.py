@@ -6,11 +6,11 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from diorama_core.arrangement.surfaces import Surface, object_surfaces, outside_m, plane_surface
 from diorama_core.layout.feasible.relocate import relocate
 from diorama_core.layout.feasible.separate import base, build_program, relaxed, separate
 from diorama_core.layout.feasible.structure import Structure, exact_structure
 from diorama_core.layout.problem.problem import Problem, build_problem
-from diorama_core.arrangement.surfaces import Surface, object_surfaces, outside_m, plane_surface
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.scene import edits
 from diorama_core.scene.types import Pose, Scene, Support

@@ -13,6 +13,7 @@ from types import MappingProxyType
 import numpy as np
 from jaxtyping import Bool, Float, Int
 
+from diorama_core.arrangement.surfaces import box_misfit
 from diorama_core.artefacts import PhotoDisagreement
 from diorama_core.geometry.projection import box_iou
 from diorama_core.layout.feasible.object_fit import ObjectFit, bounded_step
@@ -24,7 +25,6 @@ from diorama_core.layout.feasible.visible_points import (
     turned_points,
 )
 from diorama_core.layout.problem.problem import Problem
-from diorama_core.arrangement.surfaces import box_misfit
 from diorama_core.scene.types import Camera, box_corners
 
 MOVED_M = 2e-3

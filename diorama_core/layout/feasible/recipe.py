@@ -10,10 +10,8 @@ import numpy as np
 from jaxtyping import Float
 
 from diorama_core.artefacts import LayoutReport, PhotoDisagreement
-from diorama_core.layout.feasible.along_walls import turned_along_walls
-from diorama_core.layout.feasible.cuts import ending_apart
+from diorama_core.layout.feasible.cords import reaching_ceilings
 from diorama_core.layout.feasible.heights import joint_heights
-from diorama_core.layout.feasible.hidden_extents import ending_before_neighbours, ending_on_walls, reaching_ceilings
 from diorama_core.layout.feasible.photo_observations import PhotoObservations, disagreements, photo_observations
 from diorama_core.layout.feasible.relocate import relocate
 from diorama_core.layout.feasible.resize import fitted_sizes
@@ -97,8 +95,6 @@ class FeasibleRecipe:
             structure = exact_structure(wanted, self._rays(wanted, scene.camera), seen, eye=eye)
             program = build_program(wanted, structure, *self._costs(wanted, scene.camera))
             if seen is not None:
-                structure = ending_apart(program, seen, self._outline_cost(wanted))
-                program = build_program(wanted, structure, *self._costs(wanted, scene.camera))
                 structure = fitted_sizes(program, self._outline_cost(wanted))
                 program = build_program(wanted, structure, *self._costs(wanted, scene.camera))
             check = self._watcher(scene, program, progress, preview)
@@ -135,10 +131,8 @@ class FeasibleRecipe:
         observations = self._observations(problem, camera, visible)
         if observations is None or camera is None:
             return problem, None
-        wanted = turned_along_walls(problem, observations)
-        observations = self._observations(wanted, camera, visible) or observations
-        if not self.sizes_reasoned:  # reasoned distances overlap for other reasons
-            wanted = ending_on_walls(ending_before_neighbours(wanted, observations), observations)
+        wanted = problem
+        if not self.sizes_reasoned:
             wanted = reaching_ceilings(wanted, observations)
             observations = self._observations(wanted, camera, visible) or observations
         if self.depth_measured:

@@ -13,6 +13,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 from jaxtyping import Bool, Float, Int
 
+from diorama_core.arrangement.surfaces import Surface, plane_surface
 from diorama_core.geometry.planes import in_polygon
 from diorama_core.geometry.sat import Bodies, PairAxes, pair_axes, place_bodies
 from diorama_core.layout.escape import exits, ring
@@ -20,7 +21,6 @@ from diorama_core.layout.feasible.quadratic import HARD, SOFT, least_distance
 from diorama_core.layout.feasible.structure import Structure
 from diorama_core.layout.problem.enclosure import may_meet
 from diorama_core.layout.problem.problem import Problem
-from diorama_core.arrangement.surfaces import Surface, plane_surface
 
 APART_M = 5e-4
 """Separation asked for once two parts touched."""

@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from jaxtyping import Float
 
+from diorama_core.arrangement.surfaces import Surface, is_wall_like
 from diorama_core.geometry.cross import cross
 from diorama_core.geometry.planes import plane_axes
 from diorama_core.layout.feasible.footprints import INSET_M, largest_share
@@ -15,7 +16,6 @@ from diorama_core.layout.feasible.photo_observations import MAX_STRETCH, PhotoOb
 from diorama_core.layout.feasible.quadratic import HARD, least_distance
 from diorama_core.layout.problem.footing import reach_of
 from diorama_core.layout.problem.problem import Problem
-from diorama_core.arrangement.surfaces import Surface, is_wall_like
 
 SMALLEST_SHRINK = 0.8
 """An object that does not fit is made smaller by at most this factor; beyond, it stays large and is named."""

@@ -10,11 +10,11 @@ from dataclasses import dataclass, replace
 import numpy as np
 from jaxtyping import Float
 
+from diorama_core.arrangement.surfaces import Surface, box_misfit
 from diorama_core.layout.feasible.photo_observations import PhotoObservations
 from diorama_core.layout.feasible.settle import Walk, settle, sides
 from diorama_core.layout.problem.footing import reach_of
 from diorama_core.layout.problem.problem import Problem
-from diorama_core.arrangement.surfaces import Surface, box_misfit
 from diorama_core.scene.types import box_corners
 
 

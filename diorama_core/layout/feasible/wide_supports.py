@@ -12,13 +12,13 @@ from dataclasses import replace
 import numpy as np
 from jaxtyping import Float
 
+from diorama_core.arrangement.surfaces import Surface
 from diorama_core.layout.feasible.footprints import INSET_M
 from diorama_core.layout.feasible.photo_observations import MAX_STRETCH, UPWARD
 from diorama_core.layout.feasible.settle import MAX_GROWTH, MIN_SLANT
 from diorama_core.layout.feasible.structure import Structure
 from diorama_core.layout.problem.footing import reach_of
 from diorama_core.layout.problem.problem import Problem
-from diorama_core.arrangement.surfaces import Surface
 
 MIN_BEYOND_M = 0.005
 """Loads that reach less beyond an edge are brought back."""

@@ -13,9 +13,9 @@ from itertools import pairwise
 import numpy as np
 from jaxtyping import Bool
 
+from diorama_core.arrangement.surfaces import Surface
 from diorama_core.geometry.sat import Bodies
 from diorama_core.layout.problem.problem import Problem
-from diorama_core.arrangement.surfaces import Surface
 
 ABOVE_M = 0.01
 """Parts of a supporter that do not rise above a place by so much are below what rests there."""

@@ -12,11 +12,6 @@ from functools import cached_property
 import numpy as np
 from jaxtyping import Bool, Float, Int
 
-from diorama_core.geometry.convex import ConvexPart
-from diorama_core.geometry.planes import in_polygon
-from diorama_core.geometry.sat import PackedParts, pack_parts
-from diorama_core.layout.problem.footing import box_footing, footing_of
-from diorama_core.layout.problem.parts import parts_of_shape
 from diorama_core.arrangement.surfaces import (
     Surface,
     choose_contact,
@@ -28,6 +23,11 @@ from diorama_core.arrangement.surfaces import (
     possible_surfaces,
     wall_faces,
 )
+from diorama_core.geometry.convex import ConvexPart
+from diorama_core.geometry.planes import in_polygon
+from diorama_core.geometry.sat import PackedParts, pack_parts
+from diorama_core.layout.problem.footing import box_footing, footing_of
+from diorama_core.layout.problem.parts import parts_of_shape
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.scene.support import descendants
 from diorama_core.scene.types import Plane, Pose, Scene, SceneObject, Support

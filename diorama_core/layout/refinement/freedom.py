@@ -7,11 +7,11 @@ from dataclasses import dataclass
 import numpy as np
 from jaxtyping import Float
 
+from diorama_core.arrangement.surfaces import Surface, is_wall_like
 from diorama_core.geometry.planes import plane_axes
 from diorama_core.geometry.rotations import yaw_rotations
 from diorama_core.geometry.silhouette import PoseBatch
 from diorama_core.layout.problem.problem import Problem
-from diorama_core.arrangement.surfaces import Surface, is_wall_like
 
 SHARES_OF_WAY = (1.0, 0.5, 0.25)
 """Of the way to a place, which are tried at once: what stands in between is no obstacle."""

@@ -7,9 +7,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from diorama_core.arrangement.surfaces import Surface
 from diorama_core.geometry.rotations import rotation_from_vector
 from diorama_core.layout.feasible.orientation import aligned, swing
-from diorama_core.arrangement.surfaces import Surface
 
 directions = st.tuples(*(st.floats(-1.0, 1.0) for _ in range(3))).filter(lambda v: np.linalg.norm(v) > 0.1)
 BACK, BOTTOM = np.array([-1.0, 0.0, 0.0]), np.array([0.0, 0.0, -1.0])

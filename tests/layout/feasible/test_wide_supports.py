@@ -7,11 +7,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from diorama_core.arrangement.surfaces import Surface
 from diorama_core.layout.feasible.photo_observations import MAX_STRETCH
 from diorama_core.layout.feasible.structure import exact_structure
 from diorama_core.layout.feasible.wide_supports import reaching_loads
 from diorama_core.layout.problem.problem import Problem, build_problem
-from diorama_core.arrangement.surfaces import Surface
 from diorama_core.synthesis.layout_rooms import box_library
 from tests.layout.feasible.test_photo_observations import looking_north
 from tests.layout.small_rooms import Room

@@ -1,21 +1,15 @@
 """Objects that nothing in the scene reaches where they were seen: what holds them is not marked, or has another shape.
 
-With measured depth a cup at the height of a night stand that the bed hides does not hang on the wall 30 cm behind it,
-nor does a photo frame on the upper board of a desk stand on its lower one. Either what it stands on has another of the
-retrieved shapes, one with a place there; or nothing is known to hold it, and it stays where it was measured.
+With measured depth a cup at the height of a night stand that the bed hides does not hang on the wall 30 cm behind it.
+Nothing is known to hold it, and it stays where it was measured.
 """
 
 from __future__ import annotations
 
-import numpy as np
-
-from diorama_core.layout.holding_shapes import gaps_m
 from diorama_core.arrangement.noise import ObservationNoise
 from diorama_core.arrangement.surfaces import (
     OUT_OF_REACH_M,
-    carries_things,
     choose_surface,
-    closes_cycle,
     is_soft,
     label_of,
     outside_m,
@@ -30,31 +24,6 @@ from diorama_core.scene.types import Scene, SceneObject, Support
 
 REASONED_M = 0.3
 """The distance from a place for heights that were reasoned from a photo alone."""
-
-
-def over_what_may_hold_them(scene: Scene, library: ShapeLibrary) -> Scene:
-    """The scene in which objects that their supporters do not reach rest on one that would, in another shape.
-
-    Args:
-        scene: at measured places, before shapes are chosen by what they hold.
-        library: where shapes come from.
-    """
-    for item in scene.objects:
-        edge = scene.support_of(item.id)
-        if edge is None or not is_out_of_reach(scene, library, item, edge):
-            continue
-        options = [
-            (min(gaps), other.id)
-            for other in scene.objects
-            if other.id not in (item.id, edge.parent)
-            and not closes_cycle({s.child: s for s in scene.supports}, item.id, other.id)
-            and carries_things(other)
-            and _is_within(item, other)
-            and (gaps := [gaps_m(other, c, [item], library, scene)[0] for c in other.candidates])
-        ]
-        if options and min(options)[0] <= OUT_OF_REACH_M:
-            scene = edits.attach(scene, Support(item.id, min(options)[1]))
-    return scene
 
 
 def left_where_seen(scene: Scene, library: ShapeLibrary, noise: ObservationNoise) -> tuple[Scene, tuple[str, ...]]:
@@ -102,10 +71,3 @@ def is_out_of_reach(
     if measured:
         return not reaches(item, place)
     return abs(float((item.corners_world @ place.normal).min()) - place.level) > REASONED_M
-
-
-def _is_within(item: SceneObject, other: SceneObject) -> bool:
-    """Whether an object's middle is over another's box, and its foot is above the other's."""
-    local = other.pose.R_world_object.T @ (item.pose.position - other.pose.position)
-    over = bool((np.abs(local[:2]) <= 0.5 * other.size_m[:2]).all())
-    return over and float(item.corners_world[:, 2].min()) > float(other.corners_world[:, 2].min())

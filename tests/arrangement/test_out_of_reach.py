@@ -1,4 +1,4 @@
-"""What nothing reaches where it was seen stays there, or its supporter takes another shape."""
+"""What nothing reaches where it was seen stays there."""
 
 from __future__ import annotations
 
@@ -7,15 +7,13 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from diorama_core.layout.feasible.recipe import FeasibleRecipe
-from diorama_core.layout.holding_shapes import holding_shapes
 from diorama_core.arrangement.noise import MEASURED, REASONED
-from diorama_core.layout.unmarked_supporters import left_where_seen, over_what_may_hold_them
+from diorama_core.arrangement.out_of_reach import left_where_seen
+from diorama_core.layout.feasible.recipe import FeasibleRecipe
 from diorama_core.progress import Progress
 from diorama_core.scene.types import Scene
 from tests.layout.feasible.test_photo_observations import LIBRARY, looking_north
 from tests.layout.small_rooms import Room
-from tests.layout.test_holding_shapes import LOW, TALL, candidate
 
 BOX_PX = (300.0, 200.0, 320.0, 225.0)
 
@@ -100,19 +98,3 @@ def test_furniture_keeps_its_floor(room: Room) -> None:
     room.put("table_0", (0.0, 1.0, 0.9))
     scene = room.scene(camera=looking_north())
     assert left_where_seen(scene, LIBRARY, MEASURED) == (scene, ())
-
-
-def test_a_shelf_holds_what_is_within_it_when_another_of_its_shapes_reaches_it(room: Room) -> None:
-    shelf = room.put(TALL, (0.0, 1.0, 0.9), candidates=(candidate(TALL, 0.4), candidate(LOW, 0.3)))
-    books = room.put("books_18", (0.0, 0.9, 0.65 + 0.12), on="floor")
-    scene = room.scene(camera=looking_north())
-    held = over_what_may_hold_them(scene, LIBRARY)
-    assert held.support_of(books).parent == shelf
-    assert holding_shapes(held, LIBRARY, MEASURED)[0].object(shelf).shape_id == LOW
-
-
-def test_a_shelf_does_not_hold_what_is_beside_it(room: Room) -> None:
-    room.put(TALL, (0.0, 1.0, 0.9), candidates=(candidate(TALL, 0.4), candidate(LOW, 0.3)))
-    room.put("books_18", (1.5, 0.9, 0.65 + 0.12), on="floor")
-    scene = room.scene(camera=looking_north())
-    assert over_what_may_hold_them(scene, LIBRARY) == scene

@@ -1,0 +1,136 @@
+"""The supports of a room: a tree of least cost, from poses, kinds and what the photo shows."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from diorama_core.arrangement.noise import MEASURED, REASONED
+from diorama_core.arrangement.support_hypotheses import SupportEvidence, SupportHypothesis, support_hypotheses
+from diorama_core.arrangement.support_terms import TERMS, SupportWeights, fitted_weights
+from diorama_core.arrangement.supports import chosen_supports, with_decided_supports
+from diorama_core.library.taxonomy import category
+from diorama_core.scene.types import Scene, Support
+from diorama_core.synthesis.layout_rooms import box_library
+from tests.layout.feasible.test_photo_observations import looking_north
+from tests.layout.small_rooms import Room
+
+LIBRARY = box_library()
+TABLE_TOP = float(LIBRARY.shape("table_0").size_m[2])
+
+
+def decided(scene: Scene, noise=MEASURED, **below) -> Scene:
+    return with_decided_supports(scene, LIBRARY, noise, SupportEvidence.of(scene, below)).scene
+
+
+def at(shape: str, level: float) -> float:
+    return level + LIBRARY.shape(shape).size_m[2] / 2
+
+
+def test_a_cup_on_a_table_is_taken_off_the_floor_that_was_believed_to_hold_it(room: Room) -> None:
+    table = room.put("table_0", (0.0, 0.5, at("table_0", 0.0)))
+    cup = room.put("cup_21", (0.0, 0.5, at("cup_21", TABLE_TOP)))
+    found = with_decided_supports(room.scene(camera=looking_north()), LIBRARY, MEASURED, SupportEvidence())
+    assert found.scene.support_of(cup) == Support(cup, table)
+    assert found.scene.support_of(table).parent == "floor"
+    assert found.choices[cup].probability > 0.7
+
+
+def test_a_change_is_told_in_words_and_by_terms(room: Room) -> None:
+    table = room.put("table_0", (0.0, 0.5, at("table_0", 0.0)))
+    cup = room.put("cup_21", (0.0, 0.5, at("cup_21", TABLE_TOP)), on="wall_2", relation="mounted on")
+    scene = room.scene(camera=looking_north())
+    found = with_decided_supports(scene, LIBRARY, MEASURED, SupportEvidence.of(scene, {cup: {table: 1.0}}))
+    assert found.notes == (f"support changed: {cup} rests on {table}, not the wall",)
+    choice = found.choices[cup]
+    assert choice.runner_up is not None
+    assert choice.shares["seen below"] > 0.0
+    weights = fitted_weights()
+    assert sum(choice.shares.values()) == pytest.approx(
+        weights.cost(choice.runner_up) - weights.cost(choice.hypothesis)
+    )
+
+
+def test_what_agrees_already_stays_as_it_is(room: Room) -> None:
+    room.put("table_0", (0.0, 0.5, at("table_0", 0.0)))
+    room.put("cup_21", (0.0, 0.5, at("cup_21", TABLE_TOP)), on="table_0_0", parent_surface=0)
+    scene = room.scene(camera=looking_north())
+    assert decided(scene) == scene
+    assert decided(Scene()) == Scene()
+
+
+def test_a_cabinet_with_its_back_at_a_wall_stands_against_it_and_a_table_in_the_middle_does_not(room: Room) -> None:
+    depth = LIBRARY.shape("cabinet_10").size_m[0]
+    yaw = -np.pi / 2  # its front looks from the far wall into the room
+    cabinet = room.put("cabinet_10", (0.0, 2.5 - depth / 2 - 0.01, at("cabinet_10", 0.0)), yaw=yaw)
+    table = room.put("table_0", (0.0, 0.0, at("table_0", 0.0)))
+    for noise in (MEASURED, REASONED):
+        found = decided(room.scene(camera=looking_north()), noise)
+        assert len(found.support_of(cabinet).adheres_to) == 1
+        assert found.support_of(table).adheres_to == ()
+
+
+def test_things_that_would_hold_each_other_up_get_a_tree(room: Room) -> None:
+    first = room.put("box_24", (0.0, 0.5, at("box_24", 0.0)), on=None)
+    second = room.put("box_24", (0.0, 0.5, at("box_24", 0.0)), on=None)
+    circle = (Support(first, second), Support(second, first))
+    scene = replace(room.scene(camera=looking_north()), supports=circle)
+    parents = {s.child: s.parent for s in decided(scene).supports}
+    assert "floor" in parents.values()
+
+
+def test_from_a_photo_alone_what_hangs_on_another_wall_looks_the_same_there(room: Room) -> None:
+    picture = room.put("picture_13", (0.0, 1.5, 1.5), on="floor", yaw=-np.pi / 2)
+    scene = room.scene(camera=looking_north())
+    found = decided(scene, REASONED)
+    edge, eye = found.support_of(picture), scene.camera.position
+    assert edge.relation == "mounted on"
+    assert found.has_plane(edge.parent)
+    before, after = (s.object(picture).pose.position - eye for s in (scene, found))
+    assert np.allclose(np.cross(before, after), 0.0, atol=1e-9)
+    assert np.linalg.norm(after) / np.linalg.norm(before) == pytest.approx(
+        float(found.object(picture).size_m[1] / scene.object(picture).size_m[1])
+    )
+
+
+HYPOTHESES = st.builds(
+    lambda gap, outside, below, believed: (gap, outside, below, believed),
+    st.floats(0, 20),
+    st.floats(0, 3),
+    st.floats(0, 1),
+    st.booleans(),
+)
+
+
+@given(HYPOTHESES, st.floats(0, 20))
+def test_a_wider_gap_never_speaks_for_a_supporter(drawn: tuple[float, float, float, bool], more: float) -> None:
+    gap, outside, below, believed = drawn
+    kind, carrier = category("cup"), category("table")
+
+    def cost(gap: float) -> float:
+        edge = Support("cup", "table")
+        return fitted_weights().cost(
+            SupportHypothesis(edge, "object", kind, carrier, believed, gap, outside, below=below)
+        )
+
+    assert cost(gap + more) >= cost(gap) - 1e-12
+
+
+def test_fitted_weights_name_every_term_and_say_how_they_were_found() -> None:
+    weights = fitted_weights()
+    assert set(weights.terms) == {term.name for term in TERMS}
+    assert len(weights.places) == 16
+    assert set(weights.walls) == {"measured", "reasoned"}
+
+
+def test_without_weights_of_a_term_it_says_nothing(room: Room) -> None:
+    room.put("table_0", (0.0, 0.5, at("table_0", 0.0)))
+    scene = room.scene(camera=looking_north())
+    hypotheses = support_hypotheses(scene, LIBRARY, MEASURED, SupportEvidence())
+    nothing = SupportWeights({}, {}, {})
+    assert all(nothing.cost(h) == 0.0 for of_one in hypotheses.values() for h in of_one)
+    assert set(chosen_supports(hypotheses, nothing)) == set(hypotheses)
