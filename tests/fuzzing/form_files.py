@@ -23,7 +23,7 @@ from diorama_core.library.ingest.repair import repaired
 from diorama_core.progress import Progress
 from tests.importing.scans import room_points
 
-OBJ_BACKWARDS = b"o seat\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf -4 -3 -2\nf -4/-1 -2/-1 -1/-1\n"
+OBJ_BACKWARDS = b"o seat\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf -4 -3 -2\nf -4 -2 -1\n"
 
 
 @cache

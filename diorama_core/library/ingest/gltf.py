@@ -15,7 +15,7 @@ import numpy as np
 from PIL import Image
 
 from diorama_core.errors import LibraryError
-from diorama_core.io.bounded import parse_json
+from diorama_core.io.bounded import parse_json, shortened
 from diorama_core.io.contained import shown
 from diorama_core.io.glb import GlbError, is_glb, split_glb, write_glb
 from diorama_core.library.ingest.gltf_compressed import is_fallback, meshopt_view, undo_draco
@@ -52,7 +52,7 @@ def packed(data: bytes, references: References, limits: Limits) -> bytes:
         _check_nodes(document, limits)
         return _repacked(document, views, references)
     except (KeyError, IndexError, TypeError, ValueError, AttributeError, RecursionError) as error:
-        raise LibraryError(f"malformed glTF ({type(error).__name__}: {error})") from error
+        raise LibraryError(f"malformed glTF ({type(error).__name__}: {shortened(str(error))})") from error
 
 
 def node_names(glb: bytes) -> tuple[str, ...]:
