@@ -9,6 +9,7 @@ import argparse
 import re
 import sys
 from collections.abc import Sequence
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -55,8 +56,13 @@ def filled(page: str) -> str:
     """The page with its generated parts made anew; everything else stays."""
     for name, table in tables().items():
         marks = re.compile(rf"(<!-- made: {name} -->\n).*?(<!-- end: {name} -->)", re.DOTALL)
-        page = marks.sub(lambda found, table=table: f"{found[1]}{table}\n{found[2]}", page)
+        page = marks.sub(partial(_between, table), page)
     return page
+
+
+def _between(table: str, found: re.Match[str]) -> str:
+    """A table between its marks."""
+    return f"{found[1]}{table}\n{found[2]}"
 
 
 def main() -> int:

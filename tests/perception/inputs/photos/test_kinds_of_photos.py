@@ -11,11 +11,14 @@ from PIL import Image
 
 from diorama_core.errors import InputError
 from diorama_core.perception.inputs import read_inputs
+from diorama_core.perception.inputs.form import form_of
 from diorama_core.perception.inputs.photos.bits import eight_bits
 from diorama_core.perception.inputs.photos.borders import plain_borders
 from diorama_core.perception.inputs.photos.frame import PhotoFrame
 from diorama_core.perception.inputs.photos.panoramas import check_perspective
 from diorama_core.perception.inputs.photos.raw import raw_kind
+from diorama_core.perception.inputs.photos.table import PHOTO_FORMS
+from diorama_core.perception.inputs.source import Source
 from tests.perception.inputs.files import box, boxes_json, depth_png, encoded, npy
 
 WIDTH, HEIGHT = 160, 120
@@ -120,6 +123,8 @@ def test_the_largest_picture_of_a_raw_file_is_the_photo() -> None:
     assert "camera's raw file (DNG)" in read.warnings[0]
     assert raw_kind(encoded(Image.fromarray(NOISE), "TIFF")) is None
     assert raw_kind(b"II*\0") is None
+    assert form_of(PHOTO_FORMS, Source(data, "a")).name.startswith("camera raw")
+    assert form_of(PHOTO_FORMS, Source(encoded(Image.fromarray(NOISE)), "a")).name.startswith("JPEG")
 
 
 def test_heic_is_read() -> None:
