@@ -59,7 +59,9 @@ class ModelForm:
 def form_of(head: FileHead) -> ModelForm | None:
     """The format of a file: as its content says, else as its name does; None where it is none that is read."""
     told = next((form for form in MODEL_FORMS if form.tells(head)), None)
-    return told or next((form for form in MODEL_FORMS if head.suffix in form.suffixes), None)
+    if told is not None or (head.size and what_else(head) is not None):
+        return told
+    return next((form for form in MODEL_FORMS if head.suffix in form.suffixes), None)
 
 
 def read_model(path: Path, root: Path, limits: Limits = DEFAULT_LIMITS, member: str = "") -> RawModel:

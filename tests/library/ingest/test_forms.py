@@ -193,6 +193,9 @@ def test_content_tells_the_format_before_the_name(tmp_path: Path) -> None:
     assert form.name == "glTF"
     assert read(tmp_path / "chair.obj").area == pytest.approx(chair().area, rel=1e-5)
     assert len({f.name for f in MODEL_FORMS}) == len(MODEL_FORMS)
+    (tmp_path / "lfs.glb").write_bytes(b"version https://git-lfs.github.com/spec/v1\noid sha256:0")
+    with pytest.raises(LibraryError, match="Git LFS"):
+        read(tmp_path / "lfs.glb")
 
 
 def test_a_pack_has_one_convention_and_exceptions_must_be_far_likelier(tmp_path: Path) -> None:
