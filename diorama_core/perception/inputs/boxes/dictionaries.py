@@ -45,6 +45,8 @@ _SCORES = ("score", "confidence", "conf", "probability", "prob", "predictediou",
 
 def keys_of(entry: Mapping[str, Any]) -> dict[str, Any]:
     """The values by their keys in lower case with letters and digits only, so that `boundingBox` is `bounding_box`."""
+    if not isinstance(entry, Mapping):
+        return {}  # a damaged file has anything here
     return {re.sub(r"[^a-z0-9]", "", str(key).lower()): value for key, value in entry.items()}
 
 
