@@ -14,7 +14,7 @@ from diorama_core.scene.types import Plane, Scene, SceneObject
 LEAST_ODDS = float(np.log(0.7 / 0.3))
 """An object is set against a wall where that is so likely: a wrong wall takes it away from where it was seen."""
 ASLANT_COSINE = 0.95
-"""A face that is turned farther from a wall is not parallel to it at all."""
+"""A face that is turned farther from a wall does not stand against it: only an edge would touch."""
 MAX_TOLERANCES = 6.0
 """What was seen farther from a wall than so many tolerances, on either side, does not stand against it."""
 
@@ -47,18 +47,19 @@ STANDING_TERMS: Mapping[str, Callable[[WallRelation], float]] = {
 
 
 def wall_relation(scene: Scene, item: SceneObject, wall: Plane, noise: ObservationNoise) -> WallRelation | None:
-    """How an object stands to a wall; None where it is beside it or far away."""
+    """How an object stands to a wall; None where it is beside it, far away or aslant."""
     along = np.cross([0.0, 0.0, 1.0], wall.normal)
     ends, place = wall.polygon @ along, float(item.pose.position @ along)
     if not ends.min() <= place <= ends.max():
         return None
     gap_m = float((item.corners_world @ wall.normal).min()) - wall.offset
     gap = gap_m / noise.tolerance_m(scene.camera, item.pose.position, wall.normal)
-    if abs(gap) > MAX_TOLERANCES:
+    parallel = float(np.abs(wall.normal @ item.pose.R_world_object).max())
+    if abs(gap) > MAX_TOLERANCES or parallel < ASLANT_COSINE:
         return None
     return WallRelation(
         gap,
-        float(np.abs(wall.normal @ item.pose.R_world_object).max()),
+        parallel,
         float(wall.normal @ item.pose.R_world_object[:, 0]),
         item.category in AGAINST_WALLS,
     )

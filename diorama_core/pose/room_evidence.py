@@ -64,7 +64,7 @@ class Trials:
 
     def folds(self) -> dict[str, int]:
         """By posed object how many headings of its likeliest shape look the same."""
-        found = {}
+        found: dict[str, int] = {}
         for task, of_one in zip(self.tasks, self.tried, strict=True):
             best = int(np.argmax([likelihood(task.item.label, t) for t in of_one]))
             found[task.item.id] = of_one[best].shape.symmetry
