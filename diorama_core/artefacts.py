@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
 from functools import cached_property
+from typing import Literal
 
 import numpy as np
 from jaxtyping import Bool, Float, Float32, Int32, UInt8
@@ -170,6 +171,25 @@ class SeenKinds(ArrayValue):
     """Probability of every value of every attribute of form, one attribute after another; empty where nobody looked."""
 
 
+Decision = Literal["place", "support", "front", "kind", "size"]
+"""What is decided about an object."""
+
+
+@dataclass(frozen=True)
+class Reason:
+    """One term that speaks for or against what was decided about an object."""
+
+    object_id: str
+    decision: Decision
+    term: str
+    """Its name: of a piece of evidence, a stage or a rule."""
+    amount: float
+    """How much it counts: nats for what was decided, negative against it; or by how far it moved the object."""
+    unit: Literal["nats", "cm"]
+    sentence: str
+    """Why, in plain words, for people."""
+
+
 @dataclass(frozen=True, eq=False)
 class Cuboid(ArrayValue):
     """The oriented box of one object in metres, before any shape is chosen."""
@@ -203,6 +223,8 @@ class ObjectGeometry(ArrayValue):
     """Parents are object ids, or "floor", "ceiling" or "wall", for which the architecture will say which plane."""
     source: ScaleSource
     confidence: float = 1.0
+    reasons: tuple[Reason, ...] | None = field(default=None, metadata={"absent when none": True})
+    """What decided places, sizes and supports; None where the stage does not tell."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -269,26 +291,13 @@ class RankedShapes:
 
 
 @dataclass(frozen=True)
-class TermShare:
-    """What one term says for a decision about one object."""
-
-    object_id: str
-    decision: str
-    """What was decided: "front"."""
-    term: str
-    nats: float
-    """By how much it prefers the choice to the likeliest other one; negative where it speaks against it."""
-    sentence: str
-
-
-@dataclass(frozen=True)
 class PosedCandidates:
     """The ranked shapes of one object, each posed; `confidence` speaks of the best."""
 
     object_id: str
     candidates: tuple[Candidate, ...]
     confidence: float
-    reasons: tuple[TermShare, ...] = ()
+    reasons: tuple[Reason, ...] = ()
     """What decided which way it faces."""
 
 

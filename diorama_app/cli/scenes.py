@@ -161,6 +161,9 @@ def add_build(commands: Any) -> None:
         help="acdc: room, retrieval, poses and layout as ACDC has them, to compare with (default: %(default)s)",
     )
     p.add_argument("--seed", type=int, default=0, help="seed of random stages (the built-in ones use none)")
+    p.add_argument(
+        "--explain", type=Path, metavar="FILE", help="file for the reasons of each place, kind and size, as JSON"
+    )
     p.add_argument("--json", action="store_true", help="print the result as JSON")
 
 
@@ -180,6 +183,8 @@ def _build(a: argparse.Namespace) -> None:
         pose=a.pose,
         system=a.system,
     )
+    if a.explain is not None and (a.poses is not None or a.image.is_dir()):
+        raise InputError("--explain is for one photo; each project of a folder of photos has its reasons.json")
     if a.poses is not None:
         from diorama_app.cli.posed import build_posed
 
@@ -194,6 +199,7 @@ def _build(a: argparse.Namespace) -> None:
 
 def _build_photo(a: argparse.Namespace, options: BuildOptions) -> None:
     from diorama_app.projects.report import build_report, write_arrangements
+    from diorama_core.project.reasons import write_reasons
 
     if a.arrangements < 1:
         raise InputError(f"--arrangements {a.arrangements}: ask for at least one")
@@ -201,6 +207,8 @@ def _build_photo(a: argparse.Namespace, options: BuildOptions) -> None:
     with progress_bar() as progress:
         room = build_files(files, options, a.output, progress, print_note)
         scenes = write_arrangements(room, a.arrangements, progress)
+    if a.explain is not None and room.built is not None:
+        write_reasons(a.explain, room.built.reasons, InputError)
     report = build_report(room, scenes)
     if a.json:
         print(json.dumps(report))

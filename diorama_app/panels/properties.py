@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 
 import numpy as np
 import viser
@@ -14,6 +14,8 @@ from diorama_app.panels.toolbar import run_command
 from diorama_app.session.client import Client
 from diorama_app.session.units import UNITS, Unit, format_length, in_unit, parse_length
 from diorama_app.web.html import Action, LiveHtml, button, text
+from diorama_core.arrangement.explain import in_words, strongest
+from diorama_core.artefacts import Reason
 from diorama_core.editing.clearances import clearances
 from diorama_core.errors import InputError
 from diorama_core.scene.types import Finish, MaterialSource, SceneObject
@@ -96,7 +98,8 @@ class Properties:
         show_value(self._name, item.label)
         show_value(self._colour, self._shown_colour(item))
         opens = self._client.session.shapes.can_open(item.shape_id)
-        self._own.show((_opening(item) if opens else "") + _surface(item))
+        why = _why(strongest(self._client.session.reasons, item.id))
+        self._own.show((_opening(item) if opens else "") + _surface(item) + why)
 
     def _shown_colour(self, item: SceneObject) -> tuple[int, int, int]:
         """The paint of an object, or else the main material's colour from the photo, or else the shape's own."""
@@ -249,6 +252,13 @@ def _surface(item: SceneObject) -> str:
     return (
         f'{taken if item.photo_materials else ""}{paint}<h4>Finish</h4><div class="bar tight one-row">{finishes}</div>'
     )
+
+
+def _why(reasons: Sequence[Reason]) -> str:
+    """What decided most about an object when it was built, in plain words; empty where that is not known."""
+    lines = "".join(f"<li>{text(in_words(reason))}</li>" for reason in reasons)
+    hint = "What decided most when the scene was built from the photo, and how much it counts"
+    return f'<h4 title="{hint}">Why</h4><ul class="why">{lines}</ul>' if lines else ""
 
 
 def _opening(item: SceneObject) -> str:

@@ -9,12 +9,15 @@ from __future__ import annotations
 import contextlib
 import time
 from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from diorama_app.reconstruction.networks import can_find_furniture
 from diorama_app.session.client import Client
+from diorama_app.session.project_contents import shown_notes
 from diorama_app.session.session import BUILDING, EditorSession
-from diorama_core.artefacts import FurtherPhoto, Inputs
+from diorama_app.session.textures import Textures
+from diorama_core.artefacts import FurtherPhoto, Inputs, Reason
 from diorama_core.errors import DioramaError, EditRefused, InputError
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.progress import Progress
@@ -24,6 +27,33 @@ from diorama_core.scene.types import Camera, Scene
 if TYPE_CHECKING:
     from diorama_core.multiview.rebuilding import Rebuilt  # the whole pipeline; opening a project does without it
     from diorama_core.pipeline.run import Built
+
+
+@dataclass(frozen=True, eq=False)
+class NewScene:
+    """What a build gives to be shown, as it is in memory; all of it but the scene is in the project's folder."""
+
+    scene: Scene
+    textures: Textures
+    inputs: Inputs
+    notes: tuple[str, ...]
+    reasons: tuple[Reason, ...] = ()
+    again: Rebuilt | None = None
+    """The other photos, where some had joined the scene before."""
+
+    @classmethod
+    def of(cls, built: Built, inputs: Inputs, warnings: Sequence[str], again: Rebuilt | None) -> NewScene:
+        """What was built of one photo, and what others that joined it anew made of that.
+
+        Args:
+            built: the scene of the photo.
+            inputs: as they are saved.
+            warnings: about the inputs.
+            again: the other photos.
+        """
+        scene = built.scene if again is None else again.scene
+        textures = dict(built.textures) if again is None else {**built.textures, **again.textures}
+        return cls(scene, textures, inputs, shown_notes([*warnings, *built.notes]), built.reasons, again)
 
 
 def ready_to_build(inputs: Inputs | None) -> bool:
@@ -64,24 +94,24 @@ def start_build(session: EditorSession, inputs: Inputs, title: str, label: str, 
     if project is None:
         raise EditRefused("no project is open")
 
-    before, others = session.scene.camera, session.further_photos
+    before, others, said = session.scene.camera, session.further_photos, session.inputs
 
     def work(progress: Progress) -> None:
-        from diorama_core.project.build import build_project
+        from diorama_core.project.build import build_project, with_found_boxes
 
         session.autosave.flush()
         joined = [p for p in others if p.camera is not None]
         alone = 1.0 / (1 + len(joined))
         with _noted(project):
             warnings = project.info().get("warnings", ())
-            built = build_project(
-                project, inputs, session.library, warnings=warnings, progress=progress.part(0.0, alone)
-            )
+            part = progress.part(0.0, alone)
+            built = build_project(project, inputs, session.library, warnings=warnings, progress=part, save_scene=False)
             again = None
             if joined:
                 again = _with_others(project, built, before, others, session.library, progress.part(alone, 1.0))
-        scene = built.scene if again is None else again.scene
-        session.ui_thread.post(lambda: show_built(session, project, scene, label=label, message=message, again=again))
+        made = NewScene.of(built, with_found_boxes(inputs, built), warnings, again)
+        session.autosave.save_soon(project, made.scene)  # whatever is open by then
+        session.ui_thread.post(lambda: show_built(session, project, made, label=label, said=said, message=message))
 
     session.interrupted = False
     session.jobs.start("build", title, work)
@@ -95,7 +125,7 @@ def _with_others(
     library: ShapeLibrary,
     progress: Progress,
 ) -> Rebuilt:
-    """The other photos join the scene that was built anew; it is saved with what they show."""
+    """The other photos join the scene that was built anew; their pictures are saved."""
     from diorama_core.layout.recipes import recipe
     from diorama_core.multiview.rebuilding import with_photos_again
     from diorama_core.pipeline.presets import stages_for
@@ -112,7 +142,6 @@ def _with_others(
         progress,
     )
     project.save_textures(found.textures)
-    project.save_scene(found.scene)
     note_placed(project, found.scene)
     return found
 
@@ -136,34 +165,36 @@ def forget_build(project: Project) -> None:
 def show_built(
     session: EditorSession,
     project: Project,
-    scene: Scene,
+    made: NewScene,
     *,
     label: str,
+    said: Inputs | None,
     message: str = "",
-    again: Rebuilt | None = None,
 ) -> None:
     """Show the built scene of the open project to all clients, as one undo step.
 
     Args:
         session: where.
         project: the project that was built.
-        scene: its scene.
+        made: what was built, which is saved or being saved.
         label: what the undo step is called.
+        said: what the document said of the photo when the build began; what a person has changed since stays.
         message: what is said instead of the number of objects.
-        again: the other photos, where some had joined the scene before.
     """
     if project != session.project:
-        return  # it is on disk; somebody opened another project here meanwhile
+        return  # somebody opened another project here meanwhile
     for client in session.clients.values():
         client.view.canvas.close()
-    session.textures = {**session.textures, **project.textures(scene)}  # undo shows what earlier ones name
-    session.read_notes()
+    session.textures = {**session.textures, **made.textures}  # undo shows what earlier ones name
+    session.notes, session.reasons = made.notes, made.reasons
     # Photos that were added or taken out meanwhile are as the person left them.
-    known = {} if again is None else {p.name: p for p in again.photos}
+    known = {} if made.again is None else {p.name: p for p in made.again.photos}
     further = tuple(known.get(p.name, p) for p in session.further_photos)
-    session.commit(label, scene, inputs=project.load_inputs(), further=further if again is not None else None)
+    inputs = made.inputs if session.inputs is said else None
+    session.inputs_are_saved(inputs)
+    session.commit(label, made.scene, inputs=inputs, further=further if made.again is not None else None)
     session.view.show_whole_room()
-    message = message or f"The scene has {len(scene.objects)} objects. Click one to change it."
-    if again is not None and again.left_out:
-        message += f" To be added again: {', '.join(again.left_out)}."
+    message = message or f"The scene has {len(made.scene.objects)} objects. Click one to change it."
+    if made.again is not None and made.again.left_out:
+        message += f" To be added again: {', '.join(made.again.left_out)}."
     session.notice_all(message, "good")

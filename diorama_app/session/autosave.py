@@ -73,6 +73,8 @@ class Autosave:
         self._waiting: dict[Project, Unwritten] = {}
         self._photos_saved: dict[Project, tuple[FurtherPhoto, ...]] = {}
         """Further photos as they are on disk."""
+        self._scenes_saved: dict[Project, Scene] = {}
+        """Scenes as they are on disk: what was saved is not written again when it is shown."""
         self._new = self._stopping = False
         self.saved_at: float | None = None
         self._thread = threading.Thread(target=self._work, daemon=True, name="autosave")
@@ -145,8 +147,9 @@ class Autosave:
             if unwritten.further is not None:
                 save_photos(project, unwritten.further, self._photos_saved.get(project, ()))
                 self._photos_saved[project] = unwritten.further
-            if scene is not None:
+            if scene is not None and not (scene is self._scenes_saved.get(project) and project.has_scene):
                 new_version = project.save_scene(scene)
+                self._scenes_saved[project] = scene
         except Exception as error:  # whatever it is, the work must be retained and tried again
             if not isinstance(error, DioramaError):
                 log.exception("the scene of %s cannot be written", project.folder)

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 from diorama_app.session.textures import Textures
-from diorama_core.artefacts import FurtherPhoto, Inputs
+from diorama_core.artefacts import FurtherPhoto, Inputs, Reason
 from diorama_core.errors import ProjectError
 from diorama_core.io.bounded import shortened
 from diorama_core.project.further_photos import load_photos
+from diorama_core.project.reasons import load_reasons
 from diorama_core.project.storage import Project
 from diorama_core.scene.types import Scene
 
@@ -28,6 +30,8 @@ class ProjectContents:
     textures: Textures
     notes: tuple[str, ...]
     """What the build said about how the scene was made."""
+    reasons: tuple[Reason, ...]
+    """Why its objects are where and what the build made them."""
     damage: tuple[str, ...]
     """One line for everything that could not be read."""
 
@@ -42,15 +46,20 @@ def read_project(project: Project) -> ProjectContents:
     unfinished = inputs is not None and not project.has_scene
     scene, scene_damage = (Scene(), "") if unfinished else project.newest_scene()
     further, further_damage = load_photos(project)
-    damage = tuple(line for line in (scene_damage, photo_damage, *further_damage) if line)
-    return ProjectContents(scene, inputs, further, project.textures(scene), build_notes(project), damage)
+    reasons, reasons_damage = load_reasons(project)
+    damage = tuple(line for line in (scene_damage, photo_damage, *further_damage, reasons_damage) if line)
+    return ProjectContents(scene, inputs, further, project.textures(scene), build_notes(project), reasons, damage)
 
 
 def build_notes(project: Project) -> tuple[str, ...]:
     """What the project's build had to say, each line once and of bounded length."""
     notes = project.info().get("notes", [])
-    listed = notes if isinstance(notes, list) else []
-    return tuple(dict.fromkeys(shortened(str(note), MAX_NOTE_LENGTH) for note in listed[:MAX_NOTES]))
+    return shown_notes(notes if isinstance(notes, list) else [])
+
+
+def shown_notes(notes: Sequence[object]) -> tuple[str, ...]:
+    """Notes as they are shown: each line once and of bounded length, and not too many."""
+    return tuple(dict.fromkeys(shortened(str(note), MAX_NOTE_LENGTH) for note in notes[:MAX_NOTES]))
 
 
 def _inputs(project: Project) -> tuple[Inputs | None, str]:

@@ -25,7 +25,7 @@ from diorama_app.session.jobs import Jobs, Outcome
 from diorama_app.session.layout_run import LayoutRun
 from diorama_app.session.problem_checker import Checker, Problems
 from diorama_app.session.project_access import ProjectAccess
-from diorama_app.session.project_contents import build_notes, read_project
+from diorama_app.session.project_contents import read_project
 from diorama_app.session.reading import Reader
 from diorama_app.session.shape_preparation import Preparer
 from diorama_app.session.shared_view import SharedView
@@ -36,7 +36,7 @@ from diorama_app.viewport.framing import room_view
 from diorama_app.viewport.mesh_assets import ShapeBytes
 from diorama_app.viewport.scene_view import Viewport
 from diorama_app.viewport.thumbnails import Thumbnails
-from diorama_core.artefacts import FurtherPhoto, Inputs, Photo
+from diorama_core.artefacts import FurtherPhoto, Inputs, Photo, Reason
 from diorama_core.editing.clipboard import Clip
 from diorama_core.errors import DioramaError, EditRefused
 from diorama_core.io.bounded import shortened
@@ -88,6 +88,8 @@ class EditorSession:
         self.photo: Photo | None = None
         self.notes: tuple[str, ...] = ()
         """Notes of the pipeline about how the scene was made."""
+        self.reasons: tuple[Reason, ...] = ()
+        """Why objects are where and what the build made them."""
         self.textures: Textures = {}
         self.clients: dict[int, ConnectedClient] = {}
         self.badges: Problems = {}
@@ -322,7 +324,7 @@ class EditorSession:
         if self._access.take(project):
             with contextlib.suppress(OSError):  # leftovers that cannot be removed disturb nobody
                 self.autosave.recovery.clean_up(project)
-        self.project, self.textures, self.notes = project, read.textures, read.notes
+        self.project, self.textures, self.notes, self.reasons = project, read.textures, read.notes, read.reasons
         self.glances.forget()
         self.photo = None if inputs is None else inputs.photo
         self.interrupted = project.info().get(BUILDING) is not None
@@ -370,9 +372,9 @@ class EditorSession:
         self.glances.forget()
         self.refresh_panels()
 
-    def read_notes(self) -> None:
-        """Learn what the project's build had to say."""
-        self.notes = () if self.project is None else build_notes(self.project)
+    def inputs_are_saved(self, inputs: Inputs | None) -> None:
+        """These corrections of the photo are in the project's folder; None where what is there is not known."""
+        self._inputs_saved = inputs
 
     # -- people -----------------------------------------------------------------------------------------------
 

@@ -23,6 +23,7 @@ from diorama_core.pipeline.assemble import assemble
 from diorama_core.pipeline.findings import finding
 from diorama_core.pipeline.look_ahead import looking_ahead
 from diorama_core.pipeline.network_inputs import with_network_inputs
+from diorama_core.pipeline.reasons import reasons_of_build
 from diorama_core.pipeline.runner import Runner
 from diorama_core.pipeline.scene_steps import (
     appearance,
@@ -39,11 +40,11 @@ from diorama_core.pipeline.scene_steps import (
     plane_pictures,
     position_noise,
     refined,
+    supported,
 )
 from diorama_core.pipeline.stages import ProposalStages, Stages
 from diorama_core.pipeline.steps import (
     Artefacts,
-    Corrected,
     Correction,
     Derivation,
     LaidOut,
@@ -111,10 +112,26 @@ PLAN: tuple[Step, ...] = (
     # What holds what is decided for all objects together, now that their shapes and the walls are known.
     Derivation(position_noise, ("inputs",), "noise"),
     Derivation(decided_supports, ("posed_scene", "library", "noise", "furniture_objects"), "supports"),
-    Derivation(lambda supports: Corrected(supports.scene, supports.notes), ("supports",), "supported"),
-    Correction(clear_shapes, ("supported", "library", "noise"), "in_clear_shapes", measured=True),
-    Correction(left_where_seen, ("in_clear_shapes", "library", "noise"), "on_near_supports"),
-    Correction(in_containing_room, ("on_near_supports", "library", "noise", "geometry"), "corrected"),
+    Derivation(supported, ("posed_scene", "supports"), "supported"),
+    Correction(
+        clear_shapes,
+        ("supported", "library", "noise"),
+        "in_clear_shapes",
+        "shapes do not lie within one another",
+        measured=True,
+    ),
+    Correction(
+        left_where_seen,
+        ("in_clear_shapes", "library", "noise"),
+        "on_near_supports",
+        "nothing reaches it where it was seen",
+    ),
+    Correction(
+        in_containing_room,
+        ("on_near_supports", "library", "noise", "geometry"),
+        "corrected",
+        "the room is around everything",
+    ),
     Derivation(lambda corrected: corrected.scene, ("corrected",), "observed"),
     # What things look like is all the same to the layout.
     Derivation(
@@ -138,6 +155,14 @@ PLAN: tuple[Step, ...] = (
     Derivation(lambda finished: finished.scene, ("finished",), "scene"),
     Derivation(lambda finished: finished.textures, ("finished",), "textures"),
     Derivation(dressed, ("observed", "appearance", "plane_pictures"), "dressed_observed"),
+    Derivation(
+        reasons_of_build,
+        (
+            *("given", "inputs", "objects", "geometry", "graph", "posed", "noise"),
+            *("corrected", "laid_out", "refined"),
+        ),
+        "reasons",
+    ),
 )
 
 

@@ -17,6 +17,7 @@ from diorama_core.artefacts import (
     Inputs,
     LayoutReport,
     ObjectGeometry,
+    Reason,
     SceneGraph,
 )
 from diorama_core.library.record import ShapeLibrary
@@ -60,6 +61,8 @@ class Built:
     """What the user should know, in plain words."""
     stages: Stages | None = None
     """The implementations that ran."""
+    reasons: tuple[Reason, ...] = ()
+    """Why each object is where it is and what it is, by object."""
 
 
 def build_scene(
@@ -94,7 +97,7 @@ def build_scene(
     given: Artefacts = {"given": inputs, "library": library, "preview": preview}
     if not plane_pictures:
         given = {**given, "plane_pictures": {}}
-    found = evaluate(stages, given, ("scene", "textures", "dressed_observed"), runner, progress)
+    found = evaluate(stages, given, ("scene", "textures", "dressed_observed", "reasons"), runner, progress)
     progress.report(1.0, "done")
     return Built(
         scene=found["scene"],
@@ -112,6 +115,7 @@ def build_scene(
         runs=tuple(runner.runs),
         stages=stages,
         notes=(*_notes(found), *runner.lost),
+        reasons=found["reasons"],
     )
 
 

@@ -13,6 +13,7 @@ from diorama_core.architecture.room_extent import containing_room, without_floor
 from diorama_core.architecture.texture.empty_room import EmptyRoomFiller
 from diorama_core.architecture.texture.plane_textures import plane_textures
 from diorama_core.architecture.texture.refit import refitted_textures
+from diorama_core.arrangement.explain import reasons_of_change
 from diorama_core.arrangement.lower_rims import seen_below
 from diorama_core.arrangement.noise import MEASURED, REASONED, ObservationNoise
 from diorama_core.arrangement.support_hypotheses import SupportEvidence
@@ -21,7 +22,7 @@ from diorama_core.artefacts import ArchitectureEstimate, DetectedObject, Inputs,
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.perception.illuminant import Illuminant
 from diorama_core.pipeline.colours import photo_colours, room_illuminant, shared_by_sets
-from diorama_core.pipeline.steps import LaidOut
+from diorama_core.pipeline.steps import Corrected, LaidOut
 from diorama_core.processes import there
 from diorama_core.progress import Progress
 from diorama_core.protocols import LayoutStage, Preview, RefinementStage
@@ -85,6 +86,12 @@ def decided_supports(
     """
     below = seen_below({item.id: item.mask for item in objects})
     return with_decided_supports(scene, library, noise, SupportEvidence.of(scene, below))
+
+
+def supported(posed: Scene, supports: DecidedSupports) -> Corrected:
+    """The scene with its supports decided, and what that changed."""
+    changes = reasons_of_change(posed, supports.scene, "supports", "what holds it agrees with where it was seen")
+    return Corrected(supports.scene, supports.notes, changes)
 
 
 def in_containing_room(scene: Scene, library: ShapeLibrary, noise: ObservationNoise, geometry: ObjectGeometry) -> Scene:

@@ -7,7 +7,8 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from diorama_core.artefacts import Inputs, LayoutReport
+from diorama_core.arrangement.explain import reasons_of_change
+from diorama_core.artefacts import Inputs, LayoutReport, Reason
 from diorama_core.errors import UnavailableError
 from diorama_core.pipeline.runner import Runner
 from diorama_core.pipeline.stages import ProposalStages, Stages
@@ -114,6 +115,8 @@ class Corrected:
     scene: Scene
     notes: tuple[str, ...] = ()
     """What was changed, in plain words."""
+    reasons: tuple[Reason, ...] = ()
+    """What each rule changed about which object."""
 
 
 @dataclass(frozen=True)
@@ -125,6 +128,8 @@ class Correction:
     takes: tuple[str, ...]
     """The first are the scene so far (a `Corrected`), the library, and the noise of observed positions."""
     gives: str
+    why: str
+    """Why it changes what it changes, in plain words."""
     measured: bool | None = None
     """Whether it is for measured distances alone, or for those reasoned from a photo alone; None for both."""
     share: float = 0.0
@@ -139,7 +144,8 @@ class Correction:
             return before
         result = self.function(before.scene, library, noise, *rest)
         scene, notes = result if isinstance(result, tuple) else (result, ())
-        return Corrected(scene, (*before.notes, *notes))
+        changes = reasons_of_change(before.scene, scene, self.gives.replace("_", " "), self.why)
+        return Corrected(scene, (*before.notes, *notes), (*before.reasons, *changes))
 
 
 Step = StageStep | Derivation | LayoutStep | Correction

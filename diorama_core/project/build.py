@@ -15,6 +15,7 @@ from diorama_core.pipeline.run import Built, build_scene
 from diorama_core.pipeline.stages import Stages
 from diorama_core.progress import Progress
 from diorama_core.project.further_photos import note_placed
+from diorama_core.project.reasons import save_reasons
 from diorama_core.project.storage import Project
 from diorama_core.protocols import Preview
 
@@ -28,20 +29,35 @@ def build_project(
     warnings: Sequence[str] = (),
     progress: Progress | None = None,
     preview: Preview | None = None,
+    save_scene: bool = True,
 ) -> Built:
     """Build the scene of `inputs` in the project's folder and save inputs, scene, textures and what was used.
 
-    Without `choose`, the auto profile chooses the stages. A network that fails is left out, and the project's notes say
-    so. Boxes that a network found are saved with the inputs, so that people can correct them like their own.
+    A network that fails is left out, and the project's notes say so. Boxes that a network found are saved with the
+    inputs, so that people can correct them like their own. The inputs are saved first and stage results as they come,
+    so an interrupted build resumes. The scene is replaced only when the build succeeded.
 
-    The inputs are saved first and stage results as they come, so an interrupted build resumes. The scene is
-    replaced only when the build succeeded.
+    Args:
+        project: where.
+        inputs: what the user gave.
+        library: where shapes come from.
+        choose: the stages; the auto profile without it.
+        warnings: about the inputs, for the project's notes.
+        progress: reports and cancellation.
+        preview: receives the layout optimiser's intermediate scenes.
+        save_scene: whether the scene is saved, too; otherwise the caller does, who may go on changing it.
+
+    Raises:
+        Cancelled: on request; the scene stays as it was.
+        DioramaError: a stage cannot do its work, or the folder cannot be written.
     """
     project.save_inputs(inputs, warnings)
     built = build_with_usable_networks(
         inputs, library, choose, cache=project.stages_folder, progress=progress, preview=preview
     )
-    save_built(project, built, inputs, warnings)
+    save_artefacts(project, built, inputs, warnings)
+    if save_scene:
+        project.save_scene(built.scene)
     return built
 
 
@@ -72,10 +88,22 @@ def save_built(project: Project, built: Built, given: Inputs, warnings: Sequence
     Raises:
         ProjectError: the folder cannot be written.
     """
-    if built.inputs.boxes != given.boxes:
-        project.save_inputs(replace(given, boxes=built.inputs.boxes), warnings)
-    project.save_textures(built.textures)
+    save_artefacts(project, built, given, warnings)
     project.save_scene(built.scene)
+
+
+def save_artefacts(project: Project, built: Built, given: Inputs, warnings: Sequence[str] = ()) -> None:
+    """Save all of a build but its scene, as `save_built` does."""
+    corrected = with_found_boxes(given, built)
+    if corrected is not given:
+        project.save_inputs(corrected, warnings)
+    project.save_textures(built.textures)
     note_placed(project, built.scene)
     project.save_stage_runs(built.runs)
+    save_reasons(project, built.reasons)
     project.update_info(notes=[*warnings, *built.notes])
+
+
+def with_found_boxes(given: Inputs, built: Built) -> Inputs:
+    """The given inputs with the boxes that networks found, as they are saved; themselves where nothing was found."""
+    return given if built.inputs.boxes == given.boxes else replace(given, boxes=built.inputs.boxes)

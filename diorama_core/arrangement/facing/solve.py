@@ -11,7 +11,7 @@ from jaxtyping import Float, Int
 from diorama_core.arrangement.facing.evidence import HEADINGS, FacingRoom, HeadingCosts
 from diorama_core.arrangement.facing.terms import TERMS, Term, pairs_of
 from diorama_core.arrangement.facing.weights import FacingWeights
-from diorama_core.artefacts import TermShare
+from diorama_core.artefacts import Reason
 
 PICTURE = "picture"
 ROUNDS, DAMPING = 20, 0.5
@@ -49,7 +49,7 @@ class Facings:
     costs: Float[np.ndarray, "n 24"]
     """What speaks against headings by all terms and what the others say, the picture of the object itself left out;
     0 for the best, in the units of `FacingObject.picture`."""
-    shares: tuple[TermShare, ...]
+    shares: tuple[Reason, ...]
     """Why, term by term."""
 
     def costs_of(self, object_id: str) -> HeadingCosts:
@@ -93,7 +93,7 @@ def beliefs(factors: Factors, weights: FacingWeights) -> tuple[Float[np.ndarray,
 
 def _shares(
     factors: Factors, weights: FacingWeights, headings: Int[np.ndarray, "n"], total: Float[np.ndarray, "n 24"]
-) -> tuple[TermShare, ...]:
+) -> tuple[Reason, ...]:
     """What every term says for the chosen headings rather than the likeliest clearly other ones, the others given."""
     sentences = {t.name: t.sentence for t in TERMS} | {PICTURE: "the picture shows it so"}
     off = np.abs((np.arange(HEADINGS) - headings[:, None] + HEADINGS // 2) % HEADINGS - HEADINGS // 2)
@@ -106,4 +106,6 @@ def _shares(
         nats = weights.of(name) * float(values[headings[i]] - values[rivals[i]])
         found[i, name] = found.get((i, name), 0.0) + nats
     ids = [item.object_id for item in factors.room.objects]
-    return tuple(TermShare(ids[i], "front", name, nats, sentences[name]) for (i, name), nats in found.items() if nats)
+    return tuple(
+        Reason(ids[i], "front", name, nats, "nats", sentences[name]) for (i, name), nats in found.items() if nats
+    )

@@ -13,6 +13,7 @@ from diorama_core.perception.metrology.floor import HeightScan, scan_heights
 from diorama_core.perception.metrology.placement import CEILING, FLOOR, WALL, Placement, place_all
 from diorama_core.perception.metrology.problem import View
 from diorama_core.perception.metrology.reading import confidence_of, foot_seen, heading_and_size
+from diorama_core.perception.metrology.reasons import reasons_of
 from diorama_core.progress import Progress
 from diorama_core.provenance import ScaleSource
 from diorama_core.scene.types import Camera, Relation, Support, yaw_rotation
@@ -50,6 +51,7 @@ class SingleViewMetrology:
             supports=supports_of(placements, objects),
             source=ScaleSource.OBJECT_SIZES if objects else ScaleSource.CAMERA_HEIGHT,
             confidence=_overall(camera, scan, len(objects)),
+            reasons=reasons_of(placements, view, objects),
         )
 
     def _choose(

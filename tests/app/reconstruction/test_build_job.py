@@ -4,15 +4,21 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+import numpy as np
 import pytest
 
-from diorama_app.reconstruction.build_job import show_built
+from diorama_app.reconstruction.build_job import NewScene, show_built, start_build
 from diorama_app.session.client import Client
 from diorama_app.session.session import EditorSession
-from diorama_core.artefacts import FurtherPhoto, Inputs
+from diorama_core.artefacts import FurtherPhoto, Inputs, LabelledBox
 from diorama_core.multiview.rebuilding import Rebuilt
-from diorama_core.scene.types import Camera
+from diorama_core.pipeline.run import Built
+from diorama_core.project import build as build_module
+from diorama_core.project.storage import Project
+from diorama_core.scene.types import Camera, Scene
 from tests.app.small_room import photo_camera, plain_photo
+from tests.built import built_scene
+from tests.waiting import until
 
 
 def turned(camera: Camera) -> Camera:
@@ -34,7 +40,8 @@ def test_photos_have_their_new_cameras_and_those_that_do_not_join_are_named(
     photos = (replace(joined, camera=turned(own)), replace(lost, camera=None))
     again = Rebuilt(scene, photos, {}, ("two",))
     assert session.project is not None
-    show_built(session, session.project, scene, label="build the scene", again=again)
+    made = NewScene(scene, {}, Inputs(plain_photo()), (), again=again)
+    show_built(session, session.project, made, label="build the scene", said=session.inputs)
     assert session.scene is scene
     assert session.further_photos == (*photos, added)
     assert any("To be added again: two." in line for line in said), said
@@ -46,5 +53,57 @@ def test_without_other_photos_nothing_is_said_of_them(session: EditorSession, mo
     said: list[str] = []
     monkeypatch.setattr(session, "notice_all", lambda message, kind: said.append(message))
     assert session.project is not None
-    show_built(session, session.project, replace(session.scene, camera=turned(photo_camera())), label="build")
+    made = NewScene(replace(session.scene, camera=turned(photo_camera())), {}, Inputs(plain_photo()), ())
+    show_built(session, session.project, made, label="build", said=session.inputs)
     assert not any("again" in line for line in said), said
+
+
+@pytest.fixture
+def built(session: EditorSession, monkeypatch: pytest.MonkeyPatch) -> Built:
+    """A build of the open project that takes no time."""
+    shown = replace(session.scene.architecture.planes[0], texture="grey")
+    room = replace(session.scene.architecture, planes=(shown, *session.scene.architecture.planes[1:]))
+    made = built_scene(replace(session.scene, architecture=room, camera=turned(photo_camera())))
+    made = replace(made, textures={"grey": np.full((8, 8, 3), 99, np.uint8)}, notes=("a note",))
+
+    def build(*given: object, **more: object) -> Built:
+        return replace(made, inputs=replace(made.inputs, boxes=session_inputs.boxes))
+
+    session_inputs = Inputs(plain_photo())
+    monkeypatch.setattr(build_module, "build_with_usable_networks", build)
+    return made
+
+
+def test_a_build_is_shown_from_memory_and_its_scene_written_once(
+    session: EditorSession, built: Built, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    assert session.project is not None
+    read, written = list[str](), list[Scene]()
+    save = Project.save_scene
+    for name in ("load_inputs", "load_scene", "texture", "textures"):
+        monkeypatch.setattr(Project, name, lambda project, *given, name=name: read.append(name))
+    monkeypatch.setattr(Project, "save_scene", lambda project, scene: (written.append(scene), save(project, scene))[1])
+    start_build(session, Inputs(plain_photo()), "Building", "build the scene")
+    until(lambda: session.scene is built.scene and session.jobs.status is None)
+    session.autosave.flush()
+    assert not read
+    assert [scene for scene in written if scene is built.scene] == [built.scene]
+    assert session.notes == ("a note",)
+    assert session.textures["grey"] is built.textures["grey"]
+    monkeypatch.undo()
+    assert session.project.load_scene() == built.scene
+    assert set(session.project.textures(built.scene)) == {"grey"}
+
+
+def test_boxes_that_a_person_draws_while_a_scene_is_built_stay(session: EditorSession, built: Built) -> None:
+    assert session.project is not None
+    said = Inputs(plain_photo(), (LabelledBox((1.0, 1.0, 9.0, 9.0), "chair", "chair"),))
+    made = NewScene(built.scene, built.textures, Inputs(plain_photo()), ())
+    before = session.inputs
+    session.annotate("draw a box", said)
+    show_built(session, session.project, made, label="build", said=before)
+    assert session.inputs is said
+    session.autosave.flush()
+    kept = session.project.load_inputs()
+    assert kept is not None
+    assert kept.boxes == said.boxes

@@ -72,7 +72,7 @@ def test_costs_leave_out_an_object_s_own_picture() -> None:
 
 def test_shares_say_which_terms_decided() -> None:
     seen = row_of_chairs()
-    said = {s.term: s.nats for s in solve(seen, WEIGHTS).shares if s.object_id == seen.objects[1].object_id}
+    said = {s.term: s.amount for s in solve(seen, WEIGHTS).shares if s.object_id == seen.objects[1].object_id}
     assert said["at_table"] > 0.5
     assert said["picture"] < 0.0
 

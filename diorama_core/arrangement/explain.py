@@ -1,0 +1,92 @@
+"""Why an object is where it is and what it is: the terms that decided, compared with one another."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+
+import numpy as np
+
+from diorama_core.artefacts import Decision, Reason
+from diorama_core.scene.types import Scene, SceneObject
+
+SIGMA_CM = 5.0
+"""Standard deviation of positions reasoned from a photo alone: what a move in centimetres is compared with."""
+MAX_NATS = 10.0
+"""No reason counts more: beyond it one is as certain as another."""
+MIN_MOVE_CM = 1.0
+"""Nobody sees a shorter move."""
+
+HEADINGS: Mapping[Decision, str] = {
+    "place": "Place",
+    "support": "Support",
+    "front": "Front",
+    "kind": "Kind",
+    "size": "Size",
+}
+"""What decisions are called where people read them."""
+
+
+def strength(reason: Reason) -> float:
+    """How much a reason counts beside others, in nats: a move as much as it is unlikely by chance."""
+    nats = 0.5 * (reason.amount / SIGMA_CM) ** 2 if reason.unit == "cm" else abs(reason.amount)
+    return min(nats, MAX_NATS)
+
+
+def strongest(reasons: Sequence[Reason], object_id: str, count: int = 2) -> tuple[Reason, ...]:
+    """The strongest reasons of one object, strongest first, each for another decision."""
+    own = sorted((r for r in reasons if r.object_id == object_id), key=lambda r: (-strength(r), r.decision, r.term))
+    first: dict[Decision, Reason] = {}
+    for reason in own:
+        first.setdefault(reason.decision, reason)
+    return tuple(first.values())[:count]
+
+
+def in_words(reason: Reason) -> str:
+    """A reason as people read it, with what it counts: `Kind: named “chair” by you (6.2)`."""
+    amount = f"{reason.amount:.0f} cm" if reason.unit == "cm" else f"{reason.amount:.1f}"
+    return f"{HEADINGS[reason.decision]}: {reason.sentence} ({amount})"
+
+
+def reasons_of_change(before: Scene, after: Scene, term: str, sentence: str) -> tuple[Reason, ...]:
+    """What a rule or a stage changed about the objects of a scene, by how far it moved them.
+
+    Args:
+        before: the scene without it.
+        after: the scene with it.
+        term: what changed it.
+        sentence: why, in plain words.
+    """
+    old = {item.id: item for item in before.objects}
+    found = []
+    for item in after.objects:
+        if item.id in old:
+            found += _changes(old[item.id], item, _parent(before, item.id), _parent(after, item.id))
+    return tuple(Reason(object_id, decision, term, cm, "cm", sentence) for object_id, decision, cm in found)
+
+
+def _changes(
+    before: SceneObject, after: SceneObject, parent: str | None, new_parent: str | None
+) -> list[tuple[str, Decision, float]]:
+    """What differs of one object: the id, the decision, and how far it moved."""
+    moved_cm = _cm(before, after, lambda item: item.pose.position)
+    changes: list[tuple[str, Decision, float]] = []
+    if parent != new_parent:
+        changes.append((after.id, "support", moved_cm))
+    elif moved_cm >= MIN_MOVE_CM:
+        changes.append((after.id, "place", moved_cm))
+    turned_cm = _cm(before, after, lambda item: 0.5 * item.size_m[0] * item.pose.R_world_object[:, 0])
+    if before.shape_id == after.shape_id and turned_cm >= MIN_MOVE_CM:
+        changes.append((after.id, "front", turned_cm))
+    grown_cm = _cm(before, after, lambda item: item.size_m)
+    if grown_cm >= MIN_MOVE_CM:
+        changes.append((after.id, "size", grown_cm))
+    return changes
+
+
+def _cm(before: SceneObject, after: SceneObject, of: Callable[[SceneObject], np.ndarray]) -> float:
+    return 100.0 * float(np.linalg.norm(np.asarray(of(after)) - np.asarray(of(before))))
+
+
+def _parent(scene: Scene, object_id: str) -> str | None:
+    edge = scene.support_of(object_id)
+    return None if edge is None else edge.parent
