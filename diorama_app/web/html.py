@@ -34,6 +34,7 @@ STYLE = """
 .dio p { margin: 0 0 6px 0; }
 .dio .dim { color: var(--dim); }
 .dio .bad { color: var(--bad); }
+.dio .why { margin: 0 0 8px 0; padding: 0; list-style: none; font-size: 12px; color: var(--dim); }
 .dio .card { background: var(--soft); border: 1px solid var(--card-line); border-radius: 8px; padding: 9px 11px; }
 .dio .warn { background: var(--warn); border-color: var(--warn-line); }
 .dio button, .dio select, .dio input { font: inherit; border: 1px solid var(--line); background: var(--face);
