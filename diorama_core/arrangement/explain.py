@@ -3,18 +3,35 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
 
 import numpy as np
 
 from diorama_core.artefacts import Decision, Reason
 from diorama_core.scene.types import Scene, SceneObject
 
-SIGMA_CM = 5.0
-"""Standard deviation of positions reasoned from a photo alone: what a move in centimetres is compared with."""
-MAX_NATS = 10.0
-"""No reason counts more: beyond it one is as certain as another."""
-MIN_MOVE_CM = 1.0
-"""Nobody sees a shorter move."""
+
+@dataclass(frozen=True)
+class ReasonScale:
+    """How reasons are measured; nothing of the scene depends on it."""
+
+    sigma_cm: float = 5.0
+    """Standard deviation of positions reasoned from a photo alone: what a move is compared with."""
+    max_nats: float = 10.0
+    """No reason counts more: beyond it one is as certain as another."""
+    least_nats: float = 0.05
+    """Terms of a place that count less are not told."""
+    least_move_cm: float = 1.0
+    """Nobody sees a shorter move."""
+    change: float = 0.1
+    """Places and sizes are explained by what it would cost to be a tenth farther or larger."""
+    rare: float = 1e-3
+    """Least probability or odds told apart from none, as where kinds are decided (`retrieval.seen_kinds`)."""
+    hung_nats: float = 2.3
+    """How much likelier a kind is held as it usually is: retrieval takes one in ten to be held otherwise."""
+
+
+SCALE = ReasonScale()
 
 HEADINGS: Mapping[Decision, str] = {
     "place": "Place",
@@ -28,8 +45,8 @@ HEADINGS: Mapping[Decision, str] = {
 
 def strength(reason: Reason) -> float:
     """How much a reason counts beside others, in nats: a move as much as it is unlikely by chance."""
-    nats = 0.5 * (reason.amount / SIGMA_CM) ** 2 if reason.unit == "cm" else abs(reason.amount)
-    return min(nats, MAX_NATS)
+    nats = 0.5 * (reason.amount / SCALE.sigma_cm) ** 2 if reason.unit == "cm" else abs(reason.amount)
+    return min(nats, SCALE.max_nats)
 
 
 def strongest(reasons: Sequence[Reason], object_id: str, count: int = 2) -> tuple[Reason, ...]:
@@ -72,13 +89,13 @@ def _changes(
     changes: list[tuple[str, Decision, float]] = []
     if parent != new_parent:
         changes.append((after.id, "support", moved_cm))
-    elif moved_cm >= MIN_MOVE_CM:
+    elif moved_cm >= SCALE.least_move_cm:
         changes.append((after.id, "place", moved_cm))
     turned_cm = _cm(before, after, lambda item: 0.5 * item.size_m[0] * item.pose.R_world_object[:, 0])
-    if before.shape_id == after.shape_id and turned_cm >= MIN_MOVE_CM:
+    if before.shape_id == after.shape_id and turned_cm >= SCALE.least_move_cm:
         changes.append((after.id, "front", turned_cm))
     grown_cm = _cm(before, after, lambda item: item.size_m)
-    if grown_cm >= MIN_MOVE_CM:
+    if grown_cm >= SCALE.least_move_cm:
         changes.append((after.id, "size", grown_cm))
     return changes
 

@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from diorama_core.arrangement.explain import MAX_NATS, reasons_of_change
+from diorama_core.arrangement.explain import SCALE, reasons_of_change
 from diorama_core.arrangement.noise import ObservationNoise
 from diorama_core.artefacts import DetectedObject, Inputs, ObjectGeometry, PosedCandidates, Reason, SceneGraph
 from diorama_core.library.hyponyms import is_named, meanings
@@ -15,11 +15,6 @@ from diorama_core.pipeline.provenance_text import graph_sentence
 from diorama_core.pipeline.steps import Corrected, LaidOut
 from diorama_core.retrieval.seen_kinds import as_it_looks
 from diorama_core.scene.types import Scene
-
-TENTH = 0.1
-"""Places are explained by what it would cost to be a tenth farther away."""
-RARE = 1e-3
-"""Least probability that is told apart from none, as where kinds are decided (`retrieval.seen_kinds`)."""
 
 
 def reasons_of_build(
@@ -71,12 +66,12 @@ def _of_kind(item: DetectedObject, kind: str, named_by: str) -> list[Reason]:
     seen = dict(item.looks_like)
     if seen:
         share = seen.get(kind, 0.0)
-        nats = float(np.log(max(share, RARE) * len(seen)))
+        nats = float(np.log(max(share, SCALE.rare) * len(seen)))
         looks = f"looks like a {kind}" if nats > 0 else f"hardly looks like a {kind}"
         reasons.append(_kind_reason(item, "picture", nats, f"it {looks} in the photo"))
     before, after = as_it_looks(by_word, item.looks_like, named), dict(item.meanings)
     if kind in after and before.get(kind, 0.0) > 0:
-        nats = float(np.log(max(after[kind], RARE) / max(before[kind], RARE)))
+        nats = float(np.log(max(after[kind], SCALE.rare) / max(before[kind], SCALE.rare)))
         fits = "fit" if nats > 0 else "speak against"
         reasons.append(_kind_reason(item, "box", nats, f"its place and size in the photo {fits} a {kind}"))
     return reasons
@@ -90,7 +85,7 @@ def _of_depth(inputs: Inputs, geometry: ObjectGeometry, noise: ObservationNoise)
     """Where distances were measured, that places them."""
     if inputs.depth_m is None:
         return []
-    nats = min(0.5 * (TENTH / noise.along) ** 2, MAX_NATS)
+    nats = min(0.5 * (SCALE.change / noise.along) ** 2, SCALE.max_nats)
     word = "depth was measured there"
     return [Reason(c.object_id, "place", "depth", nats, "nats", word) for c in geometry.cuboids]
 
@@ -105,7 +100,7 @@ def _of_supports(graph: SceneGraph | None, scene: Scene) -> list[Reason]:
     for edge, score in zip(graph.supports, graph.scores, strict=True):
         now = parents.get(edge.child)
         if now is not None and edge.parent in (now, roles.get(now)):
-            share = float(np.clip(score, RARE, 1.0 - RARE))
+            share = float(np.clip(score, SCALE.rare, 1.0 - SCALE.rare))
             nats = float(np.log(share / (1.0 - share)))
             reasons.append(Reason(edge.child, "support", "graph", nats, "nats", graph_sentence(graph)))
     return reasons

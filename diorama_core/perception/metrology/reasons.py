@@ -7,19 +7,12 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 from jaxtyping import Float
 
+from diorama_core.arrangement.explain import SCALE
 from diorama_core.artefacts import Decision, DetectedObject, Reason
 from diorama_core.perception.metrology.placement import CEILING, FLOOR, WALL, Placement
 from diorama_core.perception.metrology.problem import UNKNOWNS, View, stacked, values
 
-TENTH = 0.1
-"""The change whose cost is told: a tenth farther or nearer, larger or smaller."""
-MIN_NATS = 0.05
-"""Terms that cost less say nothing."""
-RARE = 1e-3
-"""Least odds that are told apart from none."""
 HUNG: Mapping[int, str] = {WALL: "hangs on walls", CEILING: "hangs from ceilings"}
-HUNG_NATS = 2.3
-"""How much likelier a kind is held as it usually is: retrieval takes one in ten to be held otherwise."""
 FORWARD, SIZE = slice(1, 2), slice(2, 5)
 """Of the unknowns: the logarithms of the distance and of the extents."""
 TERMS: Mapping[str, tuple[slice, str, str]] = {
@@ -50,13 +43,13 @@ def reasons_of(placements: Sequence[Placement], view: View, objects: Sequence[De
     changes: tuple[tuple[Decision, slice], ...] = (("place", FORWARD), ("size", SIZE))
     for column, (decision, changed) in enumerate(changes):
         step = np.zeros(UNKNOWNS)
-        step[changed] = TENTH
+        step[changed] = SCALE.change
         costs = 0.5 * (nats(found + step) + nats(found - step)) - here
         for placement, of_terms in zip(placements, costs, strict=True):
             object_id = objects[placement.index].id
             for term, (of_term, *sentences) in TERMS.items():
                 cost = float(of_terms[of_term].sum())
-                if abs(cost) >= MIN_NATS:
+                if abs(cost) >= SCALE.least_nats:
                     reasons.append(Reason(object_id, decision, term, cost, "nats", sentences[column]))
     return (*reasons, *(_of_support(p, objects) for p in placements))
 
@@ -65,9 +58,9 @@ def _of_support(placement: Placement, objects: Sequence[DetectedObject]) -> Reas
     """How sure it is that an object's foot is seen where it stands; or that its kind hangs where it does."""
     object_id, supporter = objects[placement.index].id, placement.supporter
     if supporter in HUNG:
-        return Reason(object_id, "support", "kind", HUNG_NATS, "nats", f"its kind {HUNG[supporter]}")
+        return Reason(object_id, "support", "kind", SCALE.hung_nats, "nats", f"its kind {HUNG[supporter]}")
     on = "the floor" if supporter == FLOOR else f"the {objects[supporter].label}"
-    odds = float(np.clip(placement.problem.hidden_odds[0, 3], RARE, 1.0 / RARE))
+    odds = float(np.clip(placement.problem.hidden_odds[0, 3], SCALE.rare, 1.0 / SCALE.rare))
     seen = "is seen" if odds < 1.0 else "is hidden, and taken to be"
     return Reason(object_id, "support", "foot", -float(np.log(odds)), "nats", f"its foot {seen} on {on}")
 
