@@ -26,6 +26,9 @@ LEAST_OFTEN, MOST_OFTEN = -2.5, 2.7
 """Bounds of the logarithm of how often a kind lies on another: the counts are rough."""
 
 
+_USUALLY = {"floor": "the floor", "surface": "furniture", "wall": "a wall", "ceiling": "the ceiling"}
+
+
 @dataclass(frozen=True)
 class SupportTerm:
     """One reason for or against a supporter."""
@@ -77,12 +80,26 @@ TERMS: tuple[SupportTerm, ...] = (
     SupportTerm("averted", "the wall faces the camera", lambda h: float(h.averted)),
     SupportTerm("company", "a {kind} is often on a {carrier}", company),
     SupportTerm("carries nothing", "people put things on a {carrier}", carries_nothing),
-    SupportTerm("hard on seat", "only soft things lie on a {carrier}", hard_on_seat),
+    SupportTerm("hard on seat", "a {carrier} is no seat", hard_on_seat),
     SupportTerm("portable", "a {kind} is small enough to stand on furniture", portable),
     SupportTerm("seen below", "it is seen just below", lambda h: h.below),
     SupportTerm("foot in box", "its lower end is within its outline", lambda h: float(h.foot_in_box)),
 )
 """Every term but the usual places of kinds (`place_name`), which have one weight a place."""
+
+
+USUAL_PLACE = "usual place"
+"""Name of what `place_name` says."""
+
+
+def sentence_of(term: str, h: SupportHypothesis) -> str:
+    """What a term says for a supporter, in plain words; empty where it is about carriers and this is none."""
+    if term == USUAL_PLACE:
+        return f"a {h.kind.name} is usually on {_USUALLY[h.kind.mount]}"
+    sentence = next(t.sentence for t in TERMS if t.name == term)
+    if h.carrier is None and "{carrier}" in sentence:
+        return ""
+    return sentence.format(kind=h.kind.name, carrier="" if h.carrier is None else h.carrier.name)
 
 
 def place_name(h: SupportHypothesis) -> str:
@@ -100,9 +117,9 @@ class SupportWeights:
     """Of standing against a wall (`standing.STANDING_TERMS`), with measured distances and with reasoned ones."""
 
     def shares(self, h: SupportHypothesis) -> dict[str, float]:
-        """What each term says against a supporter, nats; "usual place" is that of its kind."""
+        """What each term says against a supporter, nats."""
         found = {term.name: self.terms.get(term.name, 0.0) * term.value(h) for term in TERMS}
-        return {"usual place": self.places.get(place_name(h), 0.0), **found}
+        return {USUAL_PLACE: self.places.get(place_name(h), 0.0), **found}
 
     def cost(self, h: SupportHypothesis) -> float:
         """Everything that speaks against a supporter, nats."""

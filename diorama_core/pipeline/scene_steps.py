@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -13,12 +13,13 @@ from diorama_core.architecture.room_extent import containing_room, without_floor
 from diorama_core.architecture.texture.empty_room import EmptyRoomFiller
 from diorama_core.architecture.texture.plane_textures import plane_textures
 from diorama_core.architecture.texture.refit import refitted_textures
-from diorama_core.arrangement.explain import reasons_of_change
+from diorama_core.arrangement.explain import SCALE, reasons_of_change
 from diorama_core.arrangement.lower_rims import seen_below
 from diorama_core.arrangement.noise import MEASURED, REASONED, ObservationNoise
 from diorama_core.arrangement.support_hypotheses import SupportEvidence
-from diorama_core.arrangement.supports import DecidedSupports, with_decided_supports
-from diorama_core.artefacts import ArchitectureEstimate, DetectedObject, Inputs, ObjectGeometry, PosedCandidates
+from diorama_core.arrangement.support_terms import sentence_of
+from diorama_core.arrangement.supports import DecidedSupports, SupportChoice, with_decided_supports
+from diorama_core.artefacts import ArchitectureEstimate, DetectedObject, Inputs, ObjectGeometry, PosedCandidates, Reason
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.perception.illuminant import Illuminant
 from diorama_core.pipeline.colours import photo_colours, room_illuminant, shared_by_sets
@@ -91,7 +92,16 @@ def decided_supports(
 def supported(posed: Scene, supports: DecidedSupports) -> Corrected:
     """The scene with its supports decided, and what that changed."""
     changes = reasons_of_change(posed, supports.scene, "supports", "what holds it agrees with where it was seen")
-    return Corrected(supports.scene, supports.notes, changes)
+    terms = (reason for name, choice in supports.choices.items() for reason in _of_support(name, choice))
+    return Corrected(supports.scene, supports.notes, (*changes, *terms))
+
+
+def _of_support(object_id: str, choice: SupportChoice) -> Iterator[Reason]:
+    """What speaks for the chosen supporter rather than for the next likeliest, term by term."""
+    for term, nats in choice.shares.items():
+        sentence = sentence_of(term, choice.hypothesis)
+        if sentence and nats >= SCALE.least_nats:
+            yield Reason(object_id, "support", term, nats, "nats", sentence)
 
 
 def in_containing_room(scene: Scene, library: ShapeLibrary, noise: ObservationNoise, geometry: ObjectGeometry) -> Scene:

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 from diorama_core.arrangement.noise import MEASURED, REASONED
 from diorama_core.arrangement.support_hypotheses import SupportEvidence, SupportHypothesis, support_hypotheses
-from diorama_core.arrangement.support_terms import TERMS, SupportWeights, fitted_weights
+from diorama_core.arrangement.support_terms import TERMS, SupportWeights, fitted_weights, sentence_of
 from diorama_core.arrangement.supports import chosen_supports, with_decided_supports
 from diorama_core.library.taxonomy import category
 from diorama_core.scene.types import Scene, Support
@@ -134,3 +134,10 @@ def test_without_weights_of_a_term_it_says_nothing(room: Room) -> None:
     nothing = SupportWeights({}, {}, {})
     assert all(nothing.cost(h) == 0.0 for of_one in hypotheses.values() for h in of_one)
     assert set(chosen_supports(hypotheses, nothing)) == set(hypotheses)
+
+
+def test_terms_are_told_in_plain_words() -> None:
+    held = SupportHypothesis(Support("cup", "table"), "object", category("cup"), category("table"))
+    assert sentence_of("company", held) == "a cup is often on a table"
+    assert sentence_of("usual place", held) == "a cup is usually on furniture"
+    assert sentence_of("company", SupportHypothesis(Support("cup", "floor"), "floor", category("cup"))) == ""
