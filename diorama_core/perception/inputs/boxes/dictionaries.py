@@ -39,7 +39,7 @@ _WORDS = (
     "object", "text", "caption", "phrase", "title", "rectanglelabels", "polygonlabels", "labels",
 )  # fmt: skip
 _SHAPES = frozenset({"rectangle", "rect", "bbox", "box", "polygon", "rectanglelabels", "bounding_box", "bounding box"})
-"""What tools say of the drawn figure, not of what is in it."""
+"""What tools say of the drawn figure under `type`, not of what is in it: elsewhere a box is a box."""
 _SCORES = ("score", "confidence", "conf", "probability", "prob", "predictediou", "certainty")
 
 
@@ -90,7 +90,8 @@ def word_of(entry: Mapping[str, Any], names: Mapping[int, str] | None = None) ->
     """
     keys = keys_of(entry)
     for key in _WORDS:
-        if (word := _word(keys.get(key))) is not None:
+        word = _word(keys.get(key))
+        if word is not None and not (key == "type" and word.strip().lower() in _SHAPES):
             return word
     for key in ("regionattributes", "attributes", "value"):
         inner = keys.get(key)
@@ -147,7 +148,7 @@ def numbers(values: Sequence[Any], where: str) -> Corners:
 def _word(value: Any) -> str | None:
     if isinstance(value, list) and len(value) == 1:
         value = value[0]
-    if not isinstance(value, str) or not value.strip() or value.strip().lower() in _SHAPES:
+    if not isinstance(value, str) or not value.strip():
         return None
     return value[:MAX_WORD]
 

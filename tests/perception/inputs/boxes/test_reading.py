@@ -8,6 +8,7 @@ from hypothesis import strategies as st
 
 from diorama_core.errors import InputError
 from diorama_core.perception.inputs import read_inputs
+from diorama_core.perception.inputs.boxes.dictionaries import word_of
 from diorama_core.perception.inputs.boxes.reading import read_boxes, understood
 from diorama_core.perception.inputs.source import Source
 from tests.perception.inputs.files import HEIGHT, WIDTH, box, boxes_json, decoded, encoded, picture, refusal
@@ -123,3 +124,11 @@ class TestBoxes:
         x1, y1, x2, y2 = boxes[0].box
         assert 0 <= x1 < x2 <= WIDTH
         assert 0 <= y1 < y2 <= HEIGHT
+
+
+@pytest.mark.parametrize(
+    ("entry", "word"),
+    [({"class": "box"}, "box"), ({"label": "Box", "type": "rectangle"}, "Box"), ({"type": "box"}, "object")],
+)
+def test_a_box_is_a_box_but_not_as_the_type_of_a_figure(entry: dict[str, str], word: str) -> None:
+    assert word_of(entry) == word
