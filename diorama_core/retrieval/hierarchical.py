@@ -32,29 +32,14 @@ from diorama_core.retrieval.neighbours import with_neighbours
 from diorama_core.retrieval.outlines import outline_agreement, whole_outline
 from diorama_core.retrieval.pools import NAMED_POOL, Pool, RetrievalQuery, pool_for, size_cost
 from diorama_core.retrieval.seen_forms import seen_form_factor, shape_form
+from diorama_core.retrieval.settings import SETTINGS, RankingSettings, RetrievalSettings
 from diorama_core.retrieval.usual_forms import usual_form_factor
 from diorama_core.retrieval.word_senses import sense_probabilities
 from diorama_core.retrieval.words import words_factor
 from diorama_core.scene.types import Support, yaw_rotation
 
-_SIMILAR_LOG_SIZE = 0.45
-_SIMILAR_LOG_SIZE_OF_SEATS = 0.8
-"""Seats in one room are usually of a set, so that different sizes are rather errors of measurement."""
 _SEATS = having("single_seat")
-_UNNAMED_OUTLINE, _UNNAMED_SIZE = 3.0, 0.5
-"""Increased weight of the outline, and reduced weight of the guessed size, of an object without a name."""
-_OWN_EVIDENCE = 0.4
-_MIN_SIMILARITY = 0.25
-_GUESSED_SIZE = 0.5
-"""Reduced weight of a size that was not observed but taken from the category's prior."""
-_MIN_VOICE = 0.1
 _MOUNTS: Mapping[str, tuple[Mount, ...]] = {"wall": ("wall",), "ceiling": ("ceiling",)}
-_OTHER_MOUNT, _OTHER_MOUNT_OF_UNNAMED = 0.1, 0.5
-"""How likely a thing is of a kind that is held otherwise than it is; what holds one without a name is guessed too."""
-_KINDS, _KINDS_OF_UNNAMED = 3, 7
-"""How many kinds are among the candidates of a thing with and without a name, where it may be of so many."""
-_OF_SEE_THROUGH, _ROUGHLY = 2.0, 0.1
-"""Power of the agreement with where one looks past an object, and what a shape that is not yet in place may be off."""
 
 
 @dataclass(frozen=True)
@@ -79,9 +64,11 @@ class HierarchicalRetrieval:
     """Of an object that is seen whole; less, down to a quarter, for cut, hidden and badly outlined ones."""
     similarity: AppearanceSimilarity | None = None
     """Compares looks; by colours, outline and edges where None."""
+    settings: RetrievalSettings = SETTINGS
 
     def __repr__(self) -> str:
-        numbers = (self.keep, self.cells, self.size_weight, self.silhouette_weight, self.similarity_weight)
+        weights = (self.size_weight, self.silhouette_weight, self.similarity_weight)
+        numbers = (self.keep, self.cells, *weights, self.settings)
         appearances = (
             EMBEDDED_FEATURES if self.similarity is None else repr(self.similarity)
         )  # other features, other results
@@ -95,8 +82,10 @@ class HierarchicalRetrieval:
         measured = [o for o in objects if o.id in cuboids]
         sizes = [cuboids[o.id].size_m for o in measured]
         named = [is_named(o.label) for o in measured]
-        groups = _groups([o.category if n else UNKNOWN.name for o, n in zip(measured, named, strict=True)], sizes)
-        senses = _senses(measured, [cuboids[o.id] for o in measured], geometry)
+        ranking = self.settings.ranking
+        kinds = [o.category if n else UNKNOWN.name for o, n in zip(measured, named, strict=True)]
+        groups = _groups(kinds, sizes, ranking)
+        senses = _senses(measured, [cuboids[o.id] for o in measured], geometry, self.settings)
         pools = self._pools(measured, sizes, groups, geometry.supports, senses)
         centres = np.array([cuboids[o.id].centre for o in measured]).reshape(-1, 3)
         parents = _parent_indices(measured, geometry.supports)
@@ -125,12 +114,10 @@ class HierarchicalRetrieval:
                     for m, like, factor in zip(members, alike, factors, strict=True)
                 }
             )
-        means = _means(groups, scores, sight)
+        means = _means(groups, scores, sight, ranking)
         kind_of = {m.shape.id: m.shape.category for pool in pools for m in pool.members}
         return tuple(
-            RankedShapes(
-                item.id, _best(own, mean, self.keep, kind_of, _KINDS if n else _KINDS_OF_UNNAMED), pools[group].note
-            )
+            RankedShapes(item.id, _best(own, mean, self.keep, kind_of, ranking, named=n), pools[group].note)
             for item, own, mean, group, n in zip(measured, scores, means, groups, named, strict=True)
         )
 
@@ -147,7 +134,7 @@ class HierarchicalRetrieval:
                     similarity.prepare(shape)
                 appearance = self._appearance(shape)
                 shape_form(self.library, shape, appearance)
-                usual_form_factor(self.library, shape, appearance)
+                usual_form_factor(self.library, shape, appearance, self.settings.forms)
                 _ = appearance.caster
 
     def _pools(
@@ -173,7 +160,7 @@ class HierarchicalRetrieval:
                 senses=_mean_senses([senses[i] for i in members]),
                 named=is_named(first.label),
             )
-            pools.append(pool_for(self.library, query))
+            pools.append(pool_for(self.library, query, self.settings.pools))
         return pools
 
     def _score(self, shape: Shape, item: _Observation, like: float) -> float:
@@ -189,7 +176,8 @@ class HierarchicalRetrieval:
         if item.see_through is None:
             return score
         open_alike = float(item.see_through.agreement(silhouettes).max())
-        return score * (open_alike + _ROUGHLY) ** (_OF_SEE_THROUGH * item.see_through.share)
+        ranking = self.settings.ranking
+        return score * (open_alike + ranking.roughly) ** (ranking.of_see_through * item.see_through.share)
 
     def _appearance(self, shape: Shape) -> ShapeAppearance:
         folder = default_cache_dir() / "appearances"
@@ -204,14 +192,17 @@ class HierarchicalRetrieval:
         seen = seen_form_factor(shape_form(self.library, shape, appearance), item.seen_form) if item.seen_form else 1.0
         if described or item.mask_confidence >= 1.0:
             return seen
-        return seen * usual_form_factor(self.library, shape, appearance)
+        return seen * usual_form_factor(self.library, shape, appearance, self.settings.forms)
 
     def _weights(self, item: _Observation) -> tuple[float, float, float]:
         """Weights of size, outline and appearance for an object with this visibility."""
+        by = self.settings.ranking
+        sized = 1 - by.guessed_size * (1 - item.visible)
+        outlined = 0.25 + 0.75 * item.seen.mask_trust
         return (
-            self.size_weight * (1 - _GUESSED_SIZE * (1 - item.visible)) * (1.0 if item.named else _UNNAMED_SIZE),
-            self.silhouette_weight * (0.25 + 0.75 * item.seen.mask_trust) * (1.0 if item.named else _UNNAMED_OUTLINE),
-            self.similarity_weight * (_MIN_SIMILARITY + (1 - _MIN_SIMILARITY) * item.visible),
+            self.size_weight * sized * (1.0 if item.named else by.unnamed_size),
+            self.silhouette_weight * outlined * (1.0 if item.named else by.unnamed_outline),
+            self.similarity_weight * (by.min_similarity + (1 - by.min_similarity) * item.visible),
         )
 
 
@@ -231,7 +222,10 @@ class _Observation:
 
 
 def _senses(
-    objects: Sequence[DetectedObject], cuboids: Sequence[Cuboid], geometry: ObjectGeometry
+    objects: Sequence[DetectedObject],
+    cuboids: Sequence[Cuboid],
+    geometry: ObjectGeometry,
+    settings: RetrievalSettings = SETTINGS,
 ) -> list[Mapping[str, float]]:
     """For every object how likely its word means each kind, by its box, its height, its size and its neighbours.
 
@@ -244,8 +238,8 @@ def _senses(
     for item, cuboid, senses in zip(objects, cuboids, by_box, strict=True):
         named = is_named(item.label)
         mounts = _mounts_at(parent_of.get(item.id), named=named)
-        other = _OTHER_MOUNT if named else _OTHER_MOUNT_OF_UNNAMED
-        sized = as_measured(senses, cuboid.size_m) if named else senses
+        other = settings.ranking.other_mount if named else settings.ranking.other_mount_of_unnamed
+        sized = as_measured(senses, cuboid.size_m, settings.sizes) if named else senses
         found.append({kind: p * (1.0 if category(kind).mount in mounts else other) for kind, p in sized.items()})
     return with_neighbours(found, objects, cuboids, geometry.supports)
 
@@ -291,12 +285,12 @@ def _parent_indices(objects: Sequence[DetectedObject], supports: Sequence[Suppor
     return [parent_of.get(o.id) for o in objects]
 
 
-def _groups(categories: Sequence[str], sizes_m: Sequence[np.ndarray]) -> list[int]:
+def _groups(categories: Sequence[str], sizes_m: Sequence[np.ndarray], settings: RankingSettings) -> list[int]:
     """A group number for every object: those of one named category and similar size are of a kind."""
     leaders: list[int] = []
     groups = []
     for i, name in enumerate(categories):
-        limit = _SIMILAR_LOG_SIZE_OF_SEATS if name in _SEATS else _SIMILAR_LOG_SIZE
+        limit = settings.similar_log_size_of_seats if name in _SEATS else settings.similar_log_size
         same = [
             group
             for group, leader in enumerate(leaders)
@@ -310,12 +304,12 @@ def _groups(categories: Sequence[str], sizes_m: Sequence[np.ndarray]) -> list[in
 
 
 def _means(
-    groups: Sequence[int], scores: Sequence[dict[str, float]], visible: Sequence[float]
+    groups: Sequence[int], scores: Sequence[dict[str, float]], visible: Sequence[float], settings: RankingSettings
 ) -> list[dict[str, float]]:
     """For each object the mean scores of its group, in which those that are seen best say most."""
     means = []
     for group, own in zip(groups, scores, strict=True):
-        alike = [(v + _MIN_VOICE, s) for g, s, v in zip(groups, scores, visible, strict=True) if g == group]
+        alike = [(v + settings.min_voice, s) for g, s, v in zip(groups, scores, visible, strict=True) if g == group]
         voices = fsum(voice for voice, _ in alike)  # exact sums: the order of the objects must not show in a bit
         means.append({key: fsum(voice * s[key] for voice, s in alike) / voices for key in own})
     return means
@@ -328,7 +322,13 @@ def _log_difference(a_m: np.ndarray, b_m: np.ndarray) -> float:
 
 
 def _best(
-    own: dict[str, float], of_group: dict[str, float], keep: int, kind_of: Mapping[str, str], kinds: int
+    own: dict[str, float],
+    of_group: dict[str, float],
+    keep: int,
+    kind_of: Mapping[str, str],
+    settings: RankingSettings,
+    *,
+    named: bool,
 ) -> tuple[tuple[str, float], ...]:
     """The best shapes by own and group's scores; most of them the group's, so that things of a kind can agree.
 
@@ -339,9 +339,11 @@ def _best(
         of_group: mean scores of its group.
         keep: how many shapes are kept.
         kind_of: categories by shape id.
-        kinds: how many kinds are represented, where there are so many.
+        settings: among others how many kinds are represented, where there are so many.
+        named: whether a word says what the object is.
     """
-    mixed = {key: _OWN_EVIDENCE * own[key] + (1 - _OWN_EVIDENCE) * of_group[key] for key in own}
+    share, kinds = settings.own_evidence, settings.kinds if named else settings.kinds_of_unnamed
+    mixed = {key: share * own[key] + (1 - share) * of_group[key] for key in own}
     shared = _in_order(of_group)[: 3 * keep // 4]
     retained = [*shared, *(key for key in _in_order(mixed) if key not in shared)][:keep]
     of_kinds = {kind_of[key]: key for key in reversed(_in_order(mixed))}

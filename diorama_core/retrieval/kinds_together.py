@@ -22,17 +22,28 @@ from diorama_core.scene.values import ArrayValue
 
 Box = tuple[float, float, float, float]
 
-_LIES_ON_IT = 0.4
-"""How likely a thing with its foot in a larger box lies on what is there, and does not stand before or behind it."""
-_NO_CARRIER = 0.25
-"""How often boxes are found in one of a kind that carries nothing, relative to one that does."""
-_AT_HOME = 2.5
-"""How many times more often a kind is met in the rooms that it belongs to."""
-_ROOM_TRUST = 0.5
-"""Power of what a photo says about its room: things of a room do not come independently."""
-_LARGER = 1.05
-_FOOT_SLACK, _LOWEST_FOOT = 0.1, 0.03
-"""How far a foot may be above a carrier's box, in the thing's heights, and must be above its lower edge, in its own."""
+
+@dataclass(frozen=True)
+class KindsTogetherSettings:
+    """Numbers of `kinds_together`."""
+
+    lies_on_it: float = 0.4
+    """How likely a thing with its foot in a larger box lies on what is there, and does not stand before or behind
+    it."""
+    no_carrier: float = 0.25
+    """How often boxes are found in one of a kind that carries nothing, relative to one that does."""
+    at_home: float = 2.5
+    """How many times more often a kind is met in the rooms that it belongs to."""
+    room_trust: float = 0.5
+    """Power of what a photo says about its room: things of a room do not come independently."""
+    larger: float = 1.05
+    foot_slack: float = 0.1
+    lowest_foot: float = 0.03
+    """How far a foot may be above a carrier's box, in the thing's heights, and must be above its lower edge, in its
+    own."""
+
+
+SETTINGS = KindsTogetherSettings()
 
 
 @dataclass(frozen=True, eq=False)
@@ -51,16 +62,16 @@ def carries(kind: str) -> bool:
     return bool(_carriers()[_index()[kind]])
 
 
-def carriers(boxes: Sequence[Box]) -> list[int | None]:
+def carriers(boxes: Sequence[Box], settings: KindsTogetherSettings = SETTINGS) -> list[int | None]:
     """For every box the smallest larger one that its foot is in, as an index; None where there is none."""
     rows = np.asarray(boxes, dtype=np.float64).reshape(-1, 4)
     left, top, right, bottom = rows.T
     area, height, middle = (right - left) * (bottom - top), bottom - top, (left + right) / 2
     across = (left[None] <= middle[:, None]) & (middle[:, None] <= right[None])
-    above = (top[None] - _FOOT_SLACK * height[:, None] <= bottom[:, None]) & (
-        bottom[:, None] <= (bottom - _LOWEST_FOOT * height)[None]
+    above = (top[None] - settings.foot_slack * height[:, None] <= bottom[:, None]) & (
+        bottom[:, None] <= (bottom - settings.lowest_foot * height)[None]
     )
-    possible = across & above & (area[None] > _LARGER * area[:, None])
+    possible = across & above & (area[None] > settings.larger * area[:, None])
     best = np.where(possible, area[None], np.inf)
     return [int(row.argmin()) if np.isfinite(row).any() else None for row in best]
 
@@ -69,6 +80,7 @@ def kinds_together(
     alone: Sequence[Mapping[str, float]],
     carrier_of: Sequence[int | None],
     lying: Sequence[Lying | None] | None = None,
+    settings: KindsTogetherSettings = SETTINGS,
 ) -> list[Mapping[str, float]]:
     """For every thing how likely it is of each kind, given all others.
 
@@ -76,6 +88,7 @@ def kinds_together(
         alone: how likely it is of each kind by itself; kinds that are not there are impossible.
         carrier_of: for every thing the one that its foot is in; no thing carries itself, not even through others.
         lying: for every thing what its box says for its lying there; nothing by default.
+        settings: numbers to work with.
     """
     if not alone:
         return []
@@ -84,23 +97,23 @@ def kinds_together(
     for row, of_one in zip(own, alone, strict=True):
         for kind, share in of_one.items():
             row[index[kind]] = share
-    edges = [_edge(of_one) for of_one in lying or [None] * len(alone)]
-    explained = [_in_room(own * usual, carrier_of, edges) for usual in _rooms()]
-    says = _ROOM_TRUST * np.array([log for _, log in explained])
+    edges = [_edge(of_one, settings) for of_one in lying or [None] * len(alone)]
+    explained = [_in_room(own * usual, carrier_of, edges) for usual in _rooms(settings)]
+    says = settings.room_trust * np.array([log for _, log in explained])
     weight = np.exp(says - says.max())
     mixed = np.einsum("t,tnk->nk", weight / weight.sum(), np.stack([beliefs for beliefs, _ in explained]))
     return [{kind: float(row[index[kind]]) for kind in of_one} for row, of_one in zip(mixed, alone, strict=True)]
 
 
-def _edge(lying: Lying | None) -> Float[np.ndarray, "k k"]:
+def _edge(lying: Lying | None, settings: KindsTogetherSettings = SETTINGS) -> Float[np.ndarray, "k k"]:
     """How well every kind of a thing (row) goes with every kind of its carrier (column)."""
-    there = _together()
+    there = _together(settings)
     if lying is not None:
         index = _index()
         rows, columns = ([index[kind] for kind in kinds] for kinds in (lying.kinds, lying.carrier_kinds))
         there = there.copy()
         there[np.ix_(rows, columns)] *= lying.ratio
-    return (1.0 - _LIES_ON_IT) + _LIES_ON_IT * there
+    return (1.0 - settings.lies_on_it) + settings.lies_on_it * there
 
 
 def _in_room(
@@ -158,7 +171,7 @@ def _frequency() -> Float[np.ndarray, "k"]:
 
 
 @cache
-def _together() -> Float[np.ndarray, "k k"]:
+def _together(settings: KindsTogetherSettings = SETTINGS) -> Float[np.ndarray, "k k"]:
     """How many times more often a thing of each kind (row) lies on one of each kind (column) than it is met at all."""
     names, index = _names(), _index()
     lies = np.array([category(name).mount == "surface" for name in names])
@@ -167,7 +180,7 @@ def _together() -> Float[np.ndarray, "k k"]:
         loads = {kind: often[like] for kind, often in column("lies_on").items() if like in often}
         ratio[:, index[carrier]] = np.where(lies, SELDOM_CARRIED, HARDLY_CARRIED)
         ratio[[index[kind] for kind in loads], index[carrier]] = list(loads.values())
-    return np.where(_carriers(), 1.0, _NO_CARRIER) * ratio / (_frequency() @ ratio)
+    return np.where(_carriers(), 1.0, settings.no_carrier) * ratio / (_frequency() @ ratio)
 
 
 @cache
@@ -177,10 +190,10 @@ def _carriers() -> Bool[np.ndarray, "k"]:
 
 
 @cache
-def _rooms() -> tuple[Float[np.ndarray, "k"], ...]:
+def _rooms(settings: KindsTogetherSettings = SETTINGS) -> tuple[Float[np.ndarray, "k"], ...]:
     """For every type of room how many times more often each kind is met there."""
     found = []
     for kinds in ROOMS.values():
-        ratio = np.array([_AT_HOME if name in kinds else 1.0 for name in _names()])
+        ratio = np.array([settings.at_home if name in kinds else 1.0 for name in _names()])
         found.append(ratio / float(_frequency() @ ratio))
     return tuple(found)

@@ -8,6 +8,7 @@ are rough counts in homes and offices.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from dataclasses import dataclass
 
 import cv2
 import numpy as np
@@ -37,36 +38,56 @@ _FLAT = {"rectangular": 0.93, "other": 0.07}
 """Of what hangs flat on walls or stands in frames: round, oval and free outlines, several in a row, panes."""
 _MIRRORS = with_kin("mirror")
 _FLAT_KINDS = having("framed")
-_MIN_PANE = 0.02
-"""Share of the outline that a pane of a mirror has at least."""
 _PLANTS = {"leafy": 0.9, "other": 0.1}
 _OTHER_PLANTS = frozenset(
     {"cactus", "bonsai", "succulents", "christmas", "fir", "bell", "plumes", "grasses", "blossom"}
 )
 """Words of captions: their filled outlines fit many a plant whose leaves a mask runs together."""
-_CLOSED = 0.72
-"""Share of the outline from the side that is filled, from which on a seat's sides are closed."""
-_BELOW_SEAT, _FOOT, _CROSSING = 0.33, 0.08, 0.5
-"""Shares of a chair's height up to which legs are looked at, of a foot, and of its depth that crossing legs have."""
-_DRAWN_PX = 128
-_LEG_POINTS = 6000
-_RARE = 0.02
-_SAYS = 0.08
-"""Power of the share that multiplies a retrieval score: scores of shapes that fit well and badly differ little."""
 
 OUTLINE_FEATURES, SIDE_FEATURES, LEGS_FEATURES = "outline-2", "side-1", "legs-1"
 """Cache keys; to be changed with what is measured under them."""
 
 
-def usual_form_factor(library: ShapeLibrary, shape: Shape, appearance: ShapeAppearance) -> float:
+@dataclass(frozen=True)
+class UsualFormSettings:
+    """Numbers of `usual_forms`."""
+
+    min_pane: float = 0.02
+    """Share of the outline that a pane of a mirror has at least."""
+    closed: float = 0.72
+    """Share of the outline from the side that is filled, from which on a seat's sides are closed."""
+    below_seat: float = 0.33
+    foot: float = 0.08
+    crossing: float = 0.5
+    """Shares of a chair's height up to which legs are looked at, of a foot, and of its depth that crossing legs
+    have."""
+    drawn_px: int = 128
+    leg_points: int = 6000
+    rare: float = 0.02
+    says: float = 0.08
+    """Power of the share that multiplies a retrieval score: scores of shapes that fit well and badly differ little."""
+
+
+SETTINGS = UsualFormSettings()
+
+
+def usual_form_factor(
+    library: ShapeLibrary, shape: Shape, appearance: ShapeAppearance, settings: UsualFormSettings = SETTINGS
+) -> float:
     """What a shape's score is multiplied by: 1 for the usual base, top or outline of its kind, less for rare ones.
 
     What has to be drawn for it is kept on disk.
+
+    Args:
+        library: where the shape is.
+        shape: whose form is judged.
+        appearance: its triangles.
+        settings: numbers to work with.
     """
     if shape.category in _FLAT_KINDS:
-        return float((_FLAT[_outline(shape, appearance)] / max(_FLAT.values())) ** _SAYS)
+        return float((_FLAT[_outline(shape, appearance, settings)] / max(_FLAT.values())) ** settings.says)
     if shape.category == "plant":
-        return float((_PLANTS[_plant(shape)] / max(_PLANTS.values())) ** _SAYS)
+        return float((_PLANTS[_plant(shape)] / max(_PLANTS.values())) ** settings.says)
     row = category(shape.category)
     bases = None if row.base is None else _BASES[row.base]
     tops = _TOPS if shape.category in _TABLES else None
@@ -74,54 +95,68 @@ def usual_form_factor(library: ShapeLibrary, shape: Shape, appearance: ShapeAppe
     sides = None if closed is None else {"closed": closed, "open": 1.0 - closed}
     if bases is None and tops is None and sides is None:
         return 1.0
-    of_form = zip((bases, tops, sides), (*_form(library, shape, appearance), _side(shape, appearance)), strict=True)
-    usual = [shares.get(form, _RARE) / max(shares.values()) for shares, form in of_form if shares is not None]
-    return float(np.prod(usual) ** _SAYS)
+    of_form = zip(
+        (bases, tops, sides),
+        (*_form(library, shape, appearance, settings), _side(shape, appearance, settings)),
+        strict=True,
+    )
+    usual = [shares.get(form, settings.rare) / max(shares.values()) for shares, form in of_form if shares is not None]
+    return float(np.prod(usual) ** settings.says)
 
 
 def _plant(shape: Shape) -> str:
     return "other" if _OTHER_PLANTS & set(shape.caption.lower().split()) else "leafy"
 
 
-def _form(library: ShapeLibrary, shape: Shape, appearance: ShapeAppearance) -> tuple[str, str]:
+def _form(
+    library: ShapeLibrary, shape: Shape, appearance: ShapeAppearance, settings: UsualFormSettings = SETTINGS
+) -> tuple[str, str]:
     """Base and top."""
     form = shape_form(library, shape, appearance)
     base = str(form.get("base", "none"))
-    if base == "four legs" and shape.category == "chair" and _kept(LEGS_FEATURES, shape, lambda: _cross(appearance)):
+    if (
+        base == "four legs"
+        and shape.category == "chair"
+        and _kept(LEGS_FEATURES, shape, lambda: _cross(appearance, settings))
+    ):
         base = _CROSSED_LEGS
     return base, str(form.get("top", "none"))
 
 
-def _cross(appearance: ShapeAppearance) -> bool:
+def _cross(appearance: ShapeAppearance, settings: UsualFormSettings = SETTINGS) -> bool:
     """Whether front and back legs meet below the seat, as those of folding chairs do."""
-    points = appearance.spread_points(_LEG_POINTS)
+    points = appearance.spread_points(settings.leg_points)
     height = (points[:, 2] - points[:, 2].min()) / max(float(np.ptp(points[:, 2])), 1e-9)
-    levels = np.arange(0.0, _BELOW_SEAT, _FOOT / 2)
+    levels = np.arange(0.0, settings.below_seat, settings.foot / 2)
     depths = [
-        np.ptp(np.quantile(at, [0.05, 0.95])) for z in levels if len(at := points[abs(height - z) < _FOOT / 2, 0])
+        np.ptp(np.quantile(at, [0.05, 0.95]))
+        for z in levels
+        if len(at := points[abs(height - z) < settings.foot / 2, 0])
     ]
-    return bool(min(depths[1:], default=np.inf) < _CROSSING * depths[0])
+    return bool(min(depths[1:], default=np.inf) < settings.crossing * depths[0])
 
 
-def _outline(shape: Shape, appearance: ShapeAppearance) -> str:
+def _outline(shape: Shape, appearance: ShapeAppearance, settings: UsualFormSettings = SETTINGS) -> str:
     """From the front: whether it is one piece, and one pane, that fills the rectangle around it."""
 
     def is_rectangular() -> bool:
         outline = cv2.convexHull(np.ascontiguousarray(appearance.vertices[:, 1:], np.float32))
         around = max(float(np.prod(np.ptp(outline[:, 0], axis=0))), 1e-9)
-        whole = _pieces(appearance) == 1 and (shape.category not in _MIRRORS or _panes(appearance) <= 1)
+        whole = _pieces(appearance, settings) == 1 and (
+            shape.category not in _MIRRORS or _panes(appearance, settings) <= 1
+        )
         return whole and cv2.contourArea(outline) >= FULL_RECTANGLE * around
 
     return "rectangular" if _kept(OUTLINE_FEATURES, shape, is_rectangular) else "other"
 
 
-def _side(shape: Shape, appearance: ShapeAppearance) -> str:
+def _side(shape: Shape, appearance: ShapeAppearance, settings: UsualFormSettings = SETTINGS) -> str:
     """Whether a seat is seen through from the side."""
 
     def is_closed() -> bool:
-        drawn = _drawn(appearance, [0, 2])
+        drawn = _drawn(appearance, [0, 2], settings)
         around = cv2.contourArea(cv2.convexHull(np.argwhere(drawn).astype(np.int32)))
-        return float(drawn.sum()) >= _CLOSED * around
+        return float(drawn.sum()) >= settings.closed * around
 
     return "closed" if _kept(SIDE_FEATURES, shape, is_closed) else "open"
 
@@ -131,34 +166,38 @@ def _kept(kind: str, shape: Shape, make: Callable[[], bool]) -> bool:
     return bool(cached_features(kind, shape, lambda: np.array([[float(make())]]))[0, 0])
 
 
-def _pieces(appearance: ShapeAppearance) -> int:
+def _pieces(appearance: ShapeAppearance, settings: UsualFormSettings = SETTINGS) -> int:
     """How many separate pieces are seen from the front: a row of prints is several."""
-    return int(cv2.connectedComponents(_drawn(appearance, [1, 2]))[0]) - 1
+    return int(cv2.connectedComponents(_drawn(appearance, [1, 2], settings))[0]) - 1
 
 
-def _panes(appearance: ShapeAppearance) -> int:
+def _panes(appearance: ShapeAppearance, settings: UsualFormSettings = SETTINGS) -> int:
     """How many large regions the colour has that covers most of the front: bars cut a mirror into panes."""
     colours = cells_of(appearance.face_rgba)[0] + 1
     back_to_front = np.argsort(appearance.vertices[appearance.faces][:, :, 0].mean(axis=1), kind="stable")
-    drawn = np.zeros((_DRAWN_PX, _DRAWN_PX), np.int32)
-    triangles = _triangles_px(appearance, [1, 2])
+    drawn = np.zeros((settings.drawn_px, settings.drawn_px), np.int32)
+    triangles = _triangles_px(appearance, [1, 2], settings)
     for face in back_to_front:
         cv2.fillConvexPoly(drawn, triangles[face], int(colours[face]))
     most = np.argmax(np.bincount(drawn[drawn > 0], minlength=2))
     areas = cv2.connectedComponentsWithStats((drawn == most).astype(np.uint8), connectivity=4)[2][1:, cv2.CC_STAT_AREA]
-    return int((areas >= _MIN_PANE * (drawn > 0).sum()).sum())
+    return int((areas >= settings.min_pane * (drawn > 0).sum()).sum())
 
 
-def _drawn(appearance: ShapeAppearance, axes: list[int]) -> UInt8[np.ndarray, "p p"]:
+def _drawn(
+    appearance: ShapeAppearance, axes: list[int], settings: UsualFormSettings = SETTINGS
+) -> UInt8[np.ndarray, "p p"]:
     """The outline along the remaining axis, 1 where there is something, stretched to a square."""
-    drawn = np.zeros((_DRAWN_PX, _DRAWN_PX), np.uint8)
-    for triangle in _triangles_px(appearance, axes):
+    drawn = np.zeros((settings.drawn_px, settings.drawn_px), np.uint8)
+    for triangle in _triangles_px(appearance, axes, settings):
         cv2.fillConvexPoly(drawn, triangle, 1)
     return drawn
 
 
-def _triangles_px(appearance: ShapeAppearance, axes: list[int]) -> Int32[np.ndarray, "f 3 2"]:
+def _triangles_px(
+    appearance: ShapeAppearance, axes: list[int], settings: UsualFormSettings = SETTINGS
+) -> Int32[np.ndarray, "f 3 2"]:
     """The triangles along the remaining axis, in pixels of the square to which the shape is stretched."""
     flat = appearance.vertices[:, axes]
-    at = (flat - flat.min(axis=0)) / np.maximum(np.ptp(flat, axis=0), 1e-9) * (_DRAWN_PX - 1)
+    at = (flat - flat.min(axis=0)) / np.maximum(np.ptp(flat, axis=0), 1e-9) * (settings.drawn_px - 1)
     return np.rint(at[appearance.faces]).astype(np.int32)

@@ -44,3 +44,10 @@ def test_an_optional_stage_is_left_out_by_its_name(stages):
     assert with_settings(stages, {"naming": 1}) == stages
     with pytest.raises(InputError, match="pose: the stages have no such setting"):
         with_settings(stages, {"pose": 0})
+
+
+def test_numbers_of_retrieval_are_settings_of_its_stage(stages):
+    name = "retrieval.settings.pools.related_factor"
+    changed = with_settings(stages, {name: 0.1})
+    assert changed.retrieval.settings.pools.related_factor == 0.1
+    assert repr(changed.retrieval) != repr(stages.retrieval)

@@ -11,6 +11,7 @@ from diorama_core.artefacts import LabelledBox
 from diorama_core.geometry.see_through import SeeThrough
 from diorama_core.progress import Progress
 from diorama_core.retrieval.hierarchical import HierarchicalRetrieval, _best, _senses
+from diorama_core.retrieval.settings import RankingSettings
 from diorama_core.scene.types import Support
 from tests.pose.rooms import LIBRARY, Room, camera_at, random_room, standing
 
@@ -118,7 +119,9 @@ def test_shapes_of_named_kinds_are_loaded_ahead() -> None:
 def test_objects_of_a_kind_choose_among_mostly_the_same_shapes() -> None:
     own = [{f"s{k}": 1.0 - abs(k - best) / 20 for k in range(20)} for best in (2, 17)]
     mean = {key: (own[0][key] + own[1][key]) / 2 for key in own[0]}
-    first, second = (_best(scores, mean, 8, dict.fromkeys(scores, "chair"), 1) for scores in own)
+    first, second = (
+        _best(scores, mean, 8, dict.fromkeys(scores, "chair"), RankingSettings(kinds=1), named=True) for scores in own
+    )
     assert len(first) == len(second) == 8
     shared = {s for s, _ in first} & {s for s, _ in second}
     assert len(shared) >= 6

@@ -9,6 +9,7 @@ same material in the light of a window and of a lamp, while things have edges.
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 
 import cv2
 import numpy as np
@@ -20,65 +21,80 @@ from diorama_core.library.taxonomy import having
 
 _CELL_LAB = np.array([14.0, 8.0, 8.0])
 """Colours within about this much are one material in light and shade."""
-_CELLS_TRIED = 8
-_CORE = 0.5
-"""A material's own colour is a mode: a mean of colours within this share of a cell about it. A cell's middle may lie
-between two materials and hold both."""
-_MEAN_SHIFTS = 12
-_SAMPLES = 4000
-_CONTACT_BAND = (0.012, 0.06)
-"""Before the feet of things, beyond their contact shadows: distances below masks, as shares of the photo's height."""
 _RUGS = having("rug")
-_QUANTILES = (0.16, 0.84)
-"""Of a normal distribution, one standard deviation to either side."""
-_WITHOUT_CONTACT = 0.15
-"""How much a colour counts that is seen at nobody's feet, beside one that is at all of them."""
 _USUAL_LAB = np.array([58.0, 5.0, 12.0])
 """Floors' colours in a photo whose brightest parts are white: wood, carpet, tiles; hardly black, white or blue."""
 _USUAL_AXES = np.array([[1.0, 0.0, 0.0], [0.0, 0.45, 0.89], [0.0, 0.89, -0.45]]) / np.array([[24.0], [20.0], [9.0]])
 """They vary in lightness, from grey to the orange of pine boards, and less across: by these deviations."""
-_OF_SHADE = 0.75
-"""What a shade of a colour at the feet of things says for it, beside the colour itself."""
-_SHADE_COVER = 1.5
-"""A dark colour is another's shade when the lighter one, darkened, is about the same and covers so much more."""
-_SKY_LIT = 0.5
-"""How much of its chroma a colour keeps at least in the shade."""
-_BLACK_L = 16.0
-"""Darkening moves a colour of CIELAB towards L = -16, a = b = 0: the cube root of its definition."""
-_WHITE_SHARE = 95.0
-"""Percentile of the photo's lightness that is about white."""
-_SPREADS = 3.0
 _TOLERANCE_LAB = np.array([16.0, 7.0, 7.0])
 """A texel is foreign when it differs by more than this many typical deviations, and by this much at least."""
-_WIDEST = 1.5
-"""And whenever it differs by so many times that much."""
-_SHADOW_L = 14.0
-"""What is so much darker is a shadow of what stands there, which will not stay where it is."""
-_PATTERN_M, _PATTERN_SHARE = 0.15, 0.75
-"""Colours of a pattern are within this distance of each other over at least this share of both."""
-_BETWEEN_SHARE = 0.4
-"""And so much of the one between pieces of the other."""
-_OTHER_COLOURS = 4
-"""So many colours beside the main one are looked at."""
-_MIN_OF_PATTERN = 0.03
-_GRADUAL = 0.8 / 0.1
-"""Light changes a floor's colour by fewer tolerances a metre than this, an edge by more."""
 _LIT_LAB = np.array([16.0, 17.5, 17.5])
 """Nor by more than this in all: a wall above its floor may be no edge but a gradient, too."""
-_GRADUAL_M = 0.04
-"""Finer than this is grain."""
-_PIECE_M2, _BORDER_M2 = 0.01, 0.003
-"""Smaller pieces of another colour are not looked at, nor those that share a smaller border with the floor."""
-_SPECK_M, _RIM_M = 0.02, 0.03
-"""Foreign pieces narrower than the one are grain; so much around the others has their rims and shadows."""
 
 
-def contact_pixels(shape: tuple[int, int], objects: Sequence[DetectedObject]) -> Bool[np.ndarray, "h w"]:
+@dataclass(frozen=True)
+class FloorMaterialSettings:
+    """Numbers of `floor_material`."""
+
+    cells_tried: int = 8
+    core: float = 0.5
+    """A material's own colour is a mode: a mean of colours within this share of a cell about it. A cell's middle may
+    lie between two materials and hold both."""
+    mean_shifts: int = 12
+    samples: int = 4000
+    contact_band: tuple[float, float] = (0.012, 0.06)
+    """Before the feet of things, beyond their contact shadows: distances below masks, as shares of the photo's
+    height."""
+    quantiles: tuple[float, float] = (0.16, 0.84)
+    """Of a normal distribution, one standard deviation to either side."""
+    without_contact: float = 0.15
+    """How much a colour counts that is seen at nobody's feet, beside one that is at all of them."""
+    of_shade: float = 0.75
+    """What a shade of a colour at the feet of things says for it, beside the colour itself."""
+    shade_cover: float = 1.5
+    """A dark colour is another's shade when the lighter one, darkened, is about the same and covers so much more."""
+    sky_lit: float = 0.5
+    """How much of its chroma a colour keeps at least in the shade."""
+    black_l: float = 16.0
+    """Darkening moves a colour of CIELAB towards L = -16, a = b = 0: the cube root of its definition."""
+    white_share: float = 95.0
+    """Percentile of the photo's lightness that is about white."""
+    spreads: float = 3.0
+    widest: float = 1.5
+    """And whenever it differs by so many times that much."""
+    shadow_l: float = 14.0
+    """What is so much darker is a shadow of what stands there, which will not stay where it is."""
+    pattern_m: float = 0.15
+    pattern_share: float = 0.75
+    """Colours of a pattern are within this distance of each other over at least this share of both."""
+    between_share: float = 0.4
+    """And so much of the one between pieces of the other."""
+    other_colours: int = 4
+    """So many colours beside the main one are looked at."""
+    min_of_pattern: float = 0.03
+    gradual: float = 0.8 / 0.1
+    """Light changes a floor's colour by fewer tolerances a metre than this, an edge by more."""
+    gradual_m: float = 0.04
+    """Finer than this is grain."""
+    piece_m2: float = 0.01
+    border_m2: float = 0.003
+    """Smaller pieces of another colour are not looked at, nor those that share a smaller border with the floor."""
+    speck_m: float = 0.02
+    rim_m: float = 0.03
+    """Foreign pieces narrower than the one are grain; so much around the others has their rims and shadows."""
+
+
+SETTINGS = FloorMaterialSettings()
+
+
+def contact_pixels(
+    shape: tuple[int, int], objects: Sequence[DetectedObject], settings: FloorMaterialSettings = SETTINGS
+) -> Bool[np.ndarray, "h w"]:
     """Pixels of the photo a little below the feet of things, where the floor is usually seen.
 
     Within the box of a rug whose outline is only a guess, it is rather the rug.
     """
-    near, far = (round(share * shape[0]) for share in _CONTACT_BAND)
+    near, far = (round(share * shape[0]) for share in settings.contact_band)
     found = np.zeros(shape, dtype=bool)
     for item in objects:
         columns = np.flatnonzero(item.mask.any(axis=0))
@@ -95,15 +111,18 @@ def contact_pixels(shape: tuple[int, int], objects: Sequence[DetectedObject]) ->
     return found
 
 
-def white_level(rgb: UInt8[np.ndarray, "h w 3"]) -> float:
+def white_level(rgb: UInt8[np.ndarray, "h w 3"], settings: FloorMaterialSettings = SETTINGS) -> float:
     """Lightness L* of what is about white in a photo: a dark one's floor is as dark as the rest of it."""
     small = cv2.resize(rgb, (96, 72), interpolation=cv2.INTER_AREA).astype(np.float32) / 255.0
     lightness = cv2.cvtColor(small, cv2.COLOR_RGB2LAB)[..., 0]
-    return max(float(np.percentile(lightness, _WHITE_SHARE)), 1.0)
+    return max(float(np.percentile(lightness, settings.white_share)), 1.0)
 
 
 def floor_colour(
-    rgb: UInt8[np.ndarray, "n 3"], places: Float[np.ndarray, "n 2"], white: float
+    rgb: UInt8[np.ndarray, "n 3"],
+    places: Float[np.ndarray, "n 2"],
+    white: float,
+    settings: FloorMaterialSettings = SETTINGS,
 ) -> tuple[float, float, float]:
     """The colour (sRGB 0 to 1) of a floor among pixels of it and of what nobody marked.
 
@@ -111,10 +130,11 @@ def floor_colour(
         rgb: at least one pixel.
         places: where they are in the photo.
         white: lightness L* that the photo's white has (`white_level`).
+        settings: numbers to work with.
     """
     lab = cv2.cvtColor(rgb[:, None].astype(np.float32) / 255.0, cv2.COLOR_RGB2LAB)[:, 0].astype(np.float64)
-    main = _main_colour(lab, places, np.ones(len(lab)), np.zeros(len(lab), dtype=bool), white)
-    red, green, blue = (float(c) / 255.0 for c in np.median(rgb[_of_material(lab, main)], axis=0))
+    main = _main_colour(lab, places, np.ones(len(lab)), np.zeros(len(lab), dtype=bool), white, settings)
+    red, green, blue = (float(c) / 255.0 for c in np.median(rgb[_of_material(lab, main, settings)], axis=0))
     return red, green, blue
 
 
@@ -125,6 +145,7 @@ def floor_texels(
     contact: Bool[np.ndarray, "h w"],
     pixel_m: float,
     white: float = 100.0,
+    settings: FloorMaterialSettings = SETTINGS,
 ) -> Bool[np.ndarray, "h w"]:
     """The seen texels that show the floor's own material.
 
@@ -135,50 +156,58 @@ def floor_texels(
         contact: texels right before the feet of things.
         pixel_m: size of a texel.
         white: lightness L* that the photo's white has (`white_level`).
+        settings: numbers to work with.
     """
     rows, columns = np.nonzero(seen)
     if not len(rows):
         return seen.copy()
     lab = cv2.cvtColor((colours[rows, columns] / 255.0)[:, None], cv2.COLOR_RGB2LAB)[:, 0].astype(np.float64)
-    every = max(1, len(rows) // _SAMPLES)
+    every = max(1, len(rows) // settings.samples)
     main = _main_colour(
         lab[::every],
         np.stack([rows, columns], axis=1)[::every].astype(np.float64),
         weight[rows, columns][::every],
         contact[rows, columns][::every],
         white,
+        settings,
     )
     own = np.zeros(seen.shape, dtype=bool)
-    own[rows, columns] = _of_material(lab, main)
+    own[rows, columns] = _of_material(lab, main, settings)
     picture = np.zeros((*seen.shape, 3), np.float32)
     picture[rows, columns] = lab
     others: list[np.ndarray] = []
     looked_at = own[rows, columns]
-    for _ in range(_OTHER_COLOURS):
+    for _ in range(settings.other_colours):
         left = ~looked_at
-        if left.mean() < _MIN_OF_PATTERN:
+        if left.mean() < settings.min_of_pattern:
             break
-        found = _of_material(lab, _fullest(lab[left][:: max(1, int(left.sum()) // _SAMPLES)])) & left
-        if found.mean() < _MIN_OF_PATTERN:
+        fullest = _fullest(lab[left][:: max(1, int(left.sum()) // settings.samples)], settings)
+        found = _of_material(lab, fullest, settings) & left
+        if found.mean() < settings.min_of_pattern:
             break
         looked_at |= found
         other = np.zeros(seen.shape, dtype=bool)
         other[rows, columns] = found
-        if _intermingled(own, other, pixel_m):
+        if _intermingled(own, other, pixel_m, settings):
             own |= other
         else:
             others.append(
-                other & (np.abs(picture - main) < _LIT_LAB).all(axis=-1) & (picture[..., 0] >= main[0] - _SHADOW_L)
+                other
+                & (np.abs(picture - main) < _LIT_LAB).all(axis=-1)
+                & (picture[..., 0] >= main[0] - settings.shadow_l)
             )
-    own |= _turning_into(own, others, _change(picture, seen, pixel_m), pixel_m) if others else False
-    return own & ~_grown_pieces(seen & ~own, pixel_m)
+    own |= _turning_into(own, others, _change(picture, seen, pixel_m, settings), pixel_m, settings) if others else False
+    return own & ~_grown_pieces(seen & ~own, pixel_m, settings)
 
 
 def _change(
-    picture: Float32[np.ndarray, "h w 3"], seen: Bool[np.ndarray, "h w"], pixel_m: float
+    picture: Float32[np.ndarray, "h w 3"],
+    seen: Bool[np.ndarray, "h w"],
+    pixel_m: float,
+    settings: FloorMaterialSettings = SETTINGS,
 ) -> Float32[np.ndarray, "h w 3"]:
     """How fast colours without their grain change, per metre; nan at the rim of what is seen."""
-    down, across = np.gradient(broad_shading(picture, seen, _GRADUAL_M / pixel_m), axis=(0, 1))
+    down, across = np.gradient(broad_shading(picture, seen, settings.gradual_m / pixel_m), axis=(0, 1))
     change = np.hypot(down, across) / pixel_m
     change[cv2.erode(seen.astype(np.uint8), np.ones((3, 3), np.uint8), borderValue=0) == 0] = np.nan
     return np.asarray(change, dtype=np.float32)
@@ -189,13 +218,14 @@ def _turning_into(
     others: list[Bool[np.ndarray, "h w"]],
     change: Float32[np.ndarray, "h w 3"],
     pixel_m: float,
+    settings: FloorMaterialSettings = SETTINGS,
 ) -> Bool[np.ndarray, "h w"]:
     """The floor with the pieces of other colours whose border with it is gradual, one after another."""
-    reach = _disc(_RIM_M, pixel_m)
-    pieces = [piece for other in others for piece in _pieces(other, _PIECE_M2 / pixel_m**2)]
+    reach = _disc(settings.rim_m, pixel_m)
+    pieces = [piece for other in others for piece in _pieces(other, settings.piece_m2 / pixel_m**2)]
     while True:
         beside = cv2.dilate(own.astype(np.uint8), reach).astype(bool) & ~np.isnan(change[..., 0])
-        turning = [piece for piece in pieces if _gradual(piece, beside, change, reach, pixel_m)]
+        turning = [piece for piece in pieces if _gradual(piece, beside, change, reach, pixel_m, settings)]
         if not turning:
             return own
         own = np.logical_or.reduce([own, *turning])
@@ -213,12 +243,13 @@ def _gradual(
     change: Float32[np.ndarray, "h w 3"],
     reach: UInt8[np.ndarray, "k k"],
     pixel_m: float,
+    settings: FloorMaterialSettings = SETTINGS,
 ) -> bool:
     """Whether colours change slowly along a piece's border with the texels beside the floor."""
     border = beside & cv2.dilate(piece.astype(np.uint8), reach).astype(bool)
-    if border.sum() * pixel_m**2 < _BORDER_M2:
+    if border.sum() * pixel_m**2 < settings.border_m2:
         return False
-    return bool((np.median(change[border], axis=0) < _GRADUAL * _TOLERANCE_LAB).all())
+    return bool((np.median(change[border], axis=0) < settings.gradual * _TOLERANCE_LAB).all())
 
 
 def _main_colour(
@@ -227,30 +258,34 @@ def _main_colour(
     weight: Float[np.ndarray, "n"],
     contact: Bool[np.ndarray, "n"],
     white: float,
+    settings: FloorMaterialSettings = SETTINGS,
 ) -> Float[np.ndarray, "3"]:
     """The colour that covers much of the photo, lies far apart, is at the feet of things, and is usual for floors."""
     at_feet = max(float(weight[contact].sum()), 1e-12)
     found, covers, scores = [], [], []
-    for cell in _cells(lab, weight):
-        cell = _mode(cell, lab, weight)
+    for cell in _cells(lab, weight, settings):
+        cell = _mode(cell, lab, weight, settings)
         alike = (np.abs(lab - cell) < _CELL_LAB).all(axis=1)
-        spread = _spread(places[alike], weight[alike])
+        spread = _spread(places[alike], weight[alike], settings)
         middle = np.median(lab[alike], axis=0) if alike.any() else cell
-        shaded = _OF_SHADE * float(weight[contact & ~alike & _shades_of(middle, lab)].sum())
+        shaded = settings.of_shade * float(weight[contact & ~alike & _shades_of(middle, lab, settings)].sum())
         touched = (float(weight[contact & alike].sum()) + shaded) / at_feet
         off = _USUAL_AXES @ (middle * np.array([100.0 / white, 1.0, 1.0]) - _USUAL_LAB)
         found.append(middle)
-        covers.append(float(weight[alike].sum()) * spread * (_WITHOUT_CONTACT + touched))
+        covers.append(float(weight[alike].sum()) * spread * (settings.without_contact + touched))
         scores.append(covers[-1] * float(np.exp(-0.5 * (off**2).sum())))
-    return _lit(int(np.argmax(scores)), np.array(found), np.array(covers))
+    return _lit(int(np.argmax(scores)), np.array(found), np.array(covers), settings)
 
 
 def _mode(
-    cell: Float[np.ndarray, "3"], lab: Float[np.ndarray, "n 3"], weight: Float[np.ndarray, "n"]
+    cell: Float[np.ndarray, "3"],
+    lab: Float[np.ndarray, "n 3"],
+    weight: Float[np.ndarray, "n"],
+    settings: FloorMaterialSettings = SETTINGS,
 ) -> Float[np.ndarray, "3"]:
     """Where colours lie densest near a cell's middle: mean shift (Comaniciu and Meer 2002) with a flat kernel."""
-    for _ in range(_MEAN_SHIFTS):
-        near = (np.abs(lab - cell) < _CORE * _CELL_LAB).all(axis=1)
+    for _ in range(settings.mean_shifts):
+        near = (np.abs(lab - cell) < settings.core * _CELL_LAB).all(axis=1)
         if not weight[near].sum() > 0.0:
             break
         moved = np.average(lab[near], axis=0, weights=weight[near])
@@ -260,7 +295,9 @@ def _mode(
     return np.asarray(cell)
 
 
-def _spread(places: Float[np.ndarray, "n 2"], weight: Float[np.ndarray, "n"]) -> float:
+def _spread(
+    places: Float[np.ndarray, "n 2"], weight: Float[np.ndarray, "n"], settings: FloorMaterialSettings = SETTINGS
+) -> float:
     """About the standard deviation of places, by quantiles: a sliver far away covers little of the photo."""
     if not weight.sum() > 0.0:
         return 0.0
@@ -268,67 +305,88 @@ def _spread(places: Float[np.ndarray, "n 2"], weight: Float[np.ndarray, "n"]) ->
     for along in places.T:
         order = np.argsort(along, kind="stable")
         below = np.cumsum(weight[order]) / weight.sum()
-        low, high = np.searchsorted(below, _QUANTILES)
+        low, high = np.searchsorted(below, settings.quantiles)
         halves.append((along[order[min(high, len(order) - 1)]] - along[order[low]]) / 2)
     return float(np.hypot(*halves))
 
 
-def _lit(best: int, found: Float[np.ndarray, "k 3"], covers: Float[np.ndarray, "k"]) -> Float[np.ndarray, "3"]:
+def _lit(
+    best: int,
+    found: Float[np.ndarray, "k 3"],
+    covers: Float[np.ndarray, "k"],
+    settings: FloorMaterialSettings = SETTINGS,
+) -> Float[np.ndarray, "3"]:
     """A colour, or the lighter one that it is a shade of and that covers clearly more."""
-    shade = np.array([bool(_shades_of(lighter, found[best : best + 1])[0]) for lighter in found])
-    lighter = shade & (covers > _SHADE_COVER * covers[best])
+    shade = np.array([bool(_shades_of(lighter, found[best : best + 1], settings)[0]) for lighter in found])
+    lighter = shade & (covers > settings.shade_cover * covers[best])
     return np.asarray(found[int(np.argmax(np.where(lighter, covers, 0.0))) if lighter.any() else best])
 
 
-def _shades_of(colour: Float[np.ndarray, "3"], lab: Float[np.ndarray, "n 3"]) -> Bool[np.ndarray, "n"]:
+def _shades_of(
+    colour: Float[np.ndarray, "3"], lab: Float[np.ndarray, "n 3"], settings: FloorMaterialSettings = SETTINGS
+) -> Bool[np.ndarray, "n"]:
     """Which colours are what a shadow makes of one: before the feet of things most are.
 
     In the shade of the sun the sky's light is left, which takes most of a warm colour's hue away.
     """
-    darkened = colour[1:] * ((lab[:, :1] + _BLACK_L) / (colour[0] + _BLACK_L))
+    darkened = colour[1:] * ((lab[:, :1] + settings.black_l) / (colour[0] + settings.black_l))
     kept = (lab[:, 1:] * darkened).sum(axis=1) / np.maximum((darkened**2).sum(axis=1), 1e-9)
-    shaded = darkened * np.clip(kept, _SKY_LIT, 1.0)[:, None]
+    shaded = darkened * np.clip(kept, settings.sky_lit, 1.0)[:, None]
     return np.asarray(
         (np.abs(shaded - lab[:, 1:]) < _CELL_LAB[1:]).all(axis=1) & (lab[:, 0] < colour[0] - _CELL_LAB[0] / 2)
     )
 
 
-def _cells(lab: Float[np.ndarray, "n 3"], weight: Float[np.ndarray, "n"]) -> Float[np.ndarray, "k 3"]:
+def _cells(
+    lab: Float[np.ndarray, "n 3"], weight: Float[np.ndarray, "n"], settings: FloorMaterialSettings = SETTINGS
+) -> Float[np.ndarray, "k 3"]:
     """Middles of the cells of colour that cover most."""
     cells, index = np.unique(np.round(lab / _CELL_LAB), axis=0, return_inverse=True)
     covered = np.bincount(index.ravel(), weights=weight)
-    return np.asarray(cells[np.argsort(-covered, kind="stable")][:_CELLS_TRIED] * _CELL_LAB)
+    return np.asarray(cells[np.argsort(-covered, kind="stable")][: settings.cells_tried] * _CELL_LAB)
 
 
-def _fullest(lab: Float[np.ndarray, "n 3"]) -> Float[np.ndarray, "3"]:
-    cell = _cells(lab, np.ones(len(lab)))[0]
+def _fullest(lab: Float[np.ndarray, "n 3"], settings: FloorMaterialSettings = SETTINGS) -> Float[np.ndarray, "3"]:
+    cell = _cells(lab, np.ones(len(lab)), settings)[0]
     return np.asarray(np.median(lab[(np.abs(lab - cell) < _CELL_LAB).all(axis=1)], axis=0))
 
 
-def _of_material(lab: Float[np.ndarray, "n 3"], main: Float[np.ndarray, "3"]) -> Bool[np.ndarray, "n"]:
+def _of_material(
+    lab: Float[np.ndarray, "n 3"], main: Float[np.ndarray, "3"], settings: FloorMaterialSettings = SETTINGS
+) -> Bool[np.ndarray, "n"]:
     """Colours that a material of one main colour has in light and shade."""
     near = np.abs(lab - main)
     core = near[(near < _CELL_LAB).all(axis=1)]
     typical = np.median(core, axis=0) if len(core) else np.zeros(3)
-    allowed = np.clip(_SPREADS * typical, _TOLERANCE_LAB, _WIDEST * _TOLERANCE_LAB)
-    shadow = lab[:, 0] < main[0] - _SHADOW_L
+    allowed = np.clip(settings.spreads * typical, _TOLERANCE_LAB, settings.widest * _TOLERANCE_LAB)
+    shadow = lab[:, 0] < main[0] - settings.shadow_l
     return np.asarray((near <= allowed).all(axis=1) & ~shadow)
 
 
-def _intermingled(one: Bool[np.ndarray, "h w"], other: Bool[np.ndarray, "h w"], pixel_m: float) -> bool:
+def _intermingled(
+    one: Bool[np.ndarray, "h w"],
+    other: Bool[np.ndarray, "h w"],
+    pixel_m: float,
+    settings: FloorMaterialSettings = SETTINGS,
+) -> bool:
     """Whether each of two colours has the other near over most of its area, and the other lies between the first.
 
     A skirting board along a narrow strip of floor is near all of it, but on one side only.
     """
-    reach = _disc(_PATTERN_M, pixel_m)
+    reach = _disc(settings.pattern_m, pixel_m)
     beside = [cv2.dilate(part.astype(np.uint8), reach).astype(bool) for part in (one, other)]
     shares = [float(beside[1 - k][part].mean()) if part.any() else 0.0 for k, part in enumerate((one, other))]
-    return min(shares) >= _PATTERN_SHARE and float(_between(one, pixel_m)[other].mean()) >= _BETWEEN_SHARE
+    return (
+        min(shares) >= settings.pattern_share
+        and float(_between(one, pixel_m, settings)[other].mean()) >= settings.between_share
+    )
 
 
-def _between(mask: Bool[np.ndarray, "h w"], pixel_m: float) -> Bool[np.ndarray, "h w"]:
+def _between(
+    mask: Bool[np.ndarray, "h w"], pixel_m: float, settings: FloorMaterialSettings = SETTINGS
+) -> Bool[np.ndarray, "h w"]:
     """The texels with some of a mask near on two opposite sides, along rows or along columns."""
-    reach = max(1, round(_PATTERN_M / pixel_m))
+    reach = max(1, round(settings.pattern_m / pixel_m))
     sides = []
     for shape in ((1, reach + 1), (reach + 1, 1)):
         ends = ((0, 0), (shape[1] - 1, shape[0] - 1))
@@ -337,10 +395,12 @@ def _between(mask: Bool[np.ndarray, "h w"], pixel_m: float) -> Bool[np.ndarray, 
     return np.asarray(sides[0] | sides[1])
 
 
-def _grown_pieces(foreign: Bool[np.ndarray, "h w"], pixel_m: float) -> Bool[np.ndarray, "h w"]:
+def _grown_pieces(
+    foreign: Bool[np.ndarray, "h w"], pixel_m: float, settings: FloorMaterialSettings = SETTINGS
+) -> Bool[np.ndarray, "h w"]:
     """Foreign pieces without specks of grain, with their rims."""
-    pieces = cv2.morphologyEx(foreign.astype(np.uint8), cv2.MORPH_OPEN, _disc(_SPECK_M, pixel_m))
-    return cv2.dilate(pieces, _disc(_RIM_M, pixel_m)).astype(bool) | foreign
+    pieces = cv2.morphologyEx(foreign.astype(np.uint8), cv2.MORPH_OPEN, _disc(settings.speck_m, pixel_m))
+    return cv2.dilate(pieces, _disc(settings.rim_m, pixel_m)).astype(bool) | foreign
 
 
 def _disc(radius_m: float, pixel_m: float) -> UInt8[np.ndarray, "k k"]:
