@@ -22,6 +22,7 @@ if typechecking.wanted():  # before anything of Diorama is imported
 
 from diorama_core.architecture.texture import plane_textures
 from diorama_core.artefacts import Inputs
+from diorama_core.io.text import clean_text
 from diorama_core.library import catalogue
 from diorama_core.perception.inputs import ReadInputs, read_inputs
 from tests import shared_solids
@@ -161,6 +162,14 @@ def pytest_runtest_setup(item: pytest.Item) -> None:
         setattr(plane_textures, name, side_px if folders[:2] == FULL_PICTURES else side_px // 4)
     unchecked = folders[0] in UNCHECKED_FOLDERS or item.get_closest_marker("unchecked") is not None
     typechecking.begin_test(unchecked=unchecked)
+
+
+@pytest.hookimpl(hookwrapper=True)
+def pytest_runtest_makereport() -> Iterator[None]:
+    """What a test logs may hold halves of characters, which no report can be sent with to the process that prints it."""
+    outcome = yield
+    report = outcome.get_result()
+    report.sections = [(title, clean_text(text)) for title, text in report.sections]
 
 
 @pytest.fixture

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import logging
+import traceback
 from pathlib import Path
 
 from diorama_app.http_api.job import MAX_LINE, Job
 from diorama_core.errors import DioramaError, ProjectError
 from diorama_core.io.bounded import shortened
+from diorama_core.io.text import clean_text
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.models.store import ModelStore
 from diorama_core.pipeline.stages import Stages
@@ -52,5 +54,5 @@ def line_of(problem: Exception, job_id: str) -> str:
     """Why a build failed, in one line; what is unexpected is logged in full."""
     if isinstance(problem, DioramaError):
         return shortened(str(problem), MAX_LINE)
-    log.error("the build of %s failed", job_id, exc_info=problem)
+    log.error("the build of %s failed\n%s", job_id, clean_text("".join(traceback.format_exception(problem))))
     return shortened(f"internal error ({type(problem).__name__}: {problem})")
