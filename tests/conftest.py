@@ -166,7 +166,7 @@ def pytest_runtest_setup(item: pytest.Item) -> None:
 
 @pytest.hookimpl(hookwrapper=True)
 def pytest_runtest_makereport() -> Iterator[None]:
-    """What a test logs may hold halves of characters, which no report can be sent with to the process that prints it."""
+    """Logs of tests may hold halves of characters, which cannot be sent to the process that prints reports."""
     outcome = yield
     report = outcome.get_result()
     report.sections = [(title, clean_text(text)) for title, text in report.sections]
