@@ -331,7 +331,8 @@ def draw(library: ShapeLibrary, out: Path, draft: bool) -> None:
     numbers = {"width": k.width, "height": k.height, "fx": k.fx, "fy": k.fy, "cx": k.cx, "cy": k.cy}
     (out / "intrinsics.json").write_text(json.dumps(numbers, indent=1) + "\n")
     rows = ",\n ".join(json.dumps(box) for box in visible_boxes(scene, library))
-    (out / "boxes.json").write_text(f"[{rows}]\n")
+    size = json.dumps({"width": k.width, "height": k.height})
+    (out / "boxes.json").write_text(f'{{"image": {size}, "boxes": [\n {rows}\n]}}\n')
 
 
 if __name__ == "__main__":

@@ -8,7 +8,7 @@ from diorama_app.session.client import Client
 from diorama_core.artefacts import LabelledBox, Photo
 from diorama_core.editing.input_corrections import with_boxes_added
 from diorama_core.errors import EditRefused, InputError, UnavailableError
-from diorama_core.models.manifest import NETWORKS, network, networks_of
+from diorama_core.models.manifest import NETWORKS, networks_of
 from diorama_core.models.network import Network
 from diorama_core.models.own_weights import has_own_recogniser
 from diorama_core.models.pull import pull
@@ -83,19 +83,19 @@ def _pull(client: Client, missing: Sequence[Network], accepted: frozenset[str], 
     fetched = pull(
         ModelStore.default(), missing, accept=lambda asked: {n.id for n in asked} <= accepted, progress=progress
     )
-    _try(fetched, progress)
+    _try([n for n in missing if n.id in fetched], progress)
     names = f"{len(fetched)} networks are" if len(fetched) != 1 else "The network is"
     client.post(lambda: client.session.notice_all(f"{names} ready and used from the next build on.", "good"))
 
 
-def _try(fetched: Sequence[str], progress: Progress) -> None:
+def _try(fetched: Sequence[Network], progress: Progress) -> None:
     """Let networks without published checksums look at the example; those that do not work are deleted."""
-    if all(network(n).verified for n in fetched):
+    if all(n.verified for n in fetched):
         return
     from diorama_app.projects.example import example_inputs
     from diorama_core.pipeline.network_check import rejected
 
-    failed = rejected(ModelStore.default(), fetched, example_inputs().inputs, progress)
+    failed = rejected(ModelStore.default(), [n.id for n in fetched], example_inputs().inputs, progress)
     if failed:
         told = "; ".join(f"{c.network.title}: {c.words}" for c in failed)
         raise UnavailableError(f"these files are not what they were taken for and were deleted again: {told}")

@@ -20,7 +20,7 @@ def test_photo_boxes_and_intrinsics_agree() -> None:
         width, height = image.size
     k = Intrinsics(**json.loads((EXAMPLE / "intrinsics.json").read_text()))
     assert (k.width, k.height) == (width, height)
-    boxes = json.loads((EXAMPLE / "boxes.json").read_text())
+    boxes = json.loads((EXAMPLE / "boxes.json").read_text())["boxes"]
     assert len(boxes) >= 20
     for box in boxes:
         x1, y1, x2, y2 = box["bbox"]

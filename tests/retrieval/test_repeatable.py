@@ -65,7 +65,7 @@ def elsewhere(pickled: Path, cache: Path, hash_seed: int, threads: int) -> Answe
 def artefacts(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """The example's photo, and what the embedded stages make of some boxes, three chairs among them, in a file."""
     folder = tmp_path_factory.mktemp("example")
-    boxes = json.loads((EXAMPLE / "boxes.json").read_text())
+    boxes = json.loads((EXAMPLE / "boxes.json").read_text())["boxes"]
     (folder / "boxes.json").write_text(json.dumps([b for b in boxes if b["class"] in LOOKED_FOR]))
     inputs = read_inputs(EXAMPLE / "photo.jpg", boxes=folder / "boxes.json").inputs
     stages = embedded_stages(inputs, few_shapes())

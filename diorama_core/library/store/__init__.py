@@ -9,13 +9,11 @@ from pathlib import Path
 import platformdirs
 
 from diorama_core.errors import LibraryError
+from diorama_core.library.library_names import BUILT_IN, ESCAPED_PLUS
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.library.store.combined import CombinedLibrary
 from diorama_core.library.store.stored import StoredLibrary
 
-BUILT_IN = "built-in"
-ESCAPED_PLUS = "%2B"
-"""Stands for a + in the path of a library, where names are joined by +."""
 _NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9._-]{0,63}")
 
 __all__ = [

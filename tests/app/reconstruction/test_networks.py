@@ -121,11 +121,11 @@ def test_networks_are_downloaded_and_detect_at_once(
     graph = tiny_networks.export(_Yolox(), example, tmp_path / "y.onnx", ["images"], ["output"])
     accepted: list[str] = []
 
-    def pulled(into: ModelStore, missing: tuple[Network, ...], *, accept, progress) -> tuple[Network, ...]:
+    def pulled(into: ModelStore, missing: tuple[Network, ...], *, accept, progress) -> tuple[str, ...]:
         assert accept(missing), "the licences shown beside the button are accepted"
         accepted.extend(n.id for n in missing)
         install(into, "yolox-nano", [graph])
-        return missing
+        return ("yolox-nano",)
 
     monkeypatch.setattr(networks, "pull", pulled)
     detect_with_networks(client)

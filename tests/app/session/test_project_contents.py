@@ -33,7 +33,7 @@ def test_a_photo_that_cannot_be_read_is_named_and_the_scene_is_shown(project) ->
 def test_a_damaged_scene_gives_way_to_the_newest_version_that_can_be_read(project) -> None:
     good = project.scene_path.read_bytes()
     (project.folder / "backups").mkdir(exist_ok=True)
-    (project.folder / "backups" / "scene-20260101-000000.json").write_bytes(good)
+    (project.folder / "backups" / "scene-n000001-20260101T000000Z.json").write_bytes(good)
     project.scene_path.write_text("{")
     read = read_project(project)
     assert read.scene == furnished_scene()
