@@ -16,6 +16,7 @@ import numpy as np
 
 from diorama_core.arrangement.support_hypotheses import SupportHypothesis
 from diorama_core.library.company import often_carried
+from diorama_core.library.labels import with_article
 from diorama_core.library.taxonomy import PORTABLE
 
 PATH = Path(__file__).with_name("support_weights.json")
@@ -73,15 +74,15 @@ def portable(h: SupportHypothesis) -> float:
 
 
 TERMS: tuple[SupportTerm, ...] = (
-    SupportTerm("other belief", "the boxes say otherwise", lambda h: float(not h.believed)),
+    SupportTerm("other belief", "boxes and depth say so", lambda h: float(not h.believed)),
     SupportTerm("gap", "it was seen there", gap),
     SupportTerm("beside", "it was seen in front of it", beside),
     SupportTerm("turned", "its back is parallel to it", lambda h: h.turned),
     SupportTerm("averted", "the wall faces the camera", lambda h: float(h.averted)),
-    SupportTerm("company", "a {kind} is often on a {carrier}", company),
-    SupportTerm("carries nothing", "people put things on a {carrier}", carries_nothing),
-    SupportTerm("hard on seat", "a {carrier} is no seat", hard_on_seat),
-    SupportTerm("portable", "a {kind} is small enough to stand on furniture", portable),
+    SupportTerm("company", "{kind} is often on {carrier}", company),
+    SupportTerm("carries nothing", "people put things on {carrier}", carries_nothing),
+    SupportTerm("hard on seat", "{carrier} is no seat", hard_on_seat),
+    SupportTerm("portable", "{kind} is small enough to stand on furniture", portable),
     SupportTerm("seen below", "it is seen just below", lambda h: h.below),
     SupportTerm("foot in box", "its lower end is within its outline", lambda h: float(h.foot_in_box)),
 )
@@ -95,11 +96,12 @@ USUAL_PLACE = "usual place"
 def sentence_of(term: str, h: SupportHypothesis) -> str:
     """What a term says for a supporter, in plain words; empty where it is about carriers and this is none."""
     if term == USUAL_PLACE:
-        return f"a {h.kind.name} is usually on {_USUALLY[h.kind.mount]}"
+        return f"{with_article(h.kind.name)} is usually on {_USUALLY[h.kind.mount]}"
     sentence = next(t.sentence for t in TERMS if t.name == term)
     if h.carrier is None and "{carrier}" in sentence:
         return ""
-    return sentence.format(kind=h.kind.name, carrier="" if h.carrier is None else h.carrier.name)
+    carrier = "" if h.carrier is None else with_article(h.carrier.name)
+    return sentence.format(kind=with_article(h.kind.name), carrier=carrier)
 
 
 def place_name(h: SupportHypothesis) -> str:

@@ -116,3 +116,8 @@ def _names() -> Mapping[Words, str]:
         for word in entry.synonyms:
             table.setdefault(tokens(word), UNKNOWN.name if entry is UNKNOWN else word)
     return table
+
+
+def with_article(words: str) -> str:
+    """Words with "a" or "an" before them."""
+    return f"{'an' if words[:1] in 'aeiou' else 'a'} {words}"

@@ -10,6 +10,7 @@ from diorama_core.arrangement.explain import SCALE, reasons_of_change
 from diorama_core.arrangement.noise import ObservationNoise
 from diorama_core.artefacts import DetectedObject, Inputs, ObjectGeometry, PosedCandidates, Reason, SceneGraph
 from diorama_core.library.hyponyms import is_named, meanings
+from diorama_core.library.labels import with_article
 from diorama_core.library.taxonomy import CATEGORIES
 from diorama_core.pipeline.provenance_text import graph_sentence
 from diorama_core.pipeline.steps import Corrected, LaidOut
@@ -67,13 +68,13 @@ def _of_kind(item: DetectedObject, kind: str, named_by: str) -> list[Reason]:
     if seen:
         share = seen.get(kind, 0.0)
         nats = float(np.log(max(share, SCALE.rare) * len(seen)))
-        looks = f"looks like a {kind}" if nats > 0 else f"hardly looks like a {kind}"
+        looks = f"looks like {with_article(kind)}" if nats > 0 else f"hardly looks like {with_article(kind)}"
         reasons.append(_kind_reason(item, "picture", nats, f"it {looks} in the photo"))
     before, after = as_it_looks(by_word, item.looks_like, named), dict(item.meanings)
     if kind in after and before.get(kind, 0.0) > 0:
         nats = float(np.log(max(after[kind], SCALE.rare) / max(before[kind], SCALE.rare)))
         fits = "fit" if nats > 0 else "speak against"
-        reasons.append(_kind_reason(item, "box", nats, f"its place and size in the photo {fits} a {kind}"))
+        reasons.append(_kind_reason(item, "box", nats, f"its place and size in the photo {fits} {with_article(kind)}"))
     return reasons
 
 

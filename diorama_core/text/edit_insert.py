@@ -10,12 +10,13 @@ import numpy as np
 from diorama_core.editing.positioning import Positioner
 from diorama_core.editing.relations import SEATS, Relation
 from diorama_core.errors import EditRefused
+from diorama_core.library.labels import with_article
 from diorama_core.library.record import Shape, ShapeLibrary, record_of
 from diorama_core.library.taxonomy import having
 from diorama_core.scene import edits
 from diorama_core.scene.types import Pose, Scene, SceneObject
 from diorama_core.text.edit_looks import looking_like
-from diorama_core.text.edit_outcome import Done, with_article
+from diorama_core.text.edit_outcome import Done
 from diorama_core.text.edit_places import lifted_onto, missed_notes
 from diorama_core.text.edit_plan import Insert
 from diorama_core.text.looks import fitting_shapes

@@ -9,12 +9,13 @@ import numpy as np
 
 from diorama_core.editing.positioning import Positioner
 from diorama_core.errors import EditRefused
+from diorama_core.library.labels import with_article
 from diorama_core.library.language import size_request
 from diorama_core.library.record import Shape, ShapeLibrary, record_of
 from diorama_core.scene import edits
 from diorama_core.scene.room_edits import set_surface_finish
 from diorama_core.scene.types import Candidate, Pose, Scene, SceneObject, SurfaceFinish
-from diorama_core.text.edit_outcome import Done, names_of, with_article
+from diorama_core.text.edit_outcome import Done, names_of
 from diorama_core.text.edit_places import freed
 from diorama_core.text.edit_plan import Paint
 from diorama_core.text.looks import fitting_shapes, has_look, is_made_of, look_of, nearest_in_size, scale_into

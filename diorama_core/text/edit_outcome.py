@@ -24,8 +24,3 @@ class Done:
 def names_of(scene: Scene, ids: Sequence[str]) -> str:
     """The labels of objects in a row."""
     return ", ".join(scene.object(i).label for i in ids)
-
-
-def with_article(words: str) -> str:
-    """Words with "a" or "an" before them."""
-    return f"{'an' if words[:1] in 'aeiou' else 'a'} {words}"

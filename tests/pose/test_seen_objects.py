@@ -37,8 +37,8 @@ def test_outlines_count_as_much_as_their_masks_are_trusted() -> None:
 
 
 def test_only_what_comes_in_sets_or_is_not_surely_outlined_may_have_agreed_on_a_shape() -> None:
-    assert not table(measured=False).may_have_agreed
-    assert table(measured=False, trust=0.9).may_have_agreed
+    assert not replace(table(measured=False), category="bookshelf").may_have_agreed
+    assert replace(table(measured=False, trust=0.9), category="bookshelf").may_have_agreed
     assert replace(table(measured=False), category="chair").may_have_agreed
 
 

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from diorama_core.text.edit_outcome import names_of, with_article
+from diorama_core.library.labels import with_article
+from diorama_core.text.edit_outcome import names_of
 from tests.text.edited import living_room
 
 

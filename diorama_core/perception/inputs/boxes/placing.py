@@ -128,10 +128,11 @@ def _others(corners: list[Corners], photo: DecodedPhoto, ambiguous: bool) -> Ite
         note = "the four numbers of the boxes are x, y, width, height: so they agree with the picture"
         yield _Reading(sized, note)
     yield from _stored(corners, photo)
+    largest = 1.0 if _fits(corners, photo) else np.inf  # boxes of a larger copy reach beyond the photo
     for scale in sorted({*FRACTIONS, *(side / max(width, height) for side in LONG_SIDES)}):
         # A copy's pixels are whole: sizes that the same scale does not give are no copy of this photo.
         size = round(width * scale), round(height * scale)
-        if abs(scale - 1.0) > ASPECT_TOLERANCE and min(size) >= 32 and _ends(corners, *size):
+        if scale <= largest and abs(scale - 1.0) > ASPECT_TOLERANCE and min(size) >= 32 and _ends(corners, *size):
             extent = "x < {:.0f} %, y < {:.0f} %".format(*_extent_percent(corners, width, height))
             note = (
                 f"all boxes lie in {extent} of the picture, and agree with it as those of a copy of "

@@ -113,3 +113,13 @@ def test_things_say_that_a_photo_is_upside_down() -> None:
     assert not is_upside_down(boxes, HEIGHT)
     assert is_upside_down(turned, HEIGHT)
     assert not is_upside_down(turned[2:3], HEIGHT)
+
+
+def test_boxes_that_fit_the_photo_are_of_no_larger_copy() -> None:
+    grey = np.full((HEIGHT, WIDTH, 3), 128, np.uint8)
+    blank = DecodedPhoto(Photo(grey, "p.png", (WIDTH, HEIGHT)), PhotoFrame((WIDTH, HEIGHT)))
+    for photo in (painted(), blank):
+        inset = [(x1 + 7, y1 + 9, x2 - 11, y2 - 5) for x1, y1, x2, y2 in THINGS]
+        corners, notes = placed_boxes("boxes", file_of(inset), photo)
+        assert corners == [tuple(map(float, b)) for b in inset]
+        assert notes == ()
