@@ -18,7 +18,7 @@ QUARTERS = {3: 2, 6: 1, 8: 3}
 def quarters_of(path: Path) -> int:
     """Clockwise quarter turns that a picture's header asks for; 0 where it has no header."""
     try:
-        with Image.open(path) as picture:
+        with Image.open(path, formats=("JPEG", "PNG", "WEBP", "TIFF", "MPO", "HEIF")) as picture:
             return QUARTERS.get(int(picture.getexif().get(ORIENTATION, 1)), 0)
     except (OSError, ValueError, SyntaxError, Image.DecompressionBombError):
         return 0
