@@ -82,7 +82,12 @@ def test_a_build_is_shown_from_memory_and_its_scene_written_once(
     save = Project.save_scene
     for name in ("load_inputs", "load_scene", "texture", "textures"):
         monkeypatch.setattr(Project, name, lambda project, *given, name=name: read.append(name))
-    monkeypatch.setattr(Project, "save_scene", lambda project, scene: (written.append(scene), save(project, scene))[1])
+
+    def saved(project: Project, scene: Scene) -> bool:
+        written.append(scene)
+        return save(project, scene)
+
+    monkeypatch.setattr(Project, "save_scene", saved)
     start_build(session, Inputs(plain_photo()), "Building", "build the scene")
     until(lambda: session.scene is built.scene and session.jobs.status is None)
     session.autosave.flush()
