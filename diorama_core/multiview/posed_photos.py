@@ -153,7 +153,7 @@ def _size_of(folder: Path, name: str, pictures: Sequence[Path]) -> tuple[int, in
     named = [p for p in pictures if p.name == plain.name or p.stem == plain.stem or p.stem == plain.name]
     for path in (*named, *beside):
         try:
-            with Image.open(path) as opened:
+            with Image.open(path, formats=("JPEG", "PNG", "WEBP", "TIFF", "MPO", "HEIF")) as opened:
                 width, height = opened.size
         except (OSError, ValueError, SyntaxError, Image.DecompressionBombError):
             continue
