@@ -24,7 +24,7 @@ MIRRORS: tuple[Mirror, ...] = (
 
 @dataclass(frozen=True)
 class CompletionSettings:
-    """Numbers of `completion`."""
+    """How a partly seen picture is completed."""
 
     min_overlap: float = 0.12
     """Share of a picture that must be seen together with its mirror image to tell whether they are alike."""

@@ -39,7 +39,7 @@ ROUGHNESS: Mapping[str, float] = {"screen": 0.2, "pane": 0.1, "picture": 0.6, "d
 
 @dataclass(frozen=True)
 class FlatFaceSettings:
-    """Numbers of `flat_faces`."""
+    """Which flat objects get the photo as their surface."""
 
     upright: float = 1.15
     lying: float = 0.35

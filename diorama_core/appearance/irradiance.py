@@ -26,7 +26,7 @@ EFFORT = Effort(window_rays=2, sky_rays=3)
 
 @dataclass(frozen=True)
 class IrradianceSettings:
-    """Numbers of `irradiance`."""
+    """How the light on each surface is estimated."""
 
     longest_px: int = 320
     darkest: float = 0.45

@@ -23,7 +23,7 @@ SHINING = 190
 
 @dataclass(frozen=True)
 class EstimatedLightSettings:
-    """Numbers of `light`."""
+    """How the room's main light is found."""
 
     level_sigma: float = 0.25
     upright_sigma: float = 0.1

@@ -17,7 +17,7 @@ from diorama_core.io.srgb import srgb_to_linear
 
 @dataclass(frozen=True)
 class LitColourSettings:
-    """Numbers of `lit_colour`."""
+    """Which of several colours of a surface is its material."""
 
     lighter_l: float = 14.0
     """Of two colours the lighter one is so much lighter at least."""

@@ -17,7 +17,7 @@ from diorama_core.appearance.surface_view import SurfaceView
 
 @dataclass(frozen=True)
 class PlainnessSettings:
-    """Numbers of `plainness`."""
+    """When a surface counts as plain."""
 
     fine: float = 2.0
     """Detail is what a blur of so many cells takes away."""

@@ -43,7 +43,7 @@ MIN_LINEAR, MAX_LINEAR = 0.015, 0.9
 
 @dataclass(frozen=True)
 class SurfaceMaterialSettings:
-    """Numbers of `surface_materials`."""
+    """How materials are estimated from pixels."""
 
     plain_px: int = 4
     """Sides of the picture of a plain surface."""

@@ -14,7 +14,7 @@ from diorama_core.architecture.texture.quilting import broad_shading, detail_con
 
 @dataclass(frozen=True)
 class TextureExampleSettings:
-    """Numbers of `texture_example`."""
+    """Which piece of the photo is a texture example."""
 
     min_radius_px: int = 12
     max_radius_px: int = 90

@@ -23,7 +23,7 @@ from diorama_core.scene.types import Architecture, Plane, Scene, SceneObject, Su
 
 @dataclass(frozen=True)
 class RoomExtentSettings:
-    """Numbers of `room_extent`."""
+    """How far floor and walls are extended."""
 
     margin_m: float = 0.01
     """Left around what stands on the floor."""

@@ -18,7 +18,7 @@ from diorama_core.scene.values import ArrayValue
 
 @dataclass(frozen=True)
 class PaletteSettings:
-    """Numbers of `palettes`."""
+    """How colours are grouped and compared."""
 
     lightness_weight: float = 0.5
     bin: float = 24.0

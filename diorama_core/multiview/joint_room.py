@@ -29,7 +29,7 @@ SAME_COSINE = float(np.cos(np.radians(8.0)))
 
 @dataclass(frozen=True)
 class JointRoomSettings:
-    """Numbers of `joint_room`."""
+    """When walls of several photos are one wall."""
 
     same_m: float = 0.25
     same_share: float = 0.08

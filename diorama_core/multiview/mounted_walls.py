@@ -21,7 +21,7 @@ from diorama_core.scene.types import Architecture, Plane, Scene, yaw_rotation
 
 @dataclass(frozen=True)
 class MountedWallsSettings:
-    """Numbers of `mounted_walls`."""
+    """When a wall is moved to what hangs on it."""
 
     reach_m: float = 0.4
     """So far may a wall be from the backs of what hangs on it."""

@@ -32,7 +32,7 @@ DepthAlong = Callable[[Camera, Float[np.ndarray, "n 2"]], Float[np.ndarray, "n"]
 
 @dataclass(frozen=True)
 class RegistrationSettings:
-    """Numbers of `registration`."""
+    """How a further photo is matched to a scene."""
 
     near_share: float = 0.025
     """Of the photo's width: so near to its pixel a point of the scene's surfaces is projected where these are right."""

@@ -25,7 +25,7 @@ _STATISTICS_SIGMA, _WALLS_SIGMA = np.array([0.28, 0.15]), np.array([0.20, 0.10])
 
 @dataclass(frozen=True)
 class IlluminantSettings:
-    """Numbers of `illuminant`."""
+    """How the colour of the light is estimated."""
 
     side_px: int = 160
     norm: float = 6.0

@@ -23,7 +23,7 @@ CERTAIN = 0.02
 
 @dataclass(frozen=True)
 class BoxViewSettings:
-    """Numbers of `box_views`."""
+    """Distances and noise of the simulated boxes."""
 
     foot_sigma_m: float = 0.05
     foot_sigma_share: float = 0.06

@@ -25,7 +25,7 @@ Box = tuple[float, float, float, float]
 
 @dataclass(frozen=True)
 class KindsTogetherSettings:
-    """Numbers of `kinds_together`."""
+    """Weights of the joint decision of kinds."""
 
     lies_on_it: float = 0.4
     """How likely a thing with its foot in a larger box lies on what is there, and does not stand before or behind

@@ -13,7 +13,7 @@ from diorama_core.library.kind_sizes import size_density
 
 @dataclass(frozen=True)
 class MeasuredSizeSettings:
-    """Numbers of `measured_sizes`."""
+    """Noise of measured sizes."""
 
     sigma: float = 0.3
     """Of the logarithms of a size measured in a photo."""

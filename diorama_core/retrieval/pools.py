@@ -26,7 +26,7 @@ RELATED: Mapping[str, tuple[str, ...]] = column("related")
 
 @dataclass(frozen=True)
 class PoolSettings:
-    """Numbers of `pools`."""
+    """How many shapes are looked at."""
 
     enough: int = 4
     related_factor: float = 0.6

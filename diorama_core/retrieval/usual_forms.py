@@ -50,7 +50,7 @@ OUTLINE_FEATURES, SIDE_FEATURES, LEGS_FEATURES = "outline-2", "side-1", "legs-1"
 
 @dataclass(frozen=True)
 class UsualFormSettings:
-    """Numbers of `usual_forms`."""
+    """How much a usual form counts."""
 
     min_pane: float = 0.02
     """Share of the outline that a pane of a mirror has at least."""

@@ -29,7 +29,7 @@ from diorama_core.scene.types import Intrinsics
 
 @dataclass(frozen=True)
 class WordSenseSettings:
-    """Numbers of `word_senses`."""
+    """Weights of place and size in the meaning of a word."""
 
     usual_height_m: float = 1.45
     height_sigma_m: float = 0.3

@@ -21,7 +21,7 @@ MIN_POINTS = 200
 
 @dataclass(frozen=True)
 class PlaneClusterSettings:
-    """Numbers of `clusters`."""
+    """How points are parted into planar pieces."""
 
     voxel_m: float = 0.05
     outlier_neighbours: int = 200

@@ -26,7 +26,7 @@ from diorama_core.scene.types import Camera
 
 @dataclass(frozen=True)
 class LayoutRefinementSettings:
-    """Numbers of `refinement`."""
+    """When the layout is refined by a hidden wall."""
 
     max_rounds: int = 3
     min_error_m: float = 0.01

@@ -27,7 +27,7 @@ LAB_BINS = np.array([16.0, 5.0, 5.0])
 
 @dataclass(frozen=True)
 class LevelViewSettings:
-    """Numbers of `level_view`."""
+    """Resolution and range of the level view."""
 
     headings: int = 144
     slopes: int = 160

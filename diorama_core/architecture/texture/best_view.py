@@ -30,7 +30,7 @@ from diorama_core.scene.types import Architecture
 
 @dataclass(frozen=True)
 class BestViewSettings:
-    """Numbers of `best_view`."""
+    """How photos are weighted by how well they see a texel."""
 
     min_common: int = 200
     """Texels from which on two photos are compared."""

@@ -20,7 +20,7 @@ from diorama_core.architecture.texture.quilting import (
 
 @dataclass(frozen=True)
 class ContinuationSettings:
-    """Numbers of `continuation`."""
+    """How a surface's picture is continued where it was not seen."""
 
     fade_m: float = 1.2
     """Far from what is seen, shading fades to the plane's plain colour over this length."""

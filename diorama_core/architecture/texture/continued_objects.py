@@ -29,7 +29,7 @@ _EVEN_LAB = np.array([8.0, 5.0, 5.0])
 
 @dataclass(frozen=True)
 class ContinuedObjectSettings:
-    """Numbers of `continued_objects`."""
+    """How far an object is followed beyond its mask."""
 
     min_cell_share: float = 0.03
     """Of an object's pixels: rarer colours are of what shines through it or stands beside it."""

@@ -34,7 +34,7 @@ _LIT_LAB = np.array([16.0, 17.5, 17.5])
 
 @dataclass(frozen=True)
 class FloorMaterialSettings:
-    """Numbers of `floor_material`."""
+    """When a texel is floor."""
 
     cells_tried: int = 8
     core: float = 0.5

@@ -18,7 +18,7 @@ from diorama_core.architecture.texture.wide_blur import wide_blur
 
 @dataclass(frozen=True)
 class LevelLightSettings:
-    """Numbers of `level_light`."""
+    """How the photo's light is taken out of a floor."""
 
     fine_m: float = 0.03
     pattern_m: float = 0.25

@@ -19,7 +19,7 @@ SNAP_RAD = np.deg2rad(4.0)
 
 @dataclass(frozen=True)
 class CeilingsSettings:
-    """Numbers of `ceilings`."""
+    """When measured points are a ceiling."""
 
     min_flat_share: float = 0.004
     """A ceiling counts as seen when this share of the measured points lies on it."""

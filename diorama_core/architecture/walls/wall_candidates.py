@@ -22,7 +22,7 @@ MIN_RISE_M = 0.4
 
 @dataclass(frozen=True)
 class WallCandidatesSettings:
-    """Numbers of `wall_candidates`."""
+    """When a vertical plane may be a wall."""
 
     axis_share: float = 0.85
     """when at least this share of what lies on the freely turned line lies on the one along the axis too, within"""

@@ -20,7 +20,7 @@ from diorama_core.architecture.walls.wall_candidates import MIN_RISE_M, WallCand
 
 @dataclass(frozen=True)
 class WallPathSettings:
-    """Numbers of `wall_path`."""
+    """Costs of the path of walls."""
 
     heading_bins: int = 180
     full_evidence: float = 0.08

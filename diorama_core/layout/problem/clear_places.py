@@ -24,7 +24,7 @@ Room = tuple[Float[np.ndarray, "k 2"], float, float]
 
 @dataclass(frozen=True)
 class ClearPlacesSettings:
-    """Numbers of `clear_places`."""
+    """How parts are cut back from places."""
 
     rises_m: tuple[float, float] = (0.002, 0.01)
     """What rises less above a place is below what rests there: above flat places, and above those that are hardly

@@ -17,7 +17,7 @@ _MM_PER_UNIT = {2: 25.4, 3: 10.0, 4: 1.0, 5: 0.001}
 
 @dataclass(frozen=True)
 class ExifSettings:
-    """Numbers of `exif`."""
+    """Which focal lengths of a header are believed."""
 
     focal_length: int = 0x920A
     focal_length_35mm: int = 0xA405

@@ -22,7 +22,7 @@ NORMAL_NOISE_RAD = float(np.deg2rad(3.0))
 
 @dataclass(frozen=True)
 class GravityDepthSettings:
-    """Numbers of `gravity_depth`."""
+    """How gravity and height are fitted to depth."""
 
     working_side_px: int = 240
     """Depth is read at no more than so many pixels a side; planes need no more."""

@@ -17,7 +17,7 @@ MIN_SIZE_M = 0.02
 
 @dataclass(frozen=True)
 class MeasuredBoxSettings:
-    """Numbers of `boxes`."""
+    """How boxes are fitted to measured points."""
 
     manhattan_gain: float = 0.85
     """A box turned away from the room's axes must have less than this share of the straight box's area."""
