@@ -60,14 +60,15 @@ def _string(data: bytes) -> tuple[str, bytes]:
 
 
 def _material(data: bytes) -> tuple[str, tuple[float, ...]]:
-    name, colour = "", GREY
+    name = ""
+    colour: tuple[float, ...] = GREY
     for kind, body in _chunks(data):
         if kind == NAME:
             name = _string(body)[0]
         elif kind == DIFFUSE:
             for inner, value in _chunks(body):
                 if inner in COLOUR_BYTES:
-                    colour = tuple(v / 255.0 for v in value[:3])  # type: ignore[assignment]
+                    colour = tuple(v / 255.0 for v in struct.unpack_from("<3B", value))
                 elif inner in COLOUR_FLOATS:
                     colour = struct.unpack_from("<3f", value)
     return name, colour

@@ -11,6 +11,7 @@ from diorama_core.errors import InputError
 from diorama_core.io.bounded import parse_json, shortened
 from diorama_core.perception.inputs.boxes.dictionaries import box_of, score_of, word_of
 from diorama_core.perception.inputs.boxes.entry import UNNAMED, BoxEntry, BoxFile, BoxText, Size
+from diorama_core.perception.inputs.json_values import objects_of, size_of
 
 _RESULT_KEYS = frozenset({"image_id", "category_id", "area", "iscrowd", "segmentation"})
 MAX_CATEGORY_BYTES = 64_000_000
@@ -19,7 +20,7 @@ MAX_CATEGORY_BYTES = 64_000_000
 def is_data_set(text: BoxText) -> bool:
     """A JSON object with annotations and the images or categories that they belong to."""
     document = text.document
-    if not isinstance(document, dict) or not _dicts(document.get("annotations")):
+    if not isinstance(document, dict) or not objects_of(document.get("annotations")):
         return False
     return "images" in document or "categories" in document
 
@@ -36,14 +37,12 @@ def read_data_set(text: BoxText) -> BoxFile:
 
 def is_results(text: BoxText) -> bool:
     """A JSON list of boxes with keys that only COCO has."""
-    rows = text.document
-    return isinstance(rows, list) and _dicts(rows) and any("bbox" in r and _RESULT_KEYS & r.keys() for r in rows)
+    return any("bbox" in r and _RESULT_KEYS & r.keys() for r in objects_of(text.document))
 
 
 def read_results(text: BoxText) -> BoxFile:
     """The boxes of the photo; their names are in another file, which is looked for beside."""
-    rows: Any = text.document
-    of_photo = _rows_of_photo(rows, text)
+    of_photo = _rows_of_photo(objects_of(text.document), text)
     names = _categories_beside(text)
     file = _read(of_photo, names, text.source.name)
     needs = not names and all(e.word == UNNAMED for e in file.entries)
@@ -93,9 +92,7 @@ def _rows_of_photo(rows: Sequence[Mapping[str, Any]], text: BoxText) -> list[Map
 
 
 def _categories(document: Mapping[str, Any]) -> dict[int, str]:
-    rows = document.get("categories")
-    rows = rows if isinstance(rows, list) else []
-    pairs = [(r.get("id"), r.get("name")) for r in rows if isinstance(r, dict)]
+    pairs = [(r.get("id"), r.get("name")) for r in objects_of(document.get("categories"))]
     return {number: name for number, name in pairs if isinstance(number, int) and isinstance(name, str)}
 
 
@@ -114,11 +111,4 @@ def _categories_beside(text: BoxText) -> dict[int, str]:
 
 
 def _size(image: Mapping[str, Any] | None) -> Size | None:
-    values = (image.get("width"), image.get("height")) if image is not None else ()
-    if len(values) == 2 and all(isinstance(v, int | float) and 1 < v < 1e6 for v in values):
-        return int(values[0]), int(values[1])  # type: ignore[arg-type]
-    return None
-
-
-def _dicts(rows: Any) -> bool:
-    return isinstance(rows, list) and bool(rows) and all(isinstance(r, dict) for r in rows)
+    return None if image is None else size_of(image.get("width"), image.get("height"))

@@ -27,6 +27,7 @@ from diorama_core.perception.inputs.boxes.entry import (
     Unit,
     from_layout,
 )
+from diorama_core.perception.inputs.json_values import objects_of, size_of
 
 _COLUMNS = ("boxes", "bboxes", "predboxes", "xyxy", "detectionboxes", "bbox")
 _COLUMN_WORDS = (
@@ -47,15 +48,12 @@ MAX_NESTING = 4
 
 def is_list(text: BoxText) -> bool:
     """A JSON list of objects with a box each."""
-    rows = text.document
-    if not isinstance(rows, list) or not rows or not all(isinstance(r, dict) for r in rows):
-        return False
-    return any(_has_box(r) for r in rows)
+    return any(_has_box(r) for r in objects_of(text.document))
 
 
 def read_list(text: BoxText) -> BoxFile:
     """The annotations of a list."""
-    return read_entries(text.document, text.source.name)  # type: ignore[arg-type]
+    return read_entries(objects_of(text.document), text.source.name)
 
 
 def read_entries(
@@ -99,14 +97,13 @@ def read_entries(
 
 def is_bare(text: BoxText) -> bool:
     """A JSON list of lists of four numbers or more."""
-    rows = text.document
-    return isinstance(rows, list) and bool(rows) and all(isinstance(r, list) and len(r) >= 4 for r in rows)
+    return bool(_rows_of_four(text.document))
 
 
 def read_bare(text: BoxText) -> BoxFile:
     """Boxes without names; a fifth number is a score, and a word anywhere a name."""
-    entries, rows = [], text.document
-    for index, row in enumerate(rows):  # type: ignore[arg-type, var-annotated]
+    entries = []
+    for index, row in enumerate(_rows_of_four(text.document)):
         words = [v for v in row if isinstance(v, str)]
         values = [v for v in row if not isinstance(v, str)]
         corners = numbers(values[:4], f"{text.source.name}: box {index}")
@@ -130,7 +127,7 @@ def read_columns(text: BoxText) -> BoxFile:
     """
     keys = keys_of(_columns(text.document) or {})
     name = text.source.name
-    boxes: list[Any] = next(keys[k] for k in _COLUMNS if _is_boxes(keys.get(k)))
+    boxes = next(rows for k in _COLUMNS if (rows := _rows_of_four(keys.get(k))))
     words = next((keys[k] for k in _COLUMN_WORDS if isinstance(keys.get(k), list)), None)
     scores = next((keys[k] for k in _COLUMN_SCORES if isinstance(keys.get(k), list)), None)
     for what, column in (("names", words), ("scores", scores)):
@@ -185,9 +182,8 @@ def size_in(document: object) -> Size | None:
         ("width", "height"),
     )
     for w, h in pairs:
-        values = keys.get(w), keys.get(h)
-        if all(isinstance(v, int | float) and not isinstance(v, bool) and 1 < v < 1e6 for v in values):
-            return int(values[0]), int(values[1])  # type: ignore[arg-type]
+        if (size := size_of(keys.get(w), keys.get(h))) is not None:
+            return size
     return None
 
 
@@ -232,8 +228,8 @@ def _lists_in(value: Any, level: int = 0) -> Iterator[tuple[list[dict[str, Any]]
             yield from _lists_in(inner, level + 1)
         return
     for inner in value.values():
-        if isinstance(inner, list) and inner and all(isinstance(r, dict) for r in inner) and any(map(_has_box, inner)):
-            yield [r for r in inner if _has_box(r)], value
+        if rows := [r for r in objects_of(inner) if _has_box(r)]:
+            yield rows, value
         else:
             yield from _lists_in(inner, level + 1)
 
@@ -242,13 +238,14 @@ def _columns(value: object, level: int = 0) -> dict[str, Any] | None:
     if not isinstance(value, dict) or level > 2:
         return None
     keys = keys_of(value)
-    if any(_is_boxes(keys.get(k)) for k in _COLUMNS):
+    if any(_rows_of_four(keys.get(k)) for k in _COLUMNS):
         return value
     return next((c for v in value.values() if (c := _columns(v, level + 1)) is not None), None)
 
 
-def _is_boxes(value: object) -> bool:
-    return isinstance(value, list) and bool(value) and all(isinstance(r, list) and len(r) >= 4 for r in value)
+def _rows_of_four(value: object) -> list[list[Any]]:
+    """The rows of a list of lists with four entries or more each; none where it is something else."""
+    return value if isinstance(value, list) and all(isinstance(r, list) and len(r) >= 4 for r in value) else []
 
 
 def _keys(row: Mapping[str, Any]) -> str:

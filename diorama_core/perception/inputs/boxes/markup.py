@@ -8,13 +8,13 @@ from xml.etree.ElementTree import Element
 from diorama_core.errors import InputError
 from diorama_core.io.bounded import shortened
 from diorama_core.perception.inputs.boxes.dictionaries import box_of, numbers
-from diorama_core.perception.inputs.boxes.entry import UNNAMED, BoxEntry, BoxFile, BoxText, Corners, Size
+from diorama_core.perception.inputs.boxes.entry import UNNAMED, BoxEntry, BoxFile, BoxText, Corners
+from diorama_core.perception.inputs.json_values import size_of
 
 
 def is_voc(text: BoxText) -> bool:
     """Objects with a `bndbox` under `annotation`."""
-    root = text.document
-    return isinstance(root, Element) and root.tag == "annotation"
+    return isinstance(text.document, Element) and text.document.tag == "annotation"
 
 
 def read_voc(text: BoxText) -> BoxFile:
@@ -23,7 +23,7 @@ def read_voc(text: BoxText) -> BoxFile:
     Raises:
         InputError: a box has no four numbers.
     """
-    root: Element = text.document  # type: ignore[assignment]
+    root = _root(text)
     entries = []
     for index, item in enumerate(root.iter("object")):
         box = item.find("bndbox")
@@ -37,7 +37,7 @@ def read_voc(text: BoxText) -> BoxFile:
         if corners is not None:
             entries.append(BoxEntry(corners, (item.findtext("name") or UNNAMED)[:200]))
     size = root.find("size")
-    stated = None if size is None else _size(size.findtext("width"), size.findtext("height"))
+    stated = None if size is None else size_of(_number(size.findtext("width")), _number(size.findtext("height")))
     return BoxFile(tuple(entries), stated)
 
 
@@ -55,7 +55,7 @@ def read_cvat(text: BoxText) -> BoxFile:
     Raises:
         InputError: of several pictures none is the photo, or a box has no four numbers.
     """
-    root: Element = text.document  # type: ignore[assignment]
+    root = _root(text)
     image = _image_of(root.findall("image"), text)
     figures: list[tuple[str, Element]] = []
     if image is not None:
@@ -68,9 +68,15 @@ def read_cvat(text: BoxText) -> BoxFile:
         corners = _figure(figure, f"{text.source.name}: figure {index}")
         if corners is not None:
             entries.append(BoxEntry(corners, word[:200]))
-    stated = _size(image.get("width"), image.get("height")) if image is not None else None
-    of_video = _size(root.findtext(".//original_size/width"), root.findtext(".//original_size/height"))
-    return BoxFile(tuple(entries), stated or of_video)
+    stated = size_of(_number(image.get("width")), _number(image.get("height"))) if image is not None else None
+    width, height = (_number(root.findtext(f".//original_size/{side}")) for side in ("width", "height"))
+    return BoxFile(tuple(entries), stated or size_of(width, height))
+
+
+def _root(text: BoxText) -> Element:
+    if not isinstance(text.document, Element):
+        raise InputError(f"{text.source.name}: this is no XML; export the annotations again")
+    return text.document
 
 
 def _figure(figure: Element, where: str) -> Corners | None:
@@ -100,8 +106,3 @@ def _number(word: str | None) -> float | None:
         return float(word or "")
     except ValueError:
         return None
-
-
-def _size(width: str | None, height: str | None) -> Size | None:
-    w, h = _number(width), _number(height)
-    return (int(w), int(h)) if w is not None and h is not None and 1 < w < 1e6 and 1 < h < 1e6 else None

@@ -192,7 +192,8 @@ def _fits(corners: Sequence[Corners], photo: DecodedPhoto) -> bool:
 def _in_photo(corners: Sequence[Corners], photo: DecodedPhoto) -> list[Corners]:
     left, top = photo.frame.margins[:2]
     scale = photo.photo.width / photo.frame.inner_size[0]
-    return [tuple((v - m) * scale for v, m in zip(c, (left, top, left, top), strict=True)) for c in corners]  # type: ignore[misc]
+    moved = [(x1 - left, y1 - top, x2 - left, y2 - top) for x1, y1, x2, y2 in corners]
+    return _scaled(moved, scale, scale)
 
 
 def _scaled(corners: Sequence[Corners], across: float, down: float) -> list[Corners]:

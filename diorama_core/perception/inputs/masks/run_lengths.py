@@ -9,6 +9,7 @@ import numpy as np
 from jaxtyping import Bool
 
 from diorama_core.errors import InputError
+from diorama_core.perception.inputs.json_values import whole_numbers
 from diorama_core.perception.inputs.masks.pictures import MAX_MASK_MEGAPIXELS
 
 
@@ -20,9 +21,9 @@ def decoded_runs(segment: Mapping[str, Any], name: str) -> Bool[np.ndarray, "h w
     """
     size, counts = segment.get("size"), segment.get("counts")
     try:
-        height, width = (int(n) for n in size)  # type: ignore[union-attr]
-        runs = _unpacked(counts) if isinstance(counts, str) else [int(n) for n in counts]  # type: ignore[union-attr]
-    except (TypeError, ValueError, OverflowError):
+        height, width = whole_numbers(size)
+        runs = _unpacked(counts) if isinstance(counts, str) else whole_numbers(counts)
+    except (ValueError, OverflowError):
         raise InputError(f"{name}: its run lengths are damaged; export the masks again") from None
     if height <= 0 or width <= 0 or height * width > MAX_MASK_MEGAPIXELS * 1_000_000:
         raise InputError(f"{name}: masks of {width} x {height} pixels are no usable size; give those of the photo")
