@@ -45,7 +45,7 @@ class WordEdits:
                 proposed = propose_edits(
                     said,
                     scene,
-                    session.library,
+                    session.offered,
                     selected=client.selection,
                     language_model=settings,
                     progress=progress,

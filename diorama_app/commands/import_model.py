@@ -2,19 +2,24 @@
 
 from __future__ import annotations
 
+import hashlib
 import tempfile
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from diorama_app.commands.insert import start_placing
 from diorama_app.commands.swap import candidate_for, swapped
 from diorama_app.session.client import Client
 from diorama_app.session.session import EditorSession
 from diorama_core.errors import EditRefused, InputError
-from diorama_core.library.user_library import OWN, UserLibrary
+from diorama_core.library.user_library import UserLibrary
 from diorama_core.progress import Progress
-from diorama_core.project.storage import Project
 from diorama_core.scene.types import Scene
+
+if TYPE_CHECKING:
+    from diorama_core.library.ingest.shaping import Source
 
 
 def import_model(client: Client, name: str, content: bytes) -> None:
@@ -29,8 +34,6 @@ def import_model(client: Client, name: str, content: bytes) -> None:
         shape_id = _taken_in(user_library, file_name, content, progress)
 
         def show() -> None:
-            if session.project is not None and not session.read_only:
-                _note_library(session.project)
             client.toast(f"{file_name} is in the library", False)
             start_placing(client, shape_id)
 
@@ -40,7 +43,7 @@ def import_model(client: Client, name: str, content: bytes) -> None:
 
 
 def _taken_in(user_library: UserLibrary, name: str, content: bytes, progress: Progress) -> str:
-    from diorama_core.library.ingest.adding import add_models, model_files, sources
+    from diorama_core.library.ingest.adding import add_models, model_files, slug, sources
     from diorama_core.library.ingest.guess import Given
     from diorama_core.workers import workers
 
@@ -52,12 +55,26 @@ def _taken_in(user_library: UserLibrary, name: str, content: bytes, progress: Pr
                 skipped[0].reason if skipped else "this file is not a readable 3D model; upload a GLB, OBJ, PLY or STL"
             )
             raise InputError(f"{name}: {reason}")
-        found = sources(Path(folder), paths, Given(), {})
-        library = user_library.own()
-        report = add_models(found, library, workers(None, 1), progress=progress)
+        # By its content: another file of the same name must not take the place of one that scenes hold.
+        content_id = f"{slug(Path(name).stem)}-{hashlib.sha256(content).hexdigest()[:8]}"
+        found = sources(Path(folder), paths, Given(), {}, {paths[0]: content_id})
+        have = {shape.id for shape in user_library.own().shapes()}
+        new = [source for source in found if source.id not in have]
+        report = add_models(new, user_library.own(), workers(None, 1), progress=progress)
         if report.failed:
             raise InputError(f"{name}: {report.failed[0].reason}")
-        return report.added[0] if report.added else found[0].id
+        _note_names(user_library, found, Path(name).stem)
+        return found[0].id
+
+
+def _note_names(user_library: UserLibrary, found: Sequence[Source], stem: str) -> None:
+    """Each model has its file's name until its owner gives another; one added again is deleted no more."""
+    models = user_library.own_models
+    for source in found:
+        models = models.restored(source.id)
+        if source.id not in models.names:
+            models = models.named(source.id, Path(source.member).stem or stem)
+    user_library.keep_order(models)
 
 
 @dataclass(frozen=True)
@@ -124,10 +141,4 @@ def correct_model(client: Client, object_id: str, fix: Fix | None = None, *, cat
     except EditRefused:
         own.remove([record.id])
         raise
-
-
-def _note_library(project: Project) -> None:
-    """Commands that open this project must find the shape too."""
-    named = str(project.info().get("library", "built-in"))
-    if OWN not in named.split("+"):
-        project.update_info(library=f"{named}+{OWN}")
+    user_library.keep_order(user_library.own_models.superseded(item.shape_id, record.id))

@@ -83,7 +83,7 @@ class Alternatives:
 
     def _similar(self, item: SceneObject) -> str:
         """For what was inserted by hand: the library's shapes of its category, most alike in size first."""
-        same = self._client.session.library.in_category(item.category)
+        same = self._client.session.offered.in_category(item.category)
         size = np.sort(np.asarray(item.size_m))
         near = sorted(same, key=lambda s: float(np.abs(np.log(np.sort(np.asarray(s.size_m)) / size)).sum()))
         if len(near) < 2:
@@ -92,7 +92,7 @@ class Alternatives:
         return f'<h4>Alternatives — click to swap</h4><div class="grid">{tiles}</div>'
 
     def _found(self, item: SceneObject, words: str) -> str:
-        found = search(self._client.session.library, words, k=SHOWN)
+        found = search(self._client.session.offered, words, k=SHOWN)
         if not found:
             return f"<p class='dim'>Nothing in the library matches “{text(words)}”. Try another word.</p>"
         return f'<div class="grid">{"".join(self._shape(item, s) for s in found)}</div>'

@@ -11,6 +11,7 @@ import viser
 from diorama_app.commands.import_model import import_model
 from diorama_app.commands.insert import insert_shape, start_placing, toggle_favourite
 from diorama_app.panels.fields import on_change
+from diorama_app.panels.own_shelf import OwnShelf
 from diorama_app.panels.upload_field import UploadField
 from diorama_app.session.client import Client, Placing
 from diorama_app.session.units import format_size
@@ -48,6 +49,7 @@ class LibraryPanel:
     def __init__(self, gui: viser.GuiApi, client: Client) -> None:
         self._client = client
         self._filters = Filters()
+        self._mine = OwnShelf(client)
         self._most = SHOWN
         self._words = gui.add_text("Search", "", hint="For example: armchair, round table, blue")
         on_change(self._words, lambda v: client.post(self._searched, key="search"))
@@ -74,21 +76,27 @@ class LibraryPanel:
         words, shapes = self._words.value.strip(), self._client.session.library.shapes()
         scene = self._client.session.scene if self._filters.any or words else None
         recent = preferences.recent if self._filters.shelf == "recent" else ()
-        drawn = (words, preferences.unit, shapes, self._filters, self._most, preferences.favourites, recent)
+        mine = self._mine.models
+        drawn = (words, preferences.unit, shapes, self._filters, self._most, preferences.favourites, recent, mine)
         if drawn == self._drawn and scene is self._drawn_of:
             return  # a hundred tiles, the same as before
         self._drawn, self._drawn_of = drawn, scene
         self._choices.show(self._drawn_choices(shapes))
         found = self._found(words, shapes)
-        tiles = "".join(self._tile(shape, told=scene is not None) for shape in found[: self._most])
+        on_own_shelf = self._filters.shelf == "own"
+
+        def tile(shape: Shape) -> str:
+            return self._tile(shape, told=scene is not None, own=on_own_shelf)
+
+        shown = found[: self._most]
+        tiles = self._mine.in_folders(shown, tile) if on_own_shelf else "".join(map(tile, shown))
+        tiles = tiles if on_own_shelf or not tiles else f'<div class="grid two">{tiles}</div>'
         more = button(f"{len(found) - self._most} more", "more") if len(found) > self._most else ""
         unknown = f"Nothing in the library matches “{text(words)}”. Try another word."
         nothing = unknown if words and not self._filters.any else EMPTY[self._filters.shelf]
-        self._html.show(
-            f'<div class="grid two">{tiles}</div><div class="bar" style="margin-top:6px">{more}</div>'
-            if tiles
-            else f"<p class='dim'>{nothing}</p>"
-        )
+        below = f'{tiles}<div class="bar" style="margin-top:6px">{more}</div>'
+        head = self._mine.head() if on_own_shelf else ""
+        self._html.show(head + (below if tiles else f"<p class='dim'>{nothing}</p>"))
 
     def _drawn_choices(self, shapes: tuple[Shape, ...]) -> str:
         chosen = self._filters
@@ -111,14 +119,20 @@ class LibraryPanel:
         library = session.library
         if words:
             shapes = tuple(search(library, words, k=SEARCHED if self._filters.any else SHOWN))
-        elif not self._filters.any:
+        deleted = self._mine.models.deleted
+        shapes = tuple(s for s in shapes if s.id not in deleted)
+        if words and not self._filters.any:
+            return shapes
+        if not self._filters.any:
             return one_of_each(shapes)
         return browsed(
             shapes,
             self._filters,
             favourites=preferences.favourites,
             recent=preferences.recent,
-            own=library.has_own if isinstance(library, UserLibrary) else lambda shape_id: False,
+            own=frozenset(s.id for s in library.uploads()).__contains__
+            if isinstance(library, UserLibrary)
+            else lambda shape_id: False,
             has_place=self._has_place,
         )
 
@@ -134,9 +148,9 @@ class LibraryPanel:
             self._without_place[shape.id] = not self._free.has_place_for(shape)
         return not self._without_place[shape.id]
 
-    def _tile(self, shape: Shape, *, told: bool) -> str:
+    def _tile(self, shape: Shape, *, told: bool, own: bool) -> str:
         size, preferences = shape.size_m, self._client.preferences
-        name = text(shape.caption or shape.category)
+        name = text(self._mine.models.names.get(shape.id) or shape.caption or shape.category)
         about = text(format_size(size[1], size[0], size[2], preferences.unit))
         too_large = told and not self._has_place(shape)
         marked = shape.id in preferences.favourites
@@ -152,7 +166,9 @@ class LibraryPanel:
             '<div class="bar" style="margin:4px 0 0 0">'
             + button("Insert", "insert", shape.id, title=f"Insert: {shape.caption}")
             + button("Place", "place", shape.id, title="Then click where to place it")
-            + "</div></div>"
+            + "</div>"
+            + (self._mine.fields(shape) if own else "")
+            + "</div>"
         )
 
     def _searched(self) -> None:
@@ -172,6 +188,8 @@ class LibraryPanel:
             toggle_favourite(client, action.arg)
         elif action.do == "more":
             self._most += SHOWN
+            self.refresh()
+        elif self._mine.do(action):
             self.refresh()
         else:
             chosen = action.pair[1]

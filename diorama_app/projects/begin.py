@@ -4,15 +4,21 @@ from __future__ import annotations
 
 import re
 import shutil
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from pathlib import Path
 
 import numpy as np
 from jaxtyping import UInt8
 
-from diorama_core.errors import InputError
+from diorama_core.errors import InputError, LibraryError, ProjectError
+from diorama_core.library.library_names import BUILT_IN
+from diorama_core.library.record import ShapeLibrary
+from diorama_core.library.store import CombinedLibrary, StoredLibrary
+from diorama_core.library.user_library import OWN, ShapeRecords, UserLibrary
 from diorama_core.perception.inputs import ReadInputs
-from diorama_core.project.storage import Project
+from diorama_core.project.lock import ProjectLock
+from diorama_core.project.storage import OWN_SHAPES, Project
 from diorama_core.scene.types import Scene
 
 
@@ -28,15 +34,54 @@ def begin_project(projects_dir: Path, file_name: str, read: ReadInputs, content:
     Raises:
         ProjectError: the folder cannot be written.
     """
-    folder = fresh_folder(projects_dir, file_name)
-    project = Project.create(folder, name=Path(file_name).stem)
-    try:
+    with new_project(projects_dir, file_name, name=Path(file_name).stem) as project:
         project.save_upload("photo", content)
         project.save_inputs(read.inputs, read.warnings)
+    return project
+
+
+@contextmanager
+def new_project(
+    projects_dir: Path, file_name: str, *, name: str, library: ShapeLibrary | None = None
+) -> Iterator[Project]:
+    """A new project, to be filled inside the block. None is left behind when that fails or it would not open again.
+
+    Args:
+        projects_dir: where projects are.
+        file_name: after which the folder is named.
+        name: what people call the project.
+        library: where the scene's shapes are, besides the project's own; not looked at when None.
+
+    Raises:
+        ProjectError, SceneError: the folder cannot be written, or what was written cannot be opened.
+    """
+    folder = fresh_folder(projects_dir, file_name)
+    try:
+        project = Project.create(folder, name=name)
+        with ProjectLock(folder, "the editor"):
+            yield project
+            if library is not None:
+                _note_library(project, library)
     except BaseException:
         shutil.rmtree(folder, ignore_errors=True)
         raise
-    return project
+
+
+def _note_library(project: Project, library: ShapeLibrary) -> None:
+    """Note where the shapes of a project's scene are, all of which must be there."""
+    shapes = {o.shape_id for o in project.load_scene().objects}
+    own = StoredLibrary(project.shapes_folder) if project.shapes_folder.is_dir() else None
+    known = ShapeRecords(library if own is None else CombinedLibrary([own, library]))
+    for shape_id in shapes:
+        try:
+            known.shape(shape_id)
+        except LibraryError as error:
+            raise ProjectError(f"{project.name} is not saved, since it would not open again: {error}") from error
+    names = str(project.info().get("library", BUILT_IN)).split("+")
+    uploads = {s.id for s in library.uploads()} if isinstance(library, UserLibrary) else set()
+    names += [] if uploads.isdisjoint(shapes) else [OWN]
+    names += [] if own is None else [OWN_SHAPES]
+    project.update_info(library="+".join(dict.fromkeys(names)))
 
 
 def fresh_folder(projects_dir: Path, name: str) -> Path:
@@ -55,6 +100,7 @@ def begin_with_scene(
     scene: Scene,
     textures: Mapping[str, UInt8[np.ndarray, "_ _ 3"]],
     notes: Sequence[str],
+    library: ShapeLibrary,
 ) -> Project:
     """Make a project of a scene that no photo shows. None is left behind when it cannot be saved.
 
@@ -64,17 +110,13 @@ def begin_with_scene(
         scene: with which it begins.
         textures: the pictures that the scene names.
         notes: how the scene was made.
+        library: where its shapes are.
 
     Raises:
-        ProjectError: the folder cannot be written.
+        ProjectError, SceneError: the folder cannot be written, or the scene would not open again.
     """
-    folder = fresh_folder(projects_dir, name)
-    project = Project.create(folder, name=name)
-    try:
+    with new_project(projects_dir, name, name=name, library=library) as project:
         project.update_info(notes=list(notes))
         project.save_textures(textures)
         project.save_scene(scene)
-    except BaseException:
-        shutil.rmtree(folder, ignore_errors=True)
-        raise
     return project

@@ -105,10 +105,10 @@ def start_build(session: EditorSession, inputs: Inputs, title: str, label: str, 
         with _noted(project):
             warnings = project.info().get("warnings", ())
             part = progress.part(0.0, alone)
-            built = build_project(project, inputs, session.library, warnings=warnings, progress=part, save_scene=False)
+            built = build_project(project, inputs, session.offered, warnings=warnings, progress=part, save_scene=False)
             again = None
             if joined:
-                again = _with_others(project, built, before, others, session.library, progress.part(alone, 1.0))
+                again = _with_others(project, built, before, others, session.offered, progress.part(alone, 1.0))
         made = NewScene.of(built, with_found_boxes(inputs, built), warnings, again)
         session.autosave.save_soon(project, made.scene)  # whatever is open by then
         session.ui_thread.post(lambda: show_built(session, project, made, label=label, said=said, message=message))

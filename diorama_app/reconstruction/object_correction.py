@@ -99,7 +99,7 @@ def _reconstruct(
         found = reconstruct_object(
             scene,
             inputs,
-            session.library,
+            session.offered,
             box,
             object_id,
             mask=given_outline(inputs, box.box) if drawn is None else drawn,

@@ -6,7 +6,7 @@ import shutil
 import tempfile
 from pathlib import Path
 
-from diorama_app.projects.begin import fresh_folder
+from diorama_app.projects.begin import new_project
 from diorama_app.session.client import Client
 from diorama_app.session.session import EditorSession
 from diorama_core.errors import InputError
@@ -14,10 +14,10 @@ from diorama_core.importing.apart import read_apart
 from diorama_core.importing.forms import SUFFIXES
 from diorama_core.importing.opening import Opened
 from diorama_core.io.atomic import write_atomically
-from diorama_core.library.user_library import OWN, ProjectShapes, UserLibrary
+from diorama_core.library.library_names import BUILT_IN
+from diorama_core.library.user_library import ProjectShapes
 from diorama_core.progress import Progress
-from diorama_core.project.lock import ProjectLock
-from diorama_core.project.storage import OWN_SHAPES, Project
+from diorama_core.project.storage import Project
 
 MAX_NOTES = 40
 
@@ -60,32 +60,18 @@ def _read(session: EditorSession, path: Path, shapes: Path, content: bytes, prog
 def _saved(session: EditorSession, file_name: str, opened: Opened, shapes: Path) -> Project:
     """A new project with the scene and its shapes; none is left behind when it cannot be saved."""
     stem = Path(file_name).stem
-    folder = fresh_folder(session.projects_dir, stem)
-    try:
-        project = Project.create(folder, name=stem)
-        with ProjectLock(folder, "the editor"):
-            notes = [f"opened from {file_name}", *opened.changes[:MAX_NOTES]]
-            if shapes.is_dir():
-                shutil.copytree(shapes, project.shapes_folder)
-            project.update_info(library=_library_name(session, opened, own=shapes.is_dir()), notes=notes)
-            project.save_textures(opened.textures)
-            if opened.inputs is not None:
-                project.save_inputs(opened.inputs)
-            project.save_scene(opened.scene)
-        project.load_scene()  # what cannot be read back is refused now, while the open project is still open
-    except BaseException:
-        shutil.rmtree(folder, ignore_errors=True)
-        raise
+    with new_project(session.projects_dir, stem, name=stem, library=session.library) as project:
+        notes = [f"opened from {file_name}", *opened.changes[:MAX_NOTES]]
+        if shapes.is_dir():
+            shutil.copytree(shapes, project.shapes_folder)
+        # Commands find the shapes where those of the open project are.
+        project.update_info(library=BUILT_IN if session.project is None else session.project.shared_library_name)
+        project.update_info(notes=notes)
+        project.save_textures(opened.textures)
+        if opened.inputs is not None:
+            project.save_inputs(opened.inputs)
+        project.save_scene(opened.scene)
     return project
-
-
-def _library_name(session: EditorSession, opened: Opened, *, own: bool) -> str:
-    """The library by which commands find the shapes: that of the open project, a person's models, the file's shapes."""
-    names = ("built-in" if session.project is None else session.project.shared_library_name).split("+")
-    library = session.library
-    if isinstance(library, UserLibrary) and any(library.has_own(o.shape_id) for o in opened.scene.objects):
-        names.append(OWN)
-    return "+".join(dict.fromkeys([*names, *([OWN_SHAPES] if own else [])]))
 
 
 def _show(client: Client, project: Project, file_name: str) -> None:

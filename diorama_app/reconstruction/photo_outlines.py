@@ -39,7 +39,7 @@ class PhotoOutlines:
 
             runner = Runner(project.stages_folder)
             found, _ = with_usable_networks(
-                lambda store: stages_for("auto", inputs, session.library, store=store),
+                lambda store: stages_for("auto", inputs, session.offered, store=store),
                 lambda stages: evaluate(stages, {"given": inputs}, ("objects",), runner, progress)["objects"],
             )
 

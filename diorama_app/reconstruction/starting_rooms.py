@@ -25,7 +25,9 @@ def start_empty_room(client: Client, width_m: float, depth_m: float, height_m: f
     session = client.session
     scene, made = with_finish_pictures(empty_room(width_m, depth_m, height_m), {})
     session.autosave.flush()
-    project = begin_with_scene(session.projects_dir, "Empty room", scene, made, ("begun as an empty room",))
+    project = begin_with_scene(
+        session.projects_dir, "Empty room", scene, made, ("begun as an empty room",), session.library
+    )
     session.visit(client, project, "Insert furniture from the Library; click a wall or the floor to finish it.")
 
 
@@ -54,9 +56,10 @@ def open_example(client: Client, kind: str) -> None:
         from diorama_core.appearance.surface_finish import with_finish_pictures
 
         progress.report(0.1, "choosing and placing furniture")
-        scene, made = with_finish_pictures(example_room(room, session.library), {})
+        scene, made = with_finish_pictures(example_room(room, session.offered), {})
         progress.report(0.8, "saving the project")
-        project = begin_with_scene(session.projects_dir, room.name, scene, made, ("an example, furnished by rules",))
+        notes = ("an example, furnished by rules",)
+        project = begin_with_scene(session.projects_dir, room.name, scene, made, notes, session.library)
         client.post(lambda: session.visit(client, project, ""))
 
     session.jobs.start("example", f"Furnishing the {room.name.lower()}", work)

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from pathlib import Path
+from functools import partial
 from typing import TYPE_CHECKING
 
-from diorama_app.projects.begin import fresh_folder
+from diorama_app.projects.begin import new_project
 from diorama_app.session.client import Client
 from diorama_core.errors import DioramaError, InputError
 from diorama_core.library.record import ShapeLibrary
@@ -44,24 +44,19 @@ def describe_room(client: Client, words: str) -> None:
     def work(progress: Progress) -> None:
         name = said[:1].upper() + said[1:60]
         session.autosave.flush()
-        folder = fresh_folder(session.projects_dir, said.replace(".", " "))
-        if endpoint is None:
-            what = _compose(said, folder, name, session.library, model, progress)
-        else:
-            what = _draw_and_build(said, folder, name, session.library, endpoint, progress)
-        client.post(lambda: session.visit(client, Project.open(folder), what))
+        make = partial(_compose, said, model=model) if endpoint is None else partial(_draw_and_build, said, endpoint)
+        with new_project(session.projects_dir, said.replace(".", " "), name=name, library=session.library) as project:
+            what = make(project, session.offered, progress=progress)
+        client.post(lambda: session.visit(client, project, what))
 
     session.jobs.start("text", "Creating the room you described", work)
 
 
-def _compose(
-    said: str, folder: Path, name: str, library: ShapeLibrary, model: LmmSettings | None, progress: Progress
-) -> str:
+def _compose(said: str, project: Project, library: ShapeLibrary, model: LmmSettings | None, progress: Progress) -> str:
     """Compose the room in a new project; what to tell the user."""
     from diorama_core.text.scene_from_text import scene_from_text
 
     made = scene_from_text(said, library, language_model=model, progress=progress)
-    project = Project.create(folder, name=name)
     project.save_textures(made.textures)
     project.save_scene(made.scene)
     project.update_info(notes=list(made.notes))
@@ -71,7 +66,7 @@ def _compose(
 
 
 def _draw_and_build(
-    said: str, folder: Path, name: str, library: ShapeLibrary, endpoint: ImageSettings, progress: Progress
+    said: str, endpoint: ImageSettings, project: Project, library: ShapeLibrary, progress: Progress
 ) -> str:
     """Build the endpoint's picture in a new project; what to tell the user."""
     from diorama_core.project.build import build_project
@@ -79,7 +74,6 @@ def _draw_and_build(
     from diorama_core.text.unmet import unmet
 
     made = picture_of(said, endpoint, progress.part(0.0, 0.2))
-    project = Project.create(folder, name=name)
     built = build_project(project, made.inputs, library, warnings=made.notes, progress=progress.part(0.2, 1.0))
     count = len(built.scene.objects)
     what = f"The scene has {count} objects" if count else "No furniture was found; draw boxes"

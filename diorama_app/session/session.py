@@ -40,8 +40,9 @@ from diorama_core.artefacts import FurtherPhoto, Inputs, Photo, Reason
 from diorama_core.editing.clipboard import Clip
 from diorama_core.errors import DioramaError, EditRefused
 from diorama_core.io.bounded import shortened
+from diorama_core.library.library_names import BUILT_IN
 from diorama_core.library.record import ShapeLibrary
-from diorama_core.library.user_library import ProjectShapes, ShapeRecords
+from diorama_core.library.user_library import OWN, ProjectShapes, ShapeRecords, UserLibrary, offered_shapes
 from diorama_core.project.storage import Project
 from diorama_core.scene.schema import check_limits
 from diorama_core.scene.types import Pose, Scene
@@ -140,6 +141,11 @@ class EditorSession:
     @clip.setter
     def clip(self, clip: Clip | None) -> None:
         self.shared.clip = clip
+
+    @property
+    def offered(self) -> ShapeLibrary:
+        """The library as builds and words choose from it: without people's own models unless they asked for that."""
+        return offered_shapes(self.library)
 
     # -- the document -----------------------------------------------------------------------------------------
 
@@ -276,6 +282,7 @@ class EditorSession:
             begun = bool(self.scene.objects or self.scene.architecture.planes) or self.project.has_scene
             unsaved = None if inputs is self._inputs_saved else inputs
             further = self.further_photos
+            self._note_library(self.project)
             self.autosave.save_soon(
                 self.project,
                 self.scene if begun else None,
@@ -286,6 +293,14 @@ class EditorSession:
         self.photo = None if inputs is None else inputs.photo
         self.refresh(by)
         self.checker.look_at(self.scene)
+
+    def _note_library(self, project: Project) -> None:
+        """Commands that open this project must find the models of people's own that stand in it."""
+        library = self.library
+        if not isinstance(library, UserLibrary) or OWN in project.shared_library_name.split("+"):
+            return
+        if not {s.id for s in library.uploads()}.isdisjoint(o.shape_id for o in self.scene.objects):
+            project.update_info(library=f"{project.info().get('library', BUILT_IN)}+{OWN}")
 
     def _badged(self, found: Problems) -> None:
         self.badges = found

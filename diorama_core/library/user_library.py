@@ -10,11 +10,21 @@ import trimesh
 
 from diorama_core.errors import LibraryError
 from diorama_core.library.boards import base_id
+from diorama_core.library.own_models import OwnModels, read_own_models, write_own_models
 from diorama_core.library.record import Shape, ShapeLibrary
-from diorama_core.library.store import CombinedLibrary, StoredLibrary, create_library, open_library, stored_libraries
+from diorama_core.library.store import (
+    CombinedLibrary,
+    StoredLibrary,
+    create_library,
+    library_folder,
+    open_library,
+    stored_libraries,
+)
 
 OWN = "my-models"
 """Name of the stored library that uploads go to."""
+ORDER = "own-models.json"
+"""Beside that library's shapes: what their owner says of them."""
 
 
 class UserLibrary:
@@ -44,10 +54,29 @@ class UserLibrary:
                     self._library, self._combined = CombinedLibrary([self._library, self._own]), True
             return self._own
 
+    def uploads(self) -> tuple[Shape, ...]:
+        """The records of all uploads, deleted ones included."""
+        known = self._own is not None or OWN in stored_libraries()
+        return self.own().shapes() if known else ()
+
     def has_own(self, shape_id: str) -> bool:
         """Whether a shape is one of the uploads."""
-        known = self._own is not None or OWN in stored_libraries()
-        return known and any(shape.id == shape_id for shape in self.own().shapes())
+        return any(shape.id == shape_id for shape in self.uploads())
+
+    @property
+    def own_models(self) -> OwnModels:
+        """What their owner says of the uploads; raises `LibraryError` when it cannot be read."""
+        return read_own_models(library_folder(OWN) / ORDER)
+
+    def keep_order(self, models: OwnModels) -> None:
+        """Keep what their owner says of the uploads; raises `LibraryError` when it cannot be written."""
+        write_own_models(library_folder(OWN) / ORDER, models)
+
+    def offered(self) -> OfferedShapes:
+        """What builds and words choose from: not the uploads, unless their owner asked for that."""
+        models = self.own_models
+        ids = models.deleted if models.in_builds else (s.id for s in self.uploads())
+        return OfferedShapes(self, frozenset(ids))
 
     def shapes(self) -> tuple[Shape, ...]:
         """All records, in a stable order."""
@@ -85,19 +114,71 @@ class ProjectShapes(UserLibrary):
     def __init__(self, shared: UserLibrary) -> None:
         self.shared = shared
         self._library: ShapeLibrary = shared
+        self._of_project: StoredLibrary | None = None
 
     def show(self, folder: Path) -> None:
         """Offer the shapes in a project's folder, where it has any, instead of those of the project before."""
-        own = [StoredLibrary(folder)] if (folder / "library.sqlite").exists() else []
-        self._library = CombinedLibrary([*own, self.shared]) if own else self.shared
+        own = StoredLibrary(folder) if (folder / "library.sqlite").exists() else None
+        self._of_project, self._library = own, self.shared if own is None else CombinedLibrary([own, self.shared])
 
     def own(self) -> StoredLibrary:
         """Where uploads are kept; see `UserLibrary.own`."""
         return self.shared.own()
 
-    def has_own(self, shape_id: str) -> bool:
-        """Whether a shape is one of the uploads."""
-        return self.shared.has_own(shape_id)
+    def uploads(self) -> tuple[Shape, ...]:
+        """The records of all uploads; see `UserLibrary.uploads`."""
+        return self.shared.uploads()
+
+    def offered(self) -> OfferedShapes:
+        """What builds and words choose from: neither the project's own shapes nor, unless asked for, uploads."""
+        return OfferedShapes(self, self.shared.offered().left_out | frozenset(s.id for s in self._project_shapes()))
+
+    def _project_shapes(self) -> tuple[Shape, ...]:
+        return () if self._of_project is None else self._of_project.shapes()
+
+
+class OfferedShapes:
+    """A library whose lists leave some shapes out; those are found by their ids all the same. A `ShapeLibrary`."""
+
+    def __init__(self, library: ShapeLibrary, left_out: frozenset[str]) -> None:
+        self._library = library
+        self.left_out = left_out
+
+    def __repr__(self) -> str:
+        return repr(self._library)
+
+    def shapes(self) -> tuple[Shape, ...]:
+        """The records that are offered, in a stable order."""
+        return tuple(s for s in self._library.shapes() if s.id not in self.left_out)
+
+    def in_category(self, category: str) -> tuple[Shape, ...]:
+        """The records of one canonical category that are offered."""
+        return tuple(s for s in self._library.in_category(category) if s.id not in self.left_out)
+
+    def shape(self, shape_id: str) -> Shape:
+        """Any record with its support surfaces."""
+        return self._library.shape(shape_id)
+
+    def mesh(self, shape_id: str) -> trimesh.Trimesh:
+        """Geometry only."""
+        return self._library.mesh(shape_id)
+
+    def parts(self, shape_id: str) -> trimesh.Scene:
+        """Geometry with materials."""
+        return self._library.parts(shape_id)
+
+    def glb(self, shape_id: str) -> bytes:
+        """`parts` as GLB."""
+        return self._library.glb(shape_id)
+
+
+def offered_shapes(library: ShapeLibrary) -> ShapeLibrary:
+    """What builds and words choose from; all of a library to which nothing is added.
+
+    Raises:
+        LibraryError: what is said of the uploads cannot be read.
+    """
+    return library.offered() if isinstance(library, UserLibrary) else library
 
 
 def _unchanged(library: ShapeLibrary) -> ShapeLibrary:

@@ -168,7 +168,7 @@ def sources(
         for member in members or ("",):
             stem = within.rsplit(".", 1)[0]
             named = f"{stem}/{Path(member).with_suffix('').as_posix()}" if len(members) > 1 else stem
-            target = (ids or {}).get(path) or _slug(named)
+            target = (ids or {}).get(path) or slug(named)
             shape_id = next(i for i in _variants(target, path.suffix[1:].lower()) if i not in taken)
             taken.add(shape_id)
             known = table[within].over(given) if within in table else given
@@ -372,7 +372,8 @@ def _row(path: Path, line: int, row: Mapping[str, str | None]) -> Given:
         raise InputError(f"{path}, line {line}: {shortened(str(error))}") from error
 
 
-def _slug(text: str) -> str:
+def slug(text: str) -> str:
+    """A text as an id: small letters, digits and hyphens."""
     return re.sub(r"[^a-z0-9]+", "-", re.sub(r"(?<=[a-z0-9])(?=[A-Z])", "-", text).lower()).strip("-")[:120] or "shape"
 
 

@@ -1,0 +1,97 @@
+"""A person's own models in the catalogue: in folders, under their own names, deleted and restored."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+
+from diorama_app.session.client import Client
+from diorama_app.web.html import Action, button, switch, text
+from diorama_core.library.own_models import OwnModels
+from diorama_core.library.record import Shape
+from diorama_core.library.user_library import UserLibrary
+
+
+class OwnShelf:
+    """What is drawn of the models, and what is done to them."""
+
+    def __init__(self, client: Client) -> None:
+        self._client = client
+
+    @property
+    def models(self) -> OwnModels:
+        """What their owner says of them."""
+        library = self._client.session.library
+        return library.own_models if isinstance(library, UserLibrary) else OwnModels()
+
+    def in_folders(self, shapes: Iterable[Shape], tile: Callable[[Shape], str]) -> str:
+        """Tiles under the names of their folders; those in no folder come first.
+
+        Args:
+            shapes: what is shown.
+            tile: draws one.
+        """
+        models, folders = self.models, dict[str, list[Shape]]()
+        for shape in shapes:
+            folders.setdefault(models.folders.get(shape.id, ""), []).append(shape)
+        return "".join(
+            (f"<h4>{text(name)}</h4>" if name else "")
+            + f'<div class="grid two">{"".join(tile(shape) for shape in folders[name])}</div>'
+            for name in sorted(folders, key=str.casefold)
+        )
+
+    def head(self) -> str:
+        """What concerns all models."""
+        models = self.models
+        deleted = [i for i in models.deleted if self._is_there(i)]
+        hint = "Builds and rooms made from words may choose your models"
+        drawn = switch("Use in new rooms", hint, "in builds", on=models.in_builds)
+        if deleted:
+            again = button(f"Restore the model deleted last ({len(deleted)})", "model-restore", deleted[-1])
+            drawn += f'<div class="bar tight">{again}</div>'
+        return drawn
+
+    def fields(self, shape: Shape) -> str:
+        """The name and the folder of a model, to be typed, and its deletion."""
+        models, key = self.models, text(shape.id)
+        name, folder = models.names.get(shape.id, shape.caption), models.folders.get(shape.id, "")
+        gone = button("Delete", "model-delete", shape.id, title=f"Delete {name}; scenes that hold it stay as they are")
+        return (
+            f'<input data-change="model-name" data-arg="{key}" value="{text(name)}" aria-label="Name of {text(name)}">'
+            f'<input data-change="model-folder" data-arg="{key}" value="{text(folder)}" placeholder="Folder" '
+            f'aria-label="Folder of {text(name)}"><div class="bar tight" style="margin:4px 0 0 0">{gone}</div>'
+        )
+
+    def do(self, action: Action) -> bool:
+        """Do what was clicked or typed; False where it is not about own models."""
+        library, models = self._client.session.library, self.models
+        if not isinstance(library, UserLibrary):
+            return False
+        shape_id, words = action.pair
+        if action.do == "switch" and action.arg == "in builds":
+            library.keep_order(OwnModels(models.names, models.folders, models.deleted, not models.in_builds))
+        elif action.do == "model-name" and library.has_own(shape_id):
+            library.keep_order(models.named(shape_id, words))
+        elif action.do == "model-folder" and library.has_own(shape_id):
+            library.keep_order(models.filed(shape_id, words))
+        elif action.do == "model-restore" and library.has_own(action.arg):
+            library.keep_order(models.restored(action.arg))
+        elif action.do == "model-delete" and library.has_own(action.arg):
+            self._delete(library, models, action.arg)
+        else:
+            return False
+        return True
+
+    def _delete(self, library: UserLibrary, models: OwnModels, shape_id: str) -> None:
+        client = self._client
+        library.keep_order(models.without(shape_id))
+        name = models.names.get(shape_id) or library.shape(shape_id).caption
+
+        def again() -> None:
+            library.keep_order(library.own_models.restored(shape_id))
+            client.refresh()
+
+        client.offer(f"{name} is deleted", "Undo", again)
+
+    def _is_there(self, shape_id: str) -> bool:
+        library = self._client.session.library
+        return isinstance(library, UserLibrary) and library.has_own(shape_id)
