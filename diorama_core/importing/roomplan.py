@@ -101,7 +101,7 @@ def _from_json(path: Path) -> MeasuredRoom | None:
         ids = {str(row.get("identifier")): wall.id for row, wall in zip(names["walls"], walls, strict=True)}
         openings = tuple(_json_opening(row, kind, ids) for key, kind in _SURFACES.items() for row in names[key])
         boxes, left_out = _upright(_json_box(row) for row in names["objects"])
-        floors = [_json_outline(row) for row in names["floors"]]
+        floors = [_outline(row) for row in names["floors"]]
     except (LookupError, TypeError, ValueError, AttributeError, ArithmeticError) as error:
         raise InputError(
             f"{path.name}: a wall or an object makes no sense ({shortened(str(error))}); export the scan again"
@@ -135,11 +135,7 @@ def _word(value: object) -> str:
 
 
 def _json_wall(row: Mapping[str, Any], number: int) -> MeasuredWall:
-    M, (width, height, thickness) = _matrix(row), _dimensions(row)
-    local = np.asarray(row.get("polygonCorners") or [], np.float64).reshape(-1, 3)
-    if len(local) < 3:
-        local = np.array([[x * width / 2, y * height / 2, 0.0] for x, y in ((-1, -1), (1, -1), (1, 1), (-1, 1))])
-    return MeasuredWall(f"wall-{number}", _moved(M, local), float(thickness))
+    return MeasuredWall(f"wall-{number}", _outline(row), float(_dimensions(row)[2]))
 
 
 def _json_opening(
@@ -167,14 +163,15 @@ def _json_box(row: Mapping[str, Any]) -> MeasuredBox | str:
     return _box(_word(row["category"]), kinds, _matrix(row), _dimensions(row), confidence)
 
 
-def _json_outline(row: Mapping[str, Any]) -> Float[np.ndarray, "n 3"]:
-    """A floor; its corners, or its dimensions along x and y, are in its own plane."""
-    M = _matrix(row)
+def _outline(row: Mapping[str, Any]) -> Float[np.ndarray, "n 3"]:
+    """Corners of a wall or a floor in the world; its corners, or its dimensions along x and y, are in its own plane."""
     local = np.asarray(row.get("polygonCorners") or [], np.float64).reshape(-1, 3)
     if len(local) < 3:
-        width, depth, _ = _dimensions(row)
-        local = np.array([[x * width / 2, y * depth / 2, 0.0] for x, y in ((-1, -1), (1, -1), (1, 1), (-1, 1))])
-    return _moved(M, local)
+        width, length, _ = _dimensions(row)
+        local = np.array([[x * width / 2, y * length / 2, 0.0] for x, y in ((-1, -1), (1, -1), (1, 1), (-1, 1))])
+    if not np.isfinite(local).all():
+        raise ValueError("its corners are no places")
+    return _moved(_matrix(row), local)
 
 
 def kinds_of_label(label: str) -> frozenset[str]:
@@ -216,6 +213,8 @@ def _joined(floors: Sequence[Polygon], heights_m: Sequence[float]) -> tuple[Meas
     """Floors that touch at about one height are one; others are rooms and storeys of their own, the lowest first."""
     found: list[MeasuredFloor] = []
     left = sorted(zip(heights_m, floors, strict=True), key=lambda row: row[0])
+    if not np.isfinite(heights_m).all():
+        raise InputError("a floor's height is no number; export the scan again")
     while left:
         level = [row for row in left if row[0] - left[0][0] < SAME_LEVEL_M]
         left = left[len(level) :]
