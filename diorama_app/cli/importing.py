@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from diorama_app.cli.arguments import command, print_note, progress_bar
 from diorama_core.errors import InputError
+from diorama_core.io.text import number_of
 
 if TYPE_CHECKING:
     from diorama_core.importing.opening import Opened
@@ -56,7 +57,9 @@ def _import(a: argparse.Namespace) -> None:
     for line in (*warnings, *opened.changes):
         print_note(line)
     scene = opened.scene
-    print(f"{a.output}: {len(scene.objects)} objects, {len(scene.architecture.planes)} planes")
+    print(
+        f"{a.output}: {number_of(len(scene.objects), 'object')}, {number_of(len(scene.architecture.planes), 'plane')}"
+    )
 
 
 def _imported_into(project: Project, a: argparse.Namespace) -> tuple[Opened, tuple[str, ...]]:

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 from diorama_app.cli.arguments import print_note, progress_bar
 from diorama_core.errors import InputError
+from diorama_core.io.text import number_of
 
 FIND = "find"
 """Instead of a path: the photos themselves tell where they were taken."""
@@ -56,4 +57,7 @@ def build_posed(a: argparse.Namespace, options: BuildOptions) -> None:
         return
     for note in built.notes:
         print_note(note)
-    print(f"{a.output}: {len(scene.objects)} objects of {len(built.photos)} photos, {several} in more than one")
+    print(
+        f"{a.output}: {number_of(len(scene.objects), 'object')} of {number_of(len(built.photos), 'photo')}, "
+        f"{several} in more than one"
+    )

@@ -23,6 +23,7 @@ from diorama_app.cli.arguments import (
 from diorama_app.projects.formats import EXPORT_FORMATS
 from diorama_app.projects.options import POSES, ROOMS, SYSTEMS, BuildOptions, PhotoFiles, build_files
 from diorama_core.errors import InputError
+from diorama_core.io.text import number_of
 
 if TYPE_CHECKING:
     import numpy as np
@@ -345,7 +346,7 @@ def _export(a: argparse.Namespace) -> None:
     with progress_bar() as progress:
         written = diorama.export(room, output, format=EXPORT_FORMATS[a.format], options=options, progress=progress)
     result: dict[str, Any] = {"file": str(output), "objects": len(written.objects), "planes": len(written.planes)}
-    lines = [f"{output}: {len(written.objects)} objects, {len(written.planes)} planes"]
+    lines = [f"{output}: {number_of(len(written.objects), 'object')}, {number_of(len(written.planes), 'plane')}"]
     if a.simulate:
         from diorama_core.export.stability import stability
 

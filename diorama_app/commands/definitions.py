@@ -160,7 +160,7 @@ def _objects(session: EditorSession) -> tuple[Command, ...]:
                 scene = seated(scene, session.library, object_id)
             return scene
 
-        session.edit(f"drop {editing.names_of(session.scene, chosen)}", down, by=client)
+        session.edit(f"drop {editing.names_of(session.scene, chosen)}", down, by=client, by_hand=True)
 
     return (
         Command("duplicate", "Duplicate", editing.duplicate_selected, "D", "cmd/ctrl", "Duplicate next to it"),
@@ -185,20 +185,22 @@ def _several(session: EditorSession) -> tuple[Command, ...]:
             chosen = client.need_selection()
             axis, flipped = client.view.camera.screen_axis(side)
             end = OPPOSITE[anchor] if flipped else anchor
-            session.edit(f"align {label}", lambda s: arranging.align(s, chosen, axis, end), by=client)
+            session.edit(f"align {label}", lambda s: arranging.align(s, chosen, axis, end), by=client, by_hand=True)
 
         return run
 
     def distribute(client: Client) -> None:
         chosen = client.need_selection()
         axis = arranging.widest_axis(session.scene, chosen)
-        session.edit("distribute evenly", lambda s: arranging.distribute(s, chosen, axis), by=client)
+        session.edit("distribute evenly", lambda s: arranging.distribute(s, chosen, axis), by=client, by_hand=True)
 
     def mirror(client: Client) -> None:
         chosen = client.need_selection()
         axis, _ = client.view.camera.screen_axis("right")
         names = editing.names_of(session.scene, chosen)
-        session.edit(f"mirror {names}", lambda s: arranging.mirror(s, chosen, axis, session.library), by=client)
+        session.edit(
+            f"mirror {names}", lambda s: arranging.mirror(s, chosen, axis, session.library), by=client, by_hand=True
+        )
 
     return (
         Command("align_left", "Align left", align("left", "right", "low"), None, None, "Align left edges"),

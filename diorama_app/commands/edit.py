@@ -150,7 +150,7 @@ def _turn(client: Client, ids: tuple[str, ...], turn_rad: float) -> None:
         return scene
 
     label = f"turn {names_of(client.session.scene, ids)}"
-    client.session.edit(label, turned, by=client, merge_key=f"{NUDGE_MERGE} {' '.join(ids)} yaw")
+    client.session.edit(label, turned, by=client, merge_key=f"{NUDGE_MERGE} {' '.join(ids)} yaw", by_hand=True)
 
 
 def set_size(client: Client, object_id: str, size_m: Float[np.ndarray, "3"]) -> None:
@@ -164,20 +164,11 @@ def set_size(client: Client, object_id: str, size_m: Float[np.ndarray, "3"]) -> 
         raise EditRefused(f"{item.label} needs sizes above 0")
     session.edit(
         f"resize {item.label}",
-        lambda s: resized(s, object_id, size),
+        lambda s: edits.resize(s, object_id, size),
         by=client,
         merge_key=f"{NUDGE_MERGE} {object_id} size",
+        by_hand=True,
     )
-
-
-def resized(scene: Scene, object_id: str, size_m: Float[np.ndarray, "3"]) -> Scene:
-    """The scene with an object of this size on the same base; what stands on it keeps standing on its new top."""
-    item = scene.object(object_id)
-    rise = item.pose.R_world_object[:, 2] * (size_m[2] - item.size_m[2]) / 2
-    pose = Pose(item.pose.R_world_object, item.pose.position + rise, size_m / np.asarray(item.shape_size_m))
-    # What stands on it rises with the new top: a rigid move alone carries it only half of the way.
-    moved = edits.move(scene, object_id, pose)
-    return edits.place(moved, {i: moved.object(i).pose.moved(rise) for i in descendants(scene, object_id)})
 
 
 def base_position(item: SceneObject) -> Float[np.ndarray, "3"]:
@@ -219,6 +210,7 @@ def attach(client: Client, object_id: str, parent_id: str, *, anyway: bool = Fal
         f"{label} onto {supporter_name(scene, parent_id)}",
         lambda s: seated(edits.attach(s, edge), session.library, object_id),
         by=client,
+        by_hand=True,
     )
 
 
@@ -257,7 +249,8 @@ def set_adherence(client: Client, object_id: str, wall_id: str | None) -> None:
         attached = edits.attach(s, changed)
         return attached if wall_id is None else against_wall(attached, object_id, attached.plane(wall_id))
 
-    client.session.edit(f"{label} against the wall" if wall_id else f"{label} off the wall", apply, by=client)
+    said = f"{label} against the wall" if wall_id else f"{label} off the wall"
+    client.session.edit(said, apply, by=client, by_hand=True)
 
 
 def set_distance(client: Client, object_id: str, side: str, distance_m: float) -> None:
@@ -266,7 +259,12 @@ def set_distance(client: Client, object_id: str, side: str, distance_m: float) -
     known = next((s for s in SIDES if s == side), None)
     if known is None:
         raise EditRefused("a distance is to the front, back, left or right")
-    client.session.edit(f"move {item.label}", lambda s: moved_to_clearance(s, object_id, known, distance_m), by=client)
+    client.session.edit(
+        f"move {item.label}",
+        lambda s: moved_to_clearance(s, object_id, known, distance_m),
+        by=client,
+        by_hand=True,
+    )
 
 
 def supporter_name(scene: Scene, any_id: str) -> str:
@@ -285,6 +283,7 @@ def _move(client: Client, item: SceneObject, pose: Pose, field: str) -> None:
         lambda s: edits.move(s, item.id, pose),
         by=client,
         merge_key=f"{NUDGE_MERGE} {item.id} {field}",
+        by_hand=True,
     )
 
 

@@ -68,7 +68,7 @@ class WordEdits:
             raise EditRefused("the scene has changed since; look at the edits again")
         self.cancel()
         label = proposed.command if len(proposed.command) <= LABEL_CHARS else f"{proposed.command[:LABEL_CHARS]}…"
-        session.edit(label, lambda _: proposed.scene, by=self.client, selection=proposed.changed)
+        session.edit(label, lambda _: proposed.scene, by=self.client, selection=proposed.changed, by_hand=True)
 
     def cancel(self) -> None:
         """Drop the proposed edits."""

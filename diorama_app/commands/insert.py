@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 from jaxtyping import Float
 
@@ -158,6 +160,7 @@ def place_at(client: Client, shape_id: str, origin: Float[np.ndarray, "3"], dire
     new_id = edits.fresh_id(scene, shape.category)
     yaw = facing(scene, float(found.point[0]), float(found.point[1]))
     item, edge = insertion(scene, shape, new_id, found, yaw)
+    item = replace(item, by_hand=True)
     known = scene.has_object(edge.parent) or scene.has_plane(edge.parent)
     session.edit(
         f"insert {shape.category}",

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Mapping
+from dataclasses import replace
 from functools import partial
 
 import numpy as np
@@ -14,10 +15,12 @@ from diorama_app.session.problem_checker import problems
 from diorama_app.session.session import EditorSession
 from diorama_core.artefacts import LayoutReport
 from diorama_core.editing.collisions import Collisions
+from diorama_core.editing.hand_placed import left_to_people
 from diorama_core.errors import EditRefused
 from diorama_core.geometry.rotations import rotation_from_vector, rotation_vector
+from diorama_core.layout.report import layout_figures
 from diorama_core.layout.weights import AS_IT_IS, Weights
-from diorama_core.layout.what_got_worse import new_problems
+from diorama_core.layout.what_got_worse import Problems, new_problems, resized_too_much, with_believed_sizes
 from diorama_core.progress import Progress
 from diorama_core.scene import edits
 from diorama_core.scene.support import descendants
@@ -37,14 +40,41 @@ GLIDE_BELOW = 10
 
 PAUSE_POLL_S = 0.05
 
+PUBLISHED = ("paper", "all-in-one")
+"""Recipes that do as they were published, sizes included."""
 
-def optimise(client: Client, recipe_name: str, only: tuple[str, ...] = (), weights: Weights = AS_IT_IS) -> LayoutRun:
-    """Optimise the layout of everything unlocked, or of `only` these and the objects on them; one undo step."""
+
+def optimise(
+    client: Client,
+    recipe_name: str,
+    only: tuple[str, ...] = (),
+    weights: Weights = AS_IT_IS,
+    *,
+    by_hand_too: bool = False,
+) -> LayoutRun:
+    """Optimise the layout of everything unlocked, or of `only` these and the objects on them; one undo step.
+
+    Args:
+        client: who asks.
+        recipe_name: how; sizes stay within `MAX_RESIZE` of what they were unless it is a published recipe.
+        only: ids that are free to move, whoever placed them; when empty, all but what people placed.
+        weights: of the recipe's costs.
+        by_hand_too: whether what people placed is free to move as well.
+
+    Raises:
+        EditRefused: nothing is free to move.
+    """
     session = client.session
     start = session.scene
     if not start.objects:
         raise EditRefused("there is nothing to arrange; insert furniture first")
-    run = LayoutRun(recipe_name, time.monotonic(), start, only)
+    left = frozenset[str]() if only or by_hand_too else left_to_people(start)
+    free = frozenset(only) or frozenset(o.id for o in start.objects if o.id not in left)
+    if not free:
+        raise EditRefused("people placed everything here, so it stays; select what may move and optimise the selection")
+    run = LayoutRun(
+        recipe_name, time.monotonic(), start, only, left=sum(o.by_hand and o.id in left for o in start.objects)
+    )
 
     def work(progress: Progress) -> None:
         from diorama_core.layout.recipes import recipe
@@ -63,16 +93,16 @@ def optimise(client: Client, recipe_name: str, only: tuple[str, ...] = (), weigh
                 progress.check()
 
         try:
-            stage = recipe(recipe_name, session.library, frozenset(only) if only else None, weights=weights)
+            everything = len(free) == len(start.objects)
+            stage = recipe(recipe_name, session.library, None if everything else free, weights=weights)
             final, report = stage.optimise(start, progress, preview)
+            if recipe_name not in PUBLISHED:
+                final = with_believed_sizes(start, final)
         except BaseException:
             session.ui_thread.post(session.refresh)  # cancelled or failed: everything goes back to the document
             raise
         session.ui_thread.post(lambda: run.read(samples))
-        collisions = Collisions(session.library)
-        run.worse = new_problems(
-            problems(start, session.library, collisions), problems(final, session.library, collisions)
-        )
+        run.worse = _worse(session, start, final)
         if pictures < GLIDE_BELOW:
             _glide(session, start, final, progress)
         client.post(lambda: _arranged(client, final, report, run))
@@ -80,6 +110,14 @@ def optimise(client: Client, recipe_name: str, only: tuple[str, ...] = (), weigh
     session.jobs.start("optimise", "Arranging the layout", work)
     session.layout_run = run
     return run
+
+
+def _worse(session: EditorSession, start: Scene, final: Scene) -> Problems:
+    """What is wrong with objects now and was not before, by id."""
+    collisions = Collisions(session.library)
+    found = new_problems(problems(start, session.library, collisions), problems(final, session.library, collisions))
+    resized = resized_too_much(start, final)
+    return {i: (*found.get(i, ()), *resized.get(i, ())) for i in (*found, *(i for i in resized if i not in found))}
 
 
 def pause(session: EditorSession, paused: bool) -> None:
@@ -133,6 +171,8 @@ def put_back_worse(client: Client) -> None:
                 there[one] = run.start.object(one).pose
     session.edit("put back what got worse", lambda s: edits.place(s, there), by=client)
     run.worse = {}
+    if run.report is not None:
+        run.report = replace(run.report, after=layout_figures(run.start, session.scene, session.library))
     session.refresh_panels()
 
 
@@ -174,7 +214,7 @@ def _arranged(client: Client, final: Scene, report: LayoutReport, run: LayoutRun
     else:
         scene = edits.set_metrics(edits.place(current, untouched(current, run.start, final)), report.after)
     run.report, run.final = report, scene
-    session.commit("arrange the layout", scene, by=client)
+    session.commit("arrange the layout" if run.recipe in PUBLISHED else "tidy up", scene, by=client)
 
 
 def untouched(current: Scene, start: Scene, final: Scene) -> Mapping[str, Pose]:

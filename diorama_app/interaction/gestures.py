@@ -171,7 +171,7 @@ class Gestures:
                 scene = edits.attach(scene, after)
             return scene
 
-        session.edit(f"move {label}", apply, by=client)
+        session.edit(f"move {label}", apply, by=client, by_hand=True)
 
     def _show(self, start: Scene, poses: Mapping[str, Pose], scene: Scene) -> None:
         self._session.preview(poses)
@@ -292,7 +292,9 @@ class Gestures:
         if pose == start.pose or not self._session.scene.has_object(drag.object_id):
             self._session.refresh()
             return
-        self._session.edit(f"move {start.label}", lambda s: edits.move(s, drag.object_id, pose), by=self._client)
+        turned = np.allclose(pose.position, start.pose.position, atol=1e-4)
+        label = f"{'turn' if turned else 'move'} {start.label}"
+        self._session.edit(label, lambda s: edits.move(s, drag.object_id, pose), by=self._client, by_hand=True)
 
     def cancel(self) -> bool:
         """Cancel the current drag or pending click; False when there is nothing to cancel."""

@@ -150,4 +150,4 @@ class SizeHandles:
             # Onto the scene as it is now: somebody else may have edited it meanwhile.
             return edits.place(scene, {i: p for i, p in poses.items() if scene.has_object(i)})
 
-        session.edit(f"resize {label}", apply, by=self._client)
+        session.edit(f"resize {label}", apply, by=self._client, by_hand=True)

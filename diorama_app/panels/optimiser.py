@@ -14,8 +14,10 @@ from diorama_app.session.client import Client
 from diorama_app.session.layout_run import LayoutRun
 from diorama_app.session.preferences import RecipeName
 from diorama_app.web.html import Action, LiveHtml, button, text
+from diorama_core.io.text import number_of
 from diorama_core.layout.weights import Weights, weighted_costs
-from diorama_core.layout.what_got_worse import in_words
+from diorama_core.layout.what_got_worse import in_words, resized_in_words
+from diorama_core.scene.types import Scene
 
 RECIPES: dict[str, RecipeName] = {
     "Tidy up": "feasible",
@@ -112,7 +114,8 @@ class Optimiser:
         self._draw(run)
         labels = {o.id: o.label for o in session.scene.objects}
         ended = run is not None and run.final is not None
-        self._result.show(_choice(run) + _worse(run, labels) if run is not None and ended else "")
+        told = "" if run is None or not ended else _worse(run, labels) + _told(run, session.scene)
+        self._result.show(_choice(run) + told if run is not None and ended else "")
         self._report.show("" if run is None else _report(run))
         self._arrangements.show(self._others() if idle else "")
 
@@ -126,8 +129,8 @@ class Optimiser:
 
         client.post(start)
 
-    def _tidied(self) -> None:
-        optimise(self._client, "feasible")
+    def _tidied(self, *, by_hand_too: bool = False) -> None:
+        optimise(self._client, "feasible", by_hand_too=by_hand_too)
 
     def _others(self) -> str:
         arrangements, chosen = Arrangements(self._client.session.scene), self._client.selection
@@ -163,6 +166,8 @@ class Optimiser:
             client.post(lambda: put_back_worse(client))
         elif action.do == "tidy":
             client.post(self._tidied)
+        elif action.do == "tidy all":
+            client.post(lambda: self._tidied(by_hand_too=True))
         elif action.do == "back":
             client.post(lambda: put_back(client))
         elif action.do == "keep":
@@ -240,6 +245,17 @@ def _worse(run: LayoutRun, labels: Mapping[str, str]) -> str:
     bar = f'<div class="bar tight" style="margin:6px 0 0 0">{back}{tidy}</div>' if back or tidy else ""
     told = "".join(f"<p>{text(line)}</p>" for line in lines)
     return f'<div class="card warn" role="status" style="margin-bottom:6px"><b>What got worse</b>{told}{bar}</div>'
+
+
+def _told(run: LayoutRun, scene: Scene) -> str:
+    """Which sizes changed, and what stayed because people placed it."""
+    lines = list(resized_in_words(run.start, scene))
+    if run.left:
+        lines.append(f"{number_of(run.left, 'object')} that people placed stayed in place.")
+    bar = button("Tidy up all", "tidy all", title="Also moves what people placed") if run.left else ""
+    bar = f'<div class="bar tight" style="margin:6px 0 0 0">{bar}</div>' if bar else ""
+    told = "".join(f"<p>{text(line[:1].upper() + line[1:])}</p>" for line in lines)
+    return f'<div class="card" role="status" style="margin-bottom:6px">{told}{bar}</div>' if lines else ""
 
 
 def _report(run: LayoutRun) -> str:

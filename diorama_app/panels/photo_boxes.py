@@ -23,6 +23,7 @@ from diorama_app.web.html import button, text
 from diorama_core.artefacts import Box, Inputs, LabelledBox, Photo
 from diorama_core.editing.input_corrections import labelled_box, same_object, with_box_at, without_box
 from diorama_core.errors import InputError
+from diorama_core.io.text import number_of
 from diorama_core.library.taxonomy import CATEGORIES, column, is_furniture
 
 COMMON = tuple(sorted(filter(is_furniture, column("frequency")), key=lambda kind: -column("frequency")[kind])[:10])
@@ -90,7 +91,9 @@ class PhotoBoxes:
         accepted = tuple(labelled_box(b.box, b.label) for b in self._proposals(inputs))
         if accepted:
             self._client.selected_box = None
-            self._annotate(f"mark {len(accepted)} objects", replace(inputs, boxes=(*inputs.boxes, *accepted)))
+            self._annotate(
+                f"mark {number_of(len(accepted), 'object')}", replace(inputs, boxes=(*inputs.boxes, *accepted))
+            )
             self._client.refresh()
 
     def toggle(self) -> None:

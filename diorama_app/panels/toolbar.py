@@ -7,6 +7,7 @@ import viser
 from diorama_app.commands.registry import CommandTable
 from diorama_app.session.client import Client, Measuring
 from diorama_app.web.html import STYLE, Action, LiveHtml, button, text
+from diorama_core.io.text import number_of
 
 ICONS = {
     "undo": '<path d="M9 5 4 10l5 5M4 10h10a6 6 0 0 1 0 12h-3"/>',
@@ -148,4 +149,4 @@ def title_bar(client: Client) -> str:
         f' <span class="chip" style="border-color:rgb{g.colour}" title="also has this open">{text(g.name)}</span>'
         for g in others[:4]
     )
-    return f"<b>{name}</b> <span class='dim'>{len(session.scene.objects)} objects</span>{here}"
+    return f"<b>{name}</b> <span class='dim'>{number_of(len(session.scene.objects), 'object')}</span>{here}"

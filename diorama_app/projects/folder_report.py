@@ -17,7 +17,7 @@ from diorama_app.projects.folder_build import PhotoResult
 from diorama_core.errors import DioramaError, ProjectError
 from diorama_core.io.atomic import write_atomically
 from diorama_core.io.bounded import read_picture
-from diorama_core.io.text import clean_text
+from diorama_core.io.text import clean_text, number_of
 
 WIDTH_PX = 460
 _STYLE = """
@@ -44,7 +44,7 @@ def write_report(path: Path, results: Sequence[PhotoResult], remarks: Sequence[s
     done = [r for r in results if not r.error]
     kept = sum(r.kept for r in done)
     objects = sum(len((r.report or {})["objects"]) for r in done)
-    summary = f"{len(done)} of {len(results)} photos became scenes with {objects} objects"
+    summary = f"{len(done)} of {number_of(len(results), 'photo')} became scenes with {number_of(objects, 'object')}"
     if kept:
         summary += f"; {kept} of them were finished before"
     parts = [

@@ -9,6 +9,7 @@ from diorama_core.api import Reconstruction
 from diorama_core.artefacts import LayoutReport
 from diorama_core.errors import ProjectError
 from diorama_core.io.documents import write_document
+from diorama_core.io.text import number_of
 from diorama_core.perception.foundation.proposals import JoinedDetection, OwnDetection, left_out
 from diorama_core.pipeline.arrangements import arrangement, arrangement_count
 from diorama_core.pipeline.plan import evaluate
@@ -73,7 +74,7 @@ def build_report(room: Reconstruction, scenes: tuple[str, ...]) -> dict[str, Any
     return {
         "project": str(room.project.folder),
         "scenes": list(scenes),
-        "summary": f"{len(scene.objects)} objects, {walls} walls{took}",
+        "summary": f"{number_of(len(scene.objects), 'object')}, {number_of(walls, 'wall')}{took}",
         "objects": [
             {
                 "id": o.id,

@@ -19,6 +19,7 @@ from diorama_app.session.session import BUILDING, EditorSession
 from diorama_app.session.textures import Textures
 from diorama_core.artefacts import FurtherPhoto, Inputs, Reason
 from diorama_core.errors import DioramaError, EditRefused, InputError
+from diorama_core.io.text import number_of
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.progress import Progress
 from diorama_core.project.storage import Project
@@ -194,7 +195,7 @@ def show_built(
     session.inputs_are_saved(inputs)
     session.commit(label, made.scene, inputs=inputs, further=further if made.again is not None else None)
     session.view.show_whole_room()
-    message = message or f"The scene has {len(made.scene.objects)} objects. Click one to change it."
+    message = message or f"The scene has {number_of(len(made.scene.objects), 'object')}. Click one to change it."
     if made.again is not None and made.again.left_out:
         message += f" To be added again: {', '.join(made.again.left_out)}."
     session.notice_all(message, "good")

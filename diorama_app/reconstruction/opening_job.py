@@ -14,6 +14,7 @@ from diorama_core.importing.apart import read_apart
 from diorama_core.importing.forms import SUFFIXES
 from diorama_core.importing.opening import Opened
 from diorama_core.io.atomic import write_atomically
+from diorama_core.io.text import number_of
 from diorama_core.library.library_names import BUILT_IN
 from diorama_core.library.user_library import ProjectShapes
 from diorama_core.progress import Progress
@@ -76,5 +77,5 @@ def _saved(session: EditorSession, file_name: str, opened: Opened, shapes: Path)
 
 def _show(client: Client, project: Project, file_name: str) -> None:
     count = len(project.load_scene().objects)
-    message = f"{file_name} is open as a project of its own, with {count} objects."
+    message = f"{file_name} is open as a project of its own, with {number_of(count, 'object')}."
     client.session.visit(client, project, message)

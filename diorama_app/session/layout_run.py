@@ -22,7 +22,9 @@ class LayoutRun:
     started_at: float
     start: Scene
     only: tuple[str, ...] = ()
-    """Ids that were free to move; everything unlocked when empty."""
+    """Ids that were free to move; everything unlocked that no person placed when empty."""
+    left: int = 0
+    """How many objects stayed because a person placed them."""
     times_s: list[float] = field(default_factory=list)
     costs: dict[str, list[float]] = field(default_factory=dict)
     report: LayoutReport | None = None

@@ -38,6 +38,7 @@ from diorama_app.viewport.scene_view import Viewport
 from diorama_app.viewport.thumbnails import Thumbnails
 from diorama_core.artefacts import FurtherPhoto, Inputs, Photo, Reason
 from diorama_core.editing.clipboard import Clip
+from diorama_core.editing.hand_placed import noted_by_hand
 from diorama_core.errors import DioramaError, EditRefused
 from diorama_core.io.bounded import shortened
 from diorama_core.library.library_names import BUILT_IN
@@ -185,6 +186,7 @@ class EditorSession:
         selection: Iterable[str] | None = None,
         merge_key: str | None = None,
         inputs: Inputs | None = None,
+        by_hand: bool = False,
     ) -> None:
         """Apply a pure edit as one undo step, show it and save it. A refused edit changes nothing.
 
@@ -195,10 +197,12 @@ class EditorSession:
             selection: what that person has selected afterwards; as before when None.
             merge_key: quick edits of the same key become one step.
             inputs: what is said of the photo from now on; as before when None.
+            by_hand: whether objects are put where the person wants them, so that no automatic step moves them.
         """
         try:
             self.need_writable()
             scene = change(self.scene)
+            scene = noted_by_hand(self.scene, scene) if by_hand else scene
             check_limits(scene, self.scene)
             scene = self._with_pictures_refitted(scene)
         except DioramaError:

@@ -36,3 +36,8 @@ def file_label(name: str) -> str:
     """A file's name as text that differs for different names: bytes that are no UTF-8 are written as `\\xe9`."""
     known = "".join(c if not 0xDC80 <= ord(c) <= 0xDCFF else f"\\x{ord(c) - 0xDC00:02x}" for c in name)
     return clean_text(known)
+
+
+def number_of(count: int, noun: str, plural: str = "") -> str:
+    """A number with its noun in the right form: "1 object", "3 objects"; the plural ends in s unless it is given."""
+    return f"{count} {noun if count == 1 else plural or noun + 's'}"

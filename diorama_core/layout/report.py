@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 from jaxtyping import Bool, Float
 
@@ -9,8 +11,10 @@ from diorama_core.geometry.sat import pair_axes, place_bodies
 from diorama_core.layout import gradients
 from diorama_core.layout.gradients import BoxPairs, near_pairs
 from diorama_core.layout.problem.footing import reach_of
-from diorama_core.layout.problem.problem import Problem
+from diorama_core.layout.problem.problem import Problem, build_problem
 from diorama_core.layout.problem.volumes import Volumes, contact_templates
+from diorama_core.library.record import ShapeLibrary
+from diorama_core.scene.types import Scene
 
 ALIGNED_RAD = float(np.deg2rad(1.0))
 PLACED_M = 1e-3
@@ -51,6 +55,27 @@ def measure(
         "moved_most_m": float(moved.max()) if len(moved) else 0.0,
         **cost_values(problem, R, p, scale),
     }
+
+
+def layout_figures(start: Scene, now: Scene, library: ShapeLibrary) -> dict[str, float]:
+    """The report's figures for a scene, against how its objects were observed at the start of a run.
+
+    Args:
+        start: the scene before the run.
+        now: the scene, perhaps with objects that are new or lack.
+        library: where shapes come from.
+    """
+    there = tuple(o for o in start.objects if now.has_object(o.id))
+    gone = {o.id for o in start.objects} - {o.id for o in there}
+    supports = tuple(s for s in start.supports if gone.isdisjoint((s.child, s.parent)))
+    problem = build_problem(replace(start, objects=there, supports=supports), library)
+    poses = [now.object(i).pose for i in problem.ids]
+    return measure(
+        problem,
+        np.array([p.R_world_object for p in poses]).reshape(-1, 3, 3),
+        np.array([p.position for p in poses]).reshape(-1, 3),
+        np.array([p.scale for p in poses]).reshape(-1, 3),
+    )
 
 
 def cost_values(

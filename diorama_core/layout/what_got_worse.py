@@ -4,7 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
+import numpy as np
+
 from diorama_core.artefacts import LayoutReport, PhotoDisagreement
+from diorama_core.scene.edits import resize
+from diorama_core.scene.support import top_down
+from diorama_core.scene.types import Scene, SceneObject
 
 Problems = Mapping[str, tuple[str, ...]]
 """By object id, what is wrong with it, in a word each."""
@@ -12,6 +17,56 @@ Problems = Mapping[str, tuple[str, ...]]
 FAR_M = 0.3
 """A layout whose objects moved so far on average is hardly that of the photo."""
 MIN_M = 0.005
+MIN_CHANGE_M = 1e-6
+"""Sizes that differ by less are the same."""
+
+
+RESIZED = "was resized"
+"""The problem of an object that became much smaller or larger than it was seen."""
+MAX_RESIZE = 1.25
+"""A recipe may make any side of an object so many times as long or as short: fits to a photo seldom differ by more."""
+MIN_TOLD = 0.05
+"""Relative changes of size below this are told nobody."""
+
+
+def resizes(start: Scene, final: Scene) -> dict[str, float]:
+    """By object id, the largest factor by which a side of an object became longer or shorter; at least 1."""
+    both = [(start.object(o.id).size_m, o) for o in final.objects if start.has_object(o.id)]
+    return {o.id: float(np.exp(np.abs(np.log(o.size_m / was)).max())) for was, o in both}
+
+
+def resized_too_much(start: Scene, final: Scene) -> dict[str, tuple[str, ...]]:
+    """The problem of each object whose size left what is believed of it."""
+    return {i: (RESIZED,) for i, factor in resizes(start, final).items() if factor > MAX_RESIZE + 1e-6}
+
+
+def resized_in_words(start: Scene, final: Scene) -> tuple[str, ...]:
+    """One line for each object of another size: from which size to which."""
+    return tuple(
+        f"resized: {final.object(i).label}, {_size(start.object(i))} to {_size(final.object(i))} cm"
+        for i, factor in resizes(start, final).items()
+        if factor > 1.0 + MIN_TOLD
+    )
+
+
+def with_believed_sizes(start: Scene, final: Scene) -> Scene:
+    """A layout with sizes that stay near those at its start; each object stays on its base.
+
+    Args:
+        start: where sizes are believed.
+        final: what a recipe made of it; what stands on an object rises and sinks with its top.
+    """
+    for object_id in (i for i in top_down(final) if start.has_object(i)):
+        was, now = start.object(object_id).size_m, final.object(object_id).size_m
+        believed = was * np.clip(now / was, 1.0 / MAX_RESIZE, MAX_RESIZE)
+        if np.abs(believed - now).max() > MIN_CHANGE_M:
+            final = resize(final, object_id, believed)
+    return final
+
+
+def _size(item: SceneObject) -> str:
+    depth, width, height = 100.0 * item.size_m
+    return f"{width:.0f} x {depth:.0f} x {height:.0f}"
 
 
 def new_problems(before: Problems, after: Problems) -> dict[str, tuple[str, ...]]:
@@ -54,6 +109,16 @@ def disagreement_in_words(found: PhotoDisagreement) -> str:
 
 
 def _verb(word: str, count: int) -> str:
-    singular = {"floats": "1 object floats", "collides": "1 object collides", "outside": "1 object left the room"}
-    plural = {"floats": "objects float", "collides": "objects collide", "outside": "objects left the room"}
+    singular = {
+        "floats": "1 object floats",
+        "collides": "1 object collides",
+        "outside": "1 object left the room",
+        RESIZED: "1 object was resized",
+    }
+    plural = {
+        "floats": "objects float",
+        "collides": "objects collide",
+        "outside": "objects left the room",
+        RESIZED: "objects were resized",
+    }
     return singular.get(word, f"1 object {word}") if count == 1 else f"{count} {plural.get(word, f'objects: {word}')}"

@@ -32,8 +32,8 @@ from diorama_core.scene.values import Vector3
 __all__ = [
     "attach", "ceiling_height", "detach", "duplicate", "edge_length_m", "floor_height", "fresh_id", "insert", "move",
     "move_plane", "place", "recolour", "refinish", "remove", "rename", "rescale", "rescale_by_edge",
-    "rescale_to_length", "set_ceiling_height", "set_hidden", "set_locked", "set_material_source", "set_metrics",
-    "set_open", "set_planes", "swap",
+    "rescale_to_length", "resize", "set_ceiling_height", "set_hidden", "set_locked", "set_material_source",
+    "set_metrics", "set_open", "set_planes", "swap",
 ]  # fmt: skip
 
 SMALLEST_SIZE_M = 1e-3
@@ -63,6 +63,16 @@ def place(scene: Scene, poses: Mapping[str, Pose]) -> Scene:
     for object_id, pose in poses.items():
         _check_size(_existing(scene, object_id), pose)
     return _map_objects(scene, lambda o: replace(o, pose=poses[o.id]) if o.id in poses else o)
+
+
+def resize(scene: Scene, object_id: str, size_m: Float[np.ndarray, "3"]) -> Scene:
+    """The scene with an object of this size on the same base; what stands on it keeps standing on its new top."""
+    item = _unlocked(scene, object_id)
+    rise = item.pose.R_world_object[:, 2] * (size_m[2] - item.size_m[2]) / 2
+    pose = Pose(item.pose.R_world_object, item.pose.position + rise, size_m / np.asarray(item.shape_size_m))
+    # What stands on it rises with the new top: a rigid move alone carries it only half of the way.
+    moved = move(scene, object_id, pose)
+    return place(moved, {i: moved.object(i).pose.moved(rise) for i in descendants(scene, object_id)})
 
 
 def swap(scene: Scene, object_id: str, candidate: Candidate, *, keep_pose: bool = False) -> Scene:

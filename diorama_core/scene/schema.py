@@ -161,6 +161,7 @@ class _ObjectFile(_Model):
     photo_materials: Annotated[list[_PhotoMaterialFile], Field(max_length=100)] = []
     material_source: MaterialSource = "photo"
     open_share: Unit = 0.0
+    by_hand: bool = False
 
 
 class _LightFile(_Model):
@@ -334,6 +335,7 @@ def _object_to_file(item: SceneObject, support: Support | None) -> dict[str, Any
         "photo_materials": [asdict(m) for m in item.photo_materials],
         "material_source": item.material_source,
         "open_share": item.open_share,
+        "by_hand": item.by_hand,
     }
 
 
@@ -426,6 +428,7 @@ def _object_from_file(file: _ObjectFile) -> SceneObject:
         photo_materials=tuple(PhotoMaterial(**m.model_dump()) for m in file.photo_materials),
         material_source=file.material_source,
         open_share=file.open_share,
+        by_hand=file.by_hand,
     )
 
 

@@ -324,6 +324,8 @@ class SceneObject:
     """Whether the object shows them or the shape's own materials."""
     open_share: float = 0.0
     """How far its doors, drawers and lids stand open, 0 to 1; nothing for shapes that have none."""
+    by_hand: bool = False
+    """Whether a person placed, turned or sized it: no automatic step does so afterwards unless asked."""
 
     @property
     def shown_photo_materials(self) -> tuple[PhotoMaterial, ...]:

@@ -280,8 +280,12 @@ def _smaller(problem: Problem, structure: Structure, found: Separation) -> Probl
 
 def _shrunk_reasons(problem: Problem, wanted: Problem, structure: Structure) -> tuple[str, ...]:
     shrunk = np.flatnonzero((wanted.scale < problem.scale - 1e-12).any(axis=1))
-    smaller = sorted({int(i) for i in shrunk} | set(structure.reduced))
-    return tuple(f"tight: {problem.labels[i]} was made a little smaller to fit" for i in smaller)
+    smaller = [
+        i
+        for i in sorted({int(i) for i in shrunk} | set(structure.reduced))
+        if structure.scale[i].prod() < problem.scale[i].prod()  # fitting it to the photo may have made it larger
+    ]
+    return tuple(f"tight: {problem.labels[i]} was made smaller, to fit between its neighbours" for i in smaller)
 
 
 def _stuck_reasons(problem: Problem, found: Separation) -> tuple[str, ...]:
