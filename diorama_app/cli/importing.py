@@ -57,9 +57,7 @@ def _import(a: argparse.Namespace) -> None:
     for line in (*warnings, *opened.changes):
         print_note(line)
     scene = opened.scene
-    print(
-        f"{a.output}: {number_of(len(scene.objects), 'object')}, {number_of(len(scene.architecture.planes), 'plane')}"
-    )
+    print(f"{a.output}: {number_of(len(scene.objects))}, {number_of(len(scene.architecture.planes), 'plane')}")
 
 
 def _imported_into(project: Project, a: argparse.Namespace) -> tuple[Opened, tuple[str, ...]]:

@@ -58,6 +58,6 @@ def build_posed(a: argparse.Namespace, options: BuildOptions) -> None:
     for note in built.notes:
         print_note(note)
     print(
-        f"{a.output}: {number_of(len(scene.objects), 'object')} of {number_of(len(built.photos), 'photo')}, "
+        f"{a.output}: {number_of(len(scene.objects))} of {number_of(len(built.photos), 'photo')}, "
         f"{several} in more than one"
     )

@@ -346,7 +346,7 @@ def _export(a: argparse.Namespace) -> None:
     with progress_bar() as progress:
         written = diorama.export(room, output, format=EXPORT_FORMATS[a.format], options=options, progress=progress)
     result: dict[str, Any] = {"file": str(output), "objects": len(written.objects), "planes": len(written.planes)}
-    lines = [f"{output}: {number_of(len(written.objects), 'object')}, {number_of(len(written.planes), 'plane')}"]
+    lines = [f"{output}: {number_of(len(written.objects))}, {number_of(len(written.planes), 'plane')}"]
     if a.simulate:
         from diorama_core.export.stability import stability
 

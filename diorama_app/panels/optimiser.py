@@ -251,7 +251,7 @@ def _told(run: LayoutRun, scene: Scene) -> str:
     """Which sizes changed, and what stayed because people placed it."""
     lines = list(resized_in_words(run.start, scene))
     if run.left:
-        lines.append(f"{number_of(run.left, 'object')} that people placed stayed in place.")
+        lines.append(f"{number_of(run.left)} that people placed stayed in place.")
     bar = button("Tidy up all", "tidy all", title="Also moves what people placed") if run.left else ""
     bar = f'<div class="bar tight" style="margin:6px 0 0 0">{bar}</div>' if bar else ""
     told = "".join(f"<p>{text(line[:1].upper() + line[1:])}</p>" for line in lines)

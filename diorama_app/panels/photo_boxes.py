@@ -91,9 +91,7 @@ class PhotoBoxes:
         accepted = tuple(labelled_box(b.box, b.label) for b in self._proposals(inputs))
         if accepted:
             self._client.selected_box = None
-            self._annotate(
-                f"mark {number_of(len(accepted), 'object')}", replace(inputs, boxes=(*inputs.boxes, *accepted))
-            )
+            self._annotate(f"mark {number_of(len(accepted))}", replace(inputs, boxes=(*inputs.boxes, *accepted)))
             self._client.refresh()
 
     def toggle(self) -> None:

@@ -149,4 +149,4 @@ def title_bar(client: Client) -> str:
         f' <span class="chip" style="border-color:rgb{g.colour}" title="also has this open">{text(g.name)}</span>'
         for g in others[:4]
     )
-    return f"<b>{name}</b> <span class='dim'>{number_of(len(session.scene.objects), 'object')}</span>{here}"
+    return f"<b>{name}</b> <span class='dim'>{number_of(len(session.scene.objects))}</span>{here}"

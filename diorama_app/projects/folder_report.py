@@ -44,7 +44,7 @@ def write_report(path: Path, results: Sequence[PhotoResult], remarks: Sequence[s
     done = [r for r in results if not r.error]
     kept = sum(r.kept for r in done)
     objects = sum(len((r.report or {})["objects"]) for r in done)
-    summary = f"{len(done)} of {number_of(len(results), 'photo')} became scenes with {number_of(objects, 'object')}"
+    summary = f"{len(done)} of {number_of(len(results), 'photo')} became scenes with {number_of(objects)}"
     if kept:
         summary += f"; {kept} of them were finished before"
     parts = [
@@ -81,7 +81,7 @@ def _scene(result: PhotoResult, folder: Path) -> str:
     notes = notes if lines else ""
     return (
         f'<article id="{html.escape(result.project.name, quote=True)}"><h2>{html.escape(result.photo.name)}</h2>'
-        f'<p class="dim">{_count(len(report["objects"]), "object")}, {_count(walls, "wall")} · {when} · '
+        f'<p class="dim">{_count(len(report["objects"]))}, {_count(walls, "wall")} · {when} · '
         f'<a href="{address}/scene.json">{where}</a></p>'
         f'<div class="pictures">{_picture(result.project / "photo.jpg", "the photo")}'
         f"{_picture(result.picture, 'the scene')}</div>"

@@ -74,7 +74,7 @@ def build_report(room: Reconstruction, scenes: tuple[str, ...]) -> dict[str, Any
     return {
         "project": str(room.project.folder),
         "scenes": list(scenes),
-        "summary": f"{number_of(len(scene.objects), 'object')}, {number_of(walls, 'wall')}{took}",
+        "summary": f"{number_of(len(scene.objects))}, {number_of(walls, 'wall')}{took}",
         "objects": [
             {
                 "id": o.id,

@@ -195,7 +195,7 @@ def show_built(
     session.inputs_are_saved(inputs)
     session.commit(label, made.scene, inputs=inputs, further=further if made.again is not None else None)
     session.view.show_whole_room()
-    message = message or f"The scene has {number_of(len(made.scene.objects), 'object')}. Click one to change it."
+    message = message or f"The scene has {number_of(len(made.scene.objects))}. Click one to change it."
     if made.again is not None and made.again.left_out:
         message += f" To be added again: {', '.join(made.again.left_out)}."
     session.notice_all(message, "good")

@@ -77,5 +77,5 @@ def _saved(session: EditorSession, file_name: str, opened: Opened, shapes: Path)
 
 def _show(client: Client, project: Project, file_name: str) -> None:
     count = len(project.load_scene().objects)
-    message = f"{file_name} is open as a project of its own, with {number_of(count, 'object')}."
+    message = f"{file_name} is open as a project of its own, with {number_of(count)}."
     client.session.visit(client, project, message)

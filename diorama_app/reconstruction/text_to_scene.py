@@ -62,7 +62,7 @@ def _compose(said: str, project: Project, library: ShapeLibrary, model: LmmSetti
     project.save_scene(made.scene)
     project.update_info(notes=list(made.notes))
     unmet = [note for note in made.notes[1:] if not note.startswith(("added", "mended"))]
-    what = f"The scene has {number_of(len(made.scene.objects), 'object')}, composed from the library"
+    what = f"The scene has {number_of(len(made.scene.objects))}, composed from the library"
     return f"{what}; {'; '.join(unmet)}." if unmet else f"{what}; everything that you asked for is there."
 
 
@@ -77,7 +77,7 @@ def _draw_and_build(
     made = picture_of(said, endpoint, progress.part(0.0, 0.2))
     built = build_project(project, made.inputs, library, warnings=made.notes, progress=progress.part(0.2, 1.0))
     count = len(built.scene.objects)
-    what = f"The scene has {number_of(count, 'object')}" if count else "No furniture was found; draw boxes"
+    what = f"The scene has {number_of(count)}" if count else "No furniture was found; draw boxes"
     lacking = unmet(said, built.scene)
     if lacking:
         missing = f"of the description is missing: {', '.join(lacking)}"

@@ -38,6 +38,6 @@ def file_label(name: str) -> str:
     return clean_text(known)
 
 
-def number_of(count: int, noun: str, plural: str = "") -> str:
-    """A number with its noun in the right form: "1 object", "3 objects"; the plural ends in s unless it is given."""
-    return f"{count} {noun if count == 1 else plural or noun + 's'}"
+def number_of(count: int, noun: str = "object") -> str:
+    """A number with its noun in the right form: "1 object", "3 objects"."""
+    return f"{count} {noun}{'' if count == 1 else 's'}"

@@ -5,7 +5,7 @@ import os
 from hypothesis import given
 from hypothesis import strategies as st
 
-from diorama_core.io.text import REPLACEMENT, clean_strings, clean_text, file_label
+from diorama_core.io.text import REPLACEMENT, clean_strings, clean_text, file_label, number_of
 
 ANY_TEXT = st.text(st.characters(categories=None, codec=None), max_size=40)  # halves and controls included
 
@@ -39,3 +39,9 @@ def test_every_string_of_a_value_is_cleaned() -> None:
 def test_names_of_files_differ_as_the_files_do() -> None:
     names = [os.fsdecode(name) for name in (b"b\xe9te", b"b\xe8te", b"\x80", b"\xff", "b\u00eate".encode())]
     assert [file_label(name) for name in names] == ["b\\xe9te", "b\\xe8te", "\\x80", "\\xff", "b\u00eate"]
+
+
+def test_numbers_have_their_noun_in_the_right_form() -> None:
+    assert number_of(1) == "1 object"
+    assert number_of(0) == "0 objects"
+    assert number_of(3, "photo") == "3 photos"
