@@ -27,14 +27,10 @@ from diorama_core.arrangement.standing import LEAST_ODDS, STANDING_TERMS, wall_r
 from diorama_core.arrangement.support_hypotheses import SupportEvidence, SupportHypothesis, support_hypotheses
 from diorama_core.arrangement.support_terms import PATH, TERMS, place_name
 from diorama_core.artefacts import Inputs
-from diorama_core.evaluation.adapters.photo_annotations import (
-    AnnotatedPhoto,
-    picture_of,
-    read_annotations,
-    read_intrinsics,
-)
+from diorama_core.evaluation.adapters.photo_annotations import AnnotatedPhoto
 from diorama_core.evaluation.benchmarks.cases import SEEDS, attempted, recipe
-from diorama_core.evaluation.benchmarks.photos import inputs_of
+from diorama_core.evaluation.benchmarks.photo_build import annotated_inputs
+from diorama_core.evaluation.benchmarks.photos import PhotoSource, plan
 from diorama_core.evaluation.benchmarks.system import WAYS
 from diorama_core.evaluation.metrics.scene import in_true_world, matched
 from diorama_core.library.catalogue import built_in_library
@@ -94,15 +90,10 @@ def photo_questions(
     annotated: Path, photos: Path, library: ShapeLibrary, cache: Path, columns: Sequence[str]
 ) -> Iterator[Question]:
     """Of every annotated object whose supporter is annotated."""
-    intrinsics = read_intrinsics(photos)
-    for name, photo in read_annotations(annotated).items():
-        path = picture_of(photos, name)
-        if path is not None:
-            inputs = inputs_of(photo, path, intrinsics.get(name), named=True)
-            scene, evidence = posed_scene(inputs, library, cache / f"{photos.name}-{name}")
-            yield from _questions(
-                name, photos.name, scene, library, REASONED, evidence, _annotated(photo, scene), columns
-            )
+    for task in plan([PhotoSource(annotated, photos)]).tasks:
+        scene, evidence = posed_scene(annotated_inputs(task).inputs, library, cache / f"{photos.name}-{task.name}")
+        right = _annotated(task.annotation, scene)
+        yield from _questions(task.name, photos.name, scene, library, REASONED, evidence, right, columns)
 
 
 def _questions(

@@ -19,12 +19,14 @@ from diorama_core.provenance import (
     LanguageModelUse,
     RoomSource,
 )
+from tests.scene.strategies import texts
 
 METRES = st.floats(0, 1e3)
+USES = st.builds(LanguageModelUse, model=texts, trouble=texts, cost=st.none() | METRES)
 SOURCES = st.one_of(
     st.builds(CameraSource),
     st.builds(RoomSource, wall_height_m=st.none() | METRES, ceilings_m=st.lists(METRES).map(tuple)),
-    st.builds(GraphSource, asked=st.none() | st.builds(LanguageModelUse, cost=st.none() | METRES)),
+    st.builds(GraphSource, asked=st.none() | USES),
 )
 
 
