@@ -150,7 +150,7 @@ def put_back(client: Client) -> None:
     if run is None or run.final is None:
         raise EditRefused("there is no optimised layout yet; run the optimiser first")
     run.showing_before = False
-    if session.scene is run.final:
+    if session.scene is run.final and session.is_of(client, session.document.history.current):
         session.undo(client)
     else:
         there = {o.id: o.pose for o in run.start.objects if session.scene.has_object(o.id)}

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import partial
+
 import viser
 
 from diorama_app.commands.registry import CommandTable
@@ -41,8 +43,9 @@ class Toolbar:
 
     def refresh(self) -> None:
         """Draw the buttons as the history allows and the settings say."""
-        history = self._client.session.document.history
-        undo = f"Undo: {history.current.label}" if history.can_undo else "Nothing to undo"
+        session = self._client.session
+        undone = session.document.next_undo(partial(session.is_of, self._client))
+        undo = "Nothing to undo" if undone is None else f"Undo: {undone.label}"
         spare_handles, spare_tools = (
             "".join(self._tool(i, "?" if i == "help" else "", kind="spare ") for i in ids) for ids in SPARE
         )
@@ -109,10 +112,11 @@ class Toolbar:
         return command_id in SWITCHES and bool(getattr(preferences, command_id))
 
     def _is_possible(self, command_id: str) -> bool:
-        session, history = self._client.session, self._client.session.document.history
+        session = self._client.session
+        document, is_mine = session.document, partial(session.is_of, self._client)
         needed = {
-            "undo": history.can_undo,
-            "redo": history.can_redo,
+            "undo": document.next_undo(is_mine) is not None,
+            "redo": document.next_redo(is_mine) is not None,
             "view_photo": session.scene.camera is not None,
             "masks": session.photo is not None,
             "focus": bool(self._client.selection),

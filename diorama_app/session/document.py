@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass, replace
+from typing import cast
 
 from diorama_core.artefacts import FurtherPhoto, Inputs
 from diorama_core.errors import EditRefused
 from diorama_core.multiview.following import following
+from diorama_core.scene.commuting import moved_last, moved_next
 from diorama_core.scene.history import Entry, History
 from diorama_core.scene.types import Scene
 
@@ -21,6 +23,23 @@ class Photos:
     """The photo that it was built from, with all corrections."""
     further: tuple[FurtherPhoto, ...] = ()
     """Other photos of the same room."""
+
+    def __eq__(self, other: object) -> bool:
+        """Of the very same pictures: corrections make new ones."""
+        same = isinstance(other, Photos) and self.inputs is other.inputs and len(self.further) == len(other.further)
+        return same and all(a is b for a, b in zip(self.further, cast("Photos", other).further, strict=True))
+
+    def __hash__(self) -> int:
+        return hash(id(self.inputs))
+
+
+IsMine = Callable[[Entry], bool]
+"""Whether a change may be taken back, or done again, by somebody."""
+
+
+def anybodys(entry: Entry) -> bool:
+    """Any change."""
+    return True
 
 
 class Document:
@@ -62,6 +81,7 @@ class Document:
         further: tuple[FurtherPhoto, ...] | None = None,
         selection: Iterable[str] = (),
         merge_key: str | None = None,
+        author: str = "",
     ) -> None:
         """Make `scene` the current state, as one undo step called `label`.
 
@@ -72,27 +92,59 @@ class Document:
             further: the other photos of the room from now on; as before, following the scene's camera, when None.
             selection: what the person who did it has selected then: undo and redo select it again.
             merge_key: quick edits of the same key become one step.
+            author: who did it.
         """
         if further is None:
             further = following(self.further_photos, self.scene.camera, scene.camera)
         beside = Photos(self.inputs if inputs is None else inputs, further)
-        entry = Entry(label, scene, tuple(selection), merge_key, time.monotonic(), beside)
+        entry = Entry(label, scene, tuple(selection), merge_key, time.monotonic(), beside, author)
         self.history = self.history.commit(entry)
 
-    def undo(self) -> Entry:
-        """One step back; returns what was taken back."""
-        if not self.history.can_undo:
-            raise EditRefused("there is nothing to undo")
+    def next_undo(self, is_mine: IsMine = anybodys) -> Entry | None:
+        """What `undo` would take back; None when there is nothing."""
+        index = self._undone_next(is_mine)
+        return None if index is None else self.history.entries[index]
+
+    def next_redo(self, is_mine: IsMine = anybodys) -> Entry | None:
+        """What `redo` would do again; None when there is nothing."""
+        index = self._redone_next(is_mine)
+        return None if index is None else self.history.entries[index]
+
+    def undo(self, is_mine: IsMine = anybodys) -> Entry:
+        """Take back the last change that somebody may take back; returns it.
+
+        Raises:
+            EditRefused: there is none, or others have changed the same things since.
+        """
+        index = self._undone_next(is_mine)
+        if index is None:
+            own = self.history.can_undo
+            raise EditRefused(f"there is nothing {'of yours ' if own else ''}to undo")
+        self.history = moved_last(self.history, index)
         undone = self.history.current
         self.history = self.history.undo()
         return undone
 
-    def redo(self) -> Entry:
-        """One step forward; returns what was done again."""
-        if not self.history.can_redo:
-            raise EditRefused("there is nothing to redo")
-        self.history = self.history.redo()
+    def redo(self, is_mine: IsMine = anybodys) -> Entry:
+        """Do the next change again that somebody may do again; returns it.
+
+        Raises:
+            EditRefused: there is none, or others have changed the same things since.
+        """
+        index = self._redone_next(is_mine)
+        if index is None:
+            own = self.history.can_redo
+            raise EditRefused(f"there is nothing {'of yours ' if own else ''}to redo")
+        self.history = moved_next(self.history, index).redo()
         return self.history.current
+
+    def _undone_next(self, is_mine: IsMine) -> int | None:
+        entries = self.history.entries
+        return next((k for k in range(self.history.cursor, 0, -1) if is_mine(entries[k])), None)
+
+    def _redone_next(self, is_mine: IsMine) -> int | None:
+        entries = self.history.entries
+        return next((k for k in range(self.history.cursor + 1, len(entries)) if is_mine(entries[k])), None)
 
     def note_selection(self, selection: tuple[str, ...]) -> None:
         """Remember a selection with the current state, so that undoing back to here selects it again."""

@@ -45,6 +45,7 @@ from diorama_core.library.library_names import BUILT_IN
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.library.user_library import OWN, ProjectShapes, ShapeRecords, UserLibrary, offered_shapes
 from diorama_core.project.storage import Project
+from diorama_core.scene.history import Entry
 from diorama_core.scene.schema import check_limits
 from diorama_core.scene.types import Pose, Scene
 
@@ -246,10 +247,14 @@ class EditorSession:
         if by is not None and selection is not None:
             by.selection = tuple(selection)
         chosen = () if by is None else tuple(i for i in by.selection if scene.has_object(i))
-        self.document.commit(label, scene, selection=chosen, merge_key=merge_key, inputs=inputs, further=further)
+        author = "" if by is None else by.name
+        self.document.commit(
+            label, scene, selection=chosen, merge_key=merge_key, inputs=inputs, further=further, author=author
+        )
         for client in self.clients.values():
-            who = "" if client is by or by is None else f"{by.name}: "
-            client.to_say = (f"{who}{label[:1].upper()}{label[1:]}", True)
+            others = client is not by and by is not None
+            who = f"{author}: " if others else ""
+            client.to_say = (f"{who}{label[:1].upper()}{label[1:]}", not others)
         self.changed(by)
 
     @property
@@ -262,15 +267,19 @@ class EditorSession:
         self._access.need_writable()
 
     def undo(self, by: ConnectedClient) -> None:
-        """Take back the last change, whoever made it."""
+        """Take back a person's last change, or one of somebody who has left; see `scene.commuting` for the rule."""
         self.need_writable()
-        undone = self.document.undo()
+        undone = self.document.undo(partial(self.is_of, by))
         self._time_travelled(by, f"Undone: {undone.label}", self.document.history.current.selection)
 
+    def is_of(self, person: ConnectedClient, entry: Entry) -> bool:
+        """Whether a change is a person's to take back: nobody else who is here made it."""
+        return all(entry.author != c.name for c in self.clients.values() if c is not person)
+
     def redo(self, by: ConnectedClient) -> None:
-        """Do again what was undone."""
+        """Do again what a person undid."""
         self.need_writable()
-        done = self.document.redo()
+        done = self.document.redo(partial(self.is_of, by))
         self._time_travelled(by, f"Redone: {done.label}", done.selection)
 
     def _time_travelled(self, by: ConnectedClient, message: str, selection: tuple[str, ...]) -> None:

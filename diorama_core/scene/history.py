@@ -21,6 +21,8 @@ class Entry:
     time_s: float = 0.0
     beside: object = None
     """What belongs to this state besides the scene, for whoever keeps the history."""
+    author: str = ""
+    """Who made the change; empty for what nobody in particular did."""
 
 
 @dataclass(frozen=True)
@@ -62,6 +64,7 @@ class History:
         merges = (
             entry.merge_key is not None
             and entry.merge_key == last.merge_key
+            and entry.author == last.author
             and self.cursor > 0
             and entry.time_s - last.time_s <= merge_window_s
         )

@@ -75,3 +75,10 @@ def test_a_selection_is_noted_with_its_state() -> None:
     document.undo()
     assert document.history.current.selection == ("lamp_1",)
     assert document.history.current.label == "first"
+
+
+def test_quick_edits_of_two_people_are_two_steps() -> None:
+    document = Document(SCENE)
+    document.commit("a", renamed("a"), merge_key="name", author="A")
+    document.commit("b", renamed("b"), merge_key="name", author="B")
+    assert len(document.history.entries) == 3
