@@ -41,6 +41,7 @@ class SceneParts:
     notes: tuple[str, ...] = ()
 
 
+_SCENES = "GLB, USD, Sweet Home 3D, OBJ"
 Content = MarkedFile | MeasuredRoom | PointCloud | SceneParts
 
 
@@ -79,7 +80,7 @@ def told(path: Path) -> Iterator[tuple[SceneForm, Path]]:
         raise InputError(f"{path.name} is {other.name}: {other.advice}")
     inside = f" (in it: {', '.join(head.names[:3])})" if head.names else ""
     raise InputError(
-        f"{path.name} is nothing that is read as a room{inside}; scenes, scans and homes are: {', '.join(_names())}"
+        f"{path.name} is nothing that is read as a room{inside}; give a scene ({_SCENES}), a scan or a home"
     )
 
 
@@ -93,10 +94,6 @@ def marked_file(path: Path) -> MarkedFile | None:
     with told(path) as (form, place):
         content = form.read(place, Progress())
     return content if isinstance(content, MarkedFile) else None
-
-
-def _names() -> list[str]:
-    return list(dict.fromkeys(form.name for form in SCENE_FORMS))
 
 
 def _gltf(path: Path, progress: Progress) -> Content:

@@ -236,7 +236,7 @@ def test_the_page_of_one_file_opens_without_a_server(example: EditorPage, contex
         viewer.locator("canvas").first.wait_for(timeout=PATIENCE_MS)
         for _ in range(20):
             viewer.wait_for_timeout(1000)
-            shot = np.asarray(Image.open(io.BytesIO(viewer.screenshot())).convert("RGB"))
+            shot = np.asarray(Image.open(io.BytesIO(viewer.screenshot(timeout=PATIENCE_MS))).convert("RGB"))
             if colours(shot) > 15:
                 break
         keep_picture(EditorPage(viewer, example.running), "exported_viewer")
@@ -255,7 +255,7 @@ def colours(picture: np.ndarray) -> float:
     ("name", "content", "words"),
     [
         ("room.glb", b"glTF but then nothing of it", "room.glb"),
-        ("room.txt", b"words", "no scene that can be opened"),
+        ("room.txt", b"words", "is nothing that is read as a room"),
     ],
 )
 def test_a_bad_file_is_one_clear_line_and_nothing_is_lost(

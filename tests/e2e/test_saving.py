@@ -82,7 +82,8 @@ def test_what_an_earlier_session_could_not_save_is_restored(editor: EditorPage, 
     crashed.note(project, lost)
     minute_ago = time.time() - 60.0
     os.utime(project.scene_path, (minute_ago - 60.0, minute_ago - 60.0))
-    os.utime(crashed._path(project, crashed._session), (minute_ago, minute_ago))
+    (kept,) = crashed._folder.glob(f"*-{crashed._session}-*.json")
+    os.utime(kept, (minute_ago, minute_ago))
     session.ui_thread.post(lambda: session.open_project(project))
     expect(editor.page.get_by_text("were not saved when Diorama ended")).to_be_visible()
     editor.button("Restore unsaved changes").click()
