@@ -8,9 +8,9 @@ import numpy as np
 from jaxtyping import Float
 
 from diorama_app.session.client import Client, Placing
-from diorama_core.arrangement.surfaces import Surface, plane_surface
+from diorama_core.arrangement.surfaces import Surface
+from diorama_core.editing.opening_insertion import with_opening
 from diorama_core.editing.placing import (
-    DOOR,
     Hit,
     Place,
     facing,
@@ -22,7 +22,6 @@ from diorama_core.editing.placing import (
     seated,
     spot_in_view,
 )
-from diorama_core.editing.plan_edits import wall_feet
 from diorama_core.editing.relations import SEATS
 from diorama_core.editing.sensible_support import why_not_on
 from diorama_core.errors import EditRefused
@@ -31,8 +30,6 @@ from diorama_core.library.taxonomy import broad, resolve
 from diorama_core.scene import edits
 from diorama_core.scene.types import Pose, Scene, SceneObject, Support
 
-SILL_M = 0.9
-"""Of a window put into a wall on the plan."""
 MAX_RECENT = 24
 MAX_FAVOURITES = 200
 SMALL_SHARE, SMALL_HEIGHT_M = 0.25, 0.7
@@ -114,27 +111,11 @@ def put_opening(client: Client, category: str, wall_id: str, at: Float[np.ndarra
     """Put the most usual door or window into a wall, where it is nearest to a point of the floor (world x and y).
 
     Raises:
-        EditRefused: there is no such wall, it is too short, or the library has no such shape.
+        EditRefused: see `with_opening`.
     """
-    session, scene = client.session, client.session.scene
-    foot = next((f for f in wall_feet(scene) if f.id == wall_id), None)
-    shapes = session.library.in_category(category)
-    if foot is None or not shapes:
-        raise EditRefused(f"{category}s stand in walls; choose a wall" if shapes else f"the library has no {category}")
-    sizes = np.array([s.size_m for s in shapes])
-    shape = shapes[int(np.abs(np.log(sizes / np.median(sizes, axis=0))).sum(axis=1).argmin())]
-    half, sill = shape.size_m[1] / 2, 0.0 if category == DOOR else SILL_M
-    if foot.length_m < 2 * half:
-        raise EditRefused(f"a {category} is {2 * half:.2f} m wide, which is more than this wall; choose a longer one")
-    along = float(np.clip((at - foot.start) @ foot.along, half, foot.length_m - half))
-    wall = scene.plane(wall_id)
-    level = float(wall.polygon[:, 2].min()) + sill + shape.size_m[2] / 2
-    hit = Hit(
-        Place(plane_surface(wall), wall_id, of_object=False), np.append(foot.start + along * foot.along, level), 0.0
-    )
-    new_id = edits.fresh_id(scene, category)
-    item, edge = insertion(scene, shape, new_id, hit, 0.0)
-    session.edit(f"insert {category}", lambda s: edits.insert(s, item, edge), by=client, selection=(new_id,))
+    session = client.session
+    after, new_id = with_opening(session.scene, session.offered, category, wall_id, at)
+    session.edit(f"insert {category}", lambda _: after, by=client, selection=(new_id,))
 
 
 def start_placing(client: Client, shape_id: str) -> None:

@@ -15,10 +15,33 @@ from diorama_core.scene import edits
 from diorama_core.scene.support import descendants
 from diorama_core.scene.types import Scene
 from diorama_core.text.edit_insert import inserted
-from diorama_core.text.edit_looks import painted, restyled, swapped
+from diorama_core.text.edit_looks import restyled, swapped
 from diorama_core.text.edit_outcome import Done, names_of
 from diorama_core.text.edit_places import moved, resized, shifted, turned
-from diorama_core.text.edit_plan import Edit, Insert, Move, Paint, Place, Remove, Restyle, Shift, Swap, Turn
+from diorama_core.text.edit_plan import (
+    Align,
+    Copy,
+    Edit,
+    Exchange,
+    Insert,
+    Light,
+    Measure,
+    Move,
+    Opening,
+    Paint,
+    Place,
+    Remove,
+    Rename,
+    Resize,
+    Restyle,
+    RoomLength,
+    SetState,
+    Shift,
+    Swap,
+    Turn,
+)
+from diorama_core.text.edit_room import covered, lengthened, lit, opened_wall
+from diorama_core.text.edit_states import aligned, copied, exchanged, measured, put_in_state, renamed
 
 
 @dataclass(eq=False)
@@ -35,8 +58,8 @@ class EditApplier:
         Raises:
             EditRefused: it cannot be done: one line that says why.
         """
-        if isinstance(edit, Paint):
-            return painted(scene, edit)
+        if isinstance(edit, (Paint, RoomLength, Light, Opening)):
+            return self._room(scene, edit)
         if isinstance(edit, Insert):
             done = inserted(self.positioner, scene, edit, self._relations(scene, edit.places))
             if edit.name:
@@ -57,7 +80,35 @@ class EditApplier:
             return restyled(self.positioner.library, scene, ids, edit.look)
         if isinstance(edit, Swap):
             return swapped(self.positioner, scene, ids, edit.what)
-        return resized(self.positioner, scene, ids, edit.factor)
+        if isinstance(edit, Resize):
+            return resized(self.positioner, scene, ids, edit.factor)
+        return self._object(scene, ids, edit)
+
+    def _room(self, scene: Scene, edit: Paint | RoomLength | Light | Opening) -> Done:
+        if isinstance(edit, (Paint, Opening)) and edit.behind:
+            edit = edit.model_copy(update={"behind": self._ids(scene, [edit.behind])[0]})
+        if isinstance(edit, Paint):
+            return covered(scene, edit)
+        if isinstance(edit, RoomLength):
+            return lengthened(scene, edit)
+        return lit(scene, edit) if isinstance(edit, Light) else opened_wall(self.positioner.library, scene, edit)
+
+    def _object(
+        self, scene: Scene, ids: Sequence[str], edit: Measure | Copy | Exchange | SetState | Rename | Align
+    ) -> Done:
+        if isinstance(edit, Measure):
+            return measured(self.positioner, scene, ids, edit)
+        if isinstance(edit, Copy):
+            return copied(self.positioner, scene, ids, edit.count, self._relations(scene, edit.places))
+        if isinstance(edit, Exchange):
+            if len(ids) < 2:
+                raise EditRefused("two different objects can change places")
+            return exchanged(self.positioner, scene, edit.model_copy(update={"objects": list(ids)}))
+        if isinstance(edit, SetState):
+            return put_in_state(self.positioner.library, scene, ids, edit)
+        if isinstance(edit, Rename):
+            return renamed(scene, ids[0], edit)
+        return aligned(self.positioner, scene, ids, edit)
 
     def _ids(self, scene: Scene, given: Sequence[str]) -> list[str]:
         """Known ids, with the names of new objects resolved, each once."""

@@ -33,6 +33,8 @@ from diorama_core.text.edit_plan import (
     Swap,
     Turn,
 )
+from diorama_core.text.edit_words_objects import object_edits
+from diorama_core.text.edit_words_room import room_edits
 from diorama_core.text.looks import look_of
 from diorama_core.text.phrases import NUMBERS, Placing, noun_phrase, split_places
 from diorama_core.text.selecting import Selector
@@ -64,11 +66,20 @@ _CLAUSES = re.compile(
 _SHOULD = re.compile(
     r"^(?:please )?((?:the|all|every|each|my|these|those) .+?) (?:should|must|ought to|ha(?:s|ve) to)(?: be)? "
 )
+_POLITE = re.compile(
+    r"^(?:(?:please|now|then|also|and|hey|ok|okay|well|can you|could you|can we|could we|would you|will you|let's"
+    r"|i would like you to|i'd like you to|i want you to|i want to|i'd like to|i would like to|go ahead and),? )+"
+)
+_AT_END = re.compile(r",? (?:please|for me|thanks|thank you|now|instead|\?)$|\?$")
+_GIVEN = re.compile(r"^give ((?:the|my|all|each|every) .+?) (?:an?|some) (.+?)(?: colou?r| finish| look| covering)?$")
+"""“give the sofa a dark green colour”; the walls, too."""
 _HIGHER = re.compile(r"(?:\s+(?:a (?:bit|little)|slightly|much|somewhat))?\s+(higher|lower)(?: up| down)?$")
 _AND_SO = frozenset({"of", "more", "new", "another", "please", "also", "and", "pair", "set", "few", "some", "with"})
 """Words that may stand beside what is named anew."""
 _SCALES = {"twice": 2.0, "double": 2.0, "half": 0.5}
-EXAMPLES = "make all chairs wooden; move the lamp beside the sofa; remove everything on the desk; a rug under the table"
+EXAMPLES = (
+    "make all chairs wooden; move the lamp beside the sofa; make the sofa 2 m wide; brick walls; a rug under the table"
+)
 MAX_COMMAND_CHARS = 1000
 MAX_LINE = 380
 """Characters of a refusal."""
@@ -118,10 +129,10 @@ def _edits_of(
     clause: str, scene: Scene, library: ShapeLibrary, last: Sequence[str], selected: Sequence[str]
 ) -> tuple[Edit, ...]:
     selector = Selector(scene, library, last, selected)
-    counted = counted_edits(selector, clause)
-    if counted is not None:
-        return counted
-    clause = _SHOULD.sub(r"make \1 ", clause)
+    clause = _plain(clause)
+    known = counted_edits(selector, clause) or room_edits(selector, clause) or object_edits(selector, clause, _subject)
+    if known:
+        return known
     found = _VERB.match(clause)
     verb = "" if found is None else str(found.lastgroup)
     rest = clause if found is None else clause[found.end() :].strip()
@@ -150,11 +161,18 @@ def _edits_of(
     if verb == "move":
         return _each_alone(_move, selector, clause, rest)
     if verb == "put":
-        known = _is_known(selector, rest)
-        return _each_alone(_move, selector, clause, rest) if known else _inserts(selector, clause, rest)
+        is_there = _is_known(selector, rest)
+        return _each_alone(_move, selector, clause, rest) if is_there else _inserts(selector, clause, rest)
     if not verb and not _is_wish(rest):
         raise EditRefused(f"“{clause}” is not understood; for example: {EXAMPLES}")
     return _inserts(selector, clause, rest)
+
+
+def _plain(clause: str) -> str:
+    """A clause without what is only polite, in the form of a command."""
+    clause = _POLITE.sub("", _AT_END.sub("", clause)).strip()
+    clause = _GIVEN.sub(r"make \1 \2", clause)
+    return _SHOULD.sub(r"make \1 ", clause)
 
 
 def _each_alone(
@@ -223,7 +241,8 @@ def _is_known(selector: Selector, text: str) -> bool:
     )
 
 
-def _places(selector: Selector, places: Sequence[Placing]) -> list[Place]:
+def places_of_phrases(selector: Selector, places: Sequence[Placing]) -> list[Place]:
+    """Where phrases of place say that something goes; raises `EditRefused` where they name what is not there."""
     found = []
     for place in places:
         if place.words in ("", "each other", "one another"):
@@ -252,7 +271,7 @@ def _move(selector: Selector, clause: str, rest: str) -> Edit:
         raise EditRefused(f"“{clause}”: where to? For example: move the lamp beside the sofa")
     qualifiers, goals = _split(selector, head, places)
     ids = selector.objects(head, qualifiers, movable=True)
-    wanted = _places(selector, goals)
+    wanted = places_of_phrases(selector, goals)
     if not wanted:
         raise EditRefused(f"“{clause}”: where to? For example: beside the sofa, against the wall, in the corner")
     return Move(objects=list(ids), places=wanted)
@@ -397,5 +416,7 @@ def _insert(selector: Selector, clause: str, rest: str) -> Edit:
     if category(phrase.category).name in OPENING_CATEGORIES:
         raise EditRefused(f"a {phrase.category} is part of the room, which edits by words leave as it is")
     return Insert(
-        what=" ".join((*phrase.appearance, phrase.label)), count=phrase.count, places=_places(selector, places)
+        what=" ".join((*phrase.appearance, phrase.label)),
+        count=phrase.count,
+        places=places_of_phrases(selector, places),
     )

@@ -12,7 +12,7 @@ from diorama_core.editing.relations import SEATS, Relation
 from diorama_core.errors import EditRefused
 from diorama_core.library.labels import with_article
 from diorama_core.library.record import Shape, ShapeLibrary, record_of
-from diorama_core.library.taxonomy import having
+from diorama_core.library.taxonomy import category, having, with_kin
 from diorama_core.scene import edits
 from diorama_core.scene.types import Pose, Scene, SceneObject
 from diorama_core.text.edit_looks import looking_like
@@ -49,14 +49,20 @@ def inserted(positioner: Positioner, scene: Scene, edit: Insert, relations: Sequ
             options = (*(record_of(positioner.library, i) for i in there), *options)  # seats are of a set
         if not options:
             raise EditRefused(f"the library has no {phrase.label}")
-        tried = (shape,) if shape is not None else options[:SHAPES_TRIED]
-        after, object_id, shape = _with_one(
-            positioner, after, phrase.category, tried, relations, targets, copy, edit.count
-        )
+        tried = (shape, *(s for s in options if s != shape)) if shape is not None else options
+        kin = () if relations else _standing_kin(positioner.library, phrase.category)
+        for shapes in (tried[:SHAPES_TRIED], kin[:SHAPES_TRIED]):
+            kind = shapes[0].category if shapes else phrase.category
+            found, object_id, put = _with_one(positioner, after, kind, shapes, relations, targets, copy, edit.count)
+            if object_id is not None:
+                break
+        after, shape = found, put
+        if shape is not None and shape.category not in (phrase.category, *(s.category for s in options)):
+            missed.append(f"there is no free place for {with_article(phrase.category)}: {with_article(shape.category)}")
         if object_id is None or shape is None:
             where = f" {relations[0].words(scene)}" if relations else ""
             done = f"; {copy} of {edit.count} would fit" if copy else ""
-            raise EditRefused(f"there is no free place for {with_article(phrase.label)}{where}{done}")
+            raise EditRefused(f"there is no free place for {with_article(phrase.category)}{where}{done}")
         new.append(object_id)
         missed += missed_notes(after, object_id, relations)
     assert shape is not None
@@ -64,6 +70,14 @@ def inserted(positioner: Positioner, scene: Scene, edit: Insert, relations: Sequ
     where = "".join(f" {r.words(scene)}" for r in relations)
     what = f"{edit.count} x {phrase.category}" if edit.count > 1 else with_article(phrase.category)
     return Done(after, (f"add {what} ({shape.caption or shape.id}){where}",), tuple(new), (*note, *missed))
+
+
+def _standing_kin(library: ShapeLibrary, kind: str) -> tuple[Shape, ...]:
+    """Shapes of kindred categories that stand on the floor, for what finds no place on furniture; the usual first."""
+    if category(kind).mount != "surface":
+        return ()
+    kin = sorted((k for k in with_kin(kind) if k != kind and category(k).mount == "floor"), key=lambda k: k)
+    return tuple(s for k in kin for s in library.in_category(k))
 
 
 def _options(

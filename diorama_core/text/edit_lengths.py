@@ -61,13 +61,25 @@ def lifted(selector: Selector, clause: str, rest: str, subject: Subject) -> Shif
     return Shift(objects=list(subject(selector, head)), up_m=-distance if down else distance)
 
 
-def _distance_m(text: str, otherwise_m: float, most_m: float) -> float:
-    """The distance that a text says, or another where it says none."""
+def length_in(text: str) -> float | None:
+    """The first length that a text says, metres."""
     found = _DISTANCE.search(text)
     if found is None:
-        return otherwise_m
+        return None
     number = {"a": 1.0, "half a": 0.5, "one": 1.0, "two": 2.0}.get(found[1]) or float(found[1])
-    distance = number * (0.01 if found[2].startswith("c") else 1.0)
+    return number * (0.01 if found[2].startswith("c") else 1.0)
+
+
+def without_lengths(text: str) -> str:
+    """A text without the lengths that it says."""
+    return _DISTANCE.sub(" ", text)
+
+
+def _distance_m(text: str, otherwise_m: float, most_m: float) -> float:
+    """The distance that a text says, or another where it says none."""
+    distance = length_in(text)
+    if distance is None:
+        return otherwise_m
     if distance > most_m:
         raise EditRefused(f"{distance:g} m is farther than any room; give at most {most_m:g} m")
     return distance

@@ -13,11 +13,9 @@ from diorama_core.library.labels import with_article
 from diorama_core.library.language import size_request
 from diorama_core.library.record import Shape, ShapeLibrary, record_of
 from diorama_core.scene import edits
-from diorama_core.scene.room_edits import set_surface_finish
-from diorama_core.scene.types import Candidate, Pose, Scene, SceneObject, SurfaceFinish
+from diorama_core.scene.types import Candidate, Pose, Scene, SceneObject
 from diorama_core.text.edit_outcome import Done, names_of
 from diorama_core.text.edit_places import freed
-from diorama_core.text.edit_plan import Paint
 from diorama_core.text.looks import fitting_shapes, has_look, is_made_of, look_of, nearest_in_size, scale_into
 from diorama_core.text.phrases import noun_phrase
 
@@ -121,19 +119,6 @@ def _replaced(scene: Scene, item: SceneObject, shape: Shape) -> Scene:
     new = replace(after.object(item.id), category=shape.category, label=_relabelled(item, shape.category))
     after = replace(after, objects=tuple(new if o.id == item.id else o for o in after.objects))
     return edits.refinish(edits.recolour(after, item.id, None), item.id, None)
-
-
-def painted(scene: Scene, edit: Paint) -> Done:
-    """Walls, floor or ceiling in a colour."""
-    role = {"walls": "wall", "floor": "floor", "ceiling": "ceiling"}[edit.part]
-    planes = [p for p in scene.architecture.planes if p.role == role]
-    if not planes:
-        raise EditRefused(f"this scene has no {edit.part} to paint")
-    look = look_of(edit.colour)
-    if look is None or look.colour is None:
-        raise EditRefused(f"“{edit.colour}” is no colour known here; try light blue, sage, cream")
-    after = set_surface_finish(scene, [p.id for p in planes], SurfaceFinish("paint", look.colour))
-    return Done(after, (f"paint the {edit.part} {look.words}",))
 
 
 def looking_like(scene: Scene, ids: Sequence[str], lacking: Sequence[str]) -> tuple[Scene, tuple[str, ...]]:

@@ -20,6 +20,7 @@ from diorama_core.scene.support import descendants
 from diorama_core.scene.types import Pose, Scene, Support, yaw_rotation
 from diorama_core.text.edit_outcome import Done, names_of
 from diorama_core.text.edit_plan import Shift, Turn
+from diorama_core.text.edit_room import off_wall
 
 
 def moved(positioner: Positioner, scene: Scene, ids: Sequence[str], relations: Sequence[Relation]) -> Done:
@@ -49,7 +50,7 @@ def shifted(positioner: Positioner, scene: Scene, ids: Sequence[str], edit: Shif
     away = away / max(float(np.linalg.norm(away)), 1e-6)
     right = np.array([away[1], -away[0]])
     step = edit.right_m * right + edit.away_m * away
-    if not (step.any() or edit.up_m or (toward and edit.toward_m)):
+    if not (step.any() or edit.up_m or edit.off_wall_m or (toward and edit.toward_m)):
         raise EditRefused(f"which way should {names_of(scene, ids)} go?")
     after, notes = scene, []
     for object_id in ids:
@@ -60,6 +61,8 @@ def shifted(positioner: Positioner, scene: Scene, ids: Sequence[str], edit: Shif
         if toward:
             ahead = after.object(toward).pose.position[:2] - item.pose.position[:2]
             own = step + edit.toward_m * ahead / max(float(np.linalg.norm(ahead)), 1e-6)
+        if edit.off_wall_m:
+            own = own + edit.off_wall_m * off_wall(after, object_id)
         pose = item.pose.moved((own[0], own[1], edit.up_m))
         after, note = freed(positioner, edits.move(after, object_id, pose), object_id)
         if edit.up_m and not _within_heights(after, object_id):
@@ -72,6 +75,7 @@ def shifted(positioner: Positioner, scene: Scene, ids: Sequence[str], edit: Shif
         (edit.right_m, "to the right", "to the left"),
         (edit.away_m, "back", "forward"),
         (edit.up_m, "up", "down"),
+        (edit.off_wall_m, "away from the wall", "toward the wall"),
         (edit.toward_m if toward else 0.0, f"toward {goal}", f"away from {goal}"),
     )
     said = " and ".join(f"{abs(m):g} m {plus if m > 0 else minus}" for m, plus, minus in ways if m)

@@ -59,6 +59,8 @@ class Shift(_Strict):
     """Id of an object; empty where none is meant."""
     toward_m: Annotated[float, Field(ge=-20, le=20)] = 0.0
     """Toward that object along the floor; away from it where negative."""
+    off_wall_m: Annotated[float, Field(ge=-20, le=20)] = 0.0
+    """Away from the nearest wall; toward it where negative."""
 
 
 class Turn(_Strict):
@@ -109,15 +111,116 @@ class Resize(_Strict):
     factor: Annotated[float, Field(ge=0.2, le=5.0)]
 
 
+class Measure(_Strict):
+    """One side of objects longer or shorter, standing where they stand: to a length, by a length, or by a factor."""
+
+    do: Literal["measure"] = "measure"
+    objects: Ids
+    side: Literal["width", "depth", "height"]
+    to_m: Annotated[float, Field(ge=0, le=50)] = 0.0
+    by_m: Annotated[float, Field(ge=-50, le=50)] = 0.0
+    factor: Annotated[float, Field(ge=0.1, le=10)] = 1.0
+
+
+class Copy(_Strict):
+    """Copies of objects, beside them where no place is said."""
+
+    do: Literal["copy"] = "copy"
+    objects: Ids
+    count: Annotated[int, Field(ge=1, le=MAX_COPIES)] = 1
+    places: Annotated[list[Place], Field(max_length=4)] = []
+
+
+class Exchange(_Strict):
+    """Two objects each go where the other one is."""
+
+    do: Literal["exchange"] = "exchange"
+    objects: Annotated[list[Id], Field(min_length=2, max_length=2)]
+
+
+class SetState(_Strict):
+    """Objects locked, hidden, open, or lit."""
+
+    do: Literal["set"] = "set"
+    objects: Ids
+    state: Literal["locked", "unlocked", "hidden", "shown", "open", "closed", "on", "off"]
+
+
+class Rename(_Strict):
+    """An object is called otherwise."""
+
+    do: Literal["rename"] = "rename"
+    objects: Annotated[list[Id], Field(min_length=1, max_length=1)]
+    to: Words
+
+
+class Align(_Strict):
+    """Objects in one line, or with equal gaps between them."""
+
+    do: Literal["align"] = "align"
+    objects: Ids
+    how: Literal["in line", "evenly"]
+
+
 class Paint(_Strict):
-    """Walls, floor or ceiling in a colour."""
+    """Walls, floor or ceiling in a colour or covering: "light blue", "brick", "oak boards", "darker"."""
 
     do: Literal["paint"] = "paint"
     part: Literal["walls", "floor", "ceiling"]
     colour: Words
+    behind: Id = ""
+    """Id of an object: only the wall behind it; all walls where empty."""
 
 
-Edit = Remove | Move | Shift | Turn | Insert | Restyle | Swap | Resize | Paint
+class RoomLength(_Strict):
+    """The room higher, longer (its longer side) or wider (its shorter side): to a length or by a length."""
+
+    do: Literal["room"] = "room"
+    side: Literal["height", "length", "width"]
+    to_m: Annotated[float, Field(ge=0, le=50)] = 0.0
+    by_m: Annotated[float, Field(ge=-50, le=50)] = 0.0
+
+
+class Light(_Strict):
+    """The light: a time of day, brighter or darker by stops, or all lamps."""
+
+    do: Literal["light"] = "light"
+    hour: Annotated[float, Field(ge=0, le=24)] | None = None
+    brighter_ev: Annotated[float, Field(ge=-4, le=4)] = 0.0
+    lamps: Literal["", "on", "off"] = ""
+
+
+class Opening(_Strict):
+    """A door or a window in a wall."""
+
+    do: Literal["opening"] = "opening"
+    what: Words
+    wall: Literal["", "left", "right", "back", "front"] = ""
+    """As seen from where the photo was taken."""
+    behind: Id = ""
+    """Id of an object that stands or hangs at the wall."""
+
+
+Edit = (
+    Remove
+    | Move
+    | Shift
+    | Turn
+    | Insert
+    | Restyle
+    | Swap
+    | Resize
+    | Measure
+    | Copy
+    | Exchange
+    | SetState
+    | Rename
+    | Align
+    | Paint
+    | RoomLength
+    | Light
+    | Opening
+)
 
 
 class EditPlan(_Strict):

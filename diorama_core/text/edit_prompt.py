@@ -46,13 +46,25 @@ The edits, each with its "do":
 in front of, behind, left of, right of, around, between (two targets), facing, opposite, aligned with; or to the room, \
 without targets: against wall, in corner, in middle.
 - shift: objects move "right_m" metres to the right and "away_m" away, as seen from where the photo was taken; \
-what hangs also "up_m"; or "toward_m" metres toward the object "toward" (away from it where negative).
+what hangs also "up_m"; "toward_m" metres toward the object "toward" (away from it where negative); or "off_wall_m" \
+metres away from the nearest wall.
 - turn: objects turn "toward" one object, or by "degrees" (counter-clockwise seen from above; "toward" empty).
 - insert: "count" new objects, "what" in words (noun and attributes), at "places"; later edits call it "name".
 - restyle: objects in a colour or material, "look" ("light blue", "wooden").
 - swap: other shapes for objects, "what" in words ("leather sofa").
 - resize: objects larger or smaller by "factor".
-- paint: "part" (walls, floor or ceiling) in a "colour".
+- measure: one "side" (width, depth or height) of objects "to_m" a length, longer "by_m" (shorter where negative), or \
+by a "factor".
+- copy: "count" copies of objects, at "places" (beside them where there are none).
+- exchange: two objects change places.
+- set: objects in a "state": locked, unlocked, hidden, shown, open, closed, on or off (lamps).
+- rename: one object, "to" a name.
+- align: objects "how": in line, or evenly.
+- paint: "part" (walls, floor or ceiling), or only the wall "behind" an object, in a colour or covering, "colour": \
+"light blue", "brick", "oak boards", "tiles", "darker".
+- room: the "side" (height, length or width) of the room "to_m" or "by_m".
+- light: the "hour" of the day, "brighter_ev" stops (darker where negative), or all "lamps" on or off.
+- opening: a new door or window ("what") in the "wall" left, right, back or front, or "behind" an object.
 Use only ids of the lists. Put every part of the command that is none of these, or that names what is not there, into \
 "not_understood", and then give no edits. Format: {{"edits": [{{"do": "move", "objects": ["lamp_1"], "places": \
 [{{"relation": "beside", "targets": ["sofa_1"]}}]}}], "not_understood": []}}"""

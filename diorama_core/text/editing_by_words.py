@@ -19,7 +19,7 @@ from diorama_core.scene.support import check_scene
 from diorama_core.scene.types import Scene
 from diorama_core.text.edit_apply import EditApplier
 from diorama_core.text.edit_grammar import clauses_of, edits_of
-from diorama_core.text.edit_plan import Edit, EditPlan
+from diorama_core.text.edit_plan import Edit, EditPlan, Rename
 from diorama_core.text.edit_prompt import SYSTEM, edit_prompt
 
 MAX_OBJECTS_ASKED = 300
@@ -87,13 +87,22 @@ def _by_grammar(command: str, scene: Scene, library: ShapeLibrary, selected: Seq
     lines: list[str] = []
     notes: list[str] = []
     for clause in clauses_of(command):
-        for edit in edits_of(clause, after, library, last, selected):
+        for said in edits_of(clause, after, library, last, selected):
+            edit = _in_case(said, command)
             done = applier.apply(after, edit)
             after, last = done.scene, done.touched or last
             edits.append(edit)
             lines += done.lines
             notes += done.notes
     return _proposed(command, scene, after, edits, lines, notes, "grammar")
+
+
+def _in_case(edit: Edit, command: str) -> Edit:
+    """An edit whose name is spelt as the command spells it; clauses are lower case."""
+    if not isinstance(edit, Rename):
+        return edit
+    at = command.lower().find(edit.to)
+    return edit if at < 0 else edit.model_copy(update={"to": command[at : at + len(edit.to)]})
 
 
 def _by_model(

@@ -36,6 +36,8 @@ HOME_COLOURS: dict[str, Colour] = {
     "red": (0.70, 0.13, 0.13), "green": (0.22, 0.46, 0.27), "blue": (0.18, 0.33, 0.62), "yellow": (0.92, 0.78, 0.24),
     "orange": (0.88, 0.48, 0.15), "pink": (0.91, 0.62, 0.68), "purple": (0.43, 0.25, 0.55), "brown": (0.42, 0.28, 0.18),
     "black": (0.09, 0.09, 0.10), "white": (0.95, 0.95, 0.94), "grey": (0.55, 0.55, 0.56), "silver": (0.75, 0.76, 0.78),
+    "warmwhite": (0.96, 0.93, 0.86), "coolwhite": (0.93, 0.95, 0.97), "offwhite": (0.94, 0.92, 0.87),
+    "warmgrey": (0.60, 0.57, 0.53), "coolgrey": (0.53, 0.56, 0.60),
 }  # fmt: skip
 """Paints and cloths, less pure than the colours of screens that go by these names."""
 _SHADES = {"light": 0.55, "pale": 0.65, "pastel": 0.6, "bright": 0.0, "dark": -0.5, "deep": -0.4}

@@ -163,7 +163,7 @@ APPEARANCES = frozenset(
 )
 """Words that say how an object looks, not what it is."""
 RELATION_WORDS: tuple[tuple[str, RelationKind | None], ...] = (
-    (r"on (?:either|both|each) sides? of", "beside"), (r"(?:flanked|surrounded) by", None),
+    (r"on (?:either|both|each|the other|the opposite|one) sides? of", "beside"), (r"(?:flanked|surrounded) by", None),
     (r"on the wall above", "above"), (r"(?:on|to|at) the left(?: hand)?(?: side)? of", "left of"),
     (r"(?:on|to|at) the right(?: hand)?(?: side)? of", "right of"), (r"left of", "left of"), (r"right of", "right of"),
     (r"(?:at|on|by) (?:the |one |either |each )?(?:far |other |very )?(?:ends?|head) of", "beside"), (r"on top of", "on"), (r"next to|beside|alongside|adjacent to|at the side of|close by", "beside"),

@@ -208,13 +208,10 @@ REFUSED = {
     "turn the sofa": "which way",
     "swap the sofa": "for what",
     "whatever": "not understood",
-    "hide the lamp": "not understood",
-    "lock the sofa": "not understood",
     "align the pictures with the sofa": "not understood",
     "delete the ninth picture": "there are 4",
     "delete the sixth picture": "only 4 of these",
     "remove it": "not clear",
-    "add a window": "part of the room",
     "remove the vase on the sofa": "no vase",
 }
 

@@ -1,0 +1,51 @@
+"""Doors and windows put into walls."""
+
+from __future__ import annotations
+
+import numpy as np
+from jaxtyping import Float
+
+from diorama_core.arrangement.surfaces import plane_surface
+from diorama_core.editing.placing import DOOR, Hit, Place, insertion
+from diorama_core.editing.plan_edits import wall_feet
+from diorama_core.errors import EditRefused
+from diorama_core.library.record import ShapeLibrary
+from diorama_core.scene import edits
+from diorama_core.scene.types import Scene
+
+SILL_M = 0.9
+"""Height of a new window's lower edge above the floor."""
+
+
+def with_opening(
+    scene: Scene, library: ShapeLibrary, category: str, wall_id: str, at: Float[np.ndarray, "2"]
+) -> tuple[Scene, str]:
+    """The scene with the most usual door or window in a wall, and its id.
+
+    Args:
+        scene: the room.
+        library: where its shape comes from.
+        category: door or window.
+        wall_id: the wall.
+        at: a point of the floor (world x and y) to which it is nearest.
+
+    Raises:
+        EditRefused: there is no such wall, it is too short, or the library has no such shape.
+    """
+    foot = next((f for f in wall_feet(scene) if f.id == wall_id), None)
+    shapes = library.in_category(category)
+    if foot is None or not shapes:
+        raise EditRefused(f"{category}s stand in walls; choose a wall" if shapes else f"the library has no {category}")
+    sizes = np.array([s.size_m for s in shapes])
+    shape = shapes[int(np.abs(np.log(sizes / np.median(sizes, axis=0))).sum(axis=1).argmin())]
+    half, sill = shape.size_m[1] / 2, 0.0 if category == DOOR else SILL_M
+    if foot.length_m < 2 * half:
+        raise EditRefused(f"a {category} is {2 * half:.2f} m wide, which is more than this wall; choose a longer one")
+    along = float(np.clip((at - foot.start) @ foot.along, half, foot.length_m - half))
+    wall = scene.plane(wall_id)
+    level = float(wall.polygon[:, 2].min()) + sill + shape.size_m[2] / 2
+    place = Place(plane_surface(wall), wall_id, of_object=False)
+    hit = Hit(place, np.append(foot.start + along * foot.along, level), 0.0)
+    new_id = edits.fresh_id(scene, category)
+    item, edge = insertion(scene, shape, new_id, hit, 0.0)
+    return edits.insert(scene, item, edge), new_id

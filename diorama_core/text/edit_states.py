@@ -1,0 +1,160 @@
+"""Edits of objects beyond where they stand, done: one side's length, copies, exchanges, states, names, lines."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from diorama_core.editing.aligning import align, distribute, widest_axis
+from diorama_core.editing.placing import against_wall, seated
+from diorama_core.editing.positioning import Positioner
+from diorama_core.editing.relations import Relation
+from diorama_core.editing.sunlight import set_light, switch_lamp
+from diorama_core.errors import EditRefused
+from diorama_core.library.opening import can_open
+from diorama_core.library.record import ShapeLibrary
+from diorama_core.render.lamps import lamps_of
+from diorama_core.scene import edits
+from diorama_core.scene.types import Scene
+from diorama_core.text.edit_outcome import Done, names_of
+from diorama_core.text.edit_places import freed, missed_notes
+from diorama_core.text.edit_plan import Align, Exchange, Measure, Rename, SetState
+
+_AXES = {"depth": 0, "width": 1, "height": 2}
+FACTORS = (0.1, 10.0)
+"""By so much a side may change at once."""
+UPRIGHT = np.array([0.0, 0.0, 1.0])
+
+
+def measured(positioner: Positioner, scene: Scene, ids: Sequence[str], edit: Measure) -> Done:
+    """One side of objects longer or shorter, on the same base; what stands on them rises and sinks with their tops."""
+    after, notes, lines = scene, list[str](), list[str]()
+    for object_id in ids:
+        item = after.object(object_id)
+        axis, size = _AXES[edit.side], item.size_m.copy()
+        target = edit.to_m or float(size[axis]) * edit.factor + edit.by_m
+        if not FACTORS[0] <= target / float(size[axis]) <= FACTORS[1]:
+            raise EditRefused(
+                f"{item.label} cannot be {target:.2f} m in {edit.side}; it is {float(size[axis]):.2f} m now"
+            )
+        size[axis] = target
+        held = after.support_of(object_id)
+        hangs = held is not None and held.relation == "mounted on"
+        after = edits.resize(after, object_id, size)
+        if hangs:  # it grows to all sides of where it hangs
+            pose = replace(after.object(object_id).pose, position=item.pose.position)
+            after = seated(edits.move(after, object_id, pose), positioner.library, object_id)
+        else:
+            for child in after.children_of(object_id):
+                after = seated(after, positioner.library, child)
+            after, note = freed(positioner, after, object_id)
+            notes += note
+        lines.append(f"make {item.label} {target:.2f} m in {edit.side}")
+    return Done(after, tuple(lines), tuple(ids), tuple(notes))
+
+
+def copied(positioner: Positioner, scene: Scene, ids: Sequence[str], count: int, relations: Sequence[Relation]) -> Done:
+    """Copies of objects with all that was set of them, beside them where no place is said."""
+    after, new, missed = scene, list[str](), list[str]()
+    for object_id in ids:
+        item = scene.object(object_id)
+        for _ in range(count):
+            new_id = edits.fresh_id(after, item.category)
+            number = sum(o.category == item.category for o in after.objects) + 1
+            copy = replace(
+                item,
+                id=new_id,
+                label=f"{item.category} {number}",
+                locked=False,
+                hidden=False,
+                mask_id=None,
+                box_px=None,
+            )
+            own = list(relations) or [Relation("beside", (object_id,))]
+            spot = positioner.best(after, copy, own, near=None if relations else item.pose.position)
+            if spot is None and not relations:
+                spot = positioner.best(after, copy, near=item.pose.position)
+            if spot is None:
+                raise EditRefused(f"there is no free place for another {item.category} {own[0].words(scene)}")
+            after = positioner.put(after, copy, spot)
+            new.append(new_id)
+            missed += missed_notes(after, new_id, relations)
+    where = "".join(f" {r.words(scene)}" for r in relations)
+    often = f" {count} times" if count > 1 else ""
+    return Done(after, (f"copy {names_of(scene, ids)}{often}{where}",), tuple(new), tuple(missed))
+
+
+def exchanged(positioner: Positioner, scene: Scene, edit: Exchange) -> Done:
+    """Two objects each where the other one was, on the same base; each turns as the other one stood."""
+    first, second = (scene.object(i) for i in edit.objects)
+    after = scene
+    for item, other in ((first, second), (second, first)):
+        low = float(other.corners_world[:, 2].min())
+        position = other.pose.position.copy()
+        hung = scene.support_of(other.id)
+        if hung is None or hung.relation != "mounted on":
+            position[2] = low + item.size_m[2] / 2
+        after = edits.move(after, item.id, replace(other.pose, position=position, scale=item.pose.scale))
+        if hung is not None and hung.parent != item.id:
+            after = edits.attach(after, replace(hung, child=item.id))
+    notes: list[str] = []
+    for item in (first, second):
+        edge = after.support_of(item.id)
+        for wall in edge.adheres_to if edge is not None else ():
+            after = against_wall(after, item.id, after.plane(wall))
+        after, note = freed(positioner, after, item.id)
+        notes += note
+    return Done(after, (f"exchange {first.label} and {second.label}",), tuple(edit.objects), tuple(notes))
+
+
+def put_in_state(library: ShapeLibrary, scene: Scene, ids: Sequence[str], edit: SetState) -> Done:
+    """Objects locked, hidden, open, or lit, or the contrary."""
+    after, state = scene, edit.state
+    for object_id in ids:
+        item = after.object(object_id)
+        if state in ("locked", "unlocked"):
+            after = edits.set_locked(after, object_id, state == "locked")
+        elif state in ("hidden", "shown"):
+            after = edits.set_hidden(after, object_id, state == "hidden")
+        elif state in ("open", "closed"):
+            if not can_open(library, item.shape_id):
+                raise EditRefused(f"{item.label} has nothing that opens; other shapes of the library do")
+            after = edits.set_open(after, object_id, 1.0 if state == "open" else 0.0)
+        else:
+            if item not in lamps_of(after):
+                raise EditRefused(f"{item.label} is no lamp; only lamps are turned on and off")
+            after = set_light(after, switch_lamp(after, object_id, on=state == "on"))
+    verb = {"on": "turn on", "off": "turn off", "locked": "lock", "unlocked": "unlock", "hidden": "hide",
+            "shown": "show", "open": "open", "closed": "close"}[state]  # fmt: skip
+    return Done(after, (f"{verb} {names_of(scene, ids)}",), tuple(ids))
+
+
+def renamed(scene: Scene, object_id: str, edit: Rename) -> Done:
+    """An object under another name."""
+    line = f"call {scene.object(object_id).label} “{edit.to}”"
+    return Done(edits.rename(scene, object_id, edit.to), (line,), (object_id,))
+
+
+def aligned(positioner: Positioner, scene: Scene, ids: Sequence[str], edit: Align) -> Done:
+    """Objects in one line, what hangs at one height; or with equal gaps along the way they are spread."""
+    if len(ids) < 2:
+        raise EditRefused(f"{names_of(scene, ids)} is alone; two objects or more are lined up")
+    axis = widest_axis(scene, ids)
+    if edit.how == "evenly":
+        return Done(distribute(scene, ids, axis), (f"space {names_of(scene, ids)} evenly",), tuple(ids))
+    hung = [i for i in ids if (s := scene.support_of(i)) is not None and s.relation == "mounted on"]
+    if len(hung) == len(ids):
+        level = float(np.median([scene.object(i).pose.position[2] for i in ids]))
+        after = scene
+        for object_id in ids:
+            pose = scene.object(object_id).pose
+            after = edits.move(after, object_id, pose.moved((0.0, 0.0, level - float(pose.position[2]))))
+        return Done(after, (f"hang {names_of(scene, ids)} at one height",), tuple(ids))
+    across = np.cross(UPRIGHT, axis)
+    after, notes = align(scene, ids, across, "middle"), list[str]()
+    for object_id in ids:
+        after, note = freed(positioner, after, object_id)
+        notes += note
+    return Done(after, (f"line up {names_of(scene, ids)}",), tuple(ids), tuple(notes))

@@ -1,0 +1,184 @@
+"""Words about objects beyond where they stand: sizes of one side, copies, exchanges, states, names, lines."""
+
+from __future__ import annotations
+
+import re
+from typing import Literal, cast
+
+from diorama_core.editing.relations import Relation, is_met
+from diorama_core.editing.room_frame import RoomFrame
+from diorama_core.errors import EditRefused
+from diorama_core.text.edit_lengths import Subject, length_in, without_lengths
+from diorama_core.text.edit_plan import Align, Copy, Edit, Exchange, Measure, Place, Rename, SetState, Shift
+from diorama_core.text.phrases import NUMBERS, split_places
+from diorama_core.text.selecting import Selector
+
+_SIDES: dict[str, tuple[Literal["width", "depth", "height"], float]] = {
+    "wide": ("width", 1), "wider": ("width", 1), "broad": ("width", 1), "broader": ("width", 1),
+    "narrow": ("width", -1), "narrower": ("width", -1), "slimmer": ("width", -1), "width": ("width", 1),
+    "long": ("width", 1), "longer": ("width", 1), "shorter": ("height", -1),
+    "deep": ("depth", 1), "deeper": ("depth", 1), "shallower": ("depth", -1), "depth": ("depth", 1),
+    "high": ("height", 1), "higher": ("height", 1), "tall": ("height", 1), "taller": ("height", 1),
+    "low": ("height", -1), "lower": ("height", -1), "height": ("height", 1), "thicker": ("height", 1),
+}  # fmt: skip
+_SIDE = "|".join(sorted(_SIDES, key=len, reverse=True))
+_SIZED = re.compile(
+    rf"^make (?P<who>.+?) (?:(?:a (?:bit|little)|much|slightly|somewhat|about|exactly) )*"
+    rf"(?:(?P<times>half|twice|double|(?:\d+(?:\.\d+)?) times) as )?(?P<side>{_SIDE})$"
+)
+_SET_SIDE = re.compile(
+    r"^(?P<verb>set|change|make|increase|reduce|decrease|raise|lower) the (?P<side>width|depth|height|length) of "
+    r"(?P<who>.+?)(?: (?P<to>to|by))?$"
+)
+_TIMES = {"half": 0.5, "twice": 2.0, "double": 2.0}
+STEP_FACTOR = 1.25
+"""Where no length is said."""
+_STATES: dict[str, Literal["locked", "unlocked", "hidden", "shown", "open", "closed", "on", "off"]] = {
+    "lock": "locked", "unlock": "unlocked", "hide": "hidden", "show": "shown", "unhide": "shown", "open": "open",
+    "close": "closed", "shut": "closed", "turn on": "on", "switch on": "on", "turn off": "off", "switch off": "off",
+}  # fmt: skip
+_STATE = re.compile(
+    r"^(" + "|".join(sorted(_STATES, key=len, reverse=True)) + r") ((?:the|all|my|every|this|it|them)\b.*)$"
+)
+_COPIED = re.compile(
+    r"^(?:(?:duplicate|clone|copy)|make (?:(?P<many>\w+) )?(?:copy|copies|duplicates?) of) (?P<rest>.+)$"
+)
+_OTHER_SIDE = re.compile(r"\bon the (?:other|opposite) side of\b")
+_EXCHANGED = re.compile(
+    r"^(?:swap|exchange|switch)(?: (?:the )?(?:places?|positions?) of)? ((?:the|my) .+?) (?:and|with) ((?:the|my) .+?)"
+    r"(?: around| places| positions)?$"
+)
+_NAMED = re.compile(r"^(?:rename|call|name|label) (.+)$")
+_LINED = re.compile(r"^(?:line up|align|straighten) (.+?)(?: (?:in|into) (?:a|one) (?:row|line))?$")
+_SPACED = re.compile(r"^(?:space(?: out)?|distribute|spread(?: out)?) (.+?)(?: evenly| equally)?$")
+_OFF_WALL = re.compile(
+    r"^(?:move|pull|push|shift|bring|slide|take) (.+?) (?:away|off|out)(?: from)? (?:the|its) walls?"
+    r"(?: a (?:bit|little)| slightly)?$"
+)
+_QUOTES = "“”\"' "
+OFF_WALL_M = 0.2
+"""Where no length is said."""
+
+
+def object_edits(selector: Selector, clause: str, subject: Subject) -> tuple[Edit, ...] | None:
+    """The edits of objects that a clause asks for; None where it says something else.
+
+    Args:
+        selector: finds objects that the clause names.
+        clause: lower case.
+        subject: the ids that a phrase means.
+
+    Raises:
+        EditRefused: the clause is one of these, and names what is not there.
+    """
+    for read in (_sized, _off_wall, _state, _copied, _exchanged, _named, _arranged):
+        found = read(selector, clause, subject)
+        if found is not None:
+            return (found,)
+    return None
+
+
+def _sized(selector: Selector, clause: str, subject: Subject) -> Measure | None:
+    """ "make the sofa 2 m wide", "make the plant half as tall", "set the width of the desk to 1.4 m"."""
+    length = length_in(clause)
+    plain = " ".join(without_lengths(clause).split())
+    found = _SIZED.match(plain) or _SET_SIDE.match(plain)
+    if found is None:
+        return None
+    said = found["side"]
+    side, sign = _SIDES.get(said, ("width", 1.0))
+    groups = found.groupdict()
+    ids = list(subject(selector, found["who"]))
+    if times := groups.get("times"):
+        return Measure(objects=ids, side=side, factor=_TIMES.get(times) or float(times.split()[0]))
+    verb = groups.get("verb")
+    if verb in ("reduce", "decrease", "lower"):
+        sign = -1.0
+    relative = said.endswith("er") or groups.get("to") == "by" or verb in ("increase", "reduce", "decrease")
+    if length is None:
+        if not (relative or said.endswith("er")):
+            return None  # "make the shelf wide" is a look of it
+        return Measure(objects=ids, side=side, factor=STEP_FACTOR if sign > 0 else 1.0 / STEP_FACTOR)
+    if relative and groups.get("to") != "to":
+        return Measure(objects=ids, side=side, by_m=sign * length)
+    return Measure(objects=ids, side=side, to_m=length)
+
+
+def _off_wall(selector: Selector, clause: str, subject: Subject) -> Shift | None:
+    found = _OFF_WALL.match(" ".join(without_lengths(clause).split()))
+    if found is None:
+        return None
+    return Shift(objects=list(subject(selector, found[1])), off_wall_m=length_in(clause) or OFF_WALL_M)
+
+
+def _state(selector: Selector, clause: str, subject: Subject) -> SetState | None:
+    clause = re.sub(r"^(turn|switch) ((?:the|all|my) .+) (on|off)$", r"\1 \3 \2", clause)
+    found = _STATE.match(clause)
+    if found is None:
+        return None
+    return SetState(objects=list(subject(selector, found[2])), state=_STATES[found[1]])
+
+
+def _copied(selector: Selector, clause: str, subject: Subject) -> Copy | None:
+    found = _COPIED.match(clause)
+    if found is None:
+        return None
+    many = found["many"] or "one"
+    count = int(many) if many.isdigit() else NUMBERS.get(many, 1)
+    head, places = split_places(found["rest"])
+    try:
+        ids = subject(selector, head)
+    except EditRefused:  # the place may be what tells it from others: "the lamp on the desk"
+        if not places:
+            raise
+        return Copy(objects=list(subject(selector, found["rest"])), count=count)
+    from diorama_core.text.edit_grammar import places_of_phrases
+
+    wanted = places_of_phrases(selector, places)
+    if _OTHER_SIDE.search(found["rest"]) and len(wanted) == 1:
+        on_left = is_met(
+            selector.scene, ids[0], Relation("left of", tuple(wanted[0].targets)), RoomFrame.of(selector.scene)
+        )
+        wanted = [Place(relation="right of" if on_left else "left of", targets=wanted[0].targets)]
+    return Copy(objects=list(ids), count=count, places=wanted)
+
+
+def _exchanged(selector: Selector, clause: str, subject: Subject) -> Exchange | None:
+    found = _EXCHANGED.match(clause)
+    if found is None:
+        return None
+    first, second = (subject(selector, words) for words in (found[1], found[2]))
+    if len(first) != 1 or len(second) != 1:
+        raise EditRefused("two objects can change places; name one of each")
+    return Exchange(objects=[first[0], second[0]])
+
+
+def _named(selector: Selector, clause: str, subject: Subject) -> Rename | None:
+    found = _NAMED.match(clause)
+    if found is None:
+        return None
+    words = found[1].split()
+    joint = next((w for w in ("to", "as", "into") if w in words[1:-1]), None)
+    if joint is not None:
+        at = words.index(joint)
+        return Rename(
+            objects=list(subject(selector, " ".join(words[:at])))[:1], to=" ".join(words[at + 1 :]).strip(_QUOTES)
+        )
+    for cut in range(len(words) - 1, 0, -1):
+        try:
+            ids = subject(selector, " ".join(words[:cut]))
+        except EditRefused:
+            continue
+        name = " ".join(words[cut:]).strip(_QUOTES)
+        if name and len(ids) == 1:
+            return Rename(objects=[ids[0]], to=name)
+    raise EditRefused(f"“{clause}”: which object, and what name? For example: call the plant ficus")
+
+
+def _arranged(selector: Selector, clause: str, subject: Subject) -> Align | None:
+    for pattern, how in ((_LINED, "in line"), (_SPACED, "evenly")):
+        found = pattern.match(clause)
+        if found is None or split_places(found[1])[1] or re.search(r"\bwith\b", found[1]):
+            continue
+        return Align(objects=list(subject(selector, found[1])), how=cast("Literal['in line', 'evenly']", how))
+    return None
