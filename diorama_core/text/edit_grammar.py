@@ -33,8 +33,10 @@ from diorama_core.text.edit_plan import (
     Swap,
     Turn,
 )
+from diorama_core.text.edit_where import places_of_phrases
 from diorama_core.text.edit_words_objects import object_edits
 from diorama_core.text.edit_words_room import room_edits
+from diorama_core.text.foreign_words import in_english
 from diorama_core.text.looks import look_of
 from diorama_core.text.phrases import NUMBERS, Placing, noun_phrase, split_places
 from diorama_core.text.selecting import Selector
@@ -91,7 +93,7 @@ def clauses_of(command: str) -> tuple[str, ...]:
     Raises:
         EditRefused: there are no words, or too many.
     """
-    text = " ".join(command.lower().replace("’", "'").split()).strip(" .!")
+    text = " ".join(in_english(command).lower().replace("’", "'").split()).strip(" .!")
     if not text:
         raise EditRefused(f"there is no command; for example: {EXAMPLES}")
     if len(text) > MAX_COMMAND_CHARS:
@@ -239,24 +241,6 @@ def _is_known(selector: Selector, text: str) -> bool:
         and not first.isdigit()
         and any(o.category == phrase.category for o in selector.scene.objects)
     )
-
-
-def places_of_phrases(selector: Selector, places: Sequence[Placing]) -> list[Place]:
-    """Where phrases of place say that something goes; raises `EditRefused` where they name what is not there."""
-    found = []
-    for place in places:
-        if place.words in ("", "each other", "one another"):
-            found.append(Place(relation=place.kind, targets=[]))
-        elif re.fullmatch(r"(?:the |this )?(?:\w+ )?(?:room|bedroom|kitchen|office|scene|floor|ground)", place.words):
-            continue
-        elif re.fullmatch(r"(?:the |a )?(?:\w+ )?walls?", place.words):
-            found.append(Place(relation="against wall", targets=[]))
-        else:
-            targets = list(selector.targets(place.words))
-            openings = all(selector.scene.object(t).category in OPENING_CATEGORIES for t in targets)
-            by = place.kind == "under" and openings  # under a window is at it, on the floor
-            found.append(Place(relation="near" if by else place.kind, targets=targets))
-    return found
 
 
 def _move(selector: Selector, clause: str, rest: str) -> Edit:

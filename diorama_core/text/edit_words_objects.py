@@ -10,6 +10,7 @@ from diorama_core.editing.room_frame import RoomFrame
 from diorama_core.errors import EditRefused
 from diorama_core.text.edit_lengths import Subject, length_in, without_lengths
 from diorama_core.text.edit_plan import Align, Copy, Edit, Exchange, Measure, Place, Rename, SetState, Shift
+from diorama_core.text.edit_where import places_of_phrases
 from diorama_core.text.phrases import NUMBERS, split_places
 from diorama_core.text.selecting import Selector
 
@@ -132,8 +133,6 @@ def _copied(selector: Selector, clause: str, subject: Subject) -> Copy | None:
         if not places:
             raise
         return Copy(objects=list(subject(selector, found["rest"])), count=count)
-    from diorama_core.text.edit_grammar import places_of_phrases
-
     wanted = places_of_phrases(selector, places)
     if _OTHER_SIDE.search(found["rest"]) and len(wanted) == 1:
         on_left = is_met(
