@@ -27,10 +27,28 @@ def names_of(scene: Scene, ids: Iterable[str]) -> str:
 
 
 def delete_selected(client: Client) -> None:
-    """Delete the selection; objects on it are reassigned to the next supporter."""
-    chosen = client.need_selection()
-    names = names_of(client.session.scene, chosen)
-    client.session.edit(f"delete {names}", lambda scene: edits.remove(scene, chosen), by=client, selection=())
+    """Delete the selection; what stood on it comes down, and is offered to go as well."""
+    from diorama_core.editing.removal import without_objects
+
+    session, chosen = client.session, client.need_selection()
+    names = names_of(session.scene, chosen)
+    _, loads = without_objects(session.scene, session.library, chosen)
+    session.edit(
+        f"delete {names}", lambda scene: without_objects(scene, session.library, chosen)[0], by=client, selection=()
+    )
+    if loads:
+        on_it = names_of(session.scene, loads)
+        label = "Delete it, too" if len(loads) == 1 else "Delete them, too"
+        said = f"Deleted {names}; what stood on {'it' if len(chosen) == 1 else 'them'} is lower now: {on_it}"
+        client.offer(said, label, partial(_delete_loads, client, loads))
+
+
+def _delete_loads(client: Client, loads: tuple[str, ...]) -> None:
+    scene = client.session.scene
+    gone = tuple(i for load in loads if scene.has_object(load) for i in (load, *descendants(scene, load)))
+    if gone:
+        names = names_of(scene, loads)
+        client.session.edit(f"delete {names}", lambda s: edits.remove(s, gone), by=client, selection=())
 
 
 def duplicate_selected(client: Client) -> None:

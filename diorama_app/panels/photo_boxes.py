@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 
 from diorama_app.reconstruction.suggestions import Suggestions
@@ -21,6 +21,7 @@ from diorama_app.viewport.annotation_canvas import (
 )
 from diorama_app.web.html import button, text
 from diorama_core.artefacts import Box, Inputs, LabelledBox, Photo
+from diorama_core.editing.box_checks import merged_boxes, too_tall
 from diorama_core.editing.input_corrections import labelled_box, same_object, with_box_at, without_box
 from diorama_core.errors import InputError
 from diorama_core.io.text import number_of
@@ -88,11 +89,15 @@ class PhotoBoxes:
         inputs = self._client.marked
         if inputs is None:
             return
-        accepted = tuple(labelled_box(b.box, b.label) for b in self._proposals(inputs))
+        proposed = tuple(labelled_box(b.box, b.label) for b in self._proposals(inputs))
+        accepted = merged_boxes((*inputs.boxes, *proposed))[len(merged_boxes(inputs.boxes)) :]
         if accepted:
-            self._client.selected_box = None
-            self._annotate(f"mark {number_of(len(accepted))}", replace(inputs, boxes=(*inputs.boxes, *accepted)))
+            boxes = (*inputs.boxes, *accepted)
+            doubtful = too_tall(boxes)
+            self._client.selected_box = doubtful[0][0] if doubtful else None
+            self._annotate(f"mark {number_of(len(accepted))}", replace(inputs, boxes=boxes))
             self._client.refresh()
+            self._client.notice(" ".join(_accepted_in_words(boxes, len(proposed) - len(accepted), doubtful)))
 
     def toggle(self) -> None:
         """Put the photo on the canvas, or take it off."""
@@ -228,3 +233,16 @@ def box_list(inputs: Inputs, selected: int | None, *, drawing: bool) -> str:
             + "</div>"
         )
     return f'<h4>Boxes</h4><div role="tree" aria-label="Boxes">{"".join(rows)}</div>'
+
+
+def _accepted_in_words(
+    boxes: Sequence[LabelledBox], merged: int, doubtful: Sequence[tuple[int, float]]
+) -> Iterator[str]:
+    """What became of all proposals, in sentences."""
+    yield "All proposals are accepted."
+    if merged:
+        yield f"Left out, since another box shows the same: {number_of(merged, 'proposal')}."
+    if doubtful:
+        index, height_m = doubtful[0]
+        more = f" (and {len(doubtful) - 1} more)" if len(doubtful) > 1 else ""
+        yield f"The {boxes[index].label}{more} would be {height_m:.1f} m high or more: check its name and its box."

@@ -45,16 +45,34 @@ def test_undo_restores_scene_and_selection(session: EditorSession, client: Clien
         session.redo(client)
 
 
-def test_a_selection_is_ones_own_and_the_history_is_everyones(session: EditorSession, client: Client) -> None:
+def test_what_stood_on_a_deleted_table_comes_down_and_may_go_too(session: EditorSession, client: Client) -> None:
+    offered: list[tuple[str, str, Any]] = []
+    client.offer = lambda message, label, do: offered.append((message, label, do))
+    client.select(["table_1"])
+    editing.delete_selected(client)
+    lamp = session.scene.object("lamp_1")
+    assert lamp.corners_world[:, 2].min() == pytest.approx(0.0, abs=1e-6)
+    assert session.scene.support_of("lamp_1").parent == "floor"
+    message, label, do = offered[-1]
+    assert message == "Deleted dining table; what stood on it is lower now: lamp"
+    assert label == "Delete it, too"
+    do()
+    assert not session.scene.has_object("lamp_1")
+    session.undo(client)
+    session.undo(client)
+    assert session.scene.object("lamp_1") == furnished_scene().object("lamp_1")
+
+
+def test_a_selection_is_ones_own(session: EditorSession, client: Client) -> None:
     other = join(session, 1)
     client.select(["chair_1"])
     other.select(["lamp_1", "chair_2"])
     assert client.selection == ("chair_1",)
     editing.delete_selected(other)
     assert other.selection == ()
-    session.undo(client)
+    session.undo(other)
     assert session.scene.has_object("lamp_1")
-    assert other.selection == ()
+    assert client.selection == ("chair_1",)
     editing.delete_selected(client)
     assert other.session.scene is client.session.scene
 

@@ -106,3 +106,19 @@ def test_all_proposals_are_accepted_as_one_undo_step(session, client: Client, ma
 def test_the_list_tells_how_to_make_the_first_box(session) -> None:
     assert "Draw boxes" in box_list(Inputs(plain_photo()), None, drawing=False)
     assert "Draw boxes" not in box_list(Inputs(plain_photo()), None, drawing=True)
+
+
+def test_accepting_all_merges_doubles_and_tells_what_is_absurd(
+    session, client: Client, marking: PhotoBoxes, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    sofa = LabelledBox((300.0, 380.0, 500.0, 470.0), "sofa", "sofa")
+    again = LabelledBox((302.0, 381.0, 498.0, 470.0), "sectional sofa", "sectional sofa")
+    giant = LabelledBox((100.0, 20.0, 220.0, 460.0), "chair", "chair")
+    monkeypatch.setattr(Known, "boxes", lambda self: (sofa, again, giant))
+    said: list[str] = []
+    client.toast = lambda message, undo: said.append(message)
+    marking.accept_all()
+    assert labels(session) == ["sofa", "chair"]
+    assert "Left out, since another box shows the same: 1 proposal." in said[-1]
+    assert "The chair would be 3.3 m high or more" in said[-1]
+    assert client.selected_box == 1
