@@ -5,22 +5,69 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
+import numpy as np
+
+from diorama_core.editing.footprints import footprint_of
 from diorama_core.editing.placing import seated
+from diorama_core.editing.positioning import Positioner
+from diorama_core.geometry.planes import in_polygon
 from diorama_core.library.record import ShapeLibrary
+from diorama_core.library.taxonomy import category
 from diorama_core.scene import edits
-from diorama_core.scene.types import Scene, SceneObject
+from diorama_core.scene.types import Scene, SceneObject, Support
 
 if TYPE_CHECKING:
     from diorama_core.pipeline.reconstruct_object import Found  # the whole pipeline; editing does without it
 
 
 def inserted(scene: Scene, found: Found, library: ShapeLibrary) -> Scene:
-    """The scene with the found object as a new one, resting on its supporter."""
+    """The scene with the found object as a new one, resting on its supporter.
+
+    One that would go through another object stands on that one where the photo allows it, else beside it.
+    """
     item = replace(found.item, id=edits.fresh_id(scene, found.item.category))
     edge = None if found.support is None else replace(found.support, child=item.id)
     if edge is not None and not (scene.has_object(edge.parent) or scene.has_plane(edge.parent)):
         edge = None
-    return seated(edits.insert(scene, item, edge), library, item.id)
+    return _clear(seated(edits.insert(scene, item, edge), library, item.id), item.id, library)
+
+
+def _clear(scene: Scene, object_id: str, library: ShapeLibrary) -> Scene:
+    """The scene with an object that meets no other one."""
+    positioner = Positioner(library)
+    met = [j for pair in positioner.collisions.of(scene, [object_id]) for j in pair if j != object_id]
+    if not met:
+        return scene
+    for carrier in dict.fromkeys(met):
+        on_it = _onto(scene, object_id, carrier, library)
+        if on_it is not None and not positioner.collisions.of(on_it, [object_id]):
+            return on_it
+    spot = positioner.nearby(scene, object_id)
+    return scene if spot is None else edits.move(scene, object_id, spot.pose)
+
+
+def _onto(scene: Scene, object_id: str, carrier_id: str, library: ShapeLibrary) -> Scene | None:
+    """An object where the photo shows its foot on top of another one, as large as it is seen; None where it does not.
+
+    What seems to stand on the floor behind a sideboard looks like something smaller that stands nearer, on its top.
+    """
+    item, carrier, camera = scene.object(object_id), scene.object(carrier_id), scene.camera
+    if camera is None or item.box_px is None or not category(carrier.category).supports_objects:
+        return None
+    left, _, right, bottom = item.box_px
+    ray, rise = camera.rays(np.array([[(left + right) / 2, bottom]]))[0], float(carrier.corners_world[:, 2].max())
+    rise -= float(camera.position[2])
+    if rise * float(ray[2]) <= 0.0:
+        return None
+    depth = rise / float(ray[2])
+    place = camera.position + depth * ray
+    if not in_polygon(place[None, :2], footprint_of(carrier))[0]:
+        return None
+    share = depth / float(camera.to_camera(item.pose.position[None])[0, 2])
+    position = place + np.array([0.0, 0.0, share * item.size_m[2] / 2])
+    pose = replace(item.pose, position=position, scale=share * item.pose.scale)
+    moved = edits.attach(edits.move(scene, object_id, pose), Support(object_id, carrier_id))
+    return seated(moved, library, object_id)
 
 
 def replaced(scene: Scene, object_id: str, found: Found, library: ShapeLibrary) -> Scene:

@@ -26,6 +26,7 @@ _PATTERNS: dict[SurfacePattern, str] = {
     "carpet": "carpet carpeted carpeting",
 }
 """Words that name a pattern; what is special comes before what is common ("metro tiles")."""
+_NAMES = frozenset(name for names in _PATTERNS.values() for name in names.split())
 _RELATIVE = {"darker": -0.25, "lighter": 0.3, "brighter": 0.3, "paler": 0.3}
 """How far a colour goes toward black or white."""
 _BESIDE = frozenset({"pattern", "patterned", "finish", "covering", "made", "very", "much", "bit", "little", "slightly"})
@@ -45,8 +46,7 @@ def covering_in_words(text: str, plane: Plane) -> SurfaceFinish | None:
     if relative is not None:
         return None if rest else _shaded(plane, _RELATIVE[relative])
     pattern = next((p for p, names in _PATTERNS.items() if set(rest) & set(names.split())), None)
-    names = set() if pattern is None else set(_PATTERNS[pattern].split())
-    others = [w for w in rest if w not in names]
+    others = [w for w in rest if w not in _NAMES]
     wood = next((w for w in others if w in _WOODS and w in COLOURS and w not in ("grey", "white")), None)
     if pattern is None and wood is not None and plane.role == "floor":
         pattern = "boards"
