@@ -129,7 +129,9 @@ def _on_object(
     noise: ObservationNoise,
     evidence: SupportEvidence,
 ) -> SupportHypothesis | None:
-    """On the place of another object that agrees best; None where it is far beside all of them."""
+    """On the place of another object that agrees best; None where it is far beside all of them, unless a stage that
+    looked at the picture believes it: the two may since have moved apart along their lines of sight.
+    """
     corners = item.corners_world
     foot, height = float(corners[:, 2].min()), max(float(np.ptp(corners[:, 2])), 1e-3)
     tolerance = noise.tolerance_m(scene.camera, item.pose.position, UP_WORLD)
@@ -139,10 +141,11 @@ def _on_object(
         outside = outside_m(place, item.pose.position) / _width_m(item)
         over = max(height - place.clearance_m, 0.0) / height
         found.append((min(gap, 6.0) + outside + over, index, gap, outside))
-    if not found or min(found)[3] >= FARTHEST_WIDTHS:
+    edge = Support(item.id, other.id)
+    seen_on = (held := evidence.believed.get(item.id)) is not None and held.parent == other.id
+    if not found or (min(found)[3] >= FARTHEST_WIDTHS and not seen_on):
         return None
     _, _, gap, outside = min(found)
-    edge = Support(item.id, other.id)
     return SupportHypothesis(
         edge,
         "object",

@@ -16,14 +16,16 @@ from jaxtyping import Float
 from diorama_core.arrangement.noise import ObservationNoise
 from diorama_core.arrangement.standing import standing_walls
 from diorama_core.arrangement.support_hypotheses import SupportEvidence, SupportHypothesis, support_hypotheses
-from diorama_core.arrangement.support_terms import SupportWeights, fitted_weights
-from diorama_core.arrangement.surfaces import label_of
+from diorama_core.arrangement.support_terms import FAR_WIDTHS, SupportWeights, fitted_weights
+from diorama_core.arrangement.surfaces import box_misfit, label_of, object_surfaces
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.scene import edits
 from diorama_core.scene.types import Plane, Pose, Scene, SceneObject, Support
 
 NEAREST, FARTHEST = 0.4, 1.6
 """Shares of its distance between which an object is moved along its line of sight to a supporter."""
+_SHARES = 49
+"""Shares of its distance at which an object is tried on another one: 3 % apart."""
 _ROOM = ""
 """Root of the graph."""
 
@@ -111,18 +113,33 @@ def with_decided_supports(
     weights = weights or fitted_weights()
     choices = chosen_supports(support_hypotheses(scene, library, noise, evidence), weights)
     moved = scene
-    for name, choice in choices.items():
-        item = moved.object(name)
-        before = scene.support_of(name)
+    for name in _carriers_first(choices):
+        choice, item, before = choices[name], moved.object(name), scene.support_of(name)
         edge = choice.edge
         if before is not None and before.parent == edge.parent and before.relation == edge.relation:
             edge = replace(before, adheres_to=())
         elif not noise.measured and choice.hypothesis.role in ("wall", "ceiling"):
             moved = _along_sight(moved, item, _share_to_plane(moved, item, moved.plane(edge.parent)))
+        if not noise.measured and choice.hypothesis.role == "object" and choice.hypothesis.outside > FAR_WIDTHS:
+            moved = _along_sight(moved, item, _share_to_object(moved, item, moved.object(edge.parent), library))
         if choice.hypothesis.role == "floor":
             edge = replace(edge, adheres_to=standing_walls(moved, moved.object(name), noise, weights.walls))
         moved = edits.attach(moved, edge)
     return DecidedSupports(moved, choices, tuple(_changes(scene, moved)))
+
+
+def _carriers_first(choices: Mapping[str, SupportChoice]) -> list[str]:
+    """The objects, each after what holds it."""
+    ordered: list[str] = []
+
+    def add(name: str) -> None:
+        if name in choices and name not in ordered:
+            add(choices[name].edge.parent)
+            ordered.append(name)
+
+    for name in choices:
+        add(name)
+    return ordered
 
 
 def _changes(before: Scene, after: Scene) -> Iterator[str]:
@@ -143,6 +160,21 @@ def _share_to_plane(scene: Scene, item: SceneObject, plane: Plane) -> float:
     farthest = float(((item.corners_world - eye) @ plane.normal).min())
     share = (plane.offset - float(eye @ plane.normal)) / farthest if farthest < 0.0 else 1.0
     return share if NEAREST <= share <= FARTHEST else 1.0
+
+
+def _share_to_object(scene: Scene, item: SceneObject, carrier: SceneObject, library: ShapeLibrary) -> float:
+    """The share of its distance at which an object is on another one, as near as possible to where it was seen."""
+    if scene.camera is None:
+        return 1.0
+    eye = scene.camera.position
+    places = [place.in_world(carrier.pose) for place in object_surfaces(library.shape(carrier.shape_id), carrier)]
+    shares = np.geomspace(NEAREST, FARTHEST, _SHARES)
+    corners = eye + shares[:, None, None] * (item.corners_world - eye)
+    costs = [
+        min(box_misfit(c, share * item.size_m, place) for place in places)
+        for share, c in zip(shares, corners, strict=True)
+    ]
+    return float(shares[np.argmin(costs)])
 
 
 def _along_sight(scene: Scene, item: SceneObject, share: float) -> Scene:

@@ -106,6 +106,20 @@ HYPOTHESES = st.builds(
 )
 
 
+def test_what_stands_on_a_table_that_was_found_farther_away_goes_there_along_its_line_of_sight(room: Room) -> None:
+    table = room.put("table_0", (0.0, 1.8, at("table_0", 0.0)))
+    cup = room.put("cup_21", (0.0, 1.8, at("cup_21", TABLE_TOP)), on=table)
+    scene = room.scene(camera=looking_north())
+    eye, there = scene.camera.position, scene.object(cup)
+    pose = replace(there.pose, position=eye + 0.6 * (there.pose.position - eye), scale=0.6 * there.pose.scale)
+    before = replace(scene, objects=tuple(replace(o, pose=pose) if o.id == cup else o for o in scene.objects))
+    after = decided(before, REASONED)
+    assert after.support_of(cup).parent == table
+    assert after.object(cup).pose.position == pytest.approx(there.pose.position, abs=0.2)
+    assert after.object(cup).pose.scale == pytest.approx(there.pose.scale, rel=0.12)
+    assert decided(before, MEASURED).object(cup) == before.object(cup)
+
+
 @given(HYPOTHESES, st.floats(0, 20))
 def test_a_wider_gap_never_speaks_for_a_supporter(drawn: tuple[float, float, float, bool], more: float) -> None:
     gap, outside, below, believed = drawn
