@@ -15,8 +15,13 @@ from jaxtyping import Float
 
 from diorama_core.arrangement.noise import ObservationNoise
 from diorama_core.arrangement.standing import standing_walls
-from diorama_core.arrangement.support_hypotheses import SupportEvidence, SupportHypothesis, support_hypotheses
-from diorama_core.arrangement.support_terms import FAR_WIDTHS, SupportWeights, fitted_weights
+from diorama_core.arrangement.support_hypotheses import (
+    FARTHEST_WIDTHS,
+    SupportEvidence,
+    SupportHypothesis,
+    support_hypotheses,
+)
+from diorama_core.arrangement.support_terms import SupportWeights, fitted_weights
 from diorama_core.arrangement.surfaces import box_misfit, label_of, object_surfaces
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.scene import edits
@@ -120,7 +125,7 @@ def with_decided_supports(
             edge = replace(before, adheres_to=())
         elif not noise.measured and choice.hypothesis.role in ("wall", "ceiling"):
             moved = _along_sight(moved, item, _share_to_plane(moved, item, moved.plane(edge.parent)))
-        if not noise.measured and choice.hypothesis.role == "object" and choice.hypothesis.outside > FAR_WIDTHS:
+        if not noise.measured and choice.hypothesis.role == "object" and choice.hypothesis.outside >= FARTHEST_WIDTHS:
             moved = _along_sight(moved, item, _share_to_object(moved, item, moved.object(edge.parent), library))
         if choice.hypothesis.role == "floor":
             edge = replace(edge, adheres_to=standing_walls(moved, moved.object(name), noise, weights.walls))
