@@ -12,14 +12,13 @@ import viser
 
 from diorama_app.commands.camera_presets import Views
 from diorama_app.commands.definitions import build_commands
-from diorama_app.commands.import_model import import_model
 from diorama_app.commands.registry import Command
 from diorama_app.interaction.gestures import Gestures
 from diorama_app.interaction.wall_handle import WallHandle
 from diorama_app.panels.address import Address
 from diorama_app.panels.alternatives import Alternatives
 from diorama_app.panels.compare import Compare
-from diorama_app.panels.dropping import take_dropped_files
+from diorama_app.panels.dropping import DroppedFiles, listen_for_drops
 from diorama_app.panels.edit_by_words import EditByWords
 from diorama_app.panels.export import ExportPanel
 from diorama_app.panels.ghost import PlacingGhost
@@ -54,7 +53,6 @@ from diorama_app.panels.toolbar import Toolbar
 from diorama_app.panels.unsaved import UnsavedChanges
 from diorama_app.panels.walls import Walls
 from diorama_app.projects.example import example_project
-from diorama_app.reconstruction.opening_job import open_file
 from diorama_app.reconstruction.photo_outlines import PhotoOutlines
 from diorama_app.session.client import Client
 from diorama_app.session.connected_client import Panel
@@ -199,25 +197,19 @@ class Editor:
             place("The light", lambda: LightPanel(gui, client))
         with from_photo:
             place("The photos of the room", lambda: PhotoStrip(gui, client, self.views))
-            photo = place("The photo", lambda: PhotoPanel(gui, client, self.commands))
+            dropped = DroppedFiles(client, place("The photo", lambda: PhotoPanel(gui, client, self.commands)))
             place("The photo's camera", lambda: PhotoCamera(gui, client, self.views))
         with arrange:
             client.curves = place("The layout", lambda: Optimiser(gui, client))
         with projects:
-            place("The list of projects", lambda: Projects(gui, client, self.commands, photo.take))
+            place("The list of projects", lambda: Projects(gui, client, self.commands, dropped.take))
             place("The list of networks", lambda: Networks(gui, client))
         right = gui.add_panel()
         count = len(panels)
         self._right_side(client, place, right.add_tab)
         on_the_right = panels[count:]
-        take_dropped_files(
-            gui,
-            client,
-            photo.take,
-            lambda name, content: import_model(client, name, content),
-            lambda name, content: open_file(client, name, content),
-        )
-        panels.append(StartPage(gui, client, photo.take))
+        listen_for_drops(gui, client, dropped.take)
+        panels.append(StartPage(gui, client, dropped.take))
         right.dock_right()
         right.set_width(RIGHT_WIDTH_PX)
 

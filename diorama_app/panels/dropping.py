@@ -1,50 +1,70 @@
-"""A file dropped anywhere on the page goes where it belongs: a picture becomes the photo, a model joins the library."""
+"""What is dropped anywhere on the page, a file, several or a folder, is told by its content and goes where it belongs.
+
+The page packs several files into one zip archive (`static/dropping.js`), so that one upload brings them all.
+"""
 
 from __future__ import annotations
 
-import html
-import json
-
 import viser
 
+from diorama_app.commands.import_model import import_model
+from diorama_app.panels.input_questions import ask_which
+from diorama_app.panels.photo import PhotoPanel
 from diorama_app.panels.upload_field import Take, hidden_upload
+from diorama_app.projects.dropped import Dropped, Reading
+from diorama_app.projects.dropped_files import files_of, sources_of, upload_of
+from diorama_app.reconstruction.dropped_photos import begin_each, build_one_room
+from diorama_app.reconstruction.opening_job import open_file
 from diorama_app.session.client import Client
-from diorama_core.importing.forms import SUFFIXES
-
-MODELS = ("glb", "gltf", "obj", "ply", "stl", "fbx", "dae", "3mf", "3ds", "off")
-SCENES = tuple(s[1:] for s in SUFFIXES if s[1:] not in (*MODELS, "txt", "csv"))
-"""A GLB may be either; dropped, it is a model, and *Open a file* takes it as a scene."""
-
-_SCRIPT = """(()=>{const to=%s,veil=document.getElementById('dio-drop')||Object.assign(document.createElement('div'),
-{id:'dio-drop',textContent:'Drop a photo of a room, a model or a scene file'});document.body.appendChild(veil);
-const hold=e=>e.dataTransfer&&[...e.dataTransfer.types].includes('Files');let deep=0;
-const show=on=>{veil.style.display=on?'flex':'none'};show(false);
-document.ondragenter=e=>{if(hold(e)){deep++;show(true)}};
-document.ondragleave=e=>{if(hold(e)&&--deep<=0){deep=0;show(false)}};
-document.ondragover=e=>{if(hold(e))e.preventDefault()};
-document.ondrop=e=>{if(!hold(e))return;deep=0;show(false);
-if(e.target.closest&&e.target.closest('[data-file]'))return;e.preventDefault();
-const file=e.dataTransfer.files[0];if(!file)return;const kind=file.name.split('.').pop().toLowerCase();
-const field=document.getElementById('file_upload_'+(to[kind]||to['']));if(!field)return;
-const one=new DataTransfer();one.items.add(file);field.files=one.files;
-field.dispatchEvent(new Event('change',{bubbles:true}))};this.remove()})()"""
-
-_STYLE = """<style>#dio-drop { position: fixed; inset: 12px; z-index: 950; display: none; pointer-events: none;
-  align-items: center; justify-content: center; border: 3px dashed #2f6fd6; border-radius: 14px; font-size: 20px;
-  color: #fff; background: #1d4f9e99; }</style>"""
+from diorama_app.web.html import text
 
 
-def take_dropped_files(gui: viser.GuiApi, client: Client, photo: Take, model: Take, scene: Take) -> None:
-    """Listen to the page for dropped files. Call it where the panel is always there: uploads go through hidden buttons.
+class DroppedFiles:
+    """Says what was dropped, asks where that is open, and acts."""
+
+    def __init__(self, client: Client, photo: PhotoPanel) -> None:
+        self._client, self._photo = client, photo
+
+    def take(self, name: str, content: bytes) -> None:
+        """Take a file of any kind, or an archive of several."""
+        client, inputs = self._client, self._client.session.inputs
+
+        def told(dropped: Dropped) -> None:
+            if len(dropped.readings) > 1:
+                ask_which(client, name, dropped, lambda reading: self._act(name, content, reading))
+                return
+            (reading,) = dropped.readings
+            unused = dropped.unused()
+            client.notice(f"{name}: {reading.words}" + (f". {unused}" if unused else ""))
+            self._act(name, content, reading)
+
+        size = None if inputs is None else (inputs.photo.width, inputs.photo.height)
+        client.session.reader.recognise(content, name, size, client.id, client.post, told)
+
+    def _act(self, name: str, content: bytes, reading: Reading) -> None:
+        client = self._client
+        match reading.action:
+            case "photo":
+                self._photo.begin(upload_of(reading.photos[0], files_of(name, content)))
+            case "inputs":
+                self._photo.add(sources_of(reading.inputs, files_of(name, content)))
+            case "photos":
+                begin_each(client, name, content, reading)
+            case "room":
+                build_one_room(client, name, content, reading)
+            case "models":
+                import_model(client, name, content)
+            case "scene":
+                open_file(client, name, content)
+
+
+def listen_for_drops(gui: viser.GuiApi, client: Client, take: Take) -> None:
+    """Let the page send what is dropped. Call it where the panel is always there.
 
     Args:
         gui: the page.
         client: the owner.
-        photo: takes name and content of a picture, and of what is of no known kind, to say what is wrong.
-        model: takes those of a model.
-        scene: takes those of a scene.
+        take: takes name and content.
     """
-    fields = [hidden_upload(gui, client, "Dropped file", take) for take in (photo, model, scene)]
-    to = {"": fields[0], **dict.fromkeys(MODELS, fields[1]), **dict.fromkeys(SCENES, fields[2])}
-    script = html.escape(_SCRIPT.replace("\n", "") % json.dumps(to))
-    gui.add_html(f'{_STYLE}<img alt="" src="data:," style="display:none" onerror="{script}">')
+    uuid = hidden_upload(gui, client, "Dropped files", take)
+    gui.add_html(f'<i id="dio-drop-to" data-upload="{text(uuid)}"></i>')

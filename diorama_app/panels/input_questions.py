@@ -1,4 +1,4 @@
-"""Questions about a file that may mean several things: what it is, and the unit of its depth."""
+"""Questions about files that may mean several things: what they are, and how a depth map is to be read."""
 
 from __future__ import annotations
 
@@ -8,25 +8,30 @@ from typing import TypeVar
 
 from diorama_app.panels.dialog import dialog
 from diorama_app.panels.fields import on_press
+from diorama_app.projects.dropped import Dropped, Reading
 from diorama_app.session.client import Client
 from diorama_app.web.html import text
-from diorama_core.perception.inputs.depth.units import UnknownUnitError
-from diorama_core.perception.inputs.sorting import Recognised
+from diorama_core.perception.inputs.depth.units import AmbiguousDepthError, DepthAnswer
 
 Answer = TypeVar("Answer")
 
 
-def ask_which(client: Client, name: str, found: Sequence[Recognised], then: Callable[[Recognised], None]) -> None:
-    """Ask what a file is, and go on with the answer."""
-    _ask(client, f"What is {name}?", "", [(what.words.capitalize(), what) for what in found], then)
+def ask_which(client: Client, name: str, dropped: Dropped, then: Callable[[Reading], None]) -> None:
+    """Ask what was dropped, and go on with the answer."""
+    choices = [(_capital(reading.words), reading) for reading in dropped.readings]
+    _ask(client, f"What is {name}?", dropped.unused(), choices, then)
 
 
-def ask_unit(client: Client, unknown: UnknownUnitError, then: Callable[[float], None]) -> None:
-    """Ask for the unit of a depth map, and go on with units per metre."""
+def ask_depth(client: Client, unknown: AmbiguousDepthError, then: Callable[[DepthAnswer], None]) -> None:
+    """Ask how a depth map is to be read, and go on with the answer."""
     if not unknown.choices:
         raise unknown
-    choices = [(words.capitalize(), scale) for scale, words in unknown.choices]
-    _ask(client, "Which unit has the depth?", str(unknown).split(";", 1)[0], choices, then)
+    choices = [(_capital(answer.words), answer) for answer in unknown.choices]
+    _ask(client, "How is the depth to be read?", str(unknown).split(";", 1)[0], choices, then)
+
+
+def _capital(words: str) -> str:
+    return words[:1].upper() + words[1:]
 
 
 def _ask(

@@ -6,7 +6,6 @@ import base64
 import io
 from collections.abc import Mapping
 from dataclasses import replace
-from typing import Literal
 
 import numpy as np
 import viser
@@ -15,10 +14,10 @@ from PIL import Image
 
 from diorama_app.commands.registry import CommandTable
 from diorama_app.panels.fields import GO_COLOUR, enable, on_change, on_press, show_if, show_label
-from diorama_app.panels.input_questions import ask_unit, ask_which
+from diorama_app.panels.input_questions import ask_depth
 from diorama_app.panels.photo_boxes import PhotoBoxes, box_list
 from diorama_app.panels.upload_field import UploadField
-from diorama_app.projects.begin import begin_project
+from diorama_app.projects.begin import begin_project, depth_answer, keep_given
 from diorama_app.projects.uploads import Upload
 from diorama_app.reconstruction import build_job as work
 from diorama_app.reconstruction.networks import (
@@ -46,14 +45,14 @@ from diorama_core.errors import InputError
 from diorama_core.models.manifest import networks_of
 from diorama_core.models.store import ModelStore
 from diorama_core.perception.inputs import ReadInputs
-from diorama_core.perception.inputs.depth.units import UnknownUnitError
-from diorama_core.perception.inputs.sorting import Recognised
+from diorama_core.perception.inputs.depth.units import AmbiguousDepthError, DepthAnswer
+from diorama_core.perception.inputs.sorting import Sort
+from diorama_core.perception.inputs.source import Source
 
 SLOW_BYTES = 2_000_000
 """A file of more is announced while it is read."""
 
-Kind = Literal["photo", "boxes", "depth", "masks"]
-KINDS: dict[Kind, str] = {"photo": "Photo", "boxes": "Boxes", "depth": "Depth", "masks": "Masks"}
+KINDS: dict[Sort, str] = {"photo": "Photo", "boxes": "Boxes", "depth": "Depth", "masks": "Masks"}
 
 
 class PhotoPanel:
@@ -65,7 +64,7 @@ class PhotoPanel:
         self._picture_of: object = None
         self._picture = ""
         self._invitation = LiveHtml(gui, self._act)
-        self._photo_button = self._upload(gui, "photo", "Upload a photo", "image/*")
+        self._upload(gui, "photo", "Upload a photo", "image/*")
         self._words = gui.add_text("Describe a room", "", hint="For example: a bedroom with a double bed and two lamps")
         self._describe = gui.add_button(
             "Create room", color=GO_COLOUR, hint="Creates a new project from this description"
@@ -104,23 +103,30 @@ class PhotoPanel:
         )
         on_press(self._join, lambda: client.post(lambda: join_photo(client)))
 
-    def take(self, name: str, content: bytes) -> None:
-        """Take a photo, boxes, masks or depth that were dropped somewhere on the page: what it is decides its way."""
-        photo = None if self._session.inputs is None else self._session.inputs.photo
+    def begin(self, upload: Upload) -> None:
+        """Read a photo with what was given for it: they are a project from the moment when they are read."""
+        client = self._client
 
-        def told(found: tuple[Recognised, ...]) -> None:
-            if len(found) == 1:
-                self._take_as(found[0], name, content)
-            else:
-                ask_which(self._client, name, found, lambda what: self._take_as(what, name, content))
+        def done(read: ReadInputs) -> None:
+            project = begin_project(self._session.projects_dir, upload.name, read, upload.photo)
+            keep_given(project, upload)
+            self._session.visit(client, project, " ".join(read.warnings[:3]))
 
-        size = None if photo is None else (photo.width, photo.height)
-        self._session.reader.recognise(content, name, size, self._client.id, self._client.post, told)
+        def ask(unknown: AmbiguousDepthError) -> None:
+            ask_depth(client, unknown, lambda answer: self.begin(upload.answered(answer)))
 
-    def _take_as(self, what: Recognised, name: str, content: bytes) -> None:
-        if what.sort != "photo":
-            self._client.notice(f"{name}: {what.words}, read with the open photo")
-        self._received(what.sort, name, content)
+        self._session.reader.read(upload, client.id, client.post, done, ask)
+        self._announce(upload.name, upload.photo)
+
+    def add(self, new: Mapping[Sort, Source]) -> None:
+        """Read the open photo together with further files of it, and keep what comes of it."""
+        self._read_again(f"add {' and '.join(KINDS[kind].lower() for kind in new)}", new)
+        for source in new.values():
+            self._announce(source.name, source.data)
+
+    def _announce(self, name: str, content: bytes) -> None:
+        if len(content) > SLOW_BYTES:
+            self._client.notice(f"Reading {name}…")
 
     def refresh(self) -> None:
         """Draw what is known of the photo."""
@@ -152,33 +158,22 @@ class PhotoPanel:
 
     # -- uploads ----------------------------------------------------------------------------------------------
 
-    def _upload(self, gui: viser.GuiApi, kind: Kind, label: str, mime_type: str) -> str:
+    def _upload(self, gui: viser.GuiApi, kind: Sort, label: str, mime_type: str) -> str:
         def take(name: str, content: bytes) -> None:
-            self._received(kind, name, content)
+            if kind == "photo":
+                self.begin(Upload(content, name))
+            else:
+                self.add({kind: Source(content, name)})
 
         return UploadField(gui, self._client, label, take, mime_type=mime_type).uuid
 
-    def _received(self, kind: Kind, name: str, content: bytes) -> None:
-        if kind == "photo":
-            self._session.reader.read(
-                Upload(content, name), self._client.id, self._client.post, lambda read: self._begin(name, read, content)
-            )
-        else:
-            self._read_again(f"add {KINDS[kind].lower()}", {kind: content})
-        if len(content) > SLOW_BYTES:
-            self._client.notice(f"Reading {name}…")
-
-    def _begin(self, name: str, read: ReadInputs, content: bytes) -> None:
-        """A photo is a project of its own from the moment when it is read."""
-        project = begin_project(self._session.projects_dir, name, read, content)
-        self._session.visit(self._client, project, " ".join(read.warnings[:3]))
-
-    def _read_again(self, label: str, new: Mapping[Kind, bytes], depth_scale: float | None = None) -> None:
+    def _read_again(self, label: str, new: Mapping[Sort, Source], answer: DepthAnswer | None = None) -> None:
         """Read the photo together with its other files, in the background, and keep what comes of it."""
         session, client, before = self._session, self._client, self._session.inputs
         if before is None or session.project is None:
             raise InputError("upload the photo first, then its boxes, depth or masks")
         given = session.project.uploads()
+        told = (answer or DepthAnswer("")) if "depth" in new else depth_answer(session.project)
         boxes = new.get("boxes") or (boxes_json(before.boxes, before.photo) if before.boxes else None)
         upload = Upload(
             given.get("photo") or _png(before.photo.rgb),
@@ -186,7 +181,8 @@ class PhotoPanel:
             depth=new.get("depth", given.get("depth")),
             boxes=boxes,
             masks=new.get("masks", given.get("masks")),
-            depth_scale=depth_scale if "depth" in new else session.project.info().get("depth_scale"),
+            depth_scale=told.per_metre,
+            depth_kind=told.kind,
             intrinsics=_intrinsics(self._camera.value),
         )
         project = session.project
@@ -194,11 +190,7 @@ class PhotoPanel:
         def done(read: ReadInputs) -> None:
             if session.inputs is not before:
                 raise InputError("the photo or its boxes changed meanwhile; upload the file again")
-            if "depth" in new:
-                project.update_info(depth_scale=depth_scale)
-            for kind in ("depth", "masks"):
-                if kind in new:
-                    project.save_upload(kind, new[kind])
+            keep_given(project, replace(upload, depth=new.get("depth"), masks=new.get("masks")))
             for warning in read.warnings[:3]:
                 client.notice(warning)
             attitude = replace(
@@ -206,8 +198,8 @@ class PhotoPanel:
             )
             session.annotate(label, attitude, by=client)
 
-        def ask(unknown: UnknownUnitError) -> None:
-            ask_unit(client, unknown, lambda scale: self._read_again(label, new, scale))
+        def ask(unknown: AmbiguousDepthError) -> None:
+            ask_depth(client, unknown, lambda chosen: self._read_again(label, new, chosen))
 
         session.reader.read(upload, client.id, client.post, done, ask)
 
@@ -248,7 +240,7 @@ class PhotoPanel:
     def _introduction(self, inputs: Inputs | None) -> str:
         if inputs is None:
             return (
-                f'<div class="drop" data-file="{self._photo_button}"><b>Start with a photo of a room.</b><br>'
+                '<div class="drop"><b>Start with a photo of a room.</b><br>'
                 '<span class="dim">Drop it here or upload it. Then draw a box around each piece of furniture, and '
                 "build a scene that you can edit.</span></div>"
             )
@@ -257,7 +249,7 @@ class PhotoPanel:
         extras = [name for name, there in _extras(inputs).items() if there]
         extra = f" · with {', '.join(extras)}" if extras else ""
         return (
-            f'<img class="photo" alt="The photo" src="{self._picture}" data-file="{self._photo_button}"'
+            f'<img class="photo" alt="The photo" src="{self._picture}"'
             ' title="Drop another photo here to start another project">'
             f'<p style="margin-top:6px">{text(inputs.photo.name)}<br>'
             f'<span class="dim">{_state(inputs)}{extra}</span></p>'

@@ -164,7 +164,7 @@ class StartPage:
             "<p>One photo of a room becomes a 3D scene you can edit.</p>"
             + button("✕", "close", title="Close and look at the room behind")
             + '</header><div class="ways">'
-            f'<section class="first drop" data-file="{photo}"><h2>A photo</h2><p>Drop one here, or choose a file. You '
+            f'<section class="first drop"><h2>A photo</h2><p>Drop one here, or choose a file. You '
             "mark the furniture, Diorama builds the room.</p>"
             f'<label class="choose main" for="file_upload_{photo}" tabindex="0">Choose a photo</label></section>'
             "<section><h2>A description</h2><p>Say what is in the room.</p>"

@@ -7,16 +7,21 @@ import shutil
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from pathlib import Path
+from typing import get_args
 
 import numpy as np
 from jaxtyping import UInt8
 
+from diorama_app.projects.uploads import Upload
 from diorama_core.errors import InputError, LibraryError, ProjectError
 from diorama_core.library.library_names import BUILT_IN
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.library.store import CombinedLibrary, StoredLibrary
 from diorama_core.library.user_library import OWN, ShapeRecords, UserLibrary
 from diorama_core.perception.inputs import ReadInputs
+from diorama_core.perception.inputs.depth.kinds import DepthKind
+from diorama_core.perception.inputs.depth.units import DepthAnswer
+from diorama_core.perception.inputs.source import Source
 from diorama_core.project.lock import ProjectLock
 from diorama_core.project.storage import OWN_SHAPES, Project
 from diorama_core.scene.types import Scene
@@ -82,6 +87,26 @@ def _note_library(project: Project, library: ShapeLibrary) -> None:
     names += [] if uploads.isdisjoint(shapes) else [OWN]
     names += [] if own is None else [OWN_SHAPES]
     project.update_info(library="+".join(dict.fromkeys(names)))
+
+
+def keep_given(project: Project, upload: Upload) -> None:
+    """Keep depth and masks as they came, and what was said of the depth, for when the photo is read again."""
+    if upload.depth is not None:
+        project.save_upload("depth", _content(upload.depth))
+        project.update_info(depth_scale=upload.depth_scale, depth_kind=upload.depth_kind)
+    if upload.masks is not None:
+        project.save_upload("masks", _content(upload.masks))
+
+
+def depth_answer(project: Project) -> DepthAnswer:
+    """What was said of the project's depth."""
+    info = project.info()
+    kind = next((k for k in get_args(DepthKind) if k == info.get("depth_kind")), "auto")
+    return DepthAnswer("", info.get("depth_scale"), kind)
+
+
+def _content(given: bytes | Source) -> bytes:
+    return given.data if isinstance(given, Source) else given
 
 
 def fresh_folder(projects_dir: Path, name: str) -> Path:

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from diorama_core.io.limited import LimitedProcess
 from diorama_core.perception.inputs import ReadInputs, read_inputs
 from diorama_core.perception.inputs.depth.kinds import DepthKind
-from diorama_core.perception.inputs.depth.units import UnknownUnitError
+from diorama_core.perception.inputs.depth.units import AmbiguousDepthError, DepthAnswer
+from diorama_core.perception.inputs.source import Source
 from diorama_core.pipeline import codec
 
 
@@ -17,14 +18,18 @@ class Upload:
 
     photo: bytes
     name: str
-    depth: bytes | None = None
-    boxes: bytes | None = None
-    masks: bytes | None = None
+    depth: bytes | Source | None = None
+    boxes: bytes | Source | None = None
+    masks: bytes | Source | None = None
     intrinsics: tuple[float, float, float, float] | None = None
     fov_deg: float | None = None
     depth_scale: float | None = None
     """Units of depth per metre; None where the file and the picture say."""
     depth_kind: DepthKind = "auto"
+
+    def answered(self, answer: DepthAnswer) -> Upload:
+        """The same with what a person says of its depth."""
+        return replace(self, depth_scale=answer.per_metre, depth_kind=answer.kind)
 
 
 def decoded(upload: Upload, process: LimitedProcess) -> ReadInputs:
@@ -35,12 +40,12 @@ def decoded(upload: Upload, process: LimitedProcess) -> ReadInputs:
         process: where its files are decoded.
 
     Raises:
-        UnknownUnitError: the depth may have several units.
+        AmbiguousDepthError: the depth may be several things.
         InputError: a file cannot be read, or needs more memory or time than a file of its kind should.
     """
     answer = process.call(upload.name, read_packed, upload)
     if isinstance(answer, DepthQuestion):
-        raise UnknownUnitError(answer.message, answer.choices)
+        raise AmbiguousDepthError(answer.message, answer.choices)
     packed, warnings = answer
     return ReadInputs(codec.load(packed), warnings)
 
@@ -50,14 +55,14 @@ class DepthQuestion:
     """What the decoding process cannot decide: errors come back from there as words alone."""
 
     message: str
-    choices: tuple[tuple[float, str], ...]
+    choices: tuple[DepthAnswer, ...]
 
 
 def read_packed(upload: Upload) -> tuple[bytes, tuple[str, ...]] | DepthQuestion:
     """Checked inputs, packed, and warnings, or a question. Runs in the decoding process."""
     try:
         read = _read(upload)
-    except UnknownUnitError as error:
+    except AmbiguousDepthError as error:
         return DepthQuestion(str(error), error.choices)
     return codec.dump(read.inputs), read.warnings
 

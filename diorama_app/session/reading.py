@@ -8,12 +8,12 @@ from concurrent.futures import ThreadPoolExecutor
 from functools import partial
 from typing import Any
 
+from diorama_app.projects.dropped import Dropped, understood
 from diorama_app.projects.uploads import Upload, decoded
 from diorama_core.errors import EditRefused
 from diorama_core.io.limited import LimitedProcess
 from diorama_core.perception.inputs import ReadInputs
-from diorama_core.perception.inputs.depth.units import UnknownUnitError
-from diorama_core.perception.inputs.sorting import Recognised, recognised
+from diorama_core.perception.inputs.depth.units import AmbiguousDepthError
 
 MAX_WAITING = 2
 """Uploads of one person that are read or wait for it."""
@@ -36,7 +36,7 @@ class Reader:
         client_id: int,
         post: Post,
         then: Callable[[ReadInputs], None],
-        ask: Callable[[UnknownUnitError], None] | None = None,
+        ask: Callable[[AmbiguousDepthError], None] | None = None,
     ) -> None:
         """Decode an upload, then do something with it.
 
@@ -45,7 +45,7 @@ class Reader:
             client_id: whose it is.
             post: runs a task where errors are told to that person.
             then: given the checked inputs, there.
-            ask: given the units that a depth map may have, there; None where that is an error.
+            ask: given what a depth map may be, there; None where that is an error.
 
         Raises:
             EditRefused: two uploads of this person are being read already.
@@ -60,9 +60,9 @@ class Reader:
         photo_size: tuple[int, int] | None,
         client_id: int,
         post: Post,
-        then: Callable[[tuple[Recognised, ...]], None],
+        then: Callable[[Dropped], None],
     ) -> None:
-        """Say what a file may be, in the decoding process, likeliest first; arguments as for `read`.
+        """Say what a file, or a zip archive of several, may be, in the decoding process.
 
         Args:
             content: of the file.
@@ -98,13 +98,13 @@ class Reader:
         client_id: int,
         post: Post,
         then: Callable[[ReadInputs], None],
-        ask: Callable[[UnknownUnitError], None] | None,
+        ask: Callable[[AmbiguousDepthError], None] | None,
     ) -> None:
         try:
             read = decoded(upload, self._process)
             post(lambda: then(read))
         except Exception as error:  # raised again on the UI thread, for whoever uploaded
-            post(partial(ask, error) if ask is not None and isinstance(error, UnknownUnitError) else _raising(error))
+            post(partial(ask, error) if ask is not None and isinstance(error, AmbiguousDepthError) else _raising(error))
         finally:
             self._end(client_id)
 
@@ -113,10 +113,10 @@ class Reader:
         file: tuple[bytes, str, tuple[int, int] | None],
         client_id: int,
         post: Post,
-        then: Callable[[tuple[Recognised, ...]], None],
+        then: Callable[[Dropped], None],
     ) -> None:
         try:
-            found = self._process.call(file[1], recognised, *file)
+            found = self._process.call(file[1], understood, *file)
             post(lambda: then(found))
         except Exception as error:  # as above
             post(_raising(error))

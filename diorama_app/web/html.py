@@ -165,7 +165,6 @@ _GRAB = html.escape(
 _RELEASE = html.escape("if(event.dataTransfer.dropEffect==='none')S('release','',event)")
 """Only where nothing took it."""
 _OVER = html.escape(
-    "const z=event.target.closest('[data-file]');if(z){event.preventDefault();z.classList.add('over')}"
     "const t=event.target.closest('[data-drop]');"
     "document.querySelectorAll('.dio .row.over').forEach(o=>{if(o!==t)o.classList.remove('over')});"
     "if(t){event.preventDefault();t.classList.add('over')}"
@@ -178,11 +177,8 @@ _FLOAT = html.escape(
 )
 """Takes a piece of HTML out of its panel (which clips it) and lays it over the page, in place of its predecessor."""
 _DROP = html.escape(
-    "const z=event.target.closest('[data-file]');if(z&&event.dataTransfer.files.length){event.preventDefault();"
-    "z.classList.remove('over');const i=document.getElementById('file_upload_'+z.dataset.file);"
-    "i.files=event.dataTransfer.files;i.dispatchEvent(new Event('change',{bubbles:true}))}"
-    "const t=event.target.closest('[data-drop]');if(t){event.preventDefault();t.classList.remove('over');"
-    "S('drop',JSON.stringify([event.dataTransfer.getData('text'),t.dataset.drop]),event)}"
+    "const t=event.target.closest('[data-drop]');if(t&&!event.dataTransfer.files.length){event.preventDefault();"
+    "t.classList.remove('over');S('drop',JSON.stringify([event.dataTransfer.getData('text'),t.dataset.drop]),event)}"
 )
 
 
@@ -217,8 +213,7 @@ class LiveHtml:
     """A piece of a panel drawn as HTML, redrawn only when it differs, whose events call `on_action`.
 
     Inside it, `data-do` (with `data-arg`) is clicked, `data-change` is an input whose new value is told, `data-peek` is
-    pointed at, and rows with `data-grab` are dragged onto rows with `data-drop`. Files dropped on `data-file` go to the
-    upload button with that id.
+    pointed at, and rows with `data-grab` are dragged onto rows with `data-drop`.
     """
 
     def __init__(self, gui: viser.GuiApi, on_action: OnAction | None = None, *, floating: str = "") -> None:

@@ -19,7 +19,7 @@ from diorama_core.perception.inputs.depth.kinds import DepthKind
 from diorama_core.perception.inputs.depth.reading import DepthEncoding, DepthOptions, read_depth
 from diorama_core.perception.inputs.masks.reading import read_masks
 from diorama_core.perception.inputs.photos.reading import DecodedPhoto, read_photo
-from diorama_core.perception.inputs.source import read_folder, read_source
+from diorama_core.perception.inputs.source import Source, read_folder, read_source
 from diorama_core.scene.types import Intrinsics
 
 FOV_RANGE_DEG = (15.0, 150.0)
@@ -38,14 +38,14 @@ def read_inputs(
     image: Path | bytes,
     *,
     name: str | None = None,
-    depth: Path | bytes | None = None,
+    depth: Path | bytes | Source | None = None,
     depth_scale: float | None = None,
     depth_encoding: DepthEncoding = "linear",
     depth_kind: DepthKind = "auto",
     intrinsics: tuple[float, float, float, float] | None = None,
     fov_deg: float | None = None,
-    boxes: Path | bytes | None = None,
-    masks: Path | bytes | None = None,
+    boxes: Path | bytes | Source | None = None,
+    masks: Path | bytes | Source | None = None,
     max_side: int = 1600,
 ) -> ReadInputs:
     """Read and check what the user gave.

@@ -47,6 +47,9 @@ def recognised(content: bytes, name: str, photo_size: tuple[int, int] | None) ->
     source = Source(content, name)
     if content.startswith((b"\x93NUMPY", b"PK\x03\x04")):
         return _of_numbers(source, photo_size)
+    kind = raw_kind(content)
+    if kind is not None:
+        return (Recognised("photo", "a camera's raw photo"),)
     picture = _picture(source)
     if picture is not None:
         return _of_picture(picture, source, photo_size)
@@ -54,6 +57,16 @@ def recognised(content: bytes, name: str, photo_size: tuple[int, int] | None) ->
     if form is not None and not content.lstrip()[:1].startswith(_TEXT_STARTS):
         return (Recognised("depth", form.name),)
     return _of_text(source)
+
+
+def recognised_alone(content: bytes, name: str) -> tuple[Recognised, ...]:
+    """What a file may be by itself: a picture may be depth or masks of any photo.
+
+    Raises:
+        InputError: nothing that is read.
+    """
+    picture = _picture(Source(content, name))
+    return recognised(content, name, None if picture is None else picture.size)
 
 
 def _of_numbers(source: Source, photo_size: tuple[int, int] | None) -> tuple[Recognised, ...]:
@@ -104,8 +117,6 @@ def _of_text(source: Source) -> tuple[Recognised, ...]:
 
 def _picture(source: Source) -> Image.Image | None:
     """The picture, opened but not decoded; None where it is none."""
-    if raw_kind(source.data) is not None:
-        return None if source.data[:2] not in (b"II", b"MM") else open_picture(source)
     try:
         return open_picture(source)
     except InputError:

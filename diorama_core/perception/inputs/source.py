@@ -50,12 +50,15 @@ class Folder:
     files: tuple[Source, ...]
 
 
-def read_source(given: Path | bytes, what: str, name: str | None = None) -> Source:
-    """Bytes of a path or an upload.
+def read_source(given: Path | bytes | Source, what: str, name: str | None = None) -> Source:
+    """Bytes of a path or an upload; a source stays as it is.
 
     Raises:
         InputError: when the file is missing, unreadable, empty or larger than `MAX_FILE_MB`.
     """
+    if isinstance(given, Source):
+        _check_size(given.name, len(given.data))
+        return given
     label = name or (given.name if isinstance(given, Path) else f"the uploaded {what}")
     if isinstance(given, Path):
         _check_size(label, _file_size(given, what))
@@ -69,7 +72,7 @@ def read_source(given: Path | bytes, what: str, name: str | None = None) -> Sour
     return Source(data, label, given if isinstance(given, Path) else None)
 
 
-def read_folder(given: Path | bytes, what: str, name: str | None = None) -> Folder | Source:
+def read_folder(given: Path | bytes | Source, what: str, name: str | None = None) -> Folder | Source:
     """The files of a folder or of a zip archive in the order of their names; any other file as `read_source` has it.
 
     Raises:

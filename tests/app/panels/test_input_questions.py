@@ -8,8 +8,8 @@ from types import SimpleNamespace
 import pytest
 
 from diorama_app.panels import input_questions
-from diorama_core.perception.inputs.depth.units import UnknownUnitError
-from diorama_core.perception.inputs.sorting import Recognised
+from diorama_app.projects.dropped import Dropped, Reading
+from diorama_core.perception.inputs.depth.units import AmbiguousDepthError, DepthAnswer
 
 pytestmark = pytest.mark.unchecked  # the page is a stand-in
 
@@ -36,21 +36,21 @@ def asked(monkeypatch: pytest.MonkeyPatch) -> SimpleNamespace:
 
 
 def test_what_a_file_is(asked: SimpleNamespace) -> None:
-    found, taken = (Recognised("photo", "a photo"), Recognised("depth", "a depth map")), []
-    input_questions.ask_which(asked.client, "a.png", found, taken.append)
+    found, taken = (Reading("photo", "a photo"), Reading("inputs", "a depth map")), []
+    input_questions.ask_which(asked.client, "a.zip", Dropped(found, ("notes.txt",)), taken.append)
     asked.buttons["A depth map"]()
     assert taken == [found[1]]
     assert asked.closed == 1
-    assert asked.words == ["What is a.png?"]
+    assert asked.words == ["What is a.zip?", "<p>Left out: notes.txt.</p>"]
 
 
 def test_which_unit(asked: SimpleNamespace) -> None:
-    choices = ((5000.0, "1/5000 m"), (4000.0, "1/4000 m"))
-    unknown = UnknownUnitError("d.png: things have 4.5 times their size; give", choices)
-    taken: list[float] = []
-    input_questions.ask_unit(asked.client, unknown, taken.append)
+    choices = (DepthAnswer("1/5000 m", 5000.0), DepthAnswer("1/4000 m", 4000.0))
+    unknown = AmbiguousDepthError("d.png: things have 4.5 times their size; give", choices)
+    taken: list[DepthAnswer] = []
+    input_questions.ask_depth(asked.client, unknown, taken.append)
     asked.buttons["1/4000 m"]()
-    assert taken == [4000.0]
+    assert taken == [choices[1]]
     assert "4.5 times" in asked.words[1]
-    with pytest.raises(UnknownUnitError):
-        input_questions.ask_unit(asked.client, UnknownUnitError("x"), taken.append)
+    with pytest.raises(AmbiguousDepthError):
+        input_questions.ask_depth(asked.client, AmbiguousDepthError("x"), taken.append)

@@ -9,7 +9,8 @@ from diorama_core.perception.inputs.json_values import objects_of, size_of, whol
 
 def test_only_lists_of_objects_are_lists_of_objects() -> None:
     assert objects_of([{"a": 1}]) == [{"a": 1}]
-    for other in (None, {}, [], "text", [1], [{"a": 1}, None]):
+    others: tuple[object, ...] = (None, {}, [], "text", [1], [{"a": 1}, None])
+    for other in others:
         assert objects_of(other) == []
 
 

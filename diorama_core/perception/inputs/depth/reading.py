@@ -22,7 +22,7 @@ from diorama_core.perception.inputs.depth.kinds import (
 )
 from diorama_core.perception.inputs.depth.relative import metric_depth
 from diorama_core.perception.inputs.depth.scale import focal_of_planes, scale_evidence
-from diorama_core.perception.inputs.depth.units import UnknownUnitError, unit_of
+from diorama_core.perception.inputs.depth.units import AmbiguousDepthError, DepthAnswer, unit_of
 from diorama_core.perception.inputs.depth.voids import measured
 from diorama_core.perception.inputs.form import form_of
 from diorama_core.perception.inputs.photos.reading import DecodedPhoto
@@ -171,7 +171,8 @@ def _understood(
         notes += (f"{doubt}: check --depth-scale",) if unit.note or unit.question else ()
         return _in_metres(along, options.per_metre), notes
     if unit.question:
-        raise UnknownUnitError(f"{name}: {unit.question}", unit.choices)
+        answers = tuple(DepthAnswer(words, per_metre) for per_metre, words in unit.choices)
+        raise AmbiguousDepthError(f"{name}: {unit.question}", answers)
     return _in_metres(along, unit.per_metre), (*notes, *([unit.note] if unit.note else []))
 
 
@@ -185,7 +186,8 @@ def _chosen(
     """The reading that is used, and what to say about it.
 
     Raises:
-        InputError: the map is inverse depth, or contradicts the picture.
+        AmbiguousDepthError: the map is inverse depth.
+        InputError: it contradicts the picture.
     """
     best, of_kind = readings[0], {r.kind: r for r in readings}
     if kind != "auto":
@@ -210,9 +212,13 @@ def _chosen(
     if best.kind == "distance":
         note = f"{name} holds distances along the rays, not along the optical axis: only so are walls and floor flat"
         return best, (note + "; they were converted (--depth-kind depth keeps them)",)
-    raise InputError(
+    raise AmbiguousDepthError(
         f"{name}: this is inverse depth or disparity (larger is nearer), which has no unit; give metric depth, or add "
-        "--depth-kind inverse to fit it to the things' usual sizes"
+        "--depth-kind inverse to fit it to the things' usual sizes",
+        (
+            DepthAnswer("inverse depth, fitted to the usual sizes of things", kind="inverse"),
+            DepthAnswer("depth along the optical axis after all", kind="depth"),
+        ),
     )
 
 

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from diorama_core.errors import InputError
+from diorama_core.perception.inputs.depth.kinds import DepthKind
 from diorama_core.perception.inputs.depth.scale import ScaleEvidence
 
 USUAL_UNITS = {
@@ -28,10 +29,20 @@ TOLERANCE = 0.11
 MIN_THINGS = 3
 
 
-class UnknownUnitError(InputError):
-    """The unit of a depth map cannot be told; `choices` are the likely units per metre with their words."""
+@dataclass(frozen=True)
+class DepthAnswer:
+    """What a person may say of a depth map: its unit, or what its numbers are."""
 
-    def __init__(self, message: str, choices: tuple[tuple[float, str], ...] = ()) -> None:
+    words: str
+    per_metre: float | None = None
+    """Units per metre; None where the file and the picture say."""
+    kind: DepthKind = "auto"
+
+
+class AmbiguousDepthError(InputError):
+    """What a depth map holds cannot be told; `choices` are the likely answers."""
+
+    def __init__(self, message: str, choices: tuple[DepthAnswer, ...] = ()) -> None:
         super().__init__(message)
         self.choices = choices
 
