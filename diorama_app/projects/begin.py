@@ -7,7 +7,7 @@ import shutil
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from pathlib import Path
-from typing import get_args
+from typing import cast, get_args
 
 import numpy as np
 from jaxtyping import UInt8
@@ -100,8 +100,8 @@ def keep_given(project: Project, upload: Upload) -> None:
 
 def depth_answer(project: Project) -> DepthAnswer:
     """What was said of the project's depth."""
-    info = project.info()
-    kind = next((k for k in get_args(DepthKind) if k == info.get("depth_kind")), "auto")
+    info, kinds = project.info(), cast("tuple[DepthKind, ...]", get_args(DepthKind))
+    kind: DepthKind = next((k for k in kinds if k == info.get("depth_kind")), "auto")
     return DepthAnswer("", info.get("depth_scale"), kind)
 
 
