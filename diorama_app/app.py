@@ -197,19 +197,19 @@ class Editor:
             place("The light", lambda: LightPanel(gui, client))
         with from_photo:
             place("The photos of the room", lambda: PhotoStrip(gui, client, self.views))
-            dropped = DroppedFiles(client, place("The photo", lambda: PhotoPanel(gui, client, self.commands)))
+            photo = place("The photo", lambda: PhotoPanel(gui, client, self.commands))
             place("The photo's camera", lambda: PhotoCamera(gui, client, self.views))
         with arrange:
             client.curves = place("The layout", lambda: Optimiser(gui, client))
         with projects:
-            place("The list of projects", lambda: Projects(gui, client, self.commands, dropped.take))
+            place("The list of projects", lambda: Projects(gui, client, self.commands, photo.take))
             place("The list of networks", lambda: Networks(gui, client))
         right = gui.add_panel()
         count = len(panels)
         self._right_side(client, place, right.add_tab)
         on_the_right = panels[count:]
-        listen_for_drops(gui, client, dropped.take)
-        panels.append(StartPage(gui, client, dropped.take))
+        listen_for_drops(gui, client, DroppedFiles(client, photo).take)
+        panels.append(StartPage(gui, client, photo.take))
         right.dock_right()
         right.set_width(RIGHT_WIDTH_PX)
 

@@ -103,6 +103,10 @@ class PhotoPanel:
         )
         on_press(self._join, lambda: client.post(lambda: join_photo(client)))
 
+    def take(self, name: str, content: bytes) -> None:
+        """Begin a project with a file that a person chose as its photo, whatever else it may look like."""
+        self.begin(Upload(content, name))
+
     def begin(self, upload: Upload) -> None:
         """Read a photo with what was given for it: they are a project from the moment when they are read."""
         client = self._client
