@@ -6,6 +6,8 @@ from typing import Any
 
 import meshoptimizer
 import numpy as np
+from scipy.sparse import coo_array
+from scipy.sparse.csgraph import connected_components
 
 from diorama_core.io.glb import read_glb, write_glb
 
@@ -13,8 +15,10 @@ LARGEST_ERRORS = (0.05, 0.015, 0.004)
 """How far a simplified surface may lie from the true one, in the part's size: the first that keeps the part."""
 MIN_AREA_SHARE = 0.8
 """A part of thin bars loses its surface before anything else: less than so much of it is not the same part."""
-MIN_TRIANGLES = 24
-"""Triangles that every part of a model keeps."""
+MAX_SHORTER = 0.03
+"""Of a piece's longest side: by so much its sides may become shorter."""
+MIN_TRIANGLES = 12
+"""Triangles that every connected piece of a model keeps: those of a box."""
 
 _TYPES = {5121: np.uint8, 5123: np.uint16, 5125: np.uint32, 5126: np.float32}
 _WIDTHS = {"SCALAR": 1, "VEC2": 2, "VEC3": 3, "VEC4": 4}
@@ -50,17 +54,45 @@ def simplified_glb(data: bytes, max_triangles: int) -> bytes:
 
 
 def _simplified(triangles: np.ndarray, positions: np.ndarray, share: float) -> np.ndarray:
+    """Fewer triangles of a part, piece by piece: the thinnest rail among them stays as much as the largest board."""
+    points = np.ascontiguousarray(positions, dtype=np.float32)
+    pieces = [_fewer(piece, points, share) for piece in _pieces(triangles, points)]
+    return np.concatenate(pieces) if pieces else triangles
+
+
+def _fewer(triangles: np.ndarray, points: np.ndarray, share: float) -> np.ndarray:
     target = 3 * max(round(share * len(triangles) / 3), MIN_TRIANGLES)
     if target >= len(triangles):
         return triangles
-    points = np.ascontiguousarray(positions, dtype=np.float32)
-    area = _area(triangles, points)
+    used, own = np.unique(triangles, return_inverse=True)
+    near, own = np.ascontiguousarray(points[used]), own.astype(np.uint32)
+    area, extents = _area(own, near), np.ptp(near, axis=0)
     for error in LARGEST_ERRORS:
-        retained = np.empty_like(triangles)
-        count = meshoptimizer.simplify(retained, triangles, points, target_index_count=target, target_error=error)
-        if _area(retained[:count], points) >= MIN_AREA_SHARE * area:
-            return retained[:count]
+        retained = np.empty_like(own)
+        count = meshoptimizer.simplify(retained, own, near, target_index_count=target, target_error=error)
+        left = retained[:count]
+        if count and _area(left, near) >= MIN_AREA_SHARE * area and _spans(left, near, extents):
+            return used[left].astype(np.uint32)
     return triangles
+
+
+def _spans(triangles: np.ndarray, points: np.ndarray, extents: np.ndarray) -> bool:
+    """Whether a simplified piece is about as long, wide and high as the piece."""
+    left = np.ptp(points[triangles], axis=0)
+    return bool((left >= extents - MAX_SHORTER * extents.max()).all())
+
+
+def _pieces(triangles: np.ndarray, points: np.ndarray) -> list[np.ndarray]:
+    """The triangles of each connected piece; corners at one place are one corner, whatever their normals."""
+    _, corner = np.unique(points, axis=0, return_inverse=True)
+    faces = corner.ravel()[triangles.reshape(-1, 3)]
+    edges = np.concatenate([faces[:, :2], faces[:, 1:]])
+    count = int(corner.max()) + 1
+    graph = coo_array((np.ones(len(edges)), (edges[:, 0], edges[:, 1])), shape=(count, count))
+    piece = connected_components(graph, directed=False)[1][faces[:, 0]]
+    order = np.argsort(piece, kind="stable")
+    bounds = np.flatnonzero(np.diff(piece[order])) + 1
+    return [triangles.reshape(-1, 3)[rows].ravel() for rows in np.split(order, bounds)] if len(order) else []
 
 
 def _area(triangles: np.ndarray, points: np.ndarray) -> float:
