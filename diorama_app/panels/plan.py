@@ -23,7 +23,7 @@ from diorama_core.editing.plan_edits import corners, move_corner, set_wall_lengt
 from diorama_core.editing.wall_edits import draw_room, split_wall
 from diorama_core.errors import EditRefused, LibraryError
 from diorama_core.export.footprints import Outline, outline
-from diorama_core.export.plan import OVERHEAD_M, UNNAMED, RoomLines, room_lines
+from diorama_core.export.plan import OVERHEAD_M, UNNAMED, RoomLines, drawing_order, room_lines
 from diorama_core.geometry.openings import OPENING_CATEGORIES, wall_of
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.scene.room_edits import floor_height, move_plane
@@ -117,7 +117,7 @@ class Plan:
         visible = [o for o in scene.objects if not o.hidden]
         room = room_lines(scene.architecture.planes, visible, scene)
         unit = client.preferences.unit
-        pieces = [self._piece(scene, o) for o in sorted(visible, key=lambda o: float(o.corners_world[:, 2].min()))]
+        pieces = [self._piece(scene, o) for o in sorted(visible, key=drawing_order)]
         return {
             "bounds": _bounds(room, [o for p in pieces for o in p["outlines"]]),
             "snap": client.preferences.snap,

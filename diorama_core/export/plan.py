@@ -26,6 +26,10 @@ DIMENSION_GAP_M = 0.3
 ONE_LEAF_M = 1.15
 """Doors wider than this have two leaves."""
 ARC_POINTS = 13
+LEVEL_M = 0.05
+"""Objects whose lower sides differ by less stand on one level."""
+REACH_M = 1e-3
+"""By so much more than a wall is thick, what lies behind it is cut away."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -108,8 +112,8 @@ def room_lines(planes: Sequence[Plane], items: Sequence[SceneObject], scene: Sce
         items: Objects; doors and windows among them cut their walls.
         scene: Says what hangs on what.
     """
-    floors = tuple(p.polygon[:, :2] for p in planes if p.role == "floor")
     walls = wall_lines(planes, items, scene)
+    floors = _within_walls([p.polygon[:, :2] for p in planes if p.role == "floor"], walls)
     openings = [(w, o) for w in walls for o in w.openings]
     return RoomLines(
         floors,
@@ -124,16 +128,67 @@ def floor_plan(scene: ExportScene) -> FloorPlan:
     """The plan of a gathered scene."""
     room = room_lines([p.plane for p in scene.planes], [o.item for o in scene.objects], scene.scene)
     covered = footprints(scene)
-    pieces = [_piece(scene, o, covered[o.id]) for o in scene.objects if o.item.category not in OPENING_CATEGORIES]
+    drawn = [o for o in scene.objects if o.item.category not in OPENING_CATEGORIES]
+    pieces = [(drawing_order(o.item), _piece(scene, o, covered[o.id])) for o in drawn]
     return FloorPlan(
         name=scene.name,
         floors=room.floors,
         walls=room.walls,
         door_leaves=room.door_leaves,
         window_panes=room.window_panes,
-        pieces=tuple(sorted(pieces, key=lambda p: p.bottom_m)),
+        pieces=tuple(piece for _, piece in sorted(pieces, key=lambda row: row[0])),
         dimensions=_dimensions(room.lines, room.floors),
     )
+
+
+def drawing_order(item: SceneObject) -> tuple[int, float]:
+    """Sorts objects as a plan paints them: by the level that they stand on, and of one level the flat ones first.
+
+    A rug and the chair on it stand so nearly on one level that the lower side alone would leave it to chance.
+    """
+    heights = item.corners_world[:, 2]
+    return round(float(heights.min()) / LEVEL_M), float(heights.max())
+
+
+def _within_walls(floors: Sequence[Outline], walls: Sequence[WallLine]) -> tuple[Outline, ...]:
+    """Floors without the pieces that lie behind a wall and before none: what was measured through a door, a wedge."""
+    barrier = manifold3d.CrossSection()
+    for wall in walls:
+        t = wall.plane.thickness
+        barrier += _area(_strip(wall, -t, wall.length_m + t, 0.0, t))
+    found: list[Outline] = []
+    for floor in floors:
+        whole = _area(floor)
+        outside = [p for p in (whole - barrier).decompose() if not _is_before_a_wall(p, walls)] if walls else []
+        if not outside or len(outside) == len((whole - barrier).decompose()):
+            found.append(floor)
+            continue
+        for piece in outside:
+            whole -= piece.offset(max(w.plane.thickness for w in walls) + REACH_M, manifold3d.JoinType.Miter)
+        found += [np.asarray(o) for o in whole.to_polygons()]
+    return tuple(found)
+
+
+def _is_before_a_wall(piece: manifold3d.CrossSection, walls: Sequence[WallLine]) -> bool:
+    """Whether a wall's inner side is straight ahead of the middle of a piece of floor, with no other wall between."""
+    points = np.concatenate([np.asarray(o) for o in piece.to_polygons()])
+    middle = 0.5 * (points.min(axis=0) + points.max(axis=0))
+    for wall in walls:
+        foot = wall.at(float((middle - wall.start) @ wall.along))
+        inside = 0.0 <= float((middle - wall.start) @ wall.along) <= wall.length_m
+        before = float((middle - wall.start) @ wall.outward) < 0.0
+        if inside and before and not any(_crosses(middle, foot, w) for w in walls if w is not wall):
+            return True
+    return False
+
+
+def _crosses(start: Float[np.ndarray, "2"], end: Float[np.ndarray, "2"], wall: WallLine) -> bool:
+    """Whether the way from one point to another leads through a wall."""
+    a, b = (float((p - wall.start) @ wall.outward) for p in (start, end))
+    if a * b >= 0.0:
+        return False
+    at = float((start + a / (a - b) * (end - start) - wall.start) @ wall.along)
+    return 0.0 <= at <= wall.length_m
 
 
 def _piece(scene: ExportScene, item: ExportObject, outlines: tuple[Outline, ...]) -> Piece:

@@ -53,6 +53,39 @@ def test_corners_that_point_into_the_room_stay_clear() -> None:
     assert sum(signed_area(w) for w in plan.walls) == pytest.approx(16 * 0.1 + 0.01 * 5 - 0.01, abs=2e-3)
 
 
+def _rug_and_chair(rug_bottom: float) -> list[str]:
+    scene = furnished_room(LIBRARY)
+    chair = next(o for o in scene.objects if o.category == "chair")
+    size = LIBRARY.shape("print").size_m
+    rug_pose = Pose.upright(
+        (*chair.pose.position[:2], rug_bottom + 0.007), 0.0, (1.5 / size[0], 1.5 / size[1], 0.014 / size[2])
+    )
+    rug = SceneObject("rug", "rug", "rug", "print", size, rug_pose)
+    plan = floor_plan(gather(replace(scene, objects=(*scene.objects, rug)), LIBRARY))
+    order = [p.id for p in plan.pieces]
+    return order[order.index("rug") :]
+
+
+@pytest.mark.parametrize("rug_bottom", [0.0, 0.001, -0.002])
+def test_rugs_are_drawn_under_furniture(rug_bottom: float) -> None:
+    chair = next(o.id for o in furnished_room(LIBRARY).objects if o.category == "chair")
+    assert chair in _rug_and_chair(rug_bottom)
+
+
+def test_floors_end_at_walls() -> None:
+    """A floor that was seen through a gap reaches behind the wall as a wedge, which covers the wall."""
+    planes = box_room().planes
+    floor = next(p for p in planes if p.role == "floor")
+    x0, y0, x1, y1 = *floor.polygon[:, :2].min(axis=0), *floor.polygon[:, :2].max(axis=0)
+    wedge = np.array([[x0, y0], [x1, y0], [x1, y1], [x1 + 0.3, y1], [x1 + 0.3, y1 + 0.6], [x0, y1]])
+    wider = replace(floor, polygon=np.column_stack([wedge, np.full(len(wedge), floor.polygon[0, 2])]))
+    scene = Scene(architecture=Architecture(tuple(wider if p.role == "floor" else p for p in planes)))
+    usual = Scene(architecture=Architecture(planes))
+    plan, expected = (floor_plan(gather(s, LIBRARY)) for s in (scene, usual))
+    for drawn, known in ((plan.floors, expected.floors), (plan.walls, expected.walls)):
+        assert sum(map(signed_area, drawn)) == pytest.approx(sum(map(signed_area, known)), abs=0.01)
+
+
 def test_lengths_are_those_of_the_walls() -> None:
     plan = floor_plan(gather(room_with_door_and_window(), LIBRARY))
     texts = sorted(d.text for d in plan.dimensions)
