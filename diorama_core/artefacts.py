@@ -87,7 +87,7 @@ class Inputs(ArrayValue):
 
     @property
     def of_any_camera(self) -> Inputs:
-        """The same without what is known of the camera, on which outlines do not depend."""
+        """The inputs without what is known of the camera, on which outlines do not depend."""
         return replace(self, intrinsics=None, camera_attitude=None, camera_height_m=None)
 
 
@@ -166,7 +166,7 @@ class SeenKinds(ArrayValue):
     object_id: str
     kinds: tuple[str, ...]
     probabilities: Float[np.ndarray, "k"]
-    """Of those kinds, all equally frequent."""
+    """Probabilities of those kinds, all equally frequent."""
     form: tuple[float, ...] = ()
     """Probability of every value of every attribute of form, one attribute after another; empty where nobody looked."""
 
@@ -309,7 +309,7 @@ class PhotoDisagreement:
     label: str
     moved_m: float
     outline_shared: float
-    """Of the bounds in the picture before and after, intersection over union."""
+    """Intersection over union of the bounds in the picture before and after."""
 
 
 @dataclass(frozen=True)

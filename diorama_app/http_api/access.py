@@ -25,7 +25,7 @@ Send = Callable[[MutableMapping[str, Any]], Awaitable[None]]
 Application = Callable[[Scope, Receive, Send], Awaitable[None]]
 
 MAX_BODY_BYTES = MAX_UPLOAD_BYTES
-"""Of one request: photo, depth and masks together."""
+"""Size of one request: photo, depth and masks together."""
 MAX_BODIES = 4
 """Requests whose bodies are taken or worked on at a time; one that has sent nothing yet takes no place."""
 MAX_REQUESTS = 500

@@ -64,7 +64,7 @@ def show_options(handle: Any, options: tuple[str, ...], value: str) -> None:
 
 
 def unique_names(names: list[str]) -> list[str]:
-    """The same names, later doubles numbered: 'chair', 'chair (2)'."""
+    """The names, with later doubles numbered: 'chair', 'chair (2)'."""
     seen: dict[str, int] = {}
     result = []
     for name in names:

@@ -62,7 +62,7 @@ class LibraryPanel:
         """The scene whose free space the tiles tell of."""
         self._free_of: Scene | None = None
         self._free: FreeSpace | None = None
-        """Of that scene."""
+        """Free space of that scene."""
         self._without_place: dict[str, bool] = {}
 
     def refresh(self) -> None:

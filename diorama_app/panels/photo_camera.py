@@ -39,7 +39,7 @@ class PhotoCamera:
         self._typed: dict[str, float] = {}
         self._of: Camera | None = None
         self._figures: dict[str, float] = {}
-        """Of that camera."""
+        """Figures of that camera."""
         self._used = False
         """Whether one of its fields was changed: the list stays open from then on, whatever is drawn anew."""
 

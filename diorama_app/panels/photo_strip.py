@@ -20,7 +20,7 @@ from diorama_app.web.html import Action, LiveHtml, button, text
 from diorama_core.artefacts import FurtherPhoto
 
 TILE_PX = 200
-"""Of the pictures, which are shown at half of it."""
+"""Size of the pictures, which are shown at half of it."""
 ADVICE = "Take it a step or two aside, with much of the same in view. What is in the scene stays."
 KEPT = 128
 """Encoded pictures."""

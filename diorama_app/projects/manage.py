@@ -20,7 +20,7 @@ BIN = ".bin"
 MAX_NAME = 80
 """Characters of a name that a person gives."""
 MAX_COPIES = 10_000
-"""Of one project; each is a folder with a number."""
+"""Copies of one project; each is a folder with a number."""
 
 
 def recent_projects(projects_dir: Path) -> list[Path]:

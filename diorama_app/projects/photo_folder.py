@@ -41,7 +41,7 @@ _BUILDERS = ("diorama_core.pipeline.presets", "diorama_core.pipeline.run")
 MAX_NAMED = 8
 MAX_CAMERA_BYTES = 100_000
 MAX_NUMBER = 1e9
-"""Of pixels or degrees."""
+"""Largest number of pixels or degrees."""
 
 
 @dataclass(frozen=True)

@@ -28,7 +28,7 @@ from diorama_core.project.storage import Project
 from diorama_core.scene.types import Camera
 
 MAX_ASPECT_OFF = 0.02
-"""Of a photo's aspect ratio from its camera's: more is another picture, or one that was cut or turned."""
+"""Difference of a photo's aspect ratio from its camera's: more is another picture, or one that was cut or turned."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -136,7 +136,7 @@ def _saved_digest(project: Project) -> str:
 
 
 def _digest(path: Path) -> str:
-    """Of a scene file's content; `none` where it cannot be read."""
+    """Digest of a scene file's content; `none` where it cannot be read."""
     try:
         return hashlib.sha256(read_bytes(path, MAX_JSON_BYTES, ProjectError)).hexdigest()[:16]
     except ProjectError:

@@ -22,7 +22,7 @@ EVERY_S = 0.1
 WATCHING_S = 0.15
 """After somebody's edit the others' panels wait so long: what moved is on their screens first."""
 SHARE = 0.4
-"""Of the time at most is spent on drawing; with many browsers the redraws of those who only watch come less often."""
+"""Share of the time that is spent on drawing at most; with many browsers mere watchers are drawn for less often."""
 
 
 class Redraws:

@@ -48,7 +48,7 @@ class UiThread:
         self._on_error = on_error
         self._changed = threading.Condition()
         self._queues: OrderedDict[Hashable | None, deque[_Posted]] = OrderedDict()
-        """Of each browser that asked for something, the one whose turn it is first; None is the server's own."""
+        """Queues of the browsers that asked for something, the one whose turn it is first; None is the server's own."""
         self._keyed: dict[tuple[Hashable | None, str], _Posted] = {}
         self._delayed: list[_Delayed] = []
         self._number = 0

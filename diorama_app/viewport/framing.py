@@ -9,13 +9,13 @@ from diorama_core.scene.types import Scene
 
 DEFAULT_FOV_RAD = np.radians(50.0)
 NARROW_FOV_RAD = np.radians(7.0)
-"""Of views along an axis: from far away, lines that are parallel in the room nearly are on the screen."""
+"""Field of view along an axis: from far away, lines that are parallel in the room nearly are on the screen."""
 USUAL_ASPECT = 0.93
-"""Of the 3D view between the panels in a window of 1280 x 720."""
+"""Aspect ratio of the 3D view between the panels in a window of 1280 x 720."""
 MARGIN = 0.04
-"""Of the view, left free on every side."""
+"""Share of the view that is left free on every side."""
 COVERED = 0.2
-"""Of half the view's height, at the top, under the tools."""
+"""Share of half the view's height that the tools cover at the top."""
 
 
 def room_view(scene: Scene, aspect: float = USUAL_ASPECT) -> tuple[Float[np.ndarray, "3"], Float[np.ndarray, "3"]]:

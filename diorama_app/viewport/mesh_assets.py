@@ -24,12 +24,12 @@ Colour = tuple[float, float, float]
 NO_PICTURES: Pictures = {}
 _Key = tuple[str, Colour | None, Finish | None, tuple[PhotoMaterial, ...], Scale, float, frozenset[str], int | None]
 MAX_PICTURE_PX = 1024
-"""Of one picture from the photo on the page; exports have the whole one."""
+"""Size of one picture from the photo on the page; exports have the whole one."""
 GREY = (200, 200, 200)
 CACHE_BYTES = 512 * 2**20
-"""Of all shapes in memory: what the browser asks for again when somebody joins or an edit is undone."""
+"""Bytes of all shapes in memory: what the browser asks for again when somebody joins or an edit is undone."""
 LIGHT_SCENE_TRIANGLES = 24_000
-"""Of a scene's models, for browsers that draw without a graphics card."""
+"""Triangles of a scene's models, for browsers that draw without a graphics card."""
 LIGHT_SHAPE_TRIANGLES = (400, 2000)
 """Fewest and most of one model there."""
 

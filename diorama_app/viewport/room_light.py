@@ -29,13 +29,13 @@ WHITE = (255, 255, 255)
 ABOVE = (-0.2, 0.2, 1.0)
 """Where light comes from in a room that no photo shows."""
 SUN_INTENSITY = 8.0
-"""Of the sun outside the atmosphere."""
+"""Intensity of the sun outside the atmosphere."""
 UNSHADED_SUN = 0.12
-"""Of the sun's intensity where it casts no shadows: it falls on everything then, and its patches tell the rest."""
+"""Share of the sun's intensity where it casts no shadows: it falls on everything, and its patches tell the rest."""
 SKY_INTENSITY, AROUND_INTENSITY = 1.1, 0.9
-"""Of the noon sky from above and from everywhere in the room, relative to the usual light of a room."""
+"""Intensities of the noon sky from above and from everywhere in the room, relative to a room's usual light."""
 WINDOW_INTENSITY = 0.9
-"""Of the noon sky from where the largest window is."""
+"""Intensity of the noon sky from where the largest window is."""
 PATCH_OPACITY = 0.7
 LAMP_INTENSITY = np.pi
 MAX_LAMPS, MAX_LAMPS_LIGHT = 12, 4

@@ -76,7 +76,7 @@ class Viewport:
         self._ground_of: Plane | None = None
         self.room_light = RoomLightView(server, shapes)
         self._pictures: Pictures = NO_PICTURES
-        """Of planes and objects, as shown last."""
+        """Pictures of planes and objects, as shown last."""
         self._shadow_on_planes: float | bool = SHADOW_ON_PLANES
 
     def light(self, *, low_graphics: bool) -> None:

@@ -19,7 +19,7 @@ from diorama_app.web.responses import add_headers, picture, prepend_scripts
 from diorama_app.web.visitors import Visitors
 
 MESSAGES_PER_S, MESSAGES_AT_ONCE = 300, 600
-"""Of one connection: a drag and a turning camera together send about a hundred a second."""
+"""Messages of one connection: a drag and a turning camera together send about a hundred a second."""
 PICTURES = "pictures/"
 """Addresses below this one are pictures."""
 

@@ -154,7 +154,7 @@ def _secure(server: viser.ViserServer, uploads: _Uploads, refused: Refused | Non
 
 
 _HANDLERS: weakref.WeakKeyDictionary[viser.ViserServer, ConnectionHandler] = weakref.WeakKeyDictionary()
-"""Of servers without a port: what talks to a browser, in the loop of that server."""
+"""Handlers of servers without a port: what talks to a browser, in the loop of that server."""
 _UPLOADS: weakref.WeakKeyDictionary[viser.ViserServer, _Uploads] = weakref.WeakKeyDictionary()
 """What counts the uploads of a server; one for all projects behind a port."""
 _STARTING = threading.Lock()

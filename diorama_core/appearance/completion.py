@@ -31,7 +31,7 @@ class CompletionSettings:
     alike: float = 0.35
     """Mean difference to the mirror image, as a share of the picture's own variation, at which it is symmetric."""
     max_levels: float = 16.0
-    """And at most this many levels of 255."""
+    """Largest difference, in levels of 255."""
     completed_side_px: int = 224
     """Longer side at which what was not seen is made up."""
     wholly: float = 0.99

@@ -29,7 +29,7 @@ FACES: Mapping[str, tuple[tuple[str, ...], TextureLayout]] = {
 }
 """By category: roles of the slots that have the face (or the main slot), and which way it faces."""
 NOT_RECTANGULAR = frozenset({"pillow"})
-"""Of their rectangle only what their mask holds is theirs."""
+"""Categories that fill only the part of their rectangle that their mask holds."""
 COVERS = ("leather", "paint", "fabric", "paper", "material")
 """Roles of what books are bound in."""
 SEEN_THROUGH = {"screen", "pane"}
@@ -49,7 +49,7 @@ class FlatFaceSettings:
     min_seen: float = 0.2
     """A face of which less is seen keeps its own picture."""
     min_in_mask: float = 0.4
-    """Of the face as it is posed; where less is the object's own, its picture would be of what is beside it."""
+    """Share of the posed face that must be the object's own: with less, its picture would be of what is beside it."""
     rim: float = 0.014
     mostly: float = 0.5
     """A box that ends so near the photo's edge (as a share of its longer side; undistorted photos have frames), or

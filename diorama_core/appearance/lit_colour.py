@@ -20,7 +20,7 @@ class LitColourSettings:
     """Which of several colours of a surface is its material."""
 
     lighter_l: float = 14.0
-    """Of two colours the lighter one is so much lighter at least."""
+    """Lightness by which the lighter of two colours is lighter at least."""
     same_chromaticity: float = 8.0
     """A shade's a and b differ by less from those of the darkened colour (CIELAB)."""
     neutral: float = 0.25

@@ -14,21 +14,15 @@ import cv2
 import numpy as np
 from jaxtyping import Bool, UInt8
 
+from diorama_core.appearance.settings import SETTINGS, AppearanceSettings
+from diorama_core.appearance.surface_materials import MAX_LINEAR
 from diorama_core.io.srgb import linear_to_srgb, luminance, srgb_to_linear
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.render.lighting import Effort
 from diorama_core.render.picture import picture
 from diorama_core.scene.types import Camera, PhotoMaterial, Scene
 
-LONGEST_PX = 200
-"""Of the rendered picture."""
 EFFORT = Effort(window_rays=2, sky_rays=3)
-MIN_PIXELS = 12
-"""Of it, below which nothing is said of an object."""
-MAX_GAIN = 1.5
-"""More than so much brighter or darker is another surface than the one that is seen."""
-MAX_LINEAR = 0.9
-"""Brightest albedo, as where it is read."""
 DARKEST = 1e-3
 
 Materials = Mapping[str, tuple[PhotoMaterial, ...]]
@@ -41,6 +35,7 @@ def brightness_gains(
     scene: Scene,
     pictures: Pictures,
     library: ShapeLibrary,
+    settings: AppearanceSettings = SETTINGS,
 ) -> dict[str, float]:
     """By how much every object's materials must become brighter for it to look in the scene as in the photo.
 
@@ -51,18 +46,19 @@ def brightness_gains(
         scene: In its own light, white, with the materials; its camera is the photo's.
         pictures: Of the materials, by name.
         library: Where its shapes are.
+        settings: Numbers to work with.
     """
     if scene.camera is None:
         return {}
-    size = _small(scene.camera)
+    size = _small(scene.camera, settings)
     shown = _linear(picture(scene, library, size=size, textures=pictures, effort=EFFORT))
     photo = _linear(cv2.resize(rgb, size, interpolation=cv2.INTER_AREA))
     gains = {}
     for object_id, mask in visible.items():
         seen = cv2.resize(mask.astype(np.float32), size, interpolation=cv2.INTER_AREA) > 0.9
-        if np.count_nonzero(seen) >= MIN_PIXELS:
+        if np.count_nonzero(seen) >= settings.min_pixels:
             ratios = np.maximum(photo[seen], DARKEST) / np.maximum(shown[seen], DARKEST)
-            gains[object_id] = float(np.clip(np.median(ratios), 1.0 / MAX_GAIN, MAX_GAIN))
+            gains[object_id] = float(np.clip(np.median(ratios), 1.0 / settings.max_gain, settings.max_gain))
     return gains
 
 
@@ -131,9 +127,9 @@ def _scaled(display: np.ndarray, gain: float) -> np.ndarray:
     return np.asarray(linear_to_srgb(np.clip(gain * srgb_to_linear(display), 0.0, 1.0)))
 
 
-def _small(camera: Camera) -> tuple[int, int]:
+def _small(camera: Camera, settings: AppearanceSettings = SETTINGS) -> tuple[int, int]:
     k = camera.intrinsics
-    shrink = min(1.0, LONGEST_PX / max(k.width, k.height))
+    shrink = min(1.0, settings.longest_px / max(k.width, k.height))
     return max(8, round(k.width * shrink)), max(8, round(k.height * shrink))
 
 

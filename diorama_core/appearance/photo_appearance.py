@@ -18,6 +18,7 @@ from diorama_core.appearance.light import SHINING, estimated_light
 from diorama_core.appearance.matched_brightness import brightened, brightness_gains
 from diorama_core.appearance.room_cues import toward_window, wall_shade
 from diorama_core.appearance.sets import SETS, shared_materials
+from diorama_core.appearance.settings import SETTINGS, AppearanceSettings
 from diorama_core.appearance.surface_materials import (
     ROUGHNESS,
     SlotPixels,
@@ -36,15 +37,6 @@ from diorama_core.library.stretch import relative_scale, stretched_parts
 from diorama_core.library.taxonomy import LAMPS
 from diorama_core.scene.types import Camera, PhotoMaterial, RoomLight, Scene, SceneObject
 from diorama_core.workers import each
-
-MASK_MARGIN = 0.004
-"""Widening of what stands before an object, as a share of the photo's longer side."""
-EDGES_PX = (5, 3)
-"""Sides of the squares by which masks are narrowed: their edges show something of what is beside."""
-BRIGHTNESS_ROUNDS = 2
-"""Times that the scene is shown and set against the photo."""
-MIN_INNER = 0.3
-"""Of a mask that must be left of it."""
 
 Picture = UInt8[np.ndarray, "_ _ 3"]
 
@@ -82,6 +74,7 @@ def photo_appearance(
     scene: Scene,
     library: ShapeLibrary,
     illuminant_rgb: tuple[float, float, float] = (1.0, 1.0, 1.0),
+    settings: AppearanceSettings = SETTINGS,
 ) -> PhotoAppearance:
     """What the photo shows of the scene's objects.
 
@@ -91,17 +84,19 @@ def photo_appearance(
         scene: In the poses in which the photo shows it; without a camera nothing is taken.
         library: Where its shapes are.
         illuminant_rgb: Linear colour of the light that the photo was freed of; that of the scene's light.
+        settings: Numbers to work with.
     """
     if scene.camera is None:
         return PhotoAppearance({}, {})
     found = {o.id: o for o in objects}
     camera = scene.camera
     seen = each(
-        lambda item: _seen(item, _parts(library, item), rgb, found[item.id], objects, camera),
+        lambda item: _seen(item, _parts(library, item), rgb, found[item.id], objects, camera, settings),
         [item for item in scene.objects if item.id in found],
     )
     shades = [shade_of(s.view, p, rgb) for s in seen if s.view is not None for p in s.pixels]
-    light = estimated_light(shades, wall_shade(rgb, objects, scene), toward_window(rgb, objects, scene))
+    walls, window = wall_shade(rgb, objects, scene, settings), toward_window(rgb, objects, scene, settings)
+    light = estimated_light(shades, walls, window)
     red, green, blue = (float(c) / max(illuminant_rgb) for c in illuminant_rgb)
     light = replace(light, colour=(red, green, blue))
     falls = irradiance_map(replace(scene, light=light), scene.camera, library)
@@ -125,7 +120,8 @@ def photo_appearance(
     used = {m.texture for of_one in materials.values() for m in of_one}
     pictures = {name: picture for name, picture in pictures.items() if name in used}
     read = PhotoAppearance({key: value for key, value in materials.items() if value}, pictures, light)
-    return _as_bright(read, rgb, {s.item.id: _read_from(s, found[s.item.id], objects) for s in seen}, scene, library)
+    read_from = {s.item.id: _read_from(s, found[s.item.id], objects, settings) for s in seen}
+    return _as_bright(read, rgb, read_from, scene, library, settings)
 
 
 def _as_bright(
@@ -134,6 +130,7 @@ def _as_bright(
     read_from: Mapping[str, Bool[np.ndarray, "h w"]],
     scene: Scene,
     library: ShapeLibrary,
+    settings: AppearanceSettings = SETTINGS,
 ) -> PhotoAppearance:
     """The materials as bright as the photo shows them in the scene's light, part of which they reflect themselves.
 
@@ -143,19 +140,22 @@ def _as_bright(
         read_from: Pixels that show the materials of each object.
         scene: As in `photo_appearance`.
         library: Where its shapes are.
+        settings: Numbers to work with.
     """
     visible = {key: pixels for key, pixels in read_from.items() if key in read.materials}
-    for _ in range(BRIGHTNESS_ROUNDS):
-        gains = brightness_gains(rgb, visible, read.applied(scene), read.pictures, library)
+    for _ in range(settings.brightness_rounds):
+        gains = brightness_gains(rgb, visible, read.applied(scene), read.pictures, library, settings)
         materials, pictures = brightened(read.materials, read.pictures, gains, _sets(scene))
         read = replace(read, materials=materials, pictures=pictures)
     return read
 
 
-def _read_from(seen: _Seen, found: DetectedObject, objects: tuple[DetectedObject, ...]) -> Bool[np.ndarray, "h w"]:
+def _read_from(
+    seen: _Seen, found: DetectedObject, objects: tuple[DetectedObject, ...], settings: AppearanceSettings = SETTINGS
+) -> Bool[np.ndarray, "h w"]:
     """The pixels that show an object's materials: those of its slots' main colours, or all of a thing with faces."""
     if seen.faces or seen.view is None or not seen.pixels:
-        return _inner(found) & ~hiding(found, objects)
+        return _inner(found, settings) & ~hiding(found, objects, settings=settings)
     view, pixels = seen.view, np.zeros(found.mask.shape, dtype=bool)
     near = np.kron(np.logical_or.reduce([p.near for p in seen.pixels]), np.ones((view.step, view.step), dtype=bool))
     own = pixels[view.top : view.top + len(near), view.left : view.left + near.shape[1]]
@@ -163,12 +163,12 @@ def _read_from(seen: _Seen, found: DetectedObject, objects: tuple[DetectedObject
     return pixels
 
 
-def _inner(found: DetectedObject) -> Bool[np.ndarray, "h w"]:
+def _inner(found: DetectedObject, settings: AppearanceSettings = SETTINGS) -> Bool[np.ndarray, "h w"]:
     """The object's pixels without the outermost ones; of thin and small things fewer are left out."""
     mask, inner = found.mask.astype(np.uint8), found.mask
-    for side in EDGES_PX:
+    for side in settings.edges_px:
         inner = np.asarray(cv2.erode(mask, np.ones((side, side), np.uint8)).astype(bool))
-        if np.count_nonzero(inner) >= MIN_INNER * np.count_nonzero(mask):
+        if np.count_nonzero(inner) >= settings.min_inner * np.count_nonzero(mask):
             break
     return inner
 
@@ -193,15 +193,16 @@ def _seen(
     found: DetectedObject,
     objects: tuple[DetectedObject, ...],
     camera: Camera,
+    settings: AppearanceSettings = SETTINGS,
 ) -> _Seen:
-    hidden = hiding(found, objects)
+    hidden = hiding(found, objects, settings=settings)
     faces = faces_of(item, parts, rgb, hidden, found, camera)
-    visible = _inner(found) & ~hidden
+    visible = _inner(found, settings) & ~hidden
     slots = slots_of(parts)
     unhidden = visible if found.mask_confidence >= 1.0 else _in_box(found) & ~hidden
     view = surface_view(parts, slots, item.pose, camera, visible | unhidden)
     taken = {face.slot.name for face in faces}
-    behind = _in_box(found) & ~found.mask & ~hiding(found, objects, smaller_only=True)
+    behind = _in_box(found) & ~found.mask & ~hiding(found, objects, smaller_only=True, settings=settings)
     pixels = () if view is None else slot_pixels(view, slots, rgb, visible, unhidden, behind, taken)
     read = (p for p in pixels if p.slot.name not in taken)
     own = tuple(p for p in read if view is not None and not _shines(item, p, view, rgb))
@@ -255,7 +256,11 @@ def _surfaces(
 
 
 def hiding(
-    found: DetectedObject, objects: tuple[DetectedObject, ...], *, smaller_only: bool = False
+    found: DetectedObject,
+    objects: tuple[DetectedObject, ...],
+    *,
+    smaller_only: bool = False,
+    settings: AppearanceSettings = SETTINGS,
 ) -> Bool[np.ndarray, "h w"]:
     """Where other objects stand before one: smaller ones wherever they are, larger ones beside its own mask.
 
@@ -266,7 +271,7 @@ def hiding(
         smaller = other.pixels < area
         if other.id != found.id and (smaller or not smaller_only):
             hidden |= other.mask if smaller else other.mask & ~found.mask
-    radius = max(1, round(MASK_MARGIN * max(hidden.shape)))
+    radius = max(1, round(settings.mask_margin * max(hidden.shape)))
     return cv2.dilate(hidden.astype(np.uint8), np.ones((2 * radius + 1,) * 2, np.uint8)).astype(bool)
 
 

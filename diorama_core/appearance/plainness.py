@@ -25,9 +25,9 @@ class PlainnessSettings:
     """Contrast, as a share of the brightness, from which on a texture would be seen."""
     much_less: float = 0.5
     min_cells: int = 400
-    """Of the surface, away from its edges."""
+    """Cells of the surface, away from its edges."""
     min_texels: int = 8
-    """Of a texture at the photo's resolution: a smaller one averages out."""
+    """Texels of a texture at the photo's resolution: a smaller one averages out."""
 
 
 SETTINGS = PlainnessSettings()

@@ -13,8 +13,6 @@ from diorama_core.scene.types import Camera
 
 UNIT_SQUARE = np.array([[0.0, 0.0, 1.0], [1.0, 0.0, 1.0], [1.0, 1.0, 1.0], [0.0, 1.0, 1.0]])
 MAX_SIDE_PX, MIN_SIDE_PX = 2048, 20
-SIZED_BY = 32
-"""Rows and columns by which the size of a rectangle in the photo is told."""
 MIN_COSINE = 0.08
 """Rectangles seen more edge-on than this are smeared and not read."""
 
@@ -103,7 +101,8 @@ def _size_px(H: Float[np.ndarray, "3 3"], shape: tuple[int, int]) -> tuple[int, 
 
     It is that of the row and of the column that are seen at the highest resolution.
     """
-    middles = (np.arange(SIZED_BY) + 0.5) / SIZED_BY
+    count = 32  # rows and columns by which the size is told
+    middles = (np.arange(count) + 0.5) / count
     u, v = np.meshgrid(middles, middles)
     p = np.stack([u, v, np.ones_like(u)], axis=-1) @ H.T
     depth = np.maximum(p[..., 2], NEAR_M)

@@ -9,45 +9,41 @@ import numpy as np
 from jaxtyping import Bool, Float, UInt8
 
 from diorama_core.appearance.light import Shade
+from diorama_core.appearance.settings import SETTINGS, AppearanceSettings
 from diorama_core.artefacts import DetectedObject
 from diorama_core.geometry.planes import in_plane_polygon
 from diorama_core.io.srgb import luminance, srgb_to_linear
 from diorama_core.scene.types import Architecture, Camera, Plane, Scene
 
-STEP_PX = 4
-"""Every fourth pixel each way is looked at."""
-RIM_SHARE = 0.01
-"""Of the photo's longer side: so much around every object is left out, where its shadow lies."""
-MIN_CELLS = 60
-"""Of a wall."""
-SAME_PAINT = 0.03
-"""Chromaticities of walls that differ by less are of one paint."""
-BY_DAY = 0.4
-"""A window is as bright as this share of what is seen in the middle, or it is night."""
 
-
-def wall_shade(rgb: UInt8[np.ndarray, "h w 3"], objects: Sequence[DetectedObject], scene: Scene) -> Shade | None:
+def wall_shade(
+    rgb: UInt8[np.ndarray, "h w 3"],
+    objects: Sequence[DetectedObject],
+    scene: Scene,
+    settings: AppearanceSettings = SETTINGS,
+) -> Shade | None:
     """The walls of the paint that is seen most, as one material at several normals; None where only one is seen.
 
     Args:
         rgb: The photo, as white light would have it.
         objects: What stands before the walls.
         scene: With the photo's camera.
+        settings: Numbers to work with.
     """
     walls = [p for p in scene.architecture.by_role("wall") if p.seen]
     if scene.camera is None or len(walls) < 2:
         return None
     height, width = rgb.shape[:2]
-    x, y = np.meshgrid(np.arange(0, width, STEP_PX), np.arange(0, height, STEP_PX))
+    x, y = np.meshgrid(np.arange(0, width, settings.step_px), np.arange(0, height, settings.step_px))
     which = _plane_seen(scene.architecture, scene.camera, np.stack([x, y], axis=-1) + 0.5)
-    free = ~_covered(objects, (height, width))[y, x]
+    free = ~_covered(objects, (height, width), settings)[y, x]
     linear = srgb_to_linear(rgb[y, x] / 255.0)
     seen = {w.id: linear[free & (which == _index(scene.architecture, w))] for w in walls}
-    medians = {w.id: np.median(seen[w.id], axis=0) for w in walls if len(seen[w.id]) >= MIN_CELLS}
+    medians = {w.id: np.median(seen[w.id], axis=0) for w in walls if len(seen[w.id]) >= settings.min_cells}
     if not medians:
         return None
     most = max(medians, key=lambda i: (len(seen[i]), i))
-    alike = [w for w in walls if w.id in medians and _far(medians[w.id], medians[most]) < SAME_PAINT]
+    alike = [w for w in walls if w.id in medians and _far(medians[w.id], medians[most]) < settings.same_paint]
     if len(alike) < 2:
         return None
     cells = np.array([len(seen[w.id]) for w in alike], dtype=float)
@@ -56,14 +52,17 @@ def wall_shade(rgb: UInt8[np.ndarray, "h w 3"], objects: Sequence[DetectedObject
 
 
 def toward_window(
-    rgb: UInt8[np.ndarray, "h w 3"], objects: Sequence[DetectedObject], scene: Scene
+    rgb: UInt8[np.ndarray, "h w 3"],
+    objects: Sequence[DetectedObject],
+    scene: Scene,
+    settings: AppearanceSettings = SETTINGS,
 ) -> Float[np.ndarray, "3"] | None:
     """Unit vector from what stands in the room to its largest window; None where none is seen by day."""
     mask_of = {o.id: o.mask for o in objects}
-    grey = luminance(srgb_to_linear(rgb[::STEP_PX, ::STEP_PX] / 255.0))
+    grey = luminance(srgb_to_linear(rgb[:: settings.step_px, :: settings.step_px] / 255.0))
     windows = [o for o in scene.objects if o.category == "window" and o.id in mask_of]
-    least = BY_DAY * float(np.median(grey))
-    bright = [o for o in windows if _median(grey, mask_of[o.id][::STEP_PX, ::STEP_PX]) >= least]
+    least = settings.by_day * float(np.median(grey))
+    bright = [o for o in windows if _median(grey, mask_of[o.id][:: settings.step_px, :: settings.step_px]) >= least]
     others = [o.pose.position for o in scene.objects if o.category != "window"]
     if not bright or not others:
         return None
@@ -101,9 +100,11 @@ def _plane_seen(room: Architecture, camera: Camera, pixels: Float[np.ndarray, "h
     return which
 
 
-def _covered(objects: Sequence[DetectedObject], size: tuple[int, int]) -> Bool[np.ndarray, "h w"]:
+def _covered(
+    objects: Sequence[DetectedObject], size: tuple[int, int], settings: AppearanceSettings = SETTINGS
+) -> Bool[np.ndarray, "h w"]:
     covered = np.zeros(size, np.uint8)
     for item in objects:
         covered |= item.mask.astype(np.uint8)
-    radius = max(1, round(RIM_SHARE * max(size)))
+    radius = max(1, round(settings.rim * max(size)))
     return cv2.dilate(covered, np.ones((2 * radius + 1,) * 2, np.uint8)).astype(bool)

@@ -18,9 +18,6 @@ from diorama_core.appearance import patterns
 from diorama_core.geometry.planes import plane_rectangle
 from diorama_core.scene.types import Plane, PlaneRole, Scene, SurfaceFinish, SurfacePattern
 
-TEXELS_PER_M = 200.0
-MAX_TEXELS = 1600
-"""Of the longer side of a plane's picture."""
 MARK = "finish-"
 """Begins the names of pictures of finishes."""
 
@@ -98,7 +95,7 @@ def finish_picture(finish: SurfaceFinish, role: PlaneRole, size_m: tuple[float, 
         sRGB, laid out as `geometry.planes.plane_uv` says; the same for the same values.
     """
     kind = KINDS[finish.pattern]
-    texels = min(TEXELS_PER_M, MAX_TEXELS / max(size_m))
+    texels = min(200.0, 1600 / max(size_m))  # a metre: no side has more than 1600
     width, height = (max(8, round(e * texels)) for e in size_m)
     rng = np.random.default_rng(zlib.crc32(finish.pattern.encode()))
     turn = finish.direction_rad + kind.turned_rad if kind.directed else 0.0

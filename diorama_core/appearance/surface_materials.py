@@ -25,9 +25,9 @@ READ_ROLES: frozenset[Role] = frozenset(
 PRINTED: Role = "picture"
 """Role of slots that wear a print: the photo's, or what is seen of its colours where the print cannot be read."""
 PATTERNED_ROLES = (READ_ROLES | {PRINTED}) - {"metal", "leaf"}
-"""Of which a texture is taken: what metal mirrors and how leaves lie is no pattern."""
+"""Roles whose texture is taken: what metal mirrors and how leaves lie is no pattern."""
 WOVEN_ROLES: frozenset[Role] = frozenset({"fabric", "leather", "paper", "material"})
-"""Of which the library's own texture gives way to a plain colour where the photo shows none; wood keeps its grain."""
+"""Roles whose texture in the library gives way to a plain colour where the photo shows none; wood keeps its grain."""
 ROUGHNESS: Mapping[str, tuple[float, float]] = {
     "fabric": (0.92, 0.0), "leather": (0.45, 0.0), "wood": (0.55, 0.0), "metal": (0.35, 0.45), "stone": (0.4, 0.0),
     "paint": (0.55, 0.0), "wicker": (0.85, 0.0), "paper": (0.9, 0.0), "leaf": (0.55, 0.0), "material": (0.7, 0.0),
@@ -51,11 +51,11 @@ class SurfaceMaterialSettings:
     min_share: float = 0.2
     """A slot is read from at least so many pixels, of which such a share is of about one colour."""
     min_outlined: float = 0.35
-    """Of the pixels where the posed shape is a mask must hold this share. Where it holds less of one slot, it has lost
+    """Share that a mask must hold of the pixels where the posed shape is. Where it holds less of one slot, it has lost
     that part of the object (white bedding on a dark bed), and the slot is read where the shape shows it; where it holds
     less of the whole, mask and pose do not belong together, and the mask alone counts."""
     min_visible: float = 0.015
-    """And from at least this share of all that is seen of its object: a pose a little off misses smaller ones."""
+    """Least share of all that is seen of its object: a pose a little off misses smaller slots."""
     beside: float = 1.3
     """A colour is rather that of what is behind when it covers so many times more of that: much of a room is grey."""
     coloured: float = 25.0
@@ -71,8 +71,8 @@ class SurfaceMaterialSettings:
     as_good: float = 0.8
     """A colour is as good as the best when it is nearly as much the slot's own."""
     behind: float = 0.5
-    """Nor is a part that the mask lost read, where its vivid colour covers so much of the background: legs are not red
-    because the carpet below them is."""
+    """Share of the background from which a vivid colour there is not read of a part that the mask lost: legs are not
+    red because the carpet below them is."""
     min_of_bin: float = 0.02
     """Bins that hold less of a slot are left out."""
     near_lab: float = 20.0
@@ -103,7 +103,7 @@ class SlotPixels:
     slot: Slot
     index: int
     near: Bool[np.ndarray, "h w"]
-    """Of the view's grid."""
+    """Cells of the view's grid."""
     mine: Bool[np.ndarray, "h w"]
     """Those of the slot of any colour, on the same grid."""
 

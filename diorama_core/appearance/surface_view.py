@@ -14,9 +14,6 @@ from diorama_core.library.slots import Slot, placed_vertices
 from diorama_core.render.raycast import Caster, PinholeView
 from diorama_core.scene.types import Camera, Pose
 
-MAX_PIXELS = 90_000
-"""Of one object; larger ones are looked at on every second, third ... pixel."""
-
 
 @dataclass(frozen=True, eq=False)
 class SurfaceView:
@@ -32,10 +29,10 @@ class SurfaceView:
     normals_world: Float32[np.ndarray, "h w 3"]
     """Unit, toward the camera."""
     cosine: Float32[np.ndarray, "h w"]
-    """Of the angle between the normal and the direction to the camera; 0 where the shape is not met."""
+    """Cosine of the angle between the normal and the direction to the camera; 0 where the shape is not met."""
 
     def of(self, image: np.ndarray) -> np.ndarray:
-        """The same pixels of a picture or a mask of the photo's size."""
+        """These pixels of a picture or a mask of the photo's size."""
         height, width = self.slot.shape
         rows = slice(self.top, self.top + height * self.step, self.step)
         return np.asarray(image[rows, self.left : self.left + width * self.step : self.step])
@@ -57,7 +54,8 @@ def surface_view(
     if not len(rows):
         return None
     top, bottom, left, right = int(rows[0]), int(rows[-1]) + 1, int(columns[0]), int(columns[-1]) + 1
-    step = max(1, int(np.ceil(np.sqrt((bottom - top) * (right - left) / MAX_PIXELS))))
+    most = 90_000  # pixels; of larger objects every second, third ... is looked at
+    step = max(1, int(np.ceil(np.sqrt((bottom - top) * (right - left) / most))))
     x, y = np.meshgrid(np.arange(left, right, step) + 0.5, np.arange(top, bottom, step) + 0.5)
     vertices, faces, uv, owner = _joined(with_own_corners(parts, slots), slots)
     world = pose.apply(vertices).astype(np.float32)

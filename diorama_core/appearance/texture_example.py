@@ -27,7 +27,7 @@ class TextureExampleSettings:
     max_stretch: float = 4.0
     """Ratio of the longest to the shortest pixel on the surface: beyond, the surface is seen too edge-on."""
     own_share: float = 0.85
-    """Of the piece that is of the slot's main colour."""
+    """Share of the piece that is of the slot's main colour."""
     min_contrast: float = 3.0
     """Deviation of the detail, in levels of 255, from which on it is a pattern and not the sensor's noise."""
     min_side_px: int = 20

@@ -28,7 +28,7 @@ class Clip:
 
     objects: tuple[SceneObject, ...]
     supports: tuple[Support, ...]
-    """Of the copied objects; parents may lie outside."""
+    """Support edges of the copied objects; parents may lie outside."""
 
     @property
     def centre(self) -> Float[np.ndarray, "3"]:

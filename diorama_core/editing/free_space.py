@@ -15,7 +15,7 @@ from diorama_core.scene.types import Scene
 
 CELL_M = 0.05
 MAX_CELLS = 800
-"""Of either side of the floor's grid; larger rooms have coarser cells."""
+"""Cells of either side of the floor's grid; larger rooms have coarser cells."""
 FLAT_M = 0.05
 """What is lower may be stood on: rugs."""
 

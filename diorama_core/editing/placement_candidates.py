@@ -297,5 +297,5 @@ def _apart(a: SceneObject, b: SceneObject) -> float:
 
 
 def _smaller(stances: Stances, share: float) -> Stances:
-    """The same stances of a smaller object."""
+    """These stances of a smaller object."""
     return replace(stances, size_m=stances.size_m * share)

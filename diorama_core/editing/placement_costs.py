@@ -172,7 +172,8 @@ def _own_front(
 def _beside_siblings(
     item: SceneObject, relation: Relation, stances: Stances, known: Mapping[str, SceneObject]
 ) -> Float[np.ndarray, "n"]:
-    """Of several of a kind, one stands on each side of what they are beside or around; opposite something, in a row."""
+    """Cost beside others of a kind: one stands on each side of what they are beside or around; opposite something they
+    stand in a row."""
     cost = np.zeros(len(stances.places))
     target = known.get(relation.targets[0]) if relation.targets else None
     if target is None or relation.kind not in ("beside", "opposite", "in front of", "around"):

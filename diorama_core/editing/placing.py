@@ -23,7 +23,7 @@ FITS_SHARE = 0.5
 """At least this share of a footprint's corners must be over a surface for an object to be put there."""
 DOOR = "door"
 HANGING_HEIGHT_M = 1.5
-"""Of the middle of what is hung on a wall, above the floor."""
+"""Height above the floor of the middle of what is hung on a wall."""
 TALLER_M = 0.01
 WALL_MAGNET_M = 0.09
 WALL_MAGNET_RAD = float(np.radians(12.0))
@@ -37,7 +37,7 @@ class Place:
     parent: str
     of_object: bool
     index: int | None = None
-    """Of the surface among its owner's."""
+    """Number of the surface among its owner's."""
 
     @property
     def upward(self) -> bool:

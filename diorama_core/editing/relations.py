@@ -39,7 +39,7 @@ FACING_REACH_M = 4.0
 WATCHING_REACH_M = 7.0
 SEATS_FACING_M = 1.1
 SEAT_COST = 1.5
-"""Of a metre from one's own place at a table; wishes are judged without it, so another place is as good for them."""
+"""Cost of a metre from one's own place at a table; wishes are judged without it: another place is as good for them."""
 SEATS = having("seat")
 BETWEEN_BEDS_M = 0.7
 """Beds side by side lie the same way, with a way to get up and a night stand between them."""
@@ -57,9 +57,9 @@ class Relation:
     targets: tuple[str, ...] = ()
     """Ids of objects: two for "between", none for relations to the room."""
     aside_m: float = 0.0
-    """Of several in a row before or opposite something: how far to the target's left this one's middle is."""
+    """Distance by which this one's middle is to the target's left, where several are in a row before or opposite it."""
     seat_m: tuple[float, float] | None = None
-    """Of several around a table: this one's place, from the table's middle along its own axes."""
+    """This one's place, where several are around a table: from the table's middle along its own axes."""
 
     def words(self, scene: Scene) -> str:
         """In words: "beside sofa 1"."""

@@ -38,7 +38,7 @@ class RoomFrame:
     """Floor, walls and corners of a scene."""
 
     outline: Float[np.ndarray, "k 2"]
-    """Of the floor, counter-clockwise."""
+    """Outline of the floor, counter-clockwise."""
     floor_m: float
     floor_id: str | None
     walls: tuple[WallRun, ...]

@@ -31,7 +31,7 @@ class MovingPart:
     inertia: Inertia
     """In the limb's frame."""
     friction: float
-    """Of its joint, in newtons or newton metres."""
+    """Friction of its joint, in newtons or newton metres."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -22,7 +22,7 @@ from diorama_core.scene.types import Architecture, Camera, Scene
 
 WINDOW_W_PER_M2 = 45.0
 LAMP_W_PER_M2 = 20.0
-"""Of the broad light under the ceiling of a room without windows."""
+"""Power of the broad light under the ceiling of a room without windows."""
 LAMP_BY_DAY_W_PER_M2 = 4.0
 
 

@@ -18,7 +18,7 @@ from diorama_core.render.lighting import MEAN_IRRADIANCE
 from diorama_core.render.panorama import panorama
 
 NITS = MAIN_LUX / (2.0 * MEAN_IRRADIANCE) / np.pi
-"""Of a map's radiance 1, in the units of the main light."""
+"""Luminance of a map's radiance 1, in the units of the main light."""
 BRIGHTEST = 0.999
 """Share of a map's texels that a picture of 8 bits holds unclipped: lamps and windows are lights of their own."""
 

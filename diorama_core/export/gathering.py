@@ -49,7 +49,7 @@ class ExportOptions:
     max_photo_textures_px: int = MAX_PHOTO_TEXTURES_PX
     """Side of a square that would hold all pictures from the photo, of planes and objects; more are reduced alike."""
     compression: Compression = "none"
-    """Of geometry, where the format has one (GLB)."""
+    """Compression of geometry, where the format has one (GLB)."""
     bodies: Bodies = "free"
     """Whether simulators may move objects that stand on something; mounted and locked ones never move."""
     joints: bool = False
@@ -95,7 +95,7 @@ class ExportObject:
     T_world: Float[np.ndarray, "4 4"]
     """Rigid: rotation and translation."""
     scale: Float[np.ndarray, "3"]
-    """Of the mesh along its own axes; children do not inherit it."""
+    """Scale of the mesh along its own axes; children do not inherit it."""
     mesh: str
     """Key of its mesh."""
     item: SceneObject
@@ -129,7 +129,7 @@ class ExportScene:
     """Every material of the meshes once; names are unique."""
     camera: Camera | None
     lights: tuple[ExportLight, ...]
-    """Of lamps and windows."""
+    """Lights of lamps and windows."""
     scene: Scene
     """The whole scene as it was given, for formats that carry it to be read back."""
     library: ShapeLibrary

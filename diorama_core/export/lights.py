@@ -20,9 +20,9 @@ from diorama_core.scene.types import Scene, SceneObject
 WINDOW_LUX = 2000.0
 """Daylight that falls through a window, in lumens per square metre of it."""
 MAIN_LUX = 600.0
-"""Of a room's main light at strength 1: that of a bright room."""
+"""Illuminance by a room's main light at strength 1: that of a bright room."""
 SUN_LUX = 110_000.0
-"""Of the sun outside the atmosphere, where the time of day is set."""
+"""Illuminance by the sun outside the atmosphere, where the time of day is set."""
 DAYLIGHT: tuple[float, float, float] = (0.92, 0.96, 1.0)
 """Linear colour of light from the sky."""
 
@@ -41,7 +41,7 @@ class ExportLight:
     colour: tuple[float, float, float]
     """Linear, its largest component 1."""
     radius_m: float
-    """Of a lamp's glowing part; 0 for windows."""
+    """Radius of a lamp's glowing part; 0 for windows."""
     size_m: tuple[float, float] = (0.0, 0.0)
     """Width and height of a window; 0 for lamps."""
 

@@ -32,7 +32,7 @@ _CAMERA_AXES = np.diag([1.0, -1.0, -1.0])
 FULL_LIGHT_CANDELA = 100.0
 """Luminous intensity that MuJoCo's unitless brightness of 1 stands for."""
 FULL_LIGHT_LUX = 1000.0
-"""Of a directional light that MuJoCo shows at full strength."""
+"""Illuminance by a directional light that MuJoCo shows at full strength."""
 
 
 def write_mjcf(gathered: ExportScene, path: Path, progress: Progress | None = None) -> None:

@@ -87,14 +87,14 @@ def substance_of(material: Material) -> Substance:
 
 @dataclass(frozen=True, eq=False)
 class Inertia:
-    """Of a rigid body, about its centre of mass, in the axes of its frame."""
+    """Inertia of a rigid body about its centre of mass, in the axes of its frame."""
 
     mass_kg: float
     centre: Float[np.ndarray, "3"]
     tensor: Float[np.ndarray, "3 3"]
 
     def weighing(self, mass_kg: float) -> Inertia:
-        """The same distribution at another mass."""
+        """This distribution at another mass."""
         return Inertia(mass_kg, self.centre, self.tensor * (mass_kg / self.mass_kg))
 
     @property
@@ -166,7 +166,7 @@ class _Measured:
     """What the mass of a surface follows from at any scale."""
 
     centroids: Float32[np.ndarray, "m 3"]
-    """Of the triangles."""
+    """Centroids of the triangles."""
     area_vectors: Float32[np.ndarray, "m 3"]
     """Normals of the triangles, as long as their areas."""
     enclosed_m3: float

@@ -18,7 +18,7 @@ JPEG_FROM_PX = 512 * 512
 """Larger opaque pictures are JPEG, the others PNG."""
 JPEG_QUALITY = 92
 PNG_LEVEL = 3
-"""Of compression: the usual 6 takes more than twice as long for files 7 % smaller."""
+"""Level of compression: the usual 6 takes more than twice as long for files 7 % smaller."""
 Made = TypeVar("Made")
 Told = ParamSpec("Told")
 

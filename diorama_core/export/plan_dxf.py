@@ -117,7 +117,7 @@ def _block_name(piece: Piece, taken: set[str]) -> str:
 
 
 def _readable(angle_deg: float) -> float:
-    """The same line's angle for text that is read from below or from the right."""
+    """Angle of the line for text that is read from below or from the right."""
     return (angle_deg + 89.9) % 180.0 - 89.9
 
 

@@ -37,7 +37,7 @@ class SharedAppearance:
         return tuple(self._materials.values())
 
     def surfaces(self, surfaces: Iterable[Surface]) -> tuple[Surface, ...]:
-        """The same surfaces with shared materials, without triangles that have no area, and with unit normals."""
+        """The surfaces with shared materials, without triangles that have no area, and with unit normals."""
         sound = (with_unit_normals(without_slivers(s)) for s in surfaces)
         return tuple(replace(s, material=self._material(s.material)) for s in sound if len(s.faces))
 

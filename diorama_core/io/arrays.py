@@ -19,7 +19,7 @@ _USUAL = re.compile(
     re.DOTALL,
 )
 MAX_ARCHIVE_BYTES = 400_000_000
-"""Of all arrays of an archive, unpacked."""
+"""Bytes of all arrays of an archive, unpacked."""
 
 
 def array_of(content: bytes) -> np.ndarray:

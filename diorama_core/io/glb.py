@@ -60,7 +60,7 @@ def split_glb(data: bytes) -> tuple[bytes, bytes | None]:
 
 
 def whole_glb(data: bytes) -> bytes:
-    """The same bytes.
+    """The bytes, where they are all of a GLB.
 
     Raises:
         GlbError: when they are not all of a GLB.

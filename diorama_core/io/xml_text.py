@@ -9,7 +9,7 @@ from xml.parsers import expat
 from diorama_core.io.bounded import Kind, shortened
 
 MAX_DEPTH = 100
-"""Of elements within each other: a plan has five."""
+"""Depth of elements within each other: a plan has five."""
 
 
 def parse_xml(data: bytes, name: str, error: Kind) -> ET.Element:

@@ -22,16 +22,12 @@ from diorama_core.scene.types import Candidate, Scene, SceneObject
 
 CLEAR_M = 0.02
 """Overlaps that go less deep are left to moves."""
-OVERLAP_M = 0.03
-"""Usual overlap of shapes that are a little larger than the things they stand for."""
-MAX_OVERLAP_COST = 6.0
-"""Most that one overlap says against a shape: the neighbour may be wrong instead."""
-BOARD_M = 0.03
-"""Usual distance of a shape's board from that of the thing it stands for, beside the observation's noise."""
-MAX_LOAD_COST = 6.0
-"""Most that one load says against a shape: it may not stand there at all."""
+SHAPE_SIGMA_M = 0.03
+"""Standard deviation of a shape's sides and boards from those of the thing it stands for."""
+MAX_COST = 6.0
+"""Most that one neighbour says against a shape: it may be wrong itself, or not stand there at all."""
 MIN_SCORE = 1e-3
-"""Of candidates, so that a logarithm exists."""
+"""Least score of a candidate, so that its logarithm exists."""
 
 
 def clear_shapes(scene: Scene, library: ShapeLibrary, noise: ObservationNoise) -> tuple[Scene, tuple[str, ...]]:
@@ -96,7 +92,7 @@ def _better(scene: Scene, library: ShapeLibrary, noise: ObservationNoise, name: 
 def _cost(scene: Scene, library: ShapeLibrary, noise: ObservationNoise, members: Sequence[SceneObject]) -> float:
     names = {o.id for o in members}
     depths = [depth for pair, depth in _overlaps(scene, library).items() if names & set(pair)]
-    overlap = sum(min(0.5 * (depth / OVERLAP_M) ** 2, MAX_OVERLAP_COST) for depth in depths)
+    overlap = sum(min(0.5 * (depth / SHAPE_SIGMA_M) ** 2, MAX_COST) for depth in depths)
     return overlap + sum(
         _cost_of_shape(o, _as_it_is(o), _loads_of(scene, o.id), library, scene, noise) for o in members
     )
@@ -145,7 +141,7 @@ def _gaps_m(
 
 
 def _sigma_m(scene: Scene, load: SceneObject, noise: ObservationNoise) -> float:
-    return float(np.hypot(0.5 * noise.tolerance_m(scene.camera, load.pose.position, UP_WORLD), BOARD_M))
+    return float(np.hypot(0.5 * noise.tolerance_m(scene.camera, load.pose.position, UP_WORLD), SHAPE_SIGMA_M))
 
 
 def _cost_of_shape(
@@ -159,4 +155,4 @@ def _cost_of_shape(
     """What a shape's score and the gaps of its loads say against it: a negative logarithm."""
     gaps = _gaps_m(item, candidate, loads, library, scene) if loads else []
     deviations = [gap / _sigma_m(scene, load, noise) for gap, load in zip(gaps, loads, strict=True)]
-    return sum(min(0.5 * d * d, MAX_LOAD_COST) for d in deviations) - float(np.log(max(candidate.score, MIN_SCORE)))
+    return sum(min(0.5 * d * d, MAX_COST) for d in deviations) - float(np.log(max(candidate.score, MIN_SCORE)))

@@ -10,10 +10,8 @@ from jaxtyping import Float
 from diorama_core.geometry.cross import cross
 from diorama_core.geometry.sat import PairAxes
 
-DIRECTIONS = 24
 
-
-def ring(R: Float[np.ndarray, "3 3"], span: Float[np.ndarray, "3 c"]) -> Float[np.ndarray, "d 3"]:
+def ring(R: Float[np.ndarray, "3 3"], span: Float[np.ndarray, "3 c"], count: int = 24) -> Float[np.ndarray, "d 3"]:
     """Unit directions in which an object may move, evenly spread from its own axes on.
 
     They turn with the object, so that a layout does not depend on how the world is turned.
@@ -21,6 +19,7 @@ def ring(R: Float[np.ndarray, "3 3"], span: Float[np.ndarray, "3 c"]) -> Float[n
     Args:
         R: rotation of the object.
         span: world directions of its coordinates; one or two of them are independent.
+        count: of the directions, where two are independent.
     """
     left, size, _ = np.linalg.svd(span, full_matrices=False)
     plane = left[:, size > 1e-6 * max(float(size[0]), 1e-12)]
@@ -32,7 +31,7 @@ def ring(R: Float[np.ndarray, "3 3"], span: Float[np.ndarray, "3 c"]) -> Float[n
     first = flat[:, int(np.linalg.norm(flat, axis=0).argmax() if np.linalg.norm(flat[:, 0]) < 0.5 else 0)]
     first = first / np.linalg.norm(first)
     second = cross(cross(plane[:, 0], plane[:, 1]), first)
-    angles = np.arange(DIRECTIONS) * (2 * np.pi / DIRECTIONS)
+    angles = np.arange(count) * (2 * np.pi / count)
     return np.outer(np.cos(angles), first) + np.outer(np.sin(angles), second)
 
 

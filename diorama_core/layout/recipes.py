@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from diorama_core.errors import InputError
-from diorama_core.layout.feasible.recipe import MEASURED_WEIGHT, REASONED_WEIGHT, FeasibleRecipe
+from diorama_core.layout.feasible.recipe import FeasibleRecipe
 from diorama_core.layout.weights import AS_IT_IS, Weights
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.protocols import LayoutStage
@@ -36,7 +36,7 @@ def recipe(
         InputError: when there is no such recipe.
     """
     if name == "feasible":
-        depth_weight = MEASURED_WEIGHT if depth_measured else REASONED_WEIGHT
+        depth_weight = 1.0 if depth_measured else FeasibleRecipe.depth_weight
         return FeasibleRecipe(
             library,
             only,

@@ -16,11 +16,7 @@ from diorama_core.layout.problem.volumes import Volumes, contact_templates
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.scene.types import Scene
 
-ALIGNED_RAD = float(np.deg2rad(1.0))
-PLACED_M = 1e-3
-INSIDE_M = 1e-3
-"""Corners may leave their surface by this much and still count as inside."""
-USUAL_ERRORS = np.array([ALIGNED_RAD, PLACED_M, INSIDE_M])
+USUAL_ERRORS = np.array([np.deg2rad(1.0), 1e-3, 1e-3])
 """Up to these `support_errors` an object is aligned with its support, on it and inside its bounds."""
 
 

@@ -21,13 +21,12 @@ from diorama_core.scene import edits
 from diorama_core.scene.support import ancestors
 from diorama_core.scene.types import Pose, Scene, SceneObject, box_corners
 
-ROUNDS = 60
-TOUCHING_M = 0.002
-
 
 @dataclass(frozen=True)
 class Settled:
     """Lowers objects and pushes them apart."""
+
+    rounds: int = 60
 
     def optimise(self, scene: Scene, progress: Progress, preview: Preview | None = None) -> tuple[Scene, LayoutReport]:
         """The scene with other places, and the overlap of boxes before and after in metres."""
@@ -38,8 +37,8 @@ class Settled:
             if not item.locked:
                 moved[item.id] = _lowered(scene, item, moved)
         before = _overlap(scene, moved)
-        for k in range(ROUNDS):
-            progress.report(k / ROUNDS, "Pushing objects apart")
+        for k in range(self.rounds):
+            progress.report(k / self.rounds, "Pushing objects apart")
             if not _pushed(scene, moved):
                 break
         result = edits.place(scene, moved)
@@ -85,12 +84,15 @@ def _pushed(scene: Scene, poses: dict[str, Pose]) -> bool:
     return changed
 
 
-def _apart(scene: Scene, a: SceneObject, b: SceneObject, poses: Mapping[str, Pose]) -> Float[np.ndarray, "2"] | None:
-    """The shortest level way of a out of b; None where they do not overlap or one carries the other."""
+def _apart(
+    scene: Scene, a: SceneObject, b: SceneObject, poses: Mapping[str, Pose], touching_m: float = 0.002
+) -> Float[np.ndarray, "2"] | None:
+    """The shortest level way of a out of b; None where they overlap by less than `touching_m` or one
+    carries the other."""
     if a.id in ancestors(scene, b.id) or b.id in ancestors(scene, a.id):
         return None
     (low_a, high_a), (low_b, high_b) = _span(a, poses[a.id]), _span(b, poses[b.id])
-    if min(high_a, high_b) - max(low_a, low_b) < TOUCHING_M:
+    if min(high_a, high_b) - max(low_a, low_b) < touching_m:
         return None
     corners = [_corners(o, poses[o.id])[:, :2] for o in (a, b)]
     best: tuple[float, np.ndarray] | None = None
@@ -102,7 +104,7 @@ def _apart(scene: Scene, a: SceneObject, b: SceneObject, poses: Mapping[str, Pos
             unit = axis / length
             (a0, a1), (b0, b1) = ((float((c @ unit).min()), float((c @ unit).max())) for c in corners)
             out, back = b1 - a0, a1 - b0
-            if min(out, back) < TOUCHING_M:
+            if min(out, back) < touching_m:
                 return None
             way = (out, unit) if out < back else (back, -unit)
             best = way if best is None or way[0] < best[0] else best

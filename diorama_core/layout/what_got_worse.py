@@ -14,9 +14,10 @@ from diorama_core.scene.types import Scene, SceneObject
 Problems = Mapping[str, tuple[str, ...]]
 """By object id, what is wrong with it, in a word each."""
 
-FAR_M = 0.3
+NAMED_MOVE_M = 0.3
 """A layout whose objects moved so far on average is hardly that of the photo."""
-MIN_M = 0.005
+NAMED_OVERLAP_M = 0.005
+"""Overlaps are given in whole centimetres."""
 MIN_CHANGE_M = 1e-6
 """Sizes that differ by less are the same."""
 
@@ -92,10 +93,10 @@ def in_words(report: LayoutReport, worse: Problems, labels: Mapping[str, str]) -
     if pairs is not None and more is not None and more > pairs:
         lines.append(f"Overlapping pairs went from {pairs:.0f} to {more:.0f}.")
     deep, deeper = before.get("part_overlap_m"), after.get("part_overlap_m")
-    if deep is not None and deeper is not None and deeper > deep + MIN_M:
+    if deep is not None and deeper is not None and deeper > deep + NAMED_OVERLAP_M:
         lines.append(f"The deepest overlap went from {100 * deep:.0f} cm to {100 * deeper:.0f} cm.")
     moved = after.get("moved_m", 0.0)
-    if moved > FAR_M:
+    if moved > NAMED_MOVE_M:
         lines.append(f"Objects moved by {100 * moved:.0f} cm on average; the photo shows them elsewhere.")
     return tuple(lines)
 

@@ -22,7 +22,7 @@ from diorama_core.library.furniture.solids import Solid
 PAINTED_AT_ONCE = "plain"
 """Pictures of this kind are of one colour: nothing is gained by caching them."""
 _ENDS = (b"\xff\xd9", b"IEND\xaeB`\x82")
-"""Of whole JPEG and PNG files."""
+"""Last bytes of whole JPEG and PNG files."""
 
 
 def scene_with_pictures(solids: Iterable[tuple[Material, Solid]], folder: Path) -> trimesh.Scene:

@@ -33,12 +33,12 @@ from diorama_core.library.surfaces import SURFACES_VERSION, support_surfaces
 from diorama_core.library.taxonomy import column
 
 GLB_VERSION = 1
-"""Of the models' files: raise it when what `_glb` writes for the same parts changes."""
+"""Version of the models' files: raise it when what `_glb` writes for the same parts changes."""
 
 BULK_DENSITY: Mapping[str, float] = column("density")
 """Kilograms per cubic metre of bounding box: a rough guess for physics, from weighing catalogues' furniture."""
 SCENE_BYTES = 256e6
-"""Of the arrays of models that stay in memory."""
+"""Bytes of the arrays of models that stay in memory."""
 
 
 def default_cache_dir() -> Path:
@@ -85,7 +85,7 @@ class BuiltInLibrary:
         if len(self._designs) != len(designs):
             raise LibraryError("two built-in designs share an id; give each its own")
         self._records: dict[str, Shape] = {}
-        """Of the designs that were asked for: naming the geometry of all takes a fifth of a second."""
+        """Records of the designs that were asked for: naming the geometry of all takes a fifth of a second."""
         self._folder = cache_dir
         self._pictures_folder = cache_dir / "pictures"
         self._solids: LruCache[str, list[tuple[Material, Solid]]] = LruCache(8)

@@ -20,7 +20,7 @@ WITH_BOARDS = having("has_boards")
 """Furniture in which things are found as well as on it: on boards below its top."""
 
 SELDOM_CARRIED, HARDLY_CARRIED = 0.3, 0.08
-"""The same of kinds that lie on things and are not named, and of those that stand on floors or hang."""
+"""Ratios for kinds that lie on things and are not named, and for those that stand on floors or hang."""
 
 
 def often_carried(kind: str, carrier: str) -> float:

@@ -31,9 +31,9 @@ _OPENERS = frozenset({
 _ENDINGS = ("ing", "edly", "ed", "er", "ly", "y", "e", "s")
 _SHORTEST_STEM, _SHORTEST_PART = 3, 4
 _PART_WORTH = 0.7
-"""Of a word that only begins like one of the definition's."""
+"""Worth of a word that only begins like one of the definition's."""
 _NAME_WORTH = 0.6
-"""Of words of a kind's names, which say less of its use."""
+"""Worth of words of a kind's names, which say less of its use."""
 
 
 def is_description(text: str) -> bool:

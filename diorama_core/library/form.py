@@ -35,7 +35,7 @@ _BACKED, _HARD_OR_SOFT = having("back_varies"), having("drawn_up")
 """Kinds of seats some of which have open backs, and some of which are upholstered: hardly an easy seat is without."""
 _SAMPLES = 6000
 _TOP_SLAB = 0.06
-"""Of the height: what counts as the top."""
+"""Share of the height that counts as the top."""
 _SQUARE_RATIO = 1.15
 FULL_RECTANGLE = 0.92
 """Share of its bounding rectangle that a rectangular top fills; a round one fills 0.785."""
@@ -49,15 +49,15 @@ _CENTRAL, _WIDE_FOOT = 0.45, 0.6
 _CLOSED, _TWO_SIDES, _ON_RUNNERS = 0.9, 0.55, 0.25
 """Shares of directions in which a plinth, a panel base, and how many more in which runners meet the floor."""
 _SIDE, _MIDDLE = 0.7, 0.35
-"""Of half the width: armrests are beyond the one, the seat is within the other."""
+"""Shares of half the width: armrests are beyond the one, the seat is within the other."""
 _BEFORE = (0.05, 0.3)
-"""Of the depth from the middle: before the back, and behind the front edge."""
+"""Shares of the depth from the middle: before the back, and behind the front edge."""
 _ARM_RISE = 0.1
-"""Of the height: by how much armrests are higher than the seat."""
+"""Share of the height by which armrests are higher than the seat."""
 _SOFT, _KNOWN = 0.3, 0.5
-"""Of the surface: fabric and leather of what is upholstered (a pad on wood is less), and what has to be known."""
+"""Shares of the surface: fabric and leather of what is upholstered (a pad on wood is less), and known ones."""
 _BACK_RISE, _MIN_BACK = 0.1, 0.12
-"""Of the height: above the seat, where nothing but the back is left, and how high a back is at least."""
+"""Shares of the height: above the seat, where nothing but the back is left, and how high a back is at least."""
 _OPEN_BACK = 0.8
 """A back that fills less of the outline around it, seen from the front, is seen through."""
 _DRAWN_PX = 128

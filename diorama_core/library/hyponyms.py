@@ -15,7 +15,7 @@ from diorama_core.library.loose_words import MEANINGS
 from diorama_core.library.taxonomy import CATEGORIES, UNKNOWN, column
 
 _SPECIAL_SHARE = 0.08
-"""Of a category's name where no row says more: what all its special kinds have together."""
+"""Share of a category's name where no row says more: what all its special kinds have together."""
 
 _RARE = 0.15
 FREQUENCIES: Mapping[str, float] = column("frequency")

@@ -106,7 +106,7 @@ class Company:
     often: float
     """Share of things of the kind that photos show with one of the others there: rough, in homes and offices."""
     usual: float
-    """The same share of things that are mistaken for it."""
+    """Share of things that are mistaken for it which have such company."""
 
 
 @dataclass(frozen=True)

@@ -11,13 +11,13 @@ from diorama_core.library.kinds import KindMode, modes_of_kind, outline_of
 from diorama_core.library.taxonomy import UNKNOWN, category
 
 BROAD_SHARE = 0.3
-"""Of the mixture that is the taxonomy's: of things unlike all in the library."""
+"""Share of the mixture that is the taxonomy's: of things unlike all in the library."""
 MAX_MODES = 3
 MAX_SIGMAS, MIN_SIGMA, OFF_ANYWAY = 2.6, 0.08, 0.22
 """How far a side may be off a kind's usual one, in standard deviations of its logarithm, and the quarter that is
 allowed beside them: 99 % of the built-in shapes are within."""
 SAID_SIGMAS = 4.0
-"""The same of what has a name: makers call a side table what is as wide as a console table."""
+"""Sigmas for what has a name: makers call a side table what is as wide as a console table."""
 
 
 @cache

@@ -34,7 +34,7 @@ def _directions() -> Float[np.ndarray, "15 3"]:
 
 
 OUTLINE_DIRECTIONS: Float[np.ndarray, "15 3"] = _directions()
-"""Of a quarter of all around; the others are their mirror images, since the sign of a front is rarely known."""
+"""Directions of a quarter of all around; the others are mirror images: the sign of a front is rarely known."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -42,11 +42,11 @@ class KindMode(ArrayValue):
     """Shapes of a kind that are alike in size and outline."""
 
     share: float
-    """Of the kind's shapes."""
+    """Share of the kind's shapes."""
     log_size: Float[np.ndarray, "3"]
     """Mean logarithms of depth, width and height in metres."""
     covariance: Float[np.ndarray, "3 3"]
-    """Of the logarithms."""
+    """Covariance of the logarithms."""
     outline: Float[np.ndarray, "40 3"]
     """Points in a unit box about the origin whose hull has the mode's mean support function."""
 

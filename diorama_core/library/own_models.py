@@ -19,7 +19,7 @@ from diorama_core.io.text import clean_text
 MAX_NAME = 80
 """Characters of a name or a folder that a person gives."""
 MAX_BYTES = 16_000_000
-"""Of the document: some hundred thousand models."""
+"""Bytes of the document: some hundred thousand models."""
 
 
 @dataclass(frozen=True)

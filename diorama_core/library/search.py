@@ -32,11 +32,11 @@ SIZE_POINTS = 0.7
 SIZE_WORD_POINTS = 0.15
 """A caption that says "tall" counts little: sizes are measured."""
 DESCRIPTION_POINTS = 4.0
-"""Of a kind whose definition has all words of a description; half of it beside an exact name."""
+"""Points of a kind whose definition has all words of a description; half of it beside an exact name."""
 MIN_DESCRIBED = 0.25
 """Share of a description's words that a definition must have."""
 BESIDE_DESCRIPTION = 0.3
-"""Of what a word counts that tells a use and no look."""
+"""Share that counts of a word that tells a use and no look."""
 LIMIT_POINTS = 2.5
 """Lost by a shape that is larger or smaller than asked: what fits comes first."""
 _SPELLING_CUTOFF = 0.8

@@ -29,7 +29,7 @@ SMALL = 0.22
 PLIABLE = 0.005
 """How much of a change thin matter takes up against the rest: legs give a little where nothing else is left."""
 MIN_SLOPE, MAX_SLOPE = 0.25, 4.0
-"""Of what lies between, against how large it was and against an even stretch."""
+"""Slopes of what lies between, against how large it was and against an even stretch."""
 _ROUNDS = 60
 END = 0.02
 """Bodies that begin within this share of the height from the bottom are feet."""

@@ -28,11 +28,11 @@ BINS = 400
 SURELY_THIN, SURELY_THICK = 0.22, 0.32
 """Shares of the shape's extent: legs of a small chair are thin, a third of it is not."""
 ENOUGH = 0.002
-"""Of the cross-section: less thin matter counts the less."""
+"""Share of the cross-section: less thin matter counts the less."""
 LEAST = 0.25
 """What a leg counts beside the side of a cupboard: where all is thin, the thinnest slices keep their form best."""
 _OFF_CENTRE = (0.4731, 0.5397)
-"""Of a line's cell: lines through its middle would often meet edges and diagonals, which belong to two triangles."""
+"""Place in a line's cell: lines through its middle would often meet edges and diagonals, which two triangles share."""
 _EDGE_ON = 1e-9
 _CHUNK = 2_000_000
 

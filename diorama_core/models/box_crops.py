@@ -8,7 +8,7 @@ from jaxtyping import Float, Float32, UInt8
 
 CROP_SIDE = 96
 MARGIN = 0.12
-"""Of the box's size, on every side of a crop: what a thing stands on tells what it is."""
+"""Share of the box's size on every side of a crop: what a thing stands on tells what it is."""
 FILL = 114
 
 

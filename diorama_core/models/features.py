@@ -36,7 +36,7 @@ class Dinov2:
         return self.batch([rgb], side)[0]
 
     def batch(self, pictures: list[UInt8[np.ndarray, "_ _ 3"]], side: int = 224) -> Float32[np.ndarray, "b n n d"]:
-        """The same of several pictures at once."""
+        """Patches of several pictures at once."""
         if side % PATCH:
             raise ValueError(f"the side {side} must be a multiple of {PATCH}")
         graph = self.graph if self.block is None else inner_graph(self.graph, self.block)

@@ -19,9 +19,9 @@ from diorama_core.models.tokens import load_tokenizer
 from diorama_core.progress import Progress
 
 TOKENS = 256
-"""Of one prompt; phrases that do not fit are asked in another run, which looks at the picture again."""
+"""Tokens of one prompt; phrases that do not fit are asked in another run, which looks at the picture again."""
 SIDE = 960
-"""Of the square whose upper left part holds the picture."""
+"""Side of the square whose upper left part holds the picture."""
 
 
 @dataclass(frozen=True)

@@ -31,7 +31,7 @@ log = logging.getLogger(__name__)
 MARGIN, SQUEEZE = 0.06, 0.5
 """Around the box, and how far a long box is stretched to fill the square: a compromise between detail and shape."""
 _MEAN, _DEVIATION = np.array([0.485, 0.456, 0.406], np.float32), np.array([0.229, 0.224, 0.225], np.float32)
-"""Of ImageNet's pixels, 0 to 1."""
+"""Mean and deviation of ImageNet's pixels, 0 to 1."""
 _ELSEWHERE = 0.1
 """Share of a kind's pictures whose class the table does not foresee, spread over all classes."""
 TABLE_TRUST = 0.875
@@ -57,7 +57,7 @@ class KindReadings(ArrayValue):
     def log_likelihoods(
         self, logits: Float[np.ndarray, "n c"], features: Float[np.ndarray, "n f"]
     ) -> Float[np.ndarray, "n k"]:
-        """Of every kind, up to a constant in each row."""
+        """Log-likelihood of every kind, up to a constant in each row."""
         return (
             table_likelihoods(self.classes, logits) + (unit_features(features) - self.mean) @ self.basis @ self.weights
         )

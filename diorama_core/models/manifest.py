@@ -179,7 +179,7 @@ def network(network_id: str) -> Network:
 
 
 def in_half(networks: tuple[Network, ...]) -> tuple[Network, ...]:
-    """The same networks in half precision, where such files are published."""
+    """The networks in half precision, where such files are published."""
     halves = {n.half_of: n for n in NETWORKS if n.half_of}
     return tuple(halves.get(n.id, n) for n in networks)
 

@@ -46,7 +46,7 @@ class Network:
     """Script that makes the files from the user's own checkpoint."""
     tiers: tuple[Tier, ...] = ()
     side: int | None = None
-    """Of the square picture it takes, where its graph leaves that open."""
+    """Side of the square picture it takes, where its graph leaves that open."""
     half_of: str = ""
     """Id of the network whose weights these are in half precision: for graphics cards that calculate with it."""
 

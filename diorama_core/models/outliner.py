@@ -25,9 +25,9 @@ from diorama_core.models.store import sha256_of
 Box = tuple[float, float, float, float]
 
 SIDE = 96
-"""Of a window, in cells."""
+"""Side of a window, in cells."""
 MARGIN = 0.25
-"""Of the box's size, on every side of a window: what is around an object tells what is not the object."""
+"""Share of the box's size on every side of a window: what is around an object tells what is not the object."""
 FILL = 114
 """Grey of what is outside the photo."""
 _BATCH = 16

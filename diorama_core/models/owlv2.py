@@ -49,7 +49,7 @@ class Owlv2:
     tokenizer: Path = field(repr=False)
     weights: str = "owlv2"
     side: int = SIDE
-    """Of the square that the graph takes, where the graph itself does not say: a multiple of its patch."""
+    """Side of the square that the graph takes, where the graph itself does not say: a multiple of its patch."""
     pool: SessionPool = field(default=SHARED_SESSIONS, repr=False, compare=False)
 
     @cached_property

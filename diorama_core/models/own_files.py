@@ -27,7 +27,7 @@ from diorama_core.scene.types import Intrinsics
 
 ENDING = ".onnx"
 SIDE_PX = 640
-"""Of the square that a detector is shown where its graph leaves that open."""
+"""Side of the square that a detector is shown where its graph leaves that open."""
 _STRIDES = (8, 16, 32)
 _MAX_LABELS_BYTES = 1_000_000
 _ANY: Dims = (..., None, None)

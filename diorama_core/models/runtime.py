@@ -39,7 +39,7 @@ ACCELERATORS = {
 """Execution providers of graphics cards, best first, and what people call them."""
 _CODES = re.compile(r"\[ONNXRuntimeError\] : \d+ : \w+ : ")
 MAX_SIDE_PX = 4096
-"""Of the pictures that networks ask for; a graph that states more is another network."""
+"""Side of the pictures that networks ask for; a graph that states more is another network."""
 
 Dims = tuple[int | EllipsisType | None, ...]
 """A shape: None for any size, an ellipsis in front for any number of leading dimensions of size one."""
@@ -354,12 +354,12 @@ def _options(level: Any) -> Any:
 
 
 def _file_bytes(path: Path) -> int:
-    """Of a graph and its external data: about what its weights take in memory."""
+    """Bytes of a graph and its external data: about what its weights take in memory."""
     return sum(p.stat().st_size for p in (path, path.with_name(path.name + "_data")) if p.exists())
 
 
 def _half_of_memory() -> int:
-    """Of this machine; four gigabytes where the system does not tell."""
+    """Half of this machine's memory; four gigabytes where the system does not tell."""
     try:
         return os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES") // 2
     except (AttributeError, OSError, ValueError):

@@ -43,9 +43,9 @@ class Sam2:
     decoder: Path = field(repr=False)
     weights: str = "sam2.1"
     side: int = SIDE
-    """Of the square."""
+    """Side of the square."""
     mask_side: int = MASK_SIDE
-    """Of the masks that the decoder answers."""
+    """Side of the masks that the decoder answers."""
     mean: tuple[float, float, float] = IMAGENET_MEAN
     std: tuple[float, float, float] = IMAGENET_STD
     pool: SessionPool = field(default=SHARED_SESSIONS, repr=False, compare=False)

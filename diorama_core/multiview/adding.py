@@ -20,7 +20,7 @@ from diorama_core.geometry.projection import box_iou
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.library.taxonomy import broad, category
 from diorama_core.multiview.agreement import with_agreeing_boxes
-from diorama_core.multiview.better_seen import CLEARLY_BETTER, better_seen
+from diorama_core.multiview.better_seen import better_seen
 from diorama_core.multiview.joining import RoomPhoto, Sighted, Track, claims, fitted_track, overlap, shown
 from diorama_core.multiview.joint_fit import JointCuboid
 from diorama_core.multiview.mounted_walls import hangs_on_wall, seen_whole, walls_at_mounted
@@ -36,6 +36,7 @@ from diorama_core.multiview.rooms import (
     said_alone,
     track_name,
 )
+from diorama_core.multiview.settings import SETTINGS, JoiningSettings
 from diorama_core.pipeline.given_stages import GivenRoom
 from diorama_core.pipeline.stages import Stages
 from diorama_core.progress import Progress
@@ -44,15 +45,8 @@ from diorama_core.scene.edits import fresh_id, set_metrics
 from diorama_core.scene.support import check_scene
 from diorama_core.scene.types import Camera, Scene, SceneObject, Support
 
-MIN_PAIRS = 3
 DISTANCES = tuple(float(f) for f in np.geomspace(0.7, 1.43, 13))
 """Factors on the distance between two photos that are tried."""
-DISTANCE_LOG_SIGMA = 0.15
-"""How sure the scene's surfaces are of it."""
-MAX_COST = 40.0
-"""Of one object in the choice among distances: one that was joined wrongly does not decide."""
-SAME_BOX = 0.5
-"""Intersection over union from which a read box is the one that an object was seen in."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -185,7 +179,11 @@ def _hangs(item: SceneObject, scene: Scene) -> bool:
 
 
 def _at_likeliest_distance(
-    read: ReadPhoto, own: RoomPhoto, known: RoomPhoto, pairs: Sequence[tuple[int, int]]
+    read: ReadPhoto,
+    own: RoomPhoto,
+    known: RoomPhoto,
+    pairs: Sequence[tuple[int, int]],
+    settings: JoiningSettings = SETTINGS,
 ) -> tuple[ReadPhoto, RoomPhoto]:
     """The new photo so far from the only known one that the objects of both have the likeliest sizes and places.
 
@@ -196,8 +194,9 @@ def _at_likeliest_distance(
         own: what it says by itself.
         known: the known photo.
         pairs: boxes of the known and of the new photo that are of one object.
+        settings: numbers to work with.
     """
-    if len(pairs) < MIN_PAIRS:
+    if len(pairs) < settings.min_pairs:
         return read, own
     eye = known.boxes.camera.position
 
@@ -210,11 +209,12 @@ def _at_likeliest_distance(
 
     def against(photo: RoomPhoto) -> float:
         costs = [fitted_track(((0, a), (1, b)), (known, photo)).cuboid.cost for a, b in pairs]
-        return float(np.minimum(costs, MAX_COST).sum())
+        return float(np.minimum(costs, settings.max_cost).sum())
 
     tried = [at(float(f)) for f in DISTANCES]
     costs = [
-        against(photo) + (np.log(f) / DISTANCE_LOG_SIGMA) ** 2 for f, (_, photo) in zip(DISTANCES, tried, strict=True)
+        against(photo) + (np.log(f) / settings.distance_log_sigma) ** 2
+        for f, (_, photo) in zip(DISTANCES, tried, strict=True)
     ]
     return tried[int(np.argmin(costs))]
 
@@ -239,10 +239,10 @@ def _boxes_of(
     return tuple(found)
 
 
-def _same(box: Box, read: ReadPhoto) -> int | None:
+def _same(box: Box, read: ReadPhoto, settings: JoiningSettings = SETTINGS) -> int | None:
     shares = [float(box_iou(np.array(box), np.array(o.box))) for o in read.objects]
     best = max(range(len(shares)), key=lambda k: shares[k], default=None)
-    return best if best is not None and shares[best] >= SAME_BOX else None
+    return best if best is not None and shares[best] >= settings.same_box else None
 
 
 def _ids_of(photo: FurtherPhoto, read: ReadPhoto) -> dict[int, str]:
@@ -255,6 +255,7 @@ def _share_of_new(
     others: Sequence[tuple[FurtherPhoto, ReadPhoto, RoomPhoto]],
     own: RoomPhoto,
     box: int,
+    settings: JoiningSettings = SETTINGS,
 ) -> float | None:
     """How much a new photo counts for what an object is; None where a known one shows it about as well.
 
@@ -264,7 +265,7 @@ def _share_of_new(
         return 1.0
     known = max((shown(others[number][2], index) for number, index in sightings), default=0.0)
     new = shown(own, box)
-    return new / (new + known) if known > 0.0 and new > CLEARLY_BETTER * known else None
+    return new / (new + known) if known > 0.0 and new > settings.clearly_better * known else None
 
 
 def _claimed(

@@ -5,23 +5,22 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 
+from diorama_core.multiview.settings import SETTINGS, JoiningSettings
 from diorama_core.scene.types import Candidate, SceneObject
 
-CLEARLY_BETTER = 1.25
-"""Times as much of the picture, less what is hidden or cut, that an object must cover in another photo."""
-UNSEEN = 0.9
-"""Of the least score that a photo gives: what a shape gets that is not among those it finds."""
 
-
-def better_seen(item: SceneObject, there: SceneObject, share: float) -> SceneObject:
+def better_seen(
+    item: SceneObject, there: SceneObject, share: float, settings: JoiningSettings = SETTINGS
+) -> SceneObject:
     """The object with its shape by all photos, and the colours that go with it.
 
     Args:
         item: as the photos so far have it.
         there: as the new photo alone has it, in the same place.
         share: how much the new photo counts, 0 to 1; those so far count for the rest.
+        settings: numbers to work with.
     """
-    candidates = joint_candidates(item.candidates, there.candidates, share)
+    candidates = joint_candidates(item.candidates, there.candidates, share, settings)
     if not candidates:
         return item
     best = candidates[0]
@@ -49,7 +48,9 @@ def better_seen(item: SceneObject, there: SceneObject, share: float) -> SceneObj
     )
 
 
-def joint_candidates(known: Sequence[Candidate], new: Sequence[Candidate], share: float) -> tuple[Candidate, ...]:
+def joint_candidates(
+    known: Sequence[Candidate], new: Sequence[Candidate], share: float, settings: JoiningSettings = SETTINGS
+) -> tuple[Candidate, ...]:
     """The candidates of both by their scores together, best first; poses are the new photo's where it has one.
 
     Scores are compared with the best of their own photo.
@@ -58,8 +59,8 @@ def joint_candidates(known: Sequence[Candidate], new: Sequence[Candidate], share
     posed = {c.shape_id: c for c in (*known, *new)}
 
     def score(shape_id: str) -> float:
-        a = so_far.get(shape_id, UNSEEN * min(so_far.values(), default=0.0))
-        b = now.get(shape_id, UNSEEN * min(now.values(), default=0.0))
+        a = so_far.get(shape_id, settings.unseen_shape * min(so_far.values(), default=0.0))
+        b = now.get(shape_id, settings.unseen_shape * min(now.values(), default=0.0))
         return (1.0 - share) * a + share * b
 
     ranked = sorted(posed, key=lambda shape_id: (-score(shape_id), shape_id))

@@ -20,38 +20,55 @@ from shapely.geometry import Polygon
 from diorama_core.artefacts import CameraEstimate, CameraHypothesis
 from diorama_core.geometry.projection import box_iou, cuboid_corners, visible_bounds
 from diorama_core.library.taxonomy import UNKNOWN, broad
+from diorama_core.multiview.joint_fit import NEAR_M
 from diorama_core.perception.metrology.box_observations import BoxObservations
 from diorama_core.progress import Progress
 from diorama_core.scene.types import Camera, yaw_rotation
 
-STEP_M = 0.25
-"""Between places that are tried."""
-HEIGHTS_M = (1.2, 1.6)
-HEIGHT_M, HEIGHT_SIGMA_M = 1.5, 0.35
-"""People hold cameras so high."""
-HEADINGS = 24
-OUTSIDE_M = 0.3
-"""So far beyond the walls a camera may be: in a doorway."""
-NEAR_M = 0.15
-NAMELESS = 0.5
-"""What a box counts that says nothing of its kind."""
-FINALISTS, ROUNDS = 16, 3
-APART_M, APART_RAD = 0.4, 0.3
-"""Nearer hypotheses are one."""
-UP_SIGMA, HEADING_SIGMA = 0.03, 0.05
-"""Of gravity, and of the turn against the room's axes, as the photo tells them (rad)."""
-FOCAL_LOG_SIGMA = 0.05
-GIVEN_FOCAL_LOG_SIGMA = 0.01
-CUBOID_SIGMA = 0.05
-"""How far a thing's outline is from its box's, as a share of its extent."""
-SAME = 0.35
-"""Intersection over union of a box with a thing that is taken for it."""
-ODD_COST = 8.0
-"""Of a box without its thing, and of a thing in view without a box, in squared sigmas."""
-IN_VIEW = 0.03
-"""Of the picture that a thing covers which should have been marked."""
-MIN_SAME, MAX_COST = 3, 8.0
-"""Things that must be met, and the cost of a camera for each of them: what costs more is another room."""
+
+@dataclass(frozen=True)
+class CameraInRoomSettings:
+    """Where a camera is looked for, and what speaks for and against it."""
+
+    step_m: float = 0.25
+    """Distance of the places that are tried."""
+    heights_m: tuple[float, ...] = (1.2, 1.6)
+    headings: int = 24
+    outside_m: float = 0.3
+    """Distance beyond the walls at which a camera may be: in a doorway."""
+    finalists: int = 16
+    rounds: int = 3
+    apart_m: float = 0.4
+    """Hypotheses nearer than this are one,"""
+    apart_rad: float = 0.3
+    """unless they are turned by more."""
+    height_m: float = 1.5
+    """People hold cameras so high,"""
+    height_sigma_m: float = 0.35
+    """with this deviation."""
+    up_sigma: float = 0.03
+    """Deviation of gravity, and"""
+    heading_sigma: float = 0.05
+    """of the turn against the room's axes, as the photo tells them (rad)."""
+    focal_log_sigma: float = 0.05
+    given_focal_log_sigma: float = 0.01
+    cuboid_sigma: float = 0.05
+    """Deviation of a thing's outline from its box's, as a share of its extent."""
+    nameless: float = 0.5
+    """Weight of a box that says nothing of its kind."""
+    same: float = 0.35
+    """Intersection over union of a box with a thing that is taken for it."""
+    odd_cost: float = 8.0
+    """Squared sigmas for a box without its thing, and for a thing in view without a box."""
+    in_view: float = 0.03
+    """Share of the picture from which a thing in it should have been marked."""
+    min_same: int = 3
+    """Things that must be met."""
+    max_cost: float = 8.0
+    """Most that a camera may cost for each of them: what costs more is another room."""
+
+
+SETTINGS = CameraInRoomSettings()
 
 
 @dataclass(frozen=True, eq=False)
@@ -85,6 +102,7 @@ def camera_in_room(
     progress: Progress | None = None,
     *,
     focal_known: bool = False,
+    settings: CameraInRoomSettings = SETTINGS,
 ) -> FoundCamera | None:
     """The camera from which the things of a room cover the boxes of a photo; None where none does.
 
@@ -95,28 +113,35 @@ def camera_in_room(
         boxes: marked in the photo.
         progress: reports and cancellation.
         focal_known: whether the focal length was given.
+        settings: numbers to work with.
     """
     progress = progress or Progress()
-    if min(len(things), len(boxes)) < MIN_SAME:
+    if min(len(things), len(boxes)) < settings.min_same:
         return None
-    search = _Search(things, boxes, estimate.best, focal_known)
+    search = _Search(things, boxes, estimate.best, focal_known, settings)
     finalists = search.finalists(floor, progress)
     found = []
     for number, camera in enumerate(finalists):
         progress.report(0.4 + 0.6 * number / len(finalists), "finding where the photo was taken")
-        found.append(search.fitted(camera, floor.buffer(OUTSIDE_M)))
+        found.append(search.fitted(camera, floor.buffer(settings.outside_m)))
     best = min(found, key=lambda fit: fit.cost)
-    return best if len(best.met) >= MIN_SAME and best.cost <= MAX_COST * len(best.met) else None
+    return best if len(best.met) >= settings.min_same and best.cost <= settings.max_cost * len(best.met) else None
 
 
 class _Search:
     """Boxes of a photo against the things of a room."""
 
     def __init__(
-        self, things: Sequence[MeasuredThing], boxes: BoxObservations, reading: CameraHypothesis, focal_known: bool
+        self,
+        things: Sequence[MeasuredThing],
+        boxes: BoxObservations,
+        reading: CameraHypothesis,
+        focal_known: bool,
+        settings: CameraInRoomSettings,
     ) -> None:
+        self._settings = settings
         self._boxes, self._k = boxes, reading.intrinsics
-        self._focal_sigma = GIVEN_FOCAL_LOG_SIGMA if focal_known else FOCAL_LOG_SIGMA
+        self._focal_sigma = settings.given_focal_log_sigma if focal_known else settings.focal_log_sigma
         self._R_level = reading.R_world_camera
         self._corners = cuboid_corners(
             np.array([t.centre for t in things]),
@@ -127,37 +152,42 @@ class _Search:
         same = np.array([[broad(c.name) in of_thing for c in boxes.categories] for of_thing in kinds])
         nameless = np.array([c is UNKNOWN for c in boxes.categories])
         self._could_be_met = int(same.any(axis=0).sum())
-        self._weight = np.where(same, 1.0, np.where(nameless, NAMELESS, 0.0))
+        self._weight = np.where(same, 1.0, np.where(nameless, settings.nameless, 0.0))
         self._things = things
         extent = np.tile(boxes.box_px[:, 2:] - boxes.box_px[:, :2], 2)
-        self._sigma = np.hypot(boxes.edge_sigma_px, CUBOID_SIGMA * extent)
+        self._sigma = np.hypot(boxes.edge_sigma_px, settings.cuboid_sigma * extent)
         self._short = np.array([boxes.hidden(i) for i in range(len(boxes))]).reshape(-1, 4) | boxes.truncated
 
     def finalists(self, floor: Polygon, progress: Progress) -> list[Camera]:
         """The best of all places on the floor and all headings, no two of them alike."""
-        x0, y0, x1, y1 = floor.buffer(OUTSIDE_M).bounds
-        plan = np.stack(np.meshgrid(np.arange(x0, x1, STEP_M), np.arange(y0, y1, STEP_M)), axis=-1).reshape(-1, 2)
-        plan = plan[contains_xy(floor.buffer(OUTSIDE_M), plan[:, 0], plan[:, 1])]
-        places = np.vstack([np.column_stack([plan, np.full(len(plan), z)]) for z in HEIGHTS_M])
+        x0, y0, x1, y1 = floor.buffer(self._settings.outside_m).bounds
+        x, y = (np.arange(*ends, self._settings.step_m) for ends in ((x0, x1), (y0, y1)))
+        plan = np.stack(np.meshgrid(x, y), axis=-1).reshape(-1, 2)
+        plan = plan[contains_xy(floor.buffer(self._settings.outside_m), plan[:, 0], plan[:, 1])]
+        places = np.vstack([np.column_stack([plan, np.full(len(plan), z)]) for z in self._settings.heights_m])
         rows: list[tuple[float, int, int]] = []
-        for heading in range(HEADINGS):
-            progress.report(0.4 * heading / HEADINGS, "looking for where the photo was taken")
+        count = self._settings.headings
+        for heading in range(count):
+            progress.report(0.4 * heading / count, "looking for where the photo was taken")
             score = self._scores(places, self._turned(heading))
-            rows += [(float(score[k]), heading, int(k)) for k in np.argsort(-score, kind="stable")[: 4 * FINALISTS]]
+            best = np.argsort(-score, kind="stable")[: 4 * self._settings.finalists]
+            rows += [(float(score[k]), heading, int(k)) for k in best]
         chosen: list[tuple[int, int]] = []
         for _, heading, k in sorted(rows, key=lambda row: (-row[0], row[1:])):
             if not any(self._alike(places, (heading, k), other) for other in chosen):
                 chosen.append((heading, k))
-            if len(chosen) == FINALISTS:
+            if len(chosen) == self._settings.finalists:
                 break
         return [self._camera(self._turned(heading), places[k]) for heading, k in chosen]
 
     def _alike(self, places: Float[np.ndarray, "p 3"], a: tuple[int, int], b: tuple[int, int]) -> bool:
-        turn = abs((a[0] - b[0] + HEADINGS // 2) % HEADINGS - HEADINGS // 2) * 2 * np.pi / HEADINGS
-        return bool(np.linalg.norm(places[a[1], :2] - places[b[1], :2]) < APART_M and turn < APART_RAD)
+        count = self._settings.headings
+        turn = abs((a[0] - b[0] + count // 2) % count - count // 2) * 2 * np.pi / count
+        apart = np.linalg.norm(places[a[1], :2] - places[b[1], :2])
+        return bool(apart < self._settings.apart_m and turn < self._settings.apart_rad)
 
     def _turned(self, heading: int) -> Float[np.ndarray, "3 3"]:
-        return yaw_rotation(2 * np.pi * heading / HEADINGS) @ self._R_level
+        return yaw_rotation(2 * np.pi * heading / self._settings.headings) @ self._R_level
 
     def _camera(self, R: Float[np.ndarray, "3 3"], place: Float[np.ndarray, "3"]) -> Camera:
         T = np.eye(4)
@@ -179,19 +209,19 @@ class _Search:
     def fitted(self, camera: Camera, room: Polygon) -> FoundCamera:
         """The camera after its things were fitted to the boxes that are theirs."""
         pairs, cost = self._pairs(camera), np.inf
-        for _ in range(ROUNDS):
-            if len(pairs) < MIN_SAME:
+        for _ in range(self._settings.rounds):
+            if len(pairs) < self._settings.min_same:
                 break
             camera, cost = self._refined(camera, pairs)
             before, pairs = pairs, self._pairs(camera)
             if pairs == before:
                 break
         shared = self._shared(camera)
-        met = tuple((thing, box) for thing, box in pairs if shared[thing, box] >= SAME)
+        met = tuple((thing, box) for thing, box in pairs if shared[thing, box] >= self._settings.same)
         odd = max(self._could_be_met - len(met), 0) + self._unmarked(camera, {thing for thing, _ in pairs})
         if not contains_xy(room, *camera.position[:2]) or self._within_a_thing(camera):
             cost = np.inf
-        return FoundCamera(camera, cost + ODD_COST * odd, met)
+        return FoundCamera(camera, cost + self._settings.odd_cost * odd, met)
 
     def _unmarked(self, camera: Camera, marked: set[int]) -> int:
         """How many things that nothing hides are in view without a box."""
@@ -199,7 +229,7 @@ class _Search:
         area = (bounds[:, 2:] - bounds[:, :2]).prod(axis=1)
         away = np.array([np.linalg.norm(t.centre - camera.position) for t in self._things])
         count = 0
-        for k in np.flatnonzero(visible & (area > IN_VIEW * self._k.width * self._k.height)):
+        for k in np.flatnonzero(visible & (area > self._settings.in_view * self._k.width * self._k.height)):
             nearer = bounds[visible & (away < away[k])]
             common = np.clip(
                 np.minimum(nearer[:, 2:], bounds[k, 2:]) - np.maximum(nearer[:, :2], bounds[k, :2]), 0.0, None
@@ -247,10 +277,11 @@ class _Search:
             bounds, _ = self._bounds(there, things)
             beyond = (bounds - seen) * outward / sigma
             edges = np.where(short, np.minimum(beyond, 0.0), beyond)
-            tilt = (there.T_world_camera[2, :3] - self._R_level[2]) / UP_SIGMA
+            tilt = (there.T_world_camera[2, :3] - self._R_level[2]) / self._settings.up_sigma
             turn = there.T_world_camera[:3, :3] @ self._R_level.T
-            heading = np.sin(2 * np.arctan2(turn[1, 0], turn[0, 0])) / 2 / HEADING_SIGMA  # 0 at every quarter turn
-            height = (there.position[2] - HEIGHT_M) / HEIGHT_SIGMA_M
+            # 0 at every quarter turn.
+            heading = np.sin(2 * np.arctan2(turn[1, 0], turn[0, 0])) / 2 / self._settings.heading_sigma
+            height = (there.position[2] - self._settings.height_m) / self._settings.height_sigma_m
             return np.concatenate([edges.ravel(), tilt, [heading, height, unknowns[6] / self._focal_sigma]])
 
         start = np.zeros(7)

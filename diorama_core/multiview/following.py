@@ -10,7 +10,7 @@ import numpy as np
 from diorama_core.artefacts import FurtherPhoto
 from diorama_core.scene.types import Camera
 
-SAME = 1e-6
+ROUNDING = 1e-6
 
 
 def following(photos: Sequence[FurtherPhoto], before: Camera | None, after: Camera | None) -> tuple[FurtherPhoto, ...]:
@@ -30,11 +30,11 @@ def following(photos: Sequence[FurtherPhoto], before: Camera | None, after: Came
 def _scale(before: Camera, after: Camera) -> float | None:
     """By how much the world was scaled between two cameras; None where it was something else."""
     size = float(np.linalg.norm(before.position))
-    same_turn = np.abs(before.T_world_camera[:3, :3] - after.T_world_camera[:3, :3]).max() < SAME
-    if size < SAME or not same_turn or before.intrinsics != after.intrinsics:
+    same_turn = np.abs(before.T_world_camera[:3, :3] - after.T_world_camera[:3, :3]).max() < ROUNDING
+    if size < ROUNDING or not same_turn or before.intrinsics != after.intrinsics:
         return None
     scale = float(np.linalg.norm(after.position)) / size
-    return scale if np.abs(after.position - scale * before.position).max() < SAME * max(size, 1.0) else None
+    return scale if np.abs(after.position - scale * before.position).max() < ROUNDING * max(size, 1.0) else None
 
 
 def _scaled(camera: Camera, scale: float) -> Camera:

@@ -30,8 +30,6 @@ LONGEST_PX = 1600
 LIKELY_FOV_RAD = 1.1
 """Horizontal field of view that a photo is taken to have until the photos tell: a phone's."""
 SEED = 20
-CHECK_S = 0.2
-"""How often it is looked whether the job was cancelled."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -163,7 +161,7 @@ def _cancellable(colmap: ModuleType, progress: Progress, step: Callable[..., Any
     with ThreadPoolExecutor(1) as pool:
         running = pool.submit(step, cancellation_token=token)
         while not running.done():
-            wait([running], timeout=CHECK_S)
+            wait([running], timeout=0.2)  # seconds, then it is looked whether the job was cancelled
             if progress.token.cancelled:
                 token.cancel()
         progress.check()

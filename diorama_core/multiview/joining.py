@@ -12,20 +12,13 @@ from scipy.optimize import linear_sum_assignment
 from diorama_core.geometry.projection import box_iou, cuboid_corners, visible_bounds
 from diorama_core.library.taxonomy import PORTABLE, Category, broad
 from diorama_core.multiview.joint_fit import JointCuboid, PhotoBoxes, fit_jointly, meeting_point
+from diorama_core.multiview.settings import SETTINGS, JoiningSettings
 from diorama_core.perception.metrology.placement import FLOOR
 from diorama_core.progress import Progress
 
-UNSEEN_EDGE_FACTOR = 0.5
-"""Of a box's area, for each of its edges that is hidden or cut: how well a photo shows an object."""
-MIN_OVERLAP = 0.1
-"""Of a cuboid's outline with a box of its kind in another photo, intersection over union."""
 FARTHER = tuple(float(f) for f in np.geomspace(0.6, 1.67, 9))
 FARTHER_PENALTY = tuple(float(np.exp(-0.5 * (np.log(f) / 0.3) ** 2)) for f in FARTHER)
 """Distances at which a thing that one photo shows is looked for in another, and how unlikely each is."""
-RAISED_COST = 6.0
-"""Of a portable thing that stands on something which no photo says it stands on."""
-ROUNDS = 2
-"""How often all boxes are claimed anew by cuboids that know the others."""
 
 
 Boxes = tuple[tuple[int, int], ...]
@@ -74,21 +67,23 @@ class Track:
         return [(photos[photo].boxes, box) for photo, box in self.fitted]
 
 
-def joined_objects(photos: Sequence[RoomPhoto], progress: Progress | None = None) -> tuple[Track, ...]:
+def joined_objects(
+    photos: Sequence[RoomPhoto], progress: Progress | None = None, settings: JoiningSettings = SETTINGS
+) -> tuple[Track, ...]:
     """The room's objects. Every box is of one of them; an object has one box at most in a photo.
 
     Photo by photo, known objects claim the boxes of their kind that their cuboids cover best; what is left is new. Then
     every photo's boxes are claimed again by cuboids that were fitted to all other photos.
     """
     progress = progress or Progress()
-    joining = _Joining(photos)
+    joining = _Joining(photos, settings)
     tracks: list[Track] = []
-    steps = len(photos) * (1 + ROUNDS)
+    steps = len(photos) * (1 + settings.rounds)
     for number in range(len(photos)):
         progress.report(number / steps, f"joining photo {number + 1} of {len(photos)}")
         tracks = joining.with_photo(tracks, number)
     if len(photos) > 1:
-        for turn in range(ROUNDS):
+        for turn in range(settings.rounds):
             for number in range(len(photos)):
                 progress.report((len(photos) * (1 + turn) + number) / steps, f"joining photo {number + 1} again")
                 tracks = joining.with_photo(joining.without_photo(tracks, number), number)
@@ -98,8 +93,8 @@ def joined_objects(photos: Sequence[RoomPhoto], progress: Progress | None = None
 class _Joining:
     """Tracks of some photos; what was fitted once is not fitted again."""
 
-    def __init__(self, photos: Sequence[RoomPhoto]) -> None:
-        self._photos = photos
+    def __init__(self, photos: Sequence[RoomPhoto], settings: JoiningSettings) -> None:
+        self._photos, self._settings = photos, settings
         self._fits: dict[Boxes, Track] = {}
 
     def with_photo(self, tracks: list[Track], number: int) -> list[Track]:
@@ -111,7 +106,7 @@ class _Joining:
             for box in range(count):
                 if broad(track.kind.name) == broad(photo.alone[box].kind.name):
                     shared[k, box] = self._overlap(track, number, box)
-        claimed = claims(shared)
+        claimed = claims(shared, self._settings)
         found = list(tracks)
         for box in range(count):
             if box in claimed:
@@ -133,18 +128,19 @@ class _Joining:
 
     def _fitted(self, boxes: Boxes) -> Track:
         if boxes not in self._fits:
-            self._fits[boxes] = fitted_track(boxes, self._photos)
+            self._fits[boxes] = fitted_track(boxes, self._photos, self._settings)
         return self._fits[boxes]
 
 
-def claims(shared: Float[np.ndarray, "t b"]) -> dict[int, int]:
+def claims(shared: Float[np.ndarray, "t b"], settings: JoiningSettings = SETTINGS) -> dict[int, int]:
     """Which object claims each box: the number of the one by the number of the other.
 
     Args:
         shared: how much of each object's outline is each box's (`overlap`); 0 where their kinds differ.
+        settings: numbers to work with.
     """
     rows, columns = linear_sum_assignment(-shared) if shared.size else ((), ())
-    return {int(c): int(r) for r, c in zip(rows, columns, strict=True) if shared[r, c] >= MIN_OVERLAP}
+    return {int(c): int(r) for r, c in zip(rows, columns, strict=True) if shared[r, c] >= settings.min_overlap}
 
 
 def overlap(cuboid: JointCuboid, only: tuple[RoomPhoto, int] | None, photo: RoomPhoto, box: int) -> float:
@@ -189,7 +185,7 @@ def _shared(cuboid: JointCuboid, photo: RoomPhoto, box: int) -> float:
     return float(box_iou(shown, seen)) if (shown[2:] > shown[:2]).all() else 0.0
 
 
-def fitted_track(boxes: Boxes, photos: Sequence[RoomPhoto]) -> Track:
+def fitted_track(boxes: Boxes, photos: Sequence[RoomPhoto], settings: JoiningSettings = SETTINGS) -> Track:
     """The cuboid of some boxes: of one box what its photo says, of more the joint fit."""
     alone = [photos[photo].alone[box] for photo, box in boxes]
     names = [a.kind.name for a in alone]
@@ -203,17 +199,17 @@ def fitted_track(boxes: Boxes, photos: Sequence[RoomPhoto]) -> Track:
     )
     middle = np.median([a.centre for a in alone], axis=0)
     starts = [middle, meeting_point(sightings)]
-    found = fit_jointly(sightings, kind, starts, on_floor=standing, upright_m=float(middle[2]))
-    if standing and kind.name in PORTABLE and found.cost > RAISED_COST:
-        raised = fit_jointly(sightings, kind, starts[1:], on_floor=False)
-        found = raised if raised.cost + RAISED_COST < found.cost else found
+    found = fit_jointly(sightings, kind, starts, on_floor=standing, upright_m=float(middle[2]), settings=settings)
+    if standing and kind.name in PORTABLE and found.cost > settings.raised_cost:
+        raised = fit_jointly(sightings, kind, starts[1:], on_floor=False, settings=settings)
+        found = raised if raised.cost + settings.raised_cost < found.cost else found
     return Track(boxes, kind, found)
 
 
-def shown(photo: RoomPhoto, box: int) -> float:
+def shown(photo: RoomPhoto, box: int, settings: JoiningSettings = SETTINGS) -> float:
     """How well a photo shows an object: the area of its box, less where edges are hidden or cut."""
     seen = photo.boxes.observations
     x1, y1, x2, y2 = seen.box_px[box]
     unseen = int((seen.hidden(box) | seen.truncated[box]).sum())
     k = photo.boxes.camera.intrinsics
-    return float((x2 - x1) * (y2 - y1) / (k.width * k.height)) * UNSEEN_EDGE_FACTOR**unseen
+    return float((x2 - x1) * (y2 - y1) / (k.width * k.height)) * settings.unseen_edge**unseen

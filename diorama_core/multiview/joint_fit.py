@@ -19,36 +19,21 @@ import numpy as np
 from jaxtyping import Bool, Float, Int
 
 from diorama_core.library.taxonomy import Category
+from diorama_core.multiview.settings import SETTINGS, JoiningSettings
 from diorama_core.perception.metrology.box_observations import BoxObservations
 from diorama_core.perception.metrology.priors import SizeMode, size_modes
 from diorama_core.perception.metrology.problem import UNTOLD, Problems, View, residuals, stacked
 from diorama_core.perception.metrology.rows import row
 from diorama_core.scene.types import Camera
 
+NEAR_M = 0.15
+"""What is nearer is not before a camera."""
 UNKNOWNS = 7
 EDGES = 4
-FIRST_ITERATIONS, ITERATIONS, FINALISTS = 6, 20, 6
-"""All starts go a few steps; the best go on."""
 STEP = 1e-4
 LONGEST = np.array([0.5, 0.5, 0.4, 0.4, 0.4, 0.3, 0.3])
-"""Of one step of each unknown."""
-BASE_SIGMA_M = 0.3
-"""Of the height of what need not stand on the floor, about what one photo says."""
-PLACE_SIGMA_M = 0.5
-"""Of the place that photos say each by itself: it decides where rays hardly cross."""
-MAX_SIGMAS = 2.5
-"""So far may a size be from its kind's."""
-ODD_ANGLE_COST, ODD_OF_SQUARE_KIND_COST = 1.5, 8.0
-"""Of a heading off the room's axes, and of one of a kind that hardly ever stands so."""
-MIN_PHOTOS_OF_ODD = 4
-"""Fewer do not tell that what usually stands along the axes does not."""
+"""Length of one step of each unknown, at most."""
 ODD_STARTS = np.radians((0.0, 30.0, 60.0, 90.0, 120.0, 150.0))
-NEAREST_M = 0.15
-SURE = (0.0, 0.0, 0.0)
-HIDDEN_ODDS = 10.0
-"""That an object goes on beyond an edge where several photos say that something hides it."""
-MAX_HIDDEN = 1.0
-"""Sigmas that a cuboid which goes on behind something costs at most for each hidden edge."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -72,7 +57,7 @@ class JointCuboid:
     size_m: Float[np.ndarray, "3"]
     cost: float
     """Everything that speaks against it, in squared sigmas."""
-    log_size_sigma: tuple[float, float, float] = SURE
+    log_size_sigma: tuple[float, float, float] = (0.0, 0.0, 0.0)
     """How far off the logarithms of its extents may be: depths of thin things hardly show in boxes."""
     place_sigma_m: tuple[float, float] = (0.0, 0.0)
     """How far off x and y of its centre may be: rays from places close together hardly cross."""
@@ -85,6 +70,7 @@ def fit_jointly(
     *,
     on_floor: bool,
     upright_m: float | None = None,
+    settings: JoiningSettings = SETTINGS,
 ) -> JointCuboid:
     """Fit one cuboid.
 
@@ -94,10 +80,11 @@ def fit_jointly(
         starts: middles to start from, the first of which is what the photos say each by itself.
         on_floor: whether its base is the floor's height.
         upright_m: expected height of the base, where it is not on the floor; that of the first start by default.
+        settings: numbers to work with.
     """
     modes = size_modes(kind.name)
-    odd = kind.quarter_turns_free or len(sightings) >= MIN_PHOTOS_OF_ODD
-    odd_cost = ODD_ANGLE_COST if kind.quarter_turns_free else ODD_OF_SQUARE_KIND_COST
+    odd = kind.quarter_turns_free or len(sightings) >= settings.min_photos_of_odd
+    odd_cost = settings.odd_angle_cost if kind.quarter_turns_free else settings.odd_square_cost
     rows = [(mode, yaw, free) for mode in modes for yaw, free in _headings(mode, odd=odd)]
     batch = [(mode, yaw, free, start) for mode, yaw, free in rows for start in starts]
     unknowns = np.array([[*s[:2], *mode.log_size, 0.0 if on_floor else s[2], yaw] for mode, yaw, _, s in batch])
@@ -105,11 +92,11 @@ def fit_jointly(
         unknowns[:, 5] -= np.exp(unknowns[:, 4]) / 2
     fixed = np.array([[False] * 5 + [on_floor, not free] for _, _, free, _ in batch])
     base_m = float(np.median([s[2] for s in starts])) if upright_m is None else upright_m
-    problem = _Joint(sightings, [b[0] for b in batch], starts[0][:2], None if on_floor else base_m)
+    problem = _Joint(sightings, [b[0] for b in batch], starts[0][:2], None if on_floor else base_m, settings)
     extra = np.array([mode.cost + (odd_cost if free else 0.0) for mode, _, free, _ in batch])
-    unknowns, costs = _minimised(problem, unknowns, fixed, FIRST_ITERATIONS)
-    last = np.argsort(costs + extra, kind="stable")[:FINALISTS]
-    unknowns, costs = _minimised(problem.rows(last), unknowns[last], fixed[last], ITERATIONS)
+    unknowns, costs = _minimised(problem, unknowns, fixed, settings.first_iterations)
+    last = np.argsort(costs + extra, kind="stable")[: settings.finalists]
+    unknowns, costs = _minimised(problem.rows(last), unknowns[last], fixed[last], settings.iterations)
     costs = costs + extra[last]
     best = int(np.argmin(costs))
     x, y, *log_size, base, yaw = unknowns[best]
@@ -144,7 +131,9 @@ class _Joint:
         modes: Sequence[SizeMode],
         place: Float[np.ndarray, "2"],
         base_m: float | None,
+        settings: JoiningSettings,
     ) -> None:
+        self._settings = settings
         self._place, self._base_m = place, base_m
         self._views: list[tuple[Camera, View, Problems]] = []
         for photo, index in sightings:
@@ -159,7 +148,7 @@ class _Joint:
                     base_sigma_m=1.0,
                     cut_sigma=UNTOLD,
                     hidden_px=photo.hidden_px[index],
-                    hidden_odds=np.where(photo.hidden_px[index] > 0, HIDDEN_ODDS, 0.0),
+                    hidden_odds=np.where(photo.hidden_px[index] > 0, settings.hidden_odds, 0.0),
                 )
                 for mode in modes
             ]
@@ -179,7 +168,8 @@ class _Joint:
 
     def bounded(self, unknowns: Float[np.ndarray, "n 7"]) -> Float[np.ndarray, "n 7"]:
         """The nearest unknowns with plausible sizes."""
-        off = np.clip(unknowns[:, 2:5] - self._log_size, -MAX_SIGMAS * self._sigma, MAX_SIGMAS * self._sigma)
+        most = self._settings.max_sigmas * self._sigma
+        off = np.clip(unknowns[:, 2:5] - self._log_size, -most, most)
         return np.column_stack([unknowns[:, :2], self._log_size + off, unknowns[:, 5:]])
 
     def __call__(self, unknowns: Float[np.ndarray, "n 7"], repeats: int = 1) -> Float[np.ndarray, "n r"]:
@@ -189,27 +179,28 @@ class _Joint:
         for camera, view, problems in self._views:
             rows = problems.rows(chosen).changed(yaw_rad=unknowns[:, 6])
             edges = residuals(_as_seen(unknowns, camera, view), rows, view)[:, :EDGES]
-            parts.append(np.where((rows.hidden_px > 0) & (edges > 0), _bounded(edges), edges))
+            behind = (rows.hidden_px > 0) & (edges > 0)
+            parts.append(np.where(behind, _bounded(edges, self._settings.max_hidden), edges))
         size = np.einsum("nij,nj->ni", self._whitening[chosen], unknowns[:, 2:5] - self._log_size[chosen])
-        parts += [size, (unknowns[:, :2] - self._place) / PLACE_SIGMA_M]
+        parts += [size, (unknowns[:, :2] - self._place) / self._settings.place_sigma_m]
         if self._base_m is not None:
             middle = unknowns[:, 5:6] + np.exp(unknowns[:, 4:5]) / 2
-            parts += [(middle - self._base_m) / BASE_SIGMA_M, np.minimum(unknowns[:, 5:6], 0.0) / 0.05]
+            parts += [(middle - self._base_m) / self._settings.base_sigma_m, np.minimum(unknowns[:, 5:6], 0.0) / 0.05]
         return np.concatenate(parts, axis=1)
 
 
-def _bounded(edges: Float[np.ndarray, "n 4"]) -> Float[np.ndarray, "n 4"]:
+def _bounded(edges: Float[np.ndarray, "n 4"], most: float) -> Float[np.ndarray, "n 4"]:
     """Residuals that reach a limit: how much more something hides does not matter, however many photos say it."""
-    return np.asarray(edges / np.sqrt(1.0 + (edges / MAX_HIDDEN) ** 2))
+    return np.asarray(edges / np.sqrt(1.0 + (edges / most) ** 2))
 
 
 def _as_seen(unknowns: Float[np.ndarray, "n 7"], camera: Camera, view: View) -> Float[np.ndarray, "n 6"]:
-    """The same cuboids as unknowns of a photo's own problem (`metrology.problem`)."""
+    """The cuboids as unknowns of a photo's own problem (`metrology.problem`)."""
     ahead = view.heading
     right = np.array([ahead[1], -ahead[0]])
     plan = unknowns[:, :2] - camera.position[:2]
     forward = plan @ ahead
-    safe = np.maximum(forward, NEAREST_M)
+    safe = np.maximum(forward, NEAR_M)
     return np.column_stack([plan @ right / safe, np.log(safe), unknowns[:, 2:5], unknowns[:, 5]])
 
 

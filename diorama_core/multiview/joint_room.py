@@ -40,9 +40,9 @@ class JointRoomSettings:
     shadow: float = 1.0
     """What a photo says against places that a wall hides from it, beside what it says for those that it looks into."""
     behind: float = 0.35
-    """And what the wall says against all places behind its line."""
+    """Weight of what the wall says against all places behind its line."""
     beside_view: float = 0.15
-    """Of the floor that a photo only assumes, beside what it looks into."""
+    """Weight of the floor that a photo only assumes, beside what it looks into."""
     unknown: float = -0.02
     standing: float = 4.0
     """Where objects stand and cameras are is the room."""

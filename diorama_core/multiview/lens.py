@@ -16,8 +16,6 @@ from diorama_core.scene.types import Intrinsics
 
 MIN_BENT_PX = 0.5
 """A lens that moves no pixel of the border farther is taken for straight."""
-ALONG = 9
-"""Points on each side of a box that tell where it goes."""
 
 
 @dataclass(frozen=True)
@@ -113,6 +111,7 @@ def _moved(marked: LabelledBox, k: Intrinsics, lens: Lens) -> LabelledBox:
 
 
 def _border(x0: float, y0: float, x1: float, y1: float) -> Float[np.ndarray, "n 2"]:
-    x, y = np.linspace(x0, x1, ALONG), np.linspace(y0, y1, ALONG)
-    sides = [np.column_stack([x, np.full(ALONG, v)]) for v in (y0, y1)]
-    return np.vstack([*sides, *(np.column_stack([np.full(ALONG, v), y]) for v in (x0, x1))])
+    along = 9  # points on each side tell where a box goes
+    x, y = np.linspace(x0, x1, along), np.linspace(y0, y1, along)
+    sides = [np.column_stack([x, np.full(along, v)]) for v in (y0, y1)]
+    return np.vstack([*sides, *(np.column_stack([np.full(along, v), y]) for v in (x0, x1))])

@@ -30,7 +30,7 @@ class MountedWallsSettings:
     deepest_m: float = 0.3
     """Deeper things tell little of where their backs are."""
     max_sigma_m: float = 0.1
-    """Of a thing's place across the wall."""
+    """Deviation of a thing's place across the wall."""
     beside_m: float = 0.1
     """How far the middle of a thing may be beyond a wall's end."""
 
@@ -72,7 +72,7 @@ def room_holding(
     mounted: Sequence[JointCuboid],
     settings: MountedWallsSettings = SETTINGS,
 ) -> Architecture:
-    """Of several readings of a room the first of those in which the fewest things on walls are without a wall.
+    """The first of several readings of a room in which the fewest things on walls are without a wall.
 
     Args:
         preferred: taken unless another one holds more.

@@ -10,10 +10,8 @@ from jaxtyping import Float
 
 from diorama_core.geometry.openings import STANDS_OUT_M
 from diorama_core.multiview.joint_fit import JointCuboid
+from diorama_core.multiview.settings import SETTINGS, JoiningSettings
 from diorama_core.scene.types import Architecture, Camera, Pose, Scene, SceneObject, Support, yaw_rotation
-
-PROPORTION_SIGMA = 0.12
-"""Of the logarithms of a shape's proportions, about those of what it stands for."""
 
 
 def acyclic(edges: Sequence[Support]) -> tuple[Support, ...]:
@@ -93,13 +91,16 @@ def set_into_wall(item: SceneObject) -> SceneObject:
 
 
 def in_proportion(
-    size_m: Float[np.ndarray, "3"], log_sigma: Float[np.ndarray, "3"], shape_size_m: Float[np.ndarray, "3"]
+    size_m: Float[np.ndarray, "3"],
+    log_sigma: Float[np.ndarray, "3"],
+    shape_size_m: Float[np.ndarray, "3"],
+    settings: JoiningSettings = SETTINGS,
 ) -> Float[np.ndarray, "3"]:
     """Extents by a measurement and by the proportions of a shape, of unknown scale, each as sure as it is."""
     measured, shape = np.log(size_m), np.log(shape_size_m)
     known = 1.0 / np.maximum(log_sigma, 1e-3) ** 2
-    weight = 1.0 / (np.maximum(log_sigma, 1e-3) ** 2 + PROPORTION_SIGMA**2)
+    weight = 1.0 / (np.maximum(log_sigma, 1e-3) ** 2 + settings.proportion_sigma**2)
     scale = float(weight @ (measured - shape) / weight.sum())
-    own = 1.0 / PROPORTION_SIGMA**2
+    own = 1.0 / settings.proportion_sigma**2
     extents: Float[np.ndarray, "3"] = np.exp((known * measured + own * (shape + scale)) / (known + own))
     return extents

@@ -35,19 +35,19 @@ class RegistrationSettings:
     """How a further photo is matched to a scene."""
 
     near_share: float = 0.025
-    """Of the photo's width: so near to its pixel a point of the scene's surfaces is projected where these are right."""
+    """Error over the photo's width within which a point of the scene's surfaces is right."""
     min_points: int = 30
     min_share: float = 0.2
-    """Of the common points, whose surfaces must be right."""
+    """Share of the common points whose surfaces must be right."""
     ransac_turns: int = 3000
     epipolar_px: float = 1.5
     surface_share: float = 0.01
-    """Of the photo's width: how far off points of the surfaces usually are."""
+    """Usual error of points of the surfaces, as a share of the photo's width."""
     focal_log_sigma: float = 0.03
-    """Of a focal length that is another photo's of the same size."""
+    """Deviation of a focal length that is another photo's of the same size."""
     max_terms: int = 1500
     scales: tuple[float, float, float, float, float, float, float] = (0.1, 0.1, 0.1, 1.0, 1.0, 1.0, 0.1)
-    """Of the unknowns: turn (rad), shift (m), logarithm of the focal length."""
+    """Scales of the unknowns: turn (rad), shift (m), logarithm of the focal length."""
     seed: int = 20
 
 
@@ -67,7 +67,7 @@ class CommonPoints:
     """What the new photo has in common with one known photo."""
 
     camera: Camera
-    """Of the known one."""
+    """Camera of the known photo."""
     known_px: Float[np.ndarray, "n 2"]
     new_px: Float[np.ndarray, "n 2"]
     points: Float[np.ndarray, "n 3"]

@@ -5,12 +5,10 @@ from __future__ import annotations
 from pathlib import Path
 
 import numpy as np
-from PIL import Image
+from PIL import ExifTags, Image
 
 from diorama_core.scene.types import Camera, Intrinsics
 
-ORIENTATION = 0x0112
-"""EXIF's tag for how a stored picture is turned."""
 QUARTERS = {3: 2, 6: 1, 8: 3}
 """Clockwise quarter turns that make a stored picture upright, by the tag's value; mirrored ones have no camera."""
 
@@ -19,7 +17,7 @@ def quarters_of(path: Path) -> int:
     """Clockwise quarter turns that a picture's header asks for; 0 where it has no header."""
     try:
         with Image.open(path, formats=("JPEG", "PNG", "WEBP", "TIFF", "MPO", "HEIF")) as picture:
-            return QUARTERS.get(int(picture.getexif().get(ORIENTATION, 1)), 0)
+            return QUARTERS.get(int(picture.getexif().get(ExifTags.Base.Orientation, 1)), 0)
     except (OSError, ValueError, SyntaxError, Image.DecompressionBombError):
         return 0
 

@@ -39,7 +39,7 @@ DEPTH_NETWORKS = (
 INPAINTERS = ("lama", "migan")
 """Best first."""
 FOREGROUNDS = (("birefnet", "birefnet-lite"), ("mvanet",))
-"""Of each kind the best is used, and all kinds together: what they find is joined (supplement A)."""
+"""Networks by kind: of each the best is used, and all kinds together; what they find is joined (supplement A)."""
 PATCH_FEATURES = ("dinov2-large", "dinov2-base", "dinov2-small")
 """Best first; the publication reads an inner block of the large one."""
 

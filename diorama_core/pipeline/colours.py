@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import dataclass
 
 import cv2
 import numpy as np
@@ -18,19 +19,31 @@ from diorama_core.scene.types import Architecture, Camera
 
 KEEP_THEIR_OWN = having("own_colours")
 """Categories whose look is not one colour of one main material."""
-_BIN = 20.0
-_BINS = 16
-"""More than there are along either axis of hue, which reach from -127 to 127."""
-_MIN_PIXELS = 60
-_ADAPTED = 0.5
-"""Share of a light's cast that is taken off: eyes that look at a photo adapt to it in part (CIECAM02's degree of
-adaptation), and a room that looks warm in the photo is to look warm."""
-_MIN_SHARE = 0.25
-"""An object without a colour that covers this much of it is not painted."""
+
+
+@dataclass(frozen=True)
+class MainColourSettings:
+    """When an object has a colour of its own, and how far the photo's is freed of the light's."""
+
+    bin_lab: float = 20.0
+    """Width of a bin of hue (CIELAB); of lightness, which shade changes, it is twice that."""
+    min_pixels: int = 60
+    adapted: float = 0.5
+    """Share of a light's cast that is taken off: eyes that look at a photo adapt to it in part (CIECAM02's degree of
+    adaptation), and a room that looks warm in the photo is to look warm."""
+    min_share: float = 0.25
+    """An object without a colour that covers this much of it is not painted."""
+
+
+SETTINGS = MainColourSettings()
 
 
 def room_illuminant(
-    inputs: Inputs, objects: tuple[DetectedObject, ...], room: Architecture, camera: Camera
+    inputs: Inputs,
+    objects: tuple[DetectedObject, ...],
+    room: Architecture,
+    camera: Camera,
+    settings: MainColourSettings = SETTINGS,
 ) -> Illuminant:
     """The light of a photo that its colours are freed of, by all its pixels and those of unhidden walls and ceiling."""
     shape = (inputs.photo.height, inputs.photo.width)
@@ -38,10 +51,12 @@ def room_illuminant(
     upper = np.array([plane.role != "floor" for plane in room.planes] + [False])  # the last one: no plane
     seen = upper[visible_planes(room.planes, camera, step)]
     walls = cv2.resize(seen.astype(np.uint8), shape[::-1], interpolation=cv2.INTER_NEAREST).astype(bool)
-    return estimate_illuminant(inputs.photo.rgb, walls & ~object_pixels(shape, objects)).partly(_ADAPTED)
+    return estimate_illuminant(inputs.photo.rgb, walls & ~object_pixels(shape, objects)).partly(settings.adapted)
 
 
-def photo_colours(rgb: UInt8[np.ndarray, "h w 3"], objects: tuple[DetectedObject, ...]) -> dict[str, Colour]:
+def photo_colours(
+    rgb: UInt8[np.ndarray, "h w 3"], objects: tuple[DetectedObject, ...], settings: MainColourSettings = SETTINGS
+) -> dict[str, Colour]:
     """Main colour (sRGB 0 to 1) of every object that has a clear one; others are left out.
 
     Pixels near the mask's border and those of smaller objects in front are no evidence, and a lamp's light is no
@@ -56,7 +71,7 @@ def photo_colours(rgb: UInt8[np.ndarray, "h w 3"], objects: tuple[DetectedObject
         nearer |= item.mask
         if item.category in LAMPS:
             inner &= rgb.max(axis=2) < SHINING
-        colour = None if item.category in KEEP_THEIR_OWN else _main_colour(rgb, inner)
+        colour = None if item.category in KEEP_THEIR_OWN else _main_colour(rgb, inner, settings)
         if colour is not None:
             colours[item.id] = colour
     return colours
@@ -81,18 +96,22 @@ def shared_by_sets(
     return shared
 
 
-def _main_colour(rgb: UInt8[np.ndarray, "h w 3"], mask: Bool[np.ndarray, "h w"]) -> Colour | None:
+def _main_colour(
+    rgb: UInt8[np.ndarray, "h w 3"], mask: Bool[np.ndarray, "h w"], settings: MainColourSettings = SETTINGS
+) -> Colour | None:
     """Median of the fullest bin of a coarse Lab grid, and its neighbours'."""
     pixels = rgb[mask]
-    if len(pixels) < _MIN_PIXELS:
+    if len(pixels) < settings.min_pixels:
         return None
     lab = cv2.cvtColor(pixels[None].astype(np.float32) / 255.0, cv2.COLOR_RGB2Lab)[0]
     # Shade varies over one surface, hue hardly: lightness gets wider bins. Grey lies in the middle of one.
-    light, green_red, blue_yellow = np.floor(lab / (2 * _BIN, _BIN, _BIN) + (0.0, 0.5, 0.5)).astype(int).T
-    bins = (light * _BINS + green_red + _BINS // 2) * _BINS + blue_yellow + _BINS // 2
-    seed = np.median(lab[bins == int(np.argmax(np.bincount(bins)))], axis=0)
-    near = np.linalg.norm((lab - seed) / (2.0, 1.0, 1.0), axis=1) < _BIN
-    if near.mean() < _MIN_SHARE:
+    bins = 16  # more than there are along either axis of hue, which reach from -127 to 127
+    widths = settings.bin_lab * np.array([2.0, 1.0, 1.0])
+    light, green_red, blue_yellow = np.floor(lab / widths + (0.0, 0.5, 0.5)).astype(int).T
+    cell = (light * bins + green_red + bins // 2) * bins + blue_yellow + bins // 2
+    seed = np.median(lab[cell == int(np.argmax(np.bincount(cell)))], axis=0)
+    near = np.linalg.norm((lab - seed) / (2.0, 1.0, 1.0), axis=1) < settings.bin_lab
+    if near.mean() < settings.min_share:
         return None
     red, green, blue = (float(c) / 255.0 for c in np.median(pixels[near], axis=0))
     return (red, green, blue)

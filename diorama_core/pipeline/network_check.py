@@ -22,27 +22,6 @@ from diorama_core.models.store import ModelStore
 from diorama_core.pipeline import network_stages
 from diorama_core.progress import Progress
 
-BOXES = (2, 40)
-"""How many a detector finds."""
-KNOWN_FOUND = (1, np.inf)
-"""Of the objects that are known to be there."""
-SAME_IOU = 0.5
-"""Intersection over union from which a box is a known object's."""
-WORDS_APART = (0.02, 2.0)
-"""How much nearer the right words are to a picture than wrong ones, as cosines; 0 where a network ignores its input."""
-MASK_SHARE = (0.2, 0.97)
-"""Of a box that its mask fills, in the median; all of it is the answer of a network that sees no outline."""
-DEPTH_M = (0.8, 8.0)
-"""The median depth of a photo of a room."""
-FOCAL_FACTOR = (0.6, 1.6)
-"""Focal length over the known one."""
-FOREGROUND_SHARE = (0.01, 0.9)
-"""Of the photo."""
-FILL_DIFFERENCE = (0.0, 60.0)
-"""Mean difference, of 255, between a small hole's rim and what fills it."""
-FEATURE_SPREAD = (1e-3, 1e3)
-"""Standard deviation over the patches of a photo."""
-
 
 @dataclass(frozen=True)
 class NetworkCheck:
@@ -146,8 +125,8 @@ Trial = Callable[[ModelStore, Network, Inputs, Progress], tuple[Measurement, ...
 def _detection(store: ModelStore, network: Network, known: Inputs, progress: Progress) -> tuple[Measurement, ...]:
     boxes = network_stages.detector(store, network).detect(known.photo, (), progress)
     found, true = (np.array([b.box for b in some], dtype=float).reshape(-1, 4) for some in (boxes, known.boxes))
-    hits = int((overlaps(found, true).max(axis=0, initial=0.0) >= SAME_IOU).sum())
-    return Measurement("boxes", len(boxes), BOXES), Measurement("known objects found", hits, KNOWN_FOUND)
+    hits = int((overlaps(found, true).max(axis=0, initial=0.0) >= 0.5).sum())
+    return Measurement("boxes", len(boxes), (2, 40)), Measurement("known objects found", hits, (1, np.inf))
 
 
 def _segmentation(store: ModelStore, network: Network, known: Inputs, progress: Progress) -> tuple[Measurement, ...]:
@@ -157,25 +136,27 @@ def _segmentation(store: ModelStore, network: Network, known: Inputs, progress: 
     for (x1, y1, x2, y2), found in zip(boxes.astype(int), masks, strict=True):
         progress.check()
         shares.append(float(found.mask[y1:y2, x1:x2].mean()))
-    return (Measurement("share of a box within its mask", float(np.median(shares)), MASK_SHARE),)
+    # All of a box is the answer of a network that sees no outline.
+    return (Measurement("share of a box within its mask", float(np.median(shares)), (0.2, 0.97)),)
 
 
 def _geometry(store: ModelStore, network: Network, known: Inputs, progress: Progress) -> tuple[Measurement, ...]:
     seen = network_stages.depth_network(store, network).predict(known.photo.rgb, None)
     valid = seen.depth_m > 0
+    median_m = float(np.median(seen.depth_m[valid])) if valid.any() else np.nan
     measured = [
         Measurement("share of pixels with depth", float(valid.mean()), (0.3, 1.0)),
-        Measurement("median depth, metres", float(np.median(seen.depth_m[valid])) if valid.any() else np.nan, DEPTH_M),
+        Measurement("median depth, metres", median_m, (0.8, 8.0)),
     ]
     if known.intrinsics is not None and seen.intrinsics is not None and not network.id.startswith(("metric3d", "da3")):
         ratio = seen.intrinsics.fx / known.intrinsics.fx
-        measured.append(Measurement("focal length over the true one", ratio, FOCAL_FACTOR))
+        measured.append(Measurement("focal length over the true one", ratio, (0.6, 1.6)))
     return tuple(measured)
 
 
 def _foreground(store: ModelStore, network: Network, known: Inputs, progress: Progress) -> tuple[Measurement, ...]:
     mask = network_stages.foreground(store, network).mask(known.photo.rgb)
-    return (Measurement("share of foreground", float(mask.mean()), FOREGROUND_SHARE),)
+    return (Measurement("share of foreground", float(mask.mean()), (0.01, 0.9)),)
 
 
 def _inpainting(store: ModelStore, network: Network, known: Inputs, progress: Progress) -> tuple[Measurement, ...]:
@@ -187,12 +168,12 @@ def _inpainting(store: ModelStore, network: Network, known: Inputs, progress: Pr
     hole[y - half : y + half, x - half : x + half] = True
     filled = network_stages.inpainter(store, network).fill(rgb, hole).astype(float)
     difference = np.abs(filled[hole].mean(axis=0) - rgb[rim & ~hole].mean(axis=0)).mean()
-    return (Measurement("difference of a filled hole from its rim", float(difference), FILL_DIFFERENCE),)
+    return (Measurement("difference of a filled hole from its rim", float(difference), (0.0, 60.0)),)
 
 
 def _features(store: ModelStore, network: Network, known: Inputs, progress: Progress) -> tuple[Measurement, ...]:
     patches = network_stages.patch_features(store, network).patches(known.photo.rgb)
-    return (Measurement("spread of the features", float(patches.std(axis=(0, 1)).mean()), FEATURE_SPREAD),)
+    return (Measurement("spread of the features", float(patches.std(axis=(0, 1)).mean()), (1e-3, 1e3)),)
 
 
 def _text_and_image(store: ModelStore, network: Network, known: Inputs, progress: Progress) -> tuple[Measurement, ...]:
@@ -206,8 +187,9 @@ def _text_and_image(store: ModelStore, network: Network, known: Inputs, progress
         return (Measurement("length of a shape's vector", float(np.linalg.norm(vector)), (0.99, 1.01)),)
     clip = network_stages.open_clip(store, network)
     picture = clip.images([known.photo.rgb])[0]
+    # The cosines are alike where a network ignores its input.
     right, wrong = clip.texts(["a photo of a room with furniture", "a photo of the sea"]) @ picture
-    return (Measurement("cosine with the right words over wrong ones", float(right - wrong), WORDS_APART),)
+    return (Measurement("cosine with the right words over wrong ones", float(right - wrong), (0.02, 2.0)),)
 
 
 def _pose_scale(store: ModelStore, network: Network, known: Inputs, progress: Progress) -> tuple[Measurement, ...]:

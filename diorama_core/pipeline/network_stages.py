@@ -21,11 +21,6 @@ from diorama_core.models.yolox import Yolox
 from diorama_core.perception.foundation.detection import EverydayDetection, OpenVocabularyDetection
 from diorama_core.protocols import DetectionStage
 
-WORDS_THRESHOLD = 0.3
-"""Of LLMDet, which is asked for bare words; its own examples take 0.3 to 0.4."""
-PUBLISHED_BLOCK = 17
-"""Of DINOv2 large, whose features the publication matches; a smaller network's last block is read."""
-
 OPENCLIP_WIDTHS = {"openclip-bigg14": 1280}
 """Numbers of a vector of OpenCLIP, by the network's id; the others have 512."""
 
@@ -38,7 +33,7 @@ def detector(store: ModelStore, chosen: Network) -> DetectionStage:
         return EverydayDetection(Yolox(graph, weights))
     if chosen.id.startswith("llmdet"):
         words = GroundingDino(graph, store.path(chosen, "tokenizer.json"), weights)
-        return OpenVocabularyDetection(words, WORDS_THRESHOLD, template="{}")
+        return OpenVocabularyDetection(words, 0.3, template="{}")  # its examples ask for bare words, at 0.3 to 0.4
     return OpenVocabularyDetection(Owlv2(graph, store.path(chosen, "tokenizer.json"), weights, chosen.side or SIDE))
 
 
@@ -87,7 +82,7 @@ def foreground(store: ModelStore, chosen: Network) -> Foreground:
 
 def patch_features(store: ModelStore, chosen: Network) -> Dinov2:
     """DINOv2; of the large one the inner block that the publication reads."""
-    block = PUBLISHED_BLOCK if chosen.id == "dinov2-large" else None
+    block = 17 if chosen.id == "dinov2-large" else None
     return Dinov2(store.path(chosen, chosen.files[0].path), store.identity(chosen), block)
 
 

@@ -67,8 +67,6 @@ def lacks_depth(given: Inputs) -> bool:
     return given.depth_m is None
 
 
-MAX_BESIDE = 2
-"""Threads for steps beside the others; there are two such steps."""
 LOOKS_AHEAD = "shapes"
 """The artefact whose stage loads what it will need while earlier steps leave a processor idle."""
 DEFAULTS: Artefacts = {"preview": None}
@@ -192,7 +190,8 @@ def evaluate(
     steps = _steps_for(set(wanted), known)
     whole = sum(step.share for step in steps) or 1.0
     done, begun = 0.0, dict[str, Future[Any]]()
-    with _looking_ahead(stages, steps, known) as ahead, ThreadPoolExecutor(MAX_BESIDE) as threads:
+    # There are two steps beside the others.
+    with _looking_ahead(stages, steps, known) as ahead, ThreadPoolExecutor(2) as threads:
         for step in steps:
             known |= {name: begun.pop(name).result() for name in step.takes if name in begun}
             part = progress.part(done / whole, (done + step.share) / whole)

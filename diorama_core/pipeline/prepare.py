@@ -21,8 +21,6 @@ from diorama_core.retrieval.seen_forms import has_form, shape_form
 from diorama_core.retrieval.usual_forms import usual_form_factor
 from diorama_core.workers import Workers, workers
 
-_CHUNK = 12
-
 
 @dataclass(frozen=True)
 class Prepared:
@@ -72,7 +70,8 @@ def prepare_library(
     whole = progress.part(0.0, 0.7 if views else 1.0)
     failures: list[tuple[str, str]] = []
     done = 0
-    chunks = [tuple(missing[i : i + _CHUNK]) for i in range(0, len(missing), _CHUNK)]
+    size = 12
+    chunks = [tuple(missing[i : i + size]) for i in range(0, len(missing), size)]
     for finished in pool.map(partial(_prepare, name, wanted), chunks):
         failures += finished.value if finished.value is not None else [(i, str(finished.error)) for i in finished.item]
         done += len(finished.item)

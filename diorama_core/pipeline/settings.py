@@ -7,12 +7,15 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import fields, is_dataclass, replace
-from typing import Any, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar
 
 from diorama_core.errors import InputError
 from diorama_core.pipeline.stages import Stages
 
-T = TypeVar("T")
+if TYPE_CHECKING:
+    from _typeshed import DataclassInstance
+
+T = TypeVar("T", bound="DataclassInstance")
 
 
 def settings_of(stages: Stages) -> dict[str, float]:
@@ -38,7 +41,8 @@ def with_settings(stages: Stages, values: Mapping[str, float]) -> Stages:
         if "." in name:
             stages = _replaced(stages, name.split("."), value)
         elif value == 0:
-            stages = replace(stages, **{name: None})  # type: ignore[arg-type]  # an optional stage
+            left_out: dict[str, Any] = {name: None}
+            stages = replace(stages, **left_out)
     return stages
 
 
@@ -57,4 +61,4 @@ def _replaced(value: T, names: list[str], number: float) -> T:
         new: Any = _replaced(held, names[1:], number)
     else:
         new = round(number) if isinstance(held, int) else float(number)
-    return replace(value, **{names[0]: new})  # type: ignore[type-var]  # `_numbers` found it in a dataclass
+    return replace(value, **{names[0]: new})

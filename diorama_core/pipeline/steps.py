@@ -31,7 +31,7 @@ class StageStep:
     takes: tuple[str, ...]
     gives: str
     share: float
-    """Of the time that a build takes, roughly."""
+    """Share of the time that a build takes, roughly."""
     needed: Callable[[Inputs], bool] = lambda given: True
     """Whether it runs for what the user gave."""
     dispensable: bool = False

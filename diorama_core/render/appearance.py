@@ -109,7 +109,7 @@ Paint = tuple[Colour | None, Finish | None]
 _Key = tuple[int, Paint, tuple[PhotoMaterial, ...], frozenset[str | None], Scale]
 
 CACHE_BYTES = 256e6
-"""Of the arrays of surfaces that stay in memory: about a million triangles."""
+"""Bytes of the arrays of surfaces that stay in memory: about a million triangles."""
 
 
 def _bytes_of(entry: tuple[trimesh.Scene, tuple[Surface, ...]]) -> float:
@@ -120,7 +120,7 @@ _CACHE: LruCache[_Key, tuple[trimesh.Scene, tuple[Surface, ...]]] = LruCache(CAC
 
 
 GEOMETRY_BYTES = 64e6
-"""Of what is remembered of the parts' geometry, twice: their normals, and their vertices."""
+"""Bytes of what is remembered of the parts' geometry, twice: their normals, and their vertices."""
 _NORMALS: LruCache[bytes, np.ndarray] = LruCache(GEOMETRY_BYTES, lambda normals: float(normals.nbytes))
 _SPLIT: LruCache[bytes, tuple[np.ndarray, np.ndarray]] = LruCache(
     GEOMETRY_BYTES, lambda found: float(found[0].nbytes + found[1].nbytes)

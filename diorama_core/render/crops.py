@@ -19,7 +19,7 @@ CROP_FORMATS = ("JPEG", "PNG", "WEBP", "GIF", "BMP", "TIFF", "AVIF")
 _WORKING_SIDE = 320
 _RIM = 0.02
 _PLAUSIBLE_SHARE = (0.08, 0.97)
-"""Of the picture that an object fills, when the background was told from it."""
+"""Shares of the picture that an object fills, when the background was told from it."""
 _WHOLE = "{name}: the thing could not be told from its background; a cut-out on a transparent one finds better"
 
 

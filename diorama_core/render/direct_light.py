@@ -40,7 +40,7 @@ class SunLight:
     direction: Float[np.ndarray, "3"]
     """Unit vector toward the sun."""
     irradiance: Float[np.ndarray, "3"]
-    """Of what faces it."""
+    """Irradiance of what faces it."""
     blockers: Caster
     """Everything that holds it off, walls and ceiling with their openings too."""
 

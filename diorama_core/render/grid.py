@@ -19,7 +19,7 @@ class Grid:
     normals: Float32[np.ndarray, "h w 3"]
     """Smooth shading normals, toward the viewer."""
     flat_normals: Float32[np.ndarray, "h w 3"]
-    """Of the triangles, toward the viewer."""
+    """Normals of the triangles, toward the viewer."""
     instance: Int[np.ndarray, "h w"]
     depth: Float32[np.ndarray, "h w"]
     """Along the viewing axis."""

@@ -22,9 +22,9 @@ LAMP_LUMENS: Mapping[str, float] = column("lumens")
 WARM: tuple[float, float, float] = (1.0, 0.78, 0.54)
 """Linear colour of a bulb of about 3000 K."""
 SHADE_GLOW = 0.4
-"""Of the shade of a lamp that shines, where 1 is white."""
+"""Brightness of the shade of a lamp that shines, where 1 is white."""
 PANE_GLOW = 0.45
-"""Of a pane before the noon sky, where 1 is white."""
+"""Brightness of a pane before the noon sky, where 1 is white."""
 
 
 def lamps_of(scene: Scene) -> tuple[SceneObject, ...]:

@@ -64,7 +64,7 @@ class Spots:
     normals: Float32[np.ndarray, "n 3"]
     """Smooth."""
     flat_normals: Float32[np.ndarray, "n 3"]
-    """Of the triangles."""
+    """Normals of the triangles."""
     photographed: Bool[np.ndarray, "n"] | None = None
     """Whose colours already hold the light of the room; None where no place's do."""
 
@@ -96,9 +96,9 @@ def studio(bounds: Float[np.ndarray, "2 3"], toward_camera: Float[np.ndarray, "3
 
 
 MAX_BOUNCED = 0.8
-"""Of the light that one ray brings from a near surface: a bright spot met by a few rays would make specks of light."""
+"""Light that one ray brings from a near surface, at most: a bright spot met by a few rays would make specks."""
 MEAN_IRRADIANCE = 0.885
-"""Of the studio's light, averaged over all directions: pictures are about as bright under any room's light."""
+"""Irradiance by the studio's light, averaged over all directions: pictures are as bright under any room's light."""
 MIN_ELEVATION = 0.15
 """Sine of the least elevation of the light in pictures: from below, everything looks odd."""
 

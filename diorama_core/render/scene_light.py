@@ -21,9 +21,9 @@ from diorama_core.render.world import World, placed_surfaces
 from diorama_core.scene.types import Scene, SceneObject
 
 SUN_STRENGTH = 4.5
-"""Of the sun outside the atmosphere relative to what shows a white surface white: its patches are bright, not blank."""
+"""Strength of the sun outside the atmosphere, where 1 shows a white surface white: its patches are not blank."""
 SKY_WINDOW, SKY_AROUND = 1.1, 0.6
-"""Of the noon sky through the largest window, and of what it leaves everywhere in the room."""
+"""Strengths of the noon sky through the largest window, and of what it leaves everywhere in the room."""
 WHITE_LUX = 55.0
 """Light of lamps that shows a white surface white: as an eye that is used to lamps sees it."""
 

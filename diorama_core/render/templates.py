@@ -42,9 +42,9 @@ class TemplateGrid:
     azimuths: int = 36
     size_px: int = 224
     longest_side: float = 0.85
-    """Of the shape, in template units."""
+    """Length of the shape, in template units."""
     distance: float = 1.1
-    """Of the camera from the shape's centre, in template units."""
+    """Distance of the camera from the shape's centre, in template units."""
     fov_deg: float = 60.0
 
     def __len__(self) -> int:
@@ -58,7 +58,7 @@ class TemplateGrid:
 
     @property
     def intrinsics(self) -> Intrinsics:
-        """Of every view."""
+        """Intrinsics of every view."""
         return Intrinsics.from_fov(self.size_px, self.size_px, np.radians(self.fov_deg))
 
     @property
@@ -69,12 +69,12 @@ class TemplateGrid:
 
     @cached_property
     def azimuths_rad(self) -> Float[np.ndarray, "v"]:
-        """Of every view."""
+        """Azimuth of every view."""
         return np.tile(np.arange(self.azimuths) * 2 * np.pi / self.azimuths, len(self.elevations_deg))
 
     @cached_property
     def elevations_rad(self) -> Float[np.ndarray, "v"]:
-        """Of every view."""
+        """Elevation of every view."""
         return np.repeat(np.radians(self.elevations_deg), self.azimuths)
 
     @cached_property
@@ -105,9 +105,9 @@ class Templates:
 
     grid: TemplateGrid
     centre_object: Float[np.ndarray, "3"]
-    """Of the bounding box; the origin for shapes in the canonical frame."""
+    """Centre of the bounding box; the origin for shapes in the canonical frame."""
     size_m: Float[np.ndarray, "3"]
-    """Of the bounding box."""
+    """Size of the bounding box."""
     depth_codes: UInt16[np.ndarray, "v h w"]
     """Depth in steps of the grid's depth range, from 1; 0 where nothing is seen."""
     normal_codes: UInt16[np.ndarray, "v h w"]

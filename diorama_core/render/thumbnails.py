@@ -52,7 +52,7 @@ def thumbnail(
 
 
 def _whole_png(data: bytes) -> bytes:
-    """The same bytes; raises `ValueError` when they are not all of a PNG."""
+    """The bytes; raises `ValueError` when they are not all of a PNG."""
     if not (data.startswith(b"\x89PNG\r\n\x1a\n") and data.endswith(b"IEND\xaeB`\x82")):
         raise ValueError("it is no whole PNG")
     return data

@@ -44,7 +44,7 @@ class Places:
     normals: Float32[np.ndarray, "n 3"]
     """Smooth shading normals, toward the viewer."""
     flat_normals: Float32[np.ndarray, "n 3"]
-    """Of the triangle, toward the viewer."""
+    """Normal of the triangle, toward the viewer."""
     albedo: Float32[np.ndarray, "n 3"]
     """Linear base colour."""
     alpha: Float32[np.ndarray, "n"]

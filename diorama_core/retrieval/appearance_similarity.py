@@ -26,23 +26,17 @@ from diorama_core.render.templates import TemplateGrid, templates_with_faces
 from diorama_core.render.view_features import EDGES_WIDTH, OUTLINE_WIDTH, outline_and_edges
 from diorama_core.retrieval.feature_cache import cached_features, has_features
 from diorama_core.retrieval.outlines import filled, open_share
+from diorama_core.retrieval.settings import SETTINGS, SimilaritySettings
 from diorama_core.scene.values import ArrayValue
 
 NEUTRAL = 235
 """Gray level of what a crop does not show, and of the ground of a shape's pictures."""
 SIDE_PX = 224
-_MARGIN = 0.06
 _GRID = TemplateGrid(elevations_deg=(8.0, 28.0), azimuths=12, size_px=72, longest_side=0.85, distance=2.2, fov_deg=32.0)
 """Views as photos of rooms have them, with little perspective."""
 EMBEDDED_FEATURES = f"views-3-{_GRID.key}"
 """Cache key of the shapes' features; changes with the kind of features."""
 _FORM_WIDTH = 2 * (OUTLINE_WIDTH + EDGES_WIDTH)
-_EDGES_SHARE, _EDGES_OF_DOUBTFUL = 0.5, 0.45
-"""Weight of inner edges relative to the outline, and its increase where the outline is uncertain."""
-_LAYOUT_WEIGHT = 0.5
-"""What the places of colours say beside the form."""
-_COLOUR_WEIGHTS = (0.1, 0.4)
-"""Of main colours, beside the views of an object that is seen whole, and of one of which little is seen."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -69,7 +63,7 @@ class ObjectCrop(ArrayValue):
         window = slice(rows[0], rows[-1] + 1), slice(columns[0], columns[-1] + 1)
         shown = np.where(self.mask[window][..., None], self.rgb[window], NEUTRAL).astype(np.uint8)
         height, width = shown.shape[:2]
-        side = round((1 + 2 * _MARGIN) * max(height, width)) + 1
+        side = round((1 + 2 * 0.06) * max(height, width)) + 1  # a margin on each side
         square = np.full((side, side, 3), NEUTRAL, np.uint8)
         top, left = (side - height) // 2, (side - width) // 2
         square[top : top + height, left : left + width] = shown
@@ -92,6 +86,7 @@ class EmbeddedSimilarity:
     library: ShapeLibrary = field(repr=False)
     folder: Path | None = field(default=None, repr=False)
     """Cache folder of view features; `features` in Diorama's cache folder by default."""
+    settings: SimilaritySettings = SETTINGS.similarity
 
     def of(self, item: ObjectCrop, shapes: Sequence[Shape]) -> Float[np.ndarray, " n"]:
         """The weight of the views relative to the main colours grows with visibility."""
@@ -102,11 +97,14 @@ class EmbeddedSimilarity:
         if query is None or item.visible <= 0 or not len(shapes):
             return colours
         views = np.stack([self._views(s, appearance) for s, appearance in zip(shapes, appearances, strict=True)])
-        form = np.clip(views[..., :_FORM_WIDTH] @ (query[:_FORM_WIDTH] * _form_weights(item.mask_trust)), 0.0, 1.0)
+        weights = _form_weights(item.mask_trust, self.settings)
+        form = np.clip(views[..., :_FORM_WIDTH] @ (query[:_FORM_WIDTH] * weights), 0.0, 1.0)
         layout = layout_agreement(query[_FORM_WIDTH:], views[..., _FORM_WIDTH:])
-        alike = (form + _LAYOUT_WEIGHT * layout).max(axis=1)
-        of_colours = float(np.interp(1.0 - item.visible, (0.0, 1.0), _COLOUR_WEIGHTS))
-        of_views = item.visible * (1 + _LAYOUT_WEIGHT)
+        alike = (form + self.settings.layout * layout).max(axis=1)
+        of_colours = float(
+            np.interp(1.0 - item.visible, (0.0, 1.0), (self.settings.colours, self.settings.colours_of_hidden))
+        )
+        of_views = item.visible * (1 + self.settings.layout)
         return (of_colours * colours + item.visible * alike) / (of_colours + of_views)
 
     def prepare(self, shape: Shape) -> None:
@@ -138,7 +136,7 @@ class EmbeddedSimilarity:
 
 
 def _features_of_views(appearance: ShapeAppearance) -> Float[np.ndarray, "v width"]:
-    """Of every view; zeros where nothing is seen, and for shapes without a surface."""
+    """Features of every view; zeros where nothing is seen, and for shapes without a surface."""
     rows = np.zeros((len(_GRID), _FORM_WIDTH + LAYOUT_WIDTH))
     if not len(appearance.faces) or np.ptp(appearance.vertices, axis=0).max() <= 0:
         return rows
@@ -162,8 +160,9 @@ def _feature(rgb: UInt8[np.ndarray, "h w 3"], mask: Bool[np.ndarray, "h w"]) -> 
     return np.concatenate([*form[0], *form[1], colour_layout(rgb, mask)]).astype(np.float64)
 
 
-def _form_weights(mask_trust: float) -> Float[np.ndarray, "width"]:
+def _form_weights(mask_trust: float, settings: SimilaritySettings) -> Float[np.ndarray, "width"]:
     """How much each number says about form: outlines and gaps of doubtful masks little; the sum's parts add up to 1."""
-    open_, edges = open_share(mask_trust), _EDGES_SHARE + _EDGES_OF_DOUBTFUL * (1.0 - mask_trust)
+    open_ = open_share(mask_trust, settings)
+    edges = settings.edges + settings.edges_of_doubtful * (1.0 - mask_trust)
     outline = np.repeat([1.0 - edges, edges], [OUTLINE_WIDTH, EDGES_WIDTH])
     return np.concatenate([open_ * outline, (1.0 - open_) * outline])

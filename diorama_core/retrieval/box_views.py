@@ -15,10 +15,8 @@ from diorama_core.library.taxonomy import Mount, SizePrior, category
 from diorama_core.scene.types import Intrinsics
 
 HEIGHTS_M = np.linspace(0.7, 2.2, 16)
-"""Of cameras above the floor."""
+"""Heights of cameras above the floor."""
 DISTANCES_M = np.geomspace(0.7, 9.0, 48)
-CERTAIN = 0.02
-"""Of the likelihood that is spread evenly over all kinds: boxes are drawn by people."""
 
 
 @dataclass(frozen=True)
@@ -36,13 +34,22 @@ class BoxViewSettings:
     ceiling_m: float = 2.55
     ceiling_sigma_m: float = 0.3
     view_sigma: float = 0.3
-    """Of the logarithms of sizes read off a box: turns, perspective, ornaments."""
+    """Deviation of the logarithms of sizes read off a box: turns, perspective, ornaments."""
     hidden_share: float = 0.15
     hidden_range: float = 2.0
-    """Of things much of which is hidden: then any smaller size, over this range of its logarithm, is as likely."""
+    """Range of a logarithm over which any smaller size is as likely, of things much of which is hidden."""
     also_carried: float = 0.5
     """How often boxes, baskets and plants lie on other things, which else stand on the floor."""
     border_px: float = 3.0
+    certain: float = 0.02
+    """Likelihood that is spread evenly over all kinds: boxes are drawn by people."""
+    anywhere: float = 0.1
+    """How likely a carrier's distance is not what its kind's usual size says."""
+    reach_m: float = 0.15
+    reach_share: float = 0.05
+    """How far before and behind a carrier a thing on it may seem to be: by itself, and for every metre of distance."""
+    level_sigma: float = 0.15
+    """Deviation of the height of a top or seat, as a share of it."""
 
 
 SETTINGS = BoxViewSettings()
@@ -98,7 +105,7 @@ def box_likelihood(view: BoxView, kind: str, settings: BoxViewSettings = SETTING
     elif entry.mount == "floor" and kind in CARRIED_KINDS:
         lying = _standing(view, entry.priors, "surface", settings)
         likely = (1.0 - settings.also_carried) * likely + settings.also_carried * view.carried * lying
-    return likely + CERTAIN
+    return likely + settings.certain
 
 
 def _standing(

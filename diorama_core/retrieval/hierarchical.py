@@ -30,7 +30,7 @@ from diorama_core.retrieval.appearance_similarity import (
 from diorama_core.retrieval.measured_sizes import as_measured
 from diorama_core.retrieval.neighbours import with_neighbours
 from diorama_core.retrieval.outlines import outline_agreement, whole_outline
-from diorama_core.retrieval.pools import NAMED_POOL, Pool, RetrievalQuery, pool_for, size_cost
+from diorama_core.retrieval.pools import Pool, RetrievalQuery, pool_for, size_cost
 from diorama_core.retrieval.seen_forms import seen_form_factor, shape_form
 from diorama_core.retrieval.settings import SETTINGS, RankingSettings, RetrievalSettings
 from diorama_core.retrieval.usual_forms import usual_form_factor
@@ -59,9 +59,9 @@ class HierarchicalRetrieval:
     """Resolution of the silhouettes, both ways."""
     size_weight: float = 0.3
     silhouette_weight: float = 0.4
-    """Of a mask that can be trusted; less for doubtful ones."""
+    """Weight of a mask that can be trusted; less for doubtful ones."""
     similarity_weight: float = 1.3
-    """Of an object that is seen whole; less, down to a quarter, for cut, hidden and badly outlined ones."""
+    """Weight for an object that is seen whole; less, down to a quarter, for cut, hidden and badly outlined ones."""
     similarity: AppearanceSimilarity | None = None
     """Compares looks; by colours, outline and edges where None."""
     settings: RetrievalSettings = SETTINGS
@@ -89,7 +89,7 @@ class HierarchicalRetrieval:
         pools = self._pools(measured, sizes, groups, geometry.supports, senses)
         centres = np.array([cuboids[o.id].centre for o in measured]).reshape(-1, 3)
         parents = _parent_indices(measured, geometry.supports)
-        similarity = self.similarity or EmbeddedSimilarity(self.library)
+        similarity = self.similarity or EmbeddedSimilarity(self.library, settings=self.settings.similarity)
         scores: list[dict[str, float]] = []
         sight: list[float] = []
         for index, item in enumerate(measured):
@@ -101,7 +101,7 @@ class HierarchicalRetrieval:
             observed = _Observation(cuboids[item.id], seen, whole_outline(seen), visible, named[index], colours)
             object_crop = ObjectCrop(inputs.photo.rgb, item.mask, item.label, visible, seen.mask_trust)
             alike = similarity.of(object_crop, [m.shape for m in members])
-            words, said = words_factor(self.library, item.label, item.category, [m.shape for m in members])
+            words, said = words_factor(self.library, item.label, item.category, [m.shape for m in members], ranking)
             described = (said == 1) & (said < 1).any()
             factors = [
                 m.kind_factor * float(w) * self._of_form(m.shape, item, described=d)
@@ -125,10 +125,10 @@ class HierarchicalRetrieval:
         """Load what is compared of the shapes of these kinds, step by step: all of those that are few enough."""
         load_open3d()
         repr(self)  # the libraries remember the names of all shapes' geometry, of which the stage's own name is made
-        similarity = self.similarity or EmbeddedSimilarity(self.library)
+        similarity = self.similarity or EmbeddedSimilarity(self.library, settings=self.settings.similarity)
         for kind in dict.fromkeys(box.category for box in boxes if is_named(box.label)):
             shapes = self.library.in_category(kind)
-            for shape in shapes if len(shapes) <= NAMED_POOL else ():
+            for shape in shapes if len(shapes) <= self.settings.pools.named_pool else ():
                 yield
                 if isinstance(similarity, EmbeddedSimilarity):
                     similarity.prepare(shape)
@@ -169,7 +169,7 @@ class HierarchicalRetrieval:
         targets, poses = quarter_turns(shape, item.cuboid)
         cost = np.array([size_cost(shape.size_m, t) for t in targets])
         silhouettes = item.seen.silhouettes(appearance.caster, poses)
-        outline = outline_agreement(item.seen, item.whole, silhouettes)
+        outline = outline_agreement(item.seen, item.whole, silhouettes, self.settings.similarity)
         of_size, of_outline, of_appearances = self._weights(item)
         fit = of_size * np.exp(-cost / 2) + of_outline * outline
         score = float((fit.max() + of_appearances * like) / (of_size + of_outline + of_appearances))
@@ -189,10 +189,12 @@ class HierarchicalRetrieval:
         What the label describes is as usual as can be.
         """
         appearance = self._appearance(shape)
-        seen = seen_form_factor(shape_form(self.library, shape, appearance), item.seen_form) if item.seen_form else 1.0
+        seen, settings = 1.0, self.settings.forms
+        if item.seen_form:
+            seen = seen_form_factor(shape_form(self.library, shape, appearance), item.seen_form, settings)
         if described or item.mask_confidence >= 1.0:
             return seen
-        return seen * usual_form_factor(self.library, shape, appearance, self.settings.forms)
+        return seen * usual_form_factor(self.library, shape, appearance, settings)
 
     def _weights(self, item: _Observation) -> tuple[float, float, float]:
         """Weights of size, outline and appearance for an object with this visibility."""
@@ -241,7 +243,7 @@ def _senses(
         other = settings.ranking.other_mount if named else settings.ranking.other_mount_of_unnamed
         sized = as_measured(senses, cuboid.size_m, settings.sizes) if named else senses
         found.append({kind: p * (1.0 if category(kind).mount in mounts else other) for kind, p in sized.items()})
-    return with_neighbours(found, objects, cuboids, geometry.supports)
+    return with_neighbours(found, objects, cuboids, geometry.supports, settings.ranking)
 
 
 def _mounts_at(parent: str | None, *, named: bool) -> tuple[Mount, ...]:
@@ -255,7 +257,7 @@ def _mounts_at(parent: str | None, *, named: bool) -> tuple[Mount, ...]:
 
 
 def _mean_senses(senses: Sequence[Mapping[str, float]]) -> dict[str, float]:
-    """Of things that are taken to be alike."""
+    """Mean senses of things that are taken to be alike."""
     kinds = sorted({kind for of_one in senses for kind in of_one})
     wholes = [sum(of_one.values()) for of_one in senses]
     return {

@@ -24,8 +24,6 @@ from diorama_core.retrieval.appearance_similarity import NEUTRAL, SIDE_PX, Objec
 from diorama_core.retrieval.feature_cache import cached_features
 
 _VIEWS = tuple(StudioView(float(np.radians(yaw)), float(np.radians(20.0))) for yaw in (32.0, -32.0, 100.0, 200.0))
-_SPREAD = 0.08
-"""Cosine by which a shape falls short of its pool's best at which it counts a third as much."""
 PROMPT = "a photo of {}"
 """As the publication asks for a class."""
 
@@ -61,7 +59,7 @@ class ClipEmbedding:
 
     @property
     def weights(self) -> str:
-        """Of both networks."""
+        """Weights of both networks."""
         return self.clip.weights if self.tower is None else f"{self.clip.weights}+{self.tower.weights}"
 
     def text(self, text: str) -> Float32[np.ndarray, " d"]:
@@ -93,7 +91,7 @@ class PointEmbedding:
 
     @property
     def weights(self) -> str:
-        """Of both networks."""
+        """Weights of both networks."""
         return f"{self.clip.weights}+{self.tower.weights}"
 
     def text(self, text: str) -> Float32[np.ndarray, " d"]:
@@ -120,6 +118,8 @@ class JointSimilarity:
     embedding: JointEmbedding
     folder: Path | None = field(default=None, repr=False)
     """Cache folder of embeddings; `features` in Diorama's cache folder by default."""
+    spread: float = 0.08
+    """Cosine by which a shape falls short of its pool's best at which it counts a third as much."""
 
     def of(self, item: ObjectCrop, shapes: Sequence[Shape]) -> Float[np.ndarray, " n"]:
         """Near 1 for what is most alike; falls with the cosine."""
@@ -129,7 +129,7 @@ class JointSimilarity:
         cosine = known @ self.embedding.text(PROMPT.format(item.label))
         if item.mask.any():
             cosine = 0.5 * (cosine + known @ self.embedding.picture(item.crop))
-        return np.asarray(np.exp((cosine - cosine.max()) / _SPREAD), np.float64)
+        return np.asarray(np.exp((cosine - cosine.max()) / self.spread), np.float64)
 
 
 def shape_vectors(

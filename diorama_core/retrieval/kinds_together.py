@@ -165,7 +165,7 @@ def _index() -> Mapping[str, int]:
 
 @cache
 def _frequency() -> Float[np.ndarray, "k"]:
-    """Of every kind among all things."""
+    """Frequency of every kind among all things."""
     shares = meanings(UNKNOWN.name, UNKNOWN.name)
     return np.array([shares.get(name, 0.0) for name in _names()])
 

@@ -12,9 +12,9 @@ from jaxtyping import Float
 
 from diorama_core.library.taxonomy import Category, SizePrior, category, column
 from diorama_core.retrieval.box_views import (
-    CERTAIN,
     DISTANCES_M,
     HEIGHTS_M,
+    SETTINGS,
     BoxView,
     foot_sigma_m,
     normal,
@@ -22,12 +22,6 @@ from diorama_core.retrieval.box_views import (
     size_density,
 )
 
-_ANYWHERE = 0.1
-"""How likely a carrier's distance is not what its kind's usual size says."""
-_REACH_M, _REACH_SHARE = 0.15, 0.05
-"""How far before and behind a carrier a thing on it may seem to be: by itself, and for every metre of distance."""
-_LEVEL_SIGMA = 0.15
-"""Of the height of a top or seat, as a share of it."""
 _BOARDS = frozenset(kind for kind, like in column("carries_as").items() if like == "bookshelf")
 """Things lie at any height of them."""
 _RAISED_M, _RAISED_SIGMA_M = {"surface": 0.75, "wall": 1.45, "ceiling": 2.3}, 0.35
@@ -51,7 +45,7 @@ def lying_likelihoods(
         height: how likely every camera height of `box_views.HEIGHTS_M` is, adding up to 1.
     """
     found = np.stack([_distances(view, carrier, category(kind), height) for kind in carrier_kinds], axis=1)
-    return _sizes(view, kinds) @ found + CERTAIN
+    return _sizes(view, kinds) @ found + SETTINGS.certain
 
 
 def _sizes(view: BoxView, kinds: Sequence[str]) -> Float[np.ndarray, "k d"]:
@@ -70,8 +64,8 @@ def _distances(
 def _on_prior(view: BoxView, carrier: BoxView, entry: Category, prior: SizePrior) -> Float[np.ndarray, "h d"]:
     likely = place_density(carrier, prior, entry.mount) * size_density(carrier, prior, entry.mount)
     likely = likely / np.maximum(likely.sum(axis=1, keepdims=True), 1e-12)
-    likely = (1.0 - _ANYWHERE) * likely + _ANYWHERE / len(DISTANCES_M)
-    reach = _REACH_M + _REACH_SHARE * DISTANCES_M[:, None]
+    likely = (1.0 - SETTINGS.anywhere) * likely + SETTINGS.anywhere / len(DISTANCES_M)
+    reach = SETTINGS.reach_m + SETTINGS.reach_share * DISTANCES_M[:, None]
     beyond = DISTANCES_M - DISTANCES_M[:, None]
     on_it = (beyond > -reach) & (beyond < prior.depth_m + reach)
     level, spread = _level_m(entry, prior)
@@ -88,4 +82,4 @@ def _level_m(entry: Category, prior: SizePrior) -> tuple[float, float]:
     if entry.mount != "floor":
         return _RAISED_M[entry.mount] + (prior.height_m if entry.mount == "surface" else 0.0), _RAISED_SIGMA_M
     level = entry.seat_height_m or prior.height_m
-    return level, _LEVEL_SIGMA * level
+    return level, SETTINGS.level_sigma * level

@@ -16,10 +16,6 @@ from diorama_core.progress import Progress
 from diorama_core.retrieval.appearance_similarity import AppearanceSimilarity, EmbeddedSimilarity, ObjectCrop
 from diorama_core.retrieval.pools import near_kinds
 
-TOP_KINDS = 3
-TOP_SHAPES = 6
-"""As in the publication's default configuration."""
-
 
 @dataclass(frozen=True)
 class MatchedByLooks:
@@ -28,11 +24,14 @@ class MatchedByLooks:
     library: ShapeLibrary
     similarity: AppearanceSimilarity | None = None
     """Compares looks; by rendered views where None."""
+    kinds: int = 3
+    shapes: int = 6
+    """As in the publication's default configuration."""
 
     def retrieve(
         self, inputs: Inputs, objects: tuple[DetectedObject, ...], geometry: ObjectGeometry, progress: Progress
     ) -> tuple[RankedShapes, ...]:
-        """At most `TOP_SHAPES` of every object that was placed; nothing for kinds of which the library has none."""
+        """At most `shapes` of every object that was placed; nothing for kinds of which the library has none."""
         similarity = self.similarity or EmbeddedSimilarity(self.library)
         placed = {c.object_id for c in geometry.cuboids}
         found = []
@@ -43,11 +42,11 @@ class MatchedByLooks:
             shapes = self._of_kind(item.category)
             crop = ObjectCrop(inputs.photo.rgb, item.mask, item.label, 1.0, 1.0)
             alike = similarity.of(crop, shapes)
-            order = sorted(range(len(shapes)), key=lambda k: (-alike[k], shapes[k].id))[:TOP_SHAPES]
+            order = sorted(range(len(shapes)), key=lambda k: (-alike[k], shapes[k].id))[: self.shapes]
             found.append(RankedShapes(item.id, tuple((shapes[k].id, float(alike[k])) for k in order)))
         return tuple(found)
 
     def _of_kind(self, name: str) -> list[Shape]:
         """Shapes of the category; of its nearest kinds where the library has none of itself."""
         own = list(self.library.in_category(name))
-        return own or [s for kind in near_kinds(name)[:TOP_KINDS] for s in self.library.in_category(kind)]
+        return own or [s for kind in near_kinds(name)[: self.kinds] for s in self.library.in_category(kind)]

@@ -14,14 +14,11 @@ import numpy as np
 
 from diorama_core.artefacts import Cuboid, DetectedObject
 from diorama_core.library.taxonomy import category, with_kin
+from diorama_core.retrieval.settings import SETTINGS, RankingSettings
 from diorama_core.scene.types import Support
 
 Relation = Literal["on it", "near", "behind it", "beside it"]
 """Where a companion is: a sofa is behind a coffee table that stands before it, and beside a side table."""
-
-_NEAR_M = 0.8
-_ROUNDS = 3
-"""After so many updates beliefs hardly change."""
 
 
 def with_neighbours(
@@ -29,6 +26,7 @@ def with_neighbours(
     objects: Sequence[DetectedObject],
     cuboids: Sequence[Cuboid],
     supports: Sequence[Support],
+    settings: RankingSettings = SETTINGS.ranking,
 ) -> list[Mapping[str, float]]:
     """How likely every object is of each kind once its neighbours are taken into account, as probabilities.
 
@@ -37,6 +35,7 @@ def with_neighbours(
         objects: all of the photo.
         cuboids: theirs, in the same order.
         supports: who carries whom.
+        settings: numbers to work with.
     """
     positions = {o.id: i for i, o in enumerate(objects)}
     carried: list[list[int]] = [[] for _ in objects]
@@ -44,7 +43,7 @@ def with_neighbours(
         if edge.parent in positions and edge.child in positions:
             carried[positions[edge.parent]].append(positions[edge.child])
     indices = range(len(objects))
-    near = [[j for j in indices if j != i and gap_m(cuboids[i], cuboids[j]) < _NEAR_M] for i in indices]
+    near = [[j for j in indices if j != i and gap_m(cuboids[i], cuboids[j]) < settings.near_m] for i in indices]
     across = [[j for j in near[i] if is_before(cuboids[i], cuboids[j])] for i in indices]
     there: list[Mapping[Relation, list[int]]] = [
         {
@@ -56,7 +55,7 @@ def with_neighbours(
         for i in indices
     ]
     beliefs = [_normalised(kinds) for kinds in alone]
-    for _ in range(_ROUNDS):
+    for _ in range(settings.neighbour_rounds):
         beliefs = [
             _updated(alone[i], {where: [beliefs[j] for j in of_one] for where, of_one in there[i].items()})
             for i in indices

@@ -10,12 +10,10 @@ from jaxtyping import Bool, Float, UInt8
 
 from diorama_core.geometry.observed import Observed
 from diorama_core.geometry.window import soft_iou
+from diorama_core.retrieval.settings import SETTINGS, SimilaritySettings
 
 _GAP_SHARE = 0.12
-"""Of an object's longer side: wider gaps stay open."""
-_MAX_OPEN = 0.5
-_DOUBTFUL = 0.5
-"""Mask confidence below which its gaps are ignored."""
+"""Share of an object's longer side: wider gaps stay open."""
 
 
 def filled(mask: Bool[np.ndarray, "h w"]) -> Bool[np.ndarray, "h w"]:
@@ -45,13 +43,16 @@ def whole_outline(seen: Observed) -> Float[np.ndarray, " n"]:
     return np.maximum(seen.covered, filled((seen.covered > 0.5).reshape(side, side)).ravel())
 
 
-def open_share(mask_trust: float) -> float:
+def open_share(mask_trust: float, settings: SimilaritySettings = SETTINGS.similarity) -> float:
     """How much the outline with its gaps counts beside the filled one: nothing for a doubtful mask."""
-    return _MAX_OPEN * float(np.clip((mask_trust - _DOUBTFUL) / (1 - _DOUBTFUL), 0.0, 1.0))
+    return settings.max_open * float(np.clip((mask_trust - settings.doubtful) / (1 - settings.doubtful), 0.0, 1.0))
 
 
 def outline_agreement(
-    seen: Observed, whole: Float[np.ndarray, " n"], silhouettes: Bool[np.ndarray, "p n"]
+    seen: Observed,
+    whole: Float[np.ndarray, " n"],
+    silhouettes: Bool[np.ndarray, "p n"],
+    settings: SimilaritySettings = SETTINGS.similarity,
 ) -> Float[np.ndarray, " p"]:
     """Intersection over union with the mask, 0 to 1, with gaps as far as the mask may be trusted, and without.
 
@@ -59,8 +60,9 @@ def outline_agreement(
         seen: the object.
         whole: its `whole_outline`.
         silhouettes: of posed shapes, in the same cells.
+        settings: numbers to work with.
     """
     side = round(np.sqrt(silhouettes.shape[1]))
-    share = open_share(seen.mask_trust)
+    share = open_share(seen.mask_trust, settings)
     closed = np.stack([filled(s.reshape(side, side)).ravel() for s in silhouettes]).astype(np.float64)
     return share * seen.agreement(silhouettes) + (1 - share) * soft_iou(whole, closed, seen.weight)

@@ -15,47 +15,14 @@ from jaxtyping import Float
 
 from diorama_core.library.record import Shape, ShapeLibrary
 from diorama_core.library.taxonomy import CATEGORIES, UNKNOWN, broad, category, column
+from diorama_core.retrieval.settings import SETTINGS, PoolSettings
 from diorama_core.scene.values import ArrayValue
-
-NAMED_POOL = 50
-"""Of one kind; the paper's text query keeps as many."""
 
 RELATED: Mapping[str, tuple[str, ...]] = column("related")
 """Near kinds of each broad category, nearest first."""
 
 
-@dataclass(frozen=True)
-class PoolSettings:
-    """How many shapes are looked at."""
-
-    enough: int = 4
-    related_factor: float = 0.6
-    usual_factor: float = 0.92
-    rare_factor: float = 0.68
-    other_pool: int = 14
-    """Of every other kind that the word may mean."""
-    unnamed_each: int = 5
-    """Of every kind that a thing without a name may be."""
-    max_pool: int = 110
-    """No more kinds are added to so many shapes."""
-    min_sense: float = 0.04
-    """Kinds less likely than this share of the likeliest are not looked at."""
-    min_unnamed: int = 10
-    """So many kinds are looked at whatever their share, where a thing has no name."""
-    views_say: float = 10.0
-    """How sharply views tell kinds apart: agreeing better by a factor f makes up for a kind less likely by f to
-    this."""
-    substitutes: int = 3
-    unnamed_pool: int = 30
-    each_kind: int = 2
-    same_size_log: float = 0.4
-    min_m: float = 0.01
-
-
-SETTINGS = PoolSettings()
-
-
-def near_kinds(name: str, settings: PoolSettings = SETTINGS) -> tuple[str, ...]:
+def near_kinds(name: str, settings: PoolSettings = SETTINGS.pools) -> tuple[str, ...]:
     """Near kinds of a category, nearest first.
 
     A special kind has its broad category and that one's near kinds; a category without a row in `RELATED` those that
@@ -68,7 +35,7 @@ def near_kinds(name: str, settings: PoolSettings = SETTINGS) -> tuple[str, ...]:
 
 
 @cache
-def _alike_in_size(name: str, settings: PoolSettings = SETTINGS) -> tuple[str, ...]:
+def _alike_in_size(name: str, settings: PoolSettings = SETTINGS.pools) -> tuple[str, ...]:
     own = category(name)
     others = [c for c in CATEGORIES if c.mount == own.mount and c.name not in (name, UNKNOWN.name) and not c.kin]
     unlike = [float(np.abs(c.priors[0].log_median_xyz - own.priors[0].log_median_xyz).sum()) for c in others]
@@ -114,7 +81,7 @@ class RetrievalQuery(ArrayValue):
     """Whether a word says what it is: the category of a thing without one is a guess."""
 
 
-def pool_for(library: ShapeLibrary, query: RetrievalQuery, settings: PoolSettings = SETTINGS) -> Pool:
+def pool_for(library: ShapeLibrary, query: RetrievalQuery, settings: PoolSettings = SETTINGS.pools) -> Pool:
     """Shapes worth comparing with the picture, some dozens; nearest sizes where there are more."""
     if query.category == UNKNOWN.name and not query.senses:
         return Pool(_plausible(library, query, settings))
@@ -125,7 +92,7 @@ def pool_for(library: ShapeLibrary, query: RetrievalQuery, settings: PoolSetting
     for rank, (kind, share) in enumerate(sorted(senses.items(), key=lambda row: (-row[1], row[0]))):
         if rank < least or (share >= settings.min_sense * best and len(members) < settings.max_pool):
             own = len(senses) == 1 or kind == query.category
-            most = NAMED_POOL if own else settings.other_pool if query.named else settings.unnamed_each
+            most = settings.named_pool if own else settings.other_pool if query.named else settings.unnamed_each
             near_shapes = _nearest(_usable(library, library.in_category(kind), query), query.size_m, most, settings)
             members += [Pooled(shape, sense_factor(share / best, settings)) for shape in near_shapes]
     found = bool(members)
@@ -133,7 +100,9 @@ def pool_for(library: ShapeLibrary, query: RetrievalQuery, settings: PoolSetting
     for near in near_kinds(query.category, settings):
         if len(members) >= settings.enough:
             break
-        near_shapes = _nearest(_usable(library, library.in_category(near), query), query.size_m, NAMED_POOL, settings)
+        near_shapes = _nearest(
+            _usable(library, library.in_category(near), query), query.size_m, settings.named_pool, settings
+        )
         members += [Pooled(shape, factor) for shape in near_shapes]
         factor *= settings.related_factor
     if found:
@@ -142,7 +111,7 @@ def pool_for(library: ShapeLibrary, query: RetrievalQuery, settings: PoolSetting
     return Pool(tuple(members) or _plausible(library, query, settings), note)
 
 
-def sense_factor(share: float, settings: PoolSettings = SETTINGS) -> float:
+def sense_factor(share: float, settings: PoolSettings = SETTINGS.pools) -> float:
     """What a score is multiplied by for a kind that is so many times as likely as the likeliest."""
     return float(share ** (1.0 / settings.views_say))
 
@@ -157,13 +126,17 @@ def _usable(library: ShapeLibrary, shapes: Sequence[Shape], query: RetrievalQuer
     return [s for s in shapes if s.source == "built in" or library.shape(s.id).surfaces] or shapes
 
 
-def _nearest(shapes: Sequence[Shape], size_m: np.ndarray, most: int, settings: PoolSettings = SETTINGS) -> list[Shape]:
+def _nearest(
+    shapes: Sequence[Shape], size_m: np.ndarray, most: int, settings: PoolSettings = SETTINGS.pools
+) -> list[Shape]:
     """The shapes nearest in size, either way round, in a stable order."""
     order = np.argsort([_fit_cost(s, size_m, settings) for s in shapes], kind="stable")[:most]
     return [shapes[i] for i in sorted(order)]
 
 
-def _plausible(library: ShapeLibrary, query: RetrievalQuery, settings: PoolSettings = SETTINGS) -> tuple[Pooled, ...]:
+def _plausible(
+    library: ShapeLibrary, query: RetrievalQuery, settings: PoolSettings = SETTINGS.pools
+) -> tuple[Pooled, ...]:
     """For something unnamed: the two shapes nearest in size of every kind that is about as large.
 
     Kinds that hang or stand like it, the usual ones first in line; plain boxes always.
@@ -183,13 +156,15 @@ def _plausible(library: ShapeLibrary, query: RetrievalQuery, settings: PoolSetti
     return tuple(members[i] for i in order[: settings.unnamed_pool])
 
 
-def _fit_cost(shape: Shape, size_m: np.ndarray, settings: PoolSettings = SETTINGS) -> float:
+def _fit_cost(shape: Shape, size_m: np.ndarray, settings: PoolSettings = SETTINGS.pools) -> float:
     """How unlike in size, either way round."""
     return min(size_cost(shape.size_m, size_m, settings), size_cost(shape.size_m, size_m[[1, 0, 2]], settings))
 
 
 def size_cost(
-    size_m: Sequence[float] | np.ndarray, wanted_m: Sequence[float] | np.ndarray, settings: PoolSettings = SETTINGS
+    size_m: Sequence[float] | np.ndarray,
+    wanted_m: Sequence[float] | np.ndarray,
+    settings: PoolSettings = SETTINGS.pools,
 ) -> float:
     """How unlike two boxes are: mostly their proportions, gently their size (a shape may be scaled as a whole)."""
     ratio = np.log(np.maximum(wanted_m, settings.min_m)) - np.log(np.maximum(size_m, settings.min_m))

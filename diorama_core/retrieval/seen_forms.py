@@ -14,11 +14,7 @@ from diorama_core.library.form import MEASURED, VALUES, form_of, value_indices
 from diorama_core.library.record import Shape, ShapeLibrary
 from diorama_core.library.slots import slots_of
 from diorama_core.retrieval.feature_cache import cached_features, has_features
-
-_SAYS = 0.2
-"""Power of the probability that multiplies a retrieval score: scores of good and bad shapes differ little."""
-_FLOOR = 0.03
-"""Added to every probability: the namer learnt from rendered pictures and is too sure of itself on photos."""
+from diorama_core.retrieval.settings import SETTINGS, UsualFormSettings
 
 FORM_FEATURES = "form-3"
 """Cache key; to be changed with what `library.form` measures."""
@@ -53,12 +49,15 @@ def has_form(shape: Shape, folder: Path | None = None) -> bool:
     return has_features(FORM_FEATURES, shape, folder)
 
 
-def seen_form_factor(form: Mapping[str, str | int], seen_form: Sequence[float]) -> float:
+def seen_form_factor(
+    form: Mapping[str, str | int], seen_form: Sequence[float], settings: UsualFormSettings = SETTINGS.forms
+) -> float:
     """What a shape's score is multiplied by: above 1 for forms that are likelier than what was to be expected.
 
     Args:
         form: of the shape; attributes that it does not have say nothing.
         seen_form: probability of every value of every attribute (`SeenKinds.form`); without any, the factor is 1.
+        settings: numbers to work with.
     """
     if not len(seen_form):
         return 1.0
@@ -66,6 +65,6 @@ def seen_form_factor(form: Mapping[str, str | int], seen_form: Sequence[float]) 
     total = 0.0
     for values, index in zip(np.split(np.asarray(seen_form), ends), value_indices(form), strict=True):
         if index >= 0:
-            p = (values + _FLOOR) / (values + _FLOOR).sum()
+            p = (values + settings.seen_floor) / (values + settings.seen_floor).sum()
             total += float(np.log(p[index]) - p @ np.log(p))
-    return float(np.exp(_SAYS * total))
+    return float(np.exp(settings.seen * total))

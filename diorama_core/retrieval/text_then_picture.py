@@ -20,8 +20,6 @@ from diorama_core.retrieval.appearance_similarity import ObjectCrop
 from diorama_core.retrieval.joint import PROMPT, JointEmbedding, shape_vectors
 
 By = Literal["words", "picture", "words and picture"]
-LEFT_BY_WORDS = 50
-TOP_SHAPES = 8
 
 
 @dataclass(frozen=True)
@@ -33,11 +31,13 @@ class TextThenPicture:
     by: By = "words and picture"
     folder: Path | None = field(default=None, repr=False)
     """Cache folder of embeddings; `features` in Diorama's cache folder by default."""
+    left_by_words: int = 50
+    shapes: int = 8
 
     def retrieve(
         self, inputs: Inputs, objects: tuple[DetectedObject, ...], geometry: ObjectGeometry, progress: Progress
     ) -> tuple[RankedShapes, ...]:
-        """At most `TOP_SHAPES` of every object that was placed."""
+        """At most `shapes` of every object that was placed."""
         shapes = self.library.shapes()
         placed = {c.object_id for c in geometry.cuboids}
         if not shapes or not placed:
@@ -58,7 +58,7 @@ class TextThenPicture:
         cosine = known @ self.embedding.text(PROMPT.format(item.label))
         if self.by != "words" and item.mask.any():
             if self.by == "words and picture":
-                left = np.argsort(-cosine, kind="stable")[:LEFT_BY_WORDS]
+                left = np.argsort(-cosine, kind="stable")[: self.left_by_words]
             cosine = known @ self.embedding.picture(ObjectCrop(inputs.photo.rgb, item.mask, item.label).crop)
-        order = sorted(left.tolist(), key=lambda k: (-float(cosine[k]), shapes[k].id))[:TOP_SHAPES]
+        order = sorted(left.tolist(), key=lambda k: (-float(cosine[k]), shapes[k].id))[: self.shapes]
         return tuple((shapes[k].id, float(cosine[k])) for k in order)

@@ -8,7 +8,6 @@ are rough counts in homes and offices.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
 
 import cv2
 import numpy as np
@@ -21,6 +20,7 @@ from diorama_core.library.record import Shape, ShapeLibrary
 from diorama_core.library.taxonomy import category, having, with_kin
 from diorama_core.retrieval.feature_cache import cached_features
 from diorama_core.retrieval.seen_forms import shape_form
+from diorama_core.retrieval.settings import SETTINGS, UsualFormSettings
 
 _CROSSED_LEGS = "crossed legs"
 _BASES: Mapping[str, Mapping[str, float]] = {
@@ -35,7 +35,7 @@ _BASES: Mapping[str, Mapping[str, float]] = {
 _TOPS: Mapping[str, float] = {"rectangular": 0.6, "square": 0.6, "round": 0.25, "oval": 0.1}
 _TABLES = having("table_form") - having("seat")
 _FLAT = {"rectangular": 0.93, "other": 0.07}
-"""Of what hangs flat on walls or stands in frames: round, oval and free outlines, several in a row, panes."""
+"""Shares of what hangs flat or stands in frames; others are round, oval, free outlines, several in a row, panes."""
 _MIRRORS = with_kin("mirror")
 _FLAT_KINDS = having("framed")
 _PLANTS = {"leafy": 0.9, "other": 0.1}
@@ -48,31 +48,8 @@ OUTLINE_FEATURES, SIDE_FEATURES, LEGS_FEATURES = "outline-2", "side-1", "legs-1"
 """Cache keys; to be changed with what is measured under them."""
 
 
-@dataclass(frozen=True)
-class UsualFormSettings:
-    """How much a usual form counts."""
-
-    min_pane: float = 0.02
-    """Share of the outline that a pane of a mirror has at least."""
-    closed: float = 0.72
-    """Share of the outline from the side that is filled, from which on a seat's sides are closed."""
-    below_seat: float = 0.33
-    foot: float = 0.08
-    crossing: float = 0.5
-    """Shares of a chair's height up to which legs are looked at, of a foot, and of its depth that crossing legs
-    have."""
-    drawn_px: int = 128
-    leg_points: int = 6000
-    rare: float = 0.02
-    says: float = 0.08
-    """Power of the share that multiplies a retrieval score: scores of shapes that fit well and badly differ little."""
-
-
-SETTINGS = UsualFormSettings()
-
-
 def usual_form_factor(
-    library: ShapeLibrary, shape: Shape, appearance: ShapeAppearance, settings: UsualFormSettings = SETTINGS
+    library: ShapeLibrary, shape: Shape, appearance: ShapeAppearance, settings: UsualFormSettings = SETTINGS.forms
 ) -> float:
     """What a shape's score is multiplied by: 1 for the usual base, top or outline of its kind, less for rare ones.
 
@@ -109,7 +86,7 @@ def _plant(shape: Shape) -> str:
 
 
 def _form(
-    library: ShapeLibrary, shape: Shape, appearance: ShapeAppearance, settings: UsualFormSettings = SETTINGS
+    library: ShapeLibrary, shape: Shape, appearance: ShapeAppearance, settings: UsualFormSettings = SETTINGS.forms
 ) -> tuple[str, str]:
     """Base and top."""
     form = shape_form(library, shape, appearance)
@@ -123,7 +100,7 @@ def _form(
     return base, str(form.get("top", "none"))
 
 
-def _cross(appearance: ShapeAppearance, settings: UsualFormSettings = SETTINGS) -> bool:
+def _cross(appearance: ShapeAppearance, settings: UsualFormSettings = SETTINGS.forms) -> bool:
     """Whether front and back legs meet below the seat, as those of folding chairs do."""
     points = appearance.spread_points(settings.leg_points)
     height = (points[:, 2] - points[:, 2].min()) / max(float(np.ptp(points[:, 2])), 1e-9)
@@ -136,7 +113,7 @@ def _cross(appearance: ShapeAppearance, settings: UsualFormSettings = SETTINGS) 
     return bool(min(depths[1:], default=np.inf) < settings.crossing * depths[0])
 
 
-def _outline(shape: Shape, appearance: ShapeAppearance, settings: UsualFormSettings = SETTINGS) -> str:
+def _outline(shape: Shape, appearance: ShapeAppearance, settings: UsualFormSettings = SETTINGS.forms) -> str:
     """From the front: whether it is one piece, and one pane, that fills the rectangle around it."""
 
     def is_rectangular() -> bool:
@@ -150,7 +127,7 @@ def _outline(shape: Shape, appearance: ShapeAppearance, settings: UsualFormSetti
     return "rectangular" if _kept(OUTLINE_FEATURES, shape, is_rectangular) else "other"
 
 
-def _side(shape: Shape, appearance: ShapeAppearance, settings: UsualFormSettings = SETTINGS) -> str:
+def _side(shape: Shape, appearance: ShapeAppearance, settings: UsualFormSettings = SETTINGS.forms) -> str:
     """Whether a seat is seen through from the side."""
 
     def is_closed() -> bool:
@@ -166,12 +143,12 @@ def _kept(kind: str, shape: Shape, make: Callable[[], bool]) -> bool:
     return bool(cached_features(kind, shape, lambda: np.array([[float(make())]]))[0, 0])
 
 
-def _pieces(appearance: ShapeAppearance, settings: UsualFormSettings = SETTINGS) -> int:
+def _pieces(appearance: ShapeAppearance, settings: UsualFormSettings = SETTINGS.forms) -> int:
     """How many separate pieces are seen from the front: a row of prints is several."""
     return int(cv2.connectedComponents(_drawn(appearance, [1, 2], settings))[0]) - 1
 
 
-def _panes(appearance: ShapeAppearance, settings: UsualFormSettings = SETTINGS) -> int:
+def _panes(appearance: ShapeAppearance, settings: UsualFormSettings = SETTINGS.forms) -> int:
     """How many large regions the colour has that covers most of the front: bars cut a mirror into panes."""
     colours = cells_of(appearance.face_rgba)[0] + 1
     back_to_front = np.argsort(appearance.vertices[appearance.faces][:, :, 0].mean(axis=1), kind="stable")
@@ -185,7 +162,7 @@ def _panes(appearance: ShapeAppearance, settings: UsualFormSettings = SETTINGS) 
 
 
 def _drawn(
-    appearance: ShapeAppearance, axes: list[int], settings: UsualFormSettings = SETTINGS
+    appearance: ShapeAppearance, axes: list[int], settings: UsualFormSettings = SETTINGS.forms
 ) -> UInt8[np.ndarray, "p p"]:
     """The outline along the remaining axis, 1 where there is something, stretched to a square."""
     drawn = np.zeros((settings.drawn_px, settings.drawn_px), np.uint8)
@@ -195,7 +172,7 @@ def _drawn(
 
 
 def _triangles_px(
-    appearance: ShapeAppearance, axes: list[int], settings: UsualFormSettings = SETTINGS
+    appearance: ShapeAppearance, axes: list[int], settings: UsualFormSettings = SETTINGS.forms
 ) -> Int32[np.ndarray, "f 3 2"]:
     """The triangles along the remaining axis, in pixels of the square to which the shape is stretched."""
     flat = appearance.vertices[:, axes]

@@ -33,7 +33,7 @@ class WordSenseSettings:
 
     usual_height_m: float = 1.45
     height_sigma_m: float = 0.3
-    """Of cameras above the floor."""
+    """Deviation of the heights of cameras above the floor."""
     measured_sigma_m: float = 0.15
     unsupported: float = 0.15
     inside: float = 0.5

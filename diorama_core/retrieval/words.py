@@ -14,21 +14,17 @@ from diorama_core.library.naming import understand
 from diorama_core.library.record import Shape, ShapeLibrary
 from diorama_core.library.search import text_index
 from diorama_core.library.taxonomy import CATEGORIES
+from diorama_core.retrieval.settings import SETTINGS, RankingSettings
 
 _KINDS = frozenset(kind.name for kind in CATEGORIES)
 
 
-FEW = 0.3
-"""Largest share of a kind's shapes that a noun names which tells them from the rest: balls are a few of the toys. What
-is said of many is used loosely of all."""
-SEVERAL = 3
-"""A noun that is said of so many kinds says nothing of the things of one."""
-CERTAIN, ROUGHLY = 0.85, 0.12
-"""Penalties of a shape that the label's very noun rules out, and of one that matches none of its describing words."""
-
-
 def words_factor(
-    library: ShapeLibrary, label: str, category: str, shapes: Sequence[Shape]
+    library: ShapeLibrary,
+    label: str,
+    category: str,
+    shapes: Sequence[Shape],
+    settings: RankingSettings = SETTINGS.ranking,
 ) -> tuple[Float[np.ndarray, " n"], Float[np.ndarray, " n"]]:
     """By what words weaken the score of every shape, and the share of the describing words that fit it (0 to 1).
 
@@ -37,30 +33,43 @@ def words_factor(
         label: As a person or a detector called the object; a number at its end is of no account.
         category: The object's kind.
         shapes: Of the library.
+        settings: Numbers to work with.
     """
-    share = described_share(library, label, category, shapes)
-    penalty = CERTAIN if nouns_of_few(library, label, category) else ROUGHLY
+    share = described_share(library, label, category, shapes, settings)
+    penalty = settings.other_noun if nouns_of_few(library, label, category, settings) else settings.other_words
     return 1.0 - penalty * (1.0 - share), share
 
 
-def nouns_of_few(library: ShapeLibrary, label: str, category: str) -> tuple[str, ...]:
+def nouns_of_few(
+    library: ShapeLibrary, label: str, category: str, settings: RankingSettings = SETTINGS.ranking
+) -> tuple[str, ...]:
     """The label's nouns that name only a few things of a kind, and so tell which: flowers are some of the plants.
 
     The kind's own name, names of kinds and what is said loosely of several kinds tell nothing.
+
+    Args:
+        library: Whose shapes.
+        label: As a person or a detector called the object.
+        category: The kind.
+        settings: Numbers to work with.
     """
     members = library.in_category(category)
     captions = [set(tokens(shape.caption)) for shape in members]
-    nouns = (w for w in understand(label).naming if w not in category and not _is_loose(w))
-    return tuple(w for w in nouns if 0 < sum(w in words for words in captions) < FEW * len(members))
+    nouns = (w for w in understand(label).naming if w not in category and not _is_loose(w, settings.several))
+    return tuple(w for w in nouns if 0 < sum(w in words for words in captions) < settings.few * len(members))
 
 
-def _is_loose(noun: str) -> bool:
+def _is_loose(noun: str, several: int) -> bool:
     """Whether a noun is the name of a kind or is said of several."""
-    return noun in _KINDS or len(MEANINGS.get(noun, {})) >= SEVERAL
+    return noun in _KINDS or len(MEANINGS.get(noun, {})) >= several
 
 
 def described_share(
-    library: ShapeLibrary, label: str, category: str, shapes: Sequence[Shape]
+    library: ShapeLibrary,
+    label: str,
+    category: str,
+    shapes: Sequence[Shape],
+    settings: RankingSettings = SETTINGS.ranking,
 ) -> Float[np.ndarray, " n"]:
     """For every shape the share of the label's describing words that fit it, 0 to 1, by word or by meaning.
 
@@ -72,9 +81,10 @@ def described_share(
         label: As a person or a detector called the object; a number at its end is of no account.
         category: The object's kind, whose own words describe nothing.
         shapes: Of the library.
+        settings: Numbers to work with.
     """
     query = understand(label)
-    words = (*query.words, *nouns_of_few(library, label, category))
+    words = (*query.words, *nouns_of_few(library, label, category, settings))
     said = tuple(w for w in words if w not in category and not w.isdigit())  # an "arm chair" has no more arms
     if not said or not len(shapes):
         return np.ones(len(shapes))

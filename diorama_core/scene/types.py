@@ -71,7 +71,7 @@ class Intrinsics:
         return float(np.arctan2(self.cy, self.fy) + np.arctan2(self.height - self.cy, self.fy))
 
     def scaled(self, width: int, height: int) -> Intrinsics:
-        """The same camera for the picture resized to `width` x `height`."""
+        """This camera for the picture resized to `width` x `height`."""
         sx, sy = width / self.width, height / self.height
         return Intrinsics(width, height, self.fx * sx, self.fy * sy, self.cx * sx, self.cy * sy)
 

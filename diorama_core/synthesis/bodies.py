@@ -89,12 +89,12 @@ class _Posed:
 
     @cached_property
     def low(self) -> Float[np.ndarray, "3"]:
-        """Of its box in the world."""
+        """Lowest corner of its box in the world."""
         return np.asarray(self._corners.min(axis=0))
 
     @cached_property
     def high(self) -> Float[np.ndarray, "3"]:
-        """Of its box in the world."""
+        """Highest corner of its box in the world."""
         return np.asarray(self._corners.max(axis=0))
 
     @cached_property

@@ -187,7 +187,7 @@ class Noise:
     scale: float = 0.08
 
     def times(self, factor: float) -> Noise:
-        """The same noise, stronger or weaker."""
+        """This noise, stronger or weaker."""
         return Noise(self.pitch_rad * factor, self.offset_m * factor, self.scale * factor)
 
 

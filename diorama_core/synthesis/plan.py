@@ -64,7 +64,7 @@ class RoomPlan(ArrayValue):
 
     @property
     def area_m2(self) -> float:
-        """Of the floor."""
+        """Area of the floor."""
         return float(self._section.area())
 
     def contains(self, quad: Float[np.ndarray, "4 2"], slack_m2: float = 1e-5) -> bool:

@@ -32,9 +32,9 @@ PITCHES_RAD = (0.45, -0.15, 0.15, -0.5)
 """Downward, in turn: the phone sees the floor, the walls and the ceiling."""
 NOISE_M = 0.004
 FARTHEST_M = 5.0
-"""Of the sensor."""
+"""Range of the sensor."""
 UNSURE_SHARE = 0.05
-"""Of pixels, whose depth is wrong and which the sensor says so of."""
+"""Share of pixels whose depth is wrong and which the sensor says so of."""
 GLASS_ROUGHNESS = 0.1
 """Panes are smoother, and no metal."""
 Y_UP = np.array([[1.0, 0, 0, 0], [0, 0, 1.0, 0], [0, -1.0, 0, 0], [0, 0, 0, 1.0]])

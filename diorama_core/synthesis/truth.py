@@ -35,9 +35,9 @@ FAST = Effort(window_rays=3, sky_rays=3)
 MIN_PIXELS = 150
 """Objects with fewer visible pixels (of 640 x 480) are not asked for: no annotator would draw them."""
 MIN_VISIBLE = 0.15
-"""Nor are objects of which less than this share is visible."""
+"""Objects of which less than this share is visible are left out, too."""
 MIN_INSIDE = 0.15
-"""Nor are those with less than this share of their bounding box in the picture, such as a bath's rim in a corner."""
+"""Objects with less than this share of their bounding box in the picture are left out: a bath's rim in a corner."""
 LETS_LIGHT_IN = ("window", "curtain", "ceiling lamp")
 STEP = 3
 """Pixels between the rays that measure how much of an object is hidden."""
@@ -56,13 +56,13 @@ class TruthView(ArrayValue):
     plane_ids: Int32[np.ndarray, "h w"]
     """Index into `scene.architecture.planes` of the plane seen; -1 where an object stands before it."""
     room_plane_ids: Int32[np.ndarray, "h w"]
-    """The same with all objects taken away."""
+    """Ids of the planes with all objects taken away."""
     room_depth_m: Float32[np.ndarray, "h w"]
     """Depth of the empty room."""
     object_ids: Int32[np.ndarray, "h w"]
     """Index into `scene.objects` of every object seen, however small; -1 on the room itself."""
     empty_room: UInt8[np.ndarray, "h w 3"]
-    """The same picture with all objects taken away."""
+    """The picture with all objects taken away."""
     amodal_boxes: tuple[Box | None, ...]
     """For every object the box of its whole outline, hidden parts included, clipped to the picture; None outside."""
     visible_fraction: Float[np.ndarray, "n"]
@@ -175,7 +175,7 @@ class Studio:
 
 
 def in_photo_world(scene: Scene) -> Scene:
-    """The same room and camera with the origin on the floor below the camera and +Y the axis it faces."""
+    """The room and camera with the origin on the floor below the camera and +Y the axis it faces."""
     if scene.camera is None:
         raise ValueError("the scene needs a camera")
     forward = scene.camera.T_world_camera[:3, 2]

@@ -56,7 +56,7 @@ class Composed:
     """What could not be met, in words for the user."""
     request: RoomRequest
     ids: tuple[tuple[str, ...], ...] = ()
-    """Of the objects that each request became."""
+    """Ids of the objects that each request became."""
     added: tuple[str, ...] = ()
     """Categories that the room has because rooms of its kind do."""
 
@@ -214,7 +214,7 @@ class _Composer:
     def _face_to_face(
         self, request: RequestedObject, copy: int, placed: Sequence[str], object_id: str
     ) -> list[Relation]:
-        """Of some that stand so to each other, the first stands free, and wishes of the second what that wishes."""
+        """Relations of things that face each other: the first stands free, and wishes of the second what it wishes."""
         for wish in request.wishes:
             if wish.each_other and wish.kind in ("facing", "opposite") and copy == 0 and request.count > 1:
                 at_walls = any(w.kind == "against wall" for w in request.wishes)

@@ -20,7 +20,7 @@ from diorama_core.text.looks import fitting_shapes, has_look, is_made_of, look_o
 from diorama_core.text.phrases import noun_phrase
 
 SHAPES_COMPARED = 32
-"""Of shapes that fit the words equally well, the first so many, of which the nearest in size is taken."""
+"""Shapes, of those that fit the words equally well, of which the nearest in size is taken."""
 
 
 def restyled(library: ShapeLibrary, scene: Scene, ids: Sequence[str], words: str) -> Done:

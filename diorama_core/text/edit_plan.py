@@ -54,7 +54,7 @@ class Shift(_Strict):
     away_m: Annotated[float, Field(ge=-20, le=20)] = 0.0
     """Away from the viewer."""
     up_m: Annotated[float, Field(ge=-5, le=5)] = 0.0
-    """Of what hangs."""
+    """Upward, for what hangs."""
     toward: Id = ""
     """Id of an object; empty where none is meant."""
     toward_m: Annotated[float, Field(ge=-20, le=20)] = 0.0

@@ -24,7 +24,7 @@ class PlacedRows:
 
     scene: Scene
     ids: tuple[str, ...]
-    """Of the objects, row by row."""
+    """Ids of the objects, row by row."""
     block: SceneObject
     """All of them as one object, which is not in the scene."""
     wishes: tuple[Wish, ...]

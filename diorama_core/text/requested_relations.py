@@ -20,7 +20,7 @@ ROW_GAP_M, ROW_MOST = 0.15, 3
 
 
 SEAT_WIDTH_M, SEAT_OUT_M = 0.62, 0.1
-"""Of a long side, for each who sits there, and how far their seat's middle is from the edge."""
+"""Length of a long side for each who sits there, and how far their seat's middle is from the edge."""
 
 
 _APART = frozenset({"opposite", "facing", "in corner"})

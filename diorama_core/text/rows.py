@@ -74,7 +74,7 @@ class Rows:
     rows: int
     category: str
     size_m: Float[np.ndarray, "3"]
-    """Of each object."""
+    """Size of each object."""
     face_to_face: bool = False
     """Whether two rows face each other."""
     watching: bool = False
@@ -138,7 +138,7 @@ class Rows:
         return replace(one, pose=replace(one.pose, scale=one.pose.scale * self.block_m / self.size_m))
 
     def poses(self, block: Pose, scale: Float[np.ndarray, "3"]) -> list[Pose]:
-        """Of every object, where the block is placed; at the block's level."""
+        """Pose of every object where the block is placed, at the block's level."""
         R = block.R_world_object
         return [
             Pose(R @ yaw_rotation(float(turn)), block.position + x * R[:, 0] + y * R[:, 1], scale)

@@ -26,12 +26,12 @@ LOWEST_PITCH_RAD, HIGHEST_PITCH_RAD = 0.1, 0.42
 SEEN_PX = 5
 """Fewer pixels of the probe show nothing that could be found again."""
 CUT_WORTH = 0.45
-"""Of an object that the picture's rim cuts off, beside one that is seen whole."""
+"""Worth of an object that the picture's rim cuts off, beside one that is seen whole."""
 NEAR_M = 0.9
 
 
 def best_viewpoint(scene: Scene, library: ShapeLibrary, size: tuple[int, int], weights: Mapping[str, float]) -> Camera:
-    """Of all places where one could stand, the one from which most is seen, and seen whole.
+    """The place, of all where one could stand, from which most is seen, and seen whole.
 
     Args:
         scene: a room with objects, walls that face it, and the floor at z = 0.

@@ -42,7 +42,7 @@ STIFFNESS = 0.01
 SHAPES, POSES = 2, 8
 """Shapes of an object, and poses of each, that are compared finely: more were not chosen."""
 STEPS = 15
-"""Of L-BFGS; the loss hardly changes after them."""
+"""Steps of L-BFGS; the loss hardly changes after them."""
 _IMPOSSIBLE = -1e9
 
 
@@ -135,7 +135,7 @@ class FacingModel:
         self.kinds = [kinds[i] for i in self.objects.tolist()]
 
     def log_probabilities(self, weights: Tensor, largest: bool = False) -> Tensor:
-        """Of the headings of the asked objects; up to a constant their max-marginals where `largest`."""
+        """Log-probabilities of the asked objects' headings; up to a constant their max-marginals where `largest`."""
         own = (self.ones * weights[None, :, None]).sum(dim=1)
         said = self.tables * weights[self.term][:, None, None]
         table = torch.zeros(len(self.first), HEADINGS, HEADINGS, dtype=torch.float64).index_add(0, self.edge, said)

@@ -87,7 +87,7 @@ class NamingScore:
     first: float
     among_five: float
     log_loss: float
-    """Of single boxes, in nats."""
+    """Loss of single boxes, in nats."""
 
 
 def fit(looks: Sequence[AnnotatedLooks], kinds: tuple[str, ...], table: Path) -> KindReadings:

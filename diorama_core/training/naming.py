@@ -17,7 +17,7 @@ from diorama_core.library.form import MEASURED, VALUES
 from diorama_core.training.layers import Residual, convolution
 
 FORM_WEIGHT = 0.15
-"""Of one attribute of form beside the kind."""
+"""Weight of one attribute of form beside the kind."""
 
 
 class Namer(nn.Module):

@@ -53,7 +53,7 @@ class BoxStatistics:
 
     @classmethod
     def of(cls, files: PictureFiles, kinds: int) -> BoxStatistics:
-        """Of all pictures of some files."""
+        """Statistics of all pictures of some files."""
         rows: list[list[np.ndarray]] = [[] for _ in range(kinds)]
         for path, k in files.pictures:
             boxes, categories, (width, height) = read_boxes(path, k)

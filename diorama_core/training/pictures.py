@@ -29,7 +29,7 @@ VIEWS = 6
 CAMERAS = CameraRanges(height_m=(0.9, 1.9), pitch_rad=(-0.05, 0.5), roll_rad=0.03, fov_rad=(0.75, 1.45))
 MIN_PIXELS = 85
 MIN_SIDE_PX = 8
-"""Of 512 x 384: what is smaller is background."""
+"""Least side, of 512 x 384: what is smaller is background."""
 JPEG_QUALITY = 90
 
 

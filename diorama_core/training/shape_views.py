@@ -36,7 +36,7 @@ SOLID = 240
 HIDDEN, CUT = 0.4, 0.2
 """Shares of the crops in which another shape stands before it, and in which the picture's border cuts it."""
 MAX_HIDDEN, MAX_CUT = 0.45, 0.4
-"""Of its width or height."""
+"""Shares of its width or height."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -104,7 +104,7 @@ class ShapeViewFiles:
         return cls(tuple(tuple(kinds[k]) for k in sorted(kinds)))
 
     def form_statistics(self, kinds: int) -> FormStatistics:
-        """Of all shapes; of kinds that have none, nothing is asked."""
+        """Statistics of all shapes; of kinds that have none, nothing is asked."""
         asked = np.zeros((kinds, len(MEASURED)), bool)
         counts = [np.zeros(len(VALUES[name])) for name in MEASURED]
         for paths in self.of_kind:

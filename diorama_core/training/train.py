@@ -45,7 +45,7 @@ class Schedule:
     save_every: int = 200
 
     def lasting(self, steps: int | None) -> Schedule:
-        """The same schedule over another number of steps; None leaves it."""
+        """This schedule over another number of steps; None leaves it."""
         return self if steps is None else replace(self, steps=steps)
 
     def rate_at(self, step: int) -> float:

@@ -41,7 +41,7 @@ class Windows(ArrayValue):
 
     rgb: UInt8[np.ndarray, "n s s 3"]
     share: UInt8[np.ndarray, "n s s"]
-    """Of each cell that is the object's, 0 to 255."""
+    """Share of each cell that is the object's, 0 to 255."""
     inside: Bool[np.ndarray, "n s s"]
     """Where there is a picture."""
 

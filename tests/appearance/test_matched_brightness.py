@@ -6,8 +6,9 @@ import cv2
 import numpy as np
 import pytest
 
-from diorama_core.appearance.matched_brightness import MAX_GAIN, brightened, brightness_gains
+from diorama_core.appearance.matched_brightness import brightened, brightness_gains
 from diorama_core.appearance.photo_appearance import photo_appearance
+from diorama_core.appearance.settings import SETTINGS
 from diorama_core.io.srgb import linear_to_srgb, srgb_to_linear
 from diorama_core.library.catalogue import built_in_library
 from diorama_core.render.picture import picture
@@ -50,7 +51,7 @@ def test_highlights_and_what_lies_before_it_do_not_make_a_thing_brighter() -> No
 def test_another_surface_than_the_one_that_is_seen_is_not_followed() -> None:
     seen, read = dresser(0.6), dresser(0.02)
     photo, mask = picture(seen, LIBRARY, size=SIZE), detected(seen)[0].mask
-    assert brightness_gains(photo, {"dresser_1": mask}, read, {}, LIBRARY)["dresser_1"] == MAX_GAIN
+    assert brightness_gains(photo, {"dresser_1": mask}, read, {}, LIBRARY)["dresser_1"] == SETTINGS.max_gain
     few = np.zeros_like(mask)
     few[100:102, 200:202] = True
     assert brightness_gains(photo, {"dresser_1": few}, read, {}, LIBRARY) == {}

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from diorama_core.architecture.room_extent import containing_room, without_floor_behind_walls
 from diorama_core.evaluation.metrics.scene import out_of_bounds_share
-from diorama_core.layout.feasible.recipe import MEASURED_WEIGHT, FeasibleRecipe
+from diorama_core.layout.feasible.recipe import FeasibleRecipe
 from diorama_core.progress import Progress
 from diorama_core.scene.types import Architecture, Plane, Scene
 from diorama_core.synthesis.layout_rooms import box_library
@@ -94,7 +94,7 @@ def test_lamps_hang_from_a_ceiling_that_was_not_seen() -> None:
     assert scene.support_of(lamp).parent == ceiling.id
     level = float(ceiling.polygon[0, 2])
     assert scene.object(lamp).corners_world[:, 2].max() <= level <= scene.plane("wall_1").polygon[:, 2].max() + 1e-9
-    settled = FeasibleRecipe(LIBRARY, depth_weight=MEASURED_WEIGHT).optimise(scene, Progress())[0]
+    settled = FeasibleRecipe(LIBRARY, depth_weight=1.0).optimise(scene, Progress())[0]
     moved = settled.object(lamp).pose.position - scene.object(lamp).pose.position
     assert np.linalg.norm(moved[:2]) < 0.1
     assert settled.object(lamp).corners_world[:, 2].max() == pytest.approx(level, abs=1e-6)

@@ -6,7 +6,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from diorama_core.geometry.sat import pair_axes, place_bodies
-from diorama_core.layout.escape import DIRECTIONS, exits, ring
+from diorama_core.layout.escape import exits, ring
 from diorama_core.layout.feasible.recipe import FeasibleRecipe
 from diorama_core.layout.problem.problem import build_problem
 from diorama_core.layout.report import part_overlaps
@@ -52,7 +52,7 @@ def test_the_directions_turn_with_the_object(yaw: float) -> None:
     turn = yaw_rotation(yaw)
     floor = np.eye(3)[:, :2]
     np.testing.assert_allclose(ring(turn, floor), ring(np.eye(3), floor) @ turn.T, atol=1e-9)
-    assert ring(turn, floor).shape == (DIRECTIONS, 3)
+    assert ring(turn, floor).shape == (24, 3)
     assert ring(turn, floor[:, :1]).shape == (2, 3)
     assert ring(turn, 0.0 * floor).shape == (0, 3)
 

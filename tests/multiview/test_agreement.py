@@ -4,8 +4,9 @@ from dataclasses import replace
 
 import numpy as np
 
-from diorama_core.multiview.agreement import LEFT_OUT_COST, with_agreeing_boxes
+from diorama_core.multiview.agreement import with_agreeing_boxes
 from diorama_core.multiview.joining import RoomPhoto, Track, fitted_track
+from diorama_core.multiview.settings import SETTINGS
 from tests.multiview.rooms import CAMERAS, THINGS, photo
 
 SOFA = 0
@@ -40,7 +41,7 @@ def test_boxes_that_agree_all_count() -> None:
 
 def test_a_box_that_no_other_photo_agrees_with_is_left_out_of_the_fit_and_stays_the_objects() -> None:
     photos, track = photographed(cut_short_in=1)
-    assert track.cuboid.cost > LEFT_OUT_COST
+    assert track.cuboid.cost > SETTINGS.left_out_cost
     found = with_agreeing_boxes(track, photos)
     assert found.left_out == ((1, 0),)
     assert found.boxes == track.boxes
@@ -50,7 +51,7 @@ def test_a_box_that_no_other_photo_agrees_with_is_left_out_of_the_fit_and_stays_
 def test_of_two_photos_that_disagree_the_one_that_shows_more_counts_alone() -> None:
     photos, _ = photographed(cut_short_in=1)
     both = fitted_track(((0, 0), (1, 0)), photos)
-    assert both.cuboid.cost > LEFT_OUT_COST
+    assert both.cuboid.cost > SETTINGS.left_out_cost
     found = with_agreeing_boxes(both, photos)
     assert found.fitted == ((0, 0),)
     np.testing.assert_array_equal(found.cuboid.size_m, photos[0].alone[0].size_m)

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from diorama_core.library.taxonomy import category
-from diorama_core.retrieval.box_views import CERTAIN, HEIGHTS_M, box_likelihood
+from diorama_core.retrieval.box_views import HEIGHTS_M, SETTINGS, box_likelihood
 from diorama_core.retrieval.lying_views import lying_likelihoods
 from tests.retrieval.test_box_views import view_of
 
@@ -43,4 +43,4 @@ def test_shelves_carry_at_any_height() -> None:
         lying_likelihoods(view_of("vase", z, carried=1.0), ["vase"], shelf, ["bookshelf"], HEIGHT)
         for z in (0.3, 0.9, 1.3)
     ]
-    assert min(of_one[0, 0] for of_one in found) > 10 * CERTAIN
+    assert min(of_one[0, 0] for of_one in found) > 10 * SETTINGS.certain

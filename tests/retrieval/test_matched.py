@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from diorama_core.progress import Progress
-from diorama_core.retrieval.matched import TOP_SHAPES, MatchedByLooks
+from diorama_core.retrieval.matched import MatchedByLooks
 from tests.pose.rooms import LIBRARY, Room, camera_at, random_room, standing
 
 
@@ -16,7 +16,7 @@ def matched(room: Room, stage: MatchedByLooks):
 def test_only_shapes_of_the_kind_are_compared_and_scores_fall() -> None:
     room = random_room(1)
     for found, item in zip(matched(room, MatchedByLooks(LIBRARY)), room.objects, strict=True):
-        assert 0 < len(found.ranked) <= TOP_SHAPES
+        assert 0 < len(found.ranked) <= MatchedByLooks.shapes
         assert {LIBRARY.shape(i).category for i, _ in found.ranked} == {item.category}
         scores = [s for _, s in found.ranked]
         assert scores == sorted(scores, reverse=True)

@@ -12,9 +12,8 @@ from diorama_core.library.record import Shape, ShapeLibrary
 from diorama_core.models.clip import OpenClip
 from diorama_core.models.openshape import POINTS, OpenShape
 from diorama_core.progress import Progress
-from diorama_core.retrieval import text_then_picture
 from diorama_core.retrieval.joint import PointEmbedding
-from diorama_core.retrieval.text_then_picture import TOP_SHAPES, TextThenPicture
+from diorama_core.retrieval.text_then_picture import TextThenPicture
 from tests.pose.rooms import LIBRARY, Room, camera_at, standing
 
 SEATS = ("chair", "low chair", "sofa")
@@ -45,15 +44,12 @@ def room() -> Room:
 
 def ranked(stage: TextThenPicture, room: Room) -> list[str]:
     (found,) = stage.retrieve(room.inputs, room.objects, room.geometry, Progress())
-    assert len(found.ranked) <= TOP_SHAPES
+    assert len(found.ranked) <= TextThenPicture.shapes
     return [shape for shape, _ in found.ranked]
 
 
-def test_words_leave_shapes_that_the_picture_orders(
-    room: Room, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setattr(text_then_picture, "LEFT_BY_WORDS", len(SEATS))
-    both = TextThenPicture(LIBRARY, Known(), folder=tmp_path)
+def test_words_leave_shapes_that_the_picture_orders(room: Room, tmp_path: Path) -> None:
+    both = TextThenPicture(LIBRARY, Known(), folder=tmp_path, left_by_words=len(SEATS))
     assert ranked(both, room) == ["sofa", "low chair", "chair"]
     assert ranked(replace(both, by="words"), room)[:3] == ["chair", "low chair", "sofa"]
     assert set(ranked(replace(both, by="picture"), room)).isdisjoint(SEATS)

@@ -45,7 +45,7 @@ class RoomResult:
     scores: ArchitectureScores | None
     seconds: float
     seed: int = 0
-    """Of the series of rooms that the case belongs to."""
+    """Seed of the series of rooms that the case belongs to."""
 
 
 @dataclass(frozen=True)

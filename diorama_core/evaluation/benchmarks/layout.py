@@ -63,7 +63,7 @@ class LayoutBench:
     times: tuple[tuple[str, int, float, float], ...]
     """(what, objects, median ms, p95 ms)."""
     growth_exponent: float
-    """Of the paper recipe's time from 20 to 200 objects."""
+    """Exponent of the paper recipe's time from 20 to 200 objects."""
     refinement_speedup: float
     """Stage 4 against a loop over pairs, per step, at 20 objects."""
 

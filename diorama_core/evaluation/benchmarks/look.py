@@ -54,9 +54,9 @@ GIVEN: Mapping[str, str] = {"measured depth": TRUE_DEPTH, "picture alone": ESTIM
 KEPT = 8
 """Retrieved shapes of every object, without the true one."""
 CELLS, MARGIN = 96, 0.3
-"""Of the window in which outlines are compared."""
+"""Size and margin of the window in which outlines are compared."""
 SIZE, BLUR_PX = (320, 240), 3.0
-"""Of the pictures in which colours are compared, and by how much they are blurred."""
+"""Size of the pictures in which colours are compared, and by how much they are blurred."""
 MIN_PIXELS = 30
 """Faces of fewer pixels of such a picture are not compared."""
 
@@ -71,11 +71,11 @@ class ObjectLook:
     given: str
     category: str
     chamfer_of_shape: float
-    """Of the retrieved shape in its own proportions."""
+    """Distance of the retrieved shape in its own proportions."""
     chamfer_before: float
-    """Of the retrieved shape as it stands, stretched by structure."""
+    """Distance of the retrieved shape as it stands, stretched by structure."""
     chamfer_after: float
-    """Of the shape made to measure."""
+    """Distance of the shape made to measure."""
     outline_before: float
     """Intersection over union of the whole outlines, in the photo."""
     outline_after: float

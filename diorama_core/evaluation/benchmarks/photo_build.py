@@ -35,7 +35,7 @@ log = logging.getLogger(__name__)
 
 _UNNAMED = "object"
 TILE_PX = (400, 300)
-"""Of the photo and of its scene in a sheet."""
+"""Size of the photo and of its scene in a sheet."""
 
 
 @dataclass(frozen=True)
@@ -80,7 +80,7 @@ class PhotoResult:
     ghosts: float | None = None
     """Share of the floor's picture; None where the floor has no picture."""
     ghosts_unmarked: float | None = None
-    """The same of floors made without half of what stands on them; None where the photo shows no floor."""
+    """Ghosts of floors made without half of what stands on them; None where the photo shows no floor."""
     seconds: float = 0.0
     """Processor time."""
     failure: str = ""

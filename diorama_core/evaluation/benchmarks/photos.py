@@ -72,7 +72,7 @@ class PhotosBench:
 
     plan: PhotoPlan
     results: tuple[PhotoResult, ...]
-    """Of the tasks that are done, in their order."""
+    """Results of the tasks that are done, in their order."""
 
     @property
     def plain(self) -> tuple[PhotoResult, ...]:

@@ -77,7 +77,7 @@ class PoseBench:
     groups: tuple[tuple[str, GroupCounts], ...]
     """With true depth and true shapes, by group and by "category: ..."."""
     groups_after: tuple[tuple[str, GroupCounts], ...] = ()
-    """The same after the paper's four stages of layout."""
+    """Counts by group after the paper's four stages of layout."""
 
     def tables(self) -> tuple[Table, ...]:
         """The solvers under every condition, then the paper's group, retrieval-count, ablation and category tables."""

@@ -42,13 +42,13 @@ class Found:
     objects: int
     """Annotated."""
     hits: tuple[int, ...]
-    """Of these, found at each of `LEVELS`."""
+    """Objects found, at each of `LEVELS`."""
     boxes: int
     """Among the `BEST`."""
     right: int
     """Boxes that found an object at the first level; each object counts once."""
     named: int
-    """Of these, with the object's kind, or the broader category that it belongs to."""
+    """Found objects with the right kind, or the broader category that it belongs to."""
     seconds: float
 
 
@@ -68,7 +68,7 @@ class Clicked:
 
     objects: int
     hits: tuple[int, ...]
-    """Of these, right at each of `LEVELS`."""
+    """Clicks whose box is right, at each of `LEVELS`."""
     none: int
     """Clicks that gave no box."""
     seconds: float

@@ -55,7 +55,7 @@ class ObjectResult:
     same_first: float
     """Chamfer of the first retrieved shape to the true one, times 1000; the whole library offered."""
     same_best: float
-    """Of the best of five."""
+    """Chamfer distance of the best of five."""
     unseen_first: float
     unseen_best: float
     rank: int | None

@@ -32,7 +32,7 @@ from diorama_core.synthesis.scan import scanned, write_scan
 from diorama_core.synthesis.splits import split_library
 
 MIN_SHARED = 0.3
-"""Of the volumes of a thing and its box, intersection over union, to be found."""
+"""Intersection over union of the volumes of a thing and its box, from which the thing is found."""
 MIN_SIZE_M = 0.3
 """Smaller things are not asked for."""
 MAX_OFF_M = 0.3
@@ -50,9 +50,9 @@ class ScanResult:
     things: int
     """That stand or hang in the room and are not small."""
     found: int
-    """Of them, by place and size."""
+    """Things found, by place and size."""
     right: int
-    """Of those, with the right kind."""
+    """Found things with the right kind."""
     openings: int
     openings_found: int
     openings_false: int

@@ -26,9 +26,9 @@ class CaseResult:
     failure: str = ""
     """Why the prediction failed."""
     before: SceneScores | None = None
-    """The same build before the layout optimiser; None where it failed."""
+    """Scores of the build before the layout optimiser; None where it failed."""
     seed: int = 0
-    """Of the series of rooms that the case belongs to."""
+    """Seed of the series of rooms that the case belongs to."""
 
 
 Results = Sequence[tuple[str, Sequence[CaseResult]]]

@@ -51,14 +51,14 @@ class ArchitectureScores:
     edge_error_px: float
     """Symmetric chamfer distance between the edges of the two layouts, photo pixels."""
     depth_rmse_m: float
-    """Of the layouts' depths, where both have one."""
+    """Error of the layouts' depths, where both have one."""
     cdb_m: float
     """Chamfer distance between all planes in space after both rooms are centred on their bounding boxes.
 
     What lies behind the camera counts: a room without its fourth wall is far from one with it.
     """
     cdb_seen_m: float
-    """The same of what the picture shows of either room; 0 for a perfect reading of the picture."""
+    """Distance of what the picture shows of either room; 0 for a perfect reading of the picture."""
     recall: float
     """Share of the visible true planes that were found, within the given tolerances."""
     precision: float

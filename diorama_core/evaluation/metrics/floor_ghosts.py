@@ -21,7 +21,7 @@ from diorama_core.pipeline.run import Built
 
 GHOST_DIFFERENCE = 10.0
 _TEXELS = 40_000
-"""Of the floor's picture that are looked at, evenly spread."""
+"""Texels of the floor's picture that are looked at, evenly spread."""
 
 
 def floor_ghosts(built: Built) -> float | None:

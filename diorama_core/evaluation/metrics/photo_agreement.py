@@ -34,7 +34,7 @@ class Agreement:
     shape_iou: float
     """Projected posed shape, before the layout optimiser, against the given box; 0 when it has no shape."""
     final_iou: float
-    """The same after the layout optimiser."""
+    """Intersection over union after the layout optimiser."""
     size_m: tuple[float, float, float]
     plausible: bool
     """Whether its size lies in the category's range; True for categories without one."""

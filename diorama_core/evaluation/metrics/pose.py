@@ -67,7 +67,7 @@ class PairChecks(ArrayValue):
 
 
 def without_symmetry(truth: Sequence[Placed]) -> list[Placed]:
-    """The same objects, each of whose headings counts: a round table turned by 30 degrees is wrong."""
+    """The objects with every heading counted: a round table turned by 30 degrees is wrong."""
     return [replace(t, symmetry=1) for t in truth]
 
 

@@ -89,7 +89,7 @@ class SceneScores:
     """Mean distance from the surfaces of either scene to the nearest of the other, both ways averaged; None without
     any."""
     f_score: float
-    """Of the surfaces of both scenes, within `NEAR_M`."""
+    """F-score of the surfaces of both scenes, within `NEAR_M`."""
     kind: float
     """Share of the objects asked for whose shape is of the true kind."""
 

@@ -33,7 +33,7 @@ BEFORE_M = 0.5
 CONTACT_M = 0.015
 OUTSIDE_M = 0.05
 ROW_OFF_M, ROW_GAP_M, ROW_TURNED_RAD = 0.08, 1.0, 0.1
-"""Of objects in a row: how far from its line, how far apart, how far turned from one another at most."""
+"""Limits for objects in a row: how far from its line, how far apart, how far turned from one another at most."""
 
 
 @dataclass(frozen=True)

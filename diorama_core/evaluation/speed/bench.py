@@ -89,7 +89,7 @@ class SpeedBench:
     seed: int
     series: tuple[Series, ...]
     yardstick_s: float
-    """Of this machine, while the run went on."""
+    """Time of the yardstick on this machine, while the run went on."""
     peak_memory_mb: float
     before: Mapping[str, float]
     """Figures to compare with."""

@@ -25,7 +25,7 @@ class Cost:
     """What one piece of work took."""
 
     seconds: float
-    """Of all threads together."""
+    """Processor time of all threads together."""
     peak_mb: float | None = None
     """Resident memory at its highest, above where it was before; None where the system does not tell."""
 

@@ -12,8 +12,6 @@ from diorama_core.geometry.planes import plane_axes
 
 INSET_M = 2e-4
 """Kept between a contact face and the edge of its support, and under a shelf's ceiling."""
-_FEW_SIDES = 10
-"""Of a surface; with more, a linear program is quicker than all corners."""
 
 
 def largest_share(m: np.ndarray, h: np.ndarray, reach: np.ndarray) -> float:
@@ -23,7 +21,7 @@ def largest_share(m: np.ndarray, h: np.ndarray, reach: np.ndarray) -> float:
         return 1.0
     u, v = plane_axes(cross(m[0], m[1]) / max(float(np.linalg.norm(cross(m[0], m[1]))), 1e-9))
     A = np.column_stack([m @ u, m @ v, reach])
-    share = _highest_vertex(A, h) if len(A) <= _FEW_SIDES else _highest(A, h)
+    share = _highest_vertex(A, h) if len(A) <= 10 else _highest(A, h)
     return share if share < 1.0 - 1e-9 else 1.0
 
 
@@ -33,7 +31,7 @@ def _highest(A: np.ndarray, h: np.ndarray) -> float:
 
 
 def _highest_vertex(A: np.ndarray, h: np.ndarray) -> float:
-    """The same through all corners of A x <= h at once: a tenth of the time for the few sides that most tops have."""
+    """The largest share through all corners of A x <= h at once: a tenth of the time for the few sides of most tops."""
     triples = np.array(list(combinations(range(len(A)), 3)))
     corners, bounds = A[triples], h[triples]
     firm = np.abs(np.linalg.det(corners)) > 1e-9

@@ -15,19 +15,10 @@ from jaxtyping import Float
 from scipy.optimize import lsq_linear
 
 from diorama_core.arrangement.surfaces import Surface, box_misfit, is_wall_like
-from diorama_core.layout.feasible.photo_observations import LOAD_M, MAX_STRETCH, UPWARD, PhotoObservations
+from diorama_core.layout.feasible.photo_observations import PhotoObservations
 from diorama_core.layout.problem.problem import Problem
+from diorama_core.layout.settings import LayoutSettings
 from diorama_core.scene.types import box_corners
-
-HIDDEN = 0.2
-"""Weight of an end that something hides, against one that was seen."""
-MIN_EXTENT_M = 0.02
-"""Objects that look flatter count as if they were so high."""
-USUAL = 0.05
-"""Disagreements up to this share of an apparent height are usual."""
-ROUNDS = 4
-AS_IT_WAS_M = 1e-4
-"""Smaller changes of a height or a place are rounding."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -58,7 +49,8 @@ def joint_heights(problem: Problem, observations: PhotoObservations) -> tuple[Pr
     members = np.array(chains.members)
     found = x[: len(members)]
     feet = chains.constant[members] + chains.rows[members] @ x
-    changed = (np.abs(found - height[members]) > AS_IT_WAS_M) | (np.abs(feet - foot[members]) > AS_IT_WAS_M)
+    moved = np.maximum(np.abs(found - height[members]), np.abs(feet - foot[members]))
+    changed = moved > problem.settings.height_rounding_m
     scale, p = problem.scale.copy(), problem.p.copy()
     chosen = members[changed]
     scale[chosen, 2] *= found[changed] / height[chosen]
@@ -95,8 +87,8 @@ def _is_sought(problem: Problem, observations: PhotoObservations, i: int) -> boo
         return False
     if is_wall_like(surface):
         return bool((problem.parent == i).any()) and not problem.grounded[i]
-    upright = problem.contact[i][2] == -1.0 and float(problem.R[i][2, 2]) > UPWARD
-    return upright and float(surface.normal[2]) > UPWARD
+    upright = problem.contact[i][2] == -1.0 and float(problem.R[i][2, 2]) > problem.settings.upward
+    return upright and float(surface.normal[2]) > problem.settings.upward
 
 
 def _observed_place(problem: Problem, i: int) -> Surface:
@@ -134,9 +126,9 @@ def _solved(
     lines, wanted = [], []
     for k, i in enumerate(chains.members):
         own = np.arange(unknowns) == k
-        fits = int(problem.parent[i]) < 0 or abs(_observed_level(problem, i) - foot[i]) <= LOAD_M
+        fits = int(problem.parent[i]) < 0 or abs(_observed_level(problem, i) - foot[i]) <= problem.settings.load_m
         hidden = [foot_hidden[i], observations.hidden[i, 1]]
-        weight = np.where(hidden, HIDDEN, 1.0) / _apparent_height_m(observations, i)
+        weight = np.where(hidden, problem.settings.hidden, 1.0) / _apparent_height_m(observations, i)
         if fits:
             lines += [weight[0] * chains.rows[i], weight[1] * (chains.rows[i] + own)]
             wanted += list(weight * (np.array([foot[i], foot[i] + height[i]]) - chains.constant[i]))
@@ -146,21 +138,23 @@ def _solved(
     # A hidden foot says nothing against a height: the top was measured, and the foot is where the supporter is.
     whole = [foot[i] + height[i] - (chains.constant[i] + chains.rows[i] @ start) for i in chains.members]
     tall = np.where(foot_hidden[list(chains.members)], whole, 0.0)
-    least = np.concatenate([start[:count] / MAX_STRETCH, np.full(unknowns - count, -np.inf)])
-    most = np.concatenate([MAX_STRETCH * np.maximum(start[:count], tall), np.full(unknowns - count, np.inf)])
-    return _robust(np.array(lines), np.array(wanted), (least, most))
+    stretch = problem.settings.max_stretch
+    least = np.concatenate([start[:count] / stretch, np.full(unknowns - count, -np.inf)])
+    most = np.concatenate([stretch * np.maximum(start[:count], tall), np.full(unknowns - count, np.inf)])
+    return _robust(np.array(lines), np.array(wanted), (least, most), problem.settings)
 
 
 def _robust(
     A: Float[np.ndarray, "r v"],
     b: Float[np.ndarray, " r"],
     bounds: tuple[Float[np.ndarray, " v"], Float[np.ndarray, " v"]],
+    settings: LayoutSettings,
 ) -> Float[np.ndarray, " v"]:
     """The bounded least-squares solution in which large disagreements count by their size, not its square (Huber)."""
     weight = np.ones(len(b))
-    for _ in range(ROUNDS):
+    for _ in range(settings.height_rounds):
         x = np.asarray(lsq_linear(weight[:, None] * A, weight * b, bounds).x)
-        weight = np.sqrt(1.0 / np.maximum(np.abs(A @ x - b) / USUAL, 1.0))
+        weight = np.sqrt(1.0 / np.maximum(np.abs(A @ x - b) / settings.usual, 1.0))
     return x
 
 
@@ -169,4 +163,4 @@ def _apparent_height_m(observations: PhotoObservations, i: int) -> float:
     camera = observations.camera
     pixels = float(observations.bounds_px[i, 3] - observations.bounds_px[i, 1])
     metres = pixels * float(camera.to_camera(observations.observed[i : i + 1])[0, 2]) / camera.intrinsics.fy
-    return max(metres, MIN_EXTENT_M) if np.isfinite(metres) else 1.0
+    return max(metres, observations.settings.min_extent_m) if np.isfinite(metres) else 1.0

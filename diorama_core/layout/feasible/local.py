@@ -15,9 +15,6 @@ from diorama_core.library.record import ShapeLibrary
 from diorama_core.scene import edits
 from diorama_core.scene.types import Pose, Scene, Support
 
-_LEAVES_M = 0.02
-"""An object dragged this far past the edge of its supporter is assigned to another."""
-
 
 @dataclass(frozen=True, eq=False)
 class DragSolver:
@@ -26,10 +23,12 @@ class DragSolver:
     scene: Scene
     problem: Problem
     index: int
-    """Of the dragged object in the problem."""
+    """Number of the dragged object in the problem."""
     places: tuple[tuple[Surface, Support], ...]
     """Every surface it could be put down on, in the world, with the edge that would then hold it."""
     rounds: int = 4
+    leaves_m: float = 0.02
+    """An object dragged this far past the edge of its supporter is assigned to another."""
 
     @classmethod
     def prepare(cls, scene: Scene, library: ShapeLibrary, object_id: str) -> DragSolver:
@@ -92,7 +91,7 @@ class DragSolver:
         j = int(problem.parent[i])
         world = supported if j < 0 else supported.at(problem.R[j], problem.p[j], problem.scale[j])
         foot = problem.p[i] - 0.5 * problem.R[i][:, 2] * problem.shape_size[i][2] * problem.scale[i][2]
-        if j >= 0 and outside_m(world, foot) <= _LEAVES_M:
+        if j >= 0 and outside_m(world, foot) <= self.leaves_m:
             return problem, None
         under = [
             (surface, edge)

@@ -11,20 +11,11 @@ from dataclasses import dataclass
 import numpy as np
 from jaxtyping import Bool, Float
 
-from diorama_core.layout.feasible.visible_points import NEAREST_M, TrackedPoints
+from diorama_core.layout.feasible.visible_points import TrackedPoints
+from diorama_core.layout.settings import LayoutSettings
 from diorama_core.scene.types import Camera
 
 _OUTWARD = np.array([-1.0, -1.0, 1.0, 1.0])
-_TRACKED = 3.0
-"""Weight of a metre by which tracked points leave their lines of sight, against one of the outline."""
-_KEEP_PLACE = 0.1
-"""Weight of staying where structure put an object, against one metre of disagreement with the picture."""
-_LOAD = 1.5
-"""Weight of a metre between a place and what was observed on it."""
-_KEEP_SIZE = 0.4
-"""Weight of a relative change of size, times the largest extent."""
-_KEEP_SHAPE = 0.4
-"""Weight of a relative change of one extent against the others, times that extent."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -42,7 +33,7 @@ class ObjectFit:
     anchor: Float[np.ndarray, "3"]
     """World point that stays put when the object is resized."""
     anchor_local: Float[np.ndarray, "3"]
-    """The same at scale 1, object frame."""
+    """The anchor at scale 1, object frame."""
     arms: Float[np.ndarray, "v 3"]
     """Outline points from the anchor, at scale 1."""
     tracked: TrackedPoints
@@ -56,6 +47,7 @@ class ObjectFit:
     """What a pixel is at the object's distance."""
     extents: Float[np.ndarray, "3"]
     """The object's own, metres."""
+    settings: LayoutSettings
 
     def centre(self, x: Float[np.ndarray, "5"]) -> Float[np.ndarray, "3"]:
         """Where the object's centre is."""
@@ -85,7 +77,7 @@ class ObjectFit:
             return np.zeros((0, 5)), np.zeros(0)
         arms = self.arms * (self.scale * np.exp(x[2:]))
         seen = self.camera.to_camera(self.anchor + self.basis @ x[:2] + arms @ self.R.T)
-        if seen[:, 2].min() < NEAREST_M:
+        if seen[:, 2].min() < self.settings.nearest_m:
             return None
         k = self.camera.intrinsics
         flat = seen[:, :2] / seen[:, 2:] * [k.fx, k.fy] + [k.cx, k.cy]
@@ -124,7 +116,7 @@ class ObjectFit:
     def _sight(self, x: Float[np.ndarray, "5"]) -> tuple[Float[np.ndarray, "r 5"], Float[np.ndarray, " r"]] | None:
         """How the tracked points leave where they were seen, in metres at their distance."""
         arms, placed = self._placed(x)
-        if placed[:, 2].min() < NEAREST_M:
+        if placed[:, 2].min() < self.settings.nearest_m:
             return None
         k = self.camera.intrinsics
         sight = (self.tracked.pixels - [k.cx, k.cy]) / [k.fx, k.fy]
@@ -133,7 +125,7 @@ class ObjectFit:
         pixel = np.concatenate([np.tile(np.eye(2), (len(arms), 1, 1)), -sight[..., None]], axis=2).reshape(-1, 3)
         across = pixel @ self.camera.T_camera_world[:3, :3]
         J = np.column_stack([across @ self.basis, (across @ self.R) * np.repeat(arms, 2, axis=0)])
-        weight = _TRACKED / np.sqrt(len(arms))
+        weight = self.settings.tracked / np.sqrt(len(arms))
         return weight * J, weight * residual.ravel()
 
     def _held(self, x: Float[np.ndarray, "5"]) -> tuple[Float[np.ndarray, "m 5"], Float[np.ndarray, " m"]]:
@@ -143,13 +135,13 @@ class ObjectFit:
         rows[:, :2] = self.basis[2]
         rows[:, 4] = arm
         height = self.anchor[2] + self.basis[2] @ x[:2] + arm
-        return _LOAD * rows, _LOAD * (height - self.loads[:, 1])
+        return self.settings.load * rows, self.settings.load * (height - self.loads[:, 1])
 
     def _clamped(self) -> Float[np.ndarray, "6 5"]:
         clamped = np.zeros((6, 5))
-        clamped[0, 0] = clamped[1, 1] = _KEEP_PLACE
-        clamped[2:5, 2:] = _KEEP_SHAPE * self.extents[:, None] * (np.eye(3) - 1 / 3)
-        clamped[5, 2:] = _KEEP_SIZE * self.extents.max() / 3
+        clamped[0, 0] = clamped[1, 1] = self.settings.keep_place
+        clamped[2:5, 2:] = self.settings.keep_size * self.extents[:, None] * (np.eye(3) - 1 / 3)
+        clamped[5, 2:] = self.settings.keep_size * self.extents.max() / 3
         return clamped
 
 

@@ -18,39 +18,14 @@ from diorama_core.artefacts import PhotoDisagreement
 from diorama_core.geometry.projection import box_iou
 from diorama_core.layout.feasible.object_fit import ObjectFit, bounded_step
 from diorama_core.layout.feasible.visible_points import (
-    NEAREST_M,
     TrackedPoints,
     VisiblePoints,
     tracked_points,
     turned_points,
 )
 from diorama_core.layout.problem.problem import Problem
+from diorama_core.layout.settings import LayoutSettings
 from diorama_core.scene.types import Camera, box_corners
-
-MOVED_M = 2e-3
-"""Objects that structure moved less than this already agree: a settled layout stays as it is, and so does what a person
-arranged."""
-MAX_STRETCH = 1.3
-"""Sizes change by at most this factor either way."""
-FAR_M = 0.2
-"""Objects that a layout moves farther are named,"""
-SHARED_OUTLINE = 0.6
-"""and those whose outline shares less than this with the observed one (intersection over union of bounds)."""
-SAME_PLACE = 0.4
-"""A posed shape whose bounds share at least this with the object's box (intersection over union) is where it was
-seen."""
-BORDER_PX = 2.0
-"""Boxes that end nearer to the picture's border go on beyond it."""
-DIFFERENT = 0.08
-"""Posed bounds that differ from the photo's by less than this share of the box are as good: shapes are not what they
-stand for."""
-COVERED = 0.3
-"""A side of a box is hidden where a nearer object's box covers more than this share of it."""
-UPWARD = 0.98
-"""Normals with a larger z are of places on which things are put down."""
-LOAD_M = 0.12
-"""What was observed farther from its place says nothing about that place."""
-_STEPS = 4
 
 
 @dataclass(frozen=True, eq=False)
@@ -83,14 +58,15 @@ class PhotoObservations:
     """Objects whose posed shape is not where the photo's box is."""
     measured: Bool[np.ndarray, " n"]
     """Objects at measured places that are still where the photo shows them; a person may have put others anywhere."""
+    settings: LayoutSettings
 
     def limited(self, scale: Float[np.ndarray, "n 3"]) -> PhotoObservations:
-        """The same with nothing larger than it is now where it has been made smaller."""
-        smaller = scale < 0.999 * self.most / MAX_STRETCH
+        """These observations with nothing larger than it is now where it has been made smaller."""
+        smaller = scale < 0.999 * self.most / self.settings.max_stretch
         return replace(self, most=np.where(smaller, scale, self.most), least=np.minimum(self.least, scale))
 
     def no_larger(self, i: int, scale: Float[np.ndarray, "3"]) -> PhotoObservations:
-        """The same with one object no larger than this."""
+        """These observations with one object no larger than this."""
         if not np.isfinite(scale).any():
             return self
         most, least = self.most.copy(), self.least.copy()
@@ -99,18 +75,18 @@ class PhotoObservations:
         return replace(self, most=most, least=least)
 
     def at_heights(self, members: Int[np.ndarray, " m"], scale: Float[np.ndarray, " n"]) -> PhotoObservations:
-        """The same with the heights of some objects decided: the scales of all along their own up axes."""
+        """These observations with the heights of some objects decided: the scales of all along their own up axes."""
         least, most = self.least.copy(), self.most.copy()
         least[members, 2] = most[members, 2] = scale[members]
         return replace(self, least=least, most=most)
 
     def no_smaller(self, scale: Float[np.ndarray, "n 3"], extents: Bool[np.ndarray, "n 3"]) -> PhotoObservations:
-        """The same with some extents no smaller than they are."""
+        """These observations with some extents no smaller than they are."""
         least = np.where(extents, np.maximum(self.least, scale), self.least)
         return replace(self, least=least, most=np.maximum(self.most, least))
 
     def replaced(self, members: Int[np.ndarray, " m"], other: PhotoObservations) -> PhotoObservations:
-        """The same with all that was seen of some objects as others have it, but for what decided their heights."""
+        """These observations with some objects as others have them, but for what decided their heights."""
 
         def rows(own: np.ndarray, theirs: np.ndarray) -> np.ndarray:
             changed = own.copy()
@@ -152,13 +128,13 @@ class PhotoObservations:
             pinned: point of its box, in half extents, that touches supports and walls and stays put when it is resized.
             grown: what its distance and its size were multiplied by already.
         """
-        settled = not self.contradicted[i] and np.linalg.norm(p - self.observed[i]) < MOVED_M
+        settled = not self.contradicted[i] and np.linalg.norm(p - self.observed[i]) < self.settings.moved_m
         if settled or not len(self.tracked[i].points):
             return p, scale
         fit = self.fit(i, R, p, scale, basis, pinned, grown)
         low, high = np.log(grown * self.least[i] / scale), np.log(grown * self.most[i] / scale)
         x = np.zeros(5)
-        for _ in range(_STEPS):
+        for _ in range(self.settings.fit_steps):
             system = fit.linearised(x)
             if system is None:
                 return p, scale
@@ -197,6 +173,7 @@ class PhotoObservations:
             basis=basis,
             metres=float(self.camera.to_camera(observed)[2]) / self.camera.intrinsics.fx,
             extents=self.size[i] * scale,
+            settings=self.settings,
         )
 
     def _grown_loads(self, i: int, grown: float) -> Float[np.ndarray, "m 2"]:
@@ -235,8 +212,8 @@ def photo_observations(
         bounds_px=bounds,
         hidden=hidden,
         observed=problem.p,
-        least=problem.scale / MAX_STRETCH,
-        most=problem.scale * MAX_STRETCH,
+        least=problem.scale / problem.settings.max_stretch,
+        most=problem.scale * problem.settings.max_stretch,
         depth_weight=depth_weight,
         loads=tuple(_loads(problem, i) for i in range(problem.count)),
         size=problem.shape_size,
@@ -244,7 +221,8 @@ def photo_observations(
         tracked=tracked_points(problem, camera, posed, bounds, visible),
         R=problem.R,
         contradicted=(np.abs(posed - bounds) > 0.0).any(axis=1),
-        measured=_agrees(_bounds_in_picture_px(problem, camera), problem.box_px) & measured,
+        measured=_agrees(problem, camera) & measured,
+        settings=problem.settings,
     )
 
 
@@ -254,12 +232,12 @@ def _loads(problem: Problem, i: int) -> Float[np.ndarray, "m 2"]:
     for k in np.flatnonzero(problem.parent == i):
         size = problem.shape_size[k] * problem.scale[k]
         corners = problem.p[k] + box_corners(size) @ problem.R[k].T
-        flat = [s for s in problem.levels[k] if float(s.normal[2]) > UPWARD]
+        flat = [s for s in problem.levels[k] if float(s.normal[2]) > problem.settings.upward]
         posed = [s.at(problem.R[i], problem.p[i], problem.scale[i]) for s in flat]
         if posed and problem.firm[k] == 1.0:
             nearest = int(np.argmin([box_misfit(corners, size, s) for s in posed]))
             foot = float(corners[:, 2].min())
-            if abs(foot - posed[nearest].level) <= LOAD_M:
+            if abs(foot - posed[nearest].level) <= problem.settings.load_m:
                 found.append((flat[nearest].level, foot))
     return np.array(found).reshape(-1, 2)
 
@@ -284,7 +262,7 @@ def _bounds_in_picture_px(problem: Problem, camera: Camera) -> Float[np.ndarray,
     k, bounds = camera.intrinsics, np.full((problem.count, 4), np.nan)
     for i, own in enumerate(_outline_points(problem)):
         world = (own * problem.scale[i]) @ problem.R[i].T + problem.p[i]
-        flat = camera.project(world[camera.to_camera(world)[:, 2] >= NEAREST_M])
+        flat = camera.project(world[camera.to_camera(world)[:, 2] >= problem.settings.nearest_m])
         if len(flat):
             bounds[i] = np.clip([*flat.min(axis=0), *flat.max(axis=0)], 0, [k.width, k.height] * 2)
     return bounds
@@ -295,7 +273,7 @@ def posed_bounds_px(
 ) -> Float[np.ndarray, "4"]:
     """Bounds in the picture of one object at another place or size, not cut at its border; NaN behind the camera."""
     world = (_outline_points_of(problem, i) * scale) @ problem.R[i].T + p
-    if camera.to_camera(world)[:, 2].min() < NEAREST_M:
+    if camera.to_camera(world)[:, 2].min() < problem.settings.nearest_m:
         return np.full(4, np.nan)
     flat = camera.project(world)
     return np.array([*flat.min(axis=0), *flat.max(axis=0)])
@@ -310,15 +288,16 @@ def _pictured(
     shape says where it is.
     """
     boxes = problem.box_px
-    agrees = _agrees(_bounds_in_picture_px(problem, camera), boxes)
+    agrees = _agrees(problem, camera)
     hidden = _hidden_sides(problem, camera) & agrees[:, None]
     extent = np.tile(boxes[:, 2:] - boxes[:, :2], (1, 2))
-    contradicted = np.abs(posed - boxes) > DIFFERENT * extent + BORDER_PX
+    contradicted = np.abs(posed - boxes) > problem.settings.different * extent + problem.settings.border_px
     return np.where(agrees[:, None] & contradicted & ~hidden, boxes, posed), hidden
 
 
-def _agrees(posed: Float[np.ndarray, "n 4"], boxes: Float[np.ndarray, "n 4"]) -> Bool[np.ndarray, " n"]:
-    return np.array([bool(box_iou(a, b) >= SAME_PLACE) for a, b in zip(posed, boxes)], dtype=bool).reshape(-1)
+def _agrees(problem: Problem, camera: Camera) -> Bool[np.ndarray, " n"]:
+    posed, least = _bounds_in_picture_px(problem, camera), problem.settings.same_place
+    return np.array([bool(box_iou(a, b) >= least) for a, b in zip(posed, problem.box_px)], dtype=bool).reshape(-1)
 
 
 def _hidden_sides(problem: Problem, camera: Camera) -> Bool[np.ndarray, "n 4"]:
@@ -327,8 +306,8 @@ def _hidden_sides(problem: Problem, camera: Camera) -> Bool[np.ndarray, "n 4"]:
     What an object stands on does not hide its foot, what stands on it does not hide its top, and a rug hides nothing.
     """
     k, boxes = camera.intrinsics, problem.box_px
-    border = np.array([BORDER_PX, BORDER_PX, k.width - BORDER_PX, k.height - BORDER_PX])
-    hidden = np.column_stack([boxes[:, :2] <= border[:2], boxes[:, 2:] >= border[2:]])
+    border = problem.settings.border_px
+    hidden = np.column_stack([boxes[:, :2] <= border, boxes[:, 2:] >= np.array([k.width, k.height]) - border])
     depth = camera.to_camera(problem.p)[:, 2]
     for i in range(problem.count):
         nearer = (depth < depth[i]) & ~problem.yielding[i]
@@ -342,7 +321,7 @@ def _hidden_sides(problem: Problem, camera: Camera) -> Bool[np.ndarray, "n 4"]:
             low = np.maximum(before[:, along], ends[0, along])
             high = np.minimum(before[:, along + 2], ends[1, along])
             covered = np.where(across, np.maximum(high - low, 0.0), 0.0).max(initial=0.0)
-            hidden[i, side] |= bool(covered > COVERED * (ends[1, along] - ends[0, along]))
+            hidden[i, side] |= bool(covered > problem.settings.covered * (ends[1, along] - ends[0, along]))
     return hidden
 
 
@@ -360,6 +339,6 @@ def disagreements(
     for i in np.flatnonzero(problem.free):
         moved = float(np.linalg.norm(p[i] - problem.p[i]))
         shared = float(box_iou(seen[i], now[i])) if np.isfinite([seen[i], now[i]]).all() else 1.0
-        if moved > FAR_M or shared < SHARED_OUTLINE:
+        if moved > problem.settings.named_move_m or shared < problem.settings.named_outline:
             found.append(PhotoDisagreement(problem.ids[i], problem.labels[i], moved, shared))
     return tuple(found)

@@ -21,6 +21,7 @@ from diorama_core.layout.feasible.visible_points import ObservedView, VisiblePoi
 from diorama_core.layout.feasible.wide_supports import reaching_loads
 from diorama_core.layout.problem.problem import Problem, build_problem
 from diorama_core.layout.report import measure
+from diorama_core.layout.settings import LAYOUT, LayoutSettings
 from diorama_core.layout.weights import AS_IT_IS, Weights
 from diorama_core.layout.what_got_worse import disagreement_in_words
 from diorama_core.library.record import ShapeLibrary
@@ -28,20 +29,6 @@ from diorama_core.progress import Progress
 from diorama_core.protocols import Preview
 from diorama_core.scene import edits
 from diorama_core.scene.types import Camera, Scene
-
-MEASURED_WEIGHT, REASONED_WEIGHT = 1.0, 0.3
-"""What leaving the observed distance costs against leaving the observed outline: for a measured distance, and for one
-that was reasoned from a photo alone."""
-SHRINK = 0.9
-"""What a stuck object's footprint is multiplied by, each attempt."""
-
-
-MIN_CERTAINTY = 0.1
-"""An object that is hardly seen still counts so much."""
-ACROSS_ALONE = 8.0
-"""So many times what moves across the picture cost: also tried where objects must be parted."""
-RIDING = 0.05
-"""What moving on its supporter costs an object, against moving in the picture."""
 
 
 @dataclass(frozen=True)
@@ -62,9 +49,9 @@ class FeasibleRecipe:
     """Cost of moving across the viewing ray relative to along it, when the scene has a camera; 1 is indifferent."""
     depth_measured: bool = False
     """Whether the observed distances were measured: an object then reaches its support by its size, not its place."""
-    depth_weight: float = REASONED_WEIGHT
-    """How much leaving the observed distance counts against leaving the observed outline; for the objects that their
-    support or wall moved, when the scene has a camera."""
+    depth_weight: float = 0.3
+    """How much leaving the observed distance counts against leaving the observed outline, for the objects that their
+    support or wall moved, when the scene has a camera: 0.3 of a distance that was reasoned from a photo alone."""
     sizes_reasoned: bool = False
     """Whether sizes follow distances, because a photo alone gave both: an object that its support moves toward the
     camera then becomes smaller by as much."""
@@ -72,7 +59,8 @@ class FeasibleRecipe:
     """Faces parallel to a wall and nearer than this are set against it, besides those whose support edge says so. Above
     0 a second run may change a layout: the first can bring objects near walls."""
     weights: Weights = AS_IT_IS
-    """Of the costs in `weights.DEFAULT_COSTS`."""
+    """Factors on the costs in `weights.DEFAULT_COSTS`."""
+    settings: LayoutSettings = LAYOUT
 
     def optimise(self, scene: Scene, progress: Progress, preview: Preview | None = None) -> tuple[Scene, LayoutReport]:
         """Returns the scene with every free object's pose made feasible, and what was achieved.
@@ -82,10 +70,12 @@ class FeasibleRecipe:
         """
         begun = time.perf_counter()
         progress.report(0.0, "reading the layout")
-        problem = build_problem(scene, self.library, only=self.only, adherence_m=self.adherence_m)
+        problem = build_problem(
+            scene, self.library, only=self.only, adherence_m=self.adherence_m, settings=self.settings
+        )
         before = measure(problem, problem.R, problem.p, problem.scale)
         watched = scene.camera is not None and self._across > 1.0
-        seen_before = ObservedView.of(scene, self.library) if watched else None
+        seen_before = ObservedView.of(scene, self.library, self.settings) if watched else None
         visible = {} if seen_before is None else seen_before.points
         wanted, observations = self._wanted(problem, scene.camera, visible)
         best: tuple[Problem, Program, Separation] | None = None
@@ -169,10 +159,10 @@ class FeasibleRecipe:
         return check
 
     def _farther(self, program: Program, camera: Camera | None) -> tuple[Program, ...]:
-        """The same moves where those across the picture cost more still: one of several ways to part a crowd."""
+        """The moves where those across the picture cost more still: one of several ways to part a crowd."""
         if camera is None or self._across <= 1.0:
             return ()
-        shy = replace(self, observations=ACROSS_ALONE * self.observations)
+        shy = replace(self, observations=self.settings.across_alone * self.observations)
         costs = shy._costs(program.problem, camera)
         return (build_program(program.problem, program.structure, *costs),)
 
@@ -216,14 +206,14 @@ class FeasibleRecipe:
         along = rays[:, :, None] * rays[:, None, :]
         seen = self._across * np.eye(3) - (self._across - 1.0) * along
         certainty = _certainty(problem)
-        return np.tile(RIDING * np.eye(2), (problem.count, 1, 1)), certainty[:, None, None] * seen
+        return np.tile(self.settings.riding * np.eye(2), (problem.count, 1, 1)), certainty[:, None, None] * seen
 
 
 def _certainty(problem: Problem) -> Float[np.ndarray, " n"]:
     """How surely it is known where each object is: by itself or by anything that was seen on it."""
     doubt = 1.0 - np.clip(problem.certainty, 0.0, 1.0)
     known = np.array([1.0 - np.prod(doubt[problem.rides(i)]) for i in range(problem.count)]).reshape(-1)
-    return np.maximum(known, MIN_CERTAINTY)
+    return np.maximum(known, problem.settings.min_certainty)
 
 
 def _apart(
@@ -274,7 +264,7 @@ def _smaller(problem: Problem, structure: Structure, found: Separation) -> Probl
         volume = {k: float(np.prod(problem.shape_size[k] * structure.scale[k])) for k in free}
         if free:
             k = min(free, key=lambda k: (volume[k], k))
-            scale[k] *= np.where(np.abs(problem.contact[k]) > 0.5, 1.0, SHRINK)
+            scale[k] *= np.where(np.abs(problem.contact[k]) > 0.5, 1.0, problem.settings.shrink)
     return replace(problem, scale=scale, adheres=tuple(a for a in problem.adheres if a[0] not in stuck))
 
 

@@ -11,10 +11,7 @@ from jaxtyping import Bool, Float
 
 from diorama_core.geometry.sat import PairAxes, pair_axes
 from diorama_core.layout.escape import exits, ring
-from diorama_core.layout.feasible.separate import APART_M, Program, Separation, overlaps
-
-REACHES_M = (0.15, 0.6, 2.0)
-"""Looked through in turn: most find a place close by, and then only close neighbours were compared."""
+from diorama_core.layout.feasible.separate import Program, Separation, overlaps
 
 
 def relocate(program: Program, y: Float[np.ndarray, " v"]) -> Separation:
@@ -26,7 +23,8 @@ def relocate(program: Program, y: Float[np.ndarray, " v"]) -> Separation:
     depth, pairs = overlaps(program, y)
     refused: set[tuple[int, int]] = set()
     while left := [pair for pair in pairs if pair not in refused]:
-        found = [spot for k in _movable(program, left[0]) if (spot := cheapest_spot(program, y, k)) is not None]
+        spots = (cheapest_spot(program, y, k, program.problem.settings.reaches_m) for k in _movable(program, left[0]))
+        found = [spot for spot in spots if spot is not None]
         if not found:
             refused.add(left[0])
             continue
@@ -51,9 +49,7 @@ def _movable(program: Program, pair: tuple[int, int]) -> list[int]:
     return [k for k in (*first, *second) if (k in first) != (k in second) and program.problem.free[k]]
 
 
-def cheapest_spot(
-    program: Program, y: Float[np.ndarray, " v"], i: int, reaches_m: Sequence[float] = REACHES_M
-) -> Spot | None:
+def cheapest_spot(program: Program, y: Float[np.ndarray, " v"], i: int, reaches_m: Sequence[float]) -> Spot | None:
     """The cheapest place without overlap for an object and what it supports; None where none is within reach.
 
     Args:
@@ -99,8 +95,8 @@ def _free_distances(
     """Distances to the first free place along each direction; what is farther than `reach` was not looked at."""
     w = program.moves(y)[program.bodies.owner]
     blocks = _pairs_around(program, w, moving, reach)
-    ones = [np.ones(len(block.a)) for block in blocks]
-    return exits(blocks, [w[block.a] - w[block.b] for block in blocks], ones, directions, APART_M)
+    ones, apart_m = [np.ones(len(block.a)) for block in blocks], program.problem.settings.apart_m
+    return exits(blocks, [w[block.a] - w[block.b] for block in blocks], ones, directions, apart_m)
 
 
 def _pairs_around(program: Program, w: Float[np.ndarray, "b 3"], moving: np.ndarray, reach: float) -> list[PairAxes]:

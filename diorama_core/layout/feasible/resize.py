@@ -13,19 +13,12 @@ import numpy as np
 from jaxtyping import Float
 
 from diorama_core.geometry.sat import place_bodies
-from diorama_core.layout.feasible.relocate import REACHES_M, cheapest_spot
+from diorama_core.layout.feasible.relocate import cheapest_spot
 from diorama_core.layout.feasible.separate import Program, base, overlaps
-from diorama_core.layout.feasible.settle import SMALLEST_SHRINK
 from diorama_core.layout.feasible.structure import Structure
 
-_STEPS = (0.95, 0.9, 0.85, SMALLEST_SHRINK)
 _AXES = np.array([[1, 1, 1], [1, 1, 0], [0, 0, 1], [1, 0, 0], [0, 1, 0]], dtype=bool)
 """Which extents are reduced together: all, the footprint, the height, depth and width alone."""
-_FACTORS = np.array([np.where(axes, step, 1.0) for step in _STEPS for axes in _AXES])
-MAX_PAIRS = 12
-"""With more pairs in collision sizes are left alone: a crowd is parted by moves."""
-WORTH = 0.8
-"""A smaller size is taken where it costs less than this share of the move that it saves."""
 
 
 def fitted_sizes(program: Program, outline_cost: Float[np.ndarray, " n"]) -> Structure:
@@ -41,7 +34,7 @@ def fitted_sizes(program: Program, outline_cost: Float[np.ndarray, " n"]) -> Str
     factors = np.ones((problem.count, 3))
     y = base(program)
     pairs = overlaps(program, y)[1]
-    for pair in pairs if len(pairs) <= MAX_PAIRS else ():
+    for pair in pairs if len(pairs) <= problem.settings.max_pairs else ():
         options = [
             (cost, k, factor)
             for k in pair
@@ -50,7 +43,7 @@ def fitted_sizes(program: Program, outline_cost: Float[np.ndarray, " n"]) -> Str
         ]
         moved = min((cost for cost, _, factor in options if (factor == 1.0).all()), default=np.inf)
         cost, k, factor = min(options, key=lambda option: option[0], default=(np.inf, -1, np.ones(3)))
-        if cost < WORTH * moved:
+        if cost < problem.settings.worth * moved:
             factors[k] = factor
     scale, p = _resting(program, factors)
     smaller = np.flatnonzero((factors < 1.0).any(axis=1))
@@ -65,12 +58,13 @@ def _options(
     problem, structure = program.problem, program.structure
     extents = problem.shape_size[k] * structure.scale[k]
     found: list[tuple[float, Float[np.ndarray, "3"]]] = []
-    for factor in np.vstack([np.ones(3), _FACTORS]):
+    steps = (*problem.settings.shrinks, problem.settings.smallest_shrink)
+    for factor in np.vstack([np.ones(3), *(np.where(_AXES, step, 1.0) for step in steps)]):
         shrunk = 0.5 * float(np.linalg.norm((1.0 - factor) * extents)) * outline_cost
         if found and shrunk >= min(cost for cost, _ in found):
             continue
         # A smaller size that still has to go far away is no help, and looking far takes long.
-        reaches_m = REACHES_M if (factor == 1.0).all() else REACHES_M[:1]
+        reaches_m = problem.settings.reaches_m if (factor == 1.0).all() else problem.settings.reaches_m[:1]
         spot = cheapest_spot(_resized(program, k, factors, factor), y, k, reaches_m)
         if spot is not None:
             found.append((float(np.hypot(spot.cost, shrunk)), factor))

@@ -22,22 +22,8 @@ from diorama_core.layout.feasible.structure import Structure
 from diorama_core.layout.problem.enclosure import may_meet
 from diorama_core.layout.problem.problem import Problem
 
-APART_M = 5e-4
-"""Separation asked for once two parts touched."""
-TOUCHING_M = 1e-4
-"""Parts nearer than this (or overlapping) count as touching."""
-_REACH_M = 0.02
-"""Pairs of parts nearer than this are watched."""
 _SAME_WAY = float(np.cos(np.deg2rad(20.0)))
 """A way out within this of one that was blocked is not tried again."""
-_RELAXATIONS = 3
-_MAX_AXES = 64
-"""So many axes of a pair of parts are looked at for a way out; fewer axes never part what overlaps."""
-_SIDES = 8
-"""In so many directions the axes that part them soonest are looked at besides."""
-_MIN_SLOPE = 1e-6
-_WORTH = 0.01
-"""Relaxing goes on as long as it saves this share of the move."""
 
 
 @dataclass(eq=False)
@@ -201,7 +187,7 @@ def relaxed(program: Program, found: Separation) -> Separation:
 
     Each pair of parts keeps the axis that parts it best where it was found; rows enter when they are violated.
     """
-    for _ in range(_RELAXATIONS):
+    for _ in range(program.problem.settings.relaxations):
         program.chosen.clear()
         y = found.y
         while True:
@@ -210,7 +196,8 @@ def relaxed(program: Program, found: Separation) -> Separation:
             if not fresh:
                 break
             _keep_apart(program, fresh, found.y)
-        if _touching(program, y)[1] or program.cost(y) > (1.0 - _WORTH) * program.cost(found.y):
+        least = 1.0 - program.problem.settings.min_saving
+        if _touching(program, y)[1] or program.cost(y) > least * program.cost(found.y):
             break
         found = Separation(y, found.depth_m, found.stuck)
     return found
@@ -233,7 +220,7 @@ def _solve(program: Program, yielding: float) -> Float[np.ndarray, " v"]:
     gaps = np.array([gap for _, gap in program.chosen.values()])
     rows = np.einsum("mc,mcv->mv", axes, J[owner[pairs[:, 0]]] - J[owner[pairs[:, 1]]])
     compliance = np.concatenate([np.full(len(program.need), HARD), np.full(len(gaps), yielding)])
-    need = np.concatenate([program.need, APART_M - gaps])
+    need = np.concatenate([program.need, program.problem.settings.apart_m - gaps])
     return program.whiten @ least_distance(np.vstack([program.rows, rows]) @ program.whiten, need, compliance)
 
 
@@ -248,7 +235,7 @@ def _touching(
     for block in program.blocks:
         apart = block.separations(w[owner[block.a]] - w[owner[block.b]]).max(axis=1)
         deepest = max(deepest, float(-apart.min()))
-        for k in np.flatnonzero(apart < TOUCHING_M):
+        for k in np.flatnonzero(apart < program.problem.settings.touching_m):
             touching[int(block.a[k]), int(block.b[k])] = (block.normals[k], block.gaps[k])
     return deepest, touching
 
@@ -263,7 +250,8 @@ def _watch(program: Program, w: Float[np.ndarray, "n 3"]) -> None:
 
 def _near_parts(program: Program, w: Float[np.ndarray, "n 3"]) -> list[tuple[int, int]]:
     bodies, problem = program.bodies, program.problem
-    low, high = bodies.low + w[bodies.owner] - _REACH_M / 2, bodies.high + w[bodies.owner] + _REACH_M / 2
+    reach = problem.settings.watched_m / 2
+    low, high = bodies.low + w[bodies.owner] - reach, bodies.high + w[bodies.owner] + reach
     starts = np.searchsorted(bodies.owner, np.arange(problem.count))
     if not problem.count:
         return []
@@ -287,16 +275,17 @@ def _between(
     """The watched pairs of parts of two objects, with the axes along which they are deepest apart or least deep, and
     those by which they part soonest in some of the directions.
     """
-    owner = program.bodies.owner
+    owner, settings = program.bodies.owner, program.problem.settings
     found = []
     for block in program.blocks:
         rows = np.flatnonzero((owner[block.a] == i) & (owner[block.b] == j))
         if len(rows):
             normals, gaps = block.normals[rows], block.gaps[rows]
-            if gaps.shape[1] > _MAX_AXES:
+            if gaps.shape[1] > settings.max_axes:
                 apart = gaps + normals @ offset
-                best = np.argpartition(-apart, _MAX_AXES, axis=1)[:, :_MAX_AXES]
-                best = np.hstack([best, _soonest(apart, normals, directions[:: max(len(directions) // _SIDES, 1)])])
+                best = np.argpartition(-apart, settings.max_axes, axis=1)[:, : settings.max_axes]
+                some = directions[:: max(len(directions) // settings.sides, 1)]
+                best = np.hstack([best, _soonest(apart, normals, some, settings.apart_m)])
                 normals = np.take_along_axis(normals, best[..., None], axis=1)
                 gaps = np.take_along_axis(gaps, best, axis=1)
             found.append(PairAxes(block.a[rows], block.b[rows], normals, gaps))
@@ -304,12 +293,15 @@ def _between(
 
 
 def _soonest(
-    apart: Float[np.ndarray, "m a"], normals: Float[np.ndarray, "m a 3"], directions: Float[np.ndarray, "d 3"]
+    apart: Float[np.ndarray, "m a"],
+    normals: Float[np.ndarray, "m a 3"],
+    directions: Float[np.ndarray, "d 3"],
+    apart_m: float,
 ) -> Int[np.ndarray, "m d"]:
     """For every pair and direction, the axis by which the pair is apart after the shortest way."""
     slope = normals @ directions.T
     with np.errstate(divide="ignore", invalid="ignore"):
-        way = np.where(slope > _MIN_SLOPE, (APART_M - apart)[..., None] / slope, np.inf)
+        way = np.where(slope > 1e-6, (apart_m - apart)[..., None] / slope, np.inf)
     return np.asarray(way.argmin(axis=1))
 
 
@@ -322,7 +314,8 @@ def _choose_way(program: Program, y: Float[np.ndarray, " v"], i: int, j: int) ->
     now = lever @ y
     blocks = _between(program, i, j, now, directions)
     offsets = [np.tile(now, (len(block.a), 1)) for block in blocks]
-    far = exits(blocks, offsets, [np.ones(len(block.a)) for block in blocks], directions, APART_M)
+    ones = [np.ones(len(block.a)) for block in blocks]
+    far = exits(blocks, offsets, ones, directions, program.problem.settings.apart_m)
     known = np.isfinite(far)
     target = now + np.where(known, far, 0.0)[:, None] * directions
     effort = np.linalg.norm(target @ np.linalg.pinv(lever @ program.whiten).T, axis=1)

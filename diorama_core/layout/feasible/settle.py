@@ -12,23 +12,10 @@ from diorama_core.geometry.cross import cross
 from diorama_core.geometry.planes import plane_axes
 from diorama_core.layout.feasible.footprints import INSET_M, largest_share
 from diorama_core.layout.feasible.orientation import aligned
-from diorama_core.layout.feasible.photo_observations import MAX_STRETCH, PhotoObservations
+from diorama_core.layout.feasible.photo_observations import PhotoObservations
 from diorama_core.layout.feasible.quadratic import HARD, least_distance
 from diorama_core.layout.problem.footing import reach_of
 from diorama_core.layout.problem.problem import Problem
-
-SMALLEST_SHRINK = 0.8
-"""An object that does not fit is made smaller by at most this factor; beyond, it stays large and is named."""
-SHORTEST_BEFORE_WALL = 0.5
-"""An object that reaches through a wall ends before it, if this share of its extent is left."""
-MAX_GROWTH = 1.7
-"""An object's distance, with its size, is corrected by at most this factor."""
-MAX_DETOUR = 3.0
-"""An object leaves its wall rather than move so many times as far along it to come back onto its support."""
-PARALLEL = 0.97
-"""Cosine within which a side of an object is along a wall."""
-MIN_SLANT = 0.1
-"""A surface seen more edge-on than this says nothing about distance."""
 
 
 @dataclass
@@ -110,7 +97,8 @@ def _before_walls(problem: Problem, walk: Walk, i: int) -> None:
         half = 0.5 * _size(problem, walk, i)
         through = wall.offset - float(wall.normal @ walk.p[i]) + float(np.abs(wall.normal @ walk.R[i]) @ half)
         factor = 1.0 - through / (2.0 * float(half[axis]))
-        if abs(float(wall.normal @ walk.R[i][:, axis])) < PARALLEL or not SHORTEST_BEFORE_WALL <= factor < 1.0:
+        slanted = abs(float(wall.normal @ walk.R[i][:, axis])) < problem.settings.parallel
+        if slanted or not problem.settings.shortest_before_wall <= factor < 1.0:
             continue
         forward = min(_overhang(problem, i, wall.normal), through)
         walk.scale[i, axis] *= factor + forward / (2.0 * float(half[axis]))
@@ -163,7 +151,7 @@ def _onto_support(problem: Problem, walk: Walk, i: int, surface: Surface, slack:
     plane = np.column_stack(plane_axes(surface.normal))
     shortest = plane @ _into(m @ plane, slack)
     along = walk.basis[i] @ _into(m @ walk.basis[i], slack)
-    detour = np.linalg.norm(along) > MAX_DETOUR * np.linalg.norm(shortest) and not problem.grounded[i]
+    detour = np.linalg.norm(along) > problem.settings.max_detour * np.linalg.norm(shortest) and not problem.grounded[i]
     walk.p[i] = walk.p[i] + (shortest if detour else along)
 
 
@@ -184,7 +172,7 @@ def _seen_from_the_edge(
     free = length > 1e-9 and float(np.linalg.norm(walk.basis[i].T @ (side / max(length, 1e-9)))) > 0.9
     if not free:
         return
-    grown = 1.0 if eye is None else _nearness(walk.p[i], problem.p[i], eye)
+    grown = 1.0 if eye is None else _nearness(walk.p[i], problem.p[i], eye, problem.settings.max_growth)
     basis = np.column_stack([side / length, np.zeros(3)])
     start = walk.p[i].copy(), walk.scale[i].copy()
     walk.p[i], walk.scale[i] = observations.fitted(i, walk.R[i], *start, basis, pinned, grown)
@@ -193,10 +181,10 @@ def _seen_from_the_edge(
         _onto_support(problem, walk, i, surface, slack, m)
 
 
-def _nearness(p: np.ndarray, observed: np.ndarray, eye: np.ndarray) -> float:
+def _nearness(p: np.ndarray, observed: np.ndarray, eye: np.ndarray, most: float) -> float:
     """How many times as far as it was observed an object is, along its viewing ray and within limits."""
     sight = observed - eye
-    return float(np.clip((p - eye) @ sight / max(float(sight @ sight), 1e-9), 1.0 / MAX_GROWTH, MAX_GROWTH))
+    return float(np.clip((p - eye) @ sight / max(float(sight @ sight), 1e-9), 1.0 / most, most))
 
 
 def _reach_floor(problem: Problem, walk: Walk, i: int) -> None:
@@ -204,7 +192,7 @@ def _reach_floor(problem: Problem, walk: Walk, i: int) -> None:
     height = float(_size(problem, walk, i)[2])
     top = float(walk.p[i][2]) + height / 2
     factor = (top - problem.floor_m) / height
-    if SMALLEST_SHRINK <= factor <= 1.0 / SMALLEST_SHRINK:
+    if problem.settings.smallest_shrink <= factor <= 1.0 / problem.settings.smallest_shrink:
         walk.scale[i, 2] *= factor
     walk.p[i] = [*walk.p[i][:2], problem.floor_m + float(_size(problem, walk, i)[2]) / 2]
 
@@ -227,7 +215,7 @@ def _reach_support(problem: Problem, walk: Walk, i: int, surface: Surface) -> No
     axis = int(np.abs(problem.contact[i]).argmax())
     extent = float(_size(problem, walk, i)[axis])
     wanted = extent - _lift(problem, walk, i, surface)
-    factor = float(np.clip(wanted / extent, 1.0 / MAX_STRETCH, MAX_STRETCH))
+    factor = float(np.clip(wanted / extent, 1.0 / problem.settings.max_stretch, problem.settings.max_stretch))
     walk.scale[i, axis] *= factor
     walk.p[i] = walk.p[i] - 0.5 * (factor - 1.0) * extent * surface.normal
 
@@ -251,10 +239,10 @@ def _from_the_eye(problem: Problem, walk: Walk, i: int, surface: Surface, eye: n
     """Enlarge or reduce the object about the camera until its contact face is on the surface; returns by how much."""
     sight = _contact_centre(problem, walk, i) - eye
     meets = float(sight @ surface.normal)
-    if abs(meets) < MIN_SLANT * float(np.linalg.norm(sight)):
+    if abs(meets) < problem.settings.min_slant * float(np.linalg.norm(sight)):
         return 1.0
     grown = (surface.level - float(eye @ surface.normal)) / meets
-    if not 1.0 / MAX_GROWTH <= grown <= MAX_GROWTH:
+    if not 1.0 / problem.settings.max_growth <= grown <= problem.settings.max_growth:
         return 1.0
     walk.p[i] = eye + grown * (walk.p[i] - eye)
     walk.scale[i] = grown * walk.scale[i]
@@ -286,7 +274,7 @@ def _fit(problem: Problem, walk: Walk, i: int, surface: Surface, m: np.ndarray, 
     tall = float(_size(problem, walk, i)[normal_axis])
     if tall > surface.clearance_m - INSET_M:
         factor = max((surface.clearance_m - INSET_M) / tall, 1e-3)
-        if factor >= SMALLEST_SHRINK:
+        if factor >= problem.settings.smallest_shrink:
             walk.scale[i, normal_axis] *= factor
         else:
             walk.reasons.append(f"too tall: {label} does not fit in the {surface.clearance_m:.2f} m above its support")
@@ -299,10 +287,10 @@ def _fit(problem: Problem, walk: Walk, i: int, surface: Surface, m: np.ndarray, 
             axis = walk.R[i][:, k]
             width = float(np.ptp(surface.polygon @ axis)) - 2 * INSET_M
             factor = max(width, 1e-6) / max(float(np.ptp(problem.footing[i][:, k]) * walk.scale[i, k]), 1e-6)
-            if SMALLEST_SHRINK <= factor < 1.0:
+            if problem.settings.smallest_shrink <= factor < 1.0:
                 walk.scale[i, k] *= factor
         room = largest_share(m, h - middle, _reach(problem, walk, i, m))
-        if SMALLEST_SHRINK <= room < 1.0:
+        if problem.settings.smallest_shrink <= room < 1.0:
             walk.scale[i, footprint] *= room
             room = 1.0
         reach = _reach(problem, walk, i, m)

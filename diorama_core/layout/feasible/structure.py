@@ -80,7 +80,7 @@ def exact_structure(
 
 
 def _level(problem: Problem, walk: Walk, i: int) -> Surface | None:
-    """Of the places on a supporter as it stands now, the one that agrees best with where the object was observed."""
+    """The place on a supporter as it stands now that agrees best with where the object was observed."""
     if len(problem.levels[i]) < 2:
         return problem.surface[i]
     size = problem.shape_size[i] * problem.scale[i]

@@ -17,20 +17,13 @@ from jaxtyping import Float, Float32, Int, Int32
 from scipy.optimize import linear_sum_assignment
 
 from diorama_core.layout.problem.problem import Problem
+from diorama_core.layout.settings import LAYOUT, LayoutSettings
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.scene.types import Camera, Pose, Scene, box_corners
 
 if TYPE_CHECKING:
     from diorama_core.render.raycast import Buffers, MeshCaster
 
-LONG_SIDE_PX = 400
-"""The layout is looked at in this size: a cup at the far wall still has a dozen pixels."""
-MAX_POINTS = 120
-"""So many points of an object are enough."""
-MIN_POINTS = 8
-"""With fewer the corners of the object's box count in their place."""
-NEAREST_M = 0.1
-"""What is nearer to the camera has no place in the picture."""
 
 VisiblePoints = Mapping[str, Float[np.ndarray, "_ 3"]]
 """By object id, points in the object's frame at scale 1."""
@@ -63,19 +56,20 @@ class ObservedView:
     poses: tuple[Pose, ...]
     view: Buffers
     """Its instances are indices of `ids`."""
+    settings: LayoutSettings = LAYOUT
 
     @classmethod
-    def of(cls, scene: Scene, library: ShapeLibrary) -> ObservedView | None:
+    def of(cls, scene: Scene, library: ShapeLibrary, settings: LayoutSettings = LAYOUT) -> ObservedView | None:
         """What the scene's camera sees; None without a camera or anything to see."""
         items = [o for o in scene.objects if not o.hidden]
         if not items or scene.camera is None:
             return None
         k = scene.camera.intrinsics
-        shrink = min(1.0, LONG_SIDE_PX / max(k.width, k.height))
+        shrink = min(1.0, settings.long_side_px / max(k.width, k.height))
         size = max(round(k.width * shrink), 1), max(round(k.height * shrink), 1)
         camera = Camera(k.scaled(*size), scene.camera.T_world_camera)
         meshes, poses = tuple(library.mesh(o.shape_id) for o in items), tuple(o.pose for o in items)
-        return cls(camera, tuple(o.id for o in items), meshes, poses, _caster(meshes, poses).buffers(camera))
+        return cls(camera, tuple(o.id for o in items), meshes, poses, _caster(meshes, poses).buffers(camera), settings)
 
     @cached_property
     def points(self) -> VisiblePoints:
@@ -83,7 +77,7 @@ class ObservedView:
         found = {}
         for number, (name, pose) in enumerate(zip(self.ids, self.poses, strict=True)):
             rows, columns = np.nonzero(self.view.instance == number)
-            step = max(len(rows) // MAX_POINTS, 1)
+            step = max(len(rows) // self.settings.max_points, 1)
             rows, columns = rows[::step], columns[::step]
             rays = self.camera.rays(np.column_stack([columns + 0.5, rows + 0.5]))
             world = self.camera.position + self.view.depth_m[rows, columns, None].astype(np.float64) * rays
@@ -96,7 +90,7 @@ class ObservedView:
         after, before = _caster(self.meshes, now).instances(self._rays), self.view.instance
         count = len(self.ids)
         was, is_now, both = (_pixels_of(seen, count) for seen in (before, after, before[before == after]))
-        shares = both[was >= MIN_POINTS] / (was + is_now - both)[was >= MIN_POINTS]
+        shares = both[was >= self.settings.min_points] / (was + is_now - both)[was >= self.settings.min_points]
         return float(np.mean(shares)) if len(shares) else 1.0
 
     @cached_property
@@ -138,12 +132,12 @@ def tracked_points(
     found = []
     for i, name in enumerate(problem.ids):
         points = visible.get(name, np.zeros((0, 3)))
-        before = float(camera.to_camera(problem.p[i : i + 1])[0, 2]) >= NEAREST_M
-        seen = before and len(points) >= MIN_POINTS
+        before = float(camera.to_camera(problem.p[i : i + 1])[0, 2]) >= problem.settings.nearest_m
+        seen = before and len(points) >= problem.settings.min_points
         points = points if seen else box_corners(problem.shape_size[i])
         world = problem.p[i] + (points * problem.scale[i]) @ problem.R[i].T
         depth = camera.to_camera(world)[:, 2]
-        if depth.min() < NEAREST_M or not (seen or np.isfinite(posed_px[i]).all()):
+        if depth.min() < problem.settings.nearest_m or not (seen or np.isfinite(posed_px[i]).all()):
             found.append(TrackedPoints(np.zeros((0, 3)), np.zeros((0, 2)), np.zeros(0), seen=False))
             continue
         pixels = camera.project(world)

@@ -14,21 +14,13 @@ from jaxtyping import Float
 
 from diorama_core.arrangement.surfaces import Surface
 from diorama_core.layout.feasible.footprints import INSET_M
-from diorama_core.layout.feasible.photo_observations import MAX_STRETCH, UPWARD
-from diorama_core.layout.feasible.settle import MAX_GROWTH, MIN_SLANT
 from diorama_core.layout.feasible.structure import Structure
 from diorama_core.layout.problem.footing import reach_of
 from diorama_core.layout.problem.problem import Problem
 
-MIN_BEYOND_M = 0.005
-"""Loads that reach less beyond an edge are brought back."""
-INNER_SHARE = 0.15
-"""An edge that is farther from the supporter's side, as a share of the extent, is that of a divider: no longer table
-would put it where the load was seen."""
-
 
 def reaching_loads(problem: Problem, structure: Structure, eye: Float[np.ndarray, "3"] | None) -> Problem:
-    """The problem with sides of supporters farther out, to where their loads were seen; by `MAX_STRETCH` at most.
+    """The problem with sides of supporters farther out, to where their loads were seen; by `max_stretch` at most.
 
     Sides against walls stay.
 
@@ -45,14 +37,14 @@ def reaching_loads(problem: Problem, structure: Structure, eye: Float[np.ndarray
             continue
         for axis in range(3):
             outward = structure.R[j][:, axis]
-            if abs(float(outward[2])) > 1.0 - UPWARD:
+            if abs(float(outward[2])) > 1.0 - problem.settings.upward:
                 continue
             for sign in (-1.0, 1.0):
                 if any(k == j and sign * float(face[axis]) > 0.5 for k, _, face in problem.adheres):
                     continue
                 factor = max(_needed(problem, structure, int(i), sign * outward, axis, eye) for i in loads)
                 extent = float(problem.shape_size[j, axis] * scale[j, axis])
-                farther = extent * (min(factor, MAX_STRETCH) - 1.0)
+                farther = extent * (min(factor, problem.settings.max_stretch) - 1.0)
                 scale[j, axis] *= 1.0 + farther / extent
                 p[j] = p[j] + 0.5 * farther * sign * problem.R[j][:, axis]
     return replace(problem, scale=scale, p=p)
@@ -61,7 +53,7 @@ def reaching_loads(problem: Problem, structure: Structure, eye: Float[np.ndarray
 def _stands(problem: Problem, structure: Structure, i: int) -> bool:
     """Whether an object keeps its form on an upward place."""
     place = structure.surface[i]
-    return place is not None and float(place.normal[2]) > UPWARD and float(problem.firm[i]) == 1.0
+    return place is not None and float(place.normal[2]) > problem.settings.upward and float(problem.firm[i]) == 1.0
 
 
 def _needed(
@@ -81,8 +73,9 @@ def _needed(
     beyond = float(outward @ centre) + reach + INSET_M - edge
     half = 0.5 * float(problem.shape_size[j, axis] * structure.scale[j, axis])
     back = float(outward @ structure.p[j]) - half
-    within = back + 2.0 * half - edge > INNER_SHARE * 2.0 * half
-    if beyond <= MIN_BEYOND_M or within or 2.0 * reach > edge - back or not _is_near(place, outward, centre):
+    settings = problem.settings
+    within = back + 2.0 * half - edge > settings.inner_share * 2.0 * half
+    if beyond <= settings.min_beyond_m or within or 2.0 * reach > edge - back or not _is_near(place, outward, centre):
         return 1.0
     return 1.0 + beyond / max(edge - back, 1e-6)
 
@@ -100,9 +93,9 @@ def _seen(problem: Problem, i: int, level_m: float, eye: np.ndarray | None) -> t
     if eye is None:
         return p, 1.0
     sight = p - np.array([0.0, 0.0, 0.5 * float(problem.shape_size[i, 2] * problem.scale[i, 2])]) - eye
-    if abs(float(sight[2])) < MIN_SLANT * float(np.linalg.norm(sight)):
+    if abs(float(sight[2])) < problem.settings.min_slant * float(np.linalg.norm(sight)):
         return p, 1.0
     grown = (level_m - float(eye[2])) / float(sight[2])
-    if not 1.0 / MAX_GROWTH <= grown <= MAX_GROWTH:
+    if not 1.0 / problem.settings.max_growth <= grown <= problem.settings.max_growth:
         return p, 1.0
     return eye + grown * (p - eye), grown

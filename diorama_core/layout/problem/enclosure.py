@@ -17,11 +17,6 @@ from diorama_core.arrangement.surfaces import Surface
 from diorama_core.geometry.sat import Bodies
 from diorama_core.layout.problem.problem import Problem
 
-ABOVE_M = 0.01
-"""Parts of a supporter that do not rise above a place by so much are below what rests there."""
-BESIDE_M = 0.005
-"""Parts reach by up to so much over the edge of a place beside which they stand: they contain the mesh."""
-
 
 def may_meet(problem: Problem, bodies: Bodies, surface: Sequence[Surface | None]) -> Bool[np.ndarray, "b b"]:
     """Which pairs of parts must not overlap: those of unrelated objects, and what encloses a place with what is there.
@@ -40,14 +35,15 @@ def may_meet(problem: Problem, bodies: Bodies, surface: Sequence[Surface | None]
             if place is None or problem.yielding[i, below]:
                 continue
             parts = np.flatnonzero(owner == below)
-            rises = _rises(bodies, parts, place)
-            beside = parts[rises & _stands_beside(bodies, parts, place) if problem.firm[i] < 1.0 else rises]
+            rises = _rises(bodies, parts, place, problem.settings.above_m)
+            soft, reach_m = problem.firm[i] < 1.0, problem.settings.beside_m
+            beside = parts[rises & _stands_beside(bodies, parts, place, reach_m) if soft else rises]
             own = np.flatnonzero(owner == i)
             allowed[np.ix_(own, beside)] = allowed[np.ix_(beside, own)] = True
     return allowed
 
 
-def _rises(bodies: Bodies, parts: np.ndarray, place: Surface) -> Bool[np.ndarray, " k"]:
+def _rises(bodies: Bodies, parts: np.ndarray, place: Surface, above_m: float) -> Bool[np.ndarray, " k"]:
     """Which parts rise above a place (world) beside its middle.
 
     One that has the middle of the place inside it encloses nothing: it is the hull of a worktop and of what rises
@@ -55,14 +51,14 @@ def _rises(bodies: Bodies, parts: np.ndarray, place: Surface) -> Bool[np.ndarray
     """
     vertices, normals = bodies.vertices[parts], bodies.normals[parts]
     middle = place.polygon.mean(axis=0)
-    middle = middle + (place.level + ABOVE_M - float(middle @ place.normal)) * place.normal
+    middle = middle + (place.level + above_m - float(middle @ place.normal)) * place.normal
     along = np.einsum("pvc,pfc->pvf", vertices, normals)
     here = normals @ middle
     around = ((along.min(axis=1) <= here) & (here <= along.max(axis=1))).all(axis=1)
-    return np.asarray(((vertices @ place.normal).max(axis=1) - place.level > ABOVE_M) & ~around)
+    return np.asarray(((vertices @ place.normal).max(axis=1) - place.level > above_m) & ~around)
 
 
-def _stands_beside(bodies: Bodies, parts: np.ndarray, place: Surface) -> Bool[np.ndarray, " k"]:
+def _stands_beside(bodies: Bodies, parts: np.ndarray, place: Surface, beside_m: float) -> Bool[np.ndarray, " k"]:
     """Which parts lie outside of one of a place's sides (world)."""
     out = np.matmul(bodies.vertices[parts], place.outward.T) - place.offset
-    return np.asarray(out.min(axis=1).max(axis=1) > -BESIDE_M)
+    return np.asarray(out.min(axis=1).max(axis=1) > -beside_m)

@@ -27,7 +27,7 @@ from diorama_core.library.record import Shape, ShapeLibrary
 log = logging.getLogger(__name__)
 
 VERSION = 9
-"""Of the decomposition and its files: raise it when `convex_parts` changes, so that older files are not read."""
+"""Version of the decomposition and its files: raise it when `convex_parts` changes: older files are not read."""
 BUILT_IN_PARTS = Path(__file__).resolve().parents[3] / "assets" / "shapes" / f"convex-parts-{VERSION}.npz"
 """Written by `scripts/make_convex_parts.py`; an installation may leave it out."""
 

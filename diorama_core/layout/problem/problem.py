@@ -28,16 +28,13 @@ from diorama_core.geometry.planes import in_polygon
 from diorama_core.geometry.sat import PackedParts, pack_parts
 from diorama_core.layout.problem.footing import box_footing, footing_of
 from diorama_core.layout.problem.parts import parts_of_shape
+from diorama_core.layout.settings import LAYOUT, LayoutSettings
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.scene.support import descendants
 from diorama_core.scene.types import Plane, Pose, Scene, SceneObject, Support
 
-BEHIND_M = 0.02
-"""Walls are placed so exactly."""
 _BOX_GRID = np.stack(np.meshgrid(*3 * [np.linspace(-0.5, 0.5, 5)]), axis=-1).reshape(-1, 3)
 """Points of a box of extents 1."""
-FIRM_SHARE = 0.55
-"""Rigid share of a soft object's extent: pillows sink into one another."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -91,8 +88,9 @@ class Problem:
     """Pairs of which one is a rug: objects stand over its edge."""
     parts: tuple[tuple[ConvexPart, ...], ...]
     packed: PackedParts
-    """The same parts, ready to be posed."""
+    """The parts, ready to be posed."""
     reasons: tuple[str, ...] = ()
+    settings: LayoutSettings = LAYOUT
 
     @property
     def count(self) -> int:
@@ -153,9 +151,9 @@ class Problem:
         What of it is behind the wall's plane is in the room then, round the corner.
         """
         points = self.p[index] + (_BOX_GRID * self.shape_size[index] * self.scale[index]) @ self.R[index].T
-        behind = points[points @ wall.normal < wall.offset - BEHIND_M]
+        behind = points[points @ wall.normal < wall.offset - self.settings.behind_m]
         surface = plane_surface(wall)
-        beside = (behind @ surface.outward.T - surface.offset).max(axis=1) > -BEHIND_M
+        beside = (behind @ surface.outward.T - surface.offset).max(axis=1) > -self.settings.behind_m
         return len(behind) > 0 and bool((beside & in_polygon(behind[:, :2], self.floor_outline)).all())
 
     def poses(
@@ -166,7 +164,12 @@ class Problem:
 
 
 def build_problem(
-    scene: Scene, library: ShapeLibrary, *, only: frozenset[str] | None = None, adherence_m: float = 0.1
+    scene: Scene,
+    library: ShapeLibrary,
+    *,
+    only: frozenset[str] | None = None,
+    adherence_m: float = 0.1,
+    settings: LayoutSettings = LAYOUT,
 ) -> Problem:
     """Reduce a scene to arrays.
 
@@ -175,6 +178,7 @@ def build_problem(
         library: where shapes come from.
         only: ids free to move, with what they hold up; all when None.
         adherence_m: faces parallel to a wall and nearer than this are taken to stand against it.
+        settings: numbers that steer how it is solved.
     """
     objects = sorted(scene.objects, key=lambda o: o.id)
     shapes = [library.shape(o.shape_id) for o in objects]
@@ -196,7 +200,7 @@ def build_problem(
     walls = tuple(sorted(scene.architecture.by_role("wall"), key=lambda w: w.id))
     floor = scene.architecture.floor
     yielding = _yielding_pairs(objects)
-    firm = np.array([FIRM_SHARE if is_soft(o) else 1.0 for o in objects]).reshape(-1)
+    firm = np.array([settings.firm_share if is_soft(o) else 1.0 for o in objects]).reshape(-1)
     parts = tuple(
         _firm_parts(parts_of_shape(library, s), share, face * np.asarray(o.shape_size_m) / 2)
         for o, s, share, face in zip(objects, shapes, firm, contacts)
@@ -236,6 +240,7 @@ def build_problem(
         parts=parts,
         packed=pack_parts(parts),
         reasons=reasons,
+        settings=settings,
     )
 
 

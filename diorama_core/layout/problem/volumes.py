@@ -19,7 +19,7 @@ class WorldVolumes:
     offset: Float[np.ndarray, "e k"]
     """Inside is where outward . x <= offset."""
     normal: Float[np.ndarray, "e 3"]
-    """Of the supporting surfaces."""
+    """Normals of the supporting surfaces."""
     level: Float[np.ndarray, " e"]
     """The surfaces lie where normal . x = level."""
     clearance: Float[np.ndarray, " e"]

@@ -65,7 +65,7 @@ class Edges:
     normal: Float[np.ndarray, "e 3"]
     """In its owner's frame."""
     weight: Float[np.ndarray, " e"]
-    """Of orientation: 1 for supports, 5 for adherence."""
+    """Weights of orientation: 1 for supports, 5 for adherence."""
     supports: int
     """The first so many are supports."""
 

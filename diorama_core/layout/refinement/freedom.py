@@ -12,13 +12,7 @@ from diorama_core.geometry.planes import plane_axes
 from diorama_core.geometry.rotations import yaw_rotations
 from diorama_core.geometry.silhouette import PoseBatch
 from diorama_core.layout.problem.problem import Problem
-
-SHARES_OF_WAY = (1.0, 0.5, 0.25)
-"""Of the way to a place, which are tried at once: what stands in between is no obstacle."""
-_TURN_SHARE = 2.0
-"""An object turns by so many radians, times the share of the step."""
-_MIN_SLOPE = 0.3
-"""Directions that a wall leaves less of than this are given up."""
+from diorama_core.layout.settings import REFINEMENT, RefinementSettings
 
 
 @dataclass(frozen=True, eq=False)
@@ -33,6 +27,7 @@ class Freedom:
     """Which of its extents may change, each by itself or several alike."""
     turns: bool
     """Whether it may turn about the vertical."""
+    settings: RefinementSettings
 
     def steps(self, move_m: float, share: float) -> Float[np.ndarray, "k f"]:
         """No change, then one step either way for every freedom, and for all extents together.
@@ -41,8 +36,8 @@ class Freedom:
             move_m: length of a step along a direction.
             share: by which an extent changes in a step; a turn is in proportion.
         """
-        extents = len(self.extents)
-        length = [*len(self.directions) * [move_m], *extents * [share], *int(self.turns) * [_TURN_SHARE * share]]
+        extents, turn = len(self.extents), self.settings.turn_rad * share
+        length = [*len(self.directions) * [move_m], *extents * [share], *int(self.turns) * [turn]]
         single = np.diag(length)
         as_a_whole = np.zeros((int(extents > 1), len(length)))
         as_a_whole[:, len(self.directions) : len(self.directions) + extents] = share
@@ -51,8 +46,9 @@ class Freedom:
 
     def steps_toward(self, p: Float[np.ndarray, "3"], place: Float[np.ndarray, "3"]) -> Float[np.ndarray, "k f"]:
         """From a centre all the way to a place, as far as it may go there, and parts of that way."""
-        steps = np.zeros((len(SHARES_OF_WAY), len(self.directions) + len(self.extents) + int(self.turns)))
-        steps[:, : len(self.directions)] = np.outer(SHARES_OF_WAY, self.directions @ (place - p))
+        ways = self.settings.ways
+        steps = np.zeros((len(ways), len(self.directions) + len(self.extents) + int(self.turns)))
+        steps[:, : len(self.directions)] = np.outer(ways, self.directions @ (place - p))
         return steps
 
     def poses(
@@ -80,7 +76,15 @@ class Freedom:
         return PoseBatch(rotations, p + along @ self.directions - shift, scales)
 
 
-def freedom(problem: Problem, i: int, surface: Surface, *, sized: bool, is_round: bool) -> Freedom:
+def freedom(
+    problem: Problem,
+    i: int,
+    surface: Surface,
+    *,
+    sized: bool,
+    is_round: bool,
+    settings: RefinementSettings = REFINEMENT,
+) -> Freedom:
     """What is left to an object of a layout that is settled.
 
     Args:
@@ -89,14 +93,15 @@ def freedom(problem: Problem, i: int, surface: Surface, *, sized: bool, is_round
         surface: where it rests, in the world.
         sized: whether its size is not its own to change.
         is_round: whether its outline from above is a circle, which it remains.
+        settings: lengths of its steps.
     """
     walls = [(problem.walls[w], face) for k, w, face in problem.adheres if k == i]
     grounded = bool(problem.grounded[i])
     directions = list(plane_axes(surface.normal))[: 1 if grounded else 2]
     for wall, _ in walls:
         level = [d - float(d @ wall.normal) * wall.normal for d in directions]
-        directions = [d / np.linalg.norm(d) for d in level if np.linalg.norm(d) > _MIN_SLOPE]
-        if len(directions) == 2 and abs(float(directions[0] @ directions[1])) > 1.0 - _MIN_SLOPE:
+        directions = [d / np.linalg.norm(d) for d in level if np.linalg.norm(d) > settings.min_along]
+        if len(directions) == 2 and abs(float(directions[0] @ directions[1])) > 1.0 - settings.min_along:
             directions = directions[:1]
     pinned = problem.contact[i] + sum((face for _, face in walls), np.zeros(3))
     pinned[2] -= float(grounded)
@@ -109,4 +114,5 @@ def freedom(problem: Problem, i: int, surface: Surface, *, sized: bool, is_round
         np.clip(pinned, -1.0, 1.0),
         extents[~kept & (not sized)],
         turns=not walls and not loaded and not is_wall_like(surface) and bool(upright[2]),
+        settings=settings,
     )

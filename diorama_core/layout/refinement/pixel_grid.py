@@ -11,10 +11,6 @@ from jaxtyping import Bool, Float, Int
 
 from diorama_core.scene.types import Camera
 
-LONG_SIDE = 320
-"""About so many pixels along the longer side."""
-_MARGIN = 2
-
 Window = tuple[slice, slice]
 """Rows and columns of the grid."""
 
@@ -29,19 +25,26 @@ class PixelGrid:
     """Photo pixels from one to the next, both ways."""
 
     @classmethod
-    def of(cls, camera: Camera, width: int, height: int) -> PixelGrid:
-        """The grid of a photo of this size."""
+    def of(cls, camera: Camera, width: int, height: int, long_side: int = 320) -> PixelGrid:
+        """The grid of a photo of this size, with about so many pixels along the longer side.
+
+        Args:
+            camera: that of the photo, in any size.
+            width: of the photo, pixels.
+            height: likewise.
+            long_side: of the grid.
+        """
         sized = Camera(camera.intrinsics.scaled(width, height), camera.T_world_camera)
-        return cls(sized, max(1, round(max(width, height) / LONG_SIDE)))
+        return cls(sized, max(1, round(max(width, height) / long_side)))
 
     @cached_property
     def rows(self) -> Int[np.ndarray, " h"]:
-        """Of the photo."""
+        """Rows of the photo."""
         return np.arange(self.step // 2, self.camera.intrinsics.height, self.step)
 
     @cached_property
     def columns(self) -> Int[np.ndarray, " w"]:
-        """Of the photo."""
+        """Columns of the photo."""
         return np.arange(self.step // 2, self.camera.intrinsics.width, self.step)
 
     @cached_property
@@ -63,13 +66,13 @@ class PixelGrid:
             found[sampled[i]] = i
         return found
 
-    def window(self, bounds_px: Float[np.ndarray, "p 4"]) -> Window | None:
+    def window(self, bounds_px: Float[np.ndarray, "p 4"], margin: int = 2) -> Window | None:
         """What contains boxes of the photo (x1, y1, x2, y2; NaN for none), with a margin; None outside the photo."""
         known = bounds_px[np.isfinite(bounds_px).all(axis=1)] / self.step
         if not len(known):
             return None
-        x1, y1 = np.floor(known[:, :2].min(axis=0)).astype(int) - _MARGIN
-        x2, y2 = np.ceil(known[:, 2:].max(axis=0)).astype(int) + _MARGIN
+        x1, y1 = np.floor(known[:, :2].min(axis=0)).astype(int) - margin
+        x2, y2 = np.ceil(known[:, 2:].max(axis=0)).astype(int) + margin
         rows = slice(max(int(y1), 0), min(int(y2), len(self.rows)))
         columns = slice(max(int(x1), 0), min(int(x2), len(self.columns)))
         return (rows, columns) if rows.start < rows.stop and columns.start < columns.stop else None

@@ -11,9 +11,7 @@ from jaxtyping import Bool, Float, Float32, Int
 
 from diorama_core.geometry.silhouette import PoseBatch, ShapeCaster
 from diorama_core.layout.refinement.pixel_grid import PixelGrid, Window
-
-_SLANTED = 3.0
-"""The depth of a slanted surface changes by up to so many times what the object moves by."""
+from diorama_core.layout.settings import REFINEMENT, RefinementSettings
 
 
 @dataclass(frozen=True, eq=False)
@@ -23,7 +21,7 @@ class Rest:
     window: Window
     """Where that object is seen."""
     depth_m: Float32[np.ndarray, "h w"]
-    """Of the nearest other there; infinite for none."""
+    """Depth of the nearest other there; infinite for none."""
     index: Int[np.ndarray, "h w"]
     """Which one that is; -1 for none."""
     pixels: Int[np.ndarray, " n"]
@@ -53,15 +51,21 @@ class PosedPicture:
     wanted: Int[np.ndarray, "h w"]
     """Index of the object that the photo shows, -1 for none."""
     casters: Sequence[ShapeCaster]
-    """Of every object."""
+    """Casters of every object."""
     depth_m: Float32[np.ndarray, "n h w"]
-    """Of every object alone; infinite where it is not."""
+    """Depth of every object alone; infinite where it is not."""
+    settings: RefinementSettings = REFINEMENT
 
     @classmethod
     def of(
-        cls, grid: PixelGrid, wanted: Int[np.ndarray, "h w"], casters: Sequence[ShapeCaster], poses: PoseBatch
+        cls,
+        grid: PixelGrid,
+        wanted: Int[np.ndarray, "h w"],
+        casters: Sequence[ShapeCaster],
+        poses: PoseBatch,
+        settings: RefinementSettings = REFINEMENT,
     ) -> PosedPicture:
-        """The picture of objects in these poses, one each."""
+        """The picture of objects in these poses, one each; arguments as the fields."""
         depth = np.full((len(casters), *wanted.shape), np.inf, np.float32)
         for i, caster in enumerate(casters):
             own = poses[np.array([i])]
@@ -69,7 +73,7 @@ class PosedPicture:
             if window is not None:
                 rays = grid.rays[window]
                 depth[i][window] = _cast(grid, caster, rays.reshape(-1, 3), own).reshape(rays.shape[:2])
-        return cls(grid, wanted, casters, depth)
+        return cls(grid, wanted, casters, depth, settings)
 
     def __post_init__(self) -> None:
         self._wanted_pixels = self._counts(self.wanted)
@@ -90,7 +94,7 @@ class PosedPicture:
         rest = self._without(i, window)
         here = self.depth_m[i][window]
         moved_px, moved_m, nearest_m = self._farthest_move(i, poses)
-        alone = np.abs(rest.depth_m - np.where(np.isfinite(here), here, 0.0)) > _SLANTED * moved_m
+        alone = np.abs(rest.depth_m - np.where(np.isfinite(here), here, 0.0)) > self.settings.slanted * moved_m
         open_to_change = ~(alone & _inside(np.isfinite(here), moved_px)) & (rest.depth_m > nearest_m)
         depth = np.repeat(here[None], len(poses), axis=0)
         rays = self.grid.rays[window][open_to_change]

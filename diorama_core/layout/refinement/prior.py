@@ -8,17 +8,8 @@ import numpy as np
 from jaxtyping import Float
 
 from diorama_core.geometry.silhouette import PoseBatch
+from diorama_core.layout.settings import REFINEMENT, RefinementSettings
 from diorama_core.scene.types import Pose
-
-WEIGHT = 0.005
-"""What one standard deviation counts, against the whole agreement of one mask."""
-OUTLIER = 5.0
-"""More standard deviations than that in turn or size, to which the layout had to change an object, cost no more."""
-LINEAR = 2.0
-"""Beyond so many standard deviations, distance costs by their number and no longer by its square: what the layout had
-to push away comes back as far as there is room."""
-TURN_RAD = 0.1
-"""Standard deviation of an observed turn."""
 
 
 @dataclass(frozen=True)
@@ -26,11 +17,11 @@ class Precision:
     """Standard deviations of what was observed of an object."""
 
     distance_m: float
-    """Of its distance from the camera, in metres."""
+    """Deviation of its distance from the camera, in metres."""
     distance_share: float
-    """The same as a share of the distance."""
+    """Deviation of the distance as a share of it."""
     size_share: float
-    """Of each of its extents."""
+    """Deviation of each of its extents, as a share."""
     sizes_follow: bool
     """Whether sizes follow distances, because a photo alone gave both."""
 
@@ -49,14 +40,15 @@ class PosePrior:
     """The camera's position."""
     observed: Pose
     precision: Precision
+    settings: RefinementSettings = REFINEMENT
 
     def was_pushed_away(self, position: Float[np.ndarray, "3"]) -> bool:
         """Whether a position is farther from a measured one than is usual."""
-        usual = LINEAR * self.precision.distance_m
+        usual = self.settings.linear_sigmas * self.precision.distance_m
         return usual > 0.0 and float(np.linalg.norm(position - self.observed.position)) > usual
 
     def cost(self, poses: PoseBatch) -> Float[np.ndarray, " p"]:
-        """Of other poses, in shares of the agreement of one mask."""
+        """Cost of other poses, in shares of the agreement of one mask."""
         distance = float(np.linalg.norm(self.observed.position - self.eye))
         nearer = np.log(np.linalg.norm(poses.position - self.eye, axis=1) / distance)
         grown = np.log(poses.scale / self.observed.scale)
@@ -64,10 +56,9 @@ class PosePrior:
             grown = grown - nearer[:, None]
         cosine = (np.einsum("pij,ij->p", poses.R, self.observed.R_world_object) - 1.0) / 2.0
         sigma = float(np.hypot(self.precision.distance_m / distance, self.precision.distance_share))
-        deviations = np.column_stack(
-            [nearer / sigma, np.arccos(np.clip(cosine, -1.0, 1.0)) / TURN_RAD, grown / self.precision.size_share]
-        )
-        squares = np.minimum(deviations**2, OUTLIER**2)
-        away = np.abs(deviations[:, 0])
-        distant = np.where(away <= LINEAR, away**2, LINEAR * (2.0 * away - LINEAR))
-        return WEIGHT * (distant + squares[:, 1] + squares[:, 2:].mean(axis=1))
+        turned = np.arccos(np.clip(cosine, -1.0, 1.0)) / self.settings.turn_sigma_rad
+        deviations = np.column_stack([nearer / sigma, turned, grown / self.precision.size_share])
+        squares = np.minimum(deviations**2, self.settings.max_sigmas**2)
+        away, linear = np.abs(deviations[:, 0]), self.settings.linear_sigmas
+        distant = np.where(away <= linear, away**2, linear * (2.0 * away - linear))
+        return self.settings.sigma * (distant + squares[:, 1] + squares[:, 2:].mean(axis=1))

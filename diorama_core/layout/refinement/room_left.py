@@ -11,7 +11,7 @@ from diorama_core.layout.problem.problem import Problem
 from diorama_core.layout.report import USUAL_ERRORS, part_overlaps, support_errors
 from diorama_core.scene.types import box_corners
 
-_TOUCHING_M = 1e-6
+ROUNDING_M = 1e-6
 
 
 @dataclass(frozen=True, eq=False)
@@ -29,7 +29,7 @@ class RoomLeft:
     def of(cls, problem: Problem) -> RoomLeft:
         """What is left around the objects of a settled layout."""
         poses = problem.R, problem.p, problem.scale
-        errors = np.maximum(support_errors(problem, *poses) + _TOUCHING_M, USUAL_ERRORS)
+        errors = np.maximum(support_errors(problem, *poses) + ROUNDING_M, USUAL_ERRORS)
         return cls(problem, errors, part_overlaps(problem, *poses, supporters=True))
 
     def allows(
@@ -41,7 +41,7 @@ class RoomLeft:
         if worse.any() or self._through_wall(i, R, p, scale):
             return False
         depths = part_overlaps(self.problem, R, p, scale, only=i, supporters=True)
-        return all(depth <= self.overlaps_m.get(pair, 0.0) + _TOUCHING_M for pair, depth in depths.items())
+        return all(depth <= self.overlaps_m.get(pair, 0.0) + ROUNDING_M for pair, depth in depths.items())
 
     def _through_wall(self, i: int, R: np.ndarray, p: np.ndarray, scale: np.ndarray) -> bool:
         """Whether the object is farther behind a wall than it was."""
@@ -50,6 +50,6 @@ class RoomLeft:
         now = p[i] + (local * scale[i]) @ R[i].T
         for wall in problem.walls_near(i):
             before, after = (float((corners @ wall.normal).min()) - wall.offset for corners in (was, now))
-            if after < min(before, 0.0) - _TOUCHING_M:
+            if after < min(before, 0.0) - ROUNDING_M:
                 return True
         return False

@@ -15,25 +15,8 @@ from diorama_core.layout.refinement.freedom import Freedom, freedom
 from diorama_core.layout.refinement.posed_picture import Look, PosedPicture
 from diorama_core.layout.refinement.prior import PosePrior
 from diorama_core.layout.refinement.room_left import RoomLeft
+from diorama_core.layout.settings import REFINEMENT, RefinementSettings
 from diorama_core.progress import Progress
-
-SHARES = (0.08, 0.04, 0.02, 0.01)
-"""By how much of its size a step changes an object: large ones first."""
-ROUNDS = 2
-"""How often objects take turns at each; who finds no step to make leaves its turn out."""
-STEPS = 2
-"""Most steps of an object in its turn."""
-MOVE_SHARE = 0.6
-"""A step that moves an object does so by this much of its distance, times the share."""
-FARTHEST_M = 4.0
-"""Steps of what is farther away are no longer."""
-MAX_GROWTH = 1.4
-"""An extent becomes at most so many times as long as the layout made it, or as short: what its mask asks beyond that is
-for another place or shape."""
-MIN_PIXELS = 8
-"""An object whose mask is smaller says nothing."""
-MIN_GAIN = 1e-4
-"""Of agreement, for which a step is made."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -51,17 +34,18 @@ class Search:
     """What each object's mask counts, 0 to 1; its box counts the rest."""
     sized: Sequence[bool]
     """Whether each object keeps its size."""
+    settings: RefinementSettings = REFINEMENT
 
     def poses(self, progress: Progress) -> PoseBatch:
         """The poses that were found, one for each object."""
         problem, room = self.problem, RoomLeft.of(self.problem)
         poses = PoseBatch(problem.R.copy(), problem.p.copy(), problem.scale.copy())
-        seen = self.picture.wanted_pixels >= MIN_PIXELS
+        seen = self.picture.wanted_pixels >= self.settings.min_pixels
         movable = [int(i) for i in np.flatnonzero(seen & problem.free) if problem.surface[i] is not None]
-        for number, share in enumerate(SHARES):
+        for number, share in enumerate(self.settings.shares):
             moving = movable
-            for part in range(ROUNDS):
-                begun = (number + part / ROUNDS) / len(SHARES)
+            for part in range(self.settings.rounds):
+                begun = (number + part / self.settings.rounds) / len(self.settings.shares)
                 progress.report(begun, "fitting objects to their masks")
                 moving = [i for i in moving if self._moves(room, poses, i, share, seen, progress)]
         return poses
@@ -72,7 +56,7 @@ class Search:
         """Make a few steps of one object; whether there was one to make."""
         progress.check()
         steps = 0
-        while steps < STEPS and self._step(room, poses, i, share, seen):
+        while steps < self.settings.steps and self._step(room, poses, i, share, seen):
             steps += 1
         return steps > 0
 
@@ -92,7 +76,7 @@ class Search:
         free = self._freedom(poses, i)
         prior, place = self.priors[i], poses.position[i]
         distance = float(np.linalg.norm(place - prior.eye))
-        changes = free.steps(MOVE_SHARE * share * min(distance, FARTHEST_M), share)
+        changes = free.steps(self.settings.move * share * min(distance, self.settings.farthest_m), share)
         if prior.was_pushed_away(place):
             changes = np.concatenate([changes, free.steps_toward(place, prior.observed.position)])
         single = self._tries(poses, i, free, changes, seen)
@@ -113,8 +97,10 @@ class Search:
         boxes = np.nan_to_num(box_iou(look.bounds_px, self.boxes_px[i]))
         value = look.agreement @ (self.trust * seen) + (1.0 - self.trust[i]) * boxes - self.priors[i].cost(near)
         gain = value - value[0]
-        gain[(np.abs(np.log(near.scale / self.problem.scale[i])) > np.log(MAX_GROWTH)).any(axis=1)] = -np.inf
-        return _best_first([_Try(float(gain[k]), near, int(k), look) for k in np.flatnonzero(gain > MIN_GAIN)])
+        grown = np.abs(np.log(near.scale / self.problem.scale[i]))
+        gain[(grown > np.log(self.settings.max_growth)).any(axis=1)] = -np.inf
+        better = np.flatnonzero(gain > self.settings.min_gain)
+        return _best_first([_Try(float(gain[k]), near, int(k), look) for k in better])
 
     def _freedom(self, poses: PoseBatch, i: int) -> Freedom:
         surface, parent = self.problem.surface[i], int(self.problem.parent[i])
@@ -122,7 +108,7 @@ class Search:
         if parent >= 0:
             surface = surface.at(poses.R[parent], poses.position[parent], poses.scale[parent])
         is_round = self.picture.casters[i].round_from_above
-        return freedom(self.problem, i, surface, sized=self.sized[i], is_round=is_round)
+        return freedom(self.problem, i, surface, sized=self.sized[i], is_round=is_round, settings=self.settings)
 
 
 @dataclass(frozen=True, eq=False)

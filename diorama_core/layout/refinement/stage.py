@@ -22,18 +22,12 @@ from diorama_core.layout.refinement.posed_picture import PosedPicture
 from diorama_core.layout.refinement.prior import MEASURED, REASONED, PosePrior, Precision
 from diorama_core.layout.refinement.search import Search
 from diorama_core.layout.report import measure
+from diorama_core.layout.settings import REFINEMENT, RefinementSettings
 from diorama_core.layout.what_got_worse import disagreement_in_words
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.progress import Progress
 from diorama_core.scene import edits
 from diorama_core.scene.types import Camera, Scene
-
-TOUCHING_M = 0.004
-"""What is so near to a wall stays against it."""
-GIVEN = 1.0
-"""Confidence of a mask that a person gave: its box, which is drawn round it, says nothing more."""
-OUTLINED = 0.4
-"""What a mask counts that was found in a box; the box, which was drawn or looked at by a person, counts the rest."""
 
 
 @dataclass(frozen=True)
@@ -42,6 +36,7 @@ class MaskRefinement:
 
     library: ShapeLibrary
     precision: Precision
+    settings: RefinementSettings = REFINEMENT
 
     @classmethod
     def of(cls, library: ShapeLibrary, *, depth_measured: bool) -> MaskRefinement:
@@ -59,17 +54,18 @@ class MaskRefinement:
         """The scene in poses that cover the masks better; see `protocols.RefinementStage`."""
         begun = time.perf_counter()
         detected = {o.id: o for o in objects}
-        problem = build_problem(scene, self.library, adherence_m=TOUCHING_M)
+        problem = build_problem(scene, self.library, adherence_m=self.settings.touching_m)
         found = [detected.get(name) for name in problem.ids]
         if scene.camera is None or all(item is None for item in found):
             return scene, report
         seen = [observed.object(name).pose for name in problem.ids]
-        priors = [PosePrior(scene.camera.position, pose, self.precision) for pose in seen]
+        priors = [PosePrior(scene.camera.position, pose, self.precision, self.settings) for pose in seen]
         picture = self._picture(scene, scene.camera, problem, found)
         none = np.zeros(4)
         boxes = np.array([none if o is None else o.box for o in found], dtype=np.float64)
-        trust = np.array([0.0 if o is None else _trust(o) for o in found])
-        poses = Search(problem, picture, priors, boxes, trust, _in_sets(observed, problem.ids)).poses(progress)
+        trust = np.array([0.0 if o is None else _trust(o, self.settings.outlined) for o in found])
+        sized = _in_sets(observed, problem.ids)
+        poses = Search(problem, picture, priors, boxes, trust, sized, self.settings).poses(progress)
         as_observed = replace(
             problem,
             R=np.array([pose.R_world_object for pose in seen]),
@@ -85,16 +81,16 @@ class MaskRefinement:
     ) -> PosedPicture:
         masks = [None if item is None else item.mask for item in found]
         height, width = next(mask.shape for mask in masks if mask is not None)
-        grid = PixelGrid.of(camera, width, height)
+        grid = PixelGrid.of(camera, width, height, self.settings.long_side_px)
         shapes = [scene.object(name).shape_id for name in problem.ids]
         casters = {name: ShapeCaster(self.library.mesh(name)) for name in set(shapes)}
         poses = PoseBatch(problem.R, problem.p, problem.scale)
-        return PosedPicture.of(grid, grid.labels(masks), [casters[name] for name in shapes], poses)
+        return PosedPicture.of(grid, grid.labels(masks), [casters[name] for name in shapes], poses, self.settings)
 
 
-def _trust(found: DetectedObject) -> float:
-    """What a mask counts against the object's box."""
-    return 1.0 if found.mask_confidence == GIVEN else OUTLINED * found.mask_confidence
+def _trust(found: DetectedObject, outlined: float) -> float:
+    """What a mask counts against the object's box; all where a person gave it, and the box was drawn round it."""
+    return 1.0 if found.mask_confidence == 1.0 else outlined * found.mask_confidence
 
 
 def _in_sets(observed: Scene, ids: Sequence[str]) -> list[bool]:

@@ -19,7 +19,7 @@ from diorama_core.library.ingest.guess import Given
 from diorama_core.library.ingest.shaping import Source
 
 MAX_METADATA_BYTES = 600_000_000
-"""Of one file of a data set, unpacked; the largest published ones have a tenth of it."""
+"""Bytes of one file of a data set, unpacked; the largest published ones have a tenth of it."""
 _ADVICE = "download it again"
 
 

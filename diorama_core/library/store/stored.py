@@ -22,7 +22,7 @@ from diorama_core.library.record import Shape
 from diorama_core.library.store.records import Records, StoredRow
 
 MAX_MODEL_BYTES = 600_000_000
-"""Of one model as it is stored; ingestion makes none as large."""
+"""Bytes of one model as it is stored; ingestion makes none as large."""
 
 _PICTURES = (
     "baseColorTexture", "metallicRoughnessTexture", "normalTexture", "occlusionTexture", "emissiveTexture", "image",

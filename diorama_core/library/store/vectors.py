@@ -23,7 +23,7 @@ INDEX_FROM = 1_000_000
 """Shapes from which on an index is used, where LanceDB is installed."""
 _BATCH = 20_000
 _ITERATIONS = 10
-"""Of the clustering that makes the index: 50, LanceDB's own, take five times as long and find hardly more."""
+"""Rounds of the clustering that makes the index: 50, LanceDB's own, take five times as long and find hardly more."""
 
 
 @runtime_checkable

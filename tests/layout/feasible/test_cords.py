@@ -7,9 +7,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from diorama_core.layout.feasible.cords import MAX_CORD_M, reaching_ceilings
+from diorama_core.layout.feasible.cords import reaching_ceilings
 from diorama_core.layout.feasible.photo_observations import photo_observations
 from diorama_core.layout.problem.problem import Problem, build_problem
+from diorama_core.layout.settings import LAYOUT
 from diorama_core.scene.types import Architecture, Plane
 from diorama_core.synthesis.layout_rooms import room_box
 from tests.layout.feasible.test_photo_observations import looking_north, outline
@@ -41,7 +42,7 @@ def test_a_lamp_whose_upper_end_was_not_seen_goes_on_up_to_the_ceiling(room: Roo
     np.testing.assert_array_equal(after.scale[:, :2], before.scale[:, :2])
 
 
-@pytest.mark.parametrize(("top_m", "cut"), [(2.2, False), (2.55 - MAX_CORD_M, True)], ids=["seen", "far below"])
+@pytest.mark.parametrize(("top_m", "cut"), [(2.2, False), (2.55 - LAYOUT.max_cord_m, True)], ids=["seen", "far below"])
 def test_a_lamp_whose_end_was_seen_or_that_is_far_below_stays(room: Room, top_m: float, cut: bool) -> None:
     before, after = hanging_lamp(room, top_m, cut=cut)
     np.testing.assert_array_equal(after.scale, before.scale)

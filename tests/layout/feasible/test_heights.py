@@ -6,8 +6,9 @@ import numpy as np
 import pytest
 
 from diorama_core.layout.feasible.heights import joint_heights
-from diorama_core.layout.feasible.photo_observations import MAX_STRETCH, photo_observations
+from diorama_core.layout.feasible.photo_observations import photo_observations
 from diorama_core.layout.problem.problem import Problem, build_problem
+from diorama_core.layout.settings import LAYOUT
 from tests.layout.feasible.test_photo_observations import looking_north, outline
 from tests.layout.small_rooms import Room
 
@@ -71,7 +72,7 @@ def test_a_foot_that_hangs_above_the_floor_comes_down_while_the_top_stays(room: 
 def test_heights_change_within_limits(room: Room) -> None:
     before, after = problems_of(room, (0.11, 0.11, 0.11), box_foot_m=0.1)
     k = before.ids.index("box")
-    assert after.scale[k, 2] <= MAX_STRETCH * before.scale[k, 2] + 1e-9
+    assert after.scale[k, 2] <= LAYOUT.max_stretch * before.scale[k, 2] + 1e-9
 
 
 def test_decided_heights_are_not_fitted_again(room: Room) -> None:

@@ -9,12 +9,12 @@ from hypothesis import strategies as st
 
 from diorama_core.geometry.projection import box_iou
 from diorama_core.layout.feasible.photo_observations import (
-    MAX_STRETCH,
     PhotoObservations,
     photo_observations,
 )
 from diorama_core.layout.feasible.recipe import FeasibleRecipe
 from diorama_core.layout.problem.problem import build_problem
+from diorama_core.layout.settings import LAYOUT
 from diorama_core.progress import Progress
 from diorama_core.scene.types import Camera, Intrinsics, Scene
 from diorama_core.synthesis.layout_rooms import box_library, generate_room
@@ -66,8 +66,8 @@ def test_what_a_wall_moved_keeps_its_outline(room: Room) -> None:
 def test_sizes_stay_within_limits(room: Room) -> None:
     scene, shelf = shelf_away_from_its_wall(room, gap_m=1.5)
     ratio = solve(scene).object(shelf).pose.scale / scene.object(shelf).pose.scale
-    assert (ratio <= MAX_STRETCH + 1e-9).all()
-    assert (ratio >= 1 / MAX_STRETCH - 1e-9).all()
+    assert (ratio <= LAYOUT.max_stretch + 1e-9).all()
+    assert (ratio >= 1 / LAYOUT.max_stretch - 1e-9).all()
     assert ratio.max() > 1.01
 
 
@@ -211,7 +211,7 @@ def test_what_came_out_to_its_loads_is_not_made_smaller_again(room: Room) -> Non
     seen = photo_observations(problem, scene.camera, depth_weight=1.0)
     wider = problem.scale * [1.2, 1.0, 1.0]
     kept = seen.no_smaller(wider, wider > problem.scale)
-    np.testing.assert_allclose(kept.least[0], [1.2, 1 / MAX_STRETCH, 1 / MAX_STRETCH])
+    np.testing.assert_allclose(kept.least[0], [1.2, 1 / LAYOUT.max_stretch, 1 / LAYOUT.max_stretch])
     np.testing.assert_array_equal(kept.most, seen.most)
 
 

@@ -272,4 +272,4 @@ def test_unknown_recipes_are_refused(library: BoxLibrary) -> None:
 
 def test_repr_is_a_cache_key(library: BoxLibrary) -> None:
     assert repr(recipe("feasible", library)) == repr(recipe("feasible", box_library()))
-    assert len(repr(recipe("feasible", library))) < 300
+    assert len(repr(recipe("feasible", library))) < 1500  # with every number of its settings

@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 
 from diorama_core.layout.feasible.relocate import relocate
-from diorama_core.layout.feasible.separate import APART_M, Program, overlaps
+from diorama_core.layout.feasible.separate import Program, overlaps
+from diorama_core.layout.settings import LAYOUT
 from tests.layout.feasible.test_separate import BOX, program
 from tests.layout.small_rooms import Room
 
@@ -32,7 +33,7 @@ def test_the_one_of_two_for_which_that_costs_less_goes_the_nearest_way_out(room:
     assert (after.stuck, after.depth_m) == ((), 0.0)
     assert not moves[stays].any()
     # Out through the nearer face.
-    out = (0.35 + CUP_M) / 2 - 0.05 + APART_M
+    out = (0.35 + CUP_M) / 2 - 0.05 + LAYOUT.apart_m
     np.testing.assert_allclose(moves[goes], [out if cup_goes else -out, 0.0, 0.0], atol=1e-3)
 
 
@@ -45,7 +46,7 @@ def test_a_spot_that_is_taken_is_left_out(room: Room) -> None:
     after = relocate(p, unmoved(p))
     assert after.stuck == ()
     # The nearest way out, 0.17 m, ends in the row of boxes; to the other sides it is the next nearest.
-    assert np.linalg.norm(moves_of(p, after.y)[cup]) == pytest.approx((0.45 + CUP_M) / 2 + APART_M, abs=1e-3)
+    assert np.linalg.norm(moves_of(p, after.y)[cup]) == pytest.approx((0.45 + CUP_M) / 2 + LAYOUT.apart_m, abs=1e-3)
 
 
 def test_a_spot_behind_a_wall_is_left_out(room: Room) -> None:
@@ -55,7 +56,9 @@ def test_a_spot_behind_a_wall_is_left_out(room: Room) -> None:
     after = relocate(p, unmoved(p))
     assert after.stuck == ()
     # Toward the wall, 3 m off, it is 0.15 m, but only 75 mm are free there.
-    np.testing.assert_allclose(moves_of(p, after.y)[cup], [0.0, (0.45 + CUP_M) / 2 - 0.02 + APART_M, 0.0], atol=1e-3)
+    np.testing.assert_allclose(
+        moves_of(p, after.y)[cup], [0.0, (0.45 + CUP_M) / 2 - 0.02 + LAYOUT.apart_m, 0.0], atol=1e-3
+    )
 
 
 def test_what_stands_on_the_moved_object_goes_along(room: Room) -> None:

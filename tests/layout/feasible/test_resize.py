@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from diorama_core.layout.feasible.recipe import FeasibleRecipe
-from diorama_core.layout.feasible.settle import SMALLEST_SHRINK
+from diorama_core.layout.settings import LAYOUT
 from diorama_core.progress import Progress
 from diorama_core.scene.types import Scene
 from diorama_core.synthesis.layout_rooms import box_library
@@ -37,7 +37,7 @@ def test_what_is_a_little_too_wide_for_its_gap_is_made_smaller_and_stays(room: R
     box = between_cabinets(room, BOX_M - 0.02)
     moved, scale, reasons = solved(room.scene(camera=looking_north()), box)
     assert moved < 0.03
-    assert SMALLEST_SHRINK <= scale.min() < 0.97
+    assert LAYOUT.smallest_shrink <= scale.min() < 0.97
     assert any(f"tight: {box}" in reason for reason in reasons)
 
 

@@ -7,9 +7,10 @@ from hypothesis import strategies as st
 
 from diorama_core.errors import Cancelled
 from diorama_core.layout.feasible.recipe import FeasibleRecipe
-from diorama_core.layout.feasible.separate import APART_M, Program, Separation, build_program, overlaps, separate
+from diorama_core.layout.feasible.separate import Program, Separation, build_program, overlaps, separate
 from diorama_core.layout.feasible.structure import exact_structure
 from diorama_core.layout.problem.problem import build_problem
+from diorama_core.layout.settings import LAYOUT
 from diorama_core.library.catalogue import built_in_library
 from diorama_core.progress import Progress
 from diorama_core.scene.types import Pose, Scene, SceneObject, Support
@@ -66,7 +67,7 @@ def test_two_overlapping_boxes_part_by_the_least_move(x, y, yaw) -> None:
         # Both give way alike, and together by the depth in plan, or a little more: only some directions are tried.
         np.testing.assert_allclose(moves[0], -moves[1], atol=1e-6)
         moved = float(np.linalg.norm(moves[0] - moves[1]))
-        assert before + APART_M - 2e-4 < moved < 1.1 * before + 2e-3
+        assert before + LAYOUT.apart_m - 2e-4 < moved < 1.1 * before + 2e-3
 
 
 def test_the_heavier_of_two_moves_less(room: Room) -> None:
@@ -83,7 +84,7 @@ def test_a_locked_object_stays_and_the_other_gives_way(room: Room) -> None:
     p = program(room)
     moves = p.moves(solved(p).y)
     assert not moves[0].any()
-    assert moves[1] == pytest.approx([0.15 + APART_M, 0.0, 0.0], abs=2e-4)
+    assert moves[1] == pytest.approx([0.15 + LAYOUT.apart_m, 0.0, 0.0], abs=2e-4)
 
 
 def test_what_stands_on_an_object_rides_along(room: Room) -> None:

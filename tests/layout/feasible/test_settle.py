@@ -7,9 +7,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from diorama_core.layout.feasible.photo_observations import MAX_STRETCH
-from diorama_core.layout.feasible.recipe import MEASURED_WEIGHT, FeasibleRecipe
-from diorama_core.layout.feasible.settle import MAX_GROWTH
+from diorama_core.layout.feasible.recipe import FeasibleRecipe
+from diorama_core.layout.settings import LAYOUT
 from diorama_core.progress import Progress
 from diorama_core.scene.types import Architecture, Plane, Scene
 from diorama_core.synthesis.layout_rooms import box_library
@@ -30,7 +29,7 @@ def test_what_is_seen_off_its_table_changes_distance_and_size_and_looks_the_same
     np.testing.assert_allclose(outline(settled, vase), outline(scene, vase), atol=2.0)
     grown = after.pose.scale / before.pose.scale
     assert ((grown > 1.05) if farther else (grown < 0.95)).all()
-    assert (grown < MAX_GROWTH).all()
+    assert (grown < LAYOUT.max_growth).all()
 
 
 def test_sizes_stay_within_limits_where_they_were_not_reasoned(room: Room):
@@ -38,7 +37,7 @@ def test_sizes_stay_within_limits_where_they_were_not_reasoned(room: Room):
     vase = room.put("vase_20", (0.0, 0.5, 0.74 + 0.3 + 0.14), on=table)
     scene = room.scene(camera=looking_north())
     settled = FeasibleRecipe(LIBRARY).optimise(scene, Progress())[0]
-    assert (settled.object(vase).pose.scale <= MAX_STRETCH + 1e-9).all()
+    assert (settled.object(vase).pose.scale <= LAYOUT.max_stretch + 1e-9).all()
 
 
 def through_the_wall(room: Room, *, x: float = 0.0, load_m: float | None = None) -> tuple[Scene, Scene, str]:
@@ -55,7 +54,7 @@ def through_the_wall(room: Room, *, x: float = 0.0, load_m: float | None = None)
     scene = room.scene(camera=looking_north(5.0), architecture=planes)
     boxed = tuple(replace(o, box_px=tuple(outline(scene, o.id))) for o in scene.objects)
     scene = replace(scene, objects=boxed)
-    recipe = FeasibleRecipe(LIBRARY, depth_measured=True, depth_weight=MEASURED_WEIGHT)
+    recipe = FeasibleRecipe(LIBRARY, depth_measured=True, depth_weight=1.0)
     return scene, recipe.optimise(scene, Progress())[0], shelf
 
 

@@ -7,14 +7,13 @@ import pytest
 
 from diorama_core.layout.feasible.recipe import FeasibleRecipe
 from diorama_core.layout.feasible.visible_points import (
-    MAX_POINTS,
-    MIN_POINTS,
     ObservedView,
     VisiblePoints,
     tracked_points,
     turned_points,
 )
 from diorama_core.layout.problem.problem import build_problem
+from diorama_core.layout.settings import LAYOUT
 from diorama_core.progress import Progress
 from diorama_core.scene.types import Pose, Scene, box_corners
 from tests.layout.feasible.test_photo_observations import looking_north, outline
@@ -34,7 +33,7 @@ def test_points_are_on_the_side_that_the_camera_sees(room: Room) -> None:
     box = room.put(BOX, (0.0, 1.0, 0.15), yaw=-np.pi / 2, scale=(1.0, 2.0, 1.0))
     scene = room.scene(camera=looking_north())
     points = points_of(scene, room)[box]
-    assert MIN_POINTS <= len(points) <= 2 * MAX_POINTS
+    assert LAYOUT.min_points <= len(points) <= 2 * LAYOUT.max_points
     on_a_face = np.isclose(np.abs(points), size / 2, atol=2e-3)
     assert on_a_face.any(axis=1).all()
     # Turned to the camera is its front; of its top and its front something is seen, of its back and its foot nothing.

@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 
 from diorama_core.arrangement.surfaces import Surface
-from diorama_core.layout.feasible.photo_observations import MAX_STRETCH
 from diorama_core.layout.feasible.structure import exact_structure
 from diorama_core.layout.feasible.wide_supports import reaching_loads
 from diorama_core.layout.problem.problem import Problem, build_problem
+from diorama_core.layout.settings import LAYOUT
 from diorama_core.synthesis.layout_rooms import box_library
 from tests.layout.feasible.test_photo_observations import looking_north
 from tests.layout.small_rooms import Room
@@ -45,7 +45,9 @@ def test_a_side_comes_out_to_its_load_and_the_other_stays(room: Room) -> None:
 
 def test_sides_come_out_within_limits(room: Room) -> None:
     before, after = reached(room, 1.0)
-    assert sides(after)[1] - sides(after)[0] == pytest.approx(MAX_STRETCH * (sides(before)[1] - sides(before)[0]))
+    assert sides(after)[1] - sides(after)[0] == pytest.approx(
+        LAYOUT.max_stretch * (sides(before)[1] - sides(before)[0])
+    )
 
 
 def test_a_load_larger_than_its_supporter_hangs_over(room: Room) -> None:

@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from diorama_core.layout.refinement.pixel_grid import LONG_SIDE, PixelGrid
+from diorama_core.layout.refinement.pixel_grid import PixelGrid
 from tests.layout.refinement.views import looking_down
 
 
@@ -14,7 +14,7 @@ def test_pixels_are_in_the_photo_and_about_so_many(width: int, height: int) -> N
     grid = PixelGrid.of(looking_down(), width, height)
     assert 0 <= grid.rows[0] <= grid.rows[-1] < height
     assert 0 <= grid.columns[0] <= grid.columns[-1] < width
-    assert max(len(grid.rows), len(grid.columns)) <= 1.5 * LONG_SIDE + 1
+    assert max(len(grid.rows), len(grid.columns)) <= 1.5 * 320 + 1
 
 
 def test_rays_go_through_the_pixels() -> None:

@@ -7,14 +7,12 @@ import pytest
 
 from diorama_core.geometry.silhouette import PoseBatch
 from diorama_core.layout.refinement.prior import (
-    LINEAR,
     MEASURED,
-    OUTLIER,
     REASONED,
-    WEIGHT,
     PosePrior,
     Precision,
 )
+from diorama_core.layout.settings import REFINEMENT
 from diorama_core.scene.types import Pose, yaw_rotation
 
 EYE = np.array([0.0, 0.0, 1.5])
@@ -30,9 +28,9 @@ def cost(pose: Pose, precision: Precision) -> float:
 def test_the_observed_pose_costs_nothing_and_a_standard_deviation_what_it_weighs(precision: Precision) -> None:
     assert cost(OBSERVED, precision) == pytest.approx(0.0, abs=1e-12)
     turned = replace(OBSERVED, R_world_object=yaw_rotation(0.1))
-    assert cost(turned, precision) == pytest.approx(WEIGHT)
+    assert cost(turned, precision) == pytest.approx(REFINEMENT.sigma)
     larger = replace(OBSERVED, scale=np.array(OBSERVED.scale) * np.exp(precision.size_share))
-    assert cost(larger, precision) == pytest.approx(WEIGHT)
+    assert cost(larger, precision) == pytest.approx(REFINEMENT.sigma)
 
 
 def test_from_a_photo_alone_what_is_farther_is_larger() -> None:
@@ -44,7 +42,11 @@ def test_from_a_photo_alone_what_is_farther_is_larger() -> None:
 
 def test_what_the_layout_changed_much_costs_no_more_for_another_change() -> None:
     much, more = (replace(OBSERVED, R_world_object=yaw_rotation(turn)) for turn in (1.0, 1.4))
-    assert cost(much, MEASURED) == pytest.approx(cost(more, MEASURED)) == pytest.approx(WEIGHT * OUTLIER**2)
+    assert (
+        cost(much, MEASURED)
+        == pytest.approx(cost(more, MEASURED))
+        == pytest.approx(REFINEMENT.sigma * REFINEMENT.max_sigmas**2)
+    )
 
 
 @pytest.mark.parametrize("precision", [MEASURED, REASONED])
@@ -52,8 +54,12 @@ def test_what_the_layout_moved_far_is_drawn_back_evenly(precision: Precision) ->
     usual = max(precision.distance_m / float(np.linalg.norm(OBSERVED.position - EYE)), precision.distance_share)
     away = [np.exp(k * usual) for k in (0.5, 4.0, 8.0, 12.0)]
     near, *far = (cost(_at_distance(d, precision), precision) for d in away)
-    assert near == pytest.approx(WEIGHT * 0.25)
-    assert far[2] - far[1] == pytest.approx(far[1] - far[0]) == pytest.approx(WEIGHT * 4.0 * 2.0 * LINEAR)
+    assert near == pytest.approx(REFINEMENT.sigma * 0.25)
+    assert (
+        far[2] - far[1]
+        == pytest.approx(far[1] - far[0])
+        == pytest.approx(REFINEMENT.sigma * 4.0 * 2.0 * REFINEMENT.linear_sigmas)
+    )
 
 
 def _at_distance(times: float, precision: Precision) -> Pose:

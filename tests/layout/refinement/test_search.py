@@ -8,7 +8,8 @@ from diorama_core.layout.problem.problem import build_problem
 from diorama_core.layout.refinement.pixel_grid import PixelGrid
 from diorama_core.layout.refinement.posed_picture import PosedPicture
 from diorama_core.layout.refinement.prior import MEASURED, PosePrior
-from diorama_core.layout.refinement.search import MAX_GROWTH, Search
+from diorama_core.layout.refinement.search import Search
+from diorama_core.layout.settings import REFINEMENT
 from diorama_core.progress import Progress
 from diorama_core.scene import edits
 from diorama_core.scene.types import Pose, Scene
@@ -80,4 +81,4 @@ def test_no_mask_makes_an_object_much_larger_than_the_layout_did(room: Room) -> 
     larger = edits.place(scene, {"box": Pose(pose.R_world_object, pose.position, 1.8 * np.array(pose.scale))})
     height = 2.0 * found(room, scene, masks_of(larger, room), observed=larger)["box"][2]
     as_it_was = room.library.shape("box_24").size_m[2]
-    assert 1.15 * as_it_was < height <= MAX_GROWTH * as_it_was + 1e-9
+    assert 1.15 * as_it_was < height <= REFINEMENT.max_growth * as_it_was + 1e-9
