@@ -172,7 +172,18 @@ def serve(
     token: str | None,
     library: str | ShapeLibrary = "built-in",
 ) -> None:
-    """Run the editor until Ctrl+C."""
+    """Run the editor until Ctrl+C.
+
+    Args:
+        project: to open; None for the start page.
+        projects_dir: where projects are kept.
+        host: to listen at.
+        port: to listen at.
+        open_browser: whether to open one here.
+        low_graphics: whether to draw for machines without a graphics card.
+        token: that pages must bring; None for none.
+        library: by name, or itself.
+    """
     running = start(
         project=project,
         projects_dir=projects_dir,

@@ -11,7 +11,15 @@ PROFILES = ("auto", "embedded", "foundation")
 
 
 def command(commands: Any, name: str, run: Any, summary: str, example: str) -> argparse.ArgumentParser:
-    """A subcommand that runs `run`, with a summary and an example."""
+    """A subcommand that runs `run`, with a summary and an example.
+
+    Args:
+        commands: the parser's subcommands.
+        name: as it is typed.
+        run: takes the parsed arguments.
+        summary: one line.
+        example: of its use.
+    """
     parser: argparse.ArgumentParser = commands.add_parser(
         name,
         help=summary,

@@ -198,6 +198,12 @@ def attach(client: Client, object_id: str, parent_id: str, *, anyway: bool = Fal
     """Support an object by another object or by a plane, and move it there.
 
     What is too large or too heavy for its supporter is refused with the reason, and offered `anyway`.
+
+    Args:
+        client: the browser that asked.
+        object_id: of the object.
+        parent_id: of the object or plane.
+        anyway: whether size and weight do not matter.
     """
     from diorama_core.editing.placing import seated
     from diorama_core.editing.sensible_support import why_not_on
@@ -272,7 +278,14 @@ def set_adherence(client: Client, object_id: str, wall_id: str | None) -> None:
 
 
 def set_distance(client: Client, object_id: str, side: str, distance_m: float) -> None:
-    """Move an object along one of its axes until that side is so far from the nearest wall or neighbour."""
+    """Move an object along one of its axes until that side is so far from the nearest wall or neighbour.
+
+    Args:
+        client: the browser that asked.
+        object_id: of the object.
+        side: which side of the object.
+        distance_m: from that side to what is nearest.
+    """
     item = client.session.scene.object(object_id)
     known = next((s for s in SIDES if s == side), None)
     if known is None:

@@ -114,6 +114,12 @@ def correct_model(client: Client, object_id: str, fix: Fix | None = None, *, cat
 
     The corrected model gets an id of its own: undo leads back to the one before.
 
+    Args:
+        client: the browser that asked.
+        object_id: of the object.
+        fix: turn or scale of the model; None leaves them.
+        category: what it is; None leaves it.
+
     Raises:
         EditRefused: when the shape is not one of one's own.
         InputError: when the category is unknown.

@@ -110,6 +110,12 @@ def _hang_in_view(client: Client, shape_id: str) -> bool:
 def put_opening(client: Client, category: str, wall_id: str, at: Float[np.ndarray, "2"]) -> None:
     """Put the most usual door or window into a wall, where it is nearest to a point of the floor (world x and y).
 
+    Args:
+        client: the browser that asked.
+        category: door or window.
+        wall_id: of the wall.
+        at: point of the floor, world x and y, metres.
+
     Raises:
         EditRefused: see `with_opening`.
     """
@@ -126,7 +132,14 @@ def start_placing(client: Client, shape_id: str) -> None:
 
 
 def place_at(client: Client, shape_id: str, origin: Float[np.ndarray, "3"], direction: Float[np.ndarray, "3"]) -> None:
-    """Put a shape where a ray from the eye meets a surface it can stand on or hang at."""
+    """Put a shape where a ray from the eye meets a surface it can stand on or hang at.
+
+    Args:
+        client: the browser that asked.
+        shape_id: of the library.
+        origin: of the ray, world, metres.
+        direction: of the ray.
+    """
     session = client.session
     shape, scene = session.library.shape(shape_id), session.scene
     hung = resolve(shape.category).category.mount in ("wall", "ceiling")

@@ -36,7 +36,14 @@ def start_measuring(client: Client) -> None:
 
 
 def measure_at(client: Client, doing: Measuring, origin: np.ndarray, direction: np.ndarray) -> None:
-    """Take the next end of the length."""
+    """Take the next end of the length.
+
+    Args:
+        client: the browser that asked.
+        doing: the ends so far.
+        origin: of the ray, world, metres.
+        direction: of the ray.
+    """
     point = point_under(client.session.scene, origin, direction)
     if point is None:
         raise EditRefused("nothing to measure there; click the room or an object")

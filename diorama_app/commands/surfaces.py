@@ -37,7 +37,14 @@ def chosen_surfaces(client: Client, *, all_walls: bool) -> tuple[str, ...]:
 
 
 def finish_surfaces(client: Client, finish: SurfaceFinish | None, *, all_walls: bool, merge: str = "") -> None:
-    """Finish the chosen surface, or let it look as before with None; one undo step."""
+    """Finish the chosen surface, or let it look as before with None; one undo step.
+
+    Args:
+        client: the browser that asked.
+        finish: None for none.
+        all_walls: whether every wall gets it.
+        merge: steps with the same key become one.
+    """
     session = client.session
     chosen = chosen_surfaces(client, all_walls=all_walls)
     names = supporter_name(session.scene, chosen[0]) if len(chosen) == 1 else f"{len(chosen)} walls"

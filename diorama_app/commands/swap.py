@@ -22,6 +22,12 @@ def candidate_for(library: ShapeLibrary, item: SceneObject, shape_id: str, mode:
 
     Sizes: "as found" is what the photo says of this alternative (in proportion where the photo said nothing), "same
     box" stretches it to the object's box, "in proportion" scales it evenly into that box, "catalogue" leaves it.
+
+    Args:
+        library: where shapes come from.
+        item: the object.
+        shape_id: of the library.
+        mode: which size it gets.
     """
     known = next((c for c in item.candidates if c.shape_id == shape_id), None)
     if known is not None and mode == "as found":
@@ -39,7 +45,14 @@ def candidate_for(library: ShapeLibrary, item: SceneObject, shape_id: str, mode:
 
 
 def swapped(scene: Scene, item: SceneObject, candidate: Candidate, *, keep_colour: bool) -> Scene:
-    """The scene with an object's shape replaced, at the same position."""
+    """The scene with an object's shape replaced, at the same position.
+
+    Args:
+        scene: as it is.
+        item: the object.
+        candidate: the other shape, with its size and pose.
+        keep_colour: whether the new shape is painted as the old one.
+    """
     changed = edits.swap(scene, item.id, candidate, keep_pose=True)
     if keep_colour:
         return changed

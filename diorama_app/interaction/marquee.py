@@ -20,6 +20,15 @@ def objects_in(
     """Ids of visible objects whose centre projects into the rectangle (0 to 1 from the top left).
 
     Centres are tested so that a rectangle around a chair does not select the table, and large objects need not fit.
+
+    Args:
+        scene: as it is.
+        low: upper left corner, 0 to 1.
+        high: lower right corner.
+        R_world_camera: of the viewer.
+        position: of the viewer, world, metres.
+        fov_rad: vertical.
+        aspect: width over height.
     """
     half = np.tan(fov_rad / 2)
     found = []

@@ -125,7 +125,14 @@ def tree_html(
     badges: Mapping[str, tuple[str, ...]] | None = None,
     others: Cursors = (),
 ) -> str:
-    """The rows, nested; every name escaped."""
+    """The rows, nested; every name escaped.
+
+    Args:
+        scene: as it is.
+        selection: ids.
+        badges: words by object id.
+        others: what other people have selected.
+    """
     if not scene.objects and not scene.architecture.planes:
         start = button("Start with a photo", "start", title="Upload one, or describe a room in words")
         return f'<div class="card">Nothing here yet.<div class="bar" style="margin:6px 0 0 0">{start}</div></div>'

@@ -26,7 +26,13 @@ class Toasts:
         self._html.show(f'<div class="dio-toast"><span>{text(message)}</span>{again}</div>', again=True)
 
     def offer(self, message: str, label: str, do: Callable[[], None]) -> None:
-        """Show a message with a button that does something; it stays longer than others."""
+        """Show a message with a button that does something; it stays longer than others.
+
+        Args:
+            message: for the person.
+            label: of the button.
+            do: called on the click.
+        """
         self._offered = do
         action = button(text(label), "offered")
         line = f'<div class="dio-toast long" role="alert"><span>{text(message)}</span>{action}</div>'

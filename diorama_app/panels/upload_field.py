@@ -55,7 +55,14 @@ class UploadField:
 
 
 def hidden_upload(gui: viser.GuiApi, client: Client, label: str, take: Take, **about: Any) -> str:
-    """An upload button that the page does not show, for what is dropped or chosen elsewhere; gives its id."""
+    """An upload button that the page does not show, for what is dropped or chosen elsewhere; gives its id.
+
+    Args:
+        gui: of the page.
+        client: the browser that asked.
+        label: for those who do not see the page.
+        take: called with the files.
+    """
     field = UploadField(gui, client, label, take, **about)
     field.show_if(False)
     return field.uuid

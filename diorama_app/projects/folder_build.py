@@ -58,6 +58,13 @@ def build_photos(
     died (memory, a crash in native code) is tried once more when the others are done; stage results that it had are
     read from its project. On cancellation the photos that are done are kept.
 
+    Args:
+        photos: with their files.
+        options: of the build.
+        output: folder that is written.
+        workers: processes that read pictures.
+        progress: reports and cancellation.
+
     Raises:
         ProjectError: `output` cannot be written.
         Cancelled: on request.

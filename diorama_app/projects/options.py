@@ -76,7 +76,15 @@ class BuildOptions:
 def build_files(
     files: PhotoFiles, options: BuildOptions, output: Path, progress: Progress, warn: Callable[[str], None]
 ) -> Reconstruction:
-    """Build the scene of a photo in a project folder; raises what `diorama_core.build` raises."""
+    """Build the scene of a photo in a project folder; raises what `diorama_core.build` raises.
+
+    Args:
+        files: of one photo.
+        options: of the build.
+        output: folder that is written.
+        progress: reports and cancellation.
+        warn: called with what is odd about them.
+    """
     return diorama.build(
         files.photo,
         boxes=files.boxes,

@@ -65,6 +65,13 @@ def build_posed_photos(
 ) -> PosedBuild:
     """One project of all photos whose cameras are known; the photo with most boxes is the one it opens with.
 
+    Args:
+        photos: with their files.
+        poses: their cameras.
+        options: of the build.
+        output: folder that is written.
+        progress: reports and cancellation.
+
     Raises:
         InputError: no photo has a camera, or a photo cannot be used.
         ProjectError: `output` cannot be written, or holds something else.

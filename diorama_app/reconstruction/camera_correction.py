@@ -68,7 +68,14 @@ def set_camera_height(client: Client, height_m: float) -> None:
 
 
 def rescale_room(client: Client, label: str, now_m: float, true_m: float) -> None:
-    """Set a true length; rescales the scene and every later build."""
+    """Set a true length; rescales the scene and every later build.
+
+    Args:
+        client: the browser that asked.
+        label: what was measured.
+        now_m: its length in the scene.
+        true_m: its true length.
+    """
     session = client.session
     height, inputs = camera_height_m(session.scene), session.document.inputs
     said = None if height is None or inputs is None else replace(inputs, camera_height_m=height * true_m / now_m)

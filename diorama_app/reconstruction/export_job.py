@@ -60,7 +60,14 @@ def export(client: Client, format_name: str, options: ExportOptions) -> None:
 
 
 def hand_over(client: Client, name: str, content: bytes, progress: Progress) -> None:
-    """Download a finished file in the browser that asked for it; not when it was cancelled meanwhile."""
+    """Download a finished file in the browser that asked for it; not when it was cancelled meanwhile.
+
+    Args:
+        client: the browser that asked.
+        name: of the file.
+        content: of the file.
+        progress: reports and cancellation.
+    """
     progress.report(0.98, f"handing over {name}")
 
     def download() -> None:

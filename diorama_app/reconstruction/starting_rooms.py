@@ -15,6 +15,12 @@ LIVING_ROOM = "living"
 def start_empty_room(client: Client, width_m: float, depth_m: float, height_m: float) -> None:
     """Create a project with an empty room and open it.
 
+    Args:
+        client: the browser that asked.
+        width_m: along x.
+        depth_m: along y.
+        height_m: of the walls.
+
     Raises:
         EditRefused: a length is no room's.
         ProjectError: the folder cannot be written.

@@ -168,7 +168,14 @@ class Suggestions:
 
 
 def unmarked(found: Detections, x: float, y: float, marked: Sequence[Box]) -> Detections:
-    """The boxes that a click at (x, y) may mean beside those that are marked there: of smaller objects on these."""
+    """The boxes that a click at (x, y) may mean beside those that are marked there: of smaller objects on these.
+
+    Args:
+        found: boxes that are likely.
+        x: of the click, pixels of the photo.
+        y: likewise.
+        marked: boxes that are there.
+    """
     boxes = np.array(marked, dtype=float).reshape(-1, 4)
     here = boxes[np.all((boxes[:, :2] <= (x, y)) & (boxes[:, 2:] >= (x, y)), axis=1)]
     if not len(here):

@@ -66,7 +66,13 @@ class Jobs:
         return self._status
 
     def start(self, kind: JobKind, title: str, work: Callable[[Progress], None]) -> None:
-        """Run `work` in the background; refused while another job runs."""
+        """Run `work` in the background; refused while another job runs.
+
+        Args:
+            kind: of the job.
+            title: for the person.
+            work: called in a thread.
+        """
         with self._lock:
             if self._status is not None:
                 raise EditRefused(f"{self._status.title} is still running; cancel it or wait")

@@ -169,13 +169,26 @@ class EditorSession:
     def annotate_further(
         self, label: str, further: Iterable[FurtherPhoto], *, by: ConnectedClient | None = None
     ) -> None:
-        """Change the other photos of the room, as one undo step; the scene stays as it is."""
+        """Change the other photos of the room, as one undo step; the scene stays as it is.
+
+        Args:
+            label: name of the undo step.
+            further: the photos from now on.
+            by: who did it; None for the server itself.
+        """
         self.commit(label, self.scene, by=by, further=tuple(further))
 
     def annotate(
         self, label: str, inputs: Inputs, *, by: ConnectedClient | None = None, merge_key: str | None = None
     ) -> None:
-        """Change what is said of the photo, as one undo step; the scene stays as it is."""
+        """Change what is said of the photo, as one undo step; the scene stays as it is.
+
+        Args:
+            label: name of the undo step.
+            inputs: from now on.
+            by: who did it; None for the server itself.
+            merge_key: steps with the same key become one.
+        """
         self.commit(label, self.scene, by=by, inputs=inputs, merge_key=merge_key)
 
     def edit(
@@ -242,7 +255,17 @@ class EditorSession:
         inputs: Inputs | None = None,
         further: tuple[FurtherPhoto, ...] | None = None,
     ) -> None:
-        """Make a whole scene the current state as one undo step, save it and show it."""
+        """Make a whole scene the current state as one undo step, save it and show it.
+
+        Args:
+            label: name of the undo step.
+            scene: from now on.
+            by: who did it; None for the server itself.
+            selection: ids that are selected from now on; None leaves it.
+            merge_key: steps with the same key become one.
+            inputs: from now on; None leaves them.
+            further: other photos from now on; None leaves them.
+        """
         self.need_writable()
         if by is not None and selection is not None:
             by.selection = tuple(selection)
@@ -438,7 +461,13 @@ class EditorSession:
         self.on_left()
 
     def notice(self, client_id: int | None, message: str, kind: NoticeKind = "info") -> None:
-        """Tell one person, or all when it is not known which."""
+        """Tell one person, or all when it is not known which.
+
+        Args:
+            client_id: of the browser; None for all.
+            message: for the person.
+            kind: how serious it is.
+        """
         client = self.clients.get(client_id) if client_id is not None else None
         for one in [client] if client is not None else list(self.clients.values()):
             one.notice(message, kind)
@@ -448,7 +477,13 @@ class EditorSession:
         self.notice(None, message, kind)
 
     def post(self, client_id: int | None, task: Callable[[], None], *, key: str | None = None) -> None:
-        """Do `task` on the UI thread for one browser, which is told when it fails. May be called from any thread."""
+        """Do `task` on the UI thread for one browser, which is told when it fails. May be called from any thread.
+
+        Args:
+            client_id: of the browser.
+            task: what to do.
+            key: of tasks with the same key only the last one is done.
+        """
         self.ui_thread.post(
             task, key=key, client_id=client_id, on_error=lambda message: self.notice(client_id, message, "bad")
         )

@@ -56,7 +56,14 @@ def in_unit(metres: float, unit: Unit) -> float:
 
 
 def format_size(width: float, depth: float, height: float, unit: Unit) -> str:
-    """Width, depth and height in short."""
+    """Width, depth and height in short.
+
+    Args:
+        width: metres.
+        depth: metres.
+        height: metres.
+        unit: to show.
+    """
     if unit == "ft-in":
         return " × ".join(format_length(v, unit) for v in (width, depth, height))
     if unit == "cm":

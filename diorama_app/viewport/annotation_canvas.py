@@ -171,7 +171,13 @@ class AnnotationCanvas:
         self._next.tell({"next": label})
 
     def show_boxes(self, boxes: Sequence[LabelledBox], selected: int | None, likely: Sequence[str] = ()) -> None:
-        """Draw the boxes over the photo; the selected one offers its likely names."""
+        """Draw the boxes over the photo; the selected one offers its likely names.
+
+        Args:
+            boxes: of the photo.
+            selected: number of a box; None for none.
+            likely: names for the selected one.
+        """
         if self.is_open:
             self._boxes.tell({"boxes": _rows(boxes), "selected": selected, "likely": list(likely)})
 

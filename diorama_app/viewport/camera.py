@@ -15,7 +15,17 @@ from diorama_core.scene.types import Camera, Intrinsics
 
 
 def fitting_fov(width: float, height: float, fx: float, fy: float, cx: float, cy: float, aspect: float) -> float:
-    """The vertical field of view (rad) whose frustum around the optical axis contains the whole photo."""
+    """The vertical field of view (rad) whose frustum around the optical axis contains the whole photo.
+
+    Args:
+        width: in pixels.
+        height: in pixels.
+        fx: in pixels.
+        fy: likewise.
+        cx: of the principal point, pixels.
+        cy: likewise.
+        aspect: width over height of the view.
+    """
     half_up = max(cy, height - cy) / fy
     half_across = max(cx, width - cx) / fx
     return float(2 * np.arctan(max(half_up, half_across / max(aspect, 1e-6))))
@@ -99,7 +109,13 @@ class ViewCamera:
     def move(
         self, position: Float[np.ndarray, "3"], target: Float[np.ndarray, "3"], fov_rad: float = float(DEFAULT_FOV_RAD)
     ) -> None:
-        """Look from a place at a point, upright."""
+        """Look from a place at a point, upright.
+
+        Args:
+            position: of the eye, world, metres.
+            target: what it looks at, world, metres.
+            fov_rad: vertical; None leaves it.
+        """
         self._moves(through_photo=False)
         camera = self._viser_client.camera
         with self._viser_client.atomic():

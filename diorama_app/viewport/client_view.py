@@ -39,7 +39,13 @@ class ClientView:
         self._distances: list[tuple[viser.LineSegmentsHandle, viser.LabelHandle]] = []
 
     def notice(self, message: str, kind: NoticeKind = "info", seconds: float | None = None) -> None:
-        """A short notice at the edge of the view; what went wrong stays longer."""
+        """A short notice at the edge of the view; what went wrong stays longer.
+
+        Args:
+            message: for the person.
+            kind: how serious it is.
+            seconds: that it stays; None for as long as its kind does.
+        """
         seconds = seconds or (9.0 if kind == "bad" else 4.0)
         title = {"info": "Diorama", "good": "Done", "bad": "Could not do that"}[kind]
         colour = {"info": (47, 111, 214), "good": (38, 150, 96), "bad": (210, 62, 50)}[kind]

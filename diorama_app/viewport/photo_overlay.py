@@ -105,7 +105,13 @@ class PhotoOverlay:
                 pyramid.handle.visible = not self._through_photo
 
     def show_backdrop(self, camera: Camera | None, photo: UInt8[np.ndarray, "h w 3"] | None, depth_m: float) -> None:
-        """The photo as a backdrop at `depth_m` along its camera; none without a photo."""
+        """The photo as a backdrop at `depth_m` along its camera; none without a photo.
+
+        Args:
+            camera: the photo's.
+            photo: RGB, upright.
+            depth_m: from the camera.
+        """
         if self._backdrop is not None:
             self._backdrop.remove()
             self._backdrop = None
@@ -113,7 +119,13 @@ class PhotoOverlay:
             self._backdrop = self._add_picture("/photo_backdrop", camera, reduced(photo, 1280), depth_m)
 
     def show_overlay(self, camera: Camera | None, photo: UInt8[np.ndarray, "h w 3"] | None, opacity: float) -> None:
-        """The photo, half transparent, in front of the model; none at opacity 0."""
+        """The photo, half transparent, in front of the model; none at opacity 0.
+
+        Args:
+            camera: the photo's.
+            photo: RGB, upright.
+            opacity: 0 to 1.
+        """
         if self._overlay is not None:
             self._overlay.remove()
             self._overlay = None

@@ -300,13 +300,30 @@ def text(value: object) -> str:
 
 
 def button(label: str, do: str, arg: object = "", *, title: str = "", on: bool = False, disabled: bool = False) -> str:
-    """A button whose click is the action `do` with `arg`; the label is HTML already (icons), the rest is escaped."""
+    """A button whose click is the action `do` with `arg`; the label is HTML already (icons), the rest is escaped.
+
+    Args:
+        label: HTML.
+        do: name of the action.
+        arg: handed to the action.
+        title: shown when the pointer rests.
+        on: whether it is on.
+        disabled: whether it cannot be used now.
+    """
     attributes = f'type="button" data-do="{text(do)}" data-arg="{text(arg)}" title="{text(title)}"'
     return f'<button class="{"on" if on else ""}" {attributes} {"disabled" if disabled else ""}>{label}</button>'
 
 
 def switch(name: str, hint: str, arg: object, *, on: bool = False, disabled: bool = False) -> str:
-    """A name with its explanation that is switched on and off; a click is the action `switch` with `arg`."""
+    """A name with its explanation that is switched on and off; a click is the action `switch` with `arg`.
+
+    Args:
+        name: shown.
+        hint: its explanation.
+        arg: handed to the action.
+        on: whether it is on.
+        disabled: whether it cannot be used now.
+    """
     attributes = f'type="button" role="switch" aria-checked="{str(on).lower()}" aria-label="{text(name)}"'
     attributes += f' title="{text(hint)}" data-do="switch" data-arg="{text(arg)}" {"disabled" if disabled else ""}'
     return f'<button class="switch" {attributes}><i></i><span>{text(name)}<small>{text(hint)}</small></span></button>'

@@ -281,7 +281,13 @@ class _Uploads:
         return next(self._servers)
 
     def watch(self, gui: viser.GuiApi, server: int, refused: Refused | None) -> None:
-        """Put the caps before viser's own handlers of one page's panels."""
+        """Put the caps before viser's own handlers of one page's panels.
+
+        Args:
+            gui: of the page.
+            server: number of the server.
+            refused: called with what was turned away.
+        """
         with self._lock:
             self._guis[gui] = server
         handlers = gui._websock_interface._incoming_handlers

@@ -265,6 +265,12 @@ def hiding(
     """Where other objects stand before one: smaller ones wherever they are, larger ones beside its own mask.
 
     Without the larger ones, which may as well lie below or stand behind it, it is where something surely does.
+
+    Args:
+        found: The object.
+        objects: What was found in the photo, with masks.
+        smaller_only: Whether larger ones are left out.
+        settings: Numbers to work with.
     """
     hidden, area = np.zeros(found.mask.shape, dtype=bool), found.pixels
     for other in objects:

@@ -57,7 +57,14 @@ def toward_window(
     scene: Scene,
     settings: AppearanceSettings = SETTINGS,
 ) -> Float[np.ndarray, "3"] | None:
-    """Unit vector from what stands in the room to its largest window; None where none is seen by day."""
+    """Unit vector from what stands in the room to its largest window; None where none is seen by day.
+
+    Args:
+        rgb: The photo, as white light would have it.
+        objects: What was found in the photo, with masks.
+        scene: As it is.
+        settings: Numbers to work with.
+    """
     mask_of = {o.id: o.mask for o in objects}
     grey = luminance(srgb_to_linear(rgb[:: settings.step_px, :: settings.step_px] / 255.0))
     windows = [o for o in scene.objects if o.category == "window" and o.id in mask_of]

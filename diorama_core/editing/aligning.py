@@ -20,7 +20,14 @@ Anchor = Literal["low", "middle", "high"]
 
 
 def align(scene: Scene, ids: Sequence[str], axis: Float[np.ndarray, "3"], anchor: Anchor) -> Scene:
-    """Bring the low ends, middles or high ends of objects (along a level world axis) in line with the last one's."""
+    """Bring the low ends, middles or high ends of objects (along a level world axis) in line with the last one's.
+
+    Args:
+        scene: as it is.
+        ids: of the objects.
+        axis: world, level.
+        anchor: which ends.
+    """
     chosen = _movable(scene, ids, least=2)
     spans = {i: _span(scene, i, axis) for i in chosen}
     target = _at(_span(scene, ids[-1], axis), anchor)
@@ -55,6 +62,12 @@ def mirror(scene: Scene, ids: Sequence[str], axis: Float[np.ndarray, "3"], libra
 
     What stands on them is reflected with them. One's own models with a left and a right keep them: only built-in
     designs can be built the other way round.
+
+    Args:
+        scene: as it is.
+        ids: of the objects.
+        axis: world, level.
+        library: where shapes come from.
     """
     chosen = _movable(scene, ids, least=1)
     spans = np.array([_span(scene, i, axis) for i in chosen])

@@ -47,7 +47,15 @@ class Slide:
         grabbed: Float[np.ndarray, "3"],
         selection: tuple[str, ...] = (),
     ) -> Slide:
-        """A drag of an object (and, when it is among several selected, of those too); refused when it is locked."""
+        """A drag of an object (and, when it is among several selected, of those too); refused when it is locked.
+
+        Args:
+            scene: as it is.
+            library: where shapes come from.
+            object_id: of the object.
+            grabbed: point of it under the pointer, world, metres.
+            selection: ids that are selected.
+        """
         item = scene.object(object_id)
         if item.locked:
             raise EditRefused(f"{item.label} is locked; unlock it first")

@@ -31,7 +31,13 @@ class Outline:
     """x, y in photo pixels, and whether it is part of the object."""
 
     def clicked(self, x: float, y: float, *, part: bool) -> Outline:
-        """The outline after one more click."""
+        """The outline after one more click.
+
+        Args:
+            x: pixels of the photo.
+            y: likewise.
+            part: whether it is a part of the object.
+        """
         more = replace(self, clicks=(*self.clicks, (x, y, part)))
         return replace(more, mask=more._cut())
 

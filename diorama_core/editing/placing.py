@@ -85,6 +85,13 @@ def hits_along(
 
     `lift_m` raises every surface along its normal: the plane in which the grabbed point of an object that stands on it
     would move.
+
+    Args:
+        origin: of the ray, world, metres.
+        direction: of the ray.
+        places: surfaces to meet.
+        lift_m: by which each is raised along its normal.
+        slack_m: by which its edge may be missed.
     """
     found = []
     for place in places:
@@ -102,7 +109,14 @@ def hits_along(
 
 
 def fits(place: Place, size_m: Float[np.ndarray, "3"], base: Float[np.ndarray, "3"], R: np.ndarray) -> bool:
-    """Whether an object of this size with its base here may stand on an object's surface."""
+    """Whether an object of this size with its base here may stand on an object's surface.
+
+    Args:
+        place: the surface.
+        size_m: of the object.
+        base: middle of its foot, world, metres.
+        R: rotation of the object.
+    """
     if not place.of_object:
         return True
     if not place.upward or size_m[2] > place.surface.clearance_m + TALLER_M:
@@ -200,7 +214,15 @@ def to_wall(item: SceneObject, walls: Iterable[Surface], reach_m: float = WALL_M
 
 
 def insertion(scene: Scene, shape: Shape, object_id: str, hit: Hit, yaw_rad: float) -> tuple[SceneObject, Support]:
-    """A shape put where a ray met a place: standing on it, or hung with its back to it."""
+    """A shape put where a ray met a place: standing on it, or hung with its back to it.
+
+    Args:
+        scene: as it is.
+        shape: of the library.
+        object_id: of the new object.
+        hit: where the ray met a place.
+        yaw_rad: heading, 0 along +X.
+    """
     n = hit.place.surface.normal
     item = SceneObject(
         object_id, shape.category, shape.category, shape.id, shape.size_m, Pose.upright(hit.point, yaw_rad)

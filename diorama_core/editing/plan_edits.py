@@ -76,6 +76,12 @@ def corners(scene: Scene) -> tuple[Corner, ...]:
 def move_corner(scene: Scene, first: str, second: str, shift: Point) -> Scene:
     """Move a corner by moving both of its walls: each stays parallel to what it was.
 
+    Args:
+        scene: as it is.
+        first: id of a wall.
+        second: id of the wall beside it.
+        shift: of the corner, world x and y, metres.
+
     Raises:
         EditRefused: when the walls do not meet in a corner, or one would vanish.
     """

@@ -79,7 +79,13 @@ class Positioner:
         return found
 
     def put(self, scene: Scene, item: SceneObject, spot: Spot) -> Scene:
-        """The scene with the object at a place, inserted where it is not there yet."""
+        """The scene with the object at a place, inserted where it is not there yet.
+
+        Args:
+            scene: as it is.
+            item: the object.
+            spot: where to.
+        """
         if scene.has_object(item.id):
             moved = edits.move(scene, item.id, spot.pose)
             return moved if spot.support is None else edits.attach(moved, spot.support)

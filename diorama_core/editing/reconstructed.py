@@ -71,7 +71,14 @@ def _onto(scene: Scene, object_id: str, carrier_id: str, library: ShapeLibrary) 
 
 
 def replaced(scene: Scene, object_id: str, found: Found, library: ShapeLibrary) -> Scene:
-    """The scene with a reconstructed object; unchanged where the correction changes nothing."""
+    """The scene with a reconstructed object; unchanged where the correction changes nothing.
+
+    Args:
+        scene: as it is.
+        object_id: of the object.
+        found: the object as it was reconstructed.
+        library: where shapes come from.
+    """
     if found.as_built:
         return scene
     changed = edits.swap(scene, object_id, found.item.candidates[0])

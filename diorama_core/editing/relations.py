@@ -102,6 +102,13 @@ def relation_cost(
 
     "on", "above" for what hangs, and "under" for what lies are made true by where candidates come from; here they cost
     only how far the object is from its target, seen from above.
+
+    Args:
+        relation: what was asked for.
+        stances: places, headings and sizes.
+        kind: category.
+        targets: objects by id.
+        frame: the room's axes and outline.
     """
     if relation.kind == "against wall":
         return _against_wall(stances, frame)
@@ -299,7 +306,14 @@ def _in_corner(stances: Stances, frame: RoomFrame) -> Float[np.ndarray, "n"]:
 
 
 def unmet_cost(scene: Scene, object_id: str, relation: Relation, frame: RoomFrame) -> float:
-    """What a relation of a placed object costs; above `MET` it is not met."""
+    """What a relation of a placed object costs; above `MET` it is not met.
+
+    Args:
+        scene: as it is.
+        object_id: of the object.
+        relation: what was asked for.
+        frame: the room's axes and outline.
+    """
     item = scene.object(object_id)
     targets = {t: scene.object(t) for t in relation.targets if scene.has_object(t)}
     if relation.kind == "on":
@@ -319,7 +333,14 @@ def unmet_cost(scene: Scene, object_id: str, relation: Relation, frame: RoomFram
 
 
 def is_met(scene: Scene, object_id: str, relation: Relation, frame: RoomFrame) -> bool:
-    """Whether a relation of a placed object holds."""
+    """Whether a relation of a placed object holds.
+
+    Args:
+        scene: as it is.
+        object_id: of the object.
+        relation: what was asked for.
+        frame: the room's axes and outline.
+    """
     return unmet_cost(scene, object_id, relation, frame) <= MET
 
 

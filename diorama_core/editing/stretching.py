@@ -54,6 +54,13 @@ def stretched(scene: Scene, object_id: str, handle: Handle, by_m: float, *, snap
     The opposite face stays where it is, for the corner the middle of the underside. What stands on the object rises
     and sinks with its top and keeps its place otherwise.
 
+    Args:
+        scene: as it is.
+        object_id: of the object.
+        handle: what is pulled.
+        by_m: outward.
+        snap: whether lengths are rounded.
+
     Raises:
         EditRefused: the object is locked, or would be larger than a scene allows.
     """
@@ -74,7 +81,15 @@ def pulled_m(
     eye: Float[np.ndarray, "3"],
     direction: Float[np.ndarray, "3"],
 ) -> float:
-    """How far a handle was pulled outward when the hand that grabbed it there is now on this ray."""
+    """How far a handle was pulled outward when the hand that grabbed it there is now on this ray.
+
+    Args:
+        item: the object.
+        handle: what is pulled.
+        grabbed: where, world, metres.
+        eye: of the ray, world, metres.
+        direction: of the ray.
+    """
     outward = item.pose.R_world_object @ (np.asarray(handle.along) * item.size_m)
     outward = outward / np.linalg.norm(outward)
     # The point of the handle's line that is nearest to the ray.

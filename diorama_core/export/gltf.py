@@ -73,7 +73,14 @@ def glb_bytes(
     textures: Textures | None = None,
     options: ExportOptions = EVERYTHING,
 ) -> bytes:
-    """The scene as the content of a GLB file; see `write_glb`."""
+    """The scene as the content of a GLB file; see `write_glb`.
+
+    Args:
+        scene: As it is.
+        library: Where shapes come from.
+        textures: Pictures by name.
+        options: Of the export.
+    """
     return _document(gather(scene, library, textures=textures, options=options), Progress()).glb()
 
 

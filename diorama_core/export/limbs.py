@@ -75,7 +75,14 @@ def by_joint(surfaces: Iterable[Surface]) -> dict[int | None, tuple[Surface, ...
 
 
 def limb_of(item: SceneObject, joint: Joint, number: int, mesh: str) -> ExportLimb:
-    """A joint at an object's scale. A turning part keeps its form, so a stretched one turns rigidly."""
+    """A joint at an object's scale. A turning part keeps its form, so a stretched one turns rigidly.
+
+    Args:
+        item: the object.
+        joint: at scale 1.
+        number: among the object's joints.
+        mesh: name of its part.
+    """
     scale = np.asarray(item.pose.scale)
     axis = np.asarray(joint.axis) * scale
     stretch = float(np.linalg.norm(axis)) if joint.kind == "slide" else 1.0

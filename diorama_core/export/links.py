@@ -151,7 +151,15 @@ def collider_file(folder: str, owner: str, number: int) -> str:
 def mesh_files(
     gathered: ExportScene, physical: PhysicalScene, links: tuple[Link, ...], folder: str, progress: Progress
 ) -> Iterator[Entry]:
-    """Visual meshes with their materials and pictures, and convex colliders."""
+    """Visual meshes with their materials and pictures, and convex colliders.
+
+    Args:
+        gathered: Meshes, materials and lights of the scene.
+        physical: Masses, hulls and joints of its objects.
+        links: Bodies and their joints.
+        folder: That files are in, relative to the document.
+        progress: Reports and cancellation.
+    """
     materials = MaterialFile(gathered.materials, display=True, maps=False)
     yield f"{folder}/meshes/{MATERIALS}", materials.text()
     for name, content in materials.pictures():

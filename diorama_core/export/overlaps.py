@@ -180,7 +180,14 @@ class Cuts:
 
 
 def cut(points: Points, normal: Float[np.ndarray, "3"], level: float, depth: float) -> Points | None:
-    """The part of a convex body where `normal . p >= level`; None when more than `depth` would go, or all."""
+    """The part of a convex body where `normal . p >= level`; None when more than `depth` would go, or all.
+
+    Args:
+        points: corners of the body, metres.
+        normal: unit.
+        level: of the plane, metres.
+        depth: most that may go, metres.
+    """
     height = points @ normal - level
     above, below = points[height >= 0], points[height < 0]
     if len(below) == 0:

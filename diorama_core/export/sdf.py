@@ -35,7 +35,14 @@ def write_sdf(gathered: ExportScene, path: Path, progress: Progress | None = Non
 
 
 def sdf_text(gathered: ExportScene, physical: PhysicalScene, links: tuple[Link, ...], folder: str) -> str:
-    """The world; meshes lie in `folder`, relative to it."""
+    """The world; meshes lie in `folder`, relative to it.
+
+    Args:
+        gathered: meshes, materials and lights of the scene.
+        physical: masses, hulls and joints of its objects.
+        links: bodies and their joints.
+        folder: that files are in, relative to the document.
+    """
     root = Element("sdf", version=VERSION)
     world = SubElement(root, "world", name=gathered.name)
     SubElement(world, "gravity").text = "0 0 -9.81"

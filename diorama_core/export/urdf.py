@@ -36,7 +36,14 @@ def write_urdf(gathered: ExportScene, path: Path, progress: Progress | None = No
 
 
 def urdf_text(gathered: ExportScene, physical: PhysicalScene, links: tuple[Link, ...], folder: str) -> str:
-    """The robot description; meshes lie in `folder`, relative to it."""
+    """The robot description; meshes lie in `folder`, relative to it.
+
+    Args:
+        gathered: meshes, materials and lights of the scene.
+        physical: masses, hulls and joints of its objects.
+        links: bodies and their joints.
+        folder: that files are in, relative to the document.
+    """
     robot = Element("robot", name=gathered.name)
     # MuJoCo would drop folders from file names and merge what is fixed.
     SubElement(SubElement(robot, "mujoco"), "compiler", strippath="false", fusestatic="false", discardvisual="true")

@@ -132,7 +132,14 @@ class StageMaterials:
 
 
 def add_surfaces(stage: Usd.Stage, path: str, surfaces: tuple[Surface, ...], materials: StageMaterials) -> None:
-    """One mesh a surface below a prim, with its materials beside them."""
+    """One mesh a surface below a prim, with its materials beside them.
+
+    Args:
+        stage: The document.
+        path: Of the prim.
+        surfaces: With their triangles.
+        materials: Those that the document has.
+    """
     UsdGeom.Scope.Define(stage, f"{path}/Materials")
     taken: set[str] = set()
     made: dict[tuple[int, bool, bool], UsdShade.Material] = {}
@@ -184,7 +191,14 @@ def add_camera(stage: Usd.Stage, path: str, camera: Camera) -> None:
 
 
 def add_light(stage: Usd.Stage, path: str, light: ExportLight, T: Float[np.ndarray, "4 4"]) -> None:
-    """A sphere that glows, or a window's rectangle; `T` is its rigid transform below its object."""
+    """A sphere that glows, or a window's rectangle; `T` is its rigid transform below its object.
+
+    Args:
+        stage: The document.
+        path: Of the prim.
+        light: Lamp or window.
+        T: Object from light.
+    """
     if light.kind == "lamp":
         sphere = UsdLux.SphereLight.Define(stage, path)
         sphere.CreateRadiusAttr(light.radius_m)

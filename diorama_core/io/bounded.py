@@ -43,6 +43,12 @@ _MAX_WORDS = 200
 def read_bytes(path: Path, most: int, error: Kind, advice: str = "restore it from a copy") -> bytes:
     """The content of a regular file of at most `most` bytes.
 
+    Args:
+        path: of the file.
+        most: bytes at most.
+        error: class of what is raised.
+        advice: what the reader of the message can do.
+
     Raises:
         error: missing, no regular file, unreadable or larger.
     """
@@ -67,6 +73,12 @@ def read_bytes(path: Path, most: int, error: Kind, advice: str = "restore it fro
 def read_json(path: Path, error: Kind, *, most: int = MAX_JSON_BYTES, advice: str = "restore it from a copy") -> Any:
     """The value in a JSON file; see `parse_json`.
 
+    Args:
+        path: of the file.
+        error: class of what is raised.
+        most: bytes at most.
+        advice: what the reader of the message can do.
+
     Raises:
         error: as `read_bytes` and `parse_json`.
     """
@@ -77,6 +89,13 @@ def parse_json(
     data: bytes | str, name: str, error: Kind, *, advice: str = "restore it from a copy", finite: bool = True
 ) -> Any:
     """The value that JSON text describes: finite numbers (unless said otherwise), whole characters, few levels.
+
+    Args:
+        data: UTF-8.
+        name: shown to the reader.
+        error: class of what is raised.
+        advice: what the reader of the message can do.
+        finite: whether infinities are refused.
 
     Raises:
         error: not UTF-8, not JSON, nested too deeply, or with numbers or characters that cannot be written back.
@@ -145,6 +164,12 @@ def read_picture(
     path: Path, error: Kind, *, most_pixels: int = MAX_PIXELS, within: tuple[int, int] | None = None
 ) -> UInt8[np.ndarray, "h w 3"]:
     """A picture that the program wrote.
+
+    Args:
+        path: of the file.
+        error: class of what is raised.
+        most_pixels: pixels at most.
+        within: width and height at most; None for any.
 
     Raises:
         error: as `read_bytes` and `picture_of`.

@@ -77,6 +77,12 @@ def drift(
     Convex parts are the collision bodies; room planes are static; objects hung on walls or ceilings are fixed, as are
     locked ones.
 
+    Args:
+        scene: as it is.
+        library: where shapes come from.
+        seconds: simulated.
+        step_s: of the simulation.
+
     Raises:
         UnavailableError: when MuJoCo is not installed.
     """

@@ -61,7 +61,15 @@ def volume(
     offset: Float[Array, "e k"],
     clearance: Float[Array, " e"],
 ) -> tuple[float, Float[Array, "e 4 3"], Float[Array, " e"]]:
-    """`costs.e_vol`; gradients with respect to the corners and the tops."""
+    """`costs.e_vol`; gradients with respect to the corners and the tops.
+
+    Args:
+        corners: of the contact face.
+        top: height above the surface.
+        outward: normals of the volume's sides.
+        offset: of the sides.
+        clearance: above the surface.
+    """
     past = np.matmul(corners, outward.transpose(0, 2, 1)) - offset[:, None, :]
     over = top - clearance
     value = float(np.maximum(past, 0.0).sum() + np.maximum(over, 0.0).sum())
@@ -88,6 +96,12 @@ class BoxPairs:
 
         Boxes from index `walls_from` on are walls with their normal as first axis: only the overlap along it counts,
         or a wall would also push objects along itself.
+
+        Args:
+            R: rotations of the boxes.
+            size: their extents.
+            pairs: of indices, the smaller first.
+            walls_from: index of the first wall.
         """
         i, j = pairs[:, 0], pairs[:, 1]
         a, b = R[i].transpose(0, 2, 1), R[j].transpose(0, 2, 1)
@@ -123,7 +137,15 @@ def incidence(pairs: Int[Array, "m 2"], count: int) -> Float[Array, "n m"]:
 def near_pairs(
     R: Float[Array, "n 3 3"], p: Float[Array, "n 3"], size: Float[Array, "n 3"], apart: Bool[Array, "n n"], gap_m: float
 ) -> Int[Array, "m 2"]:
-    """Pairs of boxes that may collide (`apart`) and whose bounds are nearer than `gap_m`."""
+    """Pairs of boxes that may collide (`apart`) and whose bounds are nearer than `gap_m`.
+
+    Args:
+        R: rotations, world from object.
+        p: centres, world, metres.
+        size: extents along the axes of each box.
+        apart: which pairs may collide.
+        gap_m: distance of bounds.
+    """
     half = 0.5 * np.einsum("nck,nk->nc", np.abs(R), size)
     low, high = p - half - gap_m / 2, p + half + gap_m / 2
     near = (low[:, None] <= high[None]).all(axis=2)

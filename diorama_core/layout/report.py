@@ -33,6 +33,12 @@ def measure(
     apart); `part_overlap_mean_m` and `overlapping_pairs` say how widespread. `box_overlap_m`: overlap of bounding
     boxes per object, tucked chairs included. `moved_m`: mean distance from the observed positions. `e_...`: the
     published costs.
+
+    Args:
+        problem: the layout as observed, with its supports.
+        R: rotations, world from object.
+        p: centres, world, metres.
+        scale: along the axes of each object.
     """
     supported = [surface is not None for surface in problem.surface]
     aligned, placed, inside = (support_errors(problem, R, p, scale)[supported] <= USUAL_ERRORS).T
@@ -80,7 +86,14 @@ def cost_values(
     p: Float[np.ndarray, "n 3"],
     scale: Float[np.ndarray, "n 3"],
 ) -> dict[str, float]:
-    """The published costs of a layout (`layout.costs`), support edges only."""
+    """The published costs of a layout (`layout.costs`), support edges only.
+
+    Args:
+        problem: the layout as observed, with its supports.
+        R: rotations, world from object.
+        p: centres, world, metres.
+        scale: along the axes of each object.
+    """
     volumes = Volumes.of(problem)
     supported = volumes.supported
     if not len(supported):
@@ -118,6 +131,12 @@ def support_errors(
 ) -> Float[np.ndarray, "n 3"]:
     """How far each object is from resting on its support: radians by which it is tilted, metres by which it is off the
     surface, and metres by which it leaves the bounds and the clearance of that; 0 where nothing supports it.
+
+    Args:
+        problem: the layout as observed, with its supports.
+        R: rotations, world from object.
+        p: centres, world, metres.
+        scale: along the axes of each object.
     """
     volumes = Volumes.of(problem)
     here, supported = volumes.at(R, p, scale), volumes.supported

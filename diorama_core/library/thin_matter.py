@@ -50,7 +50,14 @@ class _Crossings:
 def kept_thin_matter(
     vertices: Float[np.ndarray, "n 3"], faces: Int[np.ndarray, "m 3"], axis: int, folder: Path
 ) -> Float[np.ndarray, " bins"]:
-    """`thin_matter` from its file in a folder, or made now and written: every new process stretches the same shapes."""
+    """`thin_matter` from its file in a folder, or made now and written: every new process stretches the same shapes.
+
+    Args:
+        vertices: Of the shape, metres.
+        faces: Triangles.
+        axis: Along which it is cut.
+        folder: Of the files.
+    """
     content = hashlib.sha256(f"{VERSION} {axis} {len(vertices)}".encode())
     content.update(np.ascontiguousarray(vertices, np.float64).tobytes())
     content.update(np.ascontiguousarray(faces, np.int64).tobytes())

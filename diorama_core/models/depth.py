@@ -225,7 +225,14 @@ def _toward_camera(
 
 
 def at_size(seen: SeenDepth, height: int, width: int, intrinsics: Intrinsics | None = None) -> SeenDepth:
-    """The depth at the picture's own size: nearest pixels, since depth must not be averaged across edges."""
+    """The depth at the picture's own size: nearest pixels, since depth must not be averaged across edges.
+
+    Args:
+        seen: The network's depth.
+        height: Of the picture, pixels.
+        width: Likewise.
+        intrinsics: Of the picture, where they are known.
+    """
     if seen.depth_m.shape == (height, width):
         return seen if intrinsics is None else SeenDepth(seen.depth_m, seen.normals_camera, intrinsics)
     size = (width, height)

@@ -41,7 +41,14 @@ class ScaleNetwork(Protocol):
         template_cells: Int[np.ndarray, "k 2"],
         photo_cells: Int[np.ndarray, "k 2"],
     ) -> PatchTurns:
-        """Scale and angle of every pair of cells (column, row)."""
+        """Scale and angle of every pair of cells (column, row).
+
+        Args:
+            template: features of the view.
+            photo: features of the crop.
+            template_cells: columns and rows.
+            photo_cells: likewise.
+        """
         ...
 
 
@@ -71,7 +78,14 @@ class GigaPoseScale:
         template_cells: Int[np.ndarray, "k 2"],
         photo_cells: Int[np.ndarray, "k 2"],
     ) -> PatchTurns:
-        """Scale and angle of every pair of cells (column, row)."""
+        """Scale and angle of every pair of cells (column, row).
+
+        Args:
+            template: features of the view.
+            photo: features of the crop.
+            template_cells: columns and rows.
+            photo_cells: likewise.
+        """
         if not len(template_cells):
             return PatchTurns(np.zeros(0), np.zeros(0))
         pairs = np.concatenate(

@@ -61,6 +61,12 @@ class GroundingDino:
     ) -> Detections:
         """Boxes above the threshold, best first; empty without phrases.
 
+        Args:
+            rgb: the picture, 0 to 255.
+            phrases: what is looked for.
+            threshold: least score, 0 to 1.
+            progress: reports and cancellation.
+
         Raises:
             NetworkError: when the graph or the tokenizer is another network's, or fails.
             Cancelled: on request.

@@ -34,7 +34,14 @@ class BoxDetector(Protocol):
         threshold: float,
         progress: Progress | None = None,
     ) -> Detections:
-        """Boxes above the threshold, best first; stops when the progress is cancelled."""
+        """Boxes above the threshold, best first; stops when the progress is cancelled.
+
+        Args:
+            rgb: the picture, 0 to 255.
+            phrases: what is looked for.
+            threshold: least score, 0 to 1.
+            progress: reports and cancellation.
+        """
         ...
 
 
@@ -63,7 +70,14 @@ class Owlv2:
         threshold: float,
         progress: Progress | None = None,
     ) -> Detections:
-        """Boxes above the threshold, best first; empty without phrases."""
+        """Boxes above the threshold, best first; empty without phrases.
+
+        Args:
+            rgb: the picture, 0 to 255.
+            phrases: what is looked for.
+            threshold: least score, 0 to 1.
+            progress: reports and cancellation.
+        """
         height, width = rgb.shape[:2]
         progress = progress or Progress()
         pixels = self.pixels(rgb)

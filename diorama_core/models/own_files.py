@@ -61,6 +61,11 @@ class FileDetector:
     def detect(self, rgb: UInt8[np.ndarray, "h w 3"], threshold: float, iou: float = 0.45) -> Detections:
         """Everything found with at least the given score.
 
+        Args:
+            rgb: the picture, 0 to 255.
+            threshold: least score, 0 to 1.
+            iou: overlap (intersection over union) from which the weaker of two boxes goes.
+
         Raises:
             NetworkError: when the outputs are those of no detector that is known, or of another number of labels.
         """

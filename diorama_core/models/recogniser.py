@@ -89,13 +89,25 @@ class Recogniser:
         return cls(paths[0], paths[1], categories, form_values, "".join(sha256_of(p)[:8] for p in paths[:2]))
 
     def propose(self, rgb: UInt8[np.ndarray, "h w 3"], threshold: float, most: int = 100) -> Detections:
-        """Boxes that may hold an object, best first, labels into `categories`; two alike never overlap much."""
+        """Boxes that may hold an object, best first, labels into `categories`; two alike never overlap much.
+
+        Args:
+            rgb: the picture, 0 to 255.
+            threshold: least score, 0 to 1.
+            most: boxes at most.
+        """
         found = fused(self._looks(rgb), DOUBLE_IOU)
         best = np.flatnonzero(found.scores >= threshold)
         return found.rows(best[:most])
 
     def alternatives(self, rgb: UInt8[np.ndarray, "h w 3"], threshold: float, most: int) -> Detections:
-        """Boxes to choose from where somebody points: several of one object, each as one look at the picture saw it."""
+        """Boxes to choose from where somebody points: several of one object, each as one look at the picture saw it.
+
+        Args:
+            rgb: the picture, 0 to 255.
+            threshold: least score, 0 to 1.
+            most: boxes at most.
+        """
         every = joined(self._looks(rgb))
         found = without_doubles(every.rows(every.scores >= threshold), ALIKE_IOU, across_classes=True)
         return found.rows(np.arange(min(most, len(found))))

@@ -164,7 +164,14 @@ class Session:
             return list(future.result())
 
     def check(self, name: str, value: object, dims: Dims, *, gaps: bool = False) -> None:
-        """Raise `NetworkError` unless an output has a shape and consists of numbers; see `run`."""
+        """Raise `NetworkError` unless an output has a shape and consists of numbers; see `run`.
+
+        Args:
+            name: Of the output.
+            value: Of the output.
+            dims: Numbers, or names for any.
+            gaps: Whether NaN is allowed.
+        """
         if not isinstance(value, np.ndarray) or value.dtype.kind not in "fiub":
             raise self._other(f"outputs {', '.join(self.outputs)}; no numbers in {name}")
         if not value.size or not _fits(value.shape, dims):

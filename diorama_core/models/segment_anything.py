@@ -64,7 +64,14 @@ class Sam2:
 
 
 def sam3_tracker(encoder: Path, decoder: Path, weights: str = "sam3", pool: SessionPool = SHARED_SESSIONS) -> Sam2:
-    """SAM 3's tracker: SAM 2.1's graphs for patches of 14 pixels and pictures from -1 to 1."""
+    """SAM 3's tracker: SAM 2.1's graphs for patches of 14 pixels and pictures from -1 to 1.
+
+    Args:
+        encoder: graph.
+        decoder: graph.
+        weights: identity of both.
+        pool: of sessions.
+    """
     half = (0.5, 0.5, 0.5)
     return Sam2(encoder, decoder, weights, side=1008, mask_side=288, mean=half, std=half, pool=pool)
 

@@ -157,6 +157,13 @@ class ModelStore:
     def adopt(self, network: Network, file: ModelFile, arrived: Path, revision: str, digest: str | None = None) -> None:
         """Check a file that arrived whole, move it into place and record it.
 
+        Args:
+            network: whose file it is.
+            file: as the manifest has it.
+            arrived: where it lies now.
+            revision: of the repository.
+            digest: SHA-256, where it is known.
+
         Raises:
             UnavailableError: when its content is not what the manifest (or an earlier pull) names; it is deleted then.
         """

@@ -39,7 +39,14 @@ class Yolox:
     def detect(
         self, rgb: UInt8[np.ndarray, "h w 3"], threshold: float, iou: float = 0.45, *, across_classes: bool = True
     ) -> Detections:
-        """Everything found with at least the given score (objectness times class probability)."""
+        """Everything found with at least the given score (objectness times class probability).
+
+        Args:
+            rgb: the picture, 0 to 255.
+            threshold: least score, 0 to 1.
+            iou: overlap (intersection over union) from which the weaker of two boxes goes.
+            across_classes: whether boxes of different classes count as overlapping.
+        """
         session = self.pool.get(self.graph)
         name, first = session.picture_input, session.outputs[0]
         side = session.side_px(name, 640)

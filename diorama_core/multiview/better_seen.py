@@ -54,6 +54,12 @@ def joint_candidates(
     """The candidates of both by their scores together, best first; poses are the new photo's where it has one.
 
     Scores are compared with the best of their own photo.
+
+    Args:
+        known: of the photos so far.
+        new: of the new photo.
+        share: what the new photo counts, 0 to 1.
+        settings: numbers to work with.
     """
     so_far, now = _relative(known), _relative(new)
     posed = {c.shape_id: c for c in (*known, *new)}

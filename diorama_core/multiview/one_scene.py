@@ -96,7 +96,14 @@ def in_proportion(
     shape_size_m: Float[np.ndarray, "3"],
     settings: JoiningSettings = SETTINGS,
 ) -> Float[np.ndarray, "3"]:
-    """Extents by a measurement and by the proportions of a shape, of unknown scale, each as sure as it is."""
+    """Extents by a measurement and by the proportions of a shape, of unknown scale, each as sure as it is.
+
+    Args:
+        size_m: measured.
+        log_sigma: deviations of its logarithms.
+        shape_size_m: of the shape.
+        settings: numbers to work with.
+    """
     measured, shape = np.log(size_m), np.log(shape_size_m)
     known = 1.0 / np.maximum(log_sigma, 1e-3) ** 2
     weight = 1.0 / (np.maximum(log_sigma, 1e-3) ** 2 + settings.proportion_sigma**2)

@@ -216,7 +216,14 @@ def _camera(k: Intrinsics, unknowns: Float[np.ndarray, "7"]) -> Camera:
 def sampson_px(
     a: Camera, b: Camera, pixels_a: Float[np.ndarray, "n 2"], pixels_b: Float[np.ndarray, "n 2"]
 ) -> Float[np.ndarray, "n"]:
-    """Signed distance (px, first order) of pairs of pixels from being views of one place (Sampson)."""
+    """Signed distance (px, first order) of pairs of pixels from being views of one place (Sampson).
+
+    Args:
+        a: one camera.
+        b: the other.
+        pixels_a: in the one picture.
+        pixels_b: in the other.
+    """
     T = np.linalg.inv(b.T_world_camera) @ a.T_world_camera
     x, y, z = T[:3, 3]
     E = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]]) @ T[:3, :3]

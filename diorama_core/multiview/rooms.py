@@ -267,14 +267,31 @@ def built_alone(
     room: GivenRoom | None = None,
     plane_pictures: bool = False,
 ) -> Built:
-    """The scene of one photo with the joint cuboids, in a room that is known where it is given, before any layout."""
+    """The scene of one photo with the joint cuboids, in a room that is known where it is given, before any layout.
+
+    Args:
+        read: the photo.
+        index: its number.
+        tracks: objects of all photos.
+        library: where shapes come from.
+        progress: reports and cancellation.
+        room: where it is known.
+        plane_pictures: whether planes get the photo's pictures.
+    """
     stages = _with_joint_cuboids(read, index, tracks)
     stages = stages if room is None else replace(stages, architecture=room)
     return build_scene(read.inputs, library, stages=stages, progress=progress, plane_pictures=plane_pictures)
 
 
 def room_alone(read: ReadPhoto, index: int, tracks: Sequence[Track], progress: Progress | None = None) -> Architecture:
-    """The room as one photo shows it around the joint cuboids, in the room's frame."""
+    """The room as one photo shows it around the joint cuboids, in the room's frame.
+
+    Args:
+        read: the photo.
+        index: its number.
+        tracks: objects of all photos.
+        progress: reports and cancellation.
+    """
     stages = _with_joint_cuboids(read, index, tracks)
     found = evaluate(stages, {"given": read.inputs}, ("architecture",), Runner(None), progress)
     architecture: Architecture = found["architecture"].architecture

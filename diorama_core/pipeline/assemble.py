@@ -24,6 +24,14 @@ def assemble(
     """The scene before layout optimisation: every object in its best candidate's pose, in its colour of the photo.
 
     Objects without candidates are left out, and objects on them are reassigned to their supporter.
+
+    Args:
+        objects: what was found in the photo, with masks.
+        geometry: the objects' cuboids, the camera, and what supports what.
+        architecture: the room.
+        posed: candidates in their poses.
+        library: where shapes come from.
+        colours: sRGB 0 to 1, by object id.
     """
     candidates: Mapping[str, PosedCandidates] = {p.object_id: p for p in posed if p.candidates}
     items = tuple(_scene_object(o, candidates[o.id], library, colours.get(o.id)) for o in objects if o.id in candidates)

@@ -45,7 +45,15 @@ def room_illuminant(
     camera: Camera,
     settings: MainColourSettings = SETTINGS,
 ) -> Illuminant:
-    """The light of a photo that its colours are freed of, by all its pixels and those of unhidden walls and ceiling."""
+    """The light of a photo that its colours are freed of, by all its pixels and those of unhidden walls and ceiling.
+
+    Args:
+        inputs: as given.
+        objects: what was found in the photo, with masks.
+        room: planes.
+        camera: the photo's.
+        settings: numbers to work with.
+    """
     shape = (inputs.photo.height, inputs.photo.width)
     step = max(1, max(shape) // GRID_PX)
     upper = np.array([plane.role != "floor" for plane in room.planes] + [False])  # the last one: no plane

@@ -65,7 +65,14 @@ class GivenCuboids:
     def measure(
         self, inputs: Inputs, camera: CameraEstimate, objects: tuple[DetectedObject, ...], progress: Progress
     ) -> ObjectGeometry:
-        """The cuboids, and what holds them up as far as the photo tells."""
+        """The cuboids, and what holds them up as far as the photo tells.
+
+        Args:
+            inputs: as given.
+            camera: as read from the photo.
+            objects: what was found in the photo, with masks.
+            progress: reports and cancellation.
+        """
         observations = gather(objects, inputs.photo.width, inputs.photo.height)
         view = View(self.camera.intrinsics, self.camera.T_world_camera[:3, :3])
         supports = supports_of(place_all(observations, view, float(self.camera.position[2])), objects)
@@ -83,7 +90,14 @@ class GivenRoom:
     def reconstruct(
         self, inputs: Inputs, objects: tuple[DetectedObject, ...], geometry: ObjectGeometry, progress: Progress
     ) -> ArchitectureEstimate:
-        """The room, with what the photo's objects stand on and hang from."""
+        """The room, with what the photo's objects stand on and hang from.
+
+        Args:
+            inputs: as given.
+            objects: what was found in the photo, with masks.
+            geometry: the objects' cuboids, the camera, and what supports what.
+            progress: reports and cancellation.
+        """
         walls = self.architecture.by_role("wall")
         seen = sum(w.seen for w in walls)
         source = RoomSource(RoomMethod.PHOTO_CUES, walls_found=seen, walls_assumed=len(walls) - seen)
@@ -97,5 +111,11 @@ class AsObserved:
     """No layout: the scene as the photo shows it."""
 
     def optimise(self, scene: Scene, progress: Progress, preview: Preview | None = None) -> tuple[Scene, LayoutReport]:
-        """The scene as it is."""
+        """The scene as it is.
+
+        Args:
+            scene: as it is.
+            progress: reports and cancellation.
+            preview: called with the layout as it becomes.
+        """
         return scene, LayoutReport("none", {}, {}, 0.0)

@@ -118,7 +118,15 @@ def stages_for(
 def foundation_stages(
     base: Stages, inputs: Inputs, store: ModelStore, lmm: LmmSettings | None, choice: NetworkChoice
 ) -> Stages:
-    """`base` with every stage replaced for which a network is on this machine."""
+    """`base` with every stage replaced for which a network is on this machine.
+
+    Args:
+        base: embedded stages.
+        inputs: as given.
+        store: where networks lie.
+        lmm: a language model; None for none.
+        choice: networks that the user names.
+    """
     stages = base
     if not inputs.boxes and inputs.instances is None:
         stages = replace(stages, detection=detection_stage(store, choice))

@@ -62,7 +62,13 @@ class _Similarity:
 
     @classmethod
     def between(cls, measured: Camera, scene: Camera, floor_m: float) -> _Similarity:
-        """Both cameras are the photo's; their heights above the floor say how lengths compare."""
+        """Both cameras are the photo's; their heights above the floor say how lengths compare.
+
+        Args:
+            measured: with the floor at 0.
+            scene: of the scene.
+            floor_m: height of its floor.
+        """
         if np.array_equal(measured.T_world_camera, scene.T_world_camera):
             return cls(np.eye(3), np.zeros(3), 1.0)
         R = scene.T_world_camera[:3, :3] @ measured.T_world_camera[:3, :3].T

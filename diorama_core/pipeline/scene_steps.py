@@ -45,7 +45,14 @@ class FinishedScene:
 def illuminant(
     inputs: Inputs, objects: tuple[DetectedObject, ...], room: ArchitectureEstimate, geometry: ObjectGeometry
 ) -> Illuminant:
-    """The photo's light, by the planes of the room."""
+    """The photo's light, by the planes of the room.
+
+    Args:
+        inputs: as given.
+        objects: what was found in the photo, with masks.
+        room: its planes.
+        geometry: the objects' cuboids, the camera, and what supports what.
+    """
     return room_illuminant(inputs, objects, room.architecture, geometry.camera)
 
 
@@ -126,7 +133,15 @@ def on_floor(room: ArchitectureEstimate) -> frozenset[str]:
 def appearance(
     balanced: Inputs, objects: tuple[DetectedObject, ...], scene: Scene, library: ShapeLibrary, light: Illuminant
 ) -> PhotoAppearance:
-    """What the photo shows of the objects, from a process beside this one where there is one."""
+    """What the photo shows of the objects, from a process beside this one where there is one.
+
+    Args:
+        balanced: the photo in white light.
+        objects: what was found in the photo, with masks.
+        scene: in the poses in which the photo shows it.
+        library: where shapes come from.
+        light: that the photo was freed of.
+    """
     return there(photo_appearance, balanced.photo.rgb, objects, scene, library, light.rgb)
 
 
@@ -152,7 +167,14 @@ def plane_pictures(
 
 
 def laid_out(stage: LayoutStage, observed: LaidOut, preview: Preview | None, progress: Progress) -> LaidOut:
-    """The scene after the layout optimiser."""
+    """The scene after the layout optimiser.
+
+    Args:
+        stage: the recipe.
+        observed: the scene before it.
+        preview: called with the layout as it becomes.
+        progress: reports and cancellation.
+    """
     return LaidOut(*stage.optimise(observed.scene, progress, preview))
 
 
@@ -163,7 +185,15 @@ def refined(
     objects: Sequence[DetectedObject],
     progress: Progress,
 ) -> LaidOut:
-    """The layout fitted to the photo's masks."""
+    """The layout fitted to the photo's masks.
+
+    Args:
+        stage: the refinement.
+        arranged: after the layout.
+        observed: the scene before it.
+        objects: what was found in the photo, with masks.
+        progress: reports and cancellation.
+    """
     assert arranged.report is not None
     return LaidOut(*stage.refine(arranged.scene, arranged.report, observed, objects, progress))
 

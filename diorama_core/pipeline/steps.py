@@ -39,7 +39,14 @@ class StageStep:
     beside: bool = False
 
     def evaluate(self, stages: Stages | ProposalStages, known: Artefacts, runner: Runner, progress: Progress) -> Any:
-        """The stage's result for the artefacts that are known."""
+        """The stage's result for the artefacts that are known.
+
+        Args:
+            stages: the implementations.
+            known: artefacts by name.
+            runner: caches results.
+            progress: reports and cancellation.
+        """
         stage = getattr(stages, self.name)
         if stage is None or not self.needed(known["given"]):
             return None
@@ -65,7 +72,14 @@ class Derivation:
     beside: bool = False
 
     def evaluate(self, stages: Stages | ProposalStages, known: Artefacts, runner: Runner, progress: Progress) -> Any:
-        """The function's value for the artefacts that are known."""
+        """The function's value for the artefacts that are known.
+
+        Args:
+            stages: the implementations.
+            known: artefacts by name.
+            runner: caches results.
+            progress: reports and cancellation.
+        """
         return self.function(*(known[name] for name in self.takes))
 
 
@@ -96,7 +110,14 @@ class LayoutStep:
     def evaluate(
         self, stages: Stages | ProposalStages, known: Artefacts, runner: Runner, progress: Progress
     ) -> LaidOut:
-        """The scene after this part of the layout."""
+        """The scene after this part of the layout.
+
+        Args:
+            stages: the implementations.
+            known: artefacts by name.
+            runner: caches results.
+            progress: reports and cancellation.
+        """
         stage, artefacts = getattr(stages, self.name), tuple(known[name] for name in self.takes)
         before: LaidOut = artefacts[0]
         if stage is None or not before.scene.objects:
@@ -138,7 +159,14 @@ class Correction:
     def evaluate(
         self, stages: Stages | ProposalStages, known: Artefacts, runner: Runner, progress: Progress
     ) -> Corrected:
-        """The scene with what the rule corrects."""
+        """The scene with what the rule corrects.
+
+        Args:
+            stages: the implementations.
+            known: artefacts by name.
+            runner: caches results.
+            progress: reports and cancellation.
+        """
         before, library, noise, *rest = (known[name] for name in self.takes)
         if self.measured not in (None, noise.measured):
             return before

@@ -70,7 +70,16 @@ def build_with_usable_networks(
     progress: Progress | None = None,
     preview: Preview | None = None,
 ) -> Built:
-    """`build_scene` with stages that are chosen again after a network failed; `Built.notes` names those left out."""
+    """`build_scene` with stages that are chosen again after a network failed; `Built.notes` names those left out.
+
+    Args:
+        inputs: as given.
+        library: where shapes come from.
+        choose: stages for the inputs; the best ones by default.
+        cache: folder of stage results; None for none.
+        progress: reports and cancellation.
+        preview: called with the layout as it becomes.
+    """
 
     def auto(store: ModelStore) -> Stages:
         return stages_for("auto", inputs, library, store=store)
@@ -85,6 +94,12 @@ def build_with_usable_networks(
 def save_built(project: Project, built: Built, given: Inputs, warnings: Sequence[str] = ()) -> None:
     """Save a built scene, its textures and what was used in a project whose inputs are saved already.
 
+    Args:
+        project: whose folder is written.
+        built: the build.
+        given: the inputs before anything was chosen.
+        warnings: to be kept with the project.
+
     Raises:
         ProjectError: the folder cannot be written.
     """
@@ -93,7 +108,14 @@ def save_built(project: Project, built: Built, given: Inputs, warnings: Sequence
 
 
 def save_artefacts(project: Project, built: Built, given: Inputs, warnings: Sequence[str] = ()) -> None:
-    """Save all of a build but its scene, as `save_built` does."""
+    """Save all of a build but its scene, as `save_built` does.
+
+    Args:
+        project: whose folder is written.
+        built: the build.
+        given: the inputs before anything was chosen.
+        warnings: to be kept with the project.
+    """
     corrected = with_found_boxes(given, built)
     if corrected is not given:
         project.save_inputs(corrected, warnings)

@@ -99,6 +99,12 @@ def instances_seen(
     """What every pixel of a picture shows: index in `scene.objects`, planes after them, -1 for the background.
 
     Glass hides what is behind it; arguments and errors as for `picture`.
+
+    Args:
+        scene: As it is.
+        library: Where shapes come from.
+        view: Name of a view.
+        size: Width and height in pixels.
     """
     source = scene_view(scene, view, size)
     world = scene_world(with_openings(scene), library, without=_behind(scene, source))

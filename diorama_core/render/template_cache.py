@@ -46,6 +46,12 @@ class TemplateCache:
 
         A shape without a content hash is rendered anew each time.
 
+        Args:
+            library: Where shapes come from.
+            shape: Of the library.
+            grid: Of views.
+            progress: Reports and cancellation.
+
         Raises:
             LibraryError: when the shape is unknown or has no surface.
             Cancelled: on request.

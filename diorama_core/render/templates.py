@@ -262,7 +262,14 @@ class _UnitCaster:
         normals: UInt16[np.ndarray, "h w"],
         face_ids: Int32[np.ndarray, "h w"] | None,
     ) -> None:
-        """Fill one view's codes, and the faces seen where they are asked for."""
+        """Fill one view's codes, and the faces seen where they are asked for.
+
+        Args:
+            view: Its number.
+            depth: Quantised.
+            normals: Quantised.
+            face_ids: -1 for none; None where they are not asked for.
+        """
         grid, R = self._grid, self._grid.R_object_camera[view]
         pixels = self._worth_casting(R)
         rays = np.empty((len(pixels), 6), np.float32)

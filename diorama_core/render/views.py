@@ -47,7 +47,14 @@ def usual_view(shape: Shape) -> StudioView:
 
 
 def studio_camera(points: Float[np.ndarray, "n 3"], view: StudioView, width: int, height: int) -> Camera:
-    """A camera that has all points of a shape in its picture, as large as they fit."""
+    """A camera that has all points of a shape in its picture, as large as they fit.
+
+    Args:
+        points: Of the shape, metres.
+        view: Direction.
+        width: In pixels.
+        height: In pixels.
+    """
     horizontal = np.array([np.cos(view.yaw_rad), np.sin(view.yaw_rad), 0.0]) * np.cos(view.elevation_rad)
     back = horizontal + np.array([0.0, 0.0, np.sin(view.elevation_rad)])
     return framing_camera(points, -back, width, height, fov_rad=np.radians(24.0), margin=0.06)

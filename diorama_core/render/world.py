@@ -190,7 +190,15 @@ def placed_surfaces(
     photographed: bool = True,
     without: frozenset[str] = frozenset(),
 ) -> list[Placed]:
-    """What `scene_world` is made of; arguments as there."""
+    """What `scene_world` is made of; arguments as there.
+
+    Args:
+        scene: As it is.
+        library: Where shapes come from.
+        textures: Pictures by name.
+        photographed: Whether objects show the photo's materials.
+        without: Ids that are left out.
+    """
     placed: list[Placed] = []
     for index, item in enumerate(scene.objects):
         if not item.hidden and item.id not in without:
@@ -270,7 +278,13 @@ class _MaterialTable:
         uv: Float32[np.ndarray, "n 2"],
         spread_uv: Float32[np.ndarray, "n"] | None = None,
     ) -> tuple[Float32[np.ndarray, "n 3"], Float32[np.ndarray, "n"]]:
-        """Linear base colour and opacity at texture coordinates (bilinear), over so wide a place around them."""
+        """Linear base colour and opacity at texture coordinates (bilinear), over so wide a place around them.
+
+        Args:
+            surface: Index of the surface.
+            uv: Texture coordinates.
+            spread_uv: Width of the place; None for a point.
+        """
         colour, alpha = self._colour.take(surface, axis=0), self.opacity.take(surface)
         picture = self._picture_of.take(surface)
         order = np.argsort(picture, kind="stable")

@@ -78,7 +78,15 @@ def box_view(
     R_world_camera: Float[np.ndarray, "3 3"],
     settings: BoxViewSettings = SETTINGS,
 ) -> BoxView:
-    """A box (x1, y1, x2, y2, pixels) as a camera sees it that is held so."""
+    """A box (x1, y1, x2, y2, pixels) as a camera sees it that is held so.
+
+    Args:
+        box: x1, y1, x2, y2 in pixels.
+        carried: how likely it is for what lies on another thing.
+        k: of the camera.
+        R_world_camera: of the camera.
+        settings: numbers to work with.
+    """
     x1, y1, x2, y2 = box
     middle_x, middle_y = (x1 + x2) / 2, (y1 + y2) / 2
     pixels = np.array([[middle_x, y2], [middle_x, y1], [x1, middle_y], [x2, middle_y]])

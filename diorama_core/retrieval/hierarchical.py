@@ -77,7 +77,14 @@ class HierarchicalRetrieval:
     def retrieve(
         self, inputs: Inputs, objects: tuple[DetectedObject, ...], geometry: ObjectGeometry, progress: Progress
     ) -> tuple[RankedShapes, ...]:
-        """Ranked shapes of every object that has a cuboid, in the order of `objects`."""
+        """Ranked shapes of every object that has a cuboid, in the order of `objects`.
+
+        Args:
+            inputs: as given.
+            objects: what was found in the photo, with masks.
+            geometry: the objects' cuboids, the camera, and what supports what.
+            progress: reports and cancellation.
+        """
         cuboids = {c.object_id: c for c in geometry.cuboids}
         measured = [o for o in objects if o.id in cuboids]
         sizes = [cuboids[o.id].size_m for o in measured]

@@ -31,7 +31,14 @@ class MatchedByLooks:
     def retrieve(
         self, inputs: Inputs, objects: tuple[DetectedObject, ...], geometry: ObjectGeometry, progress: Progress
     ) -> tuple[RankedShapes, ...]:
-        """At most `shapes` of every object that was placed; nothing for kinds of which the library has none."""
+        """At most `shapes` of every object that was placed; nothing for kinds of which the library has none.
+
+        Args:
+            inputs: as given.
+            objects: what was found in the photo, with masks.
+            geometry: the objects' cuboids, the camera, and what supports what.
+            progress: reports and cancellation.
+        """
         similarity = self.similarity or EmbeddedSimilarity(self.library)
         placed = {c.object_id for c in geometry.cuboids}
         found = []

@@ -37,7 +37,14 @@ class TextThenPicture:
     def retrieve(
         self, inputs: Inputs, objects: tuple[DetectedObject, ...], geometry: ObjectGeometry, progress: Progress
     ) -> tuple[RankedShapes, ...]:
-        """At most `shapes` of every object that was placed."""
+        """At most `shapes` of every object that was placed.
+
+        Args:
+            inputs: as given.
+            objects: what was found in the photo, with masks.
+            geometry: the objects' cuboids, the camera, and what supports what.
+            progress: reports and cancellation.
+        """
         shapes = self.library.shapes()
         placed = {c.object_id for c in geometry.cuboids}
         if not shapes or not placed:

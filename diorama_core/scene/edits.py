@@ -80,6 +80,12 @@ def swap(scene: Scene, object_id: str, candidate: Candidate, *, keep_pose: bool 
 
     With `keep_pose` the new shape takes the old one's base point, heading and observed height; without, the
     candidate's own initial pose is used. What stands on the object rises or sinks with its new top.
+
+    Args:
+        scene: as it is.
+        object_id: of the object.
+        candidate: the other shape, with its size and pose.
+        keep_pose: whether base, heading and height stay.
     """
     item = _unlocked(scene, object_id)
     pose = _seated_pose(item, candidate) if keep_pose else candidate.pose

@@ -36,7 +36,13 @@ class History:
 
     @classmethod
     def start(cls, scene: Scene, *, label: str = "open", limit: int = 200) -> History:
-        """A history whose first state is `scene`."""
+        """A history whose first state is `scene`.
+
+        Args:
+            scene: as it is.
+            label: name of the undo step.
+            limit: of steps.
+        """
         return cls(entries=(Entry(label, scene),), limit=limit)
 
     @property

@@ -124,7 +124,14 @@ def edge_length_m(scene: Scene, plane_id: str, edge: int) -> float:
 
 
 def rescale_by_edge(scene: Scene, plane_id: str, edge: int, length_m: float) -> Scene:
-    """ "This edge is 2.40 m": scale everything so that an edge of a plane has a known length."""
+    """ "This edge is 2.40 m": scale everything so that an edge of a plane has a known length.
+
+    Args:
+        scene: As it is.
+        plane_id: Of the plane.
+        edge: Index of its first corner.
+        length_m: Its true length.
+    """
     return rescale_to_length(scene, edge_length_m(scene, plane_id, edge), length_m)
 
 

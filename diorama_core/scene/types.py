@@ -51,7 +51,13 @@ class Intrinsics:
 
     @classmethod
     def from_fov(cls, width: int, height: int, horizontal_fov_rad: float) -> Intrinsics:
-        """Square pixels, centred principal point, and the given horizontal field of view."""
+        """Square pixels, centred principal point, and the given horizontal field of view.
+
+        Args:
+            width: in pixels.
+            height: in pixels.
+            horizontal_fov_rad: full angle.
+        """
         focal = 0.5 * width / float(np.tan(0.5 * horizontal_fov_rad))
         return cls(width, height, focal, focal, width / 2, height / 2)
 
@@ -141,7 +147,13 @@ class Pose(ArrayValue):
 
     @classmethod
     def upright(cls, position: Vector3, yaw_rad: float = 0.0, scale: Vector3 = (1.0, 1.0, 1.0)) -> Pose:
-        """A pose turned by `yaw_rad` about world up, so that the front points to (cos yaw, sin yaw, 0)."""
+        """A pose turned by `yaw_rad` about world up, so that the front points to (cos yaw, sin yaw, 0).
+
+        Args:
+            position: world, metres.
+            yaw_rad: heading, 0 along +X.
+            scale: along the axes of the object.
+        """
         return cls(yaw_rotation(yaw_rad), np.asarray(position, np.float64), np.asarray(scale, np.float64))
 
     @property

@@ -72,6 +72,13 @@ class TrueShapes:
     def retrieve(
         self, inputs: Inputs, objects: tuple[DetectedObject, ...], geometry: ObjectGeometry, progress: Progress
     ) -> tuple[RankedShapes, ...]:
-        """The true shape of every object, matched by mask id."""
+        """The true shape of every object, matched by mask id.
+
+        Args:
+            inputs: as given.
+            objects: what was found in the photo, with masks.
+            geometry: the objects' cuboids, the camera, and what supports what.
+            progress: reports and cancellation.
+        """
         known = dict(self.shapes)
         return tuple(RankedShapes(o.id, ((known[str(o.mask_id)], 1.0),)) for o in objects if str(o.mask_id) in known)

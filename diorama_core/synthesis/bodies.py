@@ -48,7 +48,13 @@ class Bodies:
     _placed: dict[str, _Posed] = field(default_factory=dict, repr=False)
 
     def add(self, object_id: str, item: Item, pose: Pose) -> None:
-        """Place a body for good."""
+        """Place a body for good.
+
+        Args:
+            object_id: of the object.
+            item: its shape.
+            pose: where it is.
+        """
         self._placed[object_id] = self._posed(item, pose, np.zeros(3))
 
     def remove(self, object_id: str) -> None:
@@ -58,7 +64,14 @@ class Bodies:
     def hit_by(
         self, item: Item, pose: Pose, *, ignore: Collection[str] = (), lift: Vector3 = (0.0, 0.0, LIFT_M)
     ) -> str | None:
-        """Id of a placed body whose surface the posed item would cut, or None."""
+        """Id of a placed body whose surface the posed item would cut, or None.
+
+        Args:
+            item: its shape.
+            pose: where it would be.
+            ignore: ids that do not count.
+            lift: shift before it is tried, metres.
+        """
         body = self._posed(item, pose, np.asarray(lift, dtype=np.float64))
         request, result = fcl.CollisionRequest(), fcl.CollisionResult()
         for name, other in self._placed.items():
@@ -148,7 +161,14 @@ def _caster(mesh: _Mesh) -> Any:
 def heights_below(
     library: ShapeLibrary, shape_id: str, points: Float[np.ndarray, "n 3"], reach_m: float
 ) -> Float[np.ndarray, "n"]:
-    """z of the first surface under points, canonical frame; -inf where none is within reach."""
+    """z of the first surface under points, canonical frame; -inf where none is within reach.
+
+    Args:
+        library: where shapes come from.
+        shape_id: of the library.
+        points: canonical frame, metres.
+        reach_m: downward.
+    """
     down = np.concatenate([points, np.tile([0.0, 0.0, -1.0], (len(points), 1))], axis=1).astype(np.float32)
     t = _caster(_Mesh(library, shape_id)).cast_rays(o3d.core.Tensor.from_numpy(down))["t_hit"].numpy()
     return np.where(t <= reach_m, points[:, 2] - t, -np.inf)

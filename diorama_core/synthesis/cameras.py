@@ -123,7 +123,14 @@ def _candidate(scene: Scene, rng: np.random.Generator, size: tuple[int, int], ho
 def level_pose(
     eye: Float[np.ndarray, "3"], yaw_rad: float, pitch_down_rad: float, roll_rad: float = 0.0
 ) -> Float[np.ndarray, "4 4"]:
-    """`T_world_camera` of a camera at `eye` looking along `yaw_rad`, tilted down and rolled clockwise."""
+    """`T_world_camera` of a camera at `eye` looking along `yaw_rad`, tilted down and rolled clockwise.
+
+    Args:
+        eye: World, metres.
+        yaw_rad: Heading, 0 along +X.
+        pitch_down_rad: Below the horizon.
+        roll_rad: Clockwise.
+    """
     forward = np.array(
         [np.cos(yaw_rad) * np.cos(pitch_down_rad), np.sin(yaw_rad) * np.cos(pitch_down_rad), -np.sin(pitch_down_rad)]
     )

@@ -102,7 +102,13 @@ class Furnisher:
         self._zones.pop()
 
     def is_free(self, item: Item, xy: Float[np.ndarray, "2"], yaw_rad: float) -> bool:
-        """Whether the floor under an item is free of furniture and not kept free."""
+        """Whether the floor under an item is free of furniture and not kept free.
+
+        Args:
+            item: The shape.
+            xy: Of its middle, metres.
+            yaw_rad: Heading, 0 along +X.
+        """
         return self._floor_free(item, footprint(item.size_m, xy, yaw_rad), ())
 
     # on the floor
@@ -159,7 +165,17 @@ class Furnisher:
         corner: bool = False,
         beside: Collection[str] = (),
     ) -> str | None:
-        """Back to a wall: at `t_m` along it, in a corner, or anywhere that is free."""
+        """Back to a wall: at `t_m` along it, in a corner, or anywhere that is free.
+
+        Args:
+            item: The shape.
+            walls: To choose from; all by default.
+            t_m: Of its middle from the wall's left end; None for anywhere.
+            free_front_m: Kept free before it.
+            gap_m: To the wall.
+            corner: Whether it stands in a corner.
+            beside: Ids that may be near.
+        """
         width, depth = item.size_m[1], item.size_m[0]
         options = [w for w in (walls or self.plan.walls) if w.length_m > width + 2 * WALL_GAP_M]
         for _ in range(TRIES if t_m is None else 1):
@@ -183,7 +199,13 @@ class Furnisher:
         return None
 
     def anywhere(self, item: Item, *, margin_m: float = 0.0, free_front_m: float = 0.0) -> str | None:
-        """Somewhere on free floor, at any angle."""
+        """Somewhere on free floor, at any angle.
+
+        Args:
+            item: The shape.
+            margin_m: Kept free around it.
+            free_front_m: Kept free before it.
+        """
         low, high = self.plan.outline.min(axis=0), self.plan.outline.max(axis=0)
         reach = item.size_m[:2].max() / 2 + margin_m
         for _ in range(TRIES):
@@ -198,7 +220,15 @@ class Furnisher:
     # on walls and ceiling
 
     def hang(self, item: Item, wall: WallLine, t_m: float, centre_z_m: float, *, off_m: float = 0.0) -> str | None:
-        """Back against a wall, centred `t_m` from its left end and `centre_z_m` above the floor."""
+        """Back against a wall, centred `t_m` from its left end and `centre_z_m` above the floor.
+
+        Args:
+            item: The shape.
+            wall: Where it is.
+            t_m: Of its middle from the wall's left end.
+            centre_z_m: Above the floor.
+            off_m: From the wall.
+        """
         half = item.size_m[1] / 2
         low, high = centre_z_m - item.size_m[2] / 2, centre_z_m + item.size_m[2] / 2
         if t_m - half < 0.03 or t_m + half > wall.length_m - 0.03 or low < -1e-6:
@@ -215,7 +245,13 @@ class Furnisher:
         return self._put(item, pose, Support("", wall.id, "mounted on", None, "back"))
 
     def hang_from_ceiling(self, item: Item, xy: Float[np.ndarray, "2"], yaw_rad: float = 0.0) -> str | None:
-        """Top against the level part of the ceiling."""
+        """Top against the level part of the ceiling.
+
+        Args:
+            item: The shape.
+            xy: Of its middle, metres.
+            yaw_rad: Heading, 0 along +X.
+        """
         quad = footprint(item.size_m, xy, yaw_rad)
         if not self.plan.contains(quad) or (self.plan.roof_m(quad) < self.plan.height_m).any():
             return None

@@ -18,7 +18,14 @@ def heading(yaw_rad: float) -> Float[np.ndarray, "2"]:
 
 
 def local_xy(f: Furnisher, object_id: str, ahead_m: float, left_m: float) -> Float[np.ndarray, "2"]:
-    """A place on the floor, in the frame of a placed object."""
+    """A place on the floor, in the frame of a placed object.
+
+    Args:
+        f: the furnisher of the room.
+        object_id: of the object.
+        ahead_m: along its front.
+        left_m: to its left.
+    """
     pose = f.object(object_id).pose
     yaw = pose.yaw_rad
     return pose.position[:2] + heading(yaw) * ahead_m + heading(yaw + np.pi / 2) * left_m
@@ -204,7 +211,15 @@ def _television(f: Furnisher, stand: str, wall: WallLine, t: float) -> None:
 
 
 def on_top(f: Furnisher, parent: str, item: Item, share: Float[np.ndarray, "2"], turn_rad: float = 0.0) -> str | None:
-    """On the highest open surface, at a share (-1 to 1 front-back and left-right) of the free half extents."""
+    """On the highest open surface, at a share (-1 to 1 front-back and left-right) of the free half extents.
+
+    Args:
+        f: the furnisher of the room.
+        parent: id of what carries it.
+        item: the shape.
+        share: -1 to 1, front-back and left-right.
+        turn_rad: against the carrier.
+    """
     for index, face in enumerate(f.surfaces(parent)):
         if face.interior:
             continue
@@ -404,7 +419,14 @@ def _night_stands(f: Furnisher, bed: str) -> list[str]:
 
 
 def row_along_wall(f: Furnisher, wall: WallLine, categories: tuple[str, ...], start_m: float = 0.02) -> list[str]:
-    """Units side by side along a wall, as in a kitchen."""
+    """Units side by side along a wall, as in a kitchen.
+
+    Args:
+        f: the furnisher of the room.
+        wall: where it is.
+        categories: from left to right.
+        start_m: from the wall's left end.
+    """
     placed, t = [], start_m
     for category in categories:
         item = f.pick(category, where=lambda s: s.size_m[0] < 0.8)
@@ -421,7 +443,14 @@ def row_along_wall(f: Furnisher, wall: WallLine, categories: tuple[str, ...], st
 
 
 def wall_shelf(f: Furnisher, wall: WallLine, t_m: float, bottom_m: float) -> str | None:
-    """A shelf on a wall."""
+    """A shelf on a wall.
+
+    Args:
+        f: the furnisher of the room.
+        wall: where it is.
+        t_m: of its middle from the wall's left end.
+        bottom_m: above the floor.
+    """
     item = f.pick("shelves", where=lambda s: s.size_m[2] < 0.8)
     return f.hang(item, wall, t_m, bottom_m + item.size_m[2] / 2) if item else None
 

@@ -99,7 +99,15 @@ def _record(number: int, compound: BoxShape) -> tuple[Shape, trimesh.Trimesh]:
 
 
 def table(x: float, y: float, z: float, leg: float = 0.05, top: float = 0.03) -> BoxShape:
-    """A table top on four legs."""
+    """A table top on four legs.
+
+    Args:
+        x: length, metres.
+        y: width.
+        z: height.
+        leg: thickness of the legs.
+        top: thickness of the top.
+    """
     legs = tuple(
         ((a, b, 0.0), (a + leg, b + leg, z - top)) for a in (-x / 2, x / 2 - leg) for b in (-y / 2, y / 2 - leg)
     )
@@ -108,7 +116,14 @@ def table(x: float, y: float, z: float, leg: float = 0.05, top: float = 0.03) ->
 
 
 def chair(seat: float = 0.45, width: float = 0.44, height: float = 0.9, leg: float = 0.04) -> BoxShape:
-    """A chair with a thin back; +X is its front."""
+    """A chair with a thin back; +X is its front.
+
+    Args:
+        seat: height of the seat, metres.
+        width: of the seat.
+        height: in all.
+        leg: thickness of the legs.
+    """
     w = width / 2
     legs = tuple(((a, b, 0.0), (a + leg, b + leg, seat - 0.04)) for a in (-w, w - leg) for b in (-w, w - leg))
     plate = ((-w, -w, seat - 0.04), (w, w, seat))
@@ -117,7 +132,14 @@ def chair(seat: float = 0.45, width: float = 0.44, height: float = 0.9, leg: flo
 
 
 def bookshelf(width: float = 0.9, depth: float = 0.32, height: float = 1.8, boards: int = 5) -> BoxShape:
-    """An open bookcase; +X is its front."""
+    """An open bookcase; +X is its front.
+
+    Args:
+        width: metres.
+        depth: metres.
+        height: metres.
+        boards: how many.
+    """
     t, d, w = 0.02, depth / 2, width / 2
     step = (height - t) / (boards - 1)
     levels = [k * step for k in range(boards)]
@@ -144,7 +166,15 @@ def sofa(width: float = 1.9, depth: float = 0.9) -> BoxShape:
 
 
 def block(category: str, x: float, y: float, z: float, *, top: bool = False) -> BoxShape:
-    """One box."""
+    """One box.
+
+    Args:
+        category: what it is.
+        x: length, metres.
+        y: width.
+        z: height.
+        top: whether things may stand on it.
+    """
     surface = ((-x / 2, -y / 2, x / 2, y / 2, z, np.inf, False),) if top else ()
     return BoxShape(category, (((-x / 2, -y / 2, 0.0), (x / 2, y / 2, z)),), surface)
 

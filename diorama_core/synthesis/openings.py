@@ -35,7 +35,14 @@ def add_door(f: Furnisher, wall: WallLine | None = None) -> str | None:
 
 
 def add_window(f: Furnisher, wall: WallLine, t_m: float | None = None, *, dressed: float = 0.6) -> str | None:
-    """A window in a wall, perhaps with curtains and a radiator below; tall furniture keeps clear of it."""
+    """A window in a wall, perhaps with curtains and a radiator below; tall furniture keeps clear of it.
+
+    Args:
+        f: the furnisher of the room.
+        wall: where it is.
+        t_m: of its middle from the wall's left end; None for anywhere.
+        dressed: how likely it has curtains.
+    """
     item = f.pick("window", where=lambda s: s.size_m[1] < wall.length_m - 0.5)
     if item is None:
         return None

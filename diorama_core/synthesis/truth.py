@@ -126,7 +126,14 @@ class Studio:
     def view(
         self, camera: Camera, size: tuple[int, int] = (640, 480), *, with_empty_room: bool = True, sensor: bool = True
     ) -> TruthView:
-        """One picture and its truth; the arguments are those of `render_truth`."""
+        """One picture and its truth; the arguments are those of `render_truth`.
+
+        Args:
+            camera: The photo's.
+            size: Width and height in pixels.
+            with_empty_room: Whether it is rendered without objects, too.
+            sensor: Whether depth is as a sensor has it.
+        """
         camera = Camera(camera.intrinsics.scaled(*size), camera.T_world_camera)
         shot = self._shot(camera)
         room = self._room.buffers(camera)

@@ -32,7 +32,14 @@ TALL_M = 0.6
 
 
 def inserted(positioner: Positioner, scene: Scene, edit: Insert, relations: Sequence[Relation]) -> Done:
-    """New objects of the library at the best free places where relations hold."""
+    """New objects of the library at the best free places where relations hold.
+
+    Args:
+        positioner: finds free places.
+        scene: as it is.
+        edit: what was asked for.
+        relations: what is to hold.
+    """
     phrase, unknown = noun_phrase(edit.what)
     if phrase is None or not phrase.label:
         raise EditRefused(f"“{unknown or edit.what}” names nothing in the library; try another word")

@@ -54,7 +54,14 @@ def nearer(selector: Selector, rest: str, subject: Subject) -> Shift | None:
 
 
 def lifted(selector: Selector, clause: str, rest: str, subject: Subject) -> Shift:
-    """ "raise the picture by 20 cm", "lower the clock"."""
+    """ "raise the picture by 20 cm", "lower the clock".
+
+    Args:
+        selector: finds the objects.
+        clause: the sentence.
+        rest: what follows the verb.
+        subject: what was spoken of before.
+    """
     distance = _distance_m(rest, HUNG_STEP_M, MAX_LIFT_M)
     head = re.sub(r"\b(?:a bit|a little|slightly)\s*$", "", _DISTANCE.sub(" ", rest).strip()).strip()
     down = re.search(r"\blower\b", clause) is not None

@@ -24,7 +24,14 @@ SHAPES_COMPARED = 32
 
 
 def restyled(library: ShapeLibrary, scene: Scene, ids: Sequence[str], words: str) -> Done:
-    """Objects in a colour, or of a material: shapes that are made of it, or paint."""
+    """Objects in a colour, or of a material: shapes that are made of it, or paint.
+
+    Args:
+        library: where shapes come from.
+        scene: as it is.
+        ids: of the objects.
+        words: as they were said.
+    """
     look = look_of(words)
     if look is None:
         raise EditRefused(f"“{words}” is no colour or material known here; try light blue, sage, oak, leather")
@@ -71,7 +78,14 @@ def _of_material(
 
 
 def swapped(positioner: Positioner, scene: Scene, ids: Sequence[str], words: str) -> Done:
-    """Other shapes in the place of objects: of the same kind where the words name none."""
+    """Other shapes in the place of objects: of the same kind where the words name none.
+
+    Args:
+        positioner: finds free places.
+        scene: as it is.
+        ids: of the objects.
+        words: as they were said.
+    """
     first = scene.object(ids[0])
     phrase, _ = noun_phrase(words)
     named = phrase is not None and bool(phrase.label)

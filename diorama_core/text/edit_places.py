@@ -24,7 +24,14 @@ from diorama_core.text.edit_room import off_wall
 
 
 def moved(positioner: Positioner, scene: Scene, ids: Sequence[str], relations: Sequence[Relation]) -> Done:
-    """Objects at the best free places where relations hold."""
+    """Objects at the best free places where relations hold.
+
+    Args:
+        positioner: finds free places.
+        scene: as it is.
+        ids: of the objects.
+        relations: what is to hold.
+    """
     if not relations:
         raise EditRefused(f"where to should {names_of(scene, ids)} go?")
     after, missed = scene, []
@@ -45,7 +52,15 @@ def moved(positioner: Positioner, scene: Scene, ids: Sequence[str], relations: S
 
 
 def shifted(positioner: Positioner, scene: Scene, ids: Sequence[str], edit: Shift, toward: str = "") -> Done:
-    """Objects moved by lengths: as seen in the photo, up and down what they hang on, or toward an object of an id."""
+    """Objects moved by lengths: as seen in the photo, up and down what they hang on, or toward an object of an id.
+
+    Args:
+        positioner: finds free places.
+        scene: as it is.
+        ids: of the objects.
+        edit: what was asked for.
+        toward: id of an object; empty for none.
+    """
     away = np.array([0.0, 1.0]) if scene.camera is None else np.array(scene.camera.T_world_camera[:2, 2])
     away = away / max(float(np.linalg.norm(away)), 1e-6)
     right = np.array([away[1], -away[0]])
@@ -83,7 +98,15 @@ def shifted(positioner: Positioner, scene: Scene, ids: Sequence[str], edit: Shif
 
 
 def turned(positioner: Positioner, scene: Scene, ids: Sequence[str], edit: Turn, toward: str = "") -> Done:
-    """Objects turned where they are, by an angle or toward an object of an id."""
+    """Objects turned where they are, by an angle or toward an object of an id.
+
+    Args:
+        positioner: finds free places.
+        scene: as it is.
+        ids: of the objects.
+        edit: what was asked for.
+        toward: id of an object; empty for none.
+    """
     if not toward and not edit.degrees:
         raise EditRefused(f"which way should {names_of(scene, ids)} turn?")
     after, notes = scene, []
@@ -107,7 +130,14 @@ def turned(positioner: Positioner, scene: Scene, ids: Sequence[str], edit: Turn,
 
 
 def resized(positioner: Positioner, scene: Scene, ids: Sequence[str], factor: float) -> Done:
-    """Objects larger or smaller, standing on what they stood on."""
+    """Objects larger or smaller, standing on what they stood on.
+
+    Args:
+        positioner: finds free places.
+        scene: as it is.
+        ids: of the objects.
+        factor: on all extents.
+    """
     after, notes = scene, []
     for object_id in ids:
         item = after.object(object_id)

@@ -138,7 +138,16 @@ def mended(
     settings: LmmSettings,
     progress: Progress,
 ) -> Mended:
-    """Show the picture of a room to a language model and make the edits that it asks for, at most `LOOKS` times."""
+    """Show the picture of a room to a language model and make the edits that it asks for, at most `LOOKS` times.
+
+    Args:
+        prompt: what the room was to be.
+        scene: as it is.
+        library: where shapes come from.
+        textures: pictures by name.
+        settings: of the language model.
+        progress: reports and cancellation.
+    """
     client, applier = LmmClient(settings, system=CRITIQUE), EditApplier(Positioner(library))
     notes: list[str] = []
     for look in range(LOOKS):

@@ -133,7 +133,15 @@ def fitting_shapes(
     appearance: Sequence[str],
     usable: Callable[[Shape], bool] | None = None,
 ) -> tuple[tuple[Shape, ...], tuple[str, ...]]:
-    """Shapes of a category, those that fit the words best first, and the words that even the first does not fit."""
+    """Shapes of a category, those that fit the words best first, and the words that even the first does not fit.
+
+    Args:
+        library: where shapes come from.
+        category: of the shapes.
+        label: what the object is called.
+        appearance: words of colour and material.
+        usable: tells which shapes may be taken; all by default.
+    """
     kinds = frozenset({category}) if library.in_category(category) else with_kin(category)
     words = " ".join((*appearance, label or category))
     found = [s for s in find(library, words, k=400).shapes if s.category in kinds]

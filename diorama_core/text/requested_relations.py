@@ -80,7 +80,14 @@ def seats_at(size_m: Sequence[float], count: int) -> tuple[tuple[float, float], 
 
 
 def seated(scene: Scene, relations: Sequence[Relation], request: RequestedObject, copy: int) -> list[Relation]:
-    """The relations of one of several seats with its place at the long table that they are around."""
+    """The relations of one of several seats with its place at the long table that they are around.
+
+    Args:
+        scene: as it is.
+        relations: what is to hold.
+        request: what was asked for.
+        copy: which of the seats.
+    """
 
     def placed(relation: Relation) -> Relation:
         target = next((t for t in relation.targets if scene.has_object(t)), None)

@@ -56,7 +56,16 @@ def empty_room(
     shapes: Mapping[int, Sequence[Shape]],
     attempt: int,
 ) -> Scene:
-    """A room of the kind and size that a request needs, with a door and windows; later attempts are larger."""
+    """A room of the kind and size that a request needs, with a door and windows; later attempts are larger.
+
+    Args:
+        request: what was asked for.
+        library: where shapes come from.
+        rng: chance, seeded.
+        wanted: objects to be put there.
+        shapes: that each may have, by its number.
+        attempt: 0 for the first.
+    """
     recipe = RECIPES[request.room]
     factor = request.size * (1.0 + 0.08 * attempt)
     taken = sum(

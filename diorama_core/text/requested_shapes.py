@@ -25,7 +25,14 @@ SOFA_WIDTHS_M = {"two-seater": (1.2, 1.9), "three-seater": (1.75, 2.4), "four-se
 def requested_shapes(
     library: ShapeLibrary, rng: np.random.Generator, request: RequestedObject, wanted: Sequence[RequestedObject]
 ) -> tuple[Shape, ...]:
-    """Shapes that fit the words equally well, in an order left to chance; the others after them."""
+    """Shapes that fit the words equally well, in an order left to chance; the others after them.
+
+    Args:
+        library: where shapes come from.
+        rng: chance, seeded.
+        request: what was asked for.
+        wanted: all that was asked for.
+    """
     on = any(w.kind == "on" for w in request.wishes)
     words = {*request.appearance, *request.label.split()}
     double, single = (
@@ -71,7 +78,14 @@ def requested_shapes(
 
 
 def dressed(scene: Scene, object_id: str, shape: Shape, appearance: Sequence[str]) -> Scene:
-    """Colours that no shape has are painted on."""
+    """Colours that no shape has are painted on.
+
+    Args:
+        scene: as it is.
+        object_id: of the object.
+        shape: that it has.
+        appearance: words of colour and material.
+    """
     for word in appearance:
         look = look_of(word)
         if look is not None and look.colour is not None and not has_look(shape, word) and word not in ("light", "dark"):

@@ -7,7 +7,14 @@ from torch import Tensor, nn
 
 
 def convolution(inputs: int, outputs: int, kernel: int = 3, stride: int = 1) -> nn.Sequential:
-    """A convolution, batch normalisation and SiLU; the size stays, or shrinks by the stride."""
+    """A convolution, batch normalisation and SiLU; the size stays, or shrinks by the stride.
+
+    Args:
+        inputs: channels.
+        outputs: channels.
+        kernel: its side.
+        stride: of the kernel.
+    """
     return nn.Sequential(
         nn.Conv2d(inputs, outputs, kernel, stride, kernel // 2, bias=False), nn.BatchNorm2d(outputs), nn.SiLU()
     )

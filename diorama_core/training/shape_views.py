@@ -185,7 +185,15 @@ class _Cut:
         return rgba[:, left : max(left + 2, width - (round(width * self.share) if self.side == 1 else 0))]
 
     def blank(self, canvas: UInt8[np.ndarray, "s s 3"], x: float, y: float, width: float, height: float) -> None:
-        """Nothing is seen beyond the border."""
+        """Nothing is seen beyond the border.
+
+        Args:
+            canvas: changed in place.
+            x: of the window.
+            y: likewise.
+            width: of the window.
+            height: likewise.
+        """
         if self.side == 0:
             canvas[:, : max(0, round(x))] = FILL
         elif self.side == 1:

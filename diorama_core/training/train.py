@@ -169,7 +169,16 @@ class Trainer:
 def detector_trainer(
     files: PictureFiles, kinds: int, schedule: Schedule, checkpoint: Path, device: str = "cpu", workers: int = 1
 ) -> Trainer:
-    """Everything needed to train the detector."""
+    """Everything needed to train the detector.
+
+    Args:
+        files: what is learnt from.
+        kinds: number of categories.
+        schedule: of the steps.
+        checkpoint: file from which training goes on, and to which it is saved.
+        device: cpu or cuda.
+        workers: processes that read pictures.
+    """
     torch.manual_seed(schedule.seed)
     centres, strides = (torch.from_numpy(a).to(device) for a in places(*SIZE))
 
@@ -235,7 +244,15 @@ def namer_trainer(
 def namer_batch(
     files: PictureFiles, shapes: ShapeViewFiles, statistics: BoxStatistics, count: int, rng: np.random.Generator
 ) -> tuple[Tensor, Tensor, Tensor, Tensor]:
-    """Crops of boxes drawn a little wrong, half of rooms and half of single shapes; geometry, kinds and forms."""
+    """Crops of boxes drawn a little wrong, half of rooms and half of single shapes; geometry, kinds and forms.
+
+    Args:
+        files: what is learnt from.
+        shapes: views of single shapes.
+        statistics: how boxes are off.
+        count: of crops.
+        rng: chance, seeded.
+    """
     drawn: list[tuple[np.ndarray, np.ndarray, int, np.ndarray]] = []
     counts = statistics.counts
     weight = 1.0 / np.sqrt(np.maximum(counts, counts[counts > 0].min()))
@@ -265,7 +282,15 @@ def namer_batch(
 def outliner_trainer(
     files: WindowFiles, schedule: Schedule, checkpoint: Path, device: str = "cpu", workers: int = 1
 ) -> Trainer:
-    """Everything needed to train the outliner."""
+    """Everything needed to train the outliner.
+
+    Args:
+        files: what is learnt from.
+        schedule: of the steps.
+        checkpoint: file from which training goes on, and to which it is saved.
+        device: cpu or cuda.
+        workers: processes that read pictures.
+    """
     torch.manual_seed(schedule.seed + 2)
 
     def batch_of(rng: np.random.Generator) -> tuple[Tensor, ...]:

@@ -59,7 +59,14 @@ _R_SHAPENET_OBJECT = np.array([[0.0, -1.0, 0.0], [0.0, 0.0, 1.0], [-1.0, 0.0, 0.
 
 
 def read_scan2cad(scans: Path, annotations: Path, scene: str, frame: str) -> ScanFrame:
-    """Read one frame of a scan and its aligned models; `InputError` says what is missing."""
+    """Read one frame of a scan and its aligned models; `InputError` says what is missing.
+
+    Args:
+        scans: folder of ScanNet's scans.
+        annotations: Scan2CAD's file.
+        scene: id of the scan.
+        frame: number of the picture.
+    """
     root = scans / scene
     record = next((r for r in read_json(annotations) if r["id_scan"] == scene), None)
     if record is None:

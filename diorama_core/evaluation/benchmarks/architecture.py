@@ -76,7 +76,14 @@ class ArchitectureBench:
 def run(
     library: ShapeLibrary, scenes: int = 20, seeds: Sequence[int] = (0,), progress: Progress | None = None
 ) -> ArchitectureBench:
-    """Reconstruct every room of every seed's series from what each row of the table is given."""
+    """Reconstruct every room of every seed's series from what each row of the table is given.
+
+    Args:
+        library: where shapes come from.
+        scenes: rooms of each series.
+        seeds: one a series.
+        progress: reports and cancellation.
+    """
     progress = progress or Progress()
     results: dict[str, list[RoomResult]] = {}
     left_out: list[LeftOut] = []

@@ -117,6 +117,13 @@ def run(
 ) -> LocalBench:
     """Build the first pictures of a dataset, in the order of their names; failures count as wrong.
 
+    Args:
+        dataset: how its folder is laid out.
+        path: of the folder.
+        library: where shapes come from.
+        scenes: pictures at most.
+        progress: reports and cancellation.
+
     Raises:
         InputError: when the folder holds no picture laid out as the dataset publishes it.
     """

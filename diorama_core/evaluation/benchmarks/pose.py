@@ -145,6 +145,12 @@ def run(library: ShapeLibrary, scenes: int = 6, seed: int = 0, progress: Progres
     """Pose every room by every solver, with few and many retrieved shapes, and arrange it every way.
 
     What cannot be done counts as a room in which everything is wrong.
+
+    Args:
+        library: where shapes come from.
+        scenes: how many rooms.
+        seed: of the series of rooms.
+        progress: reports and cancellation.
     """
     progress = progress or Progress()
     tally = _Tally()

@@ -55,6 +55,12 @@ def run(
 ) -> tuple[RoomsBench, UInt8[np.ndarray, "h w 3"]]:
     """Furnish rooms from test shapes, check them by exact collision, and photograph each three times, small.
 
+    Args:
+        library: where shapes come from.
+        scenes: how many rooms.
+        seed: of the series of rooms.
+        progress: reports and cancellation.
+
     Returns:
         What was counted, and a sheet of all pictures.
     """

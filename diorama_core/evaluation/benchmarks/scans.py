@@ -133,7 +133,14 @@ def run(library: ShapeLibrary, scenes: int = 6, seed: int = 0, progress: Progres
 
 
 def opened_in_all_ways(name: str, truth: Scene, scan: Path, library: ShapeLibrary) -> tuple[ScanResult, ...]:
-    """A scan opened with and without what its points' shapes and its photos tell, and compared with the room."""
+    """A scan opened with and without what its points' shapes and its photos tell, and compared with the room.
+
+    Args:
+        name: of the room.
+        truth: the room.
+        scan: file of the scan.
+        library: where shapes come from.
+    """
     begun = time.process_time()
     measured = measured_cloud(read_points(scan))
     reading = time.process_time() - begun
@@ -153,7 +160,15 @@ def _known(measured: MeasuredRoom, way: str, library: ShapeLibrary) -> MeasuredR
 
 
 def scored(name: str, way: str, truth: Scene, scene: Scene, seconds: float) -> ScanResult:
-    """An opened scan against the room that was scanned, whichever way round it lies."""
+    """An opened scan against the room that was scanned, whichever way round it lies.
+
+    Args:
+        name: of the room.
+        way: how it was opened.
+        truth: the room.
+        scene: as it was opened.
+        seconds: that it took.
+    """
     turned = [[_moved(o, yaw_rotation(k * np.pi / 2)) for o in scene.objects] for k in range(4)]
     things = [o for o in truth.objects if _asked(o)]
     pairs = max((_pairs(things, objects) for objects in turned), key=len)

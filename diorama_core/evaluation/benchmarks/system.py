@@ -240,7 +240,17 @@ def build_case(
     *,
     physics: bool = False,
 ) -> tuple[Built | None, CaseResult]:
-    """Build one scene from what is searched and score it with the library that knows the truth's shapes too."""
+    """Build one scene from what is searched and score it with the library that knows the truth's shapes too.
+
+    Args:
+        case: the room.
+        view: its picture and truth.
+        way: what is given and which stages build.
+        library: knows the truth's shapes.
+        searched: what shapes are taken from.
+        progress: reports and cancellation.
+        physics: whether it is dropped in a simulator.
+    """
     begun, wall = time.process_time(), time.perf_counter()
     try:
         inputs = way.inputs(view)

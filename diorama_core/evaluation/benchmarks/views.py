@@ -147,6 +147,12 @@ def photographed(case: Case, library: ShapeLibrary, count: int, size: tuple[int,
     """Pictures of a case's room from different places: first one with enough objects, then those that share most of
     its objects.
 
+    Args:
+        case: the room.
+        library: where shapes come from.
+        count: of pictures.
+        size: width and height in pixels.
+
     Raises:
         SceneError: there is no room for so many cameras.
     """
@@ -187,7 +193,13 @@ class _Room:
         return build_room(photos, self.searched, choose, layout, Progress(token=self.progress.token)).scene
 
     def scored(self, way: str, views: Sequence[RoomView], build: Callable[[Sequence[RoomView]], Scene]) -> ViewsResult:
-        """The own alignment of the first photo's objects; a build that fails has none right."""
+        """The own alignment of the first photo's objects; a build that fails has none right.
+
+        Args:
+            way: how it is built.
+            views: the pictures.
+            build: makes a scene of them.
+        """
         begun, truth = time.process_time(), views[0].truth
         items = [truth.scene.objects[k] for k in truth.asked]
         try:

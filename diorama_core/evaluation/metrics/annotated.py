@@ -56,7 +56,14 @@ class ObjectResult:
 
 
 def not_built(photo: str, index: int, annotated: AnnotatedObject, opening: bool = False) -> ObjectResult:
-    """Wrong in everything that is annotated; an opening is not judged."""
+    """Wrong in everything that is annotated; an opening is not judged.
+
+    Args:
+        photo: its name.
+        index: of the object.
+        annotated: what is known of it.
+        opening: whether it is a door or a window.
+    """
     wrong = None if opening else False
     return ObjectResult(
         photo,

@@ -263,6 +263,13 @@ def match_planes(
     """Pairs of planes of one role that agree within both tolerances, as many as possible, each used once.
 
     The offset is measured at the middle of what is seen of the true plane, where it matters.
+
+    Args:
+        found: Planes of the estimate.
+        true: Planes of the truth.
+        camera: The photo's.
+        angle_deg: Tolerance of normals.
+        offset_m: Tolerance of offsets.
     """
     ours, theirs = _visible(found, camera), _visible(true, camera)
     angles = np.zeros((len(ours), len(theirs)))

@@ -35,7 +35,14 @@ def main_light(light: Lighting, points: Float[np.ndarray, "n 3"]) -> Float[np.nd
 def light_error_deg(
     true: Float[np.ndarray, "3"], true_camera: Camera, found: RoomLight | None, camera: Camera
 ) -> float | None:
-    """Angle between both directions as the photo sees them; None where no light was found."""
+    """Angle between both directions as the photo sees them; None where no light was found.
+
+    Args:
+        true: Direction to the light, world.
+        true_camera: Of the true scene.
+        found: The estimate; None without.
+        camera: Of the estimate.
+    """
     if found is None:
         return None
     seen = camera.T_world_camera[:3, :3].T @ np.array(found.direction)

@@ -47,7 +47,15 @@ def agreement(
     final: Scene,
     library: ShapeLibrary,
 ) -> tuple[Agreement, ...]:
-    """Compare every detected object's cuboid and posed shape with its box; missing ones count as 0."""
+    """Compare every detected object's cuboid and posed shape with its box; missing ones count as 0.
+
+    Args:
+        objects: what was found in the photo, with masks.
+        geometry: the objects' cuboids, the camera, and what supports what.
+        observed: the scene before its layout.
+        final: after it.
+        library: where shapes come from.
+    """
     cuboids = {c.object_id: c for c in geometry.cuboids}
     rows = []
     for item in objects:
@@ -70,7 +78,14 @@ def agreement(
 
 
 def shape_iou(scene: Scene, object_id: str, box: tuple[float, float, float, float], library: ShapeLibrary) -> float:
-    """Intersection over union of the box with the bounds of the posed shape's visible part; 0 without a shape."""
+    """Intersection over union of the box with the bounds of the posed shape's visible part; 0 without a shape.
+
+    Args:
+        scene: as it is.
+        object_id: of the object.
+        box: of the photo: x1, y1, x2, y2.
+        library: where shapes come from.
+    """
     if scene.camera is None or not scene.has_object(object_id):
         return 0.0
     item = scene.object(object_id)

@@ -231,6 +231,12 @@ def truly_supported_share(
     """Share of the true support edges whose child touches (within 1 cm) what stands for its true supporter.
 
     For a plane any plane of the same role stands; whatever the scene's own graph says does not count.
+
+    Args:
+        view: the true picture.
+        scene: the prediction.
+        match: what stands for each true object; None without.
+        library: where shapes come from.
     """
     found = {view.scene.objects[k].id: m for k, m in zip(view.asked, match) if m is not None}
     edges, good = true_supports(view), 0
@@ -279,6 +285,12 @@ def image_iou(view: TruthView, scene: Scene, match: list[SceneObject | None], li
     """Mean mask agreement of the objects asked for when the prediction is seen by its own camera, hiding included.
 
     Its own, because that is the picture its user sees; an error of the camera counts in every metric in space.
+
+    Args:
+        view: the true picture.
+        scene: the prediction.
+        match: what stands for each true object; None without.
+        library: where shapes come from.
     """
     pairs = [
         (view.object_ids == k, None if found is None else found.id) for k, found in zip(view.asked, match, strict=True)

@@ -57,6 +57,12 @@ def worse_by(name: str, before: float, now: float, tolerance: float = TOLERANCE)
     """How many times worse a figure has become where that is more than the tolerance; None where it is not.
 
     A growth exponent counts as the factor that its rise costs over a tenfold quantity.
+
+    Args:
+        name: of the figure.
+        before: its value then.
+        now: its value now.
+        tolerance: factor that counts as noise.
     """
     if not (math.isfinite(before) and math.isfinite(now)):
         return math.inf

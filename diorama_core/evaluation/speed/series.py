@@ -88,7 +88,14 @@ class Collected:
 def stages_by_size(
     library: ShapeLibrary, seed: int, sizes: Sequence[tuple[int, int]], progress: Progress
 ) -> list[Series]:
-    """The renderer, and every stage of a build with true masks and depth, for one room at several picture sizes."""
+    """The renderer, and every stage of a build with true masks and depth, for one room at several picture sizes.
+
+    Args:
+        library: where shapes come from.
+        seed: of the series of rooms.
+        sizes: width and height in pixels.
+        progress: reports and cancellation.
+    """
     found = Collected(MEGAPIXELS)
     scene = furnished(Case(seed, "living"), library)
     camera = sample_cameras(scene, library, seed, 1)[0]
@@ -103,7 +110,14 @@ def stages_by_size(
 
 
 def stages_by_objects(library: ShapeLibrary, seed: int, counts: Sequence[int], progress: Progress) -> list[Series]:
-    """The renderer, every stage of a build, and export, for scenes of more and more objects; pictures of one size."""
+    """The renderer, every stage of a build, and export, for scenes of more and more objects; pictures of one size.
+
+    Args:
+        library: where shapes come from.
+        seed: of the series of rooms.
+        counts: of objects.
+        progress: reports and cancellation.
+    """
     found = Collected(OBJECTS)
     weights = np.cumsum([5.0, *(float(c) for c in counts)]) / (5.0 + sum(counts))
     _build(_large_scene_inputs(library, 12, seed), library, 0.0, Collected(OBJECTS), progress)  # makes ready the shapes

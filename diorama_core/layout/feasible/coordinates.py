@@ -19,7 +19,14 @@ from diorama_core.layout.problem.problem import Problem
 def poses_of(
     problem: Problem, structure: Structure, slide: Float[Tensor, "n 2"], yaw: Float[Tensor, " n"]
 ) -> tuple[Float[Tensor, "n 3 3"], Float[Tensor, "n 3"]]:
-    """Rotations and centres of all objects at the given coordinates (metres, radians); zero gives `structure`."""
+    """Rotations and centres of all objects at the given coordinates (metres, radians); zero gives `structure`.
+
+    Args:
+        problem: the layout as observed, with its supports.
+        structure: the layout with every object on its support.
+        slide: of each object along its support, metres.
+        yaw: of each object, radians.
+    """
     base_R, base_p = torch.tensor(structure.R), torch.tensor(structure.p)
     turn: dict[int, Tensor] = {}
     shift: dict[int, Tensor] = {}

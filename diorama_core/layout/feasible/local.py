@@ -32,7 +32,13 @@ class DragSolver:
 
     @classmethod
     def prepare(cls, scene: Scene, library: ShapeLibrary, object_id: str) -> DragSolver:
-        """Gather what stays the same during a drag."""
+        """Gather what stays the same during a drag.
+
+        Args:
+            scene: as it is.
+            library: where shapes come from.
+            object_id: of the object.
+        """
         problem = build_problem(scene, library, only=frozenset({object_id}))
         index = problem.ids.index(object_id)
         return cls(scene, problem, index, _places(scene, library, problem, index))
@@ -122,7 +128,14 @@ class DragSolver:
 
 
 def resolve_drag(scene: Scene, library: ShapeLibrary, object_id: str, pose: Pose) -> Scene:
-    """One step of a drag; keep a `DragSolver` for several."""
+    """One step of a drag; keep a `DragSolver` for several.
+
+    Args:
+        scene: as it is.
+        library: where shapes come from.
+        object_id: of the object.
+        pose: where the hand wants it.
+    """
     return DragSolver.prepare(scene, library, object_id).solve(pose)
 
 

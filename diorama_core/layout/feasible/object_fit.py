@@ -147,7 +147,14 @@ class ObjectFit:
 
 def bounded_step(J: np.ndarray, residual: np.ndarray, low: np.ndarray, high: np.ndarray) -> Float[np.ndarray, "5"]:
     """The least-squares step whose sizes stay within limits: sizes that reach one are held there, and the rest solved
-    again."""
+    again.
+
+    Args:
+        J: derivatives, one row a residual.
+        residual: what is left now.
+        low: least steps of the sizes.
+        high: largest steps of the sizes.
+    """
     step, clamped = np.zeros(5), np.zeros(5, dtype=bool)
     for _ in range(4):
         step[~clamped] = np.linalg.lstsq(J[:, ~clamped], -(residual + J[:, clamped] @ step[clamped]), rcond=None)[0]

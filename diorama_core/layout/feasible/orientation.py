@@ -19,7 +19,14 @@ _FRONT_FIRST = np.array([2.25, 1.0, 1.0])
 def aligned(
     R: np.ndarray, contact: np.ndarray, surface: Surface, against: list[tuple[np.ndarray, np.ndarray]]
 ) -> np.ndarray:
-    """Swing the contact face onto the support, then twist about the normal to the observed front, or to a wall."""
+    """Swing the contact face onto the support, then twist about the normal to the observed front, or to a wall.
+
+    Args:
+        R: observed rotation.
+        contact: outward normal of the touching face, object frame.
+        surface: where it rests, world.
+        against: normals of walls (world) with the object's faces there (object frame).
+    """
     n = surface.normal
     swung = swing(R @ contact, -n) @ R
     if against:

@@ -271,7 +271,15 @@ def _bounds_in_picture_px(problem: Problem, camera: Camera) -> Float[np.ndarray,
 def posed_bounds_px(
     problem: Problem, camera: Camera, i: int, p: Float[np.ndarray, "3"], scale: Float[np.ndarray, "3"]
 ) -> Float[np.ndarray, "4"]:
-    """Bounds in the picture of one object at another place or size, not cut at its border; NaN behind the camera."""
+    """Bounds in the picture of one object at another place or size, not cut at its border; NaN behind the camera.
+
+    Args:
+        problem: the layout as observed, with its supports.
+        camera: what looks at it.
+        i: index of the object.
+        p: its centre, world, metres.
+        scale: along its axes.
+    """
     world = (_outline_points_of(problem, i) * scale) @ problem.R[i].T + p
     if camera.to_camera(world)[:, 2].min() < problem.settings.nearest_m:
         return np.full(4, np.nan)
@@ -332,7 +340,15 @@ def disagreements(
     p: Float[np.ndarray, "n 3"],
     scale: Float[np.ndarray, "n 3"],
 ) -> tuple[PhotoDisagreement, ...]:
-    """The free objects that a layout took clearly away from where the camera saw them."""
+    """The free objects that a layout took clearly away from where the camera saw them.
+
+    Args:
+        problem: the observed layout.
+        camera: what looks at it.
+        R: rotations after the layout.
+        p: centres, world, metres.
+        scale: along the axes of each object.
+    """
     seen = _posed_bounds_px(problem, camera)
     now = _posed_bounds_px(replace(problem, R=R, p=p, scale=scale), camera)
     found = []

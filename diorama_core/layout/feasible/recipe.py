@@ -65,6 +65,11 @@ class FeasibleRecipe:
     def optimise(self, scene: Scene, progress: Progress, preview: Preview | None = None) -> tuple[Scene, LayoutReport]:
         """Returns the scene with every free object's pose made feasible, and what was achieved.
 
+        Args:
+            scene: as observed.
+            progress: reports and cancellation.
+            preview: called with the layout as it becomes.
+
         Raises:
             Cancelled: when asked to stop; nothing was changed then.
         """

@@ -99,6 +99,12 @@ def with_sizes(
     """The structure with some objects in other sizes and places, each with its contact face where it was.
 
     What they and their loads may move within is computed anew.
+
+    Args:
+        problem: the layout as observed, with its supports.
+        structure: the layout with every object on its support.
+        p: centres, world, metres.
+        scale: along the axes of each object.
     """
     changed = (p != structure.p).any(axis=1) | (scale != structure.scale).any(axis=1)
     affected = np.flatnonzero(changed | np.array([j >= 0 and changed[j] for j in problem.parent], dtype=bool))

@@ -60,7 +60,13 @@ class ObservedView:
 
     @classmethod
     def of(cls, scene: Scene, library: ShapeLibrary, settings: LayoutSettings = LAYOUT) -> ObservedView | None:
-        """What the scene's camera sees; None without a camera or anything to see."""
+        """What the scene's camera sees; None without a camera or anything to see.
+
+        Args:
+            scene: as observed.
+            library: where shapes come from.
+            settings: numbers to work with.
+        """
         items = [o for o in scene.objects if not o.hidden]
         if not items or scene.camera is None:
             return None

@@ -41,5 +41,12 @@ def reach_of(
     scale: Float[np.ndarray, "3"],
     outward: Float[np.ndarray, "s 3"],
 ) -> Float[np.ndarray, " s"]:
-    """How far a footing reaches from the centre of the contact face along each outward direction (world), metres."""
+    """How far a footing reaches from the centre of the contact face along each outward direction (world), metres.
+
+    Args:
+        footing: points at scale 1, object frame.
+        R: rotation of the object.
+        scale: along the axes of each object.
+        outward: unit directions, world.
+    """
     return (outward @ (R @ (footing * scale).T)).max(axis=1)

@@ -159,7 +159,13 @@ class Problem:
     def poses(
         self, R: Float[np.ndarray, "n 3 3"], p: Float[np.ndarray, "n 3"], scale: Float[np.ndarray, "n 3"]
     ) -> dict[str, Pose]:
-        """Poses of the objects that were free to move."""
+        """Poses of the objects that were free to move.
+
+        Args:
+            R: rotations, world from object.
+            p: centres, world, metres.
+            scale: along the axes of each object.
+        """
         return {self.ids[i]: Pose(R[i], p[i], scale[i]) for i in range(self.count) if self.free[i]}
 
 

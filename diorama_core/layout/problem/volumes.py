@@ -60,7 +60,13 @@ class Volumes:
     def at(
         self, R: Float[np.ndarray, "n 3 3"], p: Float[np.ndarray, "n 3"], scale: Float[np.ndarray, "n 3"]
     ) -> WorldVolumes:
-        """The volumes when objects are at these poses."""
+        """The volumes when objects are at these poses.
+
+        Args:
+            R: rotations, world from object.
+            p: centres, world, metres.
+            scale: along the axes of each object.
+        """
         on_object = self.supporter >= 0
         owner_R = np.where(on_object[:, None, None], R[self.supporter], np.eye(3))
         owner_p = np.where(on_object[:, None], p[self.supporter], 0.0)

@@ -80,6 +80,13 @@ def e_col(
     Separating axis theorem over the fifteen axes of two oriented boxes; the two boxes' sums are averaged, so that the
     order of a pair does not matter. Boxes from index `walls_from` on are walls, normal first: against them only the
     overlap along the normal counts, or a wall would push objects along itself.
+
+    Args:
+        p: centres, world, metres.
+        R: rotations, world from object.
+        size: extents.
+        pairs: of indices.
+        walls_from: index of the first wall; None without walls.
     """
     i, j = pairs[:, 0], pairs[:, 1]
     axes = box_axes(R[i], R[j])
@@ -114,5 +121,12 @@ def adherence(
     wall: Float[Tensor, "a 3"],
     wall_point: Float[Tensor, "a 3"],
 ) -> tuple[Float[Tensor, ""], Float[Tensor, ""]]:
-    """What standing against walls costs: misalignment of the faces, and their distance from the walls."""
+    """What standing against walls costs: misalignment of the faces, and their distance from the walls.
+
+    Args:
+        face_in: inward normals of the faces, world.
+        face_centre: world, metres.
+        wall: normals of the walls.
+        wall_point: a point of each.
+    """
     return e_align(face_in, wall), e_place(face_centre, wall_point, wall)

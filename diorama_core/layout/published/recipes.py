@@ -44,7 +44,13 @@ class PaperRecipe:
     weights: Weights = AS_IT_IS
 
     def optimise(self, scene: Scene, progress: Progress, preview: Preview | None = None) -> tuple[Scene, LayoutReport]:
-        """Run the stages; raises `Cancelled` when asked to stop."""
+        """Run the stages; raises `Cancelled` when asked to stop.
+
+        Args:
+            scene: as observed.
+            progress: reports and cancellation.
+            preview: called with the layout as it becomes.
+        """
         begun = time.perf_counter()
         problem = build_problem(scene, self.library, only=self.only, adherence_m=self.adherence_m)
         state = State(problem.R.copy(), problem.p.copy(), problem.scale.copy())
@@ -69,7 +75,13 @@ class AllInOneRecipe:
     weights: Weights = AS_IT_IS
 
     def optimise(self, scene: Scene, progress: Progress, preview: Preview | None = None) -> tuple[Scene, LayoutReport]:
-        """Run the steps; raises `Cancelled` when asked to stop."""
+        """Run the steps; raises `Cancelled` when asked to stop.
+
+        Args:
+            scene: as observed.
+            progress: reports and cancellation.
+            preview: called with the layout as it becomes.
+        """
         begun = time.perf_counter()
         problem = build_problem(scene, self.library, only=self.only, adherence_m=self.adherence_m)
         state = State(problem.R.copy(), problem.p.copy(), problem.scale.copy())

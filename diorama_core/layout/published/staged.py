@@ -109,7 +109,15 @@ class Edges:
 def orientation_stage(
     problem: Problem, state: State, schedule: Schedule, report: Report, *, weights: Weights = AS_IT_IS
 ) -> None:
-    """Stage 1: turn objects until contact faces are parallel to their supports. 3 e_align + e_sem."""
+    """Stage 1: turn objects until contact faces are parallel to their supports. 3 e_align + e_sem.
+
+    Args:
+        problem: the layout as observed, with its supports.
+        state: the layout; changed in place.
+        schedule: of the steps.
+        report: called at every step; may raise to cancel.
+        weights: factors on what each cost counts.
+    """
     edges = Edges.of(problem)
     to_child, to_supporter = edges.scatter(problem.count)
     front = state.R[:, :, 0].copy()
@@ -136,7 +144,15 @@ def orientation_stage(
 def placement_stage(
     problem: Problem, state: State, schedule: Schedule, report: Report, *, weights: Weights = AS_IT_IS
 ) -> None:
-    """Stage 2: move objects onto their supports, keeping their neighbours' relative positions. 5 e_place + e_rel."""
+    """Stage 2: move objects onto their supports, keeping their neighbours' relative positions. 5 e_place + e_rel.
+
+    Args:
+        problem: the layout as observed, with its supports.
+        state: the layout; changed in place.
+        schedule: of the steps.
+        report: called at every step; may raise to cancel.
+        weights: factors on what each cost counts.
+    """
     cost = Placement.of(problem, state)
     links = gradients.incidence(problem.relations, problem.count)
     velocity, start = np.zeros((problem.count, 3)), state.p.copy()
@@ -157,6 +173,13 @@ def space_stage(
     """Stage 3: move and shrink objects until they are inside their supporting volumes. e_vol.
 
     A supporter's own pose bounds the volume but is not moved by it.
+
+    Args:
+        problem: the layout as observed, with its supports.
+        state: the layout; changed in place.
+        schedule: of the steps.
+        report: called at every step; may raise to cancel.
+        weights: factors on what each cost counts.
     """
     volumes = Volumes.of(problem)
     supported = volumes.supported
@@ -193,7 +216,16 @@ def refinement_stage(
     weights: Weights = AS_IT_IS,
     near_m: float = 0.1,
 ) -> None:
-    """Stage 4: placement again, and no boxes overlapping. 5 e_place + e_col; walls are obstacles."""
+    """Stage 4: placement again, and no boxes overlapping. 5 e_place + e_col; walls are obstacles.
+
+    Args:
+        problem: the layout as observed, with its supports.
+        state: the layout; changed in place.
+        schedule: of the steps.
+        report: called at every step; may raise to cancel.
+        weights: factors on what each cost counts.
+        near_m: gap of boxes that are watched.
+    """
     cost = Placement.of(problem, state)
     R, centre, size, apart = with_walls(problem, state)
     n = problem.count

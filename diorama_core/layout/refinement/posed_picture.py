@@ -65,7 +65,15 @@ class PosedPicture:
         poses: PoseBatch,
         settings: RefinementSettings = REFINEMENT,
     ) -> PosedPicture:
-        """The picture of objects in these poses, one each; arguments as the fields."""
+        """The picture of objects in these poses, one each; arguments as the fields.
+
+        Args:
+            grid: pixels that are compared.
+            wanted: index of the object that the photo shows, -1 for none.
+            casters: of every object.
+            poses: one each.
+            settings: numbers to work with.
+        """
         depth = np.full((len(casters), *wanted.shape), np.inf, np.float32)
         for i, caster in enumerate(casters):
             own = poses[np.array([i])]

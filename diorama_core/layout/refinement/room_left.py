@@ -35,7 +35,14 @@ class RoomLeft:
     def allows(
         self, i: int, R: Float[np.ndarray, "n 3 3"], p: Float[np.ndarray, "n 3"], scale: Float[np.ndarray, "n 3"]
     ) -> bool:
-        """Whether object i may be where it is among all others."""
+        """Whether object i may be where it is among all others.
+
+        Args:
+            i: index of the object.
+            R: rotations, world from object.
+            p: centres, world, metres.
+            scale: along the axes of each object.
+        """
         affected = [i, *np.flatnonzero(self.problem.parent == i)]
         worse = support_errors(self.problem, R, p, scale)[affected] > self.support_errors[affected]
         if worse.any() or self._through_wall(i, R, p, scale):

@@ -51,7 +51,15 @@ class MaskRefinement:
         objects: Sequence[DetectedObject],
         progress: Progress,
     ) -> tuple[Scene, LayoutReport]:
-        """The scene in poses that cover the masks better; see `protocols.RefinementStage`."""
+        """The scene in poses that cover the masks better; see `protocols.RefinementStage`.
+
+        Args:
+            scene: after its layout.
+            report: of the layout.
+            observed: the scene before it.
+            objects: what was found in the photo, with masks.
+            progress: reports and cancellation.
+        """
         begun = time.perf_counter()
         detected = {o.id: o for o in objects}
         problem = build_problem(scene, self.library, adherence_m=self.settings.touching_m)
