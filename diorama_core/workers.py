@@ -31,7 +31,7 @@ class WorkerDied(DioramaError):  # noqa: N818  # as its siblings in `errors`
 
 
 @dataclass(frozen=True)
-class Done(Generic[Item, Result]):
+class FinishedItem(Generic[Item, Result]):
     """One finished piece of work: its value, or why there is none."""
 
     item: Item
@@ -49,7 +49,7 @@ class Done(Generic[Item, Result]):
 class Workers(Protocol):
     """Where pieces of work are done."""
 
-    def map(self, function: Callable[[Item], Result], items: Iterable[Item]) -> Iterator[Done[Item, Result]]:
+    def map(self, function: Callable[[Item], Result], items: Iterable[Item]) -> Iterator[FinishedItem[Item, Result]]:
         """`function` of every item, as they finish, in no particular order.
 
         Items are drawn as they are needed, so there may be very many. Closing the iterator drops what has not started.
@@ -86,7 +86,7 @@ class LocalWorkers:
 
     count: int
 
-    def map(self, function: Callable[[Item], Result], items: Iterable[Item]) -> Iterator[Done[Item, Result]]:
+    def map(self, function: Callable[[Item], Result], items: Iterable[Item]) -> Iterator[FinishedItem[Item, Result]]:
         """See `Workers.map`."""
         waiting = iter(items)
         processes = [_Process[Item, Result](function) for _ in range(self.count)]
@@ -129,7 +129,7 @@ class _Process(Generic[Item, Result]):
                 future.set_exception(error)
             self.running[future] = item
 
-    def finished(self) -> Iterator[Done[Item, Result]]:
+    def finished(self) -> Iterator[FinishedItem[Item, Result]]:
         """The pieces that are done, or that it died of."""
         done = [future for future in self.running if future.done()]
         broken = next((f for f in done if isinstance(f.exception(), BrokenProcessPool)), None)
@@ -164,13 +164,15 @@ def _end_with_parent() -> None:
     threading.Thread(target=wait_for_end, daemon=True, name="end-with-parent").start()
 
 
-def _done(item: Item, future: Future[Result]) -> Done[Item, Result]:
+def _done(item: Item, future: Future[Result]) -> FinishedItem[Item, Result]:
     error = future.exception()
     if isinstance(error, BrokenProcessPool):
-        return Done(item, None, WorkerDied("the process ended without an answer; it may have run out of memory"))
+        return FinishedItem(
+            item, None, WorkerDied("the process ended without an answer; it may have run out of memory")
+        )
     if isinstance(error, Exception):
-        return Done(item, None, error)
-    return Done(item, future.result())
+        return FinishedItem(item, None, error)
+    return FinishedItem(item, future.result())
 
 
 def _call(function: Callable[[Item], Result], item: Item) -> Result:
@@ -214,7 +216,7 @@ class RayWorkers:
         """Cores of the cluster."""
         return max(int(self._ray.cluster_resources().get("CPU", 1)), 1)
 
-    def map(self, function: Callable[[Item], Result], items: Iterable[Item]) -> Iterator[Done[Item, Result]]:
+    def map(self, function: Callable[[Item], Result], items: Iterable[Item]) -> Iterator[FinishedItem[Item, Result]]:
         """See `Workers.map`."""
         ray = self._ray
         remote = ray.remote(_call).options(max_retries=0)
@@ -233,15 +235,15 @@ class RayWorkers:
             for reference in running:
                 ray.cancel(reference, force=True)
 
-    def _answer(self, reference: Any, item: Item) -> Done[Item, Any]:
+    def _answer(self, reference: Any, item: Item) -> FinishedItem[Item, Any]:
         from ray.exceptions import RayError, RayTaskError
 
         try:
-            return Done(item, self._ray.get(reference))
+            return FinishedItem(item, self._ray.get(reference))
         except RayTaskError as error:
-            return Done(item, None, error.cause if isinstance(error.cause, Exception) else error)
+            return FinishedItem(item, None, error.cause if isinstance(error.cause, Exception) else error)
         except RayError as error:
-            return Done(item, None, WorkerDied(f"the process ended without an answer ({type(error).__name__})"))
+            return FinishedItem(item, None, WorkerDied(f"the process ended without an answer ({type(error).__name__})"))
 
 
 def each(

@@ -61,7 +61,7 @@ from diorama_core.project.lock import ProjectLock
 from diorama_core.project.storage import Project, read_scene
 from diorama_core.scene.edits import rename
 from diorama_core.scene.types import Pose
-from diorama_core.workers import Done
+from diorama_core.workers import FinishedItem
 from tests.app.small_room import PlainLibrary, furnished_scene, make_project, plain_photo
 from tests.io.test_bombs import png
 from tests.processes import runs
@@ -316,10 +316,10 @@ class _Here:
 
     count = 1
 
-    def map(self, function: Callable[[Any], Any], items: Iterable[Any]) -> Iterator[Done[Any, Any]]:
+    def map(self, function: Callable[[Any], Any], items: Iterable[Any]) -> Iterator[FinishedItem[Any, Any]]:
         """See `diorama_core.workers.Workers`."""
         for item in items:
-            yield Done(item, function(item))
+            yield FinishedItem(item, function(item))
 
 
 def library(going: Going, chance: np.random.Generator) -> Figures:

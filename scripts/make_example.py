@@ -24,7 +24,7 @@ from scipy.ndimage import gaussian_filter
 from diorama_app.projects.example import PHOTO_NAME
 from diorama_core.errors import UnavailableError
 from diorama_core.export.blender import missing_blender
-from diorama_core.export.cycles import Lens, Opening, Outdoors, cycles_radiance
+from diorama_core.export.cycles import CyclesLens, Opening, Outdoors, cycles_radiance
 from diorama_core.library.catalogue import built_in_library
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.perception.inputs import read_inputs
@@ -46,7 +46,7 @@ SUN_FROM = np.array([-0.74, -0.30, 0.60])
 SUN_ANGLE_RAD = 0.03
 WHITE = np.array([1.0, 0.89, 0.80])
 """Colour of the daylight between the room's own walls and boards."""
-LENS = Lens(focus_m=4.2, aperture_m=0.004)
+LENS = CyclesLens(focus_m=4.2, aperture_m=0.004)
 """Of a compact camera at f/2.8: what is near is a little soft."""
 FRAME_M = 0.05
 """Width of a window's frame and bars."""

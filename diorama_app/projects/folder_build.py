@@ -19,7 +19,7 @@ from diorama_core.io.atomic import write_atomically
 from diorama_core.io.bounded import read_json
 from diorama_core.io.documents import write_json
 from diorama_core.progress import Progress
-from diorama_core.workers import Done, WorkerDied, Workers
+from diorama_core.workers import FinishedItem, WorkerDied, Workers
 
 RECORD = "build.json"
 """In a project: what it was built from and what came of it. Its presence means that the build was finished."""
@@ -76,7 +76,7 @@ def build_photos(
     results: dict[FolderPhoto, PhotoResult] = {}
     died: list[FolderPhoto] = []
 
-    def take(done: Iterable[Done[FolderPhoto, PhotoResult]], *, again: bool) -> None:
+    def take(done: Iterable[FinishedItem[FolderPhoto, PhotoResult]], *, again: bool) -> None:
         for piece in done:
             if isinstance(piece.error, WorkerDied) and not again:
                 died.append(piece.item)
@@ -137,7 +137,7 @@ def _draw(room: Any, path: Path) -> None:
     write_atomically(path, content.getvalue(), error=ProjectError)
 
 
-def _reason(piece: Done[FolderPhoto, PhotoResult]) -> str:
+def _reason(piece: FinishedItem[FolderPhoto, PhotoResult]) -> str:
     error = piece.error
     if isinstance(error, DioramaError):
         return " ".join(str(error).split())

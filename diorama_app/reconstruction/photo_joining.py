@@ -21,7 +21,7 @@ from diorama_core.scene.types import Scene
 
 if TYPE_CHECKING:
     from diorama_core.importing.opening import Opened
-    from diorama_core.multiview.adding import Added  # the whole pipeline; opening a project does without it
+    from diorama_core.multiview.adding import AddedPhoto  # the whole pipeline; opening a project does without it
 
 MIN_SAME = 3
 """Objects of a scene without a photo among which one finds its place (`multiview.camera_in_room`)."""
@@ -152,7 +152,7 @@ def _joined(
     project: Project,
     client: Client,
     progress: Progress,
-) -> Added:
+) -> AddedPhoto:
     from diorama_core.layout.recipes import recipe
     from diorama_core.multiview.adding import with_photo
     from diorama_core.multiview.finding import camera_of, photos_of_scene
@@ -175,7 +175,7 @@ def _joined(
     )
 
 
-def _show(client: Client, project: Project, before: Scene, photo: FurtherPhoto, added: Added) -> None:
+def _show(client: Client, project: Project, before: Scene, photo: FurtherPhoto, added: AddedPhoto) -> None:
     """The scene with the photo; refused where somebody changed the scene meanwhile."""
     session = client.session
     now = session.further_photos

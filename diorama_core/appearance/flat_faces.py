@@ -71,7 +71,7 @@ SETTINGS = FlatFaceSettings()
 
 
 @dataclass(frozen=True, eq=False)
-class Face:
+class FlatFace:
     """The picture of one slot."""
 
     slot: Slot
@@ -88,7 +88,7 @@ def faces_of(
     found: DetectedObject,
     camera: Camera,
     settings: FlatFaceSettings = SETTINGS,
-) -> tuple[Face, ...]:
+) -> tuple[FlatFace, ...]:
     """The faces of an object that show in the photo; none for objects without a flat face.
 
     Args:
@@ -138,7 +138,7 @@ def _face(
     found: DetectedObject,
     camera: Camera,
     settings: FlatFaceSettings = SETTINGS,
-) -> Face | None:
+) -> FlatFace | None:
     """The face of one slot; `hidden` is what others hide, and everything that is not to be read."""
     others, unseen = hidden
     rectangle = rectangle_of(parts, slot, layout)
@@ -160,11 +160,11 @@ def _face(
     roughness = ROUGHNESS.get(slot.role, settings.other_roughness)
     if "screen" in FACES.get(item.category, ((), ""))[0] and not is_lit(picture, settings):
         dark = np.median(picture.colours[picture.seen], axis=0).clip(0, 255).astype(np.uint8)
-        return Face(
+        return FlatFace(
             slot, layout, np.broadcast_to(dark, (settings.dark_side_px, settings.dark_side_px, 3)).copy(), roughness
         )
     pixel_m = float(np.linalg.norm(rectangle.across * item.pose.scale)) / picture.seen.shape[1]
-    return Face(slot, layout, completed_picture(picture, pixel_m), roughness)
+    return FlatFace(slot, layout, completed_picture(picture, pixel_m), roughness)
 
 
 def _outside(found: DetectedObject) -> Bool[np.ndarray, "h w"]:

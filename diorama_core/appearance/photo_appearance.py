@@ -12,7 +12,7 @@ import numpy as np
 import trimesh
 from jaxtyping import Bool, Float32, UInt8
 
-from diorama_core.appearance.flat_faces import Face, faces_of
+from diorama_core.appearance.flat_faces import FlatFace, faces_of
 from diorama_core.appearance.irradiance import irradiance_map
 from diorama_core.appearance.light import SHINING, estimated_light
 from diorama_core.appearance.matched_brightness import brightened, brightness_gains
@@ -61,7 +61,7 @@ class _Seen:
     """One object with everything of the photo that its look is read from."""
 
     item: SceneObject
-    faces: tuple[Face, ...]
+    faces: tuple[FlatFace, ...]
     view: SurfaceView | None
     pixels: tuple[SlotPixels, ...]
     weaves: Mapping[str, Picture]
@@ -281,7 +281,7 @@ def hiding(
     return cv2.dilate(hidden.astype(np.uint8), np.ones((2 * radius + 1,) * 2, np.uint8)).astype(bool)
 
 
-def _face_material(item: SceneObject, face: Face) -> PhotoMaterial:
+def _face_material(item: SceneObject, face: FlatFace) -> PhotoMaterial:
     red, green, blue = (float(c) / 255.0 for c in face.picture.reshape(-1, 3).mean(axis=0))
     return PhotoMaterial(
         slot=face.slot.name,

@@ -54,7 +54,7 @@ class Outdoors:
 
 
 @dataclass(frozen=True)
-class Lens:
+class CyclesLens:
     """Depth of field."""
 
     focus_m: float
@@ -109,7 +109,7 @@ def cycles_radiance(
     library: ShapeLibrary,
     outdoors: Outdoors,
     *,
-    lens: Lens | None = None,
+    lens: CyclesLens | None = None,
     textures: Mapping[str, Picture] | None = None,
     samples: int = 256,
     seed: int = 0,

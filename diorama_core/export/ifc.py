@@ -15,7 +15,7 @@ from jaxtyping import Float, Int
 
 from diorama_core.export.files import whole_file
 from diorama_core.export.gathering import ExportMesh, ExportObject, ExportScene
-from diorama_core.export.wall_lines import Opening, WallLine, wall_lines
+from diorama_core.export.wall_lines import DrawnWall, Opening, wall_lines
 from diorama_core.io.srgb import linear_to_srgb, srgb_to_linear
 from diorama_core.library.taxonomy import column
 from diorama_core.progress import Progress
@@ -146,7 +146,7 @@ class _Builder:
             parent = child
         return parent
 
-    def _wall(self, wall: WallLine, storey: Any, holes: dict[str, Any]) -> Any:
+    def _wall(self, wall: DrawnWall, storey: Any, holes: dict[str, Any]) -> Any:
         T = np.eye(4)
         T[:2, 0], T[:2, 1], T[:2, 3], T[2, 3] = wall.along, wall.outward, wall.start, wall.bottom_m
         place = self._placement(T, storey.ObjectPlacement)
@@ -163,7 +163,7 @@ class _Builder:
                 holes[opening.object_id] = hole
         return element
 
-    def _opening(self, opening: Opening, wall: WallLine, place: Any) -> Any:
+    def _opening(self, opening: Opening, wall: DrawnWall, place: Any) -> Any:
         low = (opening.from_m, -THROUGH_M, opening.bottom_m - wall.bottom_m)
         size = (opening.to_m - opening.from_m, wall.plane.thickness + 2 * THROUGH_M, opening.top_m - opening.bottom_m)
         return self._rooted(

@@ -12,7 +12,7 @@ from jaxtyping import Float
 
 from diorama_core.export.footprints import Outline, footprints
 from diorama_core.export.gathering import ExportObject, ExportScene
-from diorama_core.export.wall_lines import Opening, WallLine, wall_lines
+from diorama_core.export.wall_lines import DrawnWall, Opening, wall_lines
 from diorama_core.geometry.openings import OPENING_CATEGORIES
 from diorama_core.scene.types import Plane, Scene, SceneObject
 
@@ -101,7 +101,7 @@ class RoomLines:
     walls: tuple[Outline, ...]
     door_leaves: tuple[Outline, ...]
     window_panes: tuple[Outline, ...]
-    lines: tuple[WallLine, ...]
+    lines: tuple[DrawnWall, ...]
 
 
 def room_lines(planes: Sequence[Plane], items: Sequence[SceneObject], scene: Scene) -> RoomLines:
@@ -203,7 +203,7 @@ def _piece(scene: ExportScene, item: ExportObject, outlines: tuple[Outline, ...]
     return Piece(item.id, label, outlines, (depth, width), overhead, on_floor, bottom)
 
 
-def _cut_walls(walls: Sequence[WallLine], floors: Sequence[Outline]) -> tuple[Outline, ...]:
+def _cut_walls(walls: Sequence[DrawnWall], floors: Sequence[Outline]) -> tuple[Outline, ...]:
     """Slabs of all walls as one area, closed at corners, open at doors and windows, clear of the floor."""
     ends = [p for w in walls for p in (w.start, w.end)]
     solid = manifold3d.CrossSection()
@@ -223,7 +223,7 @@ def _meets(point: Float[np.ndarray, "2"], ends: Sequence[Float[np.ndarray, "2"]]
     return sum(float(np.linalg.norm(point - e)) < CORNER_M for e in ends) > 1
 
 
-def _strip(wall: WallLine, from_m: float, to_m: float, near_m: float, far_m: float) -> Outline:
+def _strip(wall: DrawnWall, from_m: float, to_m: float, near_m: float, far_m: float) -> Outline:
     corners = ((from_m, near_m), (to_m, near_m), (to_m, far_m), (from_m, far_m))
     return np.stack([wall.at(along, behind) for along, behind in corners])
 
@@ -234,7 +234,7 @@ def _area(outline: Outline) -> manifold3d.CrossSection:
     return manifold3d.CrossSection([outline if counter_clockwise else outline[::-1]], manifold3d.FillRule.Positive)
 
 
-def _door(wall: WallLine, opening: Opening) -> tuple[Outline, ...]:
+def _door(wall: DrawnWall, opening: Opening) -> tuple[Outline, ...]:
     """The open leaf and the quarter circle it swings through, into the room; a wide door has two leaves."""
     width = opening.to_m - opening.from_m
     if width <= ONE_LEAF_M:
@@ -242,20 +242,20 @@ def _door(wall: WallLine, opening: Opening) -> tuple[Outline, ...]:
     return (*_leaf(wall, opening.from_m, width / 2), *_leaf(wall, opening.to_m, -width / 2))
 
 
-def _leaf(wall: WallLine, hinge_m: float, reach_m: float) -> tuple[Outline, Outline]:
+def _leaf(wall: DrawnWall, hinge_m: float, reach_m: float) -> tuple[Outline, Outline]:
     """A leaf hinged at a place along the wall that closes so far along it (backward where negative)."""
     hinge, angles = wall.at(hinge_m), np.linspace(0, np.pi / 2, ARC_POINTS)[:, None]
     swing = hinge + reach_m * np.cos(angles) * wall.along - abs(reach_m) * np.sin(angles) * wall.outward
     return np.stack([hinge, swing[-1]]), swing
 
 
-def _window(wall: WallLine, opening: Opening) -> tuple[Outline, ...]:
+def _window(wall: DrawnWall, opening: Opening) -> tuple[Outline, ...]:
     t = wall.plane.thickness
     depths = (0.0, 0.4 * t, 0.6 * t, t)
     return tuple(np.stack([wall.at(opening.from_m, d), wall.at(opening.to_m, d)]) for d in depths)
 
 
-def _dimensions(walls: Sequence[WallLine], floors: Sequence[Outline]) -> tuple[Dimension, ...]:
+def _dimensions(walls: Sequence[DrawnWall], floors: Sequence[Outline]) -> tuple[Dimension, ...]:
     """Lengths of the walls' faces, the parts between their openings, and the whole where no wall spans it."""
     found = [d for w in walls for d in _wall_dimensions(w)]
     every = np.concatenate([*floors, *(np.stack([w.start, w.end]) for w in walls)]) if walls or floors else None
@@ -271,7 +271,7 @@ def _dimensions(walls: Sequence[WallLine], floors: Sequence[Outline]) -> tuple[D
     return (*found, *(d for d in whole if d.length_m > 0.01 and not _known(d, found)))
 
 
-def _wall_dimensions(wall: WallLine) -> list[Dimension]:
+def _wall_dimensions(wall: DrawnWall) -> list[Dimension]:
     first = (wall.plane.thickness + DIMENSION_GAP_M) * wall.outward
     stops = [0.0, *(v for o in wall.openings for v in (o.from_m, o.to_m)), wall.length_m]
     parts = [Dimension(wall.at(a), wall.at(b), first) for a, b in pairwise(stops) if b - a > 0.02]

@@ -9,7 +9,7 @@ from typing import Any
 from diorama_core.export.files import write_whole
 from diorama_core.export.gathering import ExportScene
 from diorama_core.export.plan import floor_plan
-from diorama_core.export.plan_sheet import Line, Sheet, Text, plan_sheet
+from diorama_core.export.plan_sheet import PlanSheet, SheetLine, Text, plan_sheet
 from diorama_core.progress import Progress
 
 POINTS_PER_MM = 72.0 / 25.4
@@ -26,7 +26,7 @@ def write_pdf(scene: ExportScene, path: Path, progress: Progress | None = None) 
     write_whole(Path(path), content)
 
 
-def pdf_bytes(sheet: Sheet) -> bytes:
+def pdf_bytes(sheet: PlanSheet) -> bytes:
     """A sheet as a PDF document of one page."""
     from reportlab.pdfbase import pdfmetrics
     from reportlab.pdfbase.cidfonts import UnicodeCIDFont
@@ -44,7 +44,7 @@ def pdf_bytes(sheet: Sheet) -> bytes:
     canvas.scale(POINTS_PER_MM, POINTS_PER_MM)
     canvas.setLineJoin(1)
     for mark in sheet.marks:
-        if isinstance(mark, Line):
+        if isinstance(mark, SheetLine):
             _draw_line(canvas, mark)
         else:
             _draw_text(canvas, mark, known)
@@ -53,7 +53,7 @@ def pdf_bytes(sheet: Sheet) -> bytes:
     return buffer.getvalue()
 
 
-def _draw_line(canvas: Any, mark: Line) -> None:
+def _draw_line(canvas: Any, mark: SheetLine) -> None:
     path = canvas.beginPath()
     for outline in mark.points:
         path.moveTo(*outline[0])

@@ -22,7 +22,7 @@ Grey = float
 
 
 @dataclass(frozen=True, eq=False)
-class Line:
+class SheetLine:
     """A path on the page."""
 
     points: tuple[Float[np.ndarray, "_ 2"], ...]
@@ -50,7 +50,7 @@ class Text:
 
 
 @dataclass(frozen=True, eq=False)
-class Sheet:
+class PlanSheet:
     """A page with its marks in the order they are drawn."""
 
     title: str
@@ -58,10 +58,10 @@ class Sheet:
     """1 : scale."""
     width_mm: float
     height_mm: float
-    marks: tuple[Line | Text, ...]
+    marks: tuple[SheetLine | Text, ...]
 
 
-def plan_sheet(plan: FloorPlan) -> Sheet:
+def plan_sheet(plan: FloorPlan) -> PlanSheet:
     """The plan on the smallest page and in the largest scale that fit.
 
     Raises:
@@ -72,18 +72,18 @@ def plan_sheet(plan: FloorPlan) -> Sheet:
     width, height = page
     centre = np.array([width / 2, (height + TITLE_MM) / 2])
     to_page = _ToPage((low + high) / 2, 1000.0 / scale, centre)
-    marks: list[Line | Text] = [Line((to_page(f),), True, 0.96, 0.0, group="floor") for f in plan.floors]
+    marks: list[SheetLine | Text] = [SheetLine((to_page(f),), True, 0.96, 0.0, group="floor") for f in plan.floors]
     for piece in plan.pieces:
         marks += _piece_marks(piece, to_page)
-    marks.append(Line(tuple(to_page(w) for w in plan.walls), True, 0.25, 0.3, group="walls"))
-    marks += [Line((to_page(p),), stroke_mm=0.13, group="windows") for p in plan.window_panes]
-    marks += [Line((to_page(p),), stroke_mm=0.13, group="doors") for p in plan.door_leaves]
+    marks.append(SheetLine(tuple(to_page(w) for w in plan.walls), True, 0.25, 0.3, group="walls"))
+    marks += [SheetLine((to_page(p),), stroke_mm=0.13, group="windows") for p in plan.window_panes]
+    marks += [SheetLine((to_page(p),), stroke_mm=0.13, group="doors") for p in plan.door_leaves]
     for dimension in plan.dimensions:
         marks += _dimension_marks(dimension, to_page)
     for piece in plan.pieces:
         marks += _label_marks(piece, to_page)
     marks += _title_marks(plan.name, scale, width)
-    return Sheet(plan.name, scale, width, height, tuple(m for m in marks if isinstance(m, Text) or m.points))
+    return PlanSheet(plan.name, scale, width, height, tuple(m for m in marks if isinstance(m, Text) or m.points))
 
 
 @dataclass(frozen=True, eq=False)
@@ -107,14 +107,14 @@ def _choice(extent_m: Float[np.ndarray, "2"]) -> tuple[int, tuple[float, float]]
     raise ExportError(f"a plan of {extent_m[0]:.0f} x {extent_m[1]:.0f} m fits no page; export the DXF instead")
 
 
-def _piece_marks(piece: Piece, to_page: _ToPage) -> list[Line | Text]:
+def _piece_marks(piece: Piece, to_page: _ToPage) -> list[SheetLine | Text]:
     outlines = tuple(to_page(o) for o in piece.outlines)
     if piece.overhead:
-        return [Line(outlines, True, None, 0.13, dashed=True, group="overhead")]
-    return [Line(outlines, True, 1.0, 0.18 if piece.on_floor else 0.13, group="furniture")]
+        return [SheetLine(outlines, True, None, 0.13, dashed=True, group="overhead")]
+    return [SheetLine(outlines, True, 1.0, 0.18 if piece.on_floor else 0.13, group="furniture")]
 
 
-def _label_marks(piece: Piece, to_page: _ToPage) -> list[Line | Text]:
+def _label_marks(piece: Piece, to_page: _ToPage) -> list[SheetLine | Text]:
     """Name and size in the middle of furniture that is large enough for them."""
     if not piece.outlines or not piece.label or not piece.on_floor or piece.overhead:
         return []
@@ -138,7 +138,7 @@ def _text(text: str, at: Float[np.ndarray, "2"], height_mm: float, turn_deg: flo
     return Text(text, (float(at[0]), float(at[1])), height_mm, turn_deg, group=group)
 
 
-def _dimension_marks(dimension: Dimension, to_page: _ToPage) -> list[Line | Text]:
+def _dimension_marks(dimension: Dimension, to_page: _ToPage) -> list[SheetLine | Text]:
     """Dimension line with slanted ticks, extension lines, and the length above it, readable from below or the right."""
     start, end = to_page(dimension.start + dimension.offset), to_page(dimension.end + dimension.offset)
     away = dimension.offset / max(float(np.linalg.norm(dimension.offset)), 1e-9)
@@ -146,7 +146,7 @@ def _dimension_marks(dimension: Dimension, to_page: _ToPage) -> list[Line | Text
     tick = 0.5 * TICK_MM * (along + away)
     lines = [np.stack([start, end]), *(np.stack([p - tick, p + tick]) for p in (start, end))]
     lines += [np.stack([p - 3.0 * away, p + 1.0 * away]) for p in (start, end)]
-    marks: list[Line | Text] = [Line((line,), stroke_mm=0.13, group="dimensions") for line in lines]
+    marks: list[SheetLine | Text] = [SheetLine((line,), stroke_mm=0.13, group="dimensions") for line in lines]
     turn = float(np.degrees(np.arctan2(along[1], along[0])))
     turn = (turn + 89.9) % 180.0 - 89.9
     up = np.array([-np.sin(np.radians(turn)), np.cos(np.radians(turn))])
@@ -155,21 +155,21 @@ def _dimension_marks(dimension: Dimension, to_page: _ToPage) -> list[Line | Text
     return [*marks, _text(dimension.text, (start + end) / 2 + 0.85 * SMALL_MM * up, height, turn, "dimensions")]
 
 
-def _title_marks(name: str, scale: int, width_mm: float) -> list[Line | Text]:
+def _title_marks(name: str, scale: int, width_mm: float) -> list[SheetLine | Text]:
     """Name, scale and a scale bar along the lower border."""
     base = MARGIN_MM + 3.0
     bar_m = next(m for m in (1, 2, 5, 10, 20, 50) if m * 1000.0 / scale >= 20.0)
     step = bar_m * 1000.0 / scale
     right = width_mm - MARGIN_MM
-    marks: list[Line | Text] = [
-        Line((np.array([[MARGIN_MM, base + 8], [right, base + 8]]),), stroke_mm=0.25, group="title"),
+    marks: list[SheetLine | Text] = [
+        SheetLine((np.array([[MARGIN_MM, base + 8], [right, base + 8]]),), stroke_mm=0.25, group="title"),
         Text(name, (MARGIN_MM, base + 2.5), 3.5, anchor="start", group="title"),
         Text(f"1 : {scale}   lengths in metres", (MARGIN_MM, base - 2.0), TEXT_MM, anchor="start", group="title"),
     ]
     for part in range(2):
         left = right - (2 - part) * step
         box = np.array([[left, base], [left + step, base], [left + step, base + 1.5], [left, base + 1.5]])
-        marks.append(Line((box,), True, 0.0 if part == 0 else 1.0, 0.18, group="title"))
+        marks.append(SheetLine((box,), True, 0.0 if part == 0 else 1.0, 0.18, group="title"))
     for number in range(3):
         at = (right - (2 - number) * step, base + 3.5)
         marks.append(Text(f"{number * bar_m} m" if number == 2 else str(number * bar_m), at, SMALL_MM, group="title"))

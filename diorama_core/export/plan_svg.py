@@ -11,7 +11,7 @@ from jaxtyping import Float
 from diorama_core.export.files import write_whole
 from diorama_core.export.gathering import ExportScene
 from diorama_core.export.plan import floor_plan
-from diorama_core.export.plan_sheet import Line, Sheet, Text, plan_sheet
+from diorama_core.export.plan_sheet import PlanSheet, SheetLine, Text, plan_sheet
 from diorama_core.progress import Progress
 
 NAMESPACE = "http://www.w3.org/2000/svg"
@@ -26,7 +26,7 @@ def write_svg(scene: ExportScene, path: Path, progress: Progress | None = None) 
     write_whole(Path(path), content)
 
 
-def svg_text(sheet: Sheet) -> bytes:
+def svg_text(sheet: PlanSheet) -> bytes:
     """A sheet as an SVG document, one group per kind of mark."""
     ET.register_namespace("", NAMESPACE)
     root = ET.Element(
@@ -50,8 +50,8 @@ def svg_text(sheet: Sheet) -> bytes:
     return ET.tostring(root, encoding="utf-8", xml_declaration=True)
 
 
-def _add(group: ET.Element, mark: Line | Text, height_mm: float) -> None:
-    if isinstance(mark, Line):
+def _add(group: ET.Element, mark: SheetLine | Text, height_mm: float) -> None:
+    if isinstance(mark, SheetLine):
         ET.SubElement(group, _tag("path"), _line_attributes(mark, height_mm))
         return
     x, y = mark.at[0], height_mm - mark.at[1]
@@ -67,7 +67,7 @@ def _add(group: ET.Element, mark: Line | Text, height_mm: float) -> None:
     ET.SubElement(group, _tag("text"), attributes).text = "".join(c for c in mark.text if c.isprintable())
 
 
-def _line_attributes(mark: Line, height_mm: float) -> dict[str, str]:
+def _line_attributes(mark: SheetLine, height_mm: float) -> dict[str, str]:
     attributes = {
         "d": " ".join(_path(p, mark.closed, height_mm) for p in mark.points),
         "fill": "none" if mark.fill is None else _grey(mark.fill),

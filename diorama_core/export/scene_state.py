@@ -24,7 +24,7 @@ from diorama_core.export.files import Entry, add_entry, whole_file, write_whole
 from diorama_core.export.gathering import ExportMesh, ExportObject, ExportScene
 from diorama_core.export.gltf_document import GltfDocument, TextureFiles
 from diorama_core.export.pictures import OncePerPicture, texture_file
-from diorama_core.export.wall_lines import Opening, WallLine, wall_lines
+from diorama_core.export.wall_lines import DrawnWall, Opening, wall_lines
 from diorama_core.library.record import record_of
 from diorama_core.progress import Progress
 from diorama_core.render.appearance import Surface
@@ -141,7 +141,7 @@ def _flat(plane: Plane) -> dict[str, Any]:
     }
 
 
-def _wall(wall: WallLine) -> dict[str, Any]:
+def _wall(wall: DrawnWall) -> dict[str, Any]:
     """A wall from left to right seen from inside the room, its holes measured from its first point."""
     return {
         "id": wall.plane.id,
@@ -155,7 +155,7 @@ def _wall(wall: WallLine) -> dict[str, Any]:
     }
 
 
-def _hole(opening: Opening, wall: WallLine) -> dict[str, Any]:
+def _hole(opening: Opening, wall: DrawnWall) -> dict[str, Any]:
     box = {
         "min": [opening.from_m, opening.bottom_m - wall.bottom_m],
         "max": [opening.to_m, opening.top_m - wall.bottom_m],

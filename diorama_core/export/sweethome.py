@@ -19,7 +19,7 @@ from diorama_core.export.files import add_entry, whole_file
 from diorama_core.export.gathering import ExportMesh, ExportObject, ExportPlane, ExportScene
 from diorama_core.export.pictures import TexturePictures
 from diorama_core.export.scene_state import R_SHAPE_FILE
-from diorama_core.export.wall_lines import WallLine, wall_lines
+from diorama_core.export.wall_lines import DrawnWall, wall_lines
 from diorama_core.export.wavefront import MaterialFile, ObjText
 from diorama_core.geometry.openings import OPENING_CATEGORIES
 from diorama_core.geometry.vectors import unit
@@ -120,7 +120,7 @@ def _world_points(scene: ExportScene, item: ExportObject) -> Float[np.ndarray, "
     return (points * item.scale) @ item.T_world[:3, :3].T + item.T_world[:3, 3]
 
 
-def _wall(wall: WallLine, number: int) -> dict[str, str]:
+def _wall(wall: DrawnWall, number: int) -> dict[str, str]:
     """The wall's middle line; its inner face is where the scene has it."""
     half = wall.plane.thickness / 2
     (x0, y0), (x1, y1) = wall.at(0.0, half), wall.at(wall.length_m, half)

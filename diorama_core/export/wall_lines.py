@@ -35,7 +35,7 @@ class Opening:
 
 
 @dataclass(frozen=True, eq=False)
-class WallLine:
+class DrawnWall:
     """One wall's face on the floor, from left to right seen from inside the room."""
 
     plane: Plane
@@ -65,7 +65,7 @@ class WallLine:
         return self.start + distance_m * self.along + behind_m * self.outward
 
 
-def wall_lines(planes: Iterable[Plane], items: Sequence[SceneObject], scene: Scene) -> tuple[WallLine, ...]:
+def wall_lines(planes: Iterable[Plane], items: Sequence[SceneObject], scene: Scene) -> tuple[DrawnWall, ...]:
     """The walls among some planes with their openings.
 
     Args:
@@ -79,21 +79,21 @@ def wall_lines(planes: Iterable[Plane], items: Sequence[SceneObject], scene: Sce
     return tuple(_with_openings(w, [o for o in fills if walls_of[o.id] is w.plane]) for w in walls)
 
 
-def _bare(plane: Plane) -> WallLine:
+def _bare(plane: Plane) -> DrawnWall:
     origin, axes, extents = plane_rectangle(plane)
     start = origin[:2]
     heights = plane.polygon[:, 2]
-    return WallLine(plane, start, start + axes[:2, 0] * extents[0], float(heights.min()), float(heights.max()))
+    return DrawnWall(plane, start, start + axes[:2, 0] * extents[0], float(heights.min()), float(heights.max()))
 
 
-def _with_openings(wall: WallLine, fills: Sequence[SceneObject]) -> WallLine:
+def _with_openings(wall: DrawnWall, fills: Sequence[SceneObject]) -> DrawnWall:
     filled = [_filled(wall, item) for item in fills]
     bare = [o for o in _gaps(wall) if not any(_meet(o, f) for f in filled)]
     ordered = tuple(sorted((*filled, *bare), key=lambda o: o.from_m))
-    return WallLine(wall.plane, wall.start, wall.end, wall.bottom_m, wall.top_m, ordered)
+    return DrawnWall(wall.plane, wall.start, wall.end, wall.bottom_m, wall.top_m, ordered)
 
 
-def _filled(wall: WallLine, item: SceneObject) -> Opening:
+def _filled(wall: DrawnWall, item: SceneObject) -> Opening:
     corners = item.corners_world
     along = np.clip((corners[:, :2] - wall.start) @ wall.along, 0, wall.length_m)
     low, high = np.clip(corners[:, 2], wall.bottom_m, wall.top_m)[[corners[:, 2].argmin(), corners[:, 2].argmax()]]
@@ -101,7 +101,7 @@ def _filled(wall: WallLine, item: SceneObject) -> Opening:
     return Opening(f"opening-{item.id}", *ends, float(low), float(high), item.category == "door", item.id)
 
 
-def _gaps(wall: WallLine) -> list[Opening]:
+def _gaps(wall: DrawnWall) -> list[Opening]:
     """Rectangles that the wall's polygon leaves out, other than at its ends and its top."""
     length, height = wall.length_m, wall.top_m - wall.bottom_m
     corners = wall.plane.polygon

@@ -44,7 +44,7 @@ _MIN_SIZE_M = 0.01
 
 
 @dataclass(frozen=True)
-class Found:
+class FoundShapes:
     """What a search found, and what there is to say about how the text was understood."""
 
     shapes: tuple[Shape, ...]
@@ -60,7 +60,7 @@ def search(library: ShapeLibrary, text: str, k: int = 24) -> tuple[Shape, ...]:
     return find(library, text, k).shapes
 
 
-def find(library: ShapeLibrary, text: str, k: int = 24) -> Found:
+def find(library: ShapeLibrary, text: str, k: int = 24) -> FoundShapes:
     """The `k` shapes that fit the words best, with notes on how the words were understood.
 
     Names of categories (synonyms, plurals, near names: `naming`) weigh most, then words of the caption, the style, the
@@ -72,12 +72,12 @@ def find(library: ShapeLibrary, text: str, k: int = 24) -> Found:
     return find_in(text_index(library), text, k)
 
 
-def find_in(index: TextIndex, text: str, k: int = 24) -> Found:
+def find_in(index: TextIndex, text: str, k: int = 24) -> FoundShapes:
     """As `find`, in an index made before."""
     rest, limits = size_limits(text)
     query = understand(rest)
     if not tokens(text):
-        return Found(index.shapes[:k], (0.0,) * min(k, len(index.shapes)), query)
+        return FoundShapes(index.shapes[:k], (0.0,) * min(k, len(index.shapes)), query)
     described = {kind: share for kind, share in kinds_described(rest).items() if share >= MIN_DESCRIBED}
     if described and is_description(rest):
         query = replace(query, categories=(), naming=(), exact=False, note="")
@@ -90,7 +90,7 @@ def find_in(index: TextIndex, text: str, k: int = 24) -> Found:
     order = positions[np.lexsort((positions, -scores[positions]))][:k]
     known = not query.categories and any(index.knows(word) for word in query.words)  # "oak" needs no noun
     note = "" if known else query.note
-    return Found(tuple(index.shapes[i] for i in order), tuple(float(scores[i]) for i in order), query, note)
+    return FoundShapes(tuple(index.shapes[i] for i in order), tuple(float(scores[i]) for i in order), query, note)
 
 
 class TextIndex:

@@ -50,7 +50,7 @@ DISTANCES = tuple(float(f) for f in np.geomspace(0.7, 1.43, 13))
 
 
 @dataclass(frozen=True, eq=False)
-class Added:
+class AddedPhoto:
     """A scene with what one more photo shows."""
 
     scene: Scene
@@ -76,7 +76,7 @@ def with_photo(
     progress: Progress | None = None,
     *,
     measured_room: bool = False,
-) -> Added:
+) -> AddedPhoto:
     """The scene with one more photo whose camera is known.
 
     Args:
@@ -163,7 +163,7 @@ def with_photo(
     inputs = replace(new.inputs, boxes=read.inputs.boxes)
     photo = replace(new, inputs=inputs, camera=read.posed.camera, seen=seen)
     joined = tuple(item.id for item in claimed.values())
-    return Added(scene, photo, tuple(names.values()), joined, textures)
+    return AddedPhoto(scene, photo, tuple(names.values()), joined, textures)
 
 
 def _room_of(scene: Scene, read: ReadPhoto) -> GivenRoom:

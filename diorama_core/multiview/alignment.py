@@ -23,7 +23,7 @@ from diorama_core.scene.types import Camera, yaw_rotation
 
 
 @dataclass(frozen=True, eq=False)
-class Alignment:
+class RoomAlignment:
     """`p_room = scale * R @ p_poses + t`."""
 
     R: Float[np.ndarray, "3 3"]
@@ -53,7 +53,7 @@ def align(
     metric: bool = False,
     up: Float[np.ndarray, "3"] | None = None,
     settings: JoiningSettings = SETTINGS,
-) -> Alignment:
+) -> RoomAlignment:
     """The room's frame for a set of photos.
 
     Args:
@@ -63,7 +63,7 @@ def align(
         settings: numbers to work with.
     """
     R = _levelled(readings, up)
-    cameras = [Alignment(R, 1.0, np.zeros(3)).camera(r.camera) for r in readings]
+    cameras = [RoomAlignment(R, 1.0, np.zeros(3)).camera(r.camera) for r in readings]
     votes: list[tuple[float, float]] = []
     alone = [_alone(r, camera) for r, camera in zip(readings, cameras, strict=True)]
     scale = 1.0
@@ -73,7 +73,7 @@ def align(
                 votes += _votes(cameras[i], cameras[j], readings[i], readings[j], alone[i][1], alone[j][1], settings)
         scale = _peak(votes, settings) if votes else 1.0
     heights = [h - scale * float(c.position[2]) for (h, _), c in zip(alone, cameras, strict=True)]
-    return Alignment(R, scale, np.array([0.0, 0.0, float(np.median(heights))]))
+    return RoomAlignment(R, scale, np.array([0.0, 0.0, float(np.median(heights))]))
 
 
 def _levelled(readings: Sequence[PhotoReading], up: Float[np.ndarray, "3"] | None) -> Float[np.ndarray, "3 3"]:

@@ -11,7 +11,7 @@ from scipy.optimize import linear_sum_assignment
 
 from diorama_core.geometry.projection import box_iou, cuboid_corners, visible_bounds
 from diorama_core.library.taxonomy import PORTABLE, Category, broad
-from diorama_core.multiview.joint_fit import JointCuboid, PhotoBoxes, fit_jointly, meeting_point
+from diorama_core.multiview.joint_fit import JointCuboid, PosedBoxes, fit_jointly, meeting_point
 from diorama_core.multiview.settings import SETTINGS, JoiningSettings
 from diorama_core.perception.metrology.placement import FLOOR
 from diorama_core.progress import Progress
@@ -42,7 +42,7 @@ class Sighted:
 class RoomPhoto:
     """A photo with what it says by itself."""
 
-    boxes: PhotoBoxes
+    boxes: PosedBoxes
     alone: tuple[Sighted, ...]
     """One for each box."""
 
@@ -62,7 +62,7 @@ class Track:
         """The boxes that the cuboid fits."""
         return tuple(b for b in self.boxes if b not in self.left_out)
 
-    def sightings(self, photos: Sequence[RoomPhoto]) -> list[tuple[PhotoBoxes, int]]:
+    def sightings(self, photos: Sequence[RoomPhoto]) -> list[tuple[PosedBoxes, int]]:
         """As `fit_jointly` takes them."""
         return [(photos[photo].boxes, box) for photo, box in self.fitted]
 

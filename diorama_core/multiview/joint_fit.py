@@ -37,7 +37,7 @@ ODD_STARTS = np.radians((0.0, 30.0, 60.0, 90.0, 120.0, 150.0))
 
 
 @dataclass(frozen=True, eq=False)
-class PhotoBoxes:
+class PosedBoxes:
     """What one photo says of its objects, and where it was taken."""
 
     camera: Camera
@@ -64,7 +64,7 @@ class JointCuboid:
 
 
 def fit_jointly(
-    sightings: Sequence[tuple[PhotoBoxes, int]],
+    sightings: Sequence[tuple[PosedBoxes, int]],
     kind: Category,
     starts: Sequence[Float[np.ndarray, "3"]],
     *,
@@ -127,7 +127,7 @@ class _Joint:
 
     def __init__(
         self,
-        sightings: Sequence[tuple[PhotoBoxes, int]],
+        sightings: Sequence[tuple[PosedBoxes, int]],
         modes: Sequence[SizeMode],
         place: Float[np.ndarray, "2"],
         base_m: float | None,
@@ -235,7 +235,7 @@ def _minimised(
     return unknowns, cost
 
 
-def meeting_point(sightings: Sequence[tuple[PhotoBoxes, int]]) -> Float[np.ndarray, "3"]:
+def meeting_point(sightings: Sequence[tuple[PosedBoxes, int]]) -> Float[np.ndarray, "3"]:
     """The point nearest to the rays through the middles of an object's boxes (least squares)."""
     A, b = np.zeros((3, 3)), np.zeros(3)
     for photo, index in sightings:

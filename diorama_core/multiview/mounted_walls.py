@@ -14,7 +14,7 @@ from jaxtyping import Float
 
 from diorama_core.errors import EditRefused
 from diorama_core.library.taxonomy import category
-from diorama_core.multiview.joint_fit import JointCuboid, PhotoBoxes
+from diorama_core.multiview.joint_fit import JointCuboid, PosedBoxes
 from diorama_core.scene.room_edits import move_plane
 from diorama_core.scene.types import Architecture, Plane, Scene, yaw_rotation
 
@@ -105,7 +105,7 @@ def hangs_on_wall(kind: str) -> bool:
     return category(kind).mount == "wall" or kind == "door"
 
 
-def seen_whole(sightings: Sequence[tuple[PhotoBoxes, int]]) -> bool:
+def seen_whole(sightings: Sequence[tuple[PosedBoxes, int]]) -> bool:
     """Whether two photos or more show a thing, and one of them uncut: else its usual size says where it is."""
     return len(sightings) > 1 and any(not photo.observations.truncated[box].any() for photo, box in sightings)
 

@@ -26,10 +26,10 @@ from diorama_core.geometry.openings import OPENING_CATEGORIES
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.library.taxonomy import category
 from diorama_core.multiview.agreement import with_agreeing_boxes
-from diorama_core.multiview.alignment import Alignment, PhotoReading, align
+from diorama_core.multiview.alignment import PhotoReading, RoomAlignment, align
 from diorama_core.multiview.cut_short import edges_cut_short
 from diorama_core.multiview.joining import RoomPhoto, Sighted, Track, joined_objects, shown
-from diorama_core.multiview.joint_fit import JointCuboid, PhotoBoxes
+from diorama_core.multiview.joint_fit import JointCuboid, PosedBoxes
 from diorama_core.multiview.joint_room import SeenRoom, joint_room, with_open_doorways
 from diorama_core.multiview.mounted_walls import hangs_on_wall, room_holding, seen_whole, walls_at_mounted
 from diorama_core.multiview.one_scene import acyclic, edge_in_room, filling, moved_to_room, set_into_wall
@@ -72,7 +72,7 @@ def in_room(
     metric: bool,
     up: Float[np.ndarray, "3"] | None,
     progress: Progress | None = None,
-) -> tuple[tuple[PosedInputs, ...], Alignment]:
+) -> tuple[tuple[PosedInputs, ...], RoomAlignment]:
     """Photos whose cameras are in some world of their own, with their cameras in the room.
 
     Args:
@@ -234,7 +234,7 @@ def said_alone(read: ReadPhoto) -> RoomPhoto:
     # Boxes before an object say what may hide it, outlines whether something is there.
     covered = np.array([observations.hidden_px(i, parent) for i, parent in enumerate(on)]).reshape(-1, 4)
     hidden_px = np.where(edges_cut_short(read.objects, observations.box_px, away), covered, 0.0)
-    return RoomPhoto(PhotoBoxes(read.posed.camera, observations, hidden_px), tuple(alone))
+    return RoomPhoto(PosedBoxes(read.posed.camera, observations, hidden_px), tuple(alone))
 
 
 def track_name(number: int) -> str:

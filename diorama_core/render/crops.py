@@ -24,7 +24,7 @@ _WHOLE = "{name}: the thing could not be told from its background; a cut-out on 
 
 
 @dataclass(frozen=True, eq=False)
-class Crop(ArrayValue):
+class ShapeCrop(ArrayValue):
     """A picture of one thing."""
 
     rgb: UInt8[np.ndarray, "h w 3"]
@@ -39,7 +39,7 @@ class Crop(ArrayValue):
         return cv2.cvtColor(self.rgb, cv2.COLOR_RGB2GRAY)
 
 
-def read_crop(path: Path) -> Crop:
+def read_crop(path: Path) -> ShapeCrop:
     """A picture file of one thing, at a working size.
 
     A transparent background is taken as it is; else what looks like the rim of the picture is taken for background
@@ -69,7 +69,7 @@ def read_crop(path: Path) -> Crop:
         note = _WHOLE.format(name=path.name) if mask.all() else ""
     if not mask.any():
         raise InputError(f"{path} is wholly transparent; give a picture of one thing")
-    return Crop(rgb, mask, note)
+    return ShapeCrop(rgb, mask, note)
 
 
 def foreground(rgb: UInt8[np.ndarray, "h w 3"]) -> Bool[np.ndarray, "h w"]:

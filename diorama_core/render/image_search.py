@@ -21,12 +21,12 @@ from diorama_core.geometry.shape_appearance import SHARED_APPEARANCES, ShapeAppe
 from diorama_core.library.catalogue import default_cache_dir
 from diorama_core.library.naming import understand
 from diorama_core.library.record import Shape, ShapeLibrary
-from diorama_core.library.search import Found, find
+from diorama_core.library.search import FoundShapes, find
 from diorama_core.library.store import BUILT_IN, StoredLibrary, open_library
 from diorama_core.library.store.features import FeatureMatrix
 from diorama_core.library.store.vectors import vector_index
 from diorama_core.progress import Progress
-from diorama_core.render.crops import Crop
+from diorama_core.render.crops import ShapeCrop
 from diorama_core.render.templates import TemplateGrid, render_templates
 from diorama_core.render.view_features import WIDTH, colour_feature, view_feature
 from diorama_core.workers import Workers
@@ -55,7 +55,7 @@ class ImageSearch:
     library: ShapeLibrary
     folder: Path | None = None
 
-    def find(self, crop: Crop, text: str = "", k: int = 10, progress: Progress | None = None) -> Found:
+    def find(self, crop: ShapeCrop, text: str = "", k: int = 10, progress: Progress | None = None) -> FoundShapes:
         """The `k` shapes most like a picture, best first.
 
         Args:
@@ -73,10 +73,10 @@ class ImageSearch:
             if worded.shapes:
                 return self._among(worded, crop, k, progress)
             found = self._all(crop, k, progress)
-            return Found(found.shapes, found.scores, worded.query, worded.note)
+            return FoundShapes(found.shapes, found.scores, worded.query, worded.note)
         return self._all(crop, k, progress)
 
-    def _among(self, worded: Found, crop: Crop, k: int, progress: Progress | None) -> Found:
+    def _among(self, worded: FoundShapes, crop: ShapeCrop, k: int, progress: Progress | None) -> FoundShapes:
         """What words found, ordered by words and picture alike."""
         matrix = self.prepared(worded.shapes, progress)
         alike = matrix.scores(_query(crop))
@@ -87,9 +87,9 @@ class ImageSearch:
             scores.append(0.5 * (by_picture + by_words / worded.scores[0]))
         order = np.argsort(-np.array(scores), kind="stable")[:k]
         shapes = tuple(worded.shapes[i] for i in order)
-        return Found(shapes, tuple(scores[i] for i in order), worded.query, worded.note)
+        return FoundShapes(shapes, tuple(scores[i] for i in order), worded.query, worded.note)
 
-    def _all(self, crop: Crop, k: int, progress: Progress | None) -> Found:
+    def _all(self, crop: ShapeCrop, k: int, progress: Progress | None) -> FoundShapes:
         """The whole library by the picture alone."""
         by_key: dict[str, list[Shape]] = {}
         for shape in self.library.shapes():
@@ -98,7 +98,7 @@ class ImageSearch:
         stale = len(matrix.missing_from(by_key))
         near = vector_index(matrix).top(_query(crop), k + stale)
         found = [(shape, n.score) for n in near for shape in by_key.get(n.key, ())][:k]
-        return Found(tuple(shape for shape, _ in found), tuple(score for _, score in found), understand(""))
+        return FoundShapes(tuple(shape for shape, _ in found), tuple(score for _, score in found), understand(""))
 
     def prepared(
         self,
@@ -141,7 +141,7 @@ class ImageSearch:
         return own / "features" / f"views-{_VERSION}"
 
 
-def _query(crop: Crop) -> Float32[np.ndarray, "width"]:
+def _query(crop: ShapeCrop) -> Float32[np.ndarray, "width"]:
     colour = colour_feature(palette_of_crop(crop.rgb, crop.mask))
     feature = view_feature(crop.gray, crop.mask, colour)
     if feature is None:

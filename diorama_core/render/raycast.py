@@ -41,7 +41,7 @@ class Buffers:
 
 
 @dataclass(frozen=True, eq=False)
-class Hits:
+class RayHits:
     """The first meeting of each ray with the triangles; fields have the shape of the rays given."""
 
     distance: Float32[np.ndarray, "*n"]
@@ -56,9 +56,9 @@ class Hits:
         """Whether the ray met anything."""
         return self.triangle >= 0
 
-    def chosen(self, which: np.ndarray) -> Hits:
+    def chosen(self, which: np.ndarray) -> RayHits:
         """The hits at a mask or at indices."""
-        return Hits(self.distance[which], self.triangle[which], self.barycentric[which])
+        return RayHits(self.distance[which], self.triangle[which], self.barycentric[which])
 
 
 @dataclass(frozen=True)
@@ -126,10 +126,10 @@ class Caster:
                 o3d.core.Tensor.from_numpy(np.ascontiguousarray(triangles, dtype=np.uint32)),
             )
 
-    def first_hits(self, rays: RayArray) -> Hits:
+    def first_hits(self, rays: RayArray) -> RayHits:
         """What every ray meets first."""
         answer = self._scene.cast_rays(_tensor(rays))
-        return Hits(
+        return RayHits(
             answer["t_hit"].numpy(),
             answer["primitive_ids"].numpy().view(np.int32),
             answer["primitive_uvs"].numpy(),
@@ -163,7 +163,7 @@ class MeshCaster:
         self._owner = np.concatenate(owners).astype(np.int32)
         self._normals = face_normals(points, faces)
 
-    def first_hits(self, rays: RayArray) -> Hits:
+    def first_hits(self, rays: RayArray) -> RayHits:
         """What every ray meets first."""
         return self._caster.first_hits(rays)
 
@@ -171,7 +171,7 @@ class MeshCaster:
         """Which mesh every ray meets first; -1 where it meets none."""
         return self._instances(self._caster.first_hits(rays))
 
-    def _instances(self, hits: Hits) -> Int32[np.ndarray, "*n"]:
+    def _instances(self, hits: RayHits) -> Int32[np.ndarray, "*n"]:
         instance = np.full(hits.found.shape, -1, dtype=np.int32)
         instance[hits.found] = self._owner[hits.triangle[hits.found]]
         return instance

@@ -31,7 +31,7 @@ _GRADIENT_FLOOR = 3.0
 
 
 @dataclass(frozen=True)
-class Weights:
+class FeatureWeights:
     """How much each part counts; they add up to 1, so that an object agrees with itself by 1."""
 
     outline: float = 0.55
@@ -39,7 +39,7 @@ class Weights:
     colour: float = 0.2
 
 
-WEIGHTS = Weights()
+WEIGHTS = FeatureWeights()
 OUTLINE_WIDTH, EDGES_WIDTH = _CELLS**2, _EDGE_CELLS**2 * _DIRECTIONS
 WIDTH = OUTLINE_WIDTH + EDGES_WIDTH + 27
 """Numbers in a feature."""
@@ -49,7 +49,7 @@ def view_feature(
     gray: UInt8[np.ndarray, "h w"],
     mask: Bool[np.ndarray, "h w"],
     colour: Float[np.ndarray, "c"],
-    weights: Weights = WEIGHTS,
+    weights: FeatureWeights = WEIGHTS,
 ) -> Float32[np.ndarray, "width"] | None:
     """The feature of one picture of an object.
 

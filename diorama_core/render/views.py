@@ -16,7 +16,7 @@ from diorama_core.render.lighting import TILE, Effort, Lighting, Spots, irradian
 from diorama_core.render.picture import framing_camera
 from diorama_core.render.raycast import PinholeView, pixel_centres
 from diorama_core.render.shading import Shot, shoot
-from diorama_core.render.world import Placed, World
+from diorama_core.render.world import PlacedSurface, World
 from diorama_core.scene.types import Camera
 
 
@@ -83,7 +83,7 @@ def render_shape(
     """
     shape = record_of(library, shape_id)
     view = view or usual_view(shape)
-    alone = World([Placed(shape_surfaces(library, shape_id, *paint), np.eye(4), 0)])
+    alone = World([PlacedSurface(shape_surfaces(library, shape_id, *paint), np.eye(4), 0)])
     camera = PinholeView(studio_camera(alone.vertices, view, *size))
     half = 0.5 * np.asarray(shape.size_m)
     light = studio(np.stack([-half, half]), -camera.camera.T_world_camera[:3, 2])

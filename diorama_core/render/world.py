@@ -15,7 +15,7 @@ from diorama_core.library.record import ShapeLibrary
 from diorama_core.library.stretch import relative_scale
 from diorama_core.render.appearance import Surface, shape_surfaces
 from diorama_core.render.lamps import as_lit
-from diorama_core.render.raycast import Caster, Hits, RayArray
+from diorama_core.render.raycast import Caster, RayArray, RayHits
 from diorama_core.render.slabs import plane_surfaces
 from diorama_core.scene.types import Scene
 
@@ -28,7 +28,7 @@ MEAN_STEP = 3
 
 
 @dataclass(frozen=True, eq=False)
-class Placed:
+class PlacedSurface:
     """Surfaces put into the world as one instance."""
 
     surfaces: tuple[Surface, ...]
@@ -59,7 +59,7 @@ class Places:
 class World:
     """Everything that is visible, in one structure of triangles."""
 
-    def __init__(self, placed: Iterable[Placed]) -> None:
+    def __init__(self, placed: Iterable[PlacedSurface]) -> None:
         chunks = [_chunk(surface, p.matrix) for p in placed for surface in p.surfaces]
         owners = [p.instance for p in placed for _ in p.surfaces]
         surfaces = [surface for p in placed for surface in p.surfaces]
@@ -97,7 +97,7 @@ class World:
             return np.array([[-0.5, -0.5, 0.0], [0.5, 0.5, 1.0]])
         return np.stack([self.vertices.min(axis=0), self.vertices.max(axis=0)]).astype(np.float64)
 
-    def places(self, rays: RayArray, hits: Hits, footprint_m: Float32[np.ndarray, "n"] | None = None) -> Places:
+    def places(self, rays: RayArray, hits: RayHits, footprint_m: Float32[np.ndarray, "n"] | None = None) -> Places:
         """What the rays see; every ray must have met something.
 
         Args:
@@ -156,7 +156,7 @@ class World:
         """Whether the colours of triangles already hold the light of the room."""
         return np.asarray(self._materials.photographed.take(self._surface_of_face.take(triangle)))
 
-    def rough_appearance(self, hits: Hits) -> tuple[Float32[np.ndarray, "n 3"], Float32[np.ndarray, "n 3"]]:
+    def rough_appearance(self, hits: RayHits) -> tuple[Float32[np.ndarray, "n 3"], Float32[np.ndarray, "n 3"]]:
         """Face normals (as modelled) and mean colours of what was hit: enough for light that bounces."""
         surface = self._surface_of_face.take(hits.triangle)
         return self._face_normals.take(hits.triangle, axis=0), self._materials.mean_colour.take(surface, axis=0)
@@ -189,7 +189,7 @@ def placed_surfaces(
     textures: Mapping[str, UInt8[np.ndarray, "_ _ _"]] | None = None,
     photographed: bool = True,
     without: frozenset[str] = frozenset(),
-) -> list[Placed]:
+) -> list[PlacedSurface]:
     """What `scene_world` is made of; arguments as there.
 
     Args:
@@ -199,14 +199,14 @@ def placed_surfaces(
         photographed: Whether objects show the photo's materials.
         without: Ids that are left out.
     """
-    placed: list[Placed] = []
+    placed: list[PlacedSurface] = []
     for index, item in enumerate(scene.objects):
         if not item.hidden and item.id not in without:
             paint = (item.colour, item.finish, item.shown_photo_materials)
             scale = relative_scale(item.pose.scale)
             shapes = library if item.open_share == 0.0 else OpenedShapes(library, item.open_share, scale)
             surfaces = shape_surfaces(shapes, item.shape_id, *paint, textures or {}, scale)
-            placed.append(Placed(as_lit(item, surfaces, scene), item.pose.matrix, index))
+            placed.append(PlacedSurface(as_lit(item, surfaces, scene), item.pose.matrix, index))
     planes = scene.architecture.planes
     pictures = {p.id: (textures or {}).get(p.texture) if p.texture else None for p in planes}
     # Beside photographed walls, a plain one has its colour from the same photo, and so in the same light.
@@ -214,7 +214,7 @@ def placed_surfaces(
     for index, plane in enumerate(planes, start=len(scene.objects)):
         if plane.id not in without:
             faces = plane_surfaces(plane, pictures[plane.id], photographed=photographed, plain_photographed=beside)
-            placed.append(Placed(faces, np.eye(4), index))
+            placed.append(PlacedSurface(faces, np.eye(4), index))
     return placed
 
 

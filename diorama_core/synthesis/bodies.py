@@ -41,7 +41,7 @@ class Item:
 
 
 @dataclass
-class Bodies:
+class PlacedBodies:
     """What has been placed so far, ready to be collided with."""
 
     library: ShapeLibrary = field(repr=False)

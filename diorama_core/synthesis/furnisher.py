@@ -12,7 +12,7 @@ from diorama_core.geometry.wall_line import WallLine
 from diorama_core.layout.problem.parts import parts_of_shape
 from diorama_core.library.record import Shape, ShapeLibrary, SupportSurface
 from diorama_core.scene.types import Pose, SceneObject, Support
-from diorama_core.synthesis.bodies import Bodies, Item, heights_below
+from diorama_core.synthesis.bodies import Item, PlacedBodies, heights_below
 from diorama_core.synthesis.plan import RoomPlan, footprint, quads_overlap
 
 WALL_GAP_M = 0.012
@@ -53,7 +53,7 @@ class Furnisher:
         self.spread = spread or Spread()
         self.objects: list[SceneObject] = []
         self.supports: list[Support] = []
-        self.bodies = Bodies(library)
+        self.bodies = PlacedBodies(library)
         self.items: dict[str, Item] = {}
         self._standing: dict[str, np.ndarray] = {}
         self._zones: list[Zone] = []

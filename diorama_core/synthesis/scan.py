@@ -43,7 +43,7 @@ OPENGL_FROM_OPENCV = np.diag([1.0, -1.0, -1.0, 1.0])
 
 
 @dataclass(frozen=True, eq=False)
-class ScanFrame:
+class SyntheticFrame:
     """One picture of a scan."""
 
     camera: Camera
@@ -57,7 +57,7 @@ class ScanFrame:
 
 def scanned(
     scene: Scene, library: ShapeLibrary, seed: int, *, places: int = 4, turns: int = 10, photos: bool = True
-) -> tuple[ScanFrame, ...]:
+) -> tuple[SyntheticFrame, ...]:
     """The frames of a scan.
 
     Args:
@@ -86,11 +86,11 @@ def scanned(
             unsure = rng.random(depth.shape) < UNSURE_SHARE
             depth = np.where(unsure, depth * rng.uniform(0.5, 0.95, depth.shape), depth).astype(np.float32)
             photo = None if studio is None else studio.photograph(camera, PHOTO_SIZE)[0]
-            frames.append(ScanFrame(camera, depth, np.where(unsure, 0, 2).astype(np.uint8), photo))
+            frames.append(SyntheticFrame(camera, depth, np.where(unsure, 0, 2).astype(np.uint8), photo))
     return tuple(frames)
 
 
-def write_scan(folder: Path, frames: Sequence[ScanFrame]) -> Path:
+def write_scan(folder: Path, frames: Sequence[SyntheticFrame]) -> Path:
     """Write frames as 3D Scanner App's "all data"; returns the folder."""
     folder.mkdir(parents=True, exist_ok=True)
     for number, frame in enumerate(frames):

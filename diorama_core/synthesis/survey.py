@@ -9,7 +9,7 @@ import numpy as np
 
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.scene.types import Scene, Support
-from diorama_core.synthesis.bodies import LIFT_M, Bodies, Item
+from diorama_core.synthesis.bodies import LIFT_M, Item, PlacedBodies
 from diorama_core.synthesis.truth import TruthView
 
 MIN_FLOOR = 0.02
@@ -109,7 +109,7 @@ def support_depth(scene: Scene, object_id: str) -> int:
 
 def colliding_pairs(scene: Scene, library: ShapeLibrary) -> tuple[tuple[str, str], ...]:
     """Pairs of objects whose meshes cut each other, each a millimetre off what carries it; rugs lie under all."""
-    bodies, pairs = Bodies(library), []
+    bodies, pairs = PlacedBodies(library), []
     rugs = {o.id for o in scene.objects if o.category == "rug"}
     for item in sorted(scene.objects, key=lambda o: support_depth(scene, o.id)):
         body = Item(library.shape(item.shape_id), tuple(item.pose.scale))

@@ -22,7 +22,7 @@ from diorama_core.evaluation.benchmarks.pose_tables import (
     groups_table,
     retrievals_table,
 )
-from diorama_core.evaluation.benchmarks.retrieval import ObjectResult, recall_table, retrieval_table
+from diorama_core.evaluation.benchmarks.retrieval import RetrievalResult, recall_table, retrieval_table
 from diorama_core.evaluation.benchmarks.system import Way, build_case
 from diorama_core.evaluation.benchmarks.system_tables import (
     CaseResult,
@@ -237,7 +237,7 @@ def test_the_recipe_is_long_enough_and_names_are_unique():
 def _tables():
     failed = PoseScores.failed(4)
     result = CaseResult("living-0-0", SceneScores.failed(4), 1.0, 1.0, "DioramaError: nothing")
-    item = ObjectResult(
+    item = RetrievalResult(
         "living-0-0",
         "a",
         "chair",

@@ -14,7 +14,7 @@ from diorama_core.export import export_scene
 from diorama_core.export.footprints import signed_area
 from diorama_core.export.gathering import gather
 from diorama_core.export.plan import floor_plan
-from diorama_core.export.plan_sheet import Line, Text, plan_sheet
+from diorama_core.export.plan_sheet import SheetLine, Text, plan_sheet
 from diorama_core.progress import CancelToken, Progress
 from diorama_core.scene.types import Architecture, Plane, Pose, Scene, SceneObject, Support
 from tests.primitives import PrimitiveLibrary, box_room, furnished_room
@@ -97,10 +97,10 @@ def test_lengths_are_those_of_the_walls() -> None:
 def test_the_sheet_is_in_scale() -> None:
     plan = floor_plan(gather(furnished_room(LIBRARY), LIBRARY))
     sheet = plan_sheet(plan)
-    walls = next(m for m in sheet.marks if isinstance(m, Line) and m.group == "walls")
+    walls = next(m for m in sheet.marks if isinstance(m, SheetLine) and m.group == "walls")
     extent = np.ptp(np.concatenate(walls.points), axis=0)
     np.testing.assert_allclose(extent, np.array([4.1, 5.1]) * 1000 / sheet.scale, atol=1e-6)
-    every = np.concatenate([p for m in sheet.marks if isinstance(m, Line) for p in m.points])
+    every = np.concatenate([p for m in sheet.marks if isinstance(m, SheetLine) for p in m.points])
     assert (every >= 0).all()
     assert (every <= [sheet.width_mm, sheet.height_mm]).all()
     assert {"table", "chair"} <= {m.text for m in sheet.marks if isinstance(m, Text)}

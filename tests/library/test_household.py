@@ -30,7 +30,7 @@ from diorama_core.library.furniture.model import Design, built
 from diorama_core.library.furniture.prints import PRINTS
 from diorama_core.library.taxonomy import UNKNOWN, resolve
 from diorama_core.render.appearance import shape_surfaces
-from diorama_core.render.world import Placed, World
+from diorama_core.render.world import PlacedSurface, World
 
 FAMILIES = (
     lighting, climate, bathroom, electronics, leisure, textiles, plants, kitchenware, decor, containers, openings,
@@ -122,7 +122,7 @@ def test_light_passes_through_glass_but_not_through_clay(tmp_path: Path) -> None
     library = built_in_library(tmp_path)
     across = np.array([[-1.0, 0.0, 0.02, 2.0, 0.0, 0.0]], dtype=np.float32)
     for shape_id, blocked in (("cup-tumbler", False), ("cup-beaker", True)):
-        world = World([Placed(shape_surfaces(library, shape_id), np.eye(4), 0)])
+        world = World([PlacedSurface(shape_surfaces(library, shape_id), np.eye(4), 0)])
         assert world.caster.first_hits(across).found.all()
         assert bool(world.shadow_caster().occluded(across, far=1.0)[0]) is blocked
 

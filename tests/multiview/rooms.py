@@ -10,7 +10,7 @@ from diorama_core.artefacts import DetectedObject
 from diorama_core.geometry.projection import cuboid_corners, visible_bounds
 from diorama_core.library.taxonomy import category
 from diorama_core.multiview.joining import RoomPhoto, Sighted
-from diorama_core.multiview.joint_fit import PhotoBoxes
+from diorama_core.multiview.joint_fit import PosedBoxes
 from diorama_core.perception.metrology.box_observations import gather
 from diorama_core.perception.metrology.placement import FLOOR
 from diorama_core.scene.types import Camera, Intrinsics
@@ -60,4 +60,4 @@ def photo(seen: Camera, things: tuple[Thing, ...] = THINGS, error_m: float = 0.2
         alone.append(Sighted(category(thing.kind), centre, thing.yaw_rad, np.array(thing.size_m), FLOOR))
         whose.append(number)
     observations = gather(tuple(objects), 640, 480)
-    return RoomPhoto(PhotoBoxes(seen, observations, np.zeros((len(objects), 4))), tuple(alone)), whose
+    return RoomPhoto(PosedBoxes(seen, observations, np.zeros((len(objects), 4))), tuple(alone)), whose

@@ -14,7 +14,7 @@ from diorama_core.evaluation.benchmarks.cases import recipe as recipe_of_rooms
 from diorama_core.evaluation.benchmarks.views import RoomView, photographed
 from diorama_core.layout.recipes import recipe
 from diorama_core.library.catalogue import built_in_library
-from diorama_core.multiview.adding import Added, with_photo
+from diorama_core.multiview.adding import AddedPhoto, with_photo
 from diorama_core.multiview.finding import photos_of_scene
 from diorama_core.pipeline.stages import Stages, embedded_stages
 from diorama_core.scene.edits import move, remove
@@ -30,7 +30,7 @@ def choose(inputs: Inputs) -> Stages:
     return embedded_stages(inputs, few_shapes())
 
 
-def added(scene: Scene, movable: frozenset[str]) -> Added:
+def added(scene: Scene, movable: frozenset[str]) -> AddedPhoto:
     photos, library = two_photos(SMALL), few_shapes(scene)
     known = photos_of_scene(scene, photos.first, ())
     return with_photo(

@@ -13,7 +13,7 @@ from diorama_core.library import furniture
 from diorama_core.library.catalogue import built_in_library, default_cache_dir
 from diorama_core.library.furniture.model import Design
 from diorama_core.pipeline.prepare import prepare_library
-from diorama_core.workers import Done
+from diorama_core.workers import FinishedItem
 
 
 @dataclass
@@ -23,10 +23,10 @@ class Here:
     asked: set[str] = field(default_factory=set)
     count: int = 1
 
-    def map(self, function: Callable[[Any], Any], items: Iterable[Any]) -> Iterator[Done[Any, Any]]:
+    def map(self, function: Callable[[Any], Any], items: Iterable[Any]) -> Iterator[FinishedItem[Any, Any]]:
         for item in items:
             self.asked.update(i if isinstance(i, str) else i[1] for i in item)  # an id, or a key and an id
-            yield Done(item, function(item))
+            yield FinishedItem(item, function(item))
 
 
 def some(height_m: float) -> tuple[Design, ...]:

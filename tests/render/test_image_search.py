@@ -14,7 +14,7 @@ from diorama_core.library.ingest.sink import Ingested
 from diorama_core.library.store import StoredLibrary, create_library
 from diorama_core.pipeline.prepare import prepare_library
 from diorama_core.render import image_search
-from diorama_core.render.crops import Crop, foreground, read_crop
+from diorama_core.render.crops import ShapeCrop, foreground, read_crop
 from diorama_core.render.image_search import SEARCH_GRID, ImageSearch
 from diorama_core.render.template_cache import TemplateCache
 from diorama_core.render.view_features import WIDTH, colour_feature, view_feature
@@ -44,10 +44,10 @@ def library(tmp_path_factory: pytest.TempPathFactory) -> StoredLibrary:
     return store
 
 
-def picture_of(library: StoredLibrary, shape_id: str, yaw_deg: float) -> Crop:
+def picture_of(library: StoredLibrary, shape_id: str, yaw_deg: float) -> ShapeCrop:
     view = StudioView(np.radians(yaw_deg), np.radians(17.0))
     rgba = render_shape(library, shape_id, (120, 120), view)
-    return Crop(np.ascontiguousarray(rgba[..., :3]), rgba[..., 3] > 200)
+    return ShapeCrop(np.ascontiguousarray(rgba[..., :3]), rgba[..., 3] > 200)
 
 
 def test_a_picture_finds_its_shape(library: StoredLibrary) -> None:

@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from diorama_core.render.appearance import Material, Surface
-from diorama_core.render.world import Placed, World, _filtered, _pyramid
+from diorama_core.render.world import PlacedSurface, World, _filtered, _pyramid
 
 CHECKS = (255 * ((np.indices((64, 64)) // 4).sum(axis=0) % 2)).astype(np.uint8)[..., None].repeat(3, axis=2)
 
@@ -23,7 +23,7 @@ def wall() -> World:
         material=Material(colour=(1.0, 1.0, 1.0), texture=CHECKS),
         uv=np.array([[0, 0], [4, 0], [4, 4], [0, 4]], np.float32),
     )
-    return World([Placed((surface,), np.eye(4), 0)])
+    return World([PlacedSurface((surface,), np.eye(4), 0)])
 
 
 def albedo(footprint_m: float | None, slant: float = 0.0) -> np.ndarray:

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from diorama_core.scene.types import Pose
-from diorama_core.synthesis.bodies import Bodies, Item, heights_below
+from diorama_core.synthesis.bodies import Item, PlacedBodies, heights_below
 from tests.synthesis.box_rooms import LIBRARY
 
 BOX = Item(next(s for s in LIBRARY.shapes() if s.category == "box"))
@@ -20,7 +20,7 @@ def test_items_have_their_scaled_size() -> None:
 
 @pytest.mark.parametrize(("x", "hit"), [(0.0, "a"), (0.34, "a"), (0.36, None)])
 def test_bodies_that_cut_each_other_are_named(x: float, hit: str | None) -> None:
-    bodies = Bodies(LIBRARY)
+    bodies = PlacedBodies(LIBRARY)
     bodies.add("a", BOX, Pose.upright((0, 0, 0.15)))
     assert bodies.hit_by(BOX, Pose.upright((x, 0, 0.15))) == hit
     assert bodies.hit_by(BOX, Pose.upright((x, 0, 0.15)), ignore={"a"}) is None
@@ -29,7 +29,7 @@ def test_bodies_that_cut_each_other_are_named(x: float, hit: str | None) -> None
 
 
 def test_it_is_the_surfaces_that_count_not_the_boxes() -> None:
-    bodies = Bodies(LIBRARY)
+    bodies = PlacedBodies(LIBRARY)
     bodies.add("table", TABLE, Pose.upright((0, 0, 0.37)))
     assert bodies.hit_by(BOX, Pose.upright((0, 0, 0.15))) is None, "it stands under the table"
     assert bodies.hit_by(BOX, Pose.upright((0, 0, 0.65))) == "table"
@@ -39,7 +39,7 @@ def test_it_is_the_surfaces_that_count_not_the_boxes() -> None:
 
 
 def test_contact_is_no_collision() -> None:
-    bodies = Bodies(LIBRARY)
+    bodies = PlacedBodies(LIBRARY)
     bodies.add("a", BOX, Pose.upright((0, 0, 0.15)))
     assert bodies.hit_by(BOX, Pose.upright((0, 0, 0.45))) is None
     assert bodies.hit_by(BOX, Pose.upright((0, 0, 0.44))) == "a"

@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 from diorama_core.artefacts import Inputs
 from diorama_core.evaluation.benchmarks import photos as photos_bench
 from diorama_core.evaluation.benchmarks import system as system_bench
-from diorama_core.evaluation.benchmarks.photo_build import PhotoResult
+from diorama_core.evaluation.benchmarks.photo_build import PhotoScores
 from diorama_core.evaluation.benchmarks.photo_tables import OF_OBJECTS
 from diorama_core.evaluation.benchmarks.photos import PhotoPlan
 from diorama_core.evaluation.benchmarks.system_tables import CaseResult
@@ -30,7 +30,7 @@ FACTORS: Mapping[str, float] = {"left out": 0.0, "halved": 0.5, "doubled": 2.0}
 class Figures:
     """Photos and rooms built one way."""
 
-    photos: tuple[PhotoResult, ...]
+    photos: tuple[PhotoScores, ...]
     rooms: tuple[CaseResult, ...] = ()
 
 
@@ -50,7 +50,7 @@ def built(
     *,
     rooms: int = 0,
     seed: int = 0,
-    known: Sequence[PhotoResult] = (),
+    known: Sequence[PhotoScores] = (),
     processes: int = 1,
     progress: Progress | None = None,
 ) -> Figures:

@@ -27,7 +27,7 @@ ROOM = 20
 
 
 @dataclass(frozen=True)
-class Row:
+class LayoutRow:
     """Means over rooms of one way of arranging them."""
 
     name: str
@@ -56,10 +56,10 @@ class LayoutBench:
     """All tables of one run."""
 
     seed: int
-    ablation: tuple[Row, ...]
-    wrong_graph: tuple[Row, ...]
+    ablation: tuple[LayoutRow, ...]
+    wrong_graph: tuple[LayoutRow, ...]
     """A tenth of the support edges wrong or missing."""
-    noise: tuple[Row, ...]
+    noise: tuple[LayoutRow, ...]
     times: tuple[tuple[str, int, float, float], ...]
     """(what, objects, median ms, p95 ms)."""
     growth_exponent: float
@@ -85,7 +85,7 @@ class LayoutBench:
         return "\n\n".join(parts) + "\n"
 
 
-def _table(title: str, rows: Sequence[Row]) -> str:
+def _table(title: str, rows: Sequence[LayoutRow]) -> str:
     head = (
         "| recipe | orientation | placement | overall | in support | boxes cm | parts mm | meshes | stable | offset cm "
         "| median ms | p95 ms |\n|---|---|---|---|---|---|---|---|---|---|---|---|"
@@ -143,7 +143,7 @@ def _misread(room: GeneratedRoom, seed: int) -> GeneratedRoom:
     return GeneratedRoom(room.truth, perturb_graph(room.observed, 0.1, seed))
 
 
-def _row(name: str, stage: LayoutStage | None, rooms: Sequence[GeneratedRoom], progress: Progress) -> Row:
+def _row(name: str, stage: LayoutStage | None, rooms: Sequence[GeneratedRoom], progress: Progress) -> LayoutRow:
     library = box_library()
     measured, seconds, offsets, stable = [], [], [], []
     overlap_before = overlap_after = 0.0
@@ -168,7 +168,7 @@ def _row(name: str, stage: LayoutStage | None, rooms: Sequence[GeneratedRoom], p
         stable.append(_stable(scene))
     mean = {key: float(np.mean([m[key] for m in measured])) for key in measured[0]}
     known = [s for s in stable if s is not None]
-    return Row(
+    return LayoutRow(
         name=name,
         rooms=len(rooms),
         orientation=mean["orientation"],
@@ -247,7 +247,7 @@ def refinement_speedup(scene: Scene, steps: int = 2) -> float:
     """How much faster a step of the batched stage 4 is than summing `e_col` pair by pair through autograd."""
     problem = build_problem(scene, box_library())
     state = staged.State(problem.R.copy(), problem.p.copy(), problem.scale.copy())
-    schedule = staged.Schedule()
+    schedule = staged.StageSchedule()
     begun = time.thread_time()
     staged.refinement_stage(problem, state, schedule, lambda *_: None)
     batched = (time.thread_time() - begun) / schedule.steps

@@ -72,7 +72,7 @@ class PhotoTask:
 
 
 @dataclass(frozen=True)
-class PhotoResult:
+class PhotoScores:
     """One photo."""
 
     photo: str
@@ -98,7 +98,7 @@ def _title(photo: str, perturbation: str) -> str:
     return f"{photo}, {perturbation}" if perturbation else photo
 
 
-def build_photo(task: PhotoTask, library: ShapeLibrary, progress: Progress | None = None) -> PhotoResult:
+def build_photo(task: PhotoTask, library: ShapeLibrary, progress: Progress | None = None) -> PhotoScores:
     """Build and compare one photo; whatever goes wrong, it counts as failed and everything in it as wrong.
 
     Raises:
@@ -115,14 +115,14 @@ def build_photo(task: PhotoTask, library: ShapeLibrary, progress: Progress | Non
         if task.tile is not None:
             write_picture(task.tile, _tile(case, built, library))
         ghosts = floor_ghosts(built), ghosts_unmarked(built)
-        return PhotoResult(task.name, objects, *ghosts, spent, "", task.perturbation, key)
+        return PhotoScores(task.name, objects, *ghosts, spent, "", task.perturbation, key)
     except Cancelled:
         raise
     except Exception as error:  # whatever goes wrong, the photo counts as failed and the others go on
         log.warning("%s failed: %s", task.title, error)
         wrong = tuple(not_built(task.name, i, annotated) for i, annotated in enumerate(task.annotation.objects))
         spent = time.process_time() - begun
-        return PhotoResult(
+        return PhotoScores(
             task.name, wrong, None, None, spent, f"{type(error).__name__}: {error}", task.perturbation, key
         )
 

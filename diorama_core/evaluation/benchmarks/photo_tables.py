@@ -7,12 +7,12 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from diorama_core.evaluation.benchmarks.photo_build import PhotoResult
+from diorama_core.evaluation.benchmarks.photo_build import PhotoScores
 from diorama_core.evaluation.metrics.annotated import ObjectResult
 from diorama_core.evaluation.reports.intervals import paired_interval, statistic_interval
 from diorama_core.evaluation.reports.tables import Column, Row, Table, Value
 
-Results = Sequence[PhotoResult]
+Results = Sequence[PhotoScores]
 
 
 @dataclass(frozen=True)
@@ -44,7 +44,7 @@ def _form(results: Results) -> float | None:
     return _mean([right for r in results for o in r.objects for right in o.form.values()])
 
 
-def _of_photos(value: Callable[[PhotoResult], float | None]) -> Callable[[Results], float | None]:
+def _of_photos(value: Callable[[PhotoScores], float | None]) -> Callable[[Results], float | None]:
     return lambda results: _mean([value(r) for r in results if not r.failure])
 
 
@@ -137,7 +137,7 @@ def perturbed_tables(plain: Results, perturbed: Mapping[str, Results]) -> tuple[
     )
 
 
-def _restricted(plain: PhotoResult, perturbed: PhotoResult) -> PhotoResult:
+def _restricted(plain: PhotoScores, perturbed: PhotoScores) -> PhotoScores:
     """The plain result of the objects, and the attributes of them, that the perturbed one has too."""
     places = {o.index for o in perturbed.objects}
     return replace(plain, objects=tuple(o for o in plain.objects if o.index in places))

@@ -19,7 +19,7 @@ from pydantic import TypeAdapter, ValidationError
 
 from diorama_core.errors import InputError
 from diorama_core.evaluation.adapters.photo_annotations import picture_of, read_annotations, read_intrinsics
-from diorama_core.evaluation.benchmarks.photo_build import PhotoResult, PhotoTask, build_photo
+from diorama_core.evaluation.benchmarks.photo_build import PhotoScores, PhotoTask, build_photo
 from diorama_core.evaluation.benchmarks.photo_tables import (
     folds_table,
     form_table,
@@ -37,7 +37,7 @@ SHEET_COLUMNS = 2
 _CAPTION_PX = 18
 _MAX_BYTES = 100_000_000
 """Results of some ten thousand photos."""
-_RESULTS = TypeAdapter(list[PhotoResult])
+_RESULTS = TypeAdapter(list[PhotoScores])
 _SETTINGS = TypeAdapter(dict[str, float])
 
 
@@ -71,11 +71,11 @@ class PhotosBench:
     """Results of all photos."""
 
     plan: PhotoPlan
-    results: tuple[PhotoResult, ...]
+    results: tuple[PhotoScores, ...]
     """Results of the tasks that are done, in their order."""
 
     @property
-    def plain(self) -> tuple[PhotoResult, ...]:
+    def plain(self) -> tuple[PhotoScores, ...]:
         """Photos as they are."""
         return tuple(r for r in self.results if not r.perturbation)
 
@@ -176,7 +176,7 @@ def run(
     asked: PhotoPlan,
     library: ShapeLibrary,
     *,
-    known: Sequence[PhotoResult] = (),
+    known: Sequence[PhotoScores] = (),
     processes: int = 1,
     after_photo: Callable[[PhotosBench], None] | None = None,
     progress: Progress | None = None,
@@ -196,7 +196,7 @@ def run(
     done = {task.title: of_key[key] for task in asked.tasks if (key := task.key()) in of_key and _drawn(task)}
     waiting = [task for task in asked.tasks if task.title not in done]
 
-    def take(task: PhotoTask, result: PhotoResult) -> None:
+    def take(task: PhotoTask, result: PhotoScores) -> None:
         done[task.title] = result
         progress.report(len(done) / len(asked.tasks), f"{len(done)} of {len(asked.tasks)}: {task.title}")
         if after_photo is not None:
@@ -222,7 +222,7 @@ def _drawn(task: PhotoTask) -> bool:
     return task.tile is None or task.tile.is_file()
 
 
-def read_results(path: Path) -> list[PhotoResult]:
+def read_results(path: Path) -> list[PhotoScores]:
     """The photos of an earlier run's JSON; none where there is no such file.
 
     Raises:

@@ -21,7 +21,7 @@ from diorama_core.evaluation.benchmarks.pose_comparison import (
     OURS,
     TRUE_DEPTH,
     PoseScores,
-    Seen,
+    SeenInput,
     SideBySide,
     inputs_with,
     pose_scores,
@@ -188,7 +188,7 @@ def _one_room(view: TruthView, solvers: SideBySide, tally: _Tally, progress: Pro
             rows.append(pose_scores(view, scene, library))
 
 
-def _retrieved(solvers: SideBySide, seen: Seen | None) -> tuple[RankedShapes, ...] | None:
+def _retrieved(solvers: SideBySide, seen: SeenInput | None) -> tuple[RankedShapes, ...] | None:
     """One more shape of every object than any table keeps."""
     return None if seen is None else _tried(solvers.retrieved, seen, max(RETRIEVALS) + 1)
 
@@ -198,7 +198,11 @@ def _firsts(retrieved: tuple[RankedShapes, ...] | None, count: int) -> tuple[Ran
 
 
 def _scenes(
-    view: TruthView, solvers: SideBySide, seen: Seen | None, retrieved: tuple[RankedShapes, ...] | None, shapes: str
+    view: TruthView,
+    solvers: SideBySide,
+    seen: SeenInput | None,
+    retrieved: tuple[RankedShapes, ...] | None,
+    shapes: str,
 ) -> Mapping[str, Scene]:
     if seen is None or (retrieved is None and shapes != GIVEN):
         return {}

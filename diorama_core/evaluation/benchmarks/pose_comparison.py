@@ -111,7 +111,7 @@ def pose_scores(view: TruthView, scene: Scene | None, library: ShapeLibrary) -> 
 
 
 @dataclass(frozen=True, eq=False)
-class Seen:
+class SeenInput:
     """What a pose stage is given of one picture, with the room that its poses are put into."""
 
     stages: Stages
@@ -148,14 +148,14 @@ class Seen:
         return evaluate(self.stages, {**self.known, **given}, wanted, Runner(None))
 
 
-def predict(inputs: Inputs, library: ShapeLibrary) -> Seen:
+def predict(inputs: Inputs, library: ShapeLibrary) -> SeenInput:
     """Run the embedded stages up to depth.
 
     Raises:
         DioramaError: with the reason, when a stage cannot do its work.
     """
     stages = embedded_stages(inputs, library)
-    return Seen(stages, evaluate(stages, {"given": inputs}, ("depth",), Runner(None)))
+    return SeenInput(stages, evaluate(stages, {"given": inputs}, ("depth",), Runner(None)))
 
 
 def inputs_with(view: TruthView, depth: str) -> Inputs:
@@ -203,21 +203,21 @@ class SideBySide:
         """The solvers that need no networks."""
         return cls(library, RenderAndCompare(library), CorrespondencePose(library, grid=HALF_GRID))
 
-    def retrieved(self, seen: Seen, keep: int) -> tuple[RankedShapes, ...]:
+    def retrieved(self, seen: SeenInput, keep: int) -> tuple[RankedShapes, ...]:
         """Ranked shapes of every object."""
         stage = HierarchicalRetrieval(self.library, keep=keep)
         return stage.retrieve(seen.inputs, seen.objects, seen.geometry, Progress())
 
-    def given(self, view: TruthView, seen: Seen) -> tuple[RankedShapes, ...]:
+    def given(self, view: TruthView, seen: SeenInput) -> tuple[RankedShapes, ...]:
         """The true shape of every object."""
         return TrueShapes.of(view).retrieve(seen.inputs, seen.objects, seen.geometry, Progress())
 
-    def our_scene(self, seen: Seen, shapes: tuple[RankedShapes, ...]) -> Scene:
+    def our_scene(self, seen: SeenInput, shapes: tuple[RankedShapes, ...]) -> Scene:
         """Our solver's scene."""
         posed = self.ours.pose(seen.inputs, seen.objects, seen.geometry, seen.depth, shapes, Progress())
         return seen.scene(posed, self.library)
 
-    def scenes(self, seen: Seen, shapes: tuple[RankedShapes, ...]) -> dict[str, Scene]:
+    def scenes(self, seen: SeenInput, shapes: tuple[RankedShapes, ...]) -> dict[str, Scene]:
         """The scene of every solver, by name."""
         given = (seen.inputs, seen.objects, seen.geometry, seen.depth, shapes, Progress())
         posed = {OURS: self.ours.pose(*given)}

@@ -36,7 +36,7 @@ Clicker = Callable[[Photo, Float[np.ndarray, "n 2"]], Sequence[Box | None]]
 
 
 @dataclass(frozen=True)
-class Found:
+class FoundBoxes:
     """What one route found in one photo."""
 
     objects: int
@@ -53,7 +53,7 @@ class Found:
 
 
 @dataclass(frozen=True)
-class Named:
+class NamedBoxes:
     """How annotated boxes of one photo were named."""
 
     objects: int
@@ -63,7 +63,7 @@ class Named:
 
 
 @dataclass(frozen=True)
-class Clicked:
+class ClickedBoxes:
     """The boxes that one click on each annotated object of one photo gave."""
 
     objects: int
@@ -78,9 +78,9 @@ class Clicked:
 class RecognitionBench:
     """Results of all routes, by photo."""
 
-    found: Mapping[str, Mapping[str, Found]]
-    named: Mapping[str, Mapping[str, Named]]
-    clicked: Mapping[str, Mapping[str, Clicked]]
+    found: Mapping[str, Mapping[str, FoundBoxes]]
+    named: Mapping[str, Mapping[str, NamedBoxes]]
+    clicked: Mapping[str, Mapping[str, ClickedBoxes]]
 
     def tables(self) -> tuple[Table, ...]:
         """Routes to boxes, and ways to name given boxes."""
@@ -156,9 +156,9 @@ def run(
     present = {name: path for name in known if (path := picture_of(photos, name)) is not None}
     if not present:
         raise InputError(f"{photos}: none of the {len(known)} annotated photos is there; name pictures by their ids")
-    found: dict[str, dict[str, Found]] = {name: {} for name in routes}
-    named: dict[str, dict[str, Named]] = {name: {} for name in namers}
-    clicked: dict[str, dict[str, Clicked]] = {name: {} for name in clickers}
+    found: dict[str, dict[str, FoundBoxes]] = {name: {} for name in routes}
+    named: dict[str, dict[str, NamedBoxes]] = {name: {} for name in namers}
+    clicked: dict[str, dict[str, ClickedBoxes]] = {name: {} for name in clickers}
     rng = np.random.default_rng(CLICKS_SEED)
     for k, (name, path) in enumerate(present.items()):
         progress.report(k / len(present), name)
@@ -181,7 +181,7 @@ def in_photo(path: Path, photo: AnnotatedPhoto) -> tuple[Inputs, Float[np.ndarra
     return inputs, np.array([t.bbox for t in photo.objects], dtype=float).reshape(-1, 4) * scale
 
 
-def _look(stage: DetectionStage, photo: Photo, boxes: Float[np.ndarray, "n 4"], about: AnnotatedPhoto) -> Found:
+def _look(stage: DetectionStage, photo: Photo, boxes: Float[np.ndarray, "n 4"], about: AnnotatedPhoto) -> FoundBoxes:
     begun = time.perf_counter()
     proposed = stage.detect(photo, (), Progress())[:BEST]
     seconds = time.perf_counter() - begun
@@ -196,14 +196,14 @@ def _look(stage: DetectionStage, photo: Photo, boxes: Float[np.ndarray, "n 4"], 
             taken[k] = True
             right += 1
             named += _same_kind(box, about.objects[k].kind)
-    return Found(len(boxes), hits, len(proposed), right, named, seconds)
+    return FoundBoxes(len(boxes), hits, len(proposed), right, named, seconds)
 
 
 def _same_kind(box: LabelledBox, kind: str) -> bool:
     return box.category == kind or broad(kind) == box.category
 
 
-def _name(namer: Namer, photo: Photo, boxes: Float[np.ndarray, "n 4"], about: AnnotatedPhoto) -> Named:
+def _name(namer: Namer, photo: Photo, boxes: Float[np.ndarray, "n 4"], about: AnnotatedPhoto) -> NamedBoxes:
     asked = [k for k, t in enumerate(about.objects) if t.nameable]
     begun = time.perf_counter()
     ranked = namer(photo, boxes[asked])
@@ -211,10 +211,12 @@ def _name(namer: Namer, photo: Photo, boxes: Float[np.ndarray, "n 4"], about: An
     kinds = [about.objects[k].kind for k in asked]
     first = sum(r[0] == kind for r, kind in zip(ranked, kinds, strict=True))
     five = sum(kind in r[:5] for r, kind in zip(ranked, kinds, strict=True))
-    return Named(len(asked), first, five, seconds)
+    return NamedBoxes(len(asked), first, five, seconds)
 
 
-def _click(clicker: Clicker, photo: Photo, spots: Float[np.ndarray, "n 2"], boxes: Float[np.ndarray, "n 4"]) -> Clicked:
+def _click(
+    clicker: Clicker, photo: Photo, spots: Float[np.ndarray, "n 2"], boxes: Float[np.ndarray, "n 4"]
+) -> ClickedBoxes:
     begun = time.perf_counter()
     meant = clicker(photo, spots)
     seconds = time.perf_counter() - begun
@@ -223,10 +225,10 @@ def _click(clicker: Clicker, photo: Photo, spots: Float[np.ndarray, "n 2"], boxe
         for box, true in zip(meant, boxes, strict=True)
     ]
     hits = tuple(sum(share >= level for share in right) for level in LEVELS)
-    return Clicked(len(boxes), hits, sum(box is None for box in meant), seconds)
+    return ClickedBoxes(len(boxes), hits, sum(box is None for box in meant), seconds)
 
 
-def _found_values(photos: Sequence[Found]) -> tuple[float | int, ...]:
+def _found_values(photos: Sequence[FoundBoxes]) -> tuple[float | int, ...]:
     objects, boxes = sum(p.objects for p in photos), sum(p.boxes for p in photos)
     right = sum(p.right for p in photos)
     return (
@@ -239,6 +241,6 @@ def _found_values(photos: Sequence[Found]) -> tuple[float | int, ...]:
     )
 
 
-def _shares(photos: Sequence[Named]) -> tuple[float, float]:
+def _shares(photos: Sequence[NamedBoxes]) -> tuple[float, float]:
     count = max(sum(p.objects for p in photos), 1)
     return sum(p.first for p in photos) / count, sum(p.among_five for p in photos) / count

@@ -29,7 +29,7 @@ MISTAKES_SHOWN = 5
 
 
 @dataclass(frozen=True)
-class Asked:
+class AskedSupport:
     """One question about one picture, however many calls it took."""
 
     question: str
@@ -53,7 +53,7 @@ class RelationsBench:
     counts: tuple[tuple[str, RelationCount], ...]
     model: str = ""
     """The language model that was asked; empty where none was."""
-    asked: tuple[Asked, ...] = ()
+    asked: tuple[AskedSupport, ...] = ()
 
     def tables(self) -> tuple[Table, ...]:
         """One row per kind of input; what the questions took, where a language model was asked."""
@@ -77,7 +77,7 @@ class MeteredGraph:
     """A language model's graph stage that notes what every picture took. Implements `GraphStage`."""
 
     stage: LanguageGraph
-    asked: list[Asked] = field(default_factory=list)
+    asked: list[AskedSupport] = field(default_factory=list)
 
     def relate(
         self, inputs: Inputs, objects: tuple[DetectedObject, ...], geometry: ObjectGeometry, progress: Progress
@@ -87,7 +87,9 @@ class MeteredGraph:
         graph = self.stage.relate(inputs, objects, geometry, progress)
         if (use := graph.source.asked) is not None:
             seconds = time.perf_counter() - began
-            self.asked.append(Asked(WHAT_HOLDS_WHAT, use.calls, use.tokens, seconds, use.cost, use.calls - use.replies))
+            self.asked.append(
+                AskedSupport(WHAT_HOLDS_WHAT, use.calls, use.tokens, seconds, use.cost, use.calls - use.replies)
+            )
         return graph
 
 
@@ -113,7 +115,7 @@ def run(
     progress = progress or Progress()
     counts = {WITH_DEPTH: RelationCount(), PHOTO_ALONE: RelationCount()}
     settings = None if language_model is None else replace(language_model, cache=None)
-    asked: list[Asked] = []
+    asked: list[AskedSupport] = []
     cases = recipe(scenes, 1, seed)
     left_out: list[LeftOut] = []
     for k, (case, view) in enumerate(attempted(cases, library, left_out)):
@@ -129,7 +131,7 @@ def run(
     return RelationsBench(seed, scenes - len(left_out), tuple(counts.items()), model, tuple(asked))
 
 
-def costs_table(model: str, asked: Sequence[Asked]) -> Table:
+def costs_table(model: str, asked: Sequence[AskedSupport]) -> Table:
     """Means over pictures of what the questions took, beside the paper's."""
     columns = (
         Column("calls", ".1f", "↓"),
@@ -150,14 +152,14 @@ def costs_table(model: str, asked: Sequence[Asked]) -> Table:
     return Table("Language model: times and costs", columns, rows, note)
 
 
-def _recognised(photo: Photo, settings: LmmSettings) -> Asked:
+def _recognised(photo: Photo, settings: LmmSettings) -> AskedSupport:
     began = time.perf_counter()
     usage = LanguageRecognition(settings).ask(photo, Progress()).usage
     seconds = time.perf_counter() - began
-    return Asked(WHAT_IS_THERE, usage.calls, usage.tokens, seconds, usage.cost(settings), usage.calls - 1)
+    return AskedSupport(WHAT_IS_THERE, usage.calls, usage.tokens, seconds, usage.cost(settings), usage.calls - 1)
 
 
-def _means(asked: Sequence[Asked]) -> tuple[float | None, ...]:
+def _means(asked: Sequence[AskedSupport]) -> tuple[float | None, ...]:
     """Calls, tokens, seconds, cost and unusable replies."""
     columns = zip(*((a.calls, a.tokens, a.seconds, a.cost, a.unusable) for a in asked), strict=True)
     return tuple(None if None in column else float(np.mean(column)) for column in columns)

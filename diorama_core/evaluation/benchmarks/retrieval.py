@@ -45,7 +45,7 @@ GROUPS = ("household", "furniture", "occluded", "complete", "supported", "suppor
 
 
 @dataclass(frozen=True)
-class ObjectResult:
+class RetrievalResult:
     """What was retrieved for one object."""
 
     case: str
@@ -72,7 +72,7 @@ class RetrievalBench:
     """All objects of all rooms."""
 
     seed: int
-    objects: tuple[ObjectResult, ...]
+    objects: tuple[RetrievalResult, ...]
 
     def tables(self) -> tuple[Table, ...]:
         """The paper's retrieval table, and how often the very shape was found."""
@@ -111,7 +111,7 @@ def run(
     rows = {name: (partial(_alone, name, library), partial(_alone, name, unoffered)) for name in ALONE}
     for name, stage in published_stages(embeddings or {}).items():
         rows[name] = (partial(_ranked, stage(library)), partial(_ranked, stage(unoffered)))
-    results: list[ObjectResult] = []
+    results: list[RetrievalResult] = []
     cases = recipe(scenes, 1, seed)
     for k, (case, view) in enumerate(attempted(cases, tested, [])):
         progress.report(k / len(cases), case.name)
@@ -172,7 +172,7 @@ def _result(
     same: dict[str, tuple[str, ...]],
     unseen: dict[str, tuple[str, ...]],
     library: ShapeLibrary,
-) -> ObjectResult:
+) -> RetrievalResult:
     item = view.scene.objects[index]
 
     def distances(ranked: tuple[str, ...]) -> tuple[float, float]:
@@ -185,7 +185,7 @@ def _result(
     ranked, others = same.get(item.id, ()), unseen.get(item.id, ())
     rank = ranked.index(item.shape_id) + 1 if item.shape_id in ranked else None
     groups = object_groups(view, index)
-    return ObjectResult(
+    return RetrievalResult(
         case,
         item.id,
         item.category,
@@ -211,7 +211,7 @@ def object_groups(view: TruthView, index: int) -> tuple[str, ...]:
     return tuple(groups)
 
 
-def retrieval_table(objects: Sequence[ObjectResult]) -> Table:
+def retrieval_table(objects: Sequence[RetrievalResult]) -> Table:
     """Chamfer distance by group, same source and out of distribution (paper, table 4)."""
     columns = tuple(Column(f"{g} {s}", ".1f", "↓") for g in GROUPS for s in ("SS", "OOD"))
 
@@ -243,7 +243,7 @@ def retrieval_table(objects: Sequence[ObjectResult]) -> Table:
     return Table("Retrieval", columns, (*rows, *paper_rows(paper.RETRIEVAL)), note)
 
 
-def recall_table(objects: Sequence[ObjectResult]) -> Table:
+def recall_table(objects: Sequence[RetrievalResult]) -> Table:
     """How often the very shape is first, or among the first five or eight, and the first is of the right kind."""
     columns = (
         Column("objects", "d"),

@@ -36,7 +36,7 @@ def step_seconds(way: str, count: int, seed: int) -> float | None:
 
 
 def _ours(problem: Problem) -> float:
-    schedule = staged.Schedule()
+    schedule = staged.StageSchedule()
     state = staged.State(problem.R.copy(), problem.p.copy(), problem.scale.copy())
     work = partial(staged.refinement_stage, problem, state, schedule, lambda *_: None)
     return cost_of(work).seconds / schedule.steps

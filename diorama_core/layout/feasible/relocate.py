@@ -35,7 +35,7 @@ def relocate(program: Program, y: Float[np.ndarray, " v"]) -> Separation:
 
 
 @dataclass(frozen=True, eq=False)
-class Spot:
+class FreeSpot:
     """A place that is free."""
 
     cost: float
@@ -49,7 +49,7 @@ def _movable(program: Program, pair: tuple[int, int]) -> list[int]:
     return [k for k in (*first, *second) if (k in first) != (k in second) and program.problem.free[k]]
 
 
-def cheapest_spot(program: Program, y: Float[np.ndarray, " v"], i: int, reaches_m: Sequence[float]) -> Spot | None:
+def cheapest_spot(program: Program, y: Float[np.ndarray, " v"], i: int, reaches_m: Sequence[float]) -> FreeSpot | None:
     """The cheapest place without overlap for an object and what it supports; None where none is within reach.
 
     Args:
@@ -76,7 +76,7 @@ def cheapest_spot(program: Program, y: Float[np.ndarray, " v"], i: int, reaches_
         cost = np.where(far <= np.minimum(limit, reach), program.cost(tried), np.inf)
         best = int(cost.argmin())
         if np.isfinite(cost[best]):
-            return Spot(float(cost[best]), tried[best], moving)
+            return FreeSpot(float(cost[best]), tried[best], moving)
     return None
 
 

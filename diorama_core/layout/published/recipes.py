@@ -16,7 +16,7 @@ from diorama_core.layout.gradients import near_pairs
 from diorama_core.layout.problem.problem import Problem, build_problem
 from diorama_core.layout.problem.volumes import Volumes, contact_templates
 from diorama_core.layout.published import costs, staged
-from diorama_core.layout.published.staged import Edges, Report, Schedule, State
+from diorama_core.layout.published.staged import Edges, Report, StageSchedule, State
 from diorama_core.layout.report import measure
 from diorama_core.layout.weights import AS_IT_IS, Weights
 from diorama_core.library.record import ShapeLibrary
@@ -25,8 +25,8 @@ from diorama_core.protocols import Preview
 from diorama_core.scene import edits
 from diorama_core.scene.types import Scene
 
-PUBLISHED = Schedule()
-TOGETHER = Schedule(steps=400, decay_every=100)
+PUBLISHED = StageSchedule()
+TOGETHER = StageSchedule(steps=400, decay_every=100)
 
 
 @dataclass(frozen=True)
@@ -36,7 +36,7 @@ class PaperRecipe:
     library: ShapeLibrary
     only: frozenset[str] | None = None
     """Ids free to move (with what they hold up); all when None."""
-    schedule: Schedule = PUBLISHED
+    schedule: StageSchedule = PUBLISHED
     stages: int = 4
     """How many of the four stages to run, for the ablation."""
     adherence_m: float = 0.1
@@ -69,7 +69,7 @@ class AllInOneRecipe:
     library: ShapeLibrary
     only: frozenset[str] | None = None
     """Ids free to move (with what they hold up); all when None."""
-    schedule: Schedule = TOGETHER
+    schedule: StageSchedule = TOGETHER
     adherence_m: float = 0.1
     """Objects on the floor nearer to a wall than this are drawn to it."""
     weights: Weights = AS_IT_IS
@@ -127,7 +127,7 @@ def _finished(name: str, scene: Scene, problem: Problem, state: State, begun: fl
     return edits.set_metrics(placed, after), report
 
 
-def _all_at_once(problem: Problem, state: State, schedule: Schedule, weights: Weights, report: Report) -> None:
+def _all_at_once(problem: Problem, state: State, schedule: StageSchedule, weights: Weights, report: Report) -> None:
     """Steps on every parameter by the sum of all costs; rotations on their manifold."""
     terms = _Terms(problem, state, weights)
     free = torch.tensor(problem.free, dtype=torch.float64)[:, None]

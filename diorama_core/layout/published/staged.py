@@ -21,7 +21,7 @@ from diorama_core.layout.weights import AS_IT_IS, Weights
 
 
 @dataclass(frozen=True)
-class Schedule:
+class StageSchedule:
     """How steps are taken."""
 
     steps: int = 200
@@ -107,7 +107,7 @@ class Edges:
 
 
 def orientation_stage(
-    problem: Problem, state: State, schedule: Schedule, report: Report, *, weights: Weights = AS_IT_IS
+    problem: Problem, state: State, schedule: StageSchedule, report: Report, *, weights: Weights = AS_IT_IS
 ) -> None:
     """Stage 1: turn objects until contact faces are parallel to their supports. 3 e_align + e_sem.
 
@@ -142,7 +142,7 @@ def orientation_stage(
 
 
 def placement_stage(
-    problem: Problem, state: State, schedule: Schedule, report: Report, *, weights: Weights = AS_IT_IS
+    problem: Problem, state: State, schedule: StageSchedule, report: Report, *, weights: Weights = AS_IT_IS
 ) -> None:
     """Stage 2: move objects onto their supports, keeping their neighbours' relative positions. 5 e_place + e_rel.
 
@@ -153,7 +153,7 @@ def placement_stage(
         report: called at every step; may raise to cancel.
         weights: factors on what each cost counts.
     """
-    cost = Placement.of(problem, state)
+    cost = PlacementCost.of(problem, state)
     links = gradients.incidence(problem.relations, problem.count)
     velocity, start = np.zeros((problem.count, 3)), state.p.copy()
     free = problem.free.astype(np.float64)[:, None]
@@ -168,7 +168,7 @@ def placement_stage(
 
 
 def space_stage(
-    problem: Problem, state: State, schedule: Schedule, report: Report, *, weights: Weights = AS_IT_IS
+    problem: Problem, state: State, schedule: StageSchedule, report: Report, *, weights: Weights = AS_IT_IS
 ) -> None:
     """Stage 3: move and shrink objects until they are inside their supporting volumes. e_vol.
 
@@ -210,7 +210,7 @@ def space_stage(
 def refinement_stage(
     problem: Problem,
     state: State,
-    schedule: Schedule,
+    schedule: StageSchedule,
     report: Report,
     *,
     weights: Weights = AS_IT_IS,
@@ -226,7 +226,7 @@ def refinement_stage(
         weights: factors on what each cost counts.
         near_m: gap of boxes that are watched.
     """
-    cost = Placement.of(problem, state)
+    cost = PlacementCost.of(problem, state)
     R, centre, size, apart = with_walls(problem, state)
     n = problem.count
     velocity = np.zeros((n, 3))
@@ -249,7 +249,7 @@ def refinement_stage(
 
 
 @dataclass(frozen=True, eq=False)
-class Placement:
+class PlacementCost:
     """e_place as a function of positions only: everything else is fixed within a stage."""
 
     slope: Float[np.ndarray, "e 3"]
@@ -259,7 +259,7 @@ class Placement:
     scatter: Float[np.ndarray, "n e"]
 
     @classmethod
-    def of(cls, problem: Problem, state: State) -> Placement:
+    def of(cls, problem: Problem, state: State) -> PlacementCost:
         """The cost at the present rotations and scales."""
         edges = Edges.of(problem)
         R, _, scale = edges.owners(state)

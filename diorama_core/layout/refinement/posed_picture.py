@@ -31,7 +31,7 @@ class Rest:
 
 
 @dataclass(frozen=True, eq=False)
-class Look:
+class TriedPoses:
     """One object in several poses among the others as they are."""
 
     index: int
@@ -93,7 +93,7 @@ class PosedPicture:
         """Pixels of each object's mask."""
         return self._wanted_pixels
 
-    def look(self, i: int, poses: PoseBatch) -> Look | None:
+    def look(self, i: int, poses: PoseBatch) -> TriedPoses | None:
         """What is seen of object i in several poses near its present one, which is the first; None where nothing is."""
         bounds = self.casters[i].bounds_px(self.grid.camera, poses)
         window = self.grid.window(bounds)
@@ -110,9 +110,9 @@ class PosedPicture:
         seen = [self._with(i, rest, own) for own in depth]
         pixels, right = np.array([p for p, _ in seen]), np.array([r for _, r in seen])
         agreement = right / np.maximum(pixels + self.wanted_pixels - right, 1)
-        return Look(i, poses, rest, agreement, bounds)
+        return TriedPoses(i, poses, rest, agreement, bounds)
 
-    def replace(self, look: Look, chosen: int) -> None:
+    def replace(self, look: TriedPoses, chosen: int) -> None:
         """Let the object of a look be seen in one of its poses from now on."""
         i, window, rays = look.index, look.rest.window, self.grid.rays[look.rest.window]
         own = _cast(self.grid, self.casters[i], rays.reshape(-1, 3), look.poses[np.array([chosen])])

@@ -12,7 +12,7 @@ from diorama_core.geometry.projection import box_iou
 from diorama_core.geometry.silhouette import PoseBatch
 from diorama_core.layout.problem.problem import Problem
 from diorama_core.layout.refinement.freedom import Freedom, freedom
-from diorama_core.layout.refinement.posed_picture import Look, PosedPicture
+from diorama_core.layout.refinement.posed_picture import PosedPicture, TriedPoses
 from diorama_core.layout.refinement.prior import PosePrior
 from diorama_core.layout.refinement.room_left import RoomLeft
 from diorama_core.layout.settings import REFINEMENT, RefinementSettings
@@ -117,7 +117,7 @@ class _Try:
     poses: PoseBatch
     number: int
     """Which of the poses."""
-    look: Look
+    look: TriedPoses
 
 
 def _best_first(tries: Sequence[_Try]) -> list[_Try]:

@@ -24,7 +24,7 @@ _ADVICE = "download it again"
 
 
 @dataclass(frozen=True)
-class Entry:
+class DatasetEntry:
     """One model of a data set."""
 
     path: Path
@@ -42,7 +42,7 @@ class Dataset:
     name: str
     marks: tuple[str, ...]
     """Files or folders (patterns) of its layout; a folder that has one of them is taken for it."""
-    entries: Callable[[Path], Iterator[Entry]]
+    entries: Callable[[Path], Iterator[DatasetEntry]]
     """Its models under a folder, in a stable order; those whose files are absent are left out."""
 
 
@@ -60,7 +60,7 @@ def as_sources(dataset: Dataset, folder: Path, given: Given) -> tuple[Source, ..
     return sources(folder, [e.path for e in found], Given(), known, ids)
 
 
-def _named(entry: Entry, dataset: Dataset) -> Given:
+def _named(entry: DatasetEntry, dataset: Dataset) -> Given:
     """What the set says, with the category that its words mean; its own words become synonyms."""
     category = next((c for w in entry.words for c in [taxonomy.resolve(w)] if w and c.exact), None)
     name = category.category.name if category is not None else taxonomy.UNKNOWN.name

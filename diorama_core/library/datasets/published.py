@@ -10,7 +10,7 @@ from typing import Any
 from diorama_core.errors import InputError
 from diorama_core.library.datasets.layout import (
     Dataset,
-    Entry,
+    DatasetEntry,
     first,
     json_from,
     read_json,
@@ -21,7 +21,7 @@ from diorama_core.library.datasets.layout import (
 from diorama_core.library.ingest.guess import AXES, Given
 
 
-def _objaverse(root: Path) -> Iterator[Entry]:
+def _objaverse(root: Path) -> Iterator[DatasetEntry]:
     """`lvis-annotations.json.gz` (class -> uids), `glbs/*/UID.glb`, `metadata/*.json.gz` (uid -> name, license)."""
     notes = first(root, "lvis-annotations.json*")
     classes: dict[str, str] = {}
@@ -37,10 +37,10 @@ def _objaverse(root: Path) -> Iterator[Entry]:
         row = about.get(uid, {})
         words = (spoken(classes[uid]),) if uid in classes else ()
         licence = str(row.get("license") or "see the model's page")
-        yield Entry(path, uid, words, Given(up="+y", caption=str(row.get("name") or ""), licence=licence))
+        yield DatasetEntry(path, uid, words, Given(up="+y", caption=str(row.get("name") or ""), licence=licence))
 
 
-def _shapenet(root: Path) -> Iterator[Entry]:
+def _shapenet(root: Path) -> Iterator[DatasetEntry]:
     """`SYNSET/MODEL/models/model_normalized.obj` (version 2) or `SYNSET/MODEL/model.obj` (version 1), `taxonomy.json`.
 
     Aligned: +Y up; front -Z in version 2. Sizes are normalised, so the unit is left to be guessed.
@@ -54,7 +54,9 @@ def _shapenet(root: Path) -> Iterator[Entry]:
                 continue
             words = tuple(spoken(w) for w in names.get(synset, _SHAPENET.get(synset, "")).split(",") if w)
             front = "-z" if path.name == "model_normalized.obj" else None
-            yield Entry(path, f"{synset}-{model}", words, Given(up="+y", front=front, licence="ShapeNet terms of use"))
+            yield DatasetEntry(
+                path, f"{synset}-{model}", words, Given(up="+y", front=front, licence="ShapeNet terms of use")
+            )
 
 
 _SHAPENET = {
@@ -70,7 +72,7 @@ _SHAPENET = {
 """WordNet numbers of the classes that are found in rooms, for copies without `taxonomy.json`."""
 
 
-def _hssd(root: Path) -> Iterator[Entry]:
+def _hssd(root: Path) -> Iterator[DatasetEntry]:
     """`objects/*/HASH.glb` with `HASH.object_config.json` beside it, and a table of names in `metadata` or `semantics`.
 
     Parts of objects (`*_part_*`), colliders and filtered copies are left out.
@@ -91,7 +93,7 @@ def _hssd(root: Path) -> Iterator[Entry]:
         up, front = (_axis(stated.get(name) or row.get(name)) for name in ("up", "front"))
         front = None if front is not None and up is not None and front[1] == up[1] else front
         caption = row.get("name", "")
-        yield Entry(
+        yield DatasetEntry(
             path,
             path.stem,
             words,
@@ -99,7 +101,7 @@ def _hssd(root: Path) -> Iterator[Entry]:
         )
 
 
-def _future(root: Path) -> Iterator[Entry]:
+def _future(root: Path) -> Iterator[DatasetEntry]:
     """`MODEL/raw_model.obj` (metres, +Y up, +Z front) and `model_info.json` (model_id, super-category, category...)."""
     info = first(root, "model_info.json", "*/model_info.json")
     about = {row["model_id"]: row for row in read_json(info)} if info is not None else {}
@@ -109,10 +111,10 @@ def _future(root: Path) -> Iterator[Entry]:
         details = [str(row[k]).lower() for k in ("style", "material") if row.get(k)]
         caption = ", ".join([*words[:1], *details])
         licence = "Tianchi 3D-FUTURE terms of use"
-        yield Entry(path, path.parent.name, words, Given("+y", "+z", 1.0, caption=caption, licence=licence))
+        yield DatasetEntry(path, path.parent.name, words, Given("+y", "+z", 1.0, caption=caption, licence=licence))
 
 
-def _abo(root: Path) -> Iterator[Entry]:
+def _abo(root: Path) -> Iterator[DatasetEntry]:
     """`3dmodels/original/*/ID.glb` (metres, +Y up, +Z front); `listings/metadata/listings_*.json.gz`, one a line."""
     about: dict[str, tuple[str, str]] = {}
     for path in sorted(root.glob("listings/metadata/listings_*.json*")):
@@ -124,7 +126,7 @@ def _abo(root: Path) -> Iterator[Entry]:
     for path in sorted(root.glob("3dmodels/original/*/*.glb")):
         kind, name = about.get(path.stem, ("", ""))
         words = tuple(w for w in (kind, spoken(name.split(",")[0])) if w)
-        yield Entry(path, path.stem, words, Given("+y", "+z", 1.0, caption=name[:120], licence="CC BY 4.0"))
+        yield DatasetEntry(path, path.stem, words, Given("+y", "+z", 1.0, caption=name[:120], licence="CC BY 4.0"))
 
 
 def _english(names: list[dict[str, str]]) -> str:

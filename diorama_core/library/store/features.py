@@ -30,7 +30,7 @@ INDEX_FOLDER = "index"
 
 
 @dataclass(frozen=True)
-class Near:
+class NearShape:
     """One shape found by its features."""
 
     key: str
@@ -115,7 +115,7 @@ class FeatureMatrix:
 
     def top(
         self, query: Float[np.ndarray, "width"], k: int, among: Bool[np.ndarray, "keys"] | None = None
-    ) -> tuple[Near, ...]:
+    ) -> tuple[NearShape, ...]:
         """The `k` shapes whose features have the greatest dot product with a query, best first; ties by key order.
 
         Args:
@@ -134,7 +134,7 @@ class FeatureMatrix:
         best = exact.max(axis=1)
         order = np.lexsort((likely, -best))
         order = order[np.isfinite(scores[likely[order]])][:wanted]
-        return tuple(Near(self.keys[likely[i]], float(best[i]), int(exact[i].argmax())) for i in order)
+        return tuple(NearShape(self.keys[likely[i]], float(best[i]), int(exact[i].argmax())) for i in order)
 
     def scores(self, query: Float[np.ndarray, "width"]) -> Float[np.ndarray, "keys"]:
         """Dot products with a query in half precision; the best of each key's rows."""

@@ -15,7 +15,7 @@ import numpy as np
 from jaxtyping import Float
 
 from diorama_core.errors import LibraryError, UnavailableError
-from diorama_core.library.store.features import INDEX_FOLDER, FeatureMatrix, Near
+from diorama_core.library.store.features import INDEX_FOLDER, FeatureMatrix, NearShape
 
 log = logging.getLogger(__name__)
 
@@ -30,7 +30,7 @@ _ITERATIONS = 10
 class VectorIndex(Protocol):
     """Finds the features nearest to a query; features and queries of unit length make scores cosines."""
 
-    def top(self, query: Float[np.ndarray, "width"], k: int) -> tuple[Near, ...]:
+    def top(self, query: Float[np.ndarray, "width"], k: int) -> tuple[NearShape, ...]:
         """The `k` shapes with the greatest dot product with the query, best first."""
         ...
 
@@ -78,7 +78,7 @@ class LanceIndex:
         except (OSError, RuntimeError, ValueError) as error:
             raise LibraryError(f"the index in {matrix.folder} cannot be used ({error}); delete that folder") from error
 
-    def top(self, query: Float[np.ndarray, "width"], k: int) -> tuple[Near, ...]:
+    def top(self, query: Float[np.ndarray, "width"], k: int) -> tuple[NearShape, ...]:
         """See `VectorIndex.top`."""
         wanted = max(4 * k, 64) * self._matrix.rows
         asked = self._table.search(np.asarray(query, np.float32)).distance_type("dot").nprobes(self._probes)
@@ -87,7 +87,7 @@ class LanceIndex:
         exact = self._matrix.values[among].astype(np.float32) @ np.asarray(query, np.float32)
         best = exact.max(axis=1)
         order = np.lexsort((among, -best))[:k]
-        return tuple(Near(self._matrix.keys[among[i]], float(best[i]), int(exact[i].argmax())) for i in order)
+        return tuple(NearShape(self._matrix.keys[among[i]], float(best[i]), int(exact[i].argmax())) for i in order)
 
     def _up_to_date(self, lancedb: Any) -> Any:
         """The table with all rows of the matrix, indexed."""

@@ -7,7 +7,7 @@ from dataclasses import replace
 import pytest
 
 from diorama_core.evaluation.benchmarks.ablation import Figures, built, certificate, changes
-from diorama_core.evaluation.benchmarks.photo_build import PhotoResult
+from diorama_core.evaluation.benchmarks.photo_build import PhotoScores
 from diorama_core.evaluation.benchmarks.photos import PhotoPlan
 from diorama_core.evaluation.benchmarks.system_tables import CaseResult
 from diorama_core.evaluation.metrics.annotated import ObjectResult
@@ -15,11 +15,11 @@ from diorama_core.evaluation.metrics.scene import SceneScores
 from diorama_core.library.catalogue import built_in_library
 
 
-def photo(name: str, errors_deg: list[float]) -> PhotoResult:
+def photo(name: str, errors_deg: list[float]) -> PhotoScores:
     objects = (
         ObjectResult(name, k, "chair", "chair", False, front_error_deg=error) for k, error in enumerate(errors_deg)
     )
-    return PhotoResult(name, tuple(objects))
+    return PhotoScores(name, tuple(objects))
 
 
 BEFORE = Figures((photo("a", [0, 10, 100, 5]), photo("b", [3, 90]), photo("c", [1, 2])))

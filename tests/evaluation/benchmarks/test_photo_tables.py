@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from diorama_core.evaluation.benchmarks.photo_build import PhotoResult
+from diorama_core.evaluation.benchmarks.photo_build import PhotoScores
 from diorama_core.evaluation.benchmarks.photo_tables import folds_table, fronts_table, overall_table
 from diorama_core.evaluation.metrics.annotated import ObjectResult
 
 
-def _photo(name: str, *errors_deg: float) -> PhotoResult:
+def _photo(name: str, *errors_deg: float) -> PhotoScores:
     chairs = [ObjectResult(name, i, "chair", "chair", False, front_error_deg=e) for i, e in enumerate(errors_deg)]
-    return PhotoResult(name, tuple(chairs))
+    return PhotoScores(name, tuple(chairs))
 
 
 def test_fronts_within_45_degrees_are_right() -> None:

@@ -10,7 +10,7 @@ import pytest
 from diorama_core.evaluation.benchmarks.retrieval import (
     ALONE,
     MISSED,
-    ObjectResult,
+    RetrievalResult,
     _alone,
     _nearest,
     _ranked,
@@ -51,7 +51,7 @@ def test_the_nearest_of_five_counts_and_nothing_is_far(view: TruthView) -> None:
 
 
 def test_a_row_for_each_half() -> None:
-    item = ObjectResult(
+    item = RetrievalResult(
         "r", "a", "chair", ("furniture",), 5.0, 4.0, 9.0, 8.0, 2, True, False, (("words alone", 6.0, 7.0),)
     )
     row = retrieval_table([item]).row("words alone, best of 5")
@@ -84,7 +84,7 @@ def test_each_network_gets_the_publications_rows(
     for stage in stages.values():
         found = _ranked(stage(LIBRARY), view)
         assert all(len(found[view.scene.objects[index].id]) >= 5 for index in view.asked)
-    item = ObjectResult(
+    item = RetrievalResult(
         "r",
         "a",
         "chair",

@@ -7,7 +7,7 @@ import torch
 from diorama_core.layout.problem.problem import build_problem
 from diorama_core.layout.published import costs, staged
 from diorama_core.layout.published.recipes import AllInOneRecipe, PaperRecipe, one_thread
-from diorama_core.layout.published.staged import Schedule
+from diorama_core.layout.published.staged import StageSchedule
 from diorama_core.layout.report import measure
 from diorama_core.progress import Progress
 from diorama_core.scene.types import Scene
@@ -18,7 +18,7 @@ LIBRARY = box_library()
 
 
 def test_the_schedule_is_the_published_one() -> None:
-    rates = list(Schedule().rates())
+    rates = list(StageSchedule().rates())
     assert len(rates) == 200
     assert (rates[0], rates[49], rates[50], rates[199]) == pytest.approx((1.0, 1.0, 0.1, 1e-3))
 
@@ -71,7 +71,7 @@ def test_the_placement_cost_of_the_inner_loop_is_e_place() -> None:
     point = base + torch.tensor(np.einsum("eij,ej->ei", owner_R, edges.point * owner_s))
     normal = torch.tensor(np.einsum("eij,ej->ei", owner_R, edges.normal))
     value = costs.e_place(centre, point, normal)
-    ours, slope = staged.Placement.of(problem, state).of_positions(state.p)
+    ours, slope = staged.PlacementCost.of(problem, state).of_positions(state.p)
     assert ours == pytest.approx(float(value.detach()))
     assert np.allclose(slope, torch.autograd.grad(value, p)[0].numpy())
 

@@ -25,7 +25,7 @@ from diorama_core.library.ingest.shaping import Source
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.library.store import StoredLibrary
 from diorama_core.progress import CancelToken, Progress, ProgressEvent
-from diorama_core.workers import Done, Workers, workers
+from diorama_core.workers import FinishedItem, Workers, workers
 from tests.library.ingest.models import chair, document, table, write_glb, y_up
 
 
@@ -35,12 +35,12 @@ class Here:
 
     count: int = 1
 
-    def map(self, function: Callable[[Any], Any], items: Iterable[Any]) -> Iterator[Done[Any, Any]]:
+    def map(self, function: Callable[[Any], Any], items: Iterable[Any]) -> Iterator[FinishedItem[Any, Any]]:
         for item in items:
             try:
-                yield Done(item, function(item))
+                yield FinishedItem(item, function(item))
             except Exception as error:
-                yield Done(item, None, error)
+                yield FinishedItem(item, None, error)
 
 
 @pytest.fixture(autouse=True)
