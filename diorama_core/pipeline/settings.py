@@ -7,15 +7,10 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import fields, is_dataclass, replace
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import Any
 
 from diorama_core.errors import InputError
 from diorama_core.pipeline.stages import Stages
-
-if TYPE_CHECKING:
-    from _typeshed import DataclassInstance
-
-T = TypeVar("T", bound="DataclassInstance")
 
 
 def settings_of(stages: Stages) -> dict[str, float]:
@@ -55,10 +50,11 @@ def _numbers(value: Any, prefix: str) -> Iterator[tuple[str, float]]:
             yield from _numbers(held, f"{name}.")
 
 
-def _replaced(value: T, names: list[str], number: float) -> T:
+def _replaced(value: Any, names: list[str], number: float) -> Any:
+    """The dataclass with another number in the field, or the field within a field, of these names."""
     held = getattr(value, names[0])
     if len(names) > 1:
-        new: Any = _replaced(held, names[1:], number)
+        new = _replaced(held, names[1:], number)
     else:
         new = round(number) if isinstance(held, int) else float(number)
     return replace(value, **{names[0]: new})

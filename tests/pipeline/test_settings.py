@@ -7,6 +7,7 @@ import pytest
 
 from diorama_core.artefacts import Inputs, Photo
 from diorama_core.errors import InputError
+from diorama_core.layout.settings import LAYOUT, REFINEMENT
 from diorama_core.library.catalogue import built_in_library
 from diorama_core.pipeline.settings import settings_of, with_settings
 from diorama_core.pipeline.stages import embedded_stages
@@ -22,6 +23,9 @@ def test_numbers_within_stages_have_names(stages):
     known = settings_of(stages)
     assert known["layout.weights.outline"] == stages.layout.weights.outline
     assert known["layout.rounds"] == stages.layout.rounds
+    assert known["layout.settings.max_stretch"] == LAYOUT.max_stretch
+    assert known["refinement.settings.sigma"] == REFINEMENT.sigma
+    assert known["retrieval.settings.similarity.edges"] == stages.retrieval.settings.similarity.edges
     assert all(isinstance(value, (int, float)) for value in known.values())
 
 
