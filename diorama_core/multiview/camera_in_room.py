@@ -20,7 +20,7 @@ from shapely.geometry import Polygon
 from diorama_core.artefacts import CameraEstimate, CameraHypothesis
 from diorama_core.geometry.projection import box_iou, cuboid_corners, visible_bounds
 from diorama_core.library.taxonomy import UNKNOWN, broad
-from diorama_core.multiview.joint_fit import NEAR_M
+from diorama_core.multiview.joint_fit import NEAREST_M
 from diorama_core.perception.metrology.box_observations import BoxObservations
 from diorama_core.progress import Progress
 from diorama_core.scene.types import Camera, yaw_rotation
@@ -197,12 +197,12 @@ class _Search:
     def _scores(self, places: Float[np.ndarray, "p 3"], R: Float[np.ndarray, "3 3"]) -> Float[np.ndarray, "p"]:
         """How well boxes are covered from each place, roughly: what is behind the camera counts as very near."""
         local = (self._corners[None] - places[:, None, None]) @ R
-        z = np.maximum(local[..., 2], NEAR_M)
+        z = np.maximum(local[..., 2], NEAREST_M)
         k = self._k
         u = np.clip(local[..., 0] / z * k.fx + k.cx, 0, k.width)
         v = np.clip(local[..., 1] / z * k.fy + k.cy, 0, k.height)
         bounds = np.stack([u.min(-1), v.min(-1), u.max(-1), v.max(-1)], axis=-1)
-        bounds[(local[..., 2] < NEAR_M).all(axis=-1)] = 0.0
+        bounds[(local[..., 2] < NEAREST_M).all(axis=-1)] = 0.0
         shared = self._weight * box_iou(bounds[:, :, None], self._boxes.box_px[None, None])
         return np.minimum(shared.max(axis=1).sum(axis=1), shared.max(axis=2).sum(axis=1))
 

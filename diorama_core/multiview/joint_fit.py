@@ -26,13 +26,12 @@ from diorama_core.perception.metrology.problem import UNTOLD, Problems, View, re
 from diorama_core.perception.metrology.rows import row
 from diorama_core.scene.types import Camera
 
-NEAR_M = 0.15
+NEAREST_M = 0.15
 """What is nearer is not before a camera."""
-UNKNOWNS = 7
-EDGES = 4
 STEP = 1e-4
 LONGEST = np.array([0.5, 0.5, 0.4, 0.4, 0.4, 0.3, 0.3])
 """Length of one step of each unknown, at most."""
+UNKNOWNS = len(LONGEST)
 ODD_STARTS = np.radians((0.0, 30.0, 60.0, 90.0, 120.0, 150.0))
 
 
@@ -178,7 +177,7 @@ class _Joint:
         parts = []
         for camera, view, problems in self._views:
             rows = problems.rows(chosen).changed(yaw_rad=unknowns[:, 6])
-            edges = residuals(_as_seen(unknowns, camera, view), rows, view)[:, :EDGES]
+            edges = residuals(_as_seen(unknowns, camera, view), rows, view)[:, :4]
             behind = (rows.hidden_px > 0) & (edges > 0)
             parts.append(np.where(behind, _bounded(edges, self._settings.max_hidden), edges))
         size = np.einsum("nij,nj->ni", self._whitening[chosen], unknowns[:, 2:5] - self._log_size[chosen])
@@ -200,7 +199,7 @@ def _as_seen(unknowns: Float[np.ndarray, "n 7"], camera: Camera, view: View) -> 
     right = np.array([ahead[1], -ahead[0]])
     plan = unknowns[:, :2] - camera.position[:2]
     forward = plan @ ahead
-    safe = np.maximum(forward, NEAR_M)
+    safe = np.maximum(forward, NEAREST_M)
     return np.column_stack([plan @ right / safe, np.log(safe), unknowns[:, 2:5], unknowns[:, 5]])
 
 
