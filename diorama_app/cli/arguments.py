@@ -72,6 +72,14 @@ def intrinsics(text: str) -> tuple[float, float, float, float]:
     return fx, fy, cx, cy
 
 
+def coefficients(text: str) -> tuple[float, ...]:
+    """Numbers with commas between them."""
+    try:
+        return tuple(float(part) for part in text.split(","))
+    except ValueError:
+        raise argparse.ArgumentTypeError(f"{text!r}; give numbers: k1,k2,p1,p2,k3") from None
+
+
 def view(text: str) -> str:
     """photo, planes, top, front, orbit:DEG or turntable."""
     kind, _, angle = text.partition(":")

@@ -11,6 +11,7 @@ import diorama_core as diorama
 from diorama_app.cli.arguments import (
     PROFILES,
     RECIPES,
+    coefficients,
     command,
     field_of_view,
     intrinsics,
@@ -106,6 +107,13 @@ def add_build(commands: Any) -> None:
     inner = p.add_mutually_exclusive_group()
     inner.add_argument("--intrinsics", type=intrinsics, metavar="fx,fy,cx,cy", help="camera intrinsics in pixels")
     inner.add_argument("--fov", type=field_of_view, metavar="DEG", help="horizontal field of view in degrees")
+    p.add_argument(
+        "--distortion",
+        type=coefficients,
+        default=(),
+        metavar="k1,k2,p1,p2,k3",
+        help="of the lens, as OpenCV has it, k1 alone at least: the photo is straightened before it is used",
+    )
     p.add_argument(
         "--boxes",
         type=Path,
@@ -204,7 +212,7 @@ def _build_photo(a: argparse.Namespace, options: BuildOptions) -> None:
 
     if a.arrangements < 1:
         raise InputError(f"--arrangements {a.arrangements}: ask for at least one")
-    files = PhotoFiles(a.image, a.boxes, a.masks, a.depth, a.intrinsics, a.fov)
+    files = PhotoFiles(a.image, a.boxes, a.masks, a.depth, a.intrinsics, a.fov, a.distortion)
     with progress_bar() as progress:
         room = build_files(files, options, a.output, progress, print_note)
         scenes = write_arrangements(room, a.arrangements, progress)

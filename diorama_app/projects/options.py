@@ -36,6 +36,8 @@ class PhotoFiles:
     intrinsics: tuple[float, float, float, float] | None = None
     """fx, fy, cx, cy in pixels of the upright original photo."""
     fov_deg: float | None = None
+    distortion: tuple[float, ...] = ()
+    """Of the lens, in OpenCV's order: k1, k2, p1, p2, k3."""
 
 
 @dataclass(frozen=True)
@@ -95,6 +97,7 @@ def build_files(
         depth_kind=options.depth_kind,
         intrinsics=files.intrinsics,
         fov_deg=files.fov_deg,
+        distortion=files.distortion,
         profile=options.profile,
         networks=options.networks(files),
         recipe=options.recipe,

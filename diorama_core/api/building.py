@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import logging
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal
@@ -39,6 +39,7 @@ def build(
     depth_kind: DepthKind = "auto",
     intrinsics: tuple[float, float, float, float] | None = None,
     fov_deg: float | None = None,
+    distortion: Sequence[float] = (),
     profile: Profile = "auto",
     networks: NetworkChoice | None = None,
     recipe: Recipe = "feasible",
@@ -62,6 +63,7 @@ def build(
         depth_kind: "depth" along the optical axis, "distance" along the rays, or "inverse"; by default inferred.
         intrinsics: fx, fy, cx, cy in pixels of the upright original photo.
         fov_deg: horizontal field of view in degrees, instead of `intrinsics`.
+        distortion: of the lens, in OpenCV's order: k1, k2, p1, p2, k3; the photo is straightened before it is used.
         profile: "auto" uses the networks on this machine, "embedded" none, "foundation" insists on the paper's.
         networks: detector and depth network by id, instead of the best ones on this machine.
         recipe: of the layout optimiser.
@@ -95,9 +97,14 @@ def build(
     )
     for warning in read.warnings:
         warn(warning)
+    inputs = read.inputs
+    if distortion:
+        from diorama_core.multiview.lens import lens_of, without_distortion
+
+        inputs = without_distortion(inputs, lens_of(distortion))
     opened, name = _opened(library)
-    choose = _choice(read.inputs, opened, profile, recipe, stages, networks)
-    return _built(read.inputs, read.warnings, opened, name, choose, output, progress)
+    choose = _choice(inputs, opened, profile, recipe, stages, networks)
+    return _built(inputs, read.warnings, opened, name, choose, output, progress)
 
 
 def build_from_text(

@@ -15,6 +15,7 @@ import threading
 import time
 from collections.abc import Callable
 from multiprocessing.connection import Connection
+from pathlib import Path
 from typing import Any, ParamSpec, TypeVar
 
 from diorama_core.errors import DioramaError, InputError
@@ -26,6 +27,7 @@ R = TypeVar("R")
 MAX_MEMORY = 2_000_000_000
 """Address space of the process, code and libraries (up to half a gigabyte) included."""
 MAX_SECONDS = 60.0
+"""Of work; the time in which it waits for a processor does not count."""
 
 _GLANCE_S = 0.2
 """How often a cancel, and the end of the program, is looked for."""
@@ -93,11 +95,11 @@ class LimitedProcess:
 
     def _answer_from(self, connection: Connection, name: str, progress: Progress | None) -> tuple[bool, Any]:
         """The last message; the ones before it are steps of progress."""
-        quiet = 0.0
+        quiet, used = 0.0, self._cpu_time()
         while True:
-            patience = self._seconds if progress is None else _GLANCE_S
-            if not connection.poll(patience):
-                quiet += patience
+            if not connection.poll(_GLANCE_S):
+                before, used = used, self._cpu_time()
+                quiet += _GLANCE_S if before is None or used is None or not used[1] else used[0] - before[0]
                 if quiet >= self._seconds:
                     raise InputError(f"{name}: {_TOO_LONG}")
             else:
@@ -109,6 +111,9 @@ class LimitedProcess:
                     progress.report(*value)
             if progress is not None:
                 progress.check()
+
+    def _cpu_time(self) -> tuple[float, bool] | None:
+        return None if self._process is None else cpu_time(self._process.pid)
 
     def close(self) -> None:
         """End the process after what it does now; a later call starts another."""
@@ -150,6 +155,18 @@ class LimitedProcess:
                 self._process.kill()
             self._process.wait()
         self._process = self._connection = None
+
+
+def cpu_time(pid: int) -> tuple[float, bool] | None:
+    """Seconds of a processor that a process has used, and whether it is ready for more; None where nobody says.
+
+    On a busy machine a process that is ready waits for its turn: that is not its own time.
+    """
+    try:
+        state, *fields = Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()
+        return (int(fields[10]) + int(fields[11])) / os.sysconf("SC_CLK_TCK"), state == "R"
+    except (OSError, ValueError, IndexError):
+        return None
 
 
 def _end_with(program: int) -> None:

@@ -6,12 +6,14 @@ nerfstudio's models are cases of.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 from jaxtyping import Float
 
 from diorama_core.artefacts import Inputs, LabelledBox
+from diorama_core.errors import InputError
 from diorama_core.scene.types import Intrinsics
 
 MIN_BENT_PX = 0.5
@@ -47,6 +49,36 @@ class Lens:
         for _ in range(quarters % 4):
             p1, p2 = p2, -p1
         return replace(self, p=(p1, p2))
+
+
+def lens_of(numbers: Sequence[float]) -> Lens:
+    """The lens with OpenCV's coefficients: k1, or k1, k2, or k1, k2, p1, p2, k3 to k6 as far as they are given.
+
+    Raises:
+        InputError: there are other numbers than these.
+    """
+    if len(numbers) not in (1, 2, 4, 5, 8) or not np.isfinite(numbers).all():
+        shown = ",".join(f"{v:g}" for v in numbers)
+        raise InputError(f"--distortion {shown}: give OpenCV's k1 or k1,k2 or k1,k2,p1,p2 or k1,k2,p1,p2,k3")
+    p1, p2 = (numbers[2], numbers[3]) if len(numbers) > 2 else (0.0, 0.0)
+    return Lens((*numbers[:2], *numbers[4:]), (p1, p2))
+
+
+def without_distortion(inputs: Inputs, lens: Lens) -> Inputs:
+    """One photo with everything that lies on it, straightened around its camera, which must be known.
+
+    Raises:
+        InputError: neither the user nor the photo's header says the focal length.
+    """
+    photo, k = inputs.photo, inputs.intrinsics
+    if k is None and photo.exif_focal_px is not None:
+        focal = photo.exif_focal_px
+        k = Intrinsics(photo.width, photo.height, focal, focal, photo.width / 2, photo.height / 2)
+    if k is None:
+        raise InputError(
+            "--distortion needs the focal length, which the photo's header does not say: add --fov or --intrinsics"
+        )
+    return replace(straightened(inputs, k, lens), intrinsics=k)
 
 
 STRAIGHT = Lens()

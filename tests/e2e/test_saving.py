@@ -1,33 +1,22 @@
-"""Points 6 and 10: the photo's camera put right, unsaved changes restored, files dropped anywhere."""
+"""Points 6 and 10: the photo's camera put right, unsaved changes restored."""
 
 from __future__ import annotations
 
-import base64
 import os
 import time
 from pathlib import Path
 
 import numpy as np
 import pytest
-import trimesh
 from playwright.sync_api import expect
 
-from diorama_app.session.client import Placing
 from diorama_app.session.recovery import Recovery
 from diorama_core.geometry.camera_attitude import CameraAttitude
 from diorama_core.scene import edits
 from tests.app.small_room import furnished_scene, make_project
-from tests.e2e.browser import LEARN_MS, EditorPage
+from tests.e2e.browser import EditorPage
 
 pytestmark = pytest.mark.browser
-
-DROP = """([name, kind, data]) => {
-    const bytes = Uint8Array.from(atob(data), (c) => c.charCodeAt(0)), files = new DataTransfer();
-    files.items.add(new File([bytes], name, {type: kind}));
-    const at = document.querySelector('canvas');
-    for (const what of ['dragenter', 'dragover', 'drop'])
-        at.dispatchEvent(new DragEvent(what, {bubbles: true, cancelable: true, dataTransfer: files}));
-}"""
 
 
 def test_height_rescales_at_once_and_field_of_view_and_tilt_build_again(editor: EditorPage) -> None:
@@ -92,21 +81,3 @@ def test_what_an_earlier_session_could_not_save_is_restored(editor: EditorPage, 
     expect(editor.button("Restore unsaved changes")).to_have_count(0)
     editor.page.keyboard.press("Control+z")
     editor.until(lambda: session.scene == furnished_scene(), "as one undo step")
-
-
-def test_files_dropped_on_the_view_go_where_they_belong(editor: EditorPage, tmp_path: Path) -> None:
-    session = editor.running.session
-    trimesh.creation.box((0.4, 0.5, 0.9)).export(tmp_path / "cupboard.glb")
-    drop(editor, tmp_path / "cupboard.glb", "model/gltf-binary")
-    editor.until(lambda: isinstance(editor.client.doing, Placing), "it is read", seconds=90)
-    expect(editor.page.get_by_text("Click where to place it")).to_be_visible(timeout=LEARN_MS)
-    editor.click_world(np.array([0.9, 0.4, 0.0]))
-    editor.until(lambda: len(session.scene.objects) == 6, "placed")
-    photo = session.project.folder / "photo.jpg"
-    drop(editor, photo, "image/jpeg")
-    editor.until(lambda: editor.session.unfinished, "a new photo is a project of its own")
-    editor.at_board()
-
-
-def drop(editor: EditorPage, path: Path, kind: str) -> None:
-    editor.page.evaluate(DROP, [path.name, kind, base64.b64encode(path.read_bytes()).decode()])

@@ -86,6 +86,17 @@ def test_what_takes_too_long_is_ended() -> None:
     process.close()
 
 
+def test_waiting_for_a_processor_does_not_count(monkeypatch: pytest.MonkeyPatch) -> None:
+    used = limited.cpu_time(os.getpid())
+    assert used is not None
+    assert used[0] > 0.0
+    assert limited.cpu_time(-1) is None
+    monkeypatch.setattr(limited, "cpu_time", lambda pid: (1.0, True))  # ready, and never given a turn
+    process = LimitedProcess(memory=800_000_000, seconds=0.3)
+    process.call("room.png", time.sleep, 1.0)
+    process.close()
+
+
 def test_errors_meant_for_people_arrive_as_they_are(process: LimitedProcess) -> None:
     with pytest.raises(LibraryError, match="a chair has no legs"):
         process.call("x", refuse)

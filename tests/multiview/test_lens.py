@@ -7,7 +7,8 @@ import numpy as np
 import pytest
 
 from diorama_core.artefacts import Inputs, LabelledBox, Photo
-from diorama_core.multiview.lens import Lens, straight_points, straightened
+from diorama_core.errors import InputError
+from diorama_core.multiview.lens import Lens, lens_of, straight_points, straightened, without_distortion
 from diorama_core.scene.types import Intrinsics
 
 K = Intrinsics(160, 120, 110.0, 112.0, 78.0, 61.0)
@@ -54,3 +55,23 @@ def test_a_fisheye_lens_is_straightened() -> None:
     lens = Lens((0.05, 0.01, 0.0, 0.0), fisheye=True)
     assert lens.bends
     assert straight_points(np.array([[K.cx, K.cy]]), K, lens) == pytest.approx(np.array([[K.cx, K.cy]]))
+
+
+def test_given_coefficients_are_opencvs() -> None:
+    assert lens_of((-0.1,)) == Lens((-0.1,))
+    assert lens_of((-0.25, 0.06, 0.002, -0.003, 0.01)) == Lens((-0.25, 0.06, 0.01), (0.002, -0.003))
+    for wrong in ((0.1, 0.2, 0.3), (float("nan"),)):
+        with pytest.raises(InputError, match="--distortion"):
+            lens_of(wrong)
+
+
+def test_one_photo_is_straightened_around_its_own_camera() -> None:
+    rgb = np.zeros((120, 160, 3), np.uint8)
+    rgb[::8] = 255
+    with pytest.raises(InputError, match="add --fov"):
+        without_distortion(Inputs(Photo(rgb, "a.jpg", (160, 120))), LENS)
+    found = without_distortion(Inputs(Photo(rgb, "a.jpg", (160, 120), exif_focal_px=110.0)), LENS)
+    assert found.intrinsics == Intrinsics(160, 120, 110.0, 110.0, 80.0, 60.0)
+    expected = straightened(Inputs(Photo(rgb, "a.jpg", (160, 120))), found.intrinsics, LENS)
+    assert np.array_equal(found.photo.rgb, expected.photo.rgb)
+    assert not np.array_equal(found.photo.rgb, rgb)

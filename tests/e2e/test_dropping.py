@@ -1,0 +1,75 @@
+"""Files and folders dropped on the page, as a file manager drops them: said or asked what they are, then taken."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+import trimesh
+from PIL import Image
+from playwright.sync_api import expect
+
+from diorama_app.session.client import Placing
+from tests.e2e.browser import LEARN_MS, EditorPage
+from tests.e2e.conftest import keep_picture
+from tests.perception.inputs.depth.rooms import HEIGHT, WIDTH, room
+from tests.perception.inputs.files import box, boxes_json
+
+pytestmark = pytest.mark.browser
+
+
+def drop(editor: EditorPage, *paths: Path) -> None:
+    """Drop files or folders on the middle of the page."""
+    devtools = editor.page.context.new_cdp_session(editor.page)
+    data = {"items": [], "files": [str(p) for p in paths], "dragOperationsMask": 1}
+    for what in ("dragEnter", "dragOver", "drop"):
+        devtools.send("Input.dispatchDragEvent", {"type": what, "x": 700, "y": 400, "data": data})
+    devtools.detach()
+
+
+def photo(path: Path, seed: int = 0) -> Path:
+    rgb = np.random.default_rng(seed).integers(0, 255, (HEIGHT // 8, WIDTH // 8, 3), dtype=np.uint8)
+    Image.fromarray(rgb).resize((WIDTH * 3, HEIGHT * 3), Image.Resampling.BICUBIC).save(path)
+    return path
+
+
+def test_a_photo_with_boxes_then_its_depth_then_a_folder_then_a_model(editor: EditorPage, tmp_path: Path) -> None:
+    boxes = tmp_path / "labels.json"
+    boxes.write_bytes(boxes_json(box(30, 60, 180, 270), box(200, 90, 400, 400), box(5, 200, 90, 300)))
+    drop(editor, photo(tmp_path / "room.png"), boxes)
+    editor.notice("2 files.zip: a photo (room.png) with boxes (list of boxes)")
+    editor.until(lambda: editor.session.unfinished, "a project of its own", seconds=90)
+    editor.until(lambda: len(editor.session.inputs.boxes) == 3, "with its boxes")
+    editor.at_board()
+    keep_picture(editor, "dropped-photo-and-boxes")
+    inverse = tmp_path / "d.npy"
+    np.save(inverse, 20 / room()[0] + 1.3)
+    drop(editor, inverse)
+    asked = editor.page.get_by_text("How is the depth to be read?")
+    expect(asked).to_be_visible(timeout=LEARN_MS)
+    keep_picture(editor, "dropped-depth-asked")
+    editor.page.get_by_role("button", name="Inverse depth").click()
+    editor.until(lambda: editor.session.inputs.depth_m is not None, "read as it was answered", seconds=90)
+    assert editor.session.project.info()["depth_kind"] == "inverse"
+    folder = tmp_path / "holiday"
+    folder.mkdir()
+    for number in range(3):
+        photo(folder / f"p{number}.jpg", number)
+    (folder / "readme.md").write_text("x")
+    drop(editor, folder)
+    expect(editor.page.get_by_text("What is holiday.zip?")).to_be_visible(timeout=LEARN_MS)
+    expect(editor.page.get_by_text("Left out: readme.md")).to_be_visible()
+    keep_picture(editor, "dropped-folder-asked")
+    editor.page.get_by_role("button", name="3 photos of different rooms, a project each").click()
+    editor.until(lambda: editor.session.project.folder.name == "p0", "the first is open", seconds=90)
+    assert {"p0", "p1", "p2"} <= {p.name for p in editor.session.projects_dir.iterdir()}
+
+
+def test_a_dropped_model_is_placed(editor: EditorPage, tmp_path: Path) -> None:
+    trimesh.creation.box((0.4, 0.5, 0.9)).export(tmp_path / "cupboard.glb")
+    drop(editor, tmp_path / "cupboard.glb")
+    editor.until(lambda: isinstance(editor.client.doing, Placing), "it is read", seconds=90)
+    expect(editor.page.get_by_text("Click where to place it")).to_be_visible(timeout=LEARN_MS)
+    editor.click_world(np.array([0.9, 0.4, 0.0]))
+    editor.until(lambda: len(editor.running.session.scene.objects) == 6, "placed")
