@@ -14,6 +14,7 @@ import numpy as np
 import pytest
 
 from diorama_core.errors import Cancelled, InputError, LibraryError
+from diorama_core.io import limited
 from diorama_core.io.limited import LimitedProcess
 from diorama_core.progress import CancelToken, Progress, ProgressEvent
 from tests.processes import runs
