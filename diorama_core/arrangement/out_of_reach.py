@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from diorama_core.arrangement.noise import ObservationNoise
 from diorama_core.arrangement.surfaces import (
+    FLAT,
     OUT_OF_REACH_M,
     choose_surface,
     is_soft,
@@ -56,6 +57,9 @@ def is_out_of_reach(
     Where distances were reasoned only its height tells: over what it was seen follows from what holds it.
     """
     kind = taxonomy.resolve(item.category).category
+    if measured and kind.mount == "wall" and scene.has_plane(edge.parent) and edge.relation == "mounted on":
+        # What was measured turned from a wall hangs on another one, which the photo does not show.
+        return abs(float(item.pose.R_world_object[:, 0] @ scene.plane(edge.parent).normal)) < FLAT
     movable = not item.locked and not is_soft(item) and taxonomy.lies_on_furniture(kind.name)
     if not movable or (kind.mount != "surface" and scene.has_plane(edge.parent)):
         return False

@@ -98,3 +98,13 @@ def test_furniture_keeps_its_floor(room: Room) -> None:
     room.put("table_0", (0.0, 1.0, 0.9))
     scene = room.scene(camera=looking_north())
     assert left_where_seen(scene, LIBRARY, MEASURED) == (scene, ())
+
+
+@pytest.mark.parametrize(("yaw", "stays"), [(-np.pi / 2, True), (-np.pi / 2 + 0.5, True), (np.pi, False)])
+def test_a_picture_that_was_measured_turned_from_its_wall_hangs_on_another_one(
+    room: Room, yaw: float, stays: bool
+) -> None:
+    picture = room.put("picture_13", (0.5, 1.5, 1.5), on="wall_2", relation="mounted on", yaw=yaw)
+    scene = room.scene(camera=looking_north())
+    assert (left_where_seen(scene, LIBRARY, MEASURED)[0].support_of(picture) is not None) == stays
+    assert left_where_seen(scene, LIBRARY, REASONED) == (scene, ())
