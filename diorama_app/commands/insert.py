@@ -9,6 +9,7 @@ from jaxtyping import Float
 
 from diorama_app.session.client import Client, Placing
 from diorama_core.arrangement.surfaces import Surface
+from diorama_core.editing.clear_of_walls import clear_of_walls
 from diorama_core.editing.opening_insertion import with_opening
 from diorama_core.editing.placing import (
     Hit,
@@ -154,7 +155,7 @@ def place_at(client: Client, shape_id: str, origin: Float[np.ndarray, "3"], dire
     new_id = edits.fresh_id(scene, shape.category)
     yaw = facing(scene, float(found.point[0]), float(found.point[1]))
     item, edge = insertion(scene, shape, new_id, found, yaw)
-    item = replace(item, by_hand=True)
+    item = replace(item, pose=clear_of_walls(scene, item), by_hand=True)
     known = scene.has_object(edge.parent) or scene.has_plane(edge.parent)
     session.edit(
         f"insert {shape.category}",

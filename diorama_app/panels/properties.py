@@ -16,7 +16,7 @@ from diorama_app.session.units import UNITS, Unit, format_length, in_unit, parse
 from diorama_app.web.html import Action, LiveHtml, button, text
 from diorama_core.arrangement.explain import in_words, strongest
 from diorama_core.artefacts import Reason
-from diorama_core.editing.clearances import clearances
+from diorama_core.editing.clearances import Clearance, clearances
 from diorama_core.errors import InputError
 from diorama_core.scene.types import Finish, MaterialSource, SceneObject
 
@@ -64,6 +64,9 @@ DO_WITH_IT = {
     "lock": "Lock",
     "delete": "Delete",
 }
+
+SHOWN_OVERLAP_M = 0.001
+"""Objects that reach less into one another only touch."""
 
 
 class Properties:
@@ -135,12 +138,17 @@ class Properties:
     def _distances(self, item: SceneObject, unit: Unit) -> str:
         """Fields of the free length on each side, up to the nearest wall or neighbour."""
         scene = self._client.session.scene
-        cells = "".join(
-            f'<label>{c.side.capitalize()}<input data-change="gap" data-arg="{c.side}" inputmode="decimal" '
-            f'aria-label="Distance: {c.side}" title="To {text(editing.supporter_name(scene, c.other))}" '
-            f'value="{text(_length(c.distance_m, unit))}"></label>'
-            for c in clearances(scene, item.id)
-        )
+
+        def cell(c: Clearance) -> str:
+            other, overlaps = editing.supporter_name(scene, c.other), c.distance_m < -SHOWN_OVERLAP_M
+            title = f"Overlaps {other} by {_length(-c.distance_m, unit)}" if overlaps else f"To {other}"
+            return (
+                f'<label class="{"bad" if overlaps else ""}">{c.side.capitalize()}<input data-change="gap" '
+                f'data-arg="{c.side}" inputmode="decimal" aria-label="Distance: {c.side}" title="{text(title)}" '
+                f'value="{text(_length(max(c.distance_m, 0.0), unit))}"></label>'
+            )
+
+        cells = "".join(map(cell, clearances(scene, item.id)))
         hint = "Free length on each side, to the nearest wall or neighbour; type to place it"
         heading = f'<h4 title="{hint}">Distances{"" if unit == "ft-in" else f" ({unit})"}</h4>'
         return heading + _grid(cells).replace('class="fields"', 'class="fields four"') if cells else ""

@@ -27,6 +27,19 @@
     }
     return best;
   };
+  // Before walls, not through them, as editing/clear_of_walls.py puts it.
+  const clear = (at, yaw) => {
+    const [depth, width] = told.size, c = Math.cos(yaw), s = Math.sin(yaw);
+    for (const wall of told.surfaces) {
+      const n = wall.normal;
+      if (Math.abs(n[2]) > 0.3) continue;
+      const reach = (Math.abs(n[0] * c + n[1] * s) * depth + Math.abs(n[1] * c - n[0] * s) * width) / 2;
+      const gap = dot(n, at) - wall.level, foot = [at[0] - gap * n[0], at[1] - gap * n[1], Math.max(at[2], wall.foot + 0.3)];
+      if (-reach < gap && gap < reach && wall.outward.every((m, k) => dot(m, foot) <= wall.offset[k] + 1e-6))
+        at = at.map((v, i) => v + (reach - gap) * n[i]);
+    }
+    return at;
+  };
   const move = () => {
     const m = window.__viserMutable, node = told && m?.nodeRefFromName[told.node];
     if (!node || !at) return;
@@ -41,7 +54,8 @@
         : -Math.PI / 2;
       const away = flat ? height / 2 : depth / 2;
       const z = told.door && !flat ? s.foot + height / 2 : p[2] + n[2] * away;
-      node.position.set(p[0] + n[0] * away, p[1] + n[1] * away, z);
+      const at3 = clear([p[0] + n[0] * away, p[1] + n[1] * away, z], yaw);
+      node.position.set(...at3);
       node.quaternion.set(0, 0, Math.sin(yaw / 2), Math.cos(yaw / 2));
       node.updateMatrixWorld(true);
     }

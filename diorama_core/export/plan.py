@@ -164,6 +164,10 @@ def _within_walls(floors: Sequence[Outline], walls: Sequence[WallLine]) -> tuple
             found.append(floor)
             continue
         for piece in outside:
+            near = piece.offset(REACH_M, manifold3d.JoinType.Miter)
+            for wall in walls:  # its tip may be so thin that it ends within the wall
+                slab = _area(_strip(wall, 0.0, wall.length_m, 0.0, wall.plane.thickness))
+                whole -= slab if (near ^ slab).area() > 0.0 else manifold3d.CrossSection()
             whole -= piece.offset(max(w.plane.thickness for w in walls) + REACH_M, manifold3d.JoinType.Miter)
         found += [np.asarray(o) for o in whole.to_polygons()]
     return tuple(found)

@@ -155,3 +155,12 @@ def test_moving_parts_have_a_slider_that_says_what_it_does(
     session.document.open(replace(session.scene, objects=(*others, item)))
     client.select([item.id])
     assert f'aria-label="{word}"' in page.html
+
+
+def test_distances_are_never_negative_and_overlaps_are_told(session, client, page, panel) -> None:
+    client.select(["chair_1"])
+    editing.set_base_position(client, "chair_1", np.array([1.25, 1.45, 0.0]))  # into the other chair
+    client.refresh()
+    page.settle()
+    assert 'title="Overlaps chair &lt;b&gt;by the window&lt;/b&gt; by ' in page.html
+    assert 'value="-' not in page.html.split("Distances")[1].split("</div>")[0]
