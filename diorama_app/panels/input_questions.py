@@ -17,7 +17,14 @@ Answer = TypeVar("Answer")
 
 
 def ask_which(client: Client, name: str, dropped: Dropped, then: Callable[[Reading], None]) -> None:
-    """Ask what was dropped, and go on with the answer."""
+    """Ask what was dropped, and go on with the answer.
+
+    Args:
+        client: the browser that asked.
+        name: of what was dropped.
+        dropped: what it may be.
+        then: called with the answer.
+    """
     choices = [(_capital(reading.words), reading) for reading in dropped.readings]
     _ask(client, f"What is {name}?", dropped.unused(), choices, then)
 

@@ -61,7 +61,7 @@ class Reading:
     """For people, as in "a photo with boxes (LabelMe)"."""
     photos: tuple[DroppedPhoto, ...] = ()
     inputs: tuple[tuple[Sort, str], ...] = ()
-    """Of the open photo."""
+    """Inputs of the open photo."""
     poses: str = ""
     """File or folder of the photos' cameras; empty where there is none."""
 

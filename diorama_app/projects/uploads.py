@@ -28,7 +28,7 @@ class Upload:
     depth_kind: DepthKind = "auto"
 
     def answered(self, answer: DepthAnswer) -> Upload:
-        """The same with what a person says of its depth."""
+        """The upload with what a person says of its depth."""
         return replace(self, depth_scale=answer.per_metre, depth_kind=answer.kind)
 
 

@@ -63,7 +63,14 @@ def _begun(projects_dir: Path, photo: DroppedPhoto, files: Mapping[str, bytes], 
 
 
 def build_one_room(client: Client, name: str, content: bytes, reading: Reading) -> None:
-    """Build one project of all photos, and open it; arguments as for `begin_each`."""
+    """Build one project of all photos, and open it; arguments as for `begin_each`.
+
+    Args:
+        client: the browser that asked.
+        name: of the file.
+        content: of the file.
+        reading: what it is.
+    """
     session = client.session
 
     def work(progress: Progress) -> None:

@@ -25,7 +25,7 @@ class Photos:
     """Other photos of the same room."""
 
     def __eq__(self, other: object) -> bool:
-        """Of the very same pictures: corrections make new ones."""
+        """Whether both are of the very same pictures: corrections make new ones."""
         same = isinstance(other, Photos) and self.inputs is other.inputs and len(self.further) == len(other.further)
         return same and all(a is b for a, b in zip(self.further, cast("Photos", other).further, strict=True))
 

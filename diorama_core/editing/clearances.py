@@ -65,6 +65,12 @@ def clearances(scene: Scene, object_id: str) -> tuple[Clearance, ...]:
 def moved_to_clearance(scene: Scene, object_id: str, side: Side, distance_m: float) -> Scene:
     """The object moved along one of its axes until that side is free by a length; what is on it goes along.
 
+    Args:
+        scene: as it is.
+        object_id: of the object.
+        side: of the object.
+        distance_m: that is free beside it.
+
     Raises:
         EditRefused: there is nothing on that side, or the length is none.
     """

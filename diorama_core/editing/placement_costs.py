@@ -38,7 +38,18 @@ def placement_costs(
     frame: RoomFrame,
     near: Float[np.ndarray, "3"] | None,
 ) -> Float[np.ndarray, "n"]:
-    """What an object costs at every candidate; see `Positioner.best` for the arguments."""
+    """What an object costs at every candidate; see `Positioner.best` for the arguments.
+
+    Args:
+        scene: as it is.
+        item: the object.
+        candidates: stances.
+        relations: what was asked for it.
+        usual: what is usual for its kind.
+        others: relations of the objects that stand, by id.
+        frame: the room's axes and outline.
+        near: where it was said to be; None for anywhere.
+    """
     stances = candidates.stances
     cost = candidates.extra.copy()
     known = {o.id: o for o in scene.objects}

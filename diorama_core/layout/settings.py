@@ -109,9 +109,9 @@ class LayoutSettings:
     sides: int = 8
     """Directions in which the axes that part them soonest are looked at besides."""
     named_move_m: float = 0.2
-    """Objects that a layout moves farther are named,"""
+    """Objects that a layout moves farther are named."""
     named_outline: float = 0.6
-    """and those whose outline shares less with the observed one (intersection over union of bounds)."""
+    """Likewise those whose outline shares less with the observed one (intersection over union of bounds)."""
 
 
 @dataclass(frozen=True)

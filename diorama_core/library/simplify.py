@@ -16,7 +16,7 @@ LARGEST_ERRORS = (0.05, 0.015, 0.004)
 MIN_AREA_SHARE = 0.8
 """A part of thin bars loses its surface before anything else: less than so much of it is not the same part."""
 MAX_SHORTER = 0.03
-"""Of a piece's longest side: by so much its sides may become shorter."""
+"""Share of a piece's longest side by which its sides may become shorter."""
 MIN_TRIANGLES = 12
 """Triangles that every connected piece of a model keeps: those of a box."""
 

@@ -39,17 +39,16 @@ class CameraInRoomSettings:
     finalists: int = 16
     rounds: int = 3
     apart_m: float = 0.4
-    """Hypotheses nearer than this are one,"""
+    """Hypotheses nearer than this, and turned by less than the next, are one."""
     apart_rad: float = 0.3
-    """unless they are turned by more."""
     height_m: float = 1.5
-    """People hold cameras so high,"""
+    """People hold cameras so high."""
     height_sigma_m: float = 0.35
-    """with this deviation."""
+    """Deviation of that height."""
     up_sigma: float = 0.03
-    """Deviation of gravity, and"""
+    """Deviation of gravity as the photo tells it."""
     heading_sigma: float = 0.05
-    """of the turn against the room's axes, as the photo tells them (rad)."""
+    """Deviation of the turn against the room's axes as the photo tells it (rad)."""
     focal_log_sigma: float = 0.05
     given_focal_log_sigma: float = 0.01
     cuboid_sigma: float = 0.05

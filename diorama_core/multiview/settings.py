@@ -38,17 +38,17 @@ class JoiningSettings:
     max_sigmas: float = 2.5
     """Deviation of a size from its kind's, at most."""
     odd_angle_cost: float = 1.5
-    """Cost of a heading off the room's axes,"""
+    """Cost of a heading off the room's axes."""
     odd_square_cost: float = 8.0
-    """and of one of a kind that hardly ever stands so."""
+    """Cost of such a heading for a kind that hardly ever stands so."""
     min_photos_of_odd: int = 4
     """Fewer do not tell that what usually stands along the axes does not."""
     first_iterations: int = 6
-    """Steps of all starts; of which the best"""
+    """Steps of all starts."""
     finalists: int = 6
-    """so many go on"""
+    """Best starts, which go on."""
     iterations: int = 20
-    """for so many more."""
+    """Steps of those."""
     hidden_odds: float = 10.0
     """Odds that an object goes on beyond an edge where several photos say that something hides it."""
     max_hidden: float = 1.0

@@ -44,9 +44,9 @@ class RankingSettings:
     several: int = 3
     """A noun that is said of so many kinds says nothing of the things of one."""
     other_noun: float = 0.85
-    """Penalty of a shape that the label's very noun rules out,"""
+    """Penalty of a shape that the label's very noun rules out."""
     other_words: float = 0.12
-    """and of one that matches none of its describing words."""
+    """Penalty of a shape that matches none of the label's describing words."""
 
 
 @dataclass(frozen=True)
@@ -58,15 +58,15 @@ class SimilaritySettings:
     doubtful: float = 0.5
     """Mask confidence below which its gaps are ignored."""
     edges: float = 0.5
-    """Weight of inner edges beside the outline,"""
+    """Weight of inner edges beside the outline."""
     edges_of_doubtful: float = 0.45
-    """and its increase where the outline is uncertain."""
+    """Increase of that weight where the outline is uncertain."""
     layout: float = 0.5
     """Weight of the places of colours beside the form."""
     colours: float = 0.1
-    """Weight of main colours beside the views of an object that is seen whole,"""
+    """Weight of main colours beside the views of an object that is seen whole."""
     colours_of_hidden: float = 0.4
-    """and of one of which little is seen."""
+    """Weight of main colours for an object of which little is seen."""
 
 
 @dataclass(frozen=True)

@@ -29,7 +29,14 @@ UPRIGHT = np.array([0.0, 0.0, 1.0])
 
 
 def measured(positioner: Positioner, scene: Scene, ids: Sequence[str], edit: Measure) -> Done:
-    """One side of objects longer or shorter, on the same base; what stands on them rises and sinks with their tops."""
+    """One side of objects longer or shorter, on the same base; what stands on them rises and sinks with their tops.
+
+    Args:
+        positioner: finds free places.
+        scene: as it is.
+        ids: of the objects.
+        edit: what was asked for.
+    """
     after, notes, lines = scene, list[str](), list[str]()
     for object_id in ids:
         item = after.object(object_id)
@@ -56,7 +63,15 @@ def measured(positioner: Positioner, scene: Scene, ids: Sequence[str], edit: Mea
 
 
 def copied(positioner: Positioner, scene: Scene, ids: Sequence[str], count: int, relations: Sequence[Relation]) -> Done:
-    """Copies of objects with all that was set of them, beside them where no place is said."""
+    """Copies of objects with all that was set of them, beside them where no place is said.
+
+    Args:
+        positioner: finds free places.
+        scene: as it is.
+        ids: of the objects.
+        count: of the copies.
+        relations: what is to hold.
+    """
     after, new, missed = scene, list[str](), list[str]()
     for object_id in ids:
         item = scene.object(object_id)
@@ -110,7 +125,14 @@ def exchanged(positioner: Positioner, scene: Scene, edit: Exchange) -> Done:
 
 
 def put_in_state(library: ShapeLibrary, scene: Scene, ids: Sequence[str], edit: SetState) -> Done:
-    """Objects locked, hidden, open, or lit, or the contrary."""
+    """Objects locked, hidden, open, or lit, or the contrary.
+
+    Args:
+        library: where shapes come from.
+        scene: as it is.
+        ids: of the objects.
+        edit: what was asked for.
+    """
     after, state = scene, edit.state
     for object_id in ids:
         item = after.object(object_id)
@@ -138,7 +160,14 @@ def renamed(scene: Scene, object_id: str, edit: Rename) -> Done:
 
 
 def aligned(positioner: Positioner, scene: Scene, ids: Sequence[str], edit: Align) -> Done:
-    """Objects in one line, what hangs at one height; or with equal gaps along the way they are spread."""
+    """Objects in one line, what hangs at one height; or with equal gaps along the way they are spread.
+
+    Args:
+        positioner: finds free places.
+        scene: as it is.
+        ids: of the objects.
+        edit: what was asked for.
+    """
     if len(ids) < 2:
         raise EditRefused(f"{names_of(scene, ids)} is alone; two objects or more are lined up")
     axis = widest_axis(scene, ids)

@@ -151,7 +151,17 @@ class PhotoObservations:
         pinned: np.ndarray,
         grown: float = 1.0,
     ) -> ObjectFit:
-        """The least-squares problem of one object; arguments as in `fitted`."""
+        """The least-squares problem of one object; arguments as in `fitted`.
+
+        Args:
+            i: index of the object.
+            R: its settled rotation.
+            p: its settled centre.
+            scale: its settled scale.
+            basis: world directions in which it may still move.
+            pinned: point of its box, in half extents, that stays put.
+            grown: what its distance and its size were multiplied by already.
+        """
         local = pinned * self.size[i] / 2
         observed = self.camera.position + grown * (self.observed[i] - self.camera.position)
         tracked = self.tracked[i]

@@ -46,7 +46,7 @@ def reach_of(
     Args:
         footing: points at scale 1, object frame.
         R: rotation of the object.
-        scale: along the axes of each object.
+        scale: along its axes.
         outward: unit directions, world.
     """
     return (outward @ (R @ (footing * scale).T)).max(axis=1)
