@@ -150,7 +150,7 @@ def drawing_order(item: SceneObject) -> tuple[int, float]:
     return round(float(heights.min()) / LEVEL_M), float(heights.max())
 
 
-def _within_walls(floors: Sequence[Outline], walls: Sequence[WallLine]) -> tuple[Outline, ...]:
+def _within_walls(floors: Sequence[Outline], walls: Sequence[DrawnWall]) -> tuple[Outline, ...]:
     """Floors without the pieces that lie behind a wall and before none: what was measured through a door, a wedge."""
     barrier = manifold3d.CrossSection()
     for wall in walls:
@@ -173,7 +173,7 @@ def _within_walls(floors: Sequence[Outline], walls: Sequence[WallLine]) -> tuple
     return tuple(found)
 
 
-def _is_before_a_wall(piece: manifold3d.CrossSection, walls: Sequence[WallLine]) -> bool:
+def _is_before_a_wall(piece: manifold3d.CrossSection, walls: Sequence[DrawnWall]) -> bool:
     """Whether a wall's inner side is straight ahead of the middle of a piece of floor, with no other wall between."""
     points = np.concatenate([np.asarray(o) for o in piece.to_polygons()])
     middle = 0.5 * (points.min(axis=0) + points.max(axis=0))
@@ -186,7 +186,7 @@ def _is_before_a_wall(piece: manifold3d.CrossSection, walls: Sequence[WallLine])
     return False
 
 
-def _crosses(start: Float[np.ndarray, "2"], end: Float[np.ndarray, "2"], wall: WallLine) -> bool:
+def _crosses(start: Float[np.ndarray, "2"], end: Float[np.ndarray, "2"], wall: DrawnWall) -> bool:
     """Whether the way from one point to another leads through a wall."""
     a, b = (float((p - wall.start) @ wall.outward) for p in (start, end))
     if a * b >= 0.0:
