@@ -15,6 +15,8 @@ LARGEST_ERRORS = (0.05, 0.015, 0.004)
 """How far a simplified surface may lie from the true one, in the part's size: the first that keeps the part."""
 MIN_AREA_SHARE = 0.8
 """A part of thin bars loses its surface before anything else: less than so much of it is not the same part."""
+MAX_AREA_SHARE = 1.08
+"""Wires that are joined by a web of triangles have more surface than before."""
 MAX_SHORTER = 0.03
 """Share of a piece's longest side by which its sides may become shorter."""
 MIN_TRIANGLES = 12
@@ -71,7 +73,8 @@ def _fewer(triangles: np.ndarray, points: np.ndarray, share: float) -> np.ndarra
         retained = np.empty_like(own)
         count = meshoptimizer.simplify(retained, own, near, target_index_count=target, target_error=error)
         left = retained[:count]
-        if count and _area(left, near) >= MIN_AREA_SHARE * area and _spans(left, near, extents):
+        share_left = _area(left, near) / max(area, 1e-12)
+        if count and MIN_AREA_SHARE <= share_left <= MAX_AREA_SHARE and _spans(left, near, extents):
             return used[left].astype(np.uint32)
     return triangles
 
