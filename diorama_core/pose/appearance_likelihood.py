@@ -19,38 +19,8 @@ from diorama_core.geometry.observed import Observed
 from diorama_core.geometry.shape_appearance import ShapeAppearance
 from diorama_core.geometry.silhouette import Hits, PoseBatch
 from diorama_core.io.srgb import srgb_to_linear
-from diorama_core.pose.depth_fit import INNER_CELL
+from diorama_core.pose.settings import SETTINGS, PoseEvidenceSettings, PoseSettings
 from diorama_core.pose.surface import MeasuredSurface
-
-_MIN_CELLS, _MAX_CELLS = 16, 48
-_CELLS_PER_PX = 1.16
-_TOLERANCE_M = 0.004
-_TOLERANCE_SHARE = 0.04
-"""Of the object's middle extent: what depth may differ by, beside its noise."""
-_HALF_DEPTH = 2.0
-"""Tolerances at which a cell says half of what it can."""
-_MAX_COST = 0.2
-"""Of one cell, as a logarithm of probability."""
-_COLOUR_SHARE = 0.6
-"""What a cell's colour says beside its depth."""
-_COUNTED_CELLS = 800.0
-"""Cells of an object that count in full: neighbours do not err independently."""
-_LIGHT_SIGMA = 0.35
-_HUE_SIGMA = 0.12
-"""Expected deviations of the logarithms of lightness and hue within one thing: shadows, reflections."""
-_HALF_COLOUR = 4.0
-_ROBUST = 4.0
-_TINT_SIGMA = 0.3
-_SLOPE_SIGMA = 0.5
-"""How coloured, and how much stronger from one side, light may be: standard deviations of logarithms."""
-_FITTING_ROUNDS = 3
-_DARKEST = 0.03
-"""Linear light below which a camera tells little."""
-_ONE_COLOUR = 0.1
-"""Shapes whose colours vary less are not compared by colour."""
-_FAMILIAR_CELLS = 20.0
-_FAMILIAR_SHARE = 0.1
-"""With few cells of known colour they are taken to agree as well as usual: as many cells at this share of the cost."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -62,6 +32,7 @@ class AppearanceLikelihood:
     """With tolerances as small as the object."""
     log_rgb: Float32[np.ndarray, "n 3"]
     """Logarithms of the linear light of the object's pixels."""
+    settings: PoseSettings
 
     @classmethod
     def of(
@@ -71,6 +42,7 @@ class AppearanceLikelihood:
         seen: Observed,
         surface: MeasuredSurface,
         size_m: Float[np.ndarray, "3"],
+        settings: PoseSettings = SETTINGS,
     ) -> AppearanceLikelihood:
         """Look at one object.
 
@@ -80,12 +52,17 @@ class AppearanceLikelihood:
             seen: its window, in `cells_for` its box.
             surface: what was measured there.
             size_m: about how large it is.
+            settings: numbers to work with.
         """
-        small = _TOLERANCE_M + _TOLERANCE_SHARE * float(np.median(size_m)) + 1.5 * surface.spread_m
+        small = (
+            settings.evidence.tolerance_m
+            + settings.evidence.tolerance_share * float(np.median(size_m))
+            + 1.5 * surface.spread_m
+        )
         close = replace(surface, tolerance_m=np.minimum(surface.tolerance_m, small))
         colours = seen.window.means(rgb * mask[..., None]) / np.maximum(seen.covered, 1e-6)[:, None] / 255.0
         light = srgb_to_linear(np.clip(colours, 0.0, 1.0))
-        return cls(seen, close, np.log(light + _DARKEST).astype(np.float32))
+        return cls(seen, close, np.log(light + settings.evidence.darkest).astype(np.float32), settings)
 
     def log_likelihoods(
         self, appearance: ShapeAppearance, poses: PoseBatch, exact: bool = True
@@ -98,7 +75,10 @@ class AppearanceLikelihood:
             exact: whether details may lie a cell off; without that it takes half the time.
         """
         hits = appearance.caster.cast(self.seen.origin_world, self.seen.directions_world, poses)
-        return -self._weight * (self._of_place(hits, exact) + _COLOUR_SHARE * self._of_colours(appearance, hits, exact))
+        return -self._weight * (
+            self._of_place(hits, exact)
+            + self.settings.evidence.colour_share * self._of_colours(appearance, hits, exact)
+        )
 
     def misfit(self, appearance: ShapeAppearance, pose: PoseBatch) -> float:
         """How unlikely one pose is by its outline and depth: high where the shape or its size are wrong."""
@@ -107,7 +87,9 @@ class AppearanceLikelihood:
 
     @property
     def _weight(self) -> float:
-        return _MAX_COST * min(1.0, _COUNTED_CELLS / max(float(self.seen.covered.sum()), 1.0))
+        return self.settings.evidence.max_cost * min(
+            1.0, self.settings.evidence.counted_cells / max(float(self.seen.covered.sum()), 1.0)
+        )
 
     @cached_property
     def _neighbours(self) -> Int[np.ndarray, "5 n"]:
@@ -120,7 +102,7 @@ class AppearanceLikelihood:
     @cached_property
     def _own(self) -> Bool[np.ndarray, "n"]:
         """Cells whose colour is the object's alone."""
-        return self.seen.covered * self.seen.weight > INNER_CELL
+        return self.seen.covered * self.seen.weight > self.settings.search.inner_cell
 
     def _of_place(self, hits: Hits, exact: bool) -> Float[np.ndarray, "p"]:
         """How many cells disagree: covered where the mask is not, or the other way round, or at another depth."""
@@ -133,37 +115,41 @@ class AppearanceLikelihood:
         for beside in self._neighbours[: None if exact else 1]:
             gap = np.abs(depth - s.depth_m[beside])
             off = np.minimum(off, np.where(s.weight[beside] > 0, gap, np.inf))
-        inside = np.where(hits.covered, _softly(off / (_HALF_DEPTH * s.tolerance_m), 4), 0.0)
+        inside = np.where(hits.covered, _softly(off / (self.settings.evidence.half_depth * s.tolerance_m), 4), 0.0)
         return missed.sum(axis=1) + inside @ (s.weight * np.clip(2 * covered - 1, 0.0, 1.0))
 
     def _of_colours(self, appearance: ShapeAppearance, hits: Hits, exact: bool) -> Float[np.ndarray, "p"]:
         """How many cells have another colour than the light explains; 0 for shapes of one colour."""
-        light, variance = _light_of(appearance)
+        light, variance = _light_of(appearance, self.settings.evidence)
         own = np.flatnonzero(self._own)
-        if not len(light) or not len(own) or (light.std(axis=0) < _ONE_COLOUR).all():
+        if not len(light) or not len(own) or (light.std(axis=0) < self.settings.evidence.one_colour).all():
             return np.zeros(len(hits.poses))
         if appearance.opaque_caster is appearance.caster:
             hits = hits.of_rays(own)
         else:
             hits = appearance.opaque_caster.cast(self.seen.origin_world, self.seen.directions_world[own], hits.poses)
         face = np.where(hits.covered, hits.triangles, 0)
-        fit = _LightFit(hits.normals_world.astype(np.float32), light[face], variance[face])
+        fit = _LightFit(hits.normals_world.astype(np.float32), light[face], variance[face], self.settings.evidence)
         strength, tint = fit.fitted(self.log_rgb[own], hits.covered)
         lit = fit.lit(strength, tint)
         off = np.full(face.shape, np.inf, np.float32)
         for beside in self._neighbours[: None if exact else 1, own]:
             cost = fit.disagreement(self.log_rgb[beside] - lit)
             off = np.minimum(off, np.where(self._own[beside], cost, np.inf))
-        cost = np.where(hits.covered, _softly(off / _HALF_COLOUR, 2), 0.0).sum(axis=1)
-        share = (cost + _FAMILIAR_CELLS * _FAMILIAR_SHARE) / (hits.covered.sum(axis=1) + _FAMILIAR_CELLS)
-        unlikely = (tint**2).sum(axis=1) / _TINT_SIGMA**2 + (strength[:, 1:] ** 2).sum(axis=1) / _SLOPE_SIGMA**2
-        return share * len(own) + unlikely / (2 * _ROBUST)
+        cost = np.where(hits.covered, _softly(off / self.settings.evidence.half_colour, 2), 0.0).sum(axis=1)
+        share = (cost + self.settings.evidence.familiar_cells * self.settings.evidence.familiar_share) / (
+            hits.covered.sum(axis=1) + self.settings.evidence.familiar_cells
+        )
+        unlikely = (tint**2).sum(axis=1) / self.settings.evidence.tint_sigma**2 + (strength[:, 1:] ** 2).sum(
+            axis=1
+        ) / self.settings.evidence.slope_sigma**2
+        return share * len(own) + unlikely / (2 * self.settings.evidence.robust)
 
 
-def cells_for(box: tuple[float, float, float, float]) -> int:
+def cells_for(box: tuple[float, float, float, float], settings: PoseEvidenceSettings = SETTINGS.evidence) -> int:
     """How many cells a window around a box needs for cells of about a pixel, within reason."""
     longest = max(box[2] - box[0], box[3] - box[1])
-    return int(np.clip(_CELLS_PER_PX * longest, _MIN_CELLS, _MAX_CELLS))
+    return int(np.clip(settings.cells_per_px * longest, settings.min_side_cells, settings.max_side_cells))
 
 
 @dataclass(frozen=True, eq=False)
@@ -174,6 +160,7 @@ class _LightFit:
     log_albedo: Float32[np.ndarray, "p n 3"]
     variance: Float32[np.ndarray, "p n"]
     """Of a face's own picture."""
+    settings: PoseEvidenceSettings
 
     @cached_property
     def _design(self) -> Float32[np.ndarray, "p n 4"]:
@@ -186,17 +173,19 @@ class _LightFit:
         shown = np.where(used[..., None], log_rgb - self.log_albedo, 0.0)
         lightness = shown.mean(axis=2)
         hue = shown - lightness[..., None]
-        expected = np.diag([1e-3, *[_LIGHT_SIGMA**2 / _SLOPE_SIGMA**2] * 3]).astype(np.float32)
+        expected = np.diag([1e-3, *[self.settings.light_sigma**2 / self.settings.slope_sigma**2] * 3]).astype(
+            np.float32
+        )
         weight = used.astype(np.float32)
         strength, tint = np.zeros((len(used), 4), np.float32), np.zeros((len(used), 3), np.float32)
-        for _ in range(_FITTING_ROUNDS):
+        for _ in range(self.settings.fitting_rounds):
             weighted = self._design * weight[..., None]
             normal = weighted.transpose(0, 2, 1) @ self._design + expected
             strength = np.linalg.solve(normal, (weighted * lightness[..., None]).sum(axis=1)[..., None])[..., 0]
-            counted = weight.sum(axis=1)[:, None] + _HUE_SIGMA**2 / _TINT_SIGMA**2
+            counted = weight.sum(axis=1)[:, None] + self.settings.hue_sigma**2 / self.settings.tint_sigma**2
             tint = ((hue * weight[..., None]).sum(axis=1) / counted).astype(np.float32)
             left = self.disagreement(log_rgb - self.lit(strength, tint))
-            weight = (used / (1 + left / _ROBUST) ** 2).astype(np.float32)
+            weight = (used / (1 + left / self.settings.robust) ** 2).astype(np.float32)
         return strength, tint
 
     def lit(self, strength: Float[np.ndarray, "p 4"], tint: Float[np.ndarray, "p 3"]) -> Float[np.ndarray, "p n 3"]:
@@ -208,7 +197,10 @@ class _LightFit:
         r, g, b = difference[..., 0], difference[..., 1], difference[..., 2]
         lightness = (r + g + b) / 3
         hue = (r - lightness) ** 2 + (g - lightness) ** 2 + (b - lightness) ** 2
-        return 0.5 * (lightness**2 / (_LIGHT_SIGMA**2 + self.variance) + hue / (_HUE_SIGMA**2 + self.variance))
+        return 0.5 * (
+            lightness**2 / (self.settings.light_sigma**2 + self.variance)
+            + hue / (self.settings.hue_sigma**2 + self.variance)
+        )
 
 
 def _softly(off: Float[np.ndarray, "p n"], power: int) -> Float[np.ndarray, "p n"]:
@@ -218,10 +210,12 @@ def _softly(off: Float[np.ndarray, "p n"], power: int) -> Float[np.ndarray, "p n
     return raised / (1.0 + raised)
 
 
-def _light_of(appearance: ShapeAppearance) -> tuple[Float32[np.ndarray, "o 3"], Float32[np.ndarray, "o"]]:
+def _light_of(
+    appearance: ShapeAppearance, settings: PoseEvidenceSettings
+) -> tuple[Float32[np.ndarray, "o 3"], Float32[np.ndarray, "o"]]:
     """Logarithms of the opaque faces' colours as linear light, and the variance of their pictures in that measure."""
     srgb = appearance.face_rgba[appearance.opaque_faces, :3] / 255.0
     light = srgb_to_linear(srgb)
-    slope = 2.2 * srgb.mean(axis=1) ** 1.2 / (light.mean(axis=1) + _DARKEST)
+    slope = 2.2 * srgb.mean(axis=1) ** 1.2 / (light.mean(axis=1) + settings.darkest)
     variance = (slope * appearance.face_spread[appearance.opaque_faces] / 255.0) ** 2
-    return np.log(light + _DARKEST).astype(np.float32), variance.astype(np.float32)
+    return np.log(light + settings.darkest).astype(np.float32), variance.astype(np.float32)

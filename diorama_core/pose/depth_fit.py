@@ -18,33 +18,10 @@ from diorama_core.geometry.observed import Observed
 from diorama_core.geometry.silhouette import PoseBatch, ShapeCaster
 from diorama_core.pose.hypotheses import Anchor
 from diorama_core.pose.limits import SizeLimits
+from diorama_core.pose.settings import SETTINGS, PoseSearchSettings
 from diorama_core.scene.types import Camera, yaw_rotation
 
 PARAMETERS = 7
-MIN_RAYS = 6
-"""Minimum number of measured points for a fit."""
-_MAX_RAYS = 260
-_DIRECTIONS = 16
-INNER_CELL = 0.9
-"""Cells that a mask covers by less lie on its edge, where depth belongs to either side."""
-_LOOSENESS = (4.0, 3.0, 2.0, 1.5, 1.0, 1.0, 1.0, 1.0)
-"""Of every iteration: how many times wider than measured the tolerances are taken, so that far starts are drawn in."""
-_DAMPING = 0.01
-_MAX_SHIFT = 0.6
-"""A fit moves a pose by at most this share of its largest extent: farther ones lost hold of the object."""
-_GRAZING = 0.15
-NOISE_REACH = 1.8
-"""Deviations by which noise widens the first and last hundredth of the points."""
-_SIZE_SIGMA = 0.22
-_SHAPE_SIGMA = 0.1
-"""Expected deviation of one axis' log scale from the mean of the three."""
-_THIN_SHAPE_SIGMA = 0.8
-"""The same for thin axes: frames and panels come in any thickness."""
-SURE_CONTACT_M = 0.02
-_SHAPE_FOOT_M = 0.03
-"""Usual distance of a shape's foot from that of the thing it stands for, beside the contact's own uncertainty."""
-_MAX_SIGMAS = 3.0
-"""Gaps of more deviations say no more: the contact may be wrong."""
 _YAW_SIGMA_RAD = float(np.deg2rad(10.0))
 
 
@@ -57,6 +34,7 @@ class SeenPoints:
     depth_m: Float[np.ndarray, " r"]
     spread_m: Float[np.ndarray, " r"]
     """Standard deviation of the noise in it."""
+    settings: PoseSearchSettings = SETTINGS.search
 
     @classmethod
     def of(
@@ -65,6 +43,7 @@ class SeenPoints:
         depth_m: Float[np.ndarray, " n"],
         weight: Float[np.ndarray, " n"],
         spread_m: Float[np.ndarray, " n"],
+        settings: PoseSearchSettings,
     ) -> SeenPoints:
         """The measured cells inside the mask, evenly thinned; all that are covered at all where few are covered whole.
 
@@ -73,20 +52,21 @@ class SeenPoints:
             depth_m: measured at the cells' centres.
             weight: 0 where nothing was measured.
             spread_m: standard deviation of the noise in the depth.
+            settings: numbers to work with.
         """
-        chosen = np.flatnonzero((seen.covered >= INNER_CELL) & (weight > 0))
+        chosen = np.flatnonzero((seen.covered >= settings.inner_cell) & (weight > 0))
         if len(chosen) < 12:
             chosen = np.flatnonzero(weight > 0)
-        chosen = chosen[:: max(1, -(-len(chosen) // _MAX_RAYS))]
+        chosen = chosen[:: max(1, -(-len(chosen) // settings.max_rays))]
         directions, depth = seen.directions_world[chosen], depth_m[chosen]
-        return cls(directions, seen.origin_world + depth[:, None] * directions, depth, spread_m[chosen])
+        return cls(directions, seen.origin_world + depth[:, None] * directions, depth, spread_m[chosen], settings)
 
     def span(self, axes_world: Float[np.ndarray, "p 3 3"]) -> tuple[Float[np.ndarray, "p 3"], Float[np.ndarray, "p 3"]]:
         """Where the points begin and end along the columns of rotations, less what noise adds."""
         local = np.einsum("pji,rj->pri", axes_world, self.points_world)
         low, high = np.quantile(local, [0.01, 0.99], axis=1)
         along = np.abs(np.einsum("pji,j->pi", axes_world, self.directions_world.mean(axis=0)))
-        inflated = np.minimum(NOISE_REACH * float(np.median(self.spread_m)) * along, 0.4 * (high - low))
+        inflated = np.minimum(self.settings.noise_reach * float(np.median(self.spread_m)) * along, 0.4 * (high - low))
         return low + inflated, high - inflated
 
 
@@ -98,11 +78,12 @@ class Outline:
     reach_px: Float[np.ndarray, " k"]
     known: Bool[np.ndarray, " k"]
     """False where the picture's border or something nearer may hide more."""
+    settings: PoseSearchSettings
 
     @property
     def lower_end_seen(self) -> bool:
         """Whether nothing hides or cuts the lower end."""
-        return bool(self.known[_DIRECTIONS // 4])
+        return bool(self.known[self.settings.directions // 4])
 
     @property
     def height_seen(self) -> bool:
@@ -112,15 +93,17 @@ class Outline:
     @property
     def upper_end_seen(self) -> bool:
         """Whether nothing hides or cuts the upper end."""
-        return bool(self.known[3 * _DIRECTIONS // 4])
+        return bool(self.known[3 * self.settings.directions // 4])
 
     @classmethod
-    def of(cls, seen: Observed, mask: Bool[np.ndarray, "h w"]) -> Outline | None:
+    def of(
+        cls, seen: Observed, mask: Bool[np.ndarray, "h w"], settings: PoseSearchSettings = SETTINGS.search
+    ) -> Outline | None:
         """The outline of a mask; None when it is empty."""
         rows, columns = np.nonzero(mask)
         if len(rows) == 0:
             return None
-        angle = 2 * np.pi * np.arange(_DIRECTIONS) / _DIRECTIONS
+        angle = 2 * np.pi * np.arange(settings.directions) / settings.directions
         directions = np.stack([np.cos(angle), np.sin(angle)], axis=1)
         points = np.stack([columns + 0.5, rows + 0.5], axis=1)
         along = points @ directions.T
@@ -131,7 +114,7 @@ class Outline:
         beyond = tips + directions * max(0.06 * max(x2 - x1, y2 - y1), 2.0)
         cells = _nearest_cells(seen, beyond)
         known = (seen.weight[cells] > 0.6) & _inside(beyond, mask.shape)
-        return cls(directions, reach, known)
+        return cls(directions, reach, known, settings)
 
 
 def _nearest_cells(seen: Observed, pixels: Float[np.ndarray, "k 2"]) -> np.ndarray:
@@ -154,6 +137,7 @@ class Contact:
     anchor: Anchor
     sigma_m: float
     """How far from there its face may be: small where that end of it is seen."""
+    settings: PoseSearchSettings
 
     def gap_m(self, poses: PoseBatch, shape_size_m: Float[np.ndarray, "3"]) -> Float[np.ndarray, " p"]:
         """How far poses are from touching, along the contact's axis; negative where they reach through."""
@@ -162,8 +146,8 @@ class Contact:
 
     def log_likelihood(self, poses: PoseBatch, shape_size_m: Float[np.ndarray, "3"]) -> Float[np.ndarray, " p"]:
         """What the gap says of poses: the layout will close it, and they will agree less with the picture."""
-        sigma = np.hypot(self.sigma_m, _SHAPE_FOOT_M)
-        return -0.5 * np.minimum(np.abs(self.gap_m(poses, shape_size_m)) / sigma, _MAX_SIGMAS) ** 2
+        sigma = np.hypot(self.sigma_m, self.settings.shape_foot_m)
+        return -0.5 * np.minimum(np.abs(self.gap_m(poses, shape_size_m)) / sigma, self.settings.max_sigmas) ** 2
 
 
 @dataclass(frozen=True, eq=False)
@@ -177,6 +161,7 @@ class DepthFit:
     contact: Contact
     limits: SizeLimits
     yaw_sigma_rad: float = _YAW_SIGMA_RAD
+    settings: PoseSearchSettings = SETTINGS.search
 
     def starts(self, rotations: Float[np.ndarray, "p 3 3"], far: tuple[bool, bool] = (False, False)) -> PoseBatch:
         """Poses with these rotations whose near faces (or far ones, along x or y) touch what was measured.
@@ -189,7 +174,7 @@ class DepthFit:
         spans = np.maximum(high - low, 1e-3)
         own = self.limits.shape_size_m
         stands = self.contact.anchor.axis_world[2] > 0.5
-        sure = self.contact.sigma_m <= SURE_CONTACT_M
+        sure = self.contact.sigma_m <= self.settings.sure_contact_m
         whole = (self.outline is not None and self.outline.height_seen) or (stands and sure and self._top_seen)
         bottom = self.contact.anchor.point_world[2]
         height = np.maximum(high[:, 2] - bottom, spans[:, 2]) if stands and sure else spans[:, 2]
@@ -213,10 +198,10 @@ class DepthFit:
     def refined(self, caster: ShapeCaster, start: PoseBatch) -> PoseBatch:
         """The poses after the iteration."""
         x = np.zeros((len(start), PARAMETERS))
-        for looseness in _LOOSENESS:
+        for looseness in self.settings.looseness:
             normal, gradient = self._system(caster, start, x, looseness)
             diagonal = np.einsum("pii->pi", normal)
-            damped = normal + np.einsum("pi,ij->pij", _DAMPING * diagonal + 1e-9, np.eye(PARAMETERS))
+            damped = normal + np.einsum("pi,ij->pij", self.settings.damping * diagonal + 1e-9, np.eye(PARAMETERS))
             x = self._bounded(start, x - np.linalg.solve(damped, gradient[..., None])[..., 0])
         return self._moved(start, x)
 
@@ -226,7 +211,7 @@ class DepthFit:
         x = x.copy()
         x[:, 4:] = np.log(self.limits.scale_for(wanted) / start.scale)
         x[:, 3] = np.clip(x[:, 3], -0.6, 0.6)
-        most = _MAX_SHIFT * (start.scale * self.limits.shape_size_m).max(axis=1)
+        most = self.settings.max_shift * (start.scale * self.limits.shape_size_m).max(axis=1)
         length = np.linalg.norm(x[:, :3], axis=1)
         x[:, :3] *= np.minimum(1.0, most / np.maximum(length, 1e-9))[:, None]
         return np.nan_to_num(x)
@@ -265,7 +250,7 @@ class DepthFit:
         sigma = np.hypot(looseness * (0.008 + 0.006 * self.points.depth_m), self.points.spread_m / np.sqrt(alike))
         r = (normals * (met - self.points.points_world)).sum(axis=-1) / sigma
         facing = np.abs((normals * self.points.directions_world).sum(axis=-1))
-        w = np.where(hits.covered & (facing > _GRAZING), 1.0 / (1.0 + (r / 2.0) ** 2), 0.0)
+        w = np.where(hits.covered & (facing > self.settings.grazing), 1.0 / (1.0 + (r / 2.0) ** 2), 0.0)
         J = self._slopes(poses, met, normals) / sigma[:, None]
         return J, r, w * (40.0 / max(len(sigma), 1))
 
@@ -309,9 +294,11 @@ class DepthFit:
         J[:, 0], r[:, 0] = J[:, 0] / sigma, gap / sigma
         logs, thin = np.log(poses.scale), self.limits.thin
         of_mean = np.full(3, 1 / 3) if thin.all() else ~thin / (~thin).sum()
-        centring = (np.eye(3) - of_mean) / np.where(thin, _THIN_SHAPE_SIGMA, _SHAPE_SIGMA)[:, None]
+        centring = (np.eye(3) - of_mean) / np.where(thin, self.settings.thin_shape_sigma, self.settings.shape_sigma)[
+            :, None
+        ]
         J[:, 1:4, 4:], r[:, 1:4] = centring, logs @ centring.T
-        J[:, 4, 4:], r[:, 4] = of_mean / _SIZE_SIGMA, logs @ of_mean / _SIZE_SIGMA
+        J[:, 4, 4:], r[:, 4] = of_mean / self.settings.size_sigma, logs @ of_mean / self.settings.size_sigma
         J[:, 5, 3], r[:, 5] = 1 / self.yaw_sigma_rad, x[:, 3] / self.yaw_sigma_rad
         return J, r, np.ones((count, 6))
 

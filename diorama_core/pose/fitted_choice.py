@@ -21,25 +21,11 @@ from diorama_core.geometry.silhouette import ShapeCaster
 from diorama_core.library.furniture.measures import can_be_turned
 from diorama_core.library.hands import other_hand
 from diorama_core.library.record import ShapeLibrary
-from diorama_core.pose.mask_observations import NOISE_FLOOR
 from diorama_core.pose.outline_fit import fitted_pose
 from diorama_core.pose.seen_objects import SeenObject
+from diorama_core.pose.settings import SETTINGS, PoseSettings, ShapeFitSettings
 from diorama_core.pose.turned_profile import turned
 from diorama_core.scene.types import Candidate
-
-GOOD_FIT = 0.08
-"""Disagreement with the picture, 0 to 1, below which the first candidate stays."""
-POOR_FIT = 0.3
-"""Disagreement from which on the next ones are fitted from a photo alone."""
-COMPARED, TURNED, UNEVEN = 3, 2, 2
-"""Candidates that are fitted in that case; bodies of revolution, and shapes with a left and a right, that are fitted
-whenever the outline is sure."""
-OF_RANK, OF_FIT = 1.0, 2.0
-"""What the ranks from before the fit and the fits themselves say of them, as factors of logarithms."""
-OF_EDGES = 1.0
-"""What the correlation of inner edges says beside them: books on a top and what a mask missed change its outline.
-Less of a thing that is hidden."""
-_NO_SCORE = 1e-3
 
 
 @dataclass(frozen=True)
@@ -47,6 +33,7 @@ class FittedChoice:
     """Compares the candidates of single objects; those of sets are the set's."""
 
     library: ShapeLibrary = field(repr=False)
+    settings: PoseSettings = SETTINGS
 
     def best_first(self, one: PosedCandidates, seen: SeenObject) -> PosedCandidates:
         """The candidates with the best first, all of them as they were.
@@ -57,10 +44,13 @@ class FittedChoice:
         """
         outlined = seen.is_surely_outlined
         first, first_score = self._fitted(one.candidates[0], seen)
-        if first < GOOD_FIT:
+        if first < self.settings.shapes.good_fit:
             return one
-        by_rank = seen.evidence.surface is None and first >= POOR_FIT
-        others = {*_compared(one.candidates, by_rank, outlined), *(self._uneven(one.candidates) if outlined else ())}
+        by_rank = seen.evidence.surface is None and first >= self.settings.shapes.poor_fit
+        others = {
+            *_compared(one.candidates, by_rank, outlined, self.settings.shapes),
+            *(self._uneven(one.candidates) if outlined else ()),
+        }
         scores = {0: first_score, **{k: self._fitted(one.candidates[k], seen)[1] for k in others}}
         best = max(scores, key=lambda k: (scores[k], -k))
         rest = (*one.candidates[:best], *one.candidates[best + 1 :])
@@ -69,7 +59,7 @@ class FittedChoice:
     def _uneven(self, candidates: Sequence[Candidate]) -> list[int]:
         """The next candidates whose mirror image is another shape: none of them was compared as that."""
         found = (k for k, c in enumerate(candidates) if k and other_hand(self.library, c.shape_id) is not None)
-        return list(islice(found, UNEVEN))
+        return list(islice(found, self.settings.shapes.uneven))
 
     def _fitted(self, candidate: Candidate, seen: SeenObject) -> tuple[float, float]:
         """Disagreement with the picture, 0 to 1, in the fitted pose and with the profile that is seen; and the score.
@@ -79,20 +69,30 @@ class FittedChoice:
         evidence, size = seen.evidence, np.asarray(candidate.shape_size_m)
         hands = [i for i in (candidate.shape_id, other_hand(self.library, candidate.shape_id)) if i is not None]
         casters = [ShapeCaster(self.library.mesh(hand)) for hand in hands]
-        poses = [fitted_pose(evidence, c, candidate.pose, size, resize=True) for c in casters]
+        poses = [
+            fitted_pose(evidence, c, candidate.pose, size, resize=True, settings=self.settings.shapes) for c in casters
+        ]
         errors = [evidence.error(c, p) for c, p in zip(casters, poses, strict=True)]
         best = int(np.argmin(errors))
         error, caster, pose = errors[best], casters[best], poses[best]
-        found = turned(self.library, candidate.shape_id, [evidence], [pose], error) if seen.is_surely_outlined else None
+        found = (
+            turned(self.library, candidate.shape_id, [evidence], [pose], error, self.settings)
+            if seen.is_surely_outlined
+            else None
+        )
         if found is not None:
             error = found.error
         edges = (1.0 - evidence.seen.hidden_share) * seen.edges_in(caster, pose)
-        of_rank = OF_RANK * float(np.log(max(candidate.score, _NO_SCORE)))
-        return error, of_rank - OF_FIT * float(np.log(error + NOISE_FLOOR)) + OF_EDGES * edges
+        of_rank = self.settings.shapes.of_rank * float(np.log(max(candidate.score, self.settings.shapes.no_score)))
+        return error, of_rank - self.settings.shapes.of_fit * float(
+            np.log(error + self.settings.evidence.noise_floor)
+        ) + self.settings.shapes.of_edges * edges
 
 
-def _compared(candidates: Sequence[Candidate], by_rank: bool, outlined: bool) -> list[int]:
+def _compared(candidates: Sequence[Candidate], by_rank: bool, outlined: bool, settings: ShapeFitSettings) -> list[int]:
     """Which candidates are fitted beside the first: the next ones, and bodies of revolution."""
-    next_ones = range(1, min(COMPARED, len(candidates))) if by_rank else ()
-    round_ones = [k for k, c in enumerate(candidates) if can_be_turned(c.shape_id)][:TURNED] if outlined else []
+    next_ones = range(1, min(settings.compared, len(candidates))) if by_rank else ()
+    round_ones = (
+        [k for k, c in enumerate(candidates) if can_be_turned(c.shape_id)][: settings.turned] if outlined else []
+    )
     return sorted({*next_ones, *round_ones} - {0})

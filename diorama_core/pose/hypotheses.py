@@ -12,18 +12,13 @@ from diorama_core.geometry.silhouette import PoseBatch
 from diorama_core.library.record import ROUND, SymmetryFold
 from diorama_core.library.taxonomy import category
 from diorama_core.pose.limits import SizeLimits
+from diorama_core.pose.settings import SETTINGS, PoseSearchSettings
 from diorama_core.scene.types import yaw_rotation
 
 _FINE_STEP_RAD = np.deg2rad(15.0)
 _TURNS = np.arange(-1, 2) * _FINE_STEP_RAD
 """Of things in their own proportions, against their cuboid's axes."""
-_THIN_M = 0.1
 _SAME_TURN_RAD = np.deg2rad(20.0)
-_SAME_PLACE = 0.15
-_LONG_RATIO = 1.25
-"""Of the sides of a cuboid from which on it matters which one is the longer."""
-_TURNED_MISFIT = 0.15
-"""Misfit, as a logarithm of extents, that is held against turning the cuboid itself."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -83,6 +78,7 @@ def hypotheses_for(
     anchor: Anchor,
     *,
     sides_known: bool,
+    settings: PoseSearchSettings = SETTINGS.search,
 ) -> Hypotheses:
     """Turns of the shape about its up axis that its symmetry tells apart, each scaled toward the cuboid.
 
@@ -100,7 +96,7 @@ def hypotheses_for(
         distinct = np.mod(total + 1e-6, 2 * np.pi) < 2 * np.pi / symmetry
         total, turns, off_axis = total[distinct], turns[distinct], off_axis[distinct]
     odd = np.round(turns / (np.pi / 2)).astype(int) % 2 == 1
-    long = float(cuboid.size_m[:2].max()) > _LONG_RATIO * max(float(cuboid.size_m[:2].min()), 1e-6)
+    long = float(cuboid.size_m[:2].max()) > settings.long_ratio * max(float(cuboid.size_m[:2].min()), 1e-6)
     again = np.flatnonzero(odd) if long and not (sides_known or cuboid.front_known) else np.zeros(0, dtype=int)
     turned = np.concatenate([np.zeros(len(total), dtype=bool), np.ones(len(again), dtype=bool)])
     total, off_axis, odd = (np.concatenate([values, values[again]]) for values in (total, off_axis, odd))
@@ -114,15 +110,19 @@ def hypotheses_for(
     scale = limits.scale_for(filled)
     sizes = scale * limits.shape_size_m
     position = anchor.placed(np.tile(cuboid.centre, (len(total), 1)), R, sizes)
-    thick = np.maximum(cuboid.size_m.min(), _THIN_M)
+    thick = np.maximum(cuboid.size_m.min(), settings.thin_m)
     misfit = np.sqrt((np.log(np.maximum(sizes, thick) / np.maximum(wanted, thick)) ** 2).mean(axis=1))
-    found = Hypotheses(PoseBatch(R, position, scale), np.abs(off_axis), np.hypot(misfit, _TURNED_MISFIT * turned))
+    found = Hypotheses(
+        PoseBatch(R, position, scale), np.abs(off_axis), np.hypot(misfit, settings.turned_misfit * turned)
+    )
     if sides_known or symmetry == ROUND:
         return found
-    return found.and_also(_as_made(found[~turned], cuboid, limits, anchor))
+    return found.and_also(_as_made(found[~turned], cuboid, limits, anchor, settings))
 
 
-def _as_made(found: Hypotheses, cuboid: Cuboid, limits: SizeLimits, anchor: Anchor) -> Hypotheses:
+def _as_made(
+    found: Hypotheses, cuboid: Cuboid, limits: SizeLimits, anchor: Anchor, settings: PoseSearchSettings
+) -> Hypotheses:
     """The shape in its own proportions, as high as the cuboid, and turned a little too.
 
     From a picture alone the cuboid has the proportions that its kind usually has where the outline was seen to end.
@@ -134,7 +134,7 @@ def _as_made(found: Hypotheses, cuboid: Cuboid, limits: SizeLimits, anchor: Anch
     sizes = scale * limits.shape_size_m
     position = anchor.placed(np.tile(cuboid.centre, (len(R), 1)), R, sizes)
     wanted = np.tile(found.poses.scale * limits.shape_size_m, (len(_TURNS), 1))
-    thick = np.maximum(cuboid.size_m.min(), _THIN_M)
+    thick = np.maximum(cuboid.size_m.min(), settings.thin_m)
     misfit = np.sqrt((np.log(np.maximum(sizes, thick) / np.maximum(wanted, thick)) ** 2).mean(axis=1))
     return Hypotheses(
         PoseBatch(R, position, scale),
@@ -149,6 +149,7 @@ def unlike_best(
     symmetry: SymmetryFold,
     shape_size_m: Float[np.ndarray, "3"],
     count: int,
+    settings: PoseSearchSettings = SETTINGS.search,
 ) -> Int[np.ndarray, "k"]:
     """Indices of up to `count` good poses, best first, none nearly the same as a better one.
 
@@ -156,7 +157,7 @@ def unlike_best(
     """
     order = np.argsort(-scores, kind="stable")
     yaw = np.arctan2(poses.R[:, 1, 0], poses.R[:, 0, 0])
-    reach = _SAME_PLACE * (poses.scale * shape_size_m).max(axis=1)
+    reach = settings.same_place * (poses.scale * shape_size_m).max(axis=1)
     fold = 2 * np.pi / symmetry
     retained: list[int] = []
     for index in order:

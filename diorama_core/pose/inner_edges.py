@@ -15,17 +15,7 @@ from jaxtyping import Bool, Float, Float32, UInt8
 
 from diorama_core.geometry.observed import Observed
 from diorama_core.geometry.silhouette import Hits
-
-WHOLE_CELL = 0.95
-"""Cells of which less shows the object are its outline."""
-SMOOTH, BLUR = 0.7, 1.0
-"""Cells: of the picture before its gradient, and of the gradients, so that edges may lie a little off."""
-TURN, STEP = 60.0, 2000.0
-"""Strength of an edge, in grey levels, where the normal turns by a radian, or inverse depth steps by its own size."""
-STRONGEST = 40.0
-"""Grey levels a cell: an edge of a shape is one, however deep it is."""
-_NEAR_M = 0.05
-_NOTHING = 1e-6
+from diorama_core.pose.settings import SETTINGS, PoseEvidenceSettings
 
 
 @dataclass(frozen=True, eq=False)
@@ -37,15 +27,18 @@ class InnerEdges:
     """Cells that show the object and nothing else, without its rim."""
     photo: Float[np.ndarray, "m"]
     """Of zero mean and unit length; zeros where nothing is to be seen."""
+    settings: PoseEvidenceSettings
 
     @classmethod
-    def of(cls, rgb: UInt8[np.ndarray, "h w 3"], seen: Observed) -> InnerEdges:
+    def of(
+        cls, rgb: UInt8[np.ndarray, "h w 3"], seen: Observed, settings: PoseEvidenceSettings = SETTINGS.evidence
+    ) -> InnerEdges:
         """The edges of an object in the photo."""
         cells = seen.window.cells
         grey = seen.window.means(rgb) @ np.array([0.299, 0.587, 0.114])
-        whole = (seen.covered * seen.weight > WHOLE_CELL).reshape(cells, cells).astype(np.uint8)
+        whole = (seen.covered * seen.weight > settings.whole_cell).reshape(cells, cells).astype(np.uint8)
         inside = cv2.erode(whole, np.ones((3, 3), np.uint8), borderValue=0).astype(bool)
-        return cls(cells, inside, _told(_gradients(grey.reshape(cells, cells)), inside))
+        return cls(cells, inside, _told(_gradients(grey.reshape(cells, cells), settings), inside, settings), settings)
 
     def agreement(self, hits: Hits) -> Float[np.ndarray, "p"]:
         """Correlation, -1 to 1, with the edges of a shape under every pose; 0 where either has none."""
@@ -57,15 +50,17 @@ class InnerEdges:
             return 0.0
         depth = np.where(covered, hits.depth_m[pose], 1.0)
         depth = np.where(covered, depth, np.median(depth[covered])).reshape(self.cells, self.cells)
-        edges = STEP * _bends(1.0 / np.maximum(depth, _NEAR_M))
+        edges = self.settings.step * _bends(1.0 / np.maximum(depth, self.settings.near_m))
         for axis in range(3):
-            edges = edges + _gradients(TURN * hits.normals_world[pose][:, axis].reshape(self.cells, self.cells))
-        return float(_told(np.minimum(edges, STRONGEST), self.inside) @ self.photo)
+            edges = edges + _gradients(
+                self.settings.turn * hits.normals_world[pose][:, axis].reshape(self.cells, self.cells), self.settings
+            )
+        return float(_told(np.minimum(edges, self.settings.strongest), self.inside, self.settings) @ self.photo)
 
 
-def _gradients(picture: Float[np.ndarray, "c c"]) -> Float32[np.ndarray, "c c 2"]:
+def _gradients(picture: Float[np.ndarray, "c c"], settings: PoseEvidenceSettings) -> Float32[np.ndarray, "c c 2"]:
     """How much a picture changes along its rows and its columns."""
-    smooth = cv2.GaussianBlur(picture.astype(np.float32), (0, 0), SMOOTH)
+    smooth = cv2.GaussianBlur(picture.astype(np.float32), (0, 0), settings.smooth)
     along = [cv2.Sobel(smooth, cv2.CV_32F, dx, dy, scale=0.25) for dx, dy in ((1, 0), (0, 1))]
     return np.abs(np.stack(along, axis=-1))
 
@@ -79,12 +74,14 @@ def _bends(inverse_depth: Float[np.ndarray, "c c"]) -> Float32[np.ndarray, "c c 
     return np.stack([across / middle, down / middle], axis=-1).astype(np.float32)
 
 
-def _told(edges: Float32[np.ndarray, "c c 2"], inside: Bool[np.ndarray, "c c"]) -> Float[np.ndarray, "m"]:
+def _told(
+    edges: Float32[np.ndarray, "c c 2"], inside: Bool[np.ndarray, "c c"], settings: PoseEvidenceSettings
+) -> Float[np.ndarray, "m"]:
     """The edges inside, both directions one after the other, of zero mean and unit length."""
-    blurred = cv2.GaussianBlur(np.sqrt(edges), (0, 0), BLUR)
+    blurred = cv2.GaussianBlur(np.sqrt(edges), (0, 0), settings.blur)
     told = blurred[inside].astype(np.float64)
     if not len(told):
         return np.zeros(0)
     told = (told - told.mean(axis=0)).T.reshape(-1)
     length = float(np.linalg.norm(told))
-    return told / length if length > _NOTHING else np.zeros_like(told)
+    return told / length if length > settings.nothing else np.zeros_like(told)

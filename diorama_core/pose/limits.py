@@ -11,21 +11,12 @@ from jaxtyping import Bool, Float
 from diorama_core.geometry.openings import OPENING_CATEGORIES, STANDS_OUT_M
 from diorama_core.library.record import SymmetryFold
 from diorama_core.library.taxonomy import UNKNOWN, SizePrior, category, having
+from diorama_core.pose.settings import SETTINGS, PoseSearchSettings
 
-_SIGMAS = 2.3
 _STRETCH_SHAPED = float(np.log(1.28))
 _STRETCH_BOXY = float(np.log(1.75))
 _SIDES_SQUARE = 0.5 * float(np.log(1.3))
-_QUARTERS = 4
 _STRETCH_FLAT = float(np.log(3.0))
-_THIN_M = 0.08
-_THIN_SHARE = 0.1
-"""Of the largest extent: frames, panels and rugs come in any thickness."""
-_THICKER = 3.0
-"""How much thicker than it was made a flat shape may stand for a thing without a name: no rug is as high as a table."""
-_DEGENERATE_M = 1e-3
-_OWN_SIZE_FACTOR = 1.3
-"""Whatever its kind's usual size, a shape may be this much smaller or larger than it was made."""
 
 BOXY = having("any_proportions")
 """Categories that come in all proportions; the others keep theirs more strictly."""
@@ -48,6 +39,7 @@ class SizeLimits:
     """How far the logarithms of the horizontal scales may be from their mean: 0 for what is round and stays round."""
     any_proportions: bool = False
     """Whether things of its category come in all proportions, so that stretching says nothing against a shape."""
+    settings: PoseSearchSettings = SETTINGS.search
 
     @classmethod
     def of(
@@ -58,31 +50,32 @@ class SizeLimits:
         *,
         measured: bool = False,
         sides_log: float = np.inf,
+        settings: PoseSearchSettings = SETTINGS.search,
     ) -> SizeLimits:
         """Limits for a shape standing for an object of a category, by the size prior nearest to what was observed.
 
         A measured height is plausible, however tall for its kind: what hides a thing leaves its top to be seen.
         """
         own = np.asarray(shape_size_m, dtype=np.float64)
-        least, most = _category_range(category_name, observed_m, own)
+        least, most = _category_range(category_name, observed_m, own, settings)
         if measured:
             most[2] = max(most[2], observed_m[2])
         elif category_name in OPENING_CATEGORIES:  # its frame is in the wall: only what stands out is seen
             least[0] = most[0] = STANDS_OUT_M
         flat = category_name in FLAT and not measured  # measured proportions tell which frame it is
         stretch = _STRETCH_FLAT if flat else _STRETCH_BOXY if category_name in BOXY else _STRETCH_SHAPED
-        return cls(own, least, most, stretch, sides_log, flat)
+        return cls(own, least, most, stretch, sides_log, flat, settings)
 
     @cached_property
     def thin(self) -> Bool[np.ndarray, "3"]:
         """Axes along which objects of this shape come in any thickness."""
-        return _thin(self.shape_size_m)
+        return _thin(self.shape_size_m, self.settings)
 
     def scale_for(self, wanted_m: Float[np.ndarray, "*p 3"]) -> Float[np.ndarray, "*p 3"]:
         """Per-axis scales nearest to giving the shape the wanted size, within the limits."""
-        free = self.shape_size_m > _DEGENERATE_M
+        free = self.shape_size_m > self.settings.degenerate_m
         wanted = np.clip(np.where(np.isnan(wanted_m), 1.0, wanted_m), self.min_m, self.max_m)
-        log_scale = np.log(wanted / np.maximum(self.shape_size_m, _DEGENERATE_M))
+        log_scale = np.log(wanted / np.maximum(self.shape_size_m, self.settings.degenerate_m))
         sides = log_scale[..., :2]
         middle = sides.mean(axis=-1, keepdims=True)
         log_scale[..., :2] = middle + np.clip(sides - middle, -self.sides_log, self.sides_log)
@@ -102,34 +95,41 @@ class SizeLimits:
         return np.log(scale[..., shaped]).std(axis=-1)
 
 
-def _thin(size_m: Float[np.ndarray, "3"]) -> Bool[np.ndarray, "3"]:
-    return np.asarray(size_m <= max(_THIN_M, _THIN_SHARE * float(size_m.max())))
+def _thin(size_m: Float[np.ndarray, "3"], settings: PoseSearchSettings) -> Bool[np.ndarray, "3"]:
+    return np.asarray(size_m <= max(settings.flat_m, settings.thin_share * float(size_m.max())))
 
 
-def sides_log_of(symmetry: SymmetryFold, category_name: str, *, round: bool) -> float:
+def sides_log_of(
+    symmetry: SymmetryFold, category_name: str, *, round: bool, settings: PoseSearchSettings = SETTINGS.search
+) -> float:
     """How far the horizontal scales of a shape may differ: what looks the same after a quarter turn is no long one.
 
     Args:
         symmetry: Turns about up that leave the shape the same.
         category_name: Unnamed things come in all proportions.
         round: Whether its outline from above is a circle.
+        settings: numbers to work with.
     """
     if category_name == UNKNOWN.name:
         return np.inf
     if round:
         return 0.0
-    return _SIDES_SQUARE if symmetry % _QUARTERS == 0 else np.inf
+    return _SIDES_SQUARE if symmetry % settings.quarters == 0 else np.inf
 
 
-def _category_range(category_name: str, observed_m: np.ndarray, own_m: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def _category_range(
+    category_name: str, observed_m: np.ndarray, own_m: np.ndarray, settings: PoseSearchSettings
+) -> tuple[np.ndarray, np.ndarray]:
     if category_name == UNKNOWN.name:
-        return np.full(3, 0.02), np.where(_thin(own_m), np.maximum(_THICKER * own_m, _THIN_M), 4.0)
+        return np.full(3, 0.02), np.where(
+            _thin(own_m, settings), np.maximum(settings.thicker * own_m, settings.flat_m), 4.0
+        )
     row = category(category_name)
     prior = _nearest_prior(row.priors, np.log(np.clip(observed_m, 1e-3, 10.0)))
-    least = np.exp(prior.log_median_xyz - _SIGMAS * prior.log_sigma_xyz)
-    most = np.exp(prior.log_median_xyz + _SIGMAS * prior.log_sigma_xyz)
-    least = np.maximum(np.minimum(least, own_m / _OWN_SIZE_FACTOR), _DEGENERATE_M)
-    most = np.maximum(most, own_m * _OWN_SIZE_FACTOR)
+    least = np.exp(prior.log_median_xyz - settings.sigmas * prior.log_sigma_xyz)
+    most = np.exp(prior.log_median_xyz + settings.sigmas * prior.log_sigma_xyz)
+    least = np.maximum(np.minimum(least, own_m / settings.own_size_factor), settings.degenerate_m)
+    most = np.maximum(most, own_m * settings.own_size_factor)
     for axis, plausible in ((1, row.plausible_width_m), (2, row.plausible_height_m)):
         if plausible is not None:
             least[axis], most[axis] = max(least[axis], plausible[0]), min(most[axis], plausible[1])

@@ -32,14 +32,12 @@ from diorama_core.pose.fitted_choice import FittedChoice
 from diorama_core.pose.outline_fit import COARSE, FINE, WIDE, fitted_pose
 from diorama_core.pose.parameter_fit import ParameterFit
 from diorama_core.pose.seen_objects import SeenObject, seen_objects
+from diorama_core.pose.settings import SETTINGS, PoseSettings
 from diorama_core.pose.turned_profile import turned
 from diorama_core.processes import each_there
 from diorama_core.progress import Progress
 from diorama_core.protocols import PoseStage
 from diorama_core.scene.types import Candidate, Pose
-
-MIN_PIXELS = 900
-"""Of objects of fewer pixels only place and size are fitted: their parts are a pixel or two."""
 
 
 @dataclass(frozen=True)
@@ -48,6 +46,7 @@ class MadeToMeasure:
 
     stage: PoseStage
     library: ShapeLibrary = field(repr=False)
+    settings: PoseSettings = SETTINGS
 
     def pose(
         self,
@@ -72,7 +71,7 @@ class MadeToMeasure:
         progress: Progress,
     ) -> tuple[PosedCandidates, ...]:
         """The candidates with the first of each made to measure, where the picture tells how."""
-        seen = seen_objects(posed, inputs, objects, geometry, depth)
+        seen = seen_objects(posed, inputs, objects, geometry, depth, self.settings)
         progress.report(0.0, "Making shapes to measure")
         posed = self._best_fitting(posed, seen)
         pose_of = {p.object_id: p.candidates[0].pose for p in posed if p.candidates}
@@ -93,7 +92,7 @@ class MadeToMeasure:
         not agree (`agree`).
         """
         shared = Counter(p.candidates[0].shape_id for p in posed if p.candidates)
-        choice = FittedChoice(self.library)
+        choice = FittedChoice(self.library, self.settings)
 
         def agreed(one: PosedCandidates) -> bool:
             shown = seen.get(one.object_id)
@@ -108,9 +107,9 @@ class MadeToMeasure:
         """The first candidates of objects of one shape and size; none where none of them is seen well enough."""
         if not shown:
             return {}
-        clear = {i: one for i, one in shown.items() if one.pixels >= MIN_PIXELS}
+        clear = {i: one for i, one in shown.items() if one.pixels >= self.settings.shapes.min_pixels}
         best, alone = members[0].candidates[0], len(members) == 1
-        parameters = ParameterFit(self.library, list(clear.values()), resize=alone)
+        parameters = ParameterFit(self.library, list(clear.values()), resize=alone, settings=self.settings)
         found = parameters.fitted(best, [one.pose for one in clear.values()]) if clear else None
         starts = dict(zip(clear, found.poses, strict=True)) if found else {}
         placed = {
@@ -136,8 +135,10 @@ class MadeToMeasure:
         before = [e.error(ShapeCaster(self.library.mesh(placed[i].shape_id)), placed[i].pose) for i, e in sure.items()]
         caster, alone = ShapeCaster(self.library.mesh(best.shape_id)), len(members) == 1
         own, size = {m.object_id: m.candidates[0].pose for m in members}, np.asarray(best.shape_size_m)
-        poses = [fitted_pose(e, caster, own[i], size, resize=alone) for i, e in sure.items()]
-        found = turned(self.library, best.shape_id, list(sure.values()), poses, float(np.mean(before)))
+        poses = [
+            fitted_pose(e, caster, own[i], size, resize=alone, settings=self.settings.shapes) for i, e in sure.items()
+        ]
+        found = turned(self.library, best.shape_id, list(sure.values()), poses, float(np.mean(before)), self.settings)
         if found is None:
             return None
         x, y, z = (float(v) for v in found.size_m)
@@ -168,9 +169,19 @@ class MadeToMeasure:
         if seen is not None:
             caster = ShapeCaster(self.library.mesh(shape_id))
             near = replace(COARSE if seen.has_given_mask else WIDE, scale=before)
-            pose = fitted_pose(seen.evidence, caster, pose, size, resize=resize, near=near)
+            pose = fitted_pose(
+                seen.evidence, caster, pose, size, resize=resize, near=near, settings=self.settings.shapes
+            )
             if seen.has_given_mask:
-                pose = fitted_pose(seen.fine, caster, pose, size, resize=resize, near=replace(FINE, scale=before))
+                pose = fitted_pose(
+                    seen.fine,
+                    caster,
+                    pose,
+                    size,
+                    resize=resize,
+                    near=replace(FINE, scale=before),
+                    settings=self.settings.shapes,
+                )
         whole = size * pose.scale
         uneven = relative_scale(whole / own) != EVEN
         if changes is None or not (changes or uneven) or not can_be_made(best.shape_id, whole):

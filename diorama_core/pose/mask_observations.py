@@ -16,33 +16,10 @@ from diorama_core.geometry.see_through import SeeThrough
 from diorama_core.geometry.silhouette import Hits, PoseBatch, ShapeCaster
 from diorama_core.geometry.window import soft_iou
 from diorama_core.pose.limits import SizeLimits
+from diorama_core.pose.settings import SETTINGS, PoseEvidenceSettings
 from diorama_core.pose.surface import MeasuredSurface
 from diorama_core.scene.types import Camera, Pose
 
-_SILHOUETTE_WEIGHT = 0.7
-_BOX_WEIGHT = 0.5
-_SEEN_PAST_FLOOR = 0.05
-_OF_CONTRADICTED = 0.75
-"""What a cell of a mask loses of its weight that the picture's colours contradict."""
-_SILHOUETTE_WEIGHT_WITH_DEPTH = 0.7
-_DEPTH_WEIGHT = 0.7
-_STRENGTH_WITH_DEPTH = 2.0
-"""Weight of measured depth, relative to an outline alone, against the pose priors."""
-_OF_SURE_MASK = 0.8
-"""How much more the outline of a sure mask counts against the pose priors than that of a doubtful one."""
-_OF_SURE_OUTLINE = 0.4
-"""And how much more it counts when shapes are compared: which one it is, is seen in the outline."""
-NOISE_FLOOR = 0.03
-"""Error below which two poses count as equal: the resolution of the silhouettes."""
-_STRETCH_SIGMA, _STRETCH_SIGMA_OF_FLAT = 0.3, 1.0
-_ENLARGED_SIGMA = 0.2
-_ENLARGED_SIGMA_REASONED = 0.5
-"""The same where sizes follow from a photo alone, and are those of the kind as much as of the thing."""
-_LIKELIHOOD_SIGMA = 0.15
-_LIKELIHOOD_FLOOR = 0.02
-_STRENGTH_OF_SHAPES = 3.0
-"""As `_STRENGTH_WITH_DEPTH`, when shapes are compared: outline and depth show which one it is."""
-_MISFIT_SIGMA = 0.2
 _OFF_AXIS_SIGMA_RAD = float(np.deg2rad(35.0))
 
 
@@ -58,6 +35,7 @@ class Evidence:
     """Where one looks past the object; None where its mask tells."""
     facing: HeadingCosts = NO_COSTS
     """What the room says of its headings, once that is known."""
+    settings: PoseEvidenceSettings = SETTINGS.evidence
 
     def errors(self, caster: ShapeCaster, poses: PoseBatch) -> Float[np.ndarray, "p"]:
         """0 (agrees entirely) to 1: weighted disagreement of silhouette, box, depth and normals."""
@@ -79,14 +57,17 @@ class Evidence:
         """As `errors`, of a shape that the rays have met."""
         if self.surface is None:
             return self._outline_errors(caster, hits.poses, hits.covered)
-        weights = [_SILHOUETTE_WEIGHT_WITH_DEPTH * (0.3 + 0.7 * self.seen.mask_trust), _DEPTH_WEIGHT]
+        weights = [
+            self.settings.silhouette_weight_with_depth * (0.3 + 0.7 * self.seen.mask_trust),
+            self.settings.depth_weight,
+        ]
         return _disagreement(weights, [self._outline_with_depth(self.surface, hits), self.surface.agreement(hits)])
 
     def _outline_errors(
         self, caster: ShapeCaster, poses: PoseBatch, covered: Bool[np.ndarray, "p r"]
     ) -> Float[np.ndarray, "p"]:
         boxes = box_iou(caster.bounds_px(self.camera, poses), np.asarray(self.seen.box))
-        weights = [_SILHOUETTE_WEIGHT * self.seen.mask_trust, _BOX_WEIGHT]
+        weights = [self.settings.silhouette_weight * self.seen.mask_trust, self.settings.box_weight]
         return _disagreement(weights, [self._outline(covered), np.nan_to_num(boxes)])
 
     def _outline(self, silhouettes: Bool[np.ndarray, "p n"]) -> Float[np.ndarray, "p"]:
@@ -105,7 +86,7 @@ class Evidence:
         """What cells of the mask count: less where the colours contradict it."""
         assert self.see_through is not None
         boxed = self.see_through.weight > 0
-        return 1 - _OF_CONTRADICTED * boxed * np.abs(self.seen.covered - self.see_through.shown)
+        return 1 - self.settings.of_contradicted * boxed * np.abs(self.seen.covered - self.see_through.shown)
 
     def _outline_with_depth(self, surface: MeasuredSurface, hits: Hits) -> Float[np.ndarray, "p"]:
         """Intersection over union with the mask where nothing that was measured is in front of the shape."""
@@ -129,14 +110,18 @@ class Evidence:
         between silhouettes that fit equally badly.
         """
         cost = self.habit_cost(poses, limits)
-        cost = cost + 0.5 * (misfit / _MISFIT_SIGMA) ** 2
+        cost = cost + 0.5 * (misfit / self.settings.misfit_sigma) ** 2
         cost = cost + 0.5 * (off_axis_rad / _OFF_AXIS_SIGMA_RAD) ** 2
-        strength = 1.0 + _OF_SURE_MASK * self.seen.mask_trust**4 if self.surface is None else _STRENGTH_WITH_DEPTH
-        return -strength * np.log(errors + NOISE_FLOOR) - cost
+        strength = (
+            1.0 + self.settings.of_sure_mask * self.seen.mask_trust**4
+            if self.surface is None
+            else self.settings.strength_with_depth
+        )
+        return -strength * np.log(errors + self.settings.noise_floor) - cost
 
     def habit_cost(self, poses: PoseBatch, limits: SizeLimits) -> Float[np.ndarray, "p"]:
         """What speaks against poses whatever the picture shows: unusual headings and uneven stretching."""
-        sigma = _STRETCH_SIGMA_OF_FLAT if limits.any_proportions else _STRETCH_SIGMA
+        sigma = self.settings.stretch_sigma_of_flat if limits.any_proportions else self.settings.stretch_sigma
         stretched = 0.5 * (limits.stretch(poses.scale) / sigma) ** 2
         return self.facing.cost(poses.R) + stretched
 
@@ -146,18 +131,20 @@ class Evidence:
         A folded blanket that is twice as large in every direction is another thing. A sure outline tells that better.
         """
         logs = np.log(scale[~limits.thin]) if not limits.thin.all() else np.log(scale)
-        return 0.5 * (1.0 - self.seen.mask_trust**4) * (float(logs.mean()) / _ENLARGED_SIGMA_REASONED) ** 2
+        return 0.5 * (1.0 - self.seen.mask_trust**4) * (float(logs.mean()) / self.settings.enlarged_sigma_reasoned) ** 2
 
     def sure_outline_cost(self, error: float) -> float:
         """What a sure mask says of a shape's disagreement beyond its score, from a photo alone."""
-        return _OF_SURE_OUTLINE * self.seen.mask_trust**4 * float(np.log(error + NOISE_FLOOR))
+        return (
+            self.settings.of_sure_outline * self.seen.mask_trust**4 * float(np.log(error + self.settings.noise_floor))
+        )
 
     def seen_past(self, caster: ShapeCaster, poses: PoseBatch) -> float:
         """What colours say of one posed shape by where one looks past it, beyond its score: a logarithm, at most 0."""
         if self.see_through is None:
             return 0.0
         alike = float(self.see_through.agreement(self.seen.silhouettes(caster, poses))[0])
-        return self.see_through.share * float(np.log(np.clip(alike, _SEEN_PAST_FLOOR, 1.0)))
+        return self.see_through.share * float(np.log(np.clip(alike, self.settings.seen_past_floor, 1.0)))
 
     def log_likelihood(self, error: float, scale: Float[np.ndarray, "3"], limits: SizeLimits) -> float:
         """How well one shape at its best pose explains the object, to compare shapes where depth was measured.
@@ -167,9 +154,11 @@ class Evidence:
         distribution.
         """
         logs = np.log(scale[~limits.thin]) if not limits.thin.all() else np.log(scale)
-        deviations = np.array([float(logs.mean()) / _ENLARGED_SIGMA, float(logs.std()) / _LIKELIHOOD_SIGMA])
+        deviations = np.array(
+            [float(logs.mean()) / self.settings.enlarged_sigma, float(logs.std()) / self.settings.likelihood_sigma]
+        )
         cost = 0.5 * float(np.log1p(deviations**2).sum())
-        return -_STRENGTH_OF_SHAPES * float(np.log(error + _LIKELIHOOD_FLOOR)) - cost
+        return -self.settings.strength_of_shapes * float(np.log(error + self.settings.likelihood_floor)) - cost
 
     def confidence(self, error: float, cuboid_confidence: float) -> float:
         """0 to 1: lower for cut, hidden, tiny or badly masked objects and for poses that fit badly."""

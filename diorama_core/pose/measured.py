@@ -11,23 +11,15 @@ from diorama_core.arrangement.facing.evidence import WallSamples
 from diorama_core.artefacts import Cuboid, DepthMap
 from diorama_core.geometry.silhouette import PoseBatch
 from diorama_core.library.record import SymmetryFold
-from diorama_core.pose.depth_fit import MIN_RAYS, NOISE_REACH, SURE_CONTACT_M, Contact, DepthFit, Outline, SeenPoints
+from diorama_core.pose.depth_fit import Contact, DepthFit, Outline, SeenPoints
 from diorama_core.pose.hypotheses import Anchor, Hypotheses
 from diorama_core.pose.limits import SizeLimits
 from diorama_core.pose.mask_observations import Evidence
+from diorama_core.pose.settings import SETTINGS, PoseSearchSettings, PoseSettings
 from diorama_core.pose.wall_bounds import NO_BOUNDS, WallBounds
 from diorama_core.scene.types import Camera, yaw_rotation
 
-_TURNS = 24
 _ALL_WAYS = ((False, False), (True, False), (False, True), (True, True))
-_ELSEWHERE = 4.0
-"""What speaks against a pose that shares nothing with a sure box and nothing with the picture, as a logarithm."""
-_STEPS = 8
-"""Points along each side of a box's plan that tell how much of it another covers."""
-_FOOT_PX = 8
-"""So many of a mask's pixels are its lowest."""
-_FLOATS_M = 0.05
-"""A lower end that is seen this far from where the cuboid ends tells where the object stands."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -40,6 +32,7 @@ class MeasuredObject:
     points: SeenPoints
     outline: Outline | None
     bounds: WallBounds
+    settings: PoseSearchSettings
 
     @classmethod
     def of(
@@ -50,6 +43,7 @@ class MeasuredObject:
         anchor: Anchor,
         walls: WallSamples,
         floor_foot_m: float | None = None,
+        settings: PoseSettings = SETTINGS,
     ) -> MeasuredObject | None:
         """What can be used of the depth under a mask; None where hardly any was measured.
 
@@ -61,24 +55,35 @@ class MeasuredObject:
             walls: where walls were measured.
             floor_foot_m: for objects on the floor, whose height is known even where they hide it: the height at which
                 their lowest pixels were measured.
+            settings: numbers to work with.
         """
         if observations.surface is None:
             return None
         points = SeenPoints.of(
-            observations.seen, observations.surface.depth_m, observations.surface.weight, observations.surface.spread_m
+            observations.seen,
+            observations.surface.depth_m,
+            observations.surface.weight,
+            observations.surface.spread_m,
+            settings.search,
         )
-        if len(points.depth_m) < MIN_RAYS:
+        if len(points.depth_m) < settings.search.min_rays:
             return None
-        outline = Outline.of(observations.seen, mask)
-        contact = _contact(anchor, floor_foot_m, points, outline)
+        outline = Outline.of(observations.seen, mask, settings.search)
+        contact = _contact(anchor, floor_foot_m, points, outline, settings.search)
         # What hangs on a wall may be set into it.
-        bounds = WallBounds.of(walls, points) if anchor.axis_world[2] > 0.5 else NO_BOUNDS
-        return cls(observations, cuboid, contact, points, outline, bounds)
+        bounds = WallBounds.of(walls, points, settings.evidence) if anchor.axis_world[2] > 0.5 else NO_BOUNDS
+        return cls(observations, cuboid, contact, points, outline, bounds, settings.search)
 
     def fit(self, limits: SizeLimits) -> DepthFit:
         """The fit of a shape with these limits."""
         return DepthFit(
-            self.observations.camera, self.observations.seen, self.points, self.outline, self.contact, limits
+            self.observations.camera,
+            self.observations.seen,
+            self.points,
+            self.outline,
+            self.contact,
+            limits,
+            settings=self.settings,
         )
 
     def log_likelihood(self, poses: PoseBatch, limits: SizeLimits) -> Float[np.ndarray, " p"]:
@@ -98,12 +103,12 @@ class MeasuredObject:
             limits: its size.
             errors: 0 to 1 (`Evidence.errors`).
         """
-        iou = _upright_iou(poses, limits.shape_size_m, self.cuboid)
-        return _ELSEWHERE * self.cuboid.confidence * errors**2 * (1.0 - iou)
+        iou = _upright_iou(poses, limits.shape_size_m, self.cuboid, self.settings)
+        return self.settings.elsewhere * self.cuboid.confidence * errors**2 * (1.0 - iou)
 
     def hypotheses(self, symmetry: SymmetryFold, limits: SizeLimits) -> Hypotheses:
         """Turns all around, each set against the measured points; where a part may be hidden, also from behind."""
-        count = max(_TURNS // symmetry, 1)
+        count = max(self.settings.turns // symmetry, 1)
         turns = np.arange(count) * 2 * np.pi / (symmetry * count)
         R = np.array([self.cuboid.R_world_object @ yaw_rotation(angle) for angle in turns])
         fit = self.fit(limits)
@@ -129,9 +134,11 @@ class MeasuredObject:
         return PoseBatch(R, np.tile(best.position[0], (len(R), 1)), np.tile(scale, (len(R), 1)))
 
 
-def _upright_iou(poses: PoseBatch, shape_size_m: Float[np.ndarray, "3"], cuboid: Cuboid) -> Float[np.ndarray, " p"]:
+def _upright_iou(
+    poses: PoseBatch, shape_size_m: Float[np.ndarray, "3"], cuboid: Cuboid, settings: PoseSearchSettings
+) -> Float[np.ndarray, " p"]:
     """Intersection over union of poses' boxes with a cuboid, all upright; of their plans by a grid of points."""
-    steps = (np.arange(_STEPS) + 0.5) / _STEPS - 0.5
+    steps = (np.arange(settings.fit_steps) + 0.5) / settings.fit_steps - 0.5
     grid = np.stack(np.meshgrid(steps, steps, [0.0]), axis=-1).reshape(-1, 3)
     size, half = poses.scale * shape_size_m, 0.5 * cuboid.size_m
     points = poses.position[:, None] + np.einsum("pij,pkj->pki", poses.R, size[:, None] * grid)
@@ -142,33 +149,41 @@ def _upright_iou(poses: PoseBatch, shape_size_m: Float[np.ndarray, "3"], cuboid:
     return np.asarray(shared / (size.prod(axis=1) + float(np.prod(cuboid.size_m)) - shared))
 
 
-def foot_height_m(depth: DepthMap, mask: Bool[np.ndarray, "h w"], camera: Camera) -> float | None:
+def foot_height_m(
+    depth: DepthMap, mask: Bool[np.ndarray, "h w"], camera: Camera, settings: PoseSearchSettings = SETTINGS.search
+) -> float | None:
     """Height in the world of the lowest measured pixels of a mask; None where hardly any was measured.
 
     Legs have too few points to count among those of the whole object, but their ends are the lowest of its mask.
     """
     rows, columns = np.nonzero(mask & (depth.depth_m > 0))
-    if len(rows) < _FOOT_PX:
+    if len(rows) < settings.foot_px:
         return None
-    lowest = np.argsort(rows, kind="stable")[-_FOOT_PX:]
+    lowest = np.argsort(rows, kind="stable")[-settings.foot_px :]
     pixels = np.column_stack([columns[lowest] + 0.5, rows[lowest] + 0.5])
     metres = depth.depth_m[rows[lowest], columns[lowest]].astype(np.float64)
     return float(np.median(camera.position[2] + metres * camera.rays(pixels)[:, 2]))
 
 
-def _contact(anchor: Anchor, floor_foot_m: float | None, points: SeenPoints, outline: Outline | None) -> Contact:
+def _contact(
+    anchor: Anchor,
+    floor_foot_m: float | None,
+    points: SeenPoints,
+    outline: Outline | None,
+    settings: PoseSearchSettings,
+) -> Contact:
     """Where the object stands: where the cuboid ends, unless its own lower end is seen elsewhere or is hidden."""
     if anchor.axis_world[2] < 0.5 or outline is None or len(points.depth_m) < 12:
-        return Contact(anchor, SURE_CONTACT_M)
+        return Contact(anchor, settings.sure_contact_m, settings)
     lowest = float(points.span(np.eye(3)[None])[0][0, 2])
     gap = lowest - float(anchor.point_world[2])
     noise_m = 0.0
     if floor_foot_m is not None:
-        noise_m = NOISE_REACH * float(np.median(points.spread_m))
+        noise_m = settings.noise_reach * float(np.median(points.spread_m))
         gap = min(gap, floor_foot_m - float(anchor.point_world[2]))
-    if abs(gap) < _FLOATS_M + noise_m or (floor_foot_m is not None and not outline.lower_end_seen):
-        return Contact(anchor, SURE_CONTACT_M)
+    if abs(gap) < settings.floats_m + noise_m or (floor_foot_m is not None and not outline.lower_end_seen):
+        return Contact(anchor, settings.sure_contact_m, settings)
     seen = replace(anchor, point_world=np.array([*anchor.point_world[:2], float(anchor.point_world[2]) + gap]))
     if outline.lower_end_seen or gap < 0:
-        return Contact(seen, 1.5 * SURE_CONTACT_M)
-    return Contact(anchor, 0.5 * gap)
+        return Contact(seen, 1.5 * settings.sure_contact_m, settings)
+    return Contact(anchor, 0.5 * gap, settings)

@@ -18,24 +18,9 @@ from jaxtyping import Float
 
 from diorama_core.geometry.observed import Observed
 from diorama_core.geometry.silhouette import PoseBatch, ShapeCaster
-from diorama_core.pose.mask_observations import NOISE_FLOOR, Evidence
+from diorama_core.pose.mask_observations import Evidence
+from diorama_core.pose.settings import SETTINGS, ShapeFitSettings
 from diorama_core.scene.types import Pose, yaw_rotation
-
-STEPS = (0.06, 0.03, 0.015)
-"""Of an extent, and radians, from coarse to fine."""
-ROUNDS = 5
-"""Moves at each of them, as long as they help: sides, place and turn may all be a little off."""
-GAIN, FINE_GAIN = 0.01, 0.003
-"""Of the cost, a logarithm: less is no better."""
-FINE_NOISE_FLOOR = 0.01
-"""`NOISE_FLOOR` of finer outlines."""
-RESIZED_SIGMA = 0.3
-"""Standard deviation of an extent's logarithm against where it was, of things that are seen whole."""
-OF_BORDER = 2.0
-"""A box has two opposite pairs of sides: half of it on the photo's border leaves an extent open."""
-MIN_SEEN = 0.05
-MIN_TRUST = 0.5
-"""Masks that are trusted less do not say it so exactly, unless depth does."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -44,15 +29,18 @@ class Near:
 
     scale: Float[np.ndarray, "3"] | None = None
     """The size from before any fit, from which it goes; None where the fit begins with it."""
-    steps: tuple[float, ...] = STEPS
-    rounds: int = ROUNDS
-    gain: float = GAIN
-    noise_floor: float = NOISE_FLOOR
+    steps: tuple[float, ...] = (0.06, 0.03, 0.015)
+    """Shares of an extent, and radians, from coarse to fine."""
+    rounds: int = 5
+    """Moves at each of them, as long as they help: sides, place and turn may all be a little off."""
+    gain: float = 0.01
+    """Of the cost, a logarithm: less is no better."""
+    noise_floor: float = SETTINGS.evidence.noise_floor
 
 
 WIDE = Near()
-COARSE = Near(steps=STEPS[:2])
-FINE = Near(steps=(0.015, 0.0075), rounds=3, gain=FINE_GAIN, noise_floor=FINE_NOISE_FLOOR)
+COARSE = Near(steps=WIDE.steps[:2])
+FINE = Near(steps=(0.015, 0.0075), rounds=3, gain=0.003, noise_floor=0.01)
 """A fit in two parts, the second with outlines of a finer resolution."""
 
 
@@ -79,6 +67,7 @@ def fitted_pose(
     *,
     resize: bool,
     near: Near = WIDE,
+    settings: ShapeFitSettings = SETTINGS.shapes,
 ) -> Pose:
     """The pose near one with which the shape agrees best.
 
@@ -89,8 +78,9 @@ def fitted_pose(
         shape_size_m: Its extents at scale 1.
         resize: Whether its size may change; one of a set keeps it. What is round from above stays round.
         near: How far it may go.
+        settings: numbers to work with.
     """
-    if evidence.surface is None and evidence.seen.mask_trust < MIN_TRUST:
+    if evidence.surface is None and evidence.seen.mask_trust < settings.min_trust:
         return pose
     start = pose.scale if near.scale is None else near.scale
     cost: float | None = None
@@ -99,7 +89,7 @@ def fitted_pose(
             moves = _neighbours(pose, np.asarray(shape_size_m), step, _resizings(resize, caster.round_from_above))
             if cost is None:  # compared along with its first neighbours: one comparison takes long by itself
                 moves.add(pose.R_world_object, pose.position, pose.scale)
-            costs = _costs(evidence, caster, moves, start, near.noise_floor)
+            costs = _costs(evidence, caster, moves, start, near.noise_floor, settings)
             cost = float(costs[-1]) if cost is None else cost
             best = int(np.argmin(costs))
             if costs[best] >= cost - near.gain:
@@ -109,17 +99,26 @@ def fitted_pose(
 
 
 def _costs(
-    evidence: Evidence, caster: ShapeCaster, moves: _Moves, start: Float[np.ndarray, "3"], noise_floor: float
+    evidence: Evidence,
+    caster: ShapeCaster,
+    moves: _Moves,
+    start: Float[np.ndarray, "3"],
+    noise_floor: float,
+    settings: ShapeFitSettings,
 ) -> Float[np.ndarray, "p"]:
     """Disagreement with the picture and distance from the size at the start, as logarithms."""
     poses = _batch(moves)
     agreement = np.log(evidence.errors(caster, poses) + noise_floor)
-    return agreement + resizing_cost(evidence.seen, poses.scale / start)
+    return agreement + resizing_cost(evidence.seen, poses.scale / start, settings)
 
 
-def resizing_cost(seen: Observed, factors: Float[np.ndarray, "p 3"]) -> Float[np.ndarray, "p"]:
+def resizing_cost(
+    seen: Observed, factors: Float[np.ndarray, "p 3"], settings: ShapeFitSettings
+) -> Float[np.ndarray, "p"]:
     """What speaks against extents that are so many times what they were, as a logarithm; nearly all where it is cut."""
-    sigma = RESIZED_SIGMA * max(1.0 - OF_BORDER * seen.border_share - seen.hidden_share, MIN_SEEN)
+    sigma = settings.resized_sigma * max(
+        1.0 - settings.of_border * seen.border_share - seen.hidden_share, settings.min_seen
+    )
     return np.asarray(0.5 * (np.log(factors) ** 2).sum(axis=1) / sigma**2)
 
 

@@ -23,26 +23,8 @@ from diorama_core.library.record import BUILT_IN, Shape, ShapeLibrary, record_of
 from diorama_core.pose.levels import level_cost
 from diorama_core.pose.outline_fit import Near, fitted_pose, resizing_cost
 from diorama_core.pose.seen_objects import SeenObject
+from diorama_core.pose.settings import SETTINGS, PoseSettings, ShapeFitSettings
 from diorama_core.scene.types import Candidate, Pose
-
-WORTH, WORTH_WITH_DEPTH, WORTH_OF_UNSURE = 0.25, 0.15, 0.4
-"""A changed parameter must agree better by so much: without depth it may make up for a pose that is a little off, and
-where no one drew the mask also for what the mask missed or took for the object."""
-SIZE_LOSS = 0.1
-"""A shape stretched unevenly is rather built at that size, unless it agrees worse by so much."""
-PROMISING, PROMISING_WITH_DEPTH = 0.45, 0.75
-"""A fit raises the score of a value in the pose of the best one by less, in 99 of 100 of 655 cases, of which 12 were
-worth it: what lacks more is not fitted."""
-STEPS, ROUNDS = (0.03, 0.015), 3
-"""Of the fits of single values: they begin where the shape fits with other ones."""
-FINELY = 0.25
-"""Finer steps raise a score by no more than this, mostly by a fifth of it: values that need more are not fitted on."""
-MIN_DRAWER_M = (0.2, 0.08)
-"""Width and height of the front of a drawer, at least."""
-PASSES, MAX_VARIANTS = 2, 32
-"""Times that all parameters are gone through, since one may hide another, and shapes built for one object or set."""
-MAX_TRIANGLES = 20_000
-"""Designs of more triangles, such as plants, are not built again and again."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -69,6 +51,7 @@ class _Variant:
 
     shape_id: str
     library: ShapeLibrary
+    settings: PoseSettings
 
     @cached_property
     def caster(self) -> ShapeCaster:
@@ -88,12 +71,14 @@ class _Variant:
             pose: Where it stands.
             start: Its scale from before any fit.
         """
-        cost = seen.outline_weight * float(resizing_cost(seen.evidence.seen, (pose.scale / start)[None])[0])
+        cost = seen.outline_weight * float(
+            resizing_cost(seen.evidence.seen, (pose.scale / start)[None], self.settings.shapes)[0]
+        )
         return seen.score(self.caster, pose) - cost
 
     def level_cost(self, seen: SeenObject, pose: Pose) -> float:
         """What the things that lie on the object say against it."""
-        return level_cost(self.shape, pose, seen.carried) if seen.carried else 0.0
+        return level_cost(self.shape, pose, seen.carried, self.settings.evidence) if seen.carried else 0.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -104,6 +89,7 @@ class ParameterFit:
     seen: Sequence[SeenObject]
     resize: bool
     """Whether sizes may change; those of a set stay alike."""
+    settings: PoseSettings = SETTINGS
 
     def fitted(self, best: Candidate, poses: Sequence[Pose]) -> FittedParameters | None:
         """The parameters that agree best; None where the retrieved shape is rather stretched than built.
@@ -122,7 +108,7 @@ class ParameterFit:
             return None
         poses = [Pose(p.R_world_object, p.position, p.scale * own / size) for p in as_is.poses]
         changes, fit = self._searched(best.shape_id, size, poses, best.pose.scale * own / size, as_is.score)
-        if fit.score < as_is.score - SIZE_LOSS:
+        if fit.score < as_is.score - self.settings.shapes.size_loss:
             return None
         at = tuple(Pose(p.R_world_object, p.position, p.scale * size / own) for p in fit.poses)
         return FittedParameters(changes, at)
@@ -145,18 +131,25 @@ class ParameterFit:
             as_is: What the retrieved shape scores, stretched to that size.
         """
         changes: dict[str, Value] = {}
-        best, left = self._at(self._variant(made_id(design_id, size_m, changes)), poses, start), MAX_VARIANTS
+        best, left = (
+            self._at(self._variant(made_id(design_id, size_m, changes)), poses, start),
+            self.settings.shapes.max_variants,
+        )
         parameters, unchanged = tuple(varied(design_id)), 0
         if other_hand(self.library, design_id) is not None:
             parameters = ((MIRRORED, (True,)), *parameters)
-        for name, values in chain.from_iterable(repeat(parameters, PASSES)):
+        for name, values in chain.from_iterable(repeat(parameters, self.settings.shapes.passes)):
             if unchanged == len(parameters):
                 break  # each was tried beside the values that all others have now
-            others = [v for v in values if v != changes.get(name) and can_have(name, v, size_m)][:left]
+            others = [v for v in values if v != changes.get(name) and can_have(name, v, size_m, self.settings.shapes)][
+                :left
+            ]
             left -= len(others)
             variants = {v: self._variant(made_id(design_id, size_m, {**changes, name: v})) for v in others}
             enough = (best.score if changes else max(best.score, as_is)) + self._worth
-            least = enough - (PROMISING_WITH_DEPTH if self._with_depth else PROMISING)
+            least = enough - (
+                self.settings.shapes.promising_with_depth if self._with_depth else self.settings.shapes.promising
+            )
             roughly = {v: self._at(variant, best.poses, start, least) for v, variant in variants.items()}
             promising = [v for v in others if roughly[v].score > least]
             tried = {v: self._fit(variants[v], size_m, roughly[v], start, enough) for v in promising}
@@ -170,8 +163,12 @@ class ParameterFit:
     def _worth(self) -> float:
         """By how much a changed parameter must agree better."""
         if self._with_depth:
-            return WORTH_WITH_DEPTH
-        return WORTH if all(one.has_given_mask for one in self.seen) else WORTH_OF_UNSURE
+            return self.settings.shapes.worth_with_depth
+        return (
+            self.settings.shapes.worth
+            if all(one.has_given_mask for one in self.seen)
+            else self.settings.shapes.worth_of_unsure
+        )
 
     @property
     def _with_depth(self) -> bool:
@@ -179,7 +176,7 @@ class ParameterFit:
         return all(one.evidence.surface is not None for one in self.seen)
 
     def _variant(self, shape_id: str) -> _Variant:
-        return _Variant(shape_id, self.library)
+        return _Variant(shape_id, self.library, self.settings)
 
     def _at(
         self, variant: _Variant, poses: Sequence[Pose], start: Float[np.ndarray, "3"], least: float = -np.inf
@@ -200,27 +197,33 @@ class ParameterFit:
     ) -> _Fit:
         """The variant in the poses that fit best near rough ones; not finely where it would not score enough anyway."""
         fit = roughly
-        for step in STEPS:
-            near = Near(start, (step,), ROUNDS)
+        for step in self.settings.shapes.size_steps:
+            near = Near(start, (step,), self.settings.shapes.size_rounds)
             poses = [
-                fitted_pose(o.evidence, variant.caster, p, size_m, resize=self.resize, near=near)
+                fitted_pose(
+                    o.evidence, variant.caster, p, size_m, resize=self.resize, near=near, settings=self.settings.shapes
+                )
                 for o, p in zip(self.seen, fit.poses, strict=True)
             ]
             if any(pose is not before for pose, before in zip(poses, fit.poses, strict=True)):
                 fit = self._at(variant, poses, start)
-            if fit.score < enough - FINELY:
+            if fit.score < enough - self.settings.shapes.finely:
                 break
         return fit
 
     def _may_be_built(self, shape_id: str) -> bool:
         built_in = record_of(self.library, shape_id).source == BUILT_IN
-        return built_in and len(self.library.mesh(shape_id).faces) <= MAX_TRIANGLES
+        return built_in and len(self.library.mesh(shape_id).faces) <= self.settings.shapes.max_triangles
 
 
-def can_have(name: str, value: Value, size_m: Float[np.ndarray, "3"]) -> bool:
+def can_have(
+    name: str, value: Value, size_m: Float[np.ndarray, "3"], settings: ShapeFitSettings = SETTINGS.shapes
+) -> bool:
     """Whether a shape of this depth, width and height can have a parameter's value: its drawers are for things."""
     bays = value if name == "bays" and isinstance(value, tuple) else ()
     drawers = [int(v) for v in bays if str(v).isdecimal()]
     if not drawers:
         return True
-    return bool(size_m[1] / len(bays) >= MIN_DRAWER_M[0] and size_m[2] / max(drawers) >= MIN_DRAWER_M[1])
+    return bool(
+        size_m[1] / len(bays) >= settings.min_drawer_m[0] and size_m[2] / max(drawers) >= settings.min_drawer_m[1]
+    )

@@ -14,22 +14,15 @@ from diorama_core.geometry.see_through import SeeThrough
 from diorama_core.library.hyponyms import is_named
 from diorama_core.library.record import Shape
 from diorama_core.library.taxonomy import NEVER_OPEN, category
-from diorama_core.pose.agree import (
-    MAX_LOSS_OF_SURE_OUTLINES,
-    MAX_LOSS_WHERE_COLOURS_TELL,
-    MAX_LOSS_WITH_DEPTH,
-    SETS,
-)
+from diorama_core.pose.agree import SETS
 from diorama_core.pose.appearance_likelihood import AppearanceLikelihood, cells_for
 from diorama_core.pose.details import Details
 from diorama_core.pose.hypotheses import Anchor, anchor_of
 from diorama_core.pose.mask_observations import Evidence
 from diorama_core.pose.measured import MeasuredObject, foot_height_m
+from diorama_core.pose.settings import SETTINGS, PoseSearchSettings, PoseSettings
 from diorama_core.pose.surface import measured_surface, noise_of
 from diorama_core.workers import each
-
-_TELLS = 0.5
-"""What colours must say beside a mask for it to tell who of a set differs (`SeeThrough.share`)."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -49,6 +42,7 @@ class PosingTask:
     """Where depth was measured."""
     details: Details | None
     """Where depth was measured: doubtful poses put a shape's edges and parts elsewhere."""
+    settings: PoseSearchSettings
 
     @property
     def hangs(self) -> bool:
@@ -63,11 +57,11 @@ class PosingTask:
     def max_loss(self) -> float:
         """What agreeing on a shape may cost: it averages doubtful outlines; sure ones and depth show who differs."""
         if self.measured is not None:
-            return MAX_LOSS_WITH_DEPTH
+            return self.settings.max_loss_with_depth
         in_sets, colours = self.item.category in SETS, self.fine.see_through
-        if in_sets and colours is not None and colours.share > _TELLS:
-            return MAX_LOSS_WHERE_COLOURS_TELL
-        return np.inf if self.item.mask_confidence < 1.0 or in_sets else MAX_LOSS_OF_SURE_OUTLINES
+        if in_sets and colours is not None and colours.share > self.settings.tells:
+            return self.settings.max_loss_where_colours_tell
+        return np.inf if self.item.mask_confidence < 1.0 or in_sets else self.settings.max_loss_of_sure_outlines
 
 
 def likeliest_kinds(
@@ -89,6 +83,7 @@ def posing_tasks(
     kinds: Mapping[str, str],
     cells: tuple[int, int],
     walls: WallSamples,
+    settings: PoseSettings = SETTINGS,
 ) -> list[PosingTask]:
     """One task for every object that has a cuboid and kinds, in the order of `objects`.
 
@@ -100,6 +95,7 @@ def posing_tasks(
         kinds: by object what it most likely is.
         cells: resolutions at which all hypotheses, and the best ones, are compared.
         walls: where walls are seen.
+        settings: numbers to work with.
     """
     cuboid_of = {c.object_id: c for c in geometry.cuboids}
     items = [o for o in objects if o.id in cuboid_of]
@@ -110,7 +106,8 @@ def posing_tasks(
         items,
         [cuboid_of[o.id] for o in items],
         walls,
-        noise_of(depth),
+        noise_of(depth, settings.evidence),
+        settings,
     )
     posed = [i for i, item in enumerate(items) if item.id in kinds]
     return each(lambda i: scene.task(i, kinds[items[i].id], cells), posed)
@@ -128,6 +125,7 @@ class _Surroundings:
     walls: WallSamples
     noise: float
     """Of measured depth (`surface.noise_of`)."""
+    settings: PoseSettings
 
     @property
     def parents(self) -> list[int | None]:
@@ -145,20 +143,26 @@ class _Surroundings:
         centres = np.array([c.centre for c in self.cuboids]).reshape(-1, 3)
         parents = self.parents
         windows = [observe_among(camera, self.items, centres, parents, i, count) for count in cells]
-        surfaces = [measured_surface(depth, seen, item.mask, self.noise) for seen in windows]
+        surfaces = [measured_surface(depth, seen, item.mask, self.noise, self.settings.evidence) for seen in windows]
         rgb, closed = self.inputs.photo.rgb, item.category in NEVER_OPEN
         coarse, fine = (
-            Evidence(camera, w, s, None if closed or s is not None else SeeThrough.of(rgb, w))
+            Evidence(
+                camera,
+                w,
+                s,
+                None if closed or s is not None else SeeThrough.of(rgb, w),
+                settings=self.settings.evidence,
+            )
             for w, s in zip(windows, surfaces, strict=True)
         )
-        foot_m = foot_height_m(depth, item.mask, camera) if held_by == "floor" else None
-        measured = MeasuredObject.of(item.mask, fine, cuboid, anchor, self.walls, foot_m)
-        details = None if measured is None else Details.of(rgb, windows[1])
+        foot_m = foot_height_m(depth, item.mask, camera, self.settings.search) if held_by == "floor" else None
+        measured = MeasuredObject.of(item.mask, fine, cuboid, anchor, self.walls, foot_m, self.settings)
+        details = None if measured is None else Details.of(rgb, windows[1], self.settings.evidence)
         close = None
         if measured is not None:
-            near = observe_among(camera, self.items, centres, parents, i, cells_for(item.box))
-            surface = measured_surface(depth, near, item.mask, self.noise)
+            near = observe_among(camera, self.items, centres, parents, i, cells_for(item.box, self.settings.evidence))
+            surface = measured_surface(depth, near, item.mask, self.noise, self.settings.evidence)
             if surface is not None:
-                close = AppearanceLikelihood.of(rgb, item.mask, near, surface, cuboid.size_m)
+                close = AppearanceLikelihood.of(rgb, item.mask, near, surface, cuboid.size_m, self.settings)
         carried = tuple(self.cuboids[j] for j, parent in enumerate(parents) if parent == i)
-        return PosingTask(item, cuboid, anchor, carried, coarse, fine, measured, close, details)
+        return PosingTask(item, cuboid, anchor, carried, coarse, fine, measured, close, details, self.settings.search)

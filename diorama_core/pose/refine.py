@@ -16,14 +16,10 @@ from diorama_core.geometry.rotations import yaw_rotations
 from diorama_core.geometry.silhouette import PoseBatch, ShapeCaster
 from diorama_core.pose.hypotheses import Anchor
 from diorama_core.pose.limits import SizeLimits
+from diorama_core.pose.settings import SETTINGS, PoseSearchSettings
 from diorama_core.scene.types import Camera
 
 _PARAMETERS = 6
-_STEP = 1e-3
-_BEYOND_SIGMA = 4.0
-_HIDDEN_SIDE = 0.2
-_AWAY_SHARE, _AWAY_SHARE_UNSEEN = 0.05, 0.01
-"""Of its distance, how far an object may be expected to move away from the camera or nearer: foot seen, and not."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -38,6 +34,7 @@ class BoxFit:
     foot_seen: bool = True
     """Where it is not, the box hardly tells how far away the object is: its cuboid, placed among all others, does."""
     iterations: int = 4
+    settings: PoseSearchSettings = SETTINGS.search
 
     def refined(self, caster: ShapeCaster, start: PoseBatch) -> PoseBatch:
         """The poses corrected toward the box; unchanged where no correction helps."""
@@ -76,7 +73,7 @@ class BoxFit:
         """How far each parameter may be expected to move: two offsets in metres, three log scales, yaw."""
         distance = np.linalg.norm(start.position - self.camera.position, axis=1)
         sigma = np.empty((len(start), _PARAMETERS))
-        away = _AWAY_SHARE if self.foot_seen else _AWAY_SHARE_UNSEEN
+        away = self.settings.away_share if self.foot_seen else self.settings.away_share_unseen
         sigma[:, 0], sigma[:, 1] = away * distance, 0.03 * distance
         sigma[:, 2:5], sigma[:, 5] = 0.12, self.yaw_sigma_rad
         return sigma
@@ -103,8 +100,8 @@ class BoxFit:
         extent = np.maximum(np.tile(box[2:] - box[:2], 2), 1.0)
         outward = (bounds - box) * np.array([-1.0, -1.0, 1.0, 1.0]) / (0.015 * extent + 1.5)
         outward = np.where(np.isnan(outward), 20.0, outward)
-        outward = np.where(hidden & (outward > 0), _HIDDEN_SIDE * outward, outward)
-        robust = np.sign(outward) * _softened(np.abs(outward))
+        outward = np.where(hidden & (outward > 0), self.settings.hidden_side * outward, outward)
+        robust = np.sign(outward) * _softened(np.abs(outward), self.settings)
         residual = np.concatenate([robust, x], axis=1)
         return (residual**2).sum(axis=1), residual
 
@@ -121,16 +118,16 @@ class BoxFit:
         """Forward differences; all poses and parameters in one projection."""
         count = len(start)
         repeat = np.repeat(np.arange(count), _PARAMETERS)
-        shifted = x[repeat] + _STEP * np.tile(np.eye(_PARAMETERS), (count, 1))
+        shifted = x[repeat] + self.settings.slope_step * np.tile(np.eye(_PARAMETERS), (count, 1))
         _, moved = self._residuals(caster, start[repeat], shifted, sigma[repeat], tangents, hidden)
-        slopes = (moved.reshape(count, _PARAMETERS, -1) - residual[:, None]) / _STEP
+        slopes = (moved.reshape(count, _PARAMETERS, -1) - residual[:, None]) / self.settings.slope_step
         return slopes.transpose(0, 2, 1)
 
 
-def _softened(magnitude: np.ndarray) -> np.ndarray:
+def _softened(magnitude: np.ndarray, settings: PoseSearchSettings) -> np.ndarray:
     """Grows like a square root beyond a few sigmas (Huber's loss as a residual)."""
-    beyond = np.maximum(2 * _BEYOND_SIGMA * magnitude - _BEYOND_SIGMA**2, 0.0)
-    return np.where(magnitude <= _BEYOND_SIGMA, magnitude, np.sqrt(beyond))
+    beyond = np.maximum(2 * settings.beyond_sigma * magnitude - settings.beyond_sigma**2, 0.0)
+    return np.where(magnitude <= settings.beyond_sigma, magnitude, np.sqrt(beyond))
 
 
 def _damped_step(jacobian: np.ndarray, residual: np.ndarray, damping: np.ndarray) -> Float[np.ndarray, "p 6"]:

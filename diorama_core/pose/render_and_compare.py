@@ -27,19 +27,11 @@ from diorama_core.pose.posing_tasks import PosingTask, likeliest_kinds, posing_t
 from diorama_core.pose.refine import BoxFit
 from diorama_core.pose.room_evidence import Trials, TriedShape, facing_room, powers, wall_samples
 from diorama_core.pose.sets import shared_scales
+from diorama_core.pose.settings import SETTINGS, PoseSettings
 from diorama_core.pose.turns import TurnSearch
 from diorama_core.processes import each_there
 from diorama_core.progress import Progress
 from diorama_core.scene.types import Pose
-
-_RETRIEVAL_WITH_DEPTH = 4.0
-"""What retrieval says beside `Evidence.log_likelihood` where depth was measured: that tells shapes apart."""
-_MIN_STANDING = -1.0
-"""What holds an object may be mistaken: that a shape does not stand there says at most so much against it, as a log."""
-_LEFT_UNREFINED = 0.5
-"""What poses gain by being refined, as a logarithm, in the middle."""
-_LOSS_FOR_A_SET = 0.02
-"""Additional image error allowed for an object to take the size of its set."""
 
 
 @dataclass(frozen=True)
@@ -64,9 +56,11 @@ class RenderAndCompare:
     promising: int = 4
     """Shapes that the coarse comparison likes best; where depth was measured the others are looked at less."""
     facing: FacingWeights = field(default_factory=facing_weights)
+    settings: PoseSettings = SETTINGS
 
     def __repr__(self) -> str:
-        words = "\n".join(f"{s.id} {s.content_hash}" for s in self.library.shapes()) + repr(self.facing)
+        numbers = repr(self.facing) + repr(self.settings)
+        words = "\n".join(f"{s.id} {s.content_hash}" for s in self.library.shapes()) + numbers
         shapes = hashlib.sha256(words.encode()).hexdigest()[:12]
         settings = (self.coarse_cells, self.fine_cells, self.refined, self.refined_with_depth, self.promising)
         return f"RenderAndCompare({shapes}, {', '.join(map(str, settings))})"
@@ -91,6 +85,7 @@ class RenderAndCompare:
             [{posed.shape.id: posed.rank for posed in of_one} for of_one in found],
             [task.fine.confidence(0.0, 1.0) for task in tasks],
             [task.max_loss for task in tasks],
+            self.settings.search,
         )
         ordered = [ordered_shapes(of_one, order) for of_one, order in zip(found, ranks, strict=True)]
         firsts = self._evened(tasks, [of_one[0] for of_one in ordered])
@@ -110,12 +105,14 @@ class RenderAndCompare:
         ranked = {r.object_id: r.ranked for r in shapes if r.ranked}
         records = {s.id: s for s in self.library.shapes()}
         kinds = likeliest_kinds(objects, ranked, records)
-        walls = wall_samples(depth, geometry.camera, objects)
+        walls = wall_samples(depth, geometry.camera, objects, self.settings.search)
         cells = (self.coarse_cells, self.fine_cells)
-        tasks = posing_tasks(inputs, objects, geometry, depth, kinds, cells, walls)
+        tasks = posing_tasks(inputs, objects, geometry, depth, kinds, cells, walls, self.settings)
         pieces = [(task, [(records[i], score) for i, score in ranked[task.item.id]]) for task in tasks]
         tried = each_there(self._try_shapes, pieces, progress, "Trying poses")
-        return Trials(tasks, tried, facing_room(geometry, kinds, tasks, tried, walls))
+        return Trials(
+            tasks, tried, facing_room(geometry, kinds, tasks, tried, walls, self.settings.search), self.settings.search
+        )
 
     def _evened(self, tasks: Sequence[PosingTask], chosen: Sequence[PosedShape]) -> list[PosedShape]:
         """The chosen poses, those of one set equally large where that fits the picture hardly worse."""
@@ -129,6 +126,7 @@ class RenderAndCompare:
                 task.fine.confidence(posed.error, task.cuboid.confidence)
                 for task, posed in zip(tasks, chosen, strict=True)
             ],
+            self.settings.search,
         )
         return [self._rescaled(*one) for one in zip(tasks, chosen, scales, strict=True)]
 
@@ -139,7 +137,11 @@ class RenderAndCompare:
         grown = 0.5 * float(np.abs(axis @ R) @ ((scale - posed.pose.scale) * posed.shape.size_m))
         poses = PoseBatch(R[None], (posed.pose.position + grown * axis)[None], scale[None])
         error = float(task.fine.errors(self._appearance(posed.shape).caster, poses)[0])
-        return replace(posed, pose=_only(poses), error=error) if error <= posed.error + _LOSS_FOR_A_SET else posed
+        return (
+            replace(posed, pose=_only(poses), error=error)
+            if error <= posed.error + self.settings.search.loss_for_a_set
+            else posed
+        )
 
     def _appearance(self, shape: Shape) -> ShapeAppearance:
         folder = default_cache_dir() / "appearances"
@@ -169,16 +171,28 @@ class RenderAndCompare:
         """Ranked by the levels of what it carries, too."""
         if not task.carried:
             return posed
-        cost = level_cost(self.library.shape(posed.shape.id), posed.pose, task.carried)
+        cost = level_cost(self.library.shape(posed.shape.id), posed.pose, task.carried, self.settings.evidence)
         return replace(posed, rank=posed.rank - cost)
 
     def _try_shape(self, task: PosingTask, shape: Shape, liked: float) -> TriedShape:
         appearance = self._appearance(shape)
         name = task.item.category
         depth_known = task.measured is not None
-        sides = sides_log_of(shape.symmetry, name, round=appearance.caster.round_from_above)
-        limits = SizeLimits.of(shape.size_m, name, task.cuboid.size_m, measured=depth_known, sides_log=sides)
-        tried = hypotheses_for(task.cuboid, name, shape.symmetry, limits, task.anchor, sides_known=depth_known)
+        sides = sides_log_of(
+            shape.symmetry, name, round=appearance.caster.round_from_above, settings=self.settings.search
+        )
+        limits = SizeLimits.of(
+            shape.size_m, name, task.cuboid.size_m, measured=depth_known, sides_log=sides, settings=self.settings.search
+        )
+        tried = hypotheses_for(
+            task.cuboid,
+            name,
+            shape.symmetry,
+            limits,
+            task.anchor,
+            sides_known=depth_known,
+            settings=self.settings.search,
+        )
         if task.measured is not None:
             tried = tried.and_also(task.measured.hypotheses(shape.symmetry, limits))
         errors = task.coarse.errors(appearance.caster, tried.poses)
@@ -190,7 +204,7 @@ class RenderAndCompare:
     def _pose_by_outline(self, task: PosingTask, tried: TriedShape) -> PosedShape:
         best = np.argsort(-tried.scores, kind="stable")[: self.refined]
         poses, error, score = self._chosen(task, tried, tried.hypotheses[best])
-        of_retrieval, of_pose = powers(task.item.label)
+        of_retrieval, of_pose = powers(task.item.label, self.settings.search)
         cost = task.fine.enlarged_cost(poses.scale[0], tried.limits) + task.fine.sure_outline_cost(error)
         cost -= task.fine.seen_past(self._appearance(tried.shape).caster, poses)
         return PosedShape(tried.shape, _only(poses), error, of_retrieval * tried.liked + of_pose * score - cost)
@@ -201,7 +215,7 @@ class RenderAndCompare:
         """Unlike hypotheses are refined; the best one is also tried turned by quarters in its place."""
         fold, size_m = tried.shape.symmetry, tried.limits.shape_size_m
         count = self.refined_with_depth if promising else self.refined
-        best = unlike_best(tried.hypotheses.poses, tried.scores, fold, size_m, count)
+        best = unlike_best(tried.hypotheses.poses, tried.scores, fold, size_m, count, self.settings.search)
         poses, error, score = self._chosen(task, tried, tried.hypotheses[best])
         if promising and fold < 3:
             turned = measured.turned(poses, fold, tried.limits)
@@ -218,7 +232,9 @@ class RenderAndCompare:
             return posed
         start, fold = _batch(posed.pose), tried.shape.symmetry
         appearance = self._appearance(tried.shape)
-        search = TurnSearch.of(task.close, task.fine, measured, appearance, tried.limits, fold, start)
+        search = TurnSearch.of(
+            task.close, task.fine, measured, appearance, tried.limits, fold, start, self.settings.search
+        )
         poses, doubt = search.best(start)
         error = float(task.fine.errors(appearance.caster, poses)[0])
         rank = self._rank(task, measured, tried, poses, error)
@@ -247,10 +263,12 @@ class RenderAndCompare:
     def compared_finely(self, task: PosingTask, tried: TriedShape, count: int) -> TriedShape:
         """A tried shape with its best unlike poses refined beside the others, which are worth a little less then."""
         fold, size_m = tried.shape.symmetry, tried.limits.shape_size_m
-        start = tried.hypotheses[unlike_best(tried.hypotheses.poses, tried.scores, fold, size_m, count)]
+        start = tried.hypotheses[
+            unlike_best(tried.hypotheses.poses, tried.scores, fold, size_m, count, self.settings.search)
+        ]
         both, _, scores = self._finely(task, tried, start)
         refined = Hypotheses(both, np.tile(start.off_axis_rad, 2), np.tile(start.misfit, 2))
-        others = tried.scores - tried.scores.max() + scores.max() - _LEFT_UNREFINED
+        others = tried.scores - tried.scores.max() + scores.max() - self.settings.search.left_unrefined
         found = tried.hypotheses.and_also(refined)
         return replace(tried, hypotheses=found, scores=np.concatenate([others, scores]))
 
@@ -259,7 +277,15 @@ class RenderAndCompare:
             return task.measured.fit(limits).refined(caster, start)
         yaw_sigma = np.deg2rad(9.0 if category(task.item.category).quarter_turns_free else 4.0)
         foot_seen = task.cuboid.foot_seen
-        fit = BoxFit(task.fine.camera, task.fine.seen, task.anchor, limits, float(yaw_sigma), foot_seen)
+        fit = BoxFit(
+            task.fine.camera,
+            task.fine.seen,
+            task.anchor,
+            limits,
+            float(yaw_sigma),
+            foot_seen,
+            settings=self.settings.search,
+        )
         return fit.refined(caster, start)
 
     def _rank(
@@ -267,12 +293,12 @@ class RenderAndCompare:
     ) -> float:
         """What retrieval, the picture and what holds the object say of a posed shape, where depth was measured."""
         similarity = task.fine.log_likelihood(error, poses.scale[0], tried.limits)
-        stands = max(float(measured.log_likelihood(poses, tried.limits)[0]), _MIN_STANDING)
+        stands = max(float(measured.log_likelihood(poses, tried.limits)[0]), self.settings.search.min_standing)
         told = 0.0
         if task.details is not None:
             appearance = self._appearance(tried.shape)
             told = task.details.log_likelihood(appearance, task.fine.hits(appearance.caster, poses))
-        return _RETRIEVAL_WITH_DEPTH * tried.liked + similarity + stands + told
+        return self.settings.search.retrieval_with_depth * tried.liked + similarity + stands + told
 
 
 def _batch(pose: Pose) -> PoseBatch:

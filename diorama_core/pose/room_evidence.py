@@ -24,14 +24,8 @@ from diorama_core.library.taxonomy import UNKNOWN
 from diorama_core.pose.hypotheses import Hypotheses
 from diorama_core.pose.limits import SizeLimits
 from diorama_core.pose.posing_tasks import PosingTask
+from diorama_core.pose.settings import SETTINGS, PoseSearchSettings
 from diorama_core.scene.types import Camera
-
-_POWERS = (1.5, 0.6)
-"""How much retrieval and pose say about which shape is best: the picture's outline alone would ignore colours."""
-_POWERS_OF_UNNAMED = (3.0, 0.6)
-"""The same for a thing without a name: shapes of many kinds compete, and some unlike thing always has its outline."""
-_WALL_SAMPLES = 3000
-"""Enough that ten of them lie on whatever of a wall stands out beside a piece of furniture."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -54,26 +48,27 @@ class Trials:
     tried: Sequence[Sequence[TriedShape]]
     """By task its shapes."""
     room: FacingRoom
+    settings: PoseSearchSettings
 
     def with_shapes(self, tried: Sequence[Sequence[TriedShape]]) -> Trials:
         """The same objects with other poses of their shapes."""
-        pictures = [_picture(*one) for one in zip(self.tasks, tried, strict=True)]
+        pictures = [_picture(*one, settings=self.settings) for one in zip(self.tasks, tried, strict=True)]
         by_id = {t.item.id: picture for t, picture in zip(self.tasks, pictures, strict=True)}
         objects = tuple(replace(o, picture=by_id.get(o.object_id, o.picture)) for o in self.room.objects)
-        return Trials(self.tasks, tried, replace(self.room, objects=objects))
+        return Trials(self.tasks, tried, replace(self.room, objects=objects), self.settings)
 
     def folds(self) -> dict[str, int]:
         """By posed object how many headings of its likeliest shape look the same."""
         found: dict[str, int] = {}
         for task, of_one in zip(self.tasks, self.tried, strict=True):
-            best = int(np.argmax([likelihood(task.item.label, t) for t in of_one]))
+            best = int(np.argmax([likelihood(task.item.label, t, self.settings) for t in of_one]))
             found[task.item.id] = of_one[best].shape.symmetry
         return found
 
 
-def powers(label: str) -> tuple[float, float]:
+def powers(label: str, settings: PoseSearchSettings) -> tuple[float, float]:
     """What retrieval and pose say about the shape of a thing that is called so."""
-    return _POWERS if is_named(label) else _POWERS_OF_UNNAMED
+    return settings.powers if is_named(label) else settings.powers_of_unnamed
 
 
 def facing_room(
@@ -82,6 +77,7 @@ def facing_room(
     tasks: Sequence[PosingTask],
     tried: Sequence[Sequence[TriedShape]],
     walls: WallSamples,
+    settings: PoseSearchSettings,
 ) -> FacingRoom:
     """All objects with a cuboid, and what the picture says of those that were posed.
 
@@ -91,10 +87,11 @@ def facing_room(
         tasks: Of the posed objects.
         tried: Their shapes.
         walls: Where walls are seen.
+        settings: numbers to work with.
     """
     index = {c.object_id: k for k, c in enumerate(geometry.cuboids)}
     parent_of = {s.child: s.parent for s in geometry.supports}
-    pictures = {t.item.id: _picture(t, of_one) for t, of_one in zip(tasks, tried, strict=True)}
+    pictures = {t.item.id: _picture(t, of_one, settings) for t, of_one in zip(tasks, tried, strict=True)}
     out_of_wall = {t.item.id: unit(t.anchor.axis_world[:2]) for t in tasks if t.hangs}
     objects = tuple(
         FacingObject(
@@ -113,20 +110,22 @@ def facing_room(
     return FacingRoom(objects, geometry.camera.position[:2], walls)
 
 
-def _picture(task: PosingTask, tried: Sequence[TriedShape]) -> Float[np.ndarray, "24"]:
+def _picture(task: PosingTask, tried: Sequence[TriedShape], settings: PoseSearchSettings) -> Float[np.ndarray, "24"]:
     """What the picture says of the headings of one object, whichever of its shapes it is."""
-    ranks = [likelihood(task.item.label, t) + t.scores - t.scores.max() for t in tried]
+    ranks = [likelihood(task.item.label, t, settings) + t.scores - t.scores.max() for t in tried]
     poses, folds = [t.hypotheses.poses.R for t in tried], [t.shape.symmetry for t in tried]
     return picture_of(task.cuboid.R_world_object, poses, ranks, folds)
 
 
-def likelihood(label: str, tried: TriedShape) -> float:
+def likelihood(label: str, tried: TriedShape, settings: PoseSearchSettings = SETTINGS.search) -> float:
     """How likely an object that is called so is of a shape, by retrieval and its best pose: a logarithm."""
-    of_retrieval, of_pose = powers(label)
+    of_retrieval, of_pose = powers(label, settings)
     return of_retrieval * tried.liked + of_pose * float(tried.scores.max())
 
 
-def wall_samples(depth: DepthMap, camera: Camera, objects: Sequence[DetectedObject]) -> WallSamples:
+def wall_samples(
+    depth: DepthMap, camera: Camera, objects: Sequence[DetectedObject], settings: PoseSearchSettings
+) -> WallSamples:
     """Pixels outside all boxes whose surface is upright: the walls, as far as they are seen."""
     normals = depth.normals_world
     free = np.isfinite(depth.depth_m) & (depth.depth_m > 0) & (np.abs(normals[..., 2]) < 0.25)
@@ -134,7 +133,7 @@ def wall_samples(depth: DepthMap, camera: Camera, objects: Sequence[DetectedObje
         x1, y1, x2, y2 = (round(v) for v in item.box)
         free[max(y1, 0) : y2, max(x1, 0) : x2] = False
     rows, columns = np.nonzero(free)
-    step = max(len(rows) // _WALL_SAMPLES, 1)
+    step = max(len(rows) // settings.wall_samples, 1)
     rows, columns = rows[::step], columns[::step]
     rays = camera.rays(np.stack([columns + 0.5, rows + 0.5], axis=1))
     points = camera.position + rays * depth.depth_m[rows, columns, None].astype(np.float64)

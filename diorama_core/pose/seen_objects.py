@@ -14,21 +14,11 @@ from diorama_core.geometry.silhouette import PoseBatch, ShapeCaster
 from diorama_core.library.taxonomy import NEVER_OPEN
 from diorama_core.pose.agree import SETS
 from diorama_core.pose.inner_edges import InnerEdges
-from diorama_core.pose.mask_observations import NOISE_FLOOR, Evidence
+from diorama_core.pose.mask_observations import Evidence
+from diorama_core.pose.settings import SETTINGS, PoseSettings
 from diorama_core.pose.surface import measured_surface, noise_of
 from diorama_core.scene.types import Pose
 from diorama_core.workers import each
-
-CELLS, FINE_CELLS = 56, 84
-"""Resolutions at which shapes are compared with the picture and set in place in the end, both ways."""
-OUTLINE, OUTLINE_WITH_DEPTH = 1.8, 2.0
-"""How much outline and depth say, as a factor of a logarithm; an outline counts as much as its mask is trusted."""
-EDGES = 1.0
-"""How much the inner edges say beside that."""
-SURE_MASK, GIVEN_MASK = 0.9, 1.0
-"""Confidence from which on a mask's outline tells a profile, and that of a mask that was given."""
-MIN_CELLS = 100.0
-"""Objects of which fewer cells are seen tell nothing of their parts."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -46,6 +36,7 @@ class SeenObject:
     category: str
     carried: tuple[Cuboid, ...] = ()
     """What lies on it, measured without knowing its shape."""
+    settings: PoseSettings = SETTINGS
 
     @property
     def may_have_agreed(self) -> bool:
@@ -55,17 +46,21 @@ class SeenObject:
     @property
     def is_surely_outlined(self) -> bool:
         """Whether its outline tells a profile."""
-        return self.mask_confidence >= SURE_MASK
+        return self.mask_confidence >= self.settings.shapes.sure_mask
 
     @property
     def has_given_mask(self) -> bool:
         """Whether its outline tells its place to a hundredth, and its parts."""
-        return self.mask_confidence >= GIVEN_MASK
+        return self.mask_confidence >= self.settings.shapes.given_mask
 
     @property
     def outline_weight(self) -> float:
         """How much outline and depth say, as a factor of a logarithm."""
-        return OUTLINE * self.evidence.seen.mask_trust if self.evidence.surface is None else OUTLINE_WITH_DEPTH
+        return (
+            self.settings.shapes.outline * self.evidence.seen.mask_trust
+            if self.evidence.surface is None
+            else self.settings.shapes.outline_with_depth
+        )
 
     def edges_in(self, caster: ShapeCaster, pose: Pose) -> float:
         """How well the inner edges of a shape agree with the photo's: -1 to 1."""
@@ -78,7 +73,10 @@ class SeenObject:
         error = float(self.evidence.errors_of(caster, hits)[0])
         edges = float(self.edges.agreement(hits)[0])
         trust = self.evidence.seen.mask_trust
-        return -self.outline_weight * float(np.log(error + NOISE_FLOOR)) + EDGES * trust * edges
+        return (
+            -self.outline_weight * float(np.log(error + self.settings.evidence.noise_floor))
+            + self.settings.shapes.edges * trust * edges
+        )
 
 
 def seen_objects(
@@ -87,6 +85,7 @@ def seen_objects(
     objects: tuple[DetectedObject, ...],
     geometry: ObjectGeometry,
     depth: DepthMap,
+    settings: PoseSettings,
 ) -> dict[str, SeenObject]:
     """What the picture says of every posed object of which enough is seen, by its id."""
     pose_of = {p.object_id: p.candidates[0].pose for p in posed if p.candidates}
@@ -96,30 +95,31 @@ def seen_objects(
     positions = {o.id: k for k, o in enumerate(items)}
     parent_of = {s.child: s.parent for s in geometry.supports}
     parents = [positions.get(parent_of.get(o.id, "")) for o in items]
-    noise = noise_of(depth)
+    noise = noise_of(depth, settings.evidence)
 
     def evidence(k: int, cells: int) -> Evidence:
         item = items[k]
         window = observe_among(geometry.camera, items, centres, parents, k, cells, loads_apart=True)
-        surface = measured_surface(depth, window, item.mask, noise)
+        surface = measured_surface(depth, window, item.mask, noise, settings.evidence)
         closed = surface is not None or item.category in NEVER_OPEN
         colours = None if closed else SeeThrough.of(inputs.photo.rgb, window)
-        return Evidence(geometry.camera, window, surface, colours)
+        return Evidence(geometry.camera, window, surface, colours, settings=settings.evidence)
 
     def seen(k: int) -> SeenObject | None:
-        item, coarse = items[k], evidence(k, CELLS)
+        item, coarse = items[k], evidence(k, settings.shapes.cells)
         window = coarse.seen
-        if float((window.covered * window.weight).sum()) < MIN_CELLS:
+        if float((window.covered * window.weight).sum()) < settings.shapes.min_cells:
             return None
         return SeenObject(
             coarse,
-            evidence(k, FINE_CELLS) if item.mask_confidence >= GIVEN_MASK else coarse,
-            InnerEdges.of(inputs.photo.rgb, window),
+            evidence(k, settings.shapes.fine_cells) if item.mask_confidence >= settings.shapes.given_mask else coarse,
+            InnerEdges.of(inputs.photo.rgb, window, settings.evidence),
             pose_of[item.id],
             item.pixels,
             item.mask_confidence,
             item.category,
             tuple(cuboid_of[o.id] for o, parent in zip(items, parents, strict=True) if parent == k),
+            settings,
         )
 
     shown = [k for k, item in enumerate(items) if item.id in pose_of]

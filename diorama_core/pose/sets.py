@@ -8,9 +8,7 @@ import numpy as np
 from jaxtyping import Float
 
 from diorama_core.pose.agree import SETS
-
-_MAX_LOG_DIFFERENCE = 0.3
-"""Farther apart they are not the same thing, or one of them was measured wrongly altogether."""
+from diorama_core.pose.settings import SETTINGS, PoseSearchSettings
 
 
 def shared_scales(
@@ -18,6 +16,7 @@ def shared_scales(
     shape_ids: Sequence[str],
     scales: Float[np.ndarray, "n 3"],
     trust: Sequence[float],
+    settings: PoseSearchSettings = SETTINGS.search,
 ) -> Float[np.ndarray, "n 3"]:
     """The scale that each object would have were its set of one size; its own where it stands alone.
 
@@ -26,6 +25,7 @@ def shared_scales(
         shape_ids: the shape chosen for every object.
         scales: its scale along the shape's axes.
         trust: how well every object is seen.
+        settings: numbers to work with.
     """
     logs, shared = np.log(scales), scales.copy()
     for name in sorted({s for s, c in zip(shape_ids, categories, strict=True) if c in SETS}):
@@ -33,7 +33,7 @@ def shared_scales(
         if len(alike) < 2:
             continue
         common = _weighted_median(logs[alike], np.array([trust[i] + 1e-3 for i in alike]))
-        near = alike[np.abs(logs[alike] - common).max(axis=1) <= _MAX_LOG_DIFFERENCE]
+        near = alike[np.abs(logs[alike] - common).max(axis=1) <= settings.max_log_difference]
         shared[near] = np.exp(common)
     return shared
 

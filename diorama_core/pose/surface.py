@@ -12,27 +12,18 @@ from diorama_core.artefacts import DepthMap
 from diorama_core.geometry.observed import Observed
 from diorama_core.geometry.silhouette import Hits
 from diorama_core.geometry.window import Window
+from diorama_core.pose.settings import SETTINGS, PoseEvidenceSettings
 from diorama_core.provenance import DepthSource
 
-_NORMALS_SHARE = 0.4
-_MIN_NORMALS_SHARE = 0.05
-"""Below which normals are not worth their price."""
-_CALM = 0.006
-"""Noise (as a share of the depth) up to which single pixels say more than means, which blur thin parts."""
-_NORMALS_NOISE = 0.01
-"""Noise at which normals say half as much."""
-_MIN_CELLS = 4.0
-_NOISE_SAMPLES = 40000
 
-
-def noise_of(depth: DepthMap) -> float:
+def noise_of(depth: DepthMap, settings: PoseEvidenceSettings = SETTINGS.evidence) -> float:
     """The standard deviation of single pixels as a share of their depth; 0 where depth was rendered.
 
     Second differences along the rows vanish on planes (of inverse depth); their median is deaf to edges.
     """
     if depth.source is DepthSource.RENDERED:
         return 0.0
-    step = max(1, depth.depth_m.shape[0] * depth.depth_m.shape[1] // _NOISE_SAMPLES)
+    step = max(1, depth.depth_m.shape[0] * depth.depth_m.shape[1] // settings.noise_samples)
     rows = depth.depth_m[::step].astype(np.float64)
     good = np.isfinite(rows) & (rows > 0)
     inverse = np.where(good, 1.0 / np.where(good, rows, 1.0), 0.0)
@@ -56,8 +47,9 @@ class MeasuredSurface:
     """Expected deviation of depth."""
     spread_m: Float[np.ndarray, "n"]
     """Standard deviation of the noise in it alone."""
-    normals_share: float = _NORMALS_SHARE
+    normals_share: float = SETTINGS.evidence.normals_share
     """How much normals say beside depth."""
+    settings: PoseEvidenceSettings = SETTINGS.evidence
 
     def agreement(self, hits: Hits) -> Float[np.ndarray, "p"]:
         """0 to 1: nearness of depth and of normals over the object's measured cells."""
@@ -65,7 +57,7 @@ class MeasuredSurface:
         depth, covered = hits.depth_m[:, told], hits.covered[:, told]
         off = (np.where(covered, depth, 0.0) - self.depth_m[told]) / self.tolerance_m[told]
         score = np.where(covered, np.exp(-(off**2)), 0.0)
-        if self.normals_share >= _MIN_NORMALS_SHARE:
+        if self.normals_share >= self.settings.min_normals_share:
             aligned = hits.of_rays(told).normals_along(self.normals_world[told])
             score = (1 - self.normals_share) * score + self.normals_share * np.clip(aligned, 0.0, 1.0)
         return (score @ weight) / max(float(weight.sum()), 1e-9)
@@ -81,7 +73,11 @@ class MeasuredSurface:
 
 
 def measured_surface(
-    depth: DepthMap, seen: Observed, mask: Bool[np.ndarray, "h w"], noise: float
+    depth: DepthMap,
+    seen: Observed,
+    mask: Bool[np.ndarray, "h w"],
+    noise: float,
+    settings: PoseEvidenceSettings = SETTINGS.evidence,
 ) -> MeasuredSurface | None:
     """Depth and normals in an object's window; None where depth was only rendered from what is already known.
 
@@ -90,23 +86,24 @@ def measured_surface(
         seen: the object's window.
         mask: the object's visible pixels.
         noise: from `noise_of`.
+        settings: numbers to work with.
     """
     if depth.source is DepthSource.RENDERED:
         return None
     metres = seen.window.sample(depth.depth_m).astype(np.float64)
     spread = np.full(len(metres), noise)
-    if noise > _CALM:
+    if noise > settings.calm:
         metres, spread = _means(depth.depth_m, seen.window, mask, seen.covered, metres, noise)
     normals = np.nan_to_num(seen.window.sample(depth.normals_world).astype(np.float64))
     known = np.isfinite(metres) & (metres > 0)
     weight = seen.covered * seen.weight * known
-    if weight.sum() < _MIN_CELLS:
+    if weight.sum() < settings.min_surface_cells:
         return None
     metres = np.where(known, metres, 1.0)
     spread_m = np.where(known, spread, 0.0) * metres
     tolerance = 0.02 + 0.01 * metres + 1.5 * spread_m
-    share = _NORMALS_SHARE / (1.0 + (noise / _NORMALS_NOISE) ** 2)
-    return MeasuredSurface(metres, normals, weight, known, tolerance, spread_m, share)
+    share = settings.normals_share / (1.0 + (noise / settings.normals_noise) ** 2)
+    return MeasuredSurface(metres, normals, weight, known, tolerance, spread_m, share, settings)
 
 
 def _means(

@@ -21,31 +21,14 @@ from diorama_core.geometry.silhouette import ShapeCaster
 from diorama_core.library.furniture.measures import can_be_made, can_be_turned, made_id
 from diorama_core.library.furniture.reshaping import GIRTH, KNOTS, MAX_PERCENT, MIN_PERCENT
 from diorama_core.library.record import BUILT_IN, ShapeLibrary, record_of
-from diorama_core.pose.mask_observations import NOISE_FLOOR, Evidence
+from diorama_core.pose.mask_observations import Evidence
 from diorama_core.pose.outline_fit import fitted_pose, resizing_cost
+from diorama_core.pose.settings import SETTINGS, PoseSettings, ShapeFitSettings
 from diorama_core.scene.types import Camera, Pose
 
 RADII = np.linspace(0.02, 1.6, 80)
 """Tried, as shares of the body's largest so far."""
 ANGLES = np.linspace(0.0, 2.0 * np.pi, 32, endpoint=False)
-INSET = 0.05
-"""Share of the height by which the lowest and the highest circle are within the body: a height is not that exact."""
-MAX_OUTSIDE = 0.06
-"""Share of a circle that may lie beside the outline: its resolution."""
-MIN_KNOWN = 0.2
-"""Share of the widest circle that must be seen."""
-COVERED, KNOWN = 0.5, 0.9
-"""A place is within the outline when so much of it is covered, and known when it says so much: not where something that
-hides the object begins."""
-MAX_NARROW = 2
-"""Heights at which the body may be narrower than can be made: at more of them it is no such body, or not as high."""
-MUCH_BETTER = 0.85
-"""Another profile must bring the disagreement with the picture, and what two shapes may differ by, below this
-share; the lower, the more the body is resized: a glass seen from above became a bowl."""
-MAX_FACES = 5000
-"""Of a shape: the wires of a basket are no profile."""
-SECTORS, MAX_UNEVEN, MIN_EVEN = 8, 0.15, 0.7
-"""A section is even when its reach in these sectors differs by at most this share, and so many sections are."""
 
 
 def profile_m(mesh: trimesh.Trimesh, heights_m: Float[np.ndarray, " k"]) -> Float[np.ndarray, " k"]:
@@ -54,18 +37,20 @@ def profile_m(mesh: trimesh.Trimesh, heights_m: Float[np.ndarray, " k"]) -> Floa
     return np.array([_reach(_section(ends, float(height))) for height in heights_m])
 
 
-def is_revolution(mesh: trimesh.Trimesh) -> bool:
+def is_revolution(mesh: trimesh.Trimesh, settings: ShapeFitSettings = SETTINGS.shapes) -> bool:
     """Whether most sections of a shape reach equally far all around: those of a plant or a basket's handle do not."""
     ends = np.asarray(mesh.vertices)[mesh.edges_unique]
     low, high = mesh.bounds[:, 2]
     even = []
-    for share in np.linspace(INSET, 1.0 - INSET, KNOTS):
+    for share in np.linspace(settings.inset, 1.0 - settings.inset, KNOTS):
         section = _section(ends, low + float(share) * (high - low))
-        sector = ((np.arctan2(section[:, 1], section[:, 0]) / (2.0 * np.pi) + 0.5) * SECTORS).astype(int) % SECTORS
-        reach = np.array([_reach(section[sector == k]) for k in range(SECTORS)])
+        sector = ((np.arctan2(section[:, 1], section[:, 0]) / (2.0 * np.pi) + 0.5) * settings.sectors).astype(
+            int
+        ) % settings.sectors
+        reach = np.array([_reach(section[sector == k]) for k in range(settings.sectors)])
         if reach.any():
-            even.append(float(np.ptp(reach)) <= MAX_UNEVEN * float(reach.max()))
-    return bool(even) and float(np.mean(even)) >= MIN_EVEN
+            even.append(float(np.ptp(reach)) <= settings.max_uneven * float(reach.max()))
+    return bool(even) and float(np.mean(even)) >= settings.min_even
 
 
 def _section(ends: Float[np.ndarray, "e 2 3"], height: float) -> Float[np.ndarray, "p 2"]:
@@ -87,6 +72,7 @@ class OutlineMap:
 
     camera: Camera
     seen: Observed
+    settings: ShapeFitSettings
 
     def at(self, points_world: Float[np.ndarray, "*n 3"]) -> tuple[Bool[np.ndarray, "*n"], Bool[np.ndarray, "*n"]]:
         """Whether points lie within the outline, and whether that is known at all."""
@@ -96,21 +82,24 @@ class OutlineMap:
         cells = self.seen.window.cells
         place = (pixels - (x1, y1)) / ((x2 - x1) / cells, (y2 - y1) / cells) - 0.5
         covered, known = (_between(v.reshape(cells, cells), place) for v in (self.seen.covered, self.seen.weight))
-        inside = in_front & (covered >= COVERED)
+        inside = in_front & (covered >= self.settings.covered)
         shape = points_world.shape[:-1]
-        return inside.reshape(shape), (in_front & (known >= KNOWN) | inside).reshape(shape)
+        return inside.reshape(shape), (in_front & (known >= self.settings.known) | inside).reshape(shape)
 
 
-def measured_girth(outline: OutlineMap, mesh: trimesh.Trimesh, pose: Pose) -> tuple[int, ...] | None:
+def measured_girth(
+    outline: OutlineMap, mesh: trimesh.Trimesh, pose: Pose, settings: ShapeFitSettings
+) -> tuple[int, ...] | None:
     """How much wider the body is than a shape at every knot of its height, percent; None where nothing is to be seen.
 
     Args:
         outline: Of the object in the photo.
         mesh: The shape, a body of revolution.
         pose: Where it stands, upright, as high as the body and as wide at most as it may be.
+        settings: numbers to work with.
     """
     low, high = mesh.bounds[:, 2]
-    shares = np.clip(np.linspace(0.0, 1.0, KNOTS), INSET, 1.0 - INSET)
+    shares = np.clip(np.linspace(0.0, 1.0, KNOTS), settings.inset, 1.0 - settings.inset)
     heights = low + shares * (high - low)
     width = float(pose.scale[:2].mean())
     own = np.maximum(width * profile_m(mesh, heights), 1e-4)
@@ -120,16 +109,18 @@ def measured_girth(outline: OutlineMap, mesh: trimesh.Trimesh, pose: Pose) -> tu
     points[..., :2] = pose.position[:2] + tried[None, :, None, None] * circle
     points[..., 2] = (pose.position[2] + pose.scale[2] * heights)[:, None, None]
     inside, known = outline.at(points)
-    fits = (known & ~inside).mean(axis=2) <= MAX_OUTSIDE
+    fits = (known & ~inside).mean(axis=2) <= settings.max_outside
     widest = np.where(fits.all(axis=1), len(tried), np.argmin(fits, axis=1))
     limited = widest < len(tried)
     last = np.clip(widest, 1, len(tried)) - 1
-    limited &= (widest == 0) | (np.take_along_axis(inside.mean(axis=2), last[:, None], axis=1)[:, 0] >= MIN_KNOWN)
+    limited &= (widest == 0) | (
+        np.take_along_axis(inside.mean(axis=2), last[:, None], axis=1)[:, 0] >= settings.min_known
+    )
     if not limited.any():
         return None
     knots = np.arange(KNOTS)
     factors = np.interp(knots, knots[limited], (tried[last] / own)[limited])
-    if np.count_nonzero(factors < MIN_PERCENT / 100.0) > MAX_NARROW:
+    if np.count_nonzero(factors < MIN_PERCENT / 100.0) > settings.max_narrow:
         return None
     return tuple(int(v) for v in np.clip(np.rint(100.0 * factors), MIN_PERCENT, MAX_PERCENT))
 
@@ -148,7 +139,12 @@ class Turned:
 
 
 def turned(
-    library: ShapeLibrary, shape_id: str, evidence: Sequence[Evidence], poses: Sequence[Pose], error: float
+    library: ShapeLibrary,
+    shape_id: str,
+    evidence: Sequence[Evidence],
+    poses: Sequence[Pose],
+    error: float,
+    settings: PoseSettings = SETTINGS,
 ) -> Turned | None:
     """A design with the profile that the picture shows; None where it is none, or agrees hardly better.
 
@@ -158,33 +154,41 @@ def turned(
         evidence: Of the objects that have this shape, alike.
         poses: Where they stand, all of one scale.
         error: How much the design as it is disagrees, in the mean.
+        settings: numbers to work with.
     """
     if not can_be_turned(shape_id) or record_of(library, shape_id).source != BUILT_IN:
         return None
     mesh = library.mesh(shape_id)
-    if len(mesh.faces) > MAX_FACES or not is_revolution(mesh):
+    if len(mesh.faces) > settings.shapes.max_faces or not is_revolution(mesh, settings.shapes):
         return None
-    found = [measured_girth(OutlineMap(e.camera, e.seen), mesh, p) for e, p in zip(evidence, poses, strict=True)]
+    found = [
+        measured_girth(OutlineMap(e.camera, e.seen, settings.shapes), mesh, p, settings.shapes)
+        for e, p in zip(evidence, poses, strict=True)
+    ]
     told = [g for g in found if g is not None]
     if not told:
         return None
     girth = tuple(int(v) for v in np.rint(np.median(told, axis=0)))
-    size = _widened(mesh, np.ptp(mesh.bounds, axis=0) * poses[0].scale, girth)
+    size = _widened(mesh, np.ptp(mesh.bounds, axis=0) * poses[0].scale, girth, settings.shapes)
     if not can_be_made(shape_id, size):
         return None
     made = made_id(shape_id, size, {GIRTH: girth})
     caster = ShapeCaster(library.mesh(made))
     alone = len(poses) == 1
     fitted = [
-        fitted_pose(e, caster, Pose(p.R_world_object, p.position, np.ones(3)), size, resize=alone)
+        fitted_pose(
+            e, caster, Pose(p.R_world_object, p.position, np.ones(3)), size, resize=alone, settings=settings.shapes
+        )
         for e, p in zip(evidence, poses, strict=True)
     ]
     errors = [e.error(caster, p) for e, p in zip(evidence, fitted, strict=True)]
     now = float(np.mean(errors))
     whole = np.round(size * fitted[0].scale, 3)
     grown = whole / (np.ptp(mesh.bounds, axis=0) * poses[0].scale)
-    cost = float(np.mean([resizing_cost(e.seen, grown[None])[0] for e in evidence]))
-    if np.log(now + NOISE_FLOOR) + cost > np.log(MUCH_BETTER * (error + NOISE_FLOOR)):
+    cost = float(np.mean([resizing_cost(e.seen, grown[None], settings.shapes)[0] for e in evidence]))
+    if np.log(now + settings.evidence.noise_floor) + cost > np.log(
+        settings.shapes.much_better * (error + settings.evidence.noise_floor)
+    ):
         return None
     if not can_be_made(shape_id, whole):
         return None
@@ -192,10 +196,14 @@ def turned(
     return Turned(made_id(shape_id, whole, {GIRTH: girth}), whole, at_scale, now)
 
 
-def _widened(mesh: trimesh.Trimesh, size_m: Float[np.ndarray, "3"], girth: tuple[int, ...]) -> Float[np.ndarray, "3"]:
+def _widened(
+    mesh: trimesh.Trimesh, size_m: Float[np.ndarray, "3"], girth: tuple[int, ...], settings: ShapeFitSettings
+) -> Float[np.ndarray, "3"]:
     """The size with this girth of a shape that has a size without it, whole millimetres."""
     low, high = mesh.bounds[:, 2]
-    own = profile_m(mesh, low + np.clip(np.linspace(0.0, 1.0, KNOTS), INSET, 1.0 - INSET) * (high - low))
+    own = profile_m(
+        mesh, low + np.clip(np.linspace(0.0, 1.0, KNOTS), settings.inset, 1.0 - settings.inset) * (high - low)
+    )
     growth = float((own * girth).max() / (100.0 * max(float(own.max()), 1e-6)))
     width = float(size_m[:2].mean()) * growth
     return np.maximum(np.round([width, width, size_m[2]], 3), 1e-3)

@@ -15,25 +15,15 @@ from diorama_core.pose.hypotheses import unlike_best
 from diorama_core.pose.limits import SizeLimits
 from diorama_core.pose.mask_observations import Evidence
 from diorama_core.pose.measured import MeasuredObject
+from diorama_core.pose.settings import SETTINGS, PoseSearchSettings
 from diorama_core.scene.types import yaw_rotation
 
-_STEPS = 24
-"""Turns compared in place, all around."""
-_REFINED = 3
 _RIVAL_RAD = float(np.deg2rad(45.0))
 """A pose turned farther than this is another reading of the picture, not a correction."""
-_HABIT_STRENGTH = 1.4
-"""What objects usually do says this much more beside evidence that is summed: hardly a cupboard shows its back."""
 _NEARBY_RAD = np.deg2rad(np.arange(-60.0, 61.0, 12.0))
 _RIGHT_RAD = float(np.deg2rad(20.0))
 """Headings this near are as good as right."""
 _FIXED_YAW_RAD = float(np.deg2rad(1.0))
-_MIN_LIKELY = 0.05
-_STAYS = 1e-3
-_USUAL_MISFIT, _MISFIT_SCALE = 3.0, 6.0
-_WELL_BELIEVED = 0.5
-_MARGIN = 1.0
-"""By how much another turn must be likelier than the one that was found from afar."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -48,6 +38,7 @@ class TurnSearch:
     fold: SymmetryFold
     believed: float = 1.0
     """How much its pixels say: less where the shape fits badly whichever way it is turned."""
+    settings: PoseSearchSettings = SETTINGS.search
 
     @classmethod
     def of(
@@ -59,27 +50,42 @@ class TurnSearch:
         limits: SizeLimits,
         fold: SymmetryFold,
         start: PoseBatch,
+        settings: PoseSearchSettings,
     ) -> TurnSearch:
         """The search around one pose, believing pixels as far as they fit it."""
-        badly = max(close.misfit(appearance, start) - _USUAL_MISFIT, 0.0)
-        return cls(close, observations, measured, appearance, limits, fold, 1.0 / (1.0 + badly / _MISFIT_SCALE))
+        badly = max(close.misfit(appearance, start) - settings.usual_misfit, 0.0)
+        return cls(
+            close,
+            observations,
+            measured,
+            appearance,
+            limits,
+            fold,
+            1.0 / (1.0 + badly / settings.misfit_scale),
+            settings,
+        )
 
     def best(self, start: PoseBatch) -> tuple[PoseBatch, float]:
         """The likeliest turn of a pose in its place, and how nearly as likely another one is, 0 to 1."""
-        turns = np.arange(max(round(_STEPS / self.fold), 2)) * 2 * np.pi
+        turns = np.arange(max(round(self.settings.turn_steps / self.fold), 2)) * 2 * np.pi
         grid = self._turned(start, turns / (self.fold * len(turns)))
         modes = unlike_best(
-            grid, self._compared_closely(grid, exact=False), self.fold, self.limits.shape_size_m, _REFINED
+            grid,
+            self._compared_closely(grid, exact=False),
+            self.fold,
+            self.limits.shape_size_m,
+            self.settings.turns_refined,
+            self.settings,
         )
         tried = start.and_also(grid[modes]).and_also(
             self.measured.fit(self.limits).refined(self.appearance.caster, grid[modes])
         )
         scores = self._scores(tried)
-        chosen = 0 if scores[0] + _MARGIN >= scores.max() else int(np.argmax(scores))
+        chosen = 0 if scores[0] + self.settings.margin >= scores.max() else int(np.argmax(scores))
         rivals = self._away_rad(tried, chosen) > min(_RIVAL_RAD, 0.8 * np.pi / self.fold)
         doubt = min(float(np.exp(scores[rivals].max() - scores[chosen])), 1.0) if rivals.any() else 0.0
         best = tried[chosen : chosen + 1]
-        return (self._in_the_middle(best) if self.believed > _WELL_BELIEVED else best), doubt
+        return (self._in_the_middle(best) if self.believed > self.settings.well_believed else best), doubt
 
     def _in_the_middle(self, best: PoseBatch) -> PoseBatch:
         """The heading with most likelihood near it: a handle that is out of sight may be anywhere behind its mug."""
@@ -93,8 +99,8 @@ class TurnSearch:
         likely = np.exp(scores[better] - scores[better].max())
         near = np.abs(turns[:, None] - turns) <= _RIGHT_RAD + 1e-6
         mass = near @ likely
-        middle = int(np.argmax(mass - _STAYS * mass.max() * np.abs(turns)))
-        return both[better[middle : middle + 1]] if likely[middle] > _MIN_LIKELY else best
+        middle = int(np.argmax(mass - self.settings.stays * mass.max() * np.abs(turns)))
+        return both[better[middle : middle + 1]] if likely[middle] > self.settings.min_likely else best
 
     def _turned(self, start: PoseBatch, turns_rad: Float[np.ndarray, "k"]) -> PoseBatch:
         """One pose turned about the axis of the shape's body."""
@@ -119,7 +125,7 @@ class TurnSearch:
         """Ranked by all observations."""
         errors, nothing = self.observations.errors(self.appearance.caster, poses), np.zeros(len(poses))
         usual = self.observations.log_scores(errors, poses, nothing, nothing, self.limits)
-        more_habit = _HABIT_STRENGTH * self.observations.facing.cost(poses.R)
+        more_habit = self.settings.habit_strength * self.observations.facing.cost(poses.R)
         stands = self.measured.log_likelihood(poses, self.limits)
         stands = stands - self.measured.elsewhere_cost(poses, self.limits, errors)
         return usual + stands + self.believed * self.close.log_likelihoods(self.appearance, poses) - more_habit

@@ -10,16 +10,7 @@ from jaxtyping import Float
 from diorama_core.arrangement.facing.evidence import WallSamples
 from diorama_core.geometry.silhouette import PoseBatch
 from diorama_core.pose.depth_fit import SeenPoints
-
-_SIGMA_M = 0.05
-"""How far a shape's box reaches into a wall that its object stands against."""
-_MAX_SIGMAS = 3.0
-"""Deeper ones say no more: the surface may be no wall."""
-_BESIDE_M = 0.2
-"""A corner meets the wall where it was seen this near to the corner's foot on it."""
-_SEEN_BEHIND_SHARE = 0.05
-"""A surface with a larger share of the object's own points behind it does not bound the object."""
-_MAX_SAMPLES = 400
+from diorama_core.pose.settings import SETTINGS, PoseEvidenceSettings
 
 
 @dataclass(frozen=True, eq=False)
@@ -27,23 +18,27 @@ class WallBounds:
     """Points of the walls that an object is in front of."""
 
     walls: WallSamples
+    settings: PoseEvidenceSettings = SETTINGS.evidence
 
     @classmethod
-    def of(cls, walls: WallSamples, points: SeenPoints) -> WallBounds:
+    def of(
+        cls, walls: WallSamples, points: SeenPoints, settings: PoseEvidenceSettings = SETTINGS.evidence
+    ) -> WallBounds:
         """The walls near an object that none of its measured points is behind.
 
         Args:
             walls: upright surfaces that belong to no object.
             points: of the object.
+            settings: numbers to work with.
         """
         xy = points.points_world[:, :2]
         middle, reach = xy.mean(axis=0), np.ptp(xy, axis=0).max() + 2.0
         near = np.flatnonzero(np.linalg.norm(walls.points_xy - middle, axis=1) < reach)
-        near = near[:: max(1, -(-len(near) // _MAX_SAMPLES))]
+        near = near[:: max(1, -(-len(near) // settings.max_samples))]
         at, normals = walls.points_xy[near], walls.normals_xy[near]
-        behind = (normals @ xy.T) - (normals * at).sum(axis=1, keepdims=True) < -_SIGMA_M
-        bounding = behind.mean(axis=1) < _SEEN_BEHIND_SHARE
-        return cls(WallSamples(at[bounding], normals[bounding]))
+        behind = (normals @ xy.T) - (normals * at).sum(axis=1, keepdims=True) < -settings.wall_sigma_m
+        bounding = behind.mean(axis=1) < settings.seen_behind_share
+        return cls(WallSamples(at[bounding], normals[bounding]), settings)
 
     def through_m(self, poses: PoseBatch, shape_size_m: Float[np.ndarray, "3"]) -> Float[np.ndarray, " p"]:
         """How deep the lower corners of poses' boxes reach through the walls; 0 where they reach through none."""
@@ -56,12 +51,18 @@ class WallBounds:
         offset = corners[..., None, :2] - at
         depth = -(offset * normals).sum(axis=-1)
         beside = np.abs(offset[..., 0] * normals[:, 1] - offset[..., 1] * normals[:, 0])
-        met = (beside < _BESIDE_M) & (depth > 0.0)
+        met = (beside < self.settings.beside_m) & (depth > 0.0)
         return np.where(met, depth, 0.0).max(axis=(1, 2))
 
     def log_likelihood(self, poses: PoseBatch, shape_size_m: Float[np.ndarray, "3"]) -> Float[np.ndarray, " p"]:
         """What the walls say of poses: the layout will bring them into the room, away from where they were seen."""
-        return -0.5 * np.minimum(self.through_m(poses, shape_size_m) / _SIGMA_M, _MAX_SIGMAS) ** 2
+        return (
+            -0.5
+            * np.minimum(
+                self.through_m(poses, shape_size_m) / self.settings.wall_sigma_m, self.settings.max_wall_sigmas
+            )
+            ** 2
+        )
 
 
 NO_BOUNDS = WallBounds(WallSamples(np.zeros((0, 2)), np.zeros((0, 2))))

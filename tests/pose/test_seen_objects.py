@@ -9,7 +9,8 @@ import pytest
 
 from diorama_core.geometry.silhouette import ShapeCaster
 from diorama_core.pose.inner_edges import InnerEdges
-from diorama_core.pose.seen_objects import OUTLINE, OUTLINE_WITH_DEPTH, SeenObject
+from diorama_core.pose.seen_objects import SeenObject
+from diorama_core.pose.settings import SETTINGS
 from diorama_core.scene.types import Pose
 from tests.pose.rooms import LIBRARY
 from tests.pose.test_outline_fit import CAMERA, TRUE, evidence
@@ -32,8 +33,8 @@ def test_the_shape_in_its_place_agrees_best(measured: bool) -> None:
 
 
 def test_outlines_count_as_much_as_their_masks_are_trusted() -> None:
-    assert table(measured=False, trust=0.5).outline_weight == pytest.approx(0.5 * OUTLINE)
-    assert table(measured=True, trust=0.5).outline_weight == OUTLINE_WITH_DEPTH
+    assert table(measured=False, trust=0.5).outline_weight == pytest.approx(0.5 * SETTINGS.shapes.outline)
+    assert table(measured=True, trust=0.5).outline_weight == SETTINGS.shapes.outline_with_depth
 
 
 def test_only_what_comes_in_sets_or_is_not_surely_outlined_may_have_agreed_on_a_shape() -> None:

@@ -11,37 +11,29 @@ from jaxtyping import Float
 
 from diorama_core.library.taxonomy import Category, having
 from diorama_core.perception.metrology.problem import Cuboids
+from diorama_core.perception.metrology.settings import SETTINGS, PlacementSettings
 
-_MAX_READINGS = 5
-_DEAREST = 12.0
-"""A reading that costs this much more than the cheapest is dropped."""
-_SAME_PLACE_M = 0.12
-_SAME_SIZE = 0.12
-_OVERLAP_COST = 14.0
-"""Of one footprint lying wholly in another."""
-_TUCKED_COST = 4.0
-"""The same for seats under tables."""
 _SEATS, _TABLES = having("under_tables"), having("legroom")
-_FLAT_M = 0.05
-_ROUNDS = 6
 
 
-def distinct(boxes: Cuboids, costs: Float[np.ndarray, "n"]) -> list[int]:
+def distinct(
+    boxes: Cuboids, costs: Float[np.ndarray, "n"], settings: PlacementSettings = SETTINGS.placement
+) -> list[int]:
     """The cheapest rows that differ from each other in place, heading or size, cheapest first."""
     retained: list[int] = []
     for row in np.argsort(costs, kind="stable"):
-        if len(retained) == _MAX_READINGS or (retained and costs[row] > costs[retained[0]] + _DEAREST):
+        if len(retained) == settings.max_readings or (retained and costs[row] > costs[retained[0]] + settings.dearest):
             break
-        if not any(alike(boxes, int(row), boxes, other) for other in retained):
+        if not any(alike(boxes, int(row), boxes, other, settings) for other in retained):
             retained.append(int(row))
     return retained
 
 
-def alike(some: Cuboids, a: int, others: Cuboids, b: int) -> bool:
+def alike(some: Cuboids, a: int, others: Cuboids, b: int, settings: PlacementSettings) -> bool:
     """Whether a reading and another one hardly differ in place, heading and size."""
     return bool(
-        np.linalg.norm(some.centre[a] - others.centre[b]) < _SAME_PLACE_M
-        and np.abs(np.log(_footprint_axes(some, a) / _footprint_axes(others, b))).max() < _SAME_SIZE
+        np.linalg.norm(some.centre[a] - others.centre[b]) < settings.same_place_m
+        and np.abs(np.log(_footprint_axes(some, a) / _footprint_axes(others, b))).max() < settings.same_size
     )
 
 
@@ -52,20 +44,26 @@ def _footprint_axes(boxes: Cuboids, row: int) -> Float[np.ndarray, "2"]:
     return np.array([c * depth + s * width, s * depth + c * width])
 
 
-def arrange(readings: list[Cuboids], costs: list[Float[np.ndarray, "_"]], categories: list[Category]) -> list[int]:
+def arrange(
+    readings: list[Cuboids],
+    costs: list[Float[np.ndarray, "_"]],
+    categories: list[Category],
+    settings: PlacementSettings = SETTINGS.placement,
+) -> list[int]:
     """One reading per object: starting from the cheapest, objects change in turn while the whole becomes cheaper.
 
     Args:
         readings: Per object its readings, as a batch.
         costs: Per object the cost of each.
         categories: Per object.
+        settings: numbers to work with.
 
     Returns:
         Per object the index of its reading.
     """
     chosen = [int(np.argmin(c)) for c in costs]
-    pair = _pair_costs(readings, categories)
-    for _ in range(_ROUNDS):
+    pair = _pair_costs(readings, categories, settings)
+    for _ in range(settings.rounds):
         before = list(chosen)
         for i in range(len(readings)):
             total = costs[i] + sum(pair[i][j][:, chosen[j]] for j in range(len(readings)) if j != i)
@@ -76,13 +74,15 @@ def arrange(readings: list[Cuboids], costs: list[Float[np.ndarray, "_"]], catego
     return chosen
 
 
-def _pair_costs(readings: list[Cuboids], categories: list[Category]) -> list[list[Float[np.ndarray, "_ _"]]]:
+def _pair_costs(
+    readings: list[Cuboids], categories: list[Category], settings: PlacementSettings
+) -> list[list[Float[np.ndarray, "_ _"]]]:
     count = len(readings)
     table = [[np.zeros((1, 1))] * count for _ in range(count)]
     for i in range(count):
         for j in range(i + 1, count):
-            weight = _TUCKED_COST if _tucked(categories[i], categories[j]) else _OVERLAP_COST
-            shared = weight * _shared(readings[i], readings[j])
+            weight = settings.tucked_cost if _tucked(categories[i], categories[j]) else settings.overlap_cost
+            shared = weight * _shared(readings[i], readings[j], settings)
             table[i][j], table[j][i] = shared, shared.T
     return table
 
@@ -91,10 +91,12 @@ def _tucked(a: Category, b: Category) -> bool:
     return (a.name in _SEATS and b.name in _TABLES) or (b.name in _SEATS and a.name in _TABLES)
 
 
-def _shared(a: Cuboids, b: Cuboids) -> Float[np.ndarray, "k l"]:
+def _shared(a: Cuboids, b: Cuboids, settings: PlacementSettings) -> Float[np.ndarray, "k l"]:
     """Share of the smaller footprint that lies in the other, for all pairs of readings; 0 for flat things."""
     a_in_b, b_in_a = _share_inside(a, b), _share_inside(b, a).T
-    solid = (a.size_m[:, 2] > _FLAT_M)[:, None] & (b.size_m[:, 2] > _FLAT_M)[None]
+    solid = (a.size_m[:, 2] > settings.on_footprint_flat_m)[:, None] & (b.size_m[:, 2] > settings.on_footprint_flat_m)[
+        None
+    ]
     return np.where(solid, np.maximum(a_in_b, b_in_a), 0.0)
 
 

@@ -12,19 +12,19 @@ import numpy as np
 from jaxtyping import Float
 
 from diorama_core.perception.metrology.problem import Cuboids
+from diorama_core.perception.metrology.settings import SETTINGS, PlacementSettings
 from diorama_core.scene.types import Plane
 
-_AT_WALLS = 0.8
-"""How often things of such kinds do stand with their backs at a wall."""
-_REACH_M = 2.0
-"""Over which the others' backs are spread evenly."""
-_GAP_M, _GAP_SHARE = 0.1, 0.06
-"""How far from a wall a back may seem to be that stands there: by itself, and for every metre from the camera."""
 _SQUARE = float(np.cos(np.deg2rad(15.0)))
 """Cosine from which on a back counts as parallel to a wall."""
 
 
-def back_costs(boxes: Cuboids, walls: Sequence[Plane], foot: Float[np.ndarray, "3"]) -> Float[np.ndarray, "n"]:
+def back_costs(
+    boxes: Cuboids,
+    walls: Sequence[Plane],
+    foot: Float[np.ndarray, "3"],
+    settings: PlacementSettings = SETTINGS.placement,
+) -> Float[np.ndarray, "n"]:
     """What speaks against every reading by the distance of its back from the nearest wall, in squared sigmas.
 
     Either end of a cuboid's depth may be its back. 0 at a wall; bounded, since not all stand there.
@@ -33,9 +33,10 @@ def back_costs(boxes: Cuboids, walls: Sequence[Plane], foot: Float[np.ndarray, "
         boxes: Readings, about the camera's foot.
         walls: Of the room; their normals point into it.
         foot: Of the camera, in the room.
+        settings: numbers to work with.
     """
     front = np.stack([np.cos(boxes.yaw_rad), np.sin(boxes.yaw_rad)], axis=-1)
-    spread = _GAP_M + _GAP_SHARE * np.linalg.norm(boxes.centre[:, :2], axis=1)
+    spread = settings.gap_m + settings.gap_share * np.linalg.norm(boxes.centre[:, :2], axis=1)
     density = np.zeros(len(boxes.centre))
     for wall in walls:
         normal = wall.normal[:2]
@@ -46,6 +47,6 @@ def back_costs(boxes: Cuboids, walls: Sequence[Plane], foot: Float[np.ndarray, "
         away = (boxes.centre + foot) @ wall.normal - wall.offset - boxes.size_m[:, 0] / 2
         near = np.exp(-0.5 * (away / spread) ** 2) / (np.sqrt(2 * np.pi) * spread)
         density = np.maximum(density, np.where(beside & square, near, 0.0))
-    at_wall, elsewhere = _AT_WALLS * density, (1.0 - _AT_WALLS) / _REACH_M
-    most = _AT_WALLS / (np.sqrt(2 * np.pi) * spread) + elsewhere
+    at_wall, elsewhere = settings.at_walls * density, (1.0 - settings.at_walls) / settings.reach_m
+    most = settings.at_walls / (np.sqrt(2 * np.pi) * spread) + elsewhere
     return np.asarray(-2.0 * np.log((at_wall + elsewhere) / most))

@@ -11,31 +11,19 @@ from jaxtyping import Bool, Float
 from diorama_core.artefacts import DetectedObject
 from diorama_core.library.taxonomy import Category, category
 from diorama_core.perception.metrology.priors import SizeMode, size_modes
-from diorama_core.perception.metrology.silhouette import CORNER_EDGES, GUESSED_TRUST, mask_reach
+from diorama_core.perception.metrology.settings import SETTINGS, BoxObservationSettings, MetrologySettings
+from diorama_core.perception.metrology.silhouette import CORNER_EDGES, mask_reach
 
-_SHARE_SIGMA = 0.03
-_PIXEL_SIGMA = 3.0
-"""Of a picture 640 pixels wide."""
-_MIN_BOX_PX = 2.0
 _OUTWARD = np.array([-1.0, -1.0, 1.0, 1.0])
-_COVERED = 0.65
-"""Share of an edge that something in front must cover to hide it."""
-_STRIP, _LOWER_END = 0.15, 0.25
-"""Width of the strips beside a box, and the part of its height along which they lie, as shares of the box."""
 HIDDEN_ODDS = np.array([0.06, 0.03, 0.06, 0.12])
 """That an object goes on unseen beyond an edge of its box where nothing speaks for it; see `hidden_odds`."""
-ODDS_BOXED, ODDS_OUTLINED = 2.0, 8.0
-"""By how much a nearer thing's box across the edge, and others' masks all along its outer side, raise them."""
-_OUTSIDE_PX = 2.5
-"""Of a picture 640 pixels wide."""
-_ALONG = 64
-_CLEARLY_LOWER = 0.03
-"""How much lower, as a share of the picture, a thing's box must end to be in front."""
 
 
-def _bottom_lower(boxes: Float[np.ndarray, "n 4"], height: int) -> Bool[np.ndarray, "n n"]:
+def _bottom_lower(
+    boxes: Float[np.ndarray, "n 4"], height: int, settings: BoxObservationSettings
+) -> Bool[np.ndarray, "n n"]:
     """Whether j's box ends clearly lower than i's: on the same floor, j is in front."""
-    return boxes[None, :, 3] > boxes[:, None, 3] + _CLEARLY_LOWER * height
+    return boxes[None, :, 3] > boxes[:, None, 3] + settings.clearly_lower * height
 
 
 @dataclass(frozen=True, eq=False)
@@ -67,13 +55,14 @@ class BoxObservations:
     """Share of the box that the user's own mask fills; 1 where there is only a guess."""
     meanings: tuple[tuple[tuple[str, float], ...], ...]
     """`DetectedObject.meanings` of every object."""
+    settings: MetrologySettings
 
     def __len__(self) -> int:
         return len(self.categories)
 
     def size_modes(self, index: int) -> tuple[SizeMode, ...]:
         """The sizes that an object may have, of its category and of what else its word may mean."""
-        return size_modes(self.categories[index].name, self.meanings[index])
+        return size_modes(self.categories[index].name, self.meanings[index], self.settings.placement)
 
     def hidden(self, index: int, parent: int | None = None) -> Bool[np.ndarray, "4"]:
         """Edges of an object that others hide."""
@@ -101,7 +90,8 @@ class BoxObservations:
             far = np.where(self.covered_by[index][others], beyond, 0.0).max(axis=0, initial=0.0)
             outlined = np.minimum(self.beside[index][others].sum(axis=0), 1.0) if others else np.zeros(4)
             unseen = np.array([1.0, 1.0, 1.0, 1.0 - self.ends_seen[index]])
-            odds = HIDDEN_ODDS * (np.where(far > 0, ODDS_BOXED, 1.0) * ODDS_OUTLINED**outlined) ** unseen
+            raised = np.where(far > 0, self.settings.observed.odds_boxed, 1.0)
+            odds = HIDDEN_ODDS * (raised * self.settings.observed.odds_outlined**outlined) ** unseen
             far.setflags(write=False)
             odds.setflags(write=False)
             self._known_beyond[index, parent] = far, odds
@@ -116,24 +106,26 @@ class BoxObservations:
         return other != parent and (not on_floor or bool(self.in_front[parent, other]))
 
 
-def gather(objects: tuple[DetectedObject, ...], width: int, height: int) -> BoxObservations:
+def gather(
+    objects: tuple[DetectedObject, ...], width: int, height: int, settings: MetrologySettings = SETTINGS
+) -> BoxObservations:
     """The evidence of the objects of a picture of `width` x `height` pixels."""
-    boxes = np.array([_proper(o.box, width, height) for o in objects], dtype=float).reshape(-1, 4)
+    boxes = np.array([_proper(o.box, width, height, settings.observed) for o in objects], dtype=float).reshape(-1, 4)
     extent = np.tile(boxes[:, 2:] - boxes[:, :2], 2)
-    sigma = _SHARE_SIGMA * extent + _PIXEL_SIGMA * max(width, height) / 640
+    sigma = settings.observed.share_sigma * extent + settings.observed.pixel_sigma * max(width, height) / 640
     border = np.array([0.0, 0.0, width, height])
     truncated = np.abs(boxes - border) <= 0.006 * max(width, height)
     categories = tuple(category(o.category) for o in objects)
-    covered = _covered(boxes, height)
+    covered = _covered(boxes, height, settings.observed)
     unseen = truncated | covered.any(axis=1).reshape(-1, 4)
     exact = np.array([o.mask_confidence >= 1 for o in objects], dtype=bool)
     trust = np.array([o.mask_confidence**2 for o in objects]).reshape(-1, 1)
-    trust = trust * np.where(exact, 1.0, GUESSED_TRUST)[:, None]
+    trust = trust * np.where(exact, 1.0, settings.observed.guessed_trust)[:, None]
     weight = np.column_stack([np.where(unseen[:, e].any(axis=1), 0.0, 1.0) for e in CORNER_EDGES]) * trust
-    reach = np.array([mask_reach(o, b) for o, b in zip(objects, boxes, strict=True)]).reshape(-1, 4)
+    reach = np.array([mask_reach(o, b, settings.observed) for o, b in zip(objects, boxes, strict=True)]).reshape(-1, 4)
     area = np.array([float(o.mask.sum()) for o in objects]) / (boxes[:, 2:] - boxes[:, :2]).prod(axis=1)
     fill = np.where(exact, np.minimum(area, 1.0), 1.0)
-    in_front, before = _bottom_lower(boxes, height), _before(objects, boxes)
+    in_front, before = _bottom_lower(boxes, height, settings.observed), _before(objects, boxes, settings.observed)
     meanings = tuple(o.meanings for o in objects)
     return BoxObservations(
         categories,
@@ -146,20 +138,25 @@ def gather(objects: tuple[DetectedObject, ...], width: int, height: int) -> BoxO
         weight,
         exact,
         before,
-        _beside(objects, boxes),
-        _ends_seen(objects),
+        _beside(objects, boxes, settings.observed),
+        _ends_seen(objects, settings.observed),
         fill,
         meanings,
+        settings,
     )
 
 
-def _before(objects: tuple[DetectedObject, ...], boxes: Float[np.ndarray, "n 4"]) -> Float[np.ndarray, "n n"]:
+def _before(
+    objects: tuple[DetectedObject, ...], boxes: Float[np.ndarray, "n 4"], settings: BoxObservationSettings
+) -> Float[np.ndarray, "n n"]:
     """For objects i and j the share of j's mask in the strips left and right of i's lower end, the emptier side's."""
     n, found = len(boxes), np.zeros((len(boxes), len(boxes)))
     for i in range(n):
         x1, y1, x2, y2 = boxes[i]
-        wide = max(_STRIP * (x2 - x1), _MIN_BOX_PX)
-        rows = slice(round(y2 - _LOWER_END * (y2 - y1)), max(round(y2), round(y2 - _LOWER_END * (y2 - y1)) + 1))
+        wide = max(settings.strip * (x2 - x1), settings.min_box_px)
+        rows = slice(
+            round(y2 - settings.lower_end * (y2 - y1)), max(round(y2), round(y2 - settings.lower_end * (y2 - y1)) + 1)
+        )
         sides = [slice(max(round(x1 - wide), 0), round(x1)), slice(round(x2), round(x2 + wide))]
         for j in range(n):
             shares = [float(objects[j].mask[rows, side].mean()) for side in sides if objects[j].mask[rows, side].size]
@@ -167,22 +164,24 @@ def _before(objects: tuple[DetectedObject, ...], boxes: Float[np.ndarray, "n 4"]
     return found
 
 
-def _beside(objects: tuple[DetectedObject, ...], boxes: Float[np.ndarray, "n 4"]) -> Float[np.ndarray, "n n 4"]:
+def _beside(
+    objects: tuple[DetectedObject, ...], boxes: Float[np.ndarray, "n 4"], settings: BoxObservationSettings
+) -> Float[np.ndarray, "n n 4"]:
     """For objects i and j and edges of i: the share of points just outside the edge that j's mask has."""
     n, found = len(boxes), np.zeros((len(boxes), len(boxes), 4))
     if not n:
         return found
     height, width = objects[0].mask.shape
-    steps = (np.arange(_ALONG) + 0.5) / _ALONG
-    away = _OUTSIDE_PX * max(height, width) / 640
+    steps = (np.arange(settings.along) + 0.5) / settings.along
+    away = settings.outside_px * max(height, width) / 640
     for i in range(n):
         x1, y1, x2, y2 = boxes[i]
         x, y = x1 + steps * (x2 - x1), y1 + steps * (y2 - y1)
         sides = (
-            (np.full(_ALONG, x1 - away), y),
-            (x, np.full(_ALONG, y1 - away)),
-            (np.full(_ALONG, x2 + away), y),
-            (x, np.full(_ALONG, y2 + away)),
+            (np.full(settings.along, x1 - away), y),
+            (x, np.full(settings.along, y1 - away)),
+            (np.full(settings.along, x2 + away), y),
+            (x, np.full(settings.along, y2 + away)),
         )
         for edge, (u, v) in enumerate(sides):
             columns, rows = u.astype(int).clip(0, width - 1), v.astype(int).clip(0, height - 1)
@@ -192,7 +191,7 @@ def _beside(objects: tuple[DetectedObject, ...], boxes: Float[np.ndarray, "n 4"]
     return found
 
 
-def _ends_seen(objects: tuple[DetectedObject, ...]) -> Float[np.ndarray, "n"]:
+def _ends_seen(objects: tuple[DetectedObject, ...], settings: BoxObservationSettings) -> Float[np.ndarray, "n"]:
     """For every object the share of its mask's columns below which no other mask and no border is; 0 without a mask."""
     found = np.zeros(len(objects))
     for i, item in enumerate(objects):
@@ -200,7 +199,7 @@ def _ends_seen(objects: tuple[DetectedObject, ...]) -> Float[np.ndarray, "n"]:
         if not len(columns):
             continue
         height, width = item.mask.shape
-        away = 1 + round(_OUTSIDE_PX * max(height, width) / 640)
+        away = 1 + round(settings.outside_px * max(height, width) / 640)
         below = height - 1 - np.argmax(item.mask[::-1, columns], axis=0) + away
         within = below < height
         rows = np.minimum(below, height - 1)
@@ -209,13 +208,17 @@ def _ends_seen(objects: tuple[DetectedObject, ...]) -> Float[np.ndarray, "n"]:
     return found
 
 
-def _proper(box: tuple[float, float, float, float], width: int, height: int) -> tuple[float, float, float, float]:
+def _proper(
+    box: tuple[float, float, float, float], width: int, height: int, settings: BoxObservationSettings
+) -> tuple[float, float, float, float]:
     """The box inside the picture, at least two pixels large."""
-    x1, y1 = min(max(box[0], 0.0), width - _MIN_BOX_PX), min(max(box[1], 0.0), height - _MIN_BOX_PX)
-    return x1, y1, min(max(box[2], x1 + _MIN_BOX_PX), width), min(max(box[3], y1 + _MIN_BOX_PX), height)
+    x1, y1 = min(max(box[0], 0.0), width - settings.min_box_px), min(max(box[1], 0.0), height - settings.min_box_px)
+    return x1, y1, min(max(box[2], x1 + settings.min_box_px), width), min(max(box[3], y1 + settings.min_box_px), height)
 
 
-def _covered(boxes: Float[np.ndarray, "n 4"], height: int) -> Bool[np.ndarray, "n n 4"]:
+def _covered(
+    boxes: Float[np.ndarray, "n 4"], height: int, settings: BoxObservationSettings
+) -> Bool[np.ndarray, "n n 4"]:
     """For objects i, j and edges: j's box covers at least half of i's edge and ends clearly lower."""
     n = len(boxes)
     low, high = boxes[:, None, :2], boxes[:, None, 2:]
@@ -226,5 +229,5 @@ def _covered(boxes: Float[np.ndarray, "n 4"], height: int) -> Bool[np.ndarray, "
         across = edge % 2
         at = boxes[:, None, edge]
         strictly_inside = (boxes[None, :, across] < at) & (at < boxes[None, :, across + 2])
-        covered[:, :, edge] = strictly_inside & (share[..., 1 - across] >= _COVERED)
-    return covered & _bottom_lower(boxes, height)[..., None] & ~np.eye(n, dtype=bool)[..., None]
+        covered[:, :, edge] = strictly_inside & (share[..., 1 - across] >= settings.covered)
+    return covered & _bottom_lower(boxes, height, settings)[..., None] & ~np.eye(n, dtype=bool)[..., None]

@@ -11,10 +11,8 @@ from jaxtyping import Float
 from diorama_core.perception.metrology.box_observations import BoxObservations
 from diorama_core.perception.metrology.floor import solve_all
 from diorama_core.perception.metrology.problem import Cuboids, Problems, View
+from diorama_core.perception.metrology.settings import SETTINGS, MetrologySettings
 from diorama_core.perception.metrology.supported_objects import place_on, supporters_of
-
-_CAP = 12.0
-"""No thing speaks more than this against one reading."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -26,6 +24,7 @@ class CarriedCosts:
     height_m: float
     _known: dict[tuple[int, bytes], float] = field(default_factory=dict)
     """By carrier and cuboid."""
+    settings: MetrologySettings = SETTINGS
 
     def of(self, readings: Mapping[int, Cuboids]) -> dict[int, Float[np.ndarray, "_"]]:
         """Per object the cost of each of its readings; 0 where there is nothing to choose, or nothing to carry.
@@ -46,7 +45,8 @@ class CarriedCosts:
         return [
             i
             for i, category in enumerate(self.observations.categories)
-            if category.mount == "surface" and parent in supporters_of(self.observations, i, [parent])
+            if category.mount == "surface"
+            and parent in supporters_of(self.observations, i, [parent], self.settings.placement)
         ]
 
     def _solve(self, carriers: list[tuple[int, Cuboids]], children: Mapping[int, list[int]]) -> None:
@@ -56,15 +56,19 @@ class CarriedCosts:
         """The carrier that each row lies on."""
         for at, (parent, box) in enumerate(carriers):
             loads = children[parent]
-            made = [p for i in loads for p in place_on(self.observations, i, parent, box, self.height_m, 0.0)]
+            made = [
+                p for i in loads for p in place_on(self.observations, i, parent, box, self.height_m, 0.0, self.settings)
+            ]
             rows += made
             below += [at] * sum(map(len, made))
-        solved = solve_all(rows, self.view)
+        solved = solve_all(rows, self.view, self.settings)
         lowest = np.full((len(carriers), len(self.observations)), np.inf)
         item = solved.problems.item.astype(int)
         np.minimum.at(lowest, (np.tile(below, len(item) // len(below)), item), solved.cost)
         for at, (parent, box) in enumerate(carriers):
-            self._known[_key(parent, box)] = sum(min(float(lowest[at, i]), _CAP) for i in children[parent])
+            self._known[_key(parent, box)] = sum(
+                min(float(lowest[at, i]), self.settings.placement.max_carried_cost) for i in children[parent]
+            )
 
 
 def _singly(boxes: Cuboids) -> Iterator[Cuboids]:

@@ -14,17 +14,9 @@ import numpy as np
 from jaxtyping import Bool, Float, Int, UInt8
 
 from diorama_core.perception.metrology.problem import Cuboids, View
+from diorama_core.perception.metrology.settings import SETTINGS, BoxObservationSettings
 
-_SHARE_ODD, _SHARE_UPRIGHT = 0.4, 0.3
-"""Of edges that run otherwise (patterns, handles, shadows), and of upright ones; the others are level."""
 _SIGMA_RAD = float(np.deg2rad(5.0))
-_MIN_GRADIENT = 0.03
-"""Of a grey level between 0 and 1, by pixel, from which on it counts as an edge."""
-_MOST = 12.0
-"""How many independent edges a thing shows at most: neighbouring pixels say the same."""
-_BY_PIXELS = 40.0
-"""So many edge pixels are one independent edge."""
-_MOST_PX = 4000
 
 
 @dataclass(frozen=True, eq=False)
@@ -34,28 +26,34 @@ class DrawnEdges:
     pixels: Float[np.ndarray, "n 2"]
     direction: Float[np.ndarray, "n 2"]
     """Unit vectors along the edges; either way."""
+    settings: BoxObservationSettings
 
     @classmethod
-    def of(cls, rgb: UInt8[np.ndarray, "h w 3"], mask: Bool[np.ndarray, "h w"]) -> DrawnEdges:
+    def of(
+        cls,
+        rgb: UInt8[np.ndarray, "h w 3"],
+        mask: Bool[np.ndarray, "h w"],
+        settings: BoxObservationSettings = SETTINGS.observed,
+    ) -> DrawnEdges:
         """The strong edges of the picture inside a mask."""
         rows, columns = np.nonzero(mask)
         if not len(rows):
-            return cls(np.zeros((0, 2)), np.zeros((0, 2)))
+            return cls(np.zeros((0, 2)), np.zeros((0, 2)), settings)
         top, left = max(rows.min() - 2, 0), max(columns.min() - 2, 0)
         window = slice(top, rows.max() + 3), slice(left, columns.max() + 3)
         grey = cv2.GaussianBlur(cv2.cvtColor(rgb[window], cv2.COLOR_RGB2GRAY).astype(np.float64) / 255, (0, 0), 1.0)
         gx, gy = cv2.Sobel(grey, cv2.CV_64F, 1, 0, scale=0.125), cv2.Sobel(grey, cv2.CV_64F, 0, 1, scale=0.125)
         size = np.hypot(gx, gy)
         inside = cv2.erode(mask[window].astype(np.uint8), np.ones((3, 3), np.uint8)) > 0
-        v, u = np.nonzero(inside & (size > _MIN_GRADIENT))
-        step = max(len(v) // _MOST_PX, 1)
+        v, u = np.nonzero(inside & (size > settings.min_gradient))
+        step = max(len(v) // settings.most_px, 1)
         v, u = v[::step], u[::step]
         along = np.stack([-gy[v, u], gx[v, u]], axis=-1) / size[v, u, None]
-        return cls(np.stack([u + left + 0.5, v + top + 0.5], axis=-1), along)
+        return cls(np.stack([u + left + 0.5, v + top + 0.5], axis=-1), along, settings)
 
     def costs(self, boxes: Cuboids, height_m: float, view: View) -> Float[np.ndarray, "k"]:
         """What the edges say against every cuboid, in squared sigmas, but for a common constant."""
-        count = min(len(self.pixels) / _BY_PIXELS, _MOST)
+        count = min(len(self.pixels) / self.settings.by_pixels, self.settings.most)
         if not len(self.pixels):
             return np.zeros(len(boxes.centre))
         return np.array([-2.0 * count * self._mean_log(boxes, k, height_m, view) for k in range(len(boxes.centre))])
@@ -69,8 +67,12 @@ class DrawnEdges:
         face = _faces(eye, rays @ axes.T, boxes.size_m[row] / 2)
         to = [self._alike(axes[axis], rays, view) for axis in range(3)]
         level = np.where(face == 0, to[1], np.where(face == 1, to[0], 0.5 * (to[0] + to[1])))
-        upright = np.where(face == 2, 0.0, _SHARE_UPRIGHT)
-        return float(np.log(_SHARE_ODD / np.pi + upright * to[2] + (1.0 - _SHARE_ODD - upright) * level).mean())
+        upright = np.where(face == 2, 0.0, self.settings.share_upright)
+        return float(
+            np.log(
+                self.settings.share_odd / np.pi + upright * to[2] + (1.0 - self.settings.share_odd - upright) * level
+            ).mean()
+        )
 
     def _alike(
         self, axis: Float[np.ndarray, "3"], rays: Float[np.ndarray, "n 3"], view: View

@@ -13,27 +13,18 @@ from diorama_core.perception.metrology.box_observations import BoxObservations
 from diorama_core.perception.metrology.priors import SizeMode, standing_costs
 from diorama_core.perception.metrology.problem import UNKNOWNS, UNTOLD, Problems, View, stacked
 from diorama_core.perception.metrology.rows import contact_start, other_start, row, size_start
+from diorama_core.perception.metrology.settings import (
+    SETTINGS,
+    CuboidFitSettings,
+    HeightScanSettings,
+    MetrologySettings,
+)
 from diorama_core.perception.metrology.solver import Solutions, solve
 
-HEIGHT_PRIOR_M = 1.4
-HEIGHT_LOG_SIGMA = 0.18
-HEIGHT_TAILS = 4.0
-"""Degrees of freedom of Student's t: photos are taken from the floor and from stairs, too, and drawn from anywhere."""
 HEIGHTS_M: Float[np.ndarray, "13"] = np.geomspace(0.5, 2.3, 13)
-_CAP = 25.0
-"""No object counts more than this: it may be mislabelled."""
-_DOUBTFUL_CAP = 9.0
-"""The same for things that need not stand on the floor."""
-_ODD_ANGLE_COST = 1.5
-_ODD_ANGLES_DEG = (30.0, -30.0, 60.0, -60.0)
-_SCAN_ITERATIONS = 10
-_CONTINUED_ITERATIONS = 5
-_FARTHER = 1.6
 TELL_LITTLE = PORTABLE | having("rug")
 """Things that vote on the camera's height only where nothing else does: they may stand on furniture, or be as large as
 they like and half hidden by what stands on them."""
-ALIKE = 0.7
-"""How far the sizes of two things of a kind in one room are the same surprise: sets have one vote, not one each."""
 _MAYBE_ELSEWHERE = PORTABLE | {UNKNOWN.name, "sink"}
 
 
@@ -53,7 +44,7 @@ def stands_on_floor(category: Category) -> bool:
     return category.mount == "floor" or category.name == "door"
 
 
-def scan_heights(observations: BoxObservations, view: View) -> HeightScan:
+def scan_heights(observations: BoxObservations, view: View, settings: MetrologySettings = SETTINGS) -> HeightScan:
     """Find the camera's height at which the objects on the floor have the most plausible sizes.
 
     Without any, the prior decides.
@@ -61,17 +52,21 @@ def scan_heights(observations: BoxObservations, view: View) -> HeightScan:
     standing = [i for i in range(len(observations)) if stands_on_floor(observations.categories[i])]
     voters = [i for i in standing if observations.categories[i].name not in TELL_LITTLE] or standing
     log_heights = np.log(HEIGHTS_M)
-    off = (log_heights - np.log(HEIGHT_PRIOR_M)) / HEIGHT_LOG_SIGMA
-    total = (HEIGHT_TAILS + 1) * np.log1p(off**2 / HEIGHT_TAILS)
+    off = (log_heights - np.log(settings.heights.height_prior_m)) / settings.heights.height_log_sigma
+    total = (settings.heights.height_tails + 1) * np.log1p(off**2 / settings.heights.height_tails)
     if voters:
-        rows = stacked([p for i in voters for p in _scan_rows(observations, i)])
-        total = total + _votes(rows, observations, view)
+        rows = stacked([p for i in voters for p in _scan_rows(observations, i, settings.fit)])
+        total = total + _votes(rows, observations, view, settings)
     log_height, log_sigma, cost = _parabola_minimum(log_heights, total)
     return HeightScan(float(np.exp(log_height)), log_sigma, cost)
 
 
 def place_on_floor(
-    observations: BoxObservations, index: int, height_m: float, modes: tuple[SizeMode, ...] | None = None
+    observations: BoxObservations,
+    index: int,
+    height_m: float,
+    modes: tuple[SizeMode, ...] | None = None,
+    settings: MetrologySettings = SETTINGS,
 ) -> list[Problems]:
     """Rows for an object on the floor, with odd headings where its category stands freely.
 
@@ -79,59 +74,77 @@ def place_on_floor(
     """
     category, rows = observations.categories[index], []
     for mode in modes or observations.size_modes(index):
-        raised = standing_costs(category.name, mode)[0]
-        for yaw, cost in _headings(category):
+        raised = standing_costs(category.name, mode, settings.placement)[0]
+        for yaw, cost in _headings(category, settings.heights):
             extra = mode.cost + cost + raised
-            rows.append(row(observations, index, mode, camera_height_m=height_m, yaw_rad=yaw, extra=extra))
+            rows.append(
+                row(
+                    observations, index, mode, camera_height_m=height_m, yaw_rad=yaw, extra=extra, settings=settings.fit
+                )
+            )
     return rows
 
 
-def solve_all(rows: list[Problems], view: View) -> Solutions:
+def solve_all(rows: list[Problems], view: View, settings: MetrologySettings = SETTINGS) -> Solutions:
     """Solve rows from the contact with their base, from their expected size, and from farther away.
 
     The last matters for things cut by the picture's border, which fit from many distances.
     """
     batch = stacked(rows)
-    starts = [contact_start(batch, view), size_start(batch, view), other_start(batch, view, _FARTHER)]
-    return solve(stacked([batch] * len(starts)), np.concatenate(starts), view)
+    starts = [
+        contact_start(batch, view, settings.fit),
+        size_start(batch, view, settings=settings.fit),
+        other_start(batch, view, settings.heights.farther, settings.fit),
+    ]
+    return solve(stacked([batch] * len(starts)), np.concatenate(starts), view, settings=settings.fit)
 
 
-def _headings(category: Category) -> list[tuple[float, float]]:
+def _headings(category: Category, settings: HeightScanSettings) -> list[tuple[float, float]]:
     """Headings of the front (modulo half a turn) with their costs."""
     headings = [(0.0, 0.0), (np.pi / 2, 0.0)]
     if category.quarter_turns_free:
-        headings += [(np.deg2rad(angle), _ODD_ANGLE_COST) for angle in _ODD_ANGLES_DEG]
+        headings += [(np.deg2rad(angle), settings.odd_angle_cost) for angle in settings.odd_angles_deg]
     return headings
 
 
-def _scan_rows(observations: BoxObservations, index: int) -> list[Problems]:
+def _scan_rows(observations: BoxObservations, index: int, settings: CuboidFitSettings) -> list[Problems]:
     """Rows for one object at every height; the cut is left out, it would draw the camera up and away."""
     return [
-        row(observations, index, mode, camera_height_m=float(height), yaw_rad=yaw, cut_sigma=UNTOLD)
+        row(observations, index, mode, camera_height_m=float(height), yaw_rad=yaw, cut_sigma=UNTOLD, settings=settings)
         for mode in observations.size_modes(index)
         for yaw in ((0.0,) if mode.square else (0.0, np.pi / 2))
         for height in HEIGHTS_M
     ]
 
 
-def _votes(rows: Problems, observations: BoxObservations, view: View) -> Float[np.ndarray, "13"]:
+def _votes(
+    rows: Problems, observations: BoxObservations, view: View, settings: MetrologySettings
+) -> Float[np.ndarray, "13"]:
     """Sum over objects of how badly all their readings together fit at every height."""
     total = np.zeros(len(HEIGHTS_M))
-    found = _costs_at_heights(rows, observations, view)
+    found = _costs_at_heights(rows, observations, view, settings)
     for index, cost in found.items():
-        most = _DOUBTFUL_CAP if observations.categories[index].name in _MAYBE_ELSEWHERE else _CAP
-        total += np.minimum(cost, most) * _share_of_vote(index, found, observations)
+        most = (
+            settings.heights.max_doubtful_vote
+            if observations.categories[index].name in _MAYBE_ELSEWHERE
+            else settings.heights.max_vote
+        )
+        total += np.minimum(cost, most) * _share_of_vote(index, found, observations, settings.heights)
     return total
 
 
-def _share_of_vote(index: int, voters: Collection[int], observations: BoxObservations) -> float:
+def _share_of_vote(
+    index: int, voters: Collection[int], observations: BoxObservations, settings: HeightScanSettings
+) -> float:
     """How much one object's vote counts beside those of others of its kind."""
     name = observations.categories[index].name
     alike = sum(observations.categories[i].name == name for i in voters)
-    return 1 / (1 + (alike - 1) * ALIKE)
+    return 1 / (1 + (alike - 1) * settings.alike)
 
 
-def _costs_at_heights(rows: Problems, observations: BoxObservations, view: View) -> dict[int, Float[np.ndarray, "13"]]:
+def _costs_at_heights(
+    rows: Problems, observations: BoxObservations, view: View, settings: MetrologySettings
+) -> dict[int, Float[np.ndarray, "13"]]:
     """For every object how badly all its readings together fit at every height of the camera.
 
     `rows` come in runs of one assumption at every height. A solution made larger with the camera's height projects
@@ -139,15 +152,15 @@ def _costs_at_heights(rows: Problems, observations: BoxObservations, view: View)
     """
     named = np.array([observations.categories[int(i)] is not UNKNOWN for i in rows.item])
     again = rows.rows(named)
-    starts = np.concatenate([contact_start(rows, view), other_start(again, view)])
-    first = solve(stacked([rows, again]), starts, view, _SCAN_ITERATIONS)
+    starts = np.concatenate([contact_start(rows, view, settings.fit), other_start(again, view, settings=settings.fit)])
+    first = solve(stacked([rows, again]), starts, view, settings.heights.scan_iterations, settings.fit)
     own = np.concatenate([np.arange(len(rows)), np.flatnonzero(named)])
     cost, unknowns = np.full(len(rows), np.inf), np.zeros((len(rows), UNKNOWNS))
     for k in np.argsort(-first.cost, kind="stable"):
         cost[own[k]], unknowns[own[k]] = first.cost[k], first.unknowns[k]
     for step in (1, -1):
         start = _from_neighbours(unknowns, step)
-        again_solved = solve(rows, start, view, _CONTINUED_ITERATIONS)
+        again_solved = solve(rows, start, view, settings.heights.continued_iterations, settings.fit)
         better = again_solved.cost < cost
         cost = np.where(better, again_solved.cost, cost)
         unknowns = np.where(better[:, None], again_solved.unknowns, unknowns)

@@ -28,8 +28,9 @@ from diorama_core.perception.metrology.carried_costs import CarriedCosts
 from diorama_core.perception.metrology.floor import place_on_floor, solve_all
 from diorama_core.perception.metrology.priors import SizeMode, plain_mode
 from diorama_core.perception.metrology.problem import Cuboids, Problems, View, cuboids, stacked
-from diorama_core.perception.metrology.seats import APART_COST, at_table, tables_of_seats
+from diorama_core.perception.metrology.seats import at_table, tables_of_seats
 from diorama_core.perception.metrology.seen_through_tops import seen_through_top
+from diorama_core.perception.metrology.settings import SETTINGS, MetrologySettings, PlacementSettings
 from diorama_core.perception.metrology.silhouette import corner_costs
 from diorama_core.perception.metrology.solver import Solutions, joined, solve
 from diorama_core.perception.metrology.supported_objects import (
@@ -55,44 +56,15 @@ _COSTS: Mapping[str, Mapping[Mount, float]] = {
 """What speaks against a thing being held in a place, by how things of its kind are usually held."""
 _UNNAMED_COSTS = {"on top": 4.0, "floor": 0.0, "wall": 5.0, "ceiling": 6.0}
 """The same for a thing without a name that nobody looked at."""
-_HARDLY = 1e-4
-"""How likely a thing without a name is held as no kind is that it may be of."""
-_MIN_FLAT_FILL = 0.7
-_NOT_FLAT_COST = 6.0
-"""Of an unnamed thing on a wall whose mask leaves much of its box empty: pictures and boards do not."""
 _SCREENS = having("screen")
-_SCREEN_ON_WALL_COST, _SCREEN_ON_FLOOR_COST = 3.0, 12.0
-_BESIDE_ITS_SUPPORTER_COST = 20.0
-"""For a thing on the floor, or on a wall, that belongs on something its box rests in."""
-_AT_CARRIER_COST = 4.0
-"""For a portable thing on the floor that ends on what often carries such things: it would do so by chance."""
-_USUAL, _COMPANY_TRUST = 4.0, 0.5
-"""How often a carrier's usual loads lie on it (`company.CARRIED`), and how much less of that is held against others."""
-_STACKED_COST = -3.0
-"""Of a thing that lies on a small one that lies on others: what is behind that one would end right there by chance."""
-_SEEN_UNDER = 0.6
-"""It lies there only where so much of what is seen just under it is the other."""
-_BEFORE_COST = 10.0
-"""Of a thing on the floor that ends before another whose lower end is nearer: it would stand in the other's place."""
-_THROUGH_TOP_COST = 10.0
-"""Of a thing on the floor that would be seen through a piece of furniture's top."""
 _RUGS = having("rug")
 _FIXED_TO_WALLS = having("fixed_to_wall")
 _NEVER_ON_OBJECTS = having("never_on_objects")
 """Things that never stand on others."""
 _HUNG_CARRIERS = frozenset(kind for kind in column("carries_as") if find_category(kind).mount == "wall")
 """What hangs on walls and carries things."""
-_SURE_COST = 12.0
-"""Things on the floor that cost less than this tell how far the room reaches."""
 SETS = having("in_sets")
 """What often comes in sets of one shape on the floor of one room."""
-SET_SIGMA = 0.05
-"""Of the logarithms of a set's extents: how well those that are seen well are measured."""
-ODD_ONE_COST = 3.0
-"""Of a size of its own beside others of its kind: one in five."""
-MAX_UNSEEN = 1
-"""Edges that may be hidden or cut of a member that tells the others' size."""
-_AVERTED_COST = 2.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -125,30 +97,40 @@ class Readings:
         return Placement(int(self.problems.item[row]), supporter, self.problems.rows(one), box, float(self.costs[row]))
 
 
-def place_all(observations: BoxObservations, view: View, height_m: float) -> tuple[Placement, ...]:
+def place_all(
+    observations: BoxObservations, view: View, height_m: float, settings: MetrologySettings = SETTINGS
+) -> tuple[Placement, ...]:
     """Place every object: first on the floor, then on others, on walls and below the ceiling, the cheapest way each.
 
     Shelves that hang on walls come before the things that may lie on them.
     """
-    floor = _not_through_tops(_on_floor(observations, view, height_m), observations, view, height_m)
-    standing = [p for p in floor.values() if _tells_the_room(p, observations)]
+    floor = _not_through_tops(_on_floor(observations, view, height_m, settings), observations, view, height_m, settings)
+    standing = [p for p in floor.values() if _tells_the_room(p, observations, settings.placement)]
     doors = [i for i, category in enumerate(observations.categories) if category.name == "door"]
     hung = [i for i, category in enumerate(observations.categories) if category.name in _HUNG_CARRIERS]
     others = [i for i in range(len(observations)) if i not in doors and i not in hung]
     best = dict(floor)
-    best.update(_supported(observations, view, height_m, floor, _room(standing, observations), doors))
-    telling = standing + [best[i] for i in doors if best[i].cost < _SURE_COST]
-    room = _room(telling, observations)
-    best = _cheaper(best, _supported(observations, view, height_m, floor, room, hung))
+    best.update(
+        _supported(
+            observations, view, height_m, floor, _room(standing, observations, settings.placement), doors, settings
+        )
+    )
+    telling = standing + [best[i] for i in doors if best[i].cost < settings.placement.sure_cost]
+    room = _room(telling, observations, settings.placement)
+    best = _cheaper(best, _supported(observations, view, height_m, floor, room, hung, settings))
     carriers = {**floor, **{i: best[i] for i in hung if i in best}}
-    best = _cheaper(best, _supported(observations, view, height_m, carriers, room, others))
+    best = _cheaper(best, _supported(observations, view, height_m, carriers, room, others, settings))
     needed = {p.supporter for p in best.values() if p.supporter >= 0}
-    stacked = _stacked(observations, view, height_m, {**best, **{i: carriers[i] for i in needed}})
+    stacked = _stacked(observations, view, height_m, {**best, **{i: carriers[i] for i in needed}}, settings)
     return tuple(stacked[i] for i in range(len(observations)))
 
 
 def _not_through_tops(
-    floor: Mapping[int, Placement], observations: BoxObservations, view: View, height_m: float
+    floor: Mapping[int, Placement],
+    observations: BoxObservations,
+    view: View,
+    height_m: float,
+    settings: MetrologySettings,
 ) -> dict[int, Placement]:
     """The same, dearer where what may stand on others would be seen on the floor through their tops."""
     found = dict(floor)
@@ -157,11 +139,17 @@ def _not_through_tops(
         if category is not UNKNOWN and category.name not in PORTABLE:
             continue
         carriers = [
-            floor[j] for j in _possible_parents(observations, index) if j in floor and _has_top(observations, j)
+            floor[j]
+            for j in _possible_parents(observations, index, settings.placement)
+            if j in floor and _has_top(observations, j)
         ]
         box = observations.box_px[index]
-        shares = [seen_through_top(box, placement.cuboid, c.cuboid, height_m, view) for c in carriers]
-        found[index] = replace(placement, cost=placement.cost + _THROUGH_TOP_COST * max(shares, default=0.0))
+        shares = [
+            seen_through_top(box, placement.cuboid, c.cuboid, height_m, view, settings.observed) for c in carriers
+        ]
+        found[index] = replace(
+            placement, cost=placement.cost + settings.placement.through_top_cost * max(shares, default=0.0)
+        )
     return found
 
 
@@ -177,49 +165,62 @@ def _cheaper(best: Mapping[int, Placement], challengers: Mapping[int, Placement]
     return {**best, **better}
 
 
-def _on_floor(observations: BoxObservations, view: View, height_m: float) -> dict[int, Placement]:
+def _on_floor(
+    observations: BoxObservations, view: View, height_m: float, settings: MetrologySettings
+) -> dict[int, Placement]:
     """Every object that may stand on the floor, arranged so that they fit together; sets are of one size."""
     rows: list[Problems] = []
     for index, category in enumerate(observations.categories):
         if category.mount != "ceiling" and category.name not in _FIXED_TO_WALLS:
-            cost = _floor_cost(observations, index)
-            rows += [p.changed(extra=p.extra + cost) for p in place_on_floor(observations, index, height_m)]
+            cost = _floor_cost(observations, index, settings.placement)
+            rows += [
+                p.changed(extra=p.extra + cost)
+                for p in place_on_floor(observations, index, height_m, settings=settings)
+            ]
     if not rows:
         return {}
-    carried = CarriedCosts(observations, view, height_m)
-    solved = solve_all(rows, view)
-    placed = _arranged(solved, observations, view, carried)
-    sets = set_sizes(placed, observations)
+    carried = CarriedCosts(observations, view, height_m, settings=settings)
+    solved = solve_all(rows, view, settings)
+    placed = _arranged(solved, observations, view, carried, settings)
+    sets = set_sizes(placed, observations, settings.placement)
     if sets:
-        shared = [p for i, mode in sets.items() for p in place_on_floor(observations, i, height_m, (mode,))]
+        shared = [p for i, mode in sets.items() for p in place_on_floor(observations, i, height_m, (mode,), settings)]
         alone = np.isin(solved.problems.item, list(sets))
-        solved = joined(solved.dearer(np.where(alone, ODD_ONE_COST, 0.0)), solve_all(shared, view))
-        placed = _arranged(solved, observations, view, carried)
+        solved = joined(
+            solved.dearer(np.where(alone, settings.placement.odd_one_cost, 0.0)), solve_all(shared, view, settings)
+        )
+        placed = _arranged(solved, observations, view, carried, settings)
     boxes = {i: p.cuboid for i, p in placed.items()}
     table_of = tables_of_seats(boxes, observations)
     if table_of:
         seats = [solved.rows(solved.problems.item == i) for i in table_of]
-        seated = stacked([at_table(s.problems, boxes[j]) for s, j in zip(seats, table_of.values(), strict=True)])
-        moved = solve(seated, np.concatenate([s.unknowns for s in seats]), view)
+        seated = stacked(
+            [at_table(s.problems, boxes[j], settings.placement) for s, j in zip(seats, table_of.values(), strict=True)]
+        )
+        moved = solve(seated, np.concatenate([s.unknowns for s in seats]), view, settings=settings.fit)
         apart = np.isin(solved.problems.item, list(table_of))
-        solved = joined(solved.dearer(np.where(apart, APART_COST, 0.0)), moved)
-        placed = _arranged(solved, observations, view, carried)
+        solved = joined(solved.dearer(np.where(apart, settings.placement.apart_cost, 0.0)), moved)
+        placed = _arranged(solved, observations, view, carried, settings)
     return placed
 
 
 def _arranged(
-    solved: Solutions, observations: BoxObservations, view: View, carried: CarriedCosts
+    solved: Solutions, observations: BoxObservations, view: View, carried: CarriedCosts, settings: MetrologySettings
 ) -> dict[int, Placement]:
-    readings = readings_of(solved, observations, view)
+    readings = readings_of(solved, observations, view, settings)
     standing = [i for i in readings if observations.categories[i].mount == "floor"]
     loads = carried.of({i: readings[i].boxes for i in standing})
     costs = [readings[i].costs + loads[i] for i in standing]
-    chosen = arrange([readings[i].boxes for i in standing], costs, [observations.categories[i] for i in standing])
+    chosen = arrange(
+        [readings[i].boxes for i in standing], costs, [observations.categories[i] for i in standing], settings.placement
+    )
     picked = dict(zip(standing, chosen, strict=True))
     return {i: r.placement(picked.get(i, 0), FLOOR) for i, r in readings.items()}
 
 
-def set_sizes(placed: Mapping[int, Placement], observations: BoxObservations) -> dict[int, SizeMode]:
+def set_sizes(
+    placed: Mapping[int, Placement], observations: BoxObservations, settings: PlacementSettings
+) -> dict[int, SizeMode]:
     """For every member of a set the size that the well-seen members have, as a narrow mode.
 
     Of a member that is cut or hidden above or below nothing is taken of its height, nor of its sides' extents of one
@@ -229,7 +230,7 @@ def set_sizes(placed: Mapping[int, Placement], observations: BoxObservations) ->
     for name in sorted({observations.categories[i].name for i in placed} & SETS):
         members = [i for i in placed if observations.categories[i].name == name]
         whole = np.array([~(observations.hidden(i) | observations.truncated[i]) for i in members])
-        if len(members) < 2 or (~whole).sum(axis=1).min() > MAX_UNSEEN:
+        if len(members) < 2 or (~whole).sum(axis=1).min() > settings.max_unseen:
             continue
         upright, across = whole[:, 1] & whole[:, 3], whole[:, 0] & whole[:, 2]
         sizes = np.log([placed[i].cuboid.size_m[0] for i in members])
@@ -237,7 +238,7 @@ def set_sizes(placed: Mapping[int, Placement], observations: BoxObservations) ->
         size, sigma = usual.log_size[0].copy(), usual.log_size_sigma[0].copy()
         for axes, seen in (([0, 1], across), ([2], upright)):
             if seen.any():
-                size[axes], sigma[axes] = np.median(sizes[seen][:, axes], axis=0), SET_SIGMA
+                size[axes], sigma[axes] = np.median(sizes[seen][:, axes], axis=0), settings.set_sigma
         found |= dict.fromkeys(members, plain_mode(size, sigma, 0.0, name))
     return found
 
@@ -249,20 +250,23 @@ def _supported(
     carriers: Mapping[int, Placement],
     room: Extent,
     indices: list[int],
+    settings: MetrologySettings,
 ) -> dict[int, Placement]:
     """The cheapest way to hold some objects otherwise than by the floor."""
     best: dict[int, Placement] = {}
     groups: dict[int, list[Problems]] = {}
     for index in indices:
-        for supporter, rows in _supported_rows(observations, index, carriers, room, height_m):
+        for supporter, rows in _supported_rows(observations, index, carriers, room, height_m, settings):
             groups.setdefault(supporter, []).extend(rows)
     if not groups:
         return best
-    solved = solve_all([p for rows in groups.values() for p in rows], view)
+    solved = solve_all([p for rows in groups.values() for p in rows], view, settings)
     under = np.repeat(list(groups), [sum(map(len, rows)) for rows in groups.values()])
     supporter_of = np.tile(under, len(solved.cost) // len(under))
     for supporter in groups:
-        for index, readings in readings_of(solved.rows(supporter_of == supporter), observations, view).items():
+        for index, readings in readings_of(
+            solved.rows(supporter_of == supporter), observations, view, settings
+        ).items():
             challenger = readings.placement(0, supporter)
             if index not in best or challenger.cost < best[index].cost:
                 best[index] = challenger
@@ -270,22 +274,28 @@ def _supported(
 
 
 def _stacked(
-    observations: BoxObservations, view: View, height_m: float, placed: Mapping[int, Placement]
+    observations: BoxObservations,
+    view: View,
+    height_m: float,
+    placed: Mapping[int, Placement],
+    settings: MetrologySettings,
 ) -> dict[int, Placement]:
     """The same with small things on small things that lie on others, where that is cheaper: a cup on books."""
     found, holding = dict(placed), {p.supporter for p in placed.values()}
     for index in np.argsort(-observations.box_px[:, 3], kind="stable").tolist():  # what is below first
-        below = _small_carrier(observations, index)
+        below = _small_carrier(observations, index, settings.placement)
         if below is None or found[below].supporter < 0 or index in holding:
             continue
-        rows = place_on(observations, index, below, found[below].cuboid, height_m, _STACKED_COST)
-        on_it = readings_of(solve_all(rows, view), observations, view)[index].placement(0, below)
+        rows = place_on(
+            observations, index, below, found[below].cuboid, height_m, settings.placement.stacked_cost, settings
+        )
+        on_it = readings_of(solve_all(rows, view, settings), observations, view, settings)[index].placement(0, below)
         if on_it.cost < found[index].cost:
             found[index] = on_it
     return found
 
 
-def _small_carrier(observations: BoxObservations, index: int) -> int | None:
+def _small_carrier(observations: BoxObservations, index: int, settings: PlacementSettings) -> int | None:
     """The small carrier of which the picture shows most just under a thing; None where that is little."""
     category = observations.categories[index]
     if not lies_on_furniture(category.name):
@@ -293,74 +303,93 @@ def _small_carrier(observations: BoxObservations, index: int) -> int | None:
     carriers = [j for j, c in enumerate(observations.categories) if c.name in STACKED_ON]
     lower = [j for j in carriers if observations.box_px[j, 3] > observations.box_px[index, 3]]
     under = observations.beside[index, :, 3]
-    below = max(supporters_of(observations, index, lower), key=lambda j: float(under[j]), default=None)
-    return below if below is not None and under[below] >= _SEEN_UNDER else None
+    below = max(supporters_of(observations, index, lower, settings), key=lambda j: float(under[j]), default=None)
+    return below if below is not None and under[below] >= settings.seen_under else None
 
 
 def _supported_rows(
-    observations: BoxObservations, index: int, carriers: Mapping[int, Placement], room: Extent, height_m: float
+    observations: BoxObservations,
+    index: int,
+    carriers: Mapping[int, Placement],
+    room: Extent,
+    height_m: float,
+    settings: MetrologySettings,
 ) -> list[tuple[int, list[Problems]]]:
     """Rows for everything but the floor that may hold an object, by supporter."""
     category = observations.categories[index]
     options: list[tuple[int, list[Problems]]] = []
-    on_top = _held_cost(observations, index, "on top")
-    parents = _possible_parents(observations, index)
+    on_top = _held_cost(observations, index, "on top", settings.placement)
+    parents = _possible_parents(observations, index, settings.placement)
     if np.isfinite(on_top) and category.name not in _NEVER_ON_OBJECTS:
         for parent in parents:
-            cost = on_top + _unlikely_parent_cost(category, observations.categories[parent])
+            cost = on_top + _unlikely_parent_cost(category, observations.categories[parent], settings.placement)
             if observations.categories[parent].name in _RUGS:  # what lies on it is as good as on the floor
-                cost += _floor_cost(observations, index)
-            options.append((parent, place_on(observations, index, parent, carriers[parent].cuboid, height_m, cost)))
-    on_wall = _SCREEN_ON_WALL_COST if category.name in _SCREENS else _held_cost(observations, index, "wall")
-    if category is UNKNOWN and observations.fill[index] < _MIN_FLAT_FILL:
-        on_wall += _NOT_FLAT_COST
-    if category.mount == "surface" and (parents or _small_carrier(observations, index) is not None):
-        on_wall += _BESIDE_ITS_SUPPORTER_COST
+                cost += _floor_cost(observations, index, settings.placement)
+            options.append(
+                (parent, place_on(observations, index, parent, carriers[parent].cuboid, height_m, cost, settings))
+            )
+    on_wall = (
+        settings.placement.screen_on_wall_cost
+        if category.name in _SCREENS
+        else _held_cost(observations, index, "wall", settings.placement)
+    )
+    if category is UNKNOWN and observations.fill[index] < settings.placement.min_flat_fill:
+        on_wall += settings.placement.not_flat_cost
+    if category.mount == "surface" and (parents or _small_carrier(observations, index, settings.placement) is not None):
+        on_wall += settings.placement.beside_its_supporter_cost
     if category.name not in _NEVER_ON_OBJECTS or category.name in _FIXED_TO_WALLS:
-        options.append((WALL, place_on_wall(observations, index, height_m, room, on_wall)))
-    below = _held_cost(observations, index, "ceiling")
+        options.append((WALL, place_on_wall(observations, index, height_m, room, on_wall, settings)))
+    below = _held_cost(observations, index, "ceiling", settings.placement)
     if np.isfinite(below):
-        options.append((CEILING, place_below_ceiling(observations, index, height_m, room, below)))
+        options.append((CEILING, place_below_ceiling(observations, index, height_m, room, below, settings)))
     return options
 
 
-def readings_of(solved: Solutions, observations: BoxObservations, view: View) -> dict[int, Readings]:
+def readings_of(
+    solved: Solutions, observations: BoxObservations, view: View, settings: MetrologySettings = SETTINGS
+) -> dict[int, Readings]:
     """Distinct readings of every object in a batch, masks counted in."""
     boxes = cuboids(solved.unknowns, solved.problems, view)
     names = tuple(c.name for c in observations.categories)
     masks = (observations.mask_reach, observations.corner_weight, observations.mask_exact)
-    corners = corner_costs(solved.problems, boxes, view, *masks, names)
-    costs = solved.cost + corners + _averted_costs(solved.problems, boxes, observations)
+    corners = corner_costs(solved.problems, boxes, view, *masks, names, settings=settings.observed)
+    costs = solved.cost + corners + _averted_costs(solved.problems, boxes, observations, settings.placement)
     found = {}
     for index in np.unique(solved.problems.item).astype(int):
         mine = np.flatnonzero(solved.problems.item == index)
         own = Cuboids(boxes.centre[mine], boxes.yaw_rad[mine], boxes.size_m[mine])
-        retained = mine[distinct(own, costs[mine])]
+        retained = mine[distinct(own, costs[mine], settings.placement)]
         remaining_boxes = Cuboids(boxes.centre[retained], boxes.yaw_rad[retained], boxes.size_m[retained])
         found[int(index)] = Readings(solved.problems.rows(retained), remaining_boxes, costs[retained])
     return found
 
 
-def _averted_costs(problems: Problems, boxes: Cuboids, observations: BoxObservations) -> Float[np.ndarray, "n"]:
+def _averted_costs(
+    problems: Problems, boxes: Cuboids, observations: BoxObservations, settings: PlacementSettings
+) -> Float[np.ndarray, "n"]:
     """A little against things with a front that turn their side to the camera: people picture fronts."""
     fronted = np.array([c.name in AGAINST_WALLS for c in observations.categories])[problems.item.astype(int)]
     to_camera = boxes.centre[:, :2] / np.maximum(np.linalg.norm(boxes.centre[:, :2], axis=1, keepdims=True), 1e-6)
     facing = np.abs(np.cos(boxes.yaw_rad) * to_camera[:, 0] + np.sin(boxes.yaw_rad) * to_camera[:, 1])
-    return np.where(fronted, _AVERTED_COST * (1.0 - facing), 0.0)
+    return np.where(fronted, settings.averted_cost * (1.0 - facing), 0.0)
 
 
-def _floor_cost(observations: BoxObservations, index: int) -> float:
+def _floor_cost(observations: BoxObservations, index: int, settings: PlacementSettings) -> float:
     category = observations.categories[index]
-    cost = _SCREEN_ON_FLOOR_COST if category.name in _SCREENS else _held_cost(observations, index, "floor")
-    parents = _carriers(observations, index)
+    cost = (
+        settings.screen_on_floor_cost
+        if category.name in _SCREENS
+        else _held_cost(observations, index, "floor", settings)
+    )
+    parents = _carriers(observations, index, settings)
     if category.mount == "surface" and parents:
-        cost += _BESIDE_ITS_SUPPORTER_COST
+        cost += settings.beside_its_supporter_cost
     if category.name in PORTABLE and any(_often_carries(observations, j, index) for j in parents):
-        cost += _AT_CARRIER_COST
+        cost += settings.at_carrier_cost
     before = max(
         (float(observations.before[index, j]) for j in parents if not observations.in_front[j, index]), default=0.0
     )
-    return cost + _BEFORE_COST * before
+    return cost + settings.before_cost * before
 
 
 def _often_carries(observations: BoxObservations, parent: int, index: int) -> bool:
@@ -368,17 +397,17 @@ def _often_carries(observations: BoxObservations, parent: int, index: int) -> bo
     return carrier.supports_objects and often_carried(observations.categories[index].name, carrier.name) > 1.0
 
 
-def _carriers(observations: BoxObservations, index: int) -> list[int]:
+def _carriers(observations: BoxObservations, index: int, settings: PlacementSettings) -> list[int]:
     """What may hold a thing above the floor."""
-    return [j for j in _possible_parents(observations, index) if observations.categories[j].name not in _RUGS]
+    return [j for j in _possible_parents(observations, index, settings) if observations.categories[j].name not in _RUGS]
 
 
-def _possible_parents(observations: BoxObservations, index: int) -> list[int]:
+def _possible_parents(observations: BoxObservations, index: int, settings: PlacementSettings) -> list[int]:
     carriers = [i for i, c in enumerate(observations.categories) if c.mount == "floor" or c.name in _HUNG_CARRIERS]
-    return supporters_of(observations, index, carriers)
+    return supporters_of(observations, index, carriers, settings)
 
 
-def _held_cost(observations: BoxObservations, index: int, where: str) -> float:
+def _held_cost(observations: BoxObservations, index: int, where: str, settings: PlacementSettings) -> float:
     """What speaks against an object being held there; of one without a name the mean over all that it may be."""
     category, meanings, costs = observations.categories[index], observations.meanings[index], _COSTS[where]
     if category is not UNKNOWN:
@@ -386,30 +415,32 @@ def _held_cost(observations: BoxObservations, index: int, where: str) -> float:
     if not meanings:
         return _UNNAMED_COSTS[where]
     likely = sum(share * float(np.exp(-costs[taxonomy.category(kind).mount] / 2)) for kind, share in meanings)
-    return -2.0 * float(np.log(likely + _HARDLY))
+    return -2.0 * float(np.log(likely + settings.hardly))
 
 
-def _unlikely_parent_cost(category: Category, parent: Category) -> float:
+def _unlikely_parent_cost(category: Category, parent: Category, settings: PlacementSettings) -> float:
     if parent is UNKNOWN:
         return 0.5
     carries = 0.0 if parent.supports_objects else 4.0
     if category is UNKNOWN:
         return carries
-    return carries + 2.0 * _COMPANY_TRUST * float(np.log(max(_USUAL / often_carried(category.name, parent.name), 1.0)))
+    return carries + 2.0 * settings.company_trust * float(
+        np.log(max(settings.usual / often_carried(category.name, parent.name), 1.0))
+    )
 
 
-def _tells_the_room(placement: Placement, observations: BoxObservations) -> bool:
+def _tells_the_room(placement: Placement, observations: BoxObservations, settings: PlacementSettings) -> bool:
     """Whether a thing surely stands on the floor where it was placed."""
     category = observations.categories[placement.index]
-    if category.mount != "floor" or placement.cost >= _SURE_COST:
+    if category.mount != "floor" or placement.cost >= settings.sure_cost:
         return False
-    if category.name in PORTABLE and _possible_parents(observations, placement.index):
+    if category.name in PORTABLE and _possible_parents(observations, placement.index, settings):
         return False
     return not (category is UNKNOWN and bool(observations.hidden(placement.index)[3]))
 
 
-def _room(telling: list[Placement], observations: BoxObservations) -> Extent:
-    return extent_of(_corners(telling), tuple(observations.categories[p.index].name for p in telling))
+def _room(telling: list[Placement], observations: BoxObservations, settings: PlacementSettings) -> Extent:
+    return extent_of(_corners(telling), tuple(observations.categories[p.index].name for p in telling), settings)
 
 
 def _corners(placements: list[Placement]) -> Float[np.ndarray, "n 8 3"]:

@@ -16,16 +16,13 @@ from jaxtyping import Float
 from diorama_core.library.kind_sizes import sizes_of_kind
 from diorama_core.library.kinds import outline_of
 from diorama_core.library.taxonomy import PORTABLE, UNKNOWN, Mount, SizePrior, category, column
+from diorama_core.perception.metrology.settings import SETTINGS, PlacementSettings
 
 _ALSO: Mapping[str, Mapping[str, float]] = column("also_said_of")
 """Category: further categories it is used for, with the cost of that reading."""
 
 _UNNAMED: Mapping[str, float] = column("unnamed_cost")
 """What unnamed furniture may be that nobody looked at, with the cost of the rarer kinds."""
-_UNNAMED_WIDENED = 1.3
-_UNNAMED_ANYTHING_COST = 6.0
-MIN_SHARE, MAX_MEANINGS = 0.03, 4
-"""Of what a word may mean, what counts for the size."""
 _USUAL_SPREAD = 3 * np.log(0.16)
 """Sum of the logarithms of the sigmas of an ordinary category: wider ones explain anything, and pay for it."""
 
@@ -51,38 +48,53 @@ class SizeMode:
 
 
 @cache
-def size_modes(name: str, meanings: tuple[tuple[str, float], ...] = ()) -> tuple[SizeMode, ...]:
+def size_modes(
+    name: str, meanings: tuple[tuple[str, float], ...] = (), settings: PlacementSettings = SETTINGS.placement
+) -> tuple[SizeMode, ...]:
     """The modes of a canonical category, the most usual first, then those of what else its word may mean.
 
     Args:
         name: of the category.
         meanings: kinds that the word may mean with their probabilities; what it is generally said of when empty.
+        settings: numbers to work with.
     """
     if name == UNKNOWN.name:
-        return (*(_modes_held(meanings, "floor") or _usual_furniture()), _mode(UNKNOWN.name, _UNNAMED_ANYTHING_COST))
+        return (
+            *(_modes_held(meanings, "floor", settings) or _usual_furniture(settings)),
+            _mode(UNKNOWN.name, settings.unnamed_anything_cost),
+        )
     if meanings:
-        return _own_modes(name) + _modes_of_meanings(name, meanings)
+        return _own_modes(name) + _modes_of_meanings(name, meanings, settings)
     return _own_modes(name) + tuple(_mode(kind, cost) for kind, cost in _ALSO.get(name, {}).items())
 
 
-def _usual_furniture() -> tuple[SizeMode, ...]:
+def _usual_furniture(settings: PlacementSettings) -> tuple[SizeMode, ...]:
     return tuple(
-        _mode(kind, cost + _breadth_cost(category(kind).priors[0]), _UNNAMED_WIDENED) for kind, cost in _UNNAMED.items()
+        _mode(kind, cost + _breadth_cost(category(kind).priors[0]), settings.unnamed_widened)
+        for kind, cost in _UNNAMED.items()
     )
 
 
-def _modes_held(meanings: tuple[tuple[str, float], ...], mount: Mount) -> tuple[SizeMode, ...]:
+def _modes_held(
+    meanings: tuple[tuple[str, float], ...], mount: Mount, settings: PlacementSettings
+) -> tuple[SizeMode, ...]:
     """The likeliest modes of the likeliest kinds that a thing without a name may be and that are so mounted."""
     kinds = [(kind, share) for kind, share in meanings if category(kind).mount == mount]
-    return tuple(_rarer(kind, share, *kinds[0]) for kind, share in kinds[: MAX_MEANINGS + 1])
+    return tuple(_rarer(kind, share, *kinds[0]) for kind, share in kinds[: settings.max_meanings + 1])
 
 
-def _modes_of_meanings(name: str, meanings: tuple[tuple[str, float], ...]) -> tuple[SizeMode, ...]:
+def _modes_of_meanings(
+    name: str, meanings: tuple[tuple[str, float], ...], settings: PlacementSettings
+) -> tuple[SizeMode, ...]:
     """The likeliest mode of every other kind that a word may mean and that is held alike, dearer where it is rarer."""
     shares = dict(meanings)
-    own, held = max(shares.get(name, 0.0), MIN_SHARE), _held(name)
-    others = [(kind, share) for kind, share in meanings if kind != name and share >= MIN_SHARE and _held(kind) == held]
-    return tuple(_rarer(kind, share, name, own) for kind, share in others[:MAX_MEANINGS])
+    own, held = max(shares.get(name, 0.0), settings.min_share), _held(name)
+    others = [
+        (kind, share)
+        for kind, share in meanings
+        if kind != name and share >= settings.min_share and _held(kind) == held
+    ]
+    return tuple(_rarer(kind, share, name, own) for kind, share in others[: settings.max_meanings])
 
 
 def _rarer(kind: str, share: float, than: str, its_share: float) -> SizeMode:
@@ -103,44 +115,46 @@ def _held(name: str) -> str:
     return mount if mount in ("wall", "ceiling") else "stands"
 
 
-SMALL_M, SMALL_SIGMA_M = 0.55, 0.12
-"""Portable things lower than this are more often found on furniture than on the floor."""
-
-
-def standing_costs(name: str, mode: SizeMode) -> tuple[float, float]:
+def standing_costs(name: str, mode: SizeMode, settings: PlacementSettings = SETTINGS.placement) -> tuple[float, float]:
     """What speaks against a portable thing of this size standing on the floor, and on furniture; 0 for all others."""
     if name not in PORTABLE:
         return 0.0, 0.0
-    raised = (SMALL_M - float(np.exp(mode.log_size[2]))) / SMALL_SIGMA_M
+    raised = (settings.small_m - float(np.exp(mode.log_size[2]))) / settings.small_sigma_m
     return 2.0 * float(np.logaddexp(0.0, raised)), 2.0 * float(np.logaddexp(0.0, -raised))
 
 
 @cache
-def supported_modes(name: str, meanings: tuple[tuple[str, float], ...] = ()) -> tuple[SizeMode, ...]:
+def supported_modes(
+    name: str, meanings: tuple[tuple[str, float], ...] = (), settings: PlacementSettings = SETTINGS.placement
+) -> tuple[SizeMode, ...]:
     """The modes of a thing that lies on another; unnamed ones that nobody looked at are small there."""
     if name == UNKNOWN.name:
-        return _modes_held(meanings, "surface") or (
+        return _modes_held(meanings, "surface", settings) or (
             plain_mode(np.log([0.2, 0.24, 0.24]), np.array([0.7, 0.7, 0.7]), 0.0, name),
         )
-    return size_modes(name)
+    return size_modes(name, settings=settings)
 
 
 @cache
-def hung_modes(name: str, meanings: tuple[tuple[str, float], ...] = ()) -> tuple[SizeMode, ...]:
+def hung_modes(
+    name: str, meanings: tuple[tuple[str, float], ...] = (), settings: PlacementSettings = SETTINGS.placement
+) -> tuple[SizeMode, ...]:
     """The modes of a thing on a wall; unnamed ones that nobody looked at are flat there."""
     if name == UNKNOWN.name:
-        return _modes_held(meanings, "wall") or (
+        return _modes_held(meanings, "wall", settings) or (
             plain_mode(np.log([0.05, 0.8, 0.7]), np.array([0.4, 0.5, 0.5]), 0.0, name),
         )
-    return size_modes(name)
+    return size_modes(name, settings=settings)
 
 
 @cache
-def hanging_modes(name: str, meanings: tuple[tuple[str, float], ...] = ()) -> tuple[SizeMode, ...]:
+def hanging_modes(
+    name: str, meanings: tuple[tuple[str, float], ...] = (), settings: PlacementSettings = SETTINGS.placement
+) -> tuple[SizeMode, ...]:
     """The modes of a thing below the ceiling; unnamed ones that nobody looked at are lamps there."""
     if name == UNKNOWN.name:
-        return _modes_held(meanings, "ceiling") or (_mode("ceiling lamp", 0.0, _UNNAMED_WIDENED),)
-    return size_modes(name)
+        return _modes_held(meanings, "ceiling", settings) or (_mode("ceiling lamp", 0.0, settings.unnamed_widened),)
+    return size_modes(name, settings=settings)
 
 
 def _own_modes(name: str) -> tuple[SizeMode, ...]:

@@ -21,6 +21,7 @@ import numpy as np
 from jaxtyping import Bool, Float
 
 from diorama_core.geometry.projection import NEAR_M, cuboid_corners, visible_bounds
+from diorama_core.perception.metrology.settings import SETTINGS, CuboidFitSettings
 from diorama_core.scene.types import Intrinsics
 
 UNKNOWNS = 6
@@ -28,22 +29,6 @@ EDGES, CUT, SIZES, BASE, TOP, FOOTPRINT, WALL, FAR = (
     slice(0, 4), slice(4, 6), slice(6, 9), 9, 10, slice(11, 13), 13, 14,
 )  # fmt: skip
 """Columns of `Values.residuals`."""
-ROBUST_BEYOND = 2.0
-"""Residuals beyond this many sigmas count linearly."""
-HIDDEN_DENSITY = 0.25
-"""Of how far an object goes on where it is hidden, even over its reach, against the highest of a measured edge's: below
-1, since a range of places shares it, though not the ratio of their widths, since of two readings the one with more room
-is the likelier."""
-HIDDEN_REACH = 1.0
-"""How far an object may go on unseen, in extents of its box, where no other box tells how far."""
-INVISIBLE_PENALTY = 12.0
-"""Sigmas per edge for a cuboid that is not in the picture at all."""
-WALL_NEARER_LOG_SIGMA = 0.06
-CUT_NEAR_M = 0.2
-FAR_M = 6.0
-FAR_LOG_SIGMA = 0.15
-MIN_ROOM_M, MIN_BACK_M = 0.02, 0.05
-"""Bases have so much room on their supporters, and backs are so far from the camera, at least."""
 UNTOLD = 1e6
 """A sigma that means that nothing is known."""
 
@@ -184,9 +169,11 @@ class Values:
         self.bounds_px[chosen], self.visible[chosen] = anew.bounds_px, anew.visible
 
 
-def residuals(unknowns: Float[np.ndarray, "n 6"], problems: Problems, view: View) -> Float[np.ndarray, "n r"]:
+def residuals(
+    unknowns: Float[np.ndarray, "n 6"], problems: Problems, view: View, settings: CuboidFitSettings = SETTINGS.fit
+) -> Float[np.ndarray, "n r"]:
     """Everything that speaks against a row's cuboid, in sigmas."""
-    return values(unknowns, problems, view).residuals
+    return values(unknowns, problems, view, settings=settings).residuals
 
 
 def values(
@@ -194,6 +181,7 @@ def values(
     problems: Problems,
     view: View,
     inset_px: Float[np.ndarray, "n 4"] | None = None,
+    settings: CuboidFitSettings = SETTINGS.fit,
 ) -> Values:
     """What the rows come to at these unknowns.
 
@@ -203,29 +191,31 @@ def values(
     boxes = cuboids(unknowns, problems, view)
     corners = corners_camera(boxes, problems.camera_height_m, view)
     if inset_px is None:
-        inset_px = _unfilled(boxes, corners, problems, view)
+        inset_px = _unfilled(boxes, corners, problems, view, settings)
     bounds, visible = visible_bounds(corners, view.intrinsics)
     found = np.concatenate(
         [
-            edge_residuals(bounds, visible, inset_px, problems, view),
-            _cut_off(corners, problems, view),
+            edge_residuals(bounds, visible, inset_px, problems, view, settings),
+            _cut_off(corners, problems, view, settings),
             np.einsum("nij,nj->ni", problems.whitening, unknowns[:, 2:5] - problems.log_size),
             unknowns[:, 5:6],
             ((boxes.top_m - problems.top_m) / problems.top_sigma_m)[:, None],
-            _outside_footprint(boxes, problems),
-            _off_wall(boxes, problems),
-            _too_far(boxes),
+            _outside_footprint(boxes, problems, settings),
+            _off_wall(boxes, problems, settings),
+            _too_far(boxes, settings),
         ],
         axis=1,
     )
     return Values(found, inset_px, bounds, visible)
 
 
-def _cut_off(corners: Float[np.ndarray, "n 8 3"], problems: Problems, view: View) -> Float[np.ndarray, "n 2"]:
+def _cut_off(
+    corners: Float[np.ndarray, "n 8 3"], problems: Problems, view: View, settings: CuboidFitSettings
+) -> Float[np.ndarray, "n 2"]:
     """How much of the cuboid lies outside the picture, against the box: of readings that fit, the least cut one."""
     k = view.intrinsics
     x, y, z = np.ascontiguousarray(corners.transpose(2, 1, 0))
-    depth = np.maximum(z, CUT_NEAR_M)
+    depth = np.maximum(z, settings.cut_near_m)
     u, v = x / depth * k.fx + k.cx, y / depth * k.fy + k.cy
     beside, above = np.maximum(-u, u - k.width).max(axis=0), np.maximum(-v, v - k.height).max(axis=0)
     outside = np.stack([beside, above], axis=-1)
@@ -234,7 +224,7 @@ def _cut_off(corners: Float[np.ndarray, "n 8 3"], problems: Problems, view: View
 
 
 def _unfilled(
-    boxes: Cuboids, corners: Float[np.ndarray, "n 8 3"], problems: Problems, view: View
+    boxes: Cuboids, corners: Float[np.ndarray, "n 8 3"], problems: Problems, view: View, settings: CuboidFitSettings
 ) -> Float[np.ndarray, "n 4"]:
     """By how many pixels the object's own outline stays within its cuboid's, at each edge of the box.
 
@@ -242,7 +232,7 @@ def _unfilled(
     """
     k = view.intrinsics
     inset = np.zeros((len(boxes.centre), 4))
-    ahead = (corners[..., 2] > CUT_NEAR_M).all(axis=1)
+    ahead = (corners[..., 2] > settings.cut_near_m).all(axis=1)
     x, y, z = (problems.outline[ahead, :, axis] * boxes.size_m[ahead, axis, None] for axis in range(3))
     c, s = np.cos(boxes.yaw_rad[ahead])[:, None], np.sin(boxes.yaw_rad[ahead])[:, None]
     corners = corners[ahead]
@@ -266,6 +256,7 @@ def edge_residuals(
     unfilled: Float[np.ndarray, "n 4"],
     problems: Problems,
     view: View,
+    settings: CuboidFitSettings,
 ) -> Float[np.ndarray, "n 4"]:
     """How far the projected box is from the observed one, edge by edge; lenient as far as something hides the rest.
 
@@ -278,30 +269,33 @@ def edge_residuals(
     outward = (bounds - problems.box_px) * -inward
     off = outward / problems.edge_sigma_px
     robust = np.where(
-        np.abs(off) > ROBUST_BEYOND,
-        np.sign(off) * np.sqrt(np.maximum(2 * ROBUST_BEYOND * np.abs(off) - ROBUST_BEYOND**2, 0.0)),
+        np.abs(off) > settings.robust_beyond,
+        np.sign(off) * np.sqrt(np.maximum(2 * settings.robust_beyond * np.abs(off) - settings.robust_beyond**2, 0.0)),
         off,
     )
-    robust = np.where(off > 0, _gone_on(robust, outward, problems), robust)
-    return robust + np.where(visible, 0.0, INVISIBLE_PENALTY)[:, None]
+    robust = np.where(off > 0, _gone_on(robust, outward, problems, settings), robust)
+    return robust + np.where(visible, 0.0, settings.invisible_penalty)[:, None]
 
 
 def _gone_on(
-    seen: Float[np.ndarray, "n 4"], outward_px: Float[np.ndarray, "n 4"], problems: Problems
+    seen: Float[np.ndarray, "n 4"],
+    outward_px: Float[np.ndarray, "n 4"],
+    problems: Problems,
+    settings: CuboidFitSettings,
 ) -> Float[np.ndarray, "n 4"]:
     """Residuals of cuboids that go on beyond their boxes: either the edge is measured badly, or the rest is hidden.
 
     The likelihood is a mixture: of a measured edge's, and of an even one over as far as something may hide the rest.
     """
     extent = np.tile(problems.box_px[:, 2:] - problems.box_px[:, :2], 2)
-    reach = np.maximum(problems.hidden_px, HIDDEN_REACH * extent)
-    even = problems.hidden_odds * HIDDEN_DENSITY
+    reach = np.maximum(problems.hidden_px, settings.hidden_reach * extent)
+    even = problems.hidden_odds * settings.hidden_density
     beyond = np.maximum(outward_px - reach, 0.0) / problems.edge_sigma_px
     cost = -2.0 * np.log((np.exp(-0.5 * seen**2) + even) / (1.0 + even))
-    return np.sqrt(np.minimum(np.maximum(cost, 0.0) + 2 * ROBUST_BEYOND * beyond, seen**2))
+    return np.sqrt(np.minimum(np.maximum(cost, 0.0) + 2 * settings.robust_beyond * beyond, seen**2))
 
 
-def _outside_footprint(boxes: Cuboids, problems: Problems) -> Float[np.ndarray, "n 2"]:
+def _outside_footprint(boxes: Cuboids, problems: Problems, settings: CuboidFitSettings) -> Float[np.ndarray, "n 2"]:
     """How far the base reaches beyond its supporter, along the supporter's axes; its centre where it is larger."""
     x, y, yaw, half_depth, half_width = problems.footprint.T
     c, s = np.cos(yaw), np.sin(yaw)
@@ -311,26 +305,26 @@ def _outside_footprint(boxes: Cuboids, problems: Problems) -> Float[np.ndarray, 
     along, across = np.abs(np.cos(turn)), np.abs(np.sin(turn))
     depth, width = boxes.size_m[:, 0], boxes.size_m[:, 1]
     reach = 0.5 * np.stack([along * depth + across * width, across * depth + along * width], axis=-1)
-    room = np.maximum(np.stack([half_depth, half_width], axis=-1) - reach, MIN_ROOM_M)
+    room = np.maximum(np.stack([half_depth, half_width], axis=-1) - reach, settings.min_room_m)
     return np.maximum(np.abs(offset) - room, 0.0) / problems.footprint_sigma_m[:, None]
 
 
-def _too_far(boxes: Cuboids) -> Float[np.ndarray, "n 1"]:
+def _too_far(boxes: Cuboids, settings: CuboidFitSettings) -> Float[np.ndarray, "n 1"]:
     """Rooms rarely reach farther than `FAR_M`."""
     away = np.linalg.norm(boxes.centre[:, :2], axis=1)
-    return (np.maximum(np.log(np.maximum(away, 1e-6) / FAR_M), 0.0) / FAR_LOG_SIGMA)[:, None]
+    return (np.maximum(np.log(np.maximum(away, 1e-6) / settings.far_m), 0.0) / settings.far_log_sigma)[:, None]
 
 
-def _off_wall(boxes: Cuboids, problems: Problems) -> Float[np.ndarray, "n 1"]:
+def _off_wall(boxes: Cuboids, problems: Problems, settings: CuboidFitSettings) -> Float[np.ndarray, "n 1"]:
     """Whether the object's back lies in its wall, which is no nearer than the things that stand before it."""
     front = np.stack([np.cos(boxes.yaw_rad), np.sin(boxes.yaw_rad)], axis=-1)
     back = (boxes.centre[:, :2] * front).sum(axis=1) - boxes.size_m[:, 0] / 2
-    ratio = np.maximum(-back, MIN_BACK_M) / problems.wall_m
+    ratio = np.maximum(-back, settings.min_back_m) / problems.wall_m
     off = np.log(ratio)
-    return (off / wall_sigmas(off, problems))[:, None]
+    return (off / wall_sigmas(off, problems, settings))[:, None]
 
 
-def wall_sigmas(off: Float[np.ndarray, "n"], problems: Problems) -> Float[np.ndarray, "n"]:
+def wall_sigmas(off: Float[np.ndarray, "n"], problems: Problems, settings: CuboidFitSettings) -> Float[np.ndarray, "n"]:
     """Of backs that are nearer than their walls, and of those behind, by the sign of `off`."""
-    nearer = np.minimum(problems.wall_sigma, np.maximum(WALL_NEARER_LOG_SIGMA, problems.wall_sigma / 5))
+    nearer = np.minimum(problems.wall_sigma, np.maximum(settings.wall_nearer_log_sigma, problems.wall_sigma / 5))
     return np.where((off < 0) & (problems.wall_sigma < UNTOLD), nearer, problems.wall_sigma)

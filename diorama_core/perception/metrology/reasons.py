@@ -11,6 +11,7 @@ from diorama_core.arrangement.explain import SCALE
 from diorama_core.artefacts import Decision, DetectedObject, Reason
 from diorama_core.perception.metrology.placement import CEILING, FLOOR, WALL, Placement
 from diorama_core.perception.metrology.problem import UNKNOWNS, View, stacked, values
+from diorama_core.perception.metrology.settings import CuboidFitSettings
 
 HUNG: Mapping[int, str] = {WALL: "hangs on walls", CEILING: "hangs from ceilings"}
 FORWARD, SIZE = slice(1, 2), slice(2, 5)
@@ -28,7 +29,9 @@ TERMS: Mapping[str, tuple[slice, str, str]] = {
 """By term its residuals (`problem.values`), and why it holds the place and the size."""
 
 
-def reasons_of(placements: Sequence[Placement], view: View, objects: Sequence[DetectedObject]) -> tuple[Reason, ...]:
+def reasons_of(
+    placements: Sequence[Placement], view: View, objects: Sequence[DetectedObject], settings: CuboidFitSettings
+) -> tuple[Reason, ...]:
     """By how many nats each term opposes that an object is a tenth farther or nearer, larger or smaller."""
     if not placements:
         return ()
@@ -36,7 +39,7 @@ def reasons_of(placements: Sequence[Placement], view: View, objects: Sequence[De
     found = np.stack([_unknowns(p, view) for p in placements])
 
     def nats(unknowns: Float[np.ndarray, "n 6"]) -> Float[np.ndarray, "n r"]:
-        return 0.5 * values(unknowns, problems, view).residuals ** 2
+        return 0.5 * values(unknowns, problems, view, settings=settings).residuals ** 2
 
     here = nats(found)
     reasons: list[Reason] = []

@@ -8,14 +8,7 @@ from jaxtyping import Float
 from diorama_core.perception.metrology.box_observations import BoxObservations
 from diorama_core.perception.metrology.priors import SizeMode
 from diorama_core.perception.metrology.problem import UNKNOWNS, UNTOLD, Problems, View
-
-_CUT_LOG_SIGMA = 1.5
-_MIN_RISE_M = 0.1
-"""Tops nearer to the camera's height do not tell how far they are."""
-_MAYBE_HIDDEN = 0.3
-"""Odds from which on a lower end may be hidden."""
-_NEAREST_M = 0.4
-_FARTHEST_M = 12.0
+from diorama_core.perception.metrology.settings import SETTINGS, CuboidFitSettings
 
 
 def row(
@@ -26,6 +19,7 @@ def row(
     camera_height_m: float,
     yaw_rad: float,
     parent: int | None = None,
+    settings: CuboidFitSettings = SETTINGS.fit,
     **more: object,
 ) -> Problems:
     """A batch of one row: by default a thing on the floor; `more` replaces columns.
@@ -38,6 +32,7 @@ def row(
         yaw_rad: The assumed heading of the front.
         parent: The object it rests on, if any.
         more: Columns of `Problems` that differ from a thing on the floor, without the row axis.
+        settings: numbers to work with.
     """
     columns: dict[str, object] = {
         "item": float(index),
@@ -58,7 +53,7 @@ def row(
         "footprint_sigma_m": UNTOLD,
         "wall_m": 1.0,
         "wall_sigma": UNTOLD,
-        "cut_sigma": _CUT_LOG_SIGMA,
+        "cut_sigma": settings.cut_log_sigma,
         "outline": mode.outline,
         "extra": mode.cost,
     }
@@ -66,7 +61,9 @@ def row(
     return Problems(**{name: np.asarray(value)[None] for name, value in columns.items()})
 
 
-def contact_start(problems: Problems, view: View) -> Float[np.ndarray, "n 6"]:
+def contact_start(
+    problems: Problems, view: View, settings: CuboidFitSettings = SETTINGS.fit
+) -> Float[np.ndarray, "n 6"]:
     """Start where the box's bottom meets the base's height; where it does not, as `size_start`."""
     box = problems.box_px
     rays = _rays(np.column_stack([(box[:, 0] + box[:, 2]) / 2, box[:, 3]]), view)
@@ -76,20 +73,26 @@ def contact_start(problems: Problems, view: View) -> Float[np.ndarray, "n 6"]:
     ground = np.linalg.norm(rays[:, :2], axis=1)
     reach = reach + 0.35 * np.exp(problems.log_size[:, :2].min(axis=1)) / np.maximum(ground, 0.2)
     plan = reach[:, None] * rays[:, :2]
-    return np.where(meets[:, None], _start(plan, problems, view), size_start(problems, view))
+    return np.where(
+        meets[:, None], _start(plan, problems, view, settings), size_start(problems, view, settings=settings)
+    )
 
 
-def size_start(problems: Problems, view: View, farther: float = 1.0) -> Float[np.ndarray, "n 6"]:
+def size_start(
+    problems: Problems, view: View, farther: float = 1.0, settings: CuboidFitSettings = SETTINGS.fit
+) -> Float[np.ndarray, "n 6"]:
     """Start at the distance (times `farther`) at which a thing of the expected size fills the box."""
     box, k = problems.box_px, view.intrinsics
     rays = _rays((box[:, :2] + box[:, 2:]) / 2, view)
     size = np.exp(problems.log_size)
     by_height = k.fy * size[:, 2] / (box[:, 3] - box[:, 1])
     by_width = k.fx * np.sqrt(size[:, 0] * size[:, 1]) / (box[:, 2] - box[:, 0])
-    return _start((farther * np.sqrt(by_height * by_width))[:, None] * rays[:, :2], problems, view)
+    return _start((farther * np.sqrt(by_height * by_width))[:, None] * rays[:, :2], problems, view, settings)
 
 
-def other_start(problems: Problems, view: View, farther: float = 1.0) -> Float[np.ndarray, "n 6"]:
+def other_start(
+    problems: Problems, view: View, farther: float = 1.0, settings: CuboidFitSettings = SETTINGS.fit
+) -> Float[np.ndarray, "n 6"]:
     """Start as `size_start`; where the lower end may be hidden, with a usual height and the top where the box has it.
 
     The visible part alone would be taken for a thing far away.
@@ -97,10 +100,12 @@ def other_start(problems: Problems, view: View, farther: float = 1.0) -> Float[n
     box = problems.box_px
     rays = _rays(np.column_stack([(box[:, 0] + box[:, 2]) / 2, box[:, 1]]), view)
     rise = problems.base_m + np.exp(problems.log_size[:, 2]) - problems.camera_height_m
-    meets = (rays[:, 2] * np.sign(rise) > 0.02) & (np.abs(rise) > _MIN_RISE_M)
+    meets = (rays[:, 2] * np.sign(rise) > 0.02) & (np.abs(rise) > settings.min_rise_m)
     plan = (rise / np.where(meets, rays[:, 2], 1.0))[:, None] * rays[:, :2]
-    hidden = problems.hidden_odds[:, 3:] > _MAYBE_HIDDEN
-    return np.where(meets[:, None] & hidden, _start(plan, problems, view), size_start(problems, view, farther))
+    hidden = problems.hidden_odds[:, 3:] > settings.maybe_hidden
+    return np.where(
+        meets[:, None] & hidden, _start(plan, problems, view, settings), size_start(problems, view, farther, settings)
+    )
 
 
 def _rays(pixels: Float[np.ndarray, "n 2"], view: View) -> Float[np.ndarray, "n 3"]:
@@ -110,10 +115,12 @@ def _rays(pixels: Float[np.ndarray, "n 2"], view: View) -> Float[np.ndarray, "n 
     return camera @ view.R_world_camera.T
 
 
-def _start(plan: Float[np.ndarray, "n 2"], problems: Problems, view: View) -> Float[np.ndarray, "n 6"]:
+def _start(
+    plan: Float[np.ndarray, "n 2"], problems: Problems, view: View, settings: CuboidFitSettings
+) -> Float[np.ndarray, "n 6"]:
     """Unknowns at a place of the floor plan, with the expected size and base."""
     ahead, right = view.heading, np.array([view.heading[1], -view.heading[0]])
-    forward = np.clip(plan @ ahead, _NEAREST_M, _FARTHEST_M)
+    forward = np.clip(plan @ ahead, settings.nearest_m, settings.farthest_m)
     start = np.zeros((len(problems), UNKNOWNS))
     start[:, 0] = np.clip(plan @ right / forward, -3.0, 3.0)
     start[:, 1] = np.log(forward)

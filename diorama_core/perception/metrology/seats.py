@@ -10,13 +10,10 @@ from jaxtyping import Float
 from diorama_core.library.taxonomy import with_kin
 from diorama_core.perception.metrology.box_observations import BoxObservations
 from diorama_core.perception.metrology.problem import Cuboids, Problems
+from diorama_core.perception.metrology.settings import SETTINGS, PlacementSettings
 
 SEATS = with_kin("chair", "office chair", "stool")
 TABLES = with_kin("table", "desk", "kitchen island")
-STANDS_OFF_M, STANDS_OFF_SIGMA_M = 0.3, 0.2
-"""How far a seat's front may be from its table, and how firmly."""
-APART_COST = 3.0
-"""Of a seat that stands elsewhere although there is a table: one in five."""
 
 
 def tables_of_seats(boxes: Mapping[int, Cuboids], observations: BoxObservations) -> dict[int, int]:
@@ -31,12 +28,12 @@ def tables_of_seats(boxes: Mapping[int, Cuboids], observations: BoxObservations)
     return {i: min(tables, key=lambda j: (_gap_m(boxes[i], boxes[j]), j)) for i in seats} if tables else {}
 
 
-def at_table(rows: Problems, table: Cuboids) -> Problems:
+def at_table(rows: Problems, table: Cuboids, settings: PlacementSettings = SETTINGS.placement) -> Problems:
     """The rows of a seat with its base at a table: over its top or around it, by about a seat's depth."""
-    beside = np.exp(rows.log_size[:, :1]) + STANDS_OFF_M
+    beside = np.exp(rows.log_size[:, :1]) + settings.stands_off_m
     half = table.size_m[:, :2] / 2 + np.repeat(beside, 2, axis=1)
     place = np.tile([*table.centre[0, :2], float(table.yaw_rad[0])], (len(rows), 1))
-    return rows.changed(footprint=np.column_stack([place, half]), footprint_sigma_m=STANDS_OFF_SIGMA_M)
+    return rows.changed(footprint=np.column_stack([place, half]), footprint_sigma_m=settings.stands_off_sigma_m)
 
 
 def _gap_m(seat: Cuboids, table: Cuboids) -> float:

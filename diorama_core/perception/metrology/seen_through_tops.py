@@ -10,14 +10,16 @@ import numpy as np
 from jaxtyping import Float
 
 from diorama_core.perception.metrology.problem import Cuboids, View
-
-_SAMPLES = 9
-_MIDDLE, _LOWER = 0.6, 0.1
-"""Shares of a box: of its width along which its lower end is looked at, and of its height above its lower edge."""
+from diorama_core.perception.metrology.settings import SETTINGS, BoxObservationSettings
 
 
 def seen_through_top(
-    box_px: Float[np.ndarray, "4"], standing: Cuboids, carrier: Cuboids, height_m: float, view: View
+    box_px: Float[np.ndarray, "4"],
+    standing: Cuboids,
+    carrier: Cuboids,
+    height_m: float,
+    view: View,
+    settings: BoxObservationSettings = SETTINGS.observed,
 ) -> float:
     """Share of the lower end of a thing on the floor that would be seen through the top of another, 0 to 1.
 
@@ -27,12 +29,18 @@ def seen_through_top(
         carrier: What has the top; one cuboid.
         height_m: Of the camera above the floor.
         view: How the camera is held.
+        settings: numbers to work with.
     """
     drop = float(carrier.top_m[0]) - height_m
     x1, y1, x2, y2 = box_px
-    k, across = view.intrinsics, (x1 + x2) / 2 + 0.5 * _MIDDLE * (x2 - x1) * np.linspace(-1.0, 1.0, _SAMPLES)
-    pixels = np.stack([(across - k.cx) / k.fx, np.full(_SAMPLES, (y2 - _LOWER * (y2 - y1) - k.cy) / k.fy)], axis=-1)
-    rays = np.column_stack([pixels, np.ones(_SAMPLES)]) @ view.R_world_camera.T
+    k, across = (
+        view.intrinsics,
+        (x1 + x2) / 2 + 0.5 * settings.middle * (x2 - x1) * np.linspace(-1.0, 1.0, settings.samples),
+    )
+    pixels = np.stack(
+        [(across - k.cx) / k.fx, np.full(settings.samples, (y2 - settings.lower * (y2 - y1) - k.cy) / k.fy)], axis=-1
+    )
+    rays = np.column_stack([pixels, np.ones(settings.samples)]) @ view.R_world_camera.T
     down = rays[:, 2] * np.sign(drop) > 1e-6
     met = (drop / np.where(down, rays[:, 2], 1.0))[:, None] * rays[:, :2]
     nearest = float(np.linalg.norm(standing.centre[0, :2])) - 0.5 * float(standing.size_m[0, :2].max())

@@ -12,29 +12,21 @@ from jaxtyping import Bool, Float
 from diorama_core.artefacts import DetectedObject
 from diorama_core.library.taxonomy import having
 from diorama_core.perception.metrology.problem import Cuboids, Problems, View, corners_camera
+from diorama_core.perception.metrology.settings import SETTINGS, BoxObservationSettings
 
 DIAGONALS: Float[np.ndarray, "4 2"] = np.array([[-1.0, -1.0], [1.0, -1.0], [-1.0, 1.0], [1.0, 1.0]])
 """Toward the corners: top left, top right, bottom left, bottom right."""
 CORNER_EDGES = ((0, 1), (2, 1), (0, 3), (2, 3))
 """The box edges (x1, y1, x2, y2) that meet in each corner."""
-_BEYOND_SIGMA = 0.05
-_BEYOND_SIGMA_GUESSED = 0.12
-"""The same for masks that are not the user's own."""
-_EMPTY_SIGMA_SOLID = 0.13
-_EMPTY_SIGMA = 0.35
 _SOLID = having("solid")
 """Categories whose things fill their cuboids."""
-_MIN_CONFIDENCE = 0.5
-_CAP = 10.0
-_UNSEEN_COST = 1.0
-"""Per corner, of cuboids that reach behind the camera and whose corners cannot be compared."""
-GUESSED_TRUST = 0.5
-"""Of a mask that is not the user's own, at full agreement of its starts."""
 
 
-def mask_reach(item: DetectedObject, box: Float[np.ndarray, "4"]) -> Float[np.ndarray, "4"]:
+def mask_reach(
+    item: DetectedObject, box: Float[np.ndarray, "4"], settings: BoxObservationSettings = SETTINGS.observed
+) -> Float[np.ndarray, "4"]:
     """How far the mask reaches along the diagonals, in half box sizes from the box's centre; NaN without a mask."""
-    if item.mask_confidence < _MIN_CONFIDENCE or item.mask.ndim != 2:
+    if item.mask_confidence < settings.min_confidence or item.mask.ndim != 2:
         return np.full(4, np.nan)
     rows, columns = np.nonzero(_outline_rows(item.mask))
     if len(rows) < 8:
@@ -51,6 +43,7 @@ def corner_costs(
     weight: Float[np.ndarray, "objects 4"],
     exact: Bool[np.ndarray, "objects"],
     names: tuple[str, ...],
+    settings: BoxObservationSettings = SETTINGS.observed,
 ) -> Float[np.ndarray, "n"]:
     """What the masks say against every row's cuboid, in squared sigmas, bounded.
 
@@ -62,6 +55,7 @@ def corner_costs(
         weight: Trust in every corner of every object, 0 where it is hidden or cut.
         exact: Whether the mask is the user's own.
         names: Category of every object.
+        settings: numbers to work with.
     """
     camera = corners_camera(boxes, problems.camera_height_m, view)
     k = view.intrinsics
@@ -71,12 +65,12 @@ def corner_costs(
     item = problems.item.astype(int)
     excess = _reach(_normalised(pixels, problems.box_px)) - reach[item]
     solid = np.array([name in _SOLID for name in names])[item]
-    empty_sigma = np.where(solid, _EMPTY_SIGMA_SOLID, _EMPTY_SIGMA)[:, None]
-    beyond_sigma = np.where(exact[item], _BEYOND_SIGMA, _BEYOND_SIGMA_GUESSED)[:, None]
+    empty_sigma = np.where(solid, settings.empty_sigma_solid, settings.empty_sigma)[:, None]
+    beyond_sigma = np.where(exact[item], settings.beyond_sigma, settings.beyond_sigma_guessed)[:, None]
     sigmas = np.where(excess < 0, -excess / beyond_sigma, excess / empty_sigma)
-    costs = np.minimum(np.nan_to_num(sigmas) ** 2, _CAP) * weight[item]
-    unseen = _UNSEEN_COST * weight[item].sum(axis=1)
-    return np.where(usable, np.minimum(costs.sum(axis=1), _CAP), unseen)
+    costs = np.minimum(np.nan_to_num(sigmas) ** 2, settings.max_outline_cost) * weight[item]
+    unseen = settings.unseen_cost * weight[item].sum(axis=1)
+    return np.where(usable, np.minimum(costs.sum(axis=1), settings.max_outline_cost), unseen)
 
 
 def _normalised(pixels: Float[np.ndarray, "n p 2"], box: Float[np.ndarray, "n 4"]) -> Float[np.ndarray, "n p 2"]:

@@ -11,13 +11,9 @@ from diorama_core.geometry.extreme_points import extreme_points
 from diorama_core.perception.metrology.problem import (
     BASE,
     CUT,
-    CUT_NEAR_M,
     EDGES,
     FAR,
-    FAR_LOG_SIGMA,
     FOOTPRINT,
-    MIN_BACK_M,
-    MIN_ROOM_M,
     SIZES,
     TOP,
     UNKNOWNS,
@@ -32,13 +28,18 @@ from diorama_core.perception.metrology.problem import (
     values,
     wall_sigmas,
 )
+from diorama_core.perception.metrology.settings import SETTINGS, CuboidFitSettings
 from diorama_core.scene.types import box_corners
 
 _STEP = 1e-5
 
 
 def jacobian(
-    problems: Problems, unknowns: Float[np.ndarray, "n 6"], here: Values, view: View
+    problems: Problems,
+    unknowns: Float[np.ndarray, "n 6"],
+    here: Values,
+    view: View,
+    settings: CuboidFitSettings = SETTINGS.fit,
 ) -> Float[np.ndarray, "n r 6"]:
     """Derivatives of every residual; outlines are not needed, insets are taken to stay.
 
@@ -47,21 +48,21 @@ def jacobian(
     boxes = cuboids(unknowns, problems, view)
     corners = corners_camera(boxes, problems.camera_height_m, view)
     frame = _Frame.of(boxes, problems, view)
-    edges, told = _edges(corners, frame, here, problems, view)
+    edges, told = _edges(corners, frame, here, problems, view, settings)
     found = np.zeros((len(problems), here.residuals.shape[1], UNKNOWNS))
     plan = _on_the_plan(boxes, view)
     found[:, EDGES] = edges
-    found[:, CUT] = _cut_off(corners, frame, problems, view)
+    found[:, CUT] = _cut_off(corners, frame, problems, view, settings)
     found[:, SIZES, 2:5] = problems.whitening
     found[:, BASE, 5] = 1.0
     found[:, TOP, 4] = boxes.size_m[:, 2] / problems.top_sigma_m
     found[:, TOP, 5] = problems.base_sigma_m / problems.top_sigma_m
-    found[:, FOOTPRINT, :4] = _outside_footprint(boxes, plan, here.residuals[:, FOOTPRINT], problems)
-    found[:, WALL, :3] = _off_wall(boxes, plan, here.residuals[:, WALL], problems)
-    found[:, FAR, :2] = _too_far(boxes, plan, here.residuals[:, FAR])
+    found[:, FOOTPRINT, :4] = _outside_footprint(boxes, plan, here.residuals[:, FOOTPRINT], problems, settings)
+    found[:, WALL, :3] = _off_wall(boxes, plan, here.residuals[:, WALL], problems, settings)
+    found[:, FAR, :2] = _too_far(boxes, plan, here.residuals[:, FAR], settings)
     rest = np.flatnonzero(~told)
     if len(rest):
-        found[rest] = _by_differences(problems.rows(rest), unknowns[rest], here.rows(rest), view)
+        found[rest] = _by_differences(problems.rows(rest), unknowns[rest], here.rows(rest), view, settings)
     return found
 
 
@@ -110,24 +111,25 @@ def _edges(
     here: Values,
     problems: Problems,
     view: View,
+    settings: CuboidFitSettings,
 ) -> tuple[Float[np.ndarray, "n 4 6"], Bool[np.ndarray, "n"]]:
     """Of the four sides of the projected box, and where they are told."""
     at = extreme_points(corners, here.bounds_px, here.visible, view.intrinsics)
     of_bounds = at.slopes(frame.moved(at.unit), view.intrinsics)
-    there = edge_residuals(here.bounds_px + _STEP, here.visible, here.inset_px, problems, view)
+    there = edge_residuals(here.bounds_px + _STEP, here.visible, here.inset_px, problems, view, settings)
     by_bound = (there - here.residuals[:, EDGES]) / _STEP
     return (by_bound.T * of_bounds).transpose(2, 1, 0), at.told
 
 
 def _cut_off(
-    corners: Float[np.ndarray, "n 8 3"], frame: _Frame, problems: Problems, view: View
+    corners: Float[np.ndarray, "n 8 3"], frame: _Frame, problems: Problems, view: View, settings: CuboidFitSettings
 ) -> Float[np.ndarray, "n 2 6"]:
     """Of how much lies outside the picture: that goes with the corner that lies farthest out."""
     k = view.intrinsics
     extent = problems.box_px[:, 2:] - problems.box_px[:, :2]
     x, y, z = np.ascontiguousarray(corners.transpose(2, 1, 0))
-    near = z <= CUT_NEAR_M
-    depth = np.maximum(z, CUT_NEAR_M)
+    near = z <= settings.cut_near_m
+    depth = np.maximum(z, settings.cut_near_m)
     found = np.zeros((len(corners), 2, UNKNOWNS))
     unit = box_corners((1.0, 1.0, 1.0)).T
     for axis, (across, f, c, size) in enumerate(((x, k.fx, k.cx, k.width), (y, k.fy, k.cy, k.height))):
@@ -153,7 +155,11 @@ def _on_the_plan(boxes: Cuboids, view: View) -> Float[np.ndarray, "n 2 2"]:
 
 
 def _outside_footprint(
-    boxes: Cuboids, plan: Float[np.ndarray, "n 2 2"], here: Float[np.ndarray, "n 2"], problems: Problems
+    boxes: Cuboids,
+    plan: Float[np.ndarray, "n 2 2"],
+    here: Float[np.ndarray, "n 2"],
+    problems: Problems,
+    settings: CuboidFitSettings,
 ) -> Float[np.ndarray, "n 2 4"]:
     """Of the base's place on its supporter, by place, depth and width."""
     depth, width = boxes.size_m[:, :2].T
@@ -166,7 +172,7 @@ def _outside_footprint(
     for axis, (u, v, half, by_depth, by_width) in enumerate(
         ((c, s, half_depth, along * depth, across * width), (-s, c, half_width, across * depth, along * width))
     ):
-        fits = half - 0.5 * (by_depth + by_width) > MIN_ROOM_M
+        fits = half - 0.5 * (by_depth + by_width) > settings.min_room_m
         outward = np.sign(u * off[:, 0] + v * off[:, 1])
         found[:, axis, :2] = outward[:, None] * (u[:, None] * plan[:, 0] + v[:, None] * plan[:, 1])
         found[:, axis, 2:] = np.where(fits[:, None], 0.5 * np.stack([by_depth, by_width], axis=-1), 0.0)
@@ -174,30 +180,40 @@ def _outside_footprint(
 
 
 def _off_wall(
-    boxes: Cuboids, plan: Float[np.ndarray, "n 2 2"], here: Float[np.ndarray, "n"], problems: Problems
+    boxes: Cuboids,
+    plan: Float[np.ndarray, "n 2 2"],
+    here: Float[np.ndarray, "n"],
+    problems: Problems,
+    settings: CuboidFitSettings,
 ) -> Float[np.ndarray, "n 3"]:
     """Of the back's distance from its wall, by place and depth."""
     front = np.stack([np.cos(boxes.yaw_rad), np.sin(boxes.yaw_rad)], axis=-1)
     ahead = 0.5 * boxes.size_m[:, 0] - (boxes.centre[:, :2] * front).sum(axis=1)
     moved = np.column_stack([-(front[:, :, None] * plan).sum(axis=1), 0.5 * boxes.size_m[:, 0]])
-    return moved * ((ahead > MIN_BACK_M) / (np.maximum(ahead, MIN_BACK_M) * wall_sigmas(here, problems)))[:, None]
+    return (
+        moved
+        * (
+            (ahead > settings.min_back_m)
+            / (np.maximum(ahead, settings.min_back_m) * wall_sigmas(here, problems, settings))
+        )[:, None]
+    )
 
 
 def _too_far(
-    boxes: Cuboids, plan: Float[np.ndarray, "n 2 2"], here: Float[np.ndarray, "n"]
+    boxes: Cuboids, plan: Float[np.ndarray, "n 2 2"], here: Float[np.ndarray, "n"], settings: CuboidFitSettings
 ) -> Float[np.ndarray, "n 2"]:
     """Of the distance, by place."""
     centre = boxes.centre[:, :2]
     outward = (centre[:, :, None] * plan).sum(axis=1)
-    return outward * ((here > 0.0) / ((centre**2).sum(axis=1) * FAR_LOG_SIGMA))[:, None]
+    return outward * ((here > 0.0) / ((centre**2).sum(axis=1) * settings.far_log_sigma))[:, None]
 
 
 def _by_differences(
-    problems: Problems, unknowns: Float[np.ndarray, "n 6"], here: Values, view: View
+    problems: Problems, unknowns: Float[np.ndarray, "n 6"], here: Values, view: View, settings: CuboidFitSettings
 ) -> Float[np.ndarray, "n r 6"]:
     count = len(problems)
     probes = (unknowns[None] + _STEP * np.eye(UNKNOWNS)[:, None]).reshape(-1, UNKNOWNS)
     repeated = problems.rows(np.tile(np.arange(count), UNKNOWNS))
     inset = np.tile(here.inset_px, (UNKNOWNS, 1))
-    there = values(probes, repeated, view, inset).residuals.reshape(UNKNOWNS, count, -1)
+    there = values(probes, repeated, view, inset, settings).residuals.reshape(UNKNOWNS, count, -1)
     return np.asarray(((there - here.residuals) / _STEP).transpose(1, 2, 0))

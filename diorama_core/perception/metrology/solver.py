@@ -8,13 +8,9 @@ import numpy as np
 from jaxtyping import Float
 
 from diorama_core.perception.metrology.problem import UNKNOWNS, Problems, Values, View, stacked, values
+from diorama_core.perception.metrology.settings import SETTINGS, CuboidFitSettings
 from diorama_core.perception.metrology.slopes import jacobian
 
-_LONGEST_STEP = 0.7
-"""Largest change of any unknown in one iteration."""
-_MIN_GAIN = 1e-3
-"""A row whose cost falls by less than this in an accepted step has settled."""
-_MAX_SIGMAS = 2.0
 _LOW = np.array([-8.0, np.log(0.15), np.log(0.005), np.log(0.01), np.log(0.005), -8.0])
 _HIGH = np.array([8.0, np.log(25.0), np.log(8.0), np.log(8.0), np.log(5.0), 8.0])
 
@@ -44,11 +40,17 @@ def joined(a: Solutions, b: Solutions) -> Solutions:
     )
 
 
-def solve(problems: Problems, start: Float[np.ndarray, "n 6"], view: View, iterations: int = 14) -> Solutions:
+def solve(
+    problems: Problems,
+    start: Float[np.ndarray, "n 6"],
+    view: View,
+    iterations: int = 14,
+    settings: CuboidFitSettings = SETTINGS.fit,
+) -> Solutions:
     """Minimise every row's cost from its start; rows that have settled are left alone."""
-    low, high = _bounds(problems)
+    low, high = _bounds(problems, settings)
     unknowns = np.clip(start, low, high)
-    at = values(unknowns, problems, view)
+    at = values(unknowns, problems, view, settings=settings)
     cost = _cost(at)
     damping = np.full(len(problems), 1e-2)
     active, moved = np.arange(len(problems)), np.arange(len(problems))
@@ -59,11 +61,11 @@ def solve(problems: Problems, start: Float[np.ndarray, "n 6"], view: View, itera
             break
         anew = np.intersect1d(active, moved, assume_unique=True)  # a row that stayed has the slopes that it had
         if len(anew):
-            slopes.put(anew, _slopes(plain.rows(anew), unknowns[anew], at.rows(anew), view))
+            slopes.put(anew, _slopes(plain.rows(anew), unknowns[anew], at.rows(anew), view, settings))
         part, here = problems.rows(active), unknowns[active]
         bounds = low[active], high[active]
-        there = np.clip(here + _step(slopes.rows(active), here, damping[active], bounds), *bounds)
-        at_there = values(there, part, view)
+        there = np.clip(here + _step(slopes.rows(active), here, damping[active], bounds, settings), *bounds)
+        at_there = values(there, part, view, settings=settings)
         reached = _cost(at_there)
         gain = cost[active] - reached
         better = gain > 0
@@ -71,14 +73,16 @@ def solve(problems: Problems, start: Float[np.ndarray, "n 6"], view: View, itera
         unknowns[moved], cost[moved] = there[better], reached[better]
         at.put(moved, at_there.rows(better))
         damping[active] = np.where(better, damping[active] * 0.3, damping[active] * 6.0)
-        active = active[(~better & (damping[active] < 1e5)) | (gain > _MIN_GAIN)]
+        active = active[(~better & (damping[active] < 1e5)) | (gain > settings.min_gain)]
     return Solutions(problems, unknowns, cost + problems.extra)
 
 
-def _bounds(problems: Problems) -> tuple[Float[np.ndarray, "n 6"], Float[np.ndarray, "n 6"]]:
+def _bounds(
+    problems: Problems, settings: CuboidFitSettings
+) -> tuple[Float[np.ndarray, "n 6"], Float[np.ndarray, "n 6"]]:
     """Sizes stay within what the category allows, whatever the box says."""
     low, high = np.tile(_LOW, (len(problems), 1)), np.tile(_HIGH, (len(problems), 1))
-    reach = _MAX_SIGMAS * problems.log_size_sigma
+    reach = settings.max_sigmas * problems.log_size_sigma
     low[:, 2:5] = np.maximum(low[:, 2:5], problems.log_size - reach)
     high[:, 2:5] = np.minimum(high[:, 2:5], problems.log_size + reach)
     return low, high
@@ -104,9 +108,15 @@ class _Slopes:
         self.gradient[chosen], self.normal[chosen] = anew.gradient, anew.normal
 
 
-def _slopes(problems: Problems, unknowns: Float[np.ndarray, "n 6"], here: Values, view: View) -> _Slopes:
+def _slopes(
+    problems: Problems,
+    unknowns: Float[np.ndarray, "n 6"],
+    here: Values,
+    view: View,
+    settings: CuboidFitSettings = SETTINGS.fit,
+) -> _Slopes:
     """Gradients and normal matrices."""
-    found = jacobian(problems, unknowns, here, view)
+    found = jacobian(problems, unknowns, here, view, settings)
     turned = found.transpose(0, 2, 1)
     return _Slopes((turned @ here.residuals[..., None])[..., 0], turned @ found)
 
@@ -116,6 +126,7 @@ def _step(
     unknowns: Float[np.ndarray, "n 6"],
     damping: Float[np.ndarray, "n"],
     bounds: tuple[Float[np.ndarray, "n 6"], Float[np.ndarray, "n 6"]],
+    settings: CuboidFitSettings,
 ) -> Float[np.ndarray, "n 6"]:
     """The damped Gauss-Newton step of the unknowns that no bound stops."""
     low, high = bounds
@@ -127,4 +138,4 @@ def _step(
     normal = normal + np.eye(UNKNOWNS) * (damping[:, None] * (diagonal + 1e-2))[:, None]
     step = -np.linalg.solve(normal, gradient[..., None])[..., 0]
     longest = np.abs(step).max(axis=1, keepdims=True)
-    return step * np.minimum(1.0, _LONGEST_STEP / np.maximum(longest, 1e-12))
+    return step * np.minimum(1.0, settings.longest_step / np.maximum(longest, 1e-12))

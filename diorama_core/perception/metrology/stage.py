@@ -14,12 +14,11 @@ from diorama_core.perception.metrology.placement import CEILING, FLOOR, WALL, Pl
 from diorama_core.perception.metrology.problem import View
 from diorama_core.perception.metrology.reading import confidence_of, foot_seen, heading_and_size
 from diorama_core.perception.metrology.reasons import reasons_of
+from diorama_core.perception.metrology.settings import SETTINGS, HeightScanSettings, MetrologySettings
 from diorama_core.progress import Progress
 from diorama_core.provenance import ScaleSource
 from diorama_core.scene.types import Camera, Relation, Support, yaw_rotation
 
-_COST_WEIGHT = 0.003
-"""How much a squared sigma of the objects counts against a camera hypothesis's score."""
 _PARENT_NAMES = {FLOOR: "floor", WALL: "wall", CEILING: "ceiling"}
 
 
@@ -29,6 +28,7 @@ class SingleViewMetrology:
 
     max_hypotheses: int = 3
     """Readings of the camera among which the objects decide."""
+    settings: MetrologySettings = SETTINGS
 
     def measure(
         self, inputs: Inputs, camera: CameraEstimate, objects: tuple[DetectedObject, ...], progress: Progress
@@ -38,20 +38,23 @@ class SingleViewMetrology:
         Returns:
             One cuboid and one support edge per object, in the order given.
         """
-        observations = gather(objects, inputs.photo.width, inputs.photo.height)
+        observations = gather(objects, inputs.photo.width, inputs.photo.height, self.settings)
         progress.report(0.0, "Measuring the camera's height")
         hypothesis, scan = self._choose(camera.hypotheses, observations, progress)
         view = View(hypothesis.intrinsics, hypothesis.R_world_camera)
         progress.report(0.6, "Placing objects")
-        placements = place_all(observations, view, scan.height_m)
+        placements = place_all(observations, view, scan.height_m, self.settings)
         progress.report(1.0, "Objects measured")
         return ObjectGeometry(
             camera=_camera(hypothesis, scan.height_m),
-            cuboids=tuple(_cuboid(o, p, observations, scan) for o, p in zip(objects, placements, strict=True)),
+            cuboids=tuple(
+                _cuboid(o, p, observations, scan, self.settings.heights)
+                for o, p in zip(objects, placements, strict=True)
+            ),
             supports=supports_of(placements, objects),
             source=ScaleSource.OBJECT_SIZES if objects else ScaleSource.CAMERA_HEIGHT,
             confidence=_overall(camera, scan, len(objects)),
-            reasons=reasons_of(placements, view, objects),
+            reasons=reasons_of(placements, view, objects, self.settings.fit),
         )
 
     def _choose(
@@ -63,8 +66,8 @@ class SingleViewMetrology:
         for done, hypothesis in enumerate(tried):
             progress.report(0.6 * done / len(tried), "Measuring the camera's height")
             view = View(hypothesis.intrinsics, hypothesis.R_world_camera)
-            scanned.append((hypothesis, scan_heights(observations, view)))
-        return max(scanned, key=lambda pair: pair[0].score - _COST_WEIGHT * pair[1].cost)
+            scanned.append((hypothesis, scan_heights(observations, view, self.settings)))
+        return max(scanned, key=lambda pair: pair[0].score - self.settings.heights.cost_weight * pair[1].cost)
 
 
 def _camera(hypothesis: CameraHypothesis, height_m: float) -> Camera:
@@ -74,15 +77,21 @@ def _camera(hypothesis: CameraHypothesis, height_m: float) -> Camera:
     return Camera(hypothesis.intrinsics, T)
 
 
-def _cuboid(item: DetectedObject, placement: Placement, observations: BoxObservations, scan: HeightScan) -> Cuboid:
-    yaw, size = heading_and_size(placement, observations.categories[placement.index])
+def _cuboid(
+    item: DetectedObject,
+    placement: Placement,
+    observations: BoxObservations,
+    scan: HeightScan,
+    settings: HeightScanSettings,
+) -> Cuboid:
+    yaw, size = heading_and_size(placement, observations.categories[placement.index], settings)
     return Cuboid(
         object_id=item.id,
         R_world_object=yaw_rotation(yaw),
         centre=placement.cuboid.centre[0],
         size_m=size,
-        confidence=confidence_of(placement, observations, scan.log_sigma),
-        foot_seen=foot_seen(placement, observations),
+        confidence=confidence_of(placement, observations, scan.log_sigma, settings),
+        foot_seen=foot_seen(placement, observations, settings),
     )
 
 

@@ -20,30 +20,13 @@ from diorama_core.perception.metrology.priors import (
 )
 from diorama_core.perception.metrology.problem import Cuboids, Problems
 from diorama_core.perception.metrology.rows import row
+from diorama_core.perception.metrology.settings import SETTINGS, MetrologySettings, PlacementSettings
 
 FLOOR_OBJECT_COST = 4.0
 """Of a thing that usually stands on the floor and stands on another; portable things pay by their size instead."""
-CEILING_M = 2.6
-CEILING_SIGMA_M = 0.25
-_TOP_SIGMA_M = 0.04
-_SEAT_SIGMA_M = 0.08
-_FOOTPRINT_SIGMA_M = 0.06
-_INNER_LEVEL_COST = 1.5
-_BACK_COST, _ODD_ON_BACK_COST = 2.5, 10.0
-"""Of a pillow or toy that lies on a backrest or headboard, and of anything else there."""
-_ABOVE_PARENT = 0.5
-"""Share of a thing's width that must lie within its supporter's box."""
-_ABOVE_SHARE, _DRAWN_SIGMAS = 0.15, 2.0
-_SEATS_WITHOUT_SUPPORT_FLAG_COST = 2.0
-_FLAT_M = 0.2
-"""A door thinner than this along an axis is in the wall across that axis."""
 _BACK_SHARE = {("bed", "pillow"): 0.45}
 """Pillows lie at the head of a bed: in this share of its depth."""
-_ODD_ON_SEAT_COST = 6.0
-"""Of anything else lying on a seat or a bed: one in twenty."""
 _USUAL_MIDDLE_M: Mapping[str, float] = column("middle_height_m")
-_WALL_TOP_M, _WALL_TOP_SIGMA_M = 2.0, 0.5
-_MIDDLE_M, _MIDDLE_SIGMA_M = 1.4, 0.4
 
 
 @dataclass(frozen=True)
@@ -65,7 +48,9 @@ class Extent:
         return np.array([middle_x, self.back_m / 2, 0.0, half_x, self.back_m / 2])
 
 
-def extent_of(corners_world: Float[np.ndarray, "n 8 3"], names: tuple[str, ...]) -> Extent:
+def extent_of(
+    corners_world: Float[np.ndarray, "n 8 3"], names: tuple[str, ...], settings: PlacementSettings = SETTINGS.placement
+) -> Extent:
     """The extent of cuboids of named categories; of an ordinary room where there are none.
 
     Where a thing that usually stands against a wall is the farthest, or a door in that wall, the wall is right there.
@@ -76,14 +61,16 @@ def extent_of(corners_world: Float[np.ndarray, "n 8 3"], names: tuple[str, ...])
     reach, sigmas = [], []
     for side, least, axis in zip(sides, (1.0, 1.0, 1.5), (0, 0, 1), strict=True):
         farthest = int(np.argmax(side))
-        flat = np.ptp(corners_world[farthest, :, axis]) < _FLAT_M
+        flat = np.ptp(corners_world[farthest, :, axis]) < settings.flat_m
         against = names[farthest] in AGAINST_WALLS or (names[farthest] == "door" and flat)
         reach.append((max(float(side[farthest]), least) + 0.05) * (1.0 if against else 1.1))
         sigmas.append(0.12 if against else 0.3)
     return Extent(reach[0], reach[1], reach[2], sigmas[0], sigmas[1], sigmas[2])
 
 
-def supporters_of(observations: BoxObservations, index: int, candidates: list[int]) -> list[int]:
+def supporters_of(
+    observations: BoxObservations, index: int, candidates: list[int], settings: PlacementSettings = SETTINGS.placement
+) -> list[int]:
     """Candidates whose boxes an object may rest in: most of its width lies within, and its bottom not below.
 
     Both boxes' edges are drawn by people or detectors; the bottom may be above the candidate by as much as that leaves
@@ -94,18 +81,24 @@ def supporters_of(observations: BoxObservations, index: int, candidates: list[in
     for other in candidates:
         theirs = observations.box_px[other]
         shared = min(box[2], theirs[2]) - max(box[0], theirs[0])
-        drawn = _DRAWN_SIGMAS * float(
+        drawn = settings.drawn_sigmas * float(
             np.hypot(observations.edge_sigma_px[index, 3], observations.edge_sigma_px[other, 1])
         )
-        reach = max(_ABOVE_SHARE * (theirs[3] - theirs[1]), drawn)
-        within = theirs[1] - reach < box[3] <= theirs[3] + 0.1 * _ABOVE_SHARE * (theirs[3] - theirs[1])
-        if other != index and shared >= _ABOVE_PARENT * (box[2] - box[0]) and within:
+        reach = max(settings.above_share * (theirs[3] - theirs[1]), drawn)
+        within = theirs[1] - reach < box[3] <= theirs[3] + 0.1 * settings.above_share * (theirs[3] - theirs[1])
+        if other != index and shared >= settings.above_parent * (box[2] - box[0]) and within:
             found.append(other)
     return found
 
 
 def place_on(
-    observations: BoxObservations, index: int, parent: int, parent_cuboid: Cuboids, height_m: float, cost: float
+    observations: BoxObservations,
+    index: int,
+    parent: int,
+    parent_cuboid: Cuboids,
+    height_m: float,
+    cost: float,
+    settings: MetrologySettings = SETTINGS,
 ) -> list[Problems]:
     """Rows for an object on another's top, seat or shelves; `parent_cuboid` is a batch of one."""
     tall = float(parent_cuboid.size_m[0, 2])
@@ -114,9 +107,11 @@ def place_on(
     footprint = _resting_place(parent_cuboid, _BACK_SHARE.get(names, 1.0))
     rows = []
     odd = observations.categories[parent].seat_height_m is not None and often_carried(*names[::-1]) <= SELDOM_CARRIED
-    for base, sigma, level_cost in _levels(observations, parent, tall, odd):
-        for mode in supported_modes(names[1], observations.meanings[index]):
-            raised = standing_costs(names[1], mode)[1] - (FLOOR_OBJECT_COST if names[1] in PORTABLE else 0.0)
+    for base, sigma, level_cost in _levels(observations, parent, tall, odd, settings.placement):
+        for mode in supported_modes(names[1], observations.meanings[index], settings.placement):
+            raised = standing_costs(names[1], mode, settings.placement)[1] - (
+                FLOOR_OBJECT_COST if names[1] in PORTABLE else 0.0
+            )
             for turn in (0.0,) if mode.square else (0.0, np.pi / 2):
                 rows.append(
                     row(
@@ -129,8 +124,13 @@ def place_on(
                         base_m=bottom + base,
                         base_sigma_m=sigma,
                         footprint=footprint,
-                        footprint_sigma_m=_FOOTPRINT_SIGMA_M,
-                        extra=mode.cost + raised + level_cost + cost + (_ODD_ON_SEAT_COST if odd else 0.0),
+                        footprint_sigma_m=settings.placement.footprint_sigma_m,
+                        extra=mode.cost
+                        + raised
+                        + level_cost
+                        + cost
+                        + (settings.placement.odd_on_seat_cost if odd else 0.0),
+                        settings=settings.fit,
                     )
                 )
     return rows
@@ -146,7 +146,9 @@ def _resting_place(parent_cuboid: Cuboids, back_share: float) -> Float[np.ndarra
     return np.array([*moved, yaw, depth * back_share / 2, width / 2])
 
 
-def _levels(observations: BoxObservations, parent: int, tall: float, odd: bool) -> list[tuple[float, float, float]]:
+def _levels(
+    observations: BoxObservations, parent: int, tall: float, odd: bool, settings: PlacementSettings
+) -> list[tuple[float, float, float]]:
     """Heights above the supporter's base at which things lie on it: (height, sigma, cost).
 
     Args:
@@ -154,28 +156,34 @@ def _levels(observations: BoxObservations, parent: int, tall: float, odd: bool) 
         parent: the supporter.
         tall: its height in metres.
         odd: whether the thing is of a kind that seldom lies on seats.
+        settings: numbers to work with.
     """
     category = observations.categories[parent]
-    top = (tall, _TOP_SIGMA_M, 0.0)
+    top = (tall, settings.top_sigma_m, 0.0)
     if category.seat_height_m is not None:
         seat = min(category.seat_height_m, 0.95 * tall)
-        cost = 0.0 if category.supports_objects else _SEATS_WITHOUT_SUPPORT_FLAG_COST
-        leaning = (seat + 0.15, _SEAT_SIGMA_M, cost + _INNER_LEVEL_COST)
+        cost = 0.0 if category.supports_objects else settings.seats_without_support_flag_cost
+        leaning = (seat + 0.15, settings.seat_sigma_m, cost + settings.inner_level_cost)
         return [
-            (seat, _SEAT_SIGMA_M, cost),
+            (seat, settings.seat_sigma_m, cost),
             leaning,
-            (tall, _SEAT_SIGMA_M, cost + (_ODD_ON_BACK_COST if odd else _BACK_COST)),
+            (tall, settings.seat_sigma_m, cost + (settings.odd_on_back_cost if odd else settings.back_cost)),
         ]
     if category.name in WITH_BOARDS:
-        inner = [(share * tall, 0.06 * tall, _INNER_LEVEL_COST) for share in (0.15, 0.4, 0.65)]
+        inner = [(share * tall, 0.06 * tall, settings.inner_level_cost) for share in (0.15, 0.4, 0.65)]
         return [top, *inner]
     if category is UNKNOWN:
-        return [top, (0.55 * tall, 0.05, _INNER_LEVEL_COST)]
+        return [top, (0.55 * tall, 0.05, settings.inner_level_cost)]
     return [top]
 
 
 def place_on_wall(
-    observations: BoxObservations, index: int, height_m: float, room: Extent, cost: float
+    observations: BoxObservations,
+    index: int,
+    height_m: float,
+    room: Extent,
+    cost: float,
+    settings: MetrologySettings = SETTINGS,
 ) -> list[Problems]:
     """Rows for an object on the wall ahead, on the left and on the right."""
     category = observations.categories[index]
@@ -192,28 +200,34 @@ def place_on_wall(
             mode,
             camera_height_m=height_m,
             yaw_rad=yaw,
-            base_m=0.0 if door else _usual_base(category.name, mode),
-            base_sigma_m=0.0 if door else _MIDDLE_SIGMA_M,
-            top_m=_WALL_TOP_M,
-            top_sigma_m=_WALL_TOP_SIGMA_M,
+            base_m=0.0 if door else _usual_base(category.name, mode, settings.placement),
+            base_sigma_m=0.0 if door else settings.placement.middle_sigma_m,
+            top_m=settings.placement.wall_top_m,
+            top_sigma_m=settings.placement.wall_top_sigma_m,
             wall_m=wall,
             wall_sigma=3.0 * sigma if door else sigma,
             footprint=room.footprint,
             footprint_sigma_m=0.4,
             extra=mode.cost + side_cost + cost,
+            settings=settings.fit,
         )
-        for mode in hung_modes(category.name, observations.meanings[index])
+        for mode in hung_modes(category.name, observations.meanings[index], settings.placement)
         for yaw, wall, sigma, side_cost in walls
     ]
 
 
-def _usual_base(name: str, mode: SizeMode) -> float:
-    middle = _USUAL_MIDDLE_M.get(name, _MIDDLE_M)
+def _usual_base(name: str, mode: SizeMode, settings: PlacementSettings) -> float:
+    middle = _USUAL_MIDDLE_M.get(name, settings.middle_m)
     return max(0.05, middle - float(np.exp(mode.log_size[2])) / 2)
 
 
 def place_below_ceiling(
-    observations: BoxObservations, index: int, height_m: float, room: Extent, cost: float
+    observations: BoxObservations,
+    index: int,
+    height_m: float,
+    room: Extent,
+    cost: float,
+    settings: MetrologySettings = SETTINGS,
 ) -> list[Problems]:
     """Rows for an object hanging from the ceiling, over the things on the floor."""
     return [
@@ -223,14 +237,15 @@ def place_below_ceiling(
             mode,
             camera_height_m=height_m,
             yaw_rad=yaw,
-            base_m=CEILING_M - float(np.exp(mode.log_size[2])),
+            base_m=settings.placement.ceiling_m - float(np.exp(mode.log_size[2])),
             base_sigma_m=0.4,
-            top_m=CEILING_M,
-            top_sigma_m=CEILING_SIGMA_M,
+            top_m=settings.placement.ceiling_m,
+            top_sigma_m=settings.placement.ceiling_sigma_m,
             footprint=room.footprint,
             footprint_sigma_m=0.4,
             extra=mode.cost + cost,
+            settings=settings.fit,
         )
-        for mode in hanging_modes(observations.categories[index].name, observations.meanings[index])
+        for mode in hanging_modes(observations.categories[index].name, observations.meanings[index], settings.placement)
         for yaw in ((0.0,) if mode.square else (0.0, np.pi / 2))
     ]

@@ -28,6 +28,7 @@ from diorama_core.perception.metrology.floor import place_on_floor, solve_all
 from diorama_core.perception.metrology.placement import FLOOR, Placement, readings_of
 from diorama_core.perception.metrology.problem import Cuboids, Problems, View
 from diorama_core.perception.metrology.reading import heading_and_size
+from diorama_core.perception.metrology.settings import SETTINGS, HeightScanSettings, MetrologySettings
 from diorama_core.perception.metrology.supported_objects import place_on
 from diorama_core.scene.types import Plane, yaw_rotation
 
@@ -54,7 +55,11 @@ class _Measured:
 
 
 def measured_within_walls(
-    geometry: ObjectGeometry, room: ArchitectureEstimate, objects: tuple[DetectedObject, ...], inputs: Inputs
+    geometry: ObjectGeometry,
+    room: ArchitectureEstimate,
+    objects: tuple[DetectedObject, ...],
+    inputs: Inputs,
+    settings: MetrologySettings = SETTINGS,
 ) -> ObjectGeometry:
     """The same objects, those measured anew that the walls tell something of, and what they carry.
 
@@ -63,6 +68,7 @@ def measured_within_walls(
         room: Walls with their confidence, and supports whose parents are objects or planes.
         objects: Of the photo.
         inputs: With the photo.
+        settings: numbers to work with.
     """
     walls = tuple(w for w in room.architecture.by_role("wall") if w.confidence >= MIN_CONFIDENCE)
     floors = {p.id for p in room.architecture.by_role("floor")}
@@ -75,7 +81,7 @@ def measured_within_walls(
         return geometry
     foot = np.array([*geometry.camera.position[:2], 0.0])
     seen = _Measured(
-        gather(objects, inputs.photo.width, inputs.photo.height),
+        gather(objects, inputs.photo.width, inputs.photo.height, settings),
         View(geometry.camera.intrinsics, geometry.camera.T_world_camera[:3, :3]),
         float(geometry.camera.position[2]),
         {o.id: k for k, o in enumerate(objects)},
@@ -87,14 +93,14 @@ def measured_within_walls(
         c.object_id: _room_for(c, tuple(w for w in walls if ahead_of(c, w, geometry.camera.position)), foot)
         for c in behind
     }
-    for placed in _placed(seen, bounds, known, parents) if bounds else ():
+    for placed in _placed(seen, bounds, known, parents, settings) if bounds else ():
         known[placed.object_id] = placed
-        known |= _carried(placed.object_id, seen, known, parents)
+        known |= _carried(placed.object_id, seen, known, parents, settings)
     for name in [c.object_id for c in backed if c.object_id not in bounds]:
-        turned = _with_back_at_wall(seen, name, known, parents, walls, foot)
+        turned = _with_back_at_wall(seen, name, known, parents, walls, foot, settings)
         if turned is not None:
             known[name] = turned
-            known |= _carried(name, seen, known, parents)
+            known |= _carried(name, seen, known, parents, settings)
     return replace(geometry, cuboids=tuple(replace(c, centre=c.centre + foot) for c in known.values()))
 
 
@@ -132,24 +138,25 @@ def _placed(
     bounds: Mapping[str, Float[np.ndarray, "5"]],
     known: Mapping[str, Cuboid],
     parents: Mapping[str, str],
+    settings: MetrologySettings,
 ) -> list[Cuboid]:
     """The objects within their bounds, arranged beside the others on the floor, which stay."""
     rows: list[Problems] = []
     for name, bound in bounds.items():
-        open_rows = place_on_floor(seen.observations, seen.index_of[name], seen.height_m)
+        open_rows = place_on_floor(seen.observations, seen.index_of[name], seen.height_m, settings=settings)
         rows += [row.changed(footprint=bound, footprint_sigma_m=_WALL_SIGMA_M) for row in open_rows]
-    readings = readings_of(solve_all(rows, seen.view), seen.observations, seen.view)
+    readings = readings_of(solve_all(rows, seen.view, settings), seen.observations, seen.view, settings)
     own = {n: readings[seen.index_of[n]] for n in bounds}
-    carried = CarriedCosts(seen.observations, seen.view, seen.height_m)
+    carried = CarriedCosts(seen.observations, seen.view, seen.height_m, settings=settings)
     loads = carried.of({seen.index_of[n]: r.boxes for n, r in own.items()})
     carrying = [r.costs + loads[seen.index_of[n]] for n, r in own.items()]
     beside = [n for n in known if n not in bounds and parents.get(n) == parents[next(iter(bounds))]]
     boxes = [r.boxes for r in own.values()] + [_batch(known[n]) for n in beside]
     costs = carrying + [np.zeros(1)] * len(beside)
     categories = [seen.observations.categories[seen.index_of[n]] for n in (*bounds, *beside)]
-    chosen = arrange(boxes, costs, categories)
+    chosen = arrange(boxes, costs, categories, settings.placement)
     return [
-        _cuboid(known[name], found.placement(row, FLOOR), seen.observations)
+        _cuboid(known[name], found.placement(row, FLOOR), seen.observations, settings.heights)
         for (name, found), row in zip(own.items(), chosen, strict=False)
     ]
 
@@ -161,30 +168,42 @@ def _with_back_at_wall(
     parents: Mapping[str, str],
     walls: tuple[Plane, ...],
     foot: Float[np.ndarray, "3"],
+    settings: MetrologySettings,
 ) -> Cuboid | None:
     """One object's best reading, walls and drawn edges counted in; None where it stays as it is.
 
     An object that was measured as no single reading of its box, as one of a set, stays, too.
     """
     index = seen.index_of[name]
-    rows = place_on_floor(seen.observations, index, seen.height_m)
-    readings = readings_of(solve_all(rows, seen.view), seen.observations, seen.view)[index]
-    now = next((k for k in range(len(readings.costs)) if alike(readings.boxes, k, _batch(known[name]), 0)), None)
+    rows = place_on_floor(seen.observations, index, seen.height_m, settings=settings)
+    readings = readings_of(solve_all(rows, seen.view, settings), seen.observations, seen.view, settings)[index]
+    now = next(
+        (k for k in range(len(readings.costs)) if alike(readings.boxes, k, _batch(known[name]), 0, settings.placement)),
+        None,
+    )
     if now is None:
         return None
-    loads = CarriedCosts(seen.observations, seen.view, seen.height_m).of({index: readings.boxes})[index]
-    edges = DrawnEdges.of(seen.rgb, seen.masks[index]).costs(readings.boxes, seen.height_m, seen.view)
-    costs = readings.costs + loads + edges + back_costs(readings.boxes, walls, foot)
+    loads = CarriedCosts(seen.observations, seen.view, seen.height_m, settings=settings).of({index: readings.boxes})[
+        index
+    ]
+    edges = DrawnEdges.of(seen.rgb, seen.masks[index], settings.observed).costs(
+        readings.boxes, seen.height_m, seen.view
+    )
+    costs = readings.costs + loads + edges + back_costs(readings.boxes, walls, foot, settings.placement)
     kinds = {n: seen.observations.categories[seen.index_of[n]] for n in known}
     beside = [n for n in known if n != name and parents.get(n) == parents[name] and kinds[n].mount != "surface"]
     categories = [kinds[n] for n in (name, *beside)]
     boxes = [readings.boxes, *(_batch(known[n]) for n in beside)]
-    chosen = arrange(boxes, [costs, *([np.zeros(1)] * len(beside))], categories)[0]
-    return None if chosen == now else _cuboid(known[name], readings.placement(chosen, FLOOR), seen.observations)
+    chosen = arrange(boxes, [costs, *([np.zeros(1)] * len(beside))], categories, settings.placement)[0]
+    return (
+        None
+        if chosen == now
+        else _cuboid(known[name], readings.placement(chosen, FLOOR), seen.observations, settings.heights)
+    )
 
 
 def _carried(
-    parent: str, seen: _Measured, known: Mapping[str, Cuboid], parents: Mapping[str, str]
+    parent: str, seen: _Measured, known: Mapping[str, Cuboid], parents: Mapping[str, str], settings: MetrologySettings
 ) -> dict[str, Cuboid]:
     """What an object carries, measured on it where it is now, and what that carries."""
     children = [name for name in known if parents.get(name) == parent]
@@ -194,14 +213,16 @@ def _carried(
     rows = [
         row
         for name in children
-        for row in place_on(seen.observations, seen.index_of[name], index, below, seen.height_m, 0.0)
+        for row in place_on(seen.observations, seen.index_of[name], index, below, seen.height_m, 0.0, settings)
     ]
-    readings = readings_of(solve_all(rows, seen.view), seen.observations, seen.view)
+    readings = readings_of(solve_all(rows, seen.view, settings), seen.observations, seen.view, settings)
     found = {
-        name: _cuboid(known[name], readings[seen.index_of[name]].placement(0, index), seen.observations)
+        name: _cuboid(
+            known[name], readings[seen.index_of[name]].placement(0, index), seen.observations, settings.heights
+        )
         for name in children
     }
-    lower = [_carried(name, seen, {**known, **found}, parents) for name in children]
+    lower = [_carried(name, seen, {**known, **found}, parents, settings) for name in children]
     return {**found, **{name: cuboid for one in lower for name, cuboid in one.items()}}
 
 
@@ -211,8 +232,10 @@ def _batch(cuboid: Cuboid) -> Cuboids:
     return Cuboids(cuboid.centre[None], np.array([yaw]), cuboid.size_m[None])
 
 
-def _cuboid(before: Cuboid, placement: Placement, observations: BoxObservations) -> Cuboid:
-    yaw, size = heading_and_size(placement, observations.categories[placement.index])
+def _cuboid(
+    before: Cuboid, placement: Placement, observations: BoxObservations, settings: HeightScanSettings
+) -> Cuboid:
+    yaw, size = heading_and_size(placement, observations.categories[placement.index], settings)
     return replace(
         before, R_world_object=yaw_rotation(yaw), centre=placement.cuboid.centre[0], size_m=size, front_known=False
     )

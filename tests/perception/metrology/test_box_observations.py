@@ -6,13 +6,8 @@ import numpy as np
 import pytest
 
 from diorama_core.artefacts import DetectedObject
-from diorama_core.perception.metrology.box_observations import (
-    HIDDEN_ODDS,
-    ODDS_BOXED,
-    ODDS_OUTLINED,
-    BoxObservations,
-    gather,
-)
+from diorama_core.perception.metrology.box_observations import HIDDEN_ODDS, BoxObservations, gather
+from diorama_core.perception.metrology.settings import SETTINGS
 from tests.perception.metrology.test_metrology import detected
 
 LEFT, TOP, RIGHT, BOTTOM = range(4)
@@ -95,11 +90,13 @@ def test_boxes_and_masks_beyond_an_edge_raise_the_odds_that_the_object_goes_on_t
     sofa, table = ("sofa", (100, 100, 300, 250)), ("coffee table", (90, 200, 320, 400))
     alone, before = of(sofa).hidden_odds(0), of(sofa, table).hidden_odds(0)
     assert alone.tolist() == HIDDEN_ODDS.tolist()
-    np.testing.assert_allclose(before / alone, [1.0, 1.0, 1.0, ODDS_BOXED])
+    np.testing.assert_allclose(before / alone, [1.0, 1.0, 1.0, SETTINGS.observed.odds_boxed])
     outlined = replace(masked((90, 200, 320, 400), 1.0), category="coffee table")
     seen = gather((detected("s", *sofa), outlined), 640, 480)
     assert seen.beside[0, 1].tolist() == pytest.approx([1 / 3, 0.0, 1 / 3, 1.0], abs=0.02)
-    assert seen.hidden_odds(0)[BOTTOM] == pytest.approx(HIDDEN_ODDS[BOTTOM] * ODDS_BOXED * ODDS_OUTLINED)
+    assert seen.hidden_odds(0)[BOTTOM] == pytest.approx(
+        HIDDEN_ODDS[BOTTOM] * SETTINGS.observed.odds_boxed * SETTINGS.observed.odds_outlined
+    )
     # What it rests on hides nothing of it.
     assert seen.hidden_odds(0, parent=1).tolist() == HIDDEN_ODDS.tolist()
 
@@ -115,11 +112,11 @@ def test_the_lower_contour_tells_whether_a_lower_edge_is_hidden() -> None:
     seen = gather((sofa, before), 640, 480)
     assert seen.beside[0, 1, BOTTOM] == 1.0
     assert seen.ends_seen[0] > 0.9
-    raised = ODDS_OUTLINED ** (1 - seen.ends_seen[0])
+    raised = SETTINGS.observed.odds_outlined ** (1 - seen.ends_seen[0])
     assert seen.hidden_odds(0)[BOTTOM] == pytest.approx(HIDDEN_ODDS[BOTTOM] * raised)
     level = gather((masked((100, 100, 300, 320), 1.0), before), 640, 480)
     assert level.ends_seen[0] == 0.0
-    assert level.hidden_odds(0)[BOTTOM] == pytest.approx(HIDDEN_ODDS[BOTTOM] * ODDS_OUTLINED)
+    assert level.hidden_odds(0)[BOTTOM] == pytest.approx(HIDDEN_ODDS[BOTTOM] * SETTINGS.observed.odds_outlined)
 
 
 def test_what_the_picture_cuts_does_not_end_in_sight() -> None:

@@ -46,9 +46,9 @@ def test_only_new_readings_are_solved_and_alike_with_others_and_alone(monkeypatc
     whole = CarriedCosts(observations, VIEW, HEIGHT_M).of({0: readings(TABLE, 0.8, 1.0, 1.3)})[0]
     solved: list[int] = []
 
-    def counted(rows, view):
+    def counted(rows, view, settings):
         solved.append(len(rows))
-        return original(rows, view)
+        return original(rows, view, settings)
 
     original = carried_costs.solve_all
     monkeypatch.setattr(carried_costs, "solve_all", counted)

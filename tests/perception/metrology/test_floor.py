@@ -5,15 +5,9 @@ import pytest
 
 from diorama_core.library.taxonomy import category
 from diorama_core.perception.metrology.box_observations import BoxObservations, gather
-from diorama_core.perception.metrology.floor import (
-    HEIGHT_PRIOR_M,
-    HEIGHTS_M,
-    place_on_floor,
-    scan_heights,
-    solve_all,
-    stands_on_floor,
-)
+from diorama_core.perception.metrology.floor import HEIGHTS_M, place_on_floor, scan_heights, solve_all, stands_on_floor
 from diorama_core.perception.metrology.problem import View, cuboids
+from diorama_core.perception.metrology.settings import SETTINGS
 from tests.perception.metrology.test_metrology import ROOM, K, detected, rotation, seen
 
 R = rotation(12.0)
@@ -44,7 +38,7 @@ def test_more_objects_make_it_surer() -> None:
 def test_without_objects_on_the_floor_the_prior_decides() -> None:
     for observations in (gather((), 640, 480), observed(ROOM[6:])):
         scan = scan_heights(observations, VIEW)
-        assert scan.height_m == pytest.approx(HEIGHT_PRIOR_M, abs=0.02)
+        assert scan.height_m == pytest.approx(SETTINGS.heights.height_prior_m, abs=0.02)
         assert scan.cost == pytest.approx(0.0, abs=0.05)
         assert HEIGHTS_M.min() < scan.height_m < HEIGHTS_M.max()
 

@@ -14,10 +14,6 @@ from diorama_core.perception.metrology.problem import (
     EDGES,
     FAR,
     FOOTPRINT,
-    HIDDEN_DENSITY,
-    HIDDEN_REACH,
-    INVISIBLE_PENALTY,
-    ROBUST_BEYOND,
     SIZES,
     TOP,
     WALL,
@@ -29,6 +25,7 @@ from diorama_core.perception.metrology.problem import (
     stacked,
 )
 from diorama_core.perception.metrology.rows import row
+from diorama_core.perception.metrology.settings import SETTINGS
 from tests.perception.metrology.test_kind_outlines import WHOLE
 from tests.perception.metrology.test_metrology import K, detected, rotation
 
@@ -109,14 +106,16 @@ def test_edges_are_robust() -> None:
     sigma = problem().edge_sigma_px[0, 0]
     assert left_edge(sigma) == pytest.approx(1.0)
     assert left_edge(-sigma) == pytest.approx(-1.0)
-    assert left_edge(10 * sigma) == pytest.approx(np.sqrt(20.0 * ROBUST_BEYOND - ROBUST_BEYOND**2))
+    assert left_edge(10 * sigma) == pytest.approx(
+        np.sqrt(20.0 * SETTINGS.fit.robust_beyond - SETTINGS.fit.robust_beyond**2)
+    )
 
 
 def test_what_may_be_hidden_beyond_an_edge_costs_the_less_the_likelier_that_is() -> None:
     sigma = problem().edge_sigma_px[0, 0]
     seen, maybe, likely = (left_edge(6 * sigma, odds) for odds in (0.0, 0.1, 2.0))
     assert seen > maybe > likely > 0.0
-    even = 0.1 * HIDDEN_DENSITY
+    even = 0.1 * SETTINGS.fit.hidden_density
     assert maybe == pytest.approx(np.sqrt(2.0 * np.log((1.0 + even) / even)), rel=1e-3)
     assert left_edge(0.5 * sigma, 0.1) == pytest.approx(0.5, abs=0.05)
     assert left_edge(-6 * sigma, 2.0) == left_edge(-6 * sigma)
@@ -124,7 +123,7 @@ def test_what_may_be_hidden_beyond_an_edge_costs_the_less_the_likelier_that_is()
 
 def test_nothing_goes_on_farther_than_something_may_hide_it() -> None:
     box = problem().box_px[0]
-    near = left_edge(0.5 * HIDDEN_REACH * float(box[2] - box[0]), 2.0, hidden_px=1.0)
+    near = left_edge(0.5 * SETTINGS.fit.hidden_reach * float(box[2] - box[0]), 2.0, hidden_px=1.0)
     far = 0.9 * float(box[2] - box[0])
     assert left_edge(far, 2.0) > near
     assert left_edge(far, 2.0, hidden_px=2 * far) == pytest.approx(near, abs=1e-6)
@@ -134,7 +133,7 @@ def test_a_cuboid_that_the_camera_cannot_see_is_refused_dearly() -> None:
     upward = View(K, rotation(-75.0))
     unseen, seen = residuals(unknowns(), problem(), upward)[0, EDGES], residuals(unknowns(), problem(), VIEW)[0, EDGES]
     assert np.abs(seen).max() < 1e-6
-    assert (unseen**2).sum() > 2.0 * INVISIBLE_PENALTY**2
+    assert (unseen**2).sum() > 2.0 * SETTINGS.fit.invisible_penalty**2
 
 
 def test_reaching_beyond_the_picture_costs_against_the_box() -> None:

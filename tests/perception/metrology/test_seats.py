@@ -10,7 +10,8 @@ from diorama_core.perception.metrology.placement import place_all
 from diorama_core.perception.metrology.priors import size_modes
 from diorama_core.perception.metrology.problem import Cuboids, View
 from diorama_core.perception.metrology.rows import row
-from diorama_core.perception.metrology.seats import STANDS_OFF_M, STANDS_OFF_SIGMA_M, at_table, tables_of_seats
+from diorama_core.perception.metrology.seats import at_table, tables_of_seats
+from diorama_core.perception.metrology.settings import SETTINGS
 from tests.perception.metrology.test_metrology import K, RequestedObject, rotation, seen
 
 R, HEIGHT_M = rotation(14.0), 1.5
@@ -35,9 +36,9 @@ def test_at_a_table_is_around_it_by_a_seats_depth() -> None:
     mode = size_modes("chair")[0]
     rows = row(observations, 0, mode, camera_height_m=HEIGHT_M, yaw_rad=0.0)
     placed = at_table(rows, box(0.3, 2.6, 0.9, 1.6, 0.2))
-    beside = float(np.exp(mode.log_size[0])) + STANDS_OFF_M
+    beside = float(np.exp(mode.log_size[0])) + SETTINGS.placement.stands_off_m
     np.testing.assert_allclose(placed.footprint[0], [0.3, 2.6, 0.2, 0.45 + beside, 0.8 + beside])
-    assert placed.footprint_sigma_m[0] == STANDS_OFF_SIGMA_M
+    assert placed.footprint_sigma_m[0] == SETTINGS.placement.stands_off_sigma_m
 
 
 @pytest.mark.parametrize("shown", [0.25, 0.4])

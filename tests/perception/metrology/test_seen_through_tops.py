@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -10,6 +12,7 @@ from diorama_core.perception.metrology import placement
 from diorama_core.perception.metrology.box_observations import gather
 from diorama_core.perception.metrology.problem import Cuboids, View, corners_camera
 from diorama_core.perception.metrology.seen_through_tops import seen_through_top
+from diorama_core.perception.metrology.settings import SETTINGS
 from tests.perception.metrology.test_metrology import K, RequestedObject, rotation, seen
 
 VIEW, HEIGHT_M = View(K, rotation(18.0)), 1.4
@@ -53,10 +56,10 @@ def test_before_beside_over_and_below_the_top_nothing_is_hidden(centre, height_m
 @pytest.mark.parametrize(
     ("name", "size_m"), [("box", (0.1, 0.14, 0.1)), ("basket", (0.15, 0.15, 0.2)), ("object", (0.2, 0.35, 0.2))]
 )
-def test_what_seems_to_stand_behind_a_table_as_well_is_on_it(monkeypatch, name, size_m) -> None:
+def test_what_seems_to_stand_behind_a_table_as_well_is_on_it(name, size_m) -> None:
     table = RequestedObject("table", (0.0, 2.0, 0.37), (0.8, 1.5, 0.74))
     items = (table, RequestedObject(name, (0.3, 2.05, 0.74 + size_m[2] / 2), size_m))
     room = gather(seen(items, VIEW.R_world_camera, HEIGHT_M), K.width, K.height)
     assert placement.place_all(room, VIEW, HEIGHT_M)[1].supporter == 0
-    monkeypatch.setattr(placement, "_THROUGH_TOP_COST", 0.0)
-    assert placement.place_all(room, VIEW, HEIGHT_M)[1].supporter == placement.FLOOR
+    seen_through = replace(SETTINGS, placement=replace(SETTINGS.placement, through_top_cost=0.0))
+    assert placement.place_all(room, VIEW, HEIGHT_M, seen_through)[1].supporter == placement.FLOOR

@@ -43,9 +43,9 @@ def test_rows_do_not_disturb_each_other() -> None:
 def test_slopes_are_taken_anew_only_of_rows_that_moved(monkeypatch: pytest.MonkeyPatch) -> None:
     taken: list[int] = []
 
-    def counted(problems, unknowns, here, view):
+    def counted(problems, unknowns, here, view, settings):
         taken.append(len(problems))
-        return original(problems, unknowns, here, view)
+        return original(problems, unknowns, here, view, settings)
 
     original = solver._slopes
     monkeypatch.setattr(solver, "_slopes", counted)

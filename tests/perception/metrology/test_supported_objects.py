@@ -9,8 +9,8 @@ from diorama_core.geometry.projection import cuboid_corners
 from diorama_core.library.taxonomy import category
 from diorama_core.perception.metrology.box_observations import BoxObservations, gather
 from diorama_core.perception.metrology.problem import Cuboids, stacked
+from diorama_core.perception.metrology.settings import SETTINGS
 from diorama_core.perception.metrology.supported_objects import (
-    CEILING_M,
     extent_of,
     place_below_ceiling,
     place_on,
@@ -127,5 +127,5 @@ def test_walls_ahead_left_and_right_are_tried() -> None:
 def test_lamps_hang_from_the_usual_ceiling() -> None:
     room = extent_of(np.zeros((0, 8, 3)), ())
     rows = stacked(place_below_ceiling(of("ceiling lamp"), 0, 1.5, room, 0.0))
-    np.testing.assert_allclose(rows.base_m + np.exp(rows.log_size[:, 2]), CEILING_M)
-    assert (rows.top_m == CEILING_M).all()
+    np.testing.assert_allclose(rows.base_m + np.exp(rows.log_size[:, 2]), SETTINGS.placement.ceiling_m)
+    assert (rows.top_m == SETTINGS.placement.ceiling_m).all()
