@@ -20,7 +20,7 @@ REACH_M = 0.02
 
 
 def drawn_before_walls(geometry: ObjectGeometry, room: ArchitectureEstimate) -> ObjectGeometry:
-    """The same objects, those with unseen feet before the walls, with what they carry.
+    """Objects with unseen feet brought before the walls, with what they carry.
 
     Args:
         geometry: Of all objects.

@@ -12,6 +12,7 @@ from diorama_core.architecture.walls.ceilings import CeilingPiece, find_ceilings
 from diorama_core.architecture.walls.closed_room import GUESS_CONFIDENCE, room_planes
 from diorama_core.architecture.walls.openings import Opening, counts, find_openings, is_shut
 from diorama_core.architecture.walls.passages import is_passage, with_passages
+from diorama_core.architecture.walls.settings import SETTINGS, WallSettings
 from diorama_core.architecture.walls.surface import MeasuredSurface, measured_surface
 from diorama_core.architecture.walls.wall_candidates import find_walls, tolerance_m
 from diorama_core.architecture.walls.wall_path import heading
@@ -20,10 +21,6 @@ from diorama_core.artefacts import ArchitectureEstimate, DetectedObject, Inputs,
 from diorama_core.progress import Progress
 from diorama_core.provenance import RoomMethod, RoomSource
 from diorama_core.scene.types import Architecture, Camera
-
-USUAL_CEILING_M = 2.6
-MIN_FLAT_SHARE = 0.004
-"""Minimum share of the measured points on the floor for it to count as visible."""
 
 
 @dataclass(frozen=True)
@@ -34,6 +31,8 @@ class PlanarRoom:
     objects are measured is furniture and dropped. The walls that lead in each heading form a chain whose neighbours
     meet in corners or are joined by hidden pieces.
     """
+
+    settings: WallSettings = SETTINGS
 
     def reconstruct(
         self, inputs: Inputs, objects: tuple[DetectedObject, ...], geometry: ObjectGeometry, progress: Progress
@@ -48,28 +47,29 @@ class PlanarRoom:
         progress.report(0.0, "Looking for planes in the measured depth")
         solid = tuple(o for o in objects if not is_passage(o))
         hidden = object_pixels((inputs.photo.height, inputs.photo.width), solid)
-        surface = measured_surface(inputs.depth_m, geometry.camera, hidden)
+        surface = measured_surface(inputs.depth_m, geometry.camera, hidden, self.settings)
         ceilings = find_ceilings(surface)
-        top_m = _top(surface, ceilings)
+        top_m = _top(surface, ceilings, self.settings)
         walls = find_walls(surface, top_m)
         progress.report(0.6, "Closing the room at its corners")
-        pieces = outline(surface, walls, view_headings(geometry.camera), top_m)
+        pieces = outline(surface, walls, view_headings(geometry.camera), top_m, self.settings)
         pieces = pieces or (_guessed_wall(surface, geometry.camera),)
-        floor_seen = _share(surface, 0.0, 1.0) > MIN_FLAT_SHARE
+        floor_seen = _share(surface, 0.0, 1.0) > self.settings.min_flat_share
         openings: tuple[tuple[Opening, ...], ...] = ((),) * len(pieces)
         pointed: tuple[str, ...] = ()
         if not _sloped(ceilings):
-            measured = tuple(find_openings(surface, p, top_m) for p in pieces)
+            measured = tuple(find_openings(surface, p, top_m, self.settings) for p in pieces)
             openings, pointed = with_passages(
                 measured,
                 objects,
                 pieces,
                 geometry.camera,
                 top_m,
-                lambda wall, opening: is_shut(surface, pieces[wall], opening, top_m),
+                lambda wall, opening: is_shut(surface, pieces[wall], opening, top_m, self.settings),
+                self.settings,
             )
         sure = 0.95 if floor_seen else GUESS_CONFIDENCE
-        planes = room_planes(pieces, ceilings, geometry.camera, top_m, sure, openings)
+        planes = room_planes(pieces, ceilings, geometry.camera, top_m, sure, openings, self.settings)
         planes = coloured(planes, inputs.photo.rgb, geometry.camera, objects)
         architecture = Architecture(planes)
         progress.report(1.0, "The room is closed")
@@ -82,11 +82,11 @@ class PlanarRoom:
         )
 
 
-def _top(surface: MeasuredSurface, ceilings: tuple[CeilingPiece, ...]) -> float:
+def _top(surface: MeasuredSurface, ceilings: tuple[CeilingPiece, ...], settings: WallSettings) -> float:
     """Top of the walls: the flat ceiling, else the usual height or above all measured points."""
     flat = [-c.offset for c in ceilings if c.is_flat]
     seen = float(np.quantile(surface.points[:, 2], 0.99)) + 0.05 if len(surface.points) else 0.0
-    return flat[0] if flat else max(USUAL_CEILING_M, seen)
+    return flat[0] if flat else max(settings.usual_ceiling_m, seen)
 
 
 def _share(surface: MeasuredSurface, height_m: float, facing: float) -> float:

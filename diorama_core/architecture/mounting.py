@@ -21,12 +21,12 @@ CLEAR_OF_WALL_M = 0.05
 
 
 def snap_mounted_objects(geometry: ObjectGeometry, room: ArchitectureEstimate) -> ObjectGeometry:
-    """The same objects, with those mounted on a wall or the ceiling moved to touch it."""
+    """Objects with those mounted on a wall or the ceiling moved to touch it."""
     return mounted_on_ceiling(mounted_on_walls(geometry, room), room)
 
 
 def mounted_on_ceiling(geometry: ObjectGeometry, room: ArchitectureEstimate) -> ObjectGeometry:
-    """The same objects, with those mounted on the ceiling moved to touch it.
+    """Objects with those mounted on the ceiling moved to touch it.
 
     A cuboid is scaled about the camera as far as the walls leave room; a cord bridges what is left.
     """
@@ -74,7 +74,7 @@ def _drawn_up(cuboid: Cuboid, level: float) -> Cuboid:
 
 
 def mounted_on_walls(geometry: ObjectGeometry, room: ArchitectureEstimate) -> ObjectGeometry:
-    """The same objects, with those mounted on a wall moved to touch it.
+    """Objects with those mounted on a wall moved to touch it.
 
     A cuboid is scaled about the camera, so that it looks the same in the photo, but never below the floor.
     """

@@ -45,9 +45,9 @@ class SupportHypothesis:
     edge: Support
     role: Role
     kind: Category
-    """Of the object that is held."""
+    """Identifier of the object that is held."""
     carrier: Category | None = None
-    """Of the object that holds it."""
+    """Identifier of the object that holds it."""
     believed: bool = False
     """Whether an earlier stage decided so."""
     gap: float = 0.0

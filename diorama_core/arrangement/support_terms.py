@@ -116,7 +116,7 @@ class SupportWeights:
     terms: Mapping[str, float]
     places: Mapping[str, float]
     walls: Mapping[str, Mapping[str, float]]
-    """Of standing against a wall (`standing.STANDING_TERMS`), with measured distances and with reasoned ones."""
+    """For standing against a wall (`standing.STANDING_TERMS`), with measured distances and with reasoned ones."""
 
     def shares(self, h: SupportHypothesis) -> dict[str, float]:
         """What each term says against a supporter, nats."""

@@ -44,7 +44,7 @@ class SupportChoice:
     shares: dict[str, float]
     """By term, how much more speaks against the runner-up than against the choice, nats."""
     probability: float
-    """Of the choice, all other objects staying."""
+    """Probability of the choice, all other objects staying."""
 
     @property
     def edge(self) -> Support:

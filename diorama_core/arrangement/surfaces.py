@@ -197,7 +197,7 @@ def misfit(item: SceneObject, surface: Surface) -> float:
 
 
 def box_misfit(corners: Float[np.ndarray, "8 3"], size: Float[np.ndarray, "3"], surface: Surface) -> float:
-    """The same for a box with these corners (world) and extents."""
+    """How badly a box with these corners (world) and extents agrees with resting on a surface, metres."""
     along = corners @ surface.normal
     low, height = float(along.min()), float(np.ptp(along))
     gap = abs(low - surface.level)

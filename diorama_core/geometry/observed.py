@@ -41,7 +41,7 @@ class Outlined(Protocol):
 _BORDER_PX = 2.5
 _FULLY_TRUSTED_AREA_PX = 600.0
 MIN_OWN_SHARE = 0.2
-"""Of a mask, that must be left without what lies on the object."""
+"""Share of a mask that must be left without what lies on the object."""
 _OF_OPENINGS = 0.25
 """Weight of a mask that was not drawn where a shape is open below."""
 

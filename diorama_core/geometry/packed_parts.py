@@ -13,7 +13,7 @@ from diorama_core.geometry.convex import ConvexPart
 
 Parts = tuple[ConvexPart, ...]
 NAMES = ("keys", "sizes", "counts", "vertices", "normals", "edges")
-"""Of the arrays, in the order in which `PackedParts` takes them."""
+"""Names of the arrays, in the order in which `PackedParts` takes them."""
 
 
 def packed(parts_by_key: Mapping[str, Parts]) -> dict[str, np.ndarray]:

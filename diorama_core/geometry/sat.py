@@ -33,7 +33,7 @@ class Bodies:
     edges: Float[np.ndarray, "b e 3"]
     """Unit, zero where padded."""
     counts: Int[np.ndarray, "b 3"]
-    """Of vertices, normals and edges, without the padding."""
+    """Counts of vertices, normals and edges, without the padding."""
     owner: Int[np.ndarray, " b"]
     low: Float[np.ndarray, "b 3"]
     high: Float[np.ndarray, "b 3"]
@@ -62,7 +62,7 @@ class PackedParts:
     normals: Float[np.ndarray, "b f 3"]
     edges: Float[np.ndarray, "b e 3"]
     counts: Int[np.ndarray, "b 3"]
-    """Of vertices, normals and edges, without the padding."""
+    """Counts of vertices, normals and edges, without the padding."""
     owner: Int[np.ndarray, " b"]
 
     def of(self, objects: Bool[np.ndarray, " n"]) -> PackedParts:

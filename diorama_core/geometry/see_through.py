@@ -20,28 +20,38 @@ from jaxtyping import Bool, Float, Float32, Int, UInt8
 from diorama_core.geometry.observed import Observed
 from diorama_core.geometry.window import Window, soft_iou
 
-COLOUR_SIGMA = 5.0
-"""Of colours of one thing side by side (CIE Lab), lightness at `LIGHTNESS` of the weight of hues: shade changes it."""
-LIGHTNESS = 0.5
-REACH = 0.3
-"""How far around a cell its background is looked for: sigma, as a share of the box's longer side."""
-OF_MASK, OF_REST = 0.55, 0.15
-"""Probability that a cell shows the object where its mask says so, and where it does not."""
-UNLIKE = 0.02
-"""Density of colours that are met nowhere else."""
-ROUNDS = 2
-BLUR = 0.04
-"""Of the window's side: as far as parts may lie off."""
-MIN_TELLING = 0.1
-"""Weight of cells that may show the one as well as the other."""
-OF_SURE_MASK, CLEARLY = 0.5, 0.6
-"""What colours that tell the object clearly from its surroundings say beside a mask with which they agree; and the mean
-weight of cells from which on they do."""
-MAX_SAMPLES = 900
-"""Cells, evenly spread, that stand for all of the background or of the object."""
-MIN_CELLS = 30
-MIN_SIDE_PX = 24.0
-"""Objects of which less is seen have too few pixels."""
+
+@dataclass(frozen=True)
+class SeeThroughSettings:
+    """How it is told where one looks past an object."""
+
+    colour_sigma: float = 5.0
+    """Spread of colours of one thing side by side (CIE Lab), where lightness weighs less: shade changes it."""
+    lightness: float = 0.5
+    reach: float = 0.3
+    """How far around a cell its background is looked for: sigma, as a share of the box's longer side."""
+    of_mask: float = 0.55
+    of_rest: float = 0.15
+    """Probability that a cell shows the object where its mask says so, and where it does not."""
+    unlike: float = 0.02
+    """Density of colours that are met nowhere else."""
+    rounds: int = 2
+    blur: float = 0.04
+    """Share of the window's side: as far as parts may lie off."""
+    min_telling: float = 0.1
+    """Weight of cells that may show the one as well as the other."""
+    of_sure_mask: float = 0.5
+    clearly: float = 0.6
+    """What colours that tell the object clearly from its surroundings say beside a mask with which they agree; and the
+    mean weight of cells from which on they do."""
+    max_samples: int = 900
+    """Cells, evenly spread, that stand for all of the background or of the object."""
+    min_cells: int = 30
+    min_side_px: float = 24.0
+    """Objects of which less is seen have too few pixels."""
+
+
+SETTINGS = SeeThroughSettings()
 _NOTHING = 1e-9
 
 
@@ -56,29 +66,32 @@ class SeeThrough:
     """How much a cell tells, 0 to 1; 0 outside the box and where nearer things are seen."""
     share: float
     """What the colours say beside the mask, 0 to 1: more the clearer they tell and the less it agrees with them."""
+    settings: SeeThroughSettings = SETTINGS
 
     @classmethod
-    def of(cls, rgb: UInt8[np.ndarray, "h w 3"], seen: Observed) -> SeeThrough | None:
+    def of(
+        cls, rgb: UInt8[np.ndarray, "h w 3"], seen: Observed, settings: SeeThroughSettings = SETTINGS
+    ) -> SeeThrough | None:
         """Look at one object; None where its mask is sure already, or too little of it or around it is seen."""
         x1, y1, x2, y2 = seen.box
         x, y = seen.window.centres_px.T
         boxed = (x >= x1) & (x < x2) & (y >= y1) & (y < y2)
         known = seen.weight > 0.5
         inside, behind = np.flatnonzero(boxed & known), np.flatnonzero(known & (seen.covered < 0.1))
-        if seen.mask_trust >= 1.0 or min(x2 - x1, y2 - y1) < MIN_SIDE_PX:
+        if seen.mask_trust >= 1.0 or min(x2 - x1, y2 - y1) < settings.min_side_px:
             return None
-        if len(inside) < MIN_CELLS or (~boxed[behind]).sum() < MIN_CELLS:
+        if len(inside) < settings.min_cells or (~boxed[behind]).sum() < settings.min_cells:
             return None
-        lab = _lab(seen.window.means(rgb))
-        reach_px = REACH * max(x2 - x1, y2 - y1)
-        of_background = _density_around(inside, _spread(behind), lab, seen.window.centres_px / reach_px)
+        lab = _lab(seen.window.means(rgb), settings)
+        reach_px = settings.reach * max(x2 - x1, y2 - y1)
+        of_background = _density_around(inside, _spread(behind, settings), lab, seen.window.centres_px / reach_px)
         shown = np.zeros(len(x))
-        shown[inside] = _posterior(lab[inside], seen.covered[inside], of_background)
-        telling = MIN_TELLING + (1 - MIN_TELLING) * np.abs(2 * shown - 1)
-        found = cls(seen.window, shown, np.where(boxed, seen.weight * telling, 0.0), 0.0)
+        shown[inside] = _posterior(lab[inside], seen.covered[inside], of_background, settings)
+        telling = settings.min_telling + (1 - settings.min_telling) * np.abs(2 * shown - 1)
+        found = cls(seen.window, shown, np.where(boxed, seen.weight * telling, 0.0), 0.0, settings)
         of_mask = float(found.agreement((seen.covered > 0.5)[None])[0])
-        clear = min(float(found.weight[found.weight > 0].mean()) / CLEARLY, 1.0)
-        return replace(found, share=clear * (1.0 - (1.0 - OF_SURE_MASK) * of_mask**2))
+        clear = min(float(found.weight[found.weight > 0].mean()) / settings.clearly, 1.0)
+        return replace(found, share=clear * (1.0 - (1.0 - settings.of_sure_mask) * of_mask**2))
 
     def agreement(self, silhouettes: Bool[np.ndarray, "p n"]) -> Float[np.ndarray, "p"]:
         """How well shapes fill the same places, 0 to 1; cells as in the window."""
@@ -95,16 +108,16 @@ class SeeThrough:
 
     def _blurred(self, filled: Float[np.ndarray, "p n"] | Float32[np.ndarray, "p n"]) -> Float[np.ndarray, "p n"]:
         cells = self.window.cells
-        sigma = BLUR * cells
+        sigma = self.settings.blur * cells
         grids = filled.reshape(-1, cells, cells).astype(np.float32, copy=False)
         blurred = [cv2.GaussianBlur(g, (0, 0), sigma, borderType=cv2.BORDER_CONSTANT) for g in grids]
         return np.asarray(blurred, dtype=np.float64).reshape(filled.shape)
 
 
-def _lab(rgb: Float[np.ndarray, "n 3"]) -> Float[np.ndarray, "n 3"]:
+def _lab(rgb: Float[np.ndarray, "n 3"], settings: SeeThroughSettings) -> Float[np.ndarray, "n 3"]:
     """CIE Lab, lightness weighted down, in units of `COLOUR_SIGMA`."""
     lab = cv2.cvtColor((rgb / 255.0).astype(np.float32)[None], cv2.COLOR_RGB2LAB)[0].astype(np.float64)
-    return lab * np.sqrt([LIGHTNESS, 1.0, 1.0]) / COLOUR_SIGMA
+    return lab * np.sqrt([settings.lightness, 1.0, 1.0]) / settings.colour_sigma
 
 
 def _kernel(a: Float[np.ndarray, "n d"], b: Float[np.ndarray, "m d"]) -> Float32[np.ndarray, "n m"]:
@@ -118,9 +131,9 @@ def _kernel(a: Float[np.ndarray, "n d"], b: Float[np.ndarray, "m d"]) -> Float32
     return np.exp(np.minimum(exponent, 0.0, out=exponent), out=exponent)
 
 
-def _spread(cells: Int[np.ndarray, "n"]) -> Int[np.ndarray, "m"]:
+def _spread(cells: Int[np.ndarray, "n"], settings: SeeThroughSettings) -> Int[np.ndarray, "m"]:
     """At most `MAX_SAMPLES` of the cells, evenly spread."""
-    return cells[:: -(-len(cells) // MAX_SAMPLES) or 1]
+    return cells[:: -(-len(cells) // settings.max_samples) or 1]
 
 
 def _density_around(
@@ -138,19 +151,22 @@ def _density_around(
 
 
 def _posterior(
-    lab: Float[np.ndarray, "k 3"], covered: Float[np.ndarray, "k"], of_background: Float[np.ndarray, "k"]
+    lab: Float[np.ndarray, "k 3"],
+    covered: Float[np.ndarray, "k"],
+    of_background: Float[np.ndarray, "k"],
+    settings: SeeThroughSettings,
 ) -> Float[np.ndarray, "k"]:
     """Probability that each cell shows the object: its colours are those of its mask that are not seen behind it."""
-    samples = _spread(np.arange(len(lab)))
+    samples = _spread(np.arange(len(lab)), settings)
     alike = _kernel(lab, lab[samples])
     alike[samples, np.arange(len(samples))] = 0.0
     usual = max(float(np.quantile(of_background, 0.9)), _NOTHING)
     own = covered * (1 - np.minimum(of_background / usual, 1.0)) ** 2
-    prior = OF_REST + (OF_MASK - OF_REST) * covered
+    prior = settings.of_rest + (settings.of_mask - settings.of_rest) * covered
     shown = prior
-    for _ in range(ROUNDS):
+    for _ in range(settings.rounds):
         of_object = (alike @ own[samples].astype(np.float32)) / max(float(own[samples].sum()), _NOTHING)
-        theirs = (1 - prior) * (of_background + UNLIKE / 2)
-        shown = 1 - theirs / (theirs + prior * (of_object + UNLIKE))
+        theirs = (1 - prior) * (of_background + settings.unlike / 2)
+        shown = 1 - theirs / (theirs + prior * (of_object + settings.unlike))
         own = shown * covered
     return shown

@@ -29,7 +29,7 @@ _READ_ALONG_EDGE = 5
 """Rows of points at which a face's picture is read."""
 _AXIS_POINTS = 500
 _MAIN_SHARES = (0.9, 0.8)
-"""Of the surface that belongs to the body, without handles and spouts."""
+"""Shares of the surface that belong to the body, without handles and spouts."""
 _KEEPS_MIDDLE = 0.95
 _OPAQUE = 200
 """Opacity above which a face hides everything behind it."""
@@ -75,7 +75,7 @@ class ShapeAppearance:
         return self._spread(count)[0]
 
     def coloured_points(self, count: int) -> tuple[Float[np.ndarray, "n 3"], Float[np.ndarray, "n 3"]]:
-        """The same points with the colours (sRGB, 0 to 1) of the faces they lie on."""
+        """These points with the colours (sRGB, 0 to 1) of the faces they lie on."""
         points, face = self._spread(count)
         return points, self.face_rgba[face, :3] / 255.0
 

@@ -54,7 +54,7 @@ class PoseBatch:
         return self.by_coordinate(points_object).transpose(1, 2, 0)
 
     def by_coordinate(self, points_object: Float[np.ndarray, "n 3"]) -> Float[np.ndarray, "3 p n"]:
-        """The same, coordinate by coordinate: one product for all poses, and the points side by side in memory."""
+        """Product coordinate by coordinate: one product for all poses, and the points side by side in memory."""
         rows = (self.R * self.scale[:, None, :]).transpose(1, 0, 2).reshape(-1, 3)
         return (rows @ points_object.T).reshape(3, len(self), len(points_object)) + self.position.T[..., None]
 
@@ -65,7 +65,7 @@ class Hits:
 
     depth_m: Float[np.ndarray, "p r"]
     normals_object: Float[np.ndarray, "p r 3"]
-    """Of the faces met, in the shape's own frame at scale 1."""
+    """Normals of the faces met, in the shape's own frame at scale 1."""
     triangles: UInt32[np.ndarray, "p r"]
     """Which faces are met; of no use where nothing is."""
     directions_world: Float[np.ndarray, "r 3"]
@@ -121,7 +121,7 @@ class ShapeCaster:
 
     @cached_property
     def corners(self) -> Float[np.ndarray, "8 3"]:
-        """Of the box that bounds it."""
+        """Extents of the box that bounds it."""
         if not len(self._vertices):
             return box_corners(self.size_m)
         low, high = self._vertices.min(axis=0), self._vertices.max(axis=0)

@@ -13,7 +13,7 @@ from jaxtyping import Float
 
 LATITUDE_RAD = np.radians(45.0)
 OPTICAL_DEPTH = np.array([0.10, 0.18, 0.33])
-"""Of the clear atmosphere straight up, for red, green and blue."""
+"""Optical depth of the clear atmosphere straight up, for red, green and blue."""
 NIGHT_SKY = np.array([0.035, 0.045, 0.075])
 """Light of the sky at night relative to noon: enough to find one's way."""
 DAY_SKY = np.array([0.94, 0.97, 1.0])
@@ -28,7 +28,7 @@ class Daylight:
     direction: Float[np.ndarray, "3"]
     """Unit vector toward the sun in the world."""
     sun: Float[np.ndarray, "3"]
-    """Of the sun's direct light on what faces it; 0 while it is down."""
+    """Colour of the sun's direct light on what faces it; 0 while it is down."""
     sky: Float[np.ndarray, "3"]
 
 

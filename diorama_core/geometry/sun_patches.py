@@ -22,7 +22,7 @@ MIN_AREA_M2 = 0.01
 LIFT_M = 0.006
 """Patches lie so far before their plane."""
 FRAME_SHARE = 0.06
-"""Of a window's width and height on each side that its frame takes."""
+"""Share of a window's width and height on each side that its frame takes."""
 SHADELESS = (*OPENING_CATEGORIES, "rug", "curtain")
 """What lies flat in the sun, or lets it through."""
 

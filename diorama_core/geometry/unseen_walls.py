@@ -21,7 +21,7 @@ PARALLEL = 0.97
 MIN_GAP_M = 0.1
 USUAL_HEIGHT_M = 2.5
 SILL_M, HEAD_M, LINTEL_M = 0.9, 2.1, 0.2
-"""Of a usual window: its lower and upper edge above the floor, and the least that is left of the wall above it."""
+"""A usual window: its lower and upper edge above the floor, and the least that is left of the wall above it."""
 WINDOW_SHARE, WIDEST_WINDOW_M, NARROWEST_WALL_M = 0.5, 2.2, 1.2
 
 Corners = Float[np.ndarray, "4 3"]
@@ -34,7 +34,7 @@ class Opening:
     corners: Corners
     """In the world, metres."""
     normal: Float[np.ndarray, "3"]
-    """Of its wall, toward the room."""
+    """Normal of its wall, toward the room."""
 
 
 @dataclass(frozen=True)
@@ -130,6 +130,6 @@ def _pieces(
 def _rectangle(
     a: Float[np.ndarray, "2"], b: Float[np.ndarray, "2"], shares: tuple[float, float], heights: tuple[float, float]
 ) -> Corners:
-    """Of a wall whose foot runs from `a` to `b` with the room on its left; counter-clockwise seen from the room."""
+    """Polygon of a wall whose foot runs from `a` to `b`, the room on its left; counter-clockwise from the room."""
     start, end = a + shares[0] * (b - a), a + shares[1] * (b - a)
     return np.array([[*end, heights[0]], [*start, heights[0]], [*start, heights[1]], [*end, heights[1]]])

@@ -21,7 +21,7 @@ COLOURS = ("R", "G", "B")
 """Three channels that may be one depth three times, or the x, y and z of the pixels' points."""
 MAX_PIXELS = 40_000_000
 MAX_BYTES = 1_200_000_000
-"""Of all channels together, which the library decodes at once."""
+"""Size of all channels together, which the library decodes at once."""
 MAX_PARTS = 16
 
 _process = LimitedProcess()

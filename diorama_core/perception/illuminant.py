@@ -18,9 +18,9 @@ from jaxtyping import Bool, Float, UInt8
 from diorama_core.io.srgb import linear_to_srgb, srgb_to_linear
 
 _EXPECTED_SIGMA = np.array([0.28, 0.06])
-"""Of photographs' light, warm to cold and magenta to green."""
+"""Spread of photographs' light, warm to cold and magenta to green."""
 _STATISTICS_SIGMA, _WALLS_SIGMA = np.array([0.28, 0.15]), np.array([0.20, 0.10])
-"""Of estimates from all pixels, and from walls."""
+"""Deviations of estimates from all pixels, and from walls."""
 
 
 @dataclass(frozen=True)
@@ -29,13 +29,13 @@ class IlluminantSettings:
 
     side_px: int = 160
     norm: float = 6.0
-    """Of the Minkowski means: bright pixels and strong edges say most."""
+    """Power of the Minkowski means: bright pixels and strong edges say most."""
     dark: float = 0.02
     clipped: float = 0.97
     """Linear light outside these says nothing of colour."""
     min_pixels: int = 200
     bright_share: float = 0.5
-    """Of the walls' pixels, the brightest: the others are shaded or lit by what is beside them."""
+    """Share of the walls' pixels, the brightest: the others are shaded or lit by what is beside them."""
     strange: float = 2.0
     """An estimate that many sigmas off the others counts less, as a Student's t would have it."""
 

@@ -93,7 +93,7 @@ class AppearanceLikelihood:
 
     @cached_property
     def _neighbours(self) -> Int[np.ndarray, "5 n"]:
-        """Of every cell itself and the four beside it: details may lie a cell off."""
+        """Indices of every cell itself and the four beside it: details may lie a cell off."""
         n = self.seen.window.cells
         padded = np.pad(np.arange(n * n).reshape(n, n), 1, mode="edge")
         offsets = ((0, 0), (0, 1), (0, -1), (1, 0), (-1, 0))
@@ -159,7 +159,7 @@ class _LightFit:
     normals: Float32[np.ndarray, "p n 3"]
     log_albedo: Float32[np.ndarray, "p n 3"]
     variance: Float32[np.ndarray, "p n"]
-    """Of a face's own picture."""
+    """Variance within a face's own picture."""
     settings: PoseEvidenceSettings
 
     @cached_property

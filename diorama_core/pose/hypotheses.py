@@ -17,7 +17,7 @@ from diorama_core.scene.types import yaw_rotation
 
 _FINE_STEP_RAD = np.deg2rad(15.0)
 _TURNS = np.arange(-1, 2) * _FINE_STEP_RAD
-"""Of things in their own proportions, against their cuboid's axes."""
+"""Turns tried of things in their own proportions, against their cuboid's axes."""
 _SAME_TURN_RAD = np.deg2rad(20.0)
 
 

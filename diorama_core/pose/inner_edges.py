@@ -26,7 +26,7 @@ class InnerEdges:
     inside: Bool[np.ndarray, "c c"]
     """Cells that show the object and nothing else, without its rim."""
     photo: Float[np.ndarray, "m"]
-    """Of zero mean and unit length; zeros where nothing is to be seen."""
+    """Edges of zero mean and unit length; zeros where nothing is to be seen."""
     settings: PoseEvidenceSettings
 
     @classmethod

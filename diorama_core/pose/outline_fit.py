@@ -34,7 +34,7 @@ class Near:
     rounds: int = 5
     """Moves at each of them, as long as they help: sides, place and turn may all be a little off."""
     gain: float = 0.01
-    """Of the cost, a logarithm: less is no better."""
+    """Least gain of the cost, a logarithm: less is no better."""
     noise_floor: float = SETTINGS.evidence.noise_floor
 
 

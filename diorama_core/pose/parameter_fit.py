@@ -33,7 +33,7 @@ class FittedParameters:
 
     changes: dict[str, Value]
     poses: tuple[Pose, ...]
-    """Of the objects that it was compared with; scales are those of the retrieved shape."""
+    """Poses of the objects that it was compared with; scales are those of the retrieved shape."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -124,7 +124,7 @@ class _Surroundings:
     cuboids: Sequence[Cuboid]
     walls: WallSamples
     noise: float
-    """Of measured depth (`surface.noise_of`)."""
+    """Noise of measured depth (`surface.noise_of`)."""
     settings: PoseSettings
 
     @property
@@ -150,7 +150,7 @@ class _Surroundings:
                 camera,
                 w,
                 s,
-                None if closed or s is not None else SeeThrough.of(rgb, w),
+                None if closed or s is not None else SeeThrough.of(rgb, w, self.settings.evidence.see_through),
                 settings=self.settings.evidence,
             )
             for w, s in zip(windows, surfaces, strict=True)

@@ -51,7 +51,7 @@ class Trials:
     settings: PoseSearchSettings
 
     def with_shapes(self, tried: Sequence[Sequence[TriedShape]]) -> Trials:
-        """The same objects with other poses of their shapes."""
+        """These objects with other poses of their shapes."""
         pictures = [_picture(*one, settings=self.settings) for one in zip(self.tasks, tried, strict=True)]
         by_id = {t.item.id: picture for t, picture in zip(self.tasks, pictures, strict=True)}
         objects = tuple(replace(o, picture=by_id.get(o.object_id, o.picture)) for o in self.room.objects)

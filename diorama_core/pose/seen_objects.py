@@ -31,7 +31,7 @@ class SeenObject:
     edges: InnerEdges
     pose: Pose
     pixels: int
-    """Of its mask."""
+    """Area of its mask."""
     mask_confidence: float
     category: str
     carried: tuple[Cuboid, ...] = ()
@@ -102,7 +102,7 @@ def seen_objects(
         window = observe_among(geometry.camera, items, centres, parents, k, cells, loads_apart=True)
         surface = measured_surface(depth, window, item.mask, noise, settings.evidence)
         closed = surface is not None or item.category in NEVER_OPEN
-        colours = None if closed else SeeThrough.of(inputs.photo.rgb, window)
+        colours = None if closed else SeeThrough.of(inputs.photo.rgb, window, settings.evidence.see_through)
         return Evidence(geometry.camera, window, surface, colours, settings=settings.evidence)
 
     def seen(k: int) -> SeenObject | None:

@@ -4,6 +4,9 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from diorama_core.geometry import see_through
+from diorama_core.geometry.see_through import SeeThroughSettings
+
 
 @dataclass(frozen=True)
 class PoseEvidenceSettings:
@@ -113,6 +116,7 @@ class PoseEvidenceSettings:
     """Parts whose sRGB values are this near count as one."""
     colour_noise: float = 1e-3
     """Sum of squared logarithms below which a picture has one colour."""
+    see_through: SeeThroughSettings = see_through.SETTINGS
 
 
 @dataclass(frozen=True)

@@ -37,7 +37,7 @@ class MeasuredSurface:
     """Measured depth and normals in the cells of an object's window."""
 
     depth_m: Float[np.ndarray, "n"]
-    """Of the object where its mask is, of whatever else is seen elsewhere; 1 where nothing was measured."""
+    """Depth of the object where its mask is, of whatever else is seen elsewhere; 1 where nothing was measured."""
     normals_world: Float[np.ndarray, "n 3"]
     weight: Float[np.ndarray, "n"]
     """0 where nothing was measured or the cell is not the object's."""

@@ -133,7 +133,7 @@ class Turned:
     size_m: Float[np.ndarray, "3"]
     """At scale 1."""
     poses: tuple[Pose, ...]
-    """Of the objects that it was measured for."""
+    """Poses of the objects that it was measured for."""
     error: float
     """Mean disagreement, 0 to 1."""
 

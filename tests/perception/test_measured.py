@@ -9,7 +9,7 @@ import pytest
 
 from diorama_core.perception.measured import MeasuredGeometry
 from diorama_core.perception.measured.cloud import largest_piece, main_layer
-from diorama_core.perception.measured.stage import ASSUMED_HEIGHT_M
+from diorama_core.perception.measured.settings import SETTINGS
 from diorama_core.progress import Progress
 from diorama_core.provenance import ScaleSource
 from tests.synthetic_rooms import box_room, cuboid, look, shoot
@@ -90,7 +90,7 @@ def test_height_comes_from_the_floor_or_is_assumed():
     assert seen.camera.position[2] == pytest.approx(1.7, abs=0.03)
     empty = replace(shot.inputs, depth_m=np.zeros_like(shot.inputs.depth_m))
     guessed = MeasuredGeometry().measure(empty, unknown, (), Progress())
-    assert guessed.camera.position[2] == pytest.approx(ASSUMED_HEIGHT_M)
+    assert guessed.camera.position[2] == pytest.approx(SETTINGS.assumed_height_m)
     assert (seen.source, guessed.source) == (ScaleSource.DEPTH, ScaleSource.DEPTH_WITHOUT_FLOOR)
 
 

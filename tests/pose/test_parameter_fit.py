@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -10,10 +11,12 @@ import pytest
 from diorama_core.library.boards import base_id
 from diorama_core.library.furniture.measures import made_by_id, parameters, values_of
 from diorama_core.pose import parameter_fit
+from diorama_core.pose.made_to_measure import MadeToMeasure
 from diorama_core.pose.outline_fit import Near, fitted_pose
 from diorama_core.pose.parameter_fit import can_have
 from diorama_core.scene.types import Pose
-from tests.pose.test_made_to_measure import DESIGNS, fitted
+from tests.pose import test_made_to_measure
+from tests.pose.test_made_to_measure import DESIGNS, STAGE, fitted
 
 
 @pytest.mark.parametrize("measured", [False, True])
@@ -52,7 +55,12 @@ def test_the_drawers_of_designs_are_told_as_these_tests_tell_them() -> None:
     assert ("3", "3") in bays.used
 
 
-@pytest.mark.parametrize("bound", ["PROMISING_WITH_DEPTH", "FINELY"])
+def stage_with(**numbers: float) -> MadeToMeasure:
+    settings = STAGE.settings
+    return replace(STAGE, settings=replace(settings, shapes=replace(settings.shapes, **numbers)))
+
+
+@pytest.mark.parametrize("bound", ["promising_with_depth", "finely"])
 def test_what_a_fit_or_its_finer_steps_bring_is_not_enough_for_what_needs_more(
     bound: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -63,11 +71,11 @@ def test_what_a_fit_or_its_finer_steps_bring_is_not_enough_for_what_needs_more(
         return fitted_pose(*args, near=near, **settings)
 
     monkeypatch.setattr(parameter_fit, "fitted_pose", counted)
-    if bound == "FINELY":
-        monkeypatch.setattr(parameter_fit, "PROMISING_WITH_DEPTH", np.inf)  # which leaves little to it
+    left_to_finely = {"promising_with_depth": np.inf} if bound == "finely" else {}
+    monkeypatch.setattr(test_made_to_measure, "STAGE", stage_with(**left_to_finely))
     quickly = fitted("table-walnut-splay", "table-oak-classic", scale=(0.94, 0.94, 1.0))
     few = len(taken)
-    monkeypatch.setattr(parameter_fit, bound, np.inf)
+    monkeypatch.setattr(test_made_to_measure, "STAGE", stage_with(**left_to_finely, **{bound: np.inf}))
     thoroughly = fitted("table-walnut-splay", "table-oak-classic", scale=(0.94, 0.94, 1.0))
     assert thoroughly.shape_id == quickly.shape_id
     assert np.array_equal(thoroughly.pose.matrix, quickly.pose.matrix)

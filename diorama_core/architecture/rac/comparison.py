@@ -21,7 +21,7 @@ from diorama_core.scene.types import Camera
 FULL_DISAGREEMENT = 0.2
 """Relative difference of depth that counts in full."""
 SEGMENT_WEIGHT = 0.5
-"""Of a pixel in another plane's segment, beside one with the wrong depth."""
+"""Cost of a pixel in another plane's segment, beside one with the wrong depth."""
 
 
 @dataclass(frozen=True, eq=False)

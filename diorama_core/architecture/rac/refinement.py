@@ -34,7 +34,7 @@ class LayoutRefinementSettings:
     wrong_m: float = 0.1
     """What is measured this far from a wall does not belong to it."""
     min_share: float = 2000 / (640 * 480)
-    """Of the picture that is wrong about a wall before its end is looked for. These four are as in the authors'
+    """Share of the picture that is wrong about a wall before its end is looked for. These four are as in the authors'
     program."""
     line_samples: float = 1.0
     """Distance from a line, in samples of the depth grid, up to which a change of depth agrees with it."""

@@ -20,8 +20,8 @@ from diorama_core.architecture.rac.arrangement import Arrangement
 MAX_NODES = 2000
 """Branches that the solver looks at; the best labelling found by then is taken."""
 EDGE_COST = 2e-5
-"""Of a pixel of edge between two planes, beside a picture in which everything disagrees: of layouts that agree as well,
-which differ behind furniture only, the one with the shortest edges is taken."""
+"""Cost of a pixel of edge between two planes, beside a picture in which everything disagrees: of layouts that agree as
+well, which differ behind furniture only, the one with the shortest edges is taken."""
 
 
 @dataclass(frozen=True, eq=False)

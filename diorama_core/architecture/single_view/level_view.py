@@ -55,7 +55,7 @@ class LevelView:
     slopes: Float[np.ndarray, "k1"]
     """Borders of the rows."""
     share: Float[np.ndarray, "m k"]
-    """Of the picture, that each cell covers; 0 outside it."""
+    """Share of the picture that each cell covers; 0 outside it."""
     floor_ratio: Float[np.ndarray, "m k"]
     """-1 to 1: whether the colour is the floor's or the walls'; 0 where that is unknown or an object hides it."""
     lines: Float[np.ndarray, "m k 3"]

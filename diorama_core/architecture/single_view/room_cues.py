@@ -12,6 +12,7 @@ import cv2
 import numpy as np
 from jaxtyping import Bool, Float, Float32, Int
 
+from diorama_core.architecture.single_view.settings import SETTINGS, RoomCueSettings
 from diorama_core.artefacts import SURE_MASK, Cuboid, DetectedObject
 from diorama_core.geometry.projection import NEAR_M
 from diorama_core.geometry.segments import line_segments_px
@@ -20,32 +21,14 @@ from diorama_core.scene.types import Camera
 
 AXIS_TOLERANCE_RAD = np.deg2rad(4.0)
 """A segment belongs to a room axis when it points within this of the axis's vanishing point."""
-MAP_SIDE_PX = 400
-"""Longest side of the edge maps."""
-EDGE_SIGMA = 0.006
-"""Width of the edges' response, as a share of the picture's diagonal."""
 EDGE_THRESHOLD = 0.3
 """Edge response at which a boundary scores zero."""
-EDGE_SAMPLES = 40
-SLANT_SHARE, SLANT_DIAGONALS = 0.025, 0.12
-"""Minimum share of all segments, and length in image diagonals, of an accepted slanted direction."""
 SLANT_FROM_AXIS_RAD = np.deg2rad(12.0)
-MIN_LEVEL = 0.25
-"""Segments near the horizon do not determine a direction."""
-CROWD_SHARE, CROWD_FREE, CROWD_LOSS, CROWD_MIN = 0.12, 0.12, 3.0, 0.25
-"""Dense parallel edges (bricks, boards) are down-weighted beyond this share of a window."""
-UNSEEN_FOOT = 0.3
-"""What an object says about the walls whose distance only its size tells, against one that is seen to stand there."""
 MAX_CEILING_M = 5.0
 
-ORIENTATION_WEIGHT = 2.0
-EDGE_WEIGHT = 1.0
-OBJECT_WEIGHT = 0.5
-PRIOR_WEIGHT = 0.1
 PRIOR_MEDIAN_M = np.array([4.2, 3.5, 2.6])
 """Width, depth from the camera, ceiling."""
 PRIOR_LOG_SIGMA = np.array([0.45, 0.5, 0.18])
-PROTRUSION_SCALE_M = 0.25
 
 BACKED = having("often_at_wall") - having("seat")
 """What usually has a wall behind it."""
@@ -87,6 +70,7 @@ class RoomCues:
     """Headings, counter-clockwise from +X and below a half turn, of level lines that run along none of the axes."""
     slant_maps: tuple[Float32[np.ndarray, "hm wm"], ...] = ()
     """Edge maps of those."""
+    settings: RoomCueSettings = SETTINGS.cues
 
     def hits(self, boxes: Float[np.ndarray, "b 4"], directions: Float[np.ndarray, "s 3"]) -> Int[np.ndarray, "b s"]:
         """The axis of the face that each ray meets first: 0 a side wall, 1 the far wall, 2 floor or ceiling."""
@@ -116,7 +100,7 @@ class RoomCues:
         ends = self.camera.to_camera(box_edges(boxes, self.camera.position[1]))
         clipped, visible = self._clipped(ends)
         lengths = np.where(visible, np.linalg.norm(clipped[..., 1, :] - clipped[..., 0, :], axis=-1), 0.0)
-        steps = (np.arange(EDGE_SAMPLES) + 0.5) / EDGE_SAMPLES
+        steps = (np.arange(self.settings.edge_samples) + 0.5) / self.settings.edge_samples
         points = clipped[..., 0, None, :] + steps[:, None] * (clipped[..., 1, :] - clipped[..., 0, :])[..., None, :]
         columns, rows = np.moveaxis((points * self.map_scale).astype(int), -1, 0)
         _, map_height, map_width = self.edge_maps.shape
@@ -146,7 +130,7 @@ class RoomCues:
 
     def objects(self, boxes: Float[np.ndarray, "b 4"]) -> Float[np.ndarray, "b"]:
         """Negative protrusion of objects from the box: standing ones 0 to 2, hanging ones half."""
-        hung = -0.5 * np.clip((self.hung_top_m - boxes[:, 3]) / (2.0 * PROTRUSION_SCALE_M), 0.0, 1.0)
+        hung = -0.5 * np.clip((self.hung_top_m - boxes[:, 3]) / (2.0 * self.settings.protrusion_scale_m), 0.0, 1.0)
         if len(self.object_low) == 0:
             return hung
         out = np.stack(
@@ -157,7 +141,7 @@ class RoomCues:
                 self.object_high[:, 2] - boxes[:, 3:4],
             ]
         )
-        cost = np.minimum(np.maximum(out, 0.0).max(axis=0) / PROTRUSION_SCALE_M, 2.0)
+        cost = np.minimum(np.maximum(out, 0.0).max(axis=0) / self.settings.protrusion_scale_m, 2.0)
         return hung - (cost * self.object_weights).sum(axis=1) / self.object_weights.sum()
 
     def prior(self, boxes: Float[np.ndarray, "b 4"]) -> Float[np.ndarray, "b"]:
@@ -173,8 +157,10 @@ class RoomCues:
         ox, oy, oz = self.camera.position
         possible = (boxes[:, 0] < ox - 0.2) & (boxes[:, 1] > ox + 0.2) & (boxes[:, 2] > oy + 0.5)
         possible &= boxes[:, 3] > oz + 0.1
-        total = ORIENTATION_WEIGHT * self.orientation(boxes) + EDGE_WEIGHT * self.edges(boxes).sum(axis=1)
-        total += OBJECT_WEIGHT * self.objects(boxes) + PRIOR_WEIGHT * self.prior(boxes)
+        total = self.settings.orientation_weight * self.orientation(boxes) + self.settings.edge_weight * self.edges(
+            boxes
+        ).sum(axis=1)
+        total += self.settings.object_weight * self.objects(boxes) + self.settings.prior_weight * self.prior(boxes)
         return np.where(possible, total, -np.inf)
 
 
@@ -226,7 +212,11 @@ def segment_axes(segments: Float[np.ndarray, "n 4"], camera: Camera) -> Int[np.n
 
 
 def gather_room_cues(
-    rgb: np.ndarray, camera: Camera, objects: tuple[DetectedObject, ...], cuboids: tuple[Cuboid, ...]
+    rgb: np.ndarray,
+    camera: Camera,
+    objects: tuple[DetectedObject, ...],
+    cuboids: tuple[Cuboid, ...],
+    settings: RoomCueSettings = SETTINGS.cues,
 ) -> RoomCues:
     """Compute the room cues of a photo from its camera and objects."""
     segments = line_segments_px(rgb, min_length=0.015)
@@ -234,7 +224,7 @@ def gather_room_cues(
     oblique, segments, axes = segments[axes < 0], segments[axes >= 0], axes[axes >= 0]
     standing = [o for o in objects if o.category not in _WALL_CATEGORIES]
     free = ~_inside_masks(segments, standing, rgb.shape[:2])
-    map_scale = min(1.0, MAP_SIDE_PX / max(rgb.shape[:2]))
+    map_scale = min(1.0, settings.map_side_px / max(rgb.shape[:2]))
     middle = 0.5 * (segments[:, :2] + segments[:, 2:])
     directions, ray_axes, weights = _surface_rays(segments[free], axes[free], camera)
     hung = {o.id for o in objects if category(o.category).mount == "ceiling"}
@@ -243,31 +233,36 @@ def gather_room_cues(
     backed = [c for c in cuboids if _category_of(c, objects) in BACKED]
     backs = np.array([c.corners_world for c in backed]).reshape(-1, 8, 3)
     oblique = oblique[~_inside_masks(oblique, standing, rgb.shape[:2])]
-    slants = _slants(oblique, segments[free], camera)
+    slants = _slants(oblique, segments[free], camera, settings)
     return RoomCues(
         camera=camera,
         directions=directions,
         ray_axes=ray_axes,
         ray_weights=weights,
-        edge_maps=_edge_maps(segments, axes, objects, rgb.shape[:2], map_scale),
+        edge_maps=_edge_maps(segments, axes, objects, rgb.shape[:2], map_scale, settings),
         map_scale=map_scale,
         segment_rays=camera.rays(middle[free]),
         segment_axes=axes[free],
         object_low=corners.min(axis=1),
         object_high=corners.max(axis=1),
-        object_weights=np.array([max(c.confidence, 0.1) * (1.0 if c.foot_seen else UNSEEN_FOOT) for c in solid]),
+        object_weights=np.array(
+            [max(c.confidence, 0.1) * (1.0 if c.foot_seen else settings.unseen_foot) for c in solid]
+        ),
         object_portable=np.array([_is_portable(c, objects) for c in solid], dtype=bool),
         backed_low=backs.min(axis=1),
         backed_high=backs.max(axis=1),
         backed_weights=np.array([c.confidence for c in backed]),
         hung_top_m=max((float(c.corners_world[:, 2].max()) for c in cuboids if c.object_id in hung), default=0.0),
         slants_rad=tuple(angle for angle, _ in slants),
-        slant_maps=tuple(_edge_map(oblique[own], objects, rgb.shape[:2], map_scale) for _, own in slants),
+        slant_maps=tuple(
+            _edge_map(oblique[own], objects, rgb.shape[:2], map_scale, settings=settings) for _, own in slants
+        ),
+        settings=settings,
     )
 
 
 def _slants(
-    oblique: Float[np.ndarray, "n 4"], straight: Float[np.ndarray, "m 4"], camera: Camera
+    oblique: Float[np.ndarray, "n 4"], straight: Float[np.ndarray, "m 4"], camera: Camera, settings: RoomCueSettings
 ) -> list[tuple[float, Bool[np.ndarray, "n"]]]:
     """Level directions, far from the axes, that much of the oblique segments share; and which those are."""
     if len(oblique) == 0:
@@ -281,7 +276,7 @@ def _slants(
     everything = lengths.sum() + np.linalg.norm(straight[:, 2:] - straight[:, :2], axis=1).sum()
     k = camera.intrinsics
     from_axis = np.abs((angles + np.pi / 4) % (np.pi / 2) - np.pi / 4)
-    usable = (level > MIN_LEVEL) & (from_axis > SLANT_FROM_AXIS_RAD)
+    usable = (level > settings.min_level) & (from_axis > SLANT_FROM_AXIS_RAD)
     found: list[tuple[float, Bool[np.ndarray, "n"]]] = []
     for angle in np.deg2rad(np.arange(0.0, 180.0, 1.0)):
         along = np.array([np.cos(angle), np.sin(angle), 0.0])
@@ -289,7 +284,9 @@ def _slants(
         found.append((float(angle), own))
     best = max(found, key=lambda pair: float(lengths[pair[1]].sum()))
     total = float(lengths[best[1]].sum())
-    enough = total > max(SLANT_SHARE * everything, SLANT_DIAGONALS * float(np.hypot(k.width, k.height)))
+    enough = total > max(
+        settings.slant_share * everything, settings.slant_diagonals * float(np.hypot(k.width, k.height))
+    )
     return [best] if enough else []
 
 
@@ -343,9 +340,15 @@ def _edge_maps(
     objects: tuple[DetectedObject, ...],
     shape: tuple[int, ...],
     scale: float,
+    settings: RoomCueSettings,
 ) -> Float32[np.ndarray, "3 hm wm"]:
     """For each axis, how near the nearest segment along it is: a Gaussian of the distance, neutral on objects."""
-    return np.stack([_edge_map(segments[axes == axis], objects, shape, scale, level=axis < 2) for axis in range(3)])
+    return np.stack(
+        [
+            _edge_map(segments[axes == axis], objects, shape, scale, level=axis < 2, settings=settings)
+            for axis in range(3)
+        ]
+    )
 
 
 def _edge_map(
@@ -355,19 +358,20 @@ def _edge_map(
     scale: float,
     *,
     level: bool = True,
+    settings: RoomCueSettings,
 ) -> Float32[np.ndarray, "hm wm"]:
-    """Of one direction's segments; level ones say less where they crowd, as bricks' and boards' do."""
+    """Edges of one direction's segments; level ones say less where they crowd, as bricks' and boards' do."""
     rows, columns = max(1, round(shape[0] * scale)), max(1, round(shape[1] * scale))
-    sigma = EDGE_SIGMA * float(np.hypot(rows, columns))
+    sigma = settings.edge_sigma * float(np.hypot(rows, columns))
     canvas = np.full((rows, columns), 255, np.uint8)
     for x1, y1, x2, y2 in np.round(segments * scale - 0.5).astype(int):
         cv2.line(canvas, (x1, y1), (x2, y2), 0, 1)
     found = np.zeros((rows, columns), np.float32)
     if (canvas == 0).any():
         found = np.exp(-0.5 * (cv2.distanceTransform(canvas, cv2.DIST_L2, 3) / sigma) ** 2)
-        side = round(CROWD_SHARE * float(np.hypot(rows, columns))) | 1
+        side = round(settings.crowd_share * float(np.hypot(rows, columns))) | 1
         crowd = cv2.blur((found > 0.6).astype(np.float32), (side, side)) if level else 0.0
-        found *= np.clip(1.0 - CROWD_LOSS * (crowd - CROWD_FREE), CROWD_MIN, 1.0)
+        found *= np.clip(1.0 - settings.crowd_loss * (crowd - settings.crowd_free), settings.crowd_min, 1.0)
     for item in objects:
         found[_neutral(item, (rows, columns), scale)] = EDGE_THRESHOLD
     return np.asarray(found, np.float32)

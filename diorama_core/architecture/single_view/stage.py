@@ -10,11 +10,8 @@ from jaxtyping import Float
 from diorama_core.architecture.single_view.box_search import find_box
 from diorama_core.architecture.single_view.level_view import level_view
 from diorama_core.architecture.single_view.room_cues import MAX_CEILING_M, RoomCues, gather_room_cues
+from diorama_core.architecture.single_view.settings import SETTINGS, PhotoRoomSettings, RoomSearchSettings
 from diorama_core.architecture.single_view.wall_chain import (
-    CORNER_COST,
-    DISTANCES,
-    FARTHEST_M,
-    NEAREST_M,
     Chain,
     ChainScorer,
     PhotoWalls,
@@ -37,20 +34,6 @@ from diorama_core.provenance import RoomMethod, RoomSource
 from diorama_core.scene.types import Architecture, Plane
 
 CEILINGS_M = np.geomspace(2.1, MAX_CEILING_M, 28)
-FLOOR_CONFIDENCE = 0.6
-LINES = 14
-"""Number of longest lines per axis that are tried as feet of walls."""
-MAX_PUSH_M = 2.0
-"""Walls give way to objects by at most this: what is farther out is a mistake."""
-PUSH_WEIGHT, ENOUGH_OUT_M = 3.0, 0.5
-"""How much a sure wall's place counts beside a sure object's; and the protrusion beyond which more says no more."""
-CLEARANCE_M = 0.02
-MEASURED = 0.95
-"""A wall candidate's confidence is this less what is seen through it."""
-MIN_VISIBLE_SHARE = 0.004
-"""A ceiling seen in less of the picture than this is left out."""
-CEILING_STEP = 8
-"""Pixel stride of the ceiling visibility test."""
 
 
 @dataclass(frozen=True)
@@ -61,22 +44,29 @@ class PhotoRoom:
     chain of upright planes that lines, edges, colours and the objects in the room support best.
     """
 
+    settings: PhotoRoomSettings = SETTINGS
+
     def reconstruct(
         self, inputs: Inputs, objects: tuple[DetectedObject, ...], geometry: ObjectGeometry, progress: Progress
     ) -> ArchitectureEstimate:
         """Floor, walls and ceiling, with "floor" and "wall" supports resolved."""
         progress.report(0.0, "Looking for the room's walls")
-        cues = gather_room_cues(inputs.photo.rgb, geometry.camera, objects, geometry.cuboids)
-        box = find_box(cues)[0]
+        cues = gather_room_cues(inputs.photo.rgb, geometry.camera, objects, geometry.cuboids, self.settings.cues)
+        box = find_box(cues, self.settings.search)[0]
         progress.report(0.4, "Following the walls from left to right")
-        scorer = ChainScorer(cues, level_view(inputs.photo.rgb, cues, objects))
-        chain = found_chain(scorer, box)
+        scorer = ChainScorer(cues, level_view(inputs.photo.rgb, cues, objects), self.settings)
+        chain = found_chain(scorer, box, self.settings.search)
         sure = GUESS_CONFIDENCE + (0.9 - GUESS_CONFIDENCE) * scorer.support(chain)
-        pieces = _pieces(chain, scorer, sure)
-        top_m = max(chain.ceiling_m, _highest(cues))
+        pieces = _pieces(chain, scorer, sure, self.settings.search)
+        top_m = max(chain.ceiling_m, _highest(cues, self.settings.search))
         hung = any(s.parent == "ceiling" for s in geometry.supports)
         openings, pointed = with_passages(((),) * len(pieces), objects, pieces, geometry.camera, top_m)
-        planes = coloured(_planes(pieces, top_m, geometry, hung, openings), inputs.photo.rgb, geometry.camera, objects)
+        planes = coloured(
+            _planes(pieces, top_m, geometry, hung, openings, self.settings.search),
+            inputs.photo.rgb,
+            geometry.camera,
+            objects,
+        )
         architecture = Architecture(planes)
         progress.report(1.0, "The room is closed")
         walls = architecture.by_role("wall")
@@ -89,18 +79,18 @@ class PhotoRoom:
         )
 
 
-def found_chain(scorer: ChainScorer, box: Float[np.ndarray, "4"]) -> Chain:
+def found_chain(scorer: ChainScorer, box: Float[np.ndarray, "4"], settings: RoomSearchSettings) -> Chain:
     """The best chain of walls, its ceiling first taken from a room box (x0, x1, y1, ceiling)."""
-    walls = candidate_walls(scorer.cues, box)
+    walls = candidate_walls(scorer.cues, box, settings)
     chain = best_chain(scorer, walls, float(box[3]))
     chain = best_chain(scorer, walls, best_ceiling(scorer, chain, CEILINGS_M))
     return refined(scorer, chain, CEILINGS_M)
 
 
-def candidate_walls(cues: RoomCues, box: Float[np.ndarray, "4"]) -> PhotoWalls:
+def candidate_walls(cues: RoomCues, box: Float[np.ndarray, "4"], settings: RoomSearchSettings) -> PhotoWalls:
     """Walls across the room's axes and the slanted direction, at many distances and at those of the box."""
     eye = cues.camera.position[:2]
-    away = np.geomspace(NEAREST_M, FARTHEST_M, DISTANCES)
+    away = np.geomspace(settings.nearest_m, settings.farthest_m, settings.distances)
     facing = [
         (np.array([1.0, 0.0]), 0, float(eye[0] - box[0])),
         (np.array([-1.0, 0.0]), 0, float(box[1] - eye[0])),
@@ -108,10 +98,10 @@ def candidate_walls(cues: RoomCues, box: Float[np.ndarray, "4"]) -> PhotoWalls:
     ]
     for number, angle in enumerate(cues.slants_rad):
         square = np.array([-np.sin(angle), np.cos(angle)])
-        facing += [(sign * square, 2 + number, NEAREST_M) for sign in (1.0, -1.0)]
+        facing += [(sign * square, 2 + number, settings.nearest_m) for sign in (1.0, -1.0)]
     normals, offsets, directions = [], [], []
     for normal, direction, own in facing:
-        seen = _distances_of_lines(cues, normal, 1 - direction) if direction < 2 else np.zeros(0)
+        seen = _distances_of_lines(cues, normal, 1 - direction, settings) if direction < 2 else np.zeros(0)
         distances = np.unique(np.concatenate([away, [own], seen]))
         normals.append(np.repeat(normal[None], len(distances), axis=0))
         offsets.append(float(normal @ eye) - distances)
@@ -119,39 +109,47 @@ def candidate_walls(cues: RoomCues, box: Float[np.ndarray, "4"]) -> PhotoWalls:
     return PhotoWalls(np.concatenate(normals), np.concatenate(offsets), np.concatenate(directions))
 
 
-def _distances_of_lines(cues: RoomCues, normal: Float[np.ndarray, "2"], axis: int) -> Float[np.ndarray, "n"]:
+def _distances_of_lines(
+    cues: RoomCues, normal: Float[np.ndarray, "2"], axis: int, settings: RoomSearchSettings
+) -> Float[np.ndarray, "n"]:
     """Distances of walls whose foot is one of the longest lines along an axis."""
     rays = cues.segment_rays[cues.segment_axes == axis]
-    rays = rays[rays[:, 2] < -1e-3][:LINES]
+    rays = rays[rays[:, 2] < -1e-3][: settings.lines]
     reach = cues.camera.position[2] / -rays[:, 2]
     found = -reach * (rays[:, :2] @ normal)
-    return np.asarray(found[(found > NEAREST_M) & (found < FARTHEST_M)])
+    return np.asarray(found[(found > settings.nearest_m) & (found < settings.farthest_m)])
 
 
-def _pieces(chain: Chain, scorer: ChainScorer, sure: Float[np.ndarray, "r"]) -> tuple[WallPiece, ...]:
+def _pieces(
+    chain: Chain, scorer: ChainScorer, sure: Float[np.ndarray, "r"], settings: RoomSearchSettings
+) -> tuple[WallPiece, ...]:
     """The chain's walls as pieces that meet, with room for the objects that stand before them."""
     view = scorer.view
     eye = scorer.cues.camera.position[:2]
     ends = view.edges_rad[chain.borders]
-    walls = _with_room(chain, scorer, sure)
+    walls = _with_room(chain, scorer, sure, settings)
     runs = [
-        Run(_as_candidate(walls, k, float(sure[k])), float(ends[k]), float(ends[k + 1]))
+        Run(_as_candidate(walls, k, float(sure[k]), settings=settings), float(ends[k]), float(ends[k + 1]))
         for k in range(len(chain.walls))
     ]
     for k in range(len(runs) - 1):
         corner = meeting_point(runs[k].wall, runs[k + 1].wall)
-        if corner is None or not _joined(chain, k, ends, eye):
+        if corner is None or not _joined(chain, k, ends, eye, settings):
             continue
         at = float(heading(corner, eye))
         runs[k], runs[k + 1] = replace(runs[k], last=at), replace(runs[k + 1], first=at)
     return chained(runs, (float(view.edges_rad[0]), float(view.edges_rad[-1])), eye)
 
 
-def _as_candidate(walls: PhotoWalls, k: int, sure: float = 0.0) -> WallCandidate:
-    return WallCandidate(walls.normals[k], float(walls.offsets[k]), np.zeros(0, dtype=bool), MEASURED - sure, 1.0)
+def _as_candidate(walls: PhotoWalls, k: int, sure: float = 0.0, *, settings: RoomSearchSettings) -> WallCandidate:
+    return WallCandidate(
+        walls.normals[k], float(walls.offsets[k]), np.zeros(0, dtype=bool), settings.measured - sure, 1.0
+    )
 
 
-def _with_room(chain: Chain, scorer: ChainScorer, sure: Float[np.ndarray, "r"]) -> PhotoWalls:
+def _with_room(
+    chain: Chain, scorer: ChainScorer, sure: Float[np.ndarray, "r"], settings: RoomSearchSettings
+) -> PhotoWalls:
     """The chain's walls, moved outward where the objects that protrude through them weigh more than what was seen.
 
     A wall that moves alone takes its corners out of the line of sight in which they were seen; moved as far in
@@ -159,7 +157,14 @@ def _with_room(chain: Chain, scorer: ChainScorer, sure: Float[np.ndarray, "r"]) 
     """
     ends, eye = scorer.view.edges_rad[chain.borders], scorer.cues.camera.position[:2]
     out = [
-        _push(_as_candidate(chain.walls, k), float(ends[k]), float(ends[k + 1]), scorer.cues, float(sure[k]))
+        _push(
+            _as_candidate(chain.walls, k, settings=settings),
+            float(ends[k]),
+            float(ends[k + 1]),
+            scorer.cues,
+            float(sure[k]),
+            settings,
+        )
         for k in range(len(chain.walls))
     ]
     apart = replace(chain.walls, offsets=chain.walls.offsets - np.array(out))
@@ -167,21 +172,32 @@ def _with_room(chain: Chain, scorer: ChainScorer, sure: Float[np.ndarray, "r"]) 
         return apart
     at_eye = chain.walls.normals @ eye
     farther = (apart.offsets - at_eye) / (chain.walls.offsets - at_eye)
-    joined = [_joined(chain, k, ends, eye) for k in range(len(chain.walls) - 1)]
+    joined = [_joined(chain, k, ends, eye, settings) for k in range(len(chain.walls) - 1)]
     groups = np.cumsum([0, *(not one for one in joined)])
     most = np.array([farther[groups == group].max() for group in groups])
     together = replace(chain.walls, offsets=at_eye + (chain.walls.offsets - at_eye) * most)
     cost = [best_chain(scorer, walls, chain.ceiling_m).cost for walls in (apart, together)]
-    return together if cost[1] < cost[0] + CORNER_COST else apart
+    return together if cost[1] < cost[0] + settings.corner_cost else apart
 
 
-def _joined(chain: Chain, k: int, ends: Float[np.ndarray, "r1"], eye: Float[np.ndarray, "2"]) -> bool:
+def _joined(
+    chain: Chain, k: int, ends: Float[np.ndarray, "r1"], eye: Float[np.ndarray, "2"], settings: RoomSearchSettings
+) -> bool:
     """Whether a wall and the next one meet where the one ends."""
-    corner = meeting_point(_as_candidate(chain.walls, k), _as_candidate(chain.walls, k + 1))
+    corner = meeting_point(
+        _as_candidate(chain.walls, k, settings=settings), _as_candidate(chain.walls, k + 1, settings=settings)
+    )
     return corner is not None and bool(abs(heading(corner, eye) - ends[k + 1]) <= CORNER_SLACK_RAD)
 
 
-def _push(wall: WallCandidate, first: float, last: float, cues: RoomCues, sure: float) -> float:
+def _push(
+    wall: WallCandidate,
+    first: float,
+    last: float,
+    cues: RoomCues,
+    sure: float,
+    settings: RoomSearchSettings = SETTINGS.search,
+) -> float:
     """How far, in metres, a wall gives way to the objects within its headings.
 
     Every object pulls by its confidence as far as it protrudes, and by the share of it that does, since where it ends
@@ -197,19 +213,19 @@ def _push(wall: WallCandidate, first: float, last: float, cues: RoomCues, sure: 
         through = wall.offset - corners @ wall.normal
         beside = towards.max() < first or towards.min() > last or np.ptp(towards) > np.pi
         elsewhere = portable and through.min() > 0.0
-        if not beside and not elsewhere and 0.0 < through.max() < MAX_PUSH_M:
-            outs.append(float(through.max()) + CLEARANCE_M)
+        if not beside and not elsewhere and 0.0 < through.max() < settings.max_push_m:
+            outs.append(float(through.max()) + settings.clearance_m)
             weights.append(float(weight * min(1.0, through.max() / np.ptp(through))))
     out = np.array(outs)
-    left = np.clip(out - out[:, None], 0.0, ENOUGH_OUT_M)
-    resistance = PUSH_WEIGHT * sure**2 * ENOUGH_OUT_M * np.log1p(out / ENOUGH_OUT_M)
+    left = np.clip(out - out[:, None], 0.0, settings.enough_out_m)
+    resistance = settings.push_weight * sure**2 * settings.enough_out_m * np.log1p(out / settings.enough_out_m)
     return outs[int(np.argmin(left @ np.array(weights) + resistance))]
 
 
-def _highest(cues: RoomCues) -> float:
+def _highest(cues: RoomCues, settings: RoomSearchSettings) -> float:
     """Top of the highest object, which is below the ceiling."""
     tops = cues.object_high[:, 2]
-    return float(tops.max()) + CLEARANCE_M if len(tops) else 0.0
+    return float(tops.max()) + settings.clearance_m if len(tops) else 0.0
 
 
 def _planes(
@@ -218,17 +234,18 @@ def _planes(
     geometry: ObjectGeometry,
     hung: bool,
     openings: tuple[tuple[Opening, ...], ...],
+    settings: RoomSearchSettings,
 ) -> tuple[Plane, ...]:
     """The closed room; without a ceiling where none shows and nothing hangs from it."""
     ceiling = CeilingPiece(np.array([0.0, 0.0, -1.0]), -top_m, np.inf)
-    planes = room_planes(pieces, (ceiling,), geometry.camera, top_m, FLOOR_CONFIDENCE, openings)
-    seen = visible_planes(planes, geometry.camera, CEILING_STEP)
+    planes = room_planes(pieces, (ceiling,), geometry.camera, top_m, settings.floor_confidence, openings)
+    seen = visible_planes(planes, geometry.camera, settings.ceiling_step)
     retained = []
     for index, plane in enumerate(planes):
-        if plane.role == "ceiling" and not hung and float((seen == index).mean()) < MIN_VISIBLE_SHARE:
+        if plane.role == "ceiling" and not hung and float((seen == index).mean()) < settings.min_visible_share:
             continue
         retained.append(plane)
-    known = [None if p.candidate is None else MEASURED - p.candidate.seen_through for p in pieces]
+    known = [None if p.candidate is None else settings.measured - p.candidate.seen_through for p in pieces]
     mean = float(np.mean([c for c in known if c is not None]))
     sure = {f"wall_{k}": GUESS_CONFIDENCE if c is None else c for k, c in enumerate(known, 1)} | {"ceiling": mean}
     return tuple(replace(p, confidence=sure.get(p.id, p.confidence)) for p in retained)

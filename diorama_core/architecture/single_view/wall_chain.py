@@ -16,43 +16,14 @@ from jaxtyping import Float, Int
 from diorama_core.architecture.single_view.level_view import LevelView, projected, response
 from diorama_core.architecture.single_view.room_cues import (
     EDGE_THRESHOLD,
-    EDGE_WEIGHT,
     MAX_CEILING_M,
-    OBJECT_WEIGHT,
     PRIOR_LOG_SIGMA,
     PRIOR_MEDIAN_M,
-    PRIOR_WEIGHT,
     RoomCues,
 )
+from diorama_core.architecture.single_view.settings import SETTINGS, PhotoRoomSettings
 
-REGION_WEIGHT = 6.0
-LINE_WEIGHT = 2.5
-SKIRTINGS_M = (0.06, 0.08, 0.1, 0.12)
-"""Usual heights of skirting boards, whose upper edge is a line above a wall's foot as clear as the foot itself."""
-UPRIGHT_WEIGHT = 1.5
-PROTRUSION_M = 0.25
-BACK_WEIGHT, BACK_LOG_SIGMA, BACK_CAP = 0.1, 0.12, 2.0
-"""Of a sure object's back against everything that the picture shows of the room; how well its place is known; and the
-squared sigmas beyond which it says no more: it may stand elsewhere."""
-UNSURE_SHARE = 0.2
-"""Of its distance, by which an object may be nearer than its cuboid."""
-CORNER_COST, PROTRUDING_COST, JUMP_COST = 0.05, 0.2, 0.3
-"""Of a corner that the room folds in at, of one that stands into the room, and of a wall that ends in the open."""
-MIN_SHARE = 0.3
-"""Minimum share of the corner cost at a clear vertical edge, since photos have many vertical edges."""
-NEAREST_M, FARTHEST_M = 0.5, 12.0
-DISTANCES = 32
 FINE = np.linspace(-0.08, 0.08, 9)
-CORNER_BINS = 1.5
-ENOUGH_EDGE, EDGE_TRUST = 0.25, 0.7
-"""Edges free to be seen over so many picture diagonals can be relied on; and how much they count for confidence."""
-ENOUGH_COLOUR, COLOUR_TRUST = 0.004, 0.45
-"""Visible share of floor and wall at which their colours are distinguishable, and its weight."""
-GRAZING = 0.06
-"""Walls are not looked for where they are seen more aslant than this, nor beyond"""
-REACH_M = 15.0
-FAR_M, FAR_LOG_SIGMA = 7.0, 0.25
-"""What is seen of a wall is rarely farther away than this: another wall comes first."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -62,7 +33,7 @@ class PhotoWalls:
     normals: Float[np.ndarray, "w 2"]
     offsets: Float[np.ndarray, "w"]
     directions: Int[np.ndarray, "w"]
-    """Of the normal: 0 along x, 1 along y, 2 and more aslant."""
+    """Direction of the normal: 0 along x, 1 along y, 2 and more aslant."""
 
     def __len__(self) -> int:
         return len(self.offsets)
@@ -90,19 +61,22 @@ class ChainScorer:
 
     cues: RoomCues
     view: LevelView
+    settings: PhotoRoomSettings = SETTINGS
 
     def costs(self, walls: PhotoWalls, ceiling_m: float) -> Float[np.ndarray, "w m"]:
-        """Of every wall in every heading."""
+        """Cost of every wall in every heading."""
         reach = self.reach(walls)
         eye = self.cues.camera.position
         met = np.isfinite(reach)
         near = np.where(met, reach, 1.0)
         foot, top = -eye[2] / near, (ceiling_m - eye[2]) / near
         total = self._surfaces(walls, foot, top)
-        total -= EDGE_WEIGHT * (self._edge(walls, near, 0.0)[0] + self._edge(walls, near, ceiling_m)[0])
-        total -= EDGE_WEIGHT * self._skirting(walls, near)
+        total -= self.settings.cues.edge_weight * (
+            self._edge(walls, near, 0.0)[0] + self._edge(walls, near, ceiling_m)[0]
+        )
+        total -= self.settings.cues.edge_weight * self._skirting(walls, near)
         total += self._objects(near) + self._backs(near) + self._usual(walls, near)
-        return np.where(met & (near > NEAREST_M * 0.5), total, 1e3)
+        return np.where(met & (near > self.settings.search.nearest_m * 0.5), total, 1e3)
 
     def reach(self, walls: PhotoWalls) -> Float[np.ndarray, "w m"]:
         """Level distance of walls in the headings' middles; `inf` where they are not met."""
@@ -114,22 +88,26 @@ class ChainScorer:
         gap = walls.offsets - walls.normals @ self.cues.camera.position[:2]
         with np.errstate(divide="ignore", invalid="ignore"):
             distance = gap[:, None] / slope
-        return np.where((slope < -GRAZING) & (distance > 0) & (distance < REACH_M), distance, np.inf)
+        return np.where(
+            (slope < -self.settings.search.grazing) & (distance > 0) & (distance < self.settings.search.reach_m),
+            distance,
+            np.inf,
+        )
 
     def _surfaces(
         self, walls: PhotoWalls, foot: Float[np.ndarray, "w m"], top: Float[np.ndarray, "w m"]
     ) -> Float[np.ndarray, "w m"]:
         """Floor, wall and ceiling, each where the candidate puts it, against colours and lines."""
         v = self.view
-        colour = REGION_WEIGHT * v.floor_ratio * v.share
-        level = _summed(-0.5 * colour + LINE_WEIGHT * v.lines[..., 2])
-        overhead = _summed(0.5 * colour + LINE_WEIGHT * v.lines[..., 2])
+        colour = self.settings.search.region_weight * v.floor_ratio * v.share
+        level = _summed(-0.5 * colour + self.settings.search.line_weight * v.lines[..., 2])
+        overhead = _summed(0.5 * colour + self.settings.search.line_weight * v.lines[..., 2])
         rows_foot, rows_top = v.row_of(foot), v.row_of(top)
         total = np.zeros(foot.shape)
         for direction in np.unique(walls.directions):
             mine = walls.directions == direction
             along = v.lines[..., direction] if direction < 2 else v.lines[..., 0] + v.lines[..., 1]
-            upright = _summed(0.5 * colour + LINE_WEIGHT * along)
+            upright = _summed(0.5 * colour + self.settings.search.line_weight * along)
             at_foot, at_top = rows_foot[mine], rows_top[mine]
             total[mine] = _upto(level, at_foot) + _upto(upright, at_top) - _upto(upright, at_foot)
             total[mine] += overhead[:, -1] - _upto(overhead, at_top)
@@ -138,7 +116,7 @@ class ChainScorer:
     def support(self, chain: Chain) -> Float[np.ndarray, "r"]:
         """How far each wall of a chain is seen, 0 to 1: foot and top as edges, and colours that change at the foot."""
         reach = self.reach(chain.walls)
-        near = np.where(np.isfinite(reach), reach, FARTHEST_M)
+        near = np.where(np.isfinite(reach), reach, self.settings.search.farthest_m)
         sides = [self._edge(chain.walls, near, height) for height in (0.0, chain.ceiling_m)]
         skirting = self._skirting(chain.walls, near)
         sides.append((skirting, np.where(skirting > 0.0, sides[0][1], 0.0)))
@@ -148,12 +126,19 @@ class ChainScorer:
         for run, (first, last) in enumerate(pairwise(chain.borders)):
             columns = slice(first, last)
             over, length = (sum(float(side[k][run, columns].sum()) for side in sides) for k in (0, 1))
-            edge = (EDGE_THRESHOLD + over / max(length, 1e-9)) * min(1.0, length / ENOUGH_EDGE)
+            edge = (EDGE_THRESHOLD + over / max(length, 1e-9)) * min(1.0, length / self.settings.search.enough_edge)
             foot = self.view.row_of(-eye / near[run : run + 1, columns])
             below, every = (_upto(x[columns], foot)[0] for x in (colour, known))
             apart = float((2.0 * below - colour[columns, -1]).sum()) / max(float(known[columns, -1].sum()), 1e-9)
-            both = min(float(every.sum()), float((known[columns, -1] - every).sum())) > ENOUGH_COLOUR
-            found.append(min(1.0, EDGE_TRUST * edge + COLOUR_TRUST * max(apart, 0.0) * both))
+            both = (
+                min(float(every.sum()), float((known[columns, -1] - every).sum())) > self.settings.search.enough_colour
+            )
+            found.append(
+                min(
+                    1.0,
+                    self.settings.search.edge_trust * edge + self.settings.search.colour_trust * max(apart, 0.0) * both,
+                )
+            )
         return np.array(found)
 
     def _coloured(self) -> Float[np.ndarray, "m k"]:
@@ -190,7 +175,9 @@ class ChainScorer:
 
         Without it the board's upper edge is taken for the foot of a wall that is farther away as readily as its lower.
         """
-        return np.maximum(np.max([self._edge(walls, near, height)[0] for height in SKIRTINGS_M], axis=0), 0.0)
+        return np.maximum(
+            np.max([self._edge(walls, near, height)[0] for height in self.settings.search.skirtings_m], axis=0), 0.0
+        )
 
     def _objects(self, near: Float[np.ndarray, "w m"]) -> Float[np.ndarray, "w m"]:
         """Objects that would stick through a wall, in the headings of their corners."""
@@ -207,8 +194,13 @@ class ChainScorer:
                 column = int(np.searchsorted(edges, np.arctan2(x, y))) - 1
                 if 0 <= column < near.shape[1]:
                     away = np.hypot(x, y)
-                    out = away * (1.0 - UNSURE_SHARE) - near[:, column]
-                    total[:, column] += OBJECT_WEIGHT * weight / 4.0 * np.clip(out / PROTRUSION_M, 0.0, 2.0)
+                    out = away * (1.0 - self.settings.search.unsure_share) - near[:, column]
+                    total[:, column] += (
+                        self.settings.cues.object_weight
+                        * weight
+                        / 4.0
+                        * np.clip(out / self.settings.search.protrusion_m, 0.0, 2.0)
+                    )
         return total
 
     def _backs(self, near: Float[np.ndarray, "w m"]) -> Float[np.ndarray, "w m"]:
@@ -221,8 +213,13 @@ class ChainScorer:
             left = leaves(e.camera.position[:2], across, low[:2], high[:2])
             behind = np.flatnonzero(np.isfinite(left))
             if len(behind):
-                apart = np.log(near[:, behind] / left[behind]) / BACK_LOG_SIGMA
-                total[:, behind] += BACK_WEIGHT * weight / len(behind) * np.minimum(apart**2, BACK_CAP)
+                apart = np.log(near[:, behind] / left[behind]) / self.settings.search.back_log_sigma
+                total[:, behind] += (
+                    self.settings.search.back_weight
+                    * weight
+                    / len(behind)
+                    * np.minimum(apart**2, self.settings.search.back_cap)
+                )
         return total
 
     def _usual(self, walls: PhotoWalls, near: Float[np.ndarray, "w m"]) -> Float[np.ndarray, "w m"]:
@@ -231,15 +228,17 @@ class ChainScorer:
         sideways = np.abs(walls.normals[:, 0]) > np.abs(walls.normals[:, 1])
         usual = np.where(sideways, 0.5 * PRIOR_MEDIAN_M[0], PRIOR_MEDIAN_M[1])
         odd = 0.5 * np.minimum((np.log(gap / usual) / 0.5) ** 2, 9.0)
-        beyond = np.log(np.maximum(near / FAR_M, 1.0)) / FAR_LOG_SIGMA
-        return PRIOR_WEIGHT / near.shape[1] * (odd[:, None] + 0.5 * np.minimum(beyond**2, 9.0))
+        beyond = np.log(np.maximum(near / self.settings.search.far_m, 1.0)) / self.settings.search.far_log_sigma
+        return self.settings.cues.prior_weight / near.shape[1] * (odd[:, None] + 0.5 * np.minimum(beyond**2, 9.0))
 
     def ceiling_prior(self, ceiling_m: float) -> float:
         """Cost of a height, and of objects that hang from above it."""
         odd = float(0.5 * min((np.log(ceiling_m / PRIOR_MEDIAN_M[2]) / PRIOR_LOG_SIGMA[2]) ** 2, 9.0))
         e = self.cues
         highest = max(float(e.object_high[:, 2].max()) if len(e.object_high) else 0.0, e.hung_top_m)
-        return PRIOR_WEIGHT * odd + 0.5 * float(np.clip((highest - ceiling_m) / PROTRUSION_M, 0.0, 2.0))
+        return self.settings.cues.prior_weight * odd + 0.5 * float(
+            np.clip((highest - ceiling_m) / self.settings.search.protrusion_m, 0.0, 2.0)
+        )
 
     def going_over(self, walls: PhotoWalls, ceiling_m: float) -> Float[np.ndarray, "b w w"]:
         """Cost of going from each wall to each other at the inner borders of the headings."""
@@ -250,15 +249,19 @@ class ChainScorer:
         eye = float(self.cues.camera.position[2])
         summed = _summed(v.upright[1:-1])
         seen = _upto_rows(summed, v.row_of((ceiling_m - eye) / nearest)) - _upto_rows(summed, v.row_of(-eye / nearest))
-        seen = UPRIGHT_WEIGHT * np.maximum(seen, 0.0)
+        seen = self.settings.search.upright_weight * np.maximum(seen, 0.0)
         width = float(v.edges_rad[1] - v.edges_rad[0])
         corner = _corner_headings(walls, self.cues.camera.position[:2])
-        folded = np.where(_folds_in(walls), CORNER_COST, PROTRUDING_COST)
+        folded = np.where(_folds_in(walls), self.settings.search.corner_cost, self.settings.search.protruding_cost)
         cost = np.empty((len(borders), *corner.shape))
         for k, border in enumerate(borders):  # one at a time stays in the processor's cache
             edge = np.where(nearest[k, :, None] <= nearest[k], seen[k, :, None], seen[k])
-            usual = np.where(np.abs(corner - border) < CORNER_BINS * width, folded, JUMP_COST)
-            np.maximum(usual - edge, MIN_SHARE * usual, out=cost[k])
+            usual = np.where(
+                np.abs(corner - border) < self.settings.search.corner_bins * width,
+                folded,
+                self.settings.search.jump_cost,
+            )
+            np.maximum(usual - edge, self.settings.search.min_share * usual, out=cost[k])
         same = np.arange(len(walls))
         cost[:, same, same] = 0.0
         return np.asarray(cost)

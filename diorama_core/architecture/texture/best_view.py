@@ -39,7 +39,7 @@ class BestViewSettings:
     darkest: float = 12.0
     """Levels of 255: darker texels tell no ratio."""
     no_gain_weight: float = 0.02
-    """Of every photo's own exposure beside a comparison with another photo."""
+    """Weight of every photo's own exposure beside a comparison with another photo."""
     max_gain: float = 2.0
     compared_m: float = 0.06
     """Colours are compared over about this length: walls of different photos lie a little beside each other."""

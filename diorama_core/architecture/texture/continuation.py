@@ -38,7 +38,7 @@ class ContinuationSettings:
     lined_block_px: int = 48
     """Smaller copies of lines are a weave rather than lines."""
     broadest_px: float = 10.0
-    """Nor what is broader than this: the shadows of window bars are as broad."""
+    """What is broader than this is not made anew either: the shadows of window bars are as broad."""
     floor_detail: float = 45.0
     wall_detail: float = 14.0
     """Detail that deviates by more levels of 255 is no part of the material."""

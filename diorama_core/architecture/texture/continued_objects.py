@@ -32,7 +32,7 @@ class ContinuedObjectSettings:
     """How far an object is followed beyond its mask."""
 
     min_cell_share: float = 0.03
-    """Of an object's pixels: rarer colours are of what shines through it or stands beside it."""
+    """Share of an object's pixels: rarer colours are of what shines through it or stands beside it."""
     min_pixels: int = 100
     alike_lab: float = 16.0
     """So near a colour of the object is alike."""
@@ -51,9 +51,9 @@ class ContinuedObjectSettings:
     rim_m: float = 0.06
     """Gaps between leaves that do not part a piece, and shadows and rims around it."""
     main_share: float = 0.25
-    """Of an object's pixels that have a colour whose patches are looked at."""
+    """Share of an object's pixels that have a colour whose patches are looked at."""
     cut_share: float = 0.3
-    """Of a patch of even colour that a mask holds when it has cut it in two."""
+    """Share of a patch of even colour that a mask holds when it has cut it in two."""
 
 
 SETTINGS = ContinuedObjectSettings()
@@ -92,7 +92,7 @@ def cut_patches(
 def object_colours(
     rgb: UInt8[np.ndarray, "h w 3"], objects: Sequence[DetectedObject], settings: ContinuedObjectSettings = SETTINGS
 ) -> tuple[ObjectColours, ...]:
-    """Of all objects that enough is seen of."""
+    """Common colours of all objects that enough is seen of."""
     found = []
     for item in objects:
         pixels = rgb[item.mask]

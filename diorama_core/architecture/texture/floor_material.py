@@ -29,7 +29,7 @@ _USUAL_AXES = np.array([[1.0, 0.0, 0.0], [0.0, 0.45, 0.89], [0.0, 0.89, -0.45]])
 _TOLERANCE_LAB = np.array([16.0, 7.0, 7.0])
 """A texel is foreign when it differs by more than this many typical deviations, and by this much at least."""
 _LIT_LAB = np.array([16.0, 17.5, 17.5])
-"""Nor by more than this in all: a wall above its floor may be no edge but a gradient, too."""
+"""Bound of the whole difference: a wall above its floor may be no edge but a gradient, too."""
 
 
 @dataclass(frozen=True)
@@ -46,7 +46,7 @@ class FloorMaterialSettings:
     """Before the feet of things, beyond their contact shadows: distances below masks, as shares of the photo's
     height."""
     quantiles: tuple[float, float] = (0.16, 0.84)
-    """Of a normal distribution, one standard deviation to either side."""
+    """Quantiles of a normal distribution, one standard deviation to either side."""
     without_contact: float = 0.15
     """How much a colour counts that is seen at nobody's feet, beside one that is at all of them."""
     of_shade: float = 0.75
@@ -61,14 +61,14 @@ class FloorMaterialSettings:
     """Percentile of the photo's lightness that is about white."""
     spreads: float = 3.0
     widest: float = 1.5
-    """And whenever it differs by so many times that much."""
+    """Likewise whenever it differs by so many times that much."""
     shadow_l: float = 14.0
     """What is so much darker is a shadow of what stands there, which will not stay where it is."""
     pattern_m: float = 0.15
     pattern_share: float = 0.75
     """Colours of a pattern are within this distance of each other over at least this share of both."""
     between_share: float = 0.4
-    """And so much of the one between pieces of the other."""
+    """So much of the one must also lie between pieces of the other."""
     other_colours: int = 4
     """So many colours beside the main one are looked at."""
     min_of_pattern: float = 0.03

@@ -29,7 +29,7 @@ class LevelLightSettings:
     """Both are compared over about this length."""
     light_m: float = 0.8
     most_levels: float = 10.0
-    """Of the light, what varies more broadly than this is left, up to so many levels of 255: a room has a brighter
+    """Light that varies more broadly than this is left, up to so many levels of 255: a room has a brighter
     side."""
     min_levels: float = 0.5
 

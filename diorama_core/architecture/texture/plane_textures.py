@@ -26,7 +26,7 @@ from diorama_core.scene.types import Architecture, Camera, Plane
 
 MAX_SIDE_PX = 1024
 MAX_CEILING_PX = 512
-"""Of a ceiling's picture: little of it is in a photo, and what is there is plain."""
+"""Longest side of a ceiling's picture: little of it is in a photo, and what is there is plain."""
 PIXELS_PER_M = 150.0
 MIN_SEEN_SHARE = 0.06
 """Minimum visible share of a plane's area for a texture; below it the plane keeps its plain colour."""
@@ -40,7 +40,7 @@ FRAME = 0.014
 ISLAND_M = 0.22
 """Pieces of a plane narrower than this are mostly rims, shadows and leaves of what stands before it."""
 FLOOR_ISLAND_M = 0.1
-"""Of a floor, whose colours were looked at already."""
+"""For a floor, whose colours were looked at already."""
 GRAIN_M = 0.01
 """Half the width of a floor's specks and lines that are its material's, though of another colour."""
 ISLAND_SHARE = 0.04

@@ -25,11 +25,11 @@ MIN_SOURCE = 0.005
 OVERLAP = 0.34
 """Share of a block that lies on what is already known."""
 WEIGHTS_KEPT = 16
-"""Of blocks with equal weights the same sums are needed again; most lie beside one another."""
+"""Blocks with equal weights need the same sums, which are needed again; most lie beside one another."""
 SEARCH_STEP = 2
 """Matches are looked for at half resolution."""
 TOLERANCE = 0.1
-"""Of the places whose match is worse than the best by at most this share, one is drawn."""
+"""One of the places is drawn whose match is worse than the best by at most this share."""
 ODD_SHARE = 0.3
 """Where more than this share of the texels around deviate too much, there is an object."""
 REUSE_COST = 0.1

@@ -10,15 +10,12 @@ from scipy.spatial import ConvexHull, QhullError
 
 from diorama_core.architecture.walls.ceilings import CeilingPiece
 from diorama_core.architecture.walls.openings import Opening, with_openings
-from diorama_core.architecture.walls.wall_sequence import BEHIND_CAMERA_M, WallPiece
+from diorama_core.architecture.walls.settings import SETTINGS, WallSettings
+from diorama_core.architecture.walls.wall_sequence import WallPiece
 from diorama_core.geometry.planes import clip_polygon
 from diorama_core.scene.types import Camera, Plane
 
 GUESS_CONFIDENCE = 0.15
-BESIDE_CAMERA_M = 0.5
-"""The floor reaches at least this far to either side of the camera."""
-HIGHEST_ROOM_M = 9.0
-SEEN_CONFIDENCE = 0.9
 
 
 def room_planes(
@@ -28,6 +25,7 @@ def room_planes(
     top_m: float,
     floor_confidence: float,
     openings: tuple[tuple[Opening, ...], ...] = (),
+    settings: WallSettings = SETTINGS,
 ) -> tuple[Plane, ...]:
     """Floor, walls and ceilings as planes that share their corners.
 
@@ -38,13 +36,14 @@ def room_planes(
         top_m: Where walls end under no ceiling.
         floor_confidence: Of the floor.
         openings: Doorways and windows of each wall.
+        settings: numbers to work with.
     """
-    ground = floor_outline(pieces, camera)
+    ground = floor_outline(pieces, camera, settings)
     base = np.concatenate([ground, np.zeros((len(ground), 1))], axis=1)
     planes = [Plane("floor", "floor", base, confidence=floor_confidence)]
     bounds = _bounds(ceilings, top_m)
     for piece, cut in zip(pieces, openings or ((),) * len(pieces), strict=True):
-        polygon = wall_polygon(piece, bounds)
+        polygon = wall_polygon(piece, bounds, settings)
         if len(polygon) >= 3:
             polygon = with_openings(polygon, cut)
             sure = GUESS_CONFIDENCE if piece.candidate is None else max(0.3, 0.95 - piece.candidate.seen_through)
@@ -52,7 +51,7 @@ def room_planes(
     polygons = [p for p in (_ceiling_polygon(c, ceilings, bounds, base) for c in ceilings) if len(p) >= 3]
     for number, polygon in enumerate(polygons, 1):
         name = "ceiling" if len(polygons) == 1 else f"ceiling_{number}"
-        planes.append(Plane(name, "ceiling", polygon, confidence=SEEN_CONFIDENCE))
+        planes.append(Plane(name, "ceiling", polygon, confidence=settings.seen_confidence))
     return tuple(planes)
 
 
@@ -67,10 +66,14 @@ def _facing_each_other(ceilings: tuple[CeilingPiece, ...]) -> bool:
     return any(float(a.normal[:2] @ b.normal[:2]) < -0.05 for a in ceilings for b in ceilings)
 
 
-def wall_polygon(piece: WallPiece, bounds: tuple[CeilingPiece, ...]) -> Float[np.ndarray, "n 3"]:
+def wall_polygon(
+    piece: WallPiece, bounds: tuple[CeilingPiece, ...], settings: WallSettings
+) -> Float[np.ndarray, "n 3"]:
     """A wall from the floor up to the lowest ceiling above it; empty where that is below the floor."""
     (ax, ay), (bx, by) = piece.start, piece.end
-    polygon = np.array([[ax, ay, 0.0], [bx, by, 0.0], [bx, by, HIGHEST_ROOM_M], [ax, ay, HIGHEST_ROOM_M]])
+    polygon = np.array(
+        [[ax, ay, 0.0], [bx, by, 0.0], [bx, by, settings.highest_room_m], [ax, ay, settings.highest_room_m]]
+    )
     for bound in bounds:
         polygon = clip_polygon(polygon, bound.normal, bound.offset)
         if len(polygon) < 3:
@@ -99,21 +102,24 @@ def _without_doubles(polygon: Float[np.ndarray, "n 3"]) -> Float[np.ndarray, "m 
     return polygon[apart]
 
 
-def floor_outline(pieces: tuple[WallPiece, ...], camera: Camera) -> Float[np.ndarray, "n 2"]:
+def floor_outline(pieces: tuple[WallPiece, ...], camera: Camera, settings: WallSettings) -> Float[np.ndarray, "n 2"]:
     """Outline of the floor, counter-clockwise: the walls' feet, then back behind the camera."""
     chain = [pieces[0].start]
     for piece in pieces:
         chain += [piece.start, piece.end]
     x, y = camera.position[:2]
-    behind = min(y - BEHIND_CAMERA_M, *(float(p[1]) for p in (chain[0], chain[-1])))
-    right, left = max(float(chain[-1][0]), x + BESIDE_CAMERA_M), min(float(chain[0][0]), x - BESIDE_CAMERA_M)
+    behind = min(y - settings.behind_camera_m, *(float(p[1]) for p in (chain[0], chain[-1])))
+    right, left = (
+        max(float(chain[-1][0]), x + settings.beside_camera_m),
+        min(float(chain[0][0]), x - settings.beside_camera_m),
+    )
     corners = _distinct([*chain, np.array([right, behind]), np.array([left, behind])])
     outline = np.array(corners)[::-1]
     if is_simple(outline):
         return outline
     seen = tuple(p for p in pieces if p.candidate is not None)
     # Assumed pieces may cross each other behind narrow walls; without them the outline is cut short there.
-    return floor_outline(seen, camera) if 0 < len(seen) < len(pieces) else _hull(outline)
+    return floor_outline(seen, camera, settings) if 0 < len(seen) < len(pieces) else _hull(outline)
 
 
 def _distinct(points: list[Float[np.ndarray, "2"]]) -> list[Float[np.ndarray, "2"]]:

@@ -11,22 +11,10 @@ import cv2
 import numpy as np
 from jaxtyping import Bool, Float
 
+from diorama_core.architecture.walls.settings import WallSettings
 from diorama_core.architecture.walls.surface import MeasuredSurface
 from diorama_core.architecture.walls.wall_candidates import WallCandidate, crossings, tolerance_m
 from diorama_core.architecture.walls.wall_sequence import WallPiece
-
-CELL_M = 0.06
-BEYOND_M = 0.25
-"""What is seen less far behind a wall is a niche, a frame or noise."""
-MIN_AREA_M2, MIN_SIDE_M = 0.35, 0.35
-MIN_FILL = 0.75
-"""Share of its rectangle that an opening fills."""
-SEEN_THROUGH = 0.6
-"""Share of a cell's rays that must pass."""
-FRAME_M = 0.10
-"""Openings this near an end or the top of the wall are its end, not an opening."""
-SILL_M = 0.3
-"""Openings that come down lower than this are doorways and reach the floor."""
 
 
 @dataclass(frozen=True)
@@ -44,33 +32,36 @@ class Opening:
         return self.bottom == 0.0
 
 
-def find_openings(surface: MeasuredSurface, piece: WallPiece, top_m: float) -> tuple[Opening, ...]:
+def find_openings(
+    surface: MeasuredSurface, piece: WallPiece, top_m: float, settings: WallSettings
+) -> tuple[Opening, ...]:
     """Rectangles of a wall through which farther objects are measured, from left to right.
 
     Args:
         surface: The measured points.
         piece: The wall; one that was only assumed has no openings.
         top_m: Its height.
+        settings: numbers to work with.
     """
-    if piece.candidate is None or piece.length_m < 3 * MIN_SIDE_M:
+    if piece.candidate is None or piece.length_m < 3 * settings.min_side_m:
         return ()
-    passed, stopped = _rays(surface, piece, piece.candidate, top_m)
+    passed, stopped = _rays(surface, piece, piece.candidate, top_m, settings)
     share = passed / np.maximum(passed + stopped, 1e-9)
-    through = ((share > SEEN_THROUGH) & (passed >= 2)).astype(np.uint8)
+    through = ((share > settings.seen_through) & (passed >= 2)).astype(np.uint8)
     through = cv2.morphologyEx(through, cv2.MORPH_CLOSE, np.ones((5, 5), np.uint8))
     through = cv2.morphologyEx(through, cv2.MORPH_OPEN, np.ones((3, 3), np.uint8))
     count, _, stats, _ = cv2.connectedComponentsWithStats(through, connectivity=4)
-    found = [_opening(stats[i], piece, top_m) for i in range(1, count)]
+    found = [_opening(stats[i], piece, top_m, settings) for i in range(1, count)]
     return tuple(sorted((o for o in found if o is not None), key=lambda o: o.left))
 
 
-def is_shut(surface: MeasuredSurface, piece: WallPiece, opening: Opening, top_m: float) -> bool:
+def is_shut(surface: MeasuredSurface, piece: WallPiece, opening: Opening, top_m: float, settings: WallSettings) -> bool:
     """Whether more of what is measured within a rectangle lies on the wall than behind it."""
     if piece.candidate is None:
         return False
-    passed, stopped = _rays(surface, piece, piece.candidate, top_m)
-    rows = slice(int(opening.bottom / CELL_M), int(opening.top / CELL_M) + 1)
-    columns = slice(int(opening.left / CELL_M), int(opening.right / CELL_M) + 1)
+    passed, stopped = _rays(surface, piece, piece.candidate, top_m, settings)
+    rows = slice(int(opening.bottom / settings.cell_m), int(opening.top / settings.cell_m) + 1)
+    columns = slice(int(opening.left / settings.cell_m), int(opening.right / settings.cell_m) + 1)
     return bool(stopped[rows, columns].sum() > passed[rows, columns].sum())
 
 
@@ -81,7 +72,7 @@ def counts(openings: tuple[tuple[Opening, ...], ...]) -> tuple[int, int]:
 
 
 def _rays(
-    surface: MeasuredSurface, piece: WallPiece, wall: WallCandidate, top_m: float
+    surface: MeasuredSurface, piece: WallPiece, wall: WallCandidate, top_m: float, settings: WallSettings
 ) -> tuple[Float[np.ndarray, "v u"], Float[np.ndarray, "v u"]]:
     """How many rays pass and how many stop in each cell of the wall, row 0 at the floor."""
     along = (piece.end - piece.start) / piece.length_m
@@ -89,27 +80,30 @@ def _rays(
     u, v = (crossing[:, :2] - piece.start) @ along, crossing[:, 2]
     depth_behind = wall.offset - surface.points[:, :2] @ wall.normal
     inside = (share > 0) & (u > 0) & (u < piece.length_m) & (v > 0) & (v < top_m)
-    beyond = inside & (depth_behind > BEYOND_M + 2.0 * tolerance_m(surface.depth_m))
+    beyond = inside & (depth_behind > settings.beyond_m + 2.0 * tolerance_m(surface.depth_m))
     on = inside & (np.abs(depth_behind) < tolerance_m(surface.depth_m))
-    shape = (int(np.ceil(top_m / CELL_M)), int(np.ceil(piece.length_m / CELL_M)))
+    shape = (int(np.ceil(top_m / settings.cell_m)), int(np.ceil(piece.length_m / settings.cell_m)))
 
     def counted(chosen: Bool[np.ndarray, "n"]) -> Float[np.ndarray, "v u"]:
-        index = (v[chosen] / CELL_M).astype(int) * shape[1] + (u[chosen] / CELL_M).astype(int)
+        index = (v[chosen] / settings.cell_m).astype(int) * shape[1] + (u[chosen] / settings.cell_m).astype(int)
         return np.bincount(index, minlength=shape[0] * shape[1]).reshape(shape).astype(np.float64)
 
     return counted(beyond), counted(on)
 
 
-def _opening(stats: np.ndarray, piece: WallPiece, top_m: float) -> Opening | None:
+def _opening(stats: np.ndarray, piece: WallPiece, top_m: float, settings: WallSettings) -> Opening | None:
     """The rectangle of a component, if it can be a doorway or a window."""
     column, row, width, height, cells = (int(v) for v in stats[:5])
-    left, right = column * CELL_M, (column + width) * CELL_M
-    bottom, top = row * CELL_M, (row + height) * CELL_M
-    large = min(width, height) * CELL_M >= MIN_SIDE_M and cells * CELL_M**2 >= MIN_AREA_M2
-    framed = left > FRAME_M and right < piece.length_m - FRAME_M and top < top_m - FRAME_M
-    if not (large and framed and cells >= MIN_FILL * width * height):
+    left, right = column * settings.cell_m, (column + width) * settings.cell_m
+    bottom, top = row * settings.cell_m, (row + height) * settings.cell_m
+    large = (
+        min(width, height) * settings.cell_m >= settings.min_side_m
+        and cells * settings.cell_m**2 >= settings.min_area_m2
+    )
+    framed = left > settings.frame_m and right < piece.length_m - settings.frame_m and top < top_m - settings.frame_m
+    if not (large and framed and cells >= settings.min_fill * width * height):
         return None
-    return Opening(left, right, 0.0 if bottom < SILL_M else bottom, top)
+    return Opening(left, right, 0.0 if bottom < settings.sill_m else bottom, top)
 
 
 def with_openings(polygon: Float[np.ndarray, "n 3"], openings: tuple[Opening, ...]) -> Float[np.ndarray, "m 3"]:

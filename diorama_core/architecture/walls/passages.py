@@ -15,14 +15,13 @@ import numpy as np
 from jaxtyping import Float
 from scipy.optimize import least_squares
 
-from diorama_core.architecture.walls.openings import FRAME_M, MIN_AREA_M2, MIN_SIDE_M, SILL_M, Opening
+from diorama_core.architecture.walls.openings import Opening
+from diorama_core.architecture.walls.settings import SETTINGS, WallSettings
 from diorama_core.architecture.walls.wall_sequence import WallPiece
 from diorama_core.artefacts import ArchitectureEstimate, DetectedObject, ObjectGeometry
 from diorama_core.scene.types import Camera
 
 NAMES = frozenset({"doorway", "archway", "passageway", "door opening"})
-MAX_MISFIT_PX = 0.03
-"""A rectangle whose outline misses the box by more, as a share of the photo's longer side, is not in that wall."""
 
 
 def is_passage(found: DetectedObject) -> bool:
@@ -47,6 +46,7 @@ def with_passages(
     camera: Camera,
     top_m: float,
     is_shut: Callable[[int, Opening], bool] | None = None,
+    settings: WallSettings = SETTINGS,
 ) -> tuple[tuple[tuple[Opening, ...], ...], tuple[str, ...]]:
     """Each wall's openings from left to right with those that were pointed at, and the ids of the latter.
 
@@ -57,11 +57,12 @@ def with_passages(
         camera: The photo's.
         top_m: Height of the walls.
         is_shut: Tells of a wall and a rectangle of it that it was measured to be closed.
+        settings: numbers to work with.
     """
     of_wall = [list(openings) for openings in measured]
     ids = []
     for found in objects:
-        place = _opening(found, pieces, camera, top_m) if is_passage(found) else None
+        place = _opening(found, pieces, camera, top_m, settings) if is_passage(found) else None
         if place is None:
             continue
         wall, opening = place
@@ -74,7 +75,7 @@ def with_passages(
 
 
 def _opening(
-    found: DetectedObject, pieces: tuple[WallPiece, ...], camera: Camera, top_m: float
+    found: DetectedObject, pieces: tuple[WallPiece, ...], camera: Camera, top_m: float, settings: WallSettings
 ) -> tuple[int, Opening] | None:
     """The wall that a box lies in, and the rectangle of it that the box surrounds."""
     x1, y1, x2, y2 = found.box
@@ -94,10 +95,10 @@ def _opening(
     if (reach <= 0).any():
         return None
     start = np.array([u[0], u[1], v[3], v[2]])
-    left, right, bottom, top = _fitted(start, found, piece, camera)
-    left, right = max(left, FRAME_M), min(right, piece.length_m - FRAME_M)
-    bottom, top = (0.0 if bottom < SILL_M else bottom), min(top, top_m - FRAME_M)
-    if min(right - left, top - bottom) < MIN_SIDE_M or (right - left) * (top - bottom) < MIN_AREA_M2:
+    left, right, bottom, top = _fitted(start, found, piece, camera, settings)
+    left, right = max(left, settings.frame_m), min(right, piece.length_m - settings.frame_m)
+    bottom, top = (0.0 if bottom < settings.sill_m else bottom), min(top, top_m - settings.frame_m)
+    if min(right - left, top - bottom) < settings.min_side_m or (right - left) * (top - bottom) < settings.min_area_m2:
         return None
     return nearest[1], Opening(left, right, bottom, top)
 
@@ -115,7 +116,7 @@ def _met(
 
 
 def _fitted(
-    start: Float[np.ndarray, "4"], found: DetectedObject, piece: WallPiece, camera: Camera
+    start: Float[np.ndarray, "4"], found: DetectedObject, piece: WallPiece, camera: Camera, settings: WallSettings
 ) -> tuple[float, float, float, float]:
     """Left, right, bottom and top of the rectangle whose picture the box surrounds.
 
@@ -131,7 +132,7 @@ def _fitted(
 
     found_edges = least_squares(misfit, start, max_nfev=30).x
     # A box that no upright rectangle of this wall fills is read along its middle lines.
-    largest = MAX_MISFIT_PX * max(camera.intrinsics.width, camera.intrinsics.height)
+    largest = settings.max_misfit_px * max(camera.intrinsics.width, camera.intrinsics.height)
     edges = found_edges if np.abs(misfit(found_edges)).max() < largest else start
     left, right, bottom, top = (float(e) for e in edges)
     return left, right, bottom, top

@@ -13,20 +13,14 @@ import cv2
 import numpy as np
 from jaxtyping import Bool, Float, Float32
 
+from diorama_core.architecture.walls.settings import SETTINGS, WallSettings
 from diorama_core.geometry.casting import pixel_centres
 from diorama_core.scene.types import Camera, Intrinsics
 
-GRID_PX = 320
 RADII_PX = (2, 4, 8)
 """Half sizes of the windows, smallest first."""
 ENOUGH_RAD = np.deg2rad(4.0)
 """A window is large enough when noise turns its normal by no more than this."""
-FLATNESS = 0.004
-"""Relative deviation from a plane, besides noise, up to which a window counts as flat."""
-MIN_SHARE = 0.5
-"""Share of a window that must be measured."""
-ALIKE_SHARE = 0.1
-"""Neighbouring samples whose depths differ by less than this share are averaged when the map is reduced."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -64,7 +58,10 @@ class MeasuredSurface:
 
 
 def measured_surface(
-    depth_m: Float32[np.ndarray, "h w"], camera: Camera, is_object: Bool[np.ndarray, "h w"]
+    depth_m: Float32[np.ndarray, "h w"],
+    camera: Camera,
+    is_object: Bool[np.ndarray, "h w"],
+    settings: WallSettings = SETTINGS,
 ) -> MeasuredSurface:
     """World points, normals and areas of the measured pixels on a grid of at most `GRID_PX`.
 
@@ -72,9 +69,10 @@ def measured_surface(
         depth_m: z in the camera, 0 where unknown.
         camera: Its intrinsics are those of the depth map.
         is_object: Pixels of objects that were pointed at.
+        settings: numbers to work with.
     """
-    depth, k = averaged(depth_m, camera.intrinsics, GRID_PX)
-    calm, normals_camera, noise = calm_planes(depth, k)
+    depth, k = averaged(depth_m, camera.intrinsics, settings.grid_px, settings)
+    calm, normals_camera, noise = calm_planes(depth, k, settings)
     valid = calm > 0
     pixels = pixel_centres(k.width, k.height)
     rays = np.stack([(pixels[..., 0] - k.cx) / k.fx, (pixels[..., 1] - k.cy) / k.fy, np.ones(depth.shape)], axis=-1)
@@ -98,7 +96,7 @@ def measured_surface(
 
 
 def averaged(
-    depth_m: Float32[np.ndarray, "h w"], intrinsics: Intrinsics, max_side: int
+    depth_m: Float32[np.ndarray, "h w"], intrinsics: Intrinsics, max_side: int, settings: WallSettings = SETTINGS
 ) -> tuple[Float[np.ndarray, "hs ws"], Intrinsics]:
     """The map at about `max_side` pixels: blocks are averaged in inverse depth where they hold one surface.
 
@@ -116,7 +114,7 @@ def averaged(
     low = np.where(known, tiles, np.inf).min(axis=-1)
     high = tiles.max(axis=-1)
     inverse = np.where(known, 1.0 / np.maximum(tiles, 1e-9), 0.0).sum(axis=-1) / np.maximum(known.sum(axis=-1), 1)
-    one_surface = (known.sum(axis=-1) * 2 >= block * block) & (high < (1.0 + ALIKE_SHARE) * low)
+    one_surface = (known.sum(axis=-1) * 2 >= block * block) & (high < (1.0 + settings.alike_share) * low)
     middle = tiles[..., (block // 2) * block + block // 2]
     small = np.where(one_surface, 1.0 / np.maximum(inverse, 1e-9), middle)
     k = intrinsics
@@ -125,7 +123,7 @@ def averaged(
 
 
 def calm_planes(
-    depth_m: Float[np.ndarray, "h w"], k: Intrinsics
+    depth_m: Float[np.ndarray, "h w"], k: Intrinsics, settings: WallSettings = SETTINGS
 ) -> tuple[Float[np.ndarray, "h w"], Float[np.ndarray, "h w 3"], float]:
     """Depth freed of noise where surfaces are flat, normals toward the camera (zero where unknown), and the noise."""
     valid = depth_m > 0
@@ -135,16 +133,16 @@ def calm_planes(
     q = np.where(valid, 1.0 / np.maximum(depth_m, 1e-9), 0.0)
     pixels = pixel_centres(k.width, k.height)
     x, y = (pixels[..., 0] - k.cx) / k.fx, (pixels[..., 1] - k.cy) / k.fy
-    smallest = _window_fits(q, valid, x, y, RADII_PX[0])
+    smallest = _window_fits(q, valid, x, y, RADII_PX[0], settings)
     noise = _noise(smallest, q, valid)
     calm, settled = depth_m.copy(), np.zeros(depth_m.shape, dtype=bool)
     for radius in RADII_PX:
-        fit = smallest if radius == RADII_PX[0] else _window_fits(q, valid, x, y, radius)
+        fit = smallest if radius == RADII_PX[0] else _window_fits(q, valid, x, y, radius, settings)
         abc, spread = _best_around(fit, radius)
         value = abc[..., 0] * x + abc[..., 1] * y + abc[..., 2]
         length = np.linalg.norm(abc, axis=-1)
-        flat = valid & (spread < (1.5 * noise + FLATNESS) * q) & (value > 1e-6) & (length > 1e-9)
-        flat &= np.abs(value - q) < (4.0 * noise + 2.0 * FLATNESS) * q
+        flat = valid & (spread < (1.5 * noise + settings.flatness) * q) & (value > 1e-6) & (length > 1e-9)
+        flat &= np.abs(value - q) < (4.0 * noise + 2.0 * settings.flatness) * q
         window = 2 * radius + 1
         turn = noise * q / (window * window / np.sqrt(12.0) / k.fx) / np.maximum(length, 1e-9)
         use = flat & ~settled
@@ -160,6 +158,7 @@ def _window_fits(
     x: Float[np.ndarray, "h w"],
     y: Float[np.ndarray, "h w"],
     radius: int,
+    settings: WallSettings,
 ) -> tuple[Float[np.ndarray, "h w 3"], Float[np.ndarray, "h w"]]:
     """`q = a x + b y + c` in the window around each pixel, and the standard deviation from it (`inf`: no fit)."""
     w = valid.astype(np.float64)
@@ -173,7 +172,7 @@ def _window_fits(
     xx, yy, xy = mean(x * x) / safe - mx * mx, mean(y * y) / safe - my * my, mean(x * y) / safe - mx * my
     xq, yq, qq = mean(x * q) / safe - mx * mq, mean(y * q) / safe - my * mq, mean(q * q) / safe - mq * mq
     determinant = xx * yy - xy * xy
-    sound = (share >= MIN_SHARE) & (determinant > 1e-3 * np.maximum(xx, yy) ** 2) & (determinant > 0)
+    sound = (share >= settings.min_share) & (determinant > 1e-3 * np.maximum(xx, yy) ** 2) & (determinant > 0)
     d = np.where(sound, determinant, 1.0)
     a, b = (xq * yy - yq * xy) / d, (yq * xx - xq * xy) / d
     rest = np.sqrt(np.maximum(qq - a * xq - b * yq, 0.0))
@@ -197,7 +196,7 @@ def _noise(
 def _best_around(
     fit: tuple[Float[np.ndarray, "h w 3"], Float[np.ndarray, "h w"]], radius: int
 ) -> tuple[Float[np.ndarray, "h w 3"], Float[np.ndarray, "h w"]]:
-    """Of the windows centred on a pixel and up to `radius` beside it, the fit that deviates least."""
+    """Fit that deviates least of those to the windows centred on a pixel and up to `radius` beside it."""
     best_abc, best = fit
     for rows, columns in ((0, radius), (0, -radius), (radius, 0), (-radius, 0)):
         abc, spread = (_shifted(v, rows, columns) for v in fit)

@@ -28,7 +28,7 @@ class WallPathSettings:
     full_conflict: float = 0.05
     conflict_cost: float = 2.5
     unknown_cost: float = 0.9
-    """Of a heading in which no wall is taken to lead; one in which a wall leads unseen costs 1."""
+    """Cost of a heading in which no wall is taken to lead; one in which a wall leads unseen costs 1."""
     corner_cost: float = 1.0
     open_end_cost: float = 4.0
     into_unknown_cost: float = 2.0

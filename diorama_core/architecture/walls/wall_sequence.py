@@ -11,22 +11,15 @@ from itertools import pairwise
 import numpy as np
 from jaxtyping import Float
 
+from diorama_core.architecture.walls.settings import SETTINGS, WallSettings
 from diorama_core.architecture.walls.surface import MeasuredSurface
 from diorama_core.architecture.walls.wall_candidates import WallCandidate
 from diorama_core.architecture.walls.wall_path import Run, heading, wall_runs
 
 CORNER_SLACK_RAD = np.deg2rad(5.0)
-COLLINEAR_M = 0.1
 ALIKE_COSINE = float(np.cos(np.deg2rad(25.0)))
-ALIKE_M, ALIKE_PER_M = 0.1, 0.03
-"""Neighbours turned by less than that and apart by less than this, plus this per metre of distance, are one wall."""
 GAP_RAD = np.deg2rad(7.0)
 """Wider unknown stretches of the view are closed behind everything measured there."""
-MAX_HIDDEN_M = 3.0
-BEHIND_CAMERA_M = 0.4
-"""Side walls end this far behind the camera."""
-BEYOND_VIEW_M = 0.3
-MAX_RANGE_M = 12.0
 
 
 @dataclass(frozen=True)
@@ -45,7 +38,11 @@ class WallPiece:
 
 
 def outline(
-    surface: MeasuredSurface, walls: list[WallCandidate], view: tuple[float, float], top_m: float
+    surface: MeasuredSurface,
+    walls: list[WallCandidate],
+    view: tuple[float, float],
+    top_m: float,
+    settings: WallSettings,
 ) -> tuple[WallPiece, ...]:
     """The walls as a chain of pieces that meet, from the left to the right end of the view.
 
@@ -54,38 +51,46 @@ def outline(
         walls: Candidates that may be walls.
         view: Headings of the picture's left and right side.
         top_m: Height at which walls end.
+        settings: numbers to work with.
     """
     origin = surface.camera_position[:2]
     runs = wall_runs(surface, walls, view, top_m)
     if not runs:
         return ()
-    return chained(_merged(_closed(_merged(runs, origin), surface, view), origin), view, origin)
+    return chained(
+        _merged(_closed(_merged(runs, origin, settings), surface, view), origin, settings), view, origin, settings
+    )
 
 
-def chained(runs: list[Run], view: tuple[float, float], origin: Float[np.ndarray, "2"]) -> tuple[WallPiece, ...]:
+def chained(
+    runs: list[Run], view: tuple[float, float], origin: Float[np.ndarray, "2"], settings: WallSettings = SETTINGS
+) -> tuple[WallPiece, ...]:
     """Runs as pieces that meet.
 
     Args:
         runs: At least one, from left to right.
         view: Headings of the picture's left and right side.
         origin: The camera, in plan.
+        settings: numbers to work with.
     """
     pieces: list[WallPiece] = []
-    start = _beyond_view(runs[0], view[0], origin, left=True)
+    start = _beyond_view(runs[0], view[0], origin, left=True, settings=settings)
     for run, following in pairwise(runs):
-        end, hidden, restart = _joint(run, following, origin)
+        end, hidden, restart = _joint(run, following, origin, settings)
         pieces.append(WallPiece(start, end, run.wall))
         pieces += hidden
         start = restart
-    pieces.append(WallPiece(start, _beyond_view(runs[-1], view[1], origin, left=False), runs[-1].wall))
+    pieces.append(
+        WallPiece(start, _beyond_view(runs[-1], view[1], origin, left=False, settings=settings), runs[-1].wall)
+    )
     return tuple(p for p in pieces if p.length_m > 0.02)
 
 
-def _merged(runs: list[Run], origin: Float[np.ndarray, "2"]) -> list[Run]:
+def _merged(runs: list[Run], origin: Float[np.ndarray, "2"], settings: WallSettings) -> list[Run]:
     """Neighbouring runs of what is about the same wall become one, whatever was unknown between them."""
     out: list[Run] = []
     for run in runs:
-        if out and _about_same(out[-1], run, origin):
+        if out and _about_same(out[-1], run, origin, settings):
             larger = max(out[-1].wall, run.wall, key=lambda w: w.area_m2)
             out[-1] = Run(larger, out[-1].first, run.last)
         else:
@@ -93,20 +98,20 @@ def _merged(runs: list[Run], origin: Float[np.ndarray, "2"]) -> list[Run]:
     return out
 
 
-def _collinear(a: WallCandidate, b: WallCandidate) -> bool:
-    return bool(a.normal @ b.normal > np.cos(np.deg2rad(3.0)) and abs(a.offset - b.offset) < COLLINEAR_M)
+def _collinear(a: WallCandidate, b: WallCandidate, settings: WallSettings) -> bool:
+    return bool(a.normal @ b.normal > np.cos(np.deg2rad(3.0)) and abs(a.offset - b.offset) < settings.collinear_m)
 
 
-def _about_same(a: Run, b: Run, origin: Float[np.ndarray, "2"]) -> bool:
-    """The same line; or the smaller one lies close along the larger, as noise and assumed walls do."""
-    if _collinear(a.wall, b.wall):
+def _about_same(a: Run, b: Run, origin: Float[np.ndarray, "2"], settings: WallSettings) -> bool:
+    """Whether two are on one line, or the smaller one lies close along the larger, as noise and assumed walls do."""
+    if _collinear(a.wall, b.wall, settings):
         return True
     minor, major = sorted((a, b), key=lambda run: run.wall.area_m2)
     if minor.wall.normal @ major.wall.normal < ALIKE_COSINE:
         return False
-    ends = [point_at(minor.wall, h, origin) for h in (minor.first, minor.last)]
+    ends = [point_at(minor.wall, h, origin, settings) for h in (minor.first, minor.last)]
     apart = [abs(float(e @ major.wall.normal) - major.wall.offset) if e is not None else np.inf for e in ends]
-    return max(apart) < ALIKE_M + ALIKE_PER_M * _range(minor, origin)
+    return max(apart) < settings.alike_m + settings.alike_per_m * _range(minor, origin, settings)
 
 
 def _closed(runs: list[Run], surface: MeasuredSurface, view: tuple[float, float]) -> list[Run]:
@@ -140,35 +145,37 @@ def meeting_point(a: WallCandidate, b: WallCandidate) -> Float[np.ndarray, "2"] 
     return np.linalg.solve(system, np.array([a.offset, b.offset]))
 
 
-def point_at(wall: WallCandidate, toward: float, origin: Float[np.ndarray, "2"]) -> Float[np.ndarray, "2"] | None:
+def point_at(
+    wall: WallCandidate, toward: float, origin: Float[np.ndarray, "2"], settings: WallSettings
+) -> Float[np.ndarray, "2"] | None:
     """The point of a wall's line in a heading; none where the line is not met in front."""
     direction = np.array([np.sin(toward), np.cos(toward)])
     slope = float(direction @ wall.normal)
     if abs(slope) < 0.02:
         return None
     distance = (wall.offset - float(origin @ wall.normal)) / slope
-    return origin + distance * direction if 0 < distance < MAX_RANGE_M else None
+    return origin + distance * direction if 0 < distance < settings.max_range_m else None
 
 
 def _joint(
-    a: Run, b: Run, origin: Float[np.ndarray, "2"]
+    a: Run, b: Run, origin: Float[np.ndarray, "2"], settings: WallSettings
 ) -> tuple[Float[np.ndarray, "2"], list[WallPiece], Float[np.ndarray, "2"]]:
     """How run a hands over to run b: a shared corner, or hidden pieces between the nearer and the farther wall."""
     corner = meeting_point(a.wall, b.wall)
-    if corner is not None and np.linalg.norm(corner - origin) < MAX_RANGE_M:
+    if corner is not None and np.linalg.norm(corner - origin) < settings.max_range_m:
         at = float(heading(corner, origin))
         between = a.last - CORNER_SLACK_RAD <= at <= b.first + CORNER_SLACK_RAD
         if between:
             return corner, [], corner
-    end = point_at(a.wall, a.last, origin)
-    start = point_at(b.wall, b.first, origin)
+    end = point_at(a.wall, a.last, origin, settings)
+    start = point_at(b.wall, b.first, origin, settings)
     if end is None or start is None:
         fallback = corner if corner is not None else _nearest_on(a.wall, origin)
         return fallback, [], fallback
     if np.linalg.norm(end - origin) < np.linalg.norm(start - origin):
-        hidden = _hidden_path(a.wall, end, b.wall, start, origin, behind_right=False)
+        hidden = _hidden_path(a.wall, end, b.wall, start, origin, behind_right=False, settings=settings)
         return end, _pieces(hidden), hidden[-1]
-    hidden = _hidden_path(b.wall, start, a.wall, end, origin, behind_right=True)
+    hidden = _hidden_path(b.wall, start, a.wall, end, origin, behind_right=True, settings=settings)
     return hidden[-1], _pieces(hidden[::-1]), start
 
 
@@ -188,6 +195,7 @@ def _hidden_path(
     origin: Float[np.ndarray, "2"],
     *,
     behind_right: bool,
+    settings: WallSettings,
 ) -> list[Float[np.ndarray, "2"]]:
     """From the nearer wall's edge to the farther wall, out of sight: square corners where they stay hidden.
 
@@ -198,13 +206,14 @@ def _hidden_path(
         seen: where it comes into view.
         origin: The camera.
         behind_right: Whether the nearer wall hides what is to the right of its edge.
+        settings: numbers to work with.
     """
     sight = float(heading(edge, origin))
     slope = float(-near.normal @ far.normal)
     if abs(slope) > 0.17:
         distance = (far.offset - float(edge @ far.normal)) / slope
         square = edge - distance * near.normal
-        if 0 < distance < MAX_HIDDEN_M and _is_hidden(square, origin, sight, behind_right):
+        if 0 < distance < settings.max_hidden_m and _is_hidden(square, origin, sight, behind_right):
             return [edge, square]
     inward = float((seen - edge) @ -near.normal)
     corner = edge - inward * near.normal
@@ -218,20 +227,22 @@ def _is_hidden(point: Float[np.ndarray, "2"], origin: Float[np.ndarray, "2"], si
     return turn > -0.01 if right else turn < 0.01
 
 
-def _beyond_view(run: Run, side: float, origin: Float[np.ndarray, "2"], *, left: bool) -> Float[np.ndarray, "2"]:
+def _beyond_view(
+    run: Run, side: float, origin: Float[np.ndarray, "2"], *, left: bool, settings: WallSettings
+) -> Float[np.ndarray, "2"]:
     """Where the first or last wall ends: behind the camera, a little outside the picture, or where it was last seen."""
     outward = -run.wall.along if left else run.wall.along
     if outward[1] < -0.7:
-        return _at_y(run.wall, origin[1] - BEHIND_CAMERA_M)
+        return _at_y(run.wall, origin[1] - settings.behind_camera_m)
     seen = run.first if left else run.last
-    at_side = point_at(run.wall, side, origin)
-    if at_side is None or np.linalg.norm(at_side - origin) > 2.5 * _range(run, origin):
-        at_side = point_at(run.wall, seen, origin)
+    at_side = point_at(run.wall, side, origin, settings)
+    if at_side is None or np.linalg.norm(at_side - origin) > 2.5 * _range(run, origin, settings):
+        at_side = point_at(run.wall, seen, origin, settings)
     if at_side is None:
         nearest = _nearest_on(run.wall, origin)
         away = float(np.linalg.norm(nearest - origin))
-        at_side = nearest + np.sqrt(max(MAX_RANGE_M**2 - away**2, 0.0)) * outward
-    return at_side + BEYOND_VIEW_M * outward
+        at_side = nearest + np.sqrt(max(settings.max_range_m**2 - away**2, 0.0)) * outward
+    return at_side + settings.beyond_view_m * outward
 
 
 def _at_y(wall: WallCandidate, y: float) -> Float[np.ndarray, "2"]:
@@ -239,7 +250,7 @@ def _at_y(wall: WallCandidate, y: float) -> Float[np.ndarray, "2"]:
     return np.array([(wall.offset - wall.normal[1] * y) / wall.normal[0], y])
 
 
-def _range(run: Run, origin: Float[np.ndarray, "2"]) -> float:
+def _range(run: Run, origin: Float[np.ndarray, "2"], settings: WallSettings) -> float:
     """Distance of the farther end of what is seen of a run."""
-    ends = [point_at(run.wall, h, origin) for h in (run.first, run.last)]
-    return max((float(np.linalg.norm(e - origin)) for e in ends if e is not None), default=MAX_RANGE_M)
+    ends = [point_at(run.wall, h, origin, settings) for h in (run.first, run.last)]
+    return max((float(np.linalg.norm(e - origin)) for e in ends if e is not None), default=settings.max_range_m)

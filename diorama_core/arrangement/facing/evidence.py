@@ -125,7 +125,7 @@ class HeadingCosts(ArrayValue):
 
 
 NO_COSTS = HeadingCosts(0.0, np.zeros(HEADINGS))
-"""Of what may face anywhere."""
+"""Costs of what may face anywhere."""
 
 
 def picture_of(

@@ -11,28 +11,14 @@ from diorama_core.artefacts import CameraEstimate, CameraHypothesis, Inputs, Pho
 from diorama_core.geometry.segments import line_segments_px
 from diorama_core.perception.camera.frames import frame_difference_rad
 from diorama_core.perception.camera.gravity_depth import DepthFrame, frame_from_depth
-from diorama_core.perception.camera.vanishing import FOCAL_PRIOR, FrameFit, Lines, prior_frame, search_frames
+from diorama_core.perception.camera.settings import SETTINGS, LineCameraSettings
+from diorama_core.perception.camera.vanishing import FrameFit, Lines, prior_frame, search_frames
 from diorama_core.progress import Progress
 from diorama_core.provenance import AttitudeSource, CameraSource, FocalSource, HeadingSource
 from diorama_core.scene.types import Intrinsics
 
-MIN_SEGMENTS = 6
-"""Fewer segments do not determine the room's axes."""
 DISTINCT_RAD = float(np.deg2rad(3.0))
 """Readings nearer than this are the same reading."""
-FRAME_MARGIN = 0.025
-"""Share of the longer side within which a segment along the picture's side may be a frame's."""
-FRAME_SLANT = 0.02
-HOPELESS_GAP = 0.12
-"""A reading whose score is so much below the best one's is not worth a second look."""
-CLEAR_GAP = 0.05
-"""A second reading whose score is nearer than this to the best one's makes the best one doubtful."""
-SURE_SUPPORT, UNSURE_SUPPORT = 0.6, 0.2
-"""Shares of agreeing lines at which confidence is full and none."""
-DOUBTFUL = 0.35
-"""Confidence up to which users are asked to check what lines say."""
-MIN_WALL_SHARE = 0.02
-"""Share of the measured points on walls from which on they decide about the room's directions."""
 
 
 @dataclass(frozen=True)
@@ -44,37 +30,45 @@ class EmbeddedCamera:
 
     hypotheses: int = 3
     """Maximum number of camera hypotheses."""
+    settings: LineCameraSettings = SETTINGS
 
     def estimate(self, inputs: Inputs, progress: Progress) -> CameraEstimate:
         """The readings of one photo, best first; never fails on a picture without lines, but says so."""
         photo = inputs.photo
         given, stated = _stated_intrinsics(inputs)
         progress.report(0.1, "looking for straight lines")
-        segments = _of_the_room(line_segments_px(photo.rgb), photo)
-        assumed = given or _habitual_intrinsics(photo, FOCAL_PRIOR[0])
+        segments = _of_the_room(line_segments_px(photo.rgb), photo, self.settings)
+        assumed = given or _habitual_intrinsics(photo, self.settings.focal_prior[0])
         side = max(photo.width, photo.height)
         progress.report(0.3, "reading the room's directions")
         fits: tuple[FrameFit, ...] = ()
-        if len(segments) >= MIN_SEGMENTS:
-            fits = search_frames(Lines.of(segments, assumed), given.fx / side if given else None)
-        fits = _distinct(fits, self.hypotheses)
+        if len(segments) >= self.settings.min_segments:
+            fits = search_frames(
+                Lines.of(segments, assumed, self.settings), given.fx / side if given else None, settings=self.settings
+            )
+        fits = _distinct(fits, self.hypotheses, self.settings)
         readings = tuple(
             CameraHypothesis(given or _habitual_intrinsics(photo, f.focal), f.R_world_camera, _unit(f.score))
             for f in fits
         )
-        estimate = _from_lines(readings, fits, assumed, stated)
+        estimate = _from_lines(readings, fits, assumed, stated, self.settings)
         if inputs.depth_m is None:
             return estimate
         progress.report(0.7, "looking for the floor in the measured depth")
-        return _with_depth(estimate, inputs, self.hypotheses)
+        return _with_depth(estimate, inputs, self.hypotheses, self.settings)
 
 
-def _of_the_room(segments_px: Float[np.ndarray, "n 4"], photo: Photo) -> Float[np.ndarray, "m 4"]:
+def _of_the_room(
+    segments_px: Float[np.ndarray, "n 4"], photo: Photo, settings: LineCameraSettings
+) -> Float[np.ndarray, "m 4"]:
     """Without the edges of a plain frame around the picture, which many cameras' rectification leaves behind."""
     size = np.array([photo.width, photo.height])
-    margin = FRAME_MARGIN * size.max()
+    margin = settings.frame_margin * size.max()
     ends = segments_px.reshape(-1, 2, 2)
-    straight = np.abs(ends[:, 0] - ends[:, 1]) < FRAME_SLANT * np.linalg.norm(ends[:, 0] - ends[:, 1], axis=1)[:, None]
+    straight = (
+        np.abs(ends[:, 0] - ends[:, 1])
+        < settings.frame_slant * np.linalg.norm(ends[:, 0] - ends[:, 1], axis=1)[:, None]
+    )
     near = (ends < margin).all(axis=1) | (ends > size - margin).all(axis=1)
     return segments_px[~(straight & near).any(axis=1)]
 
@@ -95,11 +89,11 @@ def _habitual_intrinsics(photo: Photo, focal: float) -> Intrinsics:
     return Intrinsics(photo.width, photo.height, pixels, pixels, photo.width / 2, photo.height / 2)
 
 
-def _distinct(fits: tuple[FrameFit, ...], count: int) -> tuple[FrameFit, ...]:
+def _distinct(fits: tuple[FrameFit, ...], count: int, settings: LineCameraSettings) -> tuple[FrameFit, ...]:
     """The best readings that differ from all better ones, and are not hopeless beside the first."""
     retained: list[FrameFit] = []
     for fit in fits:
-        if fit.score > fits[0].score - HOPELESS_GAP and all(
+        if fit.score > fits[0].score - settings.hopeless_gap and all(
             frame_difference_rad(fit.R_world_camera, k.R_world_camera) > DISTINCT_RAD for k in retained
         ):
             retained.append(fit)
@@ -111,26 +105,27 @@ def _from_lines(
     fits: tuple[FrameFit, ...],
     assumed: Intrinsics,
     stated: FocalSource | None,
+    settings: LineCameraSettings,
 ) -> CameraEstimate:
     """The readings of the lines; the usual camera where there are none."""
     if not readings:
         habit = CameraHypothesis(assumed, prior_frame(), 0.0)
         focal = stated or FocalSource.ASSUMED
         return CameraEstimate((habit,), 0.05, CameraSource(focal, AttitudeSource.ASSUMED, HeadingSource.ASSUMED))
-    confidence = _unit((fits[0].support - UNSURE_SUPPORT) / (SURE_SUPPORT - UNSURE_SUPPORT))
+    confidence = _unit((fits[0].support - settings.unsure_support) / (settings.sure_support - settings.unsure_support))
     if len(fits) > 1:
-        confidence *= 1.0 - 0.5 * (1.0 - _unit((fits[0].score - fits[1].score) / CLEAR_GAP))
+        confidence *= 1.0 - 0.5 * (1.0 - _unit((fits[0].score - fits[1].score) / settings.clear_gap))
     confidence = max(0.05, 0.85 * confidence if stated is None else confidence)
     source = CameraSource(
         stated or FocalSource.VANISHING_POINTS,
         AttitudeSource.VANISHING_POINTS,
         HeadingSource.VANISHING_POINTS,
-        few_lines=confidence <= DOUBTFUL,
+        few_lines=confidence <= settings.doubtful,
     )
     return CameraEstimate(readings, confidence, source)
 
 
-def _with_depth(estimate: CameraEstimate, inputs: Inputs, count: int) -> CameraEstimate:
+def _with_depth(estimate: CameraEstimate, inputs: Inputs, count: int, settings: LineCameraSettings) -> CameraEstimate:
     """Measured surfaces decide over lines; the readings of the lines stay behind as alternatives."""
     assert inputs.depth_m is not None
     best = estimate.best
@@ -145,7 +140,7 @@ def _with_depth(estimate: CameraEstimate, inputs: Inputs, count: int) -> CameraE
     return CameraEstimate(
         hypotheses=(reading, *others[: count - 1]),
         confidence=_depth_confidence(frame),
-        source=_depth_source(frame, estimate.source.focal),
+        source=_depth_source(frame, estimate.source.focal, settings),
         height_m=frame.height_m,
     )
 
@@ -156,11 +151,11 @@ def _depth_confidence(frame: DepthFrame) -> float:
     return 0.8 + 0.2 * _unit(frame.level_share / 0.15)
 
 
-def _depth_source(frame: DepthFrame, focal: FocalSource) -> CameraSource:
+def _depth_source(frame: DepthFrame, focal: FocalSource, settings: LineCameraSettings) -> CameraSource:
     return CameraSource(
         focal,
         AttitudeSource.LEVEL_SURFACES if frame.height_m is None else AttitudeSource.FLOOR,
-        HeadingSource.WALLS if frame.wall_share > MIN_WALL_SHARE else HeadingSource.VANISHING_POINTS,
+        HeadingSource.WALLS if frame.wall_share > settings.min_wall_share else HeadingSource.VANISHING_POINTS,
     )
 
 

@@ -14,7 +14,7 @@ from diorama_core.scene.types import Intrinsics
 UP_CONE_RAD = float(np.deg2rad(50.0))
 """How far gravity may lie from the expected direction."""
 UNSUPPORTED_CONE_RAD = float(np.deg2rad(25.0))
-"""The same where no floor confirms it: what faces further away is more likely a wall."""
+"""Where no floor confirms it: what faces further away is more likely a wall."""
 ALIGNED_RAD = float(np.deg2rad(12.0))
 LEVEL_RAD = float(np.deg2rad(8.0))
 NORMAL_NOISE_RAD = float(np.deg2rad(3.0))

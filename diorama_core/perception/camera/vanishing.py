@@ -22,23 +22,15 @@ from diorama_core.perception.camera.frames import (
     up_in_camera,
     world_frame,
 )
+from diorama_core.perception.camera.settings import SETTINGS, LineCameraSettings
 from diorama_core.scene.types import Intrinsics
 
 SIGMA_RAD = float(np.deg2rad(1.5))
 MIN_SIGMA_RAD = float(np.deg2rad(0.3))
-PRIOR_WEIGHT = 0.03
 PITCH_PRIOR_RAD = (float(np.deg2rad(12.0)), float(np.deg2rad(20.0)))
 ROLL_SIGMA_RAD = float(np.deg2rad(5.0))
-FOCAL_PRIOR = (0.78, 0.25)
-"""Focal length over the longer side: median, and standard deviation of the logarithm."""
-FOCAL_RANGE = (0.35, 2.5)
 FOCAL_GRID = np.geomspace(0.5, 1.6, 13)
-FEW_SEGMENTS = 8.0
-"""So many segments are half of full evidence against the prior."""
-_DIRECTIONS = 4000
-_RESCORED = 400
 _REFINED = 10
-_DIFFERENCE = 2e-3
 _SEPARATION_RAD = float(np.deg2rad(5.0))
 
 
@@ -65,7 +57,9 @@ class Lines:
     """Sum to at most 1; less where there are few segments."""
 
     @classmethod
-    def of(cls, segments_px: Float[np.ndarray, "n 4"], intrinsics: Intrinsics) -> Lines:
+    def of(
+        cls, segments_px: Float[np.ndarray, "n 4"], intrinsics: Intrinsics, settings: LineCameraSettings = SETTINGS
+    ) -> Lines:
         """Segments in pixels seen by a camera; only its centre and the proportion of its focal lengths are used."""
         side = max(intrinsics.width, intrinsics.height)
         scale = np.array([1.0, intrinsics.fx / intrinsics.fy]) / side
@@ -76,26 +70,32 @@ class Lines:
         if len(lengths) == 0:
             return cls(*(np.zeros(shape, np.float32) for shape in ((0, 2), (0, 2), (0,))))
         weights = np.minimum(lengths, np.percentile(lengths, 95))
-        weights *= len(lengths) / (len(lengths) + FEW_SEGMENTS) / weights.sum()
+        weights *= len(lengths) / (len(lengths) + settings.few_segments) / weights.sum()
         as32 = (ends.mean(axis=1), along / lengths[:, None], weights)
         return cls(*(a.astype(np.float32) for a in as32))
 
 
-def search_frames(lines: Lines, focal: float | None, count: int = _REFINED) -> tuple[FrameFit, ...]:
+def search_frames(
+    lines: Lines, focal: float | None, count: int = _REFINED, settings: LineCameraSettings = SETTINGS
+) -> tuple[FrameFit, ...]:
     """The best room frames of a picture's lines, best first, at least one.
 
     Args:
         lines: The segments.
         focal: Focal length over the longer side; None to look for it as well.
         count: At most so many are returned; several may have converged to the same reading.
+        settings: numbers to work with.
     """
     focals = FOCAL_GRID if focal is None else np.array([focal])
     starts: list[tuple[float, np.ndarray, float]] = []
     for f in focals:
-        starts += [(s + _focal_log_prior(f, focal), R, float(f)) for s, R in _coarse_frames(lines, float(f))]
+        starts += [
+            (s + _focal_log_prior(f, focal, settings), R, float(f))
+            for s, R in _coarse_frames(lines, float(f), settings)
+        ]
     starts.sort(key=lambda s: -s[0])
     chosen = _separated(starts, _REFINED)
-    fits = sorted((_refined(lines, R, f, focal) for _, R, f in chosen), key=lambda fit: -fit.score)
+    fits = sorted((_refined(lines, R, f, focal, settings) for _, R, f in chosen), key=lambda fit: -fit.score)
     return tuple(fits[:count])
 
 
@@ -120,16 +120,18 @@ def _agreement(sines: Float[np.ndarray, "*n"], sigma: float = SIGMA_RAD) -> Floa
     return np.exp(-0.5 * np.square(sines / sigma))
 
 
-def _coarse_frames(lines: Lines, focal: float) -> list[tuple[float, Float[np.ndarray, "3 3"]]]:
+def _coarse_frames(
+    lines: Lines, focal: float, settings: LineCameraSettings
+) -> list[tuple[float, Float[np.ndarray, "3 3"]]]:
     """The best frames of the grid at one focal length, each segment counted once."""
-    grid = _grid()
+    grid = _grid(settings)
     sines = signed_sines(lines, grid.directions, focal)
     response = _agreement(sines, 1.3 * SIGMA_RAD) @ lines.weights
-    rough = response[grid.indices].sum(axis=1) + PRIOR_WEIGHT * grid.log_prior
-    top = np.argpartition(-rough, _RESCORED)[:_RESCORED]
+    rough = response[grid.indices].sum(axis=1) + settings.prior_weight * grid.log_prior
+    top = np.argpartition(-rough, settings.rescored)[: settings.rescored]
     top = top[np.lexsort((top, -rough[top]))]
     agreement = _agreement(signed_sines(lines, grid.frames[top], focal), 1.3 * SIGMA_RAD)
-    scores = agreement.max(axis=1) @ lines.weights + PRIOR_WEIGHT * grid.log_prior[top]
+    scores = agreement.max(axis=1) @ lines.weights + settings.prior_weight * grid.log_prior[top]
     order = np.argsort(-scores, kind="stable")
     ranked = [(float(scores[i]), grid.frames[top[i]], focal) for i in order]
     return [(score, R) for score, R, _ in _separated(ranked, _REFINED)]
@@ -154,28 +156,38 @@ def _separated(
     return retained
 
 
-def _refined(lines: Lines, R_start: Float[np.ndarray, "3 3"], focal_start: float, known: float | None) -> FrameFit:
+def _refined(
+    lines: Lines,
+    R_start: Float[np.ndarray, "3 3"],
+    focal_start: float,
+    known: float | None,
+    settings: LineCameraSettings,
+) -> FrameFit:
     """Reweighted Gauss-Newton on rotation (and focal length), the tolerance narrowing to its final value."""
     R, focal = R_start, focal_start
     free = 3 if known is not None else 4
     for sigma in np.array([2.0, 1.7, 1.4, 1.2, 1.0, 1.0, 1.0, 1.0]) * SIGMA_RAD:
-        step = _gauss_newton_step(lines, R, focal, float(sigma), free, known)
-        R, focal = _moved(R, focal, step, known)
+        step = _gauss_newton_step(lines, R, focal, float(sigma), free, known, settings)
+        R, focal = _moved(R, focal, step, known, settings)
     for _ in range(5):
-        step = _gauss_newton_step(lines, R, focal, _own_sigma(lines, R, focal), free, known)
-        R, focal = _moved(R, focal, step, known)
+        step = _gauss_newton_step(lines, R, focal, _own_sigma(lines, R, focal), free, known, settings)
+        R, focal = _moved(R, focal, step, known, settings)
     R = world_frame(R[2], R[1])
     best = _agreement(signed_sines(lines, R, focal)).max(axis=0)
     support = float(best @ lines.weights)
-    prior = PRIOR_WEIGHT * _frame_log_prior(R[2])
-    return FrameFit(R, focal, support, support + float(prior) + _focal_log_prior(focal, known))
+    prior = settings.prior_weight * _frame_log_prior(R[2])
+    return FrameFit(R, focal, support, support + float(prior) + _focal_log_prior(focal, known, settings))
 
 
 def _moved(
-    R: Float[np.ndarray, "3 3"], focal: float, step: Float[np.ndarray, "free"], known: float | None
+    R: Float[np.ndarray, "3 3"],
+    focal: float,
+    step: Float[np.ndarray, "free"],
+    known: float | None,
+    settings: LineCameraSettings,
 ) -> tuple[Float[np.ndarray, "3 3"], float]:
     if known is None:
-        focal = float(np.clip(focal * np.exp(np.clip(step[3], -0.2, 0.2)), *FOCAL_RANGE))
+        focal = float(np.clip(focal * np.exp(np.clip(step[3], -0.2, 0.2)), *settings.focal_range))
     return R @ _rotation(step[:3]), focal
 
 
@@ -188,12 +200,18 @@ def _own_sigma(lines: Lines, R: Float[np.ndarray, "3 3"], focal: float) -> float
 
 
 def _gauss_newton_step(
-    lines: Lines, R: Float[np.ndarray, "3 3"], focal: float, sigma: float, free: int, known: float | None
+    lines: Lines,
+    R: Float[np.ndarray, "3 3"],
+    focal: float,
+    sigma: float,
+    free: int,
+    known: float | None,
+    settings: LineCameraSettings,
 ) -> Float[np.ndarray, "free"]:
     """One step of least squares on the segments' sines and the priors, in units of their deviations."""
     nearest = np.abs(signed_sines(lines, R, focal)).argmin(axis=0)
     pick = (nearest, np.arange(len(nearest)))
-    trials = _trial_steps(free)
+    trials = _trial_steps(free, settings)
     moved = R @ np.array([_rotation(t[:3]) for t in trials])
     focals = focal * np.exp(trials[:, 3]) if free == 4 else np.full(len(trials), focal)
     sines = signed_sines(lines, moved, focals[:, None, None])[:, *pick].astype(np.float64)
@@ -201,17 +219,19 @@ def _gauss_newton_step(
     pitch, roll = pitch_and_roll(moved[:, 2])
     priors = [(pitch - PITCH_PRIOR_RAD[0]) / PITCH_PRIOR_RAD[1], roll / ROLL_SIGMA_RAD]
     if known is None:
-        priors.append(np.log(focals / FOCAL_PRIOR[0]) / FOCAL_PRIOR[1])
-    residuals = np.concatenate([weights * sines / sigma, np.sqrt(PRIOR_WEIGHT) * np.stack(priors, axis=1)], axis=1)
-    J = ((residuals[:free] - residuals[free:-1]) / (2 * _DIFFERENCE)).T
+        priors.append(np.log(focals / settings.focal_prior[0]) / settings.focal_prior[1])
+    residuals = np.concatenate(
+        [weights * sines / sigma, np.sqrt(settings.prior_weight) * np.stack(priors, axis=1)], axis=1
+    )
+    J = ((residuals[:free] - residuals[free:-1]) / (2 * settings.difference)).T
     step = -np.linalg.solve(J.T @ J + 1e-6 * np.eye(free), J.T @ residuals[-1])
     return step * min(1.0, 0.1 / max(float(np.linalg.norm(step[:3])), 1e-9))
 
 
 @cache
-def _trial_steps(free: int) -> Float[np.ndarray, "m free"]:
+def _trial_steps(free: int, settings: LineCameraSettings) -> Float[np.ndarray, "m free"]:
     """A little forward along each parameter, a little back, and nothing."""
-    forward = np.eye(free) * _DIFFERENCE
+    forward = np.eye(free) * settings.difference
     return np.concatenate([forward, -forward, np.zeros((1, free))])
 
 
@@ -229,10 +249,14 @@ def _frame_log_prior(up_camera: Float[np.ndarray, "*n 3"]) -> Float[np.ndarray, 
     return np.asarray(-0.5 * (np.square((pitch - centre) / spread) + np.square(roll / ROLL_SIGMA_RAD)))
 
 
-def _focal_log_prior(focal: float, known: float | None) -> float:
+def _focal_log_prior(focal: float, known: float | None, settings: LineCameraSettings) -> float:
     if known is not None:
         return 0.0
-    return PRIOR_WEIGHT * -0.5 * float(np.square(np.log(focal / FOCAL_PRIOR[0]) / FOCAL_PRIOR[1]))
+    return (
+        settings.prior_weight
+        * -0.5
+        * float(np.square(np.log(focal / settings.focal_prior[0]) / settings.focal_prior[1]))
+    )
 
 
 @dataclass(frozen=True)
@@ -246,7 +270,7 @@ class _Grid:
 
 
 @cache
-def _grid() -> _Grid:
+def _grid(settings: LineCameraSettings) -> _Grid:
     """Pitch -30 to 62, roll -16 to 16, heading 0 to 88 degrees, by 2 degrees; computed once per process."""
     degrees = np.meshgrid(np.arange(-30, 63, 2), np.arange(-16, 17, 2), np.arange(0, 89, 2), indexing="ij")
     pitch, roll, heading = (np.deg2rad(d.ravel().astype(np.float64)) for d in degrees)
@@ -258,7 +282,7 @@ def _grid() -> _Grid:
     c, s = np.cos(heading)[:, None], np.sin(heading)[:, None]
     along = c * forward + s * right
     frames = np.stack([np.cross(along, up), along, up], axis=1)
-    directions = _hemisphere(_DIRECTIONS)
+    directions = _hemisphere(settings.directions)
     tree = cKDTree(np.concatenate([directions, -directions]))
     indices = tree.query(frames.reshape(-1, 3))[1].reshape(-1, 3) % len(directions)
     return _Grid(directions.astype(np.float32), frames, indices, _frame_log_prior(up))

@@ -17,6 +17,7 @@ from diorama_core.geometry.openings import OPENING_CATEGORIES
 from diorama_core.library.company import STACKED_ON, WITH_BOARDS
 from diorama_core.library.taxonomy import UNKNOWN, Category, having
 from diorama_core.perception.graph.object_observations import Observed, observed
+from diorama_core.perception.graph.settings import SETTINGS, GeometricGraphSettings
 from diorama_core.progress import Progress
 from diorama_core.scene.types import Relation, Support
 
@@ -28,20 +29,7 @@ _PRIOR: dict[str, tuple[float, float, float, float]] = {
     "wall": (2.5, 2.5, 0.0, 6.0),
     "ceiling": (9.0, 9.0, 5.0, 0.0),
 }
-_UNNAMED_PRIOR = (1.0, 0.5, 2.0, 5.0)
 _NEVER_ON_OBJECTS = having("never_on_objects")
-_CARRIES_NOTHING_COST = 5.0
-_LARGER_COST = 4.0
-"""Of lying on something whose footprint is much smaller."""
-_FLOOR_GAP_M, _TOP_GAP_M, _INNER_GAP_M = 0.10, 0.06, 0.10
-"""Usual errors of an underside's height above the floor, a top, a shelf."""
-_MAX_GAP_COST = 8.0
-_BELOW_WEIGHT = 3.0
-"""Of what is seen just below the object."""
-_BELIEF_COST = 1.5
-"""Of contradicting the geometry stage."""
-_WITHIN_RUG = 3.0
-"""What standing within a rug speaks for being on it, against the floor."""
 _RUGS = having("rug")
 
 
@@ -49,14 +37,16 @@ _RUGS = having("rug")
 class GeometricGraph:
     """One supporter for every object that has a cuboid, with a score; never a cycle."""
 
+    settings: GeometricGraphSettings = SETTINGS
+
     def relate(
         self, inputs: Inputs, objects: tuple[DetectedObject, ...], geometry: ObjectGeometry, progress: Progress
     ) -> SceneGraph:
         """The graph that explains masks, cuboids and (where there is any) depth best."""
         progress.report(0.0, "Working out what stands on what")
-        items = observed(inputs, objects, geometry)
+        items = observed(inputs, objects, geometry, self.settings)
         believed = {s.child: s for s in geometry.supports}
-        options = {t.id: _options(t, items, believed.get(t.id)) for t in items}
+        options = {t.id: _options(t, items, believed.get(t.id), self.settings) for t in items}
         chosen = _without_cycles(options)
         edges, scores = [], []
         for obj in items:
@@ -71,80 +61,87 @@ Options = tuple[tuple[str, float], ...]
 """(supporter, cost), cheapest first."""
 
 
-def _options(obj: Observed, items: tuple[Observed, ...], believed: Support | None) -> Options:
-    priors = _priors(obj.category)
+def _options(
+    obj: Observed, items: tuple[Observed, ...], believed: Support | None, settings: GeometricGraphSettings
+) -> Options:
+    priors = _priors(obj.category, settings)
     costs = {
-        "floor": priors[1] + _floor_cost(obj),
-        "wall": priors[2] + _wall_cost(obj),
-        "ceiling": priors[3] + _ceiling_cost(obj),
+        "floor": priors[1] + _floor_cost(obj, settings),
+        "wall": priors[2] + _wall_cost(obj, settings),
+        "ceiling": priors[3] + _ceiling_cost(obj, settings),
     }
     if obj.category.name not in _NEVER_ON_OBJECTS:
         for other in items:
             if other.id != obj.id:
-                costs[other.id] = priors[0] + _carried_cost(obj, other)
+                costs[other.id] = priors[0] + _carried_cost(obj, other, settings)
     if believed is not None:
         for key in costs:
-            costs[key] += 0.0 if key == believed.parent else _BELIEF_COST
+            costs[key] += 0.0 if key == believed.parent else settings.belief_cost
     return tuple(sorted(costs.items(), key=lambda item: (item[1], item[0])))
 
 
-def _priors(category: Category) -> tuple[float, float, float, float]:
+def _priors(category: Category, settings: GeometricGraphSettings) -> tuple[float, float, float, float]:
     if category is UNKNOWN:
-        return _UNNAMED_PRIOR
+        return settings.unnamed_prior
     prior = _PRIOR[category.mount]
     return (9.0, 9.0, 0.0, 9.0) if category.name in OPENING_CATEGORIES else prior
 
 
-def _gap_cost(gap_m: float, usual_m: float) -> float:
+def _gap_cost(gap_m: float, usual_m: float, settings: GeometricGraphSettings) -> float:
     """Square for small gaps, bounded for large ones."""
-    return float(_MAX_GAP_COST * (1.0 - np.exp(-0.5 * (gap_m / usual_m) ** 2 / _MAX_GAP_COST)))
+    return float(settings.max_gap_cost * (1.0 - np.exp(-0.5 * (gap_m / usual_m) ** 2 / settings.max_gap_cost)))
 
 
-def _floor_cost(obj: Observed) -> float:
+def _floor_cost(obj: Observed, settings: GeometricGraphSettings) -> float:
     """High for an underside seen in the air, or an object seen below."""
     gap = max(obj.bottom_m, 0.0)
-    seen = _gap_cost(gap, _FLOOR_GAP_M)
+    seen = _gap_cost(gap, settings.floor_gap_m, settings)
     lenient = 1.0 - 0.7 * obj.hidden_below
-    return lenient * seen + _BELOW_WEIGHT * (1.0 - obj.below.get("floor", 0.0)) * lenient
+    return lenient * seen + settings.below_weight * (1.0 - obj.below.get("floor", 0.0)) * lenient
 
 
-def _wall_cost(obj: Observed) -> float:
+def _wall_cost(obj: Observed, settings: GeometricGraphSettings) -> float:
     on_floor = 2.0 if obj.bottom_m < 0.1 and obj.category.mount != "wall" else 0.0
-    return on_floor + _gap_cost(max(obj.behind_m, 0.0), 0.25) + 0.5 * _BELOW_WEIGHT * obj.below_objects
+    return (
+        on_floor + _gap_cost(max(obj.behind_m, 0.0), 0.25, settings) + 0.5 * settings.below_weight * obj.below_objects
+    )
 
 
-def _ceiling_cost(obj: Observed) -> float:
-    return _gap_cost(max(2.0 - obj.top_m, 0.0), 0.3)
+def _ceiling_cost(obj: Observed, settings: GeometricGraphSettings) -> float:
+    return _gap_cost(max(2.0 - obj.top_m, 0.0), 0.3, settings)
 
 
-def _carried_cost(obj: Observed, other: Observed) -> float:
+def _carried_cost(obj: Observed, other: Observed, settings: GeometricGraphSettings) -> float:
     """How badly an object would rest on another's top, seat or shelves."""
     if other.category.name in _RUGS:
-        return _on_rug_cost(obj, other)
+        return _on_rug_cost(obj, other, settings)
     above = obj.below.get(other.id, 0.0)
     carries = other.category.supports_objects or other.category is UNKNOWN
     stacked = above if other.category.name in STACKED_ON else 0.0
-    cost = 0.0 if carries else _CARRIES_NOTHING_COST * (1.0 - stacked)
-    levels = [(other.top_m, _TOP_GAP_M, 0.0)]
+    cost = 0.0 if carries else settings.carries_nothing_cost * (1.0 - stacked)
+    levels = [(other.top_m, settings.top_gap_m, 0.0)]
     seat = other.category.seat_height_m
     if seat is not None and seat < other.top_m:
-        levels.append((seat, _INNER_GAP_M, 0.0))
+        levels.append((seat, settings.inner_gap_m, 0.0))
     if other.category.name in WITH_BOARDS and other.bottom_m - 0.05 < obj.bottom_m < other.top_m - 0.05:
-        levels.append((obj.bottom_m, _INNER_GAP_M, 0.8))
-    gap = min(_gap_cost(abs(obj.bottom_m - z), usual) + extra for z, usual, extra in levels)
+        levels.append((obj.bottom_m, settings.inner_gap_m, 0.8))
+    gap = min(_gap_cost(abs(obj.bottom_m - z), usual, settings) + extra for z, usual, extra in levels)
     outside = _outside(obj.footprint, other.footprint)
     area, theirs = (float(np.prod(t.footprint[1] - t.footprint[0])) for t in (obj, other))
-    larger = _LARGER_COST * min(max(np.log(max(area, 1e-4) / max(theirs, 1e-4)), 0.0), 1.0)
-    return float(cost + gap + 5.0 * outside + larger + _BELOW_WEIGHT * (1.0 - above))
+    larger = settings.larger_cost * min(max(np.log(max(area, 1e-4) / max(theirs, 1e-4)), 0.0), 1.0)
+    return float(cost + gap + 5.0 * outside + larger + settings.below_weight * (1.0 - above))
 
 
-def _on_rug_cost(obj: Observed, rug: Observed) -> float:
+def _on_rug_cost(obj: Observed, rug: Observed, settings: GeometricGraphSettings) -> float:
     """A rug carries what stands within it, at the floor's height, where nothing else is seen just below."""
     outside = _outside(obj.footprint, rug.footprint)
     on_rug = obj.below.get(rug.id, 0.0)
-    within = _WITHIN_RUG * min(on_rug + obj.hidden_below, 1.0)
+    within = settings.within_rug * min(on_rug + obj.hidden_below, 1.0)
     return float(
-        _gap_cost(max(obj.bottom_m, 0.0), _FLOOR_GAP_M) - within + 8.0 * outside + _BELOW_WEIGHT * (1 - on_rug)
+        _gap_cost(max(obj.bottom_m, 0.0), settings.floor_gap_m, settings)
+        - within
+        + 8.0 * outside
+        + settings.below_weight * (1 - on_rug)
     )
 
 

@@ -12,16 +12,8 @@ from jaxtyping import Float, Int32
 from diorama_core.artefacts import Cuboid, DetectedObject, Inputs, ObjectGeometry
 from diorama_core.geometry.depth_grid import points_camera
 from diorama_core.library.taxonomy import Category, resolve
+from diorama_core.perception.graph.settings import SETTINGS, GeometricGraphSettings
 from diorama_core.perception.measured.cloud import MIN_POINTS, object_points
-
-_RIM_PX = 0.012
-"""How far below an object's lower rim to look, as a share of the picture's height."""
-_NEARER_M = 0.08
-"""Something this much nearer below the rim hides the object's end."""
-_LEVEL_M = 0.12
-"""Two seen points whose heights differ by less are at one level."""
-_CONTACT_M = 0.12
-"""Farther than this behind the rim, what is seen below is background, not the carrier."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -47,7 +39,12 @@ class Observed:
         return 1.0 - self.below.get("floor", 0.0)
 
 
-def observed(inputs: Inputs, objects: tuple[DetectedObject, ...], geometry: ObjectGeometry) -> tuple[Observed, ...]:
+def observed(
+    inputs: Inputs,
+    objects: tuple[DetectedObject, ...],
+    geometry: ObjectGeometry,
+    settings: GeometricGraphSettings = SETTINGS,
+) -> tuple[Observed, ...]:
     """Every object that has a cuboid, in the order given."""
     cuboids = {c.object_id: c for c in geometry.cuboids}
     present = [o for o in objects if o.id in cuboids]
@@ -59,7 +56,7 @@ def observed(inputs: Inputs, objects: tuple[DetectedObject, ...], geometry: Obje
         world = points_camera(depth, camera.intrinsics) @ camera.T_world_camera[:3, :3].T + camera.position
     found = []
     for index, item in enumerate(present):
-        below, hidden = _below(index, item, present, owners, depth, world)
+        below, hidden = _below(index, item, present, owners, depth, world, settings)
         low, high = _extent(item, cuboids[item.id], world, depth)
         behind = _behind(index, item, owners, depth)
         category = resolve(item.category).category
@@ -104,6 +101,7 @@ def _below(
     owners: Int32[np.ndarray, "h w"],
     depth_m: np.ndarray | None,
     world: Float[np.ndarray, "h w 3"] | None,
+    settings: GeometricGraphSettings,
 ) -> tuple[dict[str, float], float]:
     """What is seen under the object's lower rim, and how much of the rim something nearer hides."""
     mine = owners == index
@@ -115,7 +113,7 @@ def _below(
     # Only the part of the rim near the object's own lower end: the underside of a table top is no end.
     near_end = lowest >= np.quantile(lowest, 0.5) - 0.25 * max(np.ptp(lowest), 1)
     columns, lowest = columns[near_end], lowest[near_end]
-    step = max(2, round(_RIM_PX * height))
+    step = max(2, round(settings.rim_px * height))
     under = lowest + step
     inside = under < height
     total = len(columns)
@@ -129,11 +127,11 @@ def _below(
         own = depth_m[np.maximum(lowest - 1, 0), columns]
         there = depth_m[under, columns]
         known = (own > 0) & (there > 0)
-        nearer = known & (there < own - _NEARER_M - 0.02 * own) & (who >= 0)
+        nearer = known & (there < own - settings.nearer_m - 0.02 * own) & (who >= 0)
         if world is not None:  # the front edge of what carries it is nearer too, but as high as the object ends
-            level = np.abs(world[under, columns, 2] - world[np.maximum(lowest - 1, 0), columns, 2]) < _LEVEL_M
+            level = np.abs(world[under, columns, 2] - world[np.maximum(lowest - 1, 0), columns, 2]) < settings.level_m
             nearer &= ~level
-        farther = known & (there > own + _CONTACT_M + 0.02 * own)
+        farther = known & (there > own + settings.contact_m + 0.02 * own)
     hidden = float((nearer.sum() + (total - len(who))) / total)
     below: dict[str, float] = {}
     carrying = ~nearer & ~farther

@@ -22,7 +22,7 @@ class MeasuredBoxSettings:
     manhattan_gain: float = 0.85
     """A box turned away from the room's axes must have less than this share of the straight box's area."""
     free_gain: float = 0.93
-    """The same for objects that often stand askew."""
+    """For objects that often stand askew."""
     short_of_usual: float = 0.6
     """A depth below this share of the usual one means that only the front was seen."""
     top_layer_m: float = 0.03

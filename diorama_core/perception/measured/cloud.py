@@ -8,13 +8,9 @@ from jaxtyping import Bool, Float
 from scipy import ndimage
 
 from diorama_core.artefacts import DetectedObject
+from diorama_core.perception.measured.settings import SETTINGS, MeasuredSettings
 
-VOXEL_M = 0.04
-MAX_CELLS = 128
-"""Points farther than this many cells from the first, along an axis, are lumped together."""
 MIN_POINTS = 30
-LAYER_GAP_M = 0.12
-"""Steps in depth larger than this (plus 4 % of the depth) separate an object from what is behind or before it."""
 
 
 def eroded(mask: Bool[np.ndarray, "h w"]) -> Bool[np.ndarray, "h w"]:
@@ -24,7 +20,10 @@ def eroded(mask: Bool[np.ndarray, "h w"]) -> Bool[np.ndarray, "h w"]:
 
 
 def object_points(
-    found: DetectedObject, points_world: Float[np.ndarray, "h w 3"], depth_m: Float[np.ndarray, "h w"]
+    found: DetectedObject,
+    points_world: Float[np.ndarray, "h w 3"],
+    depth_m: Float[np.ndarray, "h w"],
+    settings: MeasuredSettings = SETTINGS,
 ) -> Float[np.ndarray, "n 3"]:
     """World points of an object, at least `MIN_POINTS` or none at all.
 
@@ -32,12 +31,13 @@ def object_points(
         found: Its mask; a mask from a box alone may hold background.
         points_world: Of every pixel.
         depth_m: Of every pixel, 0 where missing.
+        settings: numbers to work with.
     """
     rows, columns = np.nonzero(eroded(found.mask) & (depth_m > 0))
     if len(rows) < MIN_POINTS:
         return np.zeros((0, 3))
-    layer = main_layer(depth_m[rows, columns], _centrality(found, rows, columns))
-    return largest_piece(points_world[rows[layer], columns[layer]])
+    layer = main_layer(depth_m[rows, columns], _centrality(found, rows, columns), settings)
+    return largest_piece(points_world[rows[layer], columns[layer]], settings)
 
 
 def _centrality(found: DetectedObject, rows: np.ndarray, columns: np.ndarray) -> Float[np.ndarray, "n"]:
@@ -48,24 +48,26 @@ def _centrality(found: DetectedObject, rows: np.ndarray, columns: np.ndarray) ->
     return 1.0 - (1.0 - found.mask_confidence) * np.clip(2.0 * np.maximum(across, down), 0.0, 1.0)
 
 
-def main_layer(depth_m: Float[np.ndarray, "n"], weights: Float[np.ndarray, "n"]) -> Bool[np.ndarray, "n"]:
+def main_layer(
+    depth_m: Float[np.ndarray, "n"], weights: Float[np.ndarray, "n"], settings: MeasuredSettings = SETTINGS
+) -> Bool[np.ndarray, "n"]:
     """The pixels of the heaviest layer of depth; layers are parted by gaps."""
     order = np.argsort(depth_m, kind="stable")
     ranked = depth_m[order]
-    parts = np.concatenate([[0], np.cumsum(np.diff(ranked) > LAYER_GAP_M + 0.04 * ranked[:-1])])
+    parts = np.concatenate([[0], np.cumsum(np.diff(ranked) > settings.layer_gap_m + 0.04 * ranked[:-1])])
     heaviest = np.bincount(parts, weights=weights[order]).argmax()
     keep = np.zeros(len(depth_m), dtype=bool)
     keep[order] = parts == heaviest
     return keep
 
 
-def largest_piece(points: Float[np.ndarray, "n 3"]) -> Float[np.ndarray, "m 3"]:
+def largest_piece(points: Float[np.ndarray, "n 3"], settings: MeasuredSettings = SETTINGS) -> Float[np.ndarray, "m 3"]:
     """Points of the connected pieces that hold at least a fifth of the largest one's; none when all are few."""
     if len(points) < MIN_POINTS:
         return np.zeros((0, 3))
     low = points.min(axis=0)
-    cells = ((points - low) / VOXEL_M).astype(int)
-    cells = np.minimum(cells, MAX_CELLS - 1)
+    cells = ((points - low) / settings.voxel_m).astype(int)
+    cells = np.minimum(cells, settings.max_cells - 1)
     grid = np.zeros(cells.max(axis=0) + 1, dtype=bool)
     grid[tuple(cells.T)] = True
     joined = ndimage.binary_dilation(grid, np.ones((3, 3, 3), bool))

@@ -13,23 +13,18 @@ from diorama_core.geometry.depth_grid import points_camera, reduced, smooth_norm
 from diorama_core.library.taxonomy import Category, resolve
 from diorama_core.perception.measured.boxes import Extent, completed, observed_extent, to_cuboid
 from diorama_core.perception.measured.cloud import MIN_POINTS, object_points
+from diorama_core.perception.measured.settings import SETTINGS, MeasuredSettings
 from diorama_core.perception.measured.standing import grounded, supporters
 from diorama_core.progress import Progress
 from diorama_core.provenance import ScaleSource
 from diorama_core.scene.types import Camera
 
-ASSUMED_HEIGHT_M = 1.4
-"""Assumed camera height when no floor is visible."""
-GUESS_CONFIDENCE = 0.2
-RING_PX = 0.02
-"""Width of the ring of background around a mask, as a share of the picture."""
-FULL_POINTS = 1500
-"""From this many points on, a cloud is as good as it gets."""
-
 
 @dataclass(frozen=True)
 class MeasuredGeometry:
     """Objects from depth: clouds of the masked pixels, upright boxes around them, completed by usual sizes."""
+
+    settings: MeasuredSettings = SETTINGS
 
     def measure(
         self, inputs: Inputs, camera: CameraEstimate, objects: tuple[DetectedObject, ...], progress: Progress
@@ -42,7 +37,7 @@ class MeasuredGeometry:
         if inputs.depth_m is None:
             raise ValueError("MeasuredGeometry needs measured depth; use SingleViewMetrology for a photo alone")
         progress.report(0.0, "Reading the measured depth")
-        posed, scale = posed_camera(camera, inputs.depth_m)
+        posed, scale = posed_camera(camera, inputs.depth_m, self.settings)
         depth = inputs.depth_m
         world = points_camera(depth, posed.intrinsics) @ posed.T_world_camera[:3, :3].T + posed.position
         extents: dict[str, Extent] = {}
@@ -50,9 +45,11 @@ class MeasuredGeometry:
         categories = {o.id: resolve(o.category).category for o in objects}
         for index, found in enumerate(objects):
             progress.report(0.1 + 0.8 * index / len(objects), f"Measuring the {found.label}")
-            extents[found.id], sureness[found.id] = measured_extent(found, categories[found.id], world, depth, posed)
-        edges = supporters(extents, categories)
-        standing = grounded(extents, categories, edges)
+            extents[found.id], sureness[found.id] = measured_extent(
+                found, categories[found.id], world, depth, posed, self.settings
+            )
+        edges = supporters(extents, categories, self.settings)
+        standing = grounded(extents, categories, edges, self.settings)
         cuboids = tuple(
             to_cuboid(key, extent, categories[key], posed.position, sureness[key]) for key, extent in standing.items()
         )
@@ -60,14 +57,16 @@ class MeasuredGeometry:
         return ObjectGeometry(posed, cuboids, edges, scale, camera.confidence)
 
 
-def posed_camera(camera: CameraEstimate, depth_m: Float[np.ndarray, "h w"]) -> tuple[Camera, ScaleSource]:
+def posed_camera(
+    camera: CameraEstimate, depth_m: Float[np.ndarray, "h w"], settings: MeasuredSettings
+) -> tuple[Camera, ScaleSource]:
     """The camera over the world's origin, and where its height comes from."""
     best = camera.best
     height, scale = camera.height_m, ScaleSource.DEPTH
     if height is None:
         height = floor_distance(depth_m, camera)
     if height is None:
-        height, scale = ASSUMED_HEIGHT_M, ScaleSource.DEPTH_WITHOUT_FLOOR
+        height, scale = settings.assumed_height_m, ScaleSource.DEPTH_WITHOUT_FLOOR
     T = np.eye(4)
     T[:3, :3], T[2, 3] = best.R_world_camera, height
     return Camera(best.intrinsics, T), scale
@@ -94,21 +93,22 @@ def measured_extent(
     points_world: Float[np.ndarray, "h w 3"],
     depth_m: Float[np.ndarray, "h w"],
     camera: Camera,
+    settings: MeasuredSettings,
 ) -> tuple[Extent, float]:
     """The box of one object and how far it can be trusted."""
-    points = object_points(found, points_world, depth_m)
+    points = object_points(found, points_world, depth_m, settings)
     flat = category.priors[0].height_m < 0.1
     above = points[points[:, 2] > 0.03] if not flat else points
     points = above if len(above) >= MIN_POINTS else points
     if len(points) < MIN_POINTS:
-        return _usual_extent(found, category, depth_m, camera), GUESS_CONFIDENCE
+        return _usual_extent(found, category, depth_m, camera), settings.guess_confidence
     seen = observed_extent(points, category)
     width = found.mask.shape[1]
     cut_off = np.array([found.box[0] < 2, found.box[2] > width - 2, found.box[1] < 2])
-    behind = _ring_points(found.mask, points_world, depth_m, float(np.median(camera.to_camera(points)[:, 2])))
+    behind = _ring_points(found.mask, points_world, depth_m, float(np.median(camera.to_camera(points)[:, 2])), settings)
     whole = completed(seen, category, camera.position, cut_off, behind, points)
     share_seen = float(np.prod(seen.size[:2]) / np.prod(whole.size[:2]))
-    confidence = (0.4 + 0.5 * min(1.0, len(points) / FULL_POINTS)) * (0.6 + 0.4 * share_seen)
+    confidence = (0.4 + 0.5 * min(1.0, len(points) / settings.full_points)) * (0.6 + 0.4 * share_seen)
     return whole, confidence
 
 
@@ -117,9 +117,10 @@ def _ring_points(
     points_world: Float[np.ndarray, "h w 3"],
     depth_m: Float[np.ndarray, "h w"],
     object_depth_m: float,
+    settings: MeasuredSettings,
 ) -> Float[np.ndarray, "m 3"]:
     """Points seen just around a mask that lie behind the object."""
-    radius = max(3, round(RING_PX * max(mask.shape)))
+    radius = max(3, round(settings.ring_px * max(mask.shape)))
     kernel = np.ones((2 * radius + 1, 2 * radius + 1), np.uint8)
     ring = cv2.dilate(mask.astype(np.uint8), kernel).astype(bool) & ~mask
     return points_world[ring & (depth_m > object_depth_m)]

@@ -8,36 +8,35 @@ import numpy as np
 
 from diorama_core.library.taxonomy import Category
 from diorama_core.perception.measured.boxes import Extent
+from diorama_core.perception.measured.settings import SETTINGS, MeasuredSettings
 from diorama_core.scene.types import Support, yaw_rotation
 
-ON_FLOOR_M = 0.15
-"""A bottom lower than this rests on the floor: lower parts are often hidden."""
-CONTACT_M = 0.2
-"""A bottom within this of a supporter's top rests on it."""
-RUG_M = 0.05
 
-
-def supporters(extents: dict[str, Extent], categories: dict[str, Category]) -> tuple[Support, ...]:
+def supporters(
+    extents: dict[str, Extent], categories: dict[str, Category], settings: MeasuredSettings = SETTINGS
+) -> tuple[Support, ...]:
     """One edge per object: to the floor, to an object below, to the wall or the ceiling; never a cycle."""
-    return tuple(_edge(key, extents, categories) for key in extents)
+    return tuple(_edge(key, extents, categories, settings) for key in extents)
 
 
-def _edge(key: str, extents: dict[str, Extent], categories: dict[str, Category]) -> Support:
+def _edge(key: str, extents: dict[str, Extent], categories: dict[str, Category], settings: MeasuredSettings) -> Support:
     extent, category = extents[key], categories[key]
     bottom = float(extent.low[2])
     if category.mount == "ceiling":
         return Support(key, "ceiling", "mounted on")
-    if category.mount == "wall" and bottom > RUG_M:
+    if category.mount == "wall" and bottom > settings.rug_m:
         return Support(key, "wall", "mounted on")
-    below = _below(key, extents, categories)
-    if below is not None and (category.mount == "surface" or bottom > ON_FLOOR_M):
+    below = _below(key, extents, categories, settings)
+    if below is not None and (category.mount == "surface" or bottom > settings.on_floor_m):
         return Support(key, below)
     if category.mount == "wall":
         return Support(key, "wall", "mounted on")
     return Support(key, "floor")
 
 
-def _below(key: str, extents: dict[str, Extent], categories: dict[str, Category]) -> str | None:
+def _below(
+    key: str, extents: dict[str, Extent], categories: dict[str, Category], settings: MeasuredSettings
+) -> str | None:
     """The object whose top, or seat, is nearest under this one's bottom and under its middle."""
     extent = extents[key]
     bottom = float(extent.low[2])
@@ -48,7 +47,7 @@ def _below(key: str, extents: dict[str, Extent], categories: dict[str, Category]
         if candidate.low[2] >= bottom or _volume(candidate) <= _volume(extent):
             continue
         gap = min(abs(bottom - height) for height in resting_heights(candidate, categories[other]))
-        if gap < CONTACT_M + 0.25 * float(extent.size[2]) and (best is None or gap < best[0]):
+        if gap < settings.contact_m + 0.25 * float(extent.size[2]) and (best is None or gap < best[0]):
             best = (gap, other)
     return best[1] if best else None
 
@@ -72,7 +71,10 @@ def resting_heights(extent: Extent, category: Category) -> list[float]:
 
 
 def grounded(
-    extents: dict[str, Extent], categories: dict[str, Category], edges: tuple[Support, ...]
+    extents: dict[str, Extent],
+    categories: dict[str, Category],
+    edges: tuple[Support, ...],
+    settings: MeasuredSettings = SETTINGS,
 ) -> dict[str, Extent]:
     """The boxes reaching down to what holds them: the floor, or the supporter's top or seat.
 
@@ -81,7 +83,7 @@ def grounded(
     out = dict(extents)
     for edge in edges:
         extent = extents[edge.child]
-        if edge.parent == "floor" and categories[edge.child].mount == "surface" and extent.low[2] > ON_FLOOR_M:
+        if edge.parent == "floor" and categories[edge.child].mount == "surface" and extent.low[2] > settings.on_floor_m:
             continue
         if edge.parent == "floor":
             out[edge.child] = _with_bottom(extent, 0.0)

@@ -34,7 +34,7 @@ class HeightScan:
 
     height_m: float
     log_sigma: float
-    """Of the height, from the curve's width at its minimum."""
+    """Logarithmic deviation of the height, from the curve's width at its minimum."""
     cost: float
     """At the minimum, the height's own prior included."""
 

@@ -55,7 +55,7 @@ _COSTS: Mapping[str, Mapping[Mount, float]] = {
 }
 """What speaks against a thing being held in a place, by how things of its kind are usually held."""
 _UNNAMED_COSTS = {"on top": 4.0, "floor": 0.0, "wall": 5.0, "ceiling": 6.0}
-"""The same for a thing without a name that nobody looked at."""
+"""Costs for a thing without a name that nobody looked at."""
 _SCREENS = having("screen")
 _RUGS = having("rug")
 _FIXED_TO_WALLS = having("fixed_to_wall")
@@ -132,7 +132,7 @@ def _not_through_tops(
     height_m: float,
     settings: MetrologySettings,
 ) -> dict[int, Placement]:
-    """The same, dearer where what may stand on others would be seen on the floor through their tops."""
+    """Places on the floor, dearer where what may stand on others would be seen on the floor through their tops."""
     found = dict(floor)
     for index, placement in floor.items():
         category = observations.categories[index]
@@ -280,7 +280,7 @@ def _stacked(
     placed: Mapping[int, Placement],
     settings: MetrologySettings,
 ) -> dict[int, Placement]:
-    """The same with small things on small things that lie on others, where that is cheaper: a cup on books."""
+    """Places with small things on small things that lie on others, where that is cheaper: a cup on books."""
     found, holding = dict(placed), {p.supporter for p in placed.values()}
     for index in np.argsort(-observations.box_px[:, 3], kind="stable").tolist():  # what is below first
         below = _small_carrier(observations, index, settings.placement)

@@ -34,7 +34,7 @@ class SizeMode:
     log_size: Float[np.ndarray, "3"]
     """Logarithms of depth, width, height in metres."""
     sigma: Float[np.ndarray, "3"]
-    """Of each logarithm by itself."""
+    """Deviation of each logarithm by itself."""
     cost: float
     outline: Float[np.ndarray, "40 3"]
     """What is filled of the cuboid (`library.kinds`)."""

@@ -65,7 +65,7 @@ class Problems:
     log_size: Float[np.ndarray, "n 3"]
     """Prior of the logarithms of depth, width, height."""
     log_size_sigma: Float[np.ndarray, "n 3"]
-    """Of each by itself."""
+    """Deviation of each by itself."""
     whitening: Float[np.ndarray, "n 3 3"]
     """Turns a difference from the prior into independent sigmas."""
     base_m: Float[np.ndarray, "n"]
@@ -80,7 +80,7 @@ class Problems:
     wall_m: Float[np.ndarray, "n"]
     """Coordinate of the object's back along its front axis (negative: a wall faces the camera)."""
     wall_sigma: Float[np.ndarray, "n"]
-    """Of the logarithm of that coordinate's ratio."""
+    """Deviation of the logarithm of that coordinate's ratio."""
     cut_sigma: Float[np.ndarray, "n"]
     """How readily the cuboid may reach beyond the picture (of a logarithm of box sizes)."""
     outline: Float[np.ndarray, "n p 3"]
@@ -155,7 +155,7 @@ class Values:
     inset_px: Float[np.ndarray, "n 4"]
     """By how much the objects' outlines stay within their cuboids."""
     bounds_px: Float[np.ndarray, "n 4"]
-    """Of the cuboids in the picture."""
+    """Bounds of the cuboids in the picture."""
     visible: Bool[np.ndarray, "n"]
     """Whether they are in the picture at all."""
 
@@ -325,6 +325,6 @@ def _off_wall(boxes: Cuboids, problems: Problems, settings: CuboidFitSettings) -
 
 
 def wall_sigmas(off: Float[np.ndarray, "n"], problems: Problems, settings: CuboidFitSettings) -> Float[np.ndarray, "n"]:
-    """Of backs that are nearer than their walls, and of those behind, by the sign of `off`."""
+    """Deviations of backs that are nearer than their walls, and of those behind, by the sign of `off`."""
     nearer = np.minimum(problems.wall_sigma, np.maximum(settings.wall_nearer_log_sigma, problems.wall_sigma / 5))
     return np.where((off < 0) & (problems.wall_sigma < UNTOLD), nearer, problems.wall_sigma)

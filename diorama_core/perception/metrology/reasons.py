@@ -15,7 +15,7 @@ from diorama_core.perception.metrology.settings import CuboidFitSettings
 
 HUNG: Mapping[int, str] = {WALL: "hangs on walls", CEILING: "hangs from ceilings"}
 FORWARD, SIZE = slice(1, 2), slice(2, 5)
-"""Of the unknowns: the logarithms of the distance and of the extents."""
+"""Columns of the unknowns: the logarithms of the distance and of the extents."""
 TERMS: Mapping[str, tuple[slice, str, str]] = {
     "outline": (slice(0, 3), "it looks as large in the photo as it would there", "it looks that large in the photo"),
     "foot": (slice(3, 4), "the photo shows its foot there", "the photo shows its foot there"),

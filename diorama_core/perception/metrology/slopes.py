@@ -113,7 +113,7 @@ def _edges(
     view: View,
     settings: CuboidFitSettings,
 ) -> tuple[Float[np.ndarray, "n 4 6"], Bool[np.ndarray, "n"]]:
-    """Of the four sides of the projected box, and where they are told."""
+    """Slopes of the four sides of the projected box, and where they are told."""
     at = extreme_points(corners, here.bounds_px, here.visible, view.intrinsics)
     of_bounds = at.slopes(frame.moved(at.unit), view.intrinsics)
     there = edge_residuals(here.bounds_px + _STEP, here.visible, here.inset_px, problems, view, settings)
@@ -124,7 +124,7 @@ def _edges(
 def _cut_off(
     corners: Float[np.ndarray, "n 8 3"], frame: _Frame, problems: Problems, view: View, settings: CuboidFitSettings
 ) -> Float[np.ndarray, "n 2 6"]:
-    """Of how much lies outside the picture: that goes with the corner that lies farthest out."""
+    """Slopes of how much lies outside the picture: that goes with the corner that lies farthest out."""
     k = view.intrinsics
     extent = problems.box_px[:, 2:] - problems.box_px[:, :2]
     x, y, z = np.ascontiguousarray(corners.transpose(2, 1, 0))
@@ -161,7 +161,7 @@ def _outside_footprint(
     problems: Problems,
     settings: CuboidFitSettings,
 ) -> Float[np.ndarray, "n 2 4"]:
-    """Of the base's place on its supporter, by place, depth and width."""
+    """Slopes of the base's place on its supporter, by place, depth and width."""
     depth, width = boxes.size_m[:, :2].T
     x, y, yaw, half_depth, half_width = problems.footprint.T
     c, s = np.cos(yaw), np.sin(yaw)
@@ -186,7 +186,7 @@ def _off_wall(
     problems: Problems,
     settings: CuboidFitSettings,
 ) -> Float[np.ndarray, "n 3"]:
-    """Of the back's distance from its wall, by place and depth."""
+    """Slopes of the back's distance from its wall, by place and depth."""
     front = np.stack([np.cos(boxes.yaw_rad), np.sin(boxes.yaw_rad)], axis=-1)
     ahead = 0.5 * boxes.size_m[:, 0] - (boxes.centre[:, :2] * front).sum(axis=1)
     moved = np.column_stack([-(front[:, :, None] * plan).sum(axis=1), 0.5 * boxes.size_m[:, 0]])
@@ -202,7 +202,7 @@ def _off_wall(
 def _too_far(
     boxes: Cuboids, plan: Float[np.ndarray, "n 2 2"], here: Float[np.ndarray, "n"], settings: CuboidFitSettings
 ) -> Float[np.ndarray, "n 2"]:
-    """Of the distance, by place."""
+    """Slopes of the distance, by place."""
     centre = boxes.centre[:, :2]
     outward = (centre[:, :, None] * plan).sum(axis=1)
     return outward * ((here > 0.0) / ((centre**2).sum(axis=1) * settings.far_log_sigma))[:, None]

@@ -29,7 +29,7 @@ class Solutions:
         return Solutions(self.problems.rows(chosen), self.unknowns[chosen], self.cost[chosen])
 
     def dearer(self, by: Float[np.ndarray, "n"]) -> Solutions:
-        """The same rows with more against each."""
+        """These rows with more against each."""
         return Solutions(self.problems.changed(extra=self.problems.extra + by), self.unknowns, self.cost + by)
 
 

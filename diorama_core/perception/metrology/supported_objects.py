@@ -23,7 +23,7 @@ from diorama_core.perception.metrology.rows import row
 from diorama_core.perception.metrology.settings import SETTINGS, MetrologySettings, PlacementSettings
 
 FLOOR_OBJECT_COST = 4.0
-"""Of a thing that usually stands on the floor and stands on another; portable things pay by their size instead."""
+"""Cost of a thing that usually stands on the floor and stands on another; portable things pay by their size instead."""
 _BACK_SHARE = {("bed", "pillow"): 0.45}
 """Pillows lie at the head of a bed: in this share of its depth."""
 _USUAL_MIDDLE_M: Mapping[str, float] = column("middle_height_m")
@@ -39,7 +39,7 @@ class Extent:
     left_sigma: float
     right_sigma: float
     back_sigma: float
-    """Of the logarithms: small where something stands far out, large where nothing is known."""
+    """Deviations of the logarithms: small where something stands far out, large where nothing is known."""
 
     @property
     def footprint(self) -> Float[np.ndarray, "5"]:

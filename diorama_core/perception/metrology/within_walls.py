@@ -61,7 +61,7 @@ def measured_within_walls(
     inputs: Inputs,
     settings: MetrologySettings = SETTINGS,
 ) -> ObjectGeometry:
-    """The same objects, those measured anew that the walls tell something of, and what they carry.
+    """Objects with those measured anew that the walls tell something of, and what they carry.
 
     Args:
         geometry: Of all objects.

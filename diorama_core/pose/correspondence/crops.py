@@ -50,7 +50,7 @@ class Crop(ArrayValue):
     R_camera_crop: Float[np.ndarray, "3 3"]
     """From the crop's camera, which looks at the object, to the photo's."""
     focal_px: float
-    """Of the crop."""
+    """In pixels of the crop."""
     points_camera: Float32[np.ndarray, "p 3"]
     """Measured point under the middle of every patch, photo camera; NaN where unknown."""
 

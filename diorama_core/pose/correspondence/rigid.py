@@ -139,7 +139,7 @@ def _plane_similarity(
 
 
 def _predicted(compared: Compared, view: int, network: ScaleNetwork) -> tuple[float, float]:
-    """The same of the best match alone, by the network."""
+    """Size and turn from the best match alone, by the network."""
     pictures = [
         np.repeat(g[..., None], 3, axis=-1) for g in (compared.templates.gray[view], compared.crop.view.gray[0])
     ]

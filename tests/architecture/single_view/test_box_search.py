@@ -3,8 +3,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from diorama_core.architecture.single_view.box_search import MARGIN_M, around_objects, find_box
+from diorama_core.architecture.single_view.box_search import around_objects, find_box
 from diorama_core.architecture.single_view.room_cues import PRIOR_MEDIAN_M, gather_room_cues
+from diorama_core.architecture.single_view.settings import SETTINGS
 from tests.architecture.single_view.plain_cues import CAMERA, cues
 from tests.synthetic_rooms import box_room, cuboid, look, shoot
 
@@ -30,6 +31,8 @@ def test_without_evidence_the_usual_room_is_found() -> None:
 def test_boxes_grow_around_objects_and_never_shrink() -> None:
     item = {"object_low": np.array([[-3.0, 1.0, 0.0]]), "object_high": np.array([[1.0, 5.0, 3.0]])}
     found = around_objects(cues(**item, object_weights=np.ones(1)), np.array([-2.0, 2.0, 4.0, 2.6]))
-    np.testing.assert_allclose(found, [-3.0 - MARGIN_M, 2.0, 5.0 + MARGIN_M, 3.0 + MARGIN_M])
+    np.testing.assert_allclose(
+        found, [-3.0 - SETTINGS.search.margin_m, 2.0, 5.0 + SETTINGS.search.margin_m, 3.0 + SETTINGS.search.margin_m]
+    )
     box = np.array([-2.0, 2.0, 4.0, 2.6])
     assert around_objects(cues(), box) is box

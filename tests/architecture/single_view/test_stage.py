@@ -10,7 +10,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from diorama_core.architecture.single_view.stage import CLEARANCE_M, PhotoRoom, _push
+from diorama_core.architecture.single_view.settings import SETTINGS
+from diorama_core.architecture.single_view.stage import PhotoRoom, _push
 from diorama_core.architecture.walls.wall_candidates import WallCandidate
 from diorama_core.artefacts import Inputs, ObjectGeometry, Photo
 from diorama_core.evaluation.metrics.architecture import architecture_scores
@@ -241,18 +242,18 @@ def pushed(out_m: float, weight: float, sure: float, *others: tuple[float, float
 
 
 def test_an_unsure_wall_gives_way_to_a_sure_object_and_a_sure_wall_does_not():
-    assert pushed(0.4, 0.6, 0.3) == pytest.approx(0.4 + CLEARANCE_M)
+    assert pushed(0.4, 0.6, 0.3) == pytest.approx(0.4 + SETTINGS.search.clearance_m)
     assert pushed(0.4, 0.6, 0.9) == 0.0
     assert pushed(0.4, 0.2, 0.3) == 0.0
 
 
 def test_a_wall_stays_before_the_rear_end_of_an_object_and_moves_for_all_of_it():
     assert pushed(0.2, 0.9, 0.4) == 0.0
-    assert pushed(0.9, 0.9, 0.4) == pytest.approx(0.9 + CLEARANCE_M)
+    assert pushed(0.9, 0.9, 0.4) == pytest.approx(0.9 + SETTINGS.search.clearance_m)
 
 
 def test_a_wall_may_be_wholly_wrong_as_objects_may():
-    assert pushed(1.1, 0.6, 0.27) == pytest.approx(1.1 + CLEARANCE_M)
+    assert pushed(1.1, 0.6, 0.27) == pytest.approx(1.1 + SETTINGS.search.clearance_m)
     assert pushed(1.1, 0.6, 0.9) == 0.0
     # Once it is, what hardly anybody saw still does not take it along.
-    assert pushed(1.1, 0.6, 0.27, (1.9, 0.03)) == pytest.approx(1.1 + CLEARANCE_M)
+    assert pushed(1.1, 0.6, 0.27, (1.9, 0.03)) == pytest.approx(1.1 + SETTINGS.search.clearance_m)

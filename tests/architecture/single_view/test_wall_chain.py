@@ -8,14 +8,9 @@ import pytest
 
 from diorama_core.architecture.single_view.level_view import level_view
 from diorama_core.architecture.single_view.room_cues import PRIOR_MEDIAN_M, gather_room_cues
+from diorama_core.architecture.single_view.settings import SETTINGS
 from diorama_core.architecture.single_view.wall_chain import (
-    BACK_CAP,
-    BACK_WEIGHT,
-    CORNER_COST,
     FINE,
-    JUMP_COST,
-    OBJECT_WEIGHT,
-    PROTRUDING_COST,
     Chain,
     ChainScorer,
     PhotoWalls,
@@ -90,7 +85,7 @@ def test_objects_push_walls_away_in_the_headings_of_their_corners() -> None:
     near, far = walls(((0.0, -1.0), -1.5)), walls(FAR)
     extra = [with_item.costs(w, 2.6) - blank().costs(w, 2.6) for w in (near, far)]
     # At most twice the scale, for each of four corners a quarter of the weight.
-    assert extra[0].sum() == pytest.approx(2.0 * OBJECT_WEIGHT, rel=1e-6)
+    assert extra[0].sum() == pytest.approx(2.0 * SETTINGS.cues.object_weight, rel=1e-6)
     assert np.flatnonzero(extra[0][0]).size <= 4
     np.testing.assert_allclose(extra[1], 0.0, atol=1e-12)
 
@@ -112,7 +107,7 @@ def test_what_stands_at_walls_draws_the_wall_to_its_back() -> None:
     )
     assert behind < 0.1 * near
     assert behind < 0.1 * far
-    assert far <= BACK_WEIGHT * 0.8 * BACK_CAP + 1e-9, "it may stand elsewhere"
+    assert far <= SETTINGS.search.back_weight * 0.8 * SETTINGS.search.back_cap + 1e-9, "it may stand elsewhere"
 
 
 def test_walls_that_lead_far_away_cost_more() -> None:
@@ -134,9 +129,9 @@ def test_going_over_costs_a_corner_a_protrusion_or_a_jump() -> None:
     pair = walls(LEFT, FAR)
     over = scorer.going_over(pair, 2.6)
     corner = int(np.abs(scorer.view.edges_rad[1:-1] - np.arctan2(-2.0, 4.0)).argmin())
-    assert over[corner, 0, 1] == pytest.approx(CORNER_COST)
-    assert over[corner, 1, 0] == pytest.approx(PROTRUDING_COST)
-    assert over[corner + 30, 0, 1] == pytest.approx(JUMP_COST)
+    assert over[corner, 0, 1] == pytest.approx(SETTINGS.search.corner_cost)
+    assert over[corner, 1, 0] == pytest.approx(SETTINGS.search.protruding_cost)
+    assert over[corner + 30, 0, 1] == pytest.approx(SETTINGS.search.jump_cost)
     assert (over[:, [0, 1], [0, 1]] == 0).all()
 
 
@@ -146,8 +141,8 @@ def test_an_upright_edge_makes_going_over_cheaper() -> None:
     at = 1 + int(np.abs(scorer.view.edges_rad[1:-1] - np.arctan2(-2.0, 4.0)).argmin())
     upright[at] = 0.001
     drawn = ChainScorer(scorer.cues, replace(scorer.view, upright=upright))
-    assert drawn.going_over(walls(LEFT, FAR), 2.6)[at - 1, 0, 1] < CORNER_COST - 0.01
-    assert drawn.going_over(walls(LEFT, FAR), 2.6)[at, 0, 1] == pytest.approx(CORNER_COST)
+    assert drawn.going_over(walls(LEFT, FAR), 2.6)[at - 1, 0, 1] < SETTINGS.search.corner_cost - 0.01
+    assert drawn.going_over(walls(LEFT, FAR), 2.6)[at, 0, 1] == pytest.approx(SETTINGS.search.corner_cost)
 
 
 def test_the_chain_is_the_cheapest_of_all_paths() -> None:
