@@ -86,10 +86,7 @@ def pack_parts(parts: Sequence[Sequence[ConvexPart]]) -> PackedParts:
 
 
 def place_bodies(
-    packed: PackedParts,
-    R: Float[np.ndarray, "n 3 3"],
-    p: Float[np.ndarray, "n 3"],
-    scale: Float[np.ndarray, "n 3"],
+    packed: PackedParts, R: Float[np.ndarray, "n 3 3"], p: Float[np.ndarray, "n 3"], scale: Float[np.ndarray, "n 3"]
 ) -> Bodies:
     """All parts of all objects, posed."""
     to_world, S = R.transpose(0, 2, 1)[packed.owner], scale[packed.owner][:, None, :]

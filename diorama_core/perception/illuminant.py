@@ -82,7 +82,6 @@ def estimate_illuminant(
     Args:
         rgb: the photo, sRGB.
         walls: pixels of its walls and ceiling, where they are known.
-        settings: numbers to work with.
     """
     small, of_walls = _reduced(rgb, walls, settings)
     light = srgb_to_linear(small / 255.0)

@@ -26,7 +26,6 @@ def agreed_ranks(
         trust: How well every object is seen: how much it has to say for its group.
         max_loss: By how much the shape agreed on may be ranked below an object's own best before the object goes its
             own way; where this is finite, only objects that come in sets agree at all.
-        settings: numbers to work with.
 
     Returns:
         For every object the same shapes with ranks relative to its best.

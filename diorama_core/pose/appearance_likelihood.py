@@ -52,7 +52,6 @@ class AppearanceLikelihood:
             seen: its window, in `cells_for` its box.
             surface: what was measured there.
             size_m: about how large it is.
-            settings: numbers to work with.
         """
         small = (
             settings.evidence.tolerance_m

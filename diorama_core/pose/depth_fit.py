@@ -52,7 +52,6 @@ class SeenPoints:
             depth_m: measured at the cells' centres.
             weight: 0 where nothing was measured.
             spread_m: standard deviation of the noise in the depth.
-            settings: numbers to work with.
         """
         chosen = np.flatnonzero((seen.covered >= settings.inner_cell) & (weight > 0))
         if len(chosen) < 12:
@@ -225,10 +224,7 @@ class DepthFit:
     ) -> tuple[Float[np.ndarray, "p 7 7"], Float[np.ndarray, "p 7"]]:
         """Normal matrices and gradients of all poses."""
         poses = self._moved(start, x)
-        parts = [
-            self._surface(caster, poses, looseness),
-            self._priors(poses, x),
-        ]
+        parts = [self._surface(caster, poses, looseness), self._priors(poses, x)]
         if self.outline is not None:
             parts.append(self._reaches(caster, poses, looseness))
         J = np.concatenate([j for j, _, _ in parts], axis=1)

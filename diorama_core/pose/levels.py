@@ -22,7 +22,6 @@ def level_cost(
         shape: with its support surfaces; where none is known, nothing speaks against it.
         pose: upright, in the world.
         carried: what lies on it, measured without knowing the shape.
-        settings: numbers to work with.
     """
     if not carried or not shape.surfaces:
         return 0.0

@@ -108,7 +108,6 @@ def sides_log_of(
         symmetry: Turns about up that leave the shape the same.
         category_name: Unnamed things come in all proportions.
         round: Whether its outline from above is a circle.
-        settings: numbers to work with.
     """
     if category_name == UNKNOWN.name:
         return np.inf

@@ -16,14 +16,7 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from diorama_core.artefacts import (
-    DepthMap,
-    DetectedObject,
-    Inputs,
-    ObjectGeometry,
-    PosedCandidates,
-    RankedShapes,
-)
+from diorama_core.artefacts import DepthMap, DetectedObject, Inputs, ObjectGeometry, PosedCandidates, RankedShapes
 from diorama_core.geometry.silhouette import ShapeCaster
 from diorama_core.library.furniture.measures import Value, can_be_made, can_be_turned, made_id, varied
 from diorama_core.library.record import ShapeLibrary

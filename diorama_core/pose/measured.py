@@ -55,7 +55,6 @@ class MeasuredObject:
             walls: where walls were measured.
             floor_foot_m: for objects on the floor, whose height is known even where they hide it: the height at which
                 their lowest pixels were measured.
-            settings: numbers to work with.
         """
         if observations.surface is None:
             return None

@@ -78,7 +78,6 @@ def fitted_pose(
         shape_size_m: Its extents at scale 1.
         resize: Whether its size may change; one of a set keeps it. What is round from above stays round.
         near: How far it may go.
-        settings: numbers to work with.
     """
     if evidence.surface is None and evidence.seen.mask_trust < settings.min_trust:
         return pose

@@ -95,7 +95,6 @@ def posing_tasks(
         kinds: by object what it most likely is.
         cells: resolutions at which all hypotheses, and the best ones, are compared.
         walls: where walls are seen.
-        settings: numbers to work with.
     """
     cuboid_of = {c.object_id: c for c in geometry.cuboids}
     items = [o for o in objects if o.id in cuboid_of]

@@ -87,7 +87,6 @@ def facing_room(
         tasks: Of the posed objects.
         tried: Their shapes.
         walls: Where walls are seen.
-        settings: numbers to work with.
     """
     index = {c.object_id: k for k, c in enumerate(geometry.cuboids)}
     parent_of = {s.child: s.parent for s in geometry.supports}

@@ -25,7 +25,6 @@ def shared_scales(
         shape_ids: the shape chosen for every object.
         scales: its scale along the shape's axes.
         trust: how well every object is seen.
-        settings: numbers to work with.
     """
     logs, shared = np.log(scales), scales.copy()
     for name in sorted({s for s, c in zip(shape_ids, categories, strict=True) if c in SETS}):

@@ -86,7 +86,6 @@ def measured_surface(
         seen: the object's window.
         mask: the object's visible pixels.
         noise: from `noise_of`.
-        settings: numbers to work with.
     """
     if depth.source is DepthSource.RENDERED:
         return None

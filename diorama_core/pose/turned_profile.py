@@ -96,7 +96,6 @@ def measured_girth(
         outline: Of the object in the photo.
         mesh: The shape, a body of revolution.
         pose: Where it stands, upright, as high as the body and as wide at most as it may be.
-        settings: numbers to work with.
     """
     low, high = mesh.bounds[:, 2]
     shares = np.clip(np.linspace(0.0, 1.0, KNOTS), settings.inset, 1.0 - settings.inset)
@@ -154,7 +153,6 @@ def turned(
         evidence: Of the objects that have this shape, alike.
         poses: Where they stand, all of one scale.
         error: How much the design as it is disagrees, in the mean.
-        settings: numbers to work with.
     """
     if not can_be_turned(shape_id) or record_of(library, shape_id).source != BUILT_IN:
         return None

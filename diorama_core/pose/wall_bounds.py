@@ -29,7 +29,6 @@ class WallBounds:
         Args:
             walls: upright surfaces that belong to no object.
             points: of the object.
-            settings: numbers to work with.
         """
         xy = points.points_world[:, :2]
         middle, reach = xy.mean(axis=0), np.ptp(xy, axis=0).max() + 2.0

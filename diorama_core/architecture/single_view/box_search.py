@@ -25,11 +25,7 @@ def find_box(cues: RoomCues, settings: RoomSearchSettings = SETTINGS.search) -> 
 def _starts(cues: RoomCues, settings: RoomSearchSettings) -> list[Float[np.ndarray, "4"]]:
     """Rooms of usual size, small, deep and wide, each grown around the objects; and one tight around them."""
     x, y, z = cues.camera.position
-    half, deep, high = (
-        0.5 * PRIOR_MEDIAN_M[0],
-        PRIOR_MEDIAN_M[1],
-        max(PRIOR_MEDIAN_M[2], z + 0.4),
-    )
+    half, deep, high = (0.5 * PRIOR_MEDIAN_M[0], PRIOR_MEDIAN_M[1], max(PRIOR_MEDIAN_M[2], z + 0.4))
     shapes = [(half, half, deep), (1.3, 1.3, 2.4), (half, half, 6.0), (3.5, 1.5, 4.0), (1.5, 3.5, 4.0)]
     boxes = [np.array([x - left, x + right, y + far, high]) for left, right, far in shapes]
     tight = np.array([x - 0.5, x + 0.5, y + 1.0, high])

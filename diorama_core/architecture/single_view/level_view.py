@@ -85,7 +85,6 @@ def level_view(
         rgb: the photo.
         cues: of the room, with the camera.
         objects: what is not the room's.
-        settings: numbers to work with.
     """
     camera = cues.camera
     low, high = view_headings(camera)

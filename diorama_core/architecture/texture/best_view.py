@@ -17,13 +17,7 @@ from jaxtyping import Bool, Float, Float32, UInt8
 
 from diorama_core.architecture.texture.continuation import completed
 from diorama_core.architecture.texture.level_light import levelled
-from diorama_core.architecture.texture.plane_textures import (
-    PhotoView,
-    PlaneView,
-    RoomPicture,
-    is_enough,
-    texel_points,
-)
+from diorama_core.architecture.texture.plane_textures import PhotoView, PlaneView, RoomPicture, is_enough, texel_points
 from diorama_core.architecture.texture.quilting import broad_shading
 from diorama_core.scene.types import Architecture
 

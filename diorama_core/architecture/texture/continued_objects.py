@@ -121,7 +121,6 @@ def continued_objects(
         objects: what hides the wall.
         pixel_m: size of a texel.
         longest_px: the photo's longer side.
-        settings: numbers to work with.
     """
     rows, columns = np.nonzero(foreign)
     found = np.zeros(foreign.shape, np.uint8)

@@ -130,7 +130,6 @@ def floor_colour(
         rgb: at least one pixel.
         places: where they are in the photo.
         white: lightness L* that the photo's white has (`white_level`).
-        settings: numbers to work with.
     """
     lab = cv2.cvtColor(rgb[:, None].astype(np.float32) / 255.0, cv2.COLOR_RGB2LAB)[:, 0].astype(np.float64)
     main = _main_colour(lab, places, np.ones(len(lab)), np.zeros(len(lab), dtype=bool), white, settings)
@@ -156,7 +155,6 @@ def floor_texels(
         contact: texels right before the feet of things.
         pixel_m: size of a texel.
         white: lightness L* that the photo's white has (`white_level`).
-        settings: numbers to work with.
     """
     rows, columns = np.nonzero(seen)
     if not len(rows):

@@ -49,7 +49,6 @@ def levelled(
         colours: 0 to 255.
         own: which texels show the floor's material.
         pixel_m: size of a texel.
-        settings: numbers to work with.
     """
     if not own.any():
         return colours

@@ -11,11 +11,7 @@ from jaxtyping import Bool, Float, Float32, UInt8
 
 from diorama_core.architecture.texture.colours import object_pixels
 from diorama_core.architecture.texture.continuation import completed
-from diorama_core.architecture.texture.continued_objects import (
-    continued_objects,
-    cut_patches,
-    object_colours,
-)
+from diorama_core.architecture.texture.continued_objects import continued_objects, cut_patches, object_colours
 from diorama_core.architecture.texture.empty_room import EmptyRoomFiller
 from diorama_core.architecture.texture.floor_material import contact_pixels, floor_texels, white_level
 from diorama_core.architecture.texture.level_light import levelled

@@ -150,11 +150,7 @@ class _Finder:
     """Looks up where in the source a block fits best."""
 
     def __init__(
-        self,
-        detail: Float32[np.ndarray, "h w 3"],
-        source: Bool[np.ndarray, "h w"],
-        size: int,
-        rng: np.random.Generator,
+        self, detail: Float32[np.ndarray, "h w 3"], source: Bool[np.ndarray, "h w"], size: int, rng: np.random.Generator
     ) -> None:
         rows, columns = np.flatnonzero(source.any(axis=1)), np.flatnonzero(source.any(axis=0))
         self._top, self._left = int(rows[0]), int(columns[0])

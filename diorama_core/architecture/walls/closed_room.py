@@ -36,7 +36,6 @@ def room_planes(
         top_m: Where walls end under no ceiling.
         floor_confidence: Of the floor.
         openings: Doorways and windows of each wall.
-        settings: numbers to work with.
     """
     ground = floor_outline(pieces, camera, settings)
     base = np.concatenate([ground, np.zeros((len(ground), 1))], axis=1)

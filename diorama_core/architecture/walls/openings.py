@@ -41,7 +41,6 @@ def find_openings(
         surface: The measured points.
         piece: The wall; one that was only assumed has no openings.
         top_m: Its height.
-        settings: numbers to work with.
     """
     if piece.candidate is None or piece.length_m < 3 * settings.min_side_m:
         return ()

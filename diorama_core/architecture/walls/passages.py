@@ -57,7 +57,6 @@ def with_passages(
         camera: The photo's.
         top_m: Height of the walls.
         is_shut: Tells of a wall and a rectangle of it that it was measured to be closed.
-        settings: numbers to work with.
     """
     of_wall = [list(openings) for openings in measured]
     ids = []

@@ -69,7 +69,6 @@ def measured_surface(
         depth_m: z in the camera, 0 where unknown.
         camera: Its intrinsics are those of the depth map.
         is_object: Pixels of objects that were pointed at.
-        settings: numbers to work with.
     """
     depth, k = averaged(depth_m, camera.intrinsics, settings.grid_px, settings)
     calm, normals_camera, noise = calm_planes(depth, k, settings)

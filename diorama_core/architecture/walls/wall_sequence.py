@@ -51,7 +51,6 @@ def outline(
         walls: Candidates that may be walls.
         view: Headings of the picture's left and right side.
         top_m: Height at which walls end.
-        settings: numbers to work with.
     """
     origin = surface.camera_position[:2]
     runs = wall_runs(surface, walls, view, top_m)
@@ -71,7 +70,6 @@ def chained(
         runs: At least one, from left to right.
         view: Headings of the picture's left and right side.
         origin: The camera, in plan.
-        settings: numbers to work with.
     """
     pieces: list[WallPiece] = []
     start = _beyond_view(runs[0], view[0], origin, left=True, settings=settings)
@@ -206,7 +204,6 @@ def _hidden_path(
         seen: where it comes into view.
         origin: The camera.
         behind_right: Whether the nearer wall hides what is to the right of its edge.
-        settings: numbers to work with.
     """
     sight = float(heading(edge, origin))
     slope = float(-near.normal @ far.normal)

@@ -81,7 +81,6 @@ def frame_from_depth(
         intrinsics: Of the depth map's grid.
         R_expected: `R_world_camera` expected from lines or habit; gravity is looked for around it, and its axes serve
             where no wall is measured.
-        settings: numbers to work with.
 
     Returns:
         The frame, or None where no level surface can be seen.

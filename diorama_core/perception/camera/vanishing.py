@@ -84,7 +84,6 @@ def search_frames(
         lines: The segments.
         focal: Focal length over the longer side; None to look for it as well.
         count: At most so many are returned; several may have converged to the same reading.
-        settings: numbers to work with.
     """
     focals = FOCAL_GRID if focal is None else np.array([focal])
     starts: list[tuple[float, np.ndarray, float]] = []

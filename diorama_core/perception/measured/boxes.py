@@ -162,11 +162,7 @@ def usual_plan(size: Float[np.ndarray, "3"], category: Category) -> Float[np.nda
 
 
 def to_cuboid(
-    object_id: str,
-    extent: Extent,
-    category: Category,
-    camera_position: Float[np.ndarray, "3"],
-    confidence: float,
+    object_id: str, extent: Extent, category: Category, camera_position: Float[np.ndarray, "3"], confidence: float
 ) -> Cuboid:
     """The cuboid with +X its likely front: the wide side that looks to the camera, where width and depth tell."""
     prior = category.priors[0]

@@ -31,7 +31,6 @@ def object_points(
         found: Its mask; a mask from a box alone may hold background.
         points_world: Of every pixel.
         depth_m: Of every pixel, 0 where missing.
-        settings: numbers to work with.
     """
     rows, columns = np.nonzero(eroded(found.mask) & (depth_m > 0))
     if len(rows) < MIN_POINTS:

@@ -56,7 +56,6 @@ def arrange(
         readings: Per object its readings, as a batch.
         costs: Per object the cost of each.
         categories: Per object.
-        settings: numbers to work with.
 
     Returns:
         Per object the index of its reading.

@@ -33,7 +33,6 @@ def back_costs(
         boxes: Readings, about the camera's foot.
         walls: Of the room; their normals point into it.
         foot: Of the camera, in the room.
-        settings: numbers to work with.
     """
     front = np.stack([np.cos(boxes.yaw_rad), np.sin(boxes.yaw_rad)], axis=-1)
     spread = settings.gap_m + settings.gap_share * np.linalg.norm(boxes.centre[:, :2], axis=1)

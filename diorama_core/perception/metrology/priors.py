@@ -56,7 +56,6 @@ def size_modes(
     Args:
         name: of the category.
         meanings: kinds that the word may mean with their probabilities; what it is generally said of when empty.
-        settings: numbers to work with.
     """
     if name == UNKNOWN.name:
         return (

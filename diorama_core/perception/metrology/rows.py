@@ -32,7 +32,6 @@ def row(
         yaw_rad: The assumed heading of the front.
         parent: The object it rests on, if any.
         more: Columns of `Problems` that differ from a thing on the floor, without the row axis.
-        settings: numbers to work with.
     """
     columns: dict[str, object] = {
         "item": float(index),

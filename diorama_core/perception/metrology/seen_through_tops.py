@@ -29,7 +29,6 @@ def seen_through_top(
         carrier: What has the top; one cuboid.
         height_m: Of the camera above the floor.
         view: How the camera is held.
-        settings: numbers to work with.
     """
     drop = float(carrier.top_m[0]) - height_m
     x1, y1, x2, y2 = box_px

@@ -55,7 +55,6 @@ def corner_costs(
         weight: Trust in every corner of every object, 0 where it is hidden or cut.
         exact: Whether the mask is the user's own.
         names: Category of every object.
-        settings: numbers to work with.
     """
     camera = corners_camera(boxes, problems.camera_height_m, view)
     k = view.intrinsics

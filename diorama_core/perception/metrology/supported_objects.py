@@ -156,7 +156,6 @@ def _levels(
         parent: the supporter.
         tall: its height in metres.
         odd: whether the thing is of a kind that seldom lies on seats.
-        settings: numbers to work with.
     """
     category = observations.categories[parent]
     top = (tall, settings.top_sigma_m, 0.0)

@@ -68,7 +68,6 @@ def measured_within_walls(
         room: Walls with their confidence, and supports whose parents are objects or planes.
         objects: Of the photo.
         inputs: With the photo.
-        settings: numbers to work with.
     """
     walls = tuple(w for w in room.architecture.by_role("wall") if w.confidence >= MIN_CONFIDENCE)
     floors = {p.id for p in room.architecture.by_role("floor")}
