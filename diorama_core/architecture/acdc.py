@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from diorama_core.architecture.plainrecon.bounds import Sheet, upright
+from diorama_core.architecture.plainrecon.bounds import PlaneSheet, upright
 from diorama_core.architecture.plainrecon.stage import room_of_pieces
 from diorama_core.artefacts import ArchitectureEstimate, DetectedObject, Inputs, ObjectGeometry
 from diorama_core.progress import Progress
@@ -35,5 +35,5 @@ class AcdcRoom:
         )
 
 
-def _upright_on(floor: Sheet, walls: list[Sheet]) -> list[Sheet]:
+def _upright_on(floor: PlaneSheet, walls: list[PlaneSheet]) -> list[PlaneSheet]:
     return [upright(wall, floor) for wall in walls]

@@ -10,7 +10,7 @@ from diorama_core.architecture.supports import resolve_supports
 from diorama_core.architecture.texture.colours import coloured, object_pixels
 from diorama_core.architecture.walls.ceilings import CeilingPiece, find_ceilings
 from diorama_core.architecture.walls.closed_room import GUESS_CONFIDENCE, room_planes
-from diorama_core.architecture.walls.openings import Opening, counts, find_openings, is_shut
+from diorama_core.architecture.walls.openings import WallOpening, counts, find_openings, is_shut
 from diorama_core.architecture.walls.passages import is_passage, with_passages
 from diorama_core.architecture.walls.settings import SETTINGS, WallSettings
 from diorama_core.architecture.walls.surface import MeasuredSurface, measured_surface
@@ -55,7 +55,7 @@ class PlanarRoom:
         pieces = outline(surface, walls, view_headings(geometry.camera), top_m, self.settings)
         pieces = pieces or (_guessed_wall(surface, geometry.camera),)
         floor_seen = _share(surface, 0.0, 1.0) > self.settings.min_flat_share
-        openings: tuple[tuple[Opening, ...], ...] = ((),) * len(pieces)
+        openings: tuple[tuple[WallOpening, ...], ...] = ((),) * len(pieces)
         pointed: tuple[str, ...] = ()
         if not _sloped(ceilings):
             measured = tuple(find_openings(surface, p, top_m, self.settings) for p in pieces)
@@ -129,7 +129,7 @@ def _source(
     floor_seen: bool,
     top_m: float,
     ceilings: tuple[CeilingPiece, ...],
-    openings: tuple[tuple[Opening, ...], ...],
+    openings: tuple[tuple[WallOpening, ...], ...],
 ) -> RoomSource:
     seen = sum(p.candidate is not None for p in pieces)
     doorways, windows = counts(openings)

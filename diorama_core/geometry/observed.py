@@ -11,7 +11,7 @@ import numpy as np
 from jaxtyping import Bool, Float
 
 from diorama_core.geometry.projection import NEAR_M
-from diorama_core.geometry.silhouette import Hits, PoseBatch, ShapeCaster
+from diorama_core.geometry.silhouette import PoseBatch, ShapeCaster, ShapeHits
 from diorama_core.geometry.window import Window, soft_iou
 from diorama_core.scene.types import Camera
 
@@ -74,7 +74,7 @@ class Observed:
         covered[:, *part] = caster.covers(self.origin_world, rays, poses).reshape(covered[:, *part].shape)
         return covered.reshape(len(poses), -1)
 
-    def hits(self, caster: ShapeCaster, poses: PoseBatch) -> Hits:
+    def hits(self, caster: ShapeCaster, poses: PoseBatch) -> ShapeHits:
         """What the rays through the cells' centres meet of a shape under every pose."""
         part = self._part_around(caster, poses)
         met = caster.cast(self.origin_world, self._grid[part].reshape(-1, 3), poses)
@@ -85,7 +85,7 @@ class Observed:
             return filled.reshape(len(poses), -1, *values.shape[2:])
 
         depth, normals, triangles = whole(met.depth_m, np.inf), whole(met.normals_object, 0), whole(met.triangles, 0)
-        return Hits(depth, normals, triangles, self.directions_world, poses)
+        return ShapeHits(depth, normals, triangles, self.directions_world, poses)
 
     @property
     def _grid(self) -> Float[np.ndarray, "c c 3"]:

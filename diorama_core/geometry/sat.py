@@ -23,7 +23,7 @@ _AT_ONCE = 512
 
 
 @dataclass(frozen=True, eq=False)
-class Bodies:
+class PosedBodies:
     """Convex bodies in the world at their base positions, padded to common sizes."""
 
     vertices: Float[np.ndarray, "b v 3"]
@@ -55,7 +55,7 @@ class PairAxes:
 
 
 @dataclass(frozen=True, eq=False)
-class PackedParts:
+class PaddedParts:
     """The parts of several objects in their own frames, padded to common sizes: what `place_bodies` poses."""
 
     vertices: Float[np.ndarray, "b v 3"]
@@ -65,18 +65,18 @@ class PackedParts:
     """Counts of vertices, normals and edges, without the padding."""
     owner: Int[np.ndarray, " b"]
 
-    def of(self, objects: Bool[np.ndarray, " n"]) -> PackedParts:
+    def of(self, objects: Bool[np.ndarray, " n"]) -> PaddedParts:
         """The parts of some of the objects."""
         rows = objects[self.owner]
-        return PackedParts(
+        return PaddedParts(
             self.vertices[rows], self.normals[rows], self.edges[rows], self.counts[rows], self.owner[rows]
         )
 
 
-def pack_parts(parts: Sequence[Sequence[ConvexPart]]) -> PackedParts:
+def pack_parts(parts: Sequence[Sequence[ConvexPart]]) -> PaddedParts:
     """Pad the parts of objects (one sequence each, none empty) once, for many placements."""
     flat = [part for own in parts for part in own]
-    return PackedParts(
+    return PaddedParts(
         vertices=_padded([part.vertices for part in flat], repeat=True),
         normals=_padded([part.normals for part in flat]),
         edges=_padded([part.edges for part in flat]),
@@ -86,12 +86,12 @@ def pack_parts(parts: Sequence[Sequence[ConvexPart]]) -> PackedParts:
 
 
 def place_bodies(
-    packed: PackedParts, R: Float[np.ndarray, "n 3 3"], p: Float[np.ndarray, "n 3"], scale: Float[np.ndarray, "n 3"]
-) -> Bodies:
+    packed: PaddedParts, R: Float[np.ndarray, "n 3 3"], p: Float[np.ndarray, "n 3"], scale: Float[np.ndarray, "n 3"]
+) -> PosedBodies:
     """All parts of all objects, posed."""
     to_world, S = R.transpose(0, 2, 1)[packed.owner], scale[packed.owner][:, None, :]
     world = np.matmul(packed.vertices * S, to_world) + p[packed.owner][:, None, :]
-    return Bodies(
+    return PosedBodies(
         vertices=world,
         normals=_unit(np.matmul(packed.normals / S, to_world)),
         edges=_unit(np.matmul(packed.edges * S, to_world)),
@@ -103,7 +103,7 @@ def place_bodies(
 
 
 def pair_axes(
-    bodies: Bodies, a: Int[np.ndarray, " m"], b: Int[np.ndarray, " m"], *, faces_only: bool = False
+    bodies: PosedBodies, a: Int[np.ndarray, " m"], b: Int[np.ndarray, " m"], *, faces_only: bool = False
 ) -> list[PairAxes]:
     """The separating directions of body pairs, in blocks of similar size: boxes first, what has most faces last.
 
@@ -117,7 +117,12 @@ def pair_axes(
 
 
 def _block(
-    bodies: Bodies, a: Int[np.ndarray, " m"], b: Int[np.ndarray, " m"], most: Int[np.ndarray, "3"], *, faces_only: bool
+    bodies: PosedBodies,
+    a: Int[np.ndarray, " m"],
+    b: Int[np.ndarray, " m"],
+    most: Int[np.ndarray, "3"],
+    *,
+    faces_only: bool,
 ) -> PairAxes:
     v, f, e = most
     Va, Vb = bodies.vertices[a, :v], bodies.vertices[b, :v]

@@ -60,7 +60,7 @@ class PoseBatch:
 
 
 @dataclass(frozen=True, eq=False)
-class Hits:
+class ShapeHits:
     """What the rays of one window meet, for every pose; infinite depth where they meet nothing."""
 
     depth_m: Float[np.ndarray, "p r"]
@@ -71,9 +71,9 @@ class Hits:
     directions_world: Float[np.ndarray, "r 3"]
     poses: PoseBatch
 
-    def of_rays(self, chosen: Int[np.ndarray, "k"]) -> Hits:
+    def of_rays(self, chosen: Int[np.ndarray, "k"]) -> ShapeHits:
         """Those of some rays alone."""
-        return Hits(
+        return ShapeHits(
             self.depth_m[:, chosen],
             self.normals_object[:, chosen],
             self.triangles[:, chosen],
@@ -151,14 +151,14 @@ class ShapeCaster:
 
     def cast(
         self, origin_world: Float[np.ndarray, "3"], directions_world: Float[np.ndarray, "r 3"], poses: PoseBatch
-    ) -> Hits:
+    ) -> ShapeHits:
         """First hits of every ray with the shape under every pose."""
         rays = _rays(origin_world, directions_world, poses)
         depth, normals, triangles = self._cast(rays.reshape(-1, 6))
         shape = rays.shape[:2]
         depth = depth.reshape(shape).astype(np.float64)
         depth[~(depth > NEAR_M)] = np.inf
-        return Hits(depth, normals.reshape(*shape, 3), triangles.reshape(shape), directions_world, poses)
+        return ShapeHits(depth, normals.reshape(*shape, 3), triangles.reshape(shape), directions_world, poses)
 
     def bounds_px(self, camera: Camera, poses: PoseBatch) -> Float[np.ndarray, "p 4"]:
         """Boxes x1, y1, x2, y2 of the posed shape in the photo, clipped to it; NaN where it is out of sight."""

@@ -15,7 +15,7 @@ from shapely.geometry.base import BaseGeometry
 
 from diorama_core.geometry.openings import OPENING_CATEGORIES, wall_of
 from diorama_core.geometry.planes import plane_axes
-from diorama_core.geometry.unseen_walls import Opening, unseen_parts
+from diorama_core.geometry.unseen_walls import LightOpening, unseen_parts
 from diorama_core.scene.types import Plane, Scene
 
 MIN_AREA_M2 = 0.01
@@ -46,7 +46,7 @@ def sun_patches(scene: Scene, direction: Float[np.ndarray, "3"]) -> list[Float[n
     return found
 
 
-def _windows(scene: Scene) -> Iterable[Opening]:
+def _windows(scene: Scene) -> Iterable[LightOpening]:
     """What the panes of visible windows leave open in their walls."""
     walls = scene.architecture.by_role("wall")
     for item in scene.objects:
@@ -58,7 +58,7 @@ def _windows(scene: Scene) -> Iterable[Opening]:
         corners = [
             centre + R[:, 1] * y * half[1] + R[:, 2] * z * half[2] for y, z in ((-1, -1), (1, -1), (1, 1), (-1, 1))
         ]
-        yield Opening(np.array(corners), wall.normal)
+        yield LightOpening(np.array(corners), wall.normal)
 
 
 def _shade(scene: Scene, direction: Float[np.ndarray, "3"], plane: Plane) -> BaseGeometry | None:

@@ -28,7 +28,7 @@ Corners = Float[np.ndarray, "4 3"]
 
 
 @dataclass(frozen=True)
-class Opening:
+class LightOpening:
     """A hole in a wall that lets light in."""
 
     corners: Corners
@@ -43,7 +43,7 @@ class Unseen:
 
     planes: tuple[Plane, ...] = ()
     """Walls in pieces around their windows, and a ceiling."""
-    openings: tuple[Opening, ...] = ()
+    openings: tuple[LightOpening, ...] = ()
 
 
 def unseen_parts(scene: Scene) -> Unseen:
@@ -56,7 +56,7 @@ def unseen_parts(scene: Scene) -> Unseen:
     gaps = [gap for a, b in _edges(outline) for gap in _gaps(a[:2], b[:2], scene.architecture.by_role("wall"))]
     knows_windows = any(o.category == "window" and not o.hidden for o in scene.objects)
     planes: list[Plane] = []
-    openings: list[Opening] = []
+    openings: list[LightOpening] = []
     for a, b in gaps:
         window = None if knows_windows else _usual_window(float(np.linalg.norm(b - a)), top - level)
         for s0, s1, z0, z1 in _pieces(window, top - level):
@@ -64,7 +64,7 @@ def unseen_parts(scene: Scene) -> Unseen:
             planes.append(Plane(f"unseen_{len(planes) + 1}", "wall", corners, confidence=0.0))
         if window is not None:
             corners = _rectangle(a, b, window[:2], (level + window[2], level + window[3]))
-            openings.append(Opening(corners, planes[-1].normal))
+            openings.append(LightOpening(corners, planes[-1].normal))
     if not scene.architecture.by_role("ceiling"):
         above = outline[::-1] * (1.0, 1.0, 0.0) + (0.0, 0.0, top)
         planes.append(Plane("unseen_ceiling", "ceiling", above, confidence=0.0))

@@ -17,7 +17,7 @@ from jaxtyping import Bool, Float
 
 from diorama_core.architecture.texture.colours import visible_planes
 from diorama_core.architecture.walls.closed_room import GUESS_CONFIDENCE
-from diorama_core.architecture.walls.openings import Opening, with_openings
+from diorama_core.architecture.walls.openings import WallOpening, with_openings
 from diorama_core.architecture.walls.passages import with_passages
 from diorama_core.architecture.walls.wall_sequence import WallPiece
 from diorama_core.artefacts import DetectedObject
@@ -118,7 +118,7 @@ def with_open_doorways(
     walls = room.by_role("wall")
     pieces = tuple(WallPiece(w.polygon[0, :2], w.polygon[1, :2], None) for w in walls)
     top_m = max((float(w.polygon[:, 2].max()) for w in walls), default=0.0)
-    openings: tuple[tuple[Opening, ...], ...] = ((),) * len(walls)
+    openings: tuple[tuple[WallOpening, ...], ...] = ((),) * len(walls)
     marks = []
     for photo in photos:
         openings, ids = with_passages(openings, photo.objects, pieces, photo.camera, top_m)

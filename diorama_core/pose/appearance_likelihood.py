@@ -17,10 +17,11 @@ from jaxtyping import Bool, Float, Float32, Int, UInt8
 
 from diorama_core.geometry.observed import Observed
 from diorama_core.geometry.shape_appearance import ShapeAppearance
-from diorama_core.geometry.silhouette import Hits, PoseBatch
+from diorama_core.geometry.silhouette import PoseBatch, ShapeHits
 from diorama_core.io.srgb import srgb_to_linear
-from diorama_core.pose.settings import SETTINGS, PoseEvidenceSettings, PoseSettings
-from diorama_core.pose.surface import MeasuredSurface
+from diorama_core.pose.depth_fit import INNER_CELL
+from diorama_core.pose.settings import SETTINGS, PoseEvidenceSettings
+from diorama_core.pose.surface import ObjectSurface
 
 
 @dataclass(frozen=True, eq=False)
@@ -28,11 +29,11 @@ class AppearanceLikelihood:
     """One object's window in cells of about a pixel."""
 
     seen: Observed
-    surface: MeasuredSurface
+    surface: ObjectSurface
     """With tolerances as small as the object."""
     log_rgb: Float32[np.ndarray, "n 3"]
     """Logarithms of the linear light of the object's pixels."""
-    settings: PoseSettings
+    settings: PoseEvidenceSettings
 
     @classmethod
     def of(
@@ -40,9 +41,9 @@ class AppearanceLikelihood:
         rgb: UInt8[np.ndarray, "h w 3"],
         mask: Bool[np.ndarray, "h w"],
         seen: Observed,
-        surface: MeasuredSurface,
+        surface: ObjectSurface,
         size_m: Float[np.ndarray, "3"],
-        settings: PoseSettings = SETTINGS,
+        settings: PoseEvidenceSettings = SETTINGS.evidence,
     ) -> AppearanceLikelihood:
         """Look at one object.
 
@@ -53,15 +54,11 @@ class AppearanceLikelihood:
             surface: what was measured there.
             size_m: about how large it is.
         """
-        small = (
-            settings.evidence.tolerance_m
-            + settings.evidence.tolerance_share * float(np.median(size_m))
-            + 1.5 * surface.spread_m
-        )
+        small = settings.tolerance_m + settings.tolerance_share * float(np.median(size_m)) + 1.5 * surface.spread_m
         close = replace(surface, tolerance_m=np.minimum(surface.tolerance_m, small))
         colours = seen.window.means(rgb * mask[..., None]) / np.maximum(seen.covered, 1e-6)[:, None] / 255.0
         light = srgb_to_linear(np.clip(colours, 0.0, 1.0))
-        return cls(seen, close, np.log(light + settings.evidence.darkest).astype(np.float32), settings)
+        return cls(seen, close, np.log(light + settings.darkest).astype(np.float32), settings)
 
     def log_likelihoods(
         self, appearance: ShapeAppearance, poses: PoseBatch, exact: bool = True
@@ -75,8 +72,7 @@ class AppearanceLikelihood:
         """
         hits = appearance.caster.cast(self.seen.origin_world, self.seen.directions_world, poses)
         return -self._weight * (
-            self._of_place(hits, exact)
-            + self.settings.evidence.colour_share * self._of_colours(appearance, hits, exact)
+            self._of_place(hits, exact) + self.settings.colour_share * self._of_colours(appearance, hits, exact)
         )
 
     def misfit(self, appearance: ShapeAppearance, pose: PoseBatch) -> float:
@@ -86,9 +82,7 @@ class AppearanceLikelihood:
 
     @property
     def _weight(self) -> float:
-        return self.settings.evidence.max_cost * min(
-            1.0, self.settings.evidence.counted_cells / max(float(self.seen.covered.sum()), 1.0)
-        )
+        return self.settings.max_cost * min(1.0, self.settings.counted_cells / max(float(self.seen.covered.sum()), 1.0))
 
     @cached_property
     def _neighbours(self) -> Int[np.ndarray, "5 n"]:
@@ -101,9 +95,9 @@ class AppearanceLikelihood:
     @cached_property
     def _own(self) -> Bool[np.ndarray, "n"]:
         """Cells whose colour is the object's alone."""
-        return self.seen.covered * self.seen.weight > self.settings.search.inner_cell
+        return self.seen.covered * self.seen.weight > INNER_CELL
 
-    def _of_place(self, hits: Hits, exact: bool) -> Float[np.ndarray, "p"]:
+    def _of_place(self, hits: ShapeHits, exact: bool) -> Float[np.ndarray, "p"]:
         """How many cells disagree: covered where the mask is not, or the other way round, or at another depth."""
         s, covered = self.surface, self.seen.covered
         weight = np.where(s.known & (s.weight == 0), 1.0, self.seen.weight)
@@ -114,35 +108,35 @@ class AppearanceLikelihood:
         for beside in self._neighbours[: None if exact else 1]:
             gap = np.abs(depth - s.depth_m[beside])
             off = np.minimum(off, np.where(s.weight[beside] > 0, gap, np.inf))
-        inside = np.where(hits.covered, _softly(off / (self.settings.evidence.half_depth * s.tolerance_m), 4), 0.0)
+        inside = np.where(hits.covered, _softly(off / (self.settings.half_depth * s.tolerance_m), 4), 0.0)
         return missed.sum(axis=1) + inside @ (s.weight * np.clip(2 * covered - 1, 0.0, 1.0))
 
-    def _of_colours(self, appearance: ShapeAppearance, hits: Hits, exact: bool) -> Float[np.ndarray, "p"]:
+    def _of_colours(self, appearance: ShapeAppearance, hits: ShapeHits, exact: bool) -> Float[np.ndarray, "p"]:
         """How many cells have another colour than the light explains; 0 for shapes of one colour."""
-        light, variance = _light_of(appearance, self.settings.evidence)
+        light, variance = _light_of(appearance, self.settings)
         own = np.flatnonzero(self._own)
-        if not len(light) or not len(own) or (light.std(axis=0) < self.settings.evidence.one_colour).all():
+        if not len(light) or not len(own) or (light.std(axis=0) < self.settings.one_colour).all():
             return np.zeros(len(hits.poses))
         if appearance.opaque_caster is appearance.caster:
             hits = hits.of_rays(own)
         else:
             hits = appearance.opaque_caster.cast(self.seen.origin_world, self.seen.directions_world[own], hits.poses)
         face = np.where(hits.covered, hits.triangles, 0)
-        fit = _LightFit(hits.normals_world.astype(np.float32), light[face], variance[face], self.settings.evidence)
+        fit = _LightFit(hits.normals_world.astype(np.float32), light[face], variance[face], self.settings)
         strength, tint = fit.fitted(self.log_rgb[own], hits.covered)
         lit = fit.lit(strength, tint)
         off = np.full(face.shape, np.inf, np.float32)
         for beside in self._neighbours[: None if exact else 1, own]:
             cost = fit.disagreement(self.log_rgb[beside] - lit)
             off = np.minimum(off, np.where(self._own[beside], cost, np.inf))
-        cost = np.where(hits.covered, _softly(off / self.settings.evidence.half_colour, 2), 0.0).sum(axis=1)
-        share = (cost + self.settings.evidence.familiar_cells * self.settings.evidence.familiar_share) / (
-            hits.covered.sum(axis=1) + self.settings.evidence.familiar_cells
+        cost = np.where(hits.covered, _softly(off / self.settings.half_colour, 2), 0.0).sum(axis=1)
+        share = (cost + self.settings.familiar_cells * self.settings.familiar_share) / (
+            hits.covered.sum(axis=1) + self.settings.familiar_cells
         )
-        unlikely = (tint**2).sum(axis=1) / self.settings.evidence.tint_sigma**2 + (strength[:, 1:] ** 2).sum(
+        unlikely = (tint**2).sum(axis=1) / self.settings.tint_sigma**2 + (strength[:, 1:] ** 2).sum(
             axis=1
-        ) / self.settings.evidence.slope_sigma**2
-        return share * len(own) + unlikely / (2 * self.settings.evidence.robust)
+        ) / self.settings.slope_sigma**2
+        return share * len(own) + unlikely / (2 * self.settings.robust)
 
 
 def cells_for(box: tuple[float, float, float, float], settings: PoseEvidenceSettings = SETTINGS.evidence) -> int:

@@ -21,6 +21,8 @@ from diorama_core.pose.limits import SizeLimits
 from diorama_core.pose.settings import SETTINGS, PoseSearchSettings
 from diorama_core.scene.types import Camera, yaw_rotation
 
+INNER_CELL = 0.9
+"""Cells that a mask covers by less lie on its edge, where depth belongs to either side."""
 PARAMETERS = 7
 _YAW_SIGMA_RAD = float(np.deg2rad(10.0))
 
@@ -53,7 +55,7 @@ class SeenPoints:
             weight: 0 where nothing was measured.
             spread_m: standard deviation of the noise in the depth.
         """
-        chosen = np.flatnonzero((seen.covered >= settings.inner_cell) & (weight > 0))
+        chosen = np.flatnonzero((seen.covered >= INNER_CELL) & (weight > 0))
         if len(chosen) < 12:
             chosen = np.flatnonzero(weight > 0)
         chosen = chosen[:: max(1, -(-len(chosen) // settings.max_rays))]
@@ -70,7 +72,7 @@ class SeenPoints:
 
 
 @dataclass(frozen=True, eq=False)
-class Outline:
+class SeenOutline:
     """How far a mask reaches in each direction of the picture."""
 
     directions: Float[np.ndarray, "k 2"]
@@ -97,7 +99,7 @@ class Outline:
     @classmethod
     def of(
         cls, seen: Observed, mask: Bool[np.ndarray, "h w"], settings: PoseSearchSettings = SETTINGS.search
-    ) -> Outline | None:
+    ) -> SeenOutline | None:
         """The outline of a mask; None when it is empty."""
         rows, columns = np.nonzero(mask)
         if len(rows) == 0:
@@ -156,7 +158,7 @@ class DepthFit:
     camera: Camera
     seen: Observed
     points: SeenPoints
-    outline: Outline | None
+    outline: SeenOutline | None
     contact: Contact
     limits: SizeLimits
     yaw_sigma_rad: float = _YAW_SIGMA_RAD

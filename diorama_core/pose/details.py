@@ -15,7 +15,7 @@ from jaxtyping import Float, UInt8
 
 from diorama_core.geometry.observed import Observed
 from diorama_core.geometry.shape_appearance import ShapeAppearance
-from diorama_core.geometry.silhouette import Hits
+from diorama_core.geometry.silhouette import ShapeHits
 from diorama_core.pose.inner_edges import InnerEdges
 from diorama_core.pose.settings import SETTINGS, PoseEvidenceSettings
 
@@ -43,7 +43,7 @@ class Details:
             settings,
         )
 
-    def log_likelihood(self, appearance: ShapeAppearance, hits: Hits) -> float:
+    def log_likelihood(self, appearance: ShapeAppearance, hits: ShapeHits) -> float:
         """How well one posed shape agrees, up to a constant of the object: higher is better.
 
         Args:
@@ -53,7 +53,7 @@ class Details:
         edges = float(self.edges.agreement(hits)[0])
         return self.settings.of_edges * edges + self.settings.of_parts * self.explained_by_parts(appearance, hits)
 
-    def explained_by_parts(self, appearance: ShapeAppearance, hits: Hits) -> float:
+    def explained_by_parts(self, appearance: ShapeAppearance, hits: ShapeHits) -> float:
         """Share of the picture's variation of colour that lies between the parts of a shape, 0 to 1."""
         shown = hits.covered[0] & (self.own > self.settings.whole_cell)
         rgba = appearance.face_rgba[np.where(shown, hits.triangles[0], 0)]

@@ -83,10 +83,10 @@ class FittedChoice:
         if found is not None:
             error = found.error
         edges = (1.0 - evidence.seen.hidden_share) * seen.edges_in(caster, pose)
-        of_rank = self.settings.shapes.of_rank * float(np.log(max(candidate.score, self.settings.shapes.no_score)))
-        return error, of_rank - self.settings.shapes.of_fit * float(
-            np.log(error + self.settings.evidence.noise_floor)
-        ) + self.settings.shapes.of_edges * edges
+        weights = self.settings.shapes
+        of_rank = weights.of_rank * float(np.log(max(candidate.score, weights.no_score)))
+        of_fit = weights.of_fit * float(np.log(error + self.settings.evidence.noise_floor))
+        return error, of_rank - of_fit + weights.of_edges * edges
 
 
 def _compared(candidates: Sequence[Candidate], by_rank: bool, outlined: bool, settings: ShapeFitSettings) -> list[int]:

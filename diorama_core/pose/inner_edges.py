@@ -14,7 +14,7 @@ import numpy as np
 from jaxtyping import Bool, Float, Float32, UInt8
 
 from diorama_core.geometry.observed import Observed
-from diorama_core.geometry.silhouette import Hits
+from diorama_core.geometry.silhouette import ShapeHits
 from diorama_core.pose.settings import SETTINGS, PoseEvidenceSettings
 
 
@@ -40,11 +40,11 @@ class InnerEdges:
         inside = cv2.erode(whole, np.ones((3, 3), np.uint8), borderValue=0).astype(bool)
         return cls(cells, inside, _told(_gradients(grey.reshape(cells, cells), settings), inside, settings), settings)
 
-    def agreement(self, hits: Hits) -> Float[np.ndarray, "p"]:
+    def agreement(self, hits: ShapeHits) -> Float[np.ndarray, "p"]:
         """Correlation, -1 to 1, with the edges of a shape under every pose; 0 where either has none."""
         return np.array([self._of_pose(hits, k) for k in range(len(hits.poses))])
 
-    def _of_pose(self, hits: Hits, pose: int) -> float:
+    def _of_pose(self, hits: ShapeHits, pose: int) -> float:
         covered = hits.covered[pose]
         if not self.inside.any() or not covered.any():
             return 0.0

@@ -13,11 +13,11 @@ from diorama_core.arrangement.facing.evidence import NO_COSTS, HeadingCosts
 from diorama_core.geometry.observed import Observed
 from diorama_core.geometry.projection import box_iou
 from diorama_core.geometry.see_through import SeeThrough
-from diorama_core.geometry.silhouette import Hits, PoseBatch, ShapeCaster
+from diorama_core.geometry.silhouette import PoseBatch, ShapeCaster, ShapeHits
 from diorama_core.geometry.window import soft_iou
 from diorama_core.pose.limits import SizeLimits
 from diorama_core.pose.settings import SETTINGS, PoseEvidenceSettings
-from diorama_core.pose.surface import MeasuredSurface
+from diorama_core.pose.surface import ObjectSurface
 from diorama_core.scene.types import Camera, Pose
 
 _OFF_AXIS_SIGMA_RAD = float(np.deg2rad(35.0))
@@ -29,7 +29,7 @@ class Evidence:
 
     camera: Camera
     seen: Observed
-    surface: MeasuredSurface | None
+    surface: ObjectSurface | None
     """None where depth was not measured."""
     see_through: SeeThrough | None = None
     """Where one looks past the object; None where its mask tells."""
@@ -49,11 +49,11 @@ class Evidence:
             self.errors(caster, PoseBatch(pose.R_world_object[None], pose.position[None], pose.scale[None]))[0]
         )
 
-    def hits(self, caster: ShapeCaster, poses: PoseBatch) -> Hits:
+    def hits(self, caster: ShapeCaster, poses: PoseBatch) -> ShapeHits:
         """What the rays of the object's window meet of a shape under every pose."""
         return self.seen.hits(caster, poses)
 
-    def errors_of(self, caster: ShapeCaster, hits: Hits) -> Float[np.ndarray, "p"]:
+    def errors_of(self, caster: ShapeCaster, hits: ShapeHits) -> Float[np.ndarray, "p"]:
         """As `errors`, of a shape that the rays have met."""
         if self.surface is None:
             return self._outline_errors(caster, hits.poses, hits.covered)
@@ -88,7 +88,7 @@ class Evidence:
         boxed = self.see_through.weight > 0
         return 1 - self.settings.of_contradicted * boxed * np.abs(self.seen.covered - self.see_through.shown)
 
-    def _outline_with_depth(self, surface: MeasuredSurface, hits: Hits) -> Float[np.ndarray, "p"]:
+    def _outline_with_depth(self, surface: ObjectSurface, hits: ShapeHits) -> Float[np.ndarray, "p"]:
         """Intersection over union with the mask where nothing that was measured is in front of the shape."""
         k = self.camera.intrinsics
         inside = self.seen.window.inside(k.width, k.height).astype(np.float64)

@@ -11,7 +11,7 @@ from diorama_core.arrangement.facing.evidence import WallSamples
 from diorama_core.artefacts import Cuboid, DepthMap
 from diorama_core.geometry.silhouette import PoseBatch
 from diorama_core.library.record import SymmetryFold
-from diorama_core.pose.depth_fit import Contact, DepthFit, Outline, SeenPoints
+from diorama_core.pose.depth_fit import Contact, DepthFit, SeenOutline, SeenPoints
 from diorama_core.pose.hypotheses import Anchor, Hypotheses
 from diorama_core.pose.limits import SizeLimits
 from diorama_core.pose.mask_observations import Evidence
@@ -30,7 +30,7 @@ class MeasuredObject:
     cuboid: Cuboid
     contact: Contact
     points: SeenPoints
-    outline: Outline | None
+    outline: SeenOutline | None
     bounds: WallBounds
     settings: PoseSearchSettings
 
@@ -67,7 +67,7 @@ class MeasuredObject:
         )
         if len(points.depth_m) < settings.search.min_rays:
             return None
-        outline = Outline.of(observations.seen, mask, settings.search)
+        outline = SeenOutline.of(observations.seen, mask, settings.search)
         contact = _contact(anchor, floor_foot_m, points, outline, settings.search)
         # What hangs on a wall may be set into it.
         bounds = WallBounds.of(walls, points, settings.evidence) if anchor.axis_world[2] > 0.5 else NO_BOUNDS
@@ -168,7 +168,7 @@ def _contact(
     anchor: Anchor,
     floor_foot_m: float | None,
     points: SeenPoints,
-    outline: Outline | None,
+    outline: SeenOutline | None,
     settings: PoseSearchSettings,
 ) -> Contact:
     """Where the object stands: where the cuboid ends, unless its own lower end is seen elsewhere or is hidden."""

@@ -24,7 +24,7 @@ from diorama_core.scene.types import Pose, yaw_rotation
 
 
 @dataclass(frozen=True, eq=False)
-class Near:
+class FitRange:
     """How far a fit may go."""
 
     scale: Float[np.ndarray, "3"] | None = None
@@ -38,9 +38,9 @@ class Near:
     noise_floor: float = SETTINGS.evidence.noise_floor
 
 
-WIDE = Near()
-COARSE = Near(steps=WIDE.steps[:2])
-FINE = Near(steps=(0.015, 0.0075), rounds=3, gain=0.003, noise_floor=0.01)
+WIDE = FitRange()
+COARSE = FitRange(steps=WIDE.steps[:2])
+FINE = FitRange(steps=(0.015, 0.0075), rounds=3, gain=0.003, noise_floor=0.01)
 """A fit in two parts, the second with outlines of a finer resolution."""
 
 
@@ -66,7 +66,7 @@ def fitted_pose(
     shape_size_m: Float[np.ndarray, "3"],
     *,
     resize: bool,
-    near: Near = WIDE,
+    near: FitRange = WIDE,
     settings: ShapeFitSettings = SETTINGS.shapes,
 ) -> Pose:
     """The pose near one with which the shape agrees best.

@@ -21,7 +21,7 @@ from diorama_core.library.furniture.reshaping import MIRRORED
 from diorama_core.library.hands import other_hand
 from diorama_core.library.record import BUILT_IN, Shape, ShapeLibrary, record_of
 from diorama_core.pose.levels import level_cost
-from diorama_core.pose.outline_fit import Near, fitted_pose, resizing_cost
+from diorama_core.pose.outline_fit import FitRange, fitted_pose, resizing_cost
 from diorama_core.pose.seen_objects import SeenObject
 from diorama_core.pose.settings import SETTINGS, PoseSettings, ShapeFitSettings
 from diorama_core.scene.types import Candidate, Pose
@@ -198,7 +198,7 @@ class ParameterFit:
         """The variant in the poses that fit best near rough ones; not finely where it would not score enough anyway."""
         fit = roughly
         for step in self.settings.shapes.size_steps:
-            near = Near(start, (step,), self.settings.shapes.size_rounds)
+            near = FitRange(start, (step,), self.settings.shapes.size_rounds)
             poses = [
                 fitted_pose(
                     o.evidence, variant.caster, p, size_m, resize=self.resize, near=near, settings=self.settings.shapes

@@ -162,6 +162,6 @@ class _Surroundings:
             near = observe_among(camera, self.items, centres, parents, i, cells_for(item.box, self.settings.evidence))
             surface = measured_surface(depth, near, item.mask, self.noise, self.settings.evidence)
             if surface is not None:
-                close = AppearanceLikelihood.of(rgb, item.mask, near, surface, cuboid.size_m, self.settings)
+                close = AppearanceLikelihood.of(rgb, item.mask, near, surface, cuboid.size_m, self.settings.evidence)
         carried = tuple(self.cuboids[j] for j, parent in enumerate(parents) if parent == i)
         return PosingTask(item, cuboid, anchor, carried, coarse, fine, measured, close, details, self.settings.search)

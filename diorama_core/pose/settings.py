@@ -162,8 +162,6 @@ class PoseSearchSettings:
     """Minimum number of measured points for a fit."""
     max_rays: int = 260
     directions: int = 16
-    inner_cell: float = 0.9
-    """Cells that a mask covers by less lie on its edge, where depth belongs to either side."""
     looseness: tuple[float, ...] = (4.0, 3.0, 2.0, 1.5, 1.0, 1.0, 1.0, 1.0)
     """Factors of the tolerances, by iteration, so that far starts are drawn in."""
     damping: float = 0.01

@@ -10,7 +10,7 @@ from jaxtyping import Bool, Float, Float32, Int
 
 from diorama_core.artefacts import DepthMap
 from diorama_core.geometry.observed import Observed
-from diorama_core.geometry.silhouette import Hits
+from diorama_core.geometry.silhouette import ShapeHits
 from diorama_core.geometry.window import Window
 from diorama_core.pose.settings import SETTINGS, PoseEvidenceSettings
 from diorama_core.provenance import DepthSource
@@ -33,7 +33,7 @@ def noise_of(depth: DepthMap, settings: PoseEvidenceSettings = SETTINGS.evidence
 
 
 @dataclass(frozen=True, eq=False)
-class MeasuredSurface:
+class ObjectSurface:
     """Measured depth and normals in the cells of an object's window."""
 
     depth_m: Float[np.ndarray, "n"]
@@ -51,7 +51,7 @@ class MeasuredSurface:
     """How much normals say beside depth."""
     settings: PoseEvidenceSettings = SETTINGS.evidence
 
-    def agreement(self, hits: Hits) -> Float[np.ndarray, "p"]:
+    def agreement(self, hits: ShapeHits) -> Float[np.ndarray, "p"]:
         """0 to 1: nearness of depth and of normals over the object's measured cells."""
         told, weight = self._told, self.weight[self._told]
         depth, covered = hits.depth_m[:, told], hits.covered[:, told]
@@ -67,7 +67,7 @@ class MeasuredSurface:
         """The object's measured cells: only they are compared."""
         return np.flatnonzero(self.weight > 0)
 
-    def hides(self, hits: Hits) -> Bool[np.ndarray, "p n"]:
+    def hides(self, hits: ShapeHits) -> Bool[np.ndarray, "p n"]:
         """Where something was measured in front of the shape, so that the cell is no observation of it."""
         return self.known & (self.weight == 0) & hits.covered & (hits.depth_m > self.depth_m + 2 * self.tolerance_m)
 
@@ -78,7 +78,7 @@ def measured_surface(
     mask: Bool[np.ndarray, "h w"],
     noise: float,
     settings: PoseEvidenceSettings = SETTINGS.evidence,
-) -> MeasuredSurface | None:
+) -> ObjectSurface | None:
     """Depth and normals in an object's window; None where depth was only rendered from what is already known.
 
     Args:
@@ -102,7 +102,7 @@ def measured_surface(
     spread_m = np.where(known, spread, 0.0) * metres
     tolerance = 0.02 + 0.01 * metres + 1.5 * spread_m
     share = settings.normals_share / (1.0 + (noise / settings.normals_noise) ** 2)
-    return MeasuredSurface(metres, normals, weight, known, tolerance, spread_m, share, settings)
+    return ObjectSurface(metres, normals, weight, known, tolerance, spread_m, share, settings)
 
 
 def _means(

@@ -13,7 +13,7 @@ from diorama_core.arrangement.facing.evidence import WallSamples
 from diorama_core.artefacts import DepthMap
 from diorama_core.geometry.observed import observe_among
 from diorama_core.geometry.silhouette import PoseBatch, ShapeCaster
-from diorama_core.pose.depth_fit import DepthFit, Outline, SeenPoints
+from diorama_core.pose.depth_fit import DepthFit, SeenOutline, SeenPoints
 from diorama_core.pose.hypotheses import anchor_of
 from diorama_core.pose.limits import SizeLimits
 from diorama_core.pose.mask_observations import Evidence
@@ -124,7 +124,7 @@ def test_outlines_reach_to_the_edges_of_the_pixels() -> None:
     rows, columns = np.nonzero(room.objects[0].mask)
     assert outline.reach_px[0] == pytest.approx(columns.max() + 1)
     assert outline.reach_px[4] == pytest.approx(rows.max() + 1)
-    assert Outline.of(measured(room).observations.seen, np.zeros_like(room.objects[0].mask)) is None
+    assert SeenOutline.of(measured(room).observations.seen, np.zeros_like(room.objects[0].mask)) is None
 
 
 def test_where_its_foot_is_hidden_an_object_may_stand_anywhere_below() -> None:

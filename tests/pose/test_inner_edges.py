@@ -6,7 +6,7 @@ import numpy as np
 import trimesh
 
 from diorama_core.geometry.observed import Observed, observe
-from diorama_core.geometry.silhouette import Hits, PoseBatch, ShapeCaster
+from diorama_core.geometry.silhouette import PoseBatch, ShapeCaster, ShapeHits
 from diorama_core.pose.inner_edges import InnerEdges
 from diorama_core.scene.types import Pose
 from tests.pose.rooms import camera_at
@@ -25,7 +25,7 @@ def chest(drawers: int) -> trimesh.Trimesh:
     return trimesh.util.concatenate([trimesh.creation.box((0.4, 1.0, 1.2)), *boards])
 
 
-def hits_of(mesh: trimesh.Trimesh, seen: Observed) -> Hits:
+def hits_of(mesh: trimesh.Trimesh, seen: Observed) -> ShapeHits:
     batch = PoseBatch(POSE.R_world_object[None], POSE.position[None], POSE.scale[None])
     return ShapeCaster(mesh).cast(seen.origin_world, seen.directions_world, batch)
 

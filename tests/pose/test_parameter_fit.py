@@ -12,7 +12,7 @@ from diorama_core.library.boards import base_id
 from diorama_core.library.furniture.measures import made_by_id, parameters, values_of
 from diorama_core.pose import parameter_fit
 from diorama_core.pose.made_to_measure import MadeToMeasure
-from diorama_core.pose.outline_fit import Near, fitted_pose
+from diorama_core.pose.outline_fit import FitRange, fitted_pose
 from diorama_core.pose.parameter_fit import can_have
 from diorama_core.scene.types import Pose
 from tests.pose import test_made_to_measure
@@ -66,7 +66,7 @@ def test_what_a_fit_or_its_finer_steps_bring_is_not_enough_for_what_needs_more(
 ) -> None:
     taken: list[tuple[float, ...]] = []
 
-    def counted(*args: Any, near: Near, **settings: Any) -> Pose:
+    def counted(*args: Any, near: FitRange, **settings: Any) -> Pose:
         taken.append(near.steps)
         return fitted_pose(*args, near=near, **settings)
 

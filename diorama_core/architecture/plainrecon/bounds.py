@@ -19,7 +19,7 @@ JOIN_M = 0.6
 
 
 @dataclass(frozen=True, eq=False)
-class Sheet:
+class PlaneSheet:
     """A rectangle in space, later with moved corners."""
 
     normal: Float[np.ndarray, "3"]
@@ -28,7 +28,7 @@ class Sheet:
     corners: Float[np.ndarray, "4 3"]
 
 
-def fitted_sheet(points: Float[np.ndarray, "n 3"], eye: Float[np.ndarray, "3"]) -> Sheet:
+def fitted_sheet(points: Float[np.ndarray, "n 3"], eye: Float[np.ndarray, "3"]) -> PlaneSheet:
     """The plane through most of the points, and the smallest rectangle on it that holds those (rotating calipers)."""
     normal, offset, agree = ransac_plane(points, PLANE_M, trials=TRIALS)
     if float(normal @ eye) < offset:
@@ -36,10 +36,10 @@ def fitted_sheet(points: Float[np.ndarray, "n 3"], eye: Float[np.ndarray, "3"]) 
     axes = _axes(normal)
     flat = (points[agree] @ axes).astype(np.float32)
     corners = cv2.boxPoints(cv2.minAreaRect(flat)).astype(np.float64)
-    return Sheet(normal, float(offset), corners @ axes.T + offset * normal)
+    return PlaneSheet(normal, float(offset), corners @ axes.T + offset * normal)
 
 
-def upright(wall: Sheet, floor: Sheet) -> Sheet:
+def upright(wall: PlaneSheet, floor: PlaneSheet) -> PlaneSheet:
     """The wall turned about the line where it meets the floor until it is square to the floor."""
     line = np.cross(floor.normal, wall.normal)
     length = float(np.linalg.norm(line))
@@ -50,10 +50,10 @@ def upright(wall: Sheet, floor: Sheet) -> Sheet:
     rows = np.stack([wall.normal, floor.normal, line / length])
     foot = np.linalg.solve(rows, np.array([wall.offset, floor.offset, 0.0]))
     offset = float(normal @ foot)
-    return Sheet(normal, offset, _onto(wall.corners, normal, offset))
+    return PlaneSheet(normal, offset, _onto(wall.corners, normal, offset))
 
 
-def joined(floor: Sheet, walls: list[Sheet]) -> list[Sheet]:
+def joined(floor: PlaneSheet, walls: list[PlaneSheet]) -> list[PlaneSheet]:
     """Walls with feet on the floor and, where two come near their common line, with shared corners on it."""
     walls = [_on_floor(w, floor) for w in walls]
     for i, j in combinations(range(len(walls)), 2):
@@ -61,13 +61,13 @@ def joined(floor: Sheet, walls: list[Sheet]) -> list[Sheet]:
     return walls
 
 
-def _on_floor(wall: Sheet, floor: Sheet) -> Sheet:
+def _on_floor(wall: PlaneSheet, floor: PlaneSheet) -> PlaneSheet:
     height = wall.corners @ floor.normal - floor.offset
     drop = np.where(np.abs(height) < SNAP_M, height, 0.0)
     return replace(wall, corners=wall.corners - drop[:, None] * floor.normal)
 
 
-def _meeting(a: Sheet, b: Sheet) -> tuple[Sheet, Sheet]:
+def _meeting(a: PlaneSheet, b: PlaneSheet) -> tuple[PlaneSheet, PlaneSheet]:
     """Two walls with their nearest corners on the line where they meet; unchanged when that is out of reach."""
     line = np.cross(a.normal, b.normal)
     length = float(np.linalg.norm(line))

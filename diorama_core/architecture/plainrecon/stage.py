@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 from jaxtyping import Float
 
-from diorama_core.architecture.plainrecon.bounds import Sheet, fitted_sheet, joined, upright
+from diorama_core.architecture.plainrecon.bounds import PlaneSheet, fitted_sheet, joined, upright
 from diorama_core.architecture.plainrecon.clusters import MIN_POINTS, planar_clusters
 from diorama_core.architecture.supports import resolve_supports
 from diorama_core.architecture.texture.colours import coloured, object_pixels
@@ -48,7 +48,7 @@ class PlainRecon:
         )
 
 
-def _joined_to(floor: Sheet, walls: list[Sheet]) -> list[Sheet]:
+def _joined_to(floor: PlaneSheet, walls: list[PlaneSheet]) -> list[PlaneSheet]:
     return joined(floor, [upright(wall, floor) for wall in walls])
 
 
@@ -60,7 +60,7 @@ def room_of_pieces(
     *,
     seed: int,
     method: RoomMethod,
-    bound: Callable[[Sheet, list[Sheet]], list[Sheet]],
+    bound: Callable[[PlaneSheet, list[PlaneSheet]], list[PlaneSheet]],
 ) -> ArchitectureEstimate:
     """A room of the planar pieces of measured depth that no object hides, as PlainRecon and ACDC make one.
 
@@ -95,7 +95,7 @@ def room_of_pieces(
     )
 
 
-def floor_and_walls(surface: MeasuredSurface, seed: int = 0) -> tuple[Sheet | None, list[Sheet]]:
+def floor_and_walls(surface: MeasuredSurface, seed: int = 0) -> tuple[PlaneSheet | None, list[PlaneSheet]]:
     """A rectangle around every planar piece that stands, and around the largest one that is level and looks up.
 
     Args:
@@ -110,21 +110,21 @@ def floor_and_walls(surface: MeasuredSurface, seed: int = 0) -> tuple[Sheet | No
     level = [k for k in range(len(sizes)) if facing[k] > UP_COSINE]
     standing = [k for k in range(len(sizes)) if abs(facing[k]) <= UP_COSINE and sizes[k] >= MIN_POINTS]
 
-    def sheet(k: int) -> Sheet:
+    def sheet(k: int) -> PlaneSheet:
         return fitted_sheet(points[labels == k], surface.camera_position)
 
     floor = sheet(max(level, key=lambda k: int(sizes[k]))) if level else None
     return floor, [sheet(k) for k in standing]
 
 
-def assumed_floor(eye: Float[np.ndarray, "3"]) -> Sheet:
+def assumed_floor(eye: Float[np.ndarray, "3"]) -> PlaneSheet:
     """A square of floor at height 0 around the camera."""
     reach = ASSUMED_FLOOR_M * np.array([[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]])
     corners = np.concatenate([eye[:2] + reach, np.zeros((4, 1))], axis=1)
-    return Sheet(np.array([0.0, 0.0, 1.0]), 0.0, corners)
+    return PlaneSheet(np.array([0.0, 0.0, 1.0]), 0.0, corners)
 
 
-def plane_of(name: str, sheet: Sheet, confidence: float) -> Plane:
+def plane_of(name: str, sheet: PlaneSheet, confidence: float) -> Plane:
     """The sheet as a plane of the room, a wall unless it is called "floor".
 
     Corners counter-clockwise seen from inside; a wall starts at its lower left.

@@ -33,7 +33,7 @@ class Cell:
 
 
 @dataclass(frozen=True, eq=False)
-class Line:
+class PlaneLine:
     """A cut through the picture."""
 
     form: Float[np.ndarray, "3"]
@@ -48,7 +48,7 @@ class Arrangement:
 
     inverse: Float[np.ndarray, "p 3"]
     """Per plane `a`: inverse depth 1/m at pixel (x, y) is `a @ (x, y, 1)`."""
-    lines: tuple[Line, ...]
+    lines: tuple[PlaneLine, ...]
     cells: tuple[Cell, ...]
 
     def inverse_at(self, plane: int, pixels: Float[np.ndarray, "n 2"]) -> Float[np.ndarray, "n"]:
@@ -89,15 +89,15 @@ def inverse_depths(
     return np.stack([x, y, local[:, 2] - x * k.cx - y * k.cy], axis=1)
 
 
-def plane_lines(inverse: Float[np.ndarray, "p 3"]) -> tuple[Line, ...]:
+def plane_lines(inverse: Float[np.ndarray, "p 3"]) -> tuple[PlaneLine, ...]:
     """Where every two planes meet, and where each leaves the view (its horizon)."""
     count = len(inverse)
-    meetings = [Line(inverse[i] - inverse[j], frozenset((i, j))) for i, j in combinations(range(count), 2)]
-    return (*meetings, *(Line(inverse[k] - [0, 0, MIN_INVERSE_M], frozenset()) for k in range(count)))
+    meetings = [PlaneLine(inverse[i] - inverse[j], frozenset((i, j))) for i, j in combinations(range(count), 2)]
+    return (*meetings, *(PlaneLine(inverse[k] - [0, 0, MIN_INVERSE_M], frozenset()) for k in range(count)))
 
 
 def arrangement(
-    inverse: Float[np.ndarray, "p 3"], size_px: tuple[int, int], hidden_ends: Sequence[Line] = ()
+    inverse: Float[np.ndarray, "p 3"], size_px: tuple[int, int], hidden_ends: Sequence[PlaneLine] = ()
 ) -> Arrangement:
     """The picture of this size (width, height) cut by all lines of the planes that cross it, and by hidden ends."""
     width, height = size_px

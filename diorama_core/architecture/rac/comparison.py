@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 from jaxtyping import Float, Int
 
-from diorama_core.architecture.rac.arrangement import Arrangement, Line, arrangement, inverse_depths
+from diorama_core.architecture.rac.arrangement import Arrangement, PlaneLine, arrangement, inverse_depths
 from diorama_core.architecture.rac.proposals import Proposals
 from diorama_core.architecture.rac.search import borders_of, labelled
 from diorama_core.architecture.walls.surface import MeasuredSurface
@@ -46,7 +46,7 @@ class RoomLayout:
 
 
 def best_layout(
-    surface: MeasuredSurface, found: Proposals, camera: Camera, hidden_ends: Sequence[Line] = ()
+    surface: MeasuredSurface, found: Proposals, camera: Camera, hidden_ends: Sequence[PlaneLine] = ()
 ) -> RoomLayout | None:
     """The cheapest feasible layout of the proposed planes, with lines at which some of them may end besides.
 

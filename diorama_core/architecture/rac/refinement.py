@@ -17,7 +17,7 @@ import cv2
 import numpy as np
 from jaxtyping import Bool, Float
 
-from diorama_core.architecture.rac.arrangement import Line
+from diorama_core.architecture.rac.arrangement import PlaneLine
 from diorama_core.architecture.rac.comparison import RoomLayout, best_layout
 from diorama_core.architecture.rac.proposals import Proposals
 from diorama_core.architecture.walls.surface import MeasuredSurface
@@ -54,7 +54,7 @@ def refined_layout(
 ) -> RoomLayout:
     """The layout with walls ended where the picture looks past them, as far as that explains the depth better."""
     pixels = camera.project(surface.points)
-    ends: tuple[Line, ...] = ()
+    ends: tuple[PlaneLine, ...] = ()
     for _ in range(settings.max_rounds):
         error = depth_error_m(layout, surface, pixels)
         new = hidden_ends(layout, surface, found, camera, settings) if error > settings.min_error_m else ()
@@ -79,7 +79,7 @@ def hidden_ends(
     found: Proposals,
     camera: Camera,
     settings: LayoutRefinementSettings = SETTINGS,
-) -> tuple[Line, ...]:
+) -> tuple[PlaneLine, ...]:
     """For every wall about which the layout is wrong, the line along which the depth leaves it."""
     pixels = camera.project(surface.points)
     shown, rendered = layout.planes_at(pixels), layout.depth_at(pixels)
@@ -101,7 +101,7 @@ def hidden_ends(
             settings,
         )
         if form is not None:
-            lines.append(Line(form * [*scale, 1.0], frozenset((wall,))))
+            lines.append(PlaneLine(form * [*scale, 1.0], frozenset((wall,))))
     return tuple(lines)
 
 

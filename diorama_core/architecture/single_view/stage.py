@@ -23,7 +23,7 @@ from diorama_core.architecture.supports import resolve_supports
 from diorama_core.architecture.texture.colours import coloured, visible_planes
 from diorama_core.architecture.walls.ceilings import CeilingPiece
 from diorama_core.architecture.walls.closed_room import GUESS_CONFIDENCE, room_planes
-from diorama_core.architecture.walls.openings import Opening, counts
+from diorama_core.architecture.walls.openings import WallOpening, counts
 from diorama_core.architecture.walls.passages import with_passages
 from diorama_core.architecture.walls.wall_candidates import WallCandidate
 from diorama_core.architecture.walls.wall_path import Run, heading
@@ -233,7 +233,7 @@ def _planes(
     top_m: float,
     geometry: ObjectGeometry,
     hung: bool,
-    openings: tuple[tuple[Opening, ...], ...],
+    openings: tuple[tuple[WallOpening, ...], ...],
     settings: RoomSearchSettings,
 ) -> tuple[Plane, ...]:
     """The closed room; without a ceiling where none shows and nothing hangs from it."""
@@ -252,7 +252,7 @@ def _planes(
 
 
 def _source(
-    pieces: tuple[WallPiece, ...], top_m: float, sure: float, openings: tuple[tuple[Opening, ...], ...]
+    pieces: tuple[WallPiece, ...], top_m: float, sure: float, openings: tuple[tuple[WallOpening, ...], ...]
 ) -> RoomSource:
     seen = sum(p.candidate is not None for p in pieces)
     doorways, windows = counts(openings)

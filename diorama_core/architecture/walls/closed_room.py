@@ -9,7 +9,7 @@ from jaxtyping import Float
 from scipy.spatial import ConvexHull, QhullError
 
 from diorama_core.architecture.walls.ceilings import CeilingPiece
-from diorama_core.architecture.walls.openings import Opening, with_openings
+from diorama_core.architecture.walls.openings import WallOpening, with_openings
 from diorama_core.architecture.walls.settings import SETTINGS, WallSettings
 from diorama_core.architecture.walls.wall_sequence import WallPiece
 from diorama_core.geometry.planes import clip_polygon
@@ -24,7 +24,7 @@ def room_planes(
     camera: Camera,
     top_m: float,
     floor_confidence: float,
-    openings: tuple[tuple[Opening, ...], ...] = (),
+    openings: tuple[tuple[WallOpening, ...], ...] = (),
     settings: WallSettings = SETTINGS,
 ) -> tuple[Plane, ...]:
     """Floor, walls and ceilings as planes that share their corners.

@@ -18,7 +18,7 @@ from diorama_core.architecture.walls.wall_sequence import WallPiece
 
 
 @dataclass(frozen=True)
-class Opening:
+class WallOpening:
     """A rectangle of a wall: metres along its foot from its left end, and heights."""
 
     left: float
@@ -34,7 +34,7 @@ class Opening:
 
 def find_openings(
     surface: MeasuredSurface, piece: WallPiece, top_m: float, settings: WallSettings
-) -> tuple[Opening, ...]:
+) -> tuple[WallOpening, ...]:
     """Rectangles of a wall through which farther objects are measured, from left to right.
 
     Args:
@@ -54,7 +54,9 @@ def find_openings(
     return tuple(sorted((o for o in found if o is not None), key=lambda o: o.left))
 
 
-def is_shut(surface: MeasuredSurface, piece: WallPiece, opening: Opening, top_m: float, settings: WallSettings) -> bool:
+def is_shut(
+    surface: MeasuredSurface, piece: WallPiece, opening: WallOpening, top_m: float, settings: WallSettings
+) -> bool:
     """Whether more of what is measured within a rectangle lies on the wall than behind it."""
     if piece.candidate is None:
         return False
@@ -64,7 +66,7 @@ def is_shut(surface: MeasuredSurface, piece: WallPiece, opening: Opening, top_m:
     return bool(stopped[rows, columns].sum() > passed[rows, columns].sum())
 
 
-def counts(openings: tuple[tuple[Opening, ...], ...]) -> tuple[int, int]:
+def counts(openings: tuple[tuple[WallOpening, ...], ...]) -> tuple[int, int]:
     """How many doorways and how many windows the walls have."""
     doorways = sum(o.is_doorway for wall in openings for o in wall)
     return doorways, sum(len(wall) for wall in openings) - doorways
@@ -90,7 +92,7 @@ def _rays(
     return counted(beyond), counted(on)
 
 
-def _opening(stats: np.ndarray, piece: WallPiece, top_m: float, settings: WallSettings) -> Opening | None:
+def _opening(stats: np.ndarray, piece: WallPiece, top_m: float, settings: WallSettings) -> WallOpening | None:
     """The rectangle of a component, if it can be a doorway or a window."""
     column, row, width, height, cells = (int(v) for v in stats[:5])
     left, right = column * settings.cell_m, (column + width) * settings.cell_m
@@ -102,10 +104,10 @@ def _opening(stats: np.ndarray, piece: WallPiece, top_m: float, settings: WallSe
     framed = left > settings.frame_m and right < piece.length_m - settings.frame_m and top < top_m - settings.frame_m
     if not (large and framed and cells >= settings.min_fill * width * height):
         return None
-    return Opening(left, right, 0.0 if bottom < settings.sill_m else bottom, top)
+    return WallOpening(left, right, 0.0 if bottom < settings.sill_m else bottom, top)
 
 
-def with_openings(polygon: Float[np.ndarray, "n 3"], openings: tuple[Opening, ...]) -> Float[np.ndarray, "m 3"]:
+def with_openings(polygon: Float[np.ndarray, "n 3"], openings: tuple[WallOpening, ...]) -> Float[np.ndarray, "m 3"]:
     """A wall's polygon, whose first edge is its foot from left to right, with openings cut out of it.
 
     Args:

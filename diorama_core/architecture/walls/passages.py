@@ -15,7 +15,7 @@ import numpy as np
 from jaxtyping import Float
 from scipy.optimize import least_squares
 
-from diorama_core.architecture.walls.openings import Opening
+from diorama_core.architecture.walls.openings import WallOpening
 from diorama_core.architecture.walls.settings import SETTINGS, WallSettings
 from diorama_core.architecture.walls.wall_sequence import WallPiece
 from diorama_core.artefacts import ArchitectureEstimate, DetectedObject, ObjectGeometry
@@ -40,14 +40,14 @@ def without_openings(
 
 
 def with_passages(
-    measured: tuple[tuple[Opening, ...], ...],
+    measured: tuple[tuple[WallOpening, ...], ...],
     objects: tuple[DetectedObject, ...],
     pieces: tuple[WallPiece, ...],
     camera: Camera,
     top_m: float,
-    is_shut: Callable[[int, Opening], bool] | None = None,
+    is_shut: Callable[[int, WallOpening], bool] | None = None,
     settings: WallSettings = SETTINGS,
-) -> tuple[tuple[tuple[Opening, ...], ...], tuple[str, ...]]:
+) -> tuple[tuple[tuple[WallOpening, ...], ...], tuple[str, ...]]:
     """Each wall's openings from left to right with those that were pointed at, and the ids of the latter.
 
     Args:
@@ -75,7 +75,7 @@ def with_passages(
 
 def _opening(
     found: DetectedObject, pieces: tuple[WallPiece, ...], camera: Camera, top_m: float, settings: WallSettings
-) -> tuple[int, Opening] | None:
+) -> tuple[int, WallOpening] | None:
     """The wall that a box lies in, and the rectangle of it that the box surrounds."""
     x1, y1, x2, y2 = found.box
     columns, rows = np.array([x1, x2, (x1 + x2) / 2, (x1 + x2) / 2]), np.array([(y1 + y2) / 2] * 2 + [y1, y2])
@@ -99,7 +99,7 @@ def _opening(
     bottom, top = (0.0 if bottom < settings.sill_m else bottom), min(top, top_m - settings.frame_m)
     if min(right - left, top - bottom) < settings.min_side_m or (right - left) * (top - bottom) < settings.min_area_m2:
         return None
-    return nearest[1], Opening(left, right, bottom, top)
+    return nearest[1], WallOpening(left, right, bottom, top)
 
 
 def _met(

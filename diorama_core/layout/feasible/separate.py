@@ -15,7 +15,7 @@ from jaxtyping import Bool, Float, Int
 
 from diorama_core.arrangement.surfaces import Surface, plane_surface
 from diorama_core.geometry.planes import in_polygon
-from diorama_core.geometry.sat import Bodies, PairAxes, pair_axes, place_bodies
+from diorama_core.geometry.sat import PairAxes, PosedBodies, pair_axes, place_bodies
 from diorama_core.layout.escape import exits, ring
 from diorama_core.layout.feasible.quadratic import HARD, SOFT, least_distance
 from diorama_core.layout.feasible.structure import Structure
@@ -32,7 +32,7 @@ class Program:
 
     problem: Problem
     structure: Structure
-    bodies: Bodies
+    bodies: PosedBodies
     may_meet: Bool[np.ndarray, "b b"]
     """Which pairs of parts must not overlap."""
     J: Float[np.ndarray, "n 3 v"]
@@ -121,7 +121,9 @@ def _placed(structure: Structure, problem: Problem, i: int) -> Surface | None:
     return place if place is None or j < 0 else place.at(structure.R[j], structure.p[j], structure.scale[j])
 
 
-def _wall_rows(problem: Problem, structure: Structure, bodies: Bodies, J: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def _wall_rows(
+    problem: Problem, structure: Structure, bodies: PosedBodies, J: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
     """Every object stays in front of the walls it could reach, as far as those were seen.
 
     Round the corner of a wall that stands into the room an object is behind that wall's plane and rightly so: one whose

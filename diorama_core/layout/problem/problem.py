@@ -25,7 +25,7 @@ from diorama_core.arrangement.surfaces import (
 )
 from diorama_core.geometry.convex import ConvexPart
 from diorama_core.geometry.planes import in_polygon
-from diorama_core.geometry.sat import PackedParts, pack_parts
+from diorama_core.geometry.sat import PaddedParts, pack_parts
 from diorama_core.layout.problem.footing import box_footing, footing_of
 from diorama_core.layout.problem.parts import parts_of_shape
 from diorama_core.layout.settings import LAYOUT, LayoutSettings
@@ -87,7 +87,7 @@ class Problem:
     yielding: Bool[np.ndarray, "n n"]
     """Pairs of which one is a rug: objects stand over its edge."""
     parts: tuple[tuple[ConvexPart, ...], ...]
-    packed: PackedParts
+    packed: PaddedParts
     """The parts, ready to be posed."""
     reasons: tuple[str, ...] = ()
     settings: LayoutSettings = LAYOUT

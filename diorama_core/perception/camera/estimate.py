@@ -10,7 +10,7 @@ from jaxtyping import Float
 from diorama_core.artefacts import CameraEstimate, CameraHypothesis, Inputs, Photo
 from diorama_core.geometry.segments import line_segments_px
 from diorama_core.perception.camera.frames import frame_difference_rad
-from diorama_core.perception.camera.gravity_depth import DepthFrame, frame_from_depth
+from diorama_core.perception.camera.gravity_depth import GravityFrame, frame_from_depth
 from diorama_core.perception.camera.settings import SETTINGS, LineCameraSettings
 from diorama_core.perception.camera.vanishing import FrameFit, Lines, prior_frame, search_frames
 from diorama_core.progress import Progress
@@ -145,13 +145,13 @@ def _with_depth(estimate: CameraEstimate, inputs: Inputs, count: int, settings: 
     )
 
 
-def _depth_confidence(frame: DepthFrame) -> float:
+def _depth_confidence(frame: GravityFrame) -> float:
     if frame.height_m is None:
         return 0.6
     return 0.8 + 0.2 * _unit(frame.level_share / 0.15)
 
 
-def _depth_source(frame: DepthFrame, focal: FocalSource, settings: LineCameraSettings) -> CameraSource:
+def _depth_source(frame: GravityFrame, focal: FocalSource, settings: LineCameraSettings) -> CameraSource:
     return CameraSource(
         focal,
         AttitudeSource.LEVEL_SURFACES if frame.height_m is None else AttitudeSource.FLOOR,

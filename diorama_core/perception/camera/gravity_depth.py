@@ -47,7 +47,7 @@ SETTINGS = GravityDepthSettings()
 
 
 @dataclass(frozen=True)
-class DepthFrame:
+class GravityFrame:
     """Camera attitude estimated from measured depth."""
 
     R_world_camera: Float[np.ndarray, "3 3"]
@@ -73,7 +73,7 @@ def frame_from_depth(
     intrinsics: Intrinsics,
     R_expected: Float[np.ndarray, "3 3"],
     settings: GravityDepthSettings = SETTINGS,
-) -> DepthFrame | None:
+) -> GravityFrame | None:
     """Gravity from level surfaces, room axes from walls, height from the floor.
 
     Args:
@@ -96,7 +96,7 @@ def frame_from_depth(
         up, height = floor
     level = samples.normals @ up > np.cos(LEVEL_RAD)
     axis, wall_share = _wall_direction(samples, up, R_expected[1], settings)
-    return DepthFrame(
+    return GravityFrame(
         R_world_camera=world_frame(up, axis),
         height_m=None if floor is None else height,
         level_share=float(level.mean()),

@@ -7,14 +7,19 @@ from dataclasses import dataclass
 import numpy as np
 
 from diorama_core.artefacts import LabelledBox, Photo
-from diorama_core.library.taxonomy import ARCHITECTURE_WORDS, UNKNOWN, broad, resolve
+from diorama_core.library.taxonomy import ARCHITECTURE_WORDS, CATEGORIES, UNKNOWN, broad, resolve
 from diorama_core.models.boxes import Detections, without_doubles, without_parts_of_same
 from diorama_core.models.owlv2 import BoxDetector
 from diorama_core.models.own_files import FileDetector
 from diorama_core.models.yolox import COCO_CLASSES, Yolox
-from diorama_core.perception.foundation.vocabulary import INDOOR_WORDS
 from diorama_core.progress import Progress
 
+INDOOR_WORDS: tuple[str, ...] = tuple(
+    c.name for c in CATEGORIES if c is not UNKNOWN and c.name not in ARCHITECTURE_WORDS
+)
+"""What an open-vocabulary detector is asked for: one word for every category that a scene can hold. Synonyms compete
+with each other at one threshold, cost a run of the text tower each, and find nothing that the library has shapes for.
+"""
 TEMPLATE = "a photo of {}"
 MAX_OBJECTS = 40
 """No photo of a room has more that matter; what is beyond is noise of the least sure."""

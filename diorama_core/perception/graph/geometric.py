@@ -16,7 +16,7 @@ from diorama_core.artefacts import DetectedObject, Inputs, ObjectGeometry, Scene
 from diorama_core.geometry.openings import OPENING_CATEGORIES
 from diorama_core.library.company import STACKED_ON, WITH_BOARDS
 from diorama_core.library.taxonomy import UNKNOWN, Category, having
-from diorama_core.perception.graph.object_observations import Observed, observed
+from diorama_core.perception.graph.object_observations import ObjectSurroundings, observed
 from diorama_core.perception.graph.settings import SETTINGS, GeometricGraphSettings
 from diorama_core.progress import Progress
 from diorama_core.scene.types import Relation, Support
@@ -62,7 +62,10 @@ Options = tuple[tuple[str, float], ...]
 
 
 def _options(
-    obj: Observed, items: tuple[Observed, ...], believed: Support | None, settings: GeometricGraphSettings
+    obj: ObjectSurroundings,
+    items: tuple[ObjectSurroundings, ...],
+    believed: Support | None,
+    settings: GeometricGraphSettings,
 ) -> Options:
     priors = _priors(obj.category, settings)
     costs = {
@@ -92,7 +95,7 @@ def _gap_cost(gap_m: float, usual_m: float, settings: GeometricGraphSettings) ->
     return float(settings.max_gap_cost * (1.0 - np.exp(-0.5 * (gap_m / usual_m) ** 2 / settings.max_gap_cost)))
 
 
-def _floor_cost(obj: Observed, settings: GeometricGraphSettings) -> float:
+def _floor_cost(obj: ObjectSurroundings, settings: GeometricGraphSettings) -> float:
     """High for an underside seen in the air, or an object seen below."""
     gap = max(obj.bottom_m, 0.0)
     seen = _gap_cost(gap, settings.floor_gap_m, settings)
@@ -100,18 +103,18 @@ def _floor_cost(obj: Observed, settings: GeometricGraphSettings) -> float:
     return lenient * seen + settings.below_weight * (1.0 - obj.below.get("floor", 0.0)) * lenient
 
 
-def _wall_cost(obj: Observed, settings: GeometricGraphSettings) -> float:
+def _wall_cost(obj: ObjectSurroundings, settings: GeometricGraphSettings) -> float:
     on_floor = 2.0 if obj.bottom_m < 0.1 and obj.category.mount != "wall" else 0.0
     return (
         on_floor + _gap_cost(max(obj.behind_m, 0.0), 0.25, settings) + 0.5 * settings.below_weight * obj.below_objects
     )
 
 
-def _ceiling_cost(obj: Observed, settings: GeometricGraphSettings) -> float:
+def _ceiling_cost(obj: ObjectSurroundings, settings: GeometricGraphSettings) -> float:
     return _gap_cost(max(2.0 - obj.top_m, 0.0), 0.3, settings)
 
 
-def _carried_cost(obj: Observed, other: Observed, settings: GeometricGraphSettings) -> float:
+def _carried_cost(obj: ObjectSurroundings, other: ObjectSurroundings, settings: GeometricGraphSettings) -> float:
     """How badly an object would rest on another's top, seat or shelves."""
     if other.category.name in _RUGS:
         return _on_rug_cost(obj, other, settings)
@@ -132,7 +135,7 @@ def _carried_cost(obj: Observed, other: Observed, settings: GeometricGraphSettin
     return float(cost + gap + 5.0 * outside + larger + settings.below_weight * (1.0 - above))
 
 
-def _on_rug_cost(obj: Observed, rug: Observed, settings: GeometricGraphSettings) -> float:
+def _on_rug_cost(obj: ObjectSurroundings, rug: ObjectSurroundings, settings: GeometricGraphSettings) -> float:
     """A rug carries what stands within it, at the floor's height, where nothing else is seen just below."""
     outside = _outside(obj.footprint, rug.footprint)
     on_rug = obj.below.get(rug.id, 0.0)

@@ -17,7 +17,7 @@ from diorama_core.perception.measured.cloud import MIN_POINTS, object_points
 
 
 @dataclass(frozen=True, eq=False)
-class Observed:
+class ObjectSurroundings:
     """One object, as far as the graph is concerned. World frame: floor at z = 0."""
 
     id: str
@@ -44,7 +44,7 @@ def observed(
     objects: tuple[DetectedObject, ...],
     geometry: ObjectGeometry,
     settings: GeometricGraphSettings = SETTINGS,
-) -> tuple[Observed, ...]:
+) -> tuple[ObjectSurroundings, ...]:
     """Every object that has a cuboid, in the order given."""
     cuboids = {c.object_id: c for c in geometry.cuboids}
     present = [o for o in objects if o.id in cuboids]
@@ -61,7 +61,7 @@ def observed(
         behind = _behind(index, item, owners, depth)
         category = resolve(item.category).category
         found.append(
-            Observed(
+            ObjectSurroundings(
                 item.id, category, float(low[2]), float(high[2]), np.stack([low[:2], high[:2]]), below, hidden, behind
             )
         )

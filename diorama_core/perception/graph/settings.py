@@ -9,7 +9,7 @@ from dataclasses import dataclass
 class GeometricGraphSettings:
     """Costs of supporters by measured geometry, and what is seen around objects."""
 
-    unnamed_prior: tuple[float, ...] = (1.0, 0.5, 2.0, 5.0)
+    unnamed_prior: tuple[float, float, float, float] = (1.0, 0.5, 2.0, 5.0)
     carries_nothing_cost: float = 5.0
     larger_cost: float = 4.0
     """Cost of lying on something whose footprint is much smaller."""

@@ -33,7 +33,7 @@ SETTINGS = MeasuredBoxSettings()
 
 
 @dataclass(frozen=True)
-class Extent:
+class TurnedExtent:
     """A box before its front is chosen: axes turned by `yaw_rad`, bounds along them in the world's origin."""
 
     yaw_rad: float
@@ -53,7 +53,7 @@ class Extent:
 
 def observed_extent(
     points: Float[np.ndarray, "n 3"], category: Category, settings: MeasuredBoxSettings = SETTINGS
-) -> Extent:
+) -> TurnedExtent:
     """The box around the points: along the room's axes unless a turned one is clearly tighter."""
     flat = points[:, :2].astype(np.float32)
     angle = float(np.deg2rad(cv2.minAreaRect(flat)[2]))
@@ -64,21 +64,21 @@ def observed_extent(
     return other if other_area < gain * area else straight
 
 
-def _bounds(points: Float[np.ndarray, "n 3"], yaw_rad: float, settings: MeasuredBoxSettings = SETTINGS) -> Extent:
+def _bounds(points: Float[np.ndarray, "n 3"], yaw_rad: float, settings: MeasuredBoxSettings = SETTINGS) -> TurnedExtent:
     local = points @ yaw_rotation(yaw_rad)
     low, high = np.quantile(local, [settings.edge_quantile, 1.0 - settings.edge_quantile], axis=0)
-    return Extent(yaw_rad, low, high)
+    return TurnedExtent(yaw_rad, low, high)
 
 
 def completed(
-    extent: Extent,
+    extent: TurnedExtent,
     category: Category,
     camera_position: Float[np.ndarray, "3"],
     cut_off: Bool[np.ndarray, "3"],
     background: Float[np.ndarray, "m 3"],
     points: Float[np.ndarray, "n 3"],
     settings: MeasuredBoxSettings = SETTINGS,
-) -> Extent:
+) -> TurnedExtent:
     """The box with its unseen back, and what the picture's sides cut off, added from the category's usual size.
 
     Args:
@@ -114,11 +114,11 @@ def completed(
             low[axis] -= min(missing, room)
     if cut_off[2]:
         high[2] = max(high[2], category.priors[0].height_m)
-    return Extent(extent.yaw_rad, low, high)
+    return TurnedExtent(extent.yaw_rad, low, high)
 
 
 def _top_seen(
-    local: Float[np.ndarray, "n 3"], extent: Extent, settings: MeasuredBoxSettings = SETTINGS
+    local: Float[np.ndarray, "n 3"], extent: TurnedExtent, settings: MeasuredBoxSettings = SETTINGS
 ) -> Bool[np.ndarray, "2"]:
     """Along which axes the object's flat top is seen nearly from end to end."""
     top = local[local[:, 2] > extent.high[2] - settings.top_layer_m]
@@ -162,7 +162,7 @@ def usual_plan(size: Float[np.ndarray, "3"], category: Category) -> Float[np.nda
 
 
 def to_cuboid(
-    object_id: str, extent: Extent, category: Category, camera_position: Float[np.ndarray, "3"], confidence: float
+    object_id: str, extent: TurnedExtent, category: Category, camera_position: Float[np.ndarray, "3"], confidence: float
 ) -> Cuboid:
     """The cuboid with +X its likely front: the wide side that looks to the camera, where width and depth tell."""
     prior = category.priors[0]

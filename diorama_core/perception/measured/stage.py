@@ -11,7 +11,7 @@ from jaxtyping import Bool, Float
 from diorama_core.artefacts import CameraEstimate, DetectedObject, Inputs, ObjectGeometry
 from diorama_core.geometry.depth_grid import points_camera, reduced, smooth_normals_camera
 from diorama_core.library.taxonomy import Category, resolve
-from diorama_core.perception.measured.boxes import Extent, completed, observed_extent, to_cuboid
+from diorama_core.perception.measured.boxes import TurnedExtent, completed, observed_extent, to_cuboid
 from diorama_core.perception.measured.cloud import MIN_POINTS, object_points
 from diorama_core.perception.measured.settings import SETTINGS, MeasuredSettings
 from diorama_core.perception.measured.standing import grounded, supporters
@@ -40,7 +40,7 @@ class MeasuredGeometry:
         posed, scale = posed_camera(camera, inputs.depth_m, self.settings)
         depth = inputs.depth_m
         world = points_camera(depth, posed.intrinsics) @ posed.T_world_camera[:3, :3].T + posed.position
-        extents: dict[str, Extent] = {}
+        extents: dict[str, TurnedExtent] = {}
         sureness: dict[str, float] = {}
         categories = {o.id: resolve(o.category).category for o in objects}
         for index, found in enumerate(objects):
@@ -94,7 +94,7 @@ def measured_extent(
     depth_m: Float[np.ndarray, "h w"],
     camera: Camera,
     settings: MeasuredSettings,
-) -> tuple[Extent, float]:
+) -> tuple[TurnedExtent, float]:
     """The box of one object and how far it can be trusted."""
     points = object_points(found, points_world, depth_m, settings)
     flat = category.priors[0].height_m < 0.1
@@ -128,7 +128,7 @@ def _ring_points(
 
 def _usual_extent(
     found: DetectedObject, category: Category, depth_m: Float[np.ndarray, "h w"], camera: Camera
-) -> Extent:
+) -> TurnedExtent:
     """A box of usual size where the depth has a hole: at the depth around the mask, else as far as its height tells."""
     x1, y1, x2, y2 = found.box
     prior = category.priors[0]
@@ -139,4 +139,4 @@ def _usual_extent(
     distance = float(np.median(near)) if len(near) else by_height
     centre = camera.position + distance * camera.rays(np.array([0.5 * (x1 + x2), 0.5 * (y1 + y2)]))
     half = 0.5 * np.array([prior.depth_m, prior.width_m, prior.height_m])
-    return Extent(0.0, centre - half, centre + half)
+    return TurnedExtent(0.0, centre - half, centre + half)

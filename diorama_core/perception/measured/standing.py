@@ -7,19 +7,21 @@ from dataclasses import replace
 import numpy as np
 
 from diorama_core.library.taxonomy import Category
-from diorama_core.perception.measured.boxes import Extent
+from diorama_core.perception.measured.boxes import TurnedExtent
 from diorama_core.perception.measured.settings import SETTINGS, MeasuredSettings
 from diorama_core.scene.types import Support, yaw_rotation
 
 
 def supporters(
-    extents: dict[str, Extent], categories: dict[str, Category], settings: MeasuredSettings = SETTINGS
+    extents: dict[str, TurnedExtent], categories: dict[str, Category], settings: MeasuredSettings = SETTINGS
 ) -> tuple[Support, ...]:
     """One edge per object: to the floor, to an object below, to the wall or the ceiling; never a cycle."""
     return tuple(_edge(key, extents, categories, settings) for key in extents)
 
 
-def _edge(key: str, extents: dict[str, Extent], categories: dict[str, Category], settings: MeasuredSettings) -> Support:
+def _edge(
+    key: str, extents: dict[str, TurnedExtent], categories: dict[str, Category], settings: MeasuredSettings
+) -> Support:
     extent, category = extents[key], categories[key]
     bottom = float(extent.low[2])
     if category.mount == "ceiling":
@@ -35,7 +37,7 @@ def _edge(key: str, extents: dict[str, Extent], categories: dict[str, Category],
 
 
 def _below(
-    key: str, extents: dict[str, Extent], categories: dict[str, Category], settings: MeasuredSettings
+    key: str, extents: dict[str, TurnedExtent], categories: dict[str, Category], settings: MeasuredSettings
 ) -> str | None:
     """The object whose top, or seat, is nearest under this one's bottom and under its middle."""
     extent = extents[key]
@@ -52,17 +54,17 @@ def _below(
     return best[1] if best else None
 
 
-def _volume(extent: Extent) -> float:
+def _volume(extent: TurnedExtent) -> float:
     return float(np.prod(extent.size))
 
 
-def _over(child: Extent, parent: Extent) -> bool:
+def _over(child: TurnedExtent, parent: TurnedExtent) -> bool:
     """Whether the child's middle is above the parent's footprint, within a small margin."""
     middle = child.centre_world @ yaw_rotation(parent.yaw_rad)
     return bool(((middle[:2] > parent.low[:2] - 0.08) & (middle[:2] < parent.high[:2] + 0.08)).all())
 
 
-def resting_heights(extent: Extent, category: Category) -> list[float]:
+def resting_heights(extent: TurnedExtent, category: Category) -> list[float]:
     """Heights of an object's support surfaces: its top, and its seat."""
     heights = [float(extent.high[2])]
     if category.seat_height_m is not None and category.seat_height_m < extent.high[2]:
@@ -71,11 +73,11 @@ def resting_heights(extent: Extent, category: Category) -> list[float]:
 
 
 def grounded(
-    extents: dict[str, Extent],
+    extents: dict[str, TurnedExtent],
     categories: dict[str, Category],
     edges: tuple[Support, ...],
     settings: MeasuredSettings = SETTINGS,
-) -> dict[str, Extent]:
+) -> dict[str, TurnedExtent]:
     """The boxes reaching down to what holds them: the floor, or the supporter's top or seat.
 
     What people put on furniture and is seen well above the floor stays as it is: nobody marked what is below it.
@@ -93,7 +95,7 @@ def grounded(
     return out
 
 
-def _with_bottom(extent: Extent, bottom_m: float) -> Extent:
+def _with_bottom(extent: TurnedExtent, bottom_m: float) -> TurnedExtent:
     low, high = extent.low.copy(), extent.high.copy()
     low[2] = bottom_m
     high[2] = max(high[2], bottom_m + 0.02)

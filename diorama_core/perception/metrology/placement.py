@@ -35,7 +35,7 @@ from diorama_core.perception.metrology.silhouette import corner_costs
 from diorama_core.perception.metrology.solver import Solutions, joined, solve
 from diorama_core.perception.metrology.supported_objects import (
     FLOOR_OBJECT_COST,
-    Extent,
+    RoomExtent,
     extent_of,
     place_below_ceiling,
     place_on,
@@ -248,7 +248,7 @@ def _supported(
     view: View,
     height_m: float,
     carriers: Mapping[int, Placement],
-    room: Extent,
+    room: RoomExtent,
     indices: list[int],
     settings: MetrologySettings,
 ) -> dict[int, Placement]:
@@ -311,7 +311,7 @@ def _supported_rows(
     observations: BoxObservations,
     index: int,
     carriers: Mapping[int, Placement],
-    room: Extent,
+    room: RoomExtent,
     height_m: float,
     settings: MetrologySettings,
 ) -> list[tuple[int, list[Problems]]]:
@@ -439,7 +439,7 @@ def _tells_the_room(placement: Placement, observations: BoxObservations, setting
     return not (category is UNKNOWN and bool(observations.hidden(placement.index)[3]))
 
 
-def _room(telling: list[Placement], observations: BoxObservations, settings: PlacementSettings) -> Extent:
+def _room(telling: list[Placement], observations: BoxObservations, settings: PlacementSettings) -> RoomExtent:
     return extent_of(_corners(telling), tuple(observations.categories[p.index].name for p in telling), settings)
 
 

@@ -30,7 +30,7 @@ _USUAL_MIDDLE_M: Mapping[str, float] = column("middle_height_m")
 
 
 @dataclass(frozen=True)
-class Extent:
+class RoomExtent:
     """How far the things on the floor reach, seen from below the camera: the room is at least as large."""
 
     left_m: float
@@ -50,13 +50,13 @@ class Extent:
 
 def extent_of(
     corners_world: Float[np.ndarray, "n 8 3"], names: tuple[str, ...], settings: PlacementSettings = SETTINGS.placement
-) -> Extent:
+) -> RoomExtent:
     """The extent of cuboids of named categories; of an ordinary room where there are none.
 
     Where a thing that usually stands against a wall is the farthest, or a door in that wall, the wall is right there.
     """
     if not len(corners_world):
-        return Extent(2.0, 2.0, 3.5, 0.4, 0.4, 0.4)
+        return RoomExtent(2.0, 2.0, 3.5, 0.4, 0.4, 0.4)
     sides = (-corners_world[..., 0].min(axis=1), corners_world[..., 0].max(axis=1), corners_world[..., 1].max(axis=1))
     reach, sigmas = [], []
     for side, least, axis in zip(sides, (1.0, 1.0, 1.5), (0, 0, 1), strict=True):
@@ -65,7 +65,7 @@ def extent_of(
         against = names[farthest] in AGAINST_WALLS or (names[farthest] == "door" and flat)
         reach.append((max(float(side[farthest]), least) + 0.05) * (1.0 if against else 1.1))
         sigmas.append(0.12 if against else 0.3)
-    return Extent(reach[0], reach[1], reach[2], sigmas[0], sigmas[1], sigmas[2])
+    return RoomExtent(reach[0], reach[1], reach[2], sigmas[0], sigmas[1], sigmas[2])
 
 
 def supporters_of(
@@ -180,7 +180,7 @@ def place_on_wall(
     observations: BoxObservations,
     index: int,
     height_m: float,
-    room: Extent,
+    room: RoomExtent,
     cost: float,
     settings: MetrologySettings = SETTINGS,
 ) -> list[Problems]:
@@ -224,7 +224,7 @@ def place_below_ceiling(
     observations: BoxObservations,
     index: int,
     height_m: float,
-    room: Extent,
+    room: RoomExtent,
     cost: float,
     settings: MetrologySettings = SETTINGS,
 ) -> list[Problems]:

@@ -23,7 +23,7 @@ _SURE_COVER = 0.4
 
 
 @dataclass(frozen=True, eq=False)
-class View(ArrayValue):
+class GrayView(ArrayValue):
     """Square pictures of one shape or object: what patch features are computed from."""
 
     gray: UInt8[np.ndarray, "v h h"]
@@ -43,10 +43,10 @@ class View(ArrayValue):
 
 
 @dataclass(frozen=True, eq=False)
-class Crop(ArrayValue):
+class PatchCrop(ArrayValue):
     """The picture of one object, turned so that it is seen straight on, with what was measured in it."""
 
-    view: View
+    view: GrayView
     R_camera_crop: Float[np.ndarray, "3 3"]
     """From the crop's camera, which looks at the object, to the photo's."""
     focal_px: float
@@ -70,11 +70,11 @@ def patch_pixels(size_px: int) -> Int[np.ndarray, "p 2"]:
     return np.stack([x.ravel(), y.ravel()], axis=1)
 
 
-def template_view(templates: Templates) -> View:
+def template_view(templates: Templates) -> GrayView:
     """All views of a shape; the normals of large ones at half their size, as patches are means over many pixels."""
     step = 2 if templates.grid.size_px >= _LARGE_PX else 1
     normals = np.stack([templates.normals_camera(k)[::step, ::step] for k in range(len(templates))])
-    return View(templates.gray, templates.mask, normals.astype(np.float32))
+    return GrayView(templates.gray, templates.mask, normals.astype(np.float32))
 
 
 def crop_object(
@@ -85,7 +85,7 @@ def crop_object(
     normals_world: Float32[np.ndarray, "h w 3"],
     camera: Camera,
     grid: TemplateGrid,
-) -> Crop:
+) -> PatchCrop:
     """Resample an object into a camera of its own that looks straight at it.
 
     Args:
@@ -116,12 +116,12 @@ def crop_object(
     points = rays / ahead[..., None] * depth[..., None]
     at = patch_pixels(size)
     middle = np.where(known[at[:, 1], at[:, 0], None], points[at[:, 1], at[:, 0]], np.nan)
-    view = View(
+    view = GrayView(
         np.where(seen, np.maximum(gray, 1), 0).astype(np.uint8)[None],
         seen[None],
         np.where(known[..., None], normals, 0.0).astype(np.float32)[None],
     )
-    return Crop(view, R, float(focal), middle.astype(np.float32))
+    return PatchCrop(view, R, float(focal), middle.astype(np.float32))
 
 
 def _camera_towards(camera: Camera, box: tuple[float, float, float, float]) -> Float[np.ndarray, "3 3"]:

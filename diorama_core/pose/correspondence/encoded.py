@@ -11,7 +11,7 @@ from jaxtyping import Bool, Float32
 
 from diorama_core.io.derived import read_arrays, write_arrays
 from diorama_core.library.catalogue import default_cache_dir
-from diorama_core.pose.correspondence.crops import View
+from diorama_core.pose.correspondence.crops import GrayView
 from diorama_core.pose.correspondence.features import PatchFeatures
 from diorama_core.render.templates import Templates
 
@@ -30,7 +30,12 @@ class EncodedViews:
 
     @classmethod
     def of(
-        cls, templates: Templates, view: View, features: PatchFeatures, content_hash: str, folder: Path | None = None
+        cls,
+        templates: Templates,
+        view: GrayView,
+        features: PatchFeatures,
+        content_hash: str,
+        folder: Path | None = None,
     ) -> EncodedViews:
         """Encode all views, or read them from the cache.
 

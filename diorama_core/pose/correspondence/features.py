@@ -9,7 +9,7 @@ import numpy as np
 from jaxtyping import Bool, Float32
 
 from diorama_core.models.features import PATCH, Dinov2
-from diorama_core.pose.correspondence.crops import PATCHES, View, pooled
+from diorama_core.pose.correspondence.crops import PATCHES, GrayView, pooled
 
 _VIEWS_AT_ONCE = 12
 
@@ -23,7 +23,7 @@ class PatchFeatures(Protocol):
         """Which weights make them; None for those that are cheaper to make than to keep."""
         ...
 
-    def encode(self, view: View) -> Float32[np.ndarray, "v p d"]:
+    def encode(self, view: GrayView) -> Float32[np.ndarray, "v p d"]:
         """Unit vectors, row by row of patches; zero where there is nothing of the object."""
         ...
 
@@ -43,7 +43,7 @@ class GeometricFeatures:
         """They need none."""
         return None
 
-    def encode(self, view: View) -> Float32[np.ndarray, "v p d"]:
+    def encode(self, view: GrayView) -> Float32[np.ndarray, "v p d"]:
         """Unit vectors; zero for patches that the object does not reach."""
         normals = pooled(view.normals)
         cover = view.patch_cover[..., None].astype(np.float32)
@@ -65,7 +65,7 @@ class NetworkFeatures:
         """The network's, and which block of it."""
         return f"{self.network.weights}-{'last' if self.network.block is None else self.network.block}"
 
-    def encode(self, view: View) -> Float32[np.ndarray, "v p d"]:
+    def encode(self, view: GrayView) -> Float32[np.ndarray, "v p d"]:
         """Unit vectors; zero for patches that the object does not reach."""
         pictures = [np.repeat(gray[..., None], 3, axis=-1) for gray in view.gray]
         side = PATCHES * PATCH
@@ -87,7 +87,7 @@ def _with_neighbours(values: Float32[np.ndarray, "v p c"]) -> Float32[np.ndarray
     return np.concatenate(around, axis=-1).reshape(v, PATCHES**2, 4 * c)
 
 
-def _place(view: View) -> Float32[np.ndarray, "v p 4"]:
+def _place(view: GrayView) -> Float32[np.ndarray, "v p 4"]:
     """Sine and cosine of the place between the object's edges: a quarter turn from one edge to the other."""
     inside: Bool[np.ndarray, "v n n"] = view.foreground.reshape(-1, PATCHES, PATCHES)
     steps = np.arange(PATCHES)

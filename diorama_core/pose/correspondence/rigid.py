@@ -8,7 +8,7 @@ import numpy as np
 from jaxtyping import Bool, Float, Int
 
 from diorama_core.models.gigapose import ScaleNetwork
-from diorama_core.pose.correspondence.crops import PATCHES, Crop, patch_pixels
+from diorama_core.pose.correspondence.crops import PATCHES, PatchCrop, patch_pixels
 from diorama_core.pose.correspondence.matching import Matches
 from diorama_core.pose.correspondence.umeyama import ransac_umeyama, umeyama
 from diorama_core.render.templates import Templates
@@ -36,7 +36,7 @@ class Rigid:
 class Compared:
     """One object's picture laid against every view of one shape."""
 
-    crop: Crop
+    crop: PatchCrop
     templates: Templates
     matches: Matches
     similarity: Float[np.ndarray, " v"]

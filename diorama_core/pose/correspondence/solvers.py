@@ -18,18 +18,11 @@ from typing import Literal
 
 import numpy as np
 
-from diorama_core.artefacts import (
-    DepthMap,
-    DetectedObject,
-    Inputs,
-    ObjectGeometry,
-    PosedCandidates,
-    RankedShapes,
-)
+from diorama_core.artefacts import DepthMap, DetectedObject, Inputs, ObjectGeometry, PosedCandidates, RankedShapes
 from diorama_core.io.cache import LruCache
 from diorama_core.library.record import Shape, ShapeLibrary
 from diorama_core.models.gigapose import ScaleNetwork
-from diorama_core.pose.correspondence.crops import Crop, crop_object, template_view
+from diorama_core.pose.correspondence.crops import PatchCrop, crop_object, template_view
 from diorama_core.pose.correspondence.encoded import EncodedViews
 from diorama_core.pose.correspondence.features import GeometricFeatures, PatchFeatures
 from diorama_core.pose.correspondence.matching import cyclic_matches, similarities, template_scores
@@ -118,7 +111,7 @@ class CorrespondencePose:
                 found[kind].append(_candidates(obj, geometry.camera, [(s, p) for s, p in poses if p is not None]))
         return {kind: tuple(f for f in of_kind if f.candidates) for kind, of_kind in found.items()}
 
-    def compare(self, crop: Crop, shapes: Sequence[Shape]) -> list[Compared]:
+    def compare(self, crop: PatchCrop, shapes: Sequence[Shape]) -> list[Compared]:
         """The picture against all views of all shapes, in their order; nothing where picture or depth are empty."""
         inside = np.flatnonzero(crop.view.foreground[0])
         if len(inside) == 0 or not np.isfinite(crop.points_camera).all(axis=1).any():

@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from diorama_core.architecture.plainrecon.bounds import Sheet, fitted_sheet, joined, upright
+from diorama_core.architecture.plainrecon.bounds import PlaneSheet, fitted_sheet, joined, upright
 from diorama_core.architecture.plainrecon.clusters import planar_clusters
 from diorama_core.architecture.plainrecon.stage import PlainRecon
 from diorama_core.evaluation.metrics.architecture import architecture_scores, match_planes
@@ -15,7 +15,7 @@ from diorama_core.progress import Progress
 from tests.synthetic_rooms import box_room, cuboid, look, shoot
 
 FURNITURE = (cuboid("cabinet", (-1.0, 2.5, 0), (0.6, 1.0, 0.8)), cuboid("stand", (0.8, 2.2, 0), (0.5, 0.5, 0.9)))
-FLOOR = Sheet(np.array([0.0, 0.0, 1.0]), 0.0, np.array([[-2.0, 0, 0], [2, 0, 0], [2, 4, 0], [-2, 4, 0]]))
+FLOOR = PlaneSheet(np.array([0.0, 0.0, 1.0]), 0.0, np.array([[-2.0, 0, 0], [2, 0, 0], [2, 4, 0], [-2, 4, 0]]))
 
 
 def grid(origin, u, v, count=60):
@@ -52,15 +52,19 @@ def test_a_leaning_wall_is_turned_about_its_foot():
     leaning = np.array([0.0, -np.cos(0.1), np.sin(0.1)])
     offset = float(leaning @ [0.0, 4.0, 0.0])
     corners = np.array([[-1.0, 4, 0], [1, 4, 0], [1, 4.2, 2], [-1, 4.2, 2]])
-    wall = upright(Sheet(leaning, offset, corners), FLOOR)
+    wall = upright(PlaneSheet(leaning, offset, corners), FLOOR)
     np.testing.assert_allclose(wall.normal, [0, -1, 0], atol=1e-9)
     assert wall.offset == pytest.approx(-4.0)
     assert np.abs(wall.corners @ wall.normal - wall.offset).max() < 1e-9
 
 
 def test_walls_come_down_to_the_floor_and_share_their_corner():
-    back = Sheet(np.array([0.0, -1, 0]), -4.0, np.array([[-1.8, 4.0, 0.2], [1.7, 4, 0.2], [1.7, 4, 2], [-1.8, 4, 2]]))
-    side = Sheet(np.array([-1.0, 0, 0]), -2.0, np.array([[2.0, 3.8, 0.1], [2, 0, 0.1], [2, 0, 2.1], [2, 3.8, 2.1]]))
+    back = PlaneSheet(
+        np.array([0.0, -1, 0]), -4.0, np.array([[-1.8, 4.0, 0.2], [1.7, 4, 0.2], [1.7, 4, 2], [-1.8, 4, 2]])
+    )
+    side = PlaneSheet(
+        np.array([-1.0, 0, 0]), -2.0, np.array([[2.0, 3.8, 0.1], [2, 0, 0.1], [2, 0, 2.1], [2, 3.8, 2.1]])
+    )
     a, b = joined(FLOOR, [back, side])
     for wall in (a, b):
         assert (np.linalg.norm(wall.corners - [2.0, 4.0, 0.0], axis=1) < 1e-9).sum() == 1

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from diorama_core.architecture.from_depth import PlanarRoom
-from diorama_core.architecture.walls.openings import Opening, with_openings
+from diorama_core.architecture.walls.openings import WallOpening, with_openings
 from diorama_core.artefacts import DetectedObject
 from diorama_core.evaluation.metrics.architecture import plane_points
 from diorama_core.geometry.casting import camera_rays, cast_plane
@@ -19,7 +19,7 @@ from diorama_core.scene.types import Architecture, Plane, Scene
 from tests.synthetic_rooms import box_room, floor, look, shoot, wall
 
 SIZE = (320, 240)
-DOORWAY, WINDOW = Opening(0.6, 1.5, 0.0, 2.05), Opening(2.4, 3.4, 0.9, 2.0)
+DOORWAY, WINDOW = WallOpening(0.6, 1.5, 0.0, 2.05), WallOpening(2.4, 3.4, 0.9, 2.0)
 
 
 def wall_with(*openings):

@@ -9,7 +9,7 @@ import pytest
 
 from diorama_core.architecture.from_depth import PlanarRoom
 from diorama_core.architecture.single_view.stage import PhotoRoom
-from diorama_core.architecture.walls.openings import Opening
+from diorama_core.architecture.walls.openings import WallOpening
 from diorama_core.architecture.walls.passages import is_passage, with_passages, without_openings
 from diorama_core.architecture.walls.wall_sequence import WallPiece
 from diorama_core.artefacts import DetectedObject, ObjectGeometry
@@ -71,7 +71,7 @@ def test_a_box_becomes_the_rectangle_it_surrounds(wall, corners, expected):
 
 
 def test_what_was_measured_stays_as_measured():
-    measured = Opening(1.7, 2.4, 0.0, 1.9)
+    measured = WallOpening(1.7, 2.4, 0.0, 1.9)
     doorway = pointed_at("doorway", ((-0.4, 4.0, 0.0), (0.5, 4.0, 2.0)))
     assert with_passages(((), (measured,)), (doorway,), PIECES, CAMERA, 2.6) == (((), (measured,)), ("it",))
 

@@ -11,8 +11,7 @@ from diorama_core.artefacts import LabelledBox, Photo
 from diorama_core.library.taxonomy import ARCHITECTURE_WORDS, CATEGORIES, UNKNOWN
 from diorama_core.models.boxes import Detections
 from diorama_core.models.owlv2 import MAX_PHRASES
-from diorama_core.perception.foundation.detection import MAX_OBJECTS, OpenVocabularyDetection
-from diorama_core.perception.foundation.vocabulary import INDOOR_WORDS
+from diorama_core.perception.foundation.detection import INDOOR_WORDS, MAX_OBJECTS, OpenVocabularyDetection
 from diorama_core.progress import Progress
 
 PHOTO = Photo(np.zeros((100, 200, 3), np.uint8), "room.png", (200, 100))

@@ -6,7 +6,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from diorama_core.library.taxonomy import category
-from diorama_core.perception.measured.boxes import Extent, completed, observed_extent, to_cuboid, usual_plan
+from diorama_core.perception.measured.boxes import TurnedExtent, completed, observed_extent, to_cuboid, usual_plan
 from diorama_core.scene.types import yaw_rotation
 
 NOWHERE = np.zeros((0, 3))
@@ -41,9 +41,9 @@ def test_the_rooms_axes_are_preferred_unless_a_turn_is_clearly_tighter() -> None
     assert np.rad2deg(observed_extent(long, category("wardrobe")).yaw_rad) == pytest.approx(25.0, abs=1.0)
 
 
-def front_only(depth: float = 0.1) -> Extent:
+def front_only(depth: float = 0.1) -> TurnedExtent:
     """A wardrobe of which only the front, 2.5 m ahead, was seen."""
-    return Extent(0.0, np.array([-0.6, 2.5, 0.0]), np.array([0.6, 2.5 + depth, 2.0]))
+    return TurnedExtent(0.0, np.array([-0.6, 2.5, 0.0]), np.array([0.6, 2.5 + depth, 2.0]))
 
 
 def test_an_unseen_back_is_completed_away_from_the_camera() -> None:
@@ -73,13 +73,13 @@ def test_a_seen_top_tells_the_depth() -> None:
 def test_what_the_picture_cuts_off_goes_on_out_of_the_picture(side: int, grows: str) -> None:
     cut = UNCUT.copy()
     cut[side] = True
-    narrow = Extent(0.0, np.array([-0.3, 2.5, 0.0]), np.array([0.3, 3.4, 0.8]))
+    narrow = TurnedExtent(0.0, np.array([-0.3, 2.5, 0.0]), np.array([0.3, 3.4, 0.8]))
     found = completed(narrow, category("sofa"), EYE, cut, NOWHERE, NOWHERE)
     assert getattr(found, grows)[0] != getattr(narrow, grows)[0]
     other = "high" if grows == "low" else "low"
     assert getattr(found, other)[0] == getattr(narrow, other)[0]
     above = np.array([False, False, True])
-    low = Extent(0.0, np.array([-0.6, 2.5, 0.0]), np.array([0.6, 3.1, 0.5]))
+    low = TurnedExtent(0.0, np.array([-0.6, 2.5, 0.0]), np.array([0.6, 3.1, 0.5]))
     tall = completed(low, category("wardrobe"), EYE, above, NOWHERE, NOWHERE)
     assert tall.high[2] == category("wardrobe").priors[0].height_m
 
@@ -95,7 +95,7 @@ def test_the_usual_plan_is_turned_as_it_fits() -> None:
 def test_a_cuboid_is_the_same_box_with_its_front_to_the_camera(yaw, x, y) -> None:
     centre = yaw_rotation(yaw).T @ np.array([x, y, 0.4])
     half = np.array([0.45, 1.0, 0.4])
-    extent = Extent(yaw, centre - half, centre + half)
+    extent = TurnedExtent(yaw, centre - half, centre + half)
     made = to_cuboid("sofa", extent, category("sofa"), EYE, 0.7)
     np.testing.assert_allclose(made.centre, [x, y, 0.4], atol=1e-9)
     np.testing.assert_allclose(made.size_m, [0.9, 2.0, 0.8])

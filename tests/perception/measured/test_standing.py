@@ -4,14 +4,14 @@ import numpy as np
 import pytest
 
 from diorama_core.library.taxonomy import category
-from diorama_core.perception.measured.boxes import Extent
+from diorama_core.perception.measured.boxes import TurnedExtent
 from diorama_core.perception.measured.standing import grounded, resting_heights, supporters
 from diorama_core.scene.types import Support
 
 
-def at(x: float, bottom: float, size) -> Extent:
+def at(x: float, bottom: float, size) -> TurnedExtent:
     half = np.array([size[0] / 2, size[1] / 2])
-    return Extent(
+    return TurnedExtent(
         0.0, np.array([x - half[0], 3 - half[1], bottom]), np.array([x + half[0], 3 + half[1], bottom + size[2]])
     )
 
@@ -29,7 +29,7 @@ NAMES = {"pendant": "ceiling lamp"}
 CATEGORIES = {key: category(NAMES.get(key, key)) for key in EXTENTS}
 
 
-def found(**changed: Extent) -> dict[str, Support]:
+def found(**changed: TurnedExtent) -> dict[str, Support]:
     return {s.child: s for s in supporters(EXTENTS | changed, CATEGORIES)}
 
 
