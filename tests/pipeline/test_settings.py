@@ -2,21 +2,36 @@
 
 from __future__ import annotations
 
+from functools import cache
+
 import numpy as np
 import pytest
 
+from diorama_core.architecture.single_view import settings as photo_room
+from diorama_core.architecture.walls import settings as walls
 from diorama_core.artefacts import Inputs, Photo
 from diorama_core.errors import InputError
 from diorama_core.layout.settings import LAYOUT, REFINEMENT
 from diorama_core.library.catalogue import built_in_library
+from diorama_core.perception.camera import settings as lines
+from diorama_core.perception.graph import settings as graph
+from diorama_core.perception.measured import settings as measured_objects
+from diorama_core.perception.metrology import settings as metrology
 from diorama_core.pipeline.settings import settings_of, with_settings
-from diorama_core.pipeline.stages import embedded_stages
+from diorama_core.pipeline.stages import Stages, embedded_stages
+from diorama_core.pose import settings as posing
+from diorama_core.retrieval import pools
+
+
+@cache
+def stages_for(measured: bool) -> Stages:
+    photo = Photo(np.zeros((48, 64, 3), np.uint8), "p.png", (64, 48))
+    return embedded_stages(Inputs(photo, depth_m=np.ones((48, 64)) if measured else None), built_in_library())
 
 
 @pytest.fixture(scope="module")
 def stages():
-    photo = Photo(np.zeros((48, 64, 3), np.uint8), "p.png", (64, 48))
-    return embedded_stages(Inputs(photo), built_in_library())
+    return stages_for(measured=False)
 
 
 def test_numbers_within_stages_have_names(stages):
@@ -50,8 +65,24 @@ def test_an_optional_stage_is_left_out_by_its_name(stages):
         with_settings(stages, {"pose": 0})
 
 
-def test_numbers_of_retrieval_are_settings_of_its_stage(stages):
-    name = "retrieval.settings.pools.related_factor"
-    changed = with_settings(stages, {name: 0.1})
-    assert changed.retrieval.settings.pools.related_factor == 0.1
-    assert repr(changed.retrieval) != repr(stages.retrieval)
+@pytest.mark.parametrize(
+    ("measured", "name", "owner", "other"),
+    [
+        (False, "retrieval.settings.pools.related_factor", pools.SETTINGS, 0.1),
+        (False, "camera.settings.few_segments", lines.SETTINGS, 7.0),
+        (False, "geometry.settings.placement.sure_cost", metrology.SETTINGS.placement, 11.0),
+        (False, "architecture.settings.search.margin_m", photo_room.SETTINGS.search, 0.07),
+        (True, "geometry.settings.voxel_m", measured_objects.SETTINGS, 0.05),
+        (True, "architecture.settings.seen_through", walls.SETTINGS, 0.5),
+        (True, "graph.settings.larger_cost", graph.SETTINGS, 3.0),
+        (True, "pose.settings.shapes.good_fit", posing.SETTINGS.shapes, 0.1),
+        (True, "pose.stage.settings.search.fit_steps", posing.SETTINGS.search, 6.0),
+    ],
+)
+def test_numbers_of_stages_are_settings_and_in_their_keys(measured, name, owner, other):
+    stages = stages_for(measured)
+    assert settings_of(stages)[name] == getattr(owner, name.rsplit(".", 1)[1]) != other
+    changed = with_settings(stages, {name: other})
+    assert settings_of(changed)[name] == other
+    stage = name.split(".", 1)[0]
+    assert repr(getattr(changed, stage)) != repr(getattr(stages, stage))
