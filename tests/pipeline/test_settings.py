@@ -26,7 +26,9 @@ from diorama_core.retrieval import pools
 @cache
 def stages_for(measured: bool) -> Stages:
     photo = Photo(np.zeros((48, 64, 3), np.uint8), "p.png", (64, 48))
-    return embedded_stages(Inputs(photo, depth_m=np.ones((48, 64)) if measured else None), built_in_library())
+    return embedded_stages(
+        Inputs(photo, depth_m=np.ones((48, 64), np.float32) if measured else None), built_in_library()
+    )
 
 
 @pytest.fixture(scope="module")
