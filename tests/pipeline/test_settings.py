@@ -20,7 +20,7 @@ from diorama_core.perception.metrology import settings as metrology
 from diorama_core.pipeline.settings import settings_of, with_settings
 from diorama_core.pipeline.stages import Stages, embedded_stages
 from diorama_core.pose import settings as posing
-from diorama_core.retrieval import pools
+from diorama_core.retrieval import settings as retrieval
 
 
 @cache
@@ -70,7 +70,7 @@ def test_an_optional_stage_is_left_out_by_its_name(stages):
 @pytest.mark.parametrize(
     ("measured", "name", "owner", "other"),
     [
-        (False, "retrieval.settings.pools.related_factor", pools.SETTINGS, 0.1),
+        (False, "retrieval.settings.pools.related_factor", retrieval.SETTINGS.pools, 0.1),
         (False, "camera.settings.few_segments", lines.SETTINGS, 7.0),
         (False, "geometry.settings.placement.sure_cost", metrology.SETTINGS.placement, 11.0),
         (False, "architecture.settings.search.margin_m", photo_room.SETTINGS.search, 0.07),
