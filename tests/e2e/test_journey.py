@@ -60,7 +60,7 @@ def test_the_example_is_there_and_is_swapped_moved_undone_optimised_and_download
     before = session.scene
     editor.button("Optimise layout").click()
     editor.until(lambda: session.jobs.status is None and session.scene is not before, "arranged", seconds=BUILD_S)
-    assert session.document.history.current.label == "arrange the layout"
+    assert session.document.history.current.label == "tidy up"
     expect(editor.page.get_by_text("Before → after")).to_be_visible()
 
     editor.tab("Export")
