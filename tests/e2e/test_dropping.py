@@ -34,7 +34,7 @@ def photo(path: Path, seed: int = 0) -> Path:
     return path
 
 
-def test_a_photo_with_boxes_then_its_depth_then_a_folder_then_a_model(editor: EditorPage, tmp_path: Path) -> None:
+def test_a_photo_with_boxes_then_its_depth(editor: EditorPage, tmp_path: Path) -> None:
     boxes = tmp_path / "labels.json"
     boxes.write_bytes(boxes_json(box(30, 60, 180, 270), box(200, 90, 400, 400), box(5, 200, 90, 300)))
     drop(editor, photo(tmp_path / "room.png"), boxes)
@@ -52,6 +52,9 @@ def test_a_photo_with_boxes_then_its_depth_then_a_folder_then_a_model(editor: Ed
     editor.page.get_by_role("button", name="Inverse depth").click()
     editor.until(lambda: editor.session.inputs.depth_m is not None, "read as it was answered", seconds=90)
     assert editor.session.project.info()["depth_kind"] == "inverse"
+
+
+def test_a_folder_of_photos(editor: EditorPage, tmp_path: Path) -> None:
     folder = tmp_path / "holiday"
     folder.mkdir()
     for number in range(3):
@@ -63,7 +66,7 @@ def test_a_photo_with_boxes_then_its_depth_then_a_folder_then_a_model(editor: Ed
     keep_picture(editor, "dropped-folder-asked")
     editor.page.get_by_role("button", name="3 photos of different rooms, a project each").click()
     editor.until(lambda: editor.session.project.folder.name == "p0", "the first is open", seconds=90)
-    assert {"p0", "p1", "p2"} <= {p.name for p in editor.session.projects_dir.iterdir()}
+    assert {"p0", "p1", "p2"} <= {p.name for p in editor.session.project.folder.parent.iterdir()}
 
 
 def test_a_dropped_model_is_placed(editor: EditorPage, tmp_path: Path) -> None:
