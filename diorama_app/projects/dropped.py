@@ -292,8 +292,8 @@ def _photo_readings(photos: Sequence[DroppedPhoto], inputs: dict[str, Recognised
     counts = [(sort, sum(any(s == sort for s, _ in p.beside) for p in photos)) for sort in ("boxes", "masks", "depth")]
     beside = [f"{sort} of {count}" for sort, count in counts if count]
     several = f"{len(photos)} photos" + (f" with {_list_of(beside)}" if beside else "")
-    cameras = f"with the cameras of {Path(poses).name}" if poses else "whose cameras are found by what they share"
-    room = Reading("room", f"{several} of one room, {cameras}", tuple(photos), poses=poses)
+    cameras = f", cameras from {Path(poses).name}" if poses else ""
+    room = Reading("room", f"{several} of one room{cameras}", tuple(photos), poses=poses)
     each = Reading("photos", f"{several} of different rooms, a project each", tuple(photos))
     return (room, each)
 
