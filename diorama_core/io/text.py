@@ -38,6 +38,7 @@ def file_label(name: str) -> str:
     return clean_text(known)
 
 
-def number_of(count: int, noun: str = "object") -> str:
-    """A number with its noun in the right form: "1 object", "3 objects"."""
-    return f"{count} {noun}{'' if count == 1 else 's'}"
+def number_of(count: int, noun: str = "") -> str:
+    """A number with its noun in the right form, that of objects where none is given: "1 object", "3 photos"."""
+    many = "" if count == 1 else "s"
+    return f"{count} {noun}{many}" if noun else f"{count} object{many}"

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from diorama_core.scene.types import Camera, RoomLight
 
 Part = tuple[str, str]
-"""What of a state is changed as one: a kind ("object", "support", "plane" or a field's name) and an id."""
+"""What of a state is changed as one: a kind ("item", "support", "plane" or a field's name) and an id."""
 _FIELDS = ("camera", "light", "light_settings")
 
 
@@ -90,7 +90,7 @@ def _parts_of(entry: Entry) -> Mapping[Part, object]:
     """Everything of a state that is changed as one."""
     scene = entry.scene
     return {
-        **{("object", o.id): o for o in scene.objects},
+        **{("item", o.id): o for o in scene.objects},
         **{("support", s.child): s for s in scene.supports},
         **{("plane", p.id): p for p in scene.architecture.planes},
         **{("field", name): getattr(scene, name) for name in _FIELDS},
@@ -111,7 +111,7 @@ def _scene_of(parts: Mapping[Part, object], now: Scene, after: Scene) -> Scene:
     children = [child for kind, child in parts if kind == "support"]
     return replace(
         now,
-        objects=in_order("object", objects),
+        objects=in_order("item", objects),
         supports=in_order("support", children),
         architecture=replace(now.architecture, planes=in_order("plane", planes)),
         camera=cast("Camera | None", parts[("field", "camera")]),
