@@ -81,16 +81,12 @@ def _scene(result: PhotoResult, folder: Path) -> str:
     notes = notes if lines else ""
     return (
         f'<article id="{html.escape(result.project.name, quote=True)}"><h2>{html.escape(result.photo.name)}</h2>'
-        f'<p class="dim">{_count(len(report["objects"]))}, {_count(walls, "wall")} · {when} · '
+        f'<p class="dim">{number_of(len(report["objects"]))}, {number_of(walls, "wall")} · {when} · '
         f'<a href="{address}/scene.json">{where}</a></p>'
         f'<div class="pictures">{_picture(result.project / "photo.jpg", "the photo")}'
         f"{_picture(result.picture, 'the scene')}</div>"
         f"<p>{html.escape(contents)}</p>{notes}</article>"
     )
-
-
-def _count(number: int, name: str) -> str:
-    return f"{number} {name}{'' if number == 1 else 's'}"
 
 
 def _picture(path: Path, words: str) -> str:
