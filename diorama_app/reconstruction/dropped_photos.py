@@ -6,21 +6,22 @@ import shutil
 import tempfile
 from collections.abc import Mapping
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from diorama_app.projects.begin import begin_project, fresh_folder, keep_given
 from diorama_app.projects.dropped import MAX_BYTES, DroppedPhoto, Reading
 from diorama_app.projects.dropped_files import files_of, upload_of
-from diorama_app.projects.options import BuildOptions
 from diorama_app.projects.photo_folder import FolderPhoto
-from diorama_app.projects.posed_build import PosedBuild, build_posed_photos, poses_from_photos
 from diorama_app.projects.uploads import decoded
 from diorama_app.session.client import Client
 from diorama_core.errors import DioramaError, InputError
 from diorama_core.io.archives import unpacked
 from diorama_core.io.limited import LimitedProcess
-from diorama_core.multiview.posed_photos import read_poses
 from diorama_core.progress import Progress
 from diorama_core.project.storage import Project
+
+if TYPE_CHECKING:
+    from diorama_app.projects.posed_build import PosedBuild
 
 
 def begin_each(client: Client, name: str, content: bytes, reading: Reading) -> None:
@@ -101,6 +102,10 @@ def _check_photos(reading: Reading, files: Mapping[str, bytes]) -> None:
 
 
 def _room(inside: Path, reading: Reading, output: Path, progress: Progress) -> PosedBuild:
+    from diorama_app.projects.options import BuildOptions  # the pipeline, without which the editor opens
+    from diorama_app.projects.posed_build import build_posed_photos, poses_from_photos
+    from diorama_core.multiview.posed_photos import read_poses
+
     photos = [
         FolderPhoto(inside / p.file, Path(p.file).stem, tuple((sort, inside / file) for sort, file in p.beside))
         for p in reading.photos

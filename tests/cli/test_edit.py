@@ -27,7 +27,7 @@ def room(tmp_path: Path) -> Path:
 def test_edits_are_listed_made_and_saved(room: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["edit", str(room), "make all chairs wooden and paint the walls light blue", "--yes"]) == 0
     said = capsys.readouterr().out
-    assert "paint the walls light blue" in said
+    assert "make the walls light blue" in said
     assert "swap for" in said
     scene = Project.open(room).load_scene()
     assert len({p.colour for p in scene.architecture.by_role("wall")}) == 1

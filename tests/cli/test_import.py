@@ -33,7 +33,7 @@ def test_an_exported_file_becomes_the_same_project(tmp_path, furnished: Scene, c
     picture = np.full((64, 64, 3), 200, np.uint8)
     export_scene(furnished, built_in_library(), tmp_path / "room.glb", "glb", textures={"w": picture})
     assert main(["import", str(tmp_path / "room.glb"), "-o", str(tmp_path / "back")]) == 0
-    assert "1 objects, 6 planes" in capsys.readouterr().out
+    assert "1 object, 6 planes" in capsys.readouterr().out
     project = Project.open(tmp_path / "back")
     assert project.load_scene() == furnished
     texture = project.texture("w")
