@@ -1,4 +1,4 @@
-"""FBX through the Open Asset Import Library.
+"""FBX through the Open Asset Import Library, an optional dependency (`pip install "diorama[fbx]"`).
 
 The importer turns a file's declared axes to +Y up; the declared unit is read here, because the importer keeps it back.
 """
@@ -17,7 +17,7 @@ import trimesh
 from PIL import Image
 from trimesh.visual.material import PBRMaterial
 
-from diorama_core.errors import LibraryError
+from diorama_core.errors import LibraryError, UnavailableError
 from diorama_core.library.ingest.references import IMAGE_FORMATS, References
 
 
@@ -37,10 +37,13 @@ def read_fbx(path: Path, data: bytes, references: References) -> FbxModel:
     """Read an FBX file.
 
     Raises:
-        LibraryError: when it cannot be read.
+        UnavailableError: when the importer is not installed.
+        LibraryError: when it cannot read the file.
     """
-    import assimp_py  # native code that few people need
-
+    try:
+        import assimp_py
+    except ImportError as error:
+        raise UnavailableError('FBX needs a converter; run: pip install "diorama[fbx]", or convert to GLB') from error
     try:
         found = assimp_py.import_file(
             str(path), assimp_py.Process_Triangulate | assimp_py.Process_JoinIdenticalVertices

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import struct
+import sys
 from pathlib import Path
 
 import pytest
 
-from diorama_core.errors import LibraryError
+from diorama_core.errors import LibraryError, UnavailableError
 from diorama_core.library.ingest.fbx import unit_scale_m
 from diorama_core.library.ingest.models import read_model
 
@@ -94,6 +95,7 @@ Connections:  {
 
 
 def test_an_fbx_is_turned_to_its_declared_up_and_unit(tmp_path: Path) -> None:
+    pytest.importorskip("assimp_py", reason="needs the optional FBX importer")
     path = tmp_path / "slab.fbx"
     path.write_text(FBX)
     raw = read_model(path, tmp_path)
@@ -106,9 +108,18 @@ def test_an_fbx_is_turned_to_its_declared_up_and_unit(tmp_path: Path) -> None:
 
 
 def test_a_broken_fbx_is_refused(tmp_path: Path) -> None:
+    pytest.importorskip("assimp_py", reason="needs the optional FBX importer")
     path = tmp_path / "slab.fbx"
     path.write_bytes(b"Kaydara FBX Binary  \x00" + b"\xff" * 300)
     with pytest.raises(LibraryError):
+        read_model(path, tmp_path)
+
+
+def test_without_the_importer_the_reason_says_what_to_install(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(sys.modules, "assimp_py", None)
+    path = tmp_path / "slab.fbx"
+    path.write_text(FBX)
+    with pytest.raises(UnavailableError, match="diorama\\[fbx\\]"):
         read_model(path, tmp_path)
 
 
