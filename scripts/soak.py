@@ -187,7 +187,7 @@ class Person:
         folder = self._begun(f"photo-{self.own}", scene=False)
         page, self.page = self.page, WirePage(self.port, query=f"?project={folder.name}")
         try:
-            self.page.set(self.page.element("Build scene", "Button"), True)
+            self.page.act("build")
             self._until((folder / "scene.json").exists)
         finally:
             self.page.close()

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import base64
 import io
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import replace
 
 import numpy as np
@@ -13,8 +13,9 @@ from jaxtyping import UInt8
 from PIL import Image
 
 from diorama_app.commands.registry import CommandTable
-from diorama_app.panels.fields import GO_COLOUR, enable, on_change, on_press, show_if, show_label
+from diorama_app.panels.fields import GO_COLOUR, enable, on_change, on_press, show_if
 from diorama_app.panels.input_questions import ask_depth
+from diorama_app.panels.photo_bar import photo_bar
 from diorama_app.panels.photo_boxes import PhotoBoxes, box_list
 from diorama_app.panels.upload_field import UploadField
 from diorama_app.projects.begin import begin_project, depth_answer, keep_given
@@ -30,13 +31,10 @@ from diorama_app.reconstruction.networks import (
     missing_networks,
 )
 from diorama_app.reconstruction.object_correction import add_from_photo
-from diorama_app.reconstruction.photo_joining import awaits_photo, join_photo
+from diorama_app.reconstruction.photo_joining import join_photo
 from diorama_app.reconstruction.text_to_scene import describe_room, how_pictures_come
 from diorama_app.session.client import Client
-from diorama_app.viewport.annotation_canvas import (
-    Deleted,
-    Selected,
-)
+from diorama_app.viewport.annotation_canvas import Deleted, Selected
 from diorama_app.viewport.mesh_assets import reduced
 from diorama_app.web.html import Action, LiveHtml, button, text
 from diorama_core.artefacts import Inputs
@@ -64,6 +62,22 @@ class PhotoPanel:
         self._picture_of: object = None
         self._picture = ""
         self._invitation = LiveHtml(gui, self._act)
+        self._bar = LiveHtml(gui, self._act)
+        self._naming = LiveHtml(gui, self._act)
+        self._list = LiveHtml(gui, self._act)
+        client.open_board = self._boxes.open
+        self._more = gui.add_folder("More", expand_by_default=False)
+        with self._more:
+            self._find = gui.add_button("Detect furniture", hint=commands["find_furniture"].tooltip)
+            on_press(self._find, lambda: client.post(lambda: commands["find_furniture"].run(client)))
+            self._no_detector = LiveHtml(gui, self._act)
+            self._files = gui.add_folder(None)
+            with self._files:
+                self._upload(gui, "boxes", "Add boxes", ".json,.xml,.txt,.csv")
+                self._upload(gui, "depth", "Add depth", "*/*")
+                self._upload(gui, "masks", "Add masks", "image/png,.npy,.npz,.zip,.json,.tif,.tiff")
+                self._camera = gui.add_text("Camera", "", hint="fx,fy,cx,cy in pixels of the photo; empty: estimated")
+                on_change(self._camera, self._camera_given)
         self._upload(gui, "photo", "Upload a photo", "image/*")
         self._words = gui.add_text("Describe a room", "", hint="For example: a bedroom with a double bed and two lamps")
         self._describe = gui.add_button(
@@ -72,36 +86,6 @@ class PhotoPanel:
         on_change(self._words, lambda _: client.post(self.refresh, key="words"))
         on_press(self._describe, lambda: client.post(lambda: describe_room(client, self._words.value)))
         self._drawn_by = LiveHtml(gui)
-        self._more = gui.add_folder("More about this photo", expand_by_default=False)
-        with self._more:
-            self._upload(gui, "boxes", "Add boxes", ".json,.xml,.txt,.csv")
-            self._upload(gui, "depth", "Add depth", "*/*")
-            self._upload(gui, "masks", "Add masks", "image/png,.npy,.npz,.zip,.json,.tif,.tiff")
-            self._camera = gui.add_text("Camera", "", hint="fx,fy,cx,cy in pixels of the photo; empty: estimated")
-            on_change(self._camera, self._camera_given)
-        self._draw = gui.add_button("Draw boxes", color="blue", hint="Draw a box around each piece of furniture")
-        on_press(self._draw, lambda: client.post(self._boxes.toggle))
-        self._find = gui.add_button("Detect furniture", hint=commands["find_furniture"].tooltip)
-        on_press(self._find, lambda: client.post(lambda: commands["find_furniture"].run(client)))
-        self._no_detector = LiveHtml(gui, self._act)
-        client.open_board = self._boxes.open
-        self._proposed = LiveHtml(gui, self._act)
-        self._naming = LiveHtml(gui, self._act)
-        self._list = LiveHtml(gui, self._act)
-        self._add = gui.add_button(
-            "Add selected box to the scene",
-            color="blue",
-            hint="Reconstructs only the selected box; everything else stays",
-        )
-        on_press(self._add, lambda: client.post(self._add_selected))
-        self._build = gui.add_button("Build scene", color=GO_COLOUR, hint="Builds a scene from the photo and its boxes")
-        on_press(self._build, lambda: client.post(lambda: work.build(client)))
-        self._join = gui.add_button(
-            "Add to the scene",
-            color=GO_COLOUR,
-            hint="Finds where this photo was taken, joins its objects with the scene's and inserts the others",
-        )
-        on_press(self._join, lambda: client.post(lambda: join_photo(client)))
 
     def take(self, name: str, content: bytes) -> None:
         """Begin a project with a file that a person chose as its photo, whatever else it may look like."""
@@ -139,24 +123,18 @@ class PhotoPanel:
         if inputs is None or client.selected_box is None or client.selected_box >= len(inputs.boxes):
             client.selected_box = None
         self._invitation.show(self._introduction(inputs))
-        show_if(inputs is not None, self._draw, self._find)
-        show_if(inputs is not None and further is None, self._more, self._build)
-        show_if(further is not None or (inputs is not None and awaits_photo(self._session.scene)), self._join)
-        enable(self._join, idle)
+        show_if(inputs is not None, self._more)
+        show_if(further is None, self._files)
         show_if(further is None, self._words, self._describe)
         self._drawn_by.show(f'<p class="dim">{text(how_pictures_come())}</p>' if self._words.value.strip() else "")
         enable(self._describe, idle and bool(self._words.value.strip()))
         finds, about = self._session.glances.of("detection", _detection)
         enable(self._find, idle and finds)
         self._no_detector.show(about if inputs is not None else "")
+        proposed = 0 if inputs is None else self._boxes.proposed(inputs)
+        self._bar.show("" if inputs is None else photo_bar(client, inputs, proposed))
         self._naming.show("" if inputs is None else self._boxes.name_field(inputs))
-        drawing = client.view.canvas.is_open
-        self._proposed.show("" if inputs is None else self._boxes.proposal_note(inputs))
-        self._list.show("" if inputs is None else box_list(inputs, client.selected_box, drawing=drawing))
-        show_if(inputs is not None and further is None and bool(self._session.scene.objects), self._add)
-        enable(self._add, idle and client.selected_box is not None)
-        enable(self._build, idle and work.ready_to_build(inputs))
-        show_label(self._draw, "Done drawing" if drawing else "Draw boxes")
+        self._list.show("" if inputs is None else box_list(inputs, client.selected_box))
         if inputs is not None:
             self._boxes.show(inputs)
 
@@ -222,22 +200,28 @@ class PhotoPanel:
         add_from_photo(self._client, box.box, box.label)
 
     def _act(self, action: Action) -> None:
+        client, boxes = self._client, self._boxes
+        acts: dict[str, Callable[[], None]] = {
+            "download": lambda: detect_with_networks(client),
+            "accept all": boxes.accept_all,
+            "board": boxes.open,
+            "add box": self._add_selected,
+            "build": lambda: work.build(client),
+            "join": lambda: join_photo(client),
+            "named": lambda: boxes.name(action.pair[1]),
+            "name": lambda: boxes.name(action.arg),
+        }
+
         def do() -> None:
-            if action.do == "download":
-                detect_with_networks(self._client)
-            elif action.do == "accept all":
-                self._boxes.accept_all()
-            elif action.do == "named":
-                self._boxes.name(action.pair[1])
-            elif action.do == "name":
-                self._boxes.name(action.arg)
+            if action.do in acts:
+                acts[action.do]()
             elif action.arg.isdigit() and action.do == "drop":
-                self._boxes.happened(Deleted(int(action.arg)))
+                boxes.happened(Deleted(int(action.arg)))
             elif action.arg.isdigit() and action.do == "mark":
                 index = int(action.arg)
-                self._boxes.happened(Selected(None if self._client.selected_box == index else index))
+                boxes.happened(Selected(None if client.selected_box == index else index))
 
-        self._client.post(do)
+        client.post(do)
 
     # -- words ------------------------------------------------------------------------------------------------
 
@@ -248,24 +232,18 @@ class PhotoPanel:
                 '<span class="dim">Drop it here or upload it. Then draw a box around each piece of furniture, and '
                 "build a scene that you can edit.</span></div>"
             )
+        extras = [name for name, there in _extras(inputs).items() if there]
+        extra = f'<br><span class="dim">with {", ".join(extras)}</span>' if extras else ""
+        about = text(inputs.photo.name) + extra
+        if self._client.view.canvas.is_open:
+            return f"<p>{about}</p>"  # the photo itself is on the board
         if self._picture_of is not inputs.photo:
             self._picture_of, self._picture = inputs.photo, _jpeg_uri(inputs.photo.rgb)
-        extras = [name for name, there in _extras(inputs).items() if there]
-        extra = f" · with {', '.join(extras)}" if extras else ""
         return (
             f'<img class="photo" alt="The photo" src="{self._picture}"'
             ' title="Drop another photo here to start another project">'
-            f'<p style="margin-top:6px">{text(inputs.photo.name)}<br>'
-            f'<span class="dim">{_state(inputs)}{extra}</span></p>'
+            f'<p style="margin-top:6px">{about}</p>'
         )
-
-
-def _state(inputs: Inputs) -> str:
-    if inputs.boxes:
-        return "1 box" if len(inputs.boxes) == 1 else f"{len(inputs.boxes)} boxes"
-    if can_find_furniture():
-        return "<b>Build the scene: furniture is detected automatically. Or draw boxes.</b>"
-    return "<b>Mark each piece of furniture.</b>"
 
 
 def _detection() -> tuple[bool, str]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 
+from diorama_app.reconstruction.networks import can_find_furniture
 from diorama_app.reconstruction.suggestions import Suggestions
 from diorama_app.session.client import Client
 from diorama_app.viewport.annotation_canvas import (
@@ -71,18 +72,9 @@ class PhotoBoxes:
         likely = (b for b in self._suggested(inputs).boxes() if b.box not in self._dismissed)
         return tuple(b for b in likely if same_object(inputs.boxes, b.box) is None)
 
-    def proposal_note(self, inputs: Inputs) -> str:
-        """How many proposals are shown, with a button that accepts them all."""
-        count = len(self._proposals(inputs)) if self._client.view.canvas.is_open else 0
-        if not count:
-            return ""
-        said, label = (
-            ("1 dashed proposal", "Accept it") if count == 1 else (f"{count} dashed proposals", f"Accept all {count}")
-        )
-        return (
-            f'<p class="dim">{said}: click what is right. Only boxes that you accept or draw are built.</p>'
-            f'<div class="bar tight">{button(label, "accept all", title="One undo step")}</div>'
-        )
+    def proposed(self, inputs: Inputs) -> int:
+        """How many proposals are shown."""
+        return len(self._proposals(inputs)) if self._client.view.canvas.is_open else 0
 
     def accept_all(self) -> None:
         """Make boxes of all proposals."""
@@ -99,14 +91,6 @@ class PhotoBoxes:
             self._client.refresh()
             self._client.notice(" ".join(_accepted_in_words(boxes, len(proposed) - len(accepted), doubtful)))
 
-    def toggle(self) -> None:
-        """Put the photo on the canvas, or take it off."""
-        if self._client.view.canvas.is_open:
-            self._client.view.canvas.close()
-        else:
-            self.open()
-        self._client.refresh()
-
     def open(self) -> None:
         """Put the photo on the canvas, to be marked; raises `InputError` where there is none."""
         inputs = self._client.marked
@@ -119,7 +103,7 @@ class PhotoBoxes:
             names=NAMES,
             next_label=self._next,
         )
-        self._refresh()
+        client.refresh()
 
     def happened(self, event: Event) -> None:
         """Something was done on the photo."""
@@ -217,11 +201,11 @@ class PhotoBoxes:
         )
 
 
-def box_list(inputs: Inputs, selected: int | None, *, drawing: bool) -> str:
-    """All boxes, to be selected and deleted; how to make the first one, also while somebody draws."""
+def box_list(inputs: Inputs, selected: int | None) -> str:
+    """All boxes, to be selected and deleted; how to make the first one."""
     if not inputs.boxes:
-        how = "Click" if drawing else "Press <b>Draw boxes</b>, then click"
-        return f"<p class='dim'>{how} each piece of furniture in the photo, or drag a box around it.</p>"
+        found = "Build the scene: furniture is detected automatically. Or click" if can_find_furniture() else "Click"
+        return f'<p class="dim">{found} each piece of furniture in the photo, or drag a box around it.</p>'
     rows = []
     for index, box in enumerate(inputs.boxes):
         unknown = ' <span class="dim">as an object</span>' if box.category == "object" else ""

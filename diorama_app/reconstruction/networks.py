@@ -15,12 +15,11 @@ from diorama_core.models.pull import pull
 from diorama_core.models.store import ModelStore
 from diorama_core.progress import Progress
 
-NO_DETECTOR = "Detecting furniture needs a network: download “tiny” under Project, Networks."
+NO_DETECTOR = "Detecting furniture needs a network: download “micro” under Project, Networks."
 PROPOSALS_ONLY = (
-    "No detector is installed: proposals come from a small one of our own, and some will be wrong. "
-    "Click or drag on the photo to mark what is missing, or download networks that find far more."
+    "The proposals come from the small built-in detector, and some are wrong. A downloaded network finds more."
 )
-SMALLEST = "tiny"
+SMALLEST = "micro"
 PULL_SHARE = 0.9
 """Share of the time that downloading takes of downloading and detecting."""
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import json
+import re
 import threading
 import time
 from collections.abc import Callable
@@ -96,6 +98,14 @@ class WirePage:
     def set(self, uuid: str, value: Any) -> None:
         """Change a field, or press a button (True)."""
         self.send(_messages.GuiUpdateMessage(uuid, {"value": value}))
+
+    def act(self, do: str) -> None:
+        """Click something drawn in HTML, as its handler does."""
+        clicked = f'data-do="{do}"'
+        drawn = lambda: [e["content"] for e in self.elements.values() if clicked in str(e.get("content", ""))]  # noqa: E731
+        field = re.search(r"__dioSend\(&#x27;([^&]+)&#x27;", self.wait_for(drawn)[0])
+        assert field is not None
+        self.set(field[1], json.dumps([{"do": do, "arg": "", "add": False, "number": time.time_ns()}]))
 
     def begin_upload(self, button: str, name: str, size: int, parts: int, transfer: str = "") -> str:
         transfer = transfer or f"{name}-{time.monotonic_ns()}"

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import shutil
 from collections.abc import Callable
 from dataclasses import dataclass, field
@@ -188,6 +189,10 @@ class EditorPage:
 
     def button(self, name: str) -> Locator:
         return self.page.get_by_role("button", name=name, exact=True)
+
+    def build_button(self) -> Locator:
+        """The button that builds the scene, whose words end with the number of boxes."""
+        return self.page.get_by_role("button", name=re.compile(r"^Build scene( \(\d+\))?$")).first
 
     def tool(self, name: str) -> Locator:
         """A button of the toolbar: what is drawn anew is in its panel for a moment before it takes the bar's place."""

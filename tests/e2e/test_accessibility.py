@@ -74,7 +74,7 @@ def test_axe_finds_nothing_serious_in_any_panel(editor: EditorPage, dark: bool) 
     editor.page.keyboard.press("Escape")
     editor.tool("Room").click()
     editor.tab("Photo")
-    editor.button("Draw boxes").click()
+    editor.button("Continue marking").click()
     editor.at_board()
     found |= {f"photo: {line}" for line in findings(editor, rules)}
     if dark:

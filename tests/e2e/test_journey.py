@@ -87,12 +87,12 @@ def test_a_photo_with_boxes_becomes_a_scene(
     assert session.scene is example, "the example stays as it is"
     session = editor.session
     before = session.scene
-    editor.page.get_by_text("More about this photo").click()
+    editor.page.get_by_text("More", exact=True).click()
     editor.upload("Add boxes", boxes)
     editor.until(lambda: len(session.inputs.boxes) == MARKED, "the boxes are read")
     marked = len(session.inputs.boxes)
     editor.dismiss_notices()
-    editor.button("Build scene").click()
+    editor.build_button().click()
     editor.until(lambda: session.jobs.status is None and session.scene is not before, "built", seconds=BUILD_S)
     assert len(session.scene.objects) >= 0.9 * marked
     assert session.scene.architecture.floor is not None

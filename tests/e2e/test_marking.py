@@ -13,6 +13,7 @@ from diorama_app.projects.example import EXAMPLE
 from diorama_core.artefacts import LabelledBox
 from diorama_core.models.boxes import overlaps
 from diorama_core.models.own_weights import has_own_recogniser
+from tests.app.small_room import PlainLibrary, make_project
 from tests.e2e.browser import EditorPage
 
 pytestmark = [
@@ -78,7 +79,7 @@ def test_a_room_is_marked_by_clicks_and_keys_and_built(proposed: EditorPage) -> 
     editor.until(lambda: boxes(editor)[1].category == "sofa", "typing overrides")
 
     editor.settle()
-    editor.button("Build scene").click()
+    editor.build_button().click()
     editor.until(
         lambda: editor.session.jobs.status is None and len(editor.session.scene.objects) == 2, "built", seconds=BUILD_S
     )
@@ -133,3 +134,16 @@ def test_a_click_where_nothing_is_says_so(proposed: EditorPage, monkeypatch: pyt
     editor.page.mouse.click(*editor.on_photo(*free))
     editor.notice("Nothing is recognised there")
     assert not boxes(editor)
+
+
+def test_building_is_above_the_fold_on_every_screen(visit, serve, tmp_path) -> None:
+    editor = visit(serve(make_project(tmp_path / "projects" / "demo").folder, library=PlainLibrary()))
+    editor.tab("Photo")
+    editor.upload("Upload a photo", EXAMPLE / "photo.jpg")
+    editor.page.wait_for_selector(".dio-canvas-proposal", timeout=60_000)
+    for width, height in ((1440, 900), (1280, 720), (390, 844)):
+        editor.page.set_viewport_size({"width": width, "height": height})
+        if width < height:
+            editor.page.wait_for_selector("html.dio-phone")
+        expect(editor.build_button()).to_be_in_viewport(ratio=1.0)
+        expect(editor.button("Accept all")).to_be_in_viewport(ratio=1.0)

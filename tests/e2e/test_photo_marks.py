@@ -59,7 +59,7 @@ def name(editor: EditorPage, word: str, of: str) -> None:
 
 def test_a_name_is_of_the_next_box_or_of_the_selected_one(started: EditorPage) -> None:
     editor = started
-    expect(editor.button("Build scene")).to_be_disabled()
+    expect(editor.build_button()).to_be_disabled()
     editor.draw_box(CHAIR)
     editor.until(lambda: len(boxes(editor)) == 1, "drawn")
     np.testing.assert_allclose(boxes(editor)[0][1], CHAIR, atol=4.0)
@@ -74,7 +74,7 @@ def test_a_name_is_of_the_next_box_or_of_the_selected_one(started: EditorPage) -
     editor.page.keyboard.press("Enter")
     editor.until(lambda: boxes(editor)[1][0] == "couch", "named on the photo")
     assert editor.session.inputs.boxes[1].category == "sofa"
-    expect(editor.button("Build scene")).to_be_enabled()
+    expect(editor.build_button()).to_be_enabled()
 
 
 def test_a_name_goes_on_being_typed_when_the_boxes_are_drawn_anew(started: EditorPage) -> None:

@@ -105,7 +105,7 @@ def test_from_a_photo_to_an_exported_room(hand: Hand, tmp_path: Path) -> None:
     hand.key("Enter", "take the name")
     editor.until(lambda: session.inputs.boxes[-1].label == "rug", "named")
     page.screenshot(path=str(ARTEFACTS / "journey-boxes.png"))
-    hand.click(editor.button("Build scene"), "Build scene")
+    hand.click(editor.build_button(), "Build scene")
     editor.until(lambda: session.jobs.status is None and len(session.scene.objects) > number, "built", seconds=BUILD_S)
     editor.settle()
     page.screenshot(path=str(ARTEFACTS / "journey-built.png"))

@@ -10,7 +10,7 @@ from PIL import Image
 from diorama_app.panels import photo as photo_panel
 from diorama_app.panels.photo import PhotoPanel
 from diorama_app.reconstruction import build_job
-from diorama_app.viewport.annotation_canvas import Deleted, Drawn, Named, Reshaped, Selected
+from diorama_app.viewport.annotation_canvas import Deleted, Drawn, Finished, Named, Reshaped, Selected
 from diorama_core.project.storage import Project
 from tests.app.page import Page
 
@@ -45,7 +45,7 @@ def labels(session) -> list[str]:
 
 def test_the_page_asks_for_a_photo_first(client, page, empty) -> None:
     assert "Start with a photo of a room" in page.html
-    assert not page.field("Build scene").visible
+    assert not page.shows("build")
     page.upload("Add boxes", "boxes.json", b"[]")
     assert client.viser_client.told == ["upload the photo first, then its boxes, depth or masks"]
 
@@ -60,8 +60,8 @@ def test_an_uploaded_photo_is_a_project_at_once(session, client, page, empty) ->
     assert not saved.has_scene
     assert client.view.canvas.is_open
     assert "&lt;room&gt;.png" in page.html
-    assert page.field("Draw boxes").label == "Done drawing"
-    assert "Mark each piece of furniture" in page.html
+    assert not page.shows("board"), "the photo is marked already"
+    assert "Click each piece of furniture" in page.html
 
 
 def test_what_is_no_picture_is_refused_and_loses_nothing(session, client, page, panel) -> None:
@@ -96,7 +96,8 @@ def test_boxes_are_drawn_named_reshaped_deleted_undone_and_saved(session, client
     assert labels(session) == ["sofa", "desk"]
     session.autosave.flush()
     assert Project.open(session.project.folder).load_inputs().boxes == session.inputs.boxes
-    assert not page.field("Build scene").disabled
+    assert page.shows("build")
+    assert "Build scene (2)" in page.html
 
 
 def test_events_of_boxes_that_are_gone_do_nothing(session, client, page, panel) -> None:
@@ -139,21 +140,22 @@ def test_depth_and_camera_go_with_the_photo(session, client, page, panel) -> Non
     assert session.inputs.intrinsics.fx == 60.0
 
 
-def test_the_photo_is_put_away_by_its_button(client, page, panel) -> None:
-    page.press("Draw boxes")
+def test_the_photo_is_shown_once_on_the_board_or_in_the_panel(client, page, panel) -> None:
+    assert 'class="photo"' in page.html
+    page.act("board")
     assert client.view.canvas.is_open
-    page.press("Draw boxes")
+    assert 'class="photo"' not in page.html
+    panel._boxes.happened(Finished())
     assert not client.view.canvas.is_open
+    assert "Continue marking" in page.html
 
 
 def test_the_selected_box_is_added_to_the_scene(session, client, page, panel, monkeypatch) -> None:
     asked = []
     monkeypatch.setattr(photo_panel, "add_from_photo", lambda client, box, label: asked.append((box, label)))
-    add = "Add selected box to the scene"
-    assert page.field(add).visible
-    assert page.field(add).disabled
+    assert not page.shows("add box"), "none is selected"
     page.act("mark", 0)
-    page.press(add)
+    page.act("add box")
     assert asked == [((240.0, 200.0, 440.0, 420.0), "dining table")]
 
 

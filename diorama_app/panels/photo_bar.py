@@ -1,0 +1,48 @@
+"""The bar under the photo: how far marking is, and the buttons that build from it."""
+
+from __future__ import annotations
+
+from diorama_app.reconstruction.build_job import ready_to_build
+from diorama_app.reconstruction.photo_joining import awaits_photo
+from diorama_app.session.client import Client
+from diorama_app.web.html import button
+from diorama_core.artefacts import Inputs
+from diorama_core.io.text import number_of
+
+
+def photo_bar(client: Client, inputs: Inputs, proposals: int) -> str:
+    """What can be done with the chosen photo now, in one row where there is room.
+
+    Args:
+        client: whose photo it is.
+        inputs: the photo with its boxes.
+        proposals: how many proposals lie on it.
+    """
+    scene, further, busy = client.session.scene, client.further_photo, client.session.jobs.status is not None
+    pieces = []
+    if proposals:
+        pieces.append(f'<span class="lead">{number_of(proposals, "proposal")}</span>')
+        pieces.append(button("Accept all", "accept all", title="Makes boxes of all proposals; one undo step"))
+    if not client.view.canvas.is_open:
+        pieces.append(button(marking_label(inputs), "board", title="Shows the photo to mark furniture on it"))
+    if further is None and scene.objects and client.selected_box is not None:
+        hint = "Reconstructs only the selected box; everything else stays"
+        pieces.append(button("Add selected box to the scene", "add box", title=hint, disabled=busy))
+    if further is None:
+        pieces.append(build_button(inputs, busy=busy))
+    if further is not None or awaits_photo(scene):
+        hint = "Finds where this photo was taken, joins its objects with the scene's and inserts the others"
+        pieces.append(button("Add to the scene", "join", title=hint, disabled=busy))
+    return f'<div class="bar">{"".join(pieces)}</div>'
+
+
+def marking_label(inputs: Inputs) -> str:
+    """Words of the button that shows the photo to be marked."""
+    return "Continue marking" if inputs.boxes else "Mark furniture"
+
+
+def build_button(inputs: Inputs, *, busy: bool) -> str:
+    """The button that builds the scene, with the number of boxes."""
+    count = f" ({len(inputs.boxes)})" if inputs.boxes else ""
+    hint = "Builds a scene from the photo and its boxes"
+    return button(f"Build scene{count}", "build", title=hint, disabled=busy or not ready_to_build(inputs))
