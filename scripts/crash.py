@@ -1,6 +1,7 @@
 """Kills at random moments: is everything that was acknowledged there afterwards, and nothing half?
 
-    python scripts/crash.py [--kills 200] [--minutes 60] [--only edits,builds,optimiser,exports,library,uploads]
+    python scripts/crash.py [--kills 125] [--minutes 60]
+                            [--only edits,builds,optimiser,exports,library,uploads,photos,jobs]
 
 Each kind of work runs in a process that is forked from this one, which has loaded everything, and is killed (SIGKILL)
 at a random moment of the time that the work takes. Then its files are read as the next program would read them:
@@ -13,6 +14,8 @@ at a random moment of the time that the work takes. Then its files are read as t
 - `exports` writes four formats over older files. Each is the older one or the new one.
 - `library` adds models; a killed run resumes. Every shape that is listed reads back; a finished library has them all.
 - `uploads` decodes uploads. The decoding process ends with the program.
+- `photos` adds photos of the room to a project. Those that are listed read back, and each that was acknowledged is.
+- `jobs` sends, cancels and deletes jobs of the API. Each has the state that was acknowledged, and a done one its scene.
 
 Needs pytest and hypothesis. Prints a line a kind; `wrong` counts what cannot be read, has other content than promised,
 or is left running. Exits with 1 when anything is.
@@ -21,16 +24,12 @@ or is left running. Exits with 1 when anything is.
 from __future__ import annotations
 
 import argparse
-import contextlib
 import os
-import select
-import signal
 import sys
 import tempfile
 import time
-import traceback
 from collections.abc import Callable, Iterable, Iterator
-from dataclasses import dataclass, field, replace
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -42,9 +41,6 @@ import trimesh
 
 import scripts.needs  # noqa: F401  # ends with a line where a package is missing
 from diorama_app.projects.uploads import Upload, read_packed
-from diorama_app.session.autosave import Autosave
-from diorama_app.session.recovery import Recovery
-from diorama_core.artefacts import Inputs, LabelledBox
 from diorama_core.errors import DioramaError
 from diorama_core.export import export_scene
 from diorama_core.io.atomic import remove_leftovers
@@ -54,189 +50,20 @@ from diorama_core.library.ingest.adding import add_models, model_files, sources
 from diorama_core.library.ingest.guess import Given
 from diorama_core.library.ingest.known_shapes import known_shapes
 from diorama_core.library.store.stored import StoredLibrary
-from diorama_core.pipeline import codec
 from diorama_core.progress import Progress
-from diorama_core.project.build import build_project
 from diorama_core.project.lock import ProjectLock
-from diorama_core.project.storage import Project, read_scene
 from diorama_core.scene.edits import rename
 from diorama_core.scene.types import Pose
 from diorama_core.workers import FinishedItem
-from tests.app.small_room import PlainLibrary, furnished_scene, make_project, plain_photo
+from scripts.crash_projects import Figures, Going, builds, edits, jobs, photos
+from scripts.killing import Say, Work, duration, killed
+from tests.app.small_room import PlainLibrary, furnished_scene, make_project
 from tests.io.test_bombs import png
 from tests.processes import runs
 
-Say = Callable[[str], None]
-Work = Callable[[Say], None]
-Figures = tuple[int, str, int]
-"""How many kills, what to print of them, and how much of it is wrong."""
-Going = Callable[[int], bool]
-"""Whether to go on after so many kills."""
 FORMATS = {"glb": "room.glb", "obj": "room.zip", "stl": "room.stl", "svg": "room.svg"}
 GONE_S = 120.0
 """How long a process that should end is waited for."""
-
-
-@dataclass
-class Ended:
-    """What is known of a process that was killed, or ended before."""
-
-    lines: list[str] = field(default_factory=list)
-    """What it said, to the end."""
-    finished: bool = False
-    children: tuple[int, ...] = ()
-    """Processes that it had started when it was killed."""
-
-
-class FailedError(Exception):
-    """The work itself failed."""
-
-
-def killed(work: Work, after_s: float, *, from_first: bool = False) -> Ended:
-    """Run `work` in a fork of this process and kill it.
-
-    Args:
-        work: Told how to say what is acknowledged, in lines.
-        after_s: From its start, or from its first line.
-        from_first: Count from the first line.
-    """
-    ours, theirs = os.pipe()
-    process = os.fork()
-    if process == 0:
-        os.close(ours)
-        _work_and_exit(work, theirs)
-    os.close(theirs)
-    with os.fdopen(ours, "rb") as pipe:
-        said = bytearray()
-        if from_first:
-            said += os.read(pipe.fileno(), 65536)
-        ended = _read_until(pipe.fileno(), said, time.monotonic() + after_s)
-        children = () if ended else _children(process)
-        with contextlib.suppress(ProcessLookupError):
-            os.kill(process, signal.SIGKILL)
-        while part := os.read(pipe.fileno(), 65536) if not _shared(children) else b"":
-            said += part
-    os.waitpid(process, 0)
-    lines = said.decode().split("\n")[:-1]  # what follows the last line's end is half a line
-    if lines and lines[-1].startswith("failed"):
-        raise FailedError("\n".join(lines))
-    return Ended([line for line in lines if line != "finished"], lines[-1:] == ["finished"], children)
-
-
-def _work_and_exit(work: Work, pipe: int) -> None:
-    def say(line: str) -> None:
-        os.write(pipe, f"{line}\n".encode())
-
-    try:
-        work(say)
-        say("finished")
-    except BaseException:  # the process ends here: the line is all that is heard of it
-        say("failed " + traceback.format_exc().replace("\n", " | "))
-    os._exit(0)
-
-
-def _read_until(pipe: int, said: bytearray, until: float) -> bool:
-    """Take up what is said until a time; whether the process ended before."""
-    while (left := until - time.monotonic()) > 0:
-        if select.select([pipe], [], [], left)[0]:
-            part = os.read(pipe, 65536)
-            if not part:
-                return True
-            said += part
-    return False
-
-
-def _shared(children: tuple[int, ...]) -> bool:
-    """Whether others may hold the pipe open, so that its end says nothing."""
-    return bool(children)
-
-
-def _children(process: int) -> tuple[int, ...]:
-    path = Path(f"/proc/{process}/task/{process}/children")
-    return tuple(map(int, path.read_text().split())) if path.exists() else ()
-
-
-def _duration(work: Work) -> float:
-    """How long the work takes when nobody kills it."""
-    began = time.monotonic()
-    assert killed(work, 600.0).finished
-    return time.monotonic() - began
-
-
-def edits(going: Going, chance: np.random.Generator) -> Figures:
-    """See the module."""
-    acknowledged = wrong = kills = 0
-    lost_s = 0.0
-    with tempfile.TemporaryDirectory() as name:
-        project, unsaved, number = make_project(Path(name) / "demo"), Path(name) / "unsaved", 0
-
-        def work(say: Say) -> None:
-            ProjectLock(project.folder, "crash")
-            saver, scene, at = Autosave(print, Recovery(unsaved)), project.load_scene(), number
-            while True:
-                at += 1
-                scene = rename(scene, "chair_1", f"edit {at}")
-                saver.save_soon(project, scene)
-                say(f"{at} {time.time()}")
-                time.sleep(0.02)  # faster than anybody edits
-
-        while going(kills):
-            ended, kills = killed(work, float(chance.uniform(0.0, 1.0)), from_first=True), kills + 1
-            times = {int(n): float(t) for n, t in (line.split() for line in ended.lines)}
-            acknowledged, number = acknowledged + len(times), max(times)
-            found = [0]
-            for path in (project.scene_path, *unsaved.glob("*.json")):
-                try:
-                    label = read_scene(path).object("chair_1").label
-                    found.append(int(label.split()[-1]) if label.startswith("edit ") else 0)
-                except DioramaError:
-                    wrong += 1
-            missing = [t for n, t in times.items() if n > max(found)]
-            lost_s = max(lost_s, max(times.values()) - min(missing) if missing else 0.0)
-            with ProjectLock(project.folder, "after"):
-                Recovery(unsaved).clean_up(project)
-    return kills, f"{acknowledged} edits acknowledged, {wrong} wrong, at most {lost_s:.2f} s lost", wrong
-
-
-def builds(going: Going, chance: np.random.Generator) -> Figures:
-    """See the module."""
-    boxes = (LabelledBox((60.0, 50.0, 110.0, 105.0), "table", "dining table"),)
-    inputs = Inputs(replace(plain_photo(160, 120), name="room.png"), boxes)
-    with tempfile.TemporaryDirectory() as name:
-        root, number, finished, wrong, parts, killed_within = Path(name), 0, 0, 0, 0, 0
-
-        def build(folder: Path) -> Work:
-            def work(say: Say) -> None:
-                project = Project.create(folder)
-                with ProjectLock(folder, "crash"):
-                    build_project(project, inputs, PlainLibrary())
-
-            return work
-
-        whole_s = _duration(build(root / "whole"))
-        expected = (root / "whole" / "scene.json").read_bytes()
-        while going(killed_within):
-            folder = root / f"room-{number}"
-            ended = killed(build(folder), float(chance.uniform(0.0, 1.05 * whole_s)))
-            killed_within += not ended.finished
-            wrong += _unreadable_stages(folder)
-            parts += remove_leftovers(folder, 0.0)
-            if (folder / "scene.json").exists():
-                wrong += (folder / "scene.json").read_bytes() != expected
-            if ended.finished:
-                finished, number = finished + 1, number + 1
-    said = f"{finished} builds finished ({whole_s:.1f} s each), {wrong} wrong, {parts} parts of files removed"
-    return killed_within, said, wrong
-
-
-def _unreadable_stages(folder: Path) -> int:
-    count = 0
-    for path in folder.glob("stages/*.zip"):
-        try:
-            codec.load(path.read_bytes())
-        except DioramaError:
-            count += 1
-    return count
 
 
 def optimiser(going: Going, chance: np.random.Generator) -> Figures:
@@ -255,7 +82,7 @@ def optimiser(going: Going, chance: np.random.Generator) -> Figures:
             with ProjectLock(project.folder, "crash"):
                 project.save_scene(layout.optimise(project.load_scene(), Progress())[0])
 
-        whole_s = _duration(work)
+        whole_s = duration(work)
         second = project.scene_path.read_bytes()
         assert second != first, "the optimiser left the scene as it was"
         wrong = saved = killed_within = 0
@@ -286,7 +113,7 @@ def exports(going: Going, chance: np.random.Generator) -> Figures:
         folder, versions = Path(name), []
         export(scene, folder)(lambda line: None)  # here: it loads what every fork would load
         for made in (scene, other):
-            whole_s = _duration(export(made, folder))
+            whole_s = duration(export(made, folder))
             versions.append({file: (folder / file).read_bytes() for file in FORMATS.values()})
         assert all(versions[0][file] != versions[1][file] for file in FORMATS.values())
         wrong = replaced = left = killed_within = number = 0
@@ -338,7 +165,7 @@ def library(going: Going, chance: np.random.Generator) -> Figures:
 
             return work
 
-        whole_s = _duration(add(root / "whole"))
+        whole_s = duration(add(root / "whole"))
         expected = {s.id: s for s in StoredLibrary(root / "whole").shapes()}
         number = finished = wrong = seen = killed_within = 0
         while going(killed_within):
@@ -398,12 +225,12 @@ def uploads(going: Going, chance: np.random.Generator) -> Figures:
     return kills, said, left
 
 
-KINDS = {f.__name__: f for f in (edits, builds, optimiser, exports, library, uploads)}
+KINDS = {f.__name__: f for f in (edits, builds, optimiser, exports, library, uploads, photos, jobs)}
 
 
 def main() -> int:
     parser = argparse.ArgumentParser(description=(__doc__ or "").partition("\n")[0])
-    parser.add_argument("--kills", type=int, default=200)
+    parser.add_argument("--kills", type=int, default=125)
     parser.add_argument("--minutes", type=float, default=60.0, help="of each kind at most")
     parser.add_argument("--seed", type=int, default=0)
     parser.add_argument("--only", default=",".join(KINDS))
