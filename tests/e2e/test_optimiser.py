@@ -2,9 +2,16 @@
 
 from __future__ import annotations
 
+import time
+from collections.abc import Sequence
+from typing import NoReturn
+
 import pytest
 from playwright.sync_api import expect
 
+from diorama_core.layout import recipes
+from diorama_core.progress import Progress
+from diorama_core.protocols import LayoutStage, Preview
 from diorama_core.scene import edits
 from diorama_core.scene.types import Scene
 from tests.e2e.browser import EditorPage
@@ -60,7 +67,31 @@ def test_a_cost_left_out_is_not_followed_and_every_cost_has_a_curve(editor: Edit
     expect(editor.button("Revert")).to_have_count(0)
 
 
-def test_an_optimisation_is_paused_gone_on_with_and_cancelled(editor: EditorPage) -> None:
+class Endless:
+    """A recipe that shows its last step again and again until it is cancelled: the page is never too late."""
+
+    def __init__(self, stage: LayoutStage) -> None:
+        self._stage = stage
+
+    def optimise(self, scene: Scene, progress: Progress, preview: Preview) -> NoReturn:
+        steps: list[tuple[Scene, Sequence[tuple[str, float]]]] = []
+
+        def noted(scene: Scene, costs: Sequence[tuple[str, float]]) -> None:
+            steps.append((scene, costs))
+            preview(scene, costs)
+
+        self._stage.optimise(scene, progress, noted)
+        while True:
+            progress.check()
+            preview(*steps[-1])
+            time.sleep(0.02)
+
+
+def test_an_optimisation_is_paused_gone_on_with_and_cancelled(
+    editor: EditorPage, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    made = recipes.recipe
+    monkeypatch.setattr(recipes, "recipe", lambda *args, **kwargs: Endless(made(*args, **kwargs)))
     session = editor.running.session
     before = lift_chair(editor)
     editor.tab("Arrange")
