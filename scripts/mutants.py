@@ -49,7 +49,7 @@ GUARDED: dict[str, tuple[str, ...]] = {
     "diorama_core/io/derived.py": ("tests/io/test_derived.py",),
     "diorama_core/io/limited.py": ("tests/io/test_limited.py",),
     "diorama_core/project/backups.py": ("tests/project/test_backups.py", "tests/project/test_storage.py"),
-    "diorama_core/project/lock.py": ("tests/project/test_lock.py",),
+    "diorama_core/project/lock.py": ("tests/project/test_lock.py", "tests/project/test_stateful_lock.py"),
     "diorama_core/project/storage.py": (
         "tests/project/test_storage.py",
         "tests/project/test_hostile.py",
@@ -58,8 +58,15 @@ GUARDED: dict[str, tuple[str, ...]] = {
     "diorama_core/project/further_photos.py": ("tests/project/test_further_photos.py",),
     "diorama_core/pipeline/runner.py": ("tests/pipeline/test_runner.py",),
     "diorama_core/scene/history.py": ("tests/scene/test_history.py",),
-    "diorama_app/session/recovery.py": ("tests/app/session/test_recovery.py",),
-    "diorama_app/session/autosave.py": ("tests/app/session/test_recovery.py", "tests/app/session/test_autosave.py"),
+    "diorama_app/session/recovery.py": (
+        "tests/app/session/test_recovery.py",
+        "tests/app/session/test_stateful_project.py",
+    ),
+    "diorama_app/session/autosave.py": (
+        "tests/app/session/test_recovery.py",
+        "tests/app/session/test_autosave.py",
+        "tests/app/session/test_stateful_project.py",
+    ),
     "diorama_app/session/ui_thread.py": ("tests/app/session/test_ui_thread.py",),
     "diorama_app/projects/manage.py": ("tests/app/projects/test_manage.py", "tests/app/test_care.py"),
     "diorama_app/http_api/access.py": ("tests/app/http_api/test_access.py",),

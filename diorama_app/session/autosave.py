@@ -112,6 +112,15 @@ class Autosave:
                     with self._condition:
                         self._waiting[project] = unwritten.with_newer(self._waiting.get(project, Unwritten()))
 
+    def note_waiting(self) -> None:
+        """Keep pending scenes beside their projects until they are written."""
+        with self._writing:
+            with self._condition:
+                newest = dict(self._waiting)
+            for project, unwritten in newest.items():
+                if unwritten.scene is not None:
+                    self.recovery.note(project, unwritten.scene)
+
     def stop(self) -> None:
         """Write pending scenes and end the thread."""
         self.flush()
@@ -127,12 +136,7 @@ class Autosave:
                 if self._stopping:
                     return
                 self._new = False
-            with self._writing:
-                with self._condition:
-                    newest = dict(self._waiting)
-                for project, unwritten in newest.items():
-                    if unwritten.scene is not None:
-                        self.recovery.note(project, unwritten.scene)
+            self.note_waiting()
             with self._condition:
                 self._condition.wait_for(lambda: self._stopping, SETTLE_S)
                 if self._stopping:

@@ -12,9 +12,9 @@ from hypothesis import strategies as st
 from hypothesis.stateful import RuleBasedStateMachine, initialize, invariant, precondition, rule
 
 from diorama_app.session import recovery
+from diorama_app.session.autosave import Autosave
 from diorama_app.session.document import Document
 from diorama_app.session.recovery import Recovery
-from diorama_core.errors import DioramaError
 from diorama_core.project.backups import MAX_BACKUPS
 from diorama_core.project.lock import ProjectLock, ProjectLockedError
 from diorama_core.project.storage import Project, read_scene
@@ -28,6 +28,13 @@ DAY_S = 86400.0
 
 def _label(scene: Scene) -> str:
     return scene.object("chair_1").label
+
+
+class SteppedAutosave(Autosave):
+    """Autosave of which the test does the steps that its thread does."""
+
+    def _work(self) -> None:
+        pass
 
 
 class ProjectMachine(RuleBasedStateMachine):
@@ -45,27 +52,38 @@ class ProjectMachine(RuleBasedStateMachine):
 
     def _start(self, scene: Scene) -> None:
         self.lock = ProjectLock(self.project.folder, "the test")
-        self.recovery, self.document = Recovery(self.place / "unsaved"), Document()
+        self.document, self.told = Document(), list[str]()
+        recovery = Recovery(self.place / "unsaved")
+        self.saver = SteppedAutosave(self.told.append, recovery, on_saved=self.told.append)
         self.document.open(scene)
         self.past, self.future = [_label(scene)], list[str]()
-        self.unsaved = False
 
     def _meeting_faults(self, done: str) -> None:
         """Note the scene as it is, and save it where asked."""
-        scene = self.document.scene
-        self.pending = _label(scene)
+        self.pending = _label(self.document.scene)
+        self.saver.save_soon(self.project, self.document.scene)
         try:
             with self.faults.injected():
-                if self.recovery.note(self.project, scene):
+                self.saver.note_waiting()
+                if not self.faults.full:
                     self.acknowledged = self.pending
                 if done == "save":
-                    self.project.save_scene(scene)
-                    self.acknowledged = self.pending
-                    self.recovery.forget(self.project)
-        except DioramaError:
-            assert self.faults.full, "an edit was refused for no reason"
+                    self.saver.flush()
+                    assert bool(self.saver.trouble) == self.faults.full
         except Killed:
             self._start_again()
+
+    @rule()
+    def save_what_waits(self) -> None:
+        """What the thread does again while something is not saved."""
+        try:
+            with self.faults.injected():
+                self.saver.flush()
+        except Killed:
+            self._start_again()
+        else:
+            assert not self.saver.trouble or self.faults.full
+            self.acknowledged = self.acknowledged if self.faults.full else self.pending
 
     @rule(done=st.sampled_from(["note", "save"]))
     def edit(self, done: str) -> None:
@@ -121,7 +139,7 @@ class ProjectMachine(RuleBasedStateMachine):
             found = later.left_behind(self.project)
             scene = self.project.load_scene() if found is None else found.scene()
             assert _label(scene) in (self.acknowledged, self.pending)
-            self.acknowledged = _label(scene)
+            self.acknowledged = self.pending = _label(scene)
             later.clean_up(self.project)
             if found is not None:
                 assert found.path.exists(), "what is offered is not cleaned up"
@@ -135,6 +153,12 @@ class ProjectMachine(RuleBasedStateMachine):
             assert _label(self.document.scene) == self.past[-1]
             assert self.document.history.can_undo == (len(self.past) > 1)
             assert self.document.history.can_redo == bool(self.future)
+
+    @invariant()
+    def trouble_is_told_once_and_its_end_too(self) -> None:
+        if hasattr(self, "told"):
+            assert [m.startswith("not saved") for m in self.told] == [i % 2 == 0 for i in range(len(self.told))]
+            assert bool(self.saver.trouble) == (len(self.told) % 2 == 1)
 
     @invariant()
     def everything_reads_back(self) -> None:
