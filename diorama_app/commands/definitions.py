@@ -51,7 +51,10 @@ def build_commands(
         stop_measuring(client)
         if cancel(client):
             return
-        if client.view.canvas.is_open:
+        if client.view.canvas.is_open and client.selected_box is not None:
+            client.selected_box = None
+            client.refresh()
+        elif client.view.canvas.is_open:
             views.room_view(client)
         else:
             client.select(())

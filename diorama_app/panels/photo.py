@@ -15,7 +15,7 @@ from PIL import Image
 from diorama_app.commands.registry import CommandTable
 from diorama_app.panels.fields import GO_COLOUR, enable, on_change, on_press, show_if
 from diorama_app.panels.input_questions import ask_depth
-from diorama_app.panels.photo_bar import photo_bar
+from diorama_app.panels.photo_bar import no_scene_card, photo_bar
 from diorama_app.panels.photo_boxes import PhotoBoxes, box_list
 from diorama_app.panels.upload_field import UploadField
 from diorama_app.projects.begin import begin_project, depth_answer, keep_given
@@ -65,6 +65,7 @@ class PhotoPanel:
         self._bar = LiveHtml(gui, self._act)
         self._naming = LiveHtml(gui, self._act)
         self._list = LiveHtml(gui, self._act)
+        self._no_scene = LiveHtml(gui, self._act, floating="dio-no-scene")
         client.open_board = self._boxes.open
         self._more = gui.add_folder("More", expand_by_default=False)
         with self._more:
@@ -133,6 +134,7 @@ class PhotoPanel:
         self._no_detector.show(about if inputs is not None else "")
         proposed = 0 if inputs is None else self._boxes.proposed(inputs)
         self._bar.show("" if inputs is None else photo_bar(client, inputs, proposed))
+        self._no_scene.show(no_scene_card(client))
         self._naming.show("" if inputs is None else self._boxes.name_field(inputs))
         self._list.show("" if inputs is None else box_list(inputs, client.selected_box))
         if inputs is not None:

@@ -36,6 +36,16 @@ def photo_bar(client: Client, inputs: Inputs, proposals: int) -> str:
     return f'<div class="bar">{"".join(pieces)}</div>'
 
 
+def no_scene_card(client: Client) -> str:
+    """What can be done where the view is empty, since the photo was put away before a scene was built."""
+    inputs, session = client.session.inputs, client.session
+    if inputs is None or not session.unfinished or client.view.canvas.is_open or session.jobs.status is not None:
+        return ""
+    marked = f"{number_of(len(inputs.boxes), 'object')} marked" if inputs.boxes else "nothing is marked yet"
+    buttons = button(marking_label(inputs), "board") + build_button(inputs, busy=False)
+    return f'<div class="card"><p>There is no scene yet: {marked}.</p><div class="bar">{buttons}</div></div>'
+
+
 def marking_label(inputs: Inputs) -> str:
     """Words of the button that shows the photo to be marked."""
     return "Continue marking" if inputs.boxes else "Mark furniture"

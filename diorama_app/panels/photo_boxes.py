@@ -43,8 +43,6 @@ class PhotoBoxes:
 
     def __init__(self, client: Client, refresh: Callable[[], None]) -> None:
         self._client, self._refresh = client, refresh
-        self._next = COMMON[0]
-        """What the next box is called."""
         self._suggestions: Suggestions | None = None
         self._dismissed: set[Box] = set()
         """Proposals that were turned down."""
@@ -101,7 +99,6 @@ class PhotoBoxes:
             inputs.photo.rgb,
             lambda event: client.post(lambda: self.happened(event)),
             names=NAMES,
-            next_label=self._next,
         )
         client.refresh()
 
@@ -116,9 +113,9 @@ class PhotoBoxes:
             return  # somebody else deleted it just now
         match event:
             case Drawn(box):
-                client.selected_box = None
-                made = labelled_box(box, self._next)
-                self._annotate(f"draw a box: {made.label}", replace(inputs, boxes=(*inputs.boxes, made)))
+                photo = inputs.photo
+                marked = [b.box for b in inputs.boxes]
+                self._suggested(inputs).name(box, marked, lambda row: client.post(lambda: self._drawn(photo, row)))
             case Reshaped(i, box):
                 now = replace(inputs.boxes[i], box=box)
                 self._annotate(f"change the box of {now.label}", with_box_at(inputs, i, now))
@@ -159,6 +156,12 @@ class PhotoBoxes:
             self._client.selected_box = known
             self._client.refresh()
 
+    def _drawn(self, photo: Photo, box: LabelledBox) -> None:
+        """The likeliest name of a box that was drawn is known."""
+        inputs = self._client.marked
+        if inputs is not None and inputs.photo is photo:
+            self._mark(inputs, labelled_box(box.box, box.label))
+
     def _mark(self, inputs: Inputs, box: LabelledBox) -> None:
         """Add a box and select it, so that it can be named and changed at once."""
         self._annotate(f"mark: {box.label}", replace(inputs, boxes=(*inputs.boxes, box)))
@@ -176,27 +179,23 @@ class PhotoBoxes:
         self._annotate(f"{inputs.boxes[index].label} is a {words}", with_box_at(inputs, index, now))
 
     def name(self, word: str) -> None:
-        """A name was chosen: of the selected box, or else of the next one."""
+        """A name was chosen for the selected box."""
         if self._client.selected_box is not None:
             self._rename(self._client.selected_box, word)
-        elif word.strip():
-            self._next = " ".join(word.split())
-            if self._client.view.canvas.is_open:
-                self._client.view.canvas.next_label(self._next)
-            self._refresh()
 
     def name_field(self, inputs: Inputs) -> str:
-        """The name of the selected box, or of the next one, with likely and frequent names to choose."""
+        """The name of the selected box, with likely and frequent names to choose."""
         index = self._client.selected_box
-        value = self._next if index is None else inputs.boxes[index].label
-        title = "Name of the next box" if index is None else "Name of the selected box"
-        likely = () if index is None else self._likely(inputs, index)
+        if index is None:
+            return ""
+        value, likely = inputs.boxes[index].label, self._likely(inputs, index)
         names = (*likely, *(name for name in COMMON if name not in likely))[: len(COMMON)]
         chips = "".join(button(text(name), "name", name, on=name == value) for name in names)
         options = "".join(f'<option value="{text(name)}">' for name in NAMES)
         return (
-            f'<h4><label for="dio-box-name">{title}</label></h4><input id="dio-box-name" list="dio-box-names" '
-            f'data-change="named" value="{text(value)}"><datalist id="dio-box-names">{options}</datalist>'
+            '<h4><label for="dio-box-name">Name of the selected box</label></h4>'
+            f'<input id="dio-box-name" list="dio-box-names" data-change="named" value="{text(value)}">'
+            f'<datalist id="dio-box-names">{options}</datalist>'
             f'<div class="bar tight" style="margin-top:6px">{chips}</div>'
         )
 

@@ -22,6 +22,8 @@ log = logging.getLogger(__name__)
 
 COUNT = 4
 """Names that are suggested for a box."""
+UNKNOWN = "object"
+"""Kind of what nothing recognises."""
 SMALLER = 0.5
 """Share of a marked box's area below which another box is of something that lies on the object."""
 SAME_IOU = 0.5
@@ -87,6 +89,25 @@ class Suggestions:
             except UnavailableError as error:
                 log.warning("nothing is suggested: %s", error)
                 then(None)
+
+        self._worker.submit(tell)
+
+    def name(self, box: Box, marked: Sequence[Box], then: Callable[[LabelledBox], None]) -> None:
+        """Tell the likeliest name of what a box holds that somebody drew.
+
+        Args:
+            box: in pixels of the photo.
+            marked: boxes that are there already.
+            then: told the box with its name, which is "object" where nothing is recognised; called from a thread.
+        """
+
+        def tell() -> None:
+            try:
+                name = self._likeliest(box, marked) if has_own_recogniser() else UNKNOWN
+            except UnavailableError as error:
+                log.warning("nothing is suggested: %s", error)
+                name = UNKNOWN
+            then(LabelledBox(box, name, name))
 
         self._worker.submit(tell)
 
@@ -161,10 +182,13 @@ class Suggestions:
         box = clicked_box(unmarked(self._clickable, x, y, marked), x, y)
         if box is None:
             return None
+        name = self._likeliest(box, marked)
+        return LabelledBox(box, name, name)
+
+    def _likeliest(self, box: Box, marked: Sequence[Box]) -> str:
         boxes = (*marked, box)
         self._look_at(tuple(b for b in boxes if b not in self._seen))
-        name = self._ranked(boxes)[-1][0]
-        return LabelledBox(box, name, name)
+        return self._ranked(boxes)[-1][0]
 
 
 def unmarked(found: Detections, x: float, y: float, marked: Sequence[Box]) -> Detections:

@@ -5,7 +5,7 @@
   const COLOURS = ["#2f6fd6", "#d6542f", "#1f8a55", "#a050c8", "#b07a00", "#0f8a99"];
   const NEAR_PX = 4; // a press that moves less is a click
   const HANDLES = ["nw", "n", "ne", "e", "se", "s", "sw", "w"];
-  const state = { photo: null, boxes: [], selected: null, likely: [], proposals: [], mask: null, next: "" };
+  const state = { photo: null, boxes: [], selected: null, likely: [], proposals: [], mask: null, drawn: [] };
   let root, figure, layer, drag;
   let at = null, next = 0; // the proposal that keys are for, and the one that Tab goes to after an accepted one
 
@@ -135,7 +135,7 @@
     } else if (far && kind === "new") {
       if (state.photo.mode === "boxes") {
         state.selected = null;
-        state.boxes = [...state.boxes, { box, label: state.next }];
+        state.drawn.push({ box, label: "…" }); // until the server has found out what it shows
       }
       send("draw", box);
     } else if (far) {
@@ -166,7 +166,10 @@
       const told = () => { if (field.value !== row.label) send("name", [i, field.value]); };
       field.onchange = told;
       field.onblur = () => { if (field.isConnected) told(); };
-      field.onkeydown = (event) => { if (event.key === "Enter") field.blur(); };
+      field.onkeydown = (event) => {
+        if (event.key === "Escape") field.value = row.label;
+        if (event.key === "Enter" || event.key === "Escape") field.blur();
+      };
       const remove = element("button", "", { type: "button", textContent: "✕", title: "Delete this box (Delete)" });
       remove.setAttribute("aria-label", `Delete the box ${row.label}`);
       remove.onclick = () => send("delete", i);
@@ -211,10 +214,8 @@
     if (typed) field.onchange = null; // it goes on in the field that comes instead
     else if (field && !drag) field.blur();
     const proposals = state.photo.mode === "boxes" ? state.proposals.map(proposalElement) : [];
-    const nodes = [...proposals, ...state.boxes.map(boxElement)];
-    if (drag?.kind === "new" && drag.box) {
-      nodes.push(boxElement({ box: drag.box, label: state.next }, state.boxes.length));
-    }
+    const drawn = drag?.kind === "new" && drag.box ? [...state.drawn, { box: drag.box, label: "" }] : state.drawn;
+    const nodes = [...proposals, ...[...state.boxes, ...drawn].map(boxElement)];
     if (state.mask) nodes.unshift(element("img", "dio-canvas-mask", { src: state.mask, alt: "Outline" }));
     layer.replaceChildren(...nodes);
     const again = typed && layer.querySelector(".on input");
@@ -236,6 +237,9 @@
     } else if (event.key === "Delete" || event.key === "Backspace") {
       if (at !== null) { state.proposals.splice(at, 1); send("dismiss", at); draw(); }
       else if (state.selected !== null) send("delete", state.selected);
+    } else if (event.key === "Escape" && at !== null) {
+      at = null;
+      draw();
     } else if (event.key === "Enter" && at !== null) {
       send("accept", [at, ""]);
       next = at;
@@ -259,6 +263,9 @@
   C.told = (news) => {
     const before = state.photo?.url;
     Object.assign(state, news);
+    if (!state.photo) state.drawn = [];
+    const there = (row) => state.boxes.some(({ box }) => box.every((value, i) => Math.abs(value - row.box[i]) < 1));
+    state.drawn = state.drawn.filter((row) => !there(row));
     if (next >= state.proposals.length) next = 0;
     if (at !== null) at = state.proposals.length ? Math.min(at, state.proposals.length - 1) : null;
     if (!state.photo) return close();

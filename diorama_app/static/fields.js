@@ -47,6 +47,12 @@
   addEventListener("keydown", (event) => {
     if (event.key === "Enter" || event.key === "Tab") leave();
     if (event.key === "Enter" && event.target === last?.field) tell();
+    if (event.key === "Escape" && event.target === last?.field && event.target.matches("input")) {
+      const field = event.target; // what was half typed is forgotten, and the next Escape is for the scene
+      last = null;
+      field.value = field.defaultValue;
+      field.blur();
+    }
     if (undoes(event)) {
       event.stopImmediatePropagation();
       event.preventDefault();

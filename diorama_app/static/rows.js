@@ -15,7 +15,7 @@
     field.onkeydown = (event) => {
       event.stopPropagation();
       if (event.key === "Escape") { field.onblur = null; back(); row.focus(); }
-      if (event.key === "Enter") field.blur();
+      if (event.key === "Enter") row.focus();
     };
     row.draggable = false;
     name.replaceChildren(field);

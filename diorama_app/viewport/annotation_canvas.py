@@ -124,7 +124,7 @@ class AnnotationCanvas:
         self._names: tuple[str, ...] = ()
         sender = LiveHtml(gui, self._received)
         sender.show('<button type="button" id="dio-canvas-send" style="display:none" tabindex="-1"></button>')
-        self._photo, self._boxes, self._proposals, self._mask, self._next = (_Told(gui) for _ in range(5))
+        self._photo, self._boxes, self._proposals, self._mask = (_Told(gui) for _ in range(4))
         self._outline: Bool[np.ndarray, "h w"] | None = None
         """The one that is shown."""
         self._photo.tell({"photo": None})
@@ -141,7 +141,6 @@ class AnnotationCanvas:
         mode: Mode = "boxes",
         *,
         names: Sequence[str] = (),
-        next_label: str = "",
     ) -> None:
         """Show the photo to draw on or to click on.
 
@@ -150,7 +149,6 @@ class AnnotationCanvas:
             on_event: told what is done on it, from viser's event loop.
             mode: what can be done.
             names: suggested when a box is named.
-            next_label: what the next box is called.
         """
         self.close()
         self._on_event = on_event
@@ -164,11 +162,6 @@ class AnnotationCanvas:
             "names": list(names),
         }
         self._photo.tell({"photo": told})
-        self.next_label(next_label)
-
-    def next_label(self, label: str) -> None:
-        """What the next box is called."""
-        self._next.tell({"next": label})
 
     def show_boxes(self, boxes: Sequence[LabelledBox], selected: int | None, likely: Sequence[str] = ()) -> None:
         """Draw the boxes over the photo; the selected one offers its likely names.

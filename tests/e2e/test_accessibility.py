@@ -103,6 +103,11 @@ def test_rows_are_used_by_keys(editor: EditorPage) -> None:
     field.fill("renamed by keys")
     editor.page.keyboard.press("Enter")
     editor.until(lambda: editor.session.scene.object(rows[1]).label == "renamed by keys", "renamed")
+    editor.settle()
+    editor.page.wait_for_function("document.activeElement.matches('.dio .row')")
+    editor.page.keyboard.press("ArrowUp")
+    editor.page.keyboard.press("Enter")
+    editor.until(lambda: editor.selection == (rows[0],), "the keys go on from the renamed row")
     assert editor.session.scene is not scene
 
 

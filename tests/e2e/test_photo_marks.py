@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import os
 import signal
 import subprocess
@@ -14,6 +15,7 @@ import pytest
 from PIL import Image
 from playwright.sync_api import expect
 
+from diorama_app.projects.example import EXAMPLE
 from diorama_core.artefacts import LabelledBox
 from diorama_core.project.storage import Project
 from tests.app.small_room import make_project, plain_photo
@@ -57,18 +59,20 @@ def name(editor: EditorPage, word: str, of: str) -> None:
     field.press("Enter")
 
 
-def test_a_name_is_of_the_next_box_or_of_the_selected_one(started: EditorPage) -> None:
+def test_what_is_drawn_is_selected_and_named(started: EditorPage) -> None:
     editor = started
     expect(editor.build_button()).to_be_disabled()
     editor.draw_box(CHAIR)
     editor.until(lambda: len(boxes(editor)) == 1, "drawn")
     np.testing.assert_allclose(boxes(editor)[0][1], CHAIR, atol=4.0)
-    name(editor, "desk", "next")
-    editor.settle()
-    assert boxes(editor)[0][0] == "chair", "the chair stays a chair"
+    expect(editor.page.locator(".dio-canvas-box.on")).to_have_count(1)
+    name(editor, "desk", "selected")
+    editor.until(lambda: boxes(editor)[0][0] == "desk", "named in the panel")
+    for _ in range(2):  # out of the field, and then the selection
+        editor.page.keyboard.press("Escape")
+    expect(editor.page.locator(".dio-canvas-box.on")).to_have_count(0)
     editor.draw_box(TABLE)
-    editor.until(lambda: [label for label, _ in boxes(editor)] == ["chair", "desk"], "the next one is a desk")
-    editor.page.mouse.click(*editor.on_photo(340, 300))
+    editor.until(lambda: len(boxes(editor)) == 2, "drawn, too")
     expect(editor.page.locator(".dio-canvas-box.on")).to_have_count(1)
     editor.page.locator(".dio-canvas-box.on input").fill("couch")
     editor.page.keyboard.press("Enter")
@@ -81,7 +85,6 @@ def test_a_name_goes_on_being_typed_when_the_boxes_are_drawn_anew(started: Edito
     editor, page = started, started.page
     editor.draw_box(CHAIR)
     editor.until(lambda: len(boxes(editor)) == 1, "drawn")
-    page.mouse.click(*editor.on_photo(*np.mean([CHAIR[:2], CHAIR[2:]], axis=0)))
     field = page.locator(".dio-canvas-box.on input")
     field.click()
     field.press("Control+a")
@@ -98,7 +101,6 @@ def test_corners_drag_delete_deletes_and_every_step_is_undone(started: EditorPag
     editor = started
     editor.draw_box(TABLE)
     editor.until(lambda: len(boxes(editor)) == 1, "drawn")
-    editor.page.mouse.click(*editor.on_photo(340, 300))
     expect(editor.page.locator(".dio-canvas-handle")).to_have_count(8)
     editor.drag(editor.on_photo(440, 420), editor.on_photo(500, 460))
     editor.until(lambda: boxes(editor)[0][1][2] > 480, "pulled by its corner")
@@ -115,6 +117,36 @@ def test_corners_drag_delete_deletes_and_every_step_is_undone(started: EditorPag
     editor.until(lambda: not boxes(editor), "not drawn")
     editor.page.locator(".dio-canvas").get_by_role("button", name="Done").click()
     expect(editor.page.locator(".dio-canvas")).to_have_count(0)
+
+
+def test_escape_deselects_first_and_an_empty_view_offers_to_go_on(started: EditorPage) -> None:
+    editor, page = started, started.page
+    editor.draw_box(CHAIR)
+    editor.until(lambda: editor.client.selected_box == 0, "drawn and selected")
+    page.keyboard.press("Escape")
+    editor.until(lambda: editor.client.selected_box is None, "deselected")
+    editor.settle()
+    assert editor.client.view.canvas.is_open
+    page.keyboard.press("Escape")
+    expect(page.locator(".dio-canvas")).to_have_count(0)
+    card = page.locator("#dio-no-scene")
+    expect(card).to_contain_text("1 object marked")
+    expect(card.get_by_role("button", name="Build scene (1)")).to_be_enabled()
+    card.get_by_role("button", name="Continue marking").click()
+    editor.at_board()
+    expect(card).to_have_count(0)
+
+
+def test_a_box_drawn_by_hand_gets_the_kind_that_is_recognised(editor: EditorPage) -> None:
+    editor.tab("Photo")
+    editor.upload("Upload a photo", EXAMPLE / "photo.jpg")
+    editor.until(lambda: editor.session.unfinished, "a project of its own")
+    editor.at_board()
+    known = json.loads((EXAMPLE / "boxes.json").read_text())["boxes"]
+    editor.draw_box(next(tuple(b["bbox"]) for b in known if b["class"] == "bookshelf"))
+    editor.until(lambda: len(boxes(editor)) == 1, "drawn")
+    assert boxes(editor)[0][0] == "bookshelf"
+    expect(editor.page.locator(".dio-canvas-box.on")).to_have_count(1)
 
 
 SERVER = """

@@ -13,6 +13,7 @@ from diorama_app.reconstruction import build_job
 from diorama_app.viewport.annotation_canvas import Deleted, Drawn, Finished, Named, Reshaped, Selected
 from diorama_core.project.storage import Project
 from tests.app.page import Page
+from tests.app.panels.test_photo_boxes import Known
 
 
 def picture(width: int = 64, height: int = 48, kind: str = "PNG") -> bytes:
@@ -25,6 +26,7 @@ def picture(width: int = 64, height: int = 48, kind: str = "PNG") -> bytes:
 def panel(session, page: Page, client, commands, monkeypatch) -> PhotoPanel:
     monkeypatch.setattr(build_job, "can_find_furniture", lambda: False)
     monkeypatch.setattr(photo_panel, "can_find_furniture", lambda: False)
+    monkeypatch.setattr("diorama_app.panels.photo_boxes.Suggestions", Known)
     made = PhotoPanel(page, client, commands)
     client.panels = [made]
     made.refresh()
@@ -37,6 +39,11 @@ def empty(session, panel) -> PhotoPanel:
     session.document.open(session.scene, None)
     panel.refresh()
     return panel
+
+
+def draw(panel: PhotoPanel, page: Page, box: tuple[float, float, float, float]) -> None:
+    panel._boxes.happened(Drawn(box))
+    page.settle()
 
 
 def labels(session) -> list[str]:
@@ -73,15 +80,13 @@ def test_what_is_no_picture_is_refused_and_loses_nothing(session, client, page, 
 
 def test_boxes_are_drawn_named_reshaped_deleted_undone_and_saved(session, client, page, panel) -> None:
     page.upload("Upload a photo", "room.png", picture())
-    page.change("named", "sofa")
-    panel._boxes.happened(Drawn((5.0, 5.0, 30.0, 30.0)))
-    assert client.selected_box is None
+    assert "Name of the selected box" not in page.html
+    draw(panel, page, (5.0, 5.0, 30.0, 30.0))
+    draw(panel, page, (20.0, 10.0, 60.0, 40.0))
+    assert client.selected_box == 1, "what was drawn is selected"
     page.change("named", "desk")
-    assert labels(session) == ["sofa"], "the name is of the next box, not of the last"
-    panel._boxes.happened(Drawn((20.0, 10.0, 60.0, 40.0)))
-    assert labels(session) == ["sofa", "desk"]
+    assert labels(session) == ["stool", "desk"]
     panel._boxes.happened(Selected(0))
-    assert "Name of the selected box" in page.html
     page.change("named", "beanbag")
     assert labels(session) == ["beanbag", "desk"]
     panel._boxes.happened(Reshaped(0, (6.0, 6.0, 31.0, 31.0)))
@@ -93,7 +98,7 @@ def test_boxes_are_drawn_named_reshaped_deleted_undone_and_saved(session, client
     assert not session.project.has_scene, "there is nothing to show yet"
     for _ in range(3):
         session.undo(client)
-    assert labels(session) == ["sofa", "desk"]
+    assert labels(session) == ["stool", "desk"]
     session.autosave.flush()
     assert Project.open(session.project.folder).load_inputs().boxes == session.inputs.boxes
     assert page.shows("build")
@@ -110,13 +115,13 @@ def test_events_of_boxes_that_are_gone_do_nothing(session, client, page, panel) 
 
 def test_an_unfinished_project_opens_where_it_was_left(session, client, page, panel) -> None:
     page.upload("Upload a photo", "room.png", picture())
-    panel._boxes.happened(Drawn((5.0, 5.0, 30.0, 30.0)))
+    draw(panel, page, (5.0, 5.0, 30.0, 30.0))
     unfinished = session.project
     session.visit(client, Project.open(session.projects_dir / "demo"), "")
     assert not client.view.canvas.is_open
     session.visit(client, Project.open(unfinished.folder), "")
     assert client.view.canvas.is_open
-    assert labels(session) == ["chair"]
+    assert labels(session) == ["stool"]
 
 
 def test_boxes_come_from_a_file_too(session, page, panel) -> None:

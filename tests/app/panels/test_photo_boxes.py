@@ -9,7 +9,7 @@ import pytest
 from diorama_app.panels.photo_boxes import PhotoBoxes, box_list
 from diorama_app.reconstruction import suggestions
 from diorama_app.session.client import Client
-from diorama_app.viewport.annotation_canvas import Accepted, Clicked, Dismissed, Named, Selected
+from diorama_app.viewport.annotation_canvas import Accepted, Clicked, Dismissed, Drawn, Named, Selected
 from diorama_core.artefacts import Box, Inputs, LabelledBox, Photo
 from tests.app.small_room import plain_photo
 
@@ -28,6 +28,9 @@ class Known(suggestions.Suggestions):
 
     def names(self, boxes: Sequence[Box], index: int) -> tuple[str, ...]:
         return ("chair", "stool", "bench", "sofa")
+
+    def name(self, box: Box, marked: Sequence[Box], then: Callable[[LabelledBox], None]) -> None:
+        then(LabelledBox(box, "stool", "stool"))
 
     def at(self, x: float, y: float, marked: Sequence[Box], then: Callable[[LabelledBox | None], None]) -> None:
         holding = (b for b in (CHAIR, LAMP) if b.box[0] <= x <= b.box[2] and b.box[1] <= y <= b.box[3])
@@ -55,6 +58,17 @@ def test_a_click_marks_what_is_there_and_selects_it(session, client: Client, mar
     marking.happened(Named(0, "stool"))
     assert labels(session) == ["stool"]
     session.undo(client)
+    session.undo(client)
+    assert labels(session) == []
+
+
+def test_a_drawn_box_gets_the_kind_that_is_recognised_and_is_selected(
+    session, client: Client, marking: PhotoBoxes
+) -> None:
+    marking.happened(Drawn((10.0, 20.0, 90.0, 120.0)))
+    session.ui_thread.wait()
+    assert labels(session) == ["stool"]
+    assert client.selected_box == 0
     session.undo(client)
     assert labels(session) == []
 

@@ -83,7 +83,7 @@ def test_it_reports_only_while_it_is_open(canvas: AnnotationCanvas) -> None:
 def test_the_page_is_told_boxes_with_escaped_names(canvas: AnnotationCanvas) -> None:
     canvas.show_boxes([LabelledBox((1.0, 2.0, 30.0, 40.0), "chair", "chair")], 0)
     assert canvas._boxes._html.content == "", "nothing while it is closed"
-    canvas.open(plain_photo().rgb, lambda event: None, names=["chair"], next_label="sofa")
+    canvas.open(plain_photo().rgb, lambda event: None, names=["chair"])
     canvas.show_boxes([LabelledBox((1.0, 2.0, 30.0, 40.0), "object", "<b>&quot;")], 0)
     assert "<b>" not in canvas._boxes._html.content
     assert "[1.0,2.0,30.0,40.0]" in canvas._boxes._html.content
