@@ -100,8 +100,6 @@ class Editor:
         self.commands.register(server.gui, self._asked)
         server.gui.set_panel_label("Diorama")
         set_theme(server.gui, dark=False)
-        server.on_client_connect(self._joined)
-        server.on_client_disconnect(self._left)
 
     def _asked(self, command: Command, client_id: int | None) -> None:
         client = None if client_id is None else self.session.clients.get(client_id)
@@ -120,7 +118,11 @@ class Editor:
         show_help(client, self.commands)
 
     def open_first(self, project: Project | None) -> None:
-        """Show a project; without one the bundled example, or at least an empty room that says what to do."""
+        """Show a project; without one the bundled example, or at least an empty room that says what to do.
+
+        Pages that came before are answered after it: they would greet nobody and show an empty room first.
+        """
+        self.session.greets = project is None
         done: list[BaseException] = []
 
         def open_it() -> None:
@@ -136,6 +138,8 @@ class Editor:
         self.session.ui_thread.wait(60.0)
         if done:
             raise done[0]
+        self.server.on_client_connect(self._joined)
+        self.server.on_client_disconnect(self._left)
 
     def _open_example(self) -> None:
         session = self.session

@@ -56,9 +56,7 @@ class Workspace:
         """Put the first editor on the server that has the port."""
         with self._lock:
             self._front = server
-            editor = self._add(server, project)
-            editor.session.greets = project is None
-            return editor
+            return self._add(server, project)
 
     @property
     def editors(self) -> tuple[Editor, ...]:

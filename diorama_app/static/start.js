@@ -65,7 +65,9 @@
   };
   // The sheet of a phone holds one panel: the server is asked to put all tabs into it.
   const onePanel = () => root.classList.contains("dio-phone") && document.getElementById("dio-one-panel")?.click();
-  setInterval(() => { watch(); name(); nameButtons(); onePanel(); }, 200);
+  // viser knows a page by its first camera; one that is lost while the connection opens is sent again.
+  const introduce = () => root.classList.contains("dio-ready") || window.__viserMutable?.sendCamera?.();
+  setInterval(() => { watch(); name(); nameButtons(); onePanel(); introduce(); }, 200);
 
   let lost;
   window.__dioConnection = (there) => {

@@ -2,19 +2,25 @@
 
 from __future__ import annotations
 
+import threading
 from collections.abc import Callable, Iterator
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import numpy as np
 import pytest
 from PIL import Image
-from playwright.sync_api import expect
+from playwright.sync_api import BrowserContext, expect
 
-from diorama_app.serve import Running
+from diorama_app.app import Editor
+from diorama_app.serve import Running, start
 from diorama_core.geometry.planes import plane_rectangle
-from tests.app.small_room import make_project
-from tests.e2e.browser import EditorPage
+from diorama_core.project.storage import Project
+from tests.app.small_room import PlainLibrary, make_project
+from tests.e2e.browser import QUERY, EditorPage
 from tests.e2e.conftest import keep_picture
+from tests.ports import free, lasting_port
+from tests.waiting import until
 
 pytestmark = pytest.mark.browser
 
@@ -129,3 +135,29 @@ def test_the_tour_waits_while_somebody_types(context, serve: Callable[..., Runni
     field.blur()
     expect(tour).to_be_visible()
     page.close()
+
+
+def test_a_page_that_came_before_the_editor_is_greeted(
+    context: BrowserContext, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The port opens before the editor is there: the server's own browser window often comes in between."""
+    opens, shown, port = Editor.open_first, threading.Event(), lasting_port()
+
+    def late(editor: Editor, project: Project | None) -> None:
+        shown.wait(60.0)
+        opens(editor, project)
+
+    monkeypatch.setattr(Editor, "open_first", late)
+    with ThreadPoolExecutor(1) as threads:
+        starting = threads.submit(start, projects_dir=tmp_path, port=port, low_graphics=True, library=PlainLibrary())
+        until(lambda: not free(port))
+        page = context.new_page()
+        with page.expect_websocket():
+            page.goto(f"http://127.0.0.1:{port}/{QUERY}")
+        page.wait_for_function("window.__viserMutable?.canvas")
+        page.wait_for_timeout(500)  # the page has told viser its first camera
+        shown.set()
+        running = starting.result()
+    expect(page.locator("#dio-start")).to_be_visible()
+    page.close()
+    running.stop()
