@@ -16,6 +16,7 @@ from diorama_app.commands.registry import Command
 from diorama_app.interaction.gestures import Gestures
 from diorama_app.interaction.wall_handle import WallHandle
 from diorama_app.panels.address import Address
+from diorama_app.panels.all_projects import AllProjects
 from diorama_app.panels.alternatives import Alternatives
 from diorama_app.panels.compare import Compare
 from diorama_app.panels.dropping import DroppedFiles, listen_for_drops
@@ -213,7 +214,7 @@ class Editor:
         self._right_side(client, place, right.add_tab)
         on_the_right = panels[count:]
         listen_for_drops(gui, client, DroppedFiles(client, photo).take)
-        panels.append(StartPage(gui, client, photo.take))
+        panels += [StartPage(gui, client, photo.take), AllProjects(gui, client)]
         right.dock_right()
         right.set_width(RIGHT_WIDTH_PX)
 

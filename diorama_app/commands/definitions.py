@@ -84,6 +84,9 @@ def build_commands(
         Command(
             "start_page", "Start page", lambda g: g.open_start(), None, None, "A photo, a description, an empty room"
         ),
+        Command(
+            "projects", "All projects", lambda g: g.open_projects(), None, None, "Search, rename, duplicate, delete"
+        ),
         Command("tour", "Show me around", lambda g: g.start_tour(), None, None, "Six steps through the page"),
         Command("help", "What you can do", show_help, "?", "shift", "Every command with its key"),
         Command("escape", "Clear selection", escape, "escape", None, "Stop what is under way, or select nothing"),

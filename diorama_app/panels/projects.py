@@ -23,17 +23,12 @@ from diorama_app.web.html import Action, LiveHtml, button, text
 from diorama_core.errors import EditRefused, ProjectError
 from diorama_core.importing.forms import SUFFIXES
 from diorama_core.io.bounded import read_picture
-from diorama_core.project.lock import ProjectLock
 from diorama_core.project.storage import Project
 
-RECENT = 12
+RECENT = 6
 PICTURE_SIZE = (96, 72)
 MAX_PICTURES = 500
 """Kept in memory, 3 kB each."""
-COPY = (
-    '<svg width="14" height="14" viewBox="0 0 24 24" fill="none" stroke="currentColor" stroke-width="2" '
-    'style="display:block"><rect x="8" y="8" width="12" height="12" rx="2"/><path d="M16 4H6a2 2 0 0 0-2 2v10"/></svg>'
-)
 
 
 class Projects:
@@ -48,6 +43,8 @@ class Projects:
         on_press(save, lambda: client.post(lambda: commands["save"].run(client)))
         start = gui.add_button("Start page", color=QUIET_COLOUR, hint=commands["start_page"].tooltip)
         on_press(start, lambda: client.post(client.open_start))
+        everything = gui.add_button("All projects", color=QUIET_COLOUR, hint=commands["projects"].tooltip)
+        on_press(everything, lambda: client.post(client.open_projects))
         UploadField(gui, client, "New from a photo", take_photo, color=GO_COLOUR, mime_type="image/*")
         self._open = UploadField(
             gui,
@@ -76,19 +73,10 @@ class Projects:
         self._list.show(session.glances.of("projects", self._listed))
 
     def _listed(self) -> str:
-        """The other projects, and what is in the bin."""
+        """The projects that were changed last."""
         session = self._client.session
         rows = "".join(self._row(folder) for folder in project_care.recent_projects(session.projects_dir)[:RECENT])
-        binned = project_care.in_bin(session.projects_dir)
-        undelete = ""
-        if session.binned in binned:
-            gone = text(project_care.name_of(session.binned))
-            undelete = f'<div class="job card warn"><span class="words">{gone} is in the bin.</span>'
-            undelete += button("Restore", "unbin", project_care.address_of(session.binned)) + "</div>"
-        bin_of = "".join(_binned_row(place) for place in binned[:RECENT] if place != session.binned)
-        if bin_of:
-            bin_of = f"<details><summary class='dim'>Bin</summary>{bin_of}</details>"
-        return f"<h4>Recent projects</h4>{undelete}{rows}{bin_of}" if rows or undelete or bin_of else ""
+        return f"<h4>Recent projects</h4>{rows}" if rows else ""
 
     def _row(self, folder: Path) -> str:
         session = self._client.session
@@ -101,8 +89,6 @@ class Projects:
             f'{self._picture(folder)}<span class="name" title="{name}"><b>{name}</b>'
             f'<span class="dim">{when}</span></span>'
             + ("" if current else button("Open", "open", project_care.address_of(folder)))
-            + button(COPY, "copy", project_care.address_of(folder), title="Duplicate")
-            + ("" if current else button("✕", "bin", project_care.address_of(folder), title="Move to the bin"))
             + "</div>"
         )
 
@@ -125,40 +111,19 @@ class Projects:
             scene = project_care.earlier_scene(session.project, action.arg)
             session.textures = {**session.textures, **session.project.textures(scene)}
             session.commit("restore an earlier version", scene, by=client, selection=())
-        elif action.do == "unbin":
-            self._bring_back(action.arg)
-        elif action.do in ("open", "copy", "bin"):
-            self._with_listed(action.do, action.arg)
+        elif action.do == "open":
+            self._visit(action.arg)
         session.glances.forget()
         session.refresh_panels()
 
-    def _bring_back(self, name: str) -> None:
+    def _visit(self, name: str) -> None:
         session = self._client.session
-        place = next((p for p in project_care.in_bin(session.projects_dir) if project_care.address_of(p) == name), None)
-        if place is None:
-            raise EditRefused("that project no longer exists")
-        folder = project_care.out_of_bin(place, session.projects_dir)
-        session.binned = None
-        self._client.toast(f"{project_care.name_of(folder)} is back", False)
-
-    def _with_listed(self, do: str, name: str) -> None:
-        client, session = self._client, self._client.session
         # Only a name that is listed: the page must not reach outside the projects' folder.
         folder = project_care.find_project(session.projects_dir, name)
         if folder is None:
             raise EditRefused("that project no longer exists")
-        if do == "copy":
-            session.autosave.flush()
-            made = project_care.duplicate_project(folder, session.projects_dir)
-            client.toast(f"Copied as {made.name}", False)
-        elif do == "bin":
-            if _is_open(session, folder):
-                raise EditRefused("that project is open; open another one first")
-            ProjectLock(folder).release()  # refused while another program has it open
-            session.binned = project_care.to_bin(folder, session.projects_dir)
-        else:
-            project = Project.open(folder)
-            session.visit(client, project, f"Opened {project.name}.")
+        project = Project.open(folder)
+        session.visit(self._client, project, f"Opened {project.name}.")
 
 
 def _name_and_versions(project: Project) -> tuple[str, str]:
@@ -183,19 +148,6 @@ def _what_becomes_of_changes(session: EditorSession) -> str:
         if session.autosave.trouble
         else "Every change is saved as you make it."
     )
-
-
-def _binned_row(place: Path) -> str:
-    name = text(project_care.name_of(place))
-    return (
-        f'<div class="row"><span class="name">{name}</span>'
-        + button("Restore", "unbin", project_care.address_of(place))
-        + "</div>"
-    )
-
-
-def _is_open(session: EditorSession, folder: Path) -> bool:
-    return session.project is not None and session.project.folder.resolve() == folder.resolve()
 
 
 @lru_cache(maxsize=MAX_PICTURES)

@@ -120,6 +120,8 @@ class StartPage:
         elif action.do == "example" and action.arg in EXAMPLES:
             self.close()
             open_example(client, action.arg)
+        elif action.do == "projects":
+            client.open_projects()
         elif action.do == "project":
             self._visit(action.arg)
 
@@ -173,7 +175,7 @@ class StartPage:
             + button("Create room", "describe")
             + "</section><section><h2>An empty room</h2><p>Give its lengths and furnish it.</p>"
             f'<div class="fields">{fields}</div>' + button("Create empty room", "empty") + "</section>"
-            f"<section><h2>Go on</h2>{earlier}"
+            f"<section><h2>Continue</h2>{earlier}"
             f'<label class="choose" for="file_upload_{file}" tabindex="0">Open a file</label>'
             '<p class="dim">GLB, USD, USDZ or Sweet Home 3D</p></section></div>'
             f'<h2>Or try an example</h2><div class="examples">{examples}</div>'
@@ -183,7 +185,8 @@ class StartPage:
     def _earlier(self) -> str:
         folders = recent_projects(self._client.session.projects_dir)[:RECENT]
         rows = "".join(button(text(name_of(f)), "project", address_of(f), title="Open this project") for f in folders)
-        return f'<div class="earlier">{rows}</div>' if rows else '<p class="dim">No projects yet.</p>'
+        more = button("All projects", "projects", title="Search, rename, duplicate, delete")
+        return f'<div class="earlier">{rows}{more}</div>' if rows else '<p class="dim">No projects yet.</p>'
 
 
 @cache

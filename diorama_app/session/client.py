@@ -84,6 +84,8 @@ class Client:
         """What is shown there with the next redraw."""
         self.open_start: Callable[[], None] = lambda: None
         """Lays the start page over the page."""
+        self.open_projects: Callable[[], None] = lambda: None
+        """Lays the grid of all projects over the page."""
         self.start_tour: Callable[[], None] = lambda: None
         """Shows a newcomer around."""
         self.open_tab: Callable[[str], None] = lambda name: None

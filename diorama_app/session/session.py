@@ -108,8 +108,6 @@ class EditorSession:
         self.greeting: tuple[str, NoticeKind] | None = None
         """What the next client is told that comes."""
         self.glances = Glances()
-        self.binned: Path | None = None
-        """The project deleted last, until it is restored."""
         self.layout_run: LayoutRun | None = None
         """The last optimisation run."""
         self.ui_thread = UiThread(lambda message: self.notice_all(message, "bad"))

@@ -1,9 +1,11 @@
 // The start page opens by itself once in a tab, where the program was started without a project. Its labels that stand for
-// file fields are pressed by keys, too; the focus goes into it, and newcomers are shown around when it closes.
+// file fields are pressed by keys, too, and newcomers are shown around when it closes. The focus stays in it, as it does in
+// the grid of all projects.
 (() => {
   const BEGUN = "diorama-begun", WANTED = "diorama-tour-wanted";
   const note = (key, value) => { try { sessionStorage.setItem(key, value); } catch { return; } };
   const noted = (key) => { try { return sessionStorage.getItem(key); } catch { return "not remembered"; } };
+  const OVER = "#dio-start, #dio-projects";
   let open = false;
   setInterval(() => {
     const opener = document.getElementById("dio-start-open");
@@ -11,10 +13,10 @@
       note(BEGUN, "yes");
       opener.click();
     }
-    const page = document.getElementById("dio-start");
+    const page = document.querySelector(OVER);
     if (page && !open) {
       note(BEGUN, "yes");
-      page.querySelector(".choose")?.focus();
+      page.querySelector(".choose, [type=search]")?.focus();
     }
     open = page !== null;
   }, 200);
@@ -28,10 +30,11 @@
       event.target.click();
     }
     if (!open) return;
-    const own = ["Tab", "Escape", "Enter", " "].includes(event.key) || event.target.matches?.("input, textarea");
+    const own = ["Tab", "Escape", "Enter", " "].includes(event.key) || event.target.matches?.("input, textarea, select");
     if (!own) event.stopImmediatePropagation(); // it would change the view behind
     if (event.key !== "Tab") return;
-    const reached = [...document.querySelectorAll("#dio-start :is(button, input, textarea, [tabindex])")];
+    const reached = [...document.querySelectorAll(`:is(${OVER}) :is(button, input, select, textarea, summary, [tabindex])`)]
+      .filter((field) => field.offsetParent && !field.disabled);
     const first = reached[0], last = reached[reached.length - 1];
     if (event.shiftKey && document.activeElement === first) { event.preventDefault(); last?.focus(); }
     if (!event.shiftKey && document.activeElement === last) { event.preventDefault(); first?.focus(); }

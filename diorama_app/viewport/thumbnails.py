@@ -5,6 +5,7 @@ from __future__ import annotations
 import hashlib
 import logging
 import time
+from collections.abc import Callable
 from concurrent.futures import Future, ThreadPoolExecutor
 
 from diorama_app.web.requests import PICTURES
@@ -37,6 +38,7 @@ class Thumbnails:
         self._records = records
         self._own: dict[str, str] = {}
         self._painted: LruCache[str, tuple[str, Paint]] = LruCache(CACHE_SIZE)
+        self._others: LruCache[str, Callable[[], bytes | None]] = LruCache(CACHE_SIZE)
         self._worker = ThreadPoolExecutor(1, thread_name_prefix="thumbnails")
 
     def html(self, shape_id: str, paint: Paint = OWN) -> str:
@@ -52,14 +54,28 @@ class Thumbnails:
             self._painted.get(name, lambda: (shape_id, paint))
         return f'<img alt="" loading="lazy" src="{PICTURES}{name}.png">'
 
+    def of(self, what: str, draw: Callable[[], bytes | None]) -> str:
+        """HTML of a picture that is no shape's, drawn when a browser asks for it.
+
+        Args:
+            what: tells the picture from all others.
+            draw: gives it as PNG; called on the thread that makes pictures.
+        """
+        name = hashlib.sha256(what.encode()).hexdigest()[:20]
+        self._others.get(name, lambda: draw)
+        return f'<img alt="" loading="lazy" src="{PICTURES}{name}.png">'
+
     def knows(self, name: str) -> bool:
         """Whether a page was given a picture of this name."""
         name = name.removesuffix(".png")
-        return name in self._own or self._painted.find(name) is not None
+        return name in self._own or self._others.find(name) is not None or self._painted.find(name) is not None
 
     def png(self, name: str) -> Future[bytes | None]:
         """The picture called so, made beside everything else; None where there is none."""
         name = name.removesuffix(".png")
+        draw = self._others.find(name)
+        if draw is not None:
+            return self._worker.submit(_png_or_none, draw)
         asked = (self._own[name], OWN) if name in self._own else self._painted.find(name)
         if asked is None:
             nothing: Future[bytes | None] = Future()
@@ -76,8 +92,12 @@ class Thumbnails:
 
         if paint != OWN:
             time.sleep(PAINTED_WAIT_S)
-        try:
-            return thumbnail(self._library, shape_id, size=SIDE_PX, paint=paint)
-        except Exception:  # one picture is missing then; the page shows the name instead
-            log.exception("no thumbnail of %s", shape_id)
-            return None
+        return _png_or_none(lambda: thumbnail(self._library, shape_id, size=SIDE_PX, paint=paint))
+
+
+def _png_or_none(draw: Callable[[], bytes | None]) -> bytes | None:
+    try:
+        return draw()
+    except Exception:  # one picture is missing then; the page shows the name instead
+        log.exception("a small picture could not be drawn")
+        return None

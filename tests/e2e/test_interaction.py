@@ -243,27 +243,25 @@ def test_projects_are_renamed_copied_binned_and_brought_back(editor: EditorPage,
     name.fill("Living room")
     name.press("Enter")
     editor.until(lambda: session.project is not None and session.project.name == "Living room", "renamed")
-    row = editor.page.locator(".dio .row", has_text="Living room")
-    row.get_by_title("Duplicate").click()
-    copy = editor.page.locator(".dio .row", has_text="Living room 2")
-    expect(copy).to_be_visible()
+    editor.button("All projects").click()
+    grid = editor.page.locator("#dio-projects")
+    grid.get_by_role("button", name="Duplicate").first.click()
+    copy = grid.locator(".tile", has=editor.page.get_by_label("Name of Living room 2"))
+    expect(copy.locator("img")).to_be_visible()
     assert Project.open(tmp_path / "projects" / "demo-2").load_scene() == session.scene
-    copy.get_by_title("Move to the bin").click()
+    copy.get_by_role("button", name="Delete").click()
     expect(copy).to_have_count(0)
-    editor.button("Restore").click()
+    editor.page.locator(".dio-toast").get_by_role("button", name="Restore").click()
     expect(copy).to_be_visible()
-    copy.get_by_title("Move to the bin").click()
-    expect(copy.get_by_title("Duplicate")).to_have_count(0)
-
-    def another_session() -> None:
-        session.binned = None
-        session.glances.forget()
-        session.refresh_panels()
-
-    session.ui_thread.post(another_session)
-    editor.page.get_by_text("Bin", exact=True).click()
-    copy.get_by_role("button", name="Restore").click()
-    expect(copy.get_by_title("Duplicate")).to_be_visible()
+    copy.get_by_role("button", name="Delete").click()
+    grid.get_by_text("Bin", exact=True).click()
+    grid.locator(".row").get_by_role("button", name="Restore").click()
+    expect(copy).to_be_visible()
+    editor.page.get_by_label("Search projects").fill("room 2")
+    expect(grid.locator(".tile:visible")).to_have_count(1)
+    for _ in range(2):  # out of the field, and out of the grid
+        editor.page.keyboard.press("Escape")
+    expect(grid).to_have_count(0)
 
 
 def test_a_photo_begins_another_project_from_the_list_of_projects(editor: EditorPage, tmp_path: Path) -> None:

@@ -3,7 +3,6 @@ from __future__ import annotations
 import pytest
 
 from diorama_app.panels.projects import Projects
-from diorama_core.project.storage import Project
 from tests.app.page import Page
 from tests.app.small_room import make_project
 
@@ -23,38 +22,23 @@ def panel(session, page: Page, client, commands, taken) -> Projects:
 
 
 def test_projects_are_listed_and_opened(session, page, panel) -> None:
-    assert not page.shows("bin", "demo"), "what is open is not thrown away"
     page.act("open", "other")
     assert session.project.name == "other"
-    assert page.shows("bin", "demo")
+    assert page.shows("open", "demo")
 
 
-def test_what_is_thrown_away_can_be_brought_back(session, page, panel) -> None:
-    folder = session.projects_dir / "other"
-    page.act("bin", "other")
-    assert not folder.exists()
-    assert "is in the bin" in page.html
-    page.act("unbin", session.binned.name)
-    assert Project.open(folder).name == "other"
-    assert "is in the bin" not in page.html
-
-
-def test_a_project_is_renamed_and_copied(session, page, panel) -> None:
+def test_a_project_is_renamed(session, page, panel) -> None:
     page.change("rename", "Living <room>")
     assert session.project.name == "Living <room>"
     assert "Living &lt;room&gt;" in page.html
-    count = len(list(session.projects_dir.glob("*/scene.json")))
-    page.act("copy", "demo")
-    assert len(list(session.projects_dir.glob("*/scene.json"))) == count + 1
 
 
 @pytest.mark.parametrize("name", ["../demo", "/etc", "gone"])
 def test_only_listed_names_reach_the_disk(session, client, page, panel, name) -> None:
     hidden = [h for kind, label, h in page.made if label == "·"][-1]
-    for do in ("open", "bin", "copy", "unbin"):
-        page.send(hidden, do, name)
+    page.send(hidden, "open", name)
     assert session.project.name == "demo"
-    assert client.viser_client.told == ["that project no longer exists"] * 4
+    assert client.viser_client.told == ["that project no longer exists"]
 
 
 def test_notes_of_the_build_are_told(session, page, panel) -> None:

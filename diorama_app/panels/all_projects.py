@@ -1,0 +1,169 @@
+"""All projects in a grid over the page: searched, sorted, opened, renamed, duplicated, deleted to the bin."""
+
+from __future__ import annotations
+
+import time
+from pathlib import Path
+
+import viser
+
+from diorama_app.projects import manage
+from diorama_app.projects.pictures import project_picture
+from diorama_app.session.client import Client
+from diorama_app.web.html import Action, LiveHtml, button, text
+from diorama_core.errors import EditRefused
+from diorama_core.project.lock import ProjectLock
+from diorama_core.project.storage import Project
+
+SORTS = {"changed": "Last changed first", "oldest": "Oldest first", "name": "By name"}
+_FILTER = (
+    "const w=this.value.trim().toLowerCase();"
+    "this.closest('.page').querySelectorAll('[data-name]').forEach(t=>t.hidden=!t.dataset.name.includes(w))"
+)
+"""Hides what does not match while somebody types; the server hears of it when the field is left."""
+
+
+class AllProjects:
+    """Drawn while it is open."""
+
+    def __init__(self, gui: viser.GuiApi, client: Client) -> None:
+        self._client = client
+        self._open = False
+        self._words, self._sort = "", "changed"
+        self._html = LiveHtml(gui, self._act, floating="dio-projects")
+        client.open_projects = self.open
+
+    def refresh(self) -> None:
+        """Draw it while it is open."""
+        self._html.show(self._client.session.glances.of(self._key(), self._drawn) if self._open else "")
+
+    def open(self) -> None:
+        """Show it over the page; Esc closes it."""
+        if self._client.dialog is not None:
+            self._client.dialog()
+        self._open, self._client.dialog = True, self.close
+        self.refresh()
+
+    def close(self) -> None:
+        """Back to the page behind it."""
+        self._open, self._client.dialog = False, None
+        self.refresh()
+
+    def _key(self) -> tuple[str, ...]:
+        project = self._client.session.project
+        return ("all projects", self._words, self._sort, "" if project is None else project.folder.name)
+
+    def _drawn(self) -> str:
+        folders = manage.recent_projects(self._client.session.projects_dir)
+        names = {folder: manage.name_of(folder) for folder in folders}
+        if self._sort == "oldest":
+            folders.reverse()
+        elif self._sort == "name":
+            folders.sort(key=lambda folder: names[folder].casefold())
+        tiles = "".join(self._tile(folder, names[folder]) for folder in folders)
+        options = "".join(
+            f'<option value="{key}" {"selected" if key == self._sort else ""}>{words}</option>'
+            for key, words in SORTS.items()
+        )
+        bin_of = "".join(_binned(place) for place in manage.in_bin(self._client.session.projects_dir))
+        bin_of = f"<details><summary>Bin</summary>{bin_of}</details>" if bin_of else ""
+        return (
+            '<div class="page" role="dialog" aria-modal="true" aria-label="All projects"><header><h1>All projects</h1>'
+            + button("✕", "close", title="Close")
+            + f'</header><div class="search"><input type="search" data-change="search" value="{text(self._words)}" '
+            f'placeholder="Search" aria-label="Search projects" oninput="{_FILTER}">'
+            f'<select data-change="sort" aria-label="Order">{options}</select></div>'
+            f'<div class="grid">{tiles}</div>{bin_of}</div>'
+        )
+
+    def _tile(self, folder: Path, name: str) -> str:
+        address, session = manage.address_of(folder), self._client.session
+        current, written = _is_open(session.project, folder), manage.touched(folder)
+        picture = session.thumbnails.of(f"{folder} {written}", lambda: project_picture(folder))
+        when = time.strftime("%d %b %Y, %H:%M", time.localtime(written))
+        hidden = "" if self._words.casefold() in name.casefold() else "hidden"
+        label = text(f"Open {name}")
+        return (
+            f'<div class="tile {"on" if current else ""}" data-name="{text(name.lower())}" {hidden}>'
+            f'<button type="button" data-do="open" data-arg="{text(address)}" title="{label}" aria-label="{label}">'
+            f'{picture}</button><input data-change="rename" data-arg="{text(address)}" value="{text(name)}" '
+            f'aria-label="Name of {text(name)}" title="Type to rename"><small>{when}</small><div class="bar">'
+            + button("Duplicate", "copy", address)
+            + button("Delete", "bin", address, title="Moves it to the bin", disabled=current)
+            + "</div></div>"
+        )
+
+    def _act(self, action: Action) -> None:
+        self._client.post(lambda: self._do(action))
+
+    def _do(self, action: Action) -> None:
+        session = self._client.session
+        if action.do == "close":
+            self.close()
+            return
+        if action.do == "search":
+            self._words = action.pair[1].strip()
+        elif action.do == "sort" and action.pair[1] in SORTS:
+            self._sort = action.pair[1]
+        elif action.do == "unbin":
+            self._restore(action.arg)
+        elif action.do == "rename":
+            self._rename(_listed(session.projects_dir, action.pair[0]), action.pair[1])
+        elif action.do in ("open", "copy", "bin"):
+            self._with_listed(action.do, _listed(session.projects_dir, action.arg))
+        session.glances.forget()
+        session.refresh_panels()
+
+    def _restore(self, address: str) -> None:
+        session = self._client.session
+        place = next((p for p in manage.in_bin(session.projects_dir) if manage.address_of(p) == address), None)
+        if place is None:
+            raise EditRefused("that project no longer exists")
+        folder = manage.out_of_bin(place, session.projects_dir)
+        self._client.toast(f"{manage.name_of(folder)} is restored", False)
+
+    def _rename(self, folder: Path, name: str) -> None:
+        session = self._client.session
+        if _is_open(session.project, folder):
+            session.need_writable()
+        else:
+            ProjectLock(folder).release()  # refused while another program has it open
+        manage.rename_project(Project.open(folder), name)
+
+    def _with_listed(self, do: str, folder: Path) -> None:
+        client, session = self._client, self._client.session
+        if do == "copy":
+            session.autosave.flush()
+            client.toast(f"Copied as {manage.duplicate_project(folder, session.projects_dir).name}", False)
+        elif do == "bin":
+            if _is_open(session.project, folder):
+                raise EditRefused("that project is open; open another one first")
+            ProjectLock(folder).release()
+            name, place = manage.name_of(folder), manage.to_bin(folder, session.projects_dir)
+            client.offer(f"{name} is in the bin.", "Restore", lambda: self._undelete(manage.address_of(place)))
+        else:
+            self.close()
+            project = Project.open(folder)
+            session.visit(client, project, f"Opened {project.name}.")
+
+    def _undelete(self, address: str) -> None:
+        self._restore(address)
+        self._client.session.glances.forget()
+        self._client.session.refresh_panels()
+
+
+def _listed(projects_dir: Path, address: str) -> Path:
+    """The folder of a project that is listed: a page must not reach outside the projects' folder."""
+    folder = manage.find_project(projects_dir, address)
+    if folder is None:
+        raise EditRefused("that project no longer exists")
+    return folder
+
+
+def _is_open(project: Project | None, folder: Path) -> bool:
+    return project is not None and project.folder.resolve() == folder.resolve()
+
+
+def _binned(place: Path) -> str:
+    restore = button("Restore", "unbin", manage.address_of(place))
+    return f'<div class="row"><span class="name">{text(manage.name_of(place))}</span>{restore}</div>'

@@ -1,0 +1,56 @@
+"""Small pictures of projects: their scene as it is drawn, or their photo."""
+
+from __future__ import annotations
+
+import hashlib
+import io
+from pathlib import Path
+
+from PIL import Image
+
+from diorama_app.projects.manage import touched
+from diorama_core.errors import DioramaError, ProjectError
+from diorama_core.io.atomic import write_atomically
+from diorama_core.io.bounded import read_picture
+from diorama_core.library.catalogue import default_cache_dir
+from diorama_core.project.storage import Project
+
+SIZE = (240, 180)
+FROM_OUTSIDE = "orbit:20"
+"""Where a scene without a photo is seen from: half turned, so that two walls are behind the furniture."""
+MAX_PIXELS = 100_000_000
+
+
+def project_picture(folder: Path) -> bytes | None:
+    """A PNG of a project, drawn once after each change and cached on disk; None where there is nothing to draw.
+
+    Raises:
+        DioramaError: the project cannot be read.
+    """
+    name = hashlib.sha256(str(folder.resolve()).encode()).hexdigest()[:24]
+    cached = default_cache_dir() / "projects" / f"{name}.png"
+    if cached.exists() and cached.stat().st_mtime > touched(folder):
+        return cached.read_bytes()
+    image = _drawn(folder)
+    if image is None:
+        return None
+    buffer = io.BytesIO()
+    image.save(buffer, "PNG")
+    write_atomically(cached, buffer.getvalue(), error=ProjectError)
+    return buffer.getvalue()
+
+
+def _drawn(folder: Path) -> Image.Image | None:
+    from diorama_core.api import load, render  # the renderer takes a second to load; pages without pictures do without
+
+    project = Project.open(folder)
+    if project.has_scene:
+        room = load(folder)
+        view = FROM_OUTSIDE if room.scene.camera is None else "photo"
+        return Image.fromarray(render(room, view=view, size=SIZE))
+    try:
+        photo = Image.fromarray(read_picture(folder / "photo.jpg", ProjectError, most_pixels=MAX_PIXELS, within=SIZE))
+    except DioramaError:
+        return None
+    photo.thumbnail(SIZE)
+    return photo
