@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from itertools import islice
 
 import numpy as np
 import trimesh
@@ -19,6 +20,7 @@ from scipy.special import logsumexp
 from diorama_core.errors import InputError
 from diorama_core.io.bounded import shortened
 from diorama_core.library import taxonomy
+from diorama_core.library.hyponyms import meanings
 from diorama_core.library.ingest.convention import Convention
 from diorama_core.library.ingest.known_shapes import KnownShapes, relief_features
 from diorama_core.library.ingest.names import Named
@@ -51,8 +53,8 @@ UNTRUE_NAME = -300.0
 """Of being none of the kinds that its name speaks of: only where it cannot be any of them."""
 MIN_METRES, MAX_METRES = 0.01, 18.0
 """Longest sides between which a promise of metres is kept: beyond, every kind is off by a factor above 3."""
-ALIKE = 1
-"""How many of the likest known shapes are asked."""
+ALIKE, LIKEST = 1, 8
+"""How many of the likest known shapes of a category are asked, and how many of the likest categories are compared."""
 
 
 @dataclass(frozen=True)
@@ -180,11 +182,12 @@ def _table(
     log_extents = np.log(np.maximum(mesh.extents, 1e-9))[np.abs(turns).argmax(axis=2)]
     frame = _frame_prior(ups, fronts, convention, given) - MIRRORED * _lopsided(pictures, turns)
     table: dict[str, np.ndarray] = {}
-    for name, weight in _candidates(features, named.weights, known, given).items():
+    sizes = [log_extents + np.log(unit) for unit in units]
+    allowed = np.concatenate([size[np.isfinite(frame)] for size in sizes])
+    for name, weight in _candidates(features, named.weights, known, given, allowed).items():
         rows = table[name] = np.full((len(turns), len(units) + 1), -np.inf)
         alike = -SIMILARITY * _unlike(features, log_extents, name, known)
-        for column, (unit, prior) in enumerate(units.items()):
-            log_sizes = log_extents + np.log(unit)
+        for column, (log_sizes, prior) in enumerate(zip(sizes, units.values(), strict=True)):
             rows[:, column] = weight + alike + frame + np.log(prior) + _size_fit(log_sizes, name)
             if given.category is None:
                 rows[~_possible(name, log_sizes, said=name in (named.weights or ())), column] = -np.inf
@@ -195,8 +198,8 @@ def _table(
     return table, log_extents
 
 
-def _possible(name: str, log_sizes: Float[np.ndarray, "24 3"], *, said: bool) -> Bool[np.ndarray, "24"]:
-    """For each turn, whether a thing of the kind can be so large; only which axis is up matters."""
+def _possible(name: str, log_sizes: Float[np.ndarray, "n 3"], *, said: bool) -> Bool[np.ndarray, " n"]:
+    """For each size, whether a thing of the kind can be so large; only which axis is up matters."""
     found: dict[float, bool] = {}
     for size in log_sizes:
         if size[2] not in found:
@@ -273,19 +276,33 @@ def _unit_prior(convention: Convention, given: Given, longest: float) -> dict[fl
 
 
 def _candidates(
-    features: Float[np.ndarray, "24 f"], named: Mapping[str, float] | None, known: KnownShapes, given: Given
+    features: Float[np.ndarray, "24 f"],
+    named: Mapping[str, float] | None,
+    known: KnownShapes,
+    given: Given,
+    log_sizes: Float[np.ndarray, "n 3"],
 ) -> dict[str, float]:
-    """Categories worth scoring with their prior: the given one, those named, or those that it looks like."""
+    """Categories worth scoring with their prior: the given one, those named, or those that it looks like and may be.
+
+    Args:
+        features: Of the model's relief in each orientation.
+        named: Categories its names speak of; none of those we know when empty, None without a name.
+        known: Shapes to compare it with.
+        given: What need not be guessed.
+        log_sizes: What its size may be, in every orientation and unit that is allowed.
+    """
     if given.category is not None:
         return {taxonomy.resolve(given.category).category.name: 0.0}
     if named:
         return {taxonomy.UNKNOWN.name: UNTRUE_NAME, **named}
     other, likely = (UNNAMED_OTHER, UNNAMED_KNOWN) if named is None else (LIKELY_OTHER, LIKELY_KNOWN)
-    best: dict[str, float] = {}
     unlike = np.min([np.abs(known.features - f).mean(axis=1) for f in features], axis=0)
-    for row in np.argsort(unlike, kind="stable")[:40]:
-        best.setdefault(known.categories[row], likely)
-    return {taxonomy.UNKNOWN.name: other, **dict(list(best.items())[:8])}
+    frequent = meanings(taxonomy.UNKNOWN.name, taxonomy.UNKNOWN.name)
+    prior = {kind: likely + float(np.log(share * len(frequent))) for kind, share in frequent.items()}
+    alike = {kind: -SIMILARITY * float(unlike[rows].min()) for kind in prior if len(rows := known.rows_of(kind))}
+    score = {kind: prior[kind] + value + float(_size_fit(log_sizes, kind).max()) for kind, value in alike.items()}
+    possible = (kind for kind in sorted(score, key=lambda k: -score[k]) if _possible(kind, log_sizes, said=False).any())
+    return {taxonomy.UNKNOWN.name: other, **{kind: prior[kind] for kind in islice(possible, LIKEST)}}
 
 
 def _unlike(

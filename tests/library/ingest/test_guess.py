@@ -68,6 +68,24 @@ def test_appearance_tells_what_a_nameless_model_is(few: KnownShapes) -> None:
     assert guessed(y_up(table()), few, GLTF).category == "table"
 
 
+def test_kinds_that_a_nameless_model_cannot_be_take_no_places_among_the_likest() -> None:
+    small = ("cup", "bottle", "bowl", "vase", "books", "laptop", "clock", "candle", "toaster")
+    stout = trimesh.Trimesh(chair().vertices * [1.1, 1.0, 0.9], chair().faces, process=False)
+    known = KnownShapes(
+        (*small, "chair"),
+        np.stack([relief_features(relief(chair()))] * len(small) + [relief_features(relief(stout))]),
+        np.log([chair().extents] * len(small) + [stout.extents]),
+    )
+    assert guessed(chair(), known, given=Given(up="+z", unit_m=1.0)).category == "chair"
+
+
+def test_of_two_kinds_that_it_may_be_the_more_frequent_one_is_likelier() -> None:
+    shape, size = relief_features(relief(table())), np.log(table().extents)
+    known = KnownShapes(("desk", "table"), np.stack([shape, shape]), np.stack([size, size]))
+    frame = guessed(table(), known, given=Given(up="+z", unit_m=1.0))
+    assert frame.category == "table"
+
+
 def test_the_format_decides_where_the_shape_does_not(few: KnownShapes) -> None:
     cube = block((0.5, 0.5, 0.5), (0, 0, 0))
     assert guessed(cube, few, GLTF).guess.up.value == "+y"
