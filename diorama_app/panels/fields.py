@@ -37,12 +37,6 @@ def show_value(handle: Any, value: Any) -> None:
         handle.value = value
 
 
-def show_label(handle: Any, label: str) -> None:
-    """Change what a field or a button is called, if it is called something else."""
-    if handle.label != label:
-        handle.label = label
-
-
 def enable(handle: Any, possible: bool) -> None:
     """Enable or disable fields."""
     if handle.disabled == possible:

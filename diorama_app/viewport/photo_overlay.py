@@ -53,11 +53,6 @@ class PhotoOverlay:
         self._backdrop: viser.ImageHandle | None = None
         self._layer: viser.ImageHandle | None = None
 
-    @property
-    def comparing(self) -> bool:
-        """Whether the photo lies over the model here."""
-        return self._overlay is not None
-
     def camera_moved(self, through_photo: bool) -> None:
         """Hide the small pyramids in the view through one; take away the layer that only that view explains."""
         self._through_photo = through_photo

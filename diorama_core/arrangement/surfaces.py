@@ -92,11 +92,6 @@ def is_soft(item: SceneObject) -> bool:
     return taxonomy.resolve(item.category).category.soft
 
 
-def carries_things(item: SceneObject) -> bool:
-    """Whether people put things on objects of its kind."""
-    return taxonomy.resolve(item.category).category.supports_objects
-
-
 def is_wall_like(surface: Surface | None) -> bool:
     """Whether objects are mounted on a surface rather than placed on it."""
     return surface is not None and surface.of_plane and abs(float(surface.normal[2])) < FLAT

@@ -8,7 +8,7 @@ import numpy as np
 
 from diorama_core.errors import EditRefused
 from diorama_core.geometry.sun import sun_direction
-from diorama_core.scene.light_settings import PHOTO_LIGHT, LightSettings
+from diorama_core.scene.light_settings import LightSettings
 from diorama_core.scene.types import Scene
 
 FIRST_HOUR = 10.0
@@ -50,11 +50,6 @@ def switch_lamp(scene: Scene, lamp_id: str, *, on: bool) -> LightSettings:
     """The settings with one lamp on or off; the others stay as they are."""
     lit = [i for i in scene.light_settings.lamps_on or () if i != lamp_id]
     return replace(scene.light_settings, lamps_on=(*lit, lamp_id) if on else tuple(lit))
-
-
-def is_photo_light(settings: LightSettings) -> bool:
-    """Whether nobody chose anything."""
-    return settings == PHOTO_LIGHT
 
 
 def _toward_sun(scene: Scene) -> float:

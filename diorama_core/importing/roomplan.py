@@ -38,8 +38,6 @@ MIN_SIDE_M = 0.01
 """Of the second longest side of a thing."""
 MAX_PARTS = 5_000
 """Walls, openings and objects of one scan."""
-BOX_FROM_SURFACE = np.array([[0.0, 1.0, 0.0], [0.0, 0.0, 1.0], [1.0, 0.0, 0.0]])
-"""Columns are our box axes (front, left, up) in RoomPlan's axes (width, up, front)."""
 KINDS: Mapping[str, Mapping[str, float]] = {
     word: {kind: shares[word] for kind, shares in column("roomplan").items() if word in shares}
     for word in dict.fromkeys(word for shares in column("roomplan").values() for word in shares)

@@ -25,7 +25,6 @@ from diorama_core.models.store import sha256_of
 from diorama_core.models.yolox import COCO_CLASSES, decoded, letterboxed
 from diorama_core.scene.types import Intrinsics
 
-ENDING = ".onnx"
 SIDE_PX = 640
 """Side of the square that a detector is shown where its graph leaves that open."""
 _STRIDES = (8, 16, 32)

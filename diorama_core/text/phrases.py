@@ -181,7 +181,6 @@ RELATION_WORDS: tuple[tuple[str, RelationKind | None], ...] = (
     (r"by|at", "beside"), (r"inside|in|into|onto|upon|on", "on"), (r"beside", "beside"), (r"to", None),
 )  # fmt: skip
 """Phrases of place, what is longer first, and the relation that each names."""
-EACH_OTHER = re.compile(r"\b(?:each other|one another)\b")
 
 
 @dataclass(frozen=True)

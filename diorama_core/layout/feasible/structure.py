@@ -5,15 +5,14 @@ its supporter allows; what stays free is two coordinates on the support surface.
 from __future__ import annotations
 
 from collections.abc import Collection
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 from jaxtyping import Float
 
 from diorama_core.arrangement.surfaces import Surface, box_misfit
 from diorama_core.layout.feasible.photo_observations import PhotoObservations
-from diorama_core.layout.feasible.settle import Walk, settle, sides
-from diorama_core.layout.problem.footing import reach_of
+from diorama_core.layout.feasible.settle import Walk, settle
 from diorama_core.layout.problem.problem import Problem
 from diorama_core.scene.types import box_corners
 
@@ -91,45 +90,3 @@ def _level(problem: Problem, walk: Walk, i: int) -> Surface | None:
 def _posed(walk: Walk, problem: Problem, i: int, surface: Surface) -> Surface:
     j = int(problem.parent[i])
     return surface if j < 0 else surface.at(walk.R[j], walk.p[j], walk.scale[j])
-
-
-def with_sizes(
-    problem: Problem, structure: Structure, p: Float[np.ndarray, "n 3"], scale: Float[np.ndarray, "n 3"]
-) -> Structure:
-    """The structure with some objects in other sizes and places, each with its contact face where it was.
-
-    What they and their loads may move within is computed anew.
-
-    Args:
-        problem: the layout as observed, with its supports.
-        structure: the layout with every object on its support.
-        p: centres, world, metres.
-        scale: along the axes of each object.
-    """
-    changed = (p != structure.p).any(axis=1) | (scale != structure.scale).any(axis=1)
-    affected = np.flatnonzero(changed | np.array([j >= 0 and changed[j] for j in problem.parent], dtype=bool))
-    kept = ~np.isin(structure.bound_owner, affected)
-    owners, normals, slacks = (
-        [structure.bound_owner[kept]],
-        [structure.bound_normal[kept]],
-        [structure.bound_slack[kept]],
-    )
-    for i in affected:
-        place, j = structure.surface[i], int(problem.parent[i])
-        if place is None:
-            continue
-        world = place if j < 0 else place.at(structure.R[j], p[j], scale[j])
-        contact = p[i] + structure.R[i] @ (problem.contact[i] * problem.shape_size[i] * scale[i] / 2)
-        reach = reach_of(problem.footing[i], structure.R[i], scale[i], world.outward)
-        m, slack = sides(world, contact, reach, structure.basis[i])
-        owners.append(np.full(len(m), i))
-        normals.append(m)
-        slacks.append(np.maximum(slack, 0.0))
-    return replace(
-        structure,
-        p=p,
-        scale=scale,
-        bound_owner=np.concatenate(owners),
-        bound_normal=np.concatenate(normals),
-        bound_slack=np.concatenate(slacks),
-    )

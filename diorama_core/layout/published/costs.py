@@ -113,20 +113,3 @@ def box_axes(Ri: Float[Tensor, "m 3 3"], Rj: Float[Tensor, "m 3 3"]) -> Float[Te
 def _reach(R: Float[Tensor, "m 3 3"], size: Float[Tensor, "m 3"], axes: Float[Tensor, "m a 3"]) -> Float[Tensor, "m a"]:
     """Half extent of boxes along axes."""
     return 0.5 * (torch.einsum("mac,mck->mak", axes, R).abs() * size[:, None, :]).sum(dim=-1)
-
-
-def adherence(
-    face_in: Float[Tensor, "a 3"],
-    face_centre: Float[Tensor, "a 3"],
-    wall: Float[Tensor, "a 3"],
-    wall_point: Float[Tensor, "a 3"],
-) -> tuple[Float[Tensor, ""], Float[Tensor, ""]]:
-    """What standing against walls costs: misalignment of the faces, and their distance from the walls.
-
-    Args:
-        face_in: inward normals of the faces, world.
-        face_centre: world, metres.
-        wall: normals of the walls.
-        wall_point: a point of each.
-    """
-    return e_align(face_in, wall), e_place(face_centre, wall_point, wall)

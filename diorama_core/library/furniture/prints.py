@@ -13,7 +13,6 @@ PAPER = np.array([0.93, 0.90, 0.84])
 CLAY = np.array([0.74, 0.53, 0.41])
 INK = np.array([0.24, 0.25, 0.27])
 SAND = np.array([0.83, 0.74, 0.59])
-SMOKE = np.array([0.60, 0.62, 0.61])
 
 
 def _uv(n: int = TEXTURE_SIZE) -> tuple[np.ndarray, np.ndarray]:

@@ -21,7 +21,6 @@ from diorama_core.perception.graph.settings import SETTINGS, GeometricGraphSetti
 from diorama_core.progress import Progress
 from diorama_core.scene.types import Relation, Support
 
-ROOM_PARTS = ("floor", "wall", "ceiling")
 _PRIOR: dict[str, tuple[float, float, float, float]] = {
     #          on an object, floor, wall, ceiling
     "floor": (3.0, 0.0, 5.0, 12.0),

@@ -7,7 +7,6 @@ import numpy as np
 from diorama_core.library.furniture.kit import *
 
 TISSUE = Material("tissue", "paper", "#eeece7", 0.95, 0.0, 0.2)
-BRISTLE = m.paint("bristles", "#d9d6cf", 0.95)
 
 
 def toilet_brush(size: Size, supporter: Material, handle: Material, square: bool = False) -> Parts:

@@ -9,7 +9,6 @@ import numpy as np
 from diorama_core.library.furniture.kit import *
 
 SHOWER_GLASS = m.glass("shower glass", "#aebfbb", 0.16)
-FROSTED = m.glass("frosted glass", "#cfd8d6", 0.5, 0.4)
 WALL_TILES = Material("white tiles", "tiles", "#dfe2e0", 0.2, 0.0, 0.6)
 GREEN_TILES = Material("green tiles", "tiles", "#8fa398", 0.2, 0.0, 0.4)
 

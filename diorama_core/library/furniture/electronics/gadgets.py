@@ -6,7 +6,6 @@ import numpy as np
 
 from diorama_core.library.furniture.kit import *
 
-IVORY = m.paint("ivory bakelite", "#ddd3bf", 0.3)
 BAKELITE = m.paint("black bakelite", "#232223", 0.22)
 TEAL = m.paint("sea-green plastic", "#7c9a94", 0.4)
 

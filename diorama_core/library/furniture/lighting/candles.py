@@ -185,7 +185,6 @@ def hurricane(size: Size, foot: Material) -> Parts:
     return of(foot, base) + of(m.GLASS, glass) + shifted(wax(0.46 * r, 0.44 * h), z=low + 0.004)
 
 
-DARK_WAX = m.paint("olive candle", "#75755a", 0.5)
 RUBY = m.lit("amber votive glass", "#b3825c", 0.12)
 LABEL = m.paint("label paper", "#d9cfbb", 0.9)
 

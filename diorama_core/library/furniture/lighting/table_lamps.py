@@ -232,7 +232,6 @@ def block_lamp(
 
 
 LEADED = m.Material("leaded glass", "medallion", "#7d8f7a", 0.3, 0.0, 1.0, glow=0.18)
-SALT = m.lit("salt crystal", "#d39d7d", 0.3, "clay")
 PAPER_SHADE = m.lit("rice paper", "#f0e8d8", 0.3)
 
 

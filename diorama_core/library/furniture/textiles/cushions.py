@@ -101,7 +101,6 @@ def floor_cushion(size: Size, cloth: Material) -> Parts:
 
 
 KNITTED = Material("chunky knit", "knit", "#d5c9b4", 0.95, 0.0, 0.24)
-GREY_KNIT = Material("grey knit", "knit", "#8d9092", 0.95, 0.0, 0.2)
 KILIM_CLOTH = Material("kilim cloth", "kilim", "#8d6458", 0.95, 0.0, 1.0)
 TARTAN = Material("green tartan", "plaid", "#556b5c", 0.95, 0.0, 0.26)
 CHECKED = Material("checked cotton", "check", "#6d8193", 0.92, 0.0, 0.14)

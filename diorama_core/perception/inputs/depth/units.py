@@ -18,8 +18,6 @@ USUAL_UNITS = {
     50.0: "1/50 m",
 }  # fmt: skip
 """Units per metre of sensors and data sets."""
-STATED_PRIOR = 4.5
-"""Nats for the unit that the container has: metres of floats, millimetres of whole numbers."""
 CONTRADICTED_BY = float(np.log(1.8))
 """Factor beyond which the picture contradicts a unit: rooms of unusual things measure up to 1.5."""
 CERTAIN_NATS = 1.2
