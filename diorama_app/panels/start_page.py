@@ -9,7 +9,6 @@ from __future__ import annotations
 import base64
 from collections.abc import Callable
 from functools import cache
-from pathlib import Path
 
 import viser
 
@@ -22,9 +21,10 @@ from diorama_app.session.client import Client
 from diorama_app.session.units import format_length, parse_length
 from diorama_app.web.html import Action, LiveHtml, button, run_once, text
 from diorama_core.errors import EditRefused, InputError
+from diorama_core.io.assets import asset
 from diorama_core.project.storage import Project
 
-PICTURES = Path(__file__).resolve().parents[2] / "assets" / "start"
+PICTURES = asset("start")
 EXAMPLES = {LIVING_ROOM: "Living room", "bedroom": "Bedroom", "study": "Study", "kitchen": "Kitchen"}
 USUAL_ROOM_M = (4.0, 5.0, 2.5)
 LENGTHS = ("Width", "Depth", "Height")

@@ -9,10 +9,11 @@ import tempfile
 from pathlib import Path
 
 from diorama_core.errors import ProjectError
+from diorama_core.io.assets import asset
 from diorama_core.perception.inputs import ReadInputs, read_inputs
 from diorama_core.project.storage import Project
 
-EXAMPLE = Path(__file__).resolve().parents[2] / "assets" / "example"
+EXAMPLE = asset("example")
 NAME = "example"
 PHOTO_NAME = "rendering.jpg"
 """What the editor calls the picture: it is no photo."""

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from pathlib import Path
+from diorama_core.io.assets import asset
 
-FOLDER = Path(__file__).resolve().parents[2] / "assets" / "models"
+FOLDER = asset("models")
 DETECTOR, NAMER, CARD = "room-detector.onnx", "room-namer.onnx", "recogniser.json"
 OUTLINER = "room-outliner.onnx"
 CLASS_TABLE, KIND_LAYER = "kinds-in-imagenet.txt", "kinds-in-photos.npz"

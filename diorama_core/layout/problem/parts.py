@@ -17,6 +17,7 @@ from jaxtyping import Float, Int
 
 from diorama_core.geometry.convex import convex_parts
 from diorama_core.geometry.packed_parts import NAMES, PackedParts, Parts, packed
+from diorama_core.io.assets import asset
 from diorama_core.io.cache import LruCache
 from diorama_core.io.derived import read_arrays, write_arrays
 from diorama_core.layout.problem.clear_places import clear_of_places
@@ -28,7 +29,7 @@ log = logging.getLogger(__name__)
 
 VERSION = 9
 """Version of the decomposition and its files: raise it when `convex_parts` changes: older files are not read."""
-BUILT_IN_PARTS = Path(__file__).resolve().parents[3] / "assets" / "shapes" / f"convex-parts-{VERSION}.npz"
+BUILT_IN_PARTS = asset("shapes", f"convex-parts-{VERSION}.npz")
 """Written by `scripts/make_convex_parts.py`; an installation may leave it out."""
 
 _CACHE: LruCache[str, Parts] = LruCache(4096)

@@ -1,0 +1,14 @@
+"""Where the files lie that come with Diorama: networks of its own, shapes' parts, the example, pictures."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+_INSTALLED = Path(__file__).resolve().parents[1] / "assets"
+"""Where `setup.py` puts them in a wheel."""
+_CHECKOUT = Path(__file__).resolve().parents[2] / "assets"
+
+
+def asset(*parts: str) -> Path:
+    """The path of a file or folder below `assets`, whether it is there or not."""
+    return (_INSTALLED if _INSTALLED.is_dir() else _CHECKOUT).joinpath(*parts)
