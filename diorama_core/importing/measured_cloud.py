@@ -32,10 +32,11 @@ from diorama_core.importing.measured_types import (
 )
 from diorama_core.importing.point_cloud import PointCloud
 from diorama_core.importing.scanned_openings import scanned_openings
+from diorama_core.importing.scanned_rugs import scanned_rugs
 from diorama_core.importing.scanned_tops import apart_from_tops
 from diorama_core.importing.upright import LEVEL_M, likely_up, sharpness
 from diorama_core.library.company import CARRIED_KINDS
-from diorama_core.library.taxonomy import CATEGORIES, UNKNOWN
+from diorama_core.library.taxonomy import CATEGORIES, UNKNOWN, having
 from diorama_core.scene.types import yaw_rotation
 
 MAX_REACH_M = 60.0
@@ -87,6 +88,7 @@ MAX_BOXES = 200
 AT_WALL_M = 0.4
 GUESS = 0.4
 """Confidence in a kind that no word tells."""
+RUGS = having("rug")
 UNLIKELY = (UNKNOWN.name, *OPENING_CATEGORIES, "curtain", "rug")
 
 
@@ -121,6 +123,7 @@ def measured_cloud(cloud: PointCloud) -> MeasuredRoom:
     walls, ring = _walls(room), np.asarray(outline.exterior.coords)[:-1]
     openings = scanned_openings(points, walls, ring)
     boxes, left_out = _boxes(points, room)
+    boxes = (*boxes, *_rugs(points, room))
     boxes = tuple(b for b in boxes if not any(_is_part(b, o) for o in openings))
     notes = [*cloud.notes, "kinds of things are guessed; correct them where they are wrong"]
     if not levels.floored:
@@ -311,6 +314,14 @@ def _boxes(points: Float[np.ndarray, "n 3"], room: _Room) -> tuple[tuple[Measure
         found.append(around)
         found += [replace(_box(top, room), kinds=_kinds("surface")) for top in on_it if _is_thing(top)]
     return tuple(found[:MAX_BOXES]), max(0, len(found) - MAX_BOXES)
+
+
+def _rugs(points: Float[np.ndarray, "n 3"], room: _Room) -> tuple[MeasuredBox, ...]:
+    """Boxes of rugs on the floor."""
+    import shapely
+
+    inside = points[shapely.contains_xy(room.outline.buffer(-OFF_M), points[:, 0], points[:, 1])]
+    return tuple(replace(_box(rug, room), kinds=dict.fromkeys(sorted(RUGS), 1.0)) for rug in scanned_rugs(inside))
 
 
 def _spacing(points: Float[np.ndarray, "n 3"]) -> float:

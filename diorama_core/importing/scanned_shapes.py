@@ -67,9 +67,16 @@ class ScannedSurface:
         return fits, int(np.argmin(found[best])) % 4
 
     def misfits(self, shape: Shape, library: ShapeLibrary) -> Sequence[float]:
-        """For each quarter turn of a shape that is stretched into the box, the mean distance of the two surfaces."""
+        """For each quarter turn of a shape that is stretched into the box, the mean distance of the two surfaces.
+
+        A turn that stretches the shape more than the other way round counts as farther off: thin things fit either way.
+        """
         unit = unit_surface(shape, library)
-        return [self._misfit(_turned(unit, quarters) * self.size_m) for quarters in range(4)] if len(unit) else [FAR_M]
+        if not len(unit):
+            return [FAR_M]
+        cost = [size_cost(shape.size_m, self.size_m), size_cost(shape.size_m, self.size_m[[1, 0, 2]])]
+        farther = [FIT_SIGMA_M * (c - min(cost)) for c in cost]
+        return [self._misfit(_turned(unit, q) * self.size_m) + farther[q % 2] for q in range(4)]
 
     def _misfit(self, surface: Float[np.ndarray, "m 3"]) -> float:
         there = np.minimum(cKDTree(surface).query(self.points)[0], FAR_M).mean()

@@ -4,14 +4,16 @@ from contextlib import suppress
 
 import numpy as np
 import pytest
+import trimesh
 from shapely.geometry import Polygon
 
 from diorama_core.errors import InputError
 from diorama_core.importing.measured_cloud import measured_cloud
-from diorama_core.importing.measured_room import opened_room
+from diorama_core.importing.measured_room import opened_room, possible_kinds
 from diorama_core.importing.point_cloud import PointCloud
 from diorama_core.library.catalogue import built_in_library
-from tests.importing.scans import DEPTH, FURNITURE, HEIGHT, WIDTH, room_points
+from diorama_core.scene.types import yaw_rotation
+from tests.importing.scans import DEPTH, FURNITURE, HEIGHT, TURN, WIDTH, room_points
 
 UP = np.array([0.0, 0.0, 1.0])
 
@@ -30,6 +32,18 @@ def test_walls_floor_and_boxes_are_where_the_points_are() -> None:
     found = sorted((sorted(b.size_m) for b in room.boxes), key=max)
     true = sorted((sorted(f.size_m) for f in FURNITURE), key=max)
     assert np.abs(np.array(found) - np.array(true)).max() < 0.08
+
+
+def test_a_rug_is_found_on_the_floor() -> None:
+    rug = trimesh.creation.box((1.2, 1.8, 0.02), trimesh.transformations.translation_matrix((0.9, 0.3, 0.01)))
+    rng = np.random.default_rng(2)
+    points = np.asarray(trimesh.sample.sample_surface(rug, 6000, seed=2)[0]) + rng.normal(0, 0.002, (6000, 3))
+    whole = np.concatenate([room_points(), points[points[:, 2] > 0.01] @ yaw_rotation(TURN).T + [0.0, 0.0, 12.0]])
+    under = (np.abs((whole @ yaw_rotation(TURN))[:, :2] - [0.9, 0.3]) < [0.6, 0.9]).all(axis=1) & (whole[:, 2] < 12.01)
+    room = measured_cloud(PointCloud(whole[~under], UP))
+    (found,) = (box for box in room.boxes if "rug" in box.kinds)
+    assert sorted(found.size_m) == pytest.approx([0.02, 1.2, 1.8], abs=0.08)
+    assert "rug" in possible_kinds(found.kinds, found.size_m)
 
 
 def test_the_axis_that_points_up_is_found() -> None:

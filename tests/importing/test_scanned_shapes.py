@@ -39,6 +39,16 @@ def test_the_shape_itself_fits_in_its_own_turn() -> None:
     assert misfits[0] < 0.04
 
 
+def test_a_thin_thing_is_not_turned_across_its_box() -> None:
+    seen = np.random.default_rng(0).uniform(-0.5, 0.5, (400, 3)) * [0.02, 0.54, 0.86]
+    box = MeasuredBox("object", {}, np.eye(3), np.zeros(3), np.array([0.02, 0.54, 0.86]), points=seen)
+    _, quarters = ScannedSurface.of(box).fits("picture", LIBRARY)
+    assert quarters % 2 == 0
+    across = MeasuredBox("object", {}, np.eye(3), np.zeros(3), np.array([0.54, 0.02, 0.86]), points=seen[:, [1, 0, 2]])
+    _, quarters = ScannedSurface.of(across).fits("picture", LIBRARY)
+    assert quarters % 2 == 1
+
+
 def test_a_kind_without_shapes_says_nothing() -> None:
     assert ScannedSurface.of(scanned("chair")).misfit_of_kind("unicorn", LIBRARY) is None
 

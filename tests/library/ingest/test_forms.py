@@ -96,6 +96,7 @@ def test_kinds_keep_to_possible_sizes() -> None:
     possible = {("rug", (2.0, 1.4, 0.01)), ("television", (0.03, 1.2, 0.7)), ("object", (9.0, 9.0, 9.0))}
     impossible = {
         ("refrigerator", (0.9, 0.03, 2.2)), ("wardrobe", (6.1, 6.9, 2.7)), ("dumbbells", (1.1, 2.3, 0.02)),
+        ("dumbbells", (0.37, 0.68, 0.02)), ("dumbbells", (0.07, 0.44, 0.26)),
         ("sideboard", (5.0, 0.1, 2.5)), ("shower", (4.2, 5.2, 2.6)),
     }  # fmt: skip
     assert all(is_possible(name, np.array(size)) for name, size in possible)
