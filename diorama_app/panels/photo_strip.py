@@ -13,7 +13,7 @@ from PIL import Image
 from diorama_app.commands.camera_presets import Views
 from diorama_app.panels.upload_field import UploadField
 from diorama_app.projects.uploads import Upload
-from diorama_app.reconstruction.photo_joining import awaits_photo, take_out, take_photo
+from diorama_app.reconstruction.photo_joining import awaits_photo, missing_for_joining, take_out, take_photo
 from diorama_app.session.client import Client
 from diorama_app.viewport.mesh_assets import reduced
 from diorama_app.web.html import Action, LiveHtml, button, text
@@ -41,9 +41,10 @@ class PhotoStrip:
         session, client = self._client.session, self._client
         inputs, camera = session.inputs, session.scene.camera
         shown = (inputs is not None and camera is not None) or awaits_photo(session.scene)
-        self._upload.show_if(shown)
+        missing = session.glances.of("joining", lambda: missing_for_joining(session.scene)) if shown else ""
+        self._upload.show_if(shown and not missing)
         if inputs is None or camera is None or not session.further_photos:
-            self._html.show(f'<p class="dim">{ADVICE}</p>' if shown else "")
+            self._html.show(f'<p class="dim">{text(missing or ADVICE)}</p>' if shown else "")
             return
         own = self._tile("", "First photo", inputs.photo.rgb, on=client.further_photo is None, joined=True)
         rest = "".join(

@@ -2,12 +2,17 @@
 
 from __future__ import annotations
 
+import threading
 from collections.abc import Callable
 
 import viser
 
 from diorama_app.session.client import Client, Measuring, Placing
 from diorama_app.web.html import Action, LiveHtml, button, text
+
+
+SHOWN_S, OFFERED_S = 6.0, 15.0
+"""As long as the page's own fading takes (`.dio-toast` in `web/html.py`)."""
 
 
 class Toasts:
@@ -18,12 +23,14 @@ class Toasts:
         self._html = LiveHtml(gui, self._act, floating="dio-said")
         self._doing = LiveHtml(gui, self._act, floating="dio-doing")
         self._offered: Callable[[], None] | None = None
+        self._said = 0
+        """How many messages were shown."""
         client.toast, client.offer = self.say, self.offer
 
     def say(self, message: str, undo: bool) -> None:
         """Show a message, in place of the one before."""
         again = button("Undo", "undo") if undo else ""
-        self._html.show(f'<div class="dio-toast"><span>{text(message)}</span>{again}</div>', again=True)
+        self._show(f'<div class="dio-toast"><span>{text(message)}</span>{again}</div>', SHOWN_S)
 
     def offer(self, message: str, label: str, do: Callable[[], None]) -> None:
         """Show a message with a button that does something; it stays longer than others.
@@ -36,7 +43,20 @@ class Toasts:
         self._offered = do
         action = button(text(label), "offered")
         line = f'<div class="dio-toast long" role="alert"><span>{text(message)}</span>{action}</div>'
+        self._show(line, OFFERED_S)
+
+    def _show(self, line: str, seconds: float) -> None:
+        """Show a line for some seconds; a page that is drawn anew later does not show it again."""
+        self._said = number = self._said + 1
         self._html.show(line, again=True)
+
+        def end() -> None:
+            if number == self._said:
+                self._html.show("")
+
+        timer = threading.Timer(seconds, lambda: self._client.post(end))
+        timer.daemon = True
+        timer.start()
 
     def refresh(self) -> None:
         """Say what a click in the view does now."""

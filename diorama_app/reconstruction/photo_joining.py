@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
+from importlib.util import find_spec
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -57,6 +58,13 @@ def _to_be_marked(client: Client, name: str | None) -> None:
 def awaits_photo(scene: Scene) -> bool:
     """Whether a scene without a photo has enough in it to tell where one was taken, as scans have."""
     return scene.camera is None and len(scene.objects) >= MIN_SAME and bool(scene.architecture.planes)
+
+
+def missing_for_joining(scene: Scene) -> str:
+    """What must be installed before another photo can join the scene; empty where nothing is missing."""
+    if awaits_photo(scene) or find_spec("pycolmap") is not None:
+        return ""
+    return "Adding a photo needs pycolmap, which is not installed: pip install 'diorama[photos]', then start Diorama again."
 
 
 def need_joinable(scene: Scene, inputs: Inputs | None) -> None:

@@ -21,7 +21,7 @@
   const build = () => {
     root = element("div", "dio-canvas");
     const bar = element("div", "dio-canvas-bar");
-    bar.append(element("span", "", { textContent: state.photo.hint }));
+    bar.append(element("span", ""));
     bar.append(element("button", "", { type: "button", textContent: "Done", onclick: () => send("done", null) }));
     figure = element("div", "dio-canvas-figure");
     layer = element("div", "dio-canvas-layer", { tabIndex: -1 });
@@ -271,7 +271,9 @@
     if (!state.photo) return close();
     if (root && before !== state.photo.url) close();
     if (!root) build();
-    root.querySelector(".dio-canvas-bar span").textContent = state.photo.hint;
+    const [first, ...more] = state.photo.hint.split(/(?<=\.)/);
+    const rest = element("span", "", { textContent: more.join("") });
+    root.querySelector(".dio-canvas-bar span").replaceChildren(first, rest);
     draw();
   };
 })();

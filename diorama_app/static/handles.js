@@ -1,7 +1,8 @@
-// Handles win over bodies: what a handle's ray meets comes before everything else it meets, as near as it looks.
+// Handles win over bodies: they are drawn over them, and what a handle's ray meets comes before everything else it meets,
+// as near as it looks.
 (() => {
   const HANDLES = /^\/(gizmo|size)(\/|$)/;
-  const FIRST = 1e-4;
+  const FIRST = 1e-4, OVER_ALL = 1000;
   const lift = (mesh) => {
     const own = mesh.raycast;
     mesh.userData.dioLifted = true;
@@ -14,7 +15,15 @@
   setInterval(() => {
     const nodes = window.__viserMutable?.nodeRefFromName ?? {};
     for (const name of Object.keys(nodes)) {
-      if (HANDLES.test(name)) nodes[name]?.traverse((o) => { if (o.isMesh && !o.userData.dioLifted) lift(o); });
+      if (!HANDLES.test(name)) continue;
+      nodes[name]?.traverse((o) => {
+        if (!o.isMesh) return;
+        if (!o.userData.dioLifted) lift(o);
+        if (!name.startsWith("/size") || !o.material.depthTest) return;
+        Object.assign(o.material, { depthTest: false, transparent: true }); // transparent ones are drawn last
+        o.renderOrder = OVER_ALL;
+        window.__viserMutable.requestRender();
+      });
     }
   }, 120);
 })();

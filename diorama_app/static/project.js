@@ -15,12 +15,18 @@
     return post.call(this, { ...data, server: address() }, ...rest);
   };
   const connect = () => worker && post.call(worker, { type: "set_server", server: address() });
+  // Until the other project's page is there, viser would show a panel of its own.
+  const leave = () => {
+    document.getElementById("dio-toolbar")?.remove();
+    document.documentElement.classList.remove("dio-ready");
+    connect();
+  };
   window.__dioGoTo = (name) => {
     const query = new URLSearchParams(location.search);
     if (query.get("project") === name) return;
     query.set("project", name);
     history.pushState(null, "", `?${query}`);
-    connect();
+    leave();
   };
-  addEventListener("popstate", connect);
+  addEventListener("popstate", leave);
 })();

@@ -29,10 +29,10 @@ MAX_LABEL = 40
 
 Mode = Literal["boxes", "one box", "points"]
 HINTS: dict[Mode, str] = {
-    "boxes": "Click each piece of furniture, or drag a box around it; Shift-click what lies on a marked one. "
-    "Keys 1 to 4 choose a name, Delete deletes.",
+    "boxes": "Click each piece of furniture, or drag a box around it. Shift-click marks what lies on a marked object. "
+    "Keys 1 to 4 choose a name; Delete deletes.",
     "one box": "Drag a new box around the object.",
-    "points": "Click the object; Shift-click what does not belong to it.",
+    "points": "Click the object. Shift-click what does not belong to it.",
 }
 
 

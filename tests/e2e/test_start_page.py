@@ -161,3 +161,18 @@ def test_a_page_that_came_before_the_editor_is_greeted(
     expect(page.locator("#dio-start")).to_be_visible()
     page.close()
     running.stop()
+
+
+def test_a_refused_length_is_told_over_the_start_page_and_beside_the_tools(newcomer: EditorPage) -> None:
+    page = newcomer.page
+    page.get_by_label("Width of the room").fill("-3")
+    newcomer.button("Create empty room").click()
+    newcomer.notice("give 1 to 30 m")
+    seen = page.locator(".mantine-Notification-root").first.bounding_box()
+    tools = page.locator("#dio-toolbar .bars").bounding_box()
+    assert seen is not None
+    assert tools is not None
+    assert seen["y"] >= tools["y"] + tools["height"]
+    on_top = "([x, y]) => document.elementFromPoint(x, y).closest('.mantine-Notification-root') !== null"
+    assert page.evaluate(on_top, [seen["x"] + seen["width"] / 2, seen["y"] + seen["height"] / 2])
+    expect(page.locator("#dio-start")).to_be_visible()

@@ -1,5 +1,7 @@
 from __future__ import annotations
 
+import pytest
+
 from diorama_app.commands.camera_presets import Views
 from diorama_app.panels.photo_strip import PhotoStrip
 from diorama_app.session.client import Client
@@ -28,3 +30,16 @@ def test_photos_are_chosen_looked_through_and_taken_out(client: Client, page: Pa
     assert opened == [True]
     strip._choose(None)
     assert client.further_photo is None
+
+
+def test_what_is_missing_to_add_a_photo_is_told_before_one_is_marked(
+    client: Client, page: Page, views: Views, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    strip = PhotoStrip(page, client, views)
+    strip.refresh()
+    assert strip._upload.visible
+    monkeypatch.setattr("diorama_app.reconstruction.photo_joining.find_spec", lambda name: None)
+    client.session.glances.forget()
+    strip.refresh()
+    assert not strip._upload.visible
+    assert "diorama[photos]" in page.html

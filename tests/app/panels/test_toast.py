@@ -6,6 +6,7 @@ from diorama_app.commands import edit as editing
 from diorama_app.panels.toast import Toasts
 from diorama_app.session.client import Measuring, Placing
 from tests.app.page import Page
+from tests.waiting import until
 
 
 @pytest.fixture
@@ -39,3 +40,9 @@ def test_what_a_click_does_is_said_until_it_is_stopped(session, client, page, to
         assert client.doing is None
         toasts.refresh()
         assert words not in page.html
+
+
+def test_a_message_ends_on_the_server_too(client, page, toasts, monkeypatch) -> None:
+    monkeypatch.setattr("diorama_app.panels.toast.SHOWN_S", 0.01)
+    toasts.say("Reading huge.jpg…", False)
+    until(lambda: "Reading huge.jpg" not in page.html, "a page that is drawn anew does not show it")
