@@ -10,7 +10,6 @@ import viser
 from diorama_app.session.client import Client, Measuring, Placing
 from diorama_app.web.html import Action, LiveHtml, button, text
 
-
 SHOWN_S, OFFERED_S = 6.0, 15.0
 """As long as the page's own fading takes (`.dio-toast` in `web/html.py`)."""
 

@@ -64,7 +64,9 @@ def missing_for_joining(scene: Scene) -> str:
     """What must be installed before another photo can join the scene; empty where nothing is missing."""
     if awaits_photo(scene) or find_spec("pycolmap") is not None:
         return ""
-    return "Adding a photo needs pycolmap, which is not installed: pip install 'diorama[photos]', then start Diorama again."
+    return (
+        "Adding a photo needs pycolmap, which is not installed. Run pip install 'diorama[photos]' and restart Diorama."
+    )
 
 
 def need_joinable(scene: Scene, inputs: Inputs | None) -> None:
