@@ -82,16 +82,19 @@ SERVE = """
 import sys
 from pathlib import Path
 from diorama_app.serve import serve
+from diorama_core.library.store import CombinedLibrary, open_library
 from tests.app.small_room import PlainLibrary
 folder = Path(sys.argv[1])
 serve(project=folder, projects_dir=folder.parent, host="127.0.0.1", port=0, open_browser=False, low_graphics=True,
-      token=None, library=PlainLibrary())
+      token=None, library=eval(sys.argv[2]))
 """
 
 
-def serving(folder: Path) -> tuple[subprocess.Popen, int]:
+def serving(folder: Path, library: str = "PlainLibrary()") -> tuple[subprocess.Popen, int]:
+    """A server of a project, and its port; `library` is Python."""
     root = str(Path(__file__).resolve().parents[1])
-    process = subprocess.Popen([sys.executable, "-c", SERVE, str(folder)], stdout=subprocess.PIPE, text=True, cwd=root)
+    command = [sys.executable, "-c", SERVE, str(folder), library]
+    process = subprocess.Popen(command, stdout=subprocess.PIPE, text=True, cwd=root)
     assert process.stdout is not None
     port = int(re.search(r":(\d+)/", process.stdout.readline())[1])
     return process, port

@@ -14,6 +14,7 @@ from __future__ import annotations
 import argparse
 import io
 import json
+import os
 import re
 import subprocess
 import sys
@@ -45,6 +46,8 @@ OBJECTS = 40
 WARM_UP = 0.2
 API = 0.1
 """Of the people, those that are programs."""
+LIBRARY = 'CombinedLibrary([PlainLibrary(), open_library("built-in")])'
+"""Of the editor: a scan's objects get shapes of the built-in one, those of the rooms that are edited are plain."""
 BUSY = "is still running"
 """What a page says where another job is under way."""
 SETTLED_S = 75.0
@@ -146,6 +149,10 @@ class Person:
     def _shown(self, uuid: str, pattern: str) -> bool:
         return re.search(pattern, str(self.page.elements[uuid].get("content", ""))) is not None
 
+    def _holds(self, *words: str) -> bool:
+        """Whether a piece of a panel has all of these in it."""
+        return any(all(w in str(e.get("content", "")) for w in words) for e in list(self.page.elements.values()))
+
     def edit(self) -> None:
         """Hide or show the own object, until the own outliner says so."""
         self.hidden = not self.hidden
@@ -187,7 +194,10 @@ class Person:
         folder = self._begun(f"photo-{self.own}", scene=False)
         page, self.page = self.page, WirePage(self.port, query=f"?project={folder.name}")
         try:
-            self.page.act("build")
+            self.page.wait_for(lambda: self._holds("__dioCanvas.told", "image/jpeg"), PATIENCE_S)
+            self._act('id="dio-canvas-send"', "draw", [60.0, 50.0, 110.0, 105.0])
+            self.page.wait_for(lambda: self._holds("Build scene (1)"), PATIENCE_S)
+            self._act('data-do="build"', "build", "")
             self._until((folder / "scene.json").exists)
         finally:
             self.page.close()
@@ -263,7 +273,7 @@ def state(process: subprocess.Popen[str]) -> tuple[float, int]:
 def run(options: argparse.Namespace, place: Path) -> int:
     scene = room_of(OBJECTS)
     folders = [make_project(place / "projects" / f"room-{i}", scene).folder for i in range(options.projects)]
-    (editor, port), (service, url) = serving(folders[0]), api(place / "jobs")
+    (editor, port), (service, url) = serving(folders[0], LIBRARY), api(place / "jobs")
     try:
         return measure(options, folders, (editor, port), (service, url))
     finally:
@@ -275,7 +285,7 @@ def run(options: argparse.Namespace, place: Path) -> int:
 
 def measure(options: argparse.Namespace, folders: list[Path], editor: Any, service: Any) -> int:
     figures, ids = Figures(), [o.id for o in room_of(OBJECTS).objects]
-    before = [state(editor[0]), state(service[0])]
+    before, loads = [state(editor[0]), state(service[0])], [os.getloadavg()[0]]
     until = time.monotonic() + 60.0 * options.minutes
     programs = round(API * options.people)
     people = [
@@ -288,16 +298,18 @@ def measure(options: argparse.Namespace, folders: list[Path], editor: Any, servi
         thread.start()
     time.sleep(60.0 * options.minutes * WARM_UP)
     warm = [state(editor[0]), state(service[0])]
+    loads.append(os.getloadavg()[0])
     for thread in threads:
         thread.join()
     after = [state(editor[0]), state(service[0])]
+    loads.append(os.getloadavg()[0])
     for person in people:
         person.page.close()
     time.sleep(SETTLED_S)
-    return told(figures, people, (before, warm, after, [state(editor[0]), state(service[0])]))
+    return told(figures, people, (before, warm, after, [state(editor[0]), state(service[0])]), loads)
 
 
-def told(figures: Figures, people: list[Person], states: Any) -> int:
+def told(figures: Figures, people: list[Person], states: Any, loads: list[float]) -> int:
     for kind in sorted({*figures.seconds, *figures.failed, *figures.busy}):
         taken, failed = np.array(figures.seconds[kind]) * 1e3, figures.failed[kind]
         times = f"median {np.median(taken):.0f} ms, p95 {np.percentile(taken, 95):.0f} ms" if len(taken) else "never"
@@ -310,6 +322,9 @@ def told(figures: Figures, people: list[Person], states: Any) -> int:
         memory = f"{warm[number][0]:.0f} MB after a fifth, {after[number][0]:.0f} MB at the end"
         threads = f"{before[number][1]} before, {after[number][1]} at the end, {left[number][1]} after"
         print(f"{name}: memory {memory} ({growth:+.1f} %, asked within 10); threads {threads}")
+    print(
+        "load average: " + ", ".join(f"{load:.0f}" for load in loads) + " (at the beginning, after a fifth, at the end)"
+    )
     lost = sum(Project(p.folder).load_scene().object(p.own).hidden != p.hidden for p in people)
     print(f"edits lost: {lost} of {len(people)} people (asked 0)")
     return 1 if lost else 0
