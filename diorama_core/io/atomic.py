@@ -87,7 +87,7 @@ def _deleted_on_failure(part: Path) -> Iterator[None]:
         yield
     except BaseException:
         with suppress(OSError):
-            part.unlink(missing_ok=True)
+            part.unlink()
         raise
 
 

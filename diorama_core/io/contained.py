@@ -57,7 +57,7 @@ class ContainedFiles:
         try:
             return self.path(name, folder)
         except self.error:
-            beside = folder / plain.rsplit("/", 1)[-1]
+            beside = folder / plain.rpartition("/")[2]
             if not self.holds(beside):
                 raise
             return beside
@@ -113,7 +113,7 @@ class ContainedFiles:
     def _plain(self, name: str) -> str:
         """The name with forward slashes; refuses what is no name of a file."""
         plain = unquote(name).replace("\\", "/").strip()
-        if "\0" in plain or plain.rsplit("/", 1)[-1] in ("", ".", ".."):
+        if "\0" in plain or plain.rpartition("/")[2] in ("", ".", ".."):
             raise self.error(f"{shown(name)} is no file name")
         if _ADDRESS.match(plain):
             raise self.error(f"{shown(name)} is a web address; nothing is downloaded")

@@ -51,10 +51,10 @@ def write_json(
         indent: Spaces a level; None puts all into one line.
 
     Raises:
-        error: as `write_document`, or a number in it is not finite.
+        error: as `write_document`; a number that is not finite cannot be read again.
     """
     try:
-        data = json.dumps(clean_strings(document), indent=indent, allow_nan=False).encode()
+        data = json.dumps(clean_strings(document), indent=indent).encode()
     except (ValueError, RecursionError) as reason:
         raise error(f"{path} stays as it was: a value cannot be written ({shortened(str(reason))})") from reason
     write_document(path, data, lambda known: parse_json(known, path.name, error), error, most=most)

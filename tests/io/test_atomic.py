@@ -5,6 +5,7 @@ from __future__ import annotations
 import errno
 import os
 import stat
+import time
 from pathlib import Path
 from typing import Any
 
@@ -13,7 +14,7 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from diorama_core.errors import ProjectError
-from diorama_core.io.atomic import open_atomically, write_atomically
+from diorama_core.io.atomic import open_atomically, remove_leftovers, write_atomically
 
 
 def no_space(*_: Any, **__: Any) -> None:
@@ -119,3 +120,16 @@ def test_a_folder_in_the_way_of_the_file_is_an_error_and_stays(tmp_path: Path) -
     with pytest.raises(ProjectError, match="cannot write"):
         write_atomically(tmp_path / "scene.json", b"", error=ProjectError)
     assert [p.name for p in tmp_path.iterdir()] == ["scene.json"]
+
+
+def test_parts_that_killed_programs_left_are_removed_when_they_are_old(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (tmp_path / "stages").mkdir()
+    for name in (".old.part", "stages/.old.part", ".young.part", "old.part", ".old"):
+        (tmp_path / name).write_bytes(b"half")
+        os.utime(tmp_path / name, (1000.0, 1060.0 if "young" in name else 1000.0))
+    monkeypatch.setattr(time, "time", lambda: 1120.0)
+    assert remove_leftovers(tmp_path, 60.0) == 2
+    assert {p.name for p in tmp_path.iterdir()} == {"stages", ".young.part", "old.part", ".old"}
+    assert remove_leftovers(tmp_path, 60.0) == 0

@@ -4,6 +4,7 @@ import ast
 import io
 import json
 import os
+import warnings
 from pathlib import Path
 
 import numpy as np
@@ -78,6 +79,7 @@ def test_json_comes_back_as_it_was_written(value) -> None:
         (b"\xff\xfe", "no text"),
         (r'"\ud800"', "no text"),
         ("[" * (MAX_JSON_DEPTH + 1) + "]" * (MAX_JSON_DEPTH + 1), "levels deep"),
+        ('[{"a":' * MAX_JSON_DEPTH + "1" + "}]" * MAX_JSON_DEPTH, "levels deep"),
     ],
 )
 def test_json_that_cannot_be_written_back_is_refused(text, reason: str) -> None:
@@ -86,6 +88,7 @@ def test_json_that_cannot_be_written_back_is_refused(text, reason: str) -> None:
 
 
 def test_brackets_in_strings_are_no_levels_and_infinity_may_be_allowed(tmp_path: Path) -> None:
+    assert parse_json("[" * MAX_JSON_DEPTH + "]" * MAX_JSON_DEPTH, "x", InputError)
     deep = ["[" * 500, '\\"[' * 100]
     assert parse_json(json.dumps(deep), "x", InputError) == deep
     assert parse_json("[1e999, Infinity]", "x", InputError, finite=False) == [float("inf")] * 2
@@ -105,6 +108,15 @@ def test_pictures_are_judged_before_they_are_decoded(tmp_path: Path) -> None:
     assert read_picture(tmp_path / "a.png", InputError).shape == (2, 8, 3)
 
 
+def test_the_decoders_own_bounds_are_one_line_or_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(Image, "MAX_IMAGE_PIXELS", 20)  # it warns above, and refuses above twice as many
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        assert picture_of(png(6, 4), "x", InputError).shape == (4, 6, 3)
+    with pytest.raises(InputError, match="x: more pixels than are read"):
+        picture_of(png(7, 6), "x", InputError)
+
+
 def test_a_jpeg_may_be_decoded_smaller_but_never_below_what_is_wanted() -> None:
     buffer = io.BytesIO()
     Image.fromarray(np.full((400, 800, 3), 90, np.uint8)).save(buffer, "JPEG")
@@ -117,7 +129,9 @@ def test_a_jpeg_may_be_decoded_smaller_but_never_below_what_is_wanted() -> None:
 def test_messages_are_one_short_line() -> None:
     assert shortened("a\nb\x1b[31m \ud800") == "a b[31m ?"
     assert len(shortened("x" * 500)) == 200
+    assert shortened("x" * 200) == "x" * 200
     assert megabytes(64_000_000) == "64 MB"
+    assert (megabytes(100_000), megabytes(99_000)) == ("0.1 MB", "99 kB")
     assert megabytes(1_500) == "1.5 kB"
 
 

@@ -65,6 +65,16 @@ def test_no_name_leads_anywhere_else(files: ContainedFiles, name: str, reason: s
         assert not files.holds(files.root / name)
 
 
+def test_a_path_of_the_authors_own_disk_leads_to_the_file_beside(files: ContainedFiles) -> None:
+    deep = files.root / "deep"
+    assert files.path_or_beside("a b.bin", deep) == deep / "a b.bin"
+    assert files.path_or_beside("deep/a b.bin", files.root) == deep / "a b.bin"
+    assert files.path_or_beside("C:\\models\\a%20b.bin", deep) == deep / "a b.bin"
+    for name, reason in (("/home/them/pipe.bin", "points outside"), ("elsewhere/gone.bin", "is missing")):
+        with pytest.raises(InputError, match=reason):
+            files.path_or_beside(name, files.root)
+
+
 def test_a_file_larger_than_asked_for_is_refused(files: ContainedFiles) -> None:
     with pytest.raises(InputError, match="more than"):
         files.read("deep/a b.bin", 3)

@@ -44,3 +44,5 @@ def test_a_document_that_its_reader_refuses_replaces_nothing(tmp_path: Path) -> 
     with pytest.raises(ProjectError, match="more than the"):
         write_document(path, b"newer", lambda data: None, ProjectError, most=4)
     assert path.read_bytes() == b"older"
+    write_document(path, b"newer", lambda data: None, ProjectError, most=5)
+    assert path.read_bytes() == b"newer"

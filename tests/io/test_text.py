@@ -38,6 +38,7 @@ def test_every_string_of_a_value_is_cleaned() -> None:
 
 def test_names_of_files_differ_as_the_files_do() -> None:
     names = [os.fsdecode(name) for name in (b"b\xe9te", b"b\xe8te", b"\x80", b"\xff", "b\u00eate".encode())]
+    assert file_label("\udc7f\udd00") == 2 * REPLACEMENT
     assert [file_label(name) for name in names] == ["b\\xe9te", "b\\xe8te", "\\x80", "\\xff", "b\u00eate"]
 
 
