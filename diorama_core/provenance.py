@@ -75,6 +75,11 @@ class ScaleSource(StrEnum):
     DEPTH_WITHOUT_FLOOR = "depth without floor"
     """Depth; the camera's height is assumed."""
 
+    @property
+    def is_measured(self) -> bool:
+        """Whether distances were measured or given; those reasoned from a photo alone may still be moved."""
+        return self in (ScaleSource.GIVEN, ScaleSource.DEPTH, ScaleSource.DEPTH_WITHOUT_FLOOR)
+
 
 class DepthSource(StrEnum):
     """Where depth comes from."""

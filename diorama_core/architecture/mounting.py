@@ -8,7 +8,6 @@ import numpy as np
 from jaxtyping import Float
 
 from diorama_core.artefacts import ArchitectureEstimate, Cuboid, ObjectGeometry
-from diorama_core.provenance import ScaleSource
 from diorama_core.scene.types import Camera, Plane
 
 MIN_SCALE, MAX_SCALE = 0.7, 1.4
@@ -80,8 +79,7 @@ def mounted_on_walls(geometry: ObjectGeometry, room: ArchitectureEstimate) -> Ob
     """
     planes = {p.id: p for p in room.architecture.by_role("wall")}
     wall_of = {s.child: planes[s.parent] for s in room.supports if s.relation == "mounted on" and s.parent in planes}
-    measured = geometry.source in (ScaleSource.DEPTH, ScaleSource.DEPTH_WITHOUT_FLOOR)
-    most = MEASURED_SCALE if measured else np.inf
+    most = MEASURED_SCALE if geometry.source.is_measured else np.inf
     cuboids = tuple(
         _brought_to(c, wall_of[c.object_id], geometry.camera, most) if c.object_id in wall_of else c
         for c in geometry.cuboids

@@ -108,7 +108,7 @@ PLAN: tuple[Step, ...] = (
     Derivation(object_colours, ("balanced_inputs", "furniture_objects", "posed"), "colours"),
     Derivation(assemble, ("furniture_objects", "geometry", "white_room", "posed", "library", "colours"), "posed_scene"),
     # What holds what is decided for all objects together, now that their shapes and the walls are known.
-    Derivation(position_noise, ("inputs",), "noise"),
+    Derivation(position_noise, ("geometry",), "noise"),
     Derivation(decided_supports, ("posed_scene", "library", "noise", "furniture_objects"), "supports"),
     Derivation(supported, ("posed_scene", "supports"), "supported"),
     Correction(

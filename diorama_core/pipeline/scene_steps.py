@@ -76,9 +76,9 @@ def object_colours(
     return shared_by_sets(photo_colours(balanced.photo.rgb, objects), objects, shape_of)
 
 
-def position_noise(inputs: Inputs) -> ObservationNoise:
+def position_noise(geometry: ObjectGeometry) -> ObservationNoise:
     """How far observed positions can be trusted."""
-    return REASONED if inputs.depth_m is None else MEASURED
+    return MEASURED if geometry.source.is_measured else REASONED
 
 
 def decided_supports(

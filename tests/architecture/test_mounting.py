@@ -15,7 +15,7 @@ CAMERA = look(10, 5)
 ROOM = box_room(-2.0, 2.0, 4.0, 2.6)
 
 
-def hung(item, relation="mounted on", parent="back", source=ScaleSource.GIVEN):
+def hung(item, relation="mounted on", parent="back", source=ScaleSource.OBJECT_SIZES):
     edge = Support(item.object_id, parent, relation)
     geometry = ObjectGeometry(CAMERA, (item,), (edge,), source)
     (found,) = mounted_on_walls(

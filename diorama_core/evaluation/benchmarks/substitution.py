@@ -25,11 +25,14 @@ from diorama_core.artefacts import (
 )
 from diorama_core.errors import InputError
 from diorama_core.geometry.projection import box_iou
+from diorama_core.layout.recipes import recipe
+from diorama_core.layout.refinement.stage import MaskRefinement
+from diorama_core.library.record import ShapeLibrary
 from diorama_core.pipeline.given_stages import GivenCamera
 from diorama_core.pipeline.stages import Stages
 from diorama_core.progress import Progress
 from diorama_core.protocols import ArchitectureStage, GeometryStage, RetrievalStage
-from diorama_core.provenance import RoomMethod, RoomSource
+from diorama_core.provenance import RoomMethod, RoomSource, ScaleSource
 from diorama_core.scene.types import Plane, SceneObject, Support, yaw_rotation
 from diorama_core.synthesis.artefacts import true_geometry
 from diorama_core.synthesis.truth import TruthView
@@ -48,6 +51,8 @@ SUBSTITUTES: Mapping[str, str] = {
     "masks": "the true masks",
 }
 """What may be substituted, and what that means."""
+PLACES = frozenset({"cuboids", "distance"})
+"""Substitutes that give every object's place: it counts as measured in all later stages."""
 SAME_BOX = 0.5
 """Boxes that overlap less than this are of different objects."""
 
@@ -69,12 +74,22 @@ def with_true_masks(inputs: Inputs, view: TruthView) -> Inputs:
     return replace(inputs, instances=view.inputs.instances, instance_boxes=view.inputs.instance_boxes)
 
 
-def substituted(stages: Stages, view: TruthView, given: frozenset[str]) -> Stages:
-    """Stages whose results carry the truth where `given` says so ("masks" belongs to the inputs)."""
+def substituted(stages: Stages, view: TruthView, given: frozenset[str], library: ShapeLibrary) -> Stages:
+    """Stages whose results carry the truth where `given` says so ("masks" belongs to the inputs).
+
+    Args:
+        stages: Those that see the picture.
+        view: The truth.
+        given: Names of `SUBSTITUTES`.
+        library: Where shapes come from.
+    """
     if given & {"camera", "cuboids"}:
         stages = replace(stages, camera=GivenCamera(view.camera))
     if given & {"height", "scale", "distance", "rotation", "size", "supports", "cuboids"}:
         stages = replace(stages, geometry=_TrueGeometry(stages.geometry, view, given))
+    if given & PLACES:
+        layout = recipe("feasible", library, depth_measured=True)
+        stages = replace(stages, layout=layout, refinement=MaskRefinement.of(library, depth_measured=True))
     if "room" in given:
         stages = replace(stages, architecture=_TrueRoom(stages.architecture, view))
     if "shape" in given:
@@ -154,6 +169,8 @@ def geometry_with(
         view: The truth.
         given: Names of `SUBSTITUTES`.
     """
+    if given & PLACES:
+        geometry = replace(geometry, source=ScaleSource.GIVEN)
     if "cuboids" in given:
         geometry = _with_true_cuboids(geometry, truth, view)
     if "supports" in given:

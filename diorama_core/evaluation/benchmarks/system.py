@@ -262,8 +262,8 @@ def build_case(
         if "shape" in way.truth:  # the true shapes are not among those searched
             everything = embedded_stages(inputs, library)
             stages = replace(stages, pose=everything.pose, layout=everything.layout, refinement=everything.refinement)
-        stages = substituted(stages, view, way.truth)
         known = library if "shape" in way.truth else searched
+        stages = substituted(stages, view, way.truth, known)
         built = build_scene(inputs, known, stages=stages, progress=Progress(token=progress.token))
         spent, waited = time.process_time() - begun, time.perf_counter() - wall
         before = scene_scores(view, built.observed, library)

@@ -69,6 +69,8 @@ def measured_within_walls(
         objects: Of the photo.
         inputs: With the photo.
     """
+    if geometry.source.is_measured:
+        return geometry
     walls = tuple(w for w in room.architecture.by_role("wall") if w.confidence >= MIN_CONFIDENCE)
     floors = {p.id for p in room.architecture.by_role("floor")}
     parents = {s.child: s.parent for s in room.supports}

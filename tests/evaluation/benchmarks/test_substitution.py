@@ -7,6 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from diorama_core.arrangement.noise import MEASURED, REASONED, ObservationNoise
 from diorama_core.artefacts import Cuboid, Inputs, ObjectGeometry, Photo
 from diorama_core.errors import InputError
 from diorama_core.evaluation.benchmarks.substitution import (
@@ -16,6 +17,7 @@ from diorama_core.evaluation.benchmarks.substitution import (
     parse_substitutes,
     scaled,
 )
+from diorama_core.pipeline.scene_steps import position_noise
 from diorama_core.provenance import ScaleSource
 from diorama_core.scene.types import Camera, Intrinsics, Pose, Scene, SceneObject, Support, yaw_rotation
 from diorama_core.synthesis.layout_rooms import room_box
@@ -44,7 +46,9 @@ def view(height_m: float = 1.5) -> TruthView:
 
 def estimate(height_m: float = 1.8, yaw: float = 0.0) -> ObjectGeometry:
     cuboid = Cuboid("a", yaw_rotation(1.7 + yaw), yaw_rotation(yaw) @ [0.5, 4.0, 0.5], np.array([1.6, 1.0, 1.0]), 0.5)
-    return ObjectGeometry(camera(height_m, yaw), (cuboid,), (Support("a", "wall", "mounted on"),), ScaleSource.GIVEN)
+    return ObjectGeometry(
+        camera(height_m, yaw), (cuboid,), (Support("a", "wall", "mounted on"),), ScaleSource.OBJECT_SIZES
+    )
 
 
 def changed(*names: str, found: ObjectGeometry | None = None) -> ObjectGeometry:
@@ -103,6 +107,13 @@ def test_true_supports_and_cuboids() -> None:
     after = changed("cuboids")
     assert np.allclose(after.cuboids[0].centre, TRUE.pose.position)
     assert np.allclose(after.camera.T_world_camera, view().camera.T_world_camera)
+
+
+@pytest.mark.parametrize(
+    ("name", "noise"), [("cuboids", MEASURED), ("distance", MEASURED), ("rotation", REASONED), ("height", REASONED)]
+)
+def test_true_places_count_as_measured_in_later_stages(name: str, noise: ObservationNoise) -> None:
+    assert position_noise(changed(name)) == noise
 
 
 def test_extents_follow_the_nearest_axes() -> None:
