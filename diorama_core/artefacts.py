@@ -37,6 +37,8 @@ class Photo(ArrayValue):
     """Focal length in pixels of `rgb`, where the file states it."""
     offset: tuple[int, int] | None = field(default=None, metadata={"absent when none": True})
     """Left and top of the picture in its file, pixels of the upright original, where a border was cut off."""
+    half_turned: bool | None = field(default=None, metadata={"absent when none": True})
+    """True where the file shows the room upside down, and the picture was turned by 180 degrees; never False."""
 
     @property
     def width(self) -> int:

@@ -53,6 +53,8 @@ def build_folder(a: argparse.Namespace, options: BuildOptions) -> None:
 def check_options_of_one_photo(a: argparse.Namespace) -> None:
     """Raise `InputError` where an option is given that says something of one photo."""
     single = {"--depth": a.depth, "--intrinsics": a.intrinsics, "--boxes": a.boxes, "--masks": a.masks}
+    if a.half_turn:
+        raise InputError("--half-turn is for one photo; build upside-down photos of a folder one by one")
     if a.distortion:
         raise InputError("--distortion is for one photo; straighten the photos of a folder before")
     named = next((name for name, value in single.items() if value is not None), None)

@@ -115,6 +115,9 @@ def add_build(commands: Any) -> None:
         help="of the lens, as OpenCV has it, k1 alone at least: the photo is straightened before it is used",
     )
     p.add_argument(
+        "--half-turn", action="store_true", help="the photo and its files are upside down: turn them by 180 degrees"
+    )
+    p.add_argument(
         "--boxes",
         type=Path,
         metavar="FILE",
@@ -212,7 +215,7 @@ def _build_photo(a: argparse.Namespace, options: BuildOptions) -> None:
 
     if a.arrangements < 1:
         raise InputError(f"--arrangements {a.arrangements}: ask for at least one")
-    files = PhotoFiles(a.image, a.boxes, a.masks, a.depth, a.intrinsics, a.fov, a.distortion)
+    files = PhotoFiles(a.image, a.boxes, a.masks, a.depth, a.intrinsics, a.fov, a.distortion, a.half_turn)
     with progress_bar() as progress:
         room = build_files(files, options, a.output, progress, print_note)
         scenes = write_arrangements(room, a.arrangements, progress)

@@ -151,8 +151,10 @@ class PhotoPanel:
 
         return UploadField(gui, self._client, label, take, mime_type=mime_type).uuid
 
-    def _read_again(self, label: str, new: Mapping[Sort, Source], answer: DepthAnswer | None = None) -> None:
-        """Read the photo together with its other files, in the background, and keep what comes of it."""
+    def _read_again(
+        self, label: str, new: Mapping[Sort, Source], answer: DepthAnswer | None = None, *, turn: bool = False
+    ) -> None:
+        """Read the photo with its other files, turned by 180 degrees where asked, and keep what comes of it."""
         session, client, before = self._session, self._client, self._session.inputs
         if before is None or session.project is None:
             raise InputError("upload the photo first, then its boxes, depth or masks")
@@ -160,7 +162,7 @@ class PhotoPanel:
         told = (answer or DepthAnswer("")) if "depth" in new else depth_answer(session.project)
         boxes = new.get("boxes") or (boxes_json(before.boxes, before.photo) if before.boxes else None)
         upload = Upload(
-            given.get("photo") or _png(before.photo.rgb),
+            given.get("photo") or _png(before.photo.rgb[::-1, ::-1] if before.photo.half_turned else before.photo.rgb),
             before.photo.name,
             depth=new.get("depth", given.get("depth")),
             boxes=boxes,
@@ -168,6 +170,7 @@ class PhotoPanel:
             depth_scale=told.per_metre,
             depth_kind=told.kind,
             intrinsics=_intrinsics(self._camera.value),
+            half_turn=bool(before.photo.half_turned) != turn,
         )
         project = session.project
 
@@ -177,13 +180,12 @@ class PhotoPanel:
             keep_given(project, replace(upload, depth=new.get("depth"), masks=new.get("masks")))
             for warning in read.warnings[:3]:
                 client.notice(warning)
-            attitude = replace(
-                read.inputs, camera_attitude=before.camera_attitude, camera_height_m=before.camera_height_m
-            )
-            session.annotate(label, attitude, by=client)
+            attitude = None if turn else before.camera_attitude
+            inputs = replace(read.inputs, camera_attitude=attitude, camera_height_m=before.camera_height_m)
+            session.annotate(label, inputs, by=client)
 
         def ask(unknown: AmbiguousDepthError) -> None:
-            ask_depth(client, unknown, lambda chosen: self._read_again(label, new, chosen))
+            ask_depth(client, unknown, lambda chosen: self._read_again(label, new, chosen, turn=turn))
 
         session.reader.read(upload, client.id, client.post, done, ask)
 
@@ -208,6 +210,7 @@ class PhotoPanel:
             "accept all": boxes.accept_all,
             "board": boxes.open,
             "add box": self._add_selected,
+            "turn": lambda: self._read_again("turn the photo", {}, turn=True),
             "build": lambda: work.build(client),
             "join": lambda: join_photo(client),
             "named": lambda: boxes.name(action.pair[1]),

@@ -8,6 +8,7 @@ from diorama_app.session.client import Client
 from diorama_app.web.html import button
 from diorama_core.artefacts import Inputs
 from diorama_core.io.text import number_of
+from diorama_core.perception.inputs.boxes.standing import is_upside_down
 
 
 def photo_bar(client: Client, inputs: Inputs, proposals: int) -> str:
@@ -33,7 +34,14 @@ def photo_bar(client: Client, inputs: Inputs, proposals: int) -> str:
     if further is not None or awaits_photo(scene):
         hint = "Finds where this photo was taken, joins its objects with the scene's and inserts the others"
         pieces.append(button("Add to the scene", "join", title=hint, disabled=busy))
-    return f'<div class="bar">{"".join(pieces)}</div>'
+    doubt = upside_down_note() if further is None and is_upside_down(inputs.boxes, inputs.photo.height) else ""
+    return f'{doubt}<div class="bar">{"".join(pieces)}</div>'
+
+
+def upside_down_note() -> str:
+    """What is said of a photo whose things lie as in one that was turned by 180 degrees, and the button to turn it."""
+    turn = button("Turn photo", "turn", title="Turns the photo by 180 degrees, with its boxes, depth and masks")
+    return f'<div class="bar"><span class="lead">The photo seems to be upside down.</span>{turn}</div>'
 
 
 def no_scene_card(client: Client) -> str:

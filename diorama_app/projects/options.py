@@ -38,6 +38,8 @@ class PhotoFiles:
     fov_deg: float | None = None
     distortion: tuple[float, ...] = ()
     """Of the lens, in OpenCV's order: k1, k2, p1, p2, k3."""
+    half_turn: bool = False
+    """Whether all of them are upside down."""
 
 
 @dataclass(frozen=True)
@@ -98,6 +100,7 @@ def build_files(
         intrinsics=files.intrinsics,
         fov_deg=files.fov_deg,
         distortion=files.distortion,
+        half_turn=files.half_turn,
         profile=options.profile,
         networks=options.networks(files),
         recipe=options.recipe,

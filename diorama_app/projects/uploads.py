@@ -26,6 +26,8 @@ class Upload:
     depth_scale: float | None = None
     """Units of depth per metre; None where the file and the picture say."""
     depth_kind: DepthKind = "auto"
+    half_turn: bool = False
+    """Whether everything is upside down in its file."""
 
     def answered(self, answer: DepthAnswer) -> Upload:
         """The upload with what a person says of its depth."""
@@ -78,4 +80,5 @@ def _read(upload: Upload) -> ReadInputs:
         masks=upload.masks,
         intrinsics=upload.intrinsics,
         fov_deg=upload.fov_deg,
+        half_turn=upload.half_turn,
     )

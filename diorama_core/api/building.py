@@ -40,6 +40,7 @@ def build(
     intrinsics: tuple[float, float, float, float] | None = None,
     fov_deg: float | None = None,
     distortion: Sequence[float] = (),
+    half_turn: bool = False,
     profile: Profile = "auto",
     networks: NetworkChoice | None = None,
     recipe: Recipe = "feasible",
@@ -64,6 +65,7 @@ def build(
         intrinsics: fx, fy, cx, cy in pixels of the upright original photo.
         fov_deg: horizontal field of view in degrees, instead of `intrinsics`.
         distortion: of the lens, in OpenCV's order: k1, k2, p1, p2, k3; the photo is straightened before it is used.
+        half_turn: whether the photo and all that belongs to it are upside down, and are turned by 180 degrees.
         profile: "auto" uses the networks on this machine, "embedded" none, "foundation" insists on the paper's.
         networks: detector and depth network by id, instead of the best ones on this machine.
         recipe: of the layout optimiser.
@@ -94,6 +96,7 @@ def build(
         fov_deg=fov_deg,
         boxes=input_arrays.boxes_file(boxes),
         masks=input_arrays.masks_file(masks),
+        half_turn=half_turn,
     )
     for warning in read.warnings:
         warn(warning)

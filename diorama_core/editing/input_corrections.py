@@ -12,6 +12,7 @@ from jaxtyping import Bool
 from diorama_core.artefacts import Box, Inputs, LabelledBox, Photo
 from diorama_core.geometry.projection import box_iou
 from diorama_core.library.labels import understand_label
+from diorama_core.perception.inputs.boxes.standing import turned_box
 
 SAME_BOX_IOU = 0.98
 """Boxes that overlap so much are the same one, written with fewer digits."""
@@ -84,7 +85,11 @@ def labelled_box(box: Box, label: str) -> LabelledBox:
 
 
 def boxes_json(boxes: Sequence[LabelledBox], photo: Photo) -> bytes:
-    """Boxes as a file of the documented form, in pixels of the upright original, whose size it states."""
+    """Boxes as a file of the documented form, in pixels of the upright original, whose size it states.
+
+    Of a photo that was turned by 180 degrees, they lie as in its file.
+    """
+    boxes = [turned_box(b, photo) for b in boxes] if photo.half_turned else boxes
     sx, sy = photo.original_size[0] / photo.width, photo.original_size[1] / photo.height
     left, top = photo.offset or (0, 0)
     corners = [(b, left + sx * np.array(b.box[::2]), top + sy * np.array(b.box[1::2])) for b in boxes]

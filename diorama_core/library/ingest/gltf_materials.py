@@ -15,7 +15,8 @@ METAL_SPECULAR, METAL_DIFFUSE = 0.5, 0.2
 
 def use_specular_glossiness(material: Json) -> None:
     """Diffuse colour and picture as base colour, glossiness as 1 - roughness, where the material has nothing else."""
-    found = material.get("extensions", {}).get(SPECULAR_GLOSSINESS)
+    # The loader converts what it still finds, and makes dull colours white.
+    found = material.get("extensions", {}).pop(SPECULAR_GLOSSINESS, None)
     plain = material.setdefault("pbrMetallicRoughness", {})
     if found is None or "baseColorTexture" in plain or "baseColorFactor" in plain:
         return

@@ -6,7 +6,7 @@ wrong, where, and what to do; what can be used with a remark comes back with a w
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -14,11 +14,11 @@ import numpy as np
 from diorama_core.artefacts import Inputs, LabelledBox
 from diorama_core.errors import InputError
 from diorama_core.perception.inputs.boxes.reading import read_boxes
-from diorama_core.perception.inputs.boxes.standing import is_upside_down
+from diorama_core.perception.inputs.boxes.standing import is_upside_down, turned_box
 from diorama_core.perception.inputs.depth.kinds import DepthKind
 from diorama_core.perception.inputs.depth.reading import DepthEncoding, DepthOptions, read_depth
 from diorama_core.perception.inputs.masks.reading import read_masks
-from diorama_core.perception.inputs.photos.reading import DecodedPhoto, read_photo
+from diorama_core.perception.inputs.photos.reading import DecodedPhoto, half_turned, read_photo
 from diorama_core.perception.inputs.source import Source, read_folder, read_source
 from diorama_core.scene.types import Intrinsics
 
@@ -46,6 +46,7 @@ def read_inputs(
     fov_deg: float | None = None,
     boxes: Path | bytes | Source | None = None,
     masks: Path | bytes | Source | None = None,
+    half_turn: bool = False,
     max_side: int = 1600,
 ) -> ReadInputs:
     """Read and check what the user gave.
@@ -63,6 +64,7 @@ def read_inputs(
         fov_deg: Horizontal field of view of the upright photo in degrees, instead of `intrinsics`.
         boxes: In any form of `BOX_FORMS`, by default in pixels of the upright original photo.
         masks: In any form of `MASK_FORMS`: a picture with one colour or one id per instance, a folder, an array.
+        half_turn: Whether the photo and all that belongs to it are upside down, and are turned by 180 degrees.
         max_side: Larger photos are reduced so that the longer side has this many pixels.
 
     Returns:
@@ -74,22 +76,26 @@ def read_inputs(
     decoded = read_photo(read_source(image, "photo", name), max_side)
     photo, warnings = decoded.photo, list(decoded.notes)
     camera = _read_intrinsics(decoded, intrinsics, fov_deg)
+    unturned, decoded = decoded, half_turned(decoded) if half_turn else decoded
+    if camera is not None and half_turn:
+        camera = replace(camera, cx=camera.width - camera.cx, cy=camera.height - camera.cy)
     depth_m, instances = None, None
     options = DepthOptions(depth_scale, depth_encoding, depth_kind)
     labelled: tuple[LabelledBox, ...] = ()
     matched: tuple[tuple[int, LabelledBox], ...] = ()
     if boxes is not None:
-        labelled, notes = read_boxes(read_source(boxes, "boxes"), decoded)
+        labelled, notes = read_boxes(read_source(boxes, "boxes"), unturned)
+        labelled = tuple(turned_box(b, photo) for b in labelled) if half_turn else labelled
         warnings += notes
         if is_upside_down(labelled, photo.height):
-            warnings.append("the photo seems to be upside down: turn it by 180 degrees, and its boxes with it")
+            warnings.append("the photo seems to be upside down: turn it with its boxes (Turn photo, or --half-turn)")
     if depth is not None:
         depth_m, notes = read_depth(read_source(depth, "depth"), options, decoded, labelled, camera)
         warnings += notes
     if masks is not None:
         instances, matched, notes = read_masks(read_folder(masks, "masks"), labelled, decoded)
         warnings += notes
-    return ReadInputs(Inputs(photo, labelled, instances, matched, depth_m, camera), tuple(warnings))
+    return ReadInputs(Inputs(decoded.photo, labelled, instances, matched, depth_m, camera), tuple(warnings))
 
 
 def _read_intrinsics(

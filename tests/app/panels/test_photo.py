@@ -145,6 +145,25 @@ def test_depth_and_camera_go_with_the_photo(session, client, page, panel) -> Non
     assert session.inputs.intrinsics.fx == 60.0
 
 
+def test_a_photo_that_is_upside_down_is_turned_with_its_boxes_and_back(session, client, page, panel) -> None:
+    page.upload("Upload a photo", "room.png", picture())
+    low = [(2, 2, 20, 10), (22, 2, 40, 10), (42, 2, 60, 10)]  # things of the floor at the top
+    boxes = [{"class": "rug", "bbox": b} for b in low] + [{"class": "ceiling lamp", "bbox": [20, 38, 40, 46]}]
+    page.upload("Add boxes", "boxes.json", json.dumps(boxes).encode())
+    assert page.shows("turn")
+    page.act("turn")
+    assert session.inputs.photo.half_turned
+    assert session.inputs.boxes[0].box == (44.0, 38.0, 62.0, 46.0)
+    assert not page.shows("turn")
+    page.write("Camera", "60,60,30,20")  # the photo is read again
+    assert (session.inputs.intrinsics.cx, session.inputs.intrinsics.cy) == (34.0, 28.0)
+    assert session.inputs.boxes[0].box == (44.0, 38.0, 62.0, 46.0)
+    session.undo(client)
+    session.undo(client)
+    assert not session.inputs.photo.half_turned
+    assert page.shows("turn")
+
+
 def test_the_photo_is_shown_once_on_the_board_or_in_the_panel(client, page, panel) -> None:
     assert 'class="photo"' in page.html
     page.act("board")

@@ -14,6 +14,7 @@ import trimesh
 
 from diorama_core.errors import LibraryError
 from diorama_core.io.file_heads import head_of
+from diorama_core.io.glb import read_glb, write_glb
 from diorama_core.library.ingest.adding import members_of
 from diorama_core.library.ingest.convention import OBJ
 from diorama_core.library.ingest.gltf_compressed import meshopt_view
@@ -111,6 +112,18 @@ def test_diffuse_of_specular_glossiness_is_the_base_colour() -> None:
     assert plain["baseColorFactor"] == [0.4, 0.3, 0.2, 1.0]
     assert plain["baseColorTexture"] == {"index": 3}
     assert (plain["metallicFactor"], plain["roughnessFactor"]) == (0.0, 0.75)
+
+
+def test_the_loader_leaves_colours_of_specular_glossiness_alone(tmp_path: Path) -> None:
+    mesh = chair()
+    mesh.visual = trimesh.visual.TextureVisuals(material=trimesh.visual.material.PBRMaterial())
+    document, binary = read_glb(mesh.export(file_type="glb"))
+    dull = {"diffuseFactor": [0.43, 0.27, 0.16, 1.0], "glossinessFactor": 0.2}
+    document["materials"] = [{"extensions": {"KHR_materials_pbrSpecularGlossiness": dull}}]
+    document["meshes"][0]["primitives"][0]["material"] = 0
+    (tmp_path / "chair.glb").write_bytes(write_glb(document, binary))
+    (found,) = read_model(tmp_path / "chair.glb", tmp_path).scene.geometry.values()
+    assert found.visual.material.baseColorFactor[:3] == pytest.approx([110, 69, 41], abs=1)
 
 
 @pytest.mark.parametrize("compress", ["draco", "meshopt"])

@@ -6,9 +6,10 @@ import json
 
 import numpy as np
 import pytest
+from PIL import Image
 
 from diorama_core.perception.inputs import read_inputs
-from tests.perception.inputs.files import WIDTH, encoded, picture, refusal
+from tests.perception.inputs.files import HEIGHT, WIDTH, box, boxes_json, encoded, npy, picture, refusal
 
 
 class TestIntrinsics:
@@ -28,6 +29,23 @@ class TestIntrinsics:
     def test_refuses_two_statements_and_odd_angles(self) -> None:
         assert "one of them" in refusal(encoded(picture()), intrinsics=(80, 80, 48, 32), fov_deg=60.0)
         assert "--fov" in refusal(encoded(picture()), fov_deg=190.0)
+
+
+def test_what_is_upside_down_is_turned_with_all_that_belongs_to_it() -> None:
+    depth = np.tile(np.linspace(1.0, 3.0, HEIGHT, dtype=np.float32)[:, None], (1, WIDTH))
+    masks = Image.new("L", (WIDTH, HEIGHT))
+    masks.paste(80, (10, 6, 40, 30))
+    given = {"boxes": boxes_json(box(10, 6, 40, 30)), "masks": encoded(masks), "intrinsics": (80.0, 80.0, 40.0, 30.0)}
+    plain = read_inputs(encoded(picture()), **given).inputs
+    turned = read_inputs(encoded(picture()), half_turn=True, **given).inputs
+    assert (turned.photo.rgb == plain.photo.rgb[::-1, ::-1]).all()
+    assert (turned.photo.half_turned, plain.photo.half_turned) == (True, None)
+    assert turned.boxes[0].box == (WIDTH - 40, HEIGHT - 30, WIDTH - 10, HEIGHT - 6)
+    assert turned.instances is not None
+    assert (turned.instances == plain.instances[::-1, ::-1]).all()
+    assert (turned.intrinsics.cx, turned.intrinsics.cy) == (WIDTH - 40.0, HEIGHT - 30.0)
+    above = read_inputs(encoded(picture()), half_turn=True, depth=npy(depth), depth_kind="depth", depth_scale=1.0)
+    assert above.inputs.depth_m[0].mean() == pytest.approx(3.0)
 
 
 def test_every_shared_photo_is_read_with_all_that_came_with_it(photos: list) -> None:

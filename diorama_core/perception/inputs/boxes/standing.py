@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 
-from diorama_core.artefacts import LabelledBox
+from diorama_core.artefacts import LabelledBox, Photo
 from diorama_core.library.taxonomy import UNKNOWN, broad, category
 
 _USUAL = {"ceiling": (0.18, 0.14), "wall": (0.38, 0.15), "floor": (0.64, 0.14), "rug": (0.8, 0.12)}
@@ -31,3 +32,9 @@ def is_upside_down(boxes: Sequence[LabelledBox], height: int) -> bool:
         at = (box.box[1] + box.box[3]) / 2 / height
         ratio += ((at - mean) ** 2 - (1.0 - at - mean) ** 2) / (2 * deviation**2)
     return ratio > CERTAIN
+
+
+def turned_box(marked: LabelledBox, photo: Photo) -> LabelledBox:
+    """A box of a photo after that was turned by 180 degrees."""
+    x1, y1, x2, y2 = marked.box
+    return replace(marked, box=(photo.width - x2, photo.height - y2, photo.width - x1, photo.height - y1))

@@ -28,6 +28,8 @@ class PhotoFrame:
     """Left, top, right and bottom of a border that was cut off, pixels of the upright file."""
     orientation: int = 1
     """The header's EXIF orientation."""
+    half_turned: bool = False
+    """Whether the upright file is upside down all the same, and everything is turned by 180 degrees at the end."""
 
     @property
     def inner_size(self) -> Size:
@@ -66,6 +68,12 @@ class PhotoFrame:
         Raises:
             InputError: its proportions are neither those of the photo nor of its stored pixels.
         """
+        laid, notes = self._laid_over(name, what, values)
+        return (laid[::-1, ::-1] if self.half_turned else laid), notes
+
+    def _laid_over(
+        self, name: str, what: str, values: Shaped[np.ndarray, "h w *c"]
+    ) -> tuple[Shaped[np.ndarray, "h2 w2 *c"], tuple[str, ...]]:
         height, width = values.shape[:2]
         size = (width, height)
         bordered = any(self.margins) and size != self.inner_size

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -77,6 +77,17 @@ def read_photo(source: Source, max_side: int) -> DecodedPhoto:
         offset=frame.margins[:2] if any(frame.margins) else None,
     )
     return DecodedPhoto(photo, frame, (*notes, *more, *bits, *smaller, *cut, *_darkness(reduced)))
+
+
+def half_turned(decoded: DecodedPhoto) -> DecodedPhoto:
+    """The photo turned by 180 degrees, as all that is laid over it will be."""
+    rgb = np.ascontiguousarray(decoded.photo.rgb[::-1, ::-1])
+    rgb.setflags(write=False)
+    return replace(
+        decoded,
+        photo=replace(decoded.photo, rgb=rgb, half_turned=True),
+        frame=replace(decoded.frame, half_turned=True),
+    )
 
 
 def _largest_page(picture: Image.Image, source: Source) -> tuple[Image.Image, tuple[str, ...]]:
