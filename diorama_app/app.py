@@ -30,6 +30,7 @@ from diorama_app.panels.library import LibraryPanel
 from diorama_app.panels.light import LightPanel
 from diorama_app.panels.measure import Tape
 from diorama_app.panels.networks import Networks
+from diorama_app.panels.object_card import ObjectCard
 from diorama_app.panels.one_panel import OnePanel
 from diorama_app.panels.optimiser import Optimiser
 from diorama_app.panels.outliner import Outliner
@@ -233,10 +234,11 @@ class Editor:
         gui = client.viser_client.gui
         about, library, exporting = (add_tab(name) for name in RIGHT_TABS)
         with about:
-            place("The object", lambda: Properties(gui, client, self.commands))
+            place("The object", lambda: ObjectCard(gui, client, self.commands))
             place("The surface", lambda: Surfaces(gui, client))
             place("Your own model", lambda: OwnModel(gui, client))
             place("The alternatives", lambda: Alternatives(gui, client))
+            place("The properties", lambda: Properties(gui, client))
             place("What supports it", lambda: Supports(gui, client))
             place("The correction by the photo", lambda: PhotoCorrection(gui, client))
         with library:

@@ -34,7 +34,7 @@ class Views:
         if camera is None and client.further_photo is not None:
             raise EditRefused(f"the camera of {client.photo_name} is not known yet; add the photo to the scene first")
         if camera is None:
-            raise EditRefused("this scene has no photo; upload one in the Photo panel")
+            raise EditRefused("this scene has no photo; upload one in the Photo tab")
         self._plain(client)
         low, high = bounds(self._session.scene)
         far = float(np.linalg.norm(high - low)) + 2.0
@@ -53,7 +53,7 @@ class Views:
         """Overlay the photo on the model with the given opacity."""
         camera, photo = client.looked_through
         if photo is None or camera is None:
-            raise EditRefused("this scene has no photo to lay over the model; upload one in the Photo panel")
+            raise EditRefused("this scene has no photo to lay over the model; upload one in the Photo tab")
         if opacity > 0.0 and (client.plan or not client.view.camera.through_photo):
             self.photo(client)
         client.view.photo.show_overlay(camera, photo.rgb, opacity)

@@ -80,7 +80,14 @@ def build_commands(
         Command("save", "Save", save, "S", "cmd/ctrl", "Save now (every change is saved anyway)"),
         Command("measure", "Measure", start_measuring, "M", None, "Measure between two clicks; rescale by it"),
         Command("picture", "Picture", show_picture, "I", None, "Draw a picture or a film of the scene to download"),
-        Command("find_furniture", "Find furniture", find_furniture, None, None, "Box the photo's furniture by network"),
+        Command(
+            "find_furniture",
+            "Detect furniture",
+            find_furniture,
+            None,
+            None,
+            "Detect the furniture in the photo with a network",
+        ),
         Command(
             "start_page", "Start page", lambda g: g.open_start(), None, None, "A photo, a description, an empty room"
         ),
@@ -88,8 +95,10 @@ def build_commands(
             "projects", "All projects", lambda g: g.open_projects(), None, None, "Search, rename, duplicate, delete"
         ),
         Command("tour", "Show me around", lambda g: g.start_tour(), None, None, "Six steps through the page"),
-        Command("help", "What you can do", show_help, "?", "shift", "Every command with its key"),
-        Command("escape", "Clear selection", escape, "escape", None, "Stop what is under way, or select nothing"),
+        Command("help", "Help", show_help, "?", "shift", "Every command with its key"),
+        Command(
+            "escape", "Clear selection", escape, "escape", None, "Cancel the current action, or clear the selection"
+        ),
     )
     return CommandTable(rows)
 

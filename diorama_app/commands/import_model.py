@@ -93,8 +93,8 @@ class Fix:
 FIXES: dict[str, Fix] = {
     "left": Fix("Front is left", "Make the left side the front", front="+y"),
     "back": Fix("Front is back", "Make the back the front", front="-x"),
-    "tip": Fix("Tip over", "Turn the back to the top", up="-x", front="+z"),
-    "roll": Fix("Roll over", "Turn the left side to the top", up="+y", front="+x"),
+    "tip": Fix("Rotate forward 90°", "Turns its back to the top", up="-x", front="+z"),
+    "roll": Fix("Rotate sideways 90°", "Turns its left side to the top", up="+y", front="+x"),
     "flip": Fix("Upside down", "Turn the bottom to the top", up="-z", front="+x"),
     "metres": Fix("x 100", "The file is in metres, not centimetres", scale=100.0),
     "centimetres": Fix("/ 100", "The file is in centimetres, not metres", scale=0.01),
@@ -129,7 +129,7 @@ def correct_model(client: Client, object_id: str, fix: Fix | None = None, *, cat
     session = client.session
     item, user_library = session.scene.object(object_id), session.library
     if not isinstance(user_library, UserLibrary) or not user_library.has_own(item.shape_id):
-        raise EditRefused("only models of your own can be corrected; upload one under Library")
+        raise EditRefused("only models that you uploaded can be corrected; upload one in the Library tab")
     own, change = user_library.own(), fix or Fix("", "")
     found = corrected(own, item.shape_id, up=change.up, front=change.front, scale=change.scale, category=category)
     stem = item.shape_id.partition("~")[0]

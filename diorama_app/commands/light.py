@@ -53,7 +53,7 @@ def switch(client: Client, lamp_id: str) -> None:
     """Switch one lamp on or off."""
     scene = client.session.scene
     if not scene.has_object(lamp_id):
-        raise EditRefused("this lamp is gone")
+        raise EditRefused("this lamp no longer exists")
     on = lamp_id not in (scene.light_settings.lamps_on or ())
     label = f"{scene.object(lamp_id).label} {'on' if on else 'off'}"
     _set(client, label, switch_lamp(scene, lamp_id, on=on))

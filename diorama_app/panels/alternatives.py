@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 import viser
 
@@ -18,7 +20,8 @@ from diorama_core.library.record import Shape
 from diorama_core.library.search import search
 from diorama_core.scene.types import Candidate, SceneObject
 
-SHOWN = 12
+SHOWN, FIRST_SHOWN = 12, 4
+"""What is found, and how many of it are shown before somebody asks for more: two rows."""
 SIZE_NAMES: dict[SizeMode, str] = {
     "as found": "As in photo",
     "same box": "Same box",
@@ -38,13 +41,15 @@ class Alternatives:
 
     def __init__(self, gui: viser.GuiApi, client: Client) -> None:
         self._client = client
-        self._options = LiveHtml(gui, self._act)
+        self._html = LiveHtml(gui, self._act)
         self._words = gui.add_text(
             "Swap for", "", visible=False, hint="Words to search for; empty shows the ranked alternatives"
         )
         on_change(self._words, lambda v: client.post(self.refresh, key="swap search"))
-        self._html = LiveHtml(gui, self._act)
+        self._options = LiveHtml(gui, self._act)
         self._of: str | None = None
+        self._all = False
+        """Whether all of them are shown, not only the first."""
 
     def refresh(self) -> None:
         """Draw the alternatives of the selected object."""
@@ -55,7 +60,7 @@ class Alternatives:
             self._html.show("")
             return
         if self._of != item.id:
-            self._of = item.id
+            self._of, self._all = item.id, False
             show_value(self._words, "")
         self._options.show(self._choices(item))
         words = self._words.value.strip()
@@ -70,16 +75,21 @@ class Alternatives:
         same = button(f"All {count} alike", "alike", title="Swap all objects with this shape", on=preferences.all_alike)
         keep = button("Keep colour", "keep", title="Keep the colour of the replaced object", on=preferences.keep_colour)
         return (
-            f'<h4>Swap</h4><div class="bar tight">{sizes}</div>'
+            f'<h4>Size when swapped</h4><div class="bar tight">{sizes}</div>'
             f'<div class="bar tight">{keep}{same if count > 1 else ""}</div>'
         )
 
     def _own(self, item: SceneObject) -> str:
         if not item.candidates:
             return self._similar(item)
-        tiles = "".join(self._candidate(item, c) for c in item.candidates[:SHOWN])
+        return self._grid([self._candidate(item, c) for c in item.candidates[:SHOWN]])
+
+    def _grid(self, tiles: Sequence[str]) -> str:
+        shown = tiles if self._all else tiles[:FIRST_SHOWN]
+        more = "" if len(shown) == len(tiles) else button(f"{len(tiles) - len(shown)} more", "all")
         unit = "" if self._client.preferences.unit == "ft-in" else f" ({self._client.preferences.unit})"
-        return f'<h4>Alternatives — click to swap <span class="dim">{unit}</span></h4><div class="grid">{tiles}</div>'
+        grid = f'<h4>Alternatives{unit}</h4><div class="grid two">{"".join(shown)}</div>'
+        return f'{grid}<div class="bar tight">{more}</div>'
 
     def _similar(self, item: SceneObject) -> str:
         """For what was inserted by hand: the library's shapes of its category, most alike in size first."""
@@ -88,32 +98,30 @@ class Alternatives:
         near = sorted(same, key=lambda s: float(np.abs(np.log(np.sort(np.asarray(s.size_m)) / size)).sum()))
         if len(near) < 2:
             return "<p class='dim'>The library has no other shape of this category. Search it above.</p>"
-        tiles = "".join(self._shape(item, s) for s in near[:SHOWN])
-        return f'<h4>Alternatives — click to swap</h4><div class="grid">{tiles}</div>'
+        return self._grid([self._shape(item, s) for s in near[:SHOWN]])
 
     def _found(self, item: SceneObject, words: str) -> str:
         found = search(self._client.session.offered, words, k=SHOWN)
         if not found:
             return f"<p class='dim'>Nothing in the library matches “{text(words)}”. Try another word.</p>"
-        return f'<div class="grid">{"".join(self._shape(item, s) for s in found)}</div>'
+        return f'<div class="grid two">{"".join(self._shape(item, s) for s in found)}</div>'
 
     def _candidate(self, item: SceneObject, candidate: Candidate) -> str:
         size = [e * s for e, s in zip(candidate.shape_size_m, candidate.pose.scale, strict=True)]
-        return self._tile(item, candidate.shape_id, size, f"score {candidate.score:.2f}")
+        return self._tile(item, candidate.shape_id, size)
 
     def _shape(self, item: SceneObject, shape: Shape) -> str:
-        return self._tile(item, shape.id, list(shape.size_m), shape.category)
+        return self._tile(item, shape.id, list(shape.size_m))
 
-    def _tile(self, item: SceneObject, shape_id: str, size: list[float], about: str) -> str:
+    def _tile(self, item: SceneObject, shape_id: str, size: list[float]) -> str:
         current = shape_id == item.shape_id
         name, key = text(shape_caption(self._client.session, shape_id)), text(shape_id)
         shown = format_size(size[1], size[0], size[2], self._client.preferences.unit)
         return (
             f'<button type="button" class="tile {"on" if current else ""}" data-do="swap" data-arg="{key}" '
-            f'data-peek="{key}" title="{name}&#10;{text(shown)} (width, depth, height)&#10;{text(about)}">'
+            f'data-peek="{key}" title="Swap for {name}&#10;{text(shown)} (width, depth, height)">'
             f"{self._client.session.thumbnails.html(shape_id, self._paint(item))}<b>{name}</b>"
-            f"<small>{text(shown)}</small>"
-            f"<small>{'in use' if current else text(about)}</small></button>"
+            f"<small>{text(shown)}</small>{'<small>in use</small>' if current else ''}</button>"
         )
 
     def _paint(self, item: SceneObject) -> Paint:
@@ -127,6 +135,9 @@ class Alternatives:
             client.post(lambda: self._peek(action.arg), key="peek")
         elif action.do == "size" and action.arg in SIZE_MODES:
             client.post(lambda: client.change_preferences(size_mode=action.arg))
+        elif action.do == "all":
+            self._all = True
+            client.post(self.refresh)
         elif action.do == "alike":
             client.post(lambda: client.change_preferences(all_alike=not client.preferences.all_alike))
         elif action.do == "keep":

@@ -105,7 +105,7 @@ class LibraryPanel:
         categories = [("", "Every category"), *((c, f"{c.capitalize()} ({n})") for c, n in sorted(count.items()))]
         styles = [("", "Every style"), *((s, s.capitalize()) for s in sorted({s.style for s in shapes if s.style}))]
         sizes = [("", "Every size"), *SIZE_NAMES.items()]
-        fitting = button("Fits here", "fitting", title="Only what finds a place in this room", on=chosen.fitting)
+        fitting = button("Fits here", "fitting", title="Only what fits into this room", on=chosen.fitting)
         return (
             f'<div class="bar tight">{shelves}{fitting}</div><div class="filters">'
             + _select("category", "Category", categories, chosen.category)

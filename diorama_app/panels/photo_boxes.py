@@ -176,7 +176,7 @@ class PhotoBoxes:
         if inputs is None or not words or inputs.boxes[index].label == words:
             return
         now = labelled_box(inputs.boxes[index].box, words)
-        self._annotate(f"{inputs.boxes[index].label} is a {words}", with_box_at(inputs, index, now))
+        self._annotate(f"change {inputs.boxes[index].label} to {words}", with_box_at(inputs, index, now))
 
     def name(self, word: str) -> None:
         """A name was chosen for the selected box."""

@@ -21,7 +21,7 @@ from diorama_core.artefacts import FurtherPhoto
 
 TILE_PX = 200
 """Size of the pictures, which are shown at half of it."""
-ADVICE = "Take it a step or two aside, with much of the same in view. What is in the scene stays."
+ADVICE = "Take it one or two steps to the side, with most of the same furniture in view. The scene is kept."
 KEPT = 128
 """Encoded pictures."""
 

@@ -190,7 +190,7 @@ class Plan:
                     outline = np.array(arg, dtype=np.float64).reshape(-1, 2)
                     session.edit("draw the room", lambda s: draw_room(s, outline), by=client)
         except (KeyError, TypeError, IndexError, json.JSONDecodeError) as error:
-            raise EditRefused("that is not in the plan any more") from error
+            raise EditRefused("that is no longer in the plan") from error
         finally:
             self._told = ""  # what was dragged goes where the document says
             self.refresh()

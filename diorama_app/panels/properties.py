@@ -1,4 +1,4 @@
-"""Properties of the selection: name, position, rotation, size, colour; align and distribute several."""
+"""Properties of the selection: colour and materials, and name, position, direction and size in numbers."""
 
 from __future__ import annotations
 
@@ -8,9 +8,7 @@ import numpy as np
 import viser
 
 from diorama_app.commands import edit as editing
-from diorama_app.commands.registry import CommandTable
 from diorama_app.panels.fields import on_change, show_if, show_value
-from diorama_app.panels.toolbar import run_command
 from diorama_app.session.client import Client
 from diorama_app.session.units import UNITS, Unit, format_length, in_unit, parse_length
 from diorama_app.web.html import Action, LiveHtml, button, text
@@ -47,24 +45,6 @@ FIELDS: dict[str, tuple[str, str, tuple[str, str, str]]] = {
 }
 """What the fields are called: the action, a hint, and the name of every axis."""
 
-ALIGN = {
-    "align_left": "Left",
-    "align_centre": "Middle",
-    "align_right": "Right",
-    "align_back": "Far",
-    "align_depth": "Centre",
-    "align_front": "Near",
-}
-
-DO_WITH_IT = {
-    "focus": "Focus",
-    "duplicate": "Duplicate",
-    "mirror": "Mirror",
-    "drop": "Drop",
-    "lock": "Lock",
-    "delete": "Delete",
-}
-
 SHOWN_OVERLAP_M = 0.001
 """Objects that reach less into one another only touch."""
 
@@ -72,13 +52,14 @@ SHOWN_OVERLAP_M = 0.001
 class Properties:
     """Fields of the object selected last."""
 
-    def __init__(self, gui: viser.GuiApi, client: Client, commands: CommandTable) -> None:
-        self._client, self._commands = client, commands
-        self._header = LiveHtml(gui, self._act)
-        self._name = gui.add_text("Name", "", visible=False)
-        self._fields = LiveHtml(gui, self._act)
+    def __init__(self, gui: viser.GuiApi, client: Client) -> None:
+        self._client = client
         self._colour = gui.add_rgb("Colour", (200, 200, 200), visible=False, hint="Paints its main material")
         self._own = LiveHtml(gui, self._act)
+        self._fold = LiveHtml(gui, self._act)
+        self._name = gui.add_text("Name", "", visible=False)
+        self._fields = LiveHtml(gui, self._act)
+        self._why = LiveHtml(gui)
         on_change(self._name, lambda v: self._with(lambda i: editing.rename(client, i, v), "name"))
         on_change(
             self._colour,
@@ -89,20 +70,21 @@ class Properties:
         )
 
     def refresh(self) -> None:
-        """Show the selected object, or what to do when there is none."""
-        item = self._client.selected
-        show_if(item is not None, self._name, self._colour)
-        empty = "" if self._client.surface is not None else self._advice()
-        self._header.show(empty if item is None else self._card(item))
-        self._fields.show("" if item is None else self._lengths(item))
+        """Show the selected object; its numbers where the person has unfolded them."""
+        item, numbers = self._client.selected, self._client.preferences.numbers
+        show_if(item is not None, self._colour)
+        show_if(item is not None and numbers, self._name)
+        self._fold.show("" if item is None else _fold_button(unfolded=numbers))
+        self._fields.show(self._lengths(item) if item is not None and numbers else "")
         if item is None:
             self._own.show("")
+            self._why.show("")
             return
         show_value(self._name, item.label)
         show_value(self._colour, self._shown_colour(item))
         opens = self._client.session.shapes.can_open(item.shape_id)
-        why = _why(strongest(self._client.session.reasons, item.id))
-        self._own.show((_opening(item) if opens else "") + _surface(item) + why)
+        self._own.show((_opening(item) if opens else "") + _surface(item))
+        self._why.show(_why(strongest(self._client.session.reasons, item.id)))
 
     def _shown_colour(self, item: SceneObject) -> tuple[int, int, int]:
         """The paint of an object, or else the main material's colour from the photo, or else the shape's own."""
@@ -182,47 +164,6 @@ class Properties:
         if chosen:
             self._client.post(lambda: act(chosen[0]), key=f"{field} {chosen[0]}")
 
-    def _advice(self) -> str:
-        if self._client.session.unfinished:
-            return (
-                '<div class="card">There is no room yet. Mark the furniture in the photo, then <b>Build scene</b> in '
-                "the <b>Photo</b> tab.</div>"
-            )
-        if not self._client.session.scene.objects:
-            return '<div class="card">The room is empty. Insert furniture from the <b>Library</b> tab.</div>'
-        return (
-            '<div class="card"><b>Click an object</b> in the view or in the list, or <b>drag it</b> to where it should '
-            "be.<br><span class='dim'>Shift-click selects several, Shift-drag selects by rectangle, Esc clears. "
-            "Click a wall, the floor or the ceiling to finish it.</span>"
-            "</div>"
-        )
-
-    def _card(self, item: SceneObject) -> str:
-        several = len(self._client.selection)
-        more = f' <span class="dim">and {several - 1} more</span>' if several > 1 else ""
-        photo_layer = f" · {100 * item.confidence:.0f}% confidence" if item.box_px is not None else ""
-        problems = "".join(
-            f' <span class="chip bad">{text(w)}</span>' for w in self._client.session.badges.get(item.id, ())
-        )
-        return (
-            f"<p><b>{text(item.label)}</b>{more}{problems}<br><span class='dim'>{text(item.category)}{photo_layer}"
-            f"{' · locked' if item.locked else ''}{' · hidden' if item.hidden else ''}</span></p>"
-            '<div class="three">'
-            + "".join(self._command(command, label) for command, label in DO_WITH_IT.items())
-            + "</div>"
-            + (self._together(item, several) if several > 1 else "")
-        )
-
-    def _together(self, item: SceneObject, several: int) -> str:
-        align = "".join(self._command(c, label) for c, label in ALIGN.items())
-        spread = self._command("distribute", "Distribute evenly") if several > 2 else ""
-        return f'<h4>Align with {text(item.label)}</h4><div class="three">{align}</div>' + (
-            f'<div class="bar tight">{spread}</div>' if spread else ""
-        )
-
-    def _command(self, command_id: str, label: str) -> str:
-        return button(label, "run", command_id, title=self._commands[command_id].tooltip)
-
     def _act(self, action: Action) -> None:
         client = self._client
         if action.do in ("place", "size", "turn", "gap"):
@@ -240,8 +181,8 @@ class Properties:
         elif action.do == "materials":
             source: MaterialSource = "photo" if action.arg == "photo" else "library"
             client.post(lambda: editing.set_material_source(client, client.need_selection(), source))
-        else:
-            run_command(client, self._commands, action)
+        elif action.do == "numbers":
+            client.post(lambda: client.change_preferences(numbers=not client.preferences.numbers))
 
 
 def _surface(item: SceneObject) -> str:
@@ -260,6 +201,13 @@ def _surface(item: SceneObject) -> str:
     return (
         f'{taken if item.photo_materials else ""}{paint}<h4>Finish</h4><div class="bar tight one-row">{finishes}</div>'
     )
+
+
+def _fold_button(*, unfolded: bool) -> str:
+    sign, words = ("▾", "Hides") if unfolded else ("▸", "Shows")
+    label = f"{sign} Name, position and size"
+    fold = button(label, "numbers", title=f"{words} the fields for exact numbers")
+    return f'<div class="bar wide">{fold.replace("<button", f"<button aria-expanded={str(unfolded).lower()}")}</div>'
 
 
 def _why(reasons: Sequence[Reason]) -> str:
@@ -283,7 +231,7 @@ def _share(words: str) -> float:
     try:
         return float(np.clip(float(words), 0.0, 100.0)) / 100.0
     except ValueError as error:
-        raise InputError(f"'{words[:20]}' is no share; write for example 50") from error
+        raise InputError(f"'{words[:20]}' is not a percentage; write for example 50") from error
 
 
 def _grid(cells: str) -> str:

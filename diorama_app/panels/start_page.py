@@ -164,16 +164,16 @@ class StartPage:
         return (
             '<div class="page" role="dialog" aria-modal="true" aria-label="Start"><header><h1>Diorama</h1>'
             "<p>One photo of a room becomes a 3D scene you can edit.</p>"
-            + button("✕", "close", title="Close and look at the room behind")
+            + button("✕", "close", title="Close")
             + '</header><div class="ways">'
             f'<section class="first drop"><h2>A photo</h2><p>Drop one here, or choose a file. You '
             "mark the furniture, Diorama builds the room.</p>"
             f'<label class="choose main" for="file_upload_{photo}" tabindex="0">Choose a photo</label></section>'
-            "<section><h2>A description</h2><p>Say what is in the room.</p>"
+            "<section><h2>A description</h2><p>Describe the room in a sentence.</p>"
             f'<textarea data-change="words" rows="3" aria-label="Description of the room" '
             f'placeholder="a bedroom with a double bed and two lamps">{text(self._words)}</textarea>'
             + button("Create room", "describe")
-            + "</section><section><h2>An empty room</h2><p>Give its lengths and furnish it.</p>"
+            + "</section><section><h2>An empty room</h2><p>Type the size of the room, then add furniture.</p>"
             f'<div class="fields">{fields}</div>' + button("Create empty room", "empty") + "</section>"
             f"<section><h2>Continue</h2>{earlier}"
             f'<label class="choose" for="file_upload_{file}" tabindex="0">Open a file</label>'

@@ -151,7 +151,7 @@ def _details(finish: SurfaceFinish) -> str:
     degrees = round(float(np.degrees(finish.direction_rad)), 1) + 0.0
     turn = (
         f'<label>Direction (°)<input data-change="direction" value="{degrees:g}" inputmode="decimal" '
-        'aria-label="Direction (°)" title="Turn of the pattern, counter-clockwise"></label>'
+        'aria-label="Direction (°)" title="Rotation of the pattern, counter-clockwise"></label>'
         if kind.directed
         else ""
     )
@@ -188,7 +188,7 @@ def _colour(words: str) -> tuple[float, float, float]:
             raise ValueError(words)
         red, green, blue = (int(digits[i : i + 2], 16) / 255 for i in (0, 2, 4))
     except ValueError as error:
-        raise InputError(f"“{words[:20]}” is no colour; write it like #c08040") from error
+        raise InputError(f"“{words[:20]}” is not a colour; write for example #c08040") from error
     return red, green, blue
 
 
@@ -196,7 +196,7 @@ def _number(words: str) -> float:
     try:
         number = float(words.replace(",", ".").strip().rstrip("%°"))
     except ValueError as error:
-        raise InputError(f"“{words[:20]}” is no number; write it like 100") from error
+        raise InputError(f"“{words[:20]}” is not a number; write for example 100") from error
     if not np.isfinite(number):
-        raise InputError("the number is not finite; write it like 100")
+        raise InputError("the number is not finite; write for example 100")
     return number

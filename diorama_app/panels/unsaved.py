@@ -59,7 +59,7 @@ class UnsavedChanges:
         return (
             '<div class="card warn">Diorama ended while this scene was being built.'
             '<div class="bar tight" style="margin:6px 0 0 0">'
-            + button("Continue building", "build", title="Takes up where the build ended")
+            + button("Continue building", "build", title="Continues where the build stopped")
             + button("Not now", "no build", title="Build it later with “Build scene”")
             + "</div></div>"
         )

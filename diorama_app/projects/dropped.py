@@ -171,7 +171,7 @@ def _solid_readings(path: Path, head: FileHead) -> tuple[Reading, ...]:
     as_model = () if model is None else (Reading("models", f"a model ({model.name}) for the library"),)
     if scene is None:
         return as_model
-    as_scene = Reading("scene", f"a scene or scan ({scene.name}), a project of its own")
+    as_scene = Reading("scene", f"a scene or scan ({scene.name}), as a new project")
     if model is None:
         return (as_scene,)
     try:
@@ -213,7 +213,7 @@ def _of_folder(folder: Path, name: str, photo_size: tuple[int, int] | None) -> D
     flat = _is_flat(head)
     scene = None if flat else _scene_form(head)
     if scene is not None and (scene.name != "the mesh of a scanner app" or head.has(*_SCAN_FILES)):
-        return Dropped((Reading("scene", f"a scan ({scene.name}), a project of its own"),))
+        return Dropped((Reading("scene", f"a scan ({scene.name}), as a new project"),))
     if len(head.names) > MAX_FILES:
         raise InputError(f"{name} holds {len(head.names)} files, more than the {MAX_FILES} that are read at once")
     prefix = root.relative_to(folder).as_posix()

@@ -51,7 +51,7 @@ def get_networks(client: Client, networks: Sequence[Network], accepted: frozense
     session, store = client.session, ModelStore.default()
     missing = missing_networks(store, networks)
     if not missing:
-        raise EditRefused("these networks are all installed already")
+        raise EditRefused("all networks of this set are already installed")
     unknown = {n.id for n in missing} - store.accepted_licences() - accepted
     if unknown:
         raise InputError("accept the licences first; nothing was downloaded")

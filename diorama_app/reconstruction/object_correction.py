@@ -39,13 +39,13 @@ def rename_class(client: Client, object_id: str, label: str) -> None:
     item = _seen(client, object_id)
     words = label.strip()
     if not words:
-        raise EditRefused("type what it is, for example armchair")
+        raise EditRefused("type a category, for example armchair")
 
     def put(scene: Scene, found: Found) -> Scene:
         return renamed(scene, object_id, found)
 
     assert item.box_px is not None
-    _reconstruct(client, item.box_px, _labelled(item.box_px, words), object_id, f"{item.label} is a {words}", put)
+    _reconstruct(client, item.box_px, _labelled(item.box_px, words), object_id, f"change {item.label} to {words}", put)
 
 
 def redraw_box(client: Client, object_id: str, box: Box) -> None:
@@ -133,14 +133,14 @@ def _labelled(box: Box, label: str) -> LabelledBox:
 def _inputs(client: Client) -> Inputs:
     inputs = client.session.document.inputs
     if inputs is None:
-        raise EditRefused("this project has no photo; upload one in the Photo panel")
+        raise EditRefused("this project has no photo; upload one in the Photo tab")
     return inputs
 
 
 def _seen(client: Client, object_id: str) -> SceneObject:
     item = client.session.scene.object(object_id)
     if item.box_px is None:
-        raise EditRefused(f"{item.label} was not found in the photo; draw a box around it in the Photo panel instead")
+        raise EditRefused(f"{item.label} was not found in the photo; draw a box around it in the Photo tab instead")
     if item.locked:
         raise EditRefused(f"{item.label} is locked; unlock it first")
     return item

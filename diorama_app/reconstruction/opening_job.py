@@ -37,7 +37,7 @@ def open_file(client: Client, name: str, content: bytes) -> None:
     session = client.session
     file_name = Path(name.replace("\\", "/")).name[:100]
     if Path(file_name).suffix.lower() not in SUFFIXES:
-        raise InputError(f"{file_name} is no scene that can be opened; choose a {', '.join(SUFFIXES)} file")
+        raise InputError(f"{file_name} cannot be opened as a scene; choose a {', '.join(SUFFIXES)} file")
 
     def work(progress: Progress) -> None:
         with tempfile.TemporaryDirectory(prefix="upload-") as folder:
@@ -77,5 +77,5 @@ def _saved(session: EditorSession, file_name: str, opened: Opened, shapes: Path)
 
 def _show(client: Client, project: Project, file_name: str) -> None:
     count = len(project.load_scene().objects)
-    message = f"{file_name} is open as a project of its own, with {number_of(count)}."
+    message = f"Opened {file_name} as a new project with {number_of(count)}."
     client.session.visit(client, project, message)

@@ -27,7 +27,7 @@ class PhotoOutlines:
         session = self._session
         project, inputs = session.project, session.document.inputs
         if project is None or inputs is None:
-            raise EditRefused("this scene has no photo; upload one in the Photo panel")
+            raise EditRefused("this scene has no photo; upload one in the Photo tab")
         if inputs is self._of:
             return
 

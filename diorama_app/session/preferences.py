@@ -52,6 +52,8 @@ class Preferences:
     """Whether a swapped shape takes the colour of what it replaces."""
     all_alike: bool = False
     """Whether a swap goes to every object of the same shape."""
+    numbers: bool = False
+    """Whether the object's name, position and size are shown as fields."""
     favourites: tuple[str, ...] = ()
     """Ids of the library's shapes that the person marked."""
     recent: tuple[str, ...] = ()

@@ -80,8 +80,8 @@
       Object.assign(document.createElement("div"), { id: "dio-loading", textContent: "Opening Diorama…" }),
       Object.assign(document.createElement("div"), {
         id: "dio-lost", role: "alert",
-        textContent: "The server does not answer. Your work is saved up to the last change; this page goes on by " +
-          "itself when the server is back.",
+        textContent: "The server does not answer. Your work is saved up to the last change; this page continues " +
+          "when the server is back.",
       }),
     );
     document.getElementById("dio-loading").setAttribute("role", "status");

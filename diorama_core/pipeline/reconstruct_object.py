@@ -142,7 +142,7 @@ def _reconstructed(
     detected = _segmented(stages.objects, photo["inputs"], box, mask, object_id, progress.part(0.5, 0.6))
     found, posed = _posed_alone(stages, photo, detected, progress.part(0.6, 1.0))
     if posed is None:
-        raise InputError(f"nothing in the library is like a {box.label}; call it something plainer")
+        raise InputError(f"the library has no shape for “{box.label}”; choose a more common name")
     return _found(stages, scene, library, detected, found, posed, as_built=False)
 
 

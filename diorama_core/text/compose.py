@@ -82,7 +82,7 @@ def composed_room(
     """
     request = request or understood_prompt(prompt)
     digest = int.from_bytes(hashlib.sha256(f"{seed} {prompt}".encode()).digest()[:4], "big")
-    ignored = tuple(f"“{words}” names nothing in the library and was left out" for words in request.ignored)
+    ignored = tuple(f"the library has nothing called “{words}”, so it was left out" for words in request.ignored)
     if not request.objects:
         scene = furnished_room(digest, request.room, library, outline="box", clutter=6)
         unwished = [o.id for o in scene.objects if {o.category, broad(o.category)} & set(request.excluded)]
@@ -293,9 +293,9 @@ class _Composer:
                 notes.append(f"no place was found for {count} of {wanted[k].count} x {name}")
                 lacking += 10.0 * count
         for k in self.not_in_rows:
-            notes.append(f"{wanted[k].label} are not in {wanted[k].rows} x rows: there was no room for it")
+            notes.append(f"{wanted[k].label} are not in {wanted[k].rows} x rows: they did not fit")
             lacking += 6.0
         for object_id, wish, _ in self._unmet():
-            notes.append(f"{self.scene.object(object_id).label} is not {wish.words}: there was no room for it")
+            notes.append(f"{self.scene.object(object_id).label} is not {wish.words}: it did not fit there")
             lacking += 3.0
         return tuple(notes), lacking

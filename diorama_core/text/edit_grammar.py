@@ -313,7 +313,7 @@ def _swap(selector: Selector, clause: str, rest: str) -> Edit:
     what = re.sub(r"^(?:an?|some|the|another)\s+|\s+\b(?:ones?|instead)\b", " ", f"{parts[1]}").strip()
     phrase, unknown = noun_phrase(what)
     if phrase is None and look_of(what) is None and unknown and unknown not in ("one", "ones", "different", "other"):
-        raise EditRefused(f"“{unknown}” names nothing in the library; try another word")
+        raise EditRefused(f"the library has nothing called “{unknown}”; try another word")
     kind = selector.scene.object(ids[0]).category
     if (phrase is None or (look_of(what) is not None and not phrase.label)) and re.match(r"change|make", clause):
         return Restyle(objects=ids, look=what)

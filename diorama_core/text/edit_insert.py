@@ -42,7 +42,7 @@ def inserted(positioner: Positioner, scene: Scene, edit: Insert, relations: Sequ
     """
     phrase, unknown = noun_phrase(edit.what)
     if phrase is None or not phrase.label:
-        raise EditRefused(f"“{unknown or edit.what}” names nothing in the library; try another word")
+        raise EditRefused(f"the library has nothing called “{unknown or edit.what}”; try another word")
     targets = [scene.object(t) for r in relations for t in r.targets]
     new: list[str] = []
     lacking: tuple[str, ...] = ()

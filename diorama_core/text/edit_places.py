@@ -165,7 +165,7 @@ def freed(positioner: Positioner, scene: Scene, object_id: str) -> tuple[Scene, 
         return after, []
     spot = positioner.nearby(scene, object_id)
     if spot is None:
-        raise EditRefused(f"there is no room for {item.label} to do that; move it into the open first")
+        raise EditRefused(f"{item.label} has no free space to do that; move it away from other objects first")
     return edits.move(scene, object_id, spot.pose), [f"{item.label} steps aside to stay free"]
 
 
@@ -174,7 +174,7 @@ def missed_notes(scene: Scene, object_id: str, relations: Sequence[Relation]) ->
     frame = RoomFrame.of(scene)
     label = scene.object(object_id).label
     return [
-        f"there is no room for {label} {r.words(scene)}; it is as near as possible"
+        f"{label} does not fit {r.words(scene)}; it is placed as near as possible"
         for r in relations
         if not is_met(scene, object_id, r, frame)
     ]

@@ -55,7 +55,7 @@ class Selector:
         phrase, unknown = noun_phrase(words)
         if phrase is None:
             raise EditRefused(
-                f"“{unknown or words.strip()}” names nothing that can be in a room; this scene has: {self.inventory()}"
+                f"nothing in a room is called “{unknown or words.strip()}”; this scene has: {self.inventory()}"
             )
         if phrase.pronoun:
             return self._meant(words)

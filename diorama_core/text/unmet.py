@@ -21,7 +21,7 @@ def unmet(prompt: str, scene: Scene) -> tuple[str, ...]:
         found = _take(there, asked)
         if found < asked.count:
             lines.append(_line(asked, found))
-    return (*lines, *(f"“{words}” names nothing in the library" for words in request.ignored))
+    return (*lines, *(f"the library has nothing called “{words}”" for words in request.ignored))
 
 
 def _take(there: Counter[str], asked: RequestedObject) -> int:

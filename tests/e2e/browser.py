@@ -204,6 +204,11 @@ class EditorPage:
             self.tool("More tools").click()
         return self.page.locator("#dio-toolbar .menu").get_by_role("button", name=name, exact=True)
 
+    def numbers(self) -> None:
+        """Unfold the fields of the selected object's name, position and size."""
+        self.page.get_by_role("button", name="Name, position and size").click()
+        self.page.get_by_label("Position: x").wait_for()
+
     def tab(self, name: str) -> None:
         self.page.get_by_role("tab", name=name, exact=True).click()
 

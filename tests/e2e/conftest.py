@@ -168,7 +168,7 @@ def editor(shared_page: EditorPage, tmp_path: Path, request: pytest.FixtureReque
         session.clip = None
         client = shared_page.client
         client.view.canvas.close()
-        client.preferences = Preferences()
+        client.preferences = Preferences(numbers=True)
         session.open_project(project)
 
     go_home(shared_page)

@@ -50,6 +50,7 @@ def test_the_example_is_there_and_is_swapped_moved_undone_optimised_and_download
     editor.settle()
     swapped = session.scene.object(chair.id)
     goal = round(float(swapped.pose.position[0]) - 0.2, 2)
+    editor.numbers()
     editor.page.get_by_label("Position: x").fill(f"{goal:.2f}")
     editor.page.keyboard.press("Enter")
     editor.until(lambda: abs(session.scene.object(chair.id).pose.position[0] - goal) < 1e-3, "moved")

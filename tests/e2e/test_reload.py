@@ -25,6 +25,7 @@ def test_theme_unit_snap_recipe_and_open_tabs_outlive_a_reload_and_another_start
     page.page.keyboard.press("Escape")
     page.tool("Snap").click()
     page.row("lamp").click()
+    page.numbers()
     page.page.get_by_label("Unit").select_option("ft-in")
     page.tab("Arrange")
     page.page.get_by_label("Recipe").click()

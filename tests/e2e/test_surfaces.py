@@ -78,7 +78,7 @@ def test_all_walls_are_papered_from_the_list_and_go_back_to_the_photo(editor: Ed
     size = editor.page.get_by_label("Size (%)").locator("visible=true").first
     size.fill("much")
     size.press("Enter")
-    editor.notice("is no number")
+    editor.notice("is not a number")
     expect(size).to_have_value("100")
     size.fill("200")
     size.press("Enter")

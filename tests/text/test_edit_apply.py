@@ -43,7 +43,7 @@ def test_later_edits_call_new_objects_by_the_name_they_got(living: Scene) -> Non
     [
         (Remove(objects=["nothing_1"]), "no object"),
         (Insert(what="bed", places=[Place(relation="on", targets=["coffee_table_1"])]), "no free place"),
-        (Insert(what="zorkmid"), "names nothing"),
+        (Insert(what="zorkmid"), "nothing called"),
         (Restyle(objects=["sofa_1"], look="zorkmid"), "no colour"),
         (Move(objects=["sofa_1"], places=[Place(relation="beside", targets=["sofa_1"])]), "itself"),
         (Insert(what="bed", count=12), "would fit"),

@@ -280,7 +280,7 @@ def _shrunk_reasons(problem: Problem, wanted: Problem, structure: Structure) -> 
         for i in sorted({int(i) for i in shrunk} | set(structure.reduced))
         if structure.scale[i].prod() < problem.scale[i].prod()  # fitting it to the photo may have made it larger
     ]
-    return tuple(f"tight: {problem.labels[i]} was made smaller, to fit between its neighbours" for i in smaller)
+    return tuple(f"{problem.labels[i]} was made smaller to fit between its neighbours" for i in smaller)
 
 
 def _stuck_reasons(problem: Problem, found: Separation) -> tuple[str, ...]:

@@ -90,7 +90,7 @@ def test_another_class_stands_where_the_object_stood(session, client, asked) -> 
     assert (after.label, after.category, after.shape_id) == ("chair", "chair", "chair_c")
     np.testing.assert_allclose(after.pose.position[:2], before.pose.position[:2], atol=1e-6)
     assert after.colour == before.colour
-    assert session.document.history.current.label == "dining table is a chair"
+    assert session.document.history.current.label == "change dining table to chair"
     assert [b.label for b in session.document.inputs.boxes] == ["chair"]
 
 
@@ -118,7 +118,7 @@ def test_a_drawn_outline_is_what_is_looked_at(session, client, asked) -> None:
 def test_what_cannot_be_corrected_says_why(session, client, asked) -> None:
     with pytest.raises(EditRefused, match="was not found in the photo"):
         rename_class(client, "chair_1", "sofa")
-    with pytest.raises(EditRefused, match="type what it is"):
+    with pytest.raises(EditRefused, match="type a category"):
         rename_class(client, "table_1", "  ")
     editing.set_locked(client, ["table_1"], True)
     with pytest.raises(EditRefused, match="is locked"):
