@@ -18,7 +18,6 @@ from diorama_core.arrangement.out_of_reach import left_where_seen
 from diorama_core.artefacts import Inputs
 from diorama_core.layout.clear_shapes import clear_shapes
 from diorama_core.perception.graph.apply import with_graph
-from diorama_core.perception.metrology.within_walls import measured_within_walls
 from diorama_core.pipeline.assemble import assemble
 from diorama_core.pipeline.findings import finding
 from diorama_core.pipeline.look_ahead import looking_ahead
@@ -91,9 +90,7 @@ PLAN: tuple[Step, ...] = (
     StageStep("graph", "relate", ("inputs", "objects", "measured_geometry"), "graph", 0.02),
     Derivation(with_graph, ("measured_geometry", "graph"), "supported_geometry"),
     StageStep("architecture", "reconstruct", ("inputs", "objects", "supported_geometry"), "architecture", 0.1),
-    Derivation(measured_within_walls, ("supported_geometry", "architecture", "objects", "inputs"), "placed_geometry"),
-    Derivation(with_graph, ("placed_geometry", "graph"), "housed_geometry"),
-    Derivation(drawn_before_walls, ("housed_geometry", "architecture"), "standing_geometry"),
+    Derivation(drawn_before_walls, ("supported_geometry", "architecture"), "standing_geometry"),
     Derivation(snap_mounted_objects, ("standing_geometry", "architecture"), "mounted_geometry"),
     Derivation(without_openings, ("objects", "mounted_geometry", "architecture"), "furniture"),
     Derivation(lambda furniture: furniture[0], ("furniture",), "furniture_objects"),

@@ -26,16 +26,6 @@ class BoxObservationSettings:
     along: int = 64
     clearly_lower: float = 0.03
     """How much lower, as a share of the picture, a thing's box must end to be in front."""
-    share_odd: float = 0.4
-    share_upright: float = 0.3
-    """Shares of edges that run otherwise (patterns, handles, shadows), and of upright ones; the others are level."""
-    min_gradient: float = 0.03
-    """Change of the grey level, 0 to 1, by pixel, from which on it counts as an edge."""
-    most: float = 12.0
-    """How many independent edges a thing shows at most: neighbouring pixels say the same."""
-    by_pixels: float = 40.0
-    """So many edge pixels are one independent edge."""
-    most_px: int = 4000
     beyond_sigma: float = 0.05
     beyond_sigma_guessed: float = 0.12
     """For masks that are not the user's own."""
@@ -168,13 +158,6 @@ class PlacementSettings:
     """Likewise for seats under tables."""
     on_footprint_flat_m: float = 0.05
     rounds: int = 6
-    at_walls: float = 0.8
-    """How often things of such kinds do stand with their backs at a wall."""
-    reach_m: float = 2.0
-    """Range over which the others' backs are spread evenly."""
-    gap_m: float = 0.1
-    gap_share: float = 0.06
-    """How far from a wall a back may seem to be that stands there: by itself, and for every metre from the camera."""
     max_carried_cost: float = 12.0
     """No thing speaks more than this against one reading."""
 
