@@ -112,7 +112,8 @@ def add_build(commands: Any) -> None:
         type=coefficients,
         default=(),
         metavar="k1,k2,p1,p2,k3",
-        help="of the lens, as OpenCV has it, k1 alone at least: the photo is straightened before it is used",
+        help="of the lens, as OpenCV has it, k1 alone at least: the photo is straightened before it is used; "
+        "0 leaves it as it is (default: what its lines say)",
     )
     p.add_argument(
         "--half-turn", action="store_true", help="the photo and its files are upside down: turn them by 180 degrees"

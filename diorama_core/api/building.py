@@ -65,6 +65,7 @@ def build(
         intrinsics: fx, fy, cx, cy in pixels of the upright original photo.
         fov_deg: horizontal field of view in degrees, instead of `intrinsics`.
         distortion: of the lens, in OpenCV's order: k1, k2, p1, p2, k3; the photo is straightened before it is used.
+            By default its own lines say whether the lens bends them; 0 leaves the photo as it is.
         half_turn: whether the photo and all that belongs to it are upside down, and are turned by 180 degrees.
         profile: "auto" uses the networks on this machine, "embedded" none, "foundation" insists on the paper's.
         networks: detector and depth network by id, instead of the best ones on this machine.
@@ -98,16 +99,13 @@ def build(
         masks=input_arrays.masks_file(masks),
         half_turn=half_turn,
     )
-    for warning in read.warnings:
+    inputs, straightened = _straight(read.inputs, distortion)
+    warnings = (*read.warnings, *straightened)
+    for warning in warnings:
         warn(warning)
-    inputs = read.inputs
-    if distortion:
-        from diorama_core.multiview.lens import lens_of, without_distortion
-
-        inputs = without_distortion(inputs, lens_of(distortion))
     opened, name = _opened(library)
     choose = _choice(inputs, opened, profile, recipe, stages, networks)
-    return _built(inputs, read.warnings, opened, name, choose, output, progress)
+    return _built(inputs, warnings, opened, name, choose, output, progress)
 
 
 def build_from_text(
@@ -188,6 +186,17 @@ def _composed(
         library_name=library_name,
         project=project,
     )
+
+
+def _straight(inputs: Inputs, distortion: Sequence[float]) -> tuple[Inputs, tuple[str, ...]]:
+    """The inputs without the distortion that is given, or that the photo's own lines tell; and what was done."""
+    from diorama_core.multiview.lens import lens_of, without_distortion
+    from diorama_core.multiview.plumb_lines import straightened_by_lines
+
+    if not distortion:
+        return straightened_by_lines(inputs)
+    lens = lens_of(distortion)
+    return (without_distortion(inputs, lens) if lens.bends else inputs), ()
 
 
 def _opened(library: str | ShapeLibrary) -> tuple[ShapeLibrary, str | None]:
