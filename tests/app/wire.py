@@ -30,6 +30,7 @@ class WirePage:
             subprotocols=[websockets.Subprotocol(f"viser-v{viser.__version__}")],
             additional_headers=headers,
             max_size=None,
+            ping_interval=None,  # a browser sends none
         )
         self.elements: dict[str, Seen] = {}
         """What the server sent of each panel element, by its id."""
