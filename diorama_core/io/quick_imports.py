@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import atexit
+import contextlib
 import gc
 import importlib
 import sys
@@ -19,12 +20,16 @@ LATER = ("networkx",)
 
 
 def load_quickly() -> None:
-    """Look for garbage less often, and not when the program ends; let threads take turns more often; and load trimesh
-    without what it rarely needs.
+    """Look for garbage less often, and not when the program ends; let threads take turns more often; load trimesh
+    without what it rarely needs; and load USD's library, where it is installed, before other threads compute.
     """
     sys.setswitchinterval(SWITCH_S)
     gc.set_threshold(GARBAGE_EVERY)
     atexit.register(gc.freeze)  # the last search, through all that was imported, takes a fifth of a second
+    # When it starts, USD's library lets other threads run while it holds the lock of the operating system's loader.
+    # numpy asks for that lock in sums of large arrays without letting others run: both would wait for ever.
+    with contextlib.suppress(ImportError):
+        importlib.import_module("pxr.Tf")
     if "trimesh" in sys.modules:
         return
     stand_ins = {name: _LoadedOnUse(name) for name in LATER if name not in sys.modules}

@@ -43,15 +43,11 @@ with urllib.request.urlopen(running.url) as page:
     assert page.status == 200 and len(page.read()) > 1000
 running.stop()
 """
-BUILD = """
-import sys
+BUILD_AND_EXPORT = """
 from diorama_app.cli import main
-sys.exit(main(["build", sys.argv[1], "-o", sys.argv[2], "--boxes", sys.argv[3]]))
-"""
-EXPORT = """
-import sys
-from diorama_app.cli import main
-sys.exit(main(["export", sys.argv[1], "--format", "glb", "-o", sys.argv[2]]))
+photo, boxes, built, model = sys.argv[2:]
+assert main(["build", photo, "-o", built, "--boxes", boxes]) == 0
+assert main(["export", built, "--format", "glb", "-o", model]) == 0
 """
 
 
@@ -104,15 +100,10 @@ def test_serving_building_and_exporting_need_no_network(tmp_path: Path) -> None:
     rows = np.linspace(230, 90, 240)[:, None, None] * np.ones((1, 320, 3))
     Image.fromarray(rows.astype(np.uint8)).save(tmp_path / "room.png")
     (tmp_path / "boxes.json").write_text('[{"bbox": [90, 120, 200, 220], "class": "chair"}]')
-    steps = (
-        (SERVE, (project.folder,)),
-        (BUILD, (tmp_path / "room.png", tmp_path / "built", tmp_path / "boxes.json")),
-        (EXPORT, (tmp_path / "built", tmp_path / "room.glb")),
-    )
-    for code, arguments in steps:
-        run([*prefix, *watched], tmp_path / "asked", code, *arguments)
-        assert not (tmp_path / "asked").exists(), (tmp_path / "asked").read_text()
-        if watched:
-            asked = {a for a in CONNECT.findall((tmp_path / "trace").read_text()) if not a.startswith(("127.", "::1"))}
-            assert not asked, f"connections were tried to {asked}"
+    files = [tmp_path / name for name in ("room.png", "boxes.json", "built", "room.glb")]
+    run([*prefix, *watched], tmp_path / "asked", SERVE + BUILD_AND_EXPORT, project.folder, *files)
+    assert not (tmp_path / "asked").exists(), (tmp_path / "asked").read_text()
+    if watched:
+        asked = {a for a in CONNECT.findall((tmp_path / "trace").read_text()) if not a.startswith(("127.", "::1"))}
+        assert not asked, f"connections were tried to {asked}"
     assert (tmp_path / "room.glb").stat().st_size > 1000

@@ -6,6 +6,8 @@ import gc
 import subprocess
 import sys
 
+import pytest
+
 from diorama_core.io.quick_imports import GARBAGE_EVERY, load_quickly
 
 
@@ -50,3 +52,29 @@ import networkx.algorithms
 
 def test_what_trimesh_rarely_needs_is_loaded_when_it_does() -> None:
     subprocess.run([sys.executable, "-c", PROGRAM], check=True)
+
+
+def test_usd_is_loaded_before_other_threads_compute() -> None:
+    """Loaded while another thread added large arrays, it stopped the whole program, five times of six."""
+    pytest.importorskip("pxr", reason="an optional extra")
+    script = """
+import sys, threading
+import numpy as np
+from diorama_core.io.quick_imports import load_quickly
+
+load_quickly()
+assert "pxr.Tf" in sys.modules
+over = threading.Event()
+
+def compute():
+    numbers = np.ones(200_000)
+    while not over.is_set():
+        numbers * 2.0 - numbers - 1.0
+
+threads = [threading.Thread(target=compute) for _ in range(2)]
+for thread in threads:
+    thread.start()
+from pxr import Gf, Kind, Sdf, Usd, UsdGeom, UsdLux, UsdPhysics, UsdShade, Vt
+over.set()
+"""
+    subprocess.run([sys.executable, "-c", script], check=True, timeout=300)

@@ -183,8 +183,10 @@ def test_jobs_survive_a_server_that_was_killed(tmp_path: Path, photo: dict) -> N
         process.wait()
     with running(tmp_path) as (url, _):
         client = Client(url)
+        assert client.get_job(job_id=second).body["state"] == "queued"
         assert client.get_job(job_id=first, wait_s=60).body["state"] == "done"
-        assert client.get_job(job_id=second, wait_s=60).body["state"] == "done"
+        assert client.cancel_job(job_id=second).status == 200
+        assert client.get_job(job_id=second, wait_s=60).body["state"] == "cancelled"
         assert client.get_job(job_id=dropped).body["state"] == "cancelled"
         assert client.delete_job(job_id=second).status == 204
         assert client.get_job(job_id=second).status == 404

@@ -25,11 +25,11 @@ OPTIONS = BuildOptions(profile="embedded")
 
 @pytest.fixture
 def folder(tmp_path: Path) -> Path:
-    """Three photos with boxes."""
+    """Two photos with boxes."""
     photo, boxes = write_room(tmp_path, marked=1)
     photos = tmp_path / "photos"
     photos.mkdir()
-    for name in ("a", "b", "c"):
+    for name in ("a", "b"):
         shutil.copy(photo, photos / f"{name}.png")
         shutil.copy(boxes, photos / f"{name}.boxes.json")
     return photos
@@ -63,24 +63,25 @@ def test_a_killed_worker_costs_its_own_photo_a_second_try_and_what_died_twice_is
     folder: Path, tmp_path: Path
 ) -> None:
     output, photos = tmp_path / "out", photos_of(folder)[0]
-    with killing(output / "b", 1) as once, killing(output / "c", 2) as twice:
+    with killing(output / "a", 1) as once, killing(output / "b", 2) as twice:
         first = build_photos(photos, OPTIONS, output, LocalWorkers(2), Progress())
     assert (len(once), len(twice)) == (1, 2)
-    assert [(bool(r.error), r.tries) for r in first] == [(False, 1), (False, 2), (True, 2)]
-    assert all(r.picture.exists() and len(r.report["objects"]) >= 1 for r in first[:2])
-    assert "without an answer" in first[2].error
+    assert [(bool(r.error), r.tries) for r in first] == [(False, 2), (True, 2)]
+    assert first[0].picture.exists()
+    assert len(first[0].report["objects"]) == 1
+    assert "without an answer" in first[1].error
     edited = output / "a" / "scene.json"
     edited.write_text(edited.read_text() + "\n")
     before = edited.stat().st_mtime_ns
     (folder / "b.boxes.json").write_text(json.dumps(BOXES))
     second = build_photos(photos, OPTIONS, output, LocalWorkers(1), Progress())
-    assert [(r.error, r.kept) for r in second] == [("", True), ("", False), ("", False)]
+    assert [(r.error, r.kept) for r in second] == [("", True), ("", False)]
     assert edited.stat().st_mtime_ns == before, "what is finished is left as it is"
-    assert [len(r.report["objects"]) for r in second] == [1, 2, 1]
+    assert [len(r.report["objects"]) for r in second] == [1, 2]
 
 
 def test_on_cancellation_what_is_done_stays(folder: Path, tmp_path: Path) -> None:
-    output, photos, token = tmp_path / "out", photos_of(folder)[0][:2], CancelToken()
+    output, photos, token = tmp_path / "out", photos_of(folder)[0], CancelToken()
     (folder / "a.png").write_text("no picture")
     with pytest.raises(Cancelled):
         build_photos(photos, OPTIONS, output, LocalWorkers(1), Progress(lambda event: token.cancel(), token))
