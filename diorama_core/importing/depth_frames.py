@@ -21,13 +21,12 @@ from diorama_core.io.bounded import read_bytes
 from diorama_core.io.contained import ContainedFiles
 from diorama_core.io.file_heads import FileHead
 from diorama_core.multiview.posed_photos import read_poses
+from diorama_core.perception.inputs.depth.confidence import is_sure
 from diorama_core.scene.types import Camera, Intrinsics
 
 MAX_DEPTH_M = 6.0
 """Of a phone's depth: what is farther is guessed."""
 MAX_FRAMES = 400
-SURE_SMALL, SURE_LARGE = 1, 100
-"""Least confidence of a pixel, where it is a level (0 to 2) and where it is a grey value (0 to 255)."""
 MILLIMETRE = 0.001
 TUM_UNIT_M = 1 / 5000
 TUM_APART_S = 0.03
@@ -197,7 +196,7 @@ def _points(frame: DepthFrame, step: int) -> Float[np.ndarray, "n 3"]:
             sure = np.asarray(opened)
         if sure.shape != depth.shape:
             raise InputError(f"{frame.confidence.name} has another size than its depth; export the scan again")
-        good &= sure >= (SURE_SMALL if sure.max() <= 2 else SURE_LARGE)
+        good &= is_sure(sure)
     rows, columns = np.nonzero(good)
     rows, columns = rows[::step], columns[::step]
     height, width = depth.shape

@@ -10,6 +10,7 @@ from jaxtyping import Bool, Float32, Shaped
 
 from diorama_core.artefacts import Box, LabelledBox
 from diorama_core.errors import InputError
+from diorama_core.perception.inputs.depth.confidence import without_unsure
 from diorama_core.perception.inputs.depth.containers import DEPTH_FORMS, DepthContent, RawDepth
 from diorama_core.perception.inputs.depth.flips import turned, turned_over
 from diorama_core.perception.inputs.depth.kinds import (
@@ -81,7 +82,8 @@ def read_depth(
         raise InputError(f"--depth-scale {scale:g}: give a positive number of units per metre, 1000 for millimetres")
     size = (photo.photo.width, photo.photo.height)
     raw = _raw(source, photo)
-    values, laid = photo.frame.laid_over(source.name, "depth", raw.values)
+    trusted, unsure = without_unsure(source, raw.values)
+    values, laid = photo.frame.laid_over(source.name, "depth", trusted)
     if options.encoding == "sunrgbd" and not raw.is_float:
         values = _unrotated(values)
     valid, voids = measured(values, is_float=raw.is_float)
@@ -97,7 +99,7 @@ def read_depth(
     coverage = _check_plausible(source.name, depth, values, raw, options)
     resized, coarse = _at_size(depth, size)
     resized.setflags(write=False)
-    return resized, (*raw.notes, *laid, *voids, *understood, *coverage, *coarse)
+    return resized, (*raw.notes, *unsure, *laid, *voids, *understood, *coverage, *coarse)
 
 
 @dataclass(frozen=True)

@@ -1,0 +1,79 @@
+"""Confidence beside one photo's depth, as phones and scanner apps write it: what is unsure counts as not measured."""
+
+from __future__ import annotations
+
+import glob
+from pathlib import Path
+
+import numpy as np
+from jaxtyping import Bool, Shaped
+
+from diorama_core.errors import InputError
+from diorama_core.perception.inputs.depth.containers import DEPTH_FORMS, DepthContent
+from diorama_core.perception.inputs.form import form_of
+from diorama_core.perception.inputs.source import Source
+
+SURE_LEVEL, SURE_GREY = 1, 100
+"""Least confidence of a pixel, where it is a level (0 to 2, ARKit's) and where it is a grey value (0 to 255)."""
+MIN_SURE = 0.05
+"""Share of the measured pixels that must be sure: fewer are no depth of a room."""
+
+
+def is_sure(confidence: Shaped[np.ndarray, "h w"]) -> Bool[np.ndarray, "h w"]:
+    """Where depth is sure, by levels or by grey values."""
+    return np.asarray(confidence >= (SURE_LEVEL if confidence.max() <= 2 else SURE_GREY))
+
+
+def without_unsure(
+    source: Source, values: Shaped[np.ndarray, "h w"]
+) -> tuple[Shaped[np.ndarray, "h w"], tuple[str, ...]]:
+    """A map with 0 where the confidence that lies beside its file is low, and what was done; the map itself without.
+
+    Args:
+        source: the file of the depth.
+        values: as it holds them.
+    """
+    for beside in _beside(source):
+        confidence = _read(beside, values.shape)
+        if confidence is None:
+            return values, (
+                f"{beside.name} is no confidence map of the depth (whole numbers, as large); it was not used",
+            )
+        measured = values > 0
+        unsure = measured & ~is_sure(confidence)
+        share = float(unsure.sum() / max(int(measured.sum()), 1))
+        if share > 1.0 - MIN_SURE:
+            return values, (f"{beside.name} calls {share:.0%} of the depth unsure; it was not used",)
+        return np.where(unsure, 0, values), (f"{share:.0%} of the depth is unsure by {beside.name}, and left out",)
+    return values, ()
+
+
+def _beside(source: Source) -> tuple[Source, ...]:
+    """Files that may be the confidence of a depth map, likeliest first."""
+    stem, name = glob.escape(Path(source.name).stem), glob.escape(Path(source.name).name)
+    named = [f"{stem}{joint}conf*.*" for joint in "_.-"]
+    if "depth" in stem.lower():
+        named += [f"{part}.*" for word in ("confidence", "conf") if (part := _replaced(stem, word)) != stem]
+    found = source.beside(*named)
+    if not found and source.path is not None and source.path.parent.name.lower().startswith("depth"):
+        found = Source(b"", "", source.path.parent).beside(f"confidence/{name}", f"confidence_map/{name}")
+    return found
+
+
+def _replaced(stem: str, word: str) -> str:
+    """A name with another word for depth, as in depth_0001 and confidence_0001."""
+    at = stem.lower().index("depth")
+    return stem[:at] + word + stem[at + len("depth") :]
+
+
+def _read(source: Source, shape: tuple[int, ...]) -> Shaped[np.ndarray, "h w"] | None:
+    """Whole numbers as large as the depth; None where the file holds none."""
+    if len(source.data) == shape[0] * shape[1]:
+        return np.frombuffer(source.data, np.uint8).reshape(shape)  # ARKit's buffer as it is
+    content = DepthContent(source, (shape[1], shape[0]))
+    form = form_of(DEPTH_FORMS, content)
+    try:
+        values = None if form is None else form.read(content).values
+    except InputError:
+        return None
+    return values if values is not None and values.shape == shape and values.dtype.kind in "bu" else None
