@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import viser
 
 from diorama_app.commands.registry import Command, CommandTable
@@ -22,22 +24,32 @@ MOUSE = (
 )
 
 
+VIEW = ("view_", "focus", "masks", "planes", "names", "badges", "theme")
+PROJECT = ("undo", "redo", "save", "measure", "picture", "find_", "start_page", "projects", "tour", "help", "escape")
+"""How the ids of the commands in these columns begin; the others are about objects."""
+
+
 def show_help(client: Client, commands: CommandTable) -> None:
     """Open the list over the page."""
     gui: viser.GuiApi = client.viser_client.gui
+    view = [c for c in commands.all if c.id.startswith(VIEW)]
+    project = [c for c in commands.all if c.id.startswith(PROJECT)]
+    objects = [c for c in commands.all if c not in view and c not in project]
     with dialog(client, "Mouse and keyboard") as close:
         mouse = "".join(f"<tr><td>{text(a)}</td><td><kbd>{text(b)}</kbd></td></tr>" for a, b in MOUSE)
-        keys = "".join(_row(c) for c in commands.all if c.keys)
+        columns = {"Mouse": mouse, "Objects": _rows(objects), "View": _rows(view), "Project": _rows(project)}
+        titled = "".join(f"<section><h4>{name}</h4><table>{rows}</table></section>" for name, rows in columns.items())
         rest = ", ".join(text(c.label) for c in commands.all if not c.keys)
         on_press(gui.add_button("Close"), lambda: client.post(close))
         gui.add_html(
-            f'{STYLE}<div class="dio" style="columns:2;column-gap:24px"><h4>Mouse</h4><table>{mouse}</table>'
-            f"<h4>Keys</h4><table>{keys}</table></div>"
+            f'{STYLE}<div class="dio dio-help">{titled}</div>'
             f'<div class="dio dim">Without a key, in the command palette (Ctrl+K): {rest}.</div>'
         )
 
 
-def _row(command: Command) -> str:
-    return (
-        f'<tr title="{text(command.hint)}"><td>{text(command.label)}</td><td><kbd>{text(command.keys)}</kbd></td></tr>'
+def _rows(commands: Sequence[Command]) -> str:
+    return "".join(
+        f'<tr title="{text(c.hint)}"><td>{text(c.label)}</td><td><kbd>{text(c.keys)}</kbd></td></tr>'
+        for c in commands
+        if c.keys
     )

@@ -15,6 +15,7 @@ from diorama_app.session.client import Client
 from diorama_app.viewport.decorations import is_unsure
 from diorama_app.web.html import Action, LiveHtml, button, text
 from diorama_core.errors import EditRefused
+from diorama_core.io.text import number_of
 from diorama_core.scene.types import Plane, Scene, SceneObject
 
 EYE = (
@@ -93,8 +94,8 @@ class Outliner:
             client.select_surface(action.arg)
             client.open_tab("Object")
             return
-        if action.do == "wrong":
-            client.select(client.session.badges)
+        if action.do == "check":
+            client.select(to_check(scene, client.session.badges))
             return
         if action.do == "rename":
             object_id, name = action.pair
@@ -145,17 +146,25 @@ def tree_html(
         parts.append(_children(tree, tuple(loose)))
     rows = f'<div role="tree" aria-label="Objects of the scene">{"".join(parts)}</div>'
     none = '<p class="dim">No furniture yet. Insert some from the <b>Library</b>.</p>'
-    return _problems(tree) + rows + ("" if scene.objects else none)
+    return _summary(tree) + rows + ("" if scene.objects else none)
 
 
-def _problems(tree: _Tree) -> str:
-    count = len(tree.badges)
-    if not count:
-        return ""
-    words = "1 object has a problem" if count == 1 else f"{count} objects have problems"
-    show = button("Select", "wrong", title="Select objects that collide, float or are outside the room")
+def to_check(scene: Scene, badges: Mapping[str, tuple[str, ...]]) -> tuple[str, ...]:
+    """Ids of the objects that have a problem, or of whose pose the photo says little."""
+    return tuple(o.id for o in scene.objects if o.id in badges or is_unsure(o))
+
+
+def _summary(tree: _Tree) -> str:
+    """How many objects there are, and how many of them a person should look at."""
+    count, found = number_of(len(tree.scene.objects)), len(to_check(tree.scene, tree.badges))
+    if not found:
+        return f'<p class="dim">{count}</p>'
+    show = button("Show", "check", title="Select the objects that collide, float, are outside the room or are unsure")
     style = "padding:5px 9px;margin-bottom:6px"
-    return f'<div class="job card warn" style="{style}"><span class="words">⚠ {words}</span>{show}</div>'
+    return (
+        f'<div class="job card warn" style="{style}"><span class="words"><b>{count}</b> · {found} to check</span>'
+        f"{show}</div>"
+    )
 
 
 def _children(tree: _Tree, ids: tuple[str, ...]) -> str:

@@ -9,7 +9,6 @@ import viser
 from diorama_app.commands.registry import CommandTable
 from diorama_app.session.client import Client, Measuring
 from diorama_app.web.html import STYLE, Action, LiveHtml, button, text
-from diorama_core.io.text import number_of
 
 ICONS = {
     "undo": '<path d="M9 5 4 10l5 5M4 10h10a6 6 0 0 1 0 12h-3"/>',
@@ -144,7 +143,7 @@ def run_command(client: Client, commands: CommandTable, action: Action) -> None:
 
 
 def title_bar(client: Client) -> str:
-    """Name of the project, number of objects, and the other connected clients."""
+    """Name of the project and the other connected clients."""
     session = client.session
     project = session.project
     name = "No project" if project is None else text(session.glances.of("name", lambda: project.name))
@@ -153,4 +152,4 @@ def title_bar(client: Client) -> str:
         f' <span class="chip" style="border-color:rgb{g.colour}" title="also has this open">{text(g.name)}</span>'
         for g in others[:4]
     )
-    return f"<b>{name}</b> <span class='dim'>{number_of(len(session.scene.objects))}</span>{here}"
+    return f"<b>{name}</b>{here}"

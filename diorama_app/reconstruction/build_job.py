@@ -186,6 +186,7 @@ def show_built(
         return  # somebody opened another project here meanwhile
     for client in session.clients.values():
         client.view.canvas.close()
+        client.open_tab("Scene")
     session.textures = {**session.textures, **made.textures}  # undo shows what earlier ones name
     session.notes, session.reasons = made.notes, made.reasons
     # Photos that were added or taken out meanwhile are as the person left them.

@@ -14,7 +14,7 @@ from diorama_app.viewport.mesh_assets import reduced
 from diorama_core.geometry.rotations import quaternion_wxyz
 from diorama_core.scene.types import Camera
 
-PYRAMID_SCALE = 0.22
+PYRAMID_SCALE = 0.12
 OVERLAY_DEPTH_M = 0.12
 LAYER_DEPTH_M = 0.11
 """Just in front of the photo that is laid over the model."""

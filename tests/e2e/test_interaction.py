@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 
 import numpy as np
@@ -215,7 +216,7 @@ def test_only_the_selection_is_optimised_compared_and_put_back(editor: EditorPag
 
     session.ui_thread.post(lift)
     editor.until(lambda: len(session.badges) == 2, "both float, and it is said")
-    expect(editor.page.get_by_text("2 objects have problems")).to_be_visible()
+    expect(editor.page.get_by_text(re.compile(r"· \d+ to check"))).to_be_visible()
     editor.row("chair", exact=True).click()
     editor.tab("Arrange")
     before = session.scene

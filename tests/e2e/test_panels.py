@@ -175,11 +175,11 @@ def test_the_photo_view_stands_where_the_photo_was_taken(editor: EditorPage) -> 
         assert x - (box[0] + box[2] / 2) == pytest.approx(u * scale, abs=2.5)
         assert y - (box[1] + box[3] / 2) == pytest.approx(v * scale, abs=2.5)
     editor.page.get_by_role("slider", name="Photo over model").fill("100")
-    editor.until(lambda: view.photo.comparing, "the photo lies over the model")
+    editor.until(lambda: view.photo.opacity > 0.0, "the photo lies over the model")
     brown = camera.position + camera.rays(np.array([340.0, 310.0]))
     editor.until(lambda: np.allclose(editor.mean_colour(brown), (120, 80, 50), atol=25), "its picture is drawn")
     editor.tool("Room").click()
-    editor.until(lambda: not view.photo.comparing and not view.camera.through_photo, "the model alone again")
+    editor.until(lambda: view.photo.opacity == 0.0 and not view.camera.through_photo, "the model alone again")
 
 
 def test_an_empty_room_says_what_to_do(

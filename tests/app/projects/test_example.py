@@ -13,6 +13,9 @@ def test_the_example_is_copied_with_its_photo_and_retained_as_edited(tmp_path: P
     assert len(scene.objects) >= 0.9 * len(example_inputs().inputs.boxes)
     assert scene.architecture.floor is not None
     assert scene.architecture.by_role("wall")
+    for wall in scene.architecture.by_role("wall"):
+        behind_m = wall.offset - scene.architecture.floor.polygon @ wall.normal
+        assert behind_m.max() < 0.001, "the floor ends at its walls"
     assert inputs.photo.name == "rendering.jpg"  # it is called what it is where the editor shows it
     assert (inputs.photo.width, inputs.photo.height) == (
         scene.camera.intrinsics.width,

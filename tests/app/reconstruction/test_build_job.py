@@ -41,7 +41,10 @@ def test_photos_have_their_new_cameras_and_those_that_do_not_join_are_named(
     again = Rebuilt(scene, photos, {}, ("two",))
     assert session.project is not None
     made = NewScene(scene, {}, Inputs(plain_photo()), (), again=again)
+    opened: list[str] = []
+    client.open_tab = opened.append
     show_built(session, session.project, made, label="build the scene", said=session.inputs)
+    assert opened == ["Scene"]
     assert session.scene is scene
     assert session.further_photos == (*photos, added)
     assert any("To be added again: two." in line for line in said), said
