@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -194,3 +195,14 @@ def test_the_plan_ends_at_the_scene_that_a_build_gives(room: Room) -> None:
     found = evaluate(built.stages, given, ("scene", "textures"), Runner(room.project.stages_folder))
     assert scene_to_json(found["scene"]) == scene_to_json(built.scene)
     assert found["textures"].keys() == built.textures.keys()
+
+
+def test_the_page_about_how_it_works_has_every_stage_in_the_order_of_the_plan() -> None:
+    page = (Path(__file__).parents[2] / "docs" / "how-it-works.md").read_text()
+    diagram = page.split("```")[1]
+    names = [step.name for step in PLAN if isinstance(step, (StageStep, LayoutStep))]
+    lines = [re.search(rf"^  [a-z_, ]*\b{name}\b", diagram, re.MULTILINE) for name in names]
+    places = [line.end() for line in lines if line is not None]
+    assert len(places) == len(names)
+    assert places == sorted(places)
+    assert all(re.search(rf"\*\*[^*]*\b{name}\b", page, re.IGNORECASE) for name in names if "_" not in name)
