@@ -27,12 +27,11 @@ from diorama_core.perception.metrology.box_observations import BoxObservations
 from diorama_core.perception.metrology.carried_costs import CarriedCosts
 from diorama_core.perception.metrology.floor import place_on_floor, solve_all
 from diorama_core.perception.metrology.priors import SizeMode, plain_mode
-from diorama_core.perception.metrology.problem import Cuboids, Problems, View, cuboids, stacked
-from diorama_core.perception.metrology.seats import at_table, tables_of_seats
+from diorama_core.perception.metrology.problem import Cuboids, Problems, View, cuboids
 from diorama_core.perception.metrology.seen_through_tops import seen_through_top
 from diorama_core.perception.metrology.settings import SETTINGS, MetrologySettings, PlacementSettings
 from diorama_core.perception.metrology.silhouette import corner_costs
-from diorama_core.perception.metrology.solver import Solutions, joined, solve
+from diorama_core.perception.metrology.solver import Solutions, joined
 from diorama_core.perception.metrology.supported_objects import (
     FLOOR_OBJECT_COST,
     RoomExtent,
@@ -189,17 +188,6 @@ def _on_floor(
         solved = joined(
             solved.dearer(np.where(alone, settings.placement.odd_one_cost, 0.0)), solve_all(shared, view, settings)
         )
-        placed = _arranged(solved, observations, view, carried, settings)
-    boxes = {i: p.cuboid for i, p in placed.items()}
-    table_of = tables_of_seats(boxes, observations)
-    if table_of:
-        seats = [solved.rows(solved.problems.item == i) for i in table_of]
-        seated = stacked(
-            [at_table(s.problems, boxes[j], settings.placement) for s, j in zip(seats, table_of.values(), strict=True)]
-        )
-        moved = solve(seated, np.concatenate([s.unknowns for s in seats]), view, settings=settings.fit)
-        apart = np.isin(solved.problems.item, list(table_of))
-        solved = joined(solved.dearer(np.where(apart, settings.placement.apart_cost, 0.0)), moved)
         placed = _arranged(solved, observations, view, carried, settings)
     return placed
 

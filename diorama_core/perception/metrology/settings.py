@@ -142,11 +142,6 @@ class PlacementSettings:
     small_m: float = 0.55
     small_sigma_m: float = 0.12
     """Portable things lower than this are more often found on furniture than on the floor."""
-    stands_off_m: float = 0.3
-    stands_off_sigma_m: float = 0.2
-    """How far a seat's front may be from its table, and how firmly."""
-    apart_cost: float = 3.0
-    """For a seat that stands elsewhere although there is a table: one in five."""
     max_readings: int = 5
     dearest: float = 12.0
     """A reading that costs this much more than the cheapest is dropped."""
