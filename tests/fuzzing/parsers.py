@@ -22,6 +22,7 @@ from diorama_core.pipeline import codec
 from diorama_core.project.storage import Project
 from diorama_core.scene.schema import scene_from_json, scene_to_json
 from tests.app.small_room import PlainLibrary, furnished_scene, make_project, plain_photo
+from tests.fuzzing import dropped_files as drops
 from tests.fuzzing import form_files as forms
 from tests.fuzzing import input_files as inputs
 from tests.fuzzing import kept_files as kept
@@ -291,6 +292,9 @@ PARSERS: dict[str, Parser] = {
     "maskforms": Parser(inputs.mask_samples, _inside(inputs.read_masks), inputs.strange_masks),
     "photoforms": Parser(inputs.photo_samples, _inside(as_photo), damaged),
     "sorting": Parser(inputs.sorting_samples, _inside(inputs.read_sort), inputs.strange_masks),
+    "dropped": Parser(drops.dropped_samples, _in_process(drops.read_dropped), damaged, round=15),
+    "drops": Parser(lambda: drops.dropped_samples()[-3:], _in_process(drops.read_dropped), strange_zip, round=15),
+    "confidence": Parser(drops.confidence_samples, _inside(drops.read_confidence), damaged),
     "scene": Parser(_scenes, _used_scene, strange_json),
     "stage": Parser(_stages, _stage, strange_zip),
     "project": Parser(_infos, _as_info, strange_json),
