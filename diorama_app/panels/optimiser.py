@@ -10,6 +10,7 @@ import viser
 from diorama_app.commands.arrangements import Arrangements, switch_arrangement
 from diorama_app.commands.optimise import optimise, put_back, put_back_worse, show_before
 from diorama_app.panels.fields import QUIET_COLOUR, enable, on_change, on_press, show_if, show_value
+from diorama_app.panels.layout_report import COSTS, WEIGHTS, report_html
 from diorama_app.session.client import Client
 from diorama_app.session.layout_run import LayoutRun
 from diorama_app.session.preferences import RecipeName
@@ -24,47 +25,15 @@ RECIPES: dict[str, RecipeName] = {
     "As in the paper": "paper",
     "All in one": "all-in-one",
 }
+ABOUT: dict[RecipeName, str] = {
+    "feasible": "Moves objects as little as possible until nothing overlaps, floats or stands outside the room.",
+    "paper": "Minimises the published costs in turn; objects may move and change size more.",
+    "all-in-one": "Minimises all published costs at once; sizes may change strongly.",
+}
 COLOURS = ("#2f6fd6", "#d6542f", "#269660", "#a050c8", "#c89614", "#149696", "#7a5a3a", "#808080")
 CURVE_POINTS = 240
 ORDINALS = ("best", "second-best", "third-best", "fourth-best", "fifth-best")
 SHORT_ORDINALS = ("1st", "2nd", "3rd", "4th", "5th")
-SHARES = frozenset({"orientation", "placement", "structure", "in_support"})
-FIGURES = {
-    "orientation": "Upright on their support",
-    "placement": "Touching their support",
-    "structure": "Upright and touching",
-    "in_support": "Inside their support",
-    "part_overlap_m": "Deepest overlap",
-    "part_overlap_mean_m": "Mean overlap",
-    "overlapping_pairs": "Overlapping pairs",
-    "moved_m": "Moved, mean",
-    "moved_most_m": "Moved, maximum",
-    "box_overlap_m": "Overlap of boxes, mean",
-}
-WEIGHTS = {
-    "outline": ("As in the photo", "Objects stay where the photo shows them"),
-    "distance": ("Distance", "Objects keep their distance from the camera"),
-    "align": ("Upright", "Objects stand upright on their support"),
-    "heading": ("Facing", "Objects keep the direction they face in the photo"),
-    "place": ("Touching", "Objects touch their support"),
-    "neighbours": ("Neighbours", "Objects near each other keep their arrangement"),
-    "volume": ("Within support", "Objects stay within the bounds of their support"),
-    "collision": ("Separation", "Objects do not overlap"),
-}
-"""Label and hint of the weight of each cost."""
-COSTS = {
-    **{name: label for name, (label, _) in WEIGHTS.items()},
-    "overlap_m": "Overlap (m)",
-    "moved_m": "Moved (m)",
-    "e_align": "Upright",
-    "e_sem": "Facing",
-    "e_place": "Touching",
-    "e_rel": "Neighbours",
-    "e_vol": "Within support",
-    "e_col": "Separation",
-}
-"""Labels of the costs in curves and tables."""
-MIN_COST = 1e-6
 
 
 class Optimiser:
@@ -73,11 +42,11 @@ class Optimiser:
     def __init__(self, gui: viser.GuiApi, client: Client) -> None:
         self._client = client
         self._gui = gui
-        gui.add_markdown("Moves objects onto their supports, apart from each other, into the room. Locked ones stay.")
         self._recipe = gui.add_dropdown("Recipe", list(RECIPES), hint="How the layout is optimised")
         on_change(
             self._recipe, lambda v: client.post(lambda: client.change_preferences(recipe=RECIPES[v]), key="recipe")
         )
+        self._about = LiveHtml(gui)
         self._weights: dict[str, viser.GuiSliderHandle[float]] = {}
         with gui.add_folder("Weights", expand_by_default=False):
             for name, (label, hint) in WEIGHTS.items():
@@ -105,6 +74,7 @@ class Optimiser:
         idle = session.jobs.status is None and bool(session.scene.objects)
         recipe = self._client.preferences.recipe
         show_value(self._recipe, next(label for label, name in RECIPES.items() if name == recipe))
+        self._about.show(f'<p class="dim">{ABOUT[recipe]} Locked objects stay.</p>')
         used = weighted_costs(recipe)
         for name, slider in self._weights.items():
             show_if(name in used, slider)
@@ -116,7 +86,7 @@ class Optimiser:
         ended = run is not None and run.final is not None
         told = "" if run is None or not ended else _worse(run, labels) + _told(run, session.scene)
         self._result.show(_choice(run) + told if run is not None and ended else "")
-        self._report.show("" if run is None else _report(run))
+        self._report.show("" if run is None else report_html(run))
         self._arrangements.show(self._others() if idle else "")
 
     def _started(self, *, some: bool) -> None:
@@ -256,30 +226,3 @@ def _told(run: LayoutRun, scene: Scene) -> str:
     bar = f'<div class="bar tight" style="margin:6px 0 0 0">{bar}</div>' if bar else ""
     told = "".join(f"<p>{text(line[:1].upper() + line[1:])}</p>" for line in lines)
     return f'<div class="card" role="status" style="margin-bottom:6px">{told}{bar}</div>' if lines else ""
-
-
-def _report(run: LayoutRun) -> str:
-    report = run.report
-    if report is None:
-        return ""
-    names = [n for n in dict.fromkeys([*report.before, *report.after]) if n in report.after]
-    figures = "".join(_row(n, report.before.get(n), report.after[n]) for n in names if n in FIGURES)
-    costs = "".join(_row(n, report.before.get(n), report.after[n]) for n in names if n not in FIGURES)
-    reasons = "".join(f"<p>{text(reason)}</p>" for reason in report.reasons)
-    why = f'<div class="card warn" style="margin-top:6px">{reasons}</div>' if reasons else ""
-    table = f"<h4>Before → after ({report.seconds:.1f} s)</h4><table>{figures}</table>{why}"
-    return table + (f"<details><summary class='dim'>Costs</summary><table>{costs}</table></details>" if costs else "")
-
-
-def _row(name: str, before: float | None, after: float) -> str:
-    label = FIGURES.get(name) or COSTS.get(name, name.removesuffix("_m").replace("_", " "))
-    first = "–" if before is None else _figure(name, before)
-    return f"<tr><td>{text(label)}</td><td>{first} → {_figure(name, after)}</td></tr>"
-
-
-def _figure(name: str, value: float) -> str:
-    if name in SHARES:
-        return f"{100 * value:.0f}%"
-    if name.endswith("_m"):
-        return f"{100 * value:.1f} cm"
-    return f"{value:.3g}" if abs(value) >= MIN_COST else "0"

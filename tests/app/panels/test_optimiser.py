@@ -2,7 +2,8 @@ from __future__ import annotations
 
 import pytest
 
-from diorama_app.panels.optimiser import RECIPES, WEIGHTS, Optimiser
+from diorama_app.panels.layout_report import WEIGHTS
+from diorama_app.panels.optimiser import RECIPES, Optimiser
 from diorama_app.session.layout_run import LayoutRun
 from diorama_core.artefacts import LayoutReport
 from diorama_core.layout.weights import weighted_costs
