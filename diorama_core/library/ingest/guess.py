@@ -49,6 +49,8 @@ LIKELY_OTHER, LIKELY_KNOWN = 0.0, -4.0
 """Of being no particular category against one it looks like, when it has a name that speaks of none we know."""
 UNNAMED_OTHER, UNNAMED_KNOWN = -2.5, -1.5
 """The same when it has no name at all."""
+OTHER_WORD = 0.7
+"""How sure a kind can be by looks, of a model whose name is a word for none."""
 UNTRUE_NAME = -300.0
 """Of being none of the kinds that its name speaks of: only where it cannot be any of them."""
 MIN_METRES, MAX_METRES = 0.01, 18.0
@@ -191,7 +193,7 @@ def _table(
             rows[:, column] = weight + alike + frame + np.log(prior) + _size_fit(log_sizes, name)
             if given.category is None:
                 rows[~_possible(name, log_sizes, said=name in (named.weights or ())), column] = -np.inf
-        if given.unit_m is None and len(units) > 1:
+        if given.unit_m is None and len(units) > 1 and name != taxonomy.UNKNOWN.name:  # which has no usual size
             free = _best_scale(log_extents, name)
             fit = _size_fit(log_extents + free[:, None], name)
             rows[:, -1] = weight + alike + frame + np.log(ANY_SCALE) + fit
@@ -230,6 +232,7 @@ def _chosen(
     promised = f"the {convention.name} convention" if convention.up.get(up, 0) > 0.3 else "its shape"
     usual = u < len(units) and convention.unit.get(unit, 0) > 0.3
     size_says = "its size" if u < len(units) else f"no usual unit fits: scaled to the usual size of a {categories[c]}"
+    strange = named.weights is not None and not named.weights and categories[c] != taxonomy.UNKNOWN.name
     guess = Guess(
         up=_assumed(up, posterior[:, same_up].sum(), promised, given.up, given),
         front=_assumed(
@@ -238,7 +241,7 @@ def _chosen(
         unit=_assumed(f"{unit:.6g}", posterior[..., u].sum(), promised if usual else size_says, given.unit_m, given),
         category=_assumed(
             categories[c],
-            min(posterior[c].sum(), named.certainty),
+            min(posterior[c].sum(), OTHER_WORD if strange else named.certainty),
             "its name" if named.weights else "its looks",
             given.category,
             given,

@@ -79,6 +79,14 @@ def test_kinds_that_a_nameless_model_cannot_be_take_no_places_among_the_likest()
     assert guessed(chair(), known, given=Given(up="+z", unit_m=1.0)).category == "chair"
 
 
+def test_what_is_called_by_no_known_word_keeps_its_unit_and_is_unsure_what_it_is(few: KnownShapes) -> None:
+    bread = guessed(block((0.05, 0.06, 0.06), (0, 0, 0)), few, named={})
+    assert (bread.category, bread.unit_m) == ("object", 1.0)
+    tall = trimesh.Trimesh(chair().vertices * [0.95, 1.0, 1.15], chair().faces, process=False)
+    gadget = guessed(y_up(tall), few, GLTF, named={})
+    assert gadget.category == "object" or gadget.guess.category.confidence < 0.8
+
+
 def test_of_two_kinds_that_it_may_be_the_more_frequent_one_is_likelier() -> None:
     shape, size = relief_features(relief(table())), np.log(table().extents)
     known = KnownShapes(("desk", "table"), np.stack([shape, shape]), np.stack([size, size]))

@@ -41,7 +41,10 @@ def dark_colours(picture: Image.Image, source: Source) -> tuple[Image.Image, tup
     if values is None or values.dtype != np.uint16 or values.ndim != 3:
         return picture, ()
     eight, notes = eight_bits(values[..., 2::-1])
-    return Image.fromarray(np.ascontiguousarray(eight)), notes
+    brighter = Image.fromarray(np.ascontiguousarray(eight))
+    if picture.mode == "RGBA":
+        brighter.putalpha(picture.getchannel("A"))
+    return brighter, notes
 
 
 def _has_16_bits(picture: Image.Image, data: bytes) -> bool:

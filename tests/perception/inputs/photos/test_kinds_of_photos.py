@@ -5,6 +5,7 @@ from __future__ import annotations
 import io
 import struct
 
+import cv2
 import numpy as np
 import pytest
 from PIL import Image
@@ -81,6 +82,15 @@ def test_few_bits_are_stretched(bits: int) -> None:
     assert photo.inputs.photo.rgb.max() == 255
     assert photo.inputs.photo.rgb.mean() == pytest.approx(127.5, abs=1.5)
     assert f"use {bits} of 16 bits" in photo.warnings[0]
+
+
+def test_dark_colours_of_sixteen_bits_keep_what_is_transparent() -> None:
+    values = np.full((HEIGHT, WIDTH, 4), 60, np.uint16)
+    values[:, : WIDTH // 2, 3] = 0
+    values[:, WIDTH // 2 :, 3] = 65535
+    data = cv2.imencode(".png", values)[1].tobytes()
+    photo = read_inputs(data).inputs.photo
+    assert photo.rgb[:, : WIDTH // 2].min() == 255
 
 
 def test_sixteen_bits_are_divided() -> None:
