@@ -49,6 +49,8 @@ class Suggestions:
         self._clickable: Detections | None = None
         self._outline: tuple[Box, Bool[np.ndarray, "h w"]] | None = None
         """The last one that was worked out; they are as large as the photo."""
+        self._wanted: Box | None = None
+        """The box whose outline was asked for last: others that wait are worked out for nobody."""
         self._asked: set[object] = set()
         self._worker = ThreadPoolExecutor(1, "suggestions")
 
@@ -67,7 +69,7 @@ class Suggestions:
 
     def outline(self, box: Box) -> Bool[np.ndarray, "h w"] | None:
         """The pixels of the photo that are the object's in a box; None while they are worked out."""
-        last = self._outline
+        last, self._wanted = self._outline, box
         if last is not None and last[0] == box:
             return last[1]
         self._ask(("outline", box), lambda: self._trace(box))
@@ -168,7 +170,8 @@ class Suggestions:
     def _trace(self, box: Box) -> None:
         from diorama_core.perception.masks import EmbeddedMasks
 
-        self._outline = box, EmbeddedMasks().inside_box(self.photo.rgb, box)[0]
+        if box == self._wanted:
+            self._outline = box, EmbeddedMasks().inside_box(self.photo.rgb, box)[0]
         self._asked.discard(("outline", box))
 
     def _clicked(self, x: float, y: float, marked: Sequence[Box]) -> LabelledBox | None:

@@ -79,6 +79,8 @@
     if (smaller) {
       state.selected = null;
       send("accept", [proposed, ""]);
+    } else if (!shift && hit(point, state.drawn) !== null) {
+      return; // it is selected as soon as it has its name
     } else if (found !== null && !shift) {
       state.selected = found;
       send("select", found);

@@ -11,7 +11,7 @@ import pytest
 import torch
 
 from diorama_app.reconstruction.suggestions import COUNT, Suggestions, unmarked
-from diorama_core.artefacts import LabelledBox, Photo
+from diorama_core.artefacts import Box, LabelledBox, Photo
 from diorama_core.models import own_weights
 from diorama_core.models.boxes import Detections
 from diorama_core.models.store import ModelStore
@@ -83,6 +83,35 @@ def test_the_outline_of_the_last_box_arrives_and_stays() -> None:
     assert ready.wait(60)
     assert suggestions.outline(BOX) is not None
     assert suggestions.outline(box) is None, "only the last one is held"
+
+
+@shipped
+def test_outlines_that_nobody_waits_for_hold_up_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
+    traced: list[Box] = []
+
+    def inside_box(self: object, rgb: np.ndarray, box: Box) -> tuple[np.ndarray, float]:
+        traced.append(box)
+        return np.ones(rgb.shape[:2], dtype=bool), 1.0
+
+    monkeypatch.setattr("diorama_core.perception.masks.EmbeddedMasks.inside_box", inside_box)
+    begin, ready = threading.Event(), threading.Event()
+    suggestions = Suggestions(plain_photo(), ready.set)
+    suggestions._worker.submit(begin.wait, 30)
+    boxes = [(10.0, 10.0, 50.0 + k, 60.0) for k in range(5)]
+    assert [suggestions.outline(box) for box in boxes] == [None] * 5
+    begin.set()
+    suggestions._worker.submit(lambda: None).result(30)
+    assert traced == boxes[-1:]
+
+
+@shipped
+def test_what_is_drawn_is_told_with_its_likeliest_name() -> None:
+    told = queue.Queue[LabelledBox]()
+    suggestions = Suggestions(PHOTO, lambda: None)
+    suggestions.name(BOX, (), told.put)
+    found = told.get(timeout=60)
+    assert found.box == BOX
+    assert found.label == suggestions.names([BOX], 0)[0]
 
 
 @shipped
