@@ -127,6 +127,9 @@ def _coefficient(lines: Float[np.ndarray, "lines samples 2"], camera: Intrinsics
     """The radial coefficient that makes most edges straight; 0 where it is not sure that there is one."""
     if len(lines) < settings.min_lines:
         return 0.0
+    bent = np.count_nonzero(_deviation(lines) >= settings.straight_px)
+    if bent < (1.0 - settings.max_straight) * settings.min_lines:
+        return 0.0
     weights = np.linalg.norm(lines[:, -1] - lines[:, 0], axis=1)
 
     def straight(k1: float) -> Float[np.ndarray, "lines samples 2"]:
