@@ -28,12 +28,10 @@ if TYPE_CHECKING:
 Action = Literal["photo", "inputs", "photos", "room", "models", "scene"]
 """A project of a photo; more about the open photo; a project each; one room of all; furniture; a project of a scene."""
 
-MAX_FILES = 2000
-MAX_BYTES = 1_000_000_000
-"""That what was dropped may unpack to."""
+MAX_FILES, MAX_BYTES, MAX_NAMED = 2000, 1_000_000_000, 6
+"""Of what was dropped: files, bytes that it may unpack to, and files that a message names."""
 MIN_ROOM_M = (1.8, 1.8, 1.5)
 """Extents from which several parts in one file may be a room."""
-MAX_NAMED = 6
 _REFER_TO_PICTURES = ("glTF", "OBJ", "FBX", "USD", "Collada", "3DS")
 _SCAN_FILES = ("/raw.glb", "/export.obj", "/export_refined.obj", "/textured_output.obj")
 """By which the folder of a scanner app is told from one of models."""
