@@ -23,7 +23,7 @@ from diorama_core.errors import Cancelled, DioramaError
 from diorama_core.io.quick_imports import load_quickly
 from diorama_core.io.text import clean_strings
 
-LOAD_MUCH = ("build", "optimise", "export", "import", "picture", "text", "edit", "library", "bench")
+LOAD_MUCH = ("api", "build", "optimise", "export", "import", "picture", "text", "edit", "library", "bench")
 """Commands that need most libraries whatever they are told."""
 
 

@@ -1,13 +1,14 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from enum import StrEnum
 from typing import Any, Literal
 
 import numpy as np
 import pytest
 from jaxtyping import Float32
 
-from diorama_core.io.typed import fits
+from diorama_core.io.typed import as_member, fits
 
 
 @dataclass(frozen=True)
@@ -53,3 +54,15 @@ def test_values_of_their_type_fit(value, annotation) -> None:
 )  # fmt: skip
 def test_others_do_not(value, annotation) -> None:
     assert not fits(value, annotation)
+
+
+class Wood(StrEnum):
+    OAK = "oak"
+
+
+def test_strings_become_the_members_that_are_asked_for_and_nothing_else_changes() -> None:
+    assert as_member("oak", Wood) is Wood.OAK
+    with pytest.raises(ValueError, match="elm"):
+        as_member("elm", Wood)
+    for value, annotation in ((5, Wood), ("oak", str), ("oak", Literal["oak"]), ("oak", None), (GOOD, Tree)):
+        assert as_member(value, annotation) is value
