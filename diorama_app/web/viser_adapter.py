@@ -195,6 +195,7 @@ def stop_server(server: viser.ViserServer) -> None:
     def stop() -> None:
         with contextlib.redirect_stdout(io.StringIO()):
             server.stop()
+        _HANDLERS.pop(server, None)  # it refers to its server, and would keep that and its project in memory
 
     threading.Thread(target=stop, daemon=True, name="stop viser").start()
 

@@ -5,6 +5,8 @@ from __future__ import annotations
 import inspect
 import re
 import socket
+import subprocess
+import sys
 import time
 from collections.abc import Iterator
 
@@ -32,6 +34,26 @@ def server() -> Iterator[viser.ViserServer]:
 
 def test_it_is_the_version_that_was_measured() -> None:
     assert viser.__version__ == "1.1.1"
+
+
+STOPPED = """
+import gc, weakref
+from diorama_app.web.viser_adapter import create_server, create_server_without_port, stop_server
+from diorama_app.web.visitors import Visitors
+from tests.waiting import until
+
+front = create_server(host="127.0.0.1", port=0, label="front", visitors=Visitors("127.0.0.1"))
+server = create_server_without_port("project", front=front)
+left = weakref.ref(server)
+stop_server(server)
+del server
+until(lambda: gc.collect() >= 0 and left() is None, "its server is gone from memory")
+"""
+
+
+def test_nothing_keeps_a_project_s_server_that_was_stopped() -> None:
+    """In a process of its own: what checks calls in the tests remembers their arguments."""
+    subprocess.run([sys.executable, "-c", STOPPED], check=True, timeout=120)
 
 
 def test_pages_of_its_own_origin_are_served(server: viser.ViserServer) -> None:
