@@ -71,7 +71,7 @@ class ProjectLock:
         if not self._lock.is_locked:
             return
         with contextlib.suppress(OSError):
-            (self.folder / OWNER).unlink(missing_ok=True)
+            (self.folder / OWNER).unlink()
         with contextlib.suppress(OSError):
             self._lock.release()
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import getpass
 import subprocess
 import sys
 from pathlib import Path
@@ -26,7 +27,9 @@ time.sleep(60)
 def test_the_second_is_told_who_has_it(tmp_path: Path) -> None:
     folder = Project.create(tmp_path / "room").folder
     with ProjectLock(folder, "the editor"):
-        with pytest.raises(ProjectLockedError, match=r"room is open in the editor of .* \(process \d+") as told:
+        with pytest.raises(
+            ProjectLockedError, match=rf"room is open in the editor of {getpass.getuser()} on .* \(process \d+"
+        ) as told:
             ProjectLock(folder, "diorama build")
         assert "\n" not in str(told.value)
     ProjectLock(folder).release()

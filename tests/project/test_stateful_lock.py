@@ -25,6 +25,8 @@ class LockMachine(RuleBasedStateMachine):
     @initialize()
     def begin(self) -> None:
         self.folder = Project.create(Path(tempfile.mkdtemp()) / "room").folder
+        self.over = list[object]()
+        """Locks that were given back, and errors: while they are there, nothing but the program ends what they had."""
         self.faults, self.held, self.by, self.named = Faults(), None, "", False
         """`held` is the lock that `by` has; `named` whether the file that says so is whole."""
 
@@ -39,7 +41,8 @@ class LockMachine(RuleBasedStateMachine):
         try:
             with self.faults.injected():
                 self.held, self.by, self.named = ProjectLock(self.folder, program), program, True
-        except ProjectError:
+        except ProjectError as error:
+            self.over.append(error)
             assert self.faults.full
         except Killed:
             pass  # the operating system ends the lock with the program
@@ -50,6 +53,7 @@ class LockMachine(RuleBasedStateMachine):
         for _ in range(times):
             self.held.release()
         assert not (self.folder / OWNER).exists()
+        self.over.append(self.held)
         self.held = None
 
     @precondition(lambda self: self.held)
