@@ -186,6 +186,7 @@ class Workspace:
     def _look_for_unused(self) -> None:
         self.close_unused()
         with self._lock:
-            again, self._left_meanwhile, self._timer = self._left_meanwhile, False, None
+            busy = any(not editor.session.clients for editor in self._editors[1:])
+            again, self._left_meanwhile, self._timer = self._left_meanwhile or busy, False, None
         if again:
             self._left()

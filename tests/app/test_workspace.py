@@ -8,6 +8,7 @@ from pathlib import Path
 
 import pytest
 
+from diorama_app.session.jobs import JobStatus
 from diorama_app.workspace import Workspace
 from diorama_core.editing.clipboard import copied
 from diorama_core.errors import DioramaError
@@ -83,6 +84,19 @@ def test_what_nobody_looks_at_is_closed_after_a_while(workspace: Workspace) -> N
     workspace.close_unused(at_once=True)
     assert [e.session.project.name for e in workspace.editors] == ["first"]
     assert workspace.server("second") is not None, "and opened again when somebody comes"
+
+
+def test_a_project_whose_job_outlasts_its_last_page_is_closed_after_it(
+    workspace: Workspace, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    workspace.server("second")
+    jobs = workspace.editors[1].session.jobs
+    monkeypatch.setattr("diorama_app.workspace.CLOSED_AFTER_S", -0.5)
+    monkeypatch.setattr(jobs, "_status", JobStatus("build", "Build"))
+    workspace._look_for_unused()
+    assert len(workspace.editors) == 2
+    monkeypatch.setattr(jobs, "_status", None)
+    until(lambda: len(workspace.editors) == 1, "looked at again although nobody leaves any more")
 
 
 def test_many_who_leave_wait_in_one_thread(workspace: Workspace, monkeypatch: pytest.MonkeyPatch) -> None:
