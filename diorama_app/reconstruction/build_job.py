@@ -185,8 +185,9 @@ def show_built(
     if project != session.project:
         return  # somebody opened another project here meanwhile
     for client in session.clients.values():
+        if client.view.canvas.is_open or not session.scene.objects:
+            client.open_tab("Scene")  # who corrects the camera of a scene goes on correcting it
         client.view.canvas.close()
-        client.open_tab("Scene")
     session.textures = {**session.textures, **made.textures}  # undo shows what earlier ones name
     session.notes, session.reasons = made.notes, made.reasons
     # Photos that were added or taken out meanwhile are as the person left them.

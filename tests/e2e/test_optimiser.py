@@ -54,6 +54,7 @@ def test_a_cost_left_out_is_not_followed_and_every_cost_has_a_curve(editor: Edit
     legend = editor.page.locator(".u-legend").first
     for name in ("Upright", "Facing", "Neighbours", "Separation"):
         expect(legend).to_contain_text(name)
+    editor.page.get_by_text("Before → after").click()
     expect(editor.page.get_by_text("Moved, mean")).to_be_visible()
     expect(editor.page.get_by_text("Overlapping pairs")).to_be_visible()
     editor.button("Revert").click()

@@ -33,13 +33,14 @@ def test_a_photo_of_the_same_room_is_added_looked_through_and_undone(
     editor.upload("Add a photo of this room", tmp_path / "beside.png")
     editor.at_board()
     assert editor.session.scene is before
-    for box in photos.second.boxes[:2]:  # as a person would: a name, then a rectangle
-        name = editor.page.locator("#dio-box-name")
-        name.fill(box.label)
-        name.press("Enter")
+    for box in photos.second.boxes[:2]:  # as a person would: a rectangle, then another name
         count = len(editor.session.further_photos[0].inputs.boxes)
         editor.draw_box(box.box)
         editor.until(lambda c=count: len(editor.session.further_photos[0].inputs.boxes) == c + 1, "drawn")
+        name = editor.page.locator("#dio-box-name")
+        name.fill(box.label)
+        name.press("Enter")
+        editor.until(lambda w=box.label: editor.session.further_photos[0].inputs.boxes[-1].label == w, "named")
     marked = replace(editor.client.marked, boxes=photos.second.boxes)
     editor.session.ui_thread.post(lambda: editor.client.annotate("mark the others", marked))
     editor.until(lambda: editor.client.marked.boxes == photos.second.boxes, "marked")
