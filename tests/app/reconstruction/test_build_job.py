@@ -43,8 +43,8 @@ def test_photos_have_their_new_cameras_and_those_that_do_not_join_are_named(
     made = NewScene(scene, {}, Inputs(plain_photo()), (), again=again)
     opened: list[str] = []
     client.open_tab = opened.append
-    show_built(session, session.project, made, label="build the scene", said=session.inputs)
-    assert opened == ["Scene"]
+    show_built(session, session.project, made, label="set the camera", said=session.inputs)
+    assert opened == [], "who corrects the camera goes on correcting it"
     assert session.scene is scene
     assert session.further_photos == (*photos, added)
     assert any("To be added again: two." in line for line in said), said
@@ -115,3 +115,15 @@ def test_boxes_that_a_person_draws_while_a_scene_is_built_stay(session: EditorSe
     kept = session.project.load_inputs()
     assert kept is not None
     assert kept.boxes == said.boxes
+
+
+def test_who_was_marking_sees_the_scene_after_a_build(session: EditorSession, client: Client) -> None:
+    assert session.project is not None
+    photo = plain_photo()
+    client.view.canvas.open(photo.rgb, lambda event: None)
+    opened: list[str] = []
+    client.open_tab = opened.append
+    made = NewScene(replace(session.scene, camera=turned(photo_camera())), {}, Inputs(photo), ())
+    show_built(session, session.project, made, label="build the scene", said=session.inputs)
+    assert opened == ["Scene"]
+    assert not client.view.canvas.is_open
