@@ -87,7 +87,7 @@ def test_absurd_sizes_are_refused_and_leave_nothing_behind(session: EditorSessio
 def test_what_is_not_ones_own_or_not_known_is_refused(session: EditorSession, client: Client) -> None:
     chair = session.scene.object("chair_1")
     assert not is_own_model(session, chair.shape_id)
-    with pytest.raises(EditRefused, match="your own"):
+    with pytest.raises(EditRefused, match="you uploaded"):
         correct_model(client, chair.id, FIXES["flip"])
     before = session.scene
     with pytest.raises(InputError):

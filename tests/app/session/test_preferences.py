@@ -32,6 +32,7 @@ CHANGED = Preferences(
     all_alike=True,
     favourites=("chair_a",),
     recent=("lamp_a", "chair_a"),
+    numbers=True,
 )
 
 

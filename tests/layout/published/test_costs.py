@@ -76,10 +76,6 @@ def test_gradients_against_finite_differences() -> None:
     )
     R, size = rotations(3), tensor(3, 3, seed=6).detach().abs() + 1.5
     assert gradcheck(lambda p: costs.e_col(p, R, size, pairs), (tensor(3, 3),))
-    wall, point = tensor(2, 3, seed=7).detach(), tensor(2, 3, seed=8).detach()
-    assert gradcheck(
-        lambda face, centre: sum(costs.adherence(face, centre, wall, point)), (tensor(2, 3), tensor(2, 3, seed=1))
-    )
 
 
 def test_gradients_are_finite_where_costs_vanish() -> None:

@@ -97,7 +97,7 @@ def test_styles_differ_where_the_kind_is_the_same() -> None:
     materials = {style.name: {style.wood.name, style.frame.name, style.cloth.name} for style in STYLES}
     assert len({style.leg for style in STYLES}) == len(STYLES)
     assert len({frozenset(names) for names in materials.values()}) == len(STYLES)
-    assert styles.MODERN.but(wood=styles.TEAK).wood == styles.TEAK
+    assert styles.MODERN.but(wood=styles.GREY_OAK).wood == styles.GREY_OAK
 
 
 @pytest.mark.parametrize(
