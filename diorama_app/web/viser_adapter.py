@@ -22,6 +22,7 @@ from types import SimpleNamespace
 from typing import Any
 
 import msgspec.msgpack
+import rich
 import viser
 import websockets.asyncio.server
 from viser import _messages
@@ -83,6 +84,7 @@ def packed(value: Any) -> bytes:
 
 _infra.msgspec = SimpleNamespace(msgpack=SimpleNamespace(encode=packed))  # all that this module of viser's takes of it
 _infra.AsyncMessageBuffer = _Buffer  # each connection makes its own by this name
+rich.get_console().quiet = True  # viser prints that it stopped, from a thread: nobody else here prints through it
 
 
 def create_server(
@@ -193,8 +195,7 @@ def stop_server(server: viser.ViserServer) -> None:
     """Stop without waiting: viser's own `stop` can block for seconds after a browser has been connected."""
 
     def stop() -> None:
-        with contextlib.redirect_stdout(io.StringIO()):
-            server.stop()
+        server.stop()
         _HANDLERS.pop(server, None)  # it refers to its server, and would keep that and its project in memory
 
     threading.Thread(target=stop, daemon=True, name="stop viser").start()
