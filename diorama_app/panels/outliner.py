@@ -155,7 +155,7 @@ def to_check(scene: Scene, badges: Mapping[str, tuple[str, ...]]) -> tuple[str, 
 
 
 def _summary(tree: _Tree) -> str:
-    """How many objects there are, and how many of them a person should look at."""
+    """The number of objects, and of those that a person should look at."""
     count, found = number_of(len(tree.scene.objects)), len(to_check(tree.scene, tree.badges))
     if not found:
         return f'<p class="dim">{count}</p>'

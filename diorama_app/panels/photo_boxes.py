@@ -71,7 +71,7 @@ class PhotoBoxes:
         return tuple(b for b in likely if same_object(inputs.boxes, b.box) is None)
 
     def proposed(self, inputs: Inputs) -> int:
-        """How many proposals are shown."""
+        """Number of proposals that are shown."""
         return len(self._proposals(inputs)) if self._client.view.canvas.is_open else 0
 
     def accept_all(self) -> None:

@@ -23,7 +23,7 @@ class Toasts:
         self._doing = LiveHtml(gui, self._act, floating="dio-doing")
         self._offered: Callable[[], None] | None = None
         self._said = 0
-        """How many messages were shown."""
+        """Number of messages that were shown."""
         client.toast, client.offer = self.say, self.offer
 
     def say(self, message: str, undo: bool) -> None:

@@ -20,11 +20,11 @@ MAX_DEVIATION = 1.4826
 
 @dataclass(frozen=True)
 class RugSettings:
-    """What is a rug in points whose floor is at 0."""
+    """Finds the rug in points whose floor is at 0."""
 
     min_height_m: float = 0.007
     sigmas: float = 4.0
-    """Of the floor's noise that a rug is higher."""
+    """Multiple of the floor's noise that a rug is higher."""
     unlevel: float = 0.3
     """Deviation of a rug's heights, as a share of its height: a floor that bends rises little by little."""
     max_height_m: float = 0.06

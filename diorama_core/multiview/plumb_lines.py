@@ -21,14 +21,14 @@ from diorama_core.scene.types import Intrinsics
 
 @dataclass(frozen=True)
 class PlumbLineSettings:
-    """What counts as a bent line, and how many of them speak for a lens."""
+    """Limits of what counts as a bent line, and how many of them speak for a lens."""
 
     side_px: int = 1200
     """Edges are found in a picture no larger than this."""
     min_length: float = 0.16
-    """Of an edge, in diagonals."""
+    """Length of an edge, in diagonals."""
     max_sagitta: float = 0.06
-    """Of an edge's length: what is bent more is round."""
+    """Share of an edge's length: what is bent more is round."""
     smooth_px: float = 0.8
     """Deviation of an edge from a parabola."""
     straight_px: float = 0.5
