@@ -15,7 +15,7 @@ from jaxtyping import Bool, Float
 
 from diorama_core.artefacts import LabelledBox
 from diorama_core.library.taxonomy import UNKNOWN, category
-from diorama_core.perception.inputs.depth.planes import PlaneFit, SampledDepth, planes_of, sampled
+from diorama_core.perception.inputs.depth.planes import TRIALS, PlaneFit, SampledDepth, planes_of, sampled
 
 Kind = Literal["depth", "distance", "inverse"]
 DepthKind = Literal["auto", "depth", "distance", "inverse"]
@@ -30,6 +30,8 @@ RAY_FOCALS = (0.45, 0.6, 0.8, 1.1)
 """Focal lengths over the longer side that are tried where none is known."""
 EXACT, NEARLY = 0.8, 0.04
 """Share of pixels on planes from which nothing else is asked, and by which a first look may be behind."""
+SEARCH_POINTS, SEARCH_TRIALS = 800, 60
+"""For the first look at a focal length: enough to tell whether a closer one is worth its time."""
 MIN_ORDER = 0.15
 """Of -1 to 1: below, the map says nothing of near and far, or the contrary of its reading."""
 CONTRADICTION = 3.0
@@ -67,11 +69,11 @@ def depth_readings(
     scale = max(float(np.median(sample.values)), 1e-12)
     sample = SampledDepth(sample.x, sample.y, sample.values / scale)
     readings = [
-        _reading("depth", planes_of(sample, _inverse, _inverse), order, None),
-        _reading("inverse", planes_of(sample, _same, _same), -order, None),
+        _reading("depth", planes_of(sample, inverse=False), order, None),
+        _reading("inverse", planes_of(sample, inverse=True), -order, None),
     ]
     for trial in (focal,) if focal is not None else _ray_focals(sample, readings[0].fit.explained):
-        readings.append(_reading("distance", planes_of(on_axis(sample, trial), _inverse, _inverse), order, trial))
+        readings.append(_reading("distance", planes_of(on_axis(sample, trial), inverse=False), order, trial))
     restored = [_in_unit(r, scale) for r in readings]
     return tuple(sorted(restored, key=lambda r: -r.score))
 
@@ -118,14 +120,22 @@ def _ray_focals(sample: SampledDepth, explained: float) -> tuple[float, ...]:
     """
     if explained > EXACT:
         return ()
-    scores = {f: planes_of(on_axis(sample, f), _inverse, _inverse).explained for f in RAY_FOCALS}
-    if max(scores.values()) < explained - NEARLY:
+    few = sample.thinned(SEARCH_POINTS)
+    scores = {f: _share(on_axis(few, f), SEARCH_TRIALS) for f in RAY_FOCALS}
+    best, as_depth = max(scores, key=lambda f: scores[f]), _share(few, SEARCH_TRIALS)
+    if scores[best] < as_depth - NEARLY:
         return ()
-    for step in (1.15, 1.07, 1.035):
-        best = max(scores, key=lambda f: scores[f])
-        for near in (best / step, best * step):
-            scores[near] = planes_of(on_axis(sample, near), _inverse, _inverse).explained
-    return (max(scores, key=lambda f: scores[f]),)
+    if scores[best] > as_depth:
+        scores = {best: _share(on_axis(sample, best))}
+        for step in (1.15, 1.07, 1.035):
+            for near in (best / step, best * step):
+                scores[near] = _share(on_axis(sample, near))
+            best = max(scores, key=lambda f: scores[f])
+    return (best,)
+
+
+def _share(sample: SampledDepth, trials: int = TRIALS) -> float:
+    return planes_of(sample, inverse=False, trials=trials).explained
 
 
 def _reading(kind: Kind, fit: PlaneFit, order: float, focal: float | None) -> DepthReading:
@@ -156,11 +166,3 @@ def _before_background(values: np.ndarray, valid: np.ndarray, box: LabelledBox, 
 def _median(values: np.ndarray, valid: np.ndarray, part: tuple[slice, ...] | slice) -> float | None:
     found = values[part][valid[part]]
     return float(np.median(found)) if found.size >= 9 else None
-
-
-def _inverse(values: np.ndarray) -> np.ndarray:
-    return 1.0 / np.where(np.abs(values) > 1e-9, values, 1e-9)
-
-
-def _same(values: np.ndarray) -> np.ndarray:
-    return values

@@ -8,7 +8,6 @@ distances along the rays.
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -23,6 +22,7 @@ TOLERANCES = (0.002, 0.005, 0.012, 0.03)
 MIN_NEW_SHARE = 0.01
 """Of the points, for a further plane."""
 _SEED = 7
+_ALL = slice(None)
 _REACH = 0.35
 """Share of the picture's width within which the three points of a trial lie: of one surface, mostly."""
 
@@ -43,6 +43,11 @@ class SampledDepth:
         """The range of most values."""
         low, high = np.percentile(self.values, [5, 95])
         return max(float(high - low), 1e-9 * float(abs(high)) + 1e-12)
+
+    def thinned(self, count: int) -> SampledDepth:
+        """About so many of them, evenly."""
+        step = max(1, len(self.values) // count)
+        return SampledDepth(self.x[::step], self.y[::step], self.values[::step])
 
 
 @dataclass(frozen=True, eq=False)
@@ -68,27 +73,23 @@ def sampled(values: Float[np.ndarray, "h w"], valid: np.ndarray) -> SampledDepth
     return SampledDepth(x, y, values[rows, columns].astype(np.float64))
 
 
-def planes_of(
-    sample: SampledDepth,
-    to_affine: Callable[[np.ndarray], np.ndarray],
-    to_values: Callable[[np.ndarray], np.ndarray],
-) -> PlaneFit:
+def planes_of(sample: SampledDepth, *, inverse: bool, trials: int = TRIALS) -> PlaneFit:
     """The planes of a map, one after another by random trials.
 
     Args:
         sample: the numbers.
-        to_affine: turns numbers into what is affine on planes.
-        to_values: turns that back, so that residuals of all readings are in the numbers' own unit.
+        inverse: whether they are inverse depth, so that they are affine on planes; otherwise their inverses are.
+        trials: planes through three points that are tried for each plane found.
     """
     random = np.random.default_rng(_SEED)
     basis = np.stack([sample.x, sample.y, np.ones_like(sample.x)], axis=1)
-    affine, spread = to_affine(sample.values), sample.spread
-    left = np.ones(len(affine), bool)
+    numbers = _Numbers(basis, sample.values, sample.spread, inverse)
+    left = np.ones(len(basis), bool)
     found, shares, explained = [], [], np.zeros(len(TOLERANCES))
     for _ in range(MAX_PLANES):
         if left.sum() < max(30, MIN_NEW_SHARE * len(left)):
             break
-        best = _best_plane(basis, affine, sample.values, left, spread, to_values, random)
+        best = _best_plane(numbers, left, trials, random)
         if best is None:
             break
         plane, off = best
@@ -103,35 +104,49 @@ def planes_of(
     return PlaneFit(float(explained.mean()), planes, np.array(shares))
 
 
+@dataclass(frozen=True, eq=False)
+class _Numbers:
+    """What planes are fitted to."""
+
+    basis: Float[np.ndarray, "n 3"]
+    values: Float[np.ndarray, "n"]
+    spread: float
+    inverse: bool
+
+    @property
+    def affine(self) -> Float[np.ndarray, "n"]:
+        """What is affine on planes."""
+        return self.values if self.inverse else 1.0 / self.values
+
+    def off(self, planes: Float[np.ndarray, "*k 3"], some: np.ndarray | slice = _ALL) -> Float[np.ndarray, "*k m"]:
+        """Residuals of some numbers under planes, in shares of the spread: of all readings in the numbers' own unit."""
+        found = planes @ self.basis[some].T
+        if not self.inverse:
+            with np.errstate(divide="ignore"):
+                found = 1.0 / found
+        return np.abs(found - self.values[some]) / self.spread
+
+
 def _best_plane(
-    basis: np.ndarray,
-    affine: np.ndarray,
-    values: np.ndarray,
-    left: np.ndarray,
-    spread: float,
-    to_values: Callable[[np.ndarray], np.ndarray],
-    random: np.random.Generator,
+    numbers: _Numbers, left: np.ndarray, trials: int, random: np.random.Generator
 ) -> tuple[np.ndarray, np.ndarray] | None:
     """The affine function that most of the remaining points lie on, refined, and everybody's distance from it."""
-    index = np.flatnonzero(left)
-    first = random.choice(index, TRIALS)
-    others = _near(basis, index, first, random)
-    triples = np.stack([first, *others], axis=1)
+    index, basis, affine = np.flatnonzero(left), numbers.basis, numbers.affine
+    first = random.choice(index, trials)
+    triples = np.stack([first, *_near(basis, index, first, random)], axis=1)
     system = basis[triples]
     good = np.abs(np.linalg.det(system)) > 1e-5
     if not good.any():
         return None
     planes = np.linalg.solve(system[good], affine[triples[good]][..., None])[..., 0]
-    few = index[:: max(1, len(index) // 800)]
-    off = np.abs(to_values_at(to_values, basis[few] @ planes.T, few) - values[few, None]) / spread
-    score = sum((off < t).sum(axis=0) for t in TOLERANCES)
-    plane = planes[int(np.argmax(score))]
+    off = numbers.off(planes, index[:: max(1, len(index) // (2 * trials))])
+    plane = planes[int(np.argmax(sum(np.count_nonzero(off < t, axis=1) for t in TOLERANCES)))]
     for tolerance in (TOLERANCES[-1], TOLERANCES[-2], TOLERANCES[-2]):
-        near = left & (_off(basis, plane, values, spread, to_values) < tolerance)
+        near = left & (numbers.off(plane) < tolerance)
         if near.sum() < 12:
             break
         plane = np.linalg.lstsq(basis[near], affine[near], rcond=None)[0]
-    return plane, _off(basis, plane, values, spread, to_values)
+    return plane, numbers.off(plane)
 
 
 def _near(basis: np.ndarray, index: np.ndarray, first: np.ndarray, random: np.random.Generator) -> list[np.ndarray]:
@@ -141,18 +156,3 @@ def _near(basis: np.ndarray, index: np.ndarray, first: np.ndarray, random: np.ra
     distance = np.where(distance > _REACH, distance + 1.0, -distance)
     chosen = np.argmin(distance, axis=1)
     return [tries[k, chosen[k], np.arange(len(first))] for k in range(2)]
-
-
-def to_values_at(to_values: Callable[[np.ndarray], np.ndarray], affine: np.ndarray, index: np.ndarray) -> np.ndarray:
-    """`to_values` of many planes at some points."""
-    return to_values(affine) if not hasattr(to_values, "at") else to_values.at(affine, index)
-
-
-def _off(
-    basis: np.ndarray,
-    plane: np.ndarray,
-    values: np.ndarray,
-    spread: float,
-    to_values: Callable[[np.ndarray], np.ndarray],
-) -> np.ndarray:
-    return np.abs(to_values(basis @ plane) - values) / spread
