@@ -14,6 +14,7 @@ from diorama_core.library.taxonomy import broad
 from diorama_core.scene import edits
 from diorama_core.scene.support import descendants
 from diorama_core.scene.types import Scene
+from diorama_core.text.edit_exact import outlined, placed, supported, wall_moved
 from diorama_core.text.edit_insert import inserted
 from diorama_core.text.edit_looks import restyled, swapped
 from diorama_core.text.edit_outcome import Done, names_of
@@ -21,12 +22,14 @@ from diorama_core.text.edit_places import moved, resized, shifted, turned
 from diorama_core.text.edit_plan import (
     Align,
     Copy,
+    DrawRoom,
     Edit,
     Exchange,
     Insert,
     Light,
     Measure,
     Move,
+    MoveWall,
     Opening,
     Paint,
     Place,
@@ -35,7 +38,9 @@ from diorama_core.text.edit_plan import (
     Resize,
     Restyle,
     RoomLength,
+    SetPlace,
     SetState,
+    SetSupport,
     Shift,
     Swap,
     Turn,
@@ -58,6 +63,10 @@ class EditApplier:
         Raises:
             EditRefused: it cannot be done: one line that says why.
         """
+        if isinstance(edit, MoveWall):
+            return wall_moved(scene, edit)
+        if isinstance(edit, DrawRoom):
+            return outlined(scene, edit)
         if isinstance(edit, (Paint, RoomLength, Light, Opening)):
             return self._room(scene, edit)
         if isinstance(edit, Insert):
@@ -94,8 +103,16 @@ class EditApplier:
         return lit(scene, edit) if isinstance(edit, Light) else opened_wall(self.positioner.library, scene, edit)
 
     def _object(
-        self, scene: Scene, ids: Sequence[str], edit: Measure | Copy | Exchange | SetState | Rename | Align
+        self,
+        scene: Scene,
+        ids: Sequence[str],
+        edit: Measure | Copy | Exchange | SetState | Rename | Align | SetPlace | SetSupport,
     ) -> Done:
+        if isinstance(edit, SetPlace):
+            return placed(self.positioner, scene, ids[0], edit)
+        if isinstance(edit, SetSupport):
+            parent = self.names.get(edit.parent, edit.parent)
+            return supported(self.positioner, scene, ids, parent, edit.against)
         if isinstance(edit, Measure):
             return measured(self.positioner, scene, ids, edit)
         if isinstance(edit, Copy):

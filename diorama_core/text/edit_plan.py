@@ -1,16 +1,17 @@
-"""Edits in words, once understood: typed edits that name objects by id. A language model answers with them too."""
+"""Typed edits that name objects by id: what words, language models and other programs ask for, as JSON."""
 
 from __future__ import annotations
 
 from typing import Annotated, Literal
 
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import BaseModel, ConfigDict, Field, FiniteFloat
 
 from diorama_core.editing.relations import RelationKind
 from diorama_core.scene.schema import MAX_ITEMS
 
 MAX_EDITS = 60
 MAX_COPIES = 12
+MAX_CORNERS = 64
 MAX_WORD_CHARS, MAX_ID_CHARS = 120, 200
 Words = Annotated[str, Field(max_length=MAX_WORD_CHARS)]
 Id = Annotated[str, Field(max_length=MAX_ID_CHARS)]
@@ -201,6 +202,51 @@ class Opening(_Strict):
     """Id of an object that stands or hangs at the wall."""
 
 
+Point = tuple[FiniteFloat, FiniteFloat]
+"""x and y in the world, metres."""
+
+
+class SetPlace(_Strict):
+    """One object exactly so, with what stands on it; what is null stays. It may meet others: a note says so."""
+
+    do: Literal["place"] = "place"
+    objects: Annotated[list[Id], Field(min_length=1, max_length=1)]
+    base_m: tuple[FiniteFloat, FiniteFloat, FiniteFloat] | None = None
+    """The middle of its underside in the world, metres, +Z up."""
+    heading_deg: FiniteFloat | None = None
+    """Where its front points: counter-clockwise seen from above, 0 along +X."""
+    size_m: tuple[FiniteFloat, FiniteFloat, FiniteFloat] | None = None
+    """Depth, width and height."""
+
+
+class SetSupport(_Strict):
+    """Objects onto another object, the floor, a wall or the ceiling, and moved there; or held by nothing."""
+
+    do: Literal["support"] = "support"
+    objects: Ids
+    parent: Id = ""
+    """Id of an object or plane; empty: they stay where they are and nothing holds them."""
+    against: Id = ""
+    """Id of a wall that they also stand against; empty for none."""
+
+
+class MoveWall(_Strict):
+    """A wall, the floor or the ceiling moved; the planes that it meets follow."""
+
+    do: Literal["wall"] = "wall"
+    plane: Id
+    outward_m: Annotated[float, Field(ge=-20, le=20)]
+    """Out of the room; into it where negative."""
+
+
+class DrawRoom(_Strict):
+    """The room anew, over an outline."""
+
+    do: Literal["outline"] = "outline"
+    corners: Annotated[list[Point], Field(min_length=3, max_length=MAX_CORNERS)]
+    """In order around the room."""
+
+
 Edit = (
     Remove
     | Move
@@ -220,7 +266,13 @@ Edit = (
     | RoomLength
     | Light
     | Opening
+    | SetPlace
+    | SetSupport
+    | MoveWall
+    | DrawRoom
 )
+TypedEdit = Annotated[Edit, Field(discriminator="do")]
+"""An edit of another program, which must name its kind: what is wrong with it is then told in one line."""
 
 
 class EditPlan(_Strict):

@@ -65,6 +65,11 @@ by a "factor".
 - room: the "side" (height, length or width) of the room "to_m" or "by_m".
 - light: the "hour" of the day, "brighter_ev" stops (darker where negative), or all "lamps" on or off.
 - opening: a new door or window ("what") in the "wall" left, right, back or front, or "behind" an object.
+- place: one object with the middle of its underside at "base_m" (x, y, z), its front toward "heading_deg", of \
+"size_m" (depth, width, height); null where it stays.
+- support: objects onto the object, floor or wall "parent" (empty: held by nothing), also "against" a wall.
+- wall: the "plane" moved "outward_m" metres out of the room.
+- outline: the room anew over "corners" (x, y).
 Use only ids of the lists. Put every part of the command that is none of these, or that names what is not there, into \
 "not_understood", and then give no edits. Format: {{"edits": [{{"do": "move", "objects": ["lamp_1"], "places": \
 [{{"relation": "beside", "targets": ["sofa_1"]}}]}}], "not_understood": []}}"""

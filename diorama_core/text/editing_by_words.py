@@ -80,6 +80,45 @@ def propose_edits(
         return replace(plain, notes=(note, *plain.notes))
 
 
+def apply_edits(
+    edits: Sequence[Edit],
+    scene: Scene,
+    library: ShapeLibrary,
+    *,
+    command: str = "",
+    translator: str = "",
+    progress: Progress | None = None,
+) -> ProposedEdits:
+    """What typed edits would do to a scene, one after the other; the scene stays as it is.
+
+    Args:
+        edits: in order; later ones may use the names that earlier ones gave to new objects.
+        scene: what is edited.
+        library: of its shapes, and of new ones.
+        command: the words that they stand for, if any.
+        translator: who made them of words.
+        progress: where a cancellation is noticed.
+
+    Raises:
+        EditRefused: one of them cannot be done: one line that says which and why. Nothing is done.
+    """
+    applier, after = EditApplier(Positioner(library)), scene
+    lines: list[str] = []
+    notes: list[str] = []
+    for number, edit in enumerate(edits, 1):
+        if progress is not None:
+            progress.check()
+        try:
+            done = applier.apply(after, edit)
+        except EditRefused as error:
+            which = f"edit {number} of {len(edits)} ({edit.do}): " if len(edits) > 1 else ""
+            raise EditRefused(f"{which}{error}") from error
+        after = done.scene
+        lines += done.lines
+        notes += done.notes
+    return _proposed(command, scene, after, edits, lines, notes, translator)
+
+
 def _by_grammar(command: str, scene: Scene, library: ShapeLibrary, selected: Sequence[str]) -> ProposedEdits:
     applier = EditApplier(Positioner(library))
     after, last = scene, tuple(selected)
@@ -121,17 +160,7 @@ def _by_model(
     if plan.not_understood or not plan.edits:
         said = "; ".join(plan.not_understood) or command
         raise EditRefused(f"not understood: “{said[:120]}”; nothing was done")
-    applier = EditApplier(Positioner(library))
-    after = scene
-    lines: list[str] = []
-    notes: list[str] = []
-    for edit in plan.edits:
-        progress.check()
-        done = applier.apply(after, edit)
-        after = done.scene
-        lines += done.lines
-        notes += done.notes
-    return _proposed(command, scene, after, plan.edits, lines, notes, settings.model)
+    return apply_edits(plan.edits, scene, library, command=command, translator=settings.model, progress=progress)
 
 
 def _proposed(
