@@ -5,11 +5,13 @@ The port opens first: while a browser fetches the page, the editor and the libra
 
 from __future__ import annotations
 
+import contextlib
 import signal
 import socket
 import threading
 import time
 import webbrowser
+from collections.abc import Callable
 from concurrent.futures import Future
 from dataclasses import dataclass
 from pathlib import Path
@@ -139,6 +141,10 @@ def start(
     return Running(server, workspace, page_address(host, server.get_port(), token), stopped, loading)
 
 
+Beside = Callable[[Running, str | None], contextlib.AbstractContextManager[object]]
+"""Runs beside an editor, given its token, for as long as the context lasts."""
+
+
 @dataclass(frozen=True)
 class _Opening:
     """Projects of a server whose editor is being put together; browsers that come earlier wait for it."""
@@ -171,6 +177,7 @@ def serve(
     low_graphics: bool,
     token: str | None,
     library: str | ShapeLibrary = "built-in",
+    beside: Beside | None = None,
 ) -> None:
     """Run the editor until Ctrl+C.
 
@@ -183,7 +190,9 @@ def serve(
         low_graphics: whether to draw for machines without a graphics card.
         token: that pages must bring; None for none.
         library: by name, or itself.
+        beside: what runs beside it, of its editor and token: the HTTP interface.
     """
+    token = with_token(host or "0.0.0.0", token)
     running = start(
         project=project,
         projects_dir=projects_dir,
@@ -202,8 +211,9 @@ def serve(
     asked = threading.Event()
     signal.signal(signal.SIGTERM, lambda *_: asked.set())
     try:
-        while not asked.wait(SIGNALS_S):  # a signal that another thread takes does not wake this one
-            pass
+        with contextlib.nullcontext() if beside is None else beside(running, token):
+            while not asked.wait(SIGNALS_S):  # a signal that another thread takes does not wake this one
+                pass
     except KeyboardInterrupt:
         print("Saving and stopping.", flush=True)
     finally:

@@ -71,7 +71,7 @@ class Workspace:
     def server(self, name: str) -> viser.ViserServer | None:
         """The server of a project by the name of its folder; None where it cannot be opened."""
         try:
-            editor = self._by_name(name)
+            editor = self.editor(name)
         except DioramaError as error:
             log.warning("the project %s is not opened: %s", name, error)
             editor = None
@@ -81,6 +81,21 @@ class Workspace:
             if self._editors:
                 self._editors[0].session.greeting = (f"There is no project called “{name[:60]}” to open here.", "bad")
         return None
+
+    def editor(self, name: str) -> Editor | None:
+        """The editor of a project by the name of its folder, opened if necessary; None where there is no such project.
+
+        Raises:
+            ProjectError, SceneError: it cannot be opened.
+        """
+        with self._lock:
+            for editor in self._editors:
+                project = editor.session.project
+                if project is not None and address_of(project.folder) == name:
+                    self._asked_for[editor] = time.monotonic()
+                    return editor
+            folder = find_project(self._projects_dir, name)
+            return None if folder is None else self._of(Project.open(folder))
 
     def visit(self, client: ConnectedClient, project: Project, message: str = "") -> None:
         """Take one browser to a project, opened if necessary.
@@ -123,21 +138,12 @@ class Workspace:
             for editor in self.editors[1:]:
                 session = editor.session
                 left_alone = at_once or time.monotonic() - self._asked_for.get(editor, 0.0) > CLOSED_AFTER_S
-                if left_alone and not session.clients and session.jobs.status is None:
+                watched = bool(session.clients or session.watchers)
+                if left_alone and not watched and session.jobs.status is None:
                     self._editors.remove(editor)
                     self._asked_for.pop(editor, None)
                     editor.close()
                     stop_server(editor.server)
-
-    def _by_name(self, name: str) -> Editor | None:
-        with self._lock:
-            for editor in self._editors:
-                project = editor.session.project
-                if project is not None and address_of(project.folder) == name:
-                    self._asked_for[editor] = time.monotonic()
-                    return editor
-            folder = find_project(self._projects_dir, name)
-            return None if folder is None else self._of(Project.open(folder))
 
     def _of(self, project: Project) -> Editor:
         for editor in self._editors:

@@ -292,7 +292,7 @@ class Bench:
         page.evaluate(WATCH, [self.session.viewport.node_name(o.id) for o in self.session.scene.objects])
         from diorama_app.commands.optimise import optimise
 
-        self._do(lambda: optimise(self.page.client, "paper"))
+        self._do(lambda: optimise(self.page.client.session, "paper", by=self.page.client))
         deadline = time.monotonic() + 300
         while self.session.jobs.status is not None and time.monotonic() < deadline:
             page.wait_for_timeout(200)

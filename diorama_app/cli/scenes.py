@@ -27,7 +27,11 @@ from diorama_core.errors import InputError
 from diorama_core.io.text import number_of
 
 if TYPE_CHECKING:
+    from contextlib import AbstractContextManager
+
     import numpy as np
+
+    from diorama_app.serve import Beside, Running
 
 
 WITHOUT_PHOTO = "orbit:35"
@@ -63,7 +67,25 @@ def _serve(a: argparse.Namespace) -> None:
         open_browser=not a.no_open,
         low_graphics=a.low_graphics,
         token=a.token,
+        beside=_api_beside(),
     )
+
+
+def _api_beside() -> Beside | None:
+    """The HTTP interface beside the editor, where its libraries are installed."""
+    try:
+        import fastapi
+        import uvicorn
+    except ImportError:
+        return None
+    del fastapi, uvicorn
+
+    def loaded(running: Running, token: str | None) -> AbstractContextManager[object]:
+        from diorama_app.http_api.beside import api_beside  # the page comes first
+
+        return api_beside(running, token)
+
+    return loaded
 
 
 def add_build(commands: Any) -> None:

@@ -45,26 +45,29 @@ PUBLISHED = ("paper", "all-in-one")
 
 
 def optimise(
-    client: Client,
+    session: EditorSession,
     recipe_name: str,
     only: tuple[str, ...] = (),
     weights: Weights = AS_IT_IS,
     *,
+    by: Client | None = None,
+    author: str = "",
     by_hand_too: bool = False,
 ) -> LayoutRun:
     """Optimise the layout of everything unlocked, or of `only` these and the objects on them; one undo step.
 
     Args:
-        client: who asks.
+        session: where.
         recipe_name: how; sizes stay within `MAX_RESIZE` of what they were unless it is a published recipe.
         only: ids that are free to move, whoever placed them; when empty, all but what people placed.
         weights: of the recipe's costs.
+        by: the browser that asks.
+        author: who asks where no browser does: the name of another program.
         by_hand_too: whether what people placed is free to move as well.
 
     Raises:
         EditRefused: nothing is free to move.
     """
-    session = client.session
     start = session.scene
     if not start.objects:
         raise EditRefused("there is nothing to arrange; insert furniture first")
@@ -105,7 +108,8 @@ def optimise(
         run.worse = _worse(session, start, final)
         if pictures < GLIDE_BELOW:
             _glide(session, start, final, progress)
-        client.post(lambda: _arranged(client, final, report, run))
+        asker = None if by is None else by.id
+        session.post(asker, lambda: _arranged(session, final, report, run, by=by, author=author))
 
     session.jobs.start("optimise", "Arranging the layout", work)
     session.layout_run = run
@@ -206,15 +210,17 @@ def _show_step(session: EditorSession, scene: Scene, run: LayoutRun, samples: Sa
             client.curves.refresh()
 
 
-def _arranged(client: Client, final: Scene, report: LayoutReport, run: LayoutRun) -> None:
-    session = client.session
+def _arranged(
+    session: EditorSession, final: Scene, report: LayoutReport, run: LayoutRun, *, by: Client | None, author: str
+) -> None:
     current = session.scene
     if current is run.start:
         scene = edits.set_metrics(final, report.after)
     else:
         scene = edits.set_metrics(edits.place(current, untouched(current, run.start, final)), report.after)
     run.report, run.final = report, scene
-    session.commit("arrange the layout" if run.recipe in PUBLISHED else "tidy up", scene, by=client)
+    label = "arrange the layout" if run.recipe in PUBLISHED else "tidy up"
+    session.commit(label, scene, by=by, author=author)
 
 
 def untouched(current: Scene, start: Scene, final: Scene) -> Mapping[str, Pose]:

@@ -10,7 +10,9 @@ import uvicorn
 import diorama_core as diorama
 from diorama_app.http_api.connections import Connection
 from diorama_app.http_api.jobs import JobQueue
+from diorama_app.http_api.open_projects import OpenProjects
 from diorama_app.http_api.routes import create_app
+from diorama_app.serve import Running, start
 from diorama_app.web.visitors import LOOPBACK_NAMES, Visitors, page_address, with_token
 from diorama_core.errors import InputError
 
@@ -36,9 +38,18 @@ def serve_api(*, projects_dir: Path, host: str, port: int, token: str | None, li
     """
     host = host or "0.0.0.0"
     token = with_token(host, token)
-    listening = _listen(host, port)
+    listening = listen(host, port)
     queue = JobQueue(projects_dir, diorama.open_library(library), library)
-    app = create_app(queue, Visitors(host, token))
+    running: list[Running] = []
+
+    def editor() -> Running:
+        """The page of what is edited, started when something is."""
+        running.append(start(projects_dir=projects_dir, host=host, token=token, library=library))
+        print(f"What is edited is seen at {running[0].url}", flush=True)
+        return running[0]
+
+    opened = OpenProjects(editor)
+    app = create_app(queue, Visitors(host, token), opened)
     config = uvicorn.Config(
         app,
         log_level="warning",
@@ -59,11 +70,15 @@ def serve_api(*, projects_dir: Path, host: str, port: int, token: str | None, li
     except KeyboardInterrupt:
         print("Stopping.", flush=True)
     finally:
+        opened.close()
+        for one in running:
+            one.stop()
         queue.close()
         listening.close()
 
 
-def _listen(host: str, port: int) -> socket.socket:
+def listen(host: str, port: int) -> socket.socket:
+    """A socket that listens there; raises `InputError` where it cannot be had."""
     try:
         return socket.create_server((host, port), family=socket.AF_INET6 if ":" in host else socket.AF_INET)
     except OSError as error:

@@ -95,12 +95,12 @@ class Optimiser:
 
         def start() -> None:
             weights = Weights(**{cost: self._weights[cost].value for cost in weighted_costs(name)})
-            optimise(client, name, client.need_selection() if some else (), weights)
+            optimise(client.session, name, client.need_selection() if some else (), weights, by=client)
 
         client.post(start)
 
     def _tidied(self, *, by_hand_too: bool = False) -> None:
-        optimise(self._client, "feasible", by_hand_too=by_hand_too)
+        optimise(self._client.session, "feasible", by=self._client, by_hand_too=by_hand_too)
 
     def _others(self) -> str:
         arrangements, chosen = Arrangements(self._client.session.scene), self._client.selection

@@ -211,7 +211,7 @@ class PhotoPanel:
             "board": boxes.open,
             "add box": self._add_selected,
             "turn": lambda: self._read_again("turn the photo", {}, turn=True),
-            "build": lambda: work.build(client),
+            "build": lambda: work.build(client.session),
             "join": lambda: join_photo(client),
             "named": lambda: boxes.name(action.pair[1]),
             "name": lambda: boxes.name(action.arg),

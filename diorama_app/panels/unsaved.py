@@ -93,7 +93,7 @@ class UnsavedChanges:
     def _settle_build(self, *, go_on: bool) -> None:
         session = self._client.session
         if go_on:
-            build(self._client)
+            build(session)
         elif session.project is not None:
             session.interrupted = False
             forget_build(session.project)

@@ -13,7 +13,6 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from diorama_app.reconstruction.networks import can_find_furniture
-from diorama_app.session.client import Client
 from diorama_app.session.project_contents import shown_notes
 from diorama_app.session.session import BUILDING, EditorSession
 from diorama_app.session.textures import Textures
@@ -62,14 +61,13 @@ def ready_to_build(inputs: Inputs | None) -> bool:
     return inputs is not None and (bool(inputs.boxes) or inputs.instances is not None or can_find_furniture())
 
 
-def build(client: Client) -> None:
+def build(session: EditorSession) -> None:
     """Build the scene of the open project's photo, as one undo step.
 
     Raises:
         EditRefused: the project is read-only.
         InputError: there is no photo, or nothing is marked in it.
     """
-    session = client.session
     inputs = session.inputs
     if inputs is None or not ready_to_build(inputs):
         raise InputError(

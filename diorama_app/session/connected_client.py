@@ -33,6 +33,8 @@ class ConnectedClient(Protocol):
     to_say: tuple[str, bool] | None
     """A line for the foot of the view, and whether it offers undo."""
     toast: Callable[[str, bool], None]
+    offer: Callable[[str, str, Callable[[], None]], None]
+    """Shows a line that stays, with a button that does something."""
     open_tab: Callable[[str], None]
     open_board: Callable[[], None]
     go_to: Callable[[str], None]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import secrets
 import time
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, replace
@@ -47,6 +48,12 @@ class Document:
 
     def __init__(self, scene: Scene | None = None) -> None:
         self.history = History.start(scene or Scene())
+        self._opened, self._changes = secrets.token_hex(3), 0
+
+    @property
+    def version(self) -> str:
+        """Names this state: another one after every change, and in every process that opens the document."""
+        return f"{self._opened}.{self._changes}"
 
     @property
     def scene(self) -> Scene:
@@ -77,6 +84,7 @@ class Document:
             further: other photos of the room.
         """
         self.history = History(entries=(Entry("open", scene, beside=Photos(inputs, further)),))
+        self._opened, self._changes = secrets.token_hex(3), 0
 
     def commit(
         self,
@@ -105,6 +113,7 @@ class Document:
         beside = Photos(self.inputs if inputs is None else inputs, further)
         entry = Entry(label, scene, tuple(selection), merge_key, time.monotonic(), beside, author)
         self.history = self.history.commit(entry)
+        self._changes += 1
 
     def next_undo(self, is_mine: IsMine = anybodys) -> Entry | None:
         """What `undo` would take back; None when there is nothing."""
@@ -129,6 +138,7 @@ class Document:
         self.history = moved_last(self.history, index)
         undone = self.history.current
         self.history = self.history.undo()
+        self._changes += 1
         return undone
 
     def redo(self, is_mine: IsMine = anybodys) -> Entry:
@@ -142,6 +152,7 @@ class Document:
             own = self.history.can_redo
             raise EditRefused(f"there is nothing {'of yours ' if own else ''}to redo")
         self.history = moved_next(self.history, index).redo()
+        self._changes += 1
         return self.history.current
 
     def _undone_next(self, is_mine: IsMine) -> int | None:

@@ -18,7 +18,7 @@ import viser
 
 from diorama_app.session.autosave import Autosave
 from diorama_app.session.connected_client import ConnectedClient
-from diorama_app.session.document import Document
+from diorama_app.session.document import Document, IsMine
 from diorama_app.session.glances import Glances
 from diorama_app.session.job_reports import JobReports
 from diorama_app.session.jobs import Jobs, Outcome
@@ -107,6 +107,10 @@ class EditorSession:
         """Told when a client went away."""
         self.greeting: tuple[str, NoticeKind] | None = None
         """What the next client is told that comes."""
+        self.watchers: set[Callable[[], None]] = set()
+        """Told on the UI thread that the document changed or a job went on."""
+        self.outcome: Outcome | None = None
+        """How the last job ended."""
         self.glances = Glances()
         self.layout_run: LayoutRun | None = None
         """The last optimisation run."""
@@ -199,6 +203,7 @@ class EditorSession:
         merge_key: str | None = None,
         inputs: Inputs | None = None,
         by_hand: bool = False,
+        author: str = "",
     ) -> None:
         """Apply a pure edit as one undo step, show it and save it. A refused edit changes nothing.
 
@@ -210,6 +215,7 @@ class EditorSession:
             merge_key: quick edits of the same key become one step.
             inputs: what is said of the photo from now on; as before when None.
             by_hand: whether objects are put where the person wants them, so that no automatic step moves them.
+            author: who does it where no browser does: the name of another program.
         """
         try:
             self.need_writable()
@@ -226,7 +232,7 @@ class EditorSession:
         if scene == self.scene and inputs is None:
             self.refresh(by)
             return
-        self.commit(label, scene, by=by, selection=selection, merge_key=merge_key, inputs=inputs)
+        self.commit(label, scene, by=by, selection=selection, merge_key=merge_key, inputs=inputs, author=author)
 
     def _with_pictures_refitted(self, scene: Scene) -> Scene:
         """The edited scene with the pictures of resized planes cut and continued, not stretched."""
@@ -252,6 +258,7 @@ class EditorSession:
         merge_key: str | None = None,
         inputs: Inputs | None = None,
         further: tuple[FurtherPhoto, ...] | None = None,
+        author: str = "",
     ) -> None:
         """Make a whole scene the current state as one undo step, save it and show it.
 
@@ -263,19 +270,19 @@ class EditorSession:
             merge_key: steps with the same key become one.
             inputs: from now on; None leaves them.
             further: other photos from now on; None leaves them.
+            author: who did it where no browser did: the name of another program.
         """
         self.need_writable()
         if by is not None and selection is not None:
             by.selection = tuple(selection)
         chosen = () if by is None else tuple(i for i in by.selection if scene.has_object(i))
-        author = "" if by is None else by.name
+        author = author if by is None else by.name
         self.document.commit(
             label, scene, selection=chosen, merge_key=merge_key, inputs=inputs, further=further, author=author
         )
         for client in self.clients.values():
-            others = client is not by and by is not None
-            who = f"{author}: " if others else ""
-            client.to_say = (f"{who}{label[:1].upper()}{label[1:]}", not others)
+            who = f"{author}: " if author and client is not by else ""
+            client.to_say = (f"{who}{label[:1].upper()}{label[1:]}", by is None or client is by)
         self.changed(by)
 
     @property
@@ -287,27 +294,39 @@ class EditorSession:
         """Raise `EditRefused` when the open project cannot be changed here."""
         self._access.need_writable()
 
-    def undo(self, by: ConnectedClient) -> None:
-        """Take back a person's last change, or one of somebody who has left; see `scene.commuting` for the rule."""
+    def undo(self, by: ConnectedClient | str) -> Entry:
+        """Take back the last change of a person, or of a program by its name; see `scene.commuting` for the rule.
+
+        Of a person, also one of somebody who has left or of a program.
+        """
         self.need_writable()
-        undone = self.document.undo(partial(self.is_of, by))
+        undone = self.document.undo(self._own(by))
         self._time_travelled(by, f"Undone: {undone.label}", self.document.history.current.selection)
+        return undone
+
+    def _own(self, by: ConnectedClient | str) -> IsMine:
+        if isinstance(by, str):
+            return lambda entry: entry.author == by
+        return partial(self.is_of, by)
 
     def is_of(self, person: ConnectedClient, entry: Entry) -> bool:
         """Whether a change is a person's to take back: nobody else who is here made it."""
         return all(entry.author != c.name for c in self.clients.values() if c is not person)
 
-    def redo(self, by: ConnectedClient) -> None:
-        """Do again what a person undid."""
+    def redo(self, by: ConnectedClient | str) -> Entry:
+        """Do again what a person, or a program by its name, undid."""
         self.need_writable()
-        done = self.document.redo(partial(self.is_of, by))
+        done = self.document.redo(self._own(by))
         self._time_travelled(by, f"Redone: {done.label}", done.selection)
+        return done
 
-    def _time_travelled(self, by: ConnectedClient, message: str, selection: tuple[str, ...]) -> None:
-        by.selection = selection or by.selection
+    def _time_travelled(self, by: ConnectedClient | str, message: str, selection: tuple[str, ...]) -> None:
+        person = None if isinstance(by, str) else by
+        if person is not None:
+            person.selection = selection or person.selection
         for client in self.clients.values():
             client.to_say = (message, False)
-        self.changed(by)
+        self.changed(person)
 
     def changed(self, by: ConnectedClient | None = None) -> None:
         """The document changed: save and show it. Nothing that is shown can keep it from being saved."""
@@ -327,6 +346,11 @@ class EditorSession:
         self.photo = None if inputs is None else inputs.photo
         self.refresh(by)
         self.checker.look_at(self.scene)
+        self._tell_watchers()
+
+    def _tell_watchers(self) -> None:
+        for told in tuple(self.watchers):
+            told()
 
     def _note_library(self, project: Project) -> None:
         """Commands that open this project must find the models of people's own that stand in it."""
@@ -499,13 +523,16 @@ class EditorSession:
         self.thumbnails.stop()
 
     def _refresh_job(self) -> None:
+        self._tell_watchers()
         for client in self.clients.values():
             if client.job_panel is not None:
                 client.job_panel.refresh()
 
     def _job_ended(self, outcome: Outcome) -> None:
+        self.outcome = outcome
         self.glances.forget()
         self.refresh()
+        self._tell_watchers()
         if outcome.cancelled:
             self.notice_all("Cancelled; nothing was changed.")
         elif outcome.error is not None:

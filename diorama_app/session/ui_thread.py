@@ -13,15 +13,21 @@ import threading
 import time
 from collections import OrderedDict, deque
 from collections.abc import Callable, Hashable
+from concurrent.futures import Future
 from dataclasses import dataclass, field
+from typing import TypeVar
 
-from diorama_core.errors import DioramaError
+from diorama_core.errors import DioramaError, UnavailableError
 
 log = logging.getLogger(__name__)
 
 MAX_WAITING = 64
 """Maximum pending tasks of one browser; further ones are dropped and the user is notified."""
 
+MAX_ANSWER_S = 30.0
+"""Within which another thread gets an answer: an edit of a large scene takes a second."""
+
+T = TypeVar("T")
 Task = Callable[[], None]
 OnError = Callable[[str], None]
 
@@ -91,6 +97,28 @@ class UiThread:
             else:
                 self._enqueue(posted)
             self._changed.notify_all()
+
+    def ask(self, task: Callable[[], T]) -> T:
+        """Do `task` there and wait for what it gives, or raises. Never called from the thread itself.
+
+        Raises:
+            UnavailableError: the thread was busy for too long; the task may still be done.
+        """
+        answer: Future[T] = Future()
+
+        def answered() -> None:
+            try:
+                answer.set_result(task())
+            except BaseException as error:  # raised again by whoever waits for it
+                answer.set_exception(error)
+
+        self.post(answered)
+        try:
+            return answer.result(MAX_ANSWER_S)
+        except TimeoutError as error:
+            if answer.done():
+                raise
+            raise UnavailableError("the editor is busy; try again in a moment") from error
 
     def forget(self, client_id: Hashable) -> None:
         """Drop what waits for a browser that went away."""

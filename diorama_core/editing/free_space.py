@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import cv2
 import numpy as np
@@ -31,6 +31,33 @@ class FreeSpace:
     """Below the ceiling; infinite without one."""
     walls_m: tuple[tuple[float, float], ...]
     """Length and height of every wall."""
+    T_world_grid: Float[np.ndarray, "2 3"] = field(default_factory=lambda: np.eye(2, 3))
+    """From metres along the grid's columns and rows to x and y in the world."""
+
+    @property
+    def free_m2(self) -> float:
+        """Area of the free floor."""
+        return 0.0 if self.free is None else float(self.free.sum()) * self.cell_m**2
+
+    def spots(self, width_m: float, depth_m: float, most: int = 5) -> tuple[tuple[float, float], ...]:
+        """Middles, in the world, of free rectangles of the floor so wide and so deep, or turned; none overlap.
+
+        Args:
+            width_m: along one side of the room.
+            depth_m: along the other.
+            most: how many are given.
+        """
+        found: list[tuple[float, float]] = []
+        apart_m = max(width_m, depth_m)
+        for across_m, down_m in dict.fromkeys(((width_m, depth_m), (depth_m, width_m))):
+            fits = self._free_rectangles(across_m, down_m)
+            if fits is None:
+                continue
+            rows, columns = np.nonzero(fits)
+            for x, y in zip(columns * self.cell_m + across_m / 2, rows * self.cell_m + down_m / 2, strict=True):
+                if len(found) < most and all(max(abs(x - a), abs(y - b)) >= apart_m for a, b in found):
+                    found.append((float(x), float(y)))
+        return tuple((float(x), float(y)) for x, y in (self.T_world_grid @ (*middle, 1.0) for middle in found))
 
     def has_place_for(self, shape: Shape) -> bool:
         """Whether a shape finds a place as it is, in one of four headings; what lies on furniture always does."""
@@ -46,13 +73,19 @@ class FreeSpace:
 
     def _fits(self, across_m: float, down_m: float) -> bool:
         """Whether a rectangle of free cells is as large."""
-        assert self.free is not None
+        fits = self._free_rectangles(across_m, down_m)
+        return fits is not None and bool(fits.any())
+
+    def _free_rectangles(self, across_m: float, down_m: float) -> Bool[np.ndarray, "_ _"] | None:
+        """By their first cell, which rectangles of so many metres are free; None where the floor is smaller."""
+        if self.free is None:
+            return None
         columns, rows = (max(1, int(np.ceil(e / self.cell_m - 1e-6))) for e in (across_m, down_m))
         if columns > self.free.shape[1] or rows > self.free.shape[0]:
-            return False
+            return None
         total = cv2.integral(self.free.astype(np.uint8))
         inside = total[rows:, columns:] - total[:-rows, columns:] - total[rows:, :-columns] + total[:-rows, :-columns]
-        return bool(inside.max() >= rows * columns)
+        return np.asarray(inside >= rows * columns)
 
 
 def free_space(scene: Scene) -> FreeSpace:
@@ -84,7 +117,8 @@ def free_space(scene: Scene) -> FreeSpace:
         free &= ~_filled(
             (cv2.convexHull(corners[:, :2].astype(np.float32))[:, 0] @ turn - origin) / cell, height, width
         )
-    return FreeSpace(free, cell, max(ceilings) - level if ceilings else np.inf, walls)
+    T_world_grid = np.column_stack([turn, turn @ origin])
+    return FreeSpace(free, cell, max(ceilings) - level if ceilings else np.inf, walls, T_world_grid)
 
 
 def _filled(corners: Float[np.ndarray, "n 2"], height: int, width: int) -> Bool[np.ndarray, "{height} {width}"]:

@@ -30,6 +30,8 @@ LARGEST_DEFAULT_PX = 1280
 PICTURE_EFFORT = Effort(window_rays=2, sky_rays=4)
 BACKGROUND_SRGB = (0.945, 0.94, 0.93)
 ORBIT_ELEVATION_RAD = np.radians(35.0)
+LOOK_FOV_RAD = float(np.radians(70.0))
+"""Across; a phone's camera sees as much."""
 
 
 def picture(
@@ -50,8 +52,9 @@ def picture(
         scene: What to show; hidden objects are left out.
         library: Where its shapes are.
         view: "photo" (the scene's own camera), "top" (from above without the ceiling), "front" (a plan of the
-            elevation, from the photo's side) or "orbit:DEG" (from outside, DEG degrees around from the front).
-            Planes are not drawn from behind, so the room stays open toward the viewer.
+            elevation, from the photo's side), "orbit:DEG" (from outside, DEG degrees around from the front) or
+            "look:X,Y,Z:X,Y,Z" (from a point of the world toward another, metres). Planes are not drawn from behind,
+            so the room stays open toward the viewer.
         size: Width and height; None takes the photo's (reduced to 1280) or 1024 x 768.
         textures: Pictures of the planes by `Plane.texture`.
         photographed: Whether those pictures hold the light of the room, as rectified photos do; then they are only
@@ -139,9 +142,13 @@ def scene_view(scene: Scene, view: str, size: tuple[int, int] | None = None) -> 
         return _parallel(corners, looking_along(-UP_WORLD, up=np.array([0.0, 1.0, 0.0])), width, height)
     if view == "front":
         return _parallel(corners, looking_along(np.array([0.0, 1.0, 0.0])), width, height)
+    if view.startswith("look:"):
+        return PinholeView(_looking_camera(view, width, height))
     orbit = re.fullmatch(r"orbit:(-?\d+(?:\.\d+)?)", view)
     if orbit is None:
-        raise InputError(f"there is no view {view!r}; choose photo, top, front or orbit:DEG (such as orbit:30)")
+        raise InputError(
+            f"there is no view {view!r}; choose photo, top, front, orbit:DEG (such as orbit:30) or look:X,Y,Z:X,Y,Z"
+        )
     angle = np.radians(float(orbit.group(1)))
     back = np.array([np.sin(angle), -np.cos(angle), 0.0]) * np.cos(ORBIT_ELEVATION_RAD)
     forward = -(back + UP_WORLD * np.sin(ORBIT_ELEVATION_RAD))
@@ -186,6 +193,22 @@ def framing_camera(
     T = np.eye(4)
     T[:3, :3], T[:3, 3] = R, np.mean(points, axis=0) + R @ position
     return Camera(Intrinsics(width, height, focal, focal, width / 2, height / 2), T)
+
+
+def _looking_camera(view: str, width: int, height: int) -> Camera:
+    """The camera of "look:X,Y,Z:X,Y,Z"."""
+    try:
+        eye, target = (np.array([float(n) for n in part.split(",")]) for part in view.removeprefix("look:").split(":"))
+        forward = target - eye
+        sound = eye.shape == target.shape == (3,) and bool(np.isfinite(forward).all() and np.abs(forward).max() > 1e-6)
+    except ValueError:
+        sound = False
+    if not sound:
+        raise InputError(f"{view!r} is no view; give two points in metres, such as look:0,-2,1.6:0,2,0.8")
+    R = looking_along(forward, UP_WORLD if np.abs(forward[:2]).max() > 1e-6 else np.array([0.0, 1.0, 0.0]))
+    T = np.eye(4)
+    T[:3, :3], T[:3, 3] = R, eye
+    return Camera(Intrinsics.from_fov(width, height, LOOK_FOV_RAD), T)
 
 
 def _tangent_fit(across: np.ndarray, along: np.ndarray, slope: float) -> tuple[float, float]:

@@ -60,3 +60,18 @@ def test_heights_walls_and_furniture_count() -> None:
     assert not space.has_place_for(shape("mirror", 0.05, 4.5, 1.0))
     assert space.has_place_for(shape("vase", 0.2, 0.2, 0.3))
     assert free_space(Scene()).has_place_for(shape("sofa", 1.0, 9.0, 0.8)), "where no room is known"
+
+
+@pytest.mark.parametrize("angle", [0.0, 0.5])
+def test_spots_are_free_middles_in_the_world(angle: float) -> None:
+    scene = turned(with_objects(ROOM, standing("row", 0.0, -0.2, 3.0, 0.6)), angle)
+    space = free_space(scene)
+    assert space.free_m2 == pytest.approx(12.0 - 1.8, abs=0.4)
+    spots = space.spots(1.2, 1.2)
+    assert len(spots) >= 2
+    for x, y in spots:
+        there = with_objects(scene, replace(standing("new", x, y, 1.2, 1.2), pose=Pose.upright((x, y, 0.4), angle)))
+        assert free_space(replace(there, objects=(*scene.objects, there.object("new")))).free_m2 == pytest.approx(
+            space.free_m2 - 1.44, abs=0.15
+        )
+    assert space.spots(3.5, 3.5) == ()

@@ -100,7 +100,7 @@ def measure(asked: Asked, scene: Scene, library: ShapeLibrary) -> TextScene:
         colliding=(len([o for o in standing if o.id in hit]), len(standing)),
         outside=(len(beyond), len(standing)),
         navigable=_navigable(free),
-        accessible=_accessible(scene, frame),
+        accessible=_mean(access_shares(scene, frame)),
         failures=tuple(failures),
     )
 
@@ -228,9 +228,13 @@ def _navigable(free: Bool[np.ndarray, "h w"]) -> float:
     return float(sizes.max() / sizes.sum())
 
 
-def _accessible(scene: Scene, frame: RoomFrame) -> float:
-    """Mean share of free floor before the fronts of furniture on the floor; of round things, of their freest side."""
-    shares = []
+def _mean(shares: Mapping[str, float]) -> float:
+    return float(np.mean(list(shares.values()))) if shares else 1.0
+
+
+def access_shares(scene: Scene, frame: RoomFrame) -> Mapping[str, float]:
+    """Share of free floor before the front of each piece of furniture; of round things, before their freest side."""
+    shares: dict[str, float] = {}
     floor = [o for o in scene.objects if _stands(o) and category(o.category).mount == "floor"]
     for item in floor:
         edge = scene.support_of(item.id)
@@ -241,8 +245,8 @@ def _accessible(scene: Scene, frame: RoomFrame) -> float:
         sides = (0.0,) if broad(item.category) not in ("plant", "floor lamp", "table", "coffee table", "bed") else (
             0.0, np.pi / 2, np.pi, -np.pi / 2
         )  # fmt: skip
-        shares.append(max(_free_share(frame, item, turn, free) for turn in sides))
-    return float(np.mean(shares)) if shares else 1.0
+        shares[item.id] = max(_free_share(frame, item, turn, free) for turn in sides)
+    return shares
 
 
 def _tucked(seat: SceneObject, host: SceneObject) -> bool:

@@ -18,12 +18,14 @@ _COLOURS = (
 )  # fmt: skip
 _FONT_SHARE = 0.024
 _SMALLEST_FONT_PX = 20
+_NAME_FONT_PX = 13
+"""Names are longer than numbers; read at the size at which the picture is seen."""
 
 
 def marked(
-    rgb: UInt8[np.ndarray, "h w 3"], masks: Sequence[Bool[np.ndarray, "h w"]], numbers: Sequence[int]
+    rgb: UInt8[np.ndarray, "h w 3"], masks: Sequence[Bool[np.ndarray, "h w"]], numbers: Sequence[int | str]
 ) -> UInt8[np.ndarray, "H W 3"]:
-    """The photo with tinted outlines and numbers; small photos are enlarged first, large ones reduced."""
+    """The photo with tinted outlines and numbers, or names; small photos are enlarged first, large ones reduced."""
     factor = _factor(*rgb.shape[:2])
     size = (round(rgb.shape[1] * factor), round(rgb.shape[0] * factor))
     canvas = np.asarray(Image.fromarray(rgb).resize(size, Image.Resampling.LANCZOS)).copy()
@@ -42,20 +44,22 @@ def _factor(height: int, width: int) -> float:
 
 
 def _numbered(
-    canvas: UInt8[np.ndarray, "h w 3"], masks: Sequence[np.ndarray], numbers: Sequence[int]
+    canvas: UInt8[np.ndarray, "h w 3"], masks: Sequence[np.ndarray], numbers: Sequence[int | str]
 ) -> UInt8[np.ndarray, "h w 3"]:
     picture = Image.fromarray(canvas)
     draw = ImageDraw.Draw(picture)
-    font = ImageFont.load_default(max(_SMALLEST_FONT_PX, round(_FONT_SHARE * max(picture.size))))
+    named = any(isinstance(n, str) for n in numbers)
+    size_px = _NAME_FONT_PX if named else max(_SMALLEST_FONT_PX, round(_FONT_SHARE * max(picture.size)))
+    font = ImageFont.load_default(size_px)
     free = np.ones(canvas.shape[:2], dtype=bool)
     # Small objects choose first: a large one has room elsewhere.
     for index in sorted(range(len(masks)), key=lambda i: int(masks[i].sum())):
         text = str(numbers[index])
         left, top, right, bottom = (int(v) for v in draw.textbbox((0, 0), text, font=font))
-        width, height = right - left + 10, bottom - top + 8
+        width, height = right - left + size_px // 2, bottom - top + size_px * 2 // 5
         x, y = _spot(masks[index], free, width, height)
         draw.rectangle((x, y, x + width, y + height), fill=_COLOURS[index % len(_COLOURS)], outline=(255, 255, 255))
-        draw.text((x + 5 - left, y + 4 - top), text, fill=(255, 255, 255), font=font)
+        draw.text((x + size_px // 4 - left, y + size_px // 5 - top), text, fill=(255, 255, 255), font=font)
         free[max(0, y) : y + height + 1, max(0, x) : x + width + 1] = False
     return np.asarray(picture)
 
@@ -69,7 +73,15 @@ def _spot(mask: np.ndarray, free: np.ndarray, width: int, height: int) -> tuple[
     y, x = np.unravel_index(int(inside.argmax()), mask.shape)
     left = min(max(int(x) - width // 2, 0), max(columns - width - 1, 0))
     top = min(max(int(y) - height // 2, 0), max(rows - height - 1, 0))
-    return left, top
+    # Of all places where no other label is, the nearest one.
+    taken = cv2.integral((~free).astype(np.uint8))
+    high, wide = height + 1, width + 1
+    covered = taken[high:, wide:] - taken[:-high, wide:] - taken[high:, :-wide] + taken[:-high, :-wide]
+    tops, lefts = np.nonzero(covered == 0)
+    if not len(tops):
+        return left, top
+    nearest = int(np.argmin((tops - top) ** 2 + (lefts - left) ** 2))
+    return int(lefts[nearest]), int(tops[nearest])
 
 
 def picture_bytes(rgb: UInt8[np.ndarray, "h w 3"]) -> bytes:

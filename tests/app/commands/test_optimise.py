@@ -55,7 +55,7 @@ def test_tidying_up_leaves_what_a_person_placed(session, client) -> None:
     edit.set_base_position(client, "chair_1", np.array([0.1, 2.2, 0.5]))  # in the air, in the middle of the table
     chair, other = session.scene.object("chair_1"), session.scene.object("chair_2")
     session.edit("lift", lambda s: edits.move(s, "chair_2", other.pose.moved((0.0, 0.0, 0.4))), by=client)
-    run = _run(session, client, "feasible")
+    run = _run(session, session, "feasible")
     assert session.scene.object("chair_1") == chair
     assert session.scene.object("chair_2").corners_world[:, 2].min() == pytest.approx(0.0, abs=1e-3)
     assert run.left == 1
@@ -63,13 +63,13 @@ def test_tidying_up_leaves_what_a_person_placed(session, client) -> None:
 
 def test_asked_for_everything_it_moves_that_too(session, client) -> None:
     edit.set_base_position(client, "chair_1", np.array([-0.9, 1.5, 0.5]))
-    _run(session, client, "feasible", by_hand_too=True)
+    _run(session, session, "feasible", by_hand_too=True)
     assert session.scene.object("chair_1").corners_world[:, 2].min() == pytest.approx(0.0, abs=1e-3)
 
 
 def test_a_selection_is_asked_for_whoever_placed_it(session, client) -> None:
     edit.set_base_position(client, "chair_1", np.array([-0.9, 1.5, 0.5]))
-    _run(session, client, "feasible", ("chair_1",))
+    _run(session, session, "feasible", ("chair_1",))
     assert session.scene.object("chair_1").corners_world[:, 2].min() == pytest.approx(0.0, abs=1e-3)
 
 
@@ -77,7 +77,7 @@ def test_a_room_that_people_furnished_alone_is_not_tidied(session, client) -> No
     by_hand = replace(session.scene, objects=tuple(replace(o, by_hand=True) for o in session.scene.objects))
     session.commit("all", by_hand, by=client)
     with pytest.raises(EditRefused, match="people placed everything"):
-        optimise.optimise(client, "feasible")
+        optimise.optimise(session, "feasible")
 
 
 def _shrunk(session, client, recipe: str) -> LayoutRun:
@@ -87,7 +87,7 @@ def _shrunk(session, client, recipe: str) -> LayoutRun:
     run = LayoutRun(recipe, time.monotonic(), start)
     run.worse = optimise._worse(session, start, final)
     figures = optimise.layout_figures(start, final, session.library)
-    optimise._arranged(client, final, LayoutReport(recipe, {}, figures, 0.1), run)
+    optimise._arranged(session, final, LayoutReport(recipe, {}, figures, 0.1), run, by=client, author="")
     session.layout_run = run
     return run
 

@@ -56,7 +56,7 @@ class Client:
             raise AttributeError(name)
         return partial(self._call, name)
 
-    def _call(self, name: str, **given: Any) -> Answer:
+    def _call(self, name: str, /, **given: Any) -> Answer:
         method, path, about = self.operations[name]
         query = {}
         for parameter in about.get("parameters", ()):
@@ -71,11 +71,14 @@ class Client:
         headers, body = dict(self.headers), None
         if given:
             (kind,) = about["requestBody"]["content"]
-            assert kind == "multipart/form-data"
             known = self._schema(about["requestBody"]["content"][kind]["schema"])["properties"]
             assert set(given) <= set(known), f"{set(given) - set(known)} are not in the document"
-            body = b"".join(_part(key, value) for key, value in given.items()) + f"--{BOUNDARY}--\r\n".encode()
-            headers["Content-Type"] = f"{kind}; boundary={BOUNDARY}"
+            if kind == "application/json":
+                body, headers["Content-Type"] = json.dumps(given).encode(), kind
+            else:
+                assert kind == "multipart/form-data"
+                body = b"".join(_part(key, value) for key, value in given.items()) + f"--{BOUNDARY}--\r\n".encode()
+                headers["Content-Type"] = f"{kind}; boundary={BOUNDARY}"
         url = f"{self.url}{path}" + (f"?{urlencode(query)}" if query else "")
         reply = send(method, url, body, headers)
         self._check(about, reply)

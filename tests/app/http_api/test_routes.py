@@ -7,6 +7,7 @@ import pytest
 pytest.importorskip("fastapi", reason="needs FastAPI (pip install 'diorama[api]')")
 
 from diorama_app.http_api.jobs import JobQueue  # after the check for its library
+from diorama_app.http_api.open_projects import OpenProjects
 from diorama_app.http_api.routes import create_app
 from diorama_app.web.visitors import Visitors
 from tests.app.small_room import PlainLibrary
@@ -15,7 +16,8 @@ DOCS = Path(__file__).parents[3] / "docs" / "api.md"
 
 
 def test_the_manual_names_every_address(tmp_path: Path) -> None:
-    document = create_app(JobQueue(tmp_path, PlainLibrary(), "built-in"), Visitors("127.0.0.1")).openapi()
+    queue, opened = JobQueue(tmp_path, PlainLibrary(), "built-in"), OpenProjects(pytest.fail)
+    document = create_app(queue, Visitors("127.0.0.1"), opened).openapi()
     text = DOCS.read_text()
     for path, methods in document["paths"].items():
         for method in methods:

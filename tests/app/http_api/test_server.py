@@ -96,6 +96,15 @@ def test_a_photo_becomes_a_scene_a_picture_and_files(client: Client, finished: s
     assert finished in [job["id"] for job in client.list_jobs().body["jobs"]]
 
 
+def test_a_finished_job_is_edited_as_a_project(client: Client, finished: str) -> None:
+    project = client.get_project(name=finished).body
+    assert project["objects"]
+    hide = {"do": "set", "objects": [project["objects"][0]["id"]], "state": "hidden"}
+    done = client.edit_project(name=finished, version=project["version"], edits=[hide])
+    assert done.status == 200
+    assert client.undo_project(name=finished, author="API").status == 200
+
+
 def test_a_scene_that_was_damaged_meanwhile_is_one_line(client: Client, finished: str, projects: Path) -> None:
     path = projects / finished / "scene.json"
     good = path.read_bytes()
@@ -217,6 +226,10 @@ def test_the_document_says_what_the_api_is(client: Client) -> None:
     assert set(client.operations) == {
         *("create_job", "list_jobs", "get_job", "cancel_job", "delete_job"),
         *("get_scene", "get_picture", "export_scene", "list_formats"),
+        *("list_projects", "begin_project", "get_project", "get_object", "get_free_floor", "check_project"),
+        *("edit_project", "undo_project", "redo_project", "optimise_project", "build_project"),
+        *("get_project_job", "cancel_project_job", "watch_project"),
+        *("get_project_scene", "get_project_picture", "export_project"),
     }
     form = client.document["components"]["schemas"]["Body_create_job"]["properties"]
     files = {

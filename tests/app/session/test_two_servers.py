@@ -55,7 +55,7 @@ def test_the_second_server_only_looks_and_says_who_has_it(new_room: NewRoom, tmp
             act()
     assert second.scene == furnished_scene()
     with pytest.raises(DioramaError, match="open in the editor of"):
-        work.build(client)
+        work.build(client.session)
     other = join(first)
     rename(other, "chair_1", "throne")
     first.autosave.flush()
