@@ -39,6 +39,9 @@ class Photo(ArrayValue):
     """Left and top of the picture in its file, pixels of the upright original, where a border was cut off."""
     half_turned: bool | None = field(default=None, metadata={"absent when none": True})
     """True where the file shows the room upside down, and the picture was turned by 180 degrees; never False."""
+    straightened: float | None = field(default=None, metadata={"absent when none": True})
+    """The radial coefficient, for half the diagonal as focal length, of the distortion that the file has and that was
+    taken out by the photo's own lines."""
 
     @property
     def width(self) -> int:

@@ -18,7 +18,8 @@ from diorama_app.panels.input_questions import ask_depth
 from diorama_app.panels.photo_bar import no_scene_card, photo_bar
 from diorama_app.panels.photo_boxes import PhotoBoxes, box_list
 from diorama_app.panels.upload_field import UploadField
-from diorama_app.projects.begin import begin_project, depth_answer, keep_given
+from diorama_app.projects.begin import begin_project, keep_given
+from diorama_app.projects.reading_again import upload_again, with_depth
 from diorama_app.projects.uploads import Upload
 from diorama_app.reconstruction import build_job as work
 from diorama_app.reconstruction.networks import (
@@ -38,8 +39,8 @@ from diorama_app.viewport.annotation_canvas import Deleted, Selected
 from diorama_app.viewport.mesh_assets import reduced
 from diorama_app.web.html import Action, LiveHtml, button, text
 from diorama_core.artefacts import Inputs
-from diorama_core.editing.input_corrections import boxes_json
 from diorama_core.errors import InputError
+from diorama_core.io.text import sentences
 from diorama_core.models.manifest import networks_of
 from diorama_core.models.store import ModelStore
 from diorama_core.perception.inputs import ReadInputs
@@ -50,7 +51,13 @@ from diorama_core.perception.inputs.source import Source
 SLOW_BYTES = 2_000_000
 """A file of more is announced while it is read."""
 
-KINDS: dict[Sort, str] = {"photo": "Photo", "boxes": "Boxes", "depth": "Depth", "masks": "Masks"}
+KINDS: dict[Sort, str] = {
+    "photo": "Photo",
+    "boxes": "Boxes",
+    "depth": "Depth",
+    "masks": "Masks",
+    "confidence": "Confidence",
+}
 
 
 class PhotoPanel:
@@ -99,7 +106,7 @@ class PhotoPanel:
         def done(read: ReadInputs) -> None:
             project = begin_project(self._session.projects_dir, upload.name, read, upload.photo)
             keep_given(project, upload)
-            self._session.visit(client, project, " ".join(read.warnings[:3]))
+            self._session.visit(client, project, sentences(read.warnings[:3]))
 
         def ask(unknown: AmbiguousDepthError) -> None:
             ask_depth(client, unknown, lambda answer: self.begin(upload.answered(answer)))
@@ -152,40 +159,35 @@ class PhotoPanel:
         return UploadField(gui, self._client, label, take, mime_type=mime_type).uuid
 
     def _read_again(
-        self, label: str, new: Mapping[Sort, Source], answer: DepthAnswer | None = None, *, turn: bool = False
+        self,
+        label: str,
+        new: Mapping[Sort, Source],
+        answer: DepthAnswer | None = None,
+        *,
+        turn: bool = False,
+        bend: bool = False,
     ) -> None:
-        """Read the photo with its other files, turned by 180 degrees where asked, and keep what comes of it."""
+        """Read the photo with its other files, turned by 180 degrees or left bent where asked, and keep what comes."""
         session, client, before = self._session, self._client, self._session.inputs
         if before is None or session.project is None:
             raise InputError("upload the photo first, then its boxes, depth or masks")
-        given = session.project.uploads()
-        told = (answer or DepthAnswer("")) if "depth" in new else depth_answer(session.project)
-        boxes = new.get("boxes") or (boxes_json(before.boxes, before.photo) if before.boxes else None)
-        upload = Upload(
-            given.get("photo") or _png(before.photo.rgb[::-1, ::-1] if before.photo.half_turned else before.photo.rgb),
-            before.photo.name,
-            depth=new.get("depth", given.get("depth")),
-            boxes=boxes,
-            masks=new.get("masks", given.get("masks")),
-            depth_scale=told.per_metre,
-            depth_kind=told.kind,
-            intrinsics=_intrinsics(self._camera.value),
-            half_turn=bool(before.photo.half_turned) != turn,
-        )
+        new = with_depth(new, session.project)
+        camera = _intrinsics(self._camera.value)
+        upload = upload_again(session.project, before, new, answer, camera, turn=turn, bend=bend)
         project = session.project
 
         def done(read: ReadInputs) -> None:
             if session.inputs is not before:
                 raise InputError("the photo or its boxes changed meanwhile; upload the file again")
-            keep_given(project, replace(upload, depth=new.get("depth"), masks=new.get("masks")))
-            for warning in read.warnings[:3]:
-                client.notice(warning)
-            attitude = None if turn else before.camera_attitude
+            keep_given(project, replace(upload, depth=upload.depth if "depth" in new else None, masks=new.get("masks")))
+            if read.warnings:
+                client.notice(sentences(read.warnings[:3]))
+            attitude = None if turn or bend else before.camera_attitude
             inputs = replace(read.inputs, camera_attitude=attitude, camera_height_m=before.camera_height_m)
             session.annotate(label, inputs, by=client)
 
         def ask(unknown: AmbiguousDepthError) -> None:
-            ask_depth(client, unknown, lambda chosen: self._read_again(label, new, chosen, turn=turn))
+            ask_depth(client, unknown, lambda chosen: self._read_again(label, new, chosen, turn=turn, bend=bend))
 
         session.reader.read(upload, client.id, client.post, done, ask)
 
@@ -211,6 +213,7 @@ class PhotoPanel:
             "board": boxes.open,
             "add box": self._add_selected,
             "turn": lambda: self._read_again("turn the photo", {}, turn=True),
+            "bend": lambda: self._read_again("leave the photo bent", {}, bend=True),
             "build": lambda: work.build(client.session),
             "join": lambda: join_photo(client),
             "named": lambda: boxes.name(action.pair[1]),
@@ -282,12 +285,6 @@ def _intrinsics(given: str) -> tuple[float, float, float, float] | None:
     except ValueError as error:
         raise InputError(f"the camera '{given[:40]}' is not four numbers; give fx,fy,cx,cy in pixels") from error
     return fx, fy, cx, cy
-
-
-def _png(rgb: UInt8[np.ndarray, "h w 3"]) -> bytes:
-    buffer = io.BytesIO()
-    Image.fromarray(rgb).save(buffer, "PNG")
-    return buffer.getvalue()
 
 
 def _jpeg_uri(rgb: UInt8[np.ndarray, "h w 3"]) -> str:

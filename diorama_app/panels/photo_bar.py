@@ -35,6 +35,7 @@ def photo_bar(client: Client, inputs: Inputs, proposals: int) -> str:
         hint = "Finds where this photo was taken, joins its objects with the scene's and inserts the others"
         pieces.append(button("Add to the scene", "join", title=hint, disabled=busy))
     doubt = upside_down_note() if further is None and is_upside_down(inputs.boxes, inputs.photo.height) else ""
+    doubt += straightened_note() if further is None and _may_be_bent_back(client, inputs) else ""
     return f'{doubt}<div class="bar">{"".join(pieces)}</div>'
 
 
@@ -42,6 +43,19 @@ def upside_down_note() -> str:
     """What is said of a photo whose things lie as in one that was turned by 180 degrees, and the button to turn it."""
     turn = button("Turn photo", "turn", title="Turns the photo by 180 degrees, with its boxes, depth and masks")
     return f'<div class="bar"><span class="lead">The photo seems to be upside down.</span>{turn}</div>'
+
+
+def straightened_note() -> str:
+    """What is said of a photo that was straightened by its own lines, and the button that undoes it."""
+    back = button("Undo straightening", "bend", title="Takes the photo as its file has it")
+    return (
+        f'<div class="bar"><span class="lead">The lens bent straight lines; they are straight now.</span>{back}</div>'
+    )
+
+
+def _may_be_bent_back(client: Client, inputs: Inputs) -> bool:
+    project = client.session.project
+    return bool(inputs.photo.straightened) and project is not None and project.has_upload("photo")
 
 
 def no_scene_card(client: Client) -> str:

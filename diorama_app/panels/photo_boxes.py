@@ -50,6 +50,8 @@ class PhotoBoxes:
     def show(self, inputs: Inputs) -> None:
         """Draw boxes and proposals on the canvas."""
         index, canvas = self._client.selected_box, self._client.view.canvas
+        if canvas.shows_another(inputs.photo.rgb):
+            self._put(inputs)  # it was turned, or straightened
         likely = () if index is None else self._likely(inputs, index)
         canvas.show_boxes(inputs.boxes, index, likely)
         if canvas.is_open:
@@ -94,13 +96,16 @@ class PhotoBoxes:
         inputs = self._client.marked
         if inputs is None:
             raise InputError("there is no photo yet; upload one first")
+        self._put(inputs)
+        self._client.refresh()
+
+    def _put(self, inputs: Inputs) -> None:
         client = self._client
         client.view.canvas.open(
             inputs.photo.rgb,
             lambda event: client.post(lambda: self.happened(event)),
             names=NAMES,
         )
-        client.refresh()
 
     def happened(self, event: Event) -> None:
         """Something was done on the photo."""

@@ -19,6 +19,7 @@ from diorama_core.library.record import ShapeLibrary
 from diorama_core.library.store import CombinedLibrary, StoredLibrary
 from diorama_core.library.user_library import OWN, ShapeRecords, UserLibrary
 from diorama_core.perception.inputs import ReadInputs
+from diorama_core.perception.inputs.depth.confidence import is_map
 from diorama_core.perception.inputs.depth.kinds import DepthKind
 from diorama_core.perception.inputs.depth.units import DepthAnswer
 from diorama_core.perception.inputs.source import Source
@@ -94,6 +95,9 @@ def keep_given(project: Project, upload: Upload) -> None:
     if upload.depth is not None:
         project.save_upload("depth", _content(upload.depth))
         project.update_info(depth_scale=upload.depth_scale, depth_kind=upload.depth_kind)
+        companions = upload.depth.companions if isinstance(upload.depth, Source) else ()
+        confidence = next((c.data for c in companions if is_map(c)), None)
+        project.save_upload("confidence", confidence)
     if upload.masks is not None:
         project.save_upload("masks", _content(upload.masks))
 

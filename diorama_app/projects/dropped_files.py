@@ -9,6 +9,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 from diorama_app.projects.dropped import MAX_BYTES, DroppedPhoto, is_one_file
+from diorama_app.projects.reading_again import with_depth
 from diorama_app.projects.uploads import Upload
 from diorama_core.io.archives import unpacked
 from diorama_core.io.file_heads import head_of
@@ -38,7 +39,7 @@ def files_of(name: str, content: bytes) -> dict[str, bytes]:
 
 def upload_of(photo: DroppedPhoto, files: Mapping[str, bytes]) -> Upload:
     """A photo with the files that belong to it, each with what lies beside it."""
-    sources = sources_of(photo.beside, files)
+    sources = with_depth(sources_of(photo.beside, files), None)
     return Upload(
         files[photo.file], Path(photo.file).name, sources.get("depth"), sources.get("boxes"), sources.get("masks")
     )

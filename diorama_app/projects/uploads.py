@@ -28,6 +28,8 @@ class Upload:
     depth_kind: DepthKind = "auto"
     half_turn: bool = False
     """Whether everything is upside down in its file."""
+    bend: float | None = None
+    """The photo's distortion as `Photo.straightened` has it, 0 to leave it; None where its lines are to say."""
 
     def answered(self, answer: DepthAnswer) -> Upload:
         """The upload with what a person says of its depth."""
@@ -70,7 +72,9 @@ def read_packed(upload: Upload) -> tuple[bytes, tuple[str, ...]] | DepthQuestion
 
 
 def _read(upload: Upload) -> ReadInputs:
-    return read_inputs(
+    from diorama_core.multiview.plumb_lines import straightened_by_lines  # in the decoding process only
+
+    read = read_inputs(
         upload.photo,
         name=upload.name,
         depth=upload.depth,
@@ -82,3 +86,5 @@ def _read(upload: Upload) -> ReadInputs:
         fov_deg=upload.fov_deg,
         half_turn=upload.half_turn,
     )
+    inputs, notes = straightened_by_lines(read.inputs, upload.bend)
+    return ReadInputs(inputs, read.warnings if upload.bend is not None else (*notes, *read.warnings))

@@ -121,6 +121,7 @@ class AnnotationCanvas:
     def __init__(self, gui: viser.GuiApi) -> None:
         self._on_event: OnEvent | None = None
         self._size = (1, 1)
+        self._shown: tuple[UInt8[np.ndarray, "h w 3"], Mode] | None = None
         self._names: tuple[str, ...] = ()
         sender = LiveHtml(gui, self._received)
         sender.show('<button type="button" id="dio-canvas-send" style="display:none" tabindex="-1"></button>')
@@ -133,6 +134,10 @@ class AnnotationCanvas:
     def is_open(self) -> bool:
         """Whether this browser shows the canvas."""
         return self._on_event is not None
+
+    def shows_another(self, photo: UInt8[np.ndarray, "h w 3"]) -> bool:
+        """Whether boxes are drawn on another picture than this."""
+        return self.is_open and self._shown is not None and self._shown[1] == "boxes" and self._shown[0] is not photo
 
     def open(
         self,
@@ -151,7 +156,7 @@ class AnnotationCanvas:
             names: suggested when a box is named.
         """
         self.close()
-        self._on_event = on_event
+        self._on_event, self._shown = on_event, (photo, mode)
         height, width = photo.shape[:2]
         self._size = width, height
         told = {

@@ -194,7 +194,8 @@ def _straight(inputs: Inputs, distortion: Sequence[float]) -> tuple[Inputs, tupl
     from diorama_core.multiview.plumb_lines import straightened_by_lines
 
     if not distortion:
-        return straightened_by_lines(inputs)
+        straight, notes = straightened_by_lines(inputs)
+        return straight, tuple(f"{note}: --distortion 0 leaves it as it is" for note in notes)
     lens = lens_of(distortion)
     return (without_distortion(inputs, lens) if lens.bends else inputs), ()
 

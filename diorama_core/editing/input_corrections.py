@@ -87,8 +87,12 @@ def labelled_box(box: Box, label: str) -> LabelledBox:
 def boxes_json(boxes: Sequence[LabelledBox], photo: Photo) -> bytes:
     """Boxes as a file of the documented form, in pixels of the upright original, whose size it states.
 
-    Of a photo that was turned by 180 degrees, they lie as in its file.
+    Of a photo that was straightened or turned by 180 degrees, they lie as in its file.
     """
+    if photo.straightened:
+        from diorama_core.multiview.plumb_lines import box_before_straightening  # the editor opens without it
+
+        boxes = [box_before_straightening(b, photo) for b in boxes]
     boxes = [turned_box(b, photo) for b in boxes] if photo.half_turned else boxes
     sx, sy = photo.original_size[0] / photo.width, photo.original_size[1] / photo.height
     left, top = photo.offset or (0, 0)

@@ -21,7 +21,7 @@ from diorama_core.io.bounded import read_bytes
 from diorama_core.io.contained import ContainedFiles
 from diorama_core.io.file_heads import FileHead
 from diorama_core.multiview.posed_photos import read_poses
-from diorama_core.perception.inputs.depth.confidence import is_sure
+from diorama_core.perception.inputs.depth.voids import is_sure
 from diorama_core.scene.types import Camera, Intrinsics
 
 MAX_DEPTH_M = 6.0

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from typing import Any
 
 REPLACEMENT = "\ufffd"
@@ -42,3 +43,8 @@ def number_of(count: int, noun: str = "") -> str:
     """A number with its noun in the right form, that of objects where none is given: "1 object", "3 photos"."""
     many = "" if count == 1 else "s"
     return f"{count} {noun}{many}" if noun else f"{count} object{many}"
+
+
+def sentences(notes: Iterable[str]) -> str:
+    """Notes one after another, each as a sentence."""
+    return " ".join(f"{note[:1].upper()}{note[1:]}." for note in notes)

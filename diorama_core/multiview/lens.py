@@ -128,6 +128,15 @@ def straight_points(points: Float[np.ndarray, "n 2"], k: Intrinsics, lens: Lens)
     return np.asarray(undistort(points.reshape(-1, 1, 2).astype(np.float64), K, lens.coefficients, P=K)).reshape(-1, 2)
 
 
+def bent_box(marked: LabelledBox, k: Intrinsics, lens: Lens) -> LabelledBox:
+    """The box of a bent photo that straightening moves to a given one; up to the photo's side where that one is."""
+    goal = bent = np.array(marked.box, dtype=float)
+    for _ in range(12):
+        straight = _moved(replace(marked, box=(*bent.tolist(),)), k, lens).box
+        bent = np.clip(bent + goal - straight, 0.0, [k.width, k.height] * 2)
+    return replace(marked, box=(*bent.tolist(),))
+
+
 def _farthest_px(k: Intrinsics, lens: Lens) -> float:
     border = _border(0.0, 0.0, float(k.width), float(k.height))
     return float(np.linalg.norm(straight_points(border, k, lens) - border, axis=1).max())

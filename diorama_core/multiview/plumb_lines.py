@@ -8,14 +8,14 @@ of them are straight is taken. Round things are bent under every coefficient, so
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import cv2
 import numpy as np
 from jaxtyping import Float, UInt8
 
-from diorama_core.artefacts import Inputs
-from diorama_core.multiview.lens import Lens, straight_points, straightened
+from diorama_core.artefacts import Inputs, LabelledBox, Photo
+from diorama_core.multiview.lens import Lens, bent_box, straight_points, straightened
 from diorama_core.scene.types import Intrinsics
 
 
@@ -51,18 +51,32 @@ _SAMPLES = 17
 """Points of each edge that are straightened."""
 
 
-def straightened_by_lines(inputs: Inputs) -> tuple[Inputs, tuple[str, ...]]:
+def straightened_by_lines(inputs: Inputs, k1: float | None = None) -> tuple[Inputs, tuple[str, ...]]:
     """One photo with everything that lies on it, straightened where its lines say that the lens bends them; and the
-    note that it was."""
-    k, lens = fitted_lens(inputs.photo.rgb)
+    note that it was.
+
+    Args:
+        inputs: as given.
+        k1: what the lines said before (`Photo.straightened`), 0 to leave the photo as it is; None to ask them.
+    """
+    k, lens = fitted_lens(inputs.photo.rgb) if k1 is None else _known_lens(inputs.photo, k1)
     straight = straightened(inputs, k, lens)
     if straight is inputs:
         return inputs, ()
     camera = inputs.intrinsics
     focal = camera.fx if camera is not None else inputs.photo.exif_focal_px
     said = "" if focal is None else f" (k1 {lens.k[0] * (focal / k.fx) ** 2:.3f})"
-    note = f"the lens bends straight lines{said}; the photo was straightened by them: --distortion 0 leaves it as it is"
-    return straight, (note,)
+    marked = replace(straight, photo=replace(straight.photo, straightened=lens.k[0]))
+    return marked, (f"the lens bends straight lines{said}; the photo was straightened by them",)
+
+
+def box_before_straightening(box: LabelledBox, photo: Photo) -> LabelledBox:
+    """A box of a straightened photo as it is in the photo's file."""
+    return bent_box(box, *_known_lens(photo, photo.straightened or 0.0))
+
+
+def _known_lens(photo: Photo, k1: float) -> tuple[Intrinsics, Lens]:
+    return _camera(photo.width, photo.height), Lens((k1,) if k1 else ())
 
 
 def fitted_lens(rgb: UInt8[np.ndarray, "h w 3"], settings: PlumbLineSettings = SETTINGS) -> tuple[Intrinsics, Lens]:

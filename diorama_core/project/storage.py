@@ -43,8 +43,8 @@ MAX_TEXTURE_PIXELS = 200_000_000
 
 OWN_SHAPES = "./shapes"
 """Part of a library's name in `project.json`: the shapes in the project's own folder."""
-Upload = Literal["photo", "depth", "masks"]
-UPLOADS: tuple[Upload, ...] = ("photo", "depth", "masks")
+Upload = Literal["photo", "depth", "confidence", "masks"]
+UPLOADS: tuple[Upload, ...] = ("photo", "depth", "confidence", "masks")
 
 log = logging.getLogger(__name__)
 
@@ -176,14 +176,21 @@ class Project:
             shutil.copytree(other.shapes_folder, self.shapes_folder, dirs_exist_ok=True)
         self.update_info(library="+".join(other._library_parts()))
 
-    def save_upload(self, kind: Upload, content: bytes) -> None:
-        """Keep a file as it was given, so that others can be read together with it later."""
+    def save_upload(self, kind: Upload, content: bytes | None) -> None:
+        """Keep a file as it was given, so that others can be read together with it later; None forgets it."""
+        if content is None:
+            (self.folder / "uploads" / kind).unlink(missing_ok=True)
+            return
         write_atomically(self.folder / "uploads" / kind, content, error=ProjectError)
 
     def uploads(self) -> dict[Upload, bytes]:
         """The files that were given, as they came."""
         paths: dict[Upload, Path] = {kind: self.folder / "uploads" / kind for kind in UPLOADS}
         return {kind: read_bytes(path, MAX_UPLOAD_BYTES, ProjectError) for kind, path in paths.items() if path.exists()}
+
+    def has_upload(self, kind: Upload) -> bool:
+        """Whether such a file was given."""
+        return (self.folder / "uploads" / kind).exists()
 
     def photo(self) -> Photo | None:
         """The photo the project was made from."""

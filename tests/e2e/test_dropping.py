@@ -13,8 +13,9 @@ from playwright.sync_api import expect
 from diorama_app.session.client import Placing
 from tests.e2e.browser import LEARN_MS, EditorPage
 from tests.e2e.conftest import keep_picture
+from tests.multiview.test_plumb_lines import bent, lines
 from tests.perception.inputs.depth.rooms import HEIGHT, WIDTH, room
-from tests.perception.inputs.files import box, boxes_json
+from tests.perception.inputs.files import box, boxes_json, depth_png
 
 pytestmark = pytest.mark.browser
 
@@ -52,6 +53,50 @@ def test_a_photo_with_boxes_then_its_depth(editor: EditorPage, tmp_path: Path) -
     editor.page.get_by_role("button", name="Inverse depth").click()
     editor.until(lambda: editor.session.inputs.depth_m is not None, "read as it was answered", seconds=90)
     assert editor.session.project.info()["depth_kind"] == "inverse"
+
+
+def test_confidence_is_dropped_onto_its_depth(editor: EditorPage, tmp_path: Path) -> None:
+    depth, levels = tmp_path / "depth.png", tmp_path / "confidence.png"
+    depth.write_bytes(depth_png(room()[0] * 1000))
+    Image.fromarray(np.repeat(np.uint8(2 * (np.arange(HEIGHT) >= 40))[:, None], WIDTH, axis=1)).save(levels)
+    drop(editor, photo(tmp_path / "room.png"), depth)
+    editor.notice("a photo (room.png) with a depth map")
+    editor.until(lambda: editor.session.inputs.depth_m is not None, "photo and depth", seconds=90)
+    editor.until(lambda: "depth" in editor.session.project.uploads(), "kept")
+    drop(editor, levels)
+    editor.notice("confidence.png: confidence of depth of the open photo")
+    editor.notice("25% of the depth is unsure by confidence.png, and left out.")
+    keep_picture(editor, "dropped-confidence")
+    measured = editor.session.inputs.depth_m > 0
+    assert not measured[:115].any()
+    assert measured[125:].all()
+
+
+def test_a_bent_photo_is_straightened_and_left_bent_when_asked(editor: EditorPage, tmp_path: Path) -> None:
+    Image.fromarray(bent(lines(), -0.15)).save(tmp_path / "wide.png")
+    drop(editor, tmp_path / "wide.png")
+    editor.until(lambda: editor.session.inputs.photo.straightened is not None, "straightened", seconds=90)
+    expect(editor.page.get_by_text("The lens bent straight lines")).to_be_visible(timeout=LEARN_MS)
+    keep_picture(editor, "straightened-photo")
+    editor.page.get_by_role("button", name="Undo straightening").click()
+    editor.until(lambda: editor.session.inputs.photo.straightened is None, "as its file has it", seconds=90)
+    expect(editor.page.get_by_text("The lens bent straight lines")).not_to_be_visible()
+    keep_picture(editor, "bent-photo")
+
+
+def test_an_upside_down_photo_is_turned(editor: EditorPage, tmp_path: Path) -> None:
+    rugs = [box(x, 10, x + 90, 90, word="rug") for x in (20, 150, 280)]
+    labels = tmp_path / "room.json"
+    labels.write_bytes(boxes_json(*rugs, box(150, 400, 250, 470, word="ceiling lamp")))
+    drop(editor, photo(tmp_path / "room.png"), labels)
+    editor.until(lambda: len(editor.session.inputs.boxes) == 4, "with its boxes", seconds=90)
+    expect(editor.page.get_by_text("The photo seems to be upside down.", exact=True)).to_be_visible(timeout=LEARN_MS)
+    keep_picture(editor, "upside-down-photo")
+    editor.page.get_by_role("button", name="Turn photo").click()
+    editor.until(lambda: bool(editor.session.inputs.photo.half_turned), "turned", seconds=90)
+    assert editor.session.inputs.boxes[0].box[1] > 380
+    expect(editor.page.get_by_text("The photo seems to be upside down.", exact=True)).not_to_be_visible()
+    keep_picture(editor, "turned-photo")
 
 
 def test_a_folder_of_photos(editor: EditorPage, tmp_path: Path) -> None:

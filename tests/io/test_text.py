@@ -5,7 +5,7 @@ import os
 from hypothesis import given
 from hypothesis import strategies as st
 
-from diorama_core.io.text import REPLACEMENT, clean_strings, clean_text, file_label, number_of
+from diorama_core.io.text import REPLACEMENT, clean_strings, clean_text, file_label, number_of, sentences
 
 ANY_TEXT = st.text(st.characters(categories=None, codec=None), max_size=40)  # halves and controls included
 
@@ -46,3 +46,7 @@ def test_numbers_have_their_noun_in_the_right_form() -> None:
     assert number_of(1) == "1 object"
     assert number_of(0) == "0 objects"
     assert number_of(3, "photo") == "3 photos"
+
+
+def test_notes_become_sentences() -> None:
+    assert sentences(("the photo is dark", "25% is unsure")) == "The photo is dark. 25% is unsure."

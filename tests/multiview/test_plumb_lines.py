@@ -8,9 +8,9 @@ import cv2
 import numpy as np
 import pytest
 
-from diorama_core.artefacts import Inputs, Photo
+from diorama_core.artefacts import Inputs, LabelledBox, Photo
 from diorama_core.multiview.lens import Lens, straight_points
-from diorama_core.multiview.plumb_lines import fitted_lens, straightened_by_lines
+from diorama_core.multiview.plumb_lines import box_before_straightening, fitted_lens, straightened_by_lines
 
 SIZE = (640, 480)
 K1 = -0.15
@@ -26,6 +26,10 @@ def bent(rgb: np.ndarray, k1: float) -> np.ndarray:
 
 @pytest.fixture(scope="module")
 def room() -> np.ndarray:
+    return lines()
+
+
+def lines() -> np.ndarray:
     """Edges of walls, frames and boards, and a round lamp."""
     rgb = np.full((SIZE[1], SIZE[0], 3), 200, np.uint8)
     for x1, y1, x2, y2, grey in [(40, 30, 250, 400, 120), (330, 60, 610, 200, 70), (300, 260, 560, 450, 150)]:
@@ -53,7 +57,8 @@ def test_straight_lines_and_round_things_say_nothing(room: np.ndarray) -> None:
 def test_a_bent_photo_is_straightened_and_said(room: np.ndarray) -> None:
     given = Inputs(Photo(bent(room, K1), "a.jpg", SIZE, exif_focal_px=400.0))
     straight, (note,) = straightened_by_lines(given)
-    assert "--distortion 0" in note
+    assert "straightened by them" in note
+    assert straight.photo.straightened == pytest.approx(K1, abs=0.01)
     assert re.search(r"k1 -0\.1[45]\d", note)
     inside = np.s_[60:420, 60:580]
     off = np.abs(straight.photo.rgb[inside].astype(int) - room[inside])
@@ -61,3 +66,12 @@ def test_a_bent_photo_is_straightened_and_said(room: np.ndarray) -> None:
     assert off.mean() < 4.0
     assert np.abs(given.photo.rgb[inside].astype(int) - room[inside]).mean() > 2 * off.mean()
     assert straightened_by_lines(Inputs(Photo(room, "a.jpg", SIZE)))[1] == ()
+
+
+def test_boxes_go_back_to_where_they_were_drawn(room: np.ndarray) -> None:
+    drawn = [(90.0, 70.0, 250.0, 360.0), (0.0, 0.0, 100.0, 480.0), (300.0, 200.0, 340.0, 260.0)]
+    given = Inputs(Photo(bent(room, K1), "a.jpg", SIZE), tuple(LabelledBox(b, "chair", "chair") for b in drawn))
+    straight, _ = straightened_by_lines(given)
+    back = [box_before_straightening(b, straight.photo).box for b in straight.boxes]
+    assert np.abs(np.array(back) - drawn).max() < 0.05
+    assert straightened_by_lines(given, 0.0) == (given, ())

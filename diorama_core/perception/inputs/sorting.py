@@ -10,6 +10,7 @@ from PIL import Image
 
 from diorama_core.errors import InputError
 from diorama_core.perception.inputs.boxes.table import BOX_FORMS, parsed
+from diorama_core.perception.inputs.depth.confidence import is_confidence
 from diorama_core.perception.inputs.depth.containers import DEPTH_FORMS, DepthContent
 from diorama_core.perception.inputs.form import form_of
 from diorama_core.perception.inputs.photos.decoding import open_picture, what_it_is
@@ -17,7 +18,7 @@ from diorama_core.perception.inputs.photos.frame import ASPECT_TOLERANCE
 from diorama_core.perception.inputs.photos.raw import raw_kind
 from diorama_core.perception.inputs.source import Source
 
-Sort = Literal["photo", "boxes", "masks", "depth"]
+Sort = Literal["photo", "boxes", "masks", "depth", "confidence"]
 FEW_COLOURS = 80
 """Of a picture's pixels sampled without smoothing: masks of the fullest scenes have no more, photos have thousands."""
 _SAMPLED_PX = 256
@@ -45,6 +46,8 @@ def recognised(content: bytes, name: str, photo_size: tuple[int, int] | None) ->
         InputError: nothing that is read.
     """
     source = Source(content, name)
+    if is_confidence(name):
+        return (Recognised("confidence", "confidence of depth"),)
     if content.startswith((b"\x93NUMPY", b"PK\x03\x04")):
         return _of_numbers(source, photo_size)
     kind = raw_kind(content)

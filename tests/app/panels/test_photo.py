@@ -11,9 +11,12 @@ from diorama_app.panels import photo as photo_panel
 from diorama_app.panels.photo import PhotoPanel
 from diorama_app.reconstruction import build_job
 from diorama_app.viewport.annotation_canvas import Deleted, Drawn, Finished, Named, Reshaped, Selected
+from diorama_core.perception.inputs.source import Source
 from diorama_core.project.storage import Project
 from tests.app.page import Page
 from tests.app.panels.test_photo_boxes import Known
+from tests.multiview.test_plumb_lines import bent, lines
+from tests.perception.inputs.files import depth_png, encoded
 
 
 def picture(width: int = 64, height: int = 48, kind: str = "PNG") -> bytes:
@@ -153,6 +156,7 @@ def test_a_photo_that_is_upside_down_is_turned_with_its_boxes_and_back(session, 
     assert page.shows("turn")
     page.act("turn")
     assert session.inputs.photo.half_turned
+    assert not client.view.canvas.shows_another(session.inputs.photo.rgb), "it is turned where it is marked, too"
     assert session.inputs.boxes[0].box == (44.0, 38.0, 62.0, 46.0)
     assert not page.shows("turn")
     page.write("Camera", "60,60,30,20")  # the photo is read again
@@ -190,3 +194,44 @@ def test_a_room_is_described_in_words(page, panel, monkeypatch) -> None:
     page.write("Describe a room", "a bedroom with a lamp")
     page.press("Create room")
     assert asked == ["a bedroom with a lamp"]
+
+
+def test_a_bent_photo_is_straightened_said_and_left_bent_when_asked(session, client, page, panel) -> None:
+    rgb = bent(lines(), -0.15)
+    file = encoded(Image.fromarray(rgb))
+    page.upload("Upload a photo", "wide.png", file)
+    assert session.inputs.photo.straightened == pytest.approx(-0.15, abs=0.01)
+    assert "The lens bent straight lines" in page.html
+    assert "straightened" in session.project.info()["warnings"][0]
+    page.upload("Add boxes", "boxes.json", json.dumps([{"class": "chair", "bbox": [90, 70, 250, 360]}]).encode())
+    straight = session.inputs.boxes[0].box
+    assert straight != (90.0, 70.0, 250.0, 360.0)
+    page.write("Camera", "500,500,320,240")  # read again: the box must not move once more
+    assert session.inputs.boxes[0].box == pytest.approx(straight, abs=0.05)
+    assert session.inputs.photo.straightened == pytest.approx(-0.15, abs=0.01)
+    page.act("bend")
+    assert session.inputs.photo.straightened is None
+    assert (session.inputs.photo.rgb == rgb).all()
+    assert session.inputs.boxes[0].box == pytest.approx((90.0, 70.0, 250.0, 360.0), abs=0.05)
+    assert not page.shows("bend")
+    page.write("Camera", "510,510,320,240")
+    assert session.inputs.photo.straightened is None, "it stays as asked"
+
+
+def test_confidence_leaves_depth_out_and_is_kept_with_it(session, client, page, empty) -> None:
+    page.upload("Upload a photo", "room.png", picture())
+    depth, levels = np.full((48, 64), 2500, np.uint16), np.full((48, 64), 2, np.uint8)
+    levels[:12] = 0
+    confidence = Source(encoded(Image.fromarray(levels)), "confidence.png")
+    client.post(lambda: empty.add({"confidence": confidence}))
+    page.settle()
+    assert "add that depth with it" in client.viser_client.told[-1]
+    page.upload("Add depth", "depth.png", depth_png(depth))
+    client.post(lambda: empty.add({"confidence": confidence}))
+    page.settle()
+    assert (session.inputs.depth_m[:12] == 0).all()
+    assert (session.inputs.depth_m[12:] == 2.5).all()
+    page.write("Camera", "60,60,30,20")
+    assert (session.inputs.depth_m[:12] == 0).all(), "also when it is read again"
+    page.upload("Add depth", "depth.png", depth_png(depth))
+    assert (session.inputs.depth_m == 2.5).all(), "another map has none"

@@ -16,6 +16,7 @@ from diorama_app.projects.dropped_files import files_of, upload_of
 from diorama_core.errors import InputError
 from diorama_core.importing.point_cloud import MIN_POINTS
 from diorama_core.perception.inputs.boxes.reading import read_boxes
+from diorama_core.perception.inputs.depth.reading import DepthOptions, read_depth
 from diorama_core.perception.inputs.photos.reading import read_photo
 from diorama_core.perception.inputs.source import read_source
 from tests.perception.inputs.depth.rooms import HEIGHT, WIDTH, room
@@ -47,6 +48,21 @@ def glb(*boxes: tuple[tuple[float, float, float], tuple[float, float, float]]) -
         mesh.apply_translation(middle)
         scene.add_geometry(mesh)
     return bytes(scene.export(file_type="glb"))
+
+
+def test_confidence_comes_with_its_depth() -> None:
+    levels = encoded(Image.fromarray(np.repeat(np.uint8(2 * (np.arange(HEIGHT) >= 40))[:, None], WIDTH, axis=1)))
+    files = {"room.jpg": PHOTO, "depth.png": DEPTH, "confidence.png": levels}
+    found = dropped(files)
+    (reading,) = found.readings
+    assert (reading.action, found.left_out) == ("photo", ())
+    assert "confidence of depth" in reading.words
+    upload = upload_of(reading.photos[0], files_of("drop.zip", packed(files)))
+    depth, notes = read_depth(upload.depth, DepthOptions(1000.0), read_photo(read_source(PHOTO, "photo"), 1600))
+    assert (depth[:40] == 0).all()
+    assert "unsure by confidence.png" in " ".join(notes)
+    (alone,) = understood(levels, "room_confidence.png", (WIDTH, HEIGHT)).readings
+    assert (alone.action, alone.inputs[0][0]) == ("inputs", "confidence")
 
 
 def test_a_photo_comes_with_what_belongs_to_it() -> None:

@@ -3,25 +3,31 @@
 from __future__ import annotations
 
 import glob
+import re
 from pathlib import Path
 
 import numpy as np
-from jaxtyping import Bool, Shaped
+from jaxtyping import Shaped
 
 from diorama_core.errors import InputError
 from diorama_core.perception.inputs.depth.containers import DEPTH_FORMS, DepthContent
+from diorama_core.perception.inputs.depth.voids import only_sure
 from diorama_core.perception.inputs.form import form_of
 from diorama_core.perception.inputs.source import Source
 
-SURE_LEVEL, SURE_GREY = 1, 100
-"""Least confidence of a pixel, where it is a level (0 to 2, ARKit's) and where it is a grey value (0 to 255)."""
-MIN_SURE = 0.05
-"""Share of the measured pixels that must be sure: fewer are no depth of a room."""
+_NAMED = re.compile(r"confidence|(?:^|[_.\- ])conf(?![a-z])")
+_NO_MAPS = (".json", ".txt", ".csv", ".xml", ".yaml", ".yml", ".md", ".ini")
 
 
-def is_sure(confidence: Shaped[np.ndarray, "h w"]) -> Bool[np.ndarray, "h w"]:
-    """Where depth is sure, by levels or by grey values."""
-    return np.asarray(confidence >= (SURE_LEVEL if confidence.max() <= 2 else SURE_GREY))
+def is_confidence(name: str) -> bool:
+    """Whether a file's name, or its folder's, says that it is a confidence map."""
+    path = Path(name.lower())
+    return path.suffix not in _NO_MAPS and any(_NAMED.search(part) for part in (path.name, path.parent.name))
+
+
+def is_map(companion: Source) -> bool:
+    """Whether a file that came with a depth map is its confidence, and no list of names."""
+    return companion.suffix not in _NO_MAPS
 
 
 def without_unsure(
@@ -33,18 +39,13 @@ def without_unsure(
         source: the file of the depth.
         values: as it holds them.
     """
-    for beside in _beside(source):
+    for beside in tuple(c for c in source.companions if is_map(c)) or _beside(source):
         confidence = _read(beside, values.shape)
         if confidence is None:
             return values, (
                 f"{beside.name} is no confidence map of the depth (whole numbers, as large); it was not used",
             )
-        measured = values > 0
-        unsure = measured & ~is_sure(confidence)
-        share = float(unsure.sum() / max(int(measured.sum()), 1))
-        if share > 1.0 - MIN_SURE:
-            return values, (f"{beside.name} calls {share:.0%} of the depth unsure; it was not used",)
-        return np.where(unsure, 0, values), (f"{share:.0%} of the depth is unsure by {beside.name}, and left out",)
+        return only_sure(values, confidence, beside.name)
     return values, ()
 
 

@@ -14,6 +14,7 @@ from numpy.lib import format as npy
 from diorama_core.errors import InputError
 from diorama_core.perception import exr
 from diorama_core.perception.inputs.depth.channels import one_channel
+from diorama_core.perception.inputs.depth.voids import only_sure
 from diorama_core.perception.inputs.form import Form
 from diorama_core.perception.inputs.photos.decoding import load_pixels, open_picture
 from diorama_core.perception.inputs.source import Source
@@ -241,6 +242,12 @@ def _trusted(
     values: Shaped[np.ndarray, "h w"], arrays: dict[str, np.ndarray], key: str
 ) -> tuple[Shaped[np.ndarray, "h w"], tuple[str, ...]]:
     """The map without the pixels that a mask of the same file excludes."""
+    for name in ("confidence", "conf", "depth_conf", "confidence_map"):
+        level = np.squeeze(arrays[name]) if name in arrays else None
+        if level is not None and level.shape == values.shape and level.dtype.kind in "bu":
+            return only_sure(values, level, f"its {name}")
+        if level is not None:
+            return values, (f"its {name} is no map of whole numbers as large as the depth; it was not used",)
     for name in ("mask", "valid", "valid_mask"):
         mask = np.squeeze(arrays[name]) if name in arrays and name != key else None
         if mask is not None and mask.shape == values.shape and 0 < np.count_nonzero(mask) < mask.size:

@@ -18,6 +18,11 @@ MIN_DIFFERENT = 20
 """Numbers that a map has beside such a one: of a few steps each may be a surface."""
 NOTED_SHARE = 0.01
 
+SURE_LEVEL, SURE_GREY = 1, 100
+"""Least confidence of a pixel, where it is a level (0 to 2, ARKit's) and where it is a grey value (0 to 255)."""
+MIN_SURE = 0.05
+"""Share of the measured pixels that must be sure: fewer are no depth of a room."""
+
 
 def measured(values: Shaped[np.ndarray, "h w"], *, is_float: bool) -> tuple[Bool[np.ndarray, "h w"], tuple[str, ...]]:
     """Where a map's numbers are measurements, and a note about numbers that mean the opposite.
@@ -75,3 +80,20 @@ def _is_repeated(others: np.ndarray, count: float) -> bool:
     few = others if others.size < 200_000 else others[:: others.size // 100_000]
     counts = np.unique(few, return_counts=True)[1] * (others.size / few.size)
     return len(counts) >= MIN_DIFFERENT and (count > REPEATED * counts.max() or count > 0.02 * others.size)
+
+
+def is_sure(confidence: Shaped[np.ndarray, "h w"]) -> Bool[np.ndarray, "h w"]:
+    """Where depth is sure, by levels or by grey values."""
+    return np.asarray(confidence >= (SURE_LEVEL if confidence.max() <= 2 else SURE_GREY))
+
+
+def only_sure(
+    values: Shaped[np.ndarray, "h w"], confidence: Shaped[np.ndarray, "h w"], name: str
+) -> tuple[Shaped[np.ndarray, "h w"], tuple[str, ...]]:
+    """A map with 0 where its confidence, called `name`, is low, and what was done."""
+    measured = values > 0
+    unsure = measured & ~is_sure(confidence)
+    share = float(unsure.sum() / max(int(measured.sum()), 1))
+    if share > 1.0 - MIN_SURE:
+        return values, (f"{name} calls {share:.0%} of the depth unsure; it was not used",)
+    return np.where(unsure, 0, values), (f"{share:.0%} of the depth is unsure by {name}, and left out",)

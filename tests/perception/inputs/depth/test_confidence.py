@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from diorama_core.perception.inputs.depth.confidence import without_unsure
+from diorama_core.perception.inputs.depth.confidence import is_confidence, without_unsure
 from diorama_core.perception.inputs.depth.reading import DepthOptions, read_depth
 from diorama_core.perception.inputs.source import read_source
 from tests.perception.inputs.files import decoded, depth_png, npy
@@ -60,3 +60,22 @@ def test_depth_alone_stays_as_it_is(tmp_path: Path) -> None:
     (tmp_path / "depth.png").write_bytes(depth_png(DEPTH))
     (tmp_path / "other_confidence.png").write_bytes(depth_png(DEPTH))
     assert without_unsure(read_source(tmp_path / "depth.png", "depth"), DEPTH)[1] == ()
+
+
+@pytest.mark.parametrize(("name", "is_one"), [
+    ("confidence.png", True), ("a/depthConfidence_01.tif", True), ("x.conf", True), ("confidence/000001.png", True),
+    ("room_conf.png", True), ("conference_room.jpg", False), ("confidence.json", False), ("depth.png", False),
+])  # fmt: skip
+def test_confidence_is_known_by_its_name(name: str, is_one: bool) -> None:
+    assert is_confidence(name) == is_one
+
+
+def test_confidence_in_the_archive_of_the_depth(tmp_path: Path) -> None:
+    np.savez(tmp_path / "d.npz", depth=DEPTH, confidence=LEVELS)
+    found, notes = read_depth(read_source(tmp_path / "d.npz", "depth"), DepthOptions(1000.0), decoded(64, 48))
+    assert (found[:12] == 0).all()
+    assert "25% of the depth is unsure by its confidence" in notes[0]
+    np.savez(tmp_path / "d.npz", depth=DEPTH, conf=LEVELS / 2.0)
+    found, notes = read_depth(read_source(tmp_path / "d.npz", "depth"), DepthOptions(1000.0), decoded(64, 48))
+    assert (found == 2.5).all()
+    assert "its conf is no map of whole numbers" in notes[0]
