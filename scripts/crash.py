@@ -46,8 +46,9 @@ from diorama_core.export import export_scene
 from diorama_core.io.atomic import remove_leftovers
 from diorama_core.io.limited import LimitedProcess
 from diorama_core.layout.recipes import recipe
-from diorama_core.library.ingest.adding import add_models, model_files, sources
-from diorama_core.library.ingest.guess import Given
+from diorama_core.library.ingest.adding import add_models
+from diorama_core.library.ingest.finding import model_files, sources
+from diorama_core.library.ingest.given import Given
 from diorama_core.library.ingest.known_shapes import known_shapes
 from diorama_core.library.store.stored import StoredLibrary
 from diorama_core.progress import Progress

@@ -18,7 +18,8 @@ from diorama_app.cli.arguments import command, positive, progress_bar
 from diorama_core.errors import InputError
 
 if TYPE_CHECKING:
-    from diorama_core.library.ingest.adding import Added, Trouble
+    from diorama_core.library.ingest.adding import Added
+    from diorama_core.library.ingest.finding import Trouble
     from diorama_core.library.record import Shape
 
 AXES = ("+x", "-x", "+y", "-y", "+z", "-z")
@@ -73,8 +74,9 @@ def unit(text: str) -> float:
 
 def _add(a: argparse.Namespace) -> None:
     from diorama_core.library.datasets import as_sources, dataset_named, recognised
-    from diorama_core.library.ingest.adding import add_models, model_files, read_table, sources
-    from diorama_core.library.ingest.guess import Given
+    from diorama_core.library.ingest.adding import add_models
+    from diorama_core.library.ingest.finding import model_files, read_table, sources
+    from diorama_core.library.ingest.given import Given
     from diorama_core.library.store import create_library, library_folder
     from diorama_core.render.thumbnails import thumbnail
     from diorama_core.workers import workers

@@ -43,8 +43,9 @@ def import_model(client: Client, name: str, content: bytes) -> None:
 
 
 def _taken_in(user_library: UserLibrary, name: str, content: bytes, progress: Progress) -> str:
-    from diorama_core.library.ingest.adding import add_models, model_files, slug, sources
-    from diorama_core.library.ingest.guess import Given
+    from diorama_core.library.ingest.adding import add_models
+    from diorama_core.library.ingest.finding import model_files, slug, sources
+    from diorama_core.library.ingest.given import Given
     from diorama_core.workers import workers
 
     with tempfile.TemporaryDirectory(prefix="upload-") as folder:

@@ -9,34 +9,24 @@ not touch, and where things lie on furniture (`scanned_tops`). Doors and windows
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from itertools import pairwise
-from typing import Literal
 
-import cv2
 import numpy as np
 from jaxtyping import Float
-from scipy import ndimage
-from scipy.spatial import cKDTree
 from shapely.geometry import MultiPolygon, Polygon, box
 from shapely.ops import unary_union
 
 from diorama_core.errors import InputError
-from diorama_core.geometry.openings import OPENING_CATEGORIES
 from diorama_core.importing.measured_types import (
-    MeasuredBox,
     MeasuredFloor,
-    MeasuredOpening,
     MeasuredRoom,
     MeasuredWall,
 )
 from diorama_core.importing.point_cloud import PointCloud
+from diorama_core.importing.scanned_boxes import OFF_M, ScannedRoom, boxes_in, is_part_of, rugs_in
 from diorama_core.importing.scanned_openings import scanned_openings
-from diorama_core.importing.scanned_rugs import scanned_rugs
-from diorama_core.importing.scanned_tops import apart_from_tops
 from diorama_core.importing.upright import LEVEL_M, likely_up, sharpness
-from diorama_core.library.company import CARRIED_KINDS
-from diorama_core.library.taxonomy import CATEGORIES, UNKNOWN, having
 from diorama_core.scene.types import yaw_rotation
 
 MAX_REACH_M = 60.0
@@ -63,42 +53,6 @@ APART_M = 0.15
 """Nearer parallel lines are one wall."""
 SCANNED_SHARE = 0.45
 """Of a cell of the plan, to be of the room."""
-OFF_M = 0.06
-"""Points nearer to floor, ceiling or walls are theirs."""
-CELL_M = 0.06
-"""Things are apart where so much is free between them."""
-SPARSE = 2.0
-"""As many distances between points must be free in a thin scan."""
-MIN_SIZE_M, MIN_CELLS = 0.15, 12
-MIN_TOP_M = 0.12
-"""Of what lies on something."""
-STANDS_M = 0.35
-"""So far above the floor thin legs may go unseen."""
-TABLE_M, BOARD_M, MIN_BOARD_M = (0.35, 1.1), 0.12, 0.4
-"""Heights of boards that stand on legs, how thick they are at most, and the least shorter side."""
-SQUARE_RAD = float(np.radians(10.0))
-WALL_SHARE = 0.85
-"""Of the room's height: what is thinner than `OFF_M` and reaches so high is a wall."""
-LOWEST_LAMP_SHARE = 0.5
-"""Of the room's height, below which nothing reaches that hangs from the ceiling."""
-HANGS_CLEAR_M = 0.15
-PART_M = 0.15
-"""Of a door or window: what is deeper, or larger than it by more, is before it."""
-MAX_BOXES = 200
-AT_WALL_M = 0.4
-GUESS = 0.4
-"""Confidence in a kind that no word tells."""
-RUGS = having("rug")
-UNLIKELY = (UNKNOWN.name, *OPENING_CATEGORIES, "curtain", "rug")
-
-
-@dataclass(frozen=True, eq=False)
-class _Room:
-    """The room's shell, its axes along x and y."""
-
-    outline: Polygon
-    floor_m: float
-    top_m: float
 
 
 def measured_cloud(cloud: PointCloud) -> MeasuredRoom:
@@ -119,12 +73,12 @@ def measured_cloud(cloud: PointCloud) -> MeasuredRoom:
     T[2, 3] = -floor_m
     T[:3] = turn @ T[:3]
     outline = _outline(points, top_m, walls_alone=not (levels.floored or levels.closed))
-    room = _Room(outline, 0.0, top_m)
+    room = ScannedRoom(outline, top_m)
     walls, ring = _walls(room), np.asarray(outline.exterior.coords)[:-1]
     openings = scanned_openings(points, walls, ring)
-    boxes, left_out = _boxes(points, room)
-    boxes = (*boxes, *_rugs(points, room))
-    boxes = tuple(b for b in boxes if not any(_is_part(b, o) for o in openings))
+    boxes, left_out = boxes_in(points, room)
+    boxes = (*boxes, *rugs_in(points, room))
+    boxes = tuple(b for b in boxes if not any(is_part_of(b, o) for o in openings))
     notes = [*cloud.notes, "kinds of things are guessed; correct them where they are wrong"]
     if not levels.floored:
         notes.append("no floor was scanned; it is where points begin")
@@ -276,137 +230,10 @@ def _lines(points: Float[np.ndarray, "n 3"], top_m: float, axis: int) -> list[fl
     return sorted(lines)
 
 
-def _walls(room: _Room) -> tuple[MeasuredWall, ...]:
+def _walls(room: ScannedRoom) -> tuple[MeasuredWall, ...]:
     ring = np.asarray(room.outline.exterior.coords)[:, :2]
     walls = []
     for number, (a, b) in enumerate(pairwise(ring)):
         corners = [[*a, 0.0], [*b, 0.0], [*b, room.top_m], [*a, room.top_m]]
         walls.append(MeasuredWall(f"wall_{number + 1}", np.array(corners)))
     return tuple(walls)
-
-
-def _boxes(points: Float[np.ndarray, "n 3"], room: _Room) -> tuple[tuple[MeasuredBox, ...], int]:
-    """Boxes of what stands in the room, the largest first, and how many more there are."""
-    import shapely
-
-    inner = room.outline.buffer(-OFF_M)
-    inside = shapely.contains_xy(inner, points[:, 0], points[:, 1])
-    inside &= (points[:, 2] > OFF_M) & (points[:, 2] < room.top_m - OFF_M)
-    left = points[inside]
-    if not len(left):
-        return (), 0
-    low = left.min(axis=0)
-    cells = np.floor((left - low) / max(CELL_M, SPARSE * _spacing(left))).astype(int)
-    grid = np.zeros(cells.max(axis=0) + 1, bool)
-    grid[tuple(cells.T)] = True
-    labels, count = ndimage.label(grid, np.ones((3, 3, 3)))
-    which = labels[tuple(cells.T)]
-    sizes = ndimage.sum_labels(grid, labels, np.arange(1, count + 1))
-    found = []
-    for number in np.argsort(-sizes, kind="stable"):
-        own = left[which == number + 1]
-        if sizes[number] < MIN_CELLS or _middle_extent(own) < MIN_SIZE_M:
-            continue
-        thing, *on_it = apart_from_tops(own)
-        around = _box(thing, room)
-        if _is_wall(around, room):
-            continue
-        found.append(around)
-        found += [replace(_box(top, room), kinds=_kinds("surface")) for top in on_it if _is_thing(top)]
-    return tuple(found[:MAX_BOXES]), max(0, len(found) - MAX_BOXES)
-
-
-def _rugs(points: Float[np.ndarray, "n 3"], room: _Room) -> tuple[MeasuredBox, ...]:
-    """Boxes of rugs on the floor."""
-    import shapely
-
-    inside = points[shapely.contains_xy(room.outline.buffer(-OFF_M), points[:, 0], points[:, 1])]
-    return tuple(replace(_box(rug, room), kinds=dict.fromkeys(sorted(RUGS), 1.0)) for rug in scanned_rugs(inside))
-
-
-def _spacing(points: Float[np.ndarray, "n 3"]) -> float:
-    """Usual distance from a point to the next one."""
-    if len(points) < 2:
-        return 0.0
-    asked = points[:: max(1, len(points) // 2000)]
-    distances, _ = cKDTree(points).query(asked, k=[2])
-    return float(np.median(distances))
-
-
-def _middle_extent(points: Float[np.ndarray, "n 3"]) -> float:
-    return float(np.sort(np.ptp(points, axis=0))[1])
-
-
-def _is_wall(box: MeasuredBox, room: _Room) -> bool:
-    """Whether a box is around a piece of a wall that stands elsewhere than where walls were found."""
-    return bool(box.size_m[:2].min() < OFF_M and box.size_m[2] > WALL_SHARE * room.top_m)
-
-
-def _is_part(box: MeasuredBox, opening: MeasuredOpening) -> bool:
-    """Whether a box is around a handle, a sill or a frame."""
-    off = np.abs(box.centre - opening.centre)
-    within = np.hypot(*off[:2]) < opening.width_m / 2 and off[2] < opening.height_m / 2
-    smaller = box.size_m[:2].max() < opening.width_m + PART_M and box.size_m[2] < opening.height_m + PART_M
-    return bool(within and smaller and box.size_m[:2].min() < PART_M)
-
-
-def _is_clear_of_walls(points: Float[np.ndarray, "n 3"], room: _Room) -> bool:
-    """Whether no wall is near enough to hold a thing: cords and rods of lamps are too thin to be scanned."""
-    around = box(*points[:, :2].min(axis=0), *points[:, :2].max(axis=0))
-    return bool(room.outline.exterior.distance(around) > HANGS_CLEAR_M)
-
-
-def _is_board(points: Float[np.ndarray, "n 3"], room: _Room) -> bool:
-    """Whether points are a level board at a table's height, away from walls: its legs are too thin to be seen."""
-    x, y, thickness = np.ptp(points, axis=0)
-    at_height = TABLE_M[0] < float(points[:, 2].min()) < TABLE_M[1]
-    return bool(at_height and thickness < BOARD_M and min(x, y) > MIN_BOARD_M and _is_clear_of_walls(points, room))
-
-
-def _is_thing(points: Float[np.ndarray, "n 3"]) -> bool:
-    """Whether what lies on something is large enough, and no few points of a larger thing's edge."""
-    return len(points) >= 2 * MIN_CELLS and _middle_extent(points) >= MIN_TOP_M
-
-
-def _box(points: Float[np.ndarray, "n 3"], room: _Room) -> MeasuredBox:
-    """The upright box around a thing, its back at the wall that it stands at."""
-    low, high = float(points[:, 2].min()), float(points[:, 2].max())
-    hangs = low > LOWEST_LAMP_SHARE * room.top_m and _is_clear_of_walls(points, room)
-    stands = low < STANDS_M or _is_board(points, room)
-    low, high = 0.0 if stands else low, room.top_m if hangs else high
-    plan = points[:, :2]
-    (cx, cy), (a, b), degrees = cv2.minAreaRect(plan.astype(np.float32))
-    turn = np.radians(degrees)
-    quarter = np.pi / 2
-    off = (turn + quarter / 2) % quarter - quarter / 2
-    if abs(off) < SQUARE_RAD or min(a, b) > 0.8 * max(a, b):
-        lower, upper = plan.min(axis=0), plan.max(axis=0)
-        (cx, cy), (a, b), turn = (lower + upper) / 2, upper - lower, 0.0
-    best = max(range(4), key=lambda k: _likely_front(np.array([cx, cy]), turn + k * quarter, (a, b)[k % 2], room))
-    depth, width = (a, b) if best % 2 == 0 else (b, a)
-    size = np.maximum(np.array([depth, width, high - low]), 0.02)
-    return MeasuredBox(
-        "object",
-        _kinds("ceiling" if hangs else "floor"),
-        yaw_rotation(turn + best * quarter),
-        np.array([cx, cy, (low + high) / 2]),
-        size,
-        confidence=GUESS,
-        points=points,
-    )
-
-
-def _likely_front(centre: Float[np.ndarray, "2"], yaw: float, depth_m: float, room: _Room) -> tuple[bool, float]:
-    """How likely a thing faces that way: its back at a wall; else its longer side in front."""
-    import shapely
-
-    back = centre - (depth_m / 2 + AT_WALL_M) * np.array([np.cos(yaw), np.sin(yaw)])
-    at_wall = not shapely.contains_xy(room.outline, *back)
-    return bool(at_wall), -depth_m
-
-
-def _kinds(where: Literal["floor", "surface", "ceiling"]) -> dict[str, float]:
-    """Everything that stands or hangs in rooms, lies on furniture, or hangs from the ceiling; sizes decide."""
-    mounts = ("floor", "wall") if where == "floor" else (where,)
-    also = CARRIED_KINDS if where == "surface" else frozenset[str]()
-    return {c.name: 1.0 for c in CATEGORIES if c.name not in UNLIKELY and (c.mount in mounts or c.name in also)}

@@ -16,7 +16,7 @@ from shapely.geometry import MultiPoint, Polygon
 from diorama_core.artefacts import DetectedObject, FurtherPhoto, Inputs, LabelledBox
 from diorama_core.errors import InputError
 from diorama_core.importing.opening import Opened
-from diorama_core.importing.roomplan import kinds_of_label
+from diorama_core.importing.roomplan_parts import kinds_of_label
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.library.taxonomy import UNKNOWN, resolve
 from diorama_core.multiview.adding import with_photo

@@ -6,7 +6,7 @@ import numpy as np
 from jaxtyping import Float
 
 from diorama_core.importing.cloud_units import likely_unit
-from diorama_core.library.ingest.guess import AXES, axis_vector
+from diorama_core.library.ingest.given import AXES, axis_vector
 from diorama_core.library.ingest.models import RawModel
 
 LOWER = 0.85

@@ -16,7 +16,7 @@ import trimesh
 from diorama_core.importing.forms import told
 from diorama_core.importing.measured_cloud import measured_cloud
 from diorama_core.importing.point_files import read_points
-from diorama_core.library.ingest.adding import members_of
+from diorama_core.library.ingest.finding import members_of
 from diorama_core.library.ingest.limits import Limits
 from diorama_core.library.ingest.models import read_model
 from diorama_core.library.ingest.repair import repaired

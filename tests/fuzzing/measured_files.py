@@ -16,7 +16,7 @@ from diorama_core.importing.measured_room import opened_room
 from diorama_core.importing.plan_pages import plan_page
 from diorama_core.importing.point_files import read_points
 from diorama_core.library.catalogue import built_in_library
-from diorama_core.library.ingest.adding import read_table
+from diorama_core.library.ingest.finding import read_table
 from diorama_core.render.raycast import MeshCaster
 from diorama_core.scene.schema import scene_to_json
 from diorama_core.scene.types import Camera, Intrinsics

@@ -12,7 +12,7 @@ from pathlib import Path
 
 import numpy as np
 
-from diorama_core.importing.roomplan import KINDS
+from diorama_core.importing.roomplan_parts import KINDS
 from diorama_core.scene.types import Scene
 
 WORLD_TO_SCAN = np.array([[1.0, 0, 0, 0], [0, 0, 1.0, 0], [0, -1.0, 0, 0], [0, 0, 0, 1.0]])

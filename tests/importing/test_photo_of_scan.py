@@ -17,7 +17,7 @@ from diorama_core.evaluation.benchmarks.cases import recipe as recipe_of_rooms
 from diorama_core.evaluation.benchmarks.views import photographed
 from diorama_core.importing.opening import Opened
 from diorama_core.importing.photo_of_scan import with_photo_of_scan
-from diorama_core.importing.roomplan import KINDS
+from diorama_core.importing.roomplan_parts import KINDS
 from diorama_core.importing.scene_import import import_scene
 from diorama_core.layout.recipes import recipe
 from diorama_core.library.catalogue import built_in_library

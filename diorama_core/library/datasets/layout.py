@@ -14,8 +14,8 @@ from typing import Any
 from diorama_core.errors import InputError
 from diorama_core.io.bounded import megabytes, parse_json, read_bytes
 from diorama_core.library import taxonomy
-from diorama_core.library.ingest.adding import sources
-from diorama_core.library.ingest.guess import Given
+from diorama_core.library.ingest.finding import sources
+from diorama_core.library.ingest.given import Given
 from diorama_core.library.ingest.shaping import Source
 
 MAX_METADATA_BYTES = 600_000_000

@@ -18,7 +18,7 @@ from diorama_core.library.datasets.layout import (
     read_text,
     spoken,
 )
-from diorama_core.library.ingest.guess import AXES, Given
+from diorama_core.library.ingest.given import AXES, Given
 
 
 def _objaverse(root: Path) -> Iterator[DatasetEntry]:

@@ -9,7 +9,7 @@ import trimesh
 
 from diorama_core.errors import InputError
 from diorama_core.library import taxonomy
-from diorama_core.library.ingest.guess import Given, axis_name, axis_vector
+from diorama_core.library.ingest.given import Given, axis_name, axis_vector
 from diorama_core.library.ingest.relief import relief
 from diorama_core.library.ingest.repair import Repaired
 from diorama_core.library.ingest.shaping import Painter, packed_shape

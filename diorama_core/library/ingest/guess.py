@@ -9,7 +9,7 @@ a format that promises metres and +Y up keeps its promise, and what speaks again
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from itertools import islice
 
 import numpy as np
@@ -17,22 +17,18 @@ import trimesh
 from jaxtyping import Bool, Float, Int
 from scipy.special import logsumexp
 
-from diorama_core.errors import InputError
-from diorama_core.io.bounded import shortened
 from diorama_core.library import taxonomy
 from diorama_core.library.hyponyms import meanings
 from diorama_core.library.ingest.convention import Convention
+from diorama_core.library.ingest.given import AXES, UNITS, Given, axis_name
 from diorama_core.library.ingest.known_shapes import KnownShapes, relief_features
 from diorama_core.library.ingest.names import Named
 from diorama_core.library.ingest.relief import Relief, quarter_turns, turned
 from diorama_core.library.kind_sizes import is_possible
 from diorama_core.library.record import Assumption, Guess
 
-AXES = ("+x", "-x", "+y", "-y", "+z", "-z")
 PROMISED_UP = "+y"
 """Of formats that promise a frame (glTF)."""
-UNITS = {1.0: "metres", 0.01: "centimetres", 0.001: "millimetres", 0.0254: "inches", 0.3048: "feet"}
-
 SIMILARITY = 60.0
 """Log-probability lost per unit of mean relief difference to the likest known shapes."""
 MIRRORED = 6.0
@@ -60,43 +56,6 @@ ALIKE, LIKEST = 1, 8
 
 
 @dataclass(frozen=True)
-class Given:
-    """What is known of a model beforehand, from flags, a table or a data set; None is guessed."""
-
-    up: str | None = None
-    """Axis of the file that points up, such as `+y`."""
-    front: str | None = None
-    unit_m: float | None = None
-    """Metres in one unit of the file."""
-    category: str | None = None
-    caption: str = ""
-    synonyms: tuple[str, ...] = ()
-    source: str = ""
-    licence: str = ""
-    reason: str = "given"
-    """Who says so, for the record."""
-
-    def __post_init__(self) -> None:
-        for name in ("up", "front"):
-            value = getattr(self, name)
-            if value is not None and value not in AXES:
-                raise InputError(f"{name} axis {value!r}: choose one of {', '.join(AXES)}")
-        if self.up is not None and self.front is not None and self.up[1] == self.front[1]:
-            raise InputError(f"up {self.up} and front {self.front} lie along one axis; they must be at right angles")
-        if self.unit_m is not None and not 1e-9 < self.unit_m < 1e9:
-            raise InputError(f"unit {self.unit_m}: give the metres in one unit of the file, such as 0.01")
-        if self.category is not None and not taxonomy.resolve(self.category).exact:
-            name = shortened(self.category, 60)
-            raise InputError(f"category {name!r} is not known; {taxonomy.resolve(name).note}")
-
-    def over(self, other: Given) -> Given:
-        """This, and where it says nothing, the other."""
-        stated = {k: v for k, v in vars(self).items() if v not in (None, "", ()) and k != "reason"}
-        speakers = [g.reason for g in (self, other) if (g.up or g.front or g.unit_m or g.category) is not None]
-        return replace(other, **stated, reason=" and ".join(dict.fromkeys(speakers)) or self.reason)
-
-
-@dataclass(frozen=True)
 class Frame:
     """How a file's frame becomes the canonical one."""
 
@@ -104,19 +63,6 @@ class Frame:
     unit_m: float
     category: str
     guess: Guess
-
-
-def axis_vector(axis: str) -> Int[np.ndarray, "3"]:
-    """`-y` as a vector."""
-    vector = np.zeros(3, dtype=int)
-    vector["xyz".index(axis[1])] = 1 if axis[0] == "+" else -1
-    return vector
-
-
-def axis_name(vector: Int[np.ndarray, "3"]) -> str:
-    """A unit vector along an axis as `-y`."""
-    axis = int(np.abs(vector).argmax())
-    return ("+" if vector[axis] > 0 else "-") + "xyz"[axis]
 
 
 def guess_frame(

@@ -16,7 +16,8 @@ from diorama_core.errors import LibraryError
 from diorama_core.library import taxonomy
 from diorama_core.library.catalogue import BULK_DENSITY
 from diorama_core.library.ingest.convention import Convention
-from diorama_core.library.ingest.guess import PROMISED_UP, Frame, Given, frame_evidence, guess_frame
+from diorama_core.library.ingest.given import Given
+from diorama_core.library.ingest.guess import PROMISED_UP, Frame, frame_evidence, guess_frame
 from diorama_core.library.ingest.joint import Evidence
 from diorama_core.library.ingest.known_shapes import KnownShapes
 from diorama_core.library.ingest.limits import DEFAULT_LIMITS, Limits

@@ -12,7 +12,7 @@ import trimesh
 
 from diorama_core.errors import InputError
 from diorama_core.library.datasets import as_sources, dataset_named, layout, recognised
-from diorama_core.library.ingest.guess import Given
+from diorama_core.library.ingest.given import Given
 from diorama_core.library.ingest.models import read_model
 from diorama_core.library.ingest.shaping import Source
 from tests.library.ingest.models import chair, table, y_up

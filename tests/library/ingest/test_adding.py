@@ -15,9 +15,10 @@ from PIL import Image
 
 from diorama_core.errors import Cancelled, InputError
 from diorama_core.library.ingest import adding
-from diorama_core.library.ingest.adding import Added, add_models, model_files, read_table, sources
+from diorama_core.library.ingest.adding import Added, add_models
 from diorama_core.library.ingest.correct import corrected
-from diorama_core.library.ingest.guess import Given
+from diorama_core.library.ingest.finding import model_files, read_table, sources
+from diorama_core.library.ingest.given import Given
 from diorama_core.library.ingest.known_shapes import KnownShapes, relief_features
 from diorama_core.library.ingest.limits import Limits
 from diorama_core.library.ingest.relief import relief

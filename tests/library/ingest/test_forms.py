@@ -15,8 +15,8 @@ import trimesh
 from diorama_core.errors import LibraryError
 from diorama_core.io.file_heads import head_of
 from diorama_core.io.glb import read_glb, write_glb
-from diorama_core.library.ingest.adding import members_of
 from diorama_core.library.ingest.convention import OBJ
+from diorama_core.library.ingest.finding import members_of
 from diorama_core.library.ingest.gltf_compressed import meshopt_view
 from diorama_core.library.ingest.gltf_materials import use_specular_glossiness
 from diorama_core.library.ingest.joint import exporter_of, groups_of, joint_convention
@@ -213,7 +213,7 @@ def test_content_tells_the_format_before_the_name(tmp_path: Path) -> None:
 
 
 def test_a_pack_has_one_convention_and_exceptions_must_be_far_likelier(tmp_path: Path) -> None:
-    from diorama_core.library.ingest.guess import UNITS, axis_name
+    from diorama_core.library.ingest.given import UNITS, axis_name
     from diorama_core.library.ingest.relief import quarter_turns
 
     ups = np.array([axis_name(R[2]) for R in quarter_turns()])

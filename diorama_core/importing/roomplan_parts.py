@@ -1,0 +1,125 @@
+"""Parts of a RoomPlan scan, from JSON or from USD: boxes with their kinds, and floors joined to storeys."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Mapping, Sequence
+
+import numpy as np
+from jaxtyping import Float
+from shapely.geometry import MultiPolygon, Polygon
+from shapely.ops import unary_union
+
+from diorama_core.errors import InputError
+from diorama_core.importing.measured_types import (
+    MeasuredBox,
+    MeasuredFloor,
+)
+from diorama_core.io.bounded import shortened
+from diorama_core.library.hyponyms import meanings
+from diorama_core.library.taxonomy import UNKNOWN, column, resolve
+
+SAME_LEVEL_M = 0.3
+"""Floors whose heights differ by less are of one storey."""
+MIN_SIDE_M = 0.01
+"""Of the second longest side of a thing."""
+MAX_PARTS = 5_000
+"""Walls, openings and objects of one scan."""
+KINDS: Mapping[str, Mapping[str, float]] = {
+    word: {kind: shares[word] for kind, shares in column("roomplan").items() if word in shares}
+    for word in dict.fromkeys(word for shares in column("roomplan").values() for word in shares)
+}
+"""What RoomPlan's categories may be here; within a category sizes decide."""
+ATTRIBUTES: Mapping[str, str] = {
+    "dining": "",
+    "coffee": "coffee table",
+    "swivel": "office chair",
+    "stool": "stool",
+    "shelf": "bookshelf",
+    "cabinet": "cabinet",
+    "lShaped": "sectional sofa",
+    "singleSeat": "armchair",
+}
+"""Kinds that attributes name (iOS 17 and later)."""
+
+
+def without_unusable(rows: Iterable[MeasuredBox | str]) -> tuple[tuple[MeasuredBox, ...], tuple[str, ...]]:
+    """The boxes, and a line for each that is none."""
+    made = list(rows)
+    lines = tuple(
+        f"a {word} lies on its side or has no size, and was left out" for word in made if isinstance(word, str)
+    )
+    return tuple(box for box in made if isinstance(box, MeasuredBox)), lines
+
+
+def kinds_of_label(label: str) -> frozenset[str]:
+    """What a thing may be that a scan calls so; nothing where RoomPlan has no such word."""
+    return frozenset(next((kinds for word, kinds in KINDS.items() if spoken(word) == label), ()))
+
+
+def spoken(word: str) -> str:
+    """A category as words, as in "dining table"."""
+    return re.sub(r"(?<=[a-z])(?=[A-Z])", " ", word).lower()
+
+
+def kinds_of(word: str, attributes: tuple[str, ...] = ()) -> Mapping[str, float]:
+    """What a thing of RoomPlan's category, with its attributes, may be, and how often it is."""
+    found = resolve(spoken(word))
+    kinds = KINDS.get(word) or (meanings(spoken(word), found.category.name) if found.exact else {UNKNOWN.name: 1.0})
+    named = [kind for a in attributes for end, kind in ATTRIBUTES.items() if kind and a.lower().endswith(end.lower())]
+    return {named[0]: 1.0} if named else kinds
+
+
+def box_of(
+    word: str, kinds: Mapping[str, float], M: Float[np.ndarray, "4 4"], size: Float[np.ndarray, "3"], confidence: float
+) -> MeasuredBox | str:
+    """A box in our axes, upright: x is RoomPlan's z, and z its y; its word where it lies on its side or is empty.
+
+    Args:
+        word: RoomPlan's category.
+        kinds: what it may be.
+        M: its transform to the world, +Z up; rigid.
+        size: along RoomPlan's axes, metres.
+        confidence: 0 to 1.
+    """
+    front = M[:3, 2].copy()
+    front[2] = 0.0
+    length = float(np.linalg.norm(front))
+    if length < 0.5 or np.sort(size)[1] < MIN_SIDE_M:
+        return shortened(spoken(word) or "thing")
+    front /= length
+    up = np.array([0.0, 0.0, 1.0])
+    R = np.stack([front, np.cross(up, front), up], axis=1)
+    return MeasuredBox(spoken(word), kinds, R, M[:3, 3].copy(), np.maximum(size[[2, 0, 1]], 0.01), confidence)
+
+
+def moved(M: Float[np.ndarray, "4 4"], points: Float[np.ndarray, "*n 3"]) -> Float[np.ndarray, "*n 3"]:
+    """Points under a rigid motion."""
+    return points @ M[:3, :3].T + M[:3, 3]
+
+
+def joined_floors(floors: Sequence[Polygon], heights_m: Sequence[float]) -> tuple[MeasuredFloor, ...]:
+    """Floors that touch at about one height are one; others are rooms and storeys of their own, the lowest first."""
+    found: list[MeasuredFloor] = []
+    left = sorted(zip(heights_m, floors, strict=True), key=lambda row: row[0])
+    if not np.isfinite(heights_m).all():
+        raise InputError("a floor's height is no number; export the scan again")
+    while left:
+        level = [row for row in left if row[0] - left[0][0] < SAME_LEVEL_M]
+        left = left[len(level) :]
+        whole = unary_union([f.buffer(0) for _, f in level])
+        pieces = whole.geoms if isinstance(whole, MultiPolygon) else [whole]
+        height = float(np.median([h for h, _ in level]))
+        for piece in sorted(pieces, key=lambda p: -p.area):
+            if isinstance(piece, Polygon) and not piece.is_empty:
+                found.append(MeasuredFloor(np.asarray(piece.exterior.coords)[:-1, :2], height))
+    return tuple(found)
+
+
+def storey_notes(floors: Sequence[MeasuredFloor]) -> tuple[str, ...]:
+    """What is said of several floors."""
+    heights = sorted({round(f.height_m, 2) for f in floors})
+    if len(heights) > 1:
+        listed = ", ".join(f"{h:g}" for h in heights)
+        return (f"{len(heights)} storeys, whose floors are at {listed} m: each has its floor and what stands on it",)
+    return (f"a home of {len(floors)} rooms, each with its own floor",) if len(floors) > 1 else ()
