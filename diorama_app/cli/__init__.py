@@ -16,6 +16,7 @@ from diorama_app.cli.doctor import add_doctor
 from diorama_app.cli.edit import add_edit
 from diorama_app.cli.importing import add_import
 from diorama_app.cli.library import add_library
+from diorama_app.cli.mcp import add_mcp
 from diorama_app.cli.models import add_models
 from diorama_app.cli.scenes import add_build, add_export, add_optimise, add_picture, add_serve
 from diorama_app.cli.text import add_text
@@ -23,7 +24,7 @@ from diorama_core.errors import Cancelled, DioramaError
 from diorama_core.io.quick_imports import load_quickly
 from diorama_core.io.text import clean_strings
 
-LOAD_MUCH = ("api", "build", "optimise", "export", "import", "picture", "text", "edit", "library", "bench")
+LOAD_MUCH = ("api", "mcp", "build", "optimise", "export", "import", "picture", "text", "edit", "library", "bench")
 """Commands that need most libraries whatever they are told."""
 
 
@@ -96,6 +97,7 @@ def _parser() -> argparse.ArgumentParser:
         add_models,
         add_bench,
         add_api,
+        add_mcp,
         add_doctor,
     ):
         add(commands)

@@ -6,8 +6,7 @@ import argparse
 from pathlib import Path
 from typing import Any
 
-from diorama_app.cli.arguments import command
-from diorama_core.errors import UnavailableError
+from diorama_app.cli.arguments import PROJECTS_HELP, command, need, projects_folder
 
 
 def add_api(commands: Any) -> None:
@@ -17,25 +16,17 @@ def add_api(commands: Any) -> None:
     )
     p.add_argument("--host", default="127.0.0.1", help="address to listen on (default: %(default)s)")
     p.add_argument("--port", type=int, default=8090, help="port to listen on, 0 for any (default: %(default)s)")
-    p.add_argument("--projects", type=Path, metavar="DIR", help="where jobs become projects (default: ~/Diorama)")
+    p.add_argument("--projects", type=Path, metavar="DIR", help=PROJECTS_HELP)
     p.add_argument("--token", metavar="T", help="requests must bring this token: needed for hosts other than this one")
     p.add_argument("--library", default="built-in", metavar="NAME", help="shape library (default: %(default)s)")
 
 
 def _api(a: argparse.Namespace) -> None:
-    try:
-        import fastapi
-        import python_multipart
-        import uvicorn
-    except ImportError as error:
-        raise UnavailableError(
-            f"'diorama api' needs {error.name}, which is not installed: pip install 'diorama[api]'"
-        ) from error
-    del fastapi, python_multipart, uvicorn
+    need("diorama api", "api", "fastapi", "python_multipart", "uvicorn")
     from diorama_app.http_api.server import serve_api
 
     serve_api(
-        projects_dir=a.projects or Path.home() / "Diorama",
+        projects_dir=projects_folder(a.projects),
         host=a.host,
         port=a.port,
         token=a.token,

@@ -4,7 +4,11 @@ from __future__ import annotations
 
 import argparse
 import sys
+from importlib.util import find_spec
+from pathlib import Path
 from typing import Any
+
+from diorama_core.errors import UnavailableError
 
 RECIPES = ("feasible", "paper", "all-in-one")
 PROFILES = ("auto", "embedded", "foundation")
@@ -43,6 +47,32 @@ def progress_bar() -> Any:
 def print_note(note: str) -> None:
     """A remark on stderr."""
     print(f"diorama: note: {note}", file=sys.stderr)
+
+
+def need(words: str, extra: str, *modules: str) -> None:
+    """Refuse a command whose optional libraries are missing.
+
+    Args:
+        words: the command.
+        extra: that has them.
+        modules: of the libraries.
+    """
+    for module in modules:
+        if find_spec(module) is None:
+            raise UnavailableError(f"'{words}' needs {module}, which is not installed: pip install 'diorama[{extra}]'")
+
+
+PROJECTS_HELP = "where projects are kept (default: Diorama among your documents, or ~/Diorama where that exists)"
+
+
+def projects_folder(given: Path | None) -> Path:
+    """Where projects are kept: the given folder, the one of earlier versions, or one among the person's documents."""
+    earlier = Path.home() / "Diorama"
+    if given is not None or earlier.is_dir():
+        return given or earlier
+    import platformdirs
+
+    return platformdirs.user_documents_path() / "Diorama"
 
 
 def positive(text: str) -> float:

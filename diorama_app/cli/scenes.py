@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import argparse
 import json
+from importlib.util import find_spec
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import diorama_core as diorama
 from diorama_app.cli.arguments import (
     PROFILES,
+    PROJECTS_HELP,
     RECIPES,
     coefficients,
     command,
@@ -18,6 +20,7 @@ from diorama_app.cli.arguments import (
     positive,
     print_note,
     progress_bar,
+    projects_folder,
     size,
     view,
 )
@@ -44,7 +47,7 @@ def add_serve(commands: Any) -> None:
     p.add_argument("project", nargs="?", type=Path, metavar="PROJECT", help="project folder (default: the example)")
     p.add_argument("--host", default="127.0.0.1", help="address to listen on (default: %(default)s)")
     p.add_argument("--port", type=int, default=8080, help="port to listen on, 0 for any (default: %(default)s)")
-    p.add_argument("--projects", type=Path, metavar="DIR", help="where new projects go (default: ~/Diorama)")
+    p.add_argument("--projects", type=Path, metavar="DIR", help=PROJECTS_HELP)
     p.add_argument("--no-open", action="store_true", help="do not open a browser window")
     p.add_argument("--low-graphics", action="store_true", help="no shadows or environment light (software WebGL)")
     p.add_argument("--token", metavar="T", help="browsers must give this token: needed for hosts other than this one")
@@ -61,7 +64,7 @@ def _serve(a: argparse.Namespace) -> None:
     serve(
         project=a.project,
         library=name,
-        projects_dir=a.projects or Path.home() / "Diorama",
+        projects_dir=projects_folder(a.projects),
         host=a.host,
         port=a.port,
         open_browser=not a.no_open,
@@ -73,12 +76,8 @@ def _serve(a: argparse.Namespace) -> None:
 
 def _api_beside() -> Beside | None:
     """The HTTP interface beside the editor, where its libraries are installed."""
-    try:
-        import fastapi
-        import uvicorn
-    except ImportError:
+    if any(find_spec(module) is None for module in ("fastapi", "python_multipart", "uvicorn")):
         return None
-    del fastapi, uvicorn
 
     def loaded(running: Running, token: str | None) -> AbstractContextManager[object]:
         from diorama_app.http_api.beside import api_beside  # the page comes first

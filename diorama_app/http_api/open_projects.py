@@ -14,6 +14,7 @@ from diorama_app.projects.begin import begin_project, keep_given
 from diorama_app.projects.manage import address_of, recent_projects
 from diorama_app.projects.uploads import Upload, decoded
 from diorama_app.reconstruction.build_job import build
+from diorama_app.reconstruction.text_to_scene import creation
 from diorama_app.serve import Running
 from diorama_app.session.connected_client import ConnectedClient
 from diorama_app.session.session import EditorSession
@@ -22,6 +23,7 @@ from diorama_core.errors import DioramaError, EditRefused
 from diorama_core.io.bounded import shortened
 from diorama_core.io.limited import LimitedProcess
 from diorama_core.perception.language.client import LmmSettings
+from diorama_core.progress import Progress
 from diorama_core.project.storage import Project
 from diorama_core.text.edit_plan import Edit
 from diorama_core.text.editing_by_words import ProposedEdits, apply_edits, propose_edits
@@ -106,16 +108,33 @@ class OpenProjects:
             InputError: a file cannot be used, or nothing is marked and no network finds furniture.
             ProjectError: the project cannot be written.
         """
-        workspace = self.running.workspace
-        first = workspace.editors[0].session
+        first = self.running.session
         project = begin_project(first.projects_dir, upload.name, decoded(upload, self._decoder), upload.photo)
         keep_given(project, upload)
         session = self.session(address_of(project.folder))
         session.ui_thread.ask(lambda: build(session))
-        for editor in workspace.editors:
+        self._announce(project, author)
+        return session
+
+    def describe(self, words: str, author: str) -> EditorSession:
+        """Make a project of a description in words; every browser is offered to go there.
+
+        Args:
+            words: of the room and its furniture.
+            author: who asks.
+
+        Raises:
+            InputError: nothing is described.
+            ProjectError: the project cannot be written.
+        """
+        project, _ = creation(self.running.session, words)(Progress())
+        self._announce(project, author)
+        return self.session(address_of(project.folder))
+
+    def _announce(self, project: Project, author: str) -> None:
+        for editor in self.running.workspace.editors:
             for client in tuple(editor.session.clients.values()):
                 self._offer(client, project, author)
-        return session
 
     def _offer(self, client: ConnectedClient, project: Project, author: str) -> None:
         words, visit = f"{author or 'Another program'} builds {project.name}", self.running.workspace.visit

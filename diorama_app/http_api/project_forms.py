@@ -32,6 +32,13 @@ class EditRequest(_Body):
         return self
 
 
+class DescribeRequest(_Body):
+    """A room in words."""
+
+    text: str = Field(min_length=1, max_length=2000, description="The room and its furniture, in plain English.")
+    author: Author = AUTHOR
+
+
 class EditAnswer(BaseModel):
     """What was done."""
 

@@ -18,6 +18,7 @@ from diorama_app.http_api.photo_form import PhotoForm
 from diorama_app.http_api.problems import documented
 from diorama_app.http_api.project_forms import (
     AUTHOR,
+    DescribeRequest,
     EditAnswer,
     EditRequest,
     EventData,
@@ -70,6 +71,13 @@ def begin_project(
     """Send a photo: it becomes a project whose scene is built, in the editor; `job` says how far it is."""
     opened = _opened(request)
     return _scene_answer(opened, opened.begin(form, author))
+
+
+@project_router.post("/described", status_code=201, operation_id="describe_project", responses=documented(422, 501))
+def describe_project(request: Request, body: DescribeRequest) -> answers.SceneAnswer:
+    """Describe a room in words: it becomes a project with a scene, at the end of the request."""
+    opened = _opened(request)
+    return _scene_answer(opened, opened.describe(body.text, body.author))
 
 
 @project_router.get("/{name}", operation_id="get_project")

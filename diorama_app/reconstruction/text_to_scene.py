@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from functools import partial
 from typing import TYPE_CHECKING
 
 from diorama_app.projects.begin import new_project
 from diorama_app.session.client import Client
+from diorama_app.session.session import EditorSession
 from diorama_core.errors import DioramaError, InputError
 from diorama_core.io.text import number_of
 from diorama_core.library.record import ShapeLibrary
@@ -33,24 +35,38 @@ def how_pictures_come() -> str:
 
 def describe_room(client: Client, words: str) -> None:
     """Create a project from a description, in the background, and open it."""
+    session, create = client.session, creation(client.session, words)
+
+    def work(progress: Progress) -> None:
+        session.autosave.flush()
+        project, what = create(progress)
+        client.post(lambda: session.visit(client, project, what))
+
+    session.jobs.start("text", "Creating the room you described", work)
+
+
+def creation(session: EditorSession, words: str) -> Callable[[Progress], tuple[Project, str]]:
+    """What creates a project from a description, beside a session's, and says what it is like.
+
+    Raises:
+        InputError: nothing is described, or an endpoint is set up wrongly.
+    """
     from diorama_core.perception.language.client import LmmSettings
     from diorama_core.text.pictures import ImageSettings
 
-    session = client.session
     said = " ".join(words.split())
     if not said:
         raise InputError("describe the room, for example: a reading corner with two armchairs")
     endpoint, model = ImageSettings.from_environment(), LmmSettings.from_environment()
 
-    def work(progress: Progress) -> None:
+    def create(progress: Progress) -> tuple[Project, str]:
         name = said[:1].upper() + said[1:60]
-        session.autosave.flush()
         make = partial(_compose, said, model=model) if endpoint is None else partial(_draw_and_build, said, endpoint)
         with new_project(session.projects_dir, said.replace(".", " "), name=name, library=session.library) as project:
             what = make(project, session.offered, progress=progress)
-        client.post(lambda: session.visit(client, project, what))
+        return project, what
 
-    session.jobs.start("text", "Creating the room you described", work)
+    return create
 
 
 def _compose(said: str, project: Project, library: ShapeLibrary, model: LmmSettings | None, progress: Progress) -> str:

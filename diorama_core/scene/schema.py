@@ -190,6 +190,11 @@ class _SceneFile(_Model):
     light_settings: _LightSettingsFile | None = None
 
 
+def scene_file_schema() -> dict[str, Any]:
+    """The JSON schema of the scene file."""
+    return _SceneFile.model_json_schema()
+
+
 def scene_to_json(scene: Scene, *, indent: int | None = 1) -> str:
     """The scene file's text.
 

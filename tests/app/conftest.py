@@ -12,6 +12,7 @@ from diorama_app.commands.camera_presets import Views
 from diorama_app.commands.definitions import build_commands
 from diorama_app.commands.registry import CommandTable
 from diorama_app.reconstruction.photo_outlines import PhotoOutlines
+from diorama_app.serve import Running, start
 from diorama_app.session import autosave, redraws
 from diorama_app.session.client import Client
 from diorama_app.session.session import EditorSession
@@ -28,6 +29,15 @@ def server() -> Iterator[viser.ViserServer]:
     made = create_server(host="127.0.0.1", port=0, label="test", visitors=Visitors("127.0.0.1"))
     yield made
     stop_server(made)
+
+
+@pytest.fixture(scope="module")
+def running(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Running]:
+    """An editor as `diorama serve` starts it, with the small room as its project `demo`."""
+    folder = tmp_path_factory.mktemp("projects")
+    made = start(project=make_project(folder / "demo").folder, projects_dir=folder, library=PlainLibrary())
+    yield made
+    made.stop()
 
 
 @pytest.fixture

@@ -1,10 +1,20 @@
 from __future__ import annotations
 
 import argparse
+from pathlib import Path
 
 import pytest
 
-from diorama_app.cli.arguments import command, field_of_view, intrinsics, positive, print_note, size, view
+from diorama_app.cli.arguments import (
+    command,
+    field_of_view,
+    intrinsics,
+    positive,
+    print_note,
+    projects_folder,
+    size,
+    view,
+)
 
 
 @pytest.mark.parametrize(
@@ -58,3 +68,12 @@ def test_notes_go_to_stderr(capsys: pytest.CaptureFixture[str]) -> None:
     captured = capsys.readouterr()
     assert captured.err == "diorama: note: the floor was guessed\n"
     assert captured.out == ""
+
+
+def test_projects_are_where_they_were_or_among_the_documents(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("HOME", str(tmp_path))
+    monkeypatch.setattr("platformdirs.user_documents_path", lambda: tmp_path / "Papers")
+    assert projects_folder(tmp_path / "given") == tmp_path / "given"
+    assert projects_folder(None) == tmp_path / "Papers" / "Diorama"
+    (tmp_path / "Diorama").mkdir()
+    assert projects_folder(None) == tmp_path / "Diorama"

@@ -18,21 +18,12 @@ pytest.importorskip("uvicorn", reason="needs uvicorn (pip install 'diorama[api]'
 
 from diorama_app.http_api import beside  # after the check for its libraries
 from diorama_app.http_api.beside import api_beside, noted_servers
-from diorama_app.serve import Running, start
+from diorama_app.serve import Running
 from tests.app.http_api.openapi_client import Client
 from tests.app.people import join
-from tests.app.small_room import PlainLibrary, make_project
 from tests.waiting import until
 
 TOKEN = "secret"
-
-
-@pytest.fixture(scope="module")
-def running(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Running]:
-    folder = tmp_path_factory.mktemp("projects")
-    made = start(project=make_project(folder / "demo").folder, projects_dir=folder, library=PlainLibrary())
-    yield made
-    made.stop()
 
 
 @pytest.fixture(scope="module")
