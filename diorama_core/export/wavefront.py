@@ -20,6 +20,10 @@ from diorama_core.render.appearance import Colour, Material, Surface
 
 DECIMALS = 5
 """A hundredth of a millimetre."""
+DIELECTRIC_F0, METAL_F0 = 0.04, 0.5
+"""Reflectance at normal incidence: of plastic, wood and lacquer, and of metals, whose own colour stays in `Kd`."""
+MAX_EXPONENT = 1000.0
+"""The largest `Ns` that the format allows."""
 _MAP_KEYWORDS = {"normalTexture": "norm", "metallicRoughnessTexture": "map_Pr", "emissiveTexture": "map_Ke"}
 
 
@@ -66,6 +70,16 @@ def obj_file(surface: Surface, materials: str | None = None, material: str | Non
 def hull_file(points: Float[np.ndarray, "n 3"], faces: Int[np.ndarray, "m 3"]) -> bytes:
     """A convex body as a file."""
     return number_rows("v", points, 7) + index_rows("f %d %d %d", faces.astype(np.int64) + 1)
+
+
+def highlight(material: Material) -> tuple[float, float]:
+    """Strength and exponent of Blinn-Phong's highlight (`Ks`, `Ns`) for a microfacet roughness.
+
+    The exponent is that of the same slope distribution (Walter et al. 2007); the strength is the normalised lobe's, so
+    that a rough surface, whose lobe covers everything, is not bleached by it.
+    """
+    exponent = min(2.0 / max(material.roughness, 0.05) ** 4 - 2.0, MAX_EXPONENT)
+    return min((METAL_F0 if material.metallic > 0.5 else DIELECTRIC_F0) * (exponent + 2.0) / 8.0, 1.0), exponent
 
 
 class MaterialFile:
@@ -131,8 +145,8 @@ class MaterialFile:
         return material
 
     def _block(self, name: str, material: Material) -> str:
-        shine, specular = 1000.0 * (1.0 - material.roughness) ** 2, 0.5 if material.metallic < 0.5 else 1.0
-        lines = [f"newmtl {name}", f"Kd {self._colour(material.colour)}", f"Ks {specular} {specular} {specular}"]
+        specular, shine = highlight(material)
+        lines = [f"newmtl {name}", f"Kd {self._colour(material.colour)}", "Ks" + f" {specular:.4f}" * 3]
         lines += [f"Ns {shine:.1f}", f"d {material.alpha:.4f}"]
         lines += [
             f"Pr {material.roughness:.4f}",

@@ -58,6 +58,17 @@ def test_colours_are_linear_or_for_display() -> None:
     assert "map_Kd" not in linear
 
 
+@pytest.mark.parametrize("roughness", [0.05, 0.3, 0.6, 0.9, 1.0])
+def test_a_highlight_never_bleaches_a_black_surface(roughness: float) -> None:
+    """Mean of the highlight over all directions of the half vector: a black table stays black."""
+    text = MaterialFile([Material("black", (0.0, 0.0, 0.0), roughness=roughness)]).text().decode()
+    values = {
+        line.split()[0]: [float(v) for v in line.split()[1:]] for line in text.splitlines() if line[:2] in ("Ks", "Ns")
+    }
+    cosine = (np.arange(1000) + 0.5) / 1000
+    assert values["Ks"][0] * float(np.mean(cosine ** values["Ns"][0])) < 0.02
+
+
 def test_names_and_pictures_are_each_used_once() -> None:
     materials = [
         Material("oak", texture=CHECKS),
