@@ -346,6 +346,13 @@ def add_export(commands: Any) -> None:
         choices=("meshopt", "draco"),
         help="compress geometry of a GLB (default: meshopt)",
     )
+    p.add_argument(
+        "--lights",
+        choices=("unit", "photometric", "none"),
+        default="unit",
+        help="of GLB and USD: as bright as pictures where a camera has no exposure, or in lumens and lux "
+        "(default: %(default)s)",
+    )
     p.add_argument("--photo", action="store_true", help="put the photo into the file, to come back with it (glb, usd)")
     p.add_argument("--welded", action="store_true", help="simulators: nothing moves, objects are welded in place")
     p.add_argument("--simulate", action="store_true", help="report what two seconds of gravity do to the scene")
@@ -369,6 +376,7 @@ def _export(a: argparse.Namespace) -> None:
         only=only,
         max_texture_px=a.texture_size,
         compression=a.compress,
+        lights=a.lights,
         photo=a.photo,
         bodies="welded" if a.welded else "free",
     )

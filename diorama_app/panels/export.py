@@ -15,7 +15,7 @@ from diorama_app.web.html import Action, LiveHtml, button, switch, text
 from diorama_core.export import Format
 
 if TYPE_CHECKING:
-    from diorama_core.export.gathering import Compression, ExportOptions
+    from diorama_core.export.gathering import Compression, ExportOptions, LightUnits
 
 TEXTURE_SIZES = (0, 2048, 1024, 512, 256)
 """Longest side in pixels; 0 leaves pictures as they are."""
@@ -37,6 +37,12 @@ COMPRESSIONS: dict[Compression, tuple[str, str]] = {
     "draco": ("Draco", "Smallest, for Blender, Unity, Unreal and three.js"),
 }
 """Name and explanation."""
+LIGHTS: dict[LightUnits, tuple[str, str]] = {
+    "unit": ("as bright as here", "For programs whose camera has no exposure"),
+    "photometric": ("in lumens and lux", "For cameras with an exposure"),
+    "none": ("none", "The room is lit in the other program"),
+}
+"""Name and explanation."""
 
 
 class ExportPanel:
@@ -48,6 +54,7 @@ class ExportPanel:
         self._on: set[str] = set()
         self._texture_px = 0
         self._compression: Compression = "none"
+        self._lights: LightUnits = "unit"
         self._html = LiveHtml(gui, self._act)
 
     def refresh(self) -> None:
@@ -72,14 +79,20 @@ class ExportPanel:
         """What the chosen format keeps, its options, and the button."""
         choices = GUIDES[one.name].choices
         switches = "".join(self._switch(choice) for choice in SWITCHES if choice in choices)
-        packing = self._compression_field() if "compression" in choices else ""
+        packing = (
+            _explained("Compression", "compression", COMPRESSIONS, self._compression)
+            if "compression" in choices
+            else ""
+        )
+        lights = _explained("Lights", "lights", LIGHTS, self._lights) if "lights" in choices else ""
         pictures = self._texture_field() if "textures" in choices else ""
+        fields = pictures + packing + lights
         missing = f'<p class="bad">{text(one.missing)}</p>' if one.missing else ""
         ready = not one.missing and self._client.session.jobs.status is None
         go = button(f"Export {text(download_suffix(one))}", "export", one.name, on=ready, disabled=not ready)
         return (
             f'<div class="card" style="margin:2px 0 8px"><p><b>Keeps</b> {text(one.keeps)}.</p>'
-            f'{switches}{pictures}{packing}{missing}<div class="bar wide" style="margin:8px 0 0">{go}</div></div>'
+            f'{switches}{fields}{missing}<div class="bar wide" style="margin:8px 0 0">{go}</div></div>'
         )
 
     def _switch(self, choice: Choice) -> str:
@@ -92,11 +105,6 @@ class ExportPanel:
     def _texture_field(self) -> str:
         names = {str(px): f"at most {px} pixels" if px else "as they are" for px in TEXTURE_SIZES}
         return _field("Textures", "textures", names, str(self._texture_px))
-
-    def _compression_field(self) -> str:
-        names = {str(one): name for one, (name, _) in COMPRESSIONS.items()}
-        hint = f'<p class="dim" style="margin:3px 0 0;font-size:11.5px">{text(COMPRESSIONS[self._compression][1])}</p>'
-        return _field("Compression", "compression", names, self._compression) + hint
 
     def _is_possible(self, choice: Choice) -> bool:
         if choice == "photo":
@@ -118,6 +126,8 @@ class ExportPanel:
             self._texture_px = int(action.pair[1])
         elif action.do == "compression":
             self._compression = next((one for one in COMPRESSIONS if one == action.pair[1]), self._compression)
+        elif action.do == "lights":
+            self._lights = next((one for one in LIGHTS if one == action.pair[1]), self._lights)
         elif action.do == "export":
             export(self._client, self._format, self._options())
         self.refresh()
@@ -133,9 +143,16 @@ class ExportPanel:
             only=frozenset(self._client.selection) if "selection" in on else None,
             max_texture_px=(self._texture_px or None) if "textures" in choices else None,
             compression=self._compression if "compression" in choices else "none",
+            lights=self._lights if "lights" in choices else "unit",
             photo="photo" in on,
             bodies="welded" if "welded" in on else "free",
         )
+
+
+def _explained(label: str, change: str, choices: Mapping[str, tuple[str, str]], chosen: str) -> str:
+    """A list to choose from, and below it what is chosen."""
+    hint = f'<p class="dim" style="margin:3px 0 0;font-size:11.5px">{text(choices[chosen][1])}</p>'
+    return _field(label, change, {one: name for one, (name, _) in choices.items()}, chosen) + hint
 
 
 def _field(label: str, change: str, names: Mapping[str, str], chosen: str) -> str:

@@ -9,7 +9,7 @@ from typing import Literal
 
 from diorama_core.export import FORMATS, Format
 
-Choice = Literal["ceiling", "selection", "textures", "compression", "photo", "welded"]
+Choice = Literal["ceiling", "selection", "textures", "compression", "lights", "photo", "welded"]
 """An export option that means something in a format; see `ExportOptions`."""
 
 
@@ -36,14 +36,14 @@ MODELS, SIMULATORS, PLANS, SHOW = "3D models", "Simulators", "Plans and building
 _SHAPES = frozenset[Choice]({"ceiling", "selection"})
 _TEXTURED = _SHAPES | frozenset[Choice]({"textures"})
 _BODIES = _TEXTURED | frozenset[Choice]({"welded"})
-_USD = _BODIES | frozenset[Choice]({"photo"})
+_USD = _BODIES | frozenset[Choice]({"lights", "photo"})
 _FURNITURE = frozenset[Choice]({"selection"})
 
 GUIDES: Mapping[str, Guide] = {
     "glb": Guide(
         MODELS,
         "Blender, Unity, Unreal, Godot, three.js",
-        _TEXTURED | frozenset[Choice]({"compression", "photo"}),
+        _TEXTURED | frozenset[Choice]({"compression", "lights", "photo"}),
     ),
     "blend": Guide(MODELS, "Blender, with the photo behind the camera", _TEXTURED),
     "usdz": Guide(MODELS, "iPhone and iPad (AR Quick Look)", _USD),

@@ -59,11 +59,11 @@ def write_html(scene: ExportScene, path: Path, progress: Progress | None = None)
 def _seen_from_outside(scene: ExportScene) -> ExportScene:
     """The scene with the inner faces of its planes only, so that one looks into the room from every side.
 
-    It is lit by the viewer, as in the editor: lights of the file are in physical units, which would be far too bright.
+    It is lit by the viewer, as in the editor.
     """
     keys = {p.mesh for p in scene.planes}
     meshes = {k: replace(m, surfaces=m.surfaces[:1]) if k in keys else m for k, m in scene.meshes.items()}
-    return replace(scene, meshes=meshes, lights=(), scene=replace(scene.scene, light=None))
+    return replace(scene, meshes=meshes, lights=(), options=replace(scene.options, lights="none"))
 
 
 def _page(glb: bytes, scene: ExportScene) -> str:

@@ -36,7 +36,7 @@ def write_blend(scene: ExportScene, path: Path, progress: Progress | None = None
     worker = Path(__file__).with_name("blend_worker.py")
     with whole_file(Path(path)) as temporary, tempfile.TemporaryDirectory() as name:
         folder = Path(name)
-        plain = replace(scene, options=replace(scene.options, compression="none"))
+        plain = replace(scene, options=replace(scene.options, compression="none", lights="photometric"))
         write_gathered(plain, folder / "room.glb", progress.part(0.0, 0.3))
         job: dict[str, object] = {"glb": str(folder / "room.glb"), "blend": str(folder / "room.blend")}
         job["lights"] = room_lights(scene.scene) if scene.planes or scene.objects else []

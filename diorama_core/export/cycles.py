@@ -14,6 +14,7 @@ from PIL import Image
 
 from diorama_core.errors import SceneError
 from diorama_core.export.blender import blender_python, run_in_blender
+from diorama_core.export.gathering import ExportOptions
 from diorama_core.export.gltf import write_glb
 from diorama_core.export.pictures import Picture
 from diorama_core.library.record import ShapeLibrary
@@ -167,7 +168,7 @@ def _job(
     blender_python()
     assert scene.camera is not None
     k = scene.camera.intrinsics
-    write_glb(scene, library, folder / "room.glb", textures=textures)
+    write_glb(scene, library, folder / "room.glb", textures=textures, options=ExportOptions(lights="photometric"))
     return {
         "glb": str(folder / "room.glb"), "width": k.width, "height": k.height,
         "fx": k.fx, "fy": k.fy, "cx": k.cx, "cy": k.cy, "samples": samples, "seed": seed,

@@ -15,7 +15,7 @@ from typing import Any, Literal
 import numpy as np
 from jaxtyping import Float
 
-from diorama_core.export.lights import ExportLight, MainLight, lights_of, main_light_of
+from diorama_core.export.lights import EvenLight, ExportLight, MainLight, even_light_of, lights_of, main_light_of
 from diorama_core.export.limbs import ExportLimb, OneShape, articulation_of, by_joint, limb_of
 from diorama_core.export.names import Labels
 from diorama_core.export.photo_textures import MAX_PHOTO_TEXTURES_PX, bounded_pictures
@@ -34,6 +34,7 @@ from diorama_core.scene.types import Camera, Plane, Scene, SceneObject, Support
 
 Compression = Literal["none", "meshopt", "draco"]
 Bodies = Literal["free", "welded"]
+LightUnits = Literal["unit", "photometric", "none"]
 
 
 @dataclass(frozen=True)
@@ -54,6 +55,9 @@ class ExportOptions:
     """Whether simulators may move objects that stand on something; mounted and locked ones never move."""
     joints: bool = False
     """Whether shapes that know their joints are written in parts that move."""
+    lights: LightUnits = "unit"
+    """Whether lights of GLB and USD have unit exposure (a luminance of 1 is white, as programs without a camera's
+    exposure show it), are in lumens and lux, or are left out."""
     photo: bool = False
     """Whether files that can be opened again hold the photo, too (GLB, USD)."""
 
@@ -154,7 +158,20 @@ class ExportScene:
     @cached_property
     def main_light(self) -> MainLight | None:
         """The photo's main light; None where it tells none, and where the room is not written."""
-        return main_light_of(self.scene) if self.options.only is None else None
+        return main_light_of(self.scene) if self._room_is_lit else None
+
+    @cached_property
+    def even_light(self) -> EvenLight | None:
+        """The room's even light; None where lights are photometric: there is no such lamp."""
+        return even_light_of(self.scene) if self._room_is_lit and self.options.lights == "unit" else None
+
+    @property
+    def _room_is_lit(self) -> bool:
+        return self.options.only is None and self.options.lights != "none"
+
+    def strength(self, light: ExportLight | MainLight) -> float:
+        """Factor from a light's photometric units to those that are written."""
+        return 1.0 if self.options.lights == "photometric" else 1.0 / light.white_nits
 
     @property
     def carried_photo(self) -> str | None:
@@ -220,7 +237,8 @@ def gather(
             painted[paint] = {number: mesh.key for number, mesh in made.items()}
             meshes |= {mesh.key: mesh for mesh in made.values()}
         objects.append(_node(scene, library, item, painted[paint], shown, labels))
-    lights = lights_of(scene, [o.item for o in objects], {o.id: meshes[o.mesh].surfaces for o in objects})
+    lit = [] if options.lights == "none" else [o.item for o in objects]
+    lights = lights_of(scene, lit, {o.id: meshes[o.mesh].surfaces for o in objects})
     return ExportScene(
         name=clean_text(name),
         objects=tuple(objects),

@@ -28,7 +28,7 @@ from diorama_core.export.gathering import (
     rigid_inverse,
 )
 from diorama_core.export.gltf_document import GltfDocument
-from diorama_core.export.lights import ExportLight, MainLight
+from diorama_core.export.lights import EvenLight, ExportLight, MainLight
 from diorama_core.export.names import unique_name
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.progress import Progress
@@ -120,8 +120,8 @@ class _Builder:
         ]
         if self._gathered.camera is not None:
             children.append(self._camera(self._gathered.camera))
-        if self._gathered.main_light is not None:
-            children.append(self._main_light(self._gathered.main_light))
+        room_lights = (self._gathered.main_light, self._gathered.even_light)
+        children += [self._room_light(light) for light in room_lights if light is not None]
         root: dict[str, Any] = {
             "name": self._unique("diorama"),
             "rotation": [-_HALF_TURN, 0.0, 0.0, _HALF_TURN],
@@ -207,7 +207,7 @@ class _Builder:
             "name": f"{item.name} {light.kind}",
             "type": "point" if light.kind == "lamp" else "spot",
             "color": [float(c) for c in light.colour],
-            "intensity": float(light.candela),
+            "intensity": light.candela * self._gathered.strength(light),
         }
         if light.kind == "window":
             entry["spot"] = {"innerConeAngle": 0.0, "outerConeAngle": _WIDEST_CONE_RAD}
@@ -220,12 +220,16 @@ class _Builder:
         }
         return self._document.add("nodes", node)
 
-    def _main_light(self, light: MainLight) -> int:
-        about = {"name": "main light", "type": "directional", "color": [float(c) for c in light.colour]}
-        index = self._document.add_light({**about, "intensity": float(light.lux)})
-        extension = {"KHR_lights_punctual": {"light": index}}
-        node = {"name": self._unique("main light"), **_placement(light.T_world), "extensions": extension}
-        return self._document.add("nodes", node)
+    def _room_light(self, light: MainLight | EvenLight) -> int:
+        if isinstance(light, MainLight):
+            about = {"name": "main light", "type": "directional", "color": [float(c) for c in light.colour]}
+            about |= {"intensity": light.lux * self._gathered.strength(light)}
+            place = _placement(light.T_world)
+        else:
+            about = {"name": "even light", "type": "point", "intensity": light.candela}
+            place = {"translation": [float(v) for v in light.position]}
+        extension = {"KHR_lights_punctual": {"light": self._document.add_light(about)}}
+        return self._document.add("nodes", {"name": self._unique(str(about["name"])), **place, "extensions": extension})
 
     def _camera(self, camera: Camera) -> int:
         """The photo's camera. glTF knows no principal point off the centre, so `extras` keeps the intrinsics."""

@@ -1,6 +1,9 @@
 """Light that the objects of a scene give: lamps shine from their bulbs and shades, windows let daylight in.
 
 Where a person set the time of day, the sun shines too, and of the lamps those that are switched on.
+
+Strengths are photometric. Programs whose cameras have no exposure show a luminance of 1 as white: for them a file's
+lights are divided by the luminance that each is to show white, as in the pictures (`diorama_core.render`).
 """
 
 from __future__ import annotations
@@ -15,12 +18,16 @@ from jaxtyping import Float
 from diorama_core.geometry.sun import daylight
 from diorama_core.render.appearance import Surface
 from diorama_core.render.lamps import LAMP_LUMENS, WARM, lamp_place
+from diorama_core.render.lighting import MEAN_IRRADIANCE
+from diorama_core.render.scene_light import SKY_AROUND, WHITE_LUX
 from diorama_core.scene.types import Scene, SceneObject
 
 WINDOW_LUX = 2000.0
 """Daylight that falls through a window, in lumens per square metre of it."""
 MAIN_LUX = 600.0
 """Illuminance by a room's main light at strength 1: that of a bright room."""
+WHITE_NITS = MAIN_LUX / (2.0 * MEAN_IRRADIANCE) / np.pi
+"""Luminance that pictures of a photo's room show white, in the units of the main light."""
 SUN_LUX = 110_000.0
 """Illuminance by the sun outside the atmosphere, where the time of day is set."""
 DAYLIGHT: tuple[float, float, float] = (0.92, 0.96, 1.0)
@@ -44,6 +51,8 @@ class ExportLight:
     """Radius of a lamp's glowing part; 0 for windows."""
     size_m: tuple[float, float] = (0.0, 0.0)
     """Width and height of a window; 0 for lamps."""
+    white_nits: float = WHITE_NITS
+    """Luminance that a program without exposure should show white in this light."""
 
     @property
     def candela(self) -> float:
@@ -65,7 +74,7 @@ def lights_of(
     for item in objects:
         if item.category in LAMP_LUMENS:
             if on is None or item.id in on:
-                found.append(_lamp(item, surfaces[item.id]))
+                found.append(_lamp(item, surfaces[item.id], WHITE_NITS if on is None else WHITE_LUX / np.pi))
         elif item.category == "window":
             found.append(_window(scene, item))
     return tuple(found)
@@ -80,6 +89,34 @@ class MainLight:
     lux: float
     colour: tuple[float, float, float]
     """Linear, its largest component 1."""
+
+    @property
+    def white_nits(self) -> float:
+        """As of `ExportLight`: without shadows the sun would blank a room, so it shows white what faces it."""
+        return max(WHITE_NITS, self.lux / np.pi)
+
+
+@dataclass(frozen=True, eq=False)
+class EvenLight:
+    """What reaches a room from all sides, from a point in its middle, for programs whose light does not bounce."""
+
+    position: Float[np.ndarray, "3"]
+    candela: float
+    """At unit exposure."""
+
+
+def even_light_of(scene: Scene) -> EvenLight | None:
+    """The even part of a room's light; None without a room."""
+    if not scene.architecture.planes:
+        return None
+    settings, irradiance = scene.light_settings, MEAN_IRRADIANCE
+    if settings.hour is not None:
+        irradiance = SKY_AROUND * float(daylight(settings.hour, settings.north_rad).sky.mean())
+    elif scene.light is not None:
+        irradiance -= 2.0 * scene.light.strength * MEAN_IRRADIANCE / 4.0
+    middle = _middle(scene)
+    reach = np.ptp(np.concatenate([p.polygon for p in scene.architecture.planes]), axis=0).min() / 2
+    return EvenLight(middle, float(np.pi * irradiance * reach**2))
 
 
 def main_light_of(scene: Scene) -> MainLight | None:
@@ -107,10 +144,10 @@ def _shining_from(z: Float[np.ndarray, "3"], scene: Scene) -> Float[np.ndarray, 
     return T
 
 
-def _lamp(item: SceneObject, surfaces: tuple[Surface, ...]) -> ExportLight:
+def _lamp(item: SceneObject, surfaces: tuple[Surface, ...], white_nits: float) -> ExportLight:
     T = np.eye(4)
     T[:3, 3], radius = lamp_place(item, surfaces)
-    return ExportLight("lamp", item.id, T, LAMP_LUMENS[item.category], WARM, radius)
+    return ExportLight("lamp", item.id, T, LAMP_LUMENS[item.category], WARM, radius, white_nits=white_nits)
 
 
 def _window(scene: Scene, item: SceneObject) -> ExportLight:

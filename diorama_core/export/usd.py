@@ -1,8 +1,9 @@
 """A scene as USD: text, binary, or a package that AR Quick Look opens.
 
 Objects lie side by side below one scope, because rigid bodies must not be nested; a relationship names each one's
-supporter. Every shape is a prototype that its objects reference as instances, together with its materials. The default
-prim's custom data carry the whole scene document, each object's its own entry, so that a file can be read back.
+supporter. Every shape is a prototype that its objects reference as instances, together with its materials. Attributes
+of the default prim carry the whole scene document, those of each object its own entry, so that a file can be read back,
+also where another program (Blender) saved it, which keeps attributes but no custom data.
 """
 
 from __future__ import annotations
@@ -18,20 +19,19 @@ from pxr import Gf, Kind, Sdf, Tf, Usd, UsdGeom
 
 from diorama_core.errors import ExportError
 from diorama_core.export.colliders import physical_scene
-from diorama_core.export.environment import NITS, as_picture, environment_of
 from diorama_core.export.files import Entry, companion_folder, whole_file, write_package
 from diorama_core.export.gathering import ExportObject, ExportScene, rigid_inverse
-from diorama_core.export.pictures import encoded_picture, png_bytes
+from diorama_core.export.pictures import encoded_picture
 from diorama_core.export.usd_materials import (
     StageMaterials,
     add_camera,
-    add_environment,
+    add_even_light,
     add_light,
     add_main_light,
     add_surfaces,
 )
 from diorama_core.export.usd_physics import add_physics, limb_path
-from diorama_core.export.usd_values import place
+from diorama_core.export.usd_values import note, place
 from diorama_core.progress import Progress
 from diorama_core.scene.schema import scene_to_json
 
@@ -122,24 +122,21 @@ def build_stage(
         root.AddRotateXOp().Set(-90.0)
     _describe(root.GetPrim(), gathered)
     materials = StageMaterials(stage, textures)
-    _prototypes(stage, gathered, materials, progress.part(0.0, 0.8))
+    _prototypes(stage, gathered, materials, progress)
     _architecture(stage, gathered, materials)
     _objects(stage, gathered)
     if gathered.camera is not None:
         add_camera(stage, f"{ROOT}/PhotoCamera", gathered.camera)
     if gathered.main_light is not None:
-        add_main_light(stage, f"{ROOT}/MainLight", gathered.main_light)
-    pictures: list[Entry] = []
-    if gathered.options.only is None and gathered.planes:
-        environment, brightest = as_picture(environment_of(gathered, progress.part(0.8, 1.0)))
-        name = f"{textures}/environment.png"
-        add_environment(stage, f"{ROOT}/Environment", name, NITS * brightest)
-        pictures.append((name, png_bytes(environment)))
+        add_main_light(stage, f"{ROOT}/MainLight", gathered.main_light, gathered.strength(gathered.main_light))
+    if gathered.even_light is not None:
+        add_even_light(stage, f"{ROOT}/EvenLight", gathered.even_light)
     for light in gathered.lights:
         owner = gathered.object(light.owner)
         T = rigid_inverse(owner.T_world) @ light.T_world
-        add_light(stage, f"{object_path(owner)}/Light", light, T)
+        add_light(stage, f"{object_path(owner)}/Light", light, T, gathered.strength(light))
     add_physics(stage, gathered, physical_scene(gathered))
+    pictures: list[Entry] = []
     for name, picture in materials.pictures():
         progress.check()
         pictures.append((name, encoded_picture(picture)))
@@ -153,12 +150,12 @@ def object_path(item: ExportObject) -> str:
 
 def _describe(prim: Usd.Prim, gathered: ExportScene) -> None:
     prim.SetDisplayName(gathered.name)
-    prim.SetCustomDataByKey("diorama", scene_to_json(gathered.scene, indent=None))
-    prim.SetCustomDataByKey("diorama_objects", json.dumps([o.id for o in gathered.objects]))
+    note(prim, "scene", scene_to_json(gathered.scene, indent=None))
+    note(prim, "objects", json.dumps([o.id for o in gathered.objects]))
     if gathered.carried_photo is not None:
-        prim.SetCustomDataByKey("diorama_photo", gathered.carried_photo)
+        note(prim, "photo", gathered.carried_photo)
     if gathered.provenance:
-        prim.SetCustomDataByKey("provenance", json.dumps(dict(gathered.provenance), ensure_ascii=False))
+        note(prim, "provenance", json.dumps(dict(gathered.provenance), ensure_ascii=False))
 
 
 def _prototypes(stage: Usd.Stage, gathered: ExportScene, materials: StageMaterials, progress: Progress) -> None:
@@ -181,7 +178,7 @@ def _architecture(stage: Usd.Stage, gathered: ExportScene, materials: StageMater
         Usd.ModelAPI(prim).SetKind(Kind.Tokens.component)
         prim.SetDisplayName(slab.name)
         plane = {"id": slab.plane.id, "role": slab.plane.role, "confidence": slab.plane.confidence}
-        prim.SetCustomDataByKey("diorama_plane", json.dumps(plane))
+        note(prim, "plane", json.dumps(plane))
         add_surfaces(stage, str(prim.GetPath()), gathered.meshes[slab.mesh].surfaces, materials)
 
 
@@ -198,8 +195,8 @@ def _objects(stage: Usd.Stage, gathered: ExportScene) -> None:
         prim = xform.GetPrim()
         Usd.ModelAPI(prim).SetKind(Kind.Tokens.component)
         prim.SetDisplayName(item.name)
-        prim.SetCustomDataByKey("diorama", json.dumps(entries[item.id], ensure_ascii=False))
-        prim.CreateAttribute("diorama:category", Sdf.ValueTypeNames.Token, custom=True).Set(item.item.category)
+        note(prim, "entry", json.dumps(entries[item.id], ensure_ascii=False))
+        note(prim, "category", item.item.category)
         if item.parent is not None:
             supporter = prim.CreateRelationship("diorama:supporter", custom=True)
             supporter.AddTarget(object_path(gathered.object(item.parent)))
@@ -209,7 +206,7 @@ def _objects(stage: Usd.Stage, gathered: ExportScene) -> None:
             place(beside, item.T_world @ limb.T_object_limb)
             Usd.ModelAPI(beside).SetKind(Kind.Tokens.component)
             beside.GetPrim().SetDisplayName(f"{item.name} {limb.name}")
-            beside.GetPrim().SetCustomDataByKey("diorama_limb", item.id)
+            note(beside.GetPrim(), "limb", item.id)
             _shape(stage, limb_path(path, limb), limb.mesh, item)
 
 

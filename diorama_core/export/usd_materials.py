@@ -8,7 +8,7 @@ import numpy as np
 from jaxtyping import Float
 from pxr import Gf, Sdf, Usd, UsdGeom, UsdLux, UsdShade, Vt
 
-from diorama_core.export.lights import ExportLight, MainLight
+from diorama_core.export.lights import EvenLight, ExportLight, MainLight
 from diorama_core.export.names import slug_of, unique_name
 from diorama_core.export.pictures import Picture, picture_suffix
 from diorama_core.export.usd_values import extent, integers, place, vectors
@@ -19,7 +19,10 @@ _CAMERA_AXES = np.diag([1.0, -1.0, -1.0])
 """USD's cameras look along their -z with y up; ours along +z with y down."""
 SOFT_DEG = 15.0
 """Angle that a room's main light fills: its shadows have soft edges."""
-_APERTURE = 36.0
+EVEN_LIGHT_M = 0.03
+"""Radius of the even light: it is in the middle of the room, where it should hardly be seen."""
+_APERTURE = 0.36
+"""36 mm in tenths of a scene's unit, which USD has for lenses."""
 _COLOUR, _NUMBER, _VECTOR = Sdf.ValueTypeNames.Color3f, Sdf.ValueTypeNames.Float, Sdf.ValueTypeNames.Float3
 
 
@@ -190,7 +193,7 @@ def add_camera(stage: Usd.Stage, path: str, camera: Camera) -> None:
     made.CreateClippingRangeAttr(Gf.Vec2f(0.01, 1000.0))
 
 
-def add_light(stage: Usd.Stage, path: str, light: ExportLight, T: Float[np.ndarray, "4 4"]) -> None:
+def add_light(stage: Usd.Stage, path: str, light: ExportLight, T: Float[np.ndarray, "4 4"], strength: float) -> None:
     """A sphere that glows, or a window's rectangle; `T` is its rigid transform below its object.
 
     Args:
@@ -198,11 +201,12 @@ def add_light(stage: Usd.Stage, path: str, light: ExportLight, T: Float[np.ndarr
         path: Of the prim.
         light: Lamp or window.
         T: Object from light.
+        strength: Factor of its lumens.
     """
     if light.kind == "lamp":
         sphere = UsdLux.SphereLight.Define(stage, path)
         sphere.CreateRadiusAttr(light.radius_m)
-        nits = light.lumens / (4.0 * np.pi**2 * light.radius_m**2)
+        nits = strength * light.lumens / (4.0 * np.pi**2 * light.radius_m**2)
         made: UsdGeom.Xformable = sphere
         sphere.CreateIntensityAttr(nits)
         sphere.CreateColorAttr(Gf.Vec3f(*light.colour))
@@ -212,38 +216,27 @@ def add_light(stage: Usd.Stage, path: str, light: ExportLight, T: Float[np.ndarr
         rect = UsdLux.RectLight.Define(stage, path)
         rect.CreateWidthAttr(width)
         rect.CreateHeightAttr(height)
-        rect.CreateIntensityAttr(light.lumens / (np.pi * width * height))
+        rect.CreateIntensityAttr(strength * light.lumens / (np.pi * width * height))
         rect.CreateColorAttr(Gf.Vec3f(*light.colour))
         rect.CreateExtentAttr(extent(np.array([[-width, -height, 0.0], [width, height, 0.0]]) / 2))
         made = rect
     place(made, T)
 
 
-def add_main_light(stage: Usd.Stage, path: str, light: MainLight) -> None:
-    """The photo's main light, infinitely far away and a little soft."""
+def add_even_light(stage: Usd.Stage, path: str, light: EvenLight) -> None:
+    """A small sphere in the room's middle."""
+    made = UsdLux.SphereLight.Define(stage, path)
+    made.CreateRadiusAttr(EVEN_LIGHT_M)
+    made.CreateIntensityAttr(light.candela / (np.pi * EVEN_LIGHT_M**2))
+    made.CreateExtentAttr(extent(np.array([[-1.0] * 3, [1.0] * 3]) * EVEN_LIGHT_M))
+    made.AddTranslateOp(UsdGeom.XformOp.PrecisionDouble).Set(Gf.Vec3d(*(float(v) for v in light.position)))
+
+
+def add_main_light(stage: Usd.Stage, path: str, light: MainLight, strength: float) -> None:
+    """The photo's main light, infinitely far away and a little soft; `strength` is a factor of its lux."""
     made = UsdLux.DistantLight.Define(stage, path)
-    made.CreateIntensityAttr(light.lux)
+    made.CreateIntensityAttr(strength * light.lux)
     made.CreateAngleAttr(SOFT_DEG)
     made.CreateNormalizeAttr(True)
     made.CreateColorAttr(Gf.Vec3f(*light.colour))
     place(made, light.T_world)
-
-
-T_SCENE_DOME = np.array([[1.0, 0, 0, 0], [0, 0, -1, 0], [0, 1, 0, 0], [0, 0, 0, 1]])
-"""A dome's pole is +Y of its own frame, and its map's middle column looks along +Z."""
-
-
-def add_environment(stage: Usd.Stage, path: str, picture: str, nits: float) -> None:
-    """The light from all sides, below a root whose frame is the scene's.
-
-    Args:
-        stage: Where it is added.
-        path: Of its prim.
-        picture: Name of the map's file, relative to the stage's; its middle column looks along -Y of the scene.
-        nits: Luminance of the picture's white.
-    """
-    made = UsdLux.DomeLight.Define(stage, path)
-    made.CreateTextureFileAttr(Sdf.AssetPath(picture))
-    made.CreateTextureFormatAttr(UsdLux.Tokens.latlong)
-    made.CreateIntensityAttr(nits)
-    place(made, T_SCENE_DOME)

@@ -30,14 +30,18 @@ def add_physics(stage: Usd.Stage, gathered: ExportScene, physical: PhysicalScene
     for body in physical.bodies:
         path, grip = paths[body.node.id], grips.material(body.friction)
         colliders.add(path, body.parts, grip)
-        moves = body.free or _moves(physical, body)
-        if moves:
+        base = _base(physical, body)
+        if base.free:
             UsdPhysics.RigidBodyAPI.Apply(stage.GetPrimAtPath(path))
             _mass(stage.GetPrimAtPath(path), body.inertia)
-        if moves and not body.free and body.carrier is not None:
+            if body.moving or body is not base:
+                UsdPhysics.ArticulationRootAPI.Apply(stage.GetPrimAtPath(paths[base.node.id]))
+        if base.free and not body.free and body.carrier is not None:
             _weld(stage, paths[body.carrier], path, gathered, body)
         for moving in body.moving:
-            _limb(stage, path, moving)
+            joint = _limb(stage, path, moving)
+            if not base.free:  # each joint that is bolted to what cannot move is the root of an articulation
+                UsdPhysics.ArticulationRootAPI.Apply(joint)
             colliders.add(limb_path(path, moving.limb), moving.parts, grip)
 
     def path_of(body: RigidBody, limb: ExportLimb | None) -> str:
@@ -49,12 +53,12 @@ def add_physics(stage: Usd.Stage, gathered: ExportScene, physical: PhysicalScene
     colliders.write(stage.GetRootLayer())
 
 
-def _moves(physical: PhysicalScene, body: RigidBody) -> bool:
-    """Whether what a body is welded to can move."""
+def _base(physical: PhysicalScene, body: RigidBody) -> RigidBody:
+    """The body that carries others by welds; itself where it is welded to none."""
     by_id = {b.node.id: b for b in physical.bodies}
     while not body.free and body.carrier is not None:
         body = by_id[body.carrier]
-    return body.free
+    return body
 
 
 class _Grips:
@@ -127,8 +131,8 @@ def _mass(prim: Usd.Prim, inertia: Inertia) -> None:
     mass.CreatePrincipalAxesAttr(Gf.Quatf(quaternion(axes)))
 
 
-def _limb(stage: Usd.Stage, owner: str, moving: MovingPart) -> None:
-    """A body of its own beside its object, on a joint with limits.
+def _limb(stage: Usd.Stage, owner: str, moving: MovingPart) -> Usd.Prim:
+    """A body of its own beside its object, on a joint with limits, which is returned.
 
     Its frame is the object's when closed, so the joint is in one place of both; their poses tell how far it is open.
     """
@@ -151,6 +155,7 @@ def _limb(stage: Usd.Stage, owner: str, moving: MovingPart) -> None:
         unit = 1.0 if slide else 180.0 / np.pi
         joint.CreateLowerLimitAttr(limb.lower * unit)
         joint.CreateUpperLimitAttr(limb.upper * unit)
+    return joint.GetPrim()
 
 
 def limb_path(owner: str, limb: ExportLimb) -> str:

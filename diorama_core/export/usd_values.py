@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 from jaxtyping import Float
-from pxr import Gf, UsdGeom, Vt
+from pxr import Gf, Sdf, Usd, UsdGeom, Vt
 from scipy.spatial.transform import Rotation
 
 
@@ -27,6 +27,11 @@ def quaternion(R: Float[np.ndarray, "3 3"]) -> Gf.Quatd:
     """A rotation matrix (acting on columns) as quaternion."""
     w, x, y, z = (float(v) for v in Rotation.from_matrix(R).as_quat(canonical=True, scalar_first=True))
     return Gf.Quatd(w, x, y, z)
+
+
+def note(prim: Usd.Prim, name: str, text: str) -> None:
+    """Say something of a prim for when the file is read back."""
+    prim.CreateAttribute(f"diorama:{name}", Sdf.ValueTypeNames.String, custom=True).Set(text)
 
 
 def place(xform: UsdGeom.Xformable, T: Float[np.ndarray, "4 4"]) -> None:

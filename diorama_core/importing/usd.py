@@ -12,8 +12,6 @@ from diorama_core.importing.gltf import CAMERA_AXES
 from diorama_core.importing.marked import MarkedFile, ObjectNode, as_bytes, as_ids, as_mapping
 from diorama_core.library.ingest.usd_stage import matrix_of, opened_stage, usd_errors, world_of
 
-MARK = "diorama"
-
 
 def read_marked_usd(path: Path) -> MarkedFile | None:
     """What Diorama wrote into a file; None when the file is not from it.
@@ -30,9 +28,8 @@ def read_marked_usd(path: Path) -> MarkedFile | None:
 def _marked(stage: Any) -> MarkedFile | None:
     from pxr import Usd, UsdGeom
 
-    root = stage.GetDefaultPrim()
-    mark = root.GetCustomDataByKey(MARK) if root else None
-    if not isinstance(mark, str):
+    root = next((p for p in stage.Traverse() if p.HasAttribute("diorama:scene")), None)
+    if root is None:
         return None
     to_world, places = world_of(stage), UsdGeom.XformCache()
     prims = [p for p in Usd.PrimRange(root) if p != root]
@@ -42,8 +39,7 @@ def _marked(stage: Any) -> MarkedFile | None:
     T_world_camera = None
     for prim in prims:
         M = to_world @ matrix_of(places.GetLocalToWorldTransform(prim))
-        entry = as_mapping(prim.GetCustomDataByKey(MARK))
-        plane = as_mapping(prim.GetCustomDataByKey("diorama_plane"))
+        entry, plane = as_mapping(_note(prim, "entry")), as_mapping(_note(prim, "plane"))
         if entry is not None and "id" in entry:
             numbers[prim.GetPath()] = len(nodes)
             scaled = M @ np.diag([*_scale(prim, entry), 1.0])
@@ -54,22 +50,26 @@ def _marked(stage: Any) -> MarkedFile | None:
         elif T_world_camera is None and prim.IsA(UsdGeom.Camera):
             T_world_camera = M @ CAMERA_AXES
     return MarkedFile(
-        document=mark,
+        document=str(_note(root, "scene")),
         nodes=tuple(nodes),
-        written=as_ids(root.GetCustomDataByKey("diorama_objects")),
+        written=as_ids(_note(root, "objects")),
         planes=planes,
         T_world_camera=T_world_camera,
-        provenance=as_mapping(root.GetCustomDataByKey("provenance")) or {},
-        photo=as_bytes(root.GetCustomDataByKey("diorama_photo")),
+        provenance=as_mapping(_note(root, "provenance")) or {},
+        photo=as_bytes(_note(root, "photo")),
     )
+
+
+def _note(prim: Any, name: str) -> object:
+    return prim.GetAttribute(f"diorama:{name}").Get() if prim.HasAttribute(f"diorama:{name}") else None
 
 
 def _scale(prim: Any, entry: Any) -> Float[np.ndarray, "3"]:
     """The scale of the geometry below an object's prim, which the prim itself does not have."""
     from pxr import UsdGeom
 
-    shape = prim.GetChild("Shape")
-    if shape and shape.IsA(UsdGeom.Xformable):
+    shape = next((c for c in prim.GetChildren() if c.GetName().startswith("Shape")), None)  # Blender appends numbers
+    if shape is not None and shape.IsA(UsdGeom.Xformable):
         local = matrix_of(UsdGeom.Xformable(shape).GetLocalTransformation())
         return np.linalg.norm(local[:3, :3], axis=0)
     return np.array(entry.get("scale", [1.0, 1.0, 1.0]), dtype=np.float64)

@@ -126,7 +126,7 @@ def test_bodies_masses_and_lights_are_those_of_the_scene(example: Usd.Stage) -> 
             assert UsdPhysics.MassAPI(prim).GetMassAttr().Get() == pytest.approx(body.mass_kg, rel=1e-5)
         colliders = [c for c in Usd.PrimRange(prim) if c.HasAPI(UsdPhysics.CollisionAPI)]
         assert len(colliders) == len(body.parts)
-    lamps = [p for p in example.Traverse() if p.IsA(UsdLux.SphereLight)]
+    lamps = [p for p in example.Traverse() if p.IsA(UsdLux.SphereLight) and "Objects" in str(p.GetPath())]
     assert len(lamps) == 3
 
 
@@ -149,6 +149,27 @@ def test_joints_have_limits_and_validate(suffix: str, tmp_path: Path) -> None:
     assert not np.allclose(_world_points(drawer).max(axis=0), _world_points(dresser).max(axis=0))
 
 
+@pytest.mark.parametrize("source", ["example", "fittings"])
+def test_every_joint_belongs_to_an_articulation(source: str, tmp_path: Path) -> None:
+    """Reached from a root over joints, or a root itself: newton refuses a stage with any other."""
+    write_usdc(gathered(source, joints=True), tmp_path / "room.usdc")
+    prims = list(Usd.Stage.Open(str(tmp_path / "room.usdc")).Traverse())
+    roots = {p.GetPath() for p in prims if p.HasAPI(UsdPhysics.ArticulationRootAPI)}
+    joints = [UsdPhysics.Joint(p) for p in prims if p.IsA(UsdPhysics.Joint)]
+    assert joints
+    for joint in joints:
+        above = joint.GetBody0Rel().GetTargets()[0]
+        moves = prims[0].GetStage().GetPrimAtPath(above).HasAPI(UsdPhysics.RigidBodyAPI)
+        assert (above if moves else joint.GetPath()) in roots, joint.GetPath()
+
+
+def test_a_lens_is_in_tenths_of_a_metre(example: Usd.Stage) -> None:
+    """As the schema says: programs that go by it otherwise read one of 2.6 m."""
+    camera = UsdGeom.Camera(example.GetPrimAtPath("/Scene/PhotoCamera"))
+    assert 100 * camera.GetHorizontalApertureAttr().Get() == pytest.approx(36.0)
+    assert 15 < 100 * camera.GetFocalLengthAttr().Get() < 60
+
+
 def test_what_overlaps_deeply_does_not_collide_nor_do_its_moving_parts(tmp_path: Path) -> None:
     write_usdc(desk_in_dresser(), tmp_path / "room.usdc")
     stage = Usd.Stage.Open(str(tmp_path / "room.usdc"))
@@ -163,10 +184,10 @@ def test_what_overlaps_deeply_does_not_collide_nor_do_its_moving_parts(tmp_path:
 
 
 def test_the_scene_comes_along(example: Usd.Stage) -> None:
-    document = example.GetDefaultPrim().GetCustomDataByKey("diorama")
+    document = example.GetDefaultPrim().GetAttribute("diorama:scene").Get()
     assert scene_from_json(document) == gathered("example").scene
     cup = example.GetPrimAtPath("/Scene/Objects/cup_1")
-    assert json.loads(cup.GetCustomDataByKey("diorama"))["candidates"]
+    assert json.loads(cup.GetAttribute("diorama:entry").Get())["candidates"]
     assert cup.GetRelationship("diorama:supporter").GetTargets() == [Sdf.Path("/Scene/Objects/coffee_table_1")]
 
 

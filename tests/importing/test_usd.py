@@ -65,6 +65,31 @@ def test_another_unit_and_up_axis(tmp_path) -> None:
     assert found.scene == scene
 
 
+def test_blender_keeps_the_scene(tmp_path) -> None:
+    """Blender writes everything below a root of its own, numbers names, and forgets custom data."""
+    from pxr import Sdf, Usd
+
+    scene = furnished_room(LIBRARY)
+    export_scene(scene, LIBRARY, tmp_path / "room.usda", "usda")
+    written = Usd.Stage.Open(str(tmp_path / "room.usda")).Flatten()
+    saved = Usd.Stage.CreateNew(str(tmp_path / "saved.usda"))
+    saved.SetDefaultPrim(saved.DefinePrim("/root", "Xform"))
+    for key in ("metersPerUnit", "upAxis"):
+        saved.SetMetadata(key, written.pseudoRoot.GetInfo(key))
+    Sdf.CopySpec(written, "/Scene", saved.GetRootLayer(), "/root/Scene")
+    for number, prim in enumerate([p for p in saved.Traverse() if p.GetName() == "Shape"]):
+        prim.SetInstanceable(False)
+        editor = Usd.NamespaceEditor(saved)
+        editor.RenamePrim(prim, f"Shape_{number:03d}")
+        editor.ApplyEdits()
+    for prim in saved.Traverse():
+        prim.ClearCustomData()
+    saved.Save()
+    found = back(tmp_path / "saved.usda")
+    assert found.changes == ()
+    assert found.scene == scene
+
+
 def test_foreign_and_broken_files(tmp_path) -> None:
     from pxr import Usd, UsdGeom
 
