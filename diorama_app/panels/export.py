@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from itertools import groupby
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeVar
 
 import viser
 
@@ -19,6 +19,7 @@ if TYPE_CHECKING:
 
 TEXTURE_SIZES = (0, 2048, 1024, 512, 256)
 """Longest side in pixels; 0 leaves pictures as they are."""
+ChoiceName = TypeVar("ChoiceName", bound=str)
 SWITCHES: dict[Choice, tuple[str, str]] = {
     "ceiling": ("Without ceiling", "To look into the room from above"),
     "selection": ("Only selection", "The selected objects without the room around them"),
@@ -149,7 +150,7 @@ class ExportPanel:
         )
 
 
-def _explained(label: str, change: str, choices: Mapping[str, tuple[str, str]], chosen: str) -> str:
+def _explained(label: str, change: str, choices: Mapping[ChoiceName, tuple[str, str]], chosen: ChoiceName) -> str:
     """A list to choose from, and below it what is chosen."""
     hint = f'<p class="dim" style="margin:3px 0 0;font-size:11.5px">{text(choices[chosen][1])}</p>'
     return _field(label, change, {one: name for one, (name, _) in choices.items()}, chosen) + hint

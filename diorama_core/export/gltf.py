@@ -221,6 +221,7 @@ class _Builder:
         return self._document.add("nodes", node)
 
     def _room_light(self, light: MainLight | EvenLight) -> int:
+        about: dict[str, Any]
         if isinstance(light, MainLight):
             about = {"name": "main light", "type": "directional", "color": [float(c) for c in light.colour]}
             about |= {"intensity": light.lux * self._gathered.strength(light)}
