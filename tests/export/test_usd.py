@@ -153,13 +153,14 @@ def test_joints_have_limits_and_validate(suffix: str, tmp_path: Path) -> None:
 def test_every_joint_belongs_to_an_articulation(source: str, tmp_path: Path) -> None:
     """Reached from a root over joints, or a root itself: newton refuses a stage with any other."""
     write_usdc(gathered(source, joints=True), tmp_path / "room.usdc")
-    prims = list(Usd.Stage.Open(str(tmp_path / "room.usdc")).Traverse())
+    stage = Usd.Stage.Open(str(tmp_path / "room.usdc"))
+    prims = list(stage.Traverse())
     roots = {p.GetPath() for p in prims if p.HasAPI(UsdPhysics.ArticulationRootAPI)}
     joints = [UsdPhysics.Joint(p) for p in prims if p.IsA(UsdPhysics.Joint)]
     assert joints
     for joint in joints:
         above = joint.GetBody0Rel().GetTargets()[0]
-        moves = prims[0].GetStage().GetPrimAtPath(above).HasAPI(UsdPhysics.RigidBodyAPI)
+        moves = stage.GetPrimAtPath(above).HasAPI(UsdPhysics.RigidBodyAPI)
         assert (above if moves else joint.GetPath()) in roots, joint.GetPath()
 
 
