@@ -391,9 +391,10 @@ def _export(a: argparse.Namespace) -> None:
     if a.simulate:
         from diorama_core.export.stability import stability
 
-        report = stability(written)
-        result |= {"stable_share": report.stable_share, **asdict(report)}
-        lines.append(f"gravity: {report.stable_share:.0%} of objects stay within 1 cm and 2 degrees in 2 s")
+        report = stability(written, urdf=output if a.format == "urdf" else None)
+        what = "the file" if a.format in ("mjcf", "urdf") else "MuJoCo's model of the same bodies, not this file"
+        result |= {"simulated": what, "stable_share": report.stable_share, **asdict(report)}
+        lines.append(f"gravity: {report.stable_share:.0%} of objects stay within 1 cm and 2 degrees in 2 s ({what})")
         lines += [f"  {d.object_id} moves {100 * d.moved_m:.1f} cm" for d in report.unstable]
         lines += [f"  {note}" for note in report.notes]
     print(json.dumps(result) if a.json else "\n".join(lines))

@@ -79,7 +79,7 @@ class PhysicalScene:
     bodies: tuple[RigidBody, ...]
     slabs: tuple[StaticSlab, ...]
     without_contact: tuple[tuple[str, str], ...]
-    """Pairs of object ids that may interpenetrate: rugs with what stands over their edge, and deep overlaps."""
+    """Pairs of object ids that overlap too deeply to collide."""
     notes: tuple[str, ...] = ()
     """What was decided that a reader of the file should know."""
 

@@ -16,7 +16,7 @@ from jaxtyping import Float
 from scipy.spatial import ConvexHull, QhullError
 
 from diorama_core.export.bodies import MovingPart, PhysicalScene, Points, RigidBody, StaticSlab, is_soft
-from diorama_core.export.gathering import ExportObject, ExportScene
+from diorama_core.export.gathering import ExportObject, ExportScene, rigid_inverse
 from diorama_core.export.limbs import ExportLimb, limb_parts
 from diorama_core.export.overlaps import Cuts, cut
 from diorama_core.export.physics import GRAVITY, Inertia, friction_of, inertia_of, plausible_mass_kg
@@ -29,8 +29,11 @@ from diorama_core.scene.types import Plane, box_corners
 NEAR_FLOOR_M = 0.03
 """An object without support stands on the floor when its bottom is this near to it."""
 MIN_SLAB_M = 0.05
+GROUND_BEYOND_M, GROUND_DEPTH_M = 10.0, 0.5
+"""How far the floor reaches beyond the room, and down: what falls for two seconds is not stopped by less."""
 THIN_M = 1e-3
 """Pieces of slabs that are thinner than this are left out."""
+MAX_SHEET_HEIGHT_M = 0.06
 FOOT_M = 0.006
 """What lies this near to the lowest point of an object is its foot."""
 NEAR_TOP_M = 0.012
@@ -50,8 +53,15 @@ def physical_scene(gathered: ExportScene) -> PhysicalScene:
     Mounted, locked and unsupported objects are welded to their supporter; everything else is free, or with the option
     `bodies="welded"` nothing is.
     """
-    slabs = tuple(StaticSlab(p.slug, p.plane, slab_pieces(p.plane)) for p in gathered.planes)
+    ground = gathered.scene.architecture.floor
+    slabs = tuple(
+        StaticSlab(p.slug, p.plane, ground_piece(p.plane) if ground and p.id == ground.id else slab_pieces(p.plane))
+        for p in gathered.planes
+    )
     bodies = {o.id: _body(gathered, o) for o in gathered.objects}
+    for rug in [b for b in bodies.values() if is_sheet(b.node)]:
+        riders = [bodies[o.id] for o in gathered.children_of(rug.node.id)]
+        bodies[rug.node.id] = replace(rug, free=False, carrier=None, parts=_held_parts(rug, riders))
     cuts = Cuts(bodies, slabs)
     cuts.resolve()
     notes = []
@@ -88,6 +98,30 @@ def balanced(body: RigidBody, carrier: RigidBody | None = None) -> RigidBody:
     return body if not body.free or not shift.any() else replace(body, inertia=replace(body.inertia, centre=moved))
 
 
+def is_sheet(node: ExportObject) -> bool:
+    """Whether an object is a rug that lies flat: what stands over its edge stands beside it."""
+    return node.item.category == "rug" and float(node.item.size_m[2]) < MAX_SHEET_HEIGHT_M
+
+
+def _held_parts(rug: RigidBody, riders: Iterable[RigidBody]) -> tuple[Points, ...]:
+    """Pieces of a rug under the feet of what it carries. As a whole plate it would lift what stands over its edge, and
+    a robot would push it; real ones give way under a foot and stay where they are."""
+    corners = rug.node.item.corners_world
+    found = []
+    for rider in riders:
+        parts = _world_parts(rider)
+        low = min((float(p[:, 2].min()) for p in parts), default=0.0)
+        for part in parts:
+            foot = part[part[:, 2] < low + FOOT_M][:, :2]
+            if len(foot):
+                flat = np.concatenate([foot + np.array([x, y]) for x in (-FOOT_M, FOOT_M) for y in (-FOOT_M, FOOT_M)])
+                ends = [
+                    np.column_stack([flat, np.full(len(flat), z)]) for z in (corners[:, 2].min(), corners[:, 2].max())
+                ]
+                found.append(_placed(rigid_inverse(rug.node.T_world), np.concatenate(ends)))
+    return tuple(found)
+
+
 def _world_parts(body: RigidBody) -> list[Points]:
     T = body.node.T_world
     moving = [_placed(T @ m.limb.T_object_limb, q) for m in body.moving for q in m.parts]
@@ -118,6 +152,16 @@ def _into(outline: Float[np.ndarray, "n 2"], point: Float[np.ndarray, "2"]) -> F
     reach = hull.equations[:, :2] @ (point - middle)
     share = float(np.min(np.where(reach > 1e-12, -offsets / np.maximum(reach, 1e-12), np.inf)))
     return (middle + share * (point - middle)) - point
+
+
+def ground_piece(plane: Plane) -> tuple[Points, ...]:
+    """The floor as one thick box that reaches beyond the room, so that nothing falls beside or through it."""
+    axes = np.stack(plane_axes(plane.normal), axis=1)
+    flat = plane.polygon @ axes
+    low, high = flat.min(axis=0) - GROUND_BEYOND_M, flat.max(axis=0) + GROUND_BEYOND_M
+    top = np.array([[u, v] for u in (low[0], high[0]) for v in (low[1], high[1])]) @ axes.T
+    top = top + plane.normal * float(plane.polygon.mean(axis=0) @ plane.normal)
+    return (np.vstack([top, top - plane.normal * GROUND_DEPTH_M]),)
 
 
 def slab_pieces(plane: Plane) -> tuple[Points, ...]:

@@ -7,7 +7,7 @@ what stands open is placed open, its joint is at zero there, and the limits are 
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Literal
@@ -81,7 +81,7 @@ def links_of(gathered: ExportScene, physical: PhysicalScene) -> tuple[Link, ...]
         for moving in body.moving:
             found.append(
                 Link(
-                    name=f"{node.slug}__{moving.limb.slug}",
+                    name=body_name(node.slug, moving.limb),
                     parent=node.slug,
                     joint=moving.limb.kind,
                     T_parent=moving.limb.T_object_limb,
@@ -97,6 +97,11 @@ def links_of(gathered: ExportScene, physical: PhysicalScene) -> tuple[Link, ...]
     return tuple(found)
 
 
+def body_name(slug: str, limb: ExportLimb | None) -> str:
+    """The name of an object's link or body, or of a moving part of it."""
+    return slug if limb is None else f"{slug}__{limb.slug}"
+
+
 def _carriers_first(bodies: tuple[RigidBody, ...]) -> list[RigidBody]:
     done: list[RigidBody] = []
     names: set[str] = set()
@@ -109,17 +114,28 @@ def _carriers_first(bodies: tuple[RigidBody, ...]) -> list[RigidBody]:
     return done
 
 
+def grouped(links: tuple[Link, ...]) -> dict[str, tuple[Link, ...]]:
+    """Links by the one that carries them all, first that one, then what is joined to it; in the order of the links."""
+    found: dict[str, tuple[Link, ...]] = {}
+    top: dict[str, str] = {}
+    for link in links:
+        name = top[link.name] = link.name if link.parent is None else top[link.parent]
+        found[name] = (*found.get(name, ()), link)
+    return found
+
+
 def write_linked(
-    gathered: ExportScene, path: Path, progress: Progress | None, kind: str, describe: Callable[..., str]
+    gathered: ExportScene, path: Path, progress: Progress | None, kind: str, describe: Callable[..., Mapping[str, str]]
 ) -> None:
-    """Write a main file that `describe` makes and the meshes it names: beside it, or everything as one `.zip`.
+    """Write the files that `describe` makes and the meshes they name: side by side, or everything as one `.zip`.
 
     Args:
         gathered: The scene.
         path: The main file, or the `.zip`.
         progress: Where it is reported and cancelling is noticed.
         kind: Ending of the main file without its dot.
-        describe: Called with the scene, its bodies, its links and the folder of the meshes; gives the main file.
+        describe: Called with the scene, its bodies, its links, the main file's name and the folder of the meshes;
+            gives the text of each file by its name, the main one last.
 
     Raises:
         ExportError: when it cannot be written.
@@ -129,11 +145,13 @@ def write_linked(
     physical = physical_scene(gathered)
     links = links_of(gathered, physical)
     main, folder = f"{Path(path).stem}.{kind}", companion_folder(path, kind)
-    content = describe(gathered, physical, links, folder).encode()
+    texts = describe(gathered, physical, links, main, folder)
 
     def entries() -> Iterator[Entry]:
-        yield from mesh_files(gathered, physical, links, folder, progress)
-        yield main, content
+        yield from mesh_files(gathered, folder, progress)
+        yield from collider_files(physical, folder)
+        for name, text in texts.items():
+            yield name, text.encode()
 
     write_package(path, main, entries())
 
@@ -148,18 +166,8 @@ def collider_file(folder: str, owner: str, number: int) -> str:
     return f"{folder}/colliders/{owner}_{number}.obj"
 
 
-def mesh_files(
-    gathered: ExportScene, physical: PhysicalScene, links: tuple[Link, ...], folder: str, progress: Progress
-) -> Iterator[Entry]:
-    """Visual meshes with their materials and pictures, and convex colliders.
-
-    Args:
-        gathered: Meshes, materials and lights of the scene.
-        physical: Masses, hulls and joints of its objects.
-        links: Bodies and their joints.
-        folder: That files are in, relative to the document.
-        progress: Reports and cancellation.
-    """
+def mesh_files(gathered: ExportScene, folder: str, progress: Progress) -> Iterator[Entry]:
+    """Visual meshes with their materials and pictures, in a folder."""
     materials = MaterialFile(gathered.materials, display=True, maps=False)
     yield f"{folder}/meshes/{MATERIALS}", materials.text()
     for name, content in materials.pictures():
@@ -168,7 +176,12 @@ def mesh_files(
         progress.report(0.3 + 0.6 * done / len(gathered.meshes), f"writing {mesh.name}")
         for number, surface in enumerate(mesh.surfaces):
             yield visual_file(folder, mesh, number), obj_file(surface, MATERIALS, materials.name(surface.material))
-    owners = [(s.slug, s.pieces) for s in physical.slabs] + [(link.name, link.parts) for link in links]
+
+
+def collider_files(physical: PhysicalScene, folder: str) -> Iterator[Entry]:
+    """Convex parts of the room, the objects and their moving parts, in a folder."""
+    owners = [(s.slug, s.pieces) for s in physical.slabs] + [(b.node.slug, b.parts) for b in physical.bodies]
+    owners += [(body_name(b.node.slug, m.limb), m.parts) for b in physical.bodies for m in b.moving]
     for owner, parts in owners:
         for number, part in enumerate(parts):
             yield collider_file(folder, owner, number), hull_file(*hull_faces(part))

@@ -19,7 +19,7 @@ from diorama_core.export.colliders import physical_scene
 from diorama_core.export.files import Entry, companion_folder, write_package
 from diorama_core.export.gathering import ExportMesh, ExportObject, ExportScene, rigid_inverse
 from diorama_core.export.lights import ExportLight, MainLight
-from diorama_core.export.limbs import ExportLimb
+from diorama_core.export.links import body_name, collider_file, collider_files
 from diorama_core.export.physics import FLOOR_FRICTION, Inertia
 from diorama_core.export.pictures import OncePerPicture, png_bytes
 from diorama_core.export.wavefront import obj_file
@@ -49,6 +49,7 @@ def write_mjcf(gathered: ExportScene, path: Path, progress: Progress | None = No
 
     def entries() -> Iterator[Entry]:
         yield from _assets(gathered, folder, progress)
+        yield from collider_files(physical, folder)
         yield main, content
 
     write_package(path, main, entries())
@@ -84,19 +85,14 @@ def mjcf_text(gathered: ExportScene, physical: PhysicalScene, folder: str | None
     writer = _BodyWriter(gathered, assets, below, lights, folder)
     for body in below.get(None, ()):
         writer.write(world, body, np.eye(4))
-    pairs = list(physical.loose_pairs(_body_name))
+    pairs = list(physical.loose_pairs(lambda body, limb: body_name(body.node.slug, limb)))
     # A part and the case it sits in touch; MuJoCo knows that by itself only where the case can move.
-    pairs += [(b.node.slug, _body_name(b, m.limb)) for b in physical.bodies for m in b.moving]
+    pairs += [(b.node.slug, body_name(b.node.slug, m.limb)) for b in physical.bodies for m in b.moving]
     contact = SubElement(root, "contact")
     for first, second in pairs:
         SubElement(contact, "exclude", body1=first, body2=second)
     indent(root)
     return tostring(root, encoding="unicode", xml_declaration=False) + "\n"
-
-
-def _body_name(body: RigidBody, limb: ExportLimb | None) -> str:
-    """What an object, or a moving part of it, is called."""
-    return body.node.slug if limb is None else f"{body.node.slug}__{limb.slug}"
 
 
 class _BodyWriter:
@@ -136,7 +132,7 @@ class _BodyWriter:
     def _limb(self, parent: Element, body: RigidBody, moving: MovingPart) -> None:
         """A body that coincides with its object's frame when closed, so that its geometry needs no other."""
         limb = moving.limb
-        name = _body_name(body, limb)
+        name = body_name(body.node.slug, limb)
         opened = _placement(limb.T_object_limb) if limb.opened else {}
         element = SubElement(parent, "body", {"name": name, **opened})
         kind = "slide" if limb.kind == "slide" else "hinge"
@@ -155,10 +151,25 @@ class _BodyWriter:
 
     def _colliders(self, element: Element, body: RigidBody, parts: tuple[Points, ...], name: str) -> None:
         for number, part in enumerate(parts):
-            mesh = f"{name}_part_{number}"
-            SubElement(self._assets, "mesh", name=mesh, vertex=numbers(part.ravel()), inertia="convex")
+            mesh = _hull(self._assets, part, name, number, self._folder)
             attributes = {"type": "mesh", "mesh": mesh, "friction": f"{body.friction:.3g}"}
             SubElement(element, "geom", {"name": mesh, "class": "collider", **attributes})
+
+
+def _hull(assets: Element, part: Points, owner: str, number: int, folder: str | None) -> str:
+    """A convex mesh, and its name: as a file, which Drake asks for too, or without files in place.
+
+    Args:
+        assets: Where it is declared.
+        part: Its corners.
+        owner: Name of its body.
+        number: Among those of the body.
+        folder: That files are in; None for none.
+    """
+    name = f"{owner}_part_{number}"
+    content = {"vertex": numbers(part.ravel())} if folder is None else {"file": collider_file(folder, owner, number)}
+    SubElement(assets, "mesh", {"name": name, **content, "inertia": "convex"})
+    return name
 
 
 def _inertial(element: Element, inertia: Inertia) -> None:
@@ -194,11 +205,8 @@ def _room(
             geom = {"name": slab.slug, "class": "collider", "type": "plane", "friction": str(FLOOR_FRICTION)}
             SubElement(world, "geom", {**geom, **level})
         for number, piece in enumerate(() if plane.role == "floor" else slab.pieces):
-            name = f"{slab.slug}_part_{number}"
-            centre = piece.mean(axis=0)
-            SubElement(assets, "mesh", name=name, vertex=numbers((piece - centre).ravel()), inertia="convex")
-            geom = {"name": name, "class": "collider", "type": "mesh", "mesh": name, "pos": numbers(centre)}
-            SubElement(world, "geom", geom)
+            name = _hull(assets, piece, slab.slug, number, folder)
+            SubElement(world, "geom", {"name": name, "class": "collider", "type": "mesh", "mesh": name})
     if folder is not None:
         for exported in gathered.planes:
             _visuals(world, assets, gathered.meshes[exported.mesh], None, folder)

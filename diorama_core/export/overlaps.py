@@ -91,27 +91,12 @@ class Cuts:
             near = (low[later, 0] < high[i, 0]) & (high[later, 0] > low[i, 0]) & (owner[later] != owner[i])
             rows = i + 1 + np.flatnonzero(near & (moves[later] | moves[i]))
             rows = rows[((low[rows] < high[i]) & (high[rows] > low[i])).all(axis=1)]
-            pairs += [(i, int(j)) for j in rows if self._collide(i, int(j))]
+            pairs += [(i, int(j)) for j in rows]
         found = np.array(pairs, dtype=int).reshape(-1, 2)
         return found[:, 0], found[:, 1]
 
     def _free(self, owner: str | None) -> bool:
         return owner is not None and self._bodies[owner].free
-
-    def _collide(self, i: int, j: int) -> bool:
-        """Whether parts of two owners may not overlap."""
-        a, b = self._owners[i], self._owners[j]
-        if a is None or b is None:
-            return True
-        if self._yields(a, b) or self._yields(b, a):
-            self.ignored.add((min(a, b), max(a, b)))
-            return False
-        return True
-
-    def _yields(self, rug: str, other: str) -> bool:
-        """Whether a rug lies under the other without carrying it."""
-        item, node = self._bodies[rug].node.item, self._bodies[other].node
-        return item.category == "rug" and item.size_m[2] < 0.06 and node.parent != rug
 
     def _part(self, i: int, j: int, normals: Float[np.ndarray, "k 3"]) -> None:
         """Part two bodies: a rider from what carries it upward, others along the direction of least overlap."""

@@ -15,7 +15,7 @@ from scipy.spatial.transform import Rotation
 from diorama_core.export.bodies import PhysicalScene
 from diorama_core.export.gathering import ExportMesh, ExportScene
 from diorama_core.export.lights import ExportLight, MainLight
-from diorama_core.export.links import Link, collider_file, visual_file, write_linked
+from diorama_core.export.links import Link, collider_file, grouped, visual_file, write_linked
 from diorama_core.export.mjcf import FULL_LIGHT_LUX
 from diorama_core.export.physics import FLOOR_FRICTION
 from diorama_core.export.xml_values import inertia_terms, numbers, srgb_rgba
@@ -31,16 +31,19 @@ def write_sdf(gathered: ExportScene, path: Path, progress: Progress | None = Non
     Raises:
         ExportError: when it cannot be written.
     """
-    write_linked(gathered, path, progress, "sdf", sdf_text)
+    write_linked(gathered, path, progress, "sdf", sdf_files)
 
 
-def sdf_text(gathered: ExportScene, physical: PhysicalScene, links: tuple[Link, ...], folder: str) -> str:
-    """The world; meshes lie in `folder`, relative to it.
+def sdf_files(
+    gathered: ExportScene, physical: PhysicalScene, links: tuple[Link, ...], main: str, folder: str
+) -> dict[str, str]:
+    """The world by its name; meshes lie in `folder`, relative to it.
 
     Args:
         gathered: meshes, materials and lights of the scene.
         physical: masses, hulls and joints of its objects.
         links: bodies and their joints.
+        main: name of the world's file.
         folder: that files are in, relative to the document.
     """
     root = Element("sdf", version=VERSION)
@@ -51,26 +54,17 @@ def sdf_text(gathered: ExportScene, physical: PhysicalScene, links: tuple[Link, 
     if gathered.main_light is not None:
         _main_light(world, gathered.main_light)
     _room(world, gathered, physical, folder)
-    by_name = {link.name: link for link in links}
-    tops = {link.name: _top(link, by_name) for link in links}
-    for link in links:
-        if tops[link.name] == link.name:
-            _model(world, link, [k for k in links if tops[k.name] == link.name], folder)
+    for model in grouped(links).values():
+        _model(world, model, folder)
     indent(root)
-    return '<?xml version="1.0"?>\n' + tostring(root, encoding="unicode") + "\n"
-
-
-def _top(link: Link, by_name: dict[str, Link]) -> str:
-    while link.parent is not None:
-        link = by_name[link.parent]
-    return link.name
+    return {main: '<?xml version="1.0"?>\n' + tostring(root, encoding="unicode") + "\n"}
 
 
 def _room(world: Element, gathered: ExportScene, physical: PhysicalScene, folder: str) -> None:
     if not physical.slabs:
         return
     model = SubElement(world, "model", name=ROOM)
-    SubElement(model, "static").text = "true"
+    SubElement(model, "static").text = "1"  # PyBullet knows no other word
     link = SubElement(model, "link", name="link")
     for exported in gathered.planes:
         _visuals(link, gathered.meshes[exported.mesh], np.ones(3), folder)
@@ -78,10 +72,11 @@ def _room(world: Element, gathered: ExportScene, physical: PhysicalScene, folder
         _colliders(link, slab.slug, len(slab.pieces), FLOOR_FRICTION, folder)
 
 
-def _model(world: Element, top: Link, links: list[Link], folder: str) -> None:
+def _model(world: Element, links: tuple[Link, ...], folder: str) -> None:
+    top = links[0]
     model = SubElement(world, "model", name=top.name)
     SubElement(model, "pose").text = _pose(top.T_parent)
-    SubElement(model, "static").text = "false" if top.joint == "free" or len(links) > 1 else "true"
+    SubElement(model, "static").text = "0" if top.joint == "free" or len(links) > 1 else "1"
     places: dict[str, Float[np.ndarray, "4 4"]] = {top.name: np.eye(4)}
     for link in links:
         if link is not top and link.parent is not None:

@@ -2,14 +2,21 @@
 
 from __future__ import annotations
 
+import json
+import tempfile
+import zipfile
 from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
 
 import numpy as np
 
 from diorama_core.errors import UnavailableError
 from diorama_core.export.colliders import physical_scene
+from diorama_core.export.files import companion_folder
 from diorama_core.export.gathering import ExportScene
 from diorama_core.export.mjcf import mjcf_text
+from diorama_core.export.urdf import POSES
 
 MAX_DRIFT_M = 0.01
 MAX_TURN_RAD = float(np.radians(2.0))
@@ -50,8 +57,13 @@ class StabilityReport:
         return tuple(sorted((d for d in self.drifts if not d.stable), key=lambda d: -d.moved_m))
 
 
-def stability(gathered: ExportScene, *, seconds: float = 2.0) -> StabilityReport:
-    """Simulate the exported bodies.
+def stability(gathered: ExportScene, *, urdf: Path | None = None, seconds: float = 2.0) -> StabilityReport:
+    """Simulate the exported bodies: as MuJoCo's own model, or as files of URDF say them, with MuJoCo's own settings.
+
+    Args:
+        gathered: What was exported.
+        urdf: The files that were written of it: the room's, or the `.zip`.
+        seconds: Of simulated time.
 
     Raises:
         UnavailableError: when MuJoCo is not installed.
@@ -61,17 +73,41 @@ def stability(gathered: ExportScene, *, seconds: float = 2.0) -> StabilityReport
     except ImportError as missing:
         raise UnavailableError("simulating needs MuJoCo: pip install 'diorama[sim]'") from missing
     physical = physical_scene(gathered)
-    model = mujoco.MjModel.from_xml_string(mjcf_text(gathered, physical))
+    model = mujoco.MjModel.from_xml_string(mjcf_text(gathered, physical)) if urdf is None else urdf_model(urdf)
     data = mujoco.MjData(model)
     mujoco.mj_forward(model, data)
-    slugs = [b.node.slug for b in physical.bodies]
-    before = [(data.body(s).xpos.copy(), data.body(s).xmat.reshape(3, 3).copy()) for s in slugs]
+    numbers = {model.body(k).name.rpartition("/")[2]: k for k in range(model.nbody)}
+    numbers = {b.node.id: numbers[b.node.slug] for b in physical.bodies}
+    before = {i: (data.xpos[k].copy(), data.xmat[k].reshape(3, 3).copy()) for i, k in numbers.items()}
     for _ in range(round(seconds / model.opt.timestep)):
         mujoco.mj_step(model, data)
     drifts = []
-    for body, (position, R) in zip(physical.bodies, before, strict=True):
-        after = data.body(body.node.slug)
-        cosine = (np.trace(after.xmat.reshape(3, 3) @ R.T) - 1.0) / 2.0
-        moved, turned = float(np.linalg.norm(after.xpos - position)), float(np.arccos(np.clip(cosine, -1.0, 1.0)))
+    for body in physical.bodies:
+        (position, R), number = before[body.node.id], numbers[body.node.id]
+        cosine = (np.trace(data.xmat[number].reshape(3, 3) @ R.T) - 1.0) / 2.0
+        moved = float(np.linalg.norm(data.xpos[number] - position))
+        turned = float(np.arccos(np.clip(cosine, -1.0, 1.0)))
         drifts.append(Drift(body.node.id, moved, turned, body.free))
     return StabilityReport(tuple(drifts), physical.notes, seconds)
+
+
+def urdf_model(path: Path) -> Any:
+    """MuJoCo's model of a room in URDF with its objects at their poses (`mujoco.MjModel`).
+
+    Args:
+        path: The room's file, or the `.zip`.
+    """
+    import mujoco
+
+    with tempfile.TemporaryDirectory() as unpacked:
+        if path.suffix == ".zip":
+            with zipfile.ZipFile(path) as archive:
+                archive.extractall(unpacked)
+            path = Path(unpacked) / f"{path.stem}.urdf"
+        folder = path.with_name(companion_folder(path, "urdf"))
+        room = mujoco.MjSpec.from_file(str(path))
+        for pose in json.loads((folder / POSES).read_text())["objects"]:
+            thing = mujoco.MjSpec.from_file(str(folder / pose["file"]))
+            frame = room.worldbody.add_frame(pos=pose["position_m"], quat=pose["quaternion_wxyz"])
+            frame.attach_body(thing.worldbody.first_body(), f"{pose['name']}/", "").add_freejoint()
+        return room.compile()

@@ -1,11 +1,12 @@
-"""A scene as URDF: one tree of links below a world link, for ROS, PyBullet, Isaac Sim and Drake.
+"""A scene as URDF: the room with all that is fixed to it, one file for each object that may move, and their poses.
 
-Objects that may move hang on floating joints, everything else on fixed ones; moving parts on revolute, prismatic and
-continuous joints with limits.
+Few programs read floating joints, so each object is loaded by itself at its pose. Moving parts are on revolute,
+prismatic and continuous joints with limits.
 """
 
 from __future__ import annotations
 
+import json
 from pathlib import Path
 from xml.etree.ElementTree import Element, SubElement, indent, tostring
 
@@ -15,15 +16,14 @@ from scipy.spatial.transform import Rotation
 
 from diorama_core.export.bodies import PhysicalScene
 from diorama_core.export.gathering import ExportMesh, ExportScene
-from diorama_core.export.links import Link, collider_file, visual_file, write_linked
+from diorama_core.export.links import Link, body_name, collider_file, grouped, visual_file, write_linked
 from diorama_core.export.physics import Inertia
 from diorama_core.export.xml_values import inertia_terms, numbers, srgb_rgba
 from diorama_core.progress import Progress
-from diorama_core.render.appearance import Material
 
-WORLD = "world"
+WORLD, POSES = "world", "poses.json"
 EFFORT_N, VELOCITY = "50", "2"
-_TYPES = {"free": "floating", "fixed": "fixed", "hinge": "revolute", "slide": "prismatic", "swivel": "continuous"}
+_TYPES = {"fixed": "fixed", "hinge": "revolute", "slide": "prismatic", "swivel": "continuous"}
 
 
 def write_urdf(gathered: ExportScene, path: Path, progress: Progress | None = None) -> None:
@@ -32,42 +32,83 @@ def write_urdf(gathered: ExportScene, path: Path, progress: Progress | None = No
     Raises:
         ExportError: when it cannot be written.
     """
-    write_linked(gathered, path, progress, "urdf", urdf_text)
+    write_linked(gathered, path, progress, "urdf", urdf_files)
 
 
-def urdf_text(gathered: ExportScene, physical: PhysicalScene, links: tuple[Link, ...], folder: str) -> str:
-    """The robot description; meshes lie in `folder`, relative to it.
+def urdf_files(
+    gathered: ExportScene, physical: PhysicalScene, links: tuple[Link, ...], main: str, folder: str
+) -> dict[str, str]:
+    """The room, each object that may move, and `poses.json`, by their names relative to the room's file.
 
     Args:
         gathered: meshes, materials and lights of the scene.
         physical: masses, hulls and joints of its objects.
         links: bodies and their joints.
-        folder: that files are in, relative to the document.
+        main: name of the room's file.
+        folder: of meshes and objects, relative to the room's file.
     """
-    robot = Element("robot", name=gathered.name)
-    # MuJoCo would drop folders from file names and merge what is fixed.
-    SubElement(SubElement(robot, "mujoco"), "compiler", strippath="false", fusestatic="false", discardvisual="true")
-    materials = {id(m): f"material_{k}" for k, m in enumerate(gathered.materials)}
-    for number, material in enumerate(gathered.materials):
-        _material(robot, f"material_{number}", material)
+    models = grouped(links)
+    free = {name: model for name, model in models.items() if model[0].joint == "free"}
+    fixed = [link for name, model in models.items() if name not in free for link in model]
+    files = {f"{folder}/{name}.urdf": _object(name, model) for name, model in free.items()}
+    poses = [
+        {
+            "name": name,
+            "file": f"{name}.urdf",
+            "position_m": [float(v) for v in model[0].T_parent[:3, 3]],
+            "quaternion_wxyz": Rotation.from_matrix(model[0].T_parent[:3, :3])
+            .as_quat(canonical=True, scalar_first=True)
+            .tolist(),
+        }
+        for name, model in free.items()
+    ]
+    loose = list(physical.loose_pairs(lambda body, limb: body_name(body.node.slug, limb)))
+    files[f"{folder}/{POSES}"] = json.dumps({"objects": poses, "without_contact": loose}, indent=1) + "\n"
+    files[main] = _room(gathered, physical, fixed, folder)
+    return files
+
+
+def _object(name: str, links: tuple[Link, ...]) -> str:
+    robot = _robot(name)
+    for link in links:
+        _link(robot, link, ".")
+    return _text(robot)
+
+
+def _room(gathered: ExportScene, physical: PhysicalScene, links: list[Link], folder: str) -> str:
+    """The room and what cannot move, below the link of the world."""
+    robot = _robot(gathered.name)
     world = SubElement(robot, "link", name=WORLD)
     for exported in gathered.planes:
-        _visuals(world, gathered.meshes[exported.mesh], np.ones(3), folder, materials)
+        _visuals(world, gathered.meshes[exported.mesh], np.ones(3), folder)
     for slab in physical.slabs:
         _colliders(world, slab.slug, len(slab.pieces), folder)
     for link in links:
-        _link(robot, link, folder, materials)
+        _link(robot, link, folder)
+    return _text(robot)
+
+
+def _robot(name: str) -> Element:
+    robot = Element("robot", name=name)
+    # MuJoCo would drop folders from file names and merge what is fixed.
+    SubElement(SubElement(robot, "mujoco"), "compiler", strippath="false", fusestatic="false", discardvisual="true")
+    return robot
+
+
+def _text(robot: Element) -> str:
     indent(robot)
     return '<?xml version="1.0"?>\n' + tostring(robot, encoding="unicode") + "\n"
 
 
-def _link(robot: Element, link: Link, folder: str, materials: dict[int, str]) -> None:
+def _link(robot: Element, link: Link, folder: str) -> None:
     element = SubElement(robot, "link", name=link.name)
     _inertial(element, link.inertia)
-    _visuals(element, link.mesh, link.scale, folder, materials)
+    _visuals(element, link.mesh, link.scale, folder)
     _colliders(element, link.name, len(link.parts), folder)
     contact = SubElement(element, "contact")
     SubElement(contact, "lateral_friction", value=f"{link.friction:.3g}")
+    if link.joint == "free":
+        return
     joint = SubElement(robot, "joint", name=f"{link.name}_joint", type=_TYPES[link.joint])
     SubElement(joint, "parent", link=link.parent or WORLD)
     SubElement(joint, "child", link=link.name)
@@ -96,15 +137,14 @@ def _inertial(element: Element, inertia: Inertia) -> None:
     SubElement(inertial, "inertia", inertia_terms(inertia.tensor))
 
 
-def _visuals(
-    element: Element, mesh: ExportMesh, scale: Float[np.ndarray, "3"], folder: str, materials: dict[int, str]
-) -> None:
+def _visuals(element: Element, mesh: ExportMesh, scale: Float[np.ndarray, "3"], folder: str) -> None:
     for number, surface in enumerate(mesh.surfaces):
         visual = SubElement(element, "visual")
         SubElement(visual, "origin", xyz="0 0 0", rpy="0 0 0")
         geometry = SubElement(visual, "geometry")
         SubElement(geometry, "mesh", filename=visual_file(folder, mesh, number), scale=numbers(scale))
-        SubElement(visual, "material", name=materials[id(surface.material)])
+        material = SubElement(visual, "material", name=f"{mesh.key}_{number}")
+        SubElement(material, "color", rgba=numbers(srgb_rgba(surface.material)))
 
 
 def _colliders(element: Element, owner: str, count: int, folder: str) -> None:
@@ -113,11 +153,6 @@ def _colliders(element: Element, owner: str, count: int, folder: str) -> None:
         SubElement(collision, "origin", xyz="0 0 0", rpy="0 0 0")
         geometry = SubElement(collision, "geometry")
         SubElement(geometry, "mesh", filename=collider_file(folder, owner, number))
-
-
-def _material(robot: Element, name: str, material: Material) -> None:
-    element = SubElement(robot, "material", name=name)
-    SubElement(element, "color", rgba=numbers(srgb_rgba(material)))
 
 
 def _origin(T: Float[np.ndarray, "4 4"]) -> dict[str, str]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 from xml.etree import ElementTree
 
@@ -10,26 +11,78 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from diorama_core.export.colliders import physical_scene
+from diorama_core.export.gathering import gather
 from diorama_core.export.links import links_of
 from diorama_core.export.mjcf import mjcf_text, write_mjcf
 from diorama_core.export.sdf import write_sdf
+from diorama_core.export.stability import stability, urdf_model
 from diorama_core.export.urdf import write_urdf
-from tests.export.scenes import gathered
+from diorama_core.scene.types import Support
+from tests.export.scenes import gathered, scene_of
 
 mujoco = pytest.importorskip("mujoco", reason="MuJoCo is not installed (optional extra 'sim')")
 
 
 @pytest.mark.parametrize("source", ["example", "fittings", "boxes", "empty shell"])
 def test_mujoco_reads_the_urdf(source: str, tmp_path: Path) -> None:
+    """The room, and every object that may move by itself: few programs read floating joints."""
     scene = gathered(source, joints=True)
     write_urdf(scene, tmp_path / "room.urdf")
-    model = mujoco.MjModel.from_xml_path(str(tmp_path / "room.urdf"))
+    model = urdf_model(tmp_path / "room.urdf")
     data = mujoco.MjData(model)
     mujoco.mj_forward(model, data)
     for body in physical_scene(scene).bodies:
-        np.testing.assert_allclose(data.body(body.node.slug).xpos, body.node.T_world[:3, 3], atol=1e-5)
-        np.testing.assert_allclose(data.body(body.node.slug).xmat.reshape(3, 3), body.node.T_world[:3, :3], atol=1e-5)
-        assert model.body(body.node.slug).mass[0] == pytest.approx(body.mass_kg, rel=1e-3)
+        name = f"{body.node.slug}/{body.node.slug}" if body.free else body.node.slug
+        np.testing.assert_allclose(data.body(name).xpos, body.node.T_world[:3, 3], atol=1e-5)
+        np.testing.assert_allclose(data.body(name).xmat.reshape(3, 3), body.node.T_world[:3, :3], atol=1e-5)
+        assert model.body(name).mass[0] == pytest.approx(body.mass_kg, rel=1e-3)
+    for file in tmp_path.rglob("*.urdf"):
+        assert {j.get("type") for j in ElementTree.parse(file).iter("joint")} <= {
+            "fixed",
+            "revolute",
+            "prismatic",
+            "continuous",
+        }
+
+
+@pytest.mark.parametrize("suffix", ["urdf", "zip"])
+def test_gravity_leaves_what_the_urdf_itself_says_in_its_place(suffix: str, tmp_path: Path) -> None:
+    """With MuJoCo's own settings, and on a rug that carries some and lies under the feet of others."""
+    scene = gathered("example", joints=True)
+    write_urdf(scene, tmp_path / f"room.{suffix}")
+    report = stability(scene, urdf=tmp_path / f"room.{suffix}")
+    assert report.unstable == ()
+    assert len(report.drifts) == len(scene.objects)
+
+
+def test_a_rug_stays_where_it_is_and_holds_up_only_what_stands_on_it() -> None:
+    scene, library = scene_of("fittings")
+    rug, chair = scene.object("rug_1"), scene.object("chair_1")
+    standing = replace(
+        chair, pose=chair.pose.moved(np.append((rug.pose.position - chair.pose.position)[:2], rug.size_m[2]))
+    )
+    scene = replace(
+        scene,
+        objects=tuple(standing if o.id == chair.id else o for o in scene.objects),
+        supports=(*(s for s in scene.supports if s.child != chair.id), Support(chair.id, rug.id)),
+    )
+    carrying = gather(scene, library)
+    body = next(b for b in physical_scene(carrying).bodies if b.node.id == rug.id)
+    assert not body.free
+    assert 0 < body.volume_m3 < 0.2 * float(np.prod(rug.size_m))
+    assert {chair.id, rug.id}.isdisjoint(d.object_id for d in stability(carrying).unstable)
+
+
+def test_the_floor_reaches_beyond_the_room() -> None:
+    """What a robot pushes out of a room that lacks a wall does not fall."""
+    scene = gathered("example")
+    floor = next(s for s in physical_scene(scene).slabs if s.plane.role == "floor")
+    (box,) = floor.pieces
+    room = floor.plane.polygon
+    assert (box[:, :2].min(axis=0) < room[:, :2].min(axis=0) - 5).all()
+    assert (box[:, :2].max(axis=0) > room[:, :2].max(axis=0) + 5).all()
+    assert box[:, 2].max() == pytest.approx(room[:, 2].max(), abs=1e-9)
+    assert np.ptp(box[:, 2]) > 0.3
 
 
 def test_urdf_and_mjcf_open_their_joints_alike(tmp_path: Path) -> None:
@@ -39,14 +92,18 @@ def test_urdf_and_mjcf_open_their_joints_alike(tmp_path: Path) -> None:
     names = [link.name for link in links_of(scene, physical_scene(scene)) if link.limb is not None]
     assert {n.split("_1_")[0] for n in names} == {"dresser", "door", "laptop", "chair", "desk"}
     centres = []
-    for file, suffix in (("room.urdf", "_joint"), ("room.xml", "")):
-        model = mujoco.MjModel.from_xml_path(str(tmp_path / file))
+    for model, suffix in (
+        (urdf_model(tmp_path / "room.urdf"), "_joint"),
+        (mujoco.MjModel.from_xml_path(str(tmp_path / "room.xml")), ""),
+    ):
         data = mujoco.MjData(model)
+        joints = {model.joint(k).name.rpartition("/")[2]: model.joint(k) for k in range(model.njnt)}
+        bodies = {model.body(k).name.rpartition("/")[2]: k for k in range(model.nbody)}
         for name in names:
-            joint = model.joint(f"{name}{suffix}")
+            joint = joints[f"{name}{suffix}"]
             data.qpos[joint.qposadr[0]] = joint.range[1] if joint.limited[0] else 1.0
         mujoco.mj_forward(model, data)
-        centres.append(np.array([data.body(name).xipos for name in names]))
+        centres.append(np.array([data.xipos[bodies[name]] for name in names]))
     np.testing.assert_allclose(centres[0], centres[1], atol=2e-3)
 
 
@@ -54,8 +111,11 @@ def test_urdf_and_mjcf_open_their_joints_alike(tmp_path: Path) -> None:
 def test_every_file_that_is_named_exists(source: str, tmp_path: Path) -> None:
     scene = gathered(source, joints=True)
     write_urdf(scene, tmp_path / "room.urdf")
-    urdf = ElementTree.parse(tmp_path / "room.urdf")
-    named = {m.get("filename", "") for m in urdf.iter("mesh")}
+    named = {
+        str((file.parent / m.get("filename", "")).relative_to(tmp_path))
+        for file in tmp_path.rglob("*.urdf")
+        for m in ElementTree.parse(file).iter("mesh")
+    }
     write_sdf(scene, tmp_path / "room.sdf")
     named |= {u.text or "" for u in ElementTree.parse(tmp_path / "room.sdf").iter("uri")}
     assert len(named) > 50
@@ -79,8 +139,8 @@ def test_the_sdf_world_says_where_everything_is(tmp_path: Path) -> None:
         np.testing.assert_allclose(pose[:3], item.T_world[:3, 3], atol=1e-8)
         R = Rotation.from_euler("xyz", pose[3:]).as_matrix()
         np.testing.assert_allclose(R, item.T_world[:3, :3], atol=1e-8)
-    assert models["window_1"].findtext("static") == "true"
-    assert models["desk_1"].findtext("static") == "false"
+    assert models["window_1"].findtext("static") == "1"
+    assert models["desk_1"].findtext("static") == "0"
     assert {j.get("type") for j in models["dresser_1"].iter("joint")} == {"prismatic"}
 
 
