@@ -11,6 +11,7 @@ from __future__ import annotations
 
 import argparse
 import base64
+import io
 import json
 import os
 import sys
@@ -25,6 +26,7 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 import anyio
 from mcp import Client
 from mcp.client.stdio import StdioServerParameters
+from PIL import Image
 
 from diorama_app.projects.begin import begin_with_scene
 from diorama_app.projects.example import EXAMPLE
@@ -36,7 +38,8 @@ from diorama_core.scene.schema import scene_from_json
 from diorama_core.scene.types import Scene
 
 ROOT = Path(__file__).resolve().parents[1]
-SHOWN_CHARS = 420
+QUALITY = 82
+SHOWN_CHARS = 300
 """Of an answer in the written session."""
 
 
@@ -86,7 +89,7 @@ async def session(home: Path, out: Path, pictures: Path) -> None:
     """From the example's picture to a tidied, exported room, written down."""
     async with Client(server(home), read_timeout_seconds=600.0) as client:
         agent = Agent(client)
-        boxes = json.loads((EXAMPLE / "boxes.json").read_text())
+        boxes = json.loads((EXAMPLE / "boxes.json").read_text())["boxes"]
         room = await agent.call("build", photo=str(EXAMPLE / "photo.jpg"), boxes=boxes)
         agent.say(f"{len(room['objects'])} objects; {room['room'][0]['role']} and {len(room['room']) - 1} other planes")
         await agent.call("look", view="photo")
@@ -107,6 +110,12 @@ async def session(home: Path, out: Path, pictures: Path) -> None:
         done = await agent.call("edit", words="paint the wall behind the sofa sage")
         agent.say("; ".join(done["lines"]))
         await agent.call("optimise")
+        for object_id in (after := await agent.call("check"))["problems"]:
+            held_by = next(o["held_by"] for o in room["objects"] if o["id"] == object_id)
+            if held_by not in after["problems"]:
+                agent.say(f"{object_id}: {' and '.join(after['problems'][object_id])}; to be moved beside the sofa")
+                beside = {"relation": "beside", "targets": ["sofa_1"]}
+                await agent.call("edit", edits=[{"do": "move", "objects": [object_id], "places": [beside]}])
         after = await agent.call("check")
         agent.say(f"collisions {len(before['collisions'])} -> {len(after['collisions'])}, objects with problems "
                   f"{len(before['problems'])} -> {len(after['problems'])}, walkways {after['walkways']}")  # fmt: skip
@@ -117,8 +126,8 @@ async def session(home: Path, out: Path, pictures: Path) -> None:
         agent.say(f"{file['bytes'] / 1e6:.1f} MB")
     home_name = str(home)
     out.write_text("\n\n".join(line.replace(home_name, "~").replace(str(ROOT), ".") for line in agent.log) + "\n")
-    for name, content in zip(("agent-ids.png", "agent-room.png"), agent.pictures, strict=True):
-        (pictures / name).write_bytes(content)
+    for name, content in zip(("agent-ids.jpg", "agent-room.jpg"), agent.pictures, strict=True):
+        Image.open(io.BytesIO(content)).save(pictures / name, quality=QUALITY)
 
 
 async def prompts(home: Path, scenes: int) -> TextBench:

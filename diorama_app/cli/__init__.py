@@ -18,6 +18,7 @@ from diorama_app.cli.importing import add_import
 from diorama_app.cli.library import add_library
 from diorama_app.cli.mcp import add_mcp
 from diorama_app.cli.models import add_models
+from diorama_app.cli.project import add_project
 from diorama_app.cli.scenes import add_build, add_export, add_optimise, add_picture, add_serve
 from diorama_app.cli.text import add_text
 from diorama_core.errors import Cancelled, DioramaError
@@ -98,6 +99,7 @@ def _parser() -> argparse.ArgumentParser:
         add_bench,
         add_api,
         add_mcp,
+        add_project,
         add_doctor,
     ):
         add(commands)

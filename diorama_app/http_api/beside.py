@@ -31,6 +31,8 @@ from diorama_core.io.atomic import write_atomically
 log = logging.getLogger(__name__)
 
 HOST = "127.0.0.1"
+END_S = 1
+"""Seconds within which answers under way must end; events never do."""
 START_S, ANSWER_S = 10.0, 2.0
 """Within which the server must listen, and a server that was noted must answer."""
 
@@ -54,7 +56,14 @@ def api_beside(running: Running, token: str | None) -> Iterator[str]:
     listening = listen(HOST, 0)
     app = create_app(None, Visitors(HOST, token), opened)
     config = uvicorn.Config(
-        app, log_level="warning", timeout_keep_alive=IDLE_S, http=Connection, server_header=False, ws="none"
+        app,
+        log_level="warning",
+        timeout_keep_alive=IDLE_S,
+        timeout_graceful_shutdown=END_S,
+        http=Connection,
+        server_header=False,
+        lifespan="off",
+        ws="none",
     )
     server = uvicorn.Server(config)
     thread = threading.Thread(target=server.run, kwargs={"sockets": [listening]}, daemon=True, name="api")
@@ -68,7 +77,7 @@ def api_beside(running: Running, token: str | None) -> Iterator[str]:
         yield address
     finally:
         noted.unlink(missing_ok=True)
-        server.should_exit = server.force_exit = True
+        server.should_exit = True
         thread.join(START_S)
         opened.close()
         listening.close()

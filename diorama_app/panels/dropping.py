@@ -14,7 +14,7 @@ from diorama_app.panels.upload_field import Take, hidden_upload
 from diorama_app.projects.dropped import Dropped, Reading
 from diorama_app.projects.dropped_files import files_of, sources_of, upload_of
 from diorama_app.reconstruction.dropped_photos import begin_each, build_one_room
-from diorama_app.reconstruction.opening_job import open_file
+from diorama_app.reconstruction.opening_job import open_file, open_packed
 from diorama_app.session.client import Client
 from diorama_app.web.html import text
 
@@ -56,6 +56,8 @@ class DroppedFiles:
                 import_model(client, name, content)
             case "scene":
                 open_file(client, name, content)
+            case "project":
+                open_packed(client, name, content)
 
 
 def listen_for_drops(gui: viser.GuiApi, client: Client, take: Take) -> None:

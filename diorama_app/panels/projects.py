@@ -16,6 +16,7 @@ from diorama_app.commands.registry import CommandTable
 from diorama_app.panels.fields import GO_COLOUR, QUIET_COLOUR, enable, on_press
 from diorama_app.panels.upload_field import UploadField
 from diorama_app.projects import manage as project_care
+from diorama_app.projects.packing import SUFFIX
 from diorama_app.reconstruction.opening_job import open_file
 from diorama_app.session.client import Client
 from diorama_app.session.session import EditorSession
@@ -52,7 +53,7 @@ class Projects:
             "Open a file",
             lambda name, content: open_file(client, name, content),
             color=QUIET_COLOUR,
-            mime_type=",".join(SUFFIXES),
+            mime_type=",".join((*SUFFIXES, SUFFIX)),
         )
         self._notes = LiveHtml(gui)
         self._list = LiveHtml(gui, self._act)

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
+from diorama_app.projects.packing import is_packed
 from diorama_app.projects.photo_folder import DATA, PHOTOS
 from diorama_core.errors import DioramaError, InputError
 from diorama_core.io.archives import content_of, unpacked
@@ -25,8 +26,9 @@ if TYPE_CHECKING:
     from diorama_core.importing.forms import SceneForm, SceneParts
     from diorama_core.library.ingest.models import ModelForm
 
-Action = Literal["photo", "inputs", "photos", "room", "models", "scene"]
-"""A project of a photo; more about the open photo; a project each; one room of all; furniture; a project of a scene."""
+Action = Literal["photo", "inputs", "photos", "room", "models", "scene", "project"]
+"""A project of a photo; more about the open photo; a project each; one room of all; furniture; a project of a scene; a
+packed project."""
 
 MAX_FILES, MAX_BYTES, MAX_NAMED = 2000, 1_000_000_000, 6
 """Of what was dropped: files, bytes that it may unpack to, and files that a message names."""
@@ -101,6 +103,8 @@ def understood(content: bytes, name: str, photo_size: tuple[int, int] | None) ->
 
 def is_one_file(head: FileHead) -> bool:
     """Whether a zip archive is a format of its own."""
+    if is_packed(head.names):
+        return True
     arrays = bool(head.names) and all(n.endswith(".npy") for n in head.names)
     if arrays or _is_flat(head):
         return arrays
@@ -137,6 +141,8 @@ def _of_file(path: Path, name: str, photo_size: tuple[int, int] | None) -> tuple
         InputError: it is none that is read.
     """
     head = head_of(path)
+    if is_packed(head.names):
+        return (Reading("project", "a packed project, as a new one"),)
     flat = head.head.startswith(_FLAT) or head.head[4:8] == b"ftyp"
     solid = () if flat or head.text[:1] in ("[", "{", "<") else _solid_readings(path, head)
     if solid and not head.text:

@@ -88,7 +88,7 @@ def duplicate_project(folder: Path, projects_dir: Path) -> Project:
         # Copied beside and renamed, so that a copy cut short is never taken for a project.
         with tempfile.TemporaryDirectory(prefix=".copy-", dir=projects_dir) as part:
             made = Path(part) / target.name
-            shutil.copytree(folder, made, ignore=_not_copied)
+            shutil.copytree(folder, made, ignore=not_copied)
             copy = Project.open(made)
             for path in (copy.scene_path, copy.stages_folder / "inputs.zip"):
                 if path.exists():
@@ -101,8 +101,8 @@ def duplicate_project(folder: Path, projects_dir: Path) -> Project:
     return Project.open(target)
 
 
-def _not_copied(folder: str, names: list[str]) -> set[str]:
-    """Earlier versions, hidden files, and what is neither a file nor a folder: links, pipes and devices."""
+def not_copied(folder: str, names: list[str]) -> set[str]:
+    """What no copy has: earlier versions, hidden files, and what is neither file nor folder: links, pipes, devices."""
     kinds = {name: os.lstat(os.path.join(folder, name)).st_mode for name in names}
     odd = {name for name, mode in kinds.items() if not (stat.S_ISREG(mode) or stat.S_ISDIR(mode))}
     return odd | {name for name in names if name == "backups" or name.startswith(".")}

@@ -7,6 +7,7 @@ import tempfile
 from pathlib import Path
 
 from diorama_app.projects.begin import new_project
+from diorama_app.projects.packing import SUFFIX, unpack_project
 from diorama_app.session.client import Client
 from diorama_app.session.session import EditorSession
 from diorama_core.errors import InputError
@@ -36,6 +37,9 @@ def open_file(client: Client, name: str, content: bytes) -> None:
     """
     session = client.session
     file_name = Path(name.replace("\\", "/")).name[:100]
+    if Path(file_name).suffix.lower() == SUFFIX:
+        open_packed(client, file_name, content)
+        return
     if Path(file_name).suffix.lower() not in SUFFIXES:
         raise InputError(f"{file_name} cannot be opened as a scene; choose a {', '.join(SUFFIXES)} file")
 
@@ -46,6 +50,26 @@ def open_file(client: Client, name: str, content: bytes) -> None:
             progress.report(0.9, "saving the project")
             project = _saved(session, file_name, opened, shapes)
         client.post(lambda: _show(client, project, file_name))
+
+    session.jobs.start("import", f"Opening {file_name}", work)
+
+
+def open_packed(client: Client, name: str, content: bytes) -> None:
+    """Make a project of a packed one beside everything else, and open it.
+
+    Args:
+        client: who uploaded it.
+        name: the file's name, after which the folder is named.
+        content: the file.
+    """
+    session, file_name = client.session, Path(name.replace("\\", "/")).name[:100]
+
+    def work(progress: Progress) -> None:
+        with tempfile.TemporaryDirectory(prefix="upload-") as folder:
+            path = Path(folder) / file_name
+            write_atomically(path, content, error=InputError)
+            project = unpack_project(path, session.projects_dir)
+        client.post(lambda: session.visit(client, project, f"Opened {project.name}, which came as {file_name}."))
 
     session.jobs.start("import", f"Opening {file_name}", work)
 

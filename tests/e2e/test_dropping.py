@@ -10,7 +10,9 @@ import trimesh
 from PIL import Image
 from playwright.sync_api import expect
 
+from diorama_app.projects.packing import pack_project
 from diorama_app.session.client import Placing
+from tests.app.small_room import make_project
 from tests.e2e.browser import LEARN_MS, EditorPage
 from tests.e2e.conftest import keep_picture
 from tests.multiview.test_plumb_lines import bent, lines
@@ -33,6 +35,13 @@ def photo(path: Path, seed: int = 0) -> Path:
     rgb = np.random.default_rng(seed).integers(0, 255, (HEIGHT // 8, WIDTH // 8, 3), dtype=np.uint8)
     Image.fromarray(rgb).resize((WIDTH * 3, HEIGHT * 3), Image.Resampling.BICUBIC).save(path)
     return path
+
+
+def test_a_packed_project_opens(editor: EditorPage, tmp_path: Path) -> None:
+    packed = pack_project(make_project(tmp_path / "elsewhere" / "attic"), tmp_path / "attic.diorama")
+    drop(editor, packed)
+    editor.notice("Opened attic, which came as attic.diorama.")
+    editor.until(lambda: editor.session.project.folder.name == "attic", "the project", seconds=90)
 
 
 def test_a_photo_with_boxes_then_its_depth(editor: EditorPage, tmp_path: Path) -> None:

@@ -1,0 +1,47 @@
+from __future__ import annotations
+
+import argparse
+import json
+from pathlib import Path
+
+import pytest
+
+from diorama_app.cli import main
+from diorama_app.cli.project import add_project
+from tests.app.small_room import make_project
+
+
+def test_projects_are_listed_copied_packed_and_unpacked(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    home, away = tmp_path / "home", tmp_path / "away"
+    make_project(home / "room")
+    where = ["--projects", str(home)]
+
+    def said(*command: str) -> str:
+        assert main(["project", *command]) == 0
+        return capsys.readouterr().out
+
+    assert "room-2" in said("copy", "room", *where)
+    listed = json.loads(said("list", *where, "--json"))
+    assert [Path(p["project"]).name for p in listed["projects"]] in (["room-2", "room"], ["room", "room-2"])
+    assert "2 in" in said("list", *where)
+    file = tmp_path / "sent.diorama"
+    assert "MB" in said("zip", "room", *where, "-o", str(file))
+    made = json.loads(said("unzip", str(file), "--projects", str(away), "--json"))
+    assert Path(made["path"]) == away / "sent"
+    assert (away / "sent" / "scene.json").read_bytes() == (home / "room" / "scene.json").read_bytes()
+
+
+@pytest.mark.parametrize("command", [["copy", "nowhere"], ["zip", "nowhere"], ["unzip", "nowhere.diorama"]])
+def test_what_is_not_there_is_one_line(command: list[str], tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["project", *command, "--projects", str(tmp_path)]) == 1
+    error = capsys.readouterr().err
+    assert error.count("\n") == 1
+    assert "nowhere" in error
+
+
+def test_an_action_is_asked_for(capsys: pytest.CaptureFixture[str]) -> None:
+    parser = argparse.ArgumentParser()
+    add_project(parser.add_subparsers())
+    with pytest.raises(SystemExit, match="2"):
+        parser.parse_args(["project"])
+    assert "list|copy|zip|unzip" in capsys.readouterr().err
