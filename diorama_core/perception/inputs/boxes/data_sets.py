@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
 from diorama_core.errors import InputError
 from diorama_core.io.bounded import parse_json, shortened
 from diorama_core.perception.inputs.boxes.dictionaries import box_of, score_of, word_of
-from diorama_core.perception.inputs.boxes.entry import UNNAMED, BoxEntry, BoxFile, BoxText, Size
+from diorama_core.perception.inputs.boxes.entry import UNNAMED, BoxEntry, BoxFile, BoxText, Size, picture_of
 from diorama_core.perception.inputs.json_values import objects_of, size_of
 
 _RESULT_KEYS = frozenset({"image_id", "category_id", "area", "iscrowd", "segmentation"})
@@ -30,9 +30,16 @@ def read_data_set(text: BoxText) -> BoxFile:
     document: Any = text.document
     images = [i for i in document.get("images") or () if isinstance(i, dict)]
     image, notes = _image_of(images, text)
-    rows = [a for a in document["annotations"] if image is None or a.get("image_id") == image.get("id")]
+    rows = [a for a in _annotations(document) if image is None or a.get("image_id") == image.get("id")]
     file = _read(rows, _categories(document), text.source.name)
     return BoxFile(file.entries, _size(image), notes=(*notes, *file.notes))
+
+
+def _annotations(document: Mapping[str, Any]) -> Iterator[Mapping[str, Any]]:
+    """One for each box: those of panoptic segmentation are segments within one for each picture."""
+    for row in document["annotations"]:
+        segments = objects_of(row.get("segments_info"))
+        yield from [{**segment, "image_id": row.get("image_id")} for segment in segments] or [row]
 
 
 def is_results(text: BoxText) -> bool:
@@ -64,16 +71,8 @@ def _read(rows: Sequence[Mapping[str, Any]], names: Mapping[int, str], where: st
 def _image_of(images: Sequence[Mapping[str, Any]], text: BoxText) -> tuple[Mapping[str, Any] | None, tuple[str, ...]]:
     if len(images) < 2:
         return (images[0] if images else None), ()
-    stem = Path(text.photo_name).stem.lower()
-    named = [i for i in images if Path(str(i.get("file_name", ""))).stem.lower() == stem]
-    if len(named) != 1:
-        raise InputError(
-            f"{text.source.name}: this COCO file is of {len(images)} pictures, none of them called "
-            f"{shortened(text.photo_name, 60)}; keep the annotations of this photo"
-        )
-    return named[0], (
-        f"{text.source.name} is of {len(images)} pictures; the boxes of {named[0]['file_name']} are used",
-    )
+    named = picture_of(images, [i.get("file_name", "") for i in images], text, "COCO file")
+    return named, (f"{text.source.name} is of {len(images)} pictures; the boxes of {named['file_name']} are used",)
 
 
 def _rows_of_photo(rows: Sequence[Mapping[str, Any]], text: BoxText) -> list[Mapping[str, Any]]:

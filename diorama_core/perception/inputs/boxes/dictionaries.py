@@ -29,16 +29,21 @@ _SCALARS: tuple[tuple[tuple[str, str, str, str], Layout], ...] = (
     (("cx", "cy", "width", "height"), "centred"), (("cx", "cy", "w", "h"), "centred"),
     (("x", "y", "width", "height"), "sized"), (("x", "y", "w", "h"), "sized"),
 )  # fmt: skip
+_CORNERS = (
+    ("topleft", "bottomright"), ("lefttop", "rightbottom"), ("tl", "br"), ("min", "max"), ("start", "end"),
+    ("p1", "p2"), ("pt1", "pt2"),
+)  # fmt: skip
+"""Keys of two opposite corners, each [x, y] or {"x":, "y":}."""
 _NESTED = (
     "bbox", "box", "boundingbox", "bndbox", "rect", "rectangle", "coordinates", "value", "shapeattributes",
-    "boundingpoly", "polygon", "bounds",
+    "boundingpoly", "polygon", "bounds", "points", "regionshapeattributes", "box2d",
 )  # fmt: skip
 _POINTS = ("points", "polygon", "vertices", "normalizedvertices", "exterior", "segmentation", "contour")
 _WORDS = (
     "class", "label", "name", "category", "categoryname", "classname", "labelname", "classtitle", "type", "tag",
     "object", "text", "caption", "phrase", "title", "rectanglelabels", "polygonlabels", "labels",
 )  # fmt: skip
-_SHAPES = frozenset({"rectangle", "rect", "bbox", "box", "polygon", "rectanglelabels", "bounding_box", "bounding box"})
+FIGURES = frozenset({"rectangle", "rect", "bbox", "box", "polygon", "rectanglelabels", "bounding_box", "bounding box"})
 """What tools say of the drawn figure under `type`, not of what is in it: elsewhere a box is a box."""
 _SCORES = ("score", "confidence", "conf", "probability", "prob", "predictediou", "certainty")
 
@@ -61,8 +66,13 @@ def box_numbers(entry: Mapping[str, Any], where: str) -> tuple[Corners, Layout, 
         if all(name in keys for name in names) and not any(isinstance(keys[n], list | dict) for n in names):
             return numbers([keys[name] for name in names], where), layout, False
     for name, layout in _LISTS:
-        if isinstance(keys.get(name), list) and not _is_points(keys[name]):
-            return numbers(keys[name], where), layout, name in ("bbox", "box", "rect", "coordinates")
+        given = keys.get(name)
+        given = re.split(r"[,\s]+", given.strip("[]() ")) if isinstance(given, str) else given
+        if isinstance(given, list) and not _is_points(given):
+            return numbers(given, where), layout, name in ("bbox", "box", "rect", "coordinates")
+    for low, high in _CORNERS:
+        if low in keys and high in keys and (extent := _extent([keys[low], keys[high]], where)) is not None:
+            return extent, "corners", False
     for name in _POINTS:
         if name in keys and (extent := _extent(keys[name], where)) is not None:
             return extent, "corners", False
@@ -91,7 +101,7 @@ def word_of(entry: Mapping[str, Any], names: Mapping[int, str] | None = None) ->
     keys = keys_of(entry)
     for key in _WORDS:
         word = _word(keys.get(key))
-        if word is not None and not (key == "type" and word.strip().lower() in _SHAPES):
+        if word is not None and not (key == "type" and word.strip().lower() in FIGURES):
             return word
     for key in ("regionattributes", "attributes", "value"):
         inner = keys.get(key)

@@ -4,20 +4,35 @@ from __future__ import annotations
 
 import csv
 import re
+from typing import Any
 
+from diorama_core.errors import InputError
+from diorama_core.io.bounded import parse_json
 from diorama_core.perception.inputs.boxes.dictionaries import box_numbers, box_of, numbers, score_of, word_of
-from diorama_core.perception.inputs.boxes.entry import UNNAMED, BoxEntry, BoxFile, BoxText, Corners, Layout, from_layout
-from diorama_core.perception.inputs.boxes.lists import size_in
+from diorama_core.perception.inputs.boxes.entry import (
+    UNNAMED,
+    BoxEntry,
+    BoxFile,
+    BoxText,
+    Corners,
+    Layout,
+    from_layout,
+    picture_of,
+)
+from diorama_core.perception.inputs.boxes.nested import PICTURE_FILE, size_in
 from diorama_core.perception.inputs.source import Source
 
 _NAME_FILES = (
     "classes.txt", "obj.names", "*.names", "labels.txt", "data.yaml", "*.yaml", "../data.yaml", "../classes.txt",
-    "../*.yaml",
+    "../*.yaml", "../../data.yaml", "../../classes.txt", "../../*.yaml",
 )  # fmt: skip
 _YAML_NAMES = re.compile(
     r"^names\s*:\s*(?:\[(?P<flow>[^\]]*)\]|\{(?P<map>[^}]*)\}|\n(?P<block>(?:[ \t-].*(?:\n|$))+))", re.MULTILINE
 )
 _KITTI_WORDS = 15
+_PICTURE_COLUMN = r"(?:image|file|picture|photo)?_?(?:name|id|path|file)|image|filename|external_id"
+_PARTS = ("TRAIN", "VALIDATE", "VALIDATION", "TEST", "UNASSIGNED")
+"""Of a data set, as the first word of a line."""
 
 
 def is_yolo(text: BoxText) -> bool:
@@ -52,15 +67,20 @@ def is_table(text: BoxText) -> bool:
 def read_table(text: BoxText) -> BoxFile:
     """Rows of the photo, where a column names pictures."""
     rows = _table(text)
-    named = [r for r in rows if any(v and text.photo_name == v.rsplit("/", 1)[-1] for v in r.values())]
+    pictures = next((k for k in rows[0] if re.fullmatch(_PICTURE_COLUMN, k.lower())), None)
+    if pictures is not None:
+        by_name: dict[str, list[dict[str, str]]] = {}
+        for row in rows:
+            by_name.setdefault(row[pictures], []).append(row)
+        rows = picture_of(list(by_name.values()), list(by_name), text, "table")
     entries = []
-    for index, row in enumerate(named or rows):
+    for index, row in enumerate(rows):
         box = _table_box(row)
         values = numbers([0] if box is None else box[0], f"{text.source.name}: row {index + 1}")
         corners = from_layout(values, box[1] if box is not None else "corners")
-        entries.append(BoxEntry(corners, word_of(row), score_of(_numbers_in(row))))
+        entries.append(BoxEntry(corners, word_of({**row, **_values_in(row)}), score_of(_values_in(row))))
     # The width of a picture is a column of its own only where the box has corners.
-    size = size_in(_numbers_in(rows[0])) if rows and "xmin" in "".join(rows[0]).lower() else None
+    size = size_in(_values_in(rows[0])) if rows and "xmin" in "".join(rows[0]).lower() else None
     return BoxFile(tuple(entries), size)
 
 
@@ -72,12 +92,17 @@ def is_words(text: BoxText) -> bool:
 
 def read_words(text: BoxText) -> BoxFile:
     """A word, perhaps a score, and four numbers a line."""
-    found = [(_worded(row), index) for index, row in enumerate(_rows(text))]
-    entries = [
-        BoxEntry(numbers(pair[1], f"{text.source.name}: line {index + 1}"), pair[0])
-        for pair, index in found
-        if pair is not None
-    ]
+    by_name: dict[str, list[BoxEntry]] = {}
+    for index, row in enumerate(_rows(text)):
+        pair, where = _worded(row), f"{text.source.name}: line {index + 1}"
+        if pair is None:
+            continue
+        words, values = pair
+        picture = next((w for w in words if PICTURE_FILE.search(w)), "")
+        word = " ".join(w for w in words if w != picture and w not in _PARTS) or UNNAMED
+        corners = box_of({"points": [float(v) for v in values]}, where) if len(values) == 8 else numbers(values, where)
+        by_name.setdefault(picture, []).extend([] if corners is None else [BoxEntry(corners, word)])
+    entries = picture_of(list(by_name.values()), list(by_name), text, "list")
     return BoxFile(tuple(entries), ambiguous_layout=True)
 
 
@@ -85,7 +110,8 @@ def _rows(text: BoxText) -> list[list[str]]:
     if not isinstance(text.document, str):
         return []
     lines = [line.strip() for line in text.document.splitlines()]
-    return [re.split(r"[\s,;]+", line) for line in lines if line and not line.startswith("#")]
+    skipped = ("#", "imagesource:", "gsd:")  # comments, and the head of DOTA's files
+    return [[v for v in re.split(r"[\s,;]+", line) if v] for line in lines if line and not line.startswith(skipped)]
 
 
 def _is_yolo_row(row: list[str]) -> bool:
@@ -97,19 +123,22 @@ def _is_yolo_row(row: list[str]) -> bool:
     return whole and (len(shares) in (4, 5) or len(shares) % 2 == 0) and all(-0.1 <= (v or 0.0) <= 1.1 for v in shares)
 
 
-def _worded(row: list[str]) -> tuple[str, list[str]] | None:
-    """The word and the four numbers of a line."""
+def _worded(row: list[str]) -> tuple[list[str], list[str]] | None:
+    """The words and the four numbers of a line, or the eight of four corners."""
     if (
         len(row) in (_KITTI_WORDS, _KITTI_WORDS + 1)
         and _number(row[0]) is None
         and all(_number(v) is not None for v in row[1:])
     ):
-        return row[0], row[4:8]
+        return row[:1], row[4:8]
     values = [v for v in row if _number(v) is not None]
     words = [v for v in row if _number(v) is None]
+    words = [w.strip("\"'") for w in words]
+    if words and len(values) in (8, 9) and all(_number(v) is not None for v in row[:8]):
+        return words, values[:8]  # DOTA's
     if not words or len(values) not in (4, 5):
         return None
-    return " ".join(words).strip("\"'"), values[-4:] if _number(row[0]) is None else values[:4]
+    return words, values[-4:] if _number(row[0]) is None else values[:4]
 
 
 def _table(text: BoxText) -> list[dict[str, str]]:
@@ -125,7 +154,7 @@ def _table(text: BoxText) -> list[dict[str, str]]:
 
 
 def _table_box(row: dict[str, str]) -> tuple[list[float], Layout] | None:
-    values = _numbers_in(row)
+    values = _values_in(row)
     try:
         found = box_numbers(values, "")
     except Exception:  # a cell holds no number; the reader says which
@@ -133,8 +162,16 @@ def _table_box(row: dict[str, str]) -> tuple[list[float], Layout] | None:
     return None if found is None else (list(found[0]), found[1])
 
 
-def _numbers_in(row: dict[str, str]) -> dict[str, float]:
-    return {k: number for k, v in row.items() if (number := _number(v)) is not None}
+def _values_in(row: dict[str, str]) -> dict[str, Any]:
+    """The cells that hold a number, or an object of JSON as in VIA's tables."""
+    values: dict[str, Any] = {k: number for k, v in row.items() if (number := _number(v)) is not None}
+    for key, cell in row.items():
+        if cell.startswith("{"):
+            try:
+                values[key] = parse_json(cell.encode(), key, InputError)
+            except InputError:
+                continue
+    return values
 
 
 def _number(word: str) -> float | None:

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+import re
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 from diorama_core.errors import InputError
 from diorama_core.io.bounded import shortened
 from diorama_core.library.labels import names_a_kind
 from diorama_core.perception.inputs.boxes.dictionaries import (
+    FIGURES,
     box_numbers,
     has_class_number,
     keys_of,
@@ -26,8 +28,18 @@ from diorama_core.perception.inputs.boxes.entry import (
     Size,
     Unit,
     from_layout,
+    picture_of,
 )
-from diorama_core.perception.inputs.json_values import objects_of, size_of
+from diorama_core.perception.inputs.boxes.nested import (
+    class_names_in,
+    has_box,
+    lists_in,
+    picture_name,
+    pictures_in,
+    rows_of_photo,
+    size_in,
+)
+from diorama_core.perception.inputs.json_values import objects_of
 
 _COLUMNS = ("boxes", "bboxes", "predboxes", "xyxy", "detectionboxes", "bbox")
 _COLUMN_WORDS = (
@@ -41,19 +53,19 @@ _FORMATS: dict[str, Layout] = {
     "xyxy": "corners",
     "pascalvoc": "corners",
     "voc": "corners",
+    "yxyx": "rows",
     "cxcywh": "centred",
 }
-MAX_NESTING = 4
 
 
 def is_list(text: BoxText) -> bool:
     """A JSON list of objects with a box each."""
-    return any(_has_box(r) for r in objects_of(text.document))
+    return any(has_box(r) for r in objects_of(text.document))
 
 
 def read_list(text: BoxText) -> BoxFile:
     """The annotations of a list."""
-    return read_entries(objects_of(text.document), text.source.name)
+    return read_entries(rows_of_photo(objects_of(text.document), text), text.source.name)
 
 
 def read_entries(
@@ -63,6 +75,7 @@ def read_entries(
     layout: Layout | None = None,
     size: Size | None = None,
     unit: Unit | None = None,
+    names: Mapping[int, str] | None = None,
 ) -> BoxFile:
     """Annotations whose keys may be any program's.
 
@@ -72,6 +85,7 @@ def read_entries(
         layout: how four numbers are to be read, where the file says so.
         size: of the annotated picture, where the file says so.
         unit: of the coordinates, where the file says so.
+        names: of the numbers that stand for classes, where the file says so.
 
     Raises:
         InputError: an entry has no box, or none of four finite numbers.
@@ -86,9 +100,9 @@ def read_entries(
             )
         values, own, open_ = box
         ambiguous = ambiguous and open_ and layout is None
-        turned = "box2d" in keys_of(row)
+        turned = isinstance(keys_of(row).get("box2d"), list)
         values = (values[1], values[0], values[3], values[2]) if turned else values
-        found.append(BoxEntry(from_layout(values, layout or own), word_of(row), score_of(row)))
+        found.append(BoxEntry(from_layout(values, layout or own), word_of(row, names), score_of(row)))
         unit = "thousandths" if turned else unit
     words, notes = _words(rows, found)
     entries = tuple(BoxEntry(e.corners, w, e.score) for e, w in zip(found, words, strict=True))
@@ -116,7 +130,7 @@ def read_bare(text: BoxText) -> BoxFile:
 
 def is_columns(text: BoxText) -> bool:
     """A JSON object with a list of boxes, and lists of their names and scores beside it."""
-    return _columns(text.document) is not None
+    return _columns(text.document) is not None or any(_columns(d) is not None for d in objects_of(text.document))
 
 
 def read_columns(text: BoxText) -> BoxFile:
@@ -125,7 +139,11 @@ def read_columns(text: BoxText) -> BoxFile:
     Raises:
         InputError: the lists have different lengths.
     """
-    keys = keys_of(_columns(text.document) or {})
+    pictures = objects_of(text.document)
+    document: Any = text.document
+    if pictures:
+        document = picture_of(pictures, [picture_name(p) for p in pictures], text, "file")
+    keys = keys_of(_columns(document) or {})
     name = text.source.name
     boxes = next(rows for k in _COLUMNS if (rows := _rows_of_four(keys.get(k))))
     words = next((keys[k] for k in _COLUMN_WORDS if isinstance(keys.get(k), list)), None)
@@ -133,58 +151,80 @@ def read_columns(text: BoxText) -> BoxFile:
     for what, column in (("names", words), ("scores", scores)):
         if column is not None and len(column) != len(boxes):
             raise InputError(f"{name}: {len(boxes)} boxes have {len(column)} {what}; give one for each")
-    layout = _layout(keys)
+    # TensorFlow's object detection has the rows of the picture before its columns.
+    layout = _layout(keys) or ("rows" if "detectionboxes" in keys else None)
+    names = class_names_in(document)
     entries = tuple(
         BoxEntry(
             from_layout(numbers(row[:4], f"{name}: box {index}"), layout or "corners"),
-            word_of({"class": words[index]}) if words is not None else UNNAMED,
+            word_of({"class": words[index]}, names) if words is not None else UNNAMED,
             score_of({"score": scores[index]}) if scores is not None else 1.0,
         )
         for index, row in enumerate(boxes)
     )
     notes = () if any(e.word != UNNAMED for e in entries) else (f"{name} names no class; the boxes have no names",)
-    return BoxFile(entries, size_in(text.document), ambiguous_layout=layout is None, notes=notes)
+    return BoxFile(entries, size_in(document), ambiguous_layout=layout is None, notes=notes)
 
 
 def is_wrapped(text: BoxText) -> bool:
-    """A JSON object that holds such a list somewhere."""
-    return isinstance(text.document, dict) and next(_lists_in(text.document), None) is not None
+    """A JSON object, or a list of pictures, that holds such a list somewhere."""
+    document = text.document
+    inside = isinstance(document, dict) or bool(pictures_in(document))
+    return inside and next(lists_in(document), None) is not None
 
 
 def read_wrapped(text: BoxText) -> BoxFile:
-    """The longest list of annotations within an object, with the picture's size that stands beside it."""
+    """The longest list of annotations within an object, with the picture's size that stands beside it.
+
+    Raises:
+        InputError: it is of several pictures, and none is the photo.
+    """
     document: Any = text.document
-    rows, holder = max(_lists_in(document), key=lambda pair: len(pair[0]))
+    pictures = pictures_in(document)
+    if pictures:
+        document = picture_of(pictures, [picture_name(p) for p in pictures], text, "file")
+    found = list(lists_in(document))
+    if not found:
+        return BoxFile(())
+    rows, holder = max(found, key=lambda pair: len(pair[0]))
     layout = _layout(keys_of(holder)) or _layout(keys_of(document))
     first = keys_of(rows[0])
     if layout is None and {"x", "y", "width", "height", "class", "confidence"} <= first.keys():
         layout = "centred"  # Roboflow's x and y are the middle
     if layout is None and "coordinates" in first and isinstance(first["coordinates"], dict) and "label" in first:
         layout = "centred"  # CreateML's as well
-    return read_entries(rows, text.source.name, layout=layout, size=size_in(holder) or size_in(document))
+    size = size_in(holder) or size_in(document)
+    return read_entries(rows, text.source.name, layout=layout, size=size, names=class_names_in(text.document))
 
 
-def size_in(document: object) -> Size | None:
-    """The size of the annotated picture that an object states under one of the usual keys."""
-    if not isinstance(document, dict):
-        return None
-    keys = keys_of(document)
-    for name in ("image", "size", "imagesize", "picture", "metadata"):
-        inner = keys.get(name)
-        if isinstance(inner, list) and len(inner) == 1:
-            inner = inner[0]
-        if isinstance(inner, dict) and (size := size_in(inner)) is not None:
-            return size
-    pairs = (
-        ("imagewidth", "imageheight"),
-        ("originalwidth", "originalheight"),
-        ("imgwidth", "imgheight"),
-        ("width", "height"),
-    )
-    for w, h in pairs:
-        if (size := size_of(keys.get(w), keys.get(h))) is not None:
-            return size
-    return None
+def is_keyed(text: BoxText) -> bool:
+    """A JSON object with a box, or a list of boxes, under each name; or with a column under each number of a box."""
+    return bool(_keyed(text.document))
+
+
+def read_keyed(text: BoxText) -> BoxFile:
+    """Boxes by name or by number."""
+    return read_entries(_keyed(text.document), text.source.name)
+
+
+def _keyed(document: object) -> list[dict[str, Any]]:
+    if not isinstance(document, dict) or not document or has_box(document):
+        return []
+    columns = [list(v.values()) if isinstance(v, dict) else v for v in document.values()]
+    if all(isinstance(c, list) for c in columns) and len({len(c) for c in columns}) == 1 and columns[0]:
+        rows = [dict(zip(document, values, strict=True)) for values in zip(*columns, strict=True)]
+        if has_box(rows[0]) and not isinstance(rows[0].get("bbox"), dict):
+            return rows
+    rows = []
+    for key, value in document.items():
+        word = re.sub(r"[\s_-]*\d+$", "", str(key)) or UNNAMED
+        if isinstance(value, dict) and has_box(value):
+            rows.append(value if word_of(value) != UNNAMED else {**value, "class": word})
+        elif boxes := _rows_of_four(value) or _rows_of_four([value]):
+            rows += [{"bbox": list(b[:4]), "class": word} for b in boxes]
+        else:
+            return []
+    return rows
 
 
 def _words(rows: Sequence[Mapping[str, Any]], found: Sequence[BoxEntry]) -> tuple[list[str], tuple[str, ...]]:
@@ -193,7 +233,7 @@ def _words(rows: Sequence[Mapping[str, Any]], found: Sequence[BoxEntry]) -> tupl
     if any(w != UNNAMED for w in words) or not rows or any("class" in r for r in rows):
         return words, ()
     unused = unused_words(rows)
-    known = [k for k in unused if all(names_a_kind(str(r[k])) for r in rows)]
+    known = [k for k in unused if all(names_a_kind(str(r[k])) and str(r[k]).lower() not in FIGURES for r in rows)]
     if len(known) == 1:
         return [str(r[known[0]]) for r in rows], (f"the names of the boxes were read from '{shortened(known[0], 40)}'",)
     if unused:
@@ -210,28 +250,6 @@ def _layout(keys: Mapping[str, Any]) -> Layout | None:
         if isinstance(value, str) and (found := _FORMATS.get(value.lower().replace("_", "").replace(" ", ""))):
             return found
     return None
-
-
-def _has_box(row: Mapping[str, Any]) -> bool:
-    try:
-        return box_numbers(row, "") is not None
-    except InputError:
-        return True  # it has one, of wrong numbers
-
-
-def _lists_in(value: Any, level: int = 0) -> Iterator[tuple[list[dict[str, Any]], dict[str, Any]]]:
-    """Lists of objects with boxes, each with the object that holds it."""
-    if level > MAX_NESTING or not isinstance(value, dict | list):
-        return
-    if isinstance(value, list):
-        for inner in value[:64]:
-            yield from _lists_in(inner, level + 1)
-        return
-    for inner in value.values():
-        if rows := [r for r in objects_of(inner) if _has_box(r)]:
-            yield rows, value
-        else:
-            yield from _lists_in(inner, level + 1)
 
 
 def _columns(value: object, level: int = 0) -> dict[str, Any] | None:

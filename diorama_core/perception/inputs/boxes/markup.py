@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-from pathlib import Path
 from xml.etree.ElementTree import Element
 
 from diorama_core.errors import InputError
-from diorama_core.io.bounded import shortened
 from diorama_core.perception.inputs.boxes.dictionaries import box_of, numbers
-from diorama_core.perception.inputs.boxes.entry import UNNAMED, BoxEntry, BoxFile, BoxText, Corners
+from diorama_core.perception.inputs.boxes.entry import UNNAMED, BoxEntry, BoxFile, BoxText, Corners, picture_of
 from diorama_core.perception.inputs.json_values import size_of
 
 
@@ -89,16 +87,7 @@ def _figure(figure: Element, where: str) -> Corners | None:
 
 
 def _image_of(images: list[Element], text: BoxText) -> Element | None:
-    if len(images) < 2:
-        return images[0] if images else None
-    stem = Path(text.photo_name).stem.lower()
-    named = [i for i in images if Path(i.get("name") or "").stem.lower() == stem]
-    if len(named) != 1:
-        raise InputError(
-            f"{text.source.name}: this CVAT file is of {len(images)} pictures, none of them called "
-            f"{shortened(text.photo_name, 60)}; keep the annotations of this photo"
-        )
-    return named[0]
+    return picture_of(images, [i.get("name") for i in images], text, "CVAT file") if images else None
 
 
 def _number(word: str | None) -> float | None:

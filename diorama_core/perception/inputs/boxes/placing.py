@@ -9,7 +9,7 @@ import numpy as np
 
 from diorama_core.errors import InputError
 from diorama_core.perception.inputs.boxes.agreement import EdgeMap
-from diorama_core.perception.inputs.boxes.entry import BoxFile, Corners, Size
+from diorama_core.perception.inputs.boxes.entry import BoxFile, Corners, Layout, Size, from_layout
 from diorama_core.perception.inputs.photos.frame import ASPECT_TOLERANCE
 from diorama_core.perception.inputs.photos.reading import DecodedPhoto
 
@@ -35,6 +35,11 @@ LONG_SIDES = (
 )  # fmt: skip
 """Of the copies that networks and programs make, and of phones' and cameras' originals."""
 
+_LAYOUTS: dict[Layout, str] = {
+    "sized": "x, y, width, height",
+    "centred": "the middle, width and height",
+    "rows": "y1, x1, y2, x2",
+}
 _UNIT_SIDES = {"shares": 1.0, "percent": 100.0, "thousandths": 1000.0}
 
 
@@ -67,7 +72,8 @@ def placed_boxes(name: str, file: BoxFile, photo: DecodedPhoto) -> tuple[list[Co
         stored = file.size is not None and file.size == frame.stored_size != frame.full_size
         width, height = frame.stored_size if stored else frame.full_size
         corners = _scaled(corners, width / side, height / side)
-        readings = [_turned(corners, photo)] if stored else [_Reading(corners), *_stored(corners, photo)]
+        others = _other_layouts(corners) if file.ambiguous_layout else ()
+        readings = [_turned(corners, photo)] if stored else [_Reading(corners), *others, *_stored(corners, photo)]
     elif file.size is not None:
         readings = [_stated(name, corners, file.size, photo)]
     else:
@@ -124,9 +130,7 @@ def _others(corners: list[Corners], photo: DecodedPhoto, ambiguous: bool) -> Ite
     """Further readings of boxes without a stated size: other numbers, unturned, of a smaller or larger copy."""
     width, height = photo.frame.full_size
     if ambiguous:
-        sized = [(a, b, a + c, b + d) for a, b, c, d in corners]
-        note = "the four numbers of the boxes are x, y, width, height: so they agree with the picture"
-        yield _Reading(sized, note)
+        yield from _other_layouts(corners)
     yield from _stored(corners, photo)
     largest = 1.0 if _fits(corners, photo) else np.inf  # boxes of a larger copy reach beyond the photo
     for scale in sorted({*FRACTIONS, *(side / max(width, height) for side in LONG_SIDES)}):
@@ -139,6 +143,13 @@ def _others(corners: list[Corners], photo: DecodedPhoto, ambiguous: bool) -> Ite
                 f"{size[0]} x {size[1]} pixels; they were scaled"
             )
             yield _Reading(_scaled(corners, 1 / scale, 1 / scale), note)
+
+
+def _other_layouts(corners: list[Corners]) -> Iterator[_Reading]:
+    """The same four numbers as something else than corners."""
+    for layout, words in _LAYOUTS.items():
+        note = f"the four numbers of the boxes are {words}: so they agree with the picture"
+        yield _Reading([from_layout(c, layout) for c in corners], note)
 
 
 def _stored(corners: list[Corners], photo: DecodedPhoto) -> Iterator[_Reading]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from xml.etree.ElementTree import Element, ParseError, XMLParser
 
 from diorama_core.errors import InputError
@@ -14,6 +15,7 @@ from diorama_core.perception.inputs.source import Source
 
 EXAMPLE = 'a JSON list of {"bbox": [x1, y1, x2, y2], "class": "chair"}'
 _JSON_LINES = b"{"
+_FENCE = re.compile(rb"```(?:json)?\s*\n([\[{].*?)\n\s*```", re.DOTALL)
 
 BOX_FORMS: tuple[Form[BoxText, BoxFile], ...] = (
     Form(
@@ -66,6 +68,13 @@ BOX_FORMS: tuple[Form[BoxText, BoxFile], ...] = (
         lists.is_wrapped,
         lists.read_wrapped,
     ),
+    Form(
+        "boxes by name",
+        "pandas, scripts",
+        "an object with a box or a list of boxes under each name, or a column under each of the four numbers",
+        lists.is_keyed,
+        lists.read_keyed,
+    ),
     Form("bare boxes", "scripts", "lists of x1, y1, x2, y2 without names", lists.is_bare, lists.read_bare),
     Form(
         "Pascal VOC",
@@ -115,10 +124,13 @@ def parsed(source: Source, photo_name: str, photo_size: Size) -> BoxText:
 
 
 def _document(source: Source) -> object:
-    data = source.data.removeprefix(b"\xef\xbb\xbf").lstrip()
+    data = _utf8(source.data)
+    if fenced := _FENCE.search(data):
+        data = fenced[1]  # language models answer so
+    data = data.lstrip()
     if data[:1] in (b"[", _JSON_LINES):
         rows = _json_lines(data)
-        return parse_json(source.data, source.name, InputError, advice=f"boxes are {EXAMPLE}") if rows is None else rows
+        return parse_json(data, source.name, InputError, advice=f"boxes are {EXAMPLE}") if rows is None else rows
     if data[:1] == b"<":
         return _xml(data, source.name)
     try:
@@ -128,6 +140,16 @@ def _document(source: Source) -> object:
     if "\0" in text:
         raise InputError(f"{source.name}: this is no text; boxes are {EXAMPLE}")
     return text
+
+
+def _utf8(data: bytes) -> bytes:
+    """Text as UTF-8 without a byte order mark."""
+    if data.startswith((b"\xff\xfe", b"\xfe\xff")):
+        try:
+            return data.decode("utf-16").encode()
+        except UnicodeError:
+            return data
+    return data.removeprefix(b"\xef\xbb\xbf")
 
 
 def _json_lines(data: bytes) -> list[object] | None:

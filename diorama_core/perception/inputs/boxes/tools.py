@@ -9,8 +9,8 @@ from typing import Any
 from diorama_core.errors import InputError
 from diorama_core.io.bounded import shortened
 from diorama_core.perception.inputs.boxes.dictionaries import box_of, keys_of, score_of, word_of
-from diorama_core.perception.inputs.boxes.entry import BoxEntry, BoxFile, BoxText
-from diorama_core.perception.inputs.boxes.lists import size_in
+from diorama_core.perception.inputs.boxes.entry import BoxEntry, BoxFile, BoxText, picture_of
+from diorama_core.perception.inputs.boxes.nested import size_in
 
 MAX_NESTING = 8
 """Of the results of a task: a task, its annotations, their results, each in a list."""
@@ -71,11 +71,7 @@ def read_via(text: BoxText) -> BoxFile:
         InputError: of several pictures none is the photo.
     """
     pictures = _via_pictures(text.document)
-    stem = Path(text.photo_name).stem.lower()
-    named = [p for p in pictures if Path(str(p.get("filename", ""))).stem.lower() == stem]
-    if len(pictures) > 1 and len(named) != 1:
-        raise InputError(_of_others(text, len(pictures)))
-    regions = (named or pictures)[0]["regions"]
+    regions = picture_of(pictures, [p.get("filename", "") for p in pictures], text, "VIA file")["regions"]
     entries = []
     for index, region in enumerate(regions.values() if isinstance(regions, dict) else regions):
         shape = keys_of(region.get("shape_attributes") or {}) if isinstance(region, dict) else {}

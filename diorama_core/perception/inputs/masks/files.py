@@ -15,7 +15,7 @@ from PIL import Image, ImageDraw
 
 from diorama_core.errors import InputError
 from diorama_core.io.bounded import parse_json
-from diorama_core.perception.inputs.boxes.lists import size_in
+from diorama_core.perception.inputs.boxes.nested import size_in
 from diorama_core.perception.inputs.masks.pictures import MAX_MASK_MEGAPIXELS, one_object, without_void
 from diorama_core.perception.inputs.masks.run_lengths import decoded_runs
 from diorama_core.perception.inputs.masks.stack import MAX_STACKED, MaskMap, painted

@@ -131,8 +131,75 @@ TABLE = "filename,width,height,class,xmin,ymin,xmax,ymax\n" + "\n".join(
 )
 KITTI = "\n".join(rows(lambda x1, y1, x2, y2, w: f"{w} 0.0 0 0.0 {x1} {y1} {x2} {y2} 0 0 0 0 0 0 0"))
 
+PANOPTIC = {**COCO, "annotations": [{"image_id": 7, "segments_info": COCO["annotations"]}]}
+OTHERS = [{"bbox": [1, 1, 9, 9], "class": "bed"}] * 5
+NAMED = rows(lambda x1, y1, x2, y2, w: {"bbox": [x1, y1, x2, y2], "class": w})
+CORNERS = rows(lambda x1, y1, x2, y2, w: {"topLeft": {"x": x1, "y": y1}, "bottomRight": {"x": x2, "y": y2}, "name": w})
+TF_ROWS = {"detection_boxes": rows(lambda a, b, c, d, _: [b / 300, a / 400, d / 300, c / 400]),
+           "detection_class_entities": ["chair", "sofa"]}  # fmt: skip
+BY_KIND = {
+    "Labels": rows(
+        lambda a, b, c, d, w: {
+            "Name": w,
+            "Instances": [{"BoundingBox": {"Left": a / 400, "Top": b / 300, "Width": (c - a) / 400,
+                                           "Height": (d - b) / 300}}],
+        }
+    )
+}  # fmt: skip
+MANIFEST = {
+    "bb": {"annotations": rows(lambda a, b, c, d, w: {"left": a, "top": b, "width": c - a, "height": d - b,
+                                                      "class_id": len(w) - 4})},
+    "bb-metadata": {"class-map": {"1": "chair", "0": "sofa"}},
+}  # fmt: skip
+DATUMARO = {
+    "categories": {"label": {"labels": [{"name": "chair"}, {"name": "sofa"}]}},
+    "items": [
+        {
+            "id": "photo",
+            "annotations": [
+                {"type": "bbox", "label_id": k, "bbox": sized(*b[:4])} for k, b in enumerate(BOXES)
+            ],
+            "format": "xywh",
+        }
+    ],
+}  # fmt: skip
+VIA_TABLE = "filename,region_shape_attributes,region_attributes\n" + "\n".join(
+    rows(
+        lambda a, b, c, d, w: (
+            f'photo.png,"{{""name"":""rect"",""x"":{a},""y"":{b},""width"":{c - a},""height"":{d - b}}}",'
+            f'"{{""kind"":""{w}""}}"'
+        )
+    )
+)
+FENCED = "The boxes:\n```json\n" + json.dumps(NAMED) + "\n```\n"
+DOTA = "imagesource:x\ngsd:0.1\n" + "\n".join(rows(lambda a, b, c, d, w: f"{a} {b} {c} {b} {c} {d} {a} {d} {w} 0"))
+RETINANET = "\n".join(rows(lambda a, b, c, d, w: f"images/photo.png,{a},{b},{c},{d},{w}"))
+
 FORMS = [
     ("COCO data set", COCO),
+    ("COCO data set", PANOPTIC),
+    ("VGG Image Annotator", {"p": {"filename": "a/photo.png", "regions": VIA["photo.png1234"]["regions"]}}),
+    ("list of boxes", [{**row, "bbox": str(row["bbox"])} for row in NAMED]),
+    ("list of boxes", CORNERS),
+    ("list of boxes", FENCED),
+    ("list of boxes", [{"image": "a/b.png", **r} for r in OTHERS] + [{"image": "c/photo.png", **r} for r in NAMED]),
+    ("columns of boxes", TF_ROWS),
+    ("columns of boxes", [{"file": "b.png", "boxes": [[1, 1, 9, 9]], "labels": ["bed"]},
+                          {"file": "photo.png", "boxes": [list(b[:4]) for b in BOXES], "labels": ["chair", "sofa"]}]),
+    ("object with a list of boxes", BY_KIND),
+    ("object with a list of boxes", MANIFEST),
+    ("object with a list of boxes", DATUMARO),
+    ("object with a list of boxes", [{"name": "b.jpg", "labels": OTHERS}, {"name": "photo.jpg", "labels": NAMED}]),
+    ("object with a list of boxes", {"b.png": OTHERS, "photo.png": NAMED}),
+    ("object with a list of boxes", {"images": [{"file_name": "b.png", "objects": OTHERS},
+                                                {"file_name": "photo.png", "objects": NAMED}]}),
+    ("boxes by name", {"chair_1": [20, 30, 120, 230], "sofa_1": [200, 60, 380, 280]}),
+    ("boxes by name", {"chair": [[20, 30, 120, 230]], "sofa": [[200, 60, 380, 280]]}),
+    ("boxes by name", {k: {"0": v, "1": w} for k, v, w in zip(
+        ("xmin", "ymin", "xmax", "ymax", "name"), *BOXES, strict=True)}),
+    ("table of boxes", VIA_TABLE),
+    ("words and numbers", DOTA),
+    ("words and numbers", RETINANET),
     ("LabelMe", LABELME),
     ("Label Studio", STUDIO),
     ("VGG Image Annotator", VIA),
@@ -167,6 +234,7 @@ RECOGNISED_BY = {
     "CVAT": markup.is_cvat,
     "table of boxes": lines.is_table,
     "words and numbers": lines.is_words,
+    "boxes by name": lists.is_keyed,
 }
 
 
@@ -182,6 +250,41 @@ def test_each_form_knows_its_own_files(name: str) -> None:
 
 def content(document: object) -> bytes:
     return (document if isinstance(document, str) else json.dumps(document)).encode()
+
+
+@pytest.mark.parametrize(
+    "document",
+    [
+        [{"image": "a.png", **OTHERS[0]}, {"image": "b.png", **NAMED[0]}],
+        {"a.png": OTHERS, "b.png": NAMED},
+        {"samples": [{"filepath": "a.png", "objects": OTHERS}, {"filepath": "b.png", "objects": NAMED}]},
+        TABLE + "\n" + TABLE.split("\n", 1)[1].replace("photo", "b"),
+        RETINANET.replace("photo", "a") + "\n" + RETINANET.replace("photo", "b"),
+    ],
+)
+def test_boxes_of_other_pictures_are_refused(document: object) -> None:
+    source = Source(content(document).replace(b"photo.png", b"a.png"), "b")
+    with pytest.raises(InputError, match=r"is of 2 pictures, none of them called photo.png"):
+        read_boxes(source, decoded(*SIZE))
+
+
+@pytest.mark.parametrize(
+    "name", ["photo_png.rf.0a1b2c3d.png", "C:\\x\\PHOTO.JPG", "12ab34cd-photo.png", "a/photo.webp"]
+)
+def test_names_of_pictures_as_programs_change_them(name: str) -> None:
+    other = {"id": 8, "file_name": "other.png", "width": 10, "height": 10}
+    document = {**COCO, "images": [{**COCO["images"][0], "file_name": name}, other]}
+    assert len(read_boxes(Source(content(document), "c.json"), decoded(*SIZE))[0]) == 2
+
+
+def test_a_photo_without_boxes_among_others_is_said() -> None:
+    document = [{"name": "a.png", "labels": NAMED}, {"name": "photo.png", "labels": []}]
+    with pytest.raises(InputError, match="holds no box of the photo"):
+        read_boxes(Source(content(document), "b"), decoded(*SIZE))
+
+
+def test_utf_16_is_text() -> None:
+    assert len(read_boxes(Source(json.dumps(NAMED).encode("utf-16"), "b"), decoded(*SIZE))[0]) == 2
 
 
 @pytest.mark.parametrize(("name", "document"), FORMS, ids=[f"{k}-{n}" for k, (n, _) in enumerate(FORMS)])
