@@ -14,6 +14,7 @@ from diorama_core.perception.inputs.sorting import recognised
 from tests.fuzzing.mutate import Random, damaged, strange_json, strange_zip
 from tests.fuzzing.photo_readers import with_depth, with_masks
 from tests.perception.inputs.boxes.test_table import FORMS, SIZE, content
+from tests.perception.inputs.depth.test_colours import in_bytes
 from tests.perception.inputs.files import encoded, npy
 from tests.perception.inputs.photos.test_kinds_of_photos import raw_file
 
@@ -58,7 +59,9 @@ def depth_samples() -> tuple[bytes, ...]:
     x, y = np.meshgrid(np.arange(96) / 80 - 0.6, np.arange(64) / 80 - 0.4)
     points = np.stack([metres * x, metres * y, metres], axis=-1).astype(np.float32)
     pictures = [encoded(Image.fromarray(metres), "TIFF"), encoded(Image.fromarray(millimetres), "TIFF")]
-    return _archive(depth=metres), npy(millimetres), npy(points), millimetres.tobytes(), *pictures
+    pictures.append(encoded(Image.fromarray(in_bytes(millimetres, 0, 1))))
+    text = "\n".join(" ".join(f"{v:.3f}" for v in row) for row in metres).encode()
+    return _archive(depth=metres), npy(millimetres), npy(points), millimetres.tobytes(), text, *pictures
 
 
 def read_depth(data: bytes) -> object:

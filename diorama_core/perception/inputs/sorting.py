@@ -10,8 +10,10 @@ from PIL import Image
 
 from diorama_core.errors import InputError
 from diorama_core.perception.inputs.boxes.table import BOX_FORMS, parsed
+from diorama_core.perception.inputs.depth.colours import depth_of_colours
 from diorama_core.perception.inputs.depth.confidence import is_confidence
-from diorama_core.perception.inputs.depth.containers import DEPTH_FORMS, DepthContent
+from diorama_core.perception.inputs.depth.containers import DEPTH_FORMS
+from diorama_core.perception.inputs.depth.numpy_files import DepthContent
 from diorama_core.perception.inputs.form import form_of
 from diorama_core.perception.inputs.photos.decoding import open_picture, what_it_is
 from diorama_core.perception.inputs.photos.frame import ASPECT_TOLERANCE
@@ -100,6 +102,9 @@ def _of_picture(picture: Image.Image, source: Source, photo_size: tuple[int, int
         return (Recognised("masks", "a picture of masks"),)
     if pixels[:, 3].min() < 128:
         return Recognised("masks", "one object cut out of the photo"), photo
+    if picture.mode == "RGB" and picture.format == "PNG" and depth_of_colours(np.asarray(picture)) is not None:
+        packed = Recognised("depth", "a depth map packed in colours")
+        return (photo, packed) if bool((pixels[:, :3] == pixels[:, :1]).all()) else (packed, photo)
     grey = bool((pixels[:, :3] == pixels[:, :1]).all())
     return (photo, Recognised("depth", "a depth map of 8 bits")) if grey else (photo,)
 

@@ -28,7 +28,7 @@ def is_data_set(text: BoxText) -> bool:
 def read_data_set(text: BoxText) -> BoxFile:
     """The boxes of the photo, by its file name where the data set holds several pictures."""
     document: Any = text.document
-    images = [i for i in document.get("images") or () if isinstance(i, dict)]
+    images = objects_of(document.get("images"))
     image, notes = _image_of(images, text)
     rows = [a for a in _annotations(document) if image is None or a.get("image_id") == image.get("id")]
     file = _read(rows, _categories(document), text.source.name)

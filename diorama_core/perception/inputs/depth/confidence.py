@@ -10,7 +10,8 @@ import numpy as np
 from jaxtyping import Shaped
 
 from diorama_core.errors import InputError
-from diorama_core.perception.inputs.depth.containers import DEPTH_FORMS, DepthContent
+from diorama_core.perception.inputs.depth.containers import DEPTH_FORMS
+from diorama_core.perception.inputs.depth.numpy_files import DepthContent
 from diorama_core.perception.inputs.depth.voids import only_sure
 from diorama_core.perception.inputs.form import form_of
 from diorama_core.perception.inputs.source import Source

@@ -2,27 +2,31 @@
 
 from __future__ import annotations
 
-import io
 import math
-import zipfile
-from dataclasses import dataclass
 
 import numpy as np
 from jaxtyping import Shaped
-from numpy.lib import format as npy
 
 from diorama_core.errors import InputError
 from diorama_core.perception import exr
 from diorama_core.perception.inputs.depth.channels import one_channel
-from diorama_core.perception.inputs.depth.voids import only_sure
+from diorama_core.perception.inputs.depth.colours import depth_of_colours
+from diorama_core.perception.inputs.depth.number_tables import is_number_table, read_number_table
+from diorama_core.perception.inputs.depth.numpy_files import (
+    MAX_DEPTH_MEGAPIXELS,
+    DepthContent,
+    RawDepth,
+    is_npy,
+    is_npz,
+    read_npy,
+    read_npz,
+)
 from diorama_core.perception.inputs.form import Form
 from diorama_core.perception.inputs.photos.decoding import load_pixels, open_picture
-from diorama_core.perception.inputs.source import Source
 
-MAX_DEPTH_MEGAPIXELS = 40
-_DEPTH_NAMES = ("depth", "depth_m", "depths", "metric_depth", "depth_map", "pred_depth", "pred", "z", "dpt", "arr_0")
-_RELATIVE_NAMES = ("inverse_depth", "inv_depth", "disparity", "disp")
 _PICTURE_STARTS = (b"\x89PNG", b"II*\0", b"MM\0*", b"II+\0", b"Pf", b"PF", b"P5", b"\xff\xd8", b"RIFF", b"BM", b"GIF8")
+MAX_WHOLE_METRES = 100.0
+"""Whole numbers beyond are no metres of a room."""
 _DUMPS = (("<u2", 2), ("<f4", 4), (">u2", 2), ("<f2", 2))
 """Numbers of sensors' dumps, most usual first, and their bytes."""
 DUMP_SUFFIXES = (".raw", ".bin", ".dat", ".depth", ".data")
@@ -51,66 +55,15 @@ _DUMP_WIDTHS = (
 )
 
 
-@dataclass(frozen=True)
-class DepthContent:
-    """A file, and the photo's size, whose proportions a bare dump must have."""
-
-    source: Source
-    photo_size: tuple[int, int]
+def _has_sixteen_bits(data: bytes) -> bool:
+    """Whether a PNG has colours of 16 bits, of which Pillow reads the upper eight."""
+    return data.startswith(b"\x89PNG") and data[24:26] in (b"\x10\x02", b"\x10\x06")
 
 
-@dataclass(frozen=True, eq=False)
-class RawDepth:
-    """The numbers of a depth map as they are stored."""
+def _sixteen_bits(data: bytes) -> Shaped[np.ndarray, "h w 3"]:
+    import cv2  # the editor opens without it
 
-    values: Shaped[np.ndarray, "h w"]
-    is_float: bool
-    notes: tuple[str, ...] = ()
-    stated_kind: str | None = None
-    """"inverse" where the array's name says so."""
-
-
-def is_npy(content: DepthContent) -> bool:
-    """Whether it is an array of numpy."""
-    return content.source.data.startswith(b"\x93NUMPY")
-
-
-def read_npy(content: DepthContent) -> RawDepth:
-    """An array, after its header was found to promise no more than the file holds."""
-    array = _array(content.source.data, content.source.name)
-    values, notes = one_channel(array, content.source.name)
-    return RawDepth(values, values.dtype.kind == "f", notes)
-
-
-def is_npz(content: DepthContent) -> bool:
-    """Whether it is an archive of numpy's arrays."""
-    data = content.source.data
-    return data.startswith(b"PK\x03\x04") and b".npy" in data[:300]
-
-
-def read_npz(content: DepthContent) -> RawDepth:
-    """The array called `depth`, or the only one that can be a map."""
-    name = content.source.name
-    try:
-        with zipfile.ZipFile(io.BytesIO(content.source.data)) as archive:
-            if sum(m.file_size for m in archive.infolist()) > MAX_DEPTH_MEGAPIXELS * 24_000_000:
-                raise InputError(f"{name}: its arrays are too large for a depth map; save depth alone")
-            arrays = {m.filename.removesuffix(".npy"): archive.read(m) for m in archive.infolist()}
-    except InputError:
-        raise
-    except Exception as error:  # a damaged archive raises almost anything
-        raise InputError(f"{name}: the .npz file is truncated or damaged; write it again with numpy.savez") from error
-    read = {k: _array(v, f"{name}: {k}") for k, v in arrays.items() if v.startswith(b"\x93NUMPY")}
-    maps = {k: v for k, v in read.items() if v.dtype.kind in "fiu" and np.squeeze(v).ndim in (2, 3)}
-    known = next((k for k in (*_DEPTH_NAMES, *_RELATIVE_NAMES) if k in maps), None)
-    if known is None and len(maps) != 1:
-        listed = ", ".join(read)[:120] or "nothing"
-        raise InputError(f"{name}: which of its arrays is the depth ({listed})? call it 'depth', or save it as .npy")
-    key = known or next(iter(maps))
-    values, notes = one_channel(maps[key], name)
-    kind = "inverse" if key in _RELATIVE_NAMES else None
-    values, more = _trusted(values, read, key)
-    return RawDepth(values, values.dtype.kind == "f", (*notes, *more), kind)
+    return np.asarray(cv2.imdecode(np.frombuffer(data, np.uint8), cv2.IMREAD_UNCHANGED))[..., 2::-1]
 
 
 def is_exr(content: DepthContent) -> bool:
@@ -140,22 +93,36 @@ def read_picture(content: DepthContent) -> RawDepth:
     load_pixels(picture, source, "depth")
     if picture.format == "JPEG":
         raise InputError(f"{source.name}: JPEG blurs depth; save it as 16-bit PNG in millimetres or .npy in metres")
-    array = np.asarray(picture)
-    if picture.mode in ("RGB", "RGBA", "LA"):
-        colours = array[..., : 1 if picture.mode == "LA" else 3]
-        if (colours != colours[..., :1]).any():
+    array, packed = np.asarray(picture), tuple[str, ...]()
+    if picture.mode in ("RGB", "RGBA"):
+        found = depth_of_colours(_sixteen_bits(source.data) if _has_sixteen_bits(source.data) else array[..., :3])
+        if found is None:
             raise InputError(
                 f"{source.name}: depth needs one channel of 16 bits, this has colours for the eye; "
                 "save it as 16-bit PNG in millimetres or .npy in metres"
             )
-        array = colours[..., 0]
+        array, packed = found
+    elif picture.mode == "LA":
+        array = array[..., 0]
     elif picture.mode not in ("I;16", "I;16B", "I;16L", "I", "F", "L"):
         raise InputError(
             f"{source.name}: depth needs one channel of 16 bits, this has mode {picture.mode}; "
             "save it as 16-bit PNG in millimetres or .npy in metres"
         )
     notes = ("the depth has 8 bits only, which is coarse",) if array.dtype.itemsize == 1 else ()
-    return RawDepth(array, array.dtype.kind == "f", notes)
+    return RawDepth(array, array.dtype.kind == "f", (*packed, *notes))
+
+
+def is_text(content: DepthContent) -> bool:
+    """Whether it is a table of numbers."""
+    return is_number_table(content.source)
+
+
+def read_text(content: DepthContent) -> RawDepth:
+    """The numbers; whole ones are millimetres unless the picture says otherwise."""
+    values = read_number_table(content.source)
+    whole = bool((values == np.round(values)).all()) and float(np.median(values)) > MAX_WHOLE_METRES
+    return RawDepth(values.astype(np.int64) if whole else values, not whole)
 
 
 def is_dump(content: DepthContent) -> bool:
@@ -209,6 +176,13 @@ DEPTH_FORMS: tuple[Form[DepthContent, RawDepth], ...] = (
         read_picture,
     ),
     Form(
+        "table of numbers (.txt, .csv)",
+        "numpy's savetxt, MATLAB, spreadsheets",
+        "a row for each row of the picture; whole numbers by --depth-scale, others in metres",
+        is_text,
+        read_text,
+    ),
+    Form(
         "bare dump (.raw, .bin)",
         "Kinect, ARKit, RealSense",
         "16-bit numbers or floats whose count has the photo's proportions",
@@ -216,43 +190,6 @@ DEPTH_FORMS: tuple[Form[DepthContent, RawDepth], ...] = (
         read_dump,
     ),
 )
-
-
-def _array(data: bytes, name: str) -> np.ndarray:
-    """An array of numbers; the header is not trusted to allocate more than the file holds."""
-    stream = io.BytesIO(data)
-    try:
-        version = npy.read_magic(stream)
-        shape, _, dtype = npy.read_array_header_1_0(stream) if version == (1, 0) else npy.read_array_header_2_0(stream)
-        if dtype.kind not in "fiub":
-            raise InputError(f"{name}: depth in .npy must be floats in metres or whole numbers, this holds {dtype}")
-        count = math.prod(shape)
-        if count > MAX_DEPTH_MEGAPIXELS * 1_000_000 * 3:
-            raise InputError(f"{name}: {count / 1e6:.0f} megapixels of depth are too many; save the photo's size")
-        if count * dtype.itemsize > len(data):
-            raise ValueError("fewer numbers than the header states")
-        return np.asarray(np.load(io.BytesIO(data), allow_pickle=False))
-    except InputError:
-        raise
-    except Exception as error:  # a damaged header raises almost anything
-        raise InputError(f"{name}: the .npy depth is truncated or damaged; write it again with numpy.save") from error
-
-
-def _trusted(
-    values: Shaped[np.ndarray, "h w"], arrays: dict[str, np.ndarray], key: str
-) -> tuple[Shaped[np.ndarray, "h w"], tuple[str, ...]]:
-    """The map without the pixels that a mask of the same file excludes."""
-    for name in ("confidence", "conf", "depth_conf", "confidence_map"):
-        level = np.squeeze(arrays[name]) if name in arrays else None
-        if level is not None and level.shape == values.shape and level.dtype.kind in "bu":
-            return only_sure(values, level, f"its {name}")
-        if level is not None:
-            return values, (f"its {name} is no map of whole numbers as large as the depth; it was not used",)
-    for name in ("mask", "valid", "valid_mask"):
-        mask = np.squeeze(arrays[name]) if name in arrays and name != key else None
-        if mask is not None and mask.shape == values.shape and 0 < np.count_nonzero(mask) < mask.size:
-            return np.where(mask != 0, values, 0), (f"{np.mean(mask == 0):.0%} of the depth is excluded by its {name}",)
-    return values, ()
 
 
 def _dump_shape(content: DepthContent) -> tuple[int, int] | None:

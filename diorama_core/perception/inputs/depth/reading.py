@@ -11,7 +11,7 @@ from jaxtyping import Bool, Float32, Shaped
 from diorama_core.artefacts import Box, LabelledBox
 from diorama_core.errors import InputError
 from diorama_core.perception.inputs.depth.confidence import without_unsure
-from diorama_core.perception.inputs.depth.containers import DEPTH_FORMS, DepthContent, RawDepth
+from diorama_core.perception.inputs.depth.containers import DEPTH_FORMS
 from diorama_core.perception.inputs.depth.flips import turned, turned_over
 from diorama_core.perception.inputs.depth.kinds import (
     CONTRADICTION,
@@ -21,6 +21,7 @@ from diorama_core.perception.inputs.depth.kinds import (
     depth_readings,
     rays_of,
 )
+from diorama_core.perception.inputs.depth.numpy_files import DepthContent, RawDepth
 from diorama_core.perception.inputs.depth.relative import metric_depth
 from diorama_core.perception.inputs.depth.scale import focal_of_planes, scale_evidence
 from diorama_core.perception.inputs.depth.units import AmbiguousDepthError, DepthAnswer, unit_of
@@ -46,6 +47,10 @@ MIN_PIXELS = 1500
 MORE_PLANES = 0.015
 """Share of pixels by which planes must speak for another reading, whatever near and far say."""
 MILLIMETRES = 1000.0
+MOSTLY = 0.5
+"""Share of the pixels that must be negative, for a map of a camera that looks along -z."""
+Z_BUFFER = (0.6, 1.0)
+"""Within which all values of a graphics card's depth buffer lie where nothing is close to the camera."""
 
 
 @dataclass(frozen=True)
@@ -83,6 +88,7 @@ def read_depth(
     size = (photo.photo.width, photo.photo.height)
     raw = _raw(source, photo)
     trusted, unsure = without_unsure(source, raw.values)
+    trusted, upended = _positive(trusted, is_float=raw.is_float)
     values, laid = photo.frame.laid_over(source.name, "depth", trusted)
     if options.encoding == "sunrgbd" and not raw.is_float:
         values = _unrotated(values)
@@ -99,7 +105,7 @@ def read_depth(
     coverage = _check_plausible(source.name, depth, values, raw, options)
     resized, coarse = _at_size(depth, size)
     resized.setflags(write=False)
-    return resized, (*raw.notes, *unsure, *laid, *voids, *understood, *coverage, *coarse)
+    return resized, (*raw.notes, *unsure, *upended, *laid, *voids, *understood, *coverage, *coarse)
 
 
 @dataclass(frozen=True)
@@ -227,6 +233,15 @@ def _chosen(
 _WORDS = {"depth": "depth along the optical axis", "distance": "distances along the rays", "inverse": "inverse depth"}
 
 
+def _positive(
+    values: Shaped[np.ndarray, "h w"], *, is_float: bool
+) -> tuple[Shaped[np.ndarray, "h w"], tuple[str, ...]]:
+    """Depth of cameras that look along -z (OpenGL, Blender) as distance before them."""
+    if not is_float or np.mean(values < 0) < MOSTLY or np.mean(values > 0) > 1.0 - MOSTLY:
+        return values, ()
+    return -values, ("the depth is negative, as of a camera that looks along -z; its sign was changed",)
+
+
 def _unrotated(values: Shaped[np.ndarray, "*n"]) -> Shaped[np.ndarray, "*n"]:
     """SUN RGB-D's storage undone: the 16 bits were rotated left by three."""
     v = values.astype(np.uint32)
@@ -246,9 +261,13 @@ def _check_plausible(
     if not ROOM_MEDIAN_M[0] <= median <= ROOM_MEDIAN_M[1]:
         raise InputError(f"{name}: {_unit_advice(median, raw, about, options)}")
     depth_m[depth_m > FARTHEST_M] = 0.0
+    notes = []
+    low, high = (float(v) for v in np.percentile(valid, [2, 98]))
+    if Z_BUFFER[0] < low < high <= Z_BUFFER[1]:
+        notes.append(f"nearly all depth is {low:.3g} to {high:.3g} m: if it is a renderer's z-buffer, give metres")
     if valid.size < LOW_COVERAGE * depth_m.size:
-        return (f"only {100 * valid.size / depth_m.size:.0f} % of the depth is measured",)
-    return ()
+        notes.append(f"only {100 * valid.size / depth_m.size:.0f} % of the depth is measured")
+    return tuple(notes)
 
 
 def _unit_advice(median: float, raw: Shaped[np.ndarray, "h w"], about: RawDepth, options: DepthOptions) -> str:

@@ -14,7 +14,8 @@ USUAL_UNITS = {
     1.0: "metres", 1000.0: "millimetres", 5000.0: "1/5000 m, as in TUM RGB-D", 4000.0: "1/4000 m",
     256.0: "1/256 m", 100.0: "centimetres", 10000.0: "1/10000 m", 8000.0: "1/8000 m", 500.0: "1/500 m",
     2000.0: "1/2000 m", 10.0: "decimetres", 39.37: "inches", 3.2808: "feet", 6553.5: "1/6553.5 m",
-    25.5: "1/25.5 m", 1000000.0: "micrometres", 512.0: "1/512 m", 128.0: "1/128 m", 200.0: "1/200 m",
+    16777.215: "CARLA's 24 bits", 25.5: "1/25.5 m", 1000000.0: "micrometres",
+    512.0: "1/512 m", 128.0: "1/128 m", 200.0: "1/200 m",
     50.0: "1/50 m",
 }  # fmt: skip
 """Units per metre of sensors and data sets."""
@@ -100,7 +101,7 @@ def _doubtful_height(evidence: ScaleEvidence | None, stated: float) -> str:
     if evidence is None or evidence.floor_height is None:
         return ""
     height = evidence.floor_height / stated
-    if 0.4 <= height <= 3.2:
+    if 0.55 <= height <= 3.2:
         return ""
     return (
         f"by this depth the camera is {height:.1f} m above the floor; if that is wrong, give its unit by --depth-scale"

@@ -4,16 +4,19 @@ from __future__ import annotations
 
 import io
 
+import cv2
 import numpy as np
 import pytest
 from PIL import Image
 
 from diorama_core.errors import InputError
 from diorama_core.perception.inputs.depth.channels import one_channel
-from diorama_core.perception.inputs.depth.containers import DEPTH_FORMS, DepthContent, RawDepth
+from diorama_core.perception.inputs.depth.containers import DEPTH_FORMS
+from diorama_core.perception.inputs.depth.numpy_files import DepthContent, RawDepth
 from diorama_core.perception.inputs.form import form_of
 from diorama_core.perception.inputs.source import Source
 from tests.perception.inputs.depth.rooms import FOCAL, HEIGHT, WIDTH, room
+from tests.perception.inputs.depth.test_colours import in_bytes
 from tests.perception.inputs.files import encoded, npy
 
 DEPTH, _ = room()
@@ -30,6 +33,12 @@ def read(data: bytes, name: str = "depth") -> RawDepth:
 def archive(**arrays: np.ndarray) -> bytes:
     stream = io.BytesIO()
     np.savez(stream, **arrays)
+    return stream.getvalue()
+
+
+def table(values: np.ndarray, number: str, separator: str) -> bytes:
+    stream = io.BytesIO()
+    np.savetxt(stream, values, number, separator)
     return stream.getvalue()
 
 
@@ -55,6 +64,9 @@ def point_map(*order: int) -> np.ndarray:
         npy(-point_map() * [-1, 1, 1]),
         npy(np.moveaxis(point_map(), -1, 0)),
         npy(point_map(2, 0, 1)),
+        archive(my_map=DEPTH, intrinsics=np.eye(3), conf=np.ones(DEPTH.shape)),
+        archive(pts3d=point_map(), valid_mask=np.ones(DEPTH.shape, bool)),
+        table(DEPTH, "%.8f", " "),
     ],
 )
 def test_floats(data: bytes) -> None:
@@ -69,6 +81,9 @@ def test_floats(data: bytes) -> None:
         (npy(MILLIMETRES), "d.npy"),
         (npy(MILLIMETRES.astype(np.int32)), "d.npy"),
         (archive(depth=MILLIMETRES), "d.npz"),
+        (table(MILLIMETRES, "%d", ","), "d.csv"),
+        (cv2.imencode(".png", np.repeat(MILLIMETRES[..., None], 3, axis=2))[1].tobytes(), "d.png"),
+        (encoded(Image.fromarray(in_bytes(MILLIMETRES, 0, 1))), "d.png"),
         (encoded(Image.fromarray(MILLIMETRES)), "d.png"),
         (encoded(Image.fromarray(MILLIMETRES), "TIFF"), "d.tif"),
         (MILLIMETRES.tobytes(), "d.raw"),

@@ -19,6 +19,19 @@ from tests.perception.inputs.files import HEIGHT, WIDTH, decoded, depth_png, enc
 FLAT = np.full((48, 64), 2.5, np.float32)
 
 
+def test_depth_along_minus_z_is_turned_round() -> None:
+    raw = np.repeat(np.linspace(1.0, 3.0, 48, dtype=np.float32)[:, None], 64, axis=1)
+    found, notes = read_depth(Source(npy(-raw), "d.npy"), DepthOptions(1.0, kind="depth"), decoded(64, 48))
+    assert found == pytest.approx(raw)
+    assert "its sign was changed" in notes[0]
+
+
+def test_depth_that_hardly_differs_is_remarked() -> None:
+    raw = np.repeat(np.linspace(0.95, 0.99, 48, dtype=np.float32)[:, None], 64, axis=1)
+    _, notes = read_depth(Source(npy(raw), "d.npy"), DepthOptions(1.0, kind="depth"), decoded(64, 48))
+    assert "z-buffer" in notes[0]
+
+
 def read(data: bytes, scale: float | None = None, encoding: str = "linear", size=(64, 48)):
     return read_depth(Source(data, "depth"), DepthOptions(scale, encoding), decoded(*size))
 
