@@ -73,28 +73,3 @@ install() {
         touch .venv/.system-ok
     fi
 }
-
-code_sum() { find diorama_core -name '*.py' | LC_ALL=C sort | xargs cat | cksum | tr ' ' '-'; }
-
-# prepare_shapes: what is derived from the built-in shapes. Asked again after any change to the code; then only what is
-# missing is made, so after a change to one shape that one.
-prepare_shapes() {
-    local stamp
-    stamp=".venv/.shapes-$(code_sum)"
-    [ -e "$stamp" ] && return
-    say "Preparing the shape library (about a minute the first time)…"
-    .venv/bin/diorama library build || { say "The shapes could not be prepared; the line above says why."; exit 1; }
-    rm -f .venv/.shapes-*
-    touch "$stamp"
-}
-
-# prepare_views: what retrieval compares of the shapes, which the first photo of each kind would wait for. It goes on in
-# the background, with what others leave of the processor.
-prepare_views() {
-    local stamp
-    stamp=".venv/.views-$(code_sum)"
-    [ -e "$stamp" ] && return
-    {
-        nice -n 19 .venv/bin/diorama library build --views --workers 1 && rm -f .venv/.views-* && touch "$stamp"
-    } >/dev/null 2>&1 &
-}

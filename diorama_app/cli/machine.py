@@ -12,6 +12,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import diorama_core as diorama
+from diorama_core.geometry.open3d_import import o3d
 
 PACKAGES = {
     "viser": "viser",
@@ -56,6 +57,8 @@ def examine() -> tuple[Finding, ...]:
 
 def _package(name: str, module: str, *, needed: bool) -> Finding:
     try:
+        if module == "open3d":  # as the program loads it, without its plots; there are several packages of it
+            return Finding(name, True, str(o3d.__version__), needed)
         importlib.import_module(module)
     except (ImportError, OSError) as error:
         hint = " (run: sudo apt-get install -y libusb-1.0-0 libgl1)" if name == "open3d" else ""

@@ -9,7 +9,10 @@ import threading
 WARM_UP_AFTER_S = 10.0
 """Loading takes two seconds of one core, which the browser needs while the page opens."""
 
-LEARN = "import os; os.nice(15); from diorama_core.library.ingest.known_shapes import known_shapes; known_shapes()"
+LEARN = """import os
+getattr(os, "nice", int)(15)
+from diorama_core.library.ingest.known_shapes import known_shapes
+known_shapes()"""
 """Half a minute of a core, once on a machine, that the first upload of a model would wait for."""
 
 
