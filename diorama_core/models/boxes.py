@@ -87,30 +87,6 @@ def joined(parts: Sequence[Detections]) -> Detections:
     )
 
 
-def fused(views: Sequence[Detections], iou: float) -> Detections:
-    """One set of boxes from several looks at a picture (weighted boxes fusion, Solovyev et al. 2021).
-
-    A box becomes the mean of those that show the same thing, weighted by their scores; its score is the mean over the
-    looks of each one's best, so that what only one of them sees counts less. Labels are those of the best boxes.
-
-    Args:
-        views: what each look found, in pixels of the same picture.
-        iou: intersection over union above which two boxes are the same thing.
-    """
-    found = joined(views)
-    view = np.repeat(np.arange(len(views)), [len(v) for v in views])
-    best = without_doubles(found, iou, across_classes=True)
-    boxes, scores = np.zeros_like(best.boxes), np.zeros_like(best.scores)
-    for k, same in enumerate(overlaps(best.boxes, found.boxes) > iou):
-        if not same.any():  # a box without an area overlaps nothing, not even itself
-            continue
-        boxes[k] = np.average(found.boxes[same], axis=0, weights=found.scores[same])
-        best_of_view = np.zeros(len(views))
-        np.maximum.at(best_of_view, view[same], found.scores[same])
-        scores[k] = best_of_view.mean()
-    return without_doubles(Detections(boxes, scores, best.labels).rows(scores > 0), iou, across_classes=True)
-
-
 def without_parts_of_same(found: Detections, share: float) -> Detections:
     """Detections without those within others of their class.
 

@@ -19,7 +19,7 @@ from scipy.special import expit, softmax
 from diorama_core.errors import UnavailableError
 from diorama_core.models import own_weights
 from diorama_core.models.box_crops import FILL, box_crop, box_geometry
-from diorama_core.models.boxes import Detections, clipped, fused, joined, without_doubles
+from diorama_core.models.boxes import Detections, clipped, joined, without_doubles
 from diorama_core.models.kind_evidence import KindEvidence, own_evidence, with_evidence
 from diorama_core.models.own_weights import CARD, DETECTOR, NAMER
 from diorama_core.models.runtime import SHARED_SESSIONS, SessionPool
@@ -31,7 +31,7 @@ SEEN_WITH = ((0.06, False), (0.12, True), (0.2, False))
 """Margins with which a box is looked at, as boxes are drawn more or less close, and whether the picture is mirrored."""
 AREAS_PX = (320 * 256, 512 * 384)
 """The photo is looked at in each of these sizes: large things are found in the first, small ones in the second."""
-DOUBLE_IOU, ALIKE_IOU = 0.5, 0.7
+DOUBLE_IOU, ALIKE_IOU = 0.4, 0.7
 """Overlap of two boxes of one object, and of two that are no choice."""
 MIN_SCORE, MAX_OF_LOOK = 0.06, 400
 """Boxes of one look at a picture that are compared with those of the others."""
@@ -96,9 +96,7 @@ class Recogniser:
             threshold: least score, 0 to 1.
             most: boxes at most.
         """
-        found = fused(self._looks(rgb), DOUBLE_IOU)
-        best = np.flatnonzero(found.scores >= threshold)
-        return found.rows(best[:most])
+        return self._best(rgb, threshold, most, DOUBLE_IOU)
 
     def alternatives(self, rgb: UInt8[np.ndarray, "h w 3"], threshold: float, most: int) -> Detections:
         """Boxes to choose from where somebody points: several of one object, each as one look at the picture saw it.
@@ -108,12 +106,12 @@ class Recogniser:
             threshold: least score, 0 to 1.
             most: boxes at most.
         """
-        every = joined(self._looks(rgb))
-        found = without_doubles(every.rows(every.scores >= threshold), ALIKE_IOU, across_classes=True)
-        return found.rows(np.arange(min(most, len(found))))
+        return self._best(rgb, threshold, most, ALIKE_IOU)
 
-    def _looks(self, rgb: UInt8[np.ndarray, "h w 3"]) -> list[Detections]:
-        return [look for area in self.areas_px for look in self._proposed(rgb, area)]
+    def _best(self, rgb: UInt8[np.ndarray, "h w 3"], threshold: float, most: int, iou: float) -> Detections:
+        every = joined([look for area in self.areas_px for look in self._proposed(rgb, area)])
+        found = without_doubles(every.rows(every.scores >= threshold), iou, across_classes=True)
+        return found.rows(np.arange(min(most, len(found))))
 
     def _proposed(self, rgb: UInt8[np.ndarray, "h w 3"], area_px: int) -> list[Detections]:
         """What is seen in the picture at a size, as it is and mirrored."""
