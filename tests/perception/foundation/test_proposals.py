@@ -45,7 +45,7 @@ class _Finds:
 
     def propose(self, rgb: np.ndarray, threshold: float, most: int) -> Detections:
         rows = np.array(
-            [[10.0, 10.0, 60.0, 90.0, 0.9], [70.0, 10.0, 95.0, 90.0, 0.5], [100.0, 10.0, 190.0, 90.0, 0.47]]
+            [[10.0, 10.0, 60.0, 90.0, 0.9], [70.0, 10.0, 95.0, 90.0, 0.55], [100.0, 10.0, 190.0, 90.0, 0.52]]
         )
         rows = rows[rows[:, 4] >= threshold][:most]
         return Detections(rows[:, :4], rows[:, 4], np.zeros(len(rows), dtype=int))
