@@ -56,6 +56,12 @@ class Reconstruction:
             return self.given
         return self.project.load_inputs()
 
+    def _repr_html_(self) -> str:
+        """The scene as notebooks show it."""
+        from diorama_core.api.notebook import notebook_html
+
+        return notebook_html(self)
+
     def save(self, folder: Path | str) -> None:
         """Write a project folder; see `diorama_core.save`."""
         save(self, folder)
