@@ -5,22 +5,30 @@ from __future__ import annotations
 import base64
 import html
 import io
+from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
 from diorama_core.io.text import number_of
 
 if TYPE_CHECKING:
-    from diorama_core.api.reconstruction import Reconstruction
+    from diorama_core.library.record import ShapeLibrary
+    from diorama_core.perception.inputs.arrays import Picture
+    from diorama_core.scene.types import Scene
 
 SIZE, WITHOUT_PHOTO = (480, 360), "orbit:35"
 """A picture of this size takes a second or two."""
 QUALITY = 85
 
 
-def notebook_html(room: Reconstruction) -> str:
-    """The scene as HTML."""
-    scene = room.scene
-    head = html.escape(f"{number_of(len(scene.objects))}, {len(scene.architecture.planes)} planes")
+def notebook_html(scene: Scene, library: ShapeLibrary, textures: Mapping[str, Picture]) -> str:
+    """The scene as HTML.
+
+    Args:
+        scene: what is shown.
+        library: where its shapes are.
+        textures: pictures of its planes.
+    """
+    head = html.escape(f"{number_of(len(scene.objects))}, {number_of(len(scene.architecture.planes), 'plane')}")
     if not scene.objects and not scene.architecture.planes:
         return f"<p>{head}</p>"
     rows = "".join(
@@ -29,16 +37,18 @@ def notebook_html(room: Reconstruction) -> str:
         for o in scene.objects
     )
     table = f"<table><tr><th>id</th><th>name</th><th>depth × width × height, m</th></tr>{rows}</table>"
-    picture = f'<img alt="{head}" src="data:image/jpeg;base64,{_picture(room)}">'
+    picture = f'<img alt="{head}" src="data:image/jpeg;base64,{_picture(scene, library, textures)}">'
     return f"<div>{picture}<details><summary>{head}</summary>{table}</details></div>"
 
 
-def _picture(room: Reconstruction) -> str:
+def _picture(scene: Scene, library: ShapeLibrary, textures: Mapping[str, Picture]) -> str:
     from PIL import Image
 
-    from diorama_core.api.results import render
+    from diorama_core.render.picture import picture
 
     content = io.BytesIO()
-    view = "photo" if room.scene.camera is not None else WITHOUT_PHOTO
-    Image.fromarray(render(room, view=view, size=SIZE)).save(content, "JPEG", quality=QUALITY)
+    view = "photo" if scene.camera is not None else WITHOUT_PHOTO
+    Image.fromarray(picture(scene, library, view=view, size=SIZE, textures=textures)).save(
+        content, "JPEG", quality=QUALITY
+    )
     return base64.b64encode(content.getvalue()).decode()

@@ -60,7 +60,7 @@ class Reconstruction:
         """The scene as notebooks show it."""
         from diorama_core.api.notebook import notebook_html
 
-        return notebook_html(self)
+        return notebook_html(self.scene, self.library, self.textures)
 
     def save(self, folder: Path | str) -> None:
         """Write a project folder; see `diorama_core.save`."""
