@@ -28,11 +28,24 @@ def is_data_set(text: BoxText) -> bool:
 def read_data_set(text: BoxText) -> BoxFile:
     """The boxes of the photo, by its file name where the data set holds several pictures."""
     document: Any = text.document
-    images = objects_of(document.get("images"))
-    image, notes = _image_of(images, text)
-    rows = [a for a in _annotations(document) if image is None or a.get("image_id") == image.get("id")]
+    image, rows = photo_of_data_set(text)
+    count = len(objects_of(document.get("images")))
+    named = f"{text.source.name} is of {count} pictures; the boxes of {(image or {}).get('file_name')} are used"
+    notes = (named,) if count > 1 else ()
     file = _read(rows, _categories(document), text.source.name)
     return BoxFile(file.entries, _size(image), notes=(*notes, *file.notes))
+
+
+def photo_of_data_set(text: BoxText) -> tuple[Mapping[str, Any] | None, list[Mapping[str, Any]]]:
+    """The photo among a data set's pictures, None where it lists none, and its annotations.
+
+    Raises:
+        InputError: of several pictures none is the photo.
+    """
+    document: Any = text.document
+    images = objects_of(document.get("images"))
+    image = picture_of(images, [i.get("file_name", "") for i in images], text, "COCO file") if images else None
+    return image, [a for a in _annotations(document) if image is None or a.get("image_id") == image.get("id")]
 
 
 def _annotations(document: Mapping[str, Any]) -> Iterator[Mapping[str, Any]]:
@@ -49,7 +62,7 @@ def is_results(text: BoxText) -> bool:
 
 def read_results(text: BoxText) -> BoxFile:
     """The boxes of the photo; their names are in another file, which is looked for beside."""
-    of_photo = _rows_of_photo(objects_of(text.document), text)
+    of_photo = rows_of_results(objects_of(text.document), text)
     names = _categories_beside(text)
     file = _read(of_photo, names, text.source.name)
     needs = not names and all(e.word == UNNAMED for e in file.entries)
@@ -68,14 +81,12 @@ def _read(rows: Sequence[Mapping[str, Any]], names: Mapping[int, str], where: st
     return BoxFile(tuple(entries))
 
 
-def _image_of(images: Sequence[Mapping[str, Any]], text: BoxText) -> tuple[Mapping[str, Any] | None, tuple[str, ...]]:
-    if len(images) < 2:
-        return (images[0] if images else None), ()
-    named = picture_of(images, [i.get("file_name", "") for i in images], text, "COCO file")
-    return named, (f"{text.source.name} is of {len(images)} pictures; the boxes of {named['file_name']} are used",)
+def rows_of_results(rows: Sequence[Mapping[str, Any]], text: BoxText) -> list[Mapping[str, Any]]:
+    """The results of the photo, by the number in its name.
 
-
-def _rows_of_photo(rows: Sequence[Mapping[str, Any]], text: BoxText) -> list[Mapping[str, Any]]:
+    Raises:
+        InputError: they are of several pictures, and none is the photo.
+    """
     pictures = {str(r.get("image_id")) for r in rows}
     if len(pictures) < 2:
         return list(rows)

@@ -70,10 +70,8 @@ def read_via(text: BoxText) -> BoxFile:
     Raises:
         InputError: of several pictures none is the photo.
     """
-    pictures = _via_pictures(text.document)
-    regions = picture_of(pictures, [p.get("filename", "") for p in pictures], text, "VIA file")["regions"]
     entries = []
-    for index, region in enumerate(regions.values() if isinstance(regions, dict) else regions):
+    for index, region in enumerate(regions_of(text)):
         shape = keys_of(region.get("shape_attributes") or {}) if isinstance(region, dict) else {}
         if isinstance(shape.get("allpointsx"), list) and isinstance(shape.get("allpointsy"), list):
             points = [[x, y] for x, y in zip(shape["allpointsx"], shape["allpointsy"], strict=False)]
@@ -82,6 +80,17 @@ def read_via(text: BoxText) -> BoxFile:
         if corners is not None:
             entries.append(BoxEntry(corners, word_of(region)))
     return BoxFile(tuple(entries))
+
+
+def regions_of(text: BoxText) -> list[Any]:
+    """The regions of the photo.
+
+    Raises:
+        InputError: of several pictures none is the photo.
+    """
+    pictures = _via_pictures(text.document)
+    regions = picture_of(pictures, [p.get("filename", "") for p in pictures], text, "VIA file")["regions"]
+    return list(regions.values()) if isinstance(regions, dict) else list(regions)
 
 
 def _circle_as_box(shape: Mapping[str, Any]) -> Mapping[str, Any]:

@@ -5,25 +5,20 @@ from __future__ import annotations
 import io
 import math
 import zipfile
-from collections.abc import Iterator
-from typing import Any
 
 import numpy as np
 from jaxtyping import Bool
 from numpy.lib import format as npy
-from PIL import Image, ImageDraw
 
 from diorama_core.errors import InputError
-from diorama_core.io.bounded import parse_json
-from diorama_core.perception.inputs.boxes.nested import size_in
-from diorama_core.perception.inputs.masks.pictures import MAX_MASK_MEGAPIXELS, one_object, without_void
-from diorama_core.perception.inputs.masks.run_lengths import decoded_runs
+from diorama_core.perception.inputs.masks.pictures import one_object, without_void
+from diorama_core.perception.inputs.masks.segments import MAX_TOTAL_MEGAPIXELS
 from diorama_core.perception.inputs.masks.stack import MAX_STACKED, MaskMap, painted
 from diorama_core.perception.inputs.source import Folder, Source
 
-_PICTURES = (".png", ".tif", ".tiff", ".bmp", ".gif", ".webp", ".pgm", ".ppm", ".pbm")
-MAX_TOTAL_MEGAPIXELS = 600
-"""Of all masks of a folder or a file together."""
+AROUND_SHARE = 0.6
+"""Of the picture's border that each mask covers, where they are black on white."""
+_PICTURES = (".npy", ".png", ".tif", ".tiff", ".bmp", ".gif", ".webp", ".pgm", ".ppm", ".pbm")
 
 
 def read_folder_of_masks(folder: Folder) -> MaskMap:
@@ -32,18 +27,42 @@ def read_folder_of_masks(folder: Folder) -> MaskMap:
     if not pictures:
         raise InputError(f"{folder.name}: holds no mask; give one PNG for each object, white on black")
     masks: list[Bool[np.ndarray, "h w"]] = []
+    left_out = []
     for file in pictures[: MAX_STACKED + 1]:
-        mask = one_object(file)
+        mask = one_object(file) if file.suffix != ".npy" else _checked_mask(file)
+        if mask is None:
+            left_out.append(file.name)
+            continue
         if mask.size * (len(masks) + 1) > MAX_TOTAL_MEGAPIXELS * 1_000_000:
             raise InputError(f"{folder.name}: its masks have too many pixels together; reduce them first")
         if mask.any() and not mask.all():
             masks.append(mask)
-    return painted(masks, folder.name, "masks")
+    shown = ", ".join(left_out[:3]) + (f" and {len(left_out) - 3} more" if len(left_out) > 3 else "")
+    notes = (f"{folder.name}: {shown} has the colours of a photo and was left out",) if left_out else ()
+    if left_out and not masks:
+        raise InputError(f"{folder.name}: {shown} has the colours of a photo; give masks, white on black")
+    if len(masks) > 1 and all(_is_around(mask) for mask in masks):
+        masks, notes = [~mask for mask in masks], (*notes, f"{folder.name}: the masks are black on white")
+    found = painted(masks, folder.name, "masks")
+    return MaskMap(found.values, (*found.notes, *notes))
+
+
+def _is_around(mask: Bool[np.ndarray, "h w"]) -> bool:
+    return float(np.concatenate([mask[0], mask[-1], mask[:, 0], mask[:, -1]]).mean()) > AROUND_SHARE
+
+
+def _checked_mask(file: Source) -> Bool[np.ndarray, "h w"]:
+    array = np.squeeze(_array(file))
+    if array.ndim != 2:
+        raise InputError(f"{file.name}: one mask must be (h, w), this has shape {array.shape}")
+    return np.asarray(array > 0)
 
 
 def read_arrays(source: Source) -> MaskMap:
     """Ids (h, w), or masks (n, h, w) or (h, w, n); of an archive, the array called `masks` or the only one."""
     array = _array(source)
+    if array.ndim > 2 and array.dtype.kind == "f" and np.isfinite(array).all() and 0 <= array.min() < array.max() <= 1:
+        array = array >= 0.5  # how likely each pixel is of the object
     if array.dtype.kind not in "iub" and not (array.dtype.kind == "f" and _is_whole(array)):
         raise InputError(f"{source.name}: masks must be whole numbers or true and false, this holds {array.dtype}")
     array = np.squeeze(array) if array.ndim > 3 else array
@@ -59,59 +78,6 @@ def read_arrays(source: Source) -> MaskMap:
     raise InputError(f"{source.name}: masks must be (h, w) ids or (n, h, w), this has shape {array.shape}")
 
 
-def read_segments(source: Source) -> MaskMap:
-    """Run lengths (COCO, SAM) and polygons (COCO, LabelMe) of JSON."""
-    document = parse_json(source.data, source.name, InputError, advice="masks are pictures, arrays or COCO's segments")
-    size = size_in(document)
-    masks: list[Bool[np.ndarray, "h w"]] = []
-    for segment in _segments(document):
-        mask = decoded_runs(segment, source.name) if isinstance(segment, dict) else _polygon(segment, size, source.name)
-        if sum(m.size for m in masks) + mask.size > MAX_TOTAL_MEGAPIXELS * 1_000_000:
-            raise InputError(f"{source.name}: its masks have too many pixels together; reduce them first")
-        if mask.any():
-            masks.append(mask)
-    return painted(masks, source.name, "segments")
-
-
-def _segments(value: Any, level: int = 0) -> Iterator[Any]:
-    """Objects with `size` and `counts`, and lists of polygons, of everything in a document."""
-    if level > 6:
-        return
-    if isinstance(value, list):
-        for inner in value:
-            yield from _segments(inner, level + 1)
-    elif isinstance(value, dict):
-        if "counts" in value and "size" in value:
-            yield value
-            return
-        points = value.get("points")
-        if value.get("shape_type") == "polygon" and isinstance(points, list) and len(points) > 2:
-            yield [points]
-            return
-        segmentation = value.get("segmentation")
-        if isinstance(segmentation, list) and segmentation and all(isinstance(p, list) for p in segmentation):
-            yield segmentation
-            return
-        for inner in value.values():
-            yield from _segments(inner, level + 1)
-
-
-def _polygon(rings: list[Any], size: tuple[int, int] | None, name: str) -> Bool[np.ndarray, "h w"]:
-    """Rings of x, y, x, y... or of [x, y] filled."""
-    if size is None or size[0] * size[1] > MAX_MASK_MEGAPIXELS * 1_000_000:
-        raise InputError(f"{name}: polygons need the size of the picture (width and height) beside them")
-    canvas = Image.new("L", size)
-    try:
-        for ring in rings:
-            points = [float(v) for p in ring for v in (p if isinstance(p, list) else [p])]
-            pairs = list(zip(points[::2], points[1::2], strict=False))
-            if len(pairs) > 2 and all(math.isfinite(v) and abs(v) < 1e6 for p in pairs for v in p):
-                ImageDraw.Draw(canvas).polygon(pairs, fill=1)
-    except (TypeError, ValueError, OverflowError) as error:
-        raise InputError(f"{name}: a polygon is not a list of numbers; export it again") from error
-    return np.asarray(canvas) > 0
-
-
 def _array(source: Source) -> np.ndarray:
     try:
         if not source.data.startswith(b"PK\x03\x04"):
@@ -121,6 +87,8 @@ def _array(source: Source) -> np.ndarray:
             wanted = [
                 n for n in names if n.removesuffix(".npy") in ("masks", "mask", "instances", "labels", "segmentation")
             ]
+            if not wanted and 1 < len(names) <= MAX_STACKED:
+                return _array_of_several(archive, names, source.name)
             if len(wanted or names) != 1:
                 raise InputError(f"{source.name}: which of its arrays are the masks? call that one 'masks'")
             info = archive.getinfo((wanted or names)[0])
@@ -131,6 +99,19 @@ def _array(source: Source) -> np.ndarray:
         raise
     except Exception as error:  # a damaged file raises almost anything
         raise InputError(f"{source.name}: the masks are truncated or damaged; write them again with numpy") from error
+
+
+def _array_of_several(archive: zipfile.ZipFile, names: list[str], name: str) -> np.ndarray:
+    """The one array that can be a map, or all of them as one object each."""
+    if sum(archive.getinfo(n).file_size for n in names) > MAX_TOTAL_MEGAPIXELS * 1_000_000:
+        raise InputError(f"{name}: its masks are too large; reduce them first")
+    every = [np.squeeze(_checked_array(archive.read(n))) for n in names]
+    maps = [a for a in every if a.ndim == 2 and a.dtype.kind in "iub" and min(a.shape) > 4]
+    if len(maps) == 1:
+        return maps[0]
+    if len(maps) != len(names) or len({a.shape for a in maps}) != 1:
+        raise InputError(f"{name}: which of its arrays are the masks? call that one 'masks'")
+    return np.stack([a > 0 for a in maps])
 
 
 def _checked_array(data: bytes) -> np.ndarray:

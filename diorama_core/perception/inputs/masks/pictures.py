@@ -20,6 +20,8 @@ SMALL_ID = 128
 """Ids of objects below it leave the type's largest number free to mean nothing."""
 DENSE = 3
 """Ids are counted up, not chosen, where there are at least a third of so many as the largest says."""
+PHOTO_SHARE, PHOTO_LEVELS = 0.15, 64
+"""Of the pixels, those neither dark nor bright, and their levels: smoothed outlines have far fewer."""
 THIN_SHARE = 0.012
 """Of the longer side: half the width up to which a region is an outline."""
 CUT_OUT_COLOURS = 256
@@ -44,8 +46,10 @@ def read_picture(source: Source) -> MaskMap:
         raise InputError(f"{source.name}: the masks are damaged; save them again as PNG") from error
 
 
-def one_object(source: Source) -> Bool[np.ndarray, "h w"]:
+def one_object(source: Source) -> Bool[np.ndarray, "h w"] | None:
     """The object of a picture that shows only one: white on black, or cut out of the photo by transparency.
+
+    None where it has the colours of a photo.
 
     Raises:
         InputError: it is no such picture.
@@ -57,6 +61,9 @@ def one_object(source: Source) -> Bool[np.ndarray, "h w"]:
             return np.asarray(alpha >= 128)
     grey = np.asarray(picture.convert("L") if picture.mode in ("1", "P", "RGB", "RGBA", "LA", "PA") else picture)
     most = grey.max()
+    between = (grey > 0.15 * most) & (grey < 0.85 * most)
+    if most > 1 and float(between.mean()) > PHOTO_SHARE and len(np.unique(grey)) > PHOTO_LEVELS:
+        return None
     return np.asarray(grey > (most / 2 if most > 1 else 0))
 
 

@@ -8,18 +8,25 @@ from jaxtyping import Bool, Int32, Shaped
 from diorama_core.artefacts import Box, LabelledBox
 from diorama_core.errors import InputError
 from diorama_core.geometry.projection import box_iou
+from diorama_core.io.text import number_of
 from diorama_core.library.taxonomy import UNKNOWN
 from diorama_core.perception.inputs.form import form_of
-from diorama_core.perception.inputs.masks.table import MASK_FORMS
+from diorama_core.perception.inputs.masks.table import MASK_FORMS, MaskContent
 from diorama_core.perception.inputs.photos.reading import DecodedPhoto
 from diorama_core.perception.inputs.source import Folder, Source
 
-MAX_OBJECTS = 500
+MAX_OBJECTS, MANY = 500, 60
 SPECK_SHARE = 1e-4
 """An instance or a loose piece of one smaller than this share of the picture is a speck."""
 MIN_SPECK_PX = 20
 SOFT_COLOURS, SOFT_SHARE, SOFT_WIDTH_PX = 12, 0.1, 4.0
 """Of smoothed outlines: how many colours there are at least, of how much of the picture, and how wide at most."""
+MIN_BORDER_SHARE, MIN_AROUND_SHARE = 0.6, 0.3
+"""Of the picture's border and of its area: what is there and called no object is the background."""
+MARKED_IOU = 0.5
+"""Of a mask's bounds with a box that marks the same."""
+EVEN_SHARE = 0.8
+"""Of neighbours with different numbers: if so many differ by one, the numbers are measurements."""
 InstanceBoxes = tuple[tuple[int, LabelledBox], ...]
 
 
@@ -33,15 +40,18 @@ def read_masks(
     Raises:
         InputError: no masks in any form, of other proportions, or without any instance.
     """
-    form = form_of(MASK_FORMS, source)
+    content = MaskContent(source, photo.photo.name, photo.frame.full_size)
+    form = form_of(MASK_FORMS, content)
     assert form is not None  # the last form takes any file
-    found = form.read(source)
+    found = form.read(content)
     values, laid = photo.frame.laid_over(source.name, "mask", found.values)
     size = (photo.photo.width, photo.photo.height)
     if (values.shape[1], values.shape[0]) != size:
         values = _resized(values, size)
-    instances, dropped = _without_specks(source.name, with_hard_edges(values))
-    notes = (f"{dropped} specks of the masks were dropped",) if dropped else ()
+    values, around = without_surroundings(with_hard_edges(values), boxes)
+    instances, dropped = _without_specks(source.name, values)
+    instances, split = split_by_boxes(instances, boxes)
+    notes = (*around, *([f"{dropped} specks of the masks were dropped"] if dropped else []), *split)
     instances.setflags(write=False)
     return instances, match_instances(instances, boxes), (*found.notes, *laid, *notes)
 
@@ -69,6 +79,47 @@ def with_hard_edges(values: Int32[np.ndarray, "h w"]) -> Int32[np.ndarray, "h w"
     return values[rows, columns]
 
 
+def without_surroundings(
+    values: Int32[np.ndarray, "h w"], boxes: tuple[LabelledBox, ...]
+) -> tuple[Int32[np.ndarray, "h w"], tuple[str, ...]]:
+    """Masks where another number or colour than 0 is what lies around all objects, with 0 there, and the note."""
+    if (values == 0).any():
+        return values, ()
+    border = np.concatenate([values[0], values[-1], values[:, 0], values[:, -1]])
+    ids, counts = np.unique(border, return_counts=True)
+    around = values == ids[int(np.argmax(counts))]
+    given = np.array([b.box for b in boxes], dtype=np.float64).reshape(-1, 4)
+    is_marked = len(given) and box_iou(np.array(_extent(around)), given).max() > MARKED_IOU
+    if counts.max() < MIN_BORDER_SHARE * len(border) or around.mean() < MIN_AROUND_SHARE or is_marked:
+        return values, ()
+    note = f"what lies around all others in the masks ({around.mean():.0%}) was taken for the background"
+    return np.where(around, 0, values), (note,)
+
+
+def split_by_boxes(
+    instances: Int32[np.ndarray, "h w"], boxes: tuple[LabelledBox, ...]
+) -> tuple[Int32[np.ndarray, "h w"], tuple[str, ...]]:
+    """Masks of kinds, of which several boxes mark a piece each, as masks of things, and the note."""
+    import cv2  # the editor opens without it
+
+    given = np.array([b.box for b in boxes], dtype=np.float64).reshape(-1, 4)
+    apart, several = instances.copy(), 0
+    for k in range(1, int(instances.max()) + 1) if len(boxes) > 1 else ():
+        count, labels = cv2.connectedComponents((instances == k).astype(np.uint8), connectivity=8)
+        owners: dict[int, list[int]] = {}
+        for piece in range(1, count):
+            overlaps = box_iou(np.array(_extent(labels == piece)), given)
+            if overlaps.max() > MARKED_IOU:
+                owners.setdefault(int(np.argmax(overlaps)), []).append(piece)
+        if len(owners) < 2 or len({boxes[index].category for index in owners}) > 1:
+            continue
+        several += 1
+        for pieces in list(owners.values())[1:]:
+            apart[np.isin(labels, pieces)] = apart.max() + 1
+    said = f"{number_of(several, 'mask')} of several things, split by the boxes"
+    return apart, (said,) if several else ()
+
+
 def _resized(values: Shaped[np.ndarray, "h w *c"], size: tuple[int, int]) -> Shaped[np.ndarray, "h2 w2 *c"]:
     """Nearest neighbour by pixel centres."""
     rows = ((np.arange(size[1]) + 0.5) * values.shape[0] / size[1]).astype(int)
@@ -85,6 +136,9 @@ def _without_specks(name: str, values: Int32[np.ndarray, "h w"]) -> tuple[Int32[
     in_specks = int(counts[(ids != 0) & (counts < least)].sum())
     if in_specks > 0.2 * foreground or len(large) > MAX_OBJECTS:
         raise InputError(f"{name}: {len(ids)} colours are no instance mask; give one plain colour per object on black")
+    steps = np.abs(np.diff(values, axis=1))
+    if len(large) > MANY and np.mean(steps[steps > 0] == 1) > EVEN_SHARE:
+        raise InputError(f"{name}: its numbers change evenly, as in depth or a grey photo; give one number per object")
     instances = np.zeros(values.shape, dtype=np.int32)
     dropped = int((counts[ids != 0] < least).sum())
     for _, value in sorted(large):

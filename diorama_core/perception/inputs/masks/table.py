@@ -2,46 +2,49 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 from diorama_core.perception.inputs.form import Form
-from diorama_core.perception.inputs.masks.files import read_arrays, read_folder_of_masks, read_segments
+from diorama_core.perception.inputs.masks.files import read_arrays, read_folder_of_masks
 from diorama_core.perception.inputs.masks.pictures import read_picture
+from diorama_core.perception.inputs.masks.segments import is_polygon_list, read_polygon_list, read_segments
 from diorama_core.perception.inputs.masks.stack import MaskMap
 from diorama_core.perception.inputs.source import Folder, Source
 
 
-def _is_folder(given: Folder | Source) -> bool:
-    return isinstance(given, Folder)
+@dataclass(frozen=True)
+class MaskContent:
+    """A file or a folder, and the photo that it is of."""
+
+    given: Folder | Source
+    photo_name: str
+    photo_size: tuple[int, int]
+
+    @property
+    def source(self) -> Source:
+        """The file, of what is no folder."""
+        assert isinstance(self.given, Source)
+        return self.given
 
 
-def _is_array(given: Folder | Source) -> bool:
-    return isinstance(given, Source) and given.data.startswith((b"\x93NUMPY", b"PK\x03\x04"))
+def _is_folder(content: MaskContent) -> bool:
+    return isinstance(content.given, Folder)
 
 
-def _is_json(given: Folder | Source) -> bool:
-    return isinstance(given, Source) and given.data.lstrip()[:1] in (b"[", b"{")
+def _is_array(content: MaskContent) -> bool:
+    return content.source.data.startswith((b"\x93NUMPY", b"PK\x03\x04"))
 
 
-def _folder(given: Folder | Source) -> MaskMap:
-    assert isinstance(given, Folder)
-    return read_folder_of_masks(given)
+def _is_json(content: MaskContent) -> bool:
+    return content.source.data.lstrip()[:1] in (b"[", b"{")
 
 
-def _array(given: Folder | Source) -> MaskMap:
-    assert isinstance(given, Source)
-    return read_arrays(given)
+def _folder(content: MaskContent) -> MaskMap:
+    assert isinstance(content.given, Folder)
+    return read_folder_of_masks(content.given)
 
 
-def _json(given: Folder | Source) -> MaskMap:
-    assert isinstance(given, Source)
-    return read_segments(given)
-
-
-def _picture(given: Folder | Source) -> MaskMap:
-    assert isinstance(given, Source)
-    return read_picture(given)
-
-
-MASK_FORMS: tuple[Form[Folder | Source, MaskMap], ...] = (
+MASK_FORMS: tuple[Form[MaskContent, MaskMap], ...] = (
     Form(
         "folder or zip of masks",
         "SAM (amg.py), SAM 3D Objects, Grounded-SAM",
@@ -54,20 +57,27 @@ MASK_FORMS: tuple[Form[Folder | Source, MaskMap], ...] = (
         "Mask R-CNN, SAM, scripts",
         "ids (h, w), or true and false (n, h, w)",
         _is_array,
-        _array,
+        lambda content: read_arrays(content.source),
     ),
     Form(
         "segments in JSON",
-        "COCO, SAM's automatic masks, LabelMe",
-        "run lengths, plain or packed, and polygons with the picture's size",
+        "COCO, SAM's automatic masks, LabelMe, VIA, Supervisely",
+        "run lengths, plain or packed, bitmaps and polygons, of the photo's file name",
         _is_json,
-        _json,
+        lambda content: read_segments(content.source, content.photo_name, content.photo_size),
+    ),
+    Form(
+        "YOLO polygons",
+        "Ultralytics",
+        "a class number and the corners of a polygon a line, in shares of the picture",
+        lambda content: is_polygon_list(content.source),
+        lambda content: read_polygon_list(content.source, content.photo_size),
     ),
     Form(
         "picture (PNG, TIFF, GIF, WebP)",
         "Pascal VOC, LabelMe, CVAT, painting programs",
         "a colour or an id an object; black, 0 and void (255) are none; palettes by their colours",
-        lambda given: isinstance(given, Source),
-        _picture,
+        lambda _: True,
+        lambda content: read_picture(content.source),
     ),
 )

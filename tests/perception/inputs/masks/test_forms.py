@@ -2,23 +2,27 @@
 
 from __future__ import annotations
 
+import base64
 import io
 import json
 import zipfile
+import zlib
 from pathlib import Path
 
 import numpy as np
 import pytest
 from PIL import Image
 
+from diorama_core.artefacts import LabelledBox
 from diorama_core.errors import InputError
 from diorama_core.perception.inputs.form import form_of
-from diorama_core.perception.inputs.masks.files import read_arrays, read_folder_of_masks, read_segments
+from diorama_core.perception.inputs.masks.files import read_arrays, read_folder_of_masks
 from diorama_core.perception.inputs.masks.pictures import VOC_VOID, read_picture, without_void
 from diorama_core.perception.inputs.masks.reading import read_masks
 from diorama_core.perception.inputs.masks.run_lengths import decoded_runs
+from diorama_core.perception.inputs.masks.segments import read_segments
 from diorama_core.perception.inputs.masks.stack import painted
-from diorama_core.perception.inputs.masks.table import MASK_FORMS
+from diorama_core.perception.inputs.masks.table import MASK_FORMS, MaskContent
 from diorama_core.perception.inputs.source import Folder, Source, read_folder
 from tests.perception.inputs.files import decoded, encoded, npy
 
@@ -146,12 +150,90 @@ def test_run_lengths(as_text: bool) -> None:
         decoded_runs({"size": [4, 4], "counts": [3, 2]}, "m")
 
 
-def test_polygons_need_the_size_of_the_picture() -> None:
-    shapes = [{"label": "x", "shape_type": "polygon", "points": [[10, 10], [89, 10], [89, 79], [10, 79]]}]
-    document = {"shapes": shapes, "imageWidth": WIDTH, "imageHeight": HEIGHT}
-    np.testing.assert_array_equal(read_segments(Source(json.dumps(document).encode(), "m")).values > 0, LARGE)
-    with pytest.raises(InputError, match="need the size"):
-        read_segments(Source(json.dumps({"shapes": shapes}).encode(), "m"))
+POLYGON = [[10, 10], [89, 10], [89, 79], [10, 79]]
+SIDES = [[x for x, _ in POLYGON], [y for _, y in POLYGON]]
+DATA_SET = {
+    "images": [{"id": 1, "file_name": "b.png", "width": 9, "height": 9}, {"id": 2, "file_name": "a/photo.png"}],
+    "annotations": [
+        {"image_id": 1, "segmentation": [[0, 0, 8, 0, 8, 8]]},
+        {"image_id": 2, "segmentation": [[v for p in POLYGON for v in p]]},
+    ],
+}
+BITMAP = {
+    "origin": [10, 10],
+    "data": base64.b64encode(zlib.compress(encoded(Image.fromarray(np.full((70, 80), 255, np.uint8))))).decode(),
+}
+
+
+@pytest.mark.parametrize(
+    "document",
+    [
+        {"shapes": [{"label": "x", "shape_type": "polygon", "points": POLYGON}]},
+        {"shapes": [{"shape_type": "polygon", "points": POLYGON}], "imageWidth": WIDTH, "imageHeight": HEIGHT},
+        {"a": {"filename": "photo.png", "regions": [{"shape_attributes": dict(zip(
+            ("all_points_x", "all_points_y"), SIDES, strict=True))}]}},
+        {"objects": [{"geometryType": "polygon", "points": {"exterior": POLYGON, "interior": []}}]},
+        {"objects": [{"geometryType": "bitmap", "bitmap": BITMAP}]},
+        DATA_SET,
+    ],
+)  # fmt: skip
+def test_polygons_and_bitmaps_of_annotation_tools(document: object) -> None:
+    source = Source(json.dumps(document).encode(), "m")
+    np.testing.assert_array_equal(read_segments(source, "photo.png", (WIDTH, HEIGHT)).values > 0, LARGE)
+
+
+def test_segments_of_other_pictures_are_refused() -> None:
+    with pytest.raises(InputError, match="is of 2 pictures, none of them called"):
+        read_segments(Source(json.dumps(DATA_SET).encode(), "m"), "c.png", (WIDTH, HEIGHT))
+    broken = {"objects": [{"bitmap": {**BITMAP, "origin": [100, 10]}}]}
+    with pytest.raises(InputError, match="beyond the picture"):
+        read_segments(Source(json.dumps(broken).encode(), "m"), "c.png", (WIDTH, HEIGHT))
+
+
+def test_polygons_of_yolo() -> None:
+    text = "0 " + " ".join(f"{x / WIDTH:.5f} {y / HEIGHT:.5f}" for x, y in POLYGON)
+    assert (found(Source(text.encode(), "m.txt")) > 0).mean() == pytest.approx(LARGE.mean(), abs=0.02)
+
+
+def test_masks_black_on_white_and_arrays_of_one_each() -> None:
+    files = [
+        picture(Image.fromarray(np.where(m, 0, 255).astype(np.uint8)), f"{k}.png") for k, m in enumerate((LARGE, SMALL))
+    ]
+    np.testing.assert_array_equal(found(Folder("f", tuple(files))), IDS)
+    stream = io.BytesIO()
+    np.savez(stream, sofa=LARGE, table=SMALL)
+    np.testing.assert_array_equal(found(Source(stream.getvalue(), "m.npz")), IDS)
+    soft = np.stack([LARGE, SMALL]) * np.float32(0.9)
+    np.testing.assert_array_equal(found(Source(npy(soft), "m.npy")), IDS)
+    files = tuple(Source(npy(m), f"{k}.npy") for k, m in enumerate((LARGE, SMALL)))
+    np.testing.assert_array_equal(found(Folder("f", files)), IDS)
+
+
+def test_photos_and_measurements_are_no_masks() -> None:
+    noise = np.random.default_rng(1).integers(0, 256, (HEIGHT, WIDTH, 3), dtype=np.uint8)
+    with pytest.raises(InputError, match="colours of a photo"):
+        found(Folder("f", (picture(Image.fromarray(noise)),)))
+    ramp = np.tile(np.arange(WIDTH, dtype=np.uint8), (HEIGHT, 1))
+    with pytest.raises(InputError, match="change evenly"):
+        found(picture(Image.fromarray(ramp)))
+
+
+def test_what_lies_around_all_is_no_object() -> None:
+    values, _, notes = read_masks(picture(Image.fromarray((IDS + 7).astype(np.uint8))), (), decoded(WIDTH, HEIGHT))
+    np.testing.assert_array_equal(values, IDS)
+    assert "taken for the background" in notes[0]
+
+
+def test_a_mask_of_a_kind_is_split_by_the_boxes() -> None:
+    both = np.zeros((HEIGHT, WIDTH), np.uint8)
+    both[10:40, 10:40], both[50:80, 60:110] = 1, 1
+    boxes = tuple(LabelledBox(b, "chair", "chair") for b in ((10, 10, 40, 40), (60, 50, 110, 80)))
+    values, matched, notes = read_masks(picture(Image.fromarray(both)), boxes, decoded(WIDTH, HEIGHT))
+    assert values.max() == 2
+    assert [b.box for _, b in matched] == [b.box for b in boxes]
+    assert "1 mask of several things" in notes[0]
+    other = (boxes[0], LabelledBox(boxes[1].box, "sofa", "sofa"))
+    assert read_masks(picture(Image.fromarray(both)), other, decoded(WIDTH, HEIGHT))[0].max() == 1
 
 
 def test_smoothed_outlines_are_given_to_what_is_beside() -> None:
@@ -165,7 +247,9 @@ def test_smoothed_outlines_are_given_to_what_is_beside() -> None:
 
 
 def test_forms_and_refusals() -> None:
-    assert form_of(MASK_FORMS, Source(b"[1]", "m")).name == "segments in JSON"
+    assert (
+        form_of(MASK_FORMS, MaskContent(Source(b"[1]", "m"), "photo.png", (WIDTH, HEIGHT))).name == "segments in JSON"
+    )
     for given in (Source(b"[1]", "m.json"), Folder("empty", ())):
         with pytest.raises(InputError, match="no mask"):
             found(given)

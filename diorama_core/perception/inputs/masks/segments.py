@@ -1,0 +1,158 @@
+"""Masks in JSON and text: run lengths, bitmaps and polygons of annotation tools."""
+
+from __future__ import annotations
+
+import base64
+import math
+import zlib
+from collections.abc import Iterator
+from typing import Any
+
+import numpy as np
+from jaxtyping import Bool
+from PIL import Image, ImageDraw
+
+from diorama_core.errors import InputError
+from diorama_core.io.bounded import parse_json
+from diorama_core.perception.inputs.boxes.data_sets import is_data_set, photo_of_data_set, rows_of_results
+from diorama_core.perception.inputs.boxes.entry import BoxText, Size
+from diorama_core.perception.inputs.boxes.nested import size_in
+from diorama_core.perception.inputs.boxes.tools import is_via, regions_of
+from diorama_core.perception.inputs.json_values import objects_of, size_of
+from diorama_core.perception.inputs.masks.pictures import MAX_MASK_MEGAPIXELS, one_object
+from diorama_core.perception.inputs.masks.run_lengths import decoded_runs
+from diorama_core.perception.inputs.masks.stack import MaskMap, painted
+from diorama_core.perception.inputs.source import Source
+
+MAX_TOTAL_MEGAPIXELS = 600
+"""Of all masks of a folder or a file together."""
+
+
+def read_segments(source: Source, photo_name: str, photo_size: Size) -> MaskMap:
+    """Run lengths (COCO, SAM), bitmaps (Supervisely) and polygons (COCO, LabelMe, VIA) of JSON.
+
+    Args:
+        source: the file.
+        photo_name: by which its segments are found among those of other pictures.
+        photo_size: of what is polygons without a size.
+
+    Raises:
+        InputError: of several pictures none is the photo, or what it holds is damaged.
+    """
+    document = parse_json(source.data, source.name, InputError, advice="masks are pictures, arrays or COCO's segments")
+    document, size = _of_photo(BoxText(source, document, photo_name, photo_size))
+    masks: list[Bool[np.ndarray, "h w"]] = []
+    for segment in _segments(document):
+        mask = _mask(segment, size or photo_size, source.name)
+        if sum(m.size for m in masks) + mask.size > MAX_TOTAL_MEGAPIXELS * 1_000_000:
+            raise InputError(f"{source.name}: its masks have too many pixels together; reduce them first")
+        if mask.any():
+            masks.append(mask)
+    return painted(masks, source.name, "segments")
+
+
+def is_polygon_list(source: Source) -> bool:
+    """Whether it is text of YOLO's form with polygons."""
+    try:
+        rows = [line.split() for line in source.data[:4_000_000].decode().splitlines() if line.strip()]
+        numbers = [[float(v) for v in row] for row in rows]
+    except ValueError:
+        return False
+    polygons = all(len(r) >= 7 and len(r) % 2 for r in numbers)
+    return bool(numbers) and polygons and all(min(r[1:]) >= -0.1 and max(r[1:]) <= 1.1 for r in numbers)
+
+
+def read_polygon_list(source: Source, photo_size: Size) -> MaskMap:
+    """Polygons in shares of the picture."""
+    masks = []
+    for line in source.data.decode().splitlines():
+        shares = [float(v) for v in line.split()[1:]]
+        if shares:
+            pixels = [v * photo_size[k % 2] for k, v in enumerate(shares)]
+            masks.append(_polygon([pixels], photo_size, source.name))
+    return painted([m for m in masks if m.any()], source.name, "polygons")
+
+
+def _of_photo(text: BoxText) -> tuple[Any, Size | None]:
+    """What a document says of the photo, and the size of the annotated picture where it states one."""
+    document: Any = text.document
+    if is_data_set(text):
+        image, annotations = photo_of_data_set(text)
+        return annotations, None if image is None else size_of(image.get("width"), image.get("height"))
+    if is_via(text):
+        return regions_of(text), None
+    rows = objects_of(document)
+    if rows and all("image_id" in r for r in rows):
+        return rows_of_results(rows, text), None
+    return document, size_in(document)
+
+
+def _mask(segment: Any, size: Size, name: str) -> Bool[np.ndarray, "h w"]:
+    if isinstance(segment, dict):
+        return _bitmap(segment, size, name) if "data" in segment else decoded_runs(segment, name)
+    return _polygon(segment, size, name)
+
+
+def _bitmap(segment: dict[str, Any], size: Size, name: str) -> Bool[np.ndarray, "h w"]:
+    """Supervisely's: a packed picture of the object, and where its upper left corner is."""
+    mask = np.zeros(size[::-1], bool)
+    try:
+        packed = base64.b64decode(segment["data"], validate=True)
+        picture = zlib.decompressobj().decompress(packed, MAX_MASK_MEGAPIXELS * 1_000_000)
+        part = one_object(Source(picture, name))
+        x, y = (int(v) for v in segment["origin"])
+    except (ValueError, TypeError, KeyError, zlib.error, OverflowError) as error:
+        raise InputError(f"{name}: the bitmap of an object is damaged; export it again") from error
+    if part is None or x < 0 or y < 0 or y + part.shape[0] > size[1] or x + part.shape[1] > size[0]:
+        raise InputError(f"{name}: the bitmap of an object reaches beyond the picture; export it again")
+    mask[y : y + part.shape[0], x : x + part.shape[1]] = part
+    return mask
+
+
+def _segments(value: Any, level: int = 0) -> Iterator[Any]:
+    """Objects with `size` and `counts`, and lists of polygons, of everything in a document."""
+    if level > 6:
+        return
+    if isinstance(value, list):
+        for inner in value:
+            yield from _segments(inner, level + 1)
+    elif isinstance(value, dict):
+        if "counts" in value and "size" in value:
+            yield value
+            return
+        bitmap = value.get("bitmap")
+        if isinstance(bitmap, dict) and "data" in bitmap and "origin" in bitmap:
+            yield bitmap
+            return
+        points, across, down = (value.get(k) for k in ("points", "all_points_x", "all_points_y"))
+        if isinstance(across, list) and isinstance(down, list):
+            yield [[[x, y] for x, y in zip(across, down, strict=False)]]
+            return
+        if isinstance(points, dict) and isinstance(points.get("exterior"), list) and len(points["exterior"]) > 2:
+            yield [points["exterior"]]
+            return
+        if value.get("shape_type") == "polygon" and isinstance(points, list) and len(points) > 2:
+            yield [points]
+            return
+        segmentation = value.get("segmentation")
+        if isinstance(segmentation, list) and segmentation and all(isinstance(p, list) for p in segmentation):
+            yield segmentation
+            return
+        for inner in value.values():
+            yield from _segments(inner, level + 1)
+
+
+def _polygon(rings: list[Any], size: Size, name: str) -> Bool[np.ndarray, "h w"]:
+    """Rings of x, y, x, y... or of [x, y] filled."""
+    if size[0] * size[1] > MAX_MASK_MEGAPIXELS * 1_000_000:
+        raise InputError(f"{name}: its picture of {size[0]} x {size[1]} pixels is too large for masks")
+    canvas = Image.new("L", size)
+    try:
+        for ring in rings:
+            points = [float(v) for p in ring for v in (p if isinstance(p, list) else [p])]
+            pairs = list(zip(points[::2], points[1::2], strict=False))
+            if len(pairs) > 2 and all(math.isfinite(v) and abs(v) < 1e6 for p in pairs for v in p):
+                ImageDraw.Draw(canvas).polygon(pairs, fill=1)
+    except (TypeError, ValueError, OverflowError) as error:
+        raise InputError(f"{name}: a polygon is not a list of numbers; export it again") from error
+    return np.asarray(canvas) > 0
