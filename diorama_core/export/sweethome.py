@@ -1,4 +1,4 @@
-"""A scene as a Sweet Home 3D home: walls, rooms, and furniture as its own models. Centimetres, plan y downward.
+"""A scene as a Sweet Home 3D home: walls, rooms, lights, and furniture as its own models. Centimetres, plan y downward.
 
 The file is a zip with `Home.xml`, which Sweet Home 3D reads from version 5.3 on, and a folder per model (OBJ).
 Document type: https://www.sweethome3d.com/SweetHome3D.dtd
@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import xml.etree.ElementTree as ET
 import zipfile
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import replace
 from pathlib import Path
 
@@ -16,18 +16,23 @@ import numpy as np
 from jaxtyping import Float
 
 from diorama_core.export.files import add_entry, whole_file
-from diorama_core.export.gathering import ExportMesh, ExportObject, ExportPlane, ExportScene
-from diorama_core.export.pictures import TexturePictures
+from diorama_core.export.gathering import ExportMesh, ExportObject, ExportPlane, ExportScene, rigid_inverse
+from diorama_core.export.lights import ExportLight
+from diorama_core.export.pictures import TexturePictures, encoded_picture, picture_suffix
 from diorama_core.export.scene_state import R_SHAPE_FILE
 from diorama_core.export.wall_lines import DrawnWall, wall_lines
 from diorama_core.export.wavefront import MaterialFile, ObjText
 from diorama_core.geometry.openings import OPENING_CATEGORIES
 from diorama_core.geometry.vectors import unit
+from diorama_core.io.srgb import linear_to_srgb
 from diorama_core.progress import Progress
-from diorama_core.scene.types import Camera
+from diorama_core.scene.types import Camera, Plane
 
 CM_PER_M = 100.0
-VERSION = "7200"
+VERSION = "5300"
+"""The first version that reads `Home.xml`; an older program than this warns that it may lose something."""
+FULL_POWER_LM = 1600.0
+"""Luminous flux of a light at full power: at half of it, the program's own default, it is a bulb of 60 W."""
 UPRIGHT = 0.9999
 SLACK_M = 0.02
 """Doors reach this far through their wall, so that Sweet Home 3D cuts it."""
@@ -47,11 +52,21 @@ def write_sweet_home(scene: ExportScene, path: Path, progress: Progress | None =
             progress.report(min(number / (3 * len(scene.objects) + 1), 1.0), "writing models")
             models.setdefault(key, name)
             add_entry(archive, name, content)
-        add_entry(archive, "Home.xml", home_xml(scene, models))
+        used = {str(p.plane.texture) for p in scene.planes} & scene.textures.keys()
+        pictures = {name: f"textures/{n}{picture_suffix(scene.textures[name])}" for n, name in enumerate(sorted(used))}
+        for name, entry in pictures.items():
+            add_entry(archive, entry, encoded_picture(scene.textures[name]))
+        add_entry(archive, "Home.xml", home_xml(scene, models, pictures))
 
 
-def home_xml(scene: ExportScene, models: Mapping[str, str]) -> bytes:
-    """The home's description; `models` names the entry of each object's model by `model_key`."""
+def home_xml(scene: ExportScene, models: Mapping[str, str], pictures: Mapping[str, str]) -> bytes:
+    """The home's description.
+
+    Args:
+        scene: What is described.
+        models: Entry of each object's model by `model_key`.
+        pictures: Entry of each picture by its name in the scene.
+    """
     walls = wall_lines([p.plane for p in scene.planes], [o.item for o in scene.objects], scene.scene)
     height = max((w.top_m - w.bottom_m for w in walls), default=2.5)
     attributes = {"version": VERSION, "name": scene.name, "camera": "topCamera", "wallHeight": _cm(height)}
@@ -60,14 +75,18 @@ def home_xml(scene: ExportScene, models: Mapping[str, str]) -> bytes:
         ET.SubElement(home, "observerCamera", _observer(scene.camera))
     depth = {o.object_id: w.plane.thickness for w in walls for o in w.openings if o.object_id}
     for item in scene.objects:
-        is_opening = item.item.category in OPENING_CATEGORIES
-        tag = "doorOrWindow" if is_opening else "pieceOfFurniture"
-        ET.SubElement(home, tag, _piece(scene, item, models[model_key(item)], depth.get(item.id)))
+        light = next((k for k in scene.lights if k.owner == item.id and k.kind == "lamp"), None)
+        tag = "doorOrWindow" if item.item.category in OPENING_CATEGORIES else "light" if light else "pieceOfFurniture"
+        piece = ET.SubElement(home, tag, _piece(scene, item, models[model_key(item)], depth.get(item.id)))
+        if light is not None:
+            _shine(piece, item, light)
     for number, wall in enumerate(walls):
-        ET.SubElement(home, "wall", _wall(wall, number))
+        element = ET.SubElement(home, "wall", _wall(wall, number))
+        for side in ("leftSideTexture", "rightSideTexture"):
+            _picture(element, side, wall.plane, wall.length_m, wall.top_m - wall.bottom_m, pictures)
     for plane in scene.planes:
         if plane.plane.role == "floor":
-            _add_room(home, plane)
+            _add_room(home, plane, pictures)
     ET.indent(home)
     return ET.tostring(home, encoding="utf-8", xml_declaration=True)
 
@@ -110,6 +129,30 @@ def _piece(scene: ExportScene, item: ExportObject, model: str, wall_m: float | N
     return attributes | ({"doorOrWindow": "true"} if item.item.category in OPENING_CATEGORIES else {})
 
 
+def _shine(piece: ET.Element, item: ExportObject, light: ExportLight) -> None:
+    """Where a lamp's light comes from, as shares of its width, depth and height from its left, back and bottom."""
+    depth, width, height = (float(v) for v in item.item.size_m)
+    x, y, z = (rigid_inverse(item.T_world) @ light.T_world)[:3, 3] / (depth, width, height) + 0.5
+    piece.set("power", f"{min(light.lumens / FULL_POWER_LM, 1.0):.3f}")
+    place = {"x": f"{y:.4f}", "y": f"{x:.4f}", "z": f"{z:.4f}", "diameter": _cm(2 * light.radius_m)}
+    ET.SubElement(piece, "lightSource", {**place, "color": _colour(linear_to_srgb(np.array(light.colour)))})
+
+
+def _picture(
+    element: ET.Element, side: str, plane: Plane, width_m: float, height_m: float, pictures: Mapping[str, str]
+) -> None:
+    """The picture of a plane, which covers it once, on a side of a wall or room."""
+    if plane.texture in pictures:
+        size = {"width": _cm(width_m), "height": _cm(height_m), "fittingArea": "true"}
+        ET.SubElement(
+            element, "texture", {"attribute": side, "name": plane.id, **size, "image": pictures[plane.texture]}
+        )
+
+
+def _colour(srgb: Iterable[float]) -> str:
+    return "FF" + "".join(f"{round(255 * min(max(c, 0.0), 1.0)):02X}" for c in srgb)
+
+
 def _floor_m(scene: ExportScene) -> float:
     floor = scene.scene.architecture.floor
     return 0.0 if floor is None else float(floor.centre[2])
@@ -124,7 +167,7 @@ def _wall(wall: DrawnWall, number: int) -> dict[str, str]:
     """The wall's middle line; its inner face is where the scene has it."""
     half = wall.plane.thickness / 2
     (x0, y0), (x1, y1) = wall.at(0.0, half), wall.at(wall.length_m, half)
-    colour = "FF" + "".join(f"{round(255 * min(max(c, 0.0), 1.0)):02X}" for c in wall.plane.colour)
+    colour = _colour(wall.plane.colour)
     return {
         "id": f"wall{number}",
         "xStart": _cm(x0),
@@ -138,9 +181,11 @@ def _wall(wall: DrawnWall, number: int) -> dict[str, str]:
     }
 
 
-def _add_room(home: ET.Element, plane: ExportPlane) -> None:
-    colour = "FF" + "".join(f"{round(255 * min(max(c, 0.0), 1.0)):02X}" for c in plane.plane.colour)
-    room = ET.SubElement(home, "room", {"id": f"room-{plane.slug}", "areaVisible": "true", "floorColor": colour})
+def _add_room(home: ET.Element, plane: ExportPlane, pictures: Mapping[str, str]) -> None:
+    attributes = {"id": f"room-{plane.slug}", "areaVisible": "true", "floorColor": _colour(plane.plane.colour)}
+    room = ET.SubElement(home, "room", attributes)
+    width, depth, _ = np.ptp(plane.plane.polygon, axis=0)
+    _picture(room, "floorTexture", plane.plane, float(width), float(depth), pictures)
     for x, y, _ in plane.plane.polygon:
         ET.SubElement(room, "point", {"x": _cm(float(x)), "y": _cm(-float(y))})
 

@@ -10,11 +10,13 @@ import pytest
 import trimesh
 
 from diorama_core.export import export_scene
+from diorama_core.export.sweethome import write_sweet_home
+from tests.export import scenes
 from tests.export.test_plan import room_with_door_and_window
 from tests.primitives import PrimitiveLibrary
 
 LIBRARY = PrimitiveLibrary()
-ORDER = ("observerCamera", "doorOrWindow", "pieceOfFurniture", "wall", "room")
+ORDER = ("observerCamera", "doorOrWindow", "pieceOfFurniture", "light", "wall", "room")
 REQUIRED = {
     "pieceOfFurniture": ("name", "x", "y", "width", "depth", "height"),
     "doorOrWindow": ("name", "x", "y", "width", "depth", "height"),
@@ -35,7 +37,7 @@ def home(tmp_path):
 def test_elements_and_their_required_attributes(home) -> None:
     folder, root = home
     assert root.tag == "home"
-    assert int(root.get("version")) >= 5300
+    assert root.get("version") == "5300", "programs warn of a home that is newer than they are"
     assert root.get("name") == "Room & more"
     for element in root:
         assert element.tag in ORDER
@@ -64,6 +66,26 @@ def test_models_are_upright_and_of_the_pieces_proportions(home) -> None:
     np.testing.assert_allclose([width, height, depth], sides, atol=1e-2)
     assert float(table.get("elevation")) == pytest.approx(0.0, abs=1e-2)
     assert float(table.get("angle")) == pytest.approx(np.pi, abs=1e-6), "a front along world +y is up on the plan"
+
+
+def test_walls_and_floors_have_their_pictures_and_lamps_shine(tmp_path) -> None:
+    path = tmp_path / "home.sh3d"
+    gathered = scenes.gathered("example")
+    write_sweet_home(gathered, path)
+    with zipfile.ZipFile(path) as archive:
+        names, root = archive.namelist(), ET.fromstring(archive.read("Home.xml"))
+    seen = [p.plane for p in gathered.planes if p.plane.role in ("wall", "floor") and p.plane.texture]
+    textures = list(root.iter("texture"))
+    assert {t.get("name") for t in textures} == {p.id for p in seen}
+    assert all(t.get("image") in names and t.get("fittingArea") == "true" for t in textures)
+    lamps = {light.owner: light for light in gathered.lights}
+    lights = {p.get("id").removeprefix("piece-"): p for p in root.iter("light")}
+    assert set(lights) == {gathered.object(owner).slug for owner in lamps}
+    for owner, light in lamps.items():
+        source = lights[gathered.object(owner).slug].find("lightSource")
+        height = float(source.get("z")) * gathered.object(owner).item.size_m[2]
+        low = gathered.object(owner).item.corners_world[:, 2].min()
+        assert low + height == pytest.approx(light.T_world[2, 3], abs=1e-3)
 
 
 def test_doors_reach_through_their_wall(home) -> None:
