@@ -1,22 +1,23 @@
-"""A scene as IFC4, by IfcOpenShell: a storey with walls, openings, slabs, doors, windows and furniture. Metres, +Z up.
+"""A scene as IFC4, by IfcOpenShell: a storey with a space, walls, openings, slabs, doors, windows and furniture.
 
-Shapes are mapped: objects of one shape share its triangles. Each element's property set `Diorama` names the object's
-id, category, shape and supporter.
+Metres, +Z up. Shapes are types with their materials: objects of one shape share its triangles. Quantities are those of
+the standard's base sets. Each element's property set `Diorama` names the object's id, category, shape and supporter.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
 import numpy as np
-from jaxtyping import Float, Int
+from jaxtyping import Float
 
 from diorama_core.export.files import whole_file
 from diorama_core.export.gathering import ExportMesh, ExportObject, ExportScene
+from diorama_core.export.ifc_document import IfcDocument
 from diorama_core.export.wall_lines import DrawnWall, Opening, wall_lines
-from diorama_core.io.srgb import linear_to_srgb, srgb_to_linear
+from diorama_core.io.srgb import srgb_to_linear
 from diorama_core.library.taxonomy import column
 from diorama_core.progress import Progress
 from diorama_core.render.appearance import Material
@@ -24,10 +25,10 @@ from diorama_core.scene.types import Plane
 
 CLASSES: Mapping[str, str] = column("ifc_class")
 """Classes of categories; all others are furniture."""
+MIN_WALL_M = 0.1
+"""Least thickness of a wall, outward: a photo shows inner faces alone, and no partition is thinner."""
 THROUGH_M = 0.05
 """Openings reach this far through their wall on both sides."""
-ONE_POINT, ONE_TRIANGLE = "((0.,0.,0.))", "((1,2,3))"
-"""What IfcOpenShell is told of long lists, and writes: it takes a microsecond and more for every number."""
 
 
 def write_ifc(scene: ExportScene, path: Path, progress: Progress | None = None) -> None:
@@ -39,39 +40,24 @@ def write_ifc(scene: ExportScene, path: Path, progress: Progress | None = None) 
     """
     builder = _Builder(scene, progress or Progress())
     with whole_file(Path(path)) as temporary, temporary.open("w", encoding="ascii", newline="\n") as stream:
-        stream.writelines(builder.lines())
+        stream.writelines(builder.built().lines())
 
 
 class _Builder:
     """Adds a gathered scene to a file."""
 
     def __init__(self, scene: ExportScene, progress: Progress) -> None:
-        import ifcopenshell
-        import ifcopenshell.guid
-
-        self._scene, self._progress = scene, progress
-        self._new_guid = ifcopenshell.guid.new
-        self._file = ifcopenshell.file(schema="IFC4")
-        self._origin = self._frame(np.eye(4))
-        self._context, self._body = self._contexts()
+        self._scene, self._progress, self._to = scene, progress, IfcDocument()
         self._maps: dict[str, Any] = {}
-        self._lists: dict[str, Float[np.ndarray, "n 3"] | Int[np.ndarray, "m 3"]] = {}
-        self._styles: dict[int, Any] = {}
+        self._types: dict[tuple[str, str], Any] = {}
+        self._typed: dict[Any, list[Any]] = {}
 
-    def lines(self) -> Iterator[str]:
-        """The whole model as text, its long lists written here."""
-        for line in self._built().to_string().splitlines(keepends=True):
-            rows = self._lists.get(line.partition("=")[0])
-            if rows is None:
-                yield line
-            else:
-                whole = np.issubdtype(rows.dtype, np.integer)
-                yield line.replace(ONE_TRIANGLE if whole else ONE_POINT, _list_text(rows, "%d" if whole else "%.6f"))
-
-    def _built(self) -> Any:
+    def built(self) -> IfcDocument:
+        """The whole model."""
         storey = self._storey()
         walls = wall_lines([p.plane for p in self._scene.planes], self._items, self._scene.scene)
         elements: list[Any] = []
+        pieces: list[Any] = []
         holes: dict[str, Any] = {}
         for wall in walls:
             elements.append(self._wall(wall, storey, holes))
@@ -81,200 +67,205 @@ class _Builder:
         for number, item in enumerate(self._scene.objects):
             self._progress.report(number / len(self._scene.objects), f"writing {item.name}")
             element = self._object(item, storey)
-            elements.append(element)
+            (elements if element.is_a() in ("IfcDoor", "IfcWindow") else pieces).append(element)
             if item.id in holes:
-                self._rooted(
+                self._to.rooted(
                     "IfcRelFillsElement", RelatingOpeningElement=holes[item.id], RelatedBuildingElement=element
                 )
-        if elements:
-            self._rooted("IfcRelContainedInSpatialStructure", RelatedElements=elements, RelatingStructure=storey)
-        return self._file
+        for kind, alike in self._typed.items():
+            self._to.rooted("IfcRelDefinesByType", RelatedObjects=alike, RelatingType=kind)
+        for inside, place in ((elements, storey), (pieces, self._space(storey) or storey)):
+            if inside:
+                self._to.rooted("IfcRelContainedInSpatialStructure", RelatedElements=inside, RelatingStructure=place)
+        return self._to
 
     @property
     def _items(self) -> Sequence[Any]:
         return [o.item for o in self._scene.objects]
 
-    def _add(self, kind: str, *values: Any, **named: Any) -> Any:
-        return self._file.create_entity(kind, *values, **named)
-
-    def _rooted(self, kind: str, **named: Any) -> Any:
-        return self._add(kind, GlobalId=self._new_guid(), **named)
-
-    def _point(self, values: Sequence[float] | Float[np.ndarray, "n"]) -> Any:
-        return self._add("IfcCartesianPoint", [float(v) for v in values])
-
-    def _direction(self, values: Float[np.ndarray, "n"]) -> Any:
-        return self._add("IfcDirection", [float(v) for v in values])
-
-    def _frame(self, T: Float[np.ndarray, "4 4"]) -> Any:
-        """A placement from a rigid transform."""
-        return self._add(
-            "IfcAxis2Placement3D", self._point(T[:3, 3]), self._direction(T[:3, 2]), self._direction(T[:3, 0])
-        )
-
-    def _placement(self, T: Float[np.ndarray, "4 4"], below: Any = None) -> Any:
-        return self._add("IfcLocalPlacement", below, self._frame(T))
-
-    def _contexts(self) -> tuple[Any, Any]:
-        model = self._add("IfcGeometricRepresentationContext", None, "Model", 3, 1e-5, self._origin, None)
-        body = self._add(
-            "IfcGeometricRepresentationSubContext",
-            ContextIdentifier="Body",
-            ContextType="Model",
-            ParentContext=model,
-            TargetView="MODEL_VIEW",
-        )
-        return model, body
-
     def _storey(self) -> Any:
         """Project, site, building and storey, each inside the one before."""
         units = [
-            self._add("IfcSIUnit", None, "LENGTHUNIT", None, "METRE"),
-            self._add("IfcSIUnit", None, "AREAUNIT", None, "SQUARE_METRE"),
-            self._add("IfcSIUnit", None, "VOLUMEUNIT", None, "CUBIC_METRE"),
-            self._add("IfcSIUnit", None, "PLANEANGLEUNIT", None, "RADIAN"),
+            self._to.add("IfcSIUnit", None, "LENGTHUNIT", None, "METRE"),
+            self._to.add("IfcSIUnit", None, "AREAUNIT", None, "SQUARE_METRE"),
+            self._to.add("IfcSIUnit", None, "VOLUMEUNIT", None, "CUBIC_METRE"),
+            self._to.add("IfcSIUnit", None, "PLANEANGLEUNIT", None, "RADIAN"),
         ]
-        assignment = self._add("IfcUnitAssignment", units)
-        parent = self._rooted(
-            "IfcProject", Name=self._scene.name, RepresentationContexts=[self._context], UnitsInContext=assignment
+        assignment = self._to.add("IfcUnitAssignment", units)
+        parent = self._to.rooted(
+            "IfcProject", Name=self._scene.name, RepresentationContexts=[self._to.context], UnitsInContext=assignment
         )
         below = None
         for kind, name in (("IfcSite", "Site"), ("IfcBuilding", "Building"), ("IfcBuildingStorey", "Storey")):
-            below = self._placement(np.eye(4), below)
-            child = self._rooted(kind, Name=name, ObjectPlacement=below, CompositionType="ELEMENT")
-            self._rooted("IfcRelAggregates", RelatingObject=parent, RelatedObjects=[child])
+            below = self._to.placement(np.eye(4), below)
+            child = self._to.rooted(kind, Name=name, ObjectPlacement=below, CompositionType="ELEMENT")
+            self._to.rooted("IfcRelAggregates", RelatingObject=parent, RelatedObjects=[child])
             parent = child
         return parent
+
+    def _space(self, storey: Any) -> Any | None:
+        """The room as a space from its floor to its ceiling; None without a floor."""
+        floor = next((p.plane for p in self._scene.planes if p.plane.role == "floor"), None)
+        if floor is None:
+            return None
+        top = max(float(p.polygon[:, 2].max()) for p in self._scene.scene.architecture.planes)
+        height, area = top - float(floor.centre[2]), _area_m2(floor.polygon)
+        if height <= 0.0:
+            return None
+        solid = self._to.extruded(floor.polygon[:, :2], float(floor.centre[2]), height)
+        space = self._to.rooted(
+            "IfcSpace",
+            Name=self._scene.name,
+            ObjectPlacement=self._to.placement(np.eye(4), storey.ObjectPlacement),
+            Representation=self._to.shape([solid], "SweptSolid"),
+            CompositionType="ELEMENT",
+            PredefinedType="INTERNAL",
+        )
+        self._to.rooted("IfcRelAggregates", RelatingObject=storey, RelatedObjects=[space])
+        self._to.measure(
+            space, "Space", height={"Height": height}, area={"NetFloorArea": area}, volume={"NetVolume": area * height}
+        )
+        return space
 
     def _wall(self, wall: DrawnWall, storey: Any, holes: dict[str, Any]) -> Any:
         T = np.eye(4)
         T[:2, 0], T[:2, 1], T[:2, 3], T[2, 3] = wall.along, wall.outward, wall.start, wall.bottom_m
-        place = self._placement(T, storey.ObjectPlacement)
-        t, height = wall.plane.thickness, wall.top_m - wall.bottom_m
-        box = self._box((0.0, 0.0, 0.0), (wall.length_m, t, height))
-        self._style(box, _plain(wall.plane.colour))
-        element = self._rooted(
-            "IfcWall", Name=wall.plane.id, ObjectPlacement=place, Representation=self._shape([box], "SweptSolid")
+        place = self._to.placement(T, storey.ObjectPlacement)
+        t, height = max(wall.plane.thickness, MIN_WALL_M), wall.top_m - wall.bottom_m
+        box = self._to.box((0.0, 0.0, 0.0), (wall.length_m, t, height))
+        self._to.style(box, _plain(wall.plane.colour))
+        element = self._to.rooted(
+            "IfcWall", Name=wall.plane.id, ObjectPlacement=place, Representation=self._to.shape([box], "SweptSolid")
         )
         for opening in wall.openings:
             hole = self._opening(opening, wall, place)
-            self._rooted("IfcRelVoidsElement", RelatingBuildingElement=element, RelatedOpeningElement=hole)
+            self._to.rooted("IfcRelVoidsElement", RelatingBuildingElement=element, RelatedOpeningElement=hole)
             if opening.object_id is not None:
                 holes[opening.object_id] = hole
+        layer = self._to.add("IfcMaterialLayer", self._to.material(_plain(wall.plane.colour), "wall"), t, None)
+        layers = self._to.add("IfcMaterialLayerSet", [layer], "wall")
+        self._to.made_of(element, self._to.add("IfcMaterialLayerSetUsage", layers, "AXIS2", "POSITIVE", 0.0))
+        side = wall.length_m * height - sum((o.to_m - o.from_m) * (o.top_m - o.bottom_m) for o in wall.openings)
+        self._to.measure(
+            element,
+            "Wall",
+            height={"Length": wall.length_m, "Width": t, "Height": height},
+            area={"NetSideArea": side},
+            volume={"NetVolume": side * t},
+        )
         return element
 
     def _opening(self, opening: Opening, wall: DrawnWall, place: Any) -> Any:
         low = (opening.from_m, -THROUGH_M, opening.bottom_m - wall.bottom_m)
-        size = (opening.to_m - opening.from_m, wall.plane.thickness + 2 * THROUGH_M, opening.top_m - opening.bottom_m)
-        return self._rooted(
+        size = (
+            opening.to_m - opening.from_m,
+            max(wall.plane.thickness, MIN_WALL_M) + 2 * THROUGH_M,
+            opening.top_m - opening.bottom_m,
+        )
+        return self._to.rooted(
             "IfcOpeningElement",
             Name=opening.id,
-            ObjectPlacement=self._placement(np.eye(4), place),
-            Representation=self._shape([self._box(low, size)], "SweptSolid"),
+            ObjectPlacement=self._to.placement(np.eye(4), place),
+            Representation=self._to.shape([self._to.box(low, size)], "SweptSolid"),
             PredefinedType="OPENING",
         )
 
     def _slab(self, plane: Plane, name: str, storey: Any) -> Any:
         """Floor or ceiling: its polygon, thick away from the room."""
         points = plane.polygon[:, :2] if plane.role == "floor" else plane.polygon[::-1, :2]
-        outline = self._add("IfcPolyline", [self._point(p) for p in (*points, points[0])])
-        profile = self._add("IfcArbitraryClosedProfileDef", "AREA", None, outline)
-        T = np.eye(4)
-        T[2, 3] = float(plane.centre[2]) - (plane.thickness if plane.role == "floor" else 0.0)
-        up = self._direction(np.array([0.0, 0.0, 1.0]))
-        solid = self._add("IfcExtrudedAreaSolid", profile, self._frame(T), up, float(plane.thickness))
-        self._style(solid, _plain(plane.colour))
+        bottom = float(plane.centre[2]) - (plane.thickness if plane.role == "floor" else 0.0)
+        solid = self._to.extruded(points, bottom, float(plane.thickness))
+        self._to.style(solid, _plain(plane.colour))
         kind, predefined = ("IfcSlab", "FLOOR") if plane.role == "floor" else ("IfcCovering", "CEILING")
-        return self._rooted(
+        element = self._to.rooted(
             kind,
             Name=name,
-            ObjectPlacement=self._placement(np.eye(4), storey.ObjectPlacement),
-            Representation=self._shape([solid], "SweptSolid"),
+            ObjectPlacement=self._to.placement(np.eye(4), storey.ObjectPlacement),
+            Representation=self._to.shape([solid], "SweptSolid"),
             PredefinedType=predefined,
         )
-
-    def _box(self, low: Sequence[float], size: Sequence[float]) -> Any:
-        corners = [(0, 0), (size[0], 0), (size[0], size[1]), (0, size[1]), (0, 0)]
-        outline = self._add("IfcPolyline", [self._point((low[0] + x, low[1] + y)) for x, y in corners])
-        profile = self._add("IfcArbitraryClosedProfileDef", "AREA", None, outline)
-        T = np.eye(4)
-        T[2, 3] = low[2]
-        up = self._direction(np.array([0.0, 0.0, 1.0]))
-        return self._add("IfcExtrudedAreaSolid", profile, self._frame(T), up, float(size[2]))
+        self._to.made_of(element, self._to.material(_plain(plane.colour), plane.role))
+        area = _area_m2(plane.polygon)
+        self._to.measure(
+            element, kind.removeprefix("Ifc"), height={"Width": float(plane.thickness)}, area={"NetArea": area}
+        )
+        return element
 
     def _object(self, item: ExportObject, storey: Any) -> Any:
         source = self._map(self._scene.meshes[item.mesh])
-        target = self._add(
+        target = self._to.add(
             "IfcCartesianTransformationOperator3DnonUniform",
-            LocalOrigin=self._point((0.0, 0.0, 0.0)),
+            LocalOrigin=self._to.point((0.0, 0.0, 0.0)),
             Scale=float(item.scale[0]),
             Scale2=float(item.scale[1]),
             Scale3=float(item.scale[2]),
         )
-        mapped = self._add("IfcMappedItem", source, target)
+        mapped = self._to.add("IfcMappedItem", source, target)
         kind = CLASSES.get(item.item.category, "IfcFurniture")
-        element = self._rooted(
+        element = self._to.rooted(
             kind,
             Name=item.item.label,
             ObjectType=item.item.category,
             Tag=item.id,
-            ObjectPlacement=self._placement(item.T_world, storey.ObjectPlacement),
-            Representation=self._shape([mapped], "MappedRepresentation"),
+            ObjectPlacement=self._to.placement(item.T_world, storey.ObjectPlacement),
+            Representation=self._to.shape([mapped], "MappedRepresentation"),
         )
         if kind in ("IfcDoor", "IfcWindow"):
-            element.OverallWidth, element.OverallHeight = float(item.item.size_m[1]), float(item.item.size_m[2])
+            width, height = (float(v) for v in item.item.size_m[1:])
+            element.OverallWidth, element.OverallHeight = width, height
+            self._to.measure(
+                element,
+                kind.removeprefix("Ifc"),
+                height={"Width": width, "Height": height},
+                area={"Area": width * height},
+            )
+        self._typed.setdefault(self._type(kind, item), []).append(element)
         self._describe(element, item)
         return element
 
+    def _type(self, kind: str, item: ExportObject) -> Any:
+        """The type of all elements of one class that have one shape, with its materials."""
+        key = (kind, item.mesh)
+        if key not in self._types:
+            mesh = self._scene.meshes[item.mesh]
+            made = self._to.typed(f"{kind}Type", Name=mesh.name, RepresentationMaps=[self._map(mesh)])
+            parts = {m.name: m for m in (s.material for s in mesh.surfaces)}
+            constituents = [
+                self._to.add("IfcMaterialConstituent", name, None, self._to.material(m, name))
+                for name, m in parts.items()
+            ]
+            self._to.made_of(made, self._to.add("IfcMaterialConstituentSet", mesh.name, None, constituents))
+            self._types[key] = made
+        return self._types[key]
+
     def _map(self, mesh: ExportMesh) -> Any:
         if mesh.key not in self._maps:
-            sets = []
-            for surface in mesh.surfaces:
-                points = self._add("IfcCartesianPointList3D", [[0.0, 0.0, 0.0]])
-                faces = self._add("IfcTriangulatedFaceSet", Coordinates=points, CoordIndex=[[1, 2, 3]])
-                self._lists[f"#{points.id()}"], self._lists[f"#{faces.id()}"] = surface.vertices, surface.faces + 1
-                self._style(faces, surface.material)
-                sets.append(faces)
-            body = self._add("IfcShapeRepresentation", self._body, "Body", "Tessellation", sets)
-            self._maps[mesh.key] = self._add("IfcRepresentationMap", self._origin, body)
+            self._maps[mesh.key] = self._to.tessellated(mesh.surfaces)
         return self._maps[mesh.key]
-
-    def _shape(self, items: list[Any], kind: str) -> Any:
-        body = self._add("IfcShapeRepresentation", self._body, "Body", kind, items)
-        return self._add("IfcProductDefinitionShape", None, None, [body])
-
-    def _style(self, item: Any, material: Material) -> None:
-        if id(material) not in self._styles:
-            red, green, blue = (
-                float(c) for c in np.clip(linear_to_srgb(np.asarray(material.colour, dtype=np.float64)), 0, 1)
-            )
-            colour = self._add("IfcColourRgb", None, red, green, blue)
-            shading = self._add("IfcSurfaceStyleShading", colour, float(1.0 - material.alpha))
-            style = self._add("IfcSurfaceStyle", material.name, "BOTH", [shading])
-            self._styles[id(material)] = (style, material)  # holding the material keeps its id from being reused
-        self._add("IfcStyledItem", item, [self._styles[id(material)][0]], None)
 
     def _describe(self, element: Any, item: ExportObject) -> None:
         said = {"Id": item.id, "Category": item.item.category, "Shape": item.item.shape_id}
         if item.support is not None:
             said |= {"Supporter": item.support.parent, "Relation": item.support.relation}
-        self._rooted(
+        self._to.rooted(
             "IfcRelDefinesByProperties",
             RelatedObjects=[element],
-            RelatingPropertyDefinition=self._rooted("IfcPropertySet", Name="Diorama", HasProperties=self._values(said)),
+            RelatingPropertyDefinition=self._to.rooted(
+                "IfcPropertySet", Name="Diorama", HasProperties=self._values(said)
+            ),
         )
 
     def _values(self, said: Mapping[str, str]) -> list[Any]:
         return [
-            self._add("IfcPropertySingleValue", name, None, self._add("IfcLabel", value[:255]), None)
+            self._to.add("IfcPropertySingleValue", name, None, self._to.add("IfcLabel", value[:255]), None)
             for name, value in said.items()
         ]
 
 
-def _list_text(rows: Float[np.ndarray, "n 3"] | Int[np.ndarray, "n 3"], number: str) -> str:
-    """Rows of three as ISO 10303-21 writes them."""
-    row = f"({number},{number},{number})"
-    return "(" + ",".join([row] * len(rows)) % tuple(rows.ravel().tolist()) + ")"
+def _area_m2(polygon: Float[np.ndarray, "n 3"]) -> float:
+    """Area of a level outline."""
+    x, y = polygon[:, 0], polygon[:, 1]
+    return float(abs(x @ np.roll(y, -1) - y @ np.roll(x, -1)) / 2.0)
 
 
 def _plain(colour_srgb: tuple[float, float, float]) -> Material:

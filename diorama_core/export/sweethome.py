@@ -142,7 +142,7 @@ def _picture(
     element: ET.Element, side: str, plane: Plane, width_m: float, height_m: float, pictures: Mapping[str, str]
 ) -> None:
     """The picture of a plane, which covers it once, on a side of a wall or room."""
-    if plane.texture in pictures:
+    if plane.texture is not None and plane.texture in pictures:
         size = {"width": _cm(width_m), "height": _cm(height_m), "fittingArea": "true"}
         ET.SubElement(
             element, "texture", {"attribute": side, "name": plane.id, **size, "image": pictures[plane.texture]}
