@@ -161,6 +161,7 @@ class _Builder:
             "role": plane.role,
             "thickness_m": plane.thickness,
             "confidence": plane.confidence,
+            "bounds": self._bounds(slab.mesh),
         }
         return self._document.add("nodes", {"name": slab.name, "mesh": self._mesh(slab.mesh), "extras": extras})
 
@@ -188,6 +189,7 @@ class _Builder:
             "category": obj.category,
             "shape": obj.shape_id,
             "size_m": [float(v) for v in obj.size_m],
+            "bounds": self._bounds(item.mesh),
             "confidence": obj.confidence,
             "locked": obj.locked,
         }
@@ -201,6 +203,12 @@ class _Builder:
             extras["candidates"] = [{"shape": c.shape_id, "score": c.score} for c in obj.candidates]
         extras["diorama"] = json.dumps(self._entries[obj.id], ensure_ascii=False)
         return extras
+
+    def _bounds(self, key: str) -> list[list[float]]:
+        """Corners of a mesh's box in its own frame, by which a reader knows stored integers from a person's scaling."""
+        points = [s.vertices for s in self._gathered.meshes[key].surfaces]
+        ends = np.min([p.min(axis=0) for p in points], axis=0), np.max([p.max(axis=0) for p in points], axis=0)
+        return [[float(v) for v in end] for end in ends]
 
     def _light(self, item: ExportObject, light: ExportLight) -> int:
         entry: dict[str, Any] = {

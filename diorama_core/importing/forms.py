@@ -97,11 +97,11 @@ def marked_file(path: Path) -> MarkedFile | None:
 
 
 def _gltf(path: Path, progress: Progress) -> Content:
-    return read_marked_gltf(path) or _scan_or_parts(parts_of_gltf(path))
+    return read_marked_gltf(path) or _scan_or_parts(*parts_of_gltf(path))
 
 
 def _usd(path: Path, progress: Progress) -> Content:
-    return read_marked_usd(path) or read_room_plan(path) or _scan_or_parts(parts_of_usd(path))
+    return read_marked_usd(path) or read_room_plan(path) or _scan_or_parts(*parts_of_usd(path))
 
 
 def _room_plan(path: Path, progress: Progress) -> Content:
@@ -125,12 +125,11 @@ def _model(path: Path, progress: Progress) -> Content:
         points = [np.asarray(g.vertices, float) for g in raw.scene.geometry.values() if hasattr(g, "vertices")]
         return PointCloud(np.vstack(points) if points else np.zeros((0, 3)), None)
     to_world, notes = frame_of_scene(raw)
-    content = _scan_or_parts(split_scene(raw.scene, to_world))
-    return SceneParts(content.parts, notes) if isinstance(content, SceneParts) else content
+    return _scan_or_parts(split_scene(raw.scene, to_world), notes)
 
 
-def _scan_or_parts(parts: tuple[Part, ...]) -> Content:
-    return scan_in(parts) or SceneParts(parts)
+def _scan_or_parts(parts: tuple[Part, ...], notes: tuple[str, ...]) -> Content:
+    return scan_in(parts) or SceneParts(parts, notes)
 
 
 def _cloud(path: Path, progress: Progress) -> Content:

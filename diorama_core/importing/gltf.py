@@ -26,6 +26,9 @@ from diorama_core.library.ingest.usd_stage import Z_UP
 
 Json = dict[str, Any]
 MARK = "diorama"
+FLOAT = 5126
+LARGEST = {5120: 127, 5121: 255, 5122: 32767, 5123: 65535}
+"""Integers that stand for 1, by glTF's numbers of component types."""
 CAMERA_AXES = np.diag([1.0, -1.0, -1.0, 1.0])
 """glTF cameras look along their -z with y up; ours along +z with y down."""
 
@@ -69,9 +72,9 @@ def _marked(path: Path) -> MarkedFile | None:
     planes = {str(n.extras["diorama_plane"]): n for n in nodes if "diorama_plane" in n.extras}
     return MarkedFile(
         document=mark if isinstance(mark, str) else json.dumps(mark),
-        nodes=_object_nodes(nodes),
+        nodes=_object_nodes(nodes, document),
         written=as_ids(root.extras.get("diorama_objects")),
-        planes={plane_id: Z_UP @ n.M_world for plane_id, n in planes.items()},
+        planes={i: Z_UP @ n.M_world @ _to_stored(document, n.row, n.extras.get("bounds")) for i, n in planes.items()},
         T_world_camera=None if camera is None else Z_UP @ camera.M_world @ CAMERA_AXES,
         pictures={i: p for i, n in planes.items() if (p := pictures.of_mesh(n.row.get("mesh"))) is not None},
         material_pictures=pictures.from_photo(),
@@ -110,12 +113,12 @@ def _local(row: Json) -> Float[np.ndarray, "4 4"]:
     return M
 
 
-def _object_nodes(nodes: tuple[_Node, ...]) -> tuple[ObjectNode, ...]:
+def _object_nodes(nodes: tuple[_Node, ...], document: Json) -> tuple[ObjectNode, ...]:
     """Nodes that carry an object's entry, with the transform of the mesh that shows it."""
-    shapes: dict[int, Float[np.ndarray, "4 4"]] = {}
+    shapes: dict[int, _Node] = {}
     for node in nodes:
         if "diorama_mesh" in node.extras and node.parent is not None:
-            shapes.setdefault(node.parent, node.M_world)
+            shapes.setdefault(node.parent, node)
     numbers: dict[int, int] = {}
     found: list[ObjectNode] = []
     for number, node in enumerate(nodes):
@@ -127,9 +130,33 @@ def _object_nodes(nodes: tuple[_Node, ...]) -> tuple[ObjectNode, ...]:
             above = nodes[above].parent
         numbers[number] = len(found)
         parent = None if above is None else numbers[above]
-        M = Z_UP @ shapes.get(number, node.M_world)
+        shown = shapes.get(number, node)
+        M = Z_UP @ shown.M_world @ _to_stored(document, shown.row, node.extras.get("bounds"))
         found.append(ObjectNode(str(entry["id"]), str(node.row.get("name", "")), M, entry, parent))
     return tuple(found)
+
+
+def _to_stored(document: Json, row: Json, bounds: Any) -> Float[np.ndarray, "4 4"]:
+    """The shape's frame to that of a node's mesh: programs that store positions as integers stretch the node instead.
+
+    Args:
+        document: The file's JSON.
+        row: The node that shows the mesh.
+        bounds: Least and largest corner of the mesh in the shape's frame, as it was written.
+    """
+    out = np.eye(4)
+    primitives = document["meshes"][row["mesh"]]["primitives"] if "mesh" in row else []
+    stored = [document["accessors"][p["attributes"]["POSITION"]] for p in primitives]
+    if bounds is None or not stored or any(a["componentType"] == FLOAT for a in stored):
+        return out
+    low, high = (
+        pick([np.array(a[end]) / (LARGEST[a["componentType"]] if a.get("normalized") else 1) for a in stored], axis=0)
+        for pick, end in ((np.min, "min"), (np.max, "max"))
+    )
+    extent = np.subtract(*bounds[::-1])
+    stretch = np.where(extent > 0, high - low, 1.0) / np.where(extent > 0, extent, 1.0)
+    out[:3, :3], out[:3, 3] = np.diag(stretch), low - stretch * bounds[0]
+    return out
 
 
 FROM_PHOTO = re.compile(r" from the photo (\S+)(?: \d+)?$")

@@ -26,12 +26,12 @@ TOUCH_M = 0.03
 """Parts of one object are no farther apart than this."""
 UPRIGHT = 0.999
 HUGE_M, USUAL_M = 100.0, 60.0
+SUBUNITS = {1.0: "metres", 0.01: "centimetres", 0.001: "millimetres"}
 
 
-def parts_of_gltf(path: Path) -> tuple[Part, ...]:
-    """Objects of a GLB or glTF file; raises `InputError` when it cannot be read."""
-    scene = _model(path)
-    return split_scene(scene, Z_UP @ _unit(scene))
+def parts_of_gltf(path: Path) -> tuple[tuple[Part, ...], tuple[str, ...]]:
+    """Objects of a GLB or glTF file, and notes; raises `InputError` when it cannot be read."""
+    return _in_metres(_model(path), Z_UP)
 
 
 def shape_parts(path: Path, marked: MarkedFile, item: SceneObject) -> Part | None:
@@ -50,11 +50,11 @@ def shape_parts(path: Path, marked: MarkedFile, item: SceneObject) -> Part | Non
     return _part(scene, item.category, nodes, root, to_shape) if nodes else None
 
 
-def parts_of_usd(path: Path) -> tuple[Part, ...]:
-    """Objects of a USD or USDZ file; raises `InputError` when it cannot be read."""
+def parts_of_usd(path: Path) -> tuple[tuple[Part, ...], tuple[str, ...]]:
+    """Objects of a USD or USDZ file, and notes; raises `InputError` when it cannot be read."""
     stage = opened_stage(path)
     with usd_errors(path):
-        return split_scene(usd_scene(stage), world_of(stage))
+        return _in_metres(usd_scene(stage), world_of(stage))
 
 
 def _model(path: Path) -> trimesh.Scene:
@@ -64,11 +64,16 @@ def _model(path: Path) -> trimesh.Scene:
         raise InputError(f"{path.name}: {error}") from error
 
 
-def _unit(scene: trimesh.Scene) -> Float[np.ndarray, "4 4"]:
-    """glTF says metres; files that would be larger than a hall were written in centimetres or millimetres."""
-    largest = float(np.max(scene.extents)) if scene.extents is not None else 1.0
-    factor = next((f for f in (1.0, 0.01, 0.001) if largest * f <= (HUGE_M if f == 1.0 else USUAL_M)), 0.001)
-    return np.diag([factor, factor, factor, 1.0])
+def _in_metres(scene: trimesh.Scene, to_world: Float[np.ndarray, "4 4"]) -> tuple[tuple[Part, ...], tuple[str, ...]]:
+    """The parts of a scene, and a note where its unit is not the one it says.
+
+    What would be larger than a hall was written in centimetres or millimetres.
+    """
+    largest = 1.0 if scene.extents is None else float(np.max(scene.extents)) * float(np.linalg.norm(to_world[:3, 0]))
+    factor = next((f for f in SUBUNITS if largest * f <= (HUGE_M if f == 1.0 else USUAL_M)), 0.001)
+    parts = split_scene(scene, np.diag([factor, factor, factor, 1.0]) @ to_world)
+    said = f"it would be {largest:.0f} m large: its lengths were taken for {SUBUNITS[factor]}"
+    return parts, () if factor == 1.0 else (said,)
 
 
 def split_scene(scene: trimesh.Scene, to_world: Float[np.ndarray, "4 4"]) -> tuple[Part, ...]:

@@ -218,7 +218,7 @@ def _opened_usd(data: bytes) -> object:
         scan = read_room_plan(path)
         if scan is not None:
             return len(scene_to_json(opened_room(scan, built_in_library()).scene).encode())
-        parts = parts_of_usd(path)
+        parts, _ = parts_of_usd(path)
         return len(room_of(parts).objects) if parts else 0
 
 

@@ -51,6 +51,36 @@ def edit(path, change) -> None:
     path.write_bytes(struct.pack("<III", 0x46546C67, 2, 12 + len(body)) + body)
 
 
+def test_positions_that_are_stored_as_integers_scale_nothing(tmp_path) -> None:
+    """As gltf-transform quantises: the node of a mesh is stretched to what its integers stand for."""
+    path = written(tmp_path, edited_room())
+
+    def quantise(document: dict) -> None:
+        carrying = {n["mesh"] for n in document["nodes"] if "mesh" in n and n.get("children")}
+        for number, mesh in enumerate(document["meshes"]):
+            if number in carrying:
+                continue
+            stored = [document["accessors"][p["attributes"]["POSITION"]] for p in mesh["primitives"]]
+            low = np.min([a["min"] for a in stored], axis=0)
+            half = float((np.max([a["max"] for a in stored], axis=0) - low).max()) / 2
+            for accessor in stored:
+                for end in ("min", "max"):
+                    accessor[end] = np.rint(((np.array(accessor[end]) - low) / half - 1) * 32767).astype(int).tolist()
+                accessor |= {"componentType": 5122, "normalized": True}
+            for row in (n for n in document["nodes"] if n.get("mesh") == number):
+                M = np.eye(4)
+                M[:3, :3] = Rotation.from_quat(row.pop("rotation", [0, 0, 0, 1])).as_matrix()
+                M[:3, :3] *= row.pop("scale", [1, 1, 1])
+                M[:3, 3] = row.pop("translation", [0, 0, 0])
+                M[:3, 3] += M[:3, :3] @ (low + half)
+                M[:3, :3] *= half
+                row["matrix"] = M.T.reshape(-1).tolist()
+
+    edit(path, quantise)
+    assert back(path).scene == edited_room()
+    assert back(path).changes == ()
+
+
 def node(document: dict, name: str) -> dict:
     return next(n for n in document["nodes"] if n["name"] == name)
 

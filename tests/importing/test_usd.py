@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+import trimesh
 
 from diorama_core.errors import InputError
 from diorama_core.export import export_scene
 from diorama_core.importing.restore import restored
+from diorama_core.importing.scene_import import import_scene
 from diorama_core.importing.usd import read_marked_usd
 from tests.importing.test_gltf import LIBRARY, edited_room
 from tests.primitives import furnished_room
@@ -63,6 +65,27 @@ def test_another_unit_and_up_axis(tmp_path) -> None:
     found = back(path)
     assert found.changes == ()
     assert found.scene == scene
+
+
+def test_centimetres_that_a_stage_calls_metres_are_said_and_read(tmp_path) -> None:
+    from pxr import Gf, Usd, UsdGeom
+
+    stage = Usd.Stage.CreateNew(str(tmp_path / "room.usda"))
+    UsdGeom.SetStageMetersPerUnit(stage, 1.0)
+    UsdGeom.SetStageUpAxis(stage, UsdGeom.Tokens.z)
+    stage.SetDefaultPrim(UsdGeom.Xform.Define(stage, "/World").GetPrim())
+    for name, place, size in (("floor", (0, 0, -5), (500, 400, 10)), ("table", (50, 0, 37), (120, 80, 74))):
+        box = trimesh.creation.box(size)
+        mesh = UsdGeom.Mesh.Define(stage, f"/World/{name}")
+        mesh.AddTranslateOp().Set(Gf.Vec3d(*place))
+        mesh.CreatePointsAttr(box.vertices.tolist())
+        mesh.CreateFaceVertexCountsAttr([3] * len(box.faces))
+        mesh.CreateFaceVertexIndicesAttr(box.faces.reshape(-1).tolist())
+    stage.Save()
+    found = import_scene(tmp_path / "room.usda", tmp_path / "shapes").opened
+    (table,) = found.scene.objects
+    np.testing.assert_allclose(sorted(table.size_m), [0.74, 0.8, 1.2], atol=1e-6)
+    assert "it would be 500 m large: its lengths were taken for centimetres" in found.changes
 
 
 def test_blender_keeps_the_scene(tmp_path) -> None:
