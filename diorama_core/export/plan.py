@@ -14,6 +14,7 @@ from diorama_core.export.footprints import Outline, footprints
 from diorama_core.export.gathering import ExportObject, ExportScene
 from diorama_core.export.wall_lines import DrawnWall, Opening, wall_lines
 from diorama_core.geometry.openings import OPENING_CATEGORIES
+from diorama_core.library.furniture.articulation import articulation
 from diorama_core.scene.types import Plane, Scene, SceneObject
 
 UNNAMED = ("rug",)
@@ -115,10 +116,11 @@ def room_lines(planes: Sequence[Plane], items: Sequence[SceneObject], scene: Sce
     walls = wall_lines(planes, items, scene)
     floors = _within_walls([p.polygon[:, :2] for p in planes if p.role == "floor"], walls)
     openings = [(w, o) for w in walls for o in w.openings]
+    shapes = {item.id: item.shape_id for item in items}
     return RoomLines(
         floors,
         _cut_walls(walls, floors),
-        tuple(line for w, o in openings if o.is_door and o.object_id for line in _door(w, o)),
+        tuple(line for w, o in openings if o.is_door and o.object_id for line in _door(w, o, shapes[o.object_id])),
         tuple(line for w, o in openings if not o.is_door for line in _window(w, o)),
         walls,
     )
@@ -238,9 +240,14 @@ def _area(outline: Outline) -> manifold3d.CrossSection:
     return manifold3d.CrossSection([outline if counter_clockwise else outline[::-1]], manifold3d.FillRule.Positive)
 
 
-def _door(wall: DrawnWall, opening: Opening) -> tuple[Outline, ...]:
-    """The open leaf and the quarter circle it swings through, into the room; a wide door has two leaves."""
-    width = opening.to_m - opening.from_m
+def _door(wall: DrawnWall, opening: Opening, shape_id: str) -> tuple[Outline, ...]:
+    """The open leaf and the quarter circle it swings through, into the room; a wide door has two leaves.
+
+    One that is known to have no hinge is drawn shut, on the wall's inner face.
+    """
+    width, pieces = opening.to_m - opening.from_m, articulation(shape_id)
+    if pieces is not None and all(joint.kind != "hinge" for joint in pieces.joints):
+        return (np.stack([wall.at(opening.from_m), wall.at(opening.to_m)]),)
     if width <= ONE_LEAF_M:
         return _leaf(wall, opening.from_m, width)
     return (*_leaf(wall, opening.from_m, width / 2), *_leaf(wall, opening.to_m, -width / 2))

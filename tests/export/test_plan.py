@@ -17,6 +17,7 @@ from diorama_core.export.plan import floor_plan
 from diorama_core.export.plan_sheet import SheetLine, Text, plan_sheet
 from diorama_core.progress import CancelToken, Progress
 from diorama_core.scene.types import Architecture, Plane, Pose, Scene, SceneObject, Support
+from tests.export.scenes import scene_of
 from tests.primitives import PrimitiveLibrary, box_room, furnished_room
 
 LIBRARY = PrimitiveLibrary()
@@ -29,6 +30,15 @@ def room_with_door_and_window() -> Scene:
     window = SceneObject("w", "window", "window", "print", size, Pose.upright((-1.99, 2.0, 1.5), 0.0, (1, 1.5, 1.5)))
     edges = (Support("d", "back", "mounted on"), Support("w", "left", "mounted on"))
     return replace(scene, objects=(*scene.objects, door, window), supports=(*scene.supports, *edges))
+
+
+@pytest.mark.parametrize(("shape", "lines"), [("door-sliding", 1), ("door-oak", 2)])
+def test_only_a_door_with_hinges_swings(shape: str, lines: int) -> None:
+    scene, library = scene_of("fittings")
+    door = scene.object("door_1")
+    other = replace(door, shape_id=shape, shape_size_m=library.shape(shape).size_m)
+    objects = tuple(other if o.id == door.id else o for o in scene.objects)
+    assert len(floor_plan(gather(replace(scene, objects=objects), library)).door_leaves) == lines
 
 
 def test_walls_are_cut_and_closed_at_corners() -> None:

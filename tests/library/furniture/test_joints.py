@@ -73,6 +73,11 @@ def opens_without_collision(shape_id: str) -> None:
             assert shared <= touching + TOUCH_M3, said
 
 
+@pytest.mark.parametrize("category", ["door", "office chair"])
+def test_every_door_opens_and_every_office_chair_turns(category: str) -> None:
+    assert len(moving_designs(category)) == len(built_in_library().in_category(category))
+
+
 def test_the_parts_together_are_the_shape() -> None:
     """Closed, the moving parts lie within the box of the whole and reach all its sides."""
     library = built_in_library()

@@ -143,7 +143,9 @@ def barn_door(size: Size, wood: Material, iron: Material) -> Parts:
     rail = box((0.01, w, 0.045), 0.003).moved(0.035, 0, h - 0.1)
     hangers = [box((0.008, 0.045, 0.26), 0.003).moved(0.036, s * lw * 0.36, h - 0.3) for s in (1, -1)]
     wheels = [cylinder(0.045, 0.02, 0.004, 24).turned("y", 90).moved(0.035, s * lw * 0.36, h - 0.05) for s in (1, -1)]
-    return of(wood, *boards, *rails, *braces) + of(iron, rail, *hangers, *wheels, *grip(0.03, -lw * 0.42, 1.0))
+    slide = Joint("door", "slide", (0.0, 0.0, 0.0), (0.0, 1.0, 0.0), 0.0, (w - lw) / 2)
+    hung = of(wood, *boards, *rails, *braces) + of(iron, *hangers, *wheels, *grip(0.03, -lw * 0.42, 1.0))
+    return jointed(slide, hung) + of(iron, rail)
 
 
 def sliding_glass(size: Size, frame_of: Material) -> Parts:
@@ -154,11 +156,13 @@ def sliding_glass(size: Size, frame_of: Material) -> Parts:
         *both_sides(box((d, 0.05, h), 0.004).moved(0, w / 2 - 0.025)),
         *(box((d, w, 0.05), 0.004).moved(z=z) for z in (0.0, h - 0.05)),
     )
+    slide = Joint("door", "slide", (0.0, 0.0, 0.0), (0.0, -1.0, 0.0), 0.0, w * 0.47)
     for s in (1, -1):
         x, y, each = s * d * 0.16, s * w * 0.235, w * 0.5
-        parts += of(frame_of, *(b.moved(x, y, 0.03) for b in frame(d * 0.3, each, h - 0.06, 0.055)))
-        parts += of(m.PANE, box((0.006, each - 0.1, h - 0.16), 0.001).pictured().moved(x, y, 0.08))
-    return parts + of(m.STEEL, *grip(d * 0.3, 0.03, 1.0))
+        panel = of(frame_of, *(b.moved(x, y, 0.03) for b in frame(d * 0.3, each, h - 0.06, 0.055)))
+        panel += of(m.PANE, box((0.006, each - 0.1, h - 0.16), 0.001).pictured().moved(x, y, 0.08))
+        parts += jointed(slide, panel) if s > 0 else panel
+    return parts + jointed(slide, of(m.STEEL, *grip(d * 0.3, 0.03, 1.0)))
 
 
 def slatted_door(size: Size, leaf: Material) -> Parts:
@@ -174,11 +178,9 @@ def slatted_door(size: Size, leaf: Material) -> Parts:
     ys = np.arange(int(lw / 0.036)) * 0.036
     ys = ys - ys.mean()
     slats = [box((0.014, 0.022, lh), 0.003).moved(t / 2, float(y), 0.004) for y in ys]
-    return (
-        parts
-        + of(leaf, box((t, lw, lh), 0.003).moved(0, 0, 0.004), *slats)
-        + of(m.BLACK_STEEL, *grip(t / 2 + 0.004, -lw / 2 + 0.07, 1.05))
-    )
+    swung = of(leaf, box((t, lw, lh), 0.003).moved(0, 0, 0.004), *slats)
+    swung += of(m.BLACK_STEEL, *grip(t / 2 + 0.004, -lw / 2 + 0.07, 1.05))
+    return parts + jointed(door_hinge(t / 2 + 0.007, lw / 2, 1), swung)
 
 
 DESIGNS: tuple[Design, ...] = (

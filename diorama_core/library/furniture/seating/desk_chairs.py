@@ -6,7 +6,7 @@ import numpy as np
 
 from diorama_core.library.furniture.kit import *
 from diorama_core.library.furniture.seating.moulded_chairs import eased
-from diorama_core.library.furniture.seating.office_chairs import castor_star
+from diorama_core.library.furniture.seating.office_chairs import castor_star, swivelling
 from diorama_core.library.furniture.seating.wooden_chairs import curved_back
 
 
@@ -24,8 +24,8 @@ def bankers_chair(size: Size, wood: Material, pad: Material | None) -> Parts:
     """A wooden swivel chair: dished seat, spindles under a bent arm rail, four wooden feet on castors."""
     d, w, h = size
     seat_z, r = 0.47, 0.46 * min(d, w)
-    parts = of(wood, *castor_star(r, 4, 0.02)) + column(seat_z, m.IRON)
-    parts += of(wood, prism(superellipse(0.48, 0.5, 3.6, 36), 0.04, 0.014).moved(0.02, 0, seat_z - 0.04))
+    base = of(wood, *castor_star(r, 4, 0.02)) + column(seat_z, m.IRON)
+    parts = of(wood, prism(superellipse(0.48, 0.5, 3.6, 36), 0.04, 0.014).moved(0.02, 0, seat_z - 0.04))
     if pad is not None:
         parts += of(pad, cushion((0.44, 0.46, 0.05), 3.6, 2.6, 10).moved(0.02, 0, seat_z - 0.012))
     t = np.linspace(-1, 1, 29)
@@ -45,7 +45,7 @@ def bankers_chair(size: Size, wood: Material, pad: Material | None) -> Parts:
         )
         for k in np.linspace(-0.92, 0.92, 11)
     ]
-    return parts + of(wood, crest, *spindles)
+    return base + swivelling(seat_z, parts + of(wood, crest, *spindles))
 
 
 def shell_desk_chair(size: Size, shell: Material, pad: Material, base: Material) -> Parts:
@@ -71,14 +71,14 @@ def shell_desk_chair(size: Size, shell: Material, pad: Material, base: Material)
     z = path[:, 2:] + wrap * np.interp(v, [0, 0.5, 0.7, 1], [0.8, 0.5, 0.0, 0.0]) * u**2
     parts = of(shell, slab(np.stack([x, half * u, z], axis=-1), 0.013))
     parts += of(pad, cushion((0.4, 0.4, 0.045), 4, 2.6, 10).moved(0.03, 0, seat_z + 0.0))
-    return parts + of(base, *castor_star(r)) + column(seat_z, base)
+    return swivelling(seat_z, parts) + of(base, *castor_star(r)) + column(seat_z, base)
 
 
 def racing_chair(size: Size, body: Material, trim: Material) -> Parts:
     """A gaming chair: bucket seat, tall winged back with a head pillow, arms."""
     d, w, h = size
     seat_z, r = 0.48, 0.48 * min(d, w)
-    parts = of(m.BLACK, *castor_star(r)) + column(seat_z, m.BLACK)
+    base = of(m.BLACK, *castor_star(r)) + column(seat_z, m.BLACK)
     seat = [cushion((0.5, 0.4, 0.11), 6, 3.2, 8).moved(0.04, 0, seat_z - 0.075)]
     sides = both_sides(cushion((0.48, 0.09, 0.15), 4, 3, 7).moved(0.02, 0.215, seat_z - 0.08))
     bh = h - seat_z - 0.02
@@ -91,12 +91,12 @@ def racing_chair(size: Size, body: Material, trim: Material) -> Parts:
     post = box((0.05, 0.035, 0.21), 0.01, 2).moved(0.0, 0.31, seat_z - 0.04)
     rest = box((0.26, 0.09, 0.03), 0.014, 2).moved(0.01, 0.315, seat_z + 0.17)
     link = box((0.06, 0.1, 0.03), 0.008).moved(0.0, 0.27, seat_z - 0.045)
-    return (
-        parts
-        + of(body, *seat, back)
+    turning = (
+        of(body, *seat, back)
         + of(trim, *sides, *both_sides(wing, shoulder), head, lumbar)
         + of(m.BLACK, *both_sides(post, rest, link))
     )
+    return base + swivelling(seat_z, turning)
 
 
 def ribbed_chair(size: Size, hide: Material, metal: Material) -> Parts:
@@ -144,11 +144,9 @@ def ribbed_chair(size: Size, hide: Material, metal: Material) -> Parts:
     cross = [
         rod((x, 0.385 * w, z), (x, -0.385 * w, z), 0.012) for x, z in ((0.15, seat_z - 0.025), (-0.08, seat_z - 0.03))
     ]
-    return (
-        of(hide, slab(sheet, 0.016))
-        + of(metal, *both_sides(tube(edge[::3], 0.012, 8), tube(arm, 0.012, 8)), *cross, *castor_star(r))
-        + column(seat_z - 0.01, metal)
-    )
+    sling = of(hide, slab(sheet, 0.016))
+    sling += of(metal, *both_sides(tube(edge[::3], 0.012, 8), tube(arm, 0.012, 8)), *cross)
+    return swivelling(seat_z, sling) + of(metal, *castor_star(r)) + column(seat_z - 0.01, metal)
 
 
 def drawing_chair(size: Size, seat: Material, steel: Material) -> Parts:
@@ -172,7 +170,7 @@ def drawing_chair(size: Size, seat: Material, steel: Material) -> Parts:
     )
     back = curved_back(0.34, 0.15, 0.06, 0.018, 0.015).moved(-0.245, 0, h - 0.15)
     pad = prism(superellipse(0.37, 0.37, 2.2, 36), 0.032, 0.01).moved(0, 0, seat_z - 0.032)
-    return of(steel, *legs, ring, screw, hub, plate, strap) + of(seat, pad, back)
+    return of(steel, *legs, ring, screw, hub) + swivelling(seat_z, of(steel, plate, strap) + of(seat, pad, back))
 
 
 DESIGNS: tuple[Design, ...] = (

@@ -27,6 +27,11 @@ def castor_star(r: float, spokes: int = 5, foot: float = 0.015) -> list[Solid]:
     return star
 
 
+def swivelling(seat_z: float, parts: Parts) -> Parts:
+    """What turns above the column of a chair whose seat is this high."""
+    return jointed(Joint("seat", "swivel", (0.0, 0.0, seat_z - 0.1), (0.0, 0.0, 1.0)), parts)
+
+
 def office_chair(
     size: Size, cloth: Material, frame: Material, back: Literal["mesh", "padded", "high"], arms: bool = True
 ) -> Parts:
@@ -78,8 +83,7 @@ def office_chair(
             8,
         )
         parts += of(frame, *both_sides(post, box((0.25, 0.075, 0.03), 0.013, 2).moved(0.0, y, seat_z + 0.175)))
-    swivel = Joint("seat", "swivel", (0.0, 0.0, seat_z - 0.1), (0.0, 0.0, 1.0))
-    return of(frame, *star, *lift) + jointed(swivel, parts)
+    return of(frame, *star, *lift) + swivelling(seat_z, parts)
 
 
 DESIGNS: tuple[Design, ...] = (
