@@ -22,6 +22,7 @@ from mcp.client.stdio import StdioServerParameters
 from diorama_app.cli import main
 from diorama_app.projects.example import example_project
 from diorama_app.projects.manage import duplicate_project
+from tests.cli.room_photo import write_room
 from tests.waiting import until
 
 ROOT = Path(__file__).resolve().parents[3]
@@ -114,3 +115,25 @@ def test_an_agent_joins_the_page_that_a_person_has_open(home: Path, environment:
         served.stdout.close()
     assert not list(noted.glob(f"{served.pid}-*.json"))
     assert "armchair" not in json.dumps([o["id"] for o in json.loads((room / "scene.json").read_text())["objects"]])
+
+
+@pytest.mark.slow
+def test_an_agent_builds_from_a_photo(over_http: str, tmp_path: Path) -> None:
+    image, boxes = write_room(tmp_path, marked=1)
+    told: list[str] = []
+
+    async def progress(share: float, total: float | None, message: str | None) -> None:
+        told.append(message or "")
+
+    async def work() -> None:
+        async with Client(over_http, read_timeout_seconds=300.0) as client:
+            given = {"photo": str(image), "boxes": json.loads(boxes.read_text()), "fov_deg": 62.0}
+            built = await client.call_tool("build", given, progress_callback=progress)
+            assert not built.is_error, built.content[0].text
+            room = built.structured_content
+            assert len(room["objects"]) >= 1
+            assert room["job"]["message"] == "done"
+            assert (await client.call_tool("rooms", {})).structured_content["projects"][0]["open"]
+
+    anyio.run(work)
+    assert told, "it is told how far the build is"

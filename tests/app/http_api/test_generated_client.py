@@ -66,6 +66,19 @@ def test_a_photo_becomes_a_scene_and_a_file(tmp_path: Path, monkeypatch: pytest.
             job.id, client=client, view="top", width=200, height=100
         )
         assert Image.open(io.BytesIO(picture.content)).size == (200, 100)
+        project = module("api.default.get_project").sync(job.id, client=client)
+        first = project.objects[0].id
+        body = models.EditRequest(
+            version=project.version, edits=[models.SetState(objects=[first], state="hidden", do="set")], author="Client"
+        )
+        edited = module("api.default.edit_project").sync(job.id, client=client, body=body)
+        assert edited.changed == [first]
+        stale = module("api.default.edit_project").sync(job.id, client=client, body=body)
+        assert isinstance(stale, models.Problem)
+        undone = module("api.default.undo_project").sync(
+            job.id, client=client, body=models.StepRequest(author="Client")
+        )
+        assert undone.version != edited.version
         missing = module("api.default.get_job").sync("nobody", client=client)
         assert isinstance(missing, models.Problem)
         assert "nobody" in missing.error

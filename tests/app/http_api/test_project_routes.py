@@ -218,3 +218,21 @@ def test_events_tell_of_changes_by_anybody(running: Running, client: Client, sce
     assert told["version"] != scene["version"]
     assert client.undo_project(name="demo", author="Tester").status == 200
     until(lambda: not running.session.watchers)
+
+
+def test_a_described_room_is_offered_to_whoever_looks_on(running: Running, client: Client) -> None:
+    session = running.session
+    person = session.ui_thread.ask(lambda: join(session))
+    offered: list[tuple[str, str]] = []
+    went: list[str] = []
+    person.offer = lambda message, label, do: (offered.append((message, label)), do())
+    person.go_to = went.append
+    reply = client.describe_project(text="a table with two chairs", author="Tester")
+    assert reply.status == 201
+    made = reply.body
+    assert sum(o["category"] == "chair" for o in made["objects"]) == 2
+    until(lambda: went)
+    assert offered == [(f"Tester builds {made['title']}", "Look")]
+    assert went == [made["project"]]
+    assert client.describe_project(text="   ").status == 422
+    session.ui_thread.ask(lambda: session.left(person.viser_client))
