@@ -55,6 +55,21 @@ def test_what_a_pixel_shows_is_told_without_light() -> None:
     assert all(0 <= p < len(scene.architecture.planes) for p in planes)
 
 
+def test_any_point_may_be_looked_from_and_at() -> None:
+    scene = furnished_room(LIBRARY)
+    x, y, z = scene.object("b").pose.position
+    shown = instances_seen(scene, LIBRARY, view=f"look:{x},{y - 1.0},{z + 0.3}:{x},{y},{z}", size=SMALL)
+    assert scene.objects[shown[60, 80]].id == "b"
+    above = instances_seen(scene, LIBRARY, view=f"look:{x},{y},{z + 1.0}:{x},{y},{z}", size=SMALL)
+    assert scene.objects[above[60, 80]].id == "b"
+
+
+@pytest.mark.parametrize("view", ["look:", "look:0,0,1", "look:0,0,1:0,0,1", "look:0,0,nan:1,1,1", "look:a,b,c:0,0,0"])
+def test_a_look_from_nowhere_is_refused(view: str) -> None:
+    with pytest.raises(InputError, match="two points in metres"):
+        scene_view(furnished_room(LIBRARY), view, SMALL)
+
+
 def test_hidden_objects_are_not_drawn() -> None:
     scene = furnished_room(LIBRARY)
     hidden = replace(scene, objects=tuple(replace(o, hidden=o.id == "b") for o in scene.objects))

@@ -421,3 +421,14 @@ def test_the_schema_is_strict() -> None:
     text = json.dumps(strict_schema(GraphReply))
     assert "maxItems" not in text
     assert "default" not in text
+
+
+def test_names_lie_beside_one_another() -> None:
+    rgb = np.full((300, 900, 3), 128, np.uint8)
+    mask = np.zeros((300, 900), bool)
+    mask[120:180, 400:500] = True
+    names = ["armchair_1", "armchair_2", "armchair_3", "armchair_4"]
+    one = marked(rgb, [mask], names[:1])
+    all_there = marked(rgb, [mask] * 4, names)
+    filled = [int((np.abs(p.astype(int) - 128).max(axis=-1) > 20).sum()) for p in (one, all_there)]
+    assert filled[1] > 2.5 * filled[0], "no label covers another"
