@@ -17,6 +17,7 @@ from diorama_app.session.client import Client, Placing
 from diorama_app.session.units import format_size
 from diorama_app.web.html import Action, LiveHtml, button, text
 from diorama_core.library.browsing import Filters, Shelf, SizeClass, browsed, one_of_each
+from diorama_core.library.company import ROOMS
 from diorama_core.library.record import Shape
 from diorama_core.library.search import search
 from diorama_core.library.user_library import UserLibrary
@@ -103,12 +104,14 @@ class LibraryPanel:
         shelves = "".join(button(n, "shelf", s, title=t, on=chosen.shelf == s) for s, (n, t) in SHELVES.items())
         count = Counter(s.category for s in shapes)
         categories = [("", "Every category"), *((c, f"{c.capitalize()} ({n})") for c, n in sorted(count.items()))]
+        rooms = [("", "Every room"), *((r, r.capitalize()) for r in ROOMS)]
         styles = [("", "Every style"), *((s, s.capitalize()) for s in sorted({s.style for s in shapes if s.style}))]
         sizes = [("", "Every size"), *SIZE_NAMES.items()]
         fitting = button("Fits here", "fitting", title="Only what fits into this room", on=chosen.fitting)
         return (
             f'<div class="bar tight">{shelves}{fitting}</div><div class="filters">'
             + _select("category", "Category", categories, chosen.category)
+            + _select("room", "Room", rooms, chosen.room)
             + _select("style", "Style", styles, chosen.style)
             + _select("size", "Size", sizes, chosen.size or "")
             + "</div>"
@@ -199,6 +202,8 @@ class LibraryPanel:
                 filters = replace(filters, fitting=not filters.fitting)
             elif action.do == "category":
                 filters = replace(filters, category=chosen)
+            elif action.do == "room":
+                filters = replace(filters, room=chosen if chosen in ROOMS else "")
             elif action.do == "style":
                 filters = replace(filters, style=chosen)
             elif action.do == "size":

@@ -12,11 +12,13 @@ import numpy as np
 import viser
 
 from diorama_app.commands.edit import supporter_name
+from diorama_app.commands.insert import put_opening
 from diorama_app.commands.surfaces import finish_surfaces
 from diorama_app.session.client import Client
 from diorama_app.session.units import format_length
 from diorama_app.web.html import Action, LiveHtml, button, text
 from diorama_core.errors import EditRefused, InputError
+from diorama_core.geometry.openings import OPENING_CATEGORIES
 from diorama_core.scene.types import Plane, SurfaceFinish, SurfacePattern
 
 SAMPLE_M = (0.9, 0.68)
@@ -64,6 +66,9 @@ class Surfaces:
                 + button("All walls", "all", title="Finish all walls alike", on=self._all_walls)
                 + "</div>"
             )
+        if plane.role == "wall":
+            openings = (button(f"Add a {c}", "opening", c, title=f"A {c} in this wall") for c in OPENING_CATEGORIES)
+            parts.append(f'<div class="bar">{"".join(openings)}</div>')
         finish = plane.finish
         before = "As in the photo" if scene.camera is not None else "Plain"
         parts.append('<div class="bar">' + button(before, "before", title="No finish", on=finish is None) + "</div>")
@@ -87,6 +92,8 @@ class Surfaces:
         if action.do in ("one", "all"):
             self._all_walls = action.do == "all"
             self.refresh()
+        elif action.do == "opening" and action.arg in OPENING_CATEGORIES:
+            put_opening(self._client, action.arg, plane.id, plane.polygon[:, :2].mean(axis=0))
         elif action.do == "before":
             self._set(None)
         elif action.do == "pattern" and action.arg in get_args(SurfacePattern):

@@ -12,29 +12,41 @@ UNITS: tuple[Unit, ...] = ("m", "cm", "ft-in")
 METRES_PER_INCH = 0.0254
 METRES_PER = {"m": 1.0, "cm": 0.01, "mm": 0.001, "ft": 0.3048, "'": 0.3048, "in": METRES_PER_INCH, '"': METRES_PER_INCH}
 _NUMBER = r"\d+(?:[.,]\d+)?(?:\s+\d+/\d+)?|\d+/\d+"
+_TERM = r"\s*([+-]?)([^+-]+)"
 _PART = re.compile(rf"\s*({_NUMBER})\s*(mm|cm|m|ft|in|'|\")?", re.IGNORECASE)
 
 
 def parse_length(words: str, unit: Unit) -> float:
-    """Metres of a length such as "1.2", "85 cm", "5' 3 1/2\\"" or "6ft 2in"; a bare number is in `unit`.
+    """Metres of a length such as "1.2", "85 cm", "5' 3 1/2\\"" or "6ft 2in", or of a sum such as "0.5+25 cm".
+
+    Args:
+        words: as they were written.
+        unit: of bare numbers.
 
     Raises:
         InputError: it is not a length.
     """
-    rest = words.strip().replace("′", "'").replace("″", '"').replace("’", "'").replace("”", '"')
-    sign = -1.0 if rest.startswith("-") else 1.0
-    rest = re.sub(r"^(?=[.,]\d)", "0", rest.lstrip("+-").strip())  # .95 is 0.95
-    total, parts, previous = 0.0, 0, ""
+    rest = words.strip().replace("′", "'").replace("″", '"').replace("’", "'").replace("”", '"').replace("−", "-")
+    rest = re.sub(r"'\s*-\s*(?=\d)", "' ", rest)  # 5'-3" is one length
+    if not rest.strip("+- "):
+        raise InputError("the length is missing; write for example 1.2 m, 85 cm or 5' 3\"")
+    if not re.fullmatch(f"(?:{_TERM})+", rest):
+        raise InputError(f"'{words[:30]}' is not a length; write for example 1.2 m, 85 cm or 0.5+0.25")
+    return sum(-_metres(term, unit) if sign == "-" else _metres(term, unit) for sign, term in re.findall(_TERM, rest))
+
+
+def _metres(words: str, unit: Unit) -> float:
+    """Metres of one length without a sign."""
+    rest = re.sub(r"^(?=[.,]\d)", "0", words.strip())  # .95 is 0.95
+    total, previous = 0.0, ""
     while rest:
         found = _PART.match(rest)
         if found is None:
-            raise InputError(f"'{words[:30]}' is not a length; write for example 1.2 m, 85 cm or 5' 3\"")
+            raise InputError(f"'{words[:30].strip()}' is not a length; write for example 1.2 m, 85 cm or 5' 3\"")
         name = (found.group(2) or "").lower() or _implied(unit, previous)
         total += _number(found.group(1)) * METRES_PER[name]
-        previous, rest, parts = name, rest[found.end() :].strip(), parts + 1
-    if not parts:
-        raise InputError("the length is missing; write for example 1.2 m, 85 cm or 5' 3\"")
-    return sign * total
+        previous, rest = name, rest[found.end() :].strip()
+    return total
 
 
 def format_length(metres: float, unit: Unit) -> str:

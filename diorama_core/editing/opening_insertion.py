@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 from jaxtyping import Float
 
@@ -9,12 +11,15 @@ from diorama_core.arrangement.surfaces import plane_surface
 from diorama_core.editing.placing import DOOR, Hit, Place, insertion
 from diorama_core.editing.plan_edits import wall_feet
 from diorama_core.errors import EditRefused
+from diorama_core.geometry.openings import OPENING_CATEGORIES, wall_of
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.scene import edits
 from diorama_core.scene.types import Scene
 
 SILL_M = 0.9
 """Height of a new window's lower edge above the floor."""
+SLACK_M = 1e-6
+"""Openings that touch do not overlap: rounding."""
 
 
 def with_opening(
@@ -30,7 +35,7 @@ def with_opening(
         at: a point of the floor (world x and y) to which it is nearest.
 
     Raises:
-        EditRefused: there is no such wall, it is too short, or the library has no such shape.
+        EditRefused: there is no such wall, it is too short or full, or the library has no such shape.
     """
     foot = next((f for f in wall_feet(scene) if f.id == wall_id), None)
     shapes = library.in_category(category)
@@ -41,11 +46,28 @@ def with_opening(
     half, sill = shape.size_m[1] / 2, 0.0 if category == DOOR else SILL_M
     if foot.length_m < 2 * half:
         raise EditRefused(f"a {category} is {2 * half:.2f} m wide, which is more than this wall; choose a longer one")
-    along = float(np.clip((at - foot.start) @ foot.along, half, foot.length_m - half))
     wall = scene.plane(wall_id)
+    others = [o for o in scene.objects if o.category in OPENING_CATEGORIES and wall_of(o, (wall,), scene) is wall]
+    taken = [np.sort((o.corners_world[:, :2] - foot.start) @ foot.along)[[0, -1]] for o in others]
+    along = _free_spot(float((at - foot.start) @ foot.along), half, foot.length_m, taken)
+    if along is None:
+        raise EditRefused(f"no part of this wall is free for a {category} of {2 * half:.2f} m; move what is in it")
     level = float(wall.polygon[:, 2].min()) + sill + shape.size_m[2] / 2
     place = Place(plane_surface(wall), wall_id, of_object=False)
     hit = Hit(place, np.append(foot.start + along * foot.along, level), 0.0)
     new_id = edits.fresh_id(scene, category)
     item, edge = insertion(scene, shape, new_id, hit, 0.0)
     return edits.insert(scene, item, edge), new_id
+
+
+def _free_spot(wanted: float, half: float, length_m: float, taken: Sequence[Float[np.ndarray, "2"]]) -> float | None:
+    """The place along a wall, nearest to the wanted one, where nothing else is within half a width; None: nowhere."""
+    spots = [min(max(wanted, half), length_m - half), *(s for low, high in taken for s in (low - half, high + half))]
+    free = [
+        float(s)
+        for s in spots
+        if half <= s + SLACK_M
+        and s <= length_m - half + SLACK_M
+        and all(s + half <= low + SLACK_M or s - half >= high - SLACK_M for low, high in taken)
+    ]
+    return min(free, key=lambda s: abs(s - wanted), default=None)

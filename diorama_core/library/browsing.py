@@ -6,6 +6,7 @@ from collections.abc import Callable, Collection, Sequence
 from dataclasses import dataclass
 from typing import Literal
 
+from diorama_core.library.company import ROOMS
 from diorama_core.library.record import Shape
 
 Shelf = Literal["all", "favourites", "recent", "own"]
@@ -20,6 +21,8 @@ class Filters:
 
     shelf: Shelf = "all"
     category: str = ""
+    room: str = ""
+    """One of `company.ROOMS`: only kinds that are met there more often than elsewhere."""
     style: str = ""
     size: SizeClass | None = None
     fitting: bool = False
@@ -59,6 +62,7 @@ def browsed(
         and (filters.shelf != "recent" or s.id in recent)
         and (filters.shelf != "own" or own(s.id))
         and filters.category in ("", s.category)
+        and (not filters.room or s.category in ROOMS[filters.room])
         and filters.style in ("", s.style)
         and low <= max(s.size_m) < high
         and (not filters.fitting or has_place(s))

@@ -36,6 +36,7 @@ def test_filters_are_taken_together() -> None:
     assert ids(Filters(category="sofa")) == ["sofa", "loveseat"]
     assert ids(Filters(category="sofa", style="classic")) == ["loveseat"]
     assert [ids(Filters(size=s)) for s in ("small", "medium", "large")] == [["stool"], ["loveseat", "mine"], ["sofa"]]
+    assert ids(Filters(room="living")) == ["sofa", "loveseat"]
     assert ids(Filters(fitting=True), has_place=lambda s: s.size_m[1] < 1.0) == ["stool", "mine"]
 
 

@@ -4,7 +4,9 @@ import numpy as np
 import pytest
 
 from diorama_app.panels.surfaces import Surfaces
+from diorama_app.web.html import Action
 from diorama_core.appearance.patterns import COLOURS
+from diorama_core.errors import EditRefused
 from tests.app.page import Page
 
 
@@ -73,3 +75,14 @@ def test_what_is_no_size_changes_nothing(session, client, page, panel, words: st
     before = session.scene
     page.change("scale", words)
     assert session.scene is before
+
+
+def test_walls_offer_doors_and_windows(session, client, page, panel) -> None:
+    client.select_surface("wall_1")
+    session.ui_thread.wait()
+    assert "Add a door" in page.html
+    with pytest.raises(EditRefused, match="the library has no door"):
+        panel._do(Action("opening", "door", add=False))
+    client.select_surface("floor")
+    session.ui_thread.wait()
+    assert "Add a door" not in page.html

@@ -29,6 +29,10 @@ def test_what_is_written_reads_as_the_same_length(metres: float, unit: str) -> N
         ("1,25", "m", 1.25),
         (".95", "m", 0.95),
         ("-.5 m", "cm", -0.5),
+        ("0.5+0.25", "m", 0.75),
+        ("2 m - 30 cm + 5", "cm", 1.75),
+        ("1' + 6\"", "m", 0.4572),
+        ("5'-3\"", "m", 1.6002),
     ],
     ids=str,
 )
@@ -36,7 +40,7 @@ def test_lengths_as_people_write_them(words: str, unit: str, metres: float) -> N
     assert parse_length(words, unit) == pytest.approx(metres)
 
 
-@pytest.mark.parametrize("words", ["", "two", "1.2 parsecs", "3/0", "1.5.5", "."])
+@pytest.mark.parametrize("words", ["", "-", "1+", "1++2", "0.5*2", "two", "1.2 parsecs", "3/0", "1.5.5", "."])
 def test_what_is_no_length_is_said_so(words: str) -> None:
     with pytest.raises(InputError):
         parse_length(words, "m")
