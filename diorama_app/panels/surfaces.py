@@ -94,6 +94,7 @@ class Surfaces:
             self.refresh()
         elif action.do == "opening" and action.arg in OPENING_CATEGORIES:
             put_opening(self._client, action.arg, plane.id, plane.polygon[:, :2].mean(axis=0))
+            self._client.select(self._client.selection)
         elif action.do == "before":
             self._set(None)
         elif action.do == "pattern" and action.arg in get_args(SurfacePattern):
