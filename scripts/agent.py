@@ -98,7 +98,7 @@ async def session(home: Path, out: Path, pictures: Path) -> None:
         doubts = await agent.call("ask", about="doubts")
         agent.say("; ".join(f"{i}: {words[0]}" for i, words in list(doubts["objects"].items())[:4]) or "no doubts")
         first = next(o["id"] for o in room["objects"] if o["category"] == "armchair")
-        around = await agent.call("ask", about="object", object_id=first)
+        around = await agent.call("ask", about="one object", object_id=first)
         nearest = next(iter(around["gaps_m"].items()))
         agent.say(f"{first} is {nearest[1]} m from {nearest[0]}")
         free = await agent.call("ask", about="free floor", width_m=0.6, depth_m=0.6)

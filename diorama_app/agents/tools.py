@@ -104,7 +104,7 @@ class Tools:
     def ask(
         self,
         about: Annotated[
-            Literal["room", "object", "free floor", "doubts"],
+            Literal["room", "one object", "free floor", "doubts"],
             Field(description="the whole room; one object with distances and alternatives; places; what is unsure"),
         ] = "room",
         object_id: Annotated[str, Field(description="Of the object that is asked about.")] = "",
@@ -116,7 +116,7 @@ class Tools:
         if about == "free floor":
             free: dict[str, Any] = self._api.get(self._path("/free-floor"), width_m=width_m, depth_m=depth_m)
             return free
-        if about == "object":
+        if about == "one object":
             if not object_id:
                 raise InputError("name the object: object_id, as `look` shows it")
             detail: dict[str, Any] = self._api.get(self._path(f"/objects/{object_id}"))

@@ -91,7 +91,7 @@ def test_an_agent_looks_asks_edits_and_undoes(agent, running: Running) -> None:
         assert running.url.rstrip("/") in room["page"]
         (picture,) = (await client.call_tool("look", {"view": "top", "width": 320, "height": 240})).content
         assert Image.open(io.BytesIO(base64.b64decode(picture.data))).size == (896, 672)
-        table = await told(client, "ask", about="object", object_id="table_1")
+        table = await told(client, "ask", about="one object", object_id="table_1")
         assert table["carries"] == ["lamp_1"]
         assert (await told(client, "ask", about="free floor", width_m=0.5, depth_m=0.5))["spots"]
         assert (await told(client, "ask", about="doubts"))["objects"] == {}
@@ -137,7 +137,7 @@ def test_errors_say_in_one_line_what_to_do(agent, running: Running, tmp_path: Pa
         assert "there is no format" in await refused(client, "export", path=str(tmp_path / "a.docx"), format="docx")
         assert "cannot be read" in await refused(client, "build", photo=str(tmp_path / "none.jpg"))
         assert "either a photo or a text" in await refused(client, "build")
-        assert "object_id" in await refused(client, "ask", about="object")
+        assert "object_id" in await refused(client, "ask", about="one object")
         assert "orbit" in await refused(client, "look", view="sideways")
         await told(client, "ask")
         hidden = lambda scene: edits.set_hidden(scene, "lamp_1", True)  # noqa: E731
