@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 import trimesh
 from jaxtyping import Float
+from scipy.spatial import cKDTree
 
 from diorama_core.importing.cloud_units import Unit, likely_unit
 from diorama_core.scene.types import Camera
@@ -15,6 +16,12 @@ from diorama_core.scene.types import Camera
 MAX_POINTS = 4_000_000
 """More are thinned out evenly."""
 MIN_POINTS = 2000
+ASKED = 2000
+"""Points by which the usual distance to the next one is told."""
+ALONE, FEW = 12.0, 2
+"""So many usual distances around a point with no more than a few others, it floats alone."""
+MAX_ALONE, NOTED_ALONE = 0.1, 0.002
+"""Shares of the points: more are a thin scan, fewer are not worth a note."""
 MESH_POINTS_M2 = 1500.0
 """Points that stand for a square metre of a mesh."""
 Up = Float[np.ndarray, "3"]
@@ -48,12 +55,41 @@ class PointCloud:
 
 
 def in_metres(cloud: PointCloud) -> PointCloud:
-    """The cloud of a format that does not say its unit."""
+    """The cloud of a format that does not say its unit, without points that float alone."""
     finite = cloud.points[np.isfinite(cloud.points).all(axis=1)]
     if not len(finite):
         return cloud
-    unit = likely_unit(finite, cloud.up)
-    return replace(cloud, points=cloud.points * unit.metres, notes=(*cloud.notes, *unit_note(unit)))
+    together, notes = without_floaters(finite)
+    unit = likely_unit(together, cloud.up)
+    return replace(cloud, points=together * unit.metres, notes=(*cloud.notes, *notes, *unit_note(unit)))
+
+
+def without_floaters(points: Float[np.ndarray, "n 3"]) -> tuple[Float[np.ndarray, "m 3"], tuple[str, ...]]:
+    """The points without those that float alone: reflections, dust, and what networks dream up; and the note.
+
+    Args:
+        points: finite, in any unit.
+    """
+    some = points[:: max(1, len(points) // ASKED)]
+    nearest = cKDTree(points).query(some, k=[2])[0] if len(points) > 1 else np.zeros(1)
+    cell = ALONE * float(np.median(nearest))
+    if not cell > 0 or float(np.ptp(points, axis=0).max()) / cell > 1e6:
+        return points, ()
+    cells, which, counts = np.unique(
+        np.floor((points - points.min(axis=0)) / cell).astype(np.int64), axis=0, return_inverse=True, return_counts=True
+    )
+    crowded = cKDTree(cells[counts > FEW]) if (counts > FEW).any() else None
+    if crowded is None:
+        return points, ()
+    sparse = np.flatnonzero(counts <= FEW)
+    # Beside a crowded cell are the edges of surfaces.
+    apart = crowded.query(cells[sparse], distance_upper_bound=1.8)[0] > 1.8
+    alone = np.isin(which.ravel(), sparse[apart])
+    share = float(alone.mean())
+    if not 0 < share < MAX_ALONE:
+        return points, ()
+    said = f"{int(alone.sum())} points that float alone were left out"
+    return points[~alone], (said,) if share > NOTED_ALONE else ()
 
 
 def unit_note(unit: Unit) -> tuple[str, ...]:

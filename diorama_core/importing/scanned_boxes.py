@@ -42,6 +42,8 @@ WALL_SHARE = 0.85
 LOWEST_LAMP_SHARE = 0.5
 """Of the room's height, below which nothing reaches that hangs from the ceiling."""
 HANGS_CLEAR_M = 0.15
+FURNITURE_M = 1.0
+"""What begins above it, away from walls and ceiling, stands on nothing: it is a part of something unseen."""
 PART_M = 0.15
 """Of a door or window: what is deeper, or larger than it by more, is before it."""
 MAX_BOXES = 200
@@ -148,6 +150,7 @@ def _box(points: Float[np.ndarray, "n 3"], room: ScannedRoom) -> MeasuredBox:
     low, high = float(points[:, 2].min()), float(points[:, 2].max())
     hangs = low > LOWEST_LAMP_SHARE * room.top_m and _is_clear_of_walls(points, room)
     stands = low < STANDS_M or _is_board(points, room)
+    floats = not hangs and low > FURNITURE_M and _is_clear_of_walls(points, room)
     low, high = 0.0 if stands else low, room.top_m if hangs else high
     plan = points[:, :2]
     (cx, cy), (a, b), degrees = cv2.minAreaRect(plan.astype(np.float32))
@@ -162,7 +165,7 @@ def _box(points: Float[np.ndarray, "n 3"], room: ScannedRoom) -> MeasuredBox:
     size = np.maximum(np.array([depth, width, high - low]), 0.02)
     return MeasuredBox(
         "object",
-        _kinds("ceiling" if hangs else "floor"),
+        {UNKNOWN.name: 1.0} if floats else _kinds("ceiling" if hangs else "floor"),
         yaw_rotation(turn + best * quarter),
         np.array([cx, cy, (low + high) / 2]),
         size,

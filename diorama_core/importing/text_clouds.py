@@ -15,7 +15,9 @@ from diorama_core.errors import InputError
 TEXT_SUFFIXES = (".xyz", ".pts", ".ptx", ".asc", ".txt", ".csv", ".xyzrgb", ".xyzn")
 LOOKED_AT = 40
 """Lines that tell how a file is written."""
-_NUMBER = r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?"
+_NUMBER = r"[-+]?(?:(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?|(?i:nan))"
+_AXIS = re.compile(r"(?:pos(?:ition)?|coord|points?)?[_: ]?([xyz])(?:[ _\[(].*)?")
+"""Names of columns, as in X, pos_x, "y [m]"."""
 _ROW = re.compile(rf"^\s*{_NUMBER}(?:[\s,;]+{_NUMBER}){{2,}}\s*[,;]?\s*$")
 
 
@@ -49,7 +51,8 @@ def read_text_cloud(path: Path) -> Float[np.ndarray, "n 3"]:
 
 
 def _columns(heading: str, delimiter: str | None) -> tuple[int, ...]:
-    names = [w.strip(" \t\"'/#").lower() for w in (heading.split(delimiter) if delimiter else heading.split())]
+    words = [w.strip(" \t\r\n\"'/#").lower() for w in (heading.split(delimiter) if delimiter else heading.split())]
+    names = [found[1] if (found := _AXIS.fullmatch(word)) else "" for word in words]
     return tuple(names.index(axis) for axis in "xyz") if {"x", "y", "z"} <= set(names) else (0, 1, 2)
 
 

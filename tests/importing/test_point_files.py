@@ -128,3 +128,24 @@ def test_what_cannot_be_read_is_one_line(tmp_path: Path, monkeypatch: pytest.Mon
         (tmp_path / f"room{suffix}").write_bytes(b"0")
         with pytest.raises(UnavailableError, match=r"diorama\[scan\]"):
             read_points(tmp_path / f"room{suffix}")
+
+
+def test_points_that_float_alone_are_left_out(tmp_path: Path) -> None:
+    points = room_points(count=40_000)
+    floating = points.mean(axis=0) + np.random.default_rng(0).uniform(-8.0, 8.0, (300, 3))
+    np.savetxt(tmp_path / "room.xyz", np.vstack([points, floating]), "%.4f")
+    cloud = read_points(tmp_path / "room.xyz")
+    assert abs(len(cloud.points) - len(points)) < 40
+    assert "float alone were left out" in cloud.notes[0]
+    assert np.quantile(cloud.points, [0.001, 0.999], axis=0) == pytest.approx(
+        np.quantile(points, [0.001, 0.999], axis=0), abs=0.02
+    )
+
+
+@pytest.mark.parametrize("heading", ["id,z,x,y", "//n,Z [m],X [m],Y [m]", "i,pos_z,pos_x,pos_y"])
+def test_columns_are_told_by_their_heading(tmp_path: Path, heading: str) -> None:
+    points = room_points(count=4000)
+    rows = np.column_stack([np.arange(len(points)), points[:, [2, 0, 1]]])
+    rows[::50, 1] = np.nan
+    np.savetxt(tmp_path / "room.csv", rows, "%.4f", ",", header=heading, comments="")
+    assert read_points(tmp_path / "room.csv").points == pytest.approx(np.delete(points, np.s_[::50], axis=0), abs=1e-4)

@@ -33,3 +33,12 @@ def test_what_is_small_or_a_wall_is_none() -> None:
     assert boxes_in(block((0.0, 0.0, 0.5), (0.08, 0.08, 0.6)), ROOM) == ((), 0)
     assert boxes_in(block((0.0, -1.0, 0.0), (0.03, 1.0, 2.45)), ROOM) == ((), 0)
     assert rugs_in(block((0.0, 0.0, 0.0), (0.5, 0.5, 0.5)), ROOM) == ()
+
+
+def test_what_stands_on_nothing_is_of_no_kind() -> None:
+    (floating,), _ = boxes_in(block((0.0, 0.0, 1.1), (0.3, 0.3, 1.6)), ROOM)
+    assert dict(floating.kinds) == {"object": 1.0}
+    (hung,), _ = boxes_in(block((-1.95, 0.0, 1.3), (-1.7, 0.3, 1.75)), ROOM)
+    assert len(hung.kinds) > 1
+    (lamp,), _ = boxes_in(block((0.0, 0.0, 1.5), (0.3, 0.3, 1.75)), ROOM)
+    assert "ceiling lamp" in lamp.kinds
