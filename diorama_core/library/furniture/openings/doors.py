@@ -144,8 +144,8 @@ def barn_door(size: Size, wood: Material, iron: Material) -> Parts:
     hangers = [box((0.008, 0.045, 0.26), 0.003).moved(0.036, s * lw * 0.36, h - 0.3) for s in (1, -1)]
     wheels = [cylinder(0.045, 0.02, 0.004, 24).turned("y", 90).moved(0.035, s * lw * 0.36, h - 0.05) for s in (1, -1)]
     slide = Joint("door", "slide", (0.0, 0.0, 0.0), (0.0, 1.0, 0.0), 0.0, (w - lw) / 2)
-    hung = of(wood, *boards, *rails, *braces) + of(iron, *hangers, *wheels, *grip(0.03, -lw * 0.42, 1.0))
-    return jointed(slide, hung) + of(iron, rail)
+    leaf = jointed(slide, of(wood, *boards, *rails, *braces))
+    return leaf + of(iron, rail) + jointed(slide, of(iron, *hangers, *wheels, *grip(0.03, -lw * 0.42, 1.0)))
 
 
 def sliding_glass(size: Size, frame_of: Material) -> Parts:
