@@ -72,7 +72,7 @@ def _page(glb: bytes, scene: ExportScene) -> str:
         server.scene.world_axes.visible = False
         light = scene.scene.light
         server.scene.configure_default_lights(enabled=light is None, cast_shadow=False)
-        add_even_light(server.scene, sky=1.0, around=0.9)
+        add_even_light(server.scene, sky=0.5, around=0.45)
         if light is not None:
             add_main_light(server.scene, light, cast_shadow=False)
         server.scene.add_glb("/scene", glb, wxyz=Y_UP_TO_WORLD, cast_shadow=False, receive_shadow=False)
