@@ -33,7 +33,7 @@ from diorama_core.export import export_scene
 from diorama_core.export.blender import blender_python, missing_blender
 from diorama_core.export.environment import environment_of
 from diorama_core.export.gathering import ExportOptions, ExportScene, gather
-from diorama_core.export.stability import stability
+from diorama_core.export.stability import stability, urdf_model
 from diorama_core.geometry.openings import OPENING_CATEGORIES
 from diorama_core.importing.forms import marked_file
 from diorama_core.importing.opening import open_marked
@@ -103,8 +103,8 @@ def check_usd(path: Path, gathered: ExportScene) -> list[str]:
 def check_mujoco(path: Path, gathered: ExportScene) -> list[str]:
     import mujoco
 
-    model = mujoco.MjModel.from_xml_path(str(path))
-    names = {model.body(k).name for k in range(model.nbody)}
+    model = urdf_model(path) if path.suffix == ".urdf" else mujoco.MjModel.from_xml_path(str(path))
+    names = {model.body(k).name.rpartition("/")[2] for k in range(model.nbody)}
     return [f"{o.slug} is missing" for o in gathered.objects if o.slug not in names]
 
 
