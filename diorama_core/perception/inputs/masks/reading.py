@@ -152,11 +152,19 @@ def _without_specks(name: str, values: Int32[np.ndarray, "h w"]) -> tuple[Int32[
 
 
 def _large_pieces(mask: np.ndarray, least: int) -> tuple[np.ndarray, int]:
-    """The mask without its loose specks, and how many there were."""
+    """The mask without its loose specks, and how many there were; within its bounds they are seen past what is before
+    it.
+    """
     import cv2  # the editor opens without it
 
-    count, labels, stats, _ = cv2.connectedComponentsWithStats(mask, connectivity=8)
-    small = [k for k in range(1, count) if stats[k, cv2.CC_STAT_AREA] < least]
+    count, labels, stats, middles = cv2.connectedComponentsWithStats(mask, connectivity=8)
+    large = np.flatnonzero(stats[1:, cv2.CC_STAT_AREA] >= least) + 1
+    if not len(large):
+        return np.zeros(mask.shape, bool), count - 1
+    low = stats[large, :2].min(axis=0)
+    high = (stats[large, :2] + stats[large, 2:4]).max(axis=0)
+    within = ((middles >= low) & (middles < high)).all(axis=1)
+    small = [k for k in range(1, count) if stats[k, cv2.CC_STAT_AREA] < least and not within[k]]
     return (labels > 0) & ~np.isin(labels, small), len(small)
 
 

@@ -257,3 +257,14 @@ def test_forms_and_refusals() -> None:
         painted([np.ones((2, 2), bool), np.ones((3, 2), bool)], "m", "masks")
     with pytest.raises(InputError, match="exact colours"):
         read_picture(Source(encoded(Image.fromarray(RGB), "JPEG"), "m.jpg"))
+
+
+def test_pieces_within_an_object_are_its_own_and_others_are_specks() -> None:
+    large = np.zeros((HEIGHT, WIDTH), np.uint8)
+    large[10:80, 10:40], large[20:60:4, 42] = 1, 1
+    large[10:80, 50:60] = 1  # seen on both sides of what is before it
+    expected = large.copy()
+    large[85, 115] = 1
+    values, _, notes = read_masks(picture(Image.fromarray(large)), (), decoded(WIDTH, HEIGHT))
+    np.testing.assert_array_equal(values, expected)
+    assert notes == ("1 specks of the masks were dropped",)
