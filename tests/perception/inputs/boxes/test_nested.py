@@ -1,0 +1,40 @@
+"""Annotations deep within a JSON value."""
+
+from __future__ import annotations
+
+import pytest
+
+from diorama_core.perception.inputs.boxes.nested import class_names_in, lists_in, pictures_in
+
+ROWS = [{"bbox": [1, 2, 30, 40], "class": "chair"}]
+BARE = [{"bbox": [1, 2, 30, 40]}]
+
+
+def test_lists_are_found_with_what_holds_them() -> None:
+    ((rows, holder),) = lists_in({"a": {"b": [{"c": ROWS}]}})
+    assert rows == ROWS
+    assert holder == {"c": ROWS}
+    ((rows, _),) = lists_in({"kinds": [{"name": "sofa", "found": BARE}]})
+    assert rows == [{**BARE[0], "class": "sofa"}]
+
+
+@pytest.mark.parametrize(
+    ("document", "count"),
+    [
+        ({"images": [{"file_name": "a.png", "objects": ROWS}, {"file_name": "b.png", "objects": ROWS}]}, 2),
+        ({"a.png": ROWS, "b.jpg": ROWS}, 2),
+        ({"kinds": [{"name": "sofa", "found": BARE}]}, 0),
+        ({"image": {"width": 10}, "boxes": ROWS}, 0),
+    ],
+)
+def test_pictures_are_told_from_kinds(document: object, count: int) -> None:
+    assert len(pictures_in(document)) == count
+
+
+@pytest.mark.parametrize(
+    "names",
+    [{"class-map": {"0": "sofa", "1": "chair"}}, {"names": ["sofa", "chair"]}, {"x": {"categories": [
+        {"id": 0, "name": "sofa"}, {"id": 1, "name": "chair"}]}}],
+)  # fmt: skip
+def test_names_of_class_numbers(names: object) -> None:
+    assert class_names_in(names) == {0: "sofa", 1: "chair"}
