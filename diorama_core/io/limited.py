@@ -8,15 +8,15 @@ from __future__ import annotations
 
 import contextlib
 import os
-import socket
+import pickle
+import queue
+import struct
 import subprocess
 import sys
 import threading
-import time
 from collections.abc import Callable
-from multiprocessing.connection import Connection
 from pathlib import Path
-from typing import Any, ParamSpec, TypeVar
+from typing import IO, Any, ParamSpec, TypeVar
 
 from diorama_core.errors import DioramaError, InputError
 from diorama_core.progress import Progress, ProgressEvent
@@ -33,7 +33,55 @@ _GLANCE_S = 0.2
 """How often a cancel, and the end of the program, is looked for."""
 _TOO_MUCH = "it needs more memory than a file of this kind should, or is damaged; reduce it or save it again"
 _TOO_LONG = "reading it takes too long; reduce it or save it again"
+_LENGTH = struct.Struct("!Q")
 _THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
+
+
+class _Messages:
+    """Messages over two pipes. A thread reads them, so that one can wait for a time on every system.
+
+    Args:
+        reads: where messages come from.
+        writes: where they go to.
+        at_end: called when the other side is gone.
+    """
+
+    def __init__(self, reads: IO[bytes], writes: IO[bytes], at_end: Callable[[], object]) -> None:
+        self._reads, self._writes, self._at_end = reads, writes, at_end
+        self._received: queue.SimpleQueue[bytes | None] = queue.SimpleQueue()
+        threading.Thread(target=self._read, daemon=True, name="messages").start()
+
+    def send(self, message: object) -> None:
+        """Raises `OSError` when the other side is gone."""
+        data = pickle.dumps(message, pickle.HIGHEST_PROTOCOL)
+        self._writes.write(_LENGTH.pack(len(data)))
+        self._writes.write(data)
+        self._writes.flush()
+
+    def receive(self, wait_s: float | None = None) -> Any:
+        """The next message; raises `queue.Empty` when none comes in that time, `EOFError` when none ever will."""
+        data = self._received.get(timeout=wait_s)
+        if data is None:
+            raise EOFError
+        return pickle.loads(data)
+
+    def close(self) -> None:
+        """Nothing is sent any more."""
+        with contextlib.suppress(OSError):
+            self._writes.close()
+
+    def _read(self) -> None:
+        try:
+            with self._reads, contextlib.suppress(OSError, ValueError, MemoryError):
+                while len(head := self._reads.read(_LENGTH.size)) == _LENGTH.size:
+                    (size,) = _LENGTH.unpack(head)
+                    data = self._reads.read(size)
+                    if len(data) < size:
+                        break
+                    self._received.put(data)
+        finally:
+            self._received.put(None)
+            self._at_end()
 
 
 class LimitedProcess:
@@ -43,7 +91,7 @@ class LimitedProcess:
         self._memory, self._seconds = memory, seconds
         self._lock = threading.Lock()
         self._process: subprocess.Popen[bytes] | None = None
-        self._connection: Connection | None = None
+        self._messages: _Messages | None = None
 
     def call(self, name: str, function: Callable[P, R], *args: P.args, **kwargs: P.kwargs) -> R:
         """`function(*args, **kwargs)` in the process.
@@ -79,10 +127,10 @@ class LimitedProcess:
 
     def _asked(self, name: str, task: tuple[Any, Any, Any], progress: Progress | None) -> Any:
         with self._lock:
-            connection = self._started()
+            messages = self._started()
             try:
-                connection.send(task)
-                good, value = self._answer_from(connection, name, progress)
+                messages.send(task)
+                good, value = self._answer_from(messages, name, progress)
             except (EOFError, OSError) as error:
                 self._end()
                 raise InputError(f"{name}: {_TOO_MUCH}") from error
@@ -93,17 +141,18 @@ class LimitedProcess:
             return value
         raise value if isinstance(value, DioramaError) else InputError(f"{name}: {value or _TOO_MUCH}")
 
-    def _answer_from(self, connection: Connection, name: str, progress: Progress | None) -> tuple[bool, Any]:
+    def _answer_from(self, messages: _Messages, name: str, progress: Progress | None) -> tuple[bool, Any]:
         """The last message; the ones before it are steps of progress."""
         quiet, used = 0.0, self._cpu_time()
         while True:
-            if not connection.poll(_GLANCE_S):
+            try:
+                good, value = messages.receive(_GLANCE_S)
+            except queue.Empty:
                 before, used = used, self._cpu_time()
                 quiet += _GLANCE_S if before is None or used is None or not used[1] else used[0] - before[0]
                 if quiet >= self._seconds:
-                    raise InputError(f"{name}: {_TOO_LONG}")
+                    raise InputError(f"{name}: {_TOO_LONG}") from None
             else:
-                good, value = connection.recv()
                 if good is not None:
                     return good, value
                 quiet = 0.0
@@ -127,34 +176,31 @@ class LimitedProcess:
             with contextlib.suppress(OSError):
                 process.kill()
 
-    def _started(self) -> Connection:
-        if self._process is not None and self._process.poll() is None and self._connection is not None:
-            return self._connection
+    def _started(self) -> _Messages:
+        if self._process is not None and self._process.poll() is None and self._messages is not None:
+            return self._messages
         self._end()
-        ours, theirs = socket.socketpair()
         environment = {**os.environ, **dict.fromkeys(_THREADS, "1"), "PYTHONPATH": os.pathsep.join(sys.path)}
-        command = [sys.executable, "-m", __name__, str(theirs.fileno()), str(self._memory), str(os.getpid())]
         self._process = subprocess.Popen(
-            command,
-            pass_fds=(theirs.fileno(),),
-            stdin=subprocess.DEVNULL,
-            stdout=subprocess.DEVNULL,
+            [sys.executable, "-m", __name__, str(self._memory)],
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
             stderr=subprocess.DEVNULL,
             env=environment,
         )
-        theirs.close()
-        self._connection = Connection(ours.detach())
-        return self._connection
+        assert self._process.stdin is not None
+        assert self._process.stdout is not None
+        self._messages = _Messages(self._process.stdout, self._process.stdin, lambda: None)
+        return self._messages
 
     def _end(self) -> None:
-        if self._connection is not None:
-            with contextlib.suppress(OSError):
-                self._connection.close()
         if self._process is not None:
             with contextlib.suppress(OSError):
                 self._process.kill()
             self._process.wait()
-        self._process = self._connection = None
+        if self._messages is not None:
+            self._messages.close()
+        self._process = self._messages = None
 
 
 def cpu_time(pid: int) -> tuple[float, bool] | None:
@@ -169,16 +215,11 @@ def cpu_time(pid: int) -> tuple[float, bool] | None:
         return None
 
 
-def _end_with(program: int) -> None:
-    """End this process when the program is killed, also while it loads or decodes something."""
-    while os.getppid() == program:
-        time.sleep(_GLANCE_S)
-    os._exit(1)
-
-
-def _serve(handle: int, memory: int, program: int) -> None:
-    """Answer calls until the other side is gone."""
-    threading.Thread(target=_end_with, args=(program,), daemon=True, name="end-with-parent").start()
+def _serve(memory: int) -> None:
+    """Answer calls until the program that asks is gone, whatever is being decoded then."""
+    reads, writes = (os.fdopen(os.dup(k), mode) for k, mode in ((0, "rb"), (1, "wb")))
+    os.dup2(os.open(os.devnull, os.O_RDWR), 0)
+    os.dup2(2, 1)  # libraries may print
     with contextlib.suppress(ImportError, ValueError, OSError):
         import resource
 
@@ -186,17 +227,17 @@ def _serve(handle: int, memory: int, program: int) -> None:
         resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
     with contextlib.suppress(OSError, AttributeError):
         os.nice(5)  # people's edits come first
-    connection = Connection(handle)
+    messages = _Messages(reads, writes, lambda: os._exit(1))
     with contextlib.suppress(EOFError, OSError, KeyboardInterrupt):
         while True:
-            function, args, kwargs = connection.recv()
+            function, args, kwargs = messages.receive()
             if kwargs is None:
-                args, kwargs = (*args, Progress(lambda event: _tell(connection, event))), {}
-            connection.send(_answer(function, args, kwargs))
+                args, kwargs = (*args, Progress(lambda event: _tell(messages, event))), {}
+            messages.send(_answer(function, args, kwargs))
 
 
-def _tell(connection: Connection, event: ProgressEvent) -> None:
-    connection.send((None, (event.fraction, event.message)))
+def _tell(messages: _Messages, event: ProgressEvent) -> None:
+    messages.send((None, (event.fraction, event.message)))
 
 
 def _answer(function: Callable[..., Any], args: tuple, kwargs: dict[str, Any]) -> tuple[bool, Any]:
@@ -211,4 +252,4 @@ def _answer(function: Callable[..., Any], args: tuple, kwargs: dict[str, Any]) -
 
 
 if __name__ == "__main__":
-    _serve(int(sys.argv[1]), int(sys.argv[2]), int(sys.argv[3]))
+    _serve(int(sys.argv[1]))

@@ -29,6 +29,12 @@ def greedy(megabytes: int) -> int:
     return int(np.ones(megabytes * 1_000_000, np.uint8).sum())
 
 
+def echo(values: np.ndarray) -> np.ndarray:
+    print("what libraries print is no answer", flush=True)
+    os.write(1, b"nor is this")
+    return values
+
+
 def crash() -> None:
     ctypes.string_at(0)
 
@@ -71,6 +77,17 @@ def test_too_much_memory_is_one_line_and_the_next_call_works(process: LimitedPro
     with pytest.raises(InputError, match=r"room\.png: it needs more memory"):
         process.call("room.png", greedy, 5000)
     assert process.call("x", greedy, 10) == 10_000_000
+
+
+def test_large_values_go_there_and_back_whatever_is_printed(process: LimitedProcess) -> None:
+    values = np.arange(3_000_000, dtype=np.float32)
+    assert np.array_equal(process.call("x", echo, values), values)
+
+
+def test_what_is_too_large_to_be_handed_over_is_one_line(process: LimitedProcess) -> None:
+    with pytest.raises(InputError, match=r"room\.png: it needs more memory"):
+        process.call("room.png", echo, np.zeros(900_000_000, np.uint8))
+    assert process.call("x", double, 1) == 2
 
 
 def test_a_crash_is_one_line_and_the_next_call_works(process: LimitedProcess) -> None:

@@ -130,8 +130,11 @@ def _void_note(number: int, void: Bool[np.ndarray, "h w"]) -> tuple[str, ...]:
 
 def _numbers(rgb: Shaped[np.ndarray, "h w c"]) -> Int32[np.ndarray, "h w"]:
     """One number per colour, 0 for black."""
-    colours = rgb[..., :3].astype(np.int32)
-    return (colours[..., 0] << 16) | (colours[..., 1] << 8) | colours[..., 2]
+    numbers = rgb[..., 0].astype(np.int32)
+    for channel in (1, 2):  # in place: a large picture's numbers take hundreds of megabytes
+        numbers <<= 8
+        numbers |= rgb[..., channel]
+    return numbers
 
 
 def _pages(picture: Image.Image, source: Source) -> list[Bool[np.ndarray, "h w"]]:
