@@ -5,7 +5,6 @@ from __future__ import annotations
 import ctypes
 import functools
 import itertools
-import resource
 import sys
 import time
 from collections.abc import Callable
@@ -14,7 +13,7 @@ from pathlib import Path
 
 import numpy as np
 
-from diorama_core.errors import InputError
+from diorama_core.errors import InputError, UnavailableError
 from diorama_core.progress import Progress, ProgressEvent
 
 YARDSTICK_REPEATS = 5
@@ -102,7 +101,15 @@ def growth_exponent(points: list[tuple[float, float]]) -> float:
 
 
 def process_peak_mb() -> float:
-    """Peak memory of this process."""
+    """Peak memory of this process.
+
+    Raises:
+        UnavailableError: the system does not tell (Windows).
+    """
+    try:
+        import resource
+    except ImportError as error:
+        raise UnavailableError("this system does not tell how much memory a process took; run it elsewhere") from error
     scale = 1024.0 if sys.platform != "darwin" else 1024.0**2
     return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / scale
 
