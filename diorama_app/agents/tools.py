@@ -42,7 +42,7 @@ class Tools:
         """
         self._api, self._project = api, project
         self._version = ""
-        """Of the room as the agent has seen it last."""
+        """Version of the room that the agent has seen last."""
 
     def all(self) -> tuple[Callable[..., Any], ...]:
         """The tools, by the names of their methods."""

@@ -49,7 +49,7 @@ def _session(request: Request, name: str) -> EditorSession:
 
 
 Session = Annotated[EditorSession, Depends(_session)]
-"""Of the project in the address."""
+"""Session of the project in the address."""
 
 
 @project_router.get("", operation_id="list_projects")

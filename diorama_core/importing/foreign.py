@@ -136,7 +136,7 @@ def _pose(part: Part, record: Shape) -> Pose:
 
 
 def _known_copy(part: Part, shaped: Sequence[_Shaped]) -> _Shaped | None:
-    """The same shape turned about up, where an earlier part is a copy of this one."""
+    """An earlier part of which this one is a copy, turned about up."""
     for other in shaped:
         if part.key is None or other.part.key != part.key:
             continue

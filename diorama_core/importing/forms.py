@@ -149,7 +149,7 @@ def _is_room_plan(head: FileHead) -> bool:
 
 
 def _whole_text(head: FileHead) -> str:
-    """Of a JSON its keys may come in any order, so a small one is looked at whole."""
+    """The text of a small JSON is looked at whole: its keys may come in any order."""
     if head.suffix != ".json" or head.size > MAX_LOOKED_AT:
         return head.text
     return head.path.read_text("utf-8", "replace")

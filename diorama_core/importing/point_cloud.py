@@ -39,7 +39,7 @@ class ScanPhoto:
     unit_m: float = 0.001
 
     def moved(self, T_to_from: Float[np.ndarray, "4 4"]) -> ScanPhoto:
-        """The same photo in another frame: `p_to = T_to_from @ p_from`, rigid."""
+        """A copy of the photo in another frame: `p_to = T_to_from @ p_from`, rigid."""
         return replace(self, camera=Camera(self.camera.intrinsics, T_to_from @ self.camera.T_world_camera))
 
 

@@ -22,7 +22,7 @@ from diorama_core.library.taxonomy import UNKNOWN, column, resolve
 SAME_LEVEL_M = 0.3
 """Floors whose heights differ by less are of one storey."""
 MIN_SIDE_M = 0.01
-"""Of the second longest side of a thing."""
+"""Share of the second longest side of a thing."""
 MAX_PARTS = 5_000
 """Walls, openings and objects of one scan."""
 KINDS: Mapping[str, Mapping[str, float]] = {

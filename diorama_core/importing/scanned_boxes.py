@@ -31,21 +31,21 @@ SPARSE = 2.0
 """As many distances between points must be free in a thin scan."""
 MIN_SIZE_M, MIN_CELLS = 0.15, 12
 MIN_TOP_M = 0.12
-"""Of what lies on something."""
+"""Share of what lies on something."""
 STANDS_M = 0.35
 """So far above the floor thin legs may go unseen."""
 TABLE_M, BOARD_M, MIN_BOARD_M = (0.35, 1.1), 0.12, 0.4
 """Heights of boards that stand on legs, how thick they are at most, and the least shorter side."""
 SQUARE_RAD = float(np.radians(10.0))
 WALL_SHARE = 0.85
-"""Of the room's height: what is thinner than `OFF_M` and reaches so high is a wall."""
+"""Share of the room's height: what is thinner than `OFF_M` and reaches so high is a wall."""
 LOWEST_LAMP_SHARE = 0.5
-"""Of the room's height, below which nothing reaches that hangs from the ceiling."""
+"""Share of the room's height, below which nothing reaches that hangs from the ceiling."""
 HANGS_CLEAR_M = 0.15
 FURNITURE_M = 1.0
 """What begins above it, away from walls and ceiling, stands on nothing: it is a part of something unseen."""
 PART_M = 0.15
-"""Of a door or window: what is deeper, or larger than it by more, is before it."""
+"""Limits of a door or window: what is deeper, or larger than it by more, is before it."""
 MAX_BOXES = 200
 AT_WALL_M = 0.4
 GUESS = 0.4

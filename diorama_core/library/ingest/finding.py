@@ -20,7 +20,7 @@ from diorama_core.library.ingest.models import SUFFIXES, form_of
 from diorama_core.library.ingest.shaping import Source
 
 REVISION = 2
-"""Of what ingestion makes of a file: raise it when results change, so that a repeated run takes files in anew."""
+"""Version of what ingestion makes of a file: raise it when results change; a repeated run takes files in anew."""
 MAX_TABLE_BYTES = 64_000_000
 BESIDE = frozenset(
     [

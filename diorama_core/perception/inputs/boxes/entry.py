@@ -44,7 +44,7 @@ class BoxFile:
     notes: tuple[str, ...] = ()
 
     def with_notes(self, *notes: str) -> BoxFile:
-        """The same with more to tell."""
+        """A copy with more to tell."""
         return replace(self, notes=(*self.notes, *notes))
 
 
@@ -67,7 +67,7 @@ def is_of(name: object, photo_name: str) -> bool:
 
 
 def picture_of(pictures: Sequence[T], names: Sequence[object], text: BoxText, what: str) -> T:
-    """Of several pictures of a file the one that is the photo, of one picture that one.
+    """Picks the picture of a file that is the photo; the only one where there is one.
 
     Args:
         pictures: what the file says of each.

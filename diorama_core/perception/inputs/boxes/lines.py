@@ -32,7 +32,7 @@ _YAML_NAMES = re.compile(
 _KITTI_WORDS = 15
 _PICTURE_COLUMN = r"(?:image|file|picture|photo)?_?(?:name|id|path|file)|image|filename|external_id"
 _PARTS = ("TRAIN", "VALIDATE", "VALIDATION", "TEST", "UNASSIGNED")
-"""Of a data set, as the first word of a line."""
+"""First word of a line of a data set."""
 
 
 def is_yolo(text: BoxText) -> bool:

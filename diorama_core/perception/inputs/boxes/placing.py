@@ -146,7 +146,7 @@ def _others(corners: list[Corners], photo: DecodedPhoto, ambiguous: bool) -> Ite
 
 
 def _other_layouts(corners: list[Corners]) -> Iterator[_Reading]:
-    """The same four numbers as something else than corners."""
+    """Four numbers read as something else than corners."""
     for layout, words in _LAYOUTS.items():
         note = f"the four numbers of the boxes are {words}: so they agree with the picture"
         yield _Reading([from_layout(c, layout) for c in corners], note)

@@ -10,7 +10,7 @@ from jaxtyping import Bool, Integer, Shaped, UInt8
 MIN_STEPS = 200
 """Pixels at which the lower byte starts anew, from which on they tell."""
 SMOOTH = 96
-"""Of 256: by less the number's second difference is off zero where its lower byte starts anew."""
+"""Share of 256 by which the second difference is off zero at most where a lower byte starts anew."""
 MIN_SMOOTH = 0.6
 """Share of such pixels: where two channels are no bytes of one number there are next to none."""
 

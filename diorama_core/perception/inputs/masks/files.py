@@ -17,7 +17,7 @@ from diorama_core.perception.inputs.masks.stack import MAX_STACKED, MaskMap, pai
 from diorama_core.perception.inputs.source import Folder, Source
 
 AROUND_SHARE = 0.6
-"""Of the picture's border that each mask covers, where they are black on white."""
+"""Share of the picture's border that each mask covers, where they are black on white."""
 _PICTURES = (".npy", ".png", ".tif", ".tiff", ".bmp", ".gif", ".webp", ".pgm", ".ppm", ".pbm")
 
 

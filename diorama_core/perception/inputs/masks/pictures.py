@@ -21,7 +21,7 @@ SMALL_ID = 128
 DENSE = 3
 """Ids are counted up, not chosen, where there are at least a third of so many as the largest says."""
 PHOTO_SHARE, PHOTO_LEVELS = 0.15, 64
-"""Of the pixels, those neither dark nor bright, and their levels: smoothed outlines have far fewer."""
+"""Share of pixels neither dark nor bright, and number of their levels: smoothed outlines have far fewer."""
 THIN_SHARE = 0.012
 """Of the longer side: half the width up to which a region is an outline."""
 CUT_OUT_COLOURS = 256

@@ -22,11 +22,11 @@ MIN_SPECK_PX = 20
 SOFT_COLOURS, SOFT_SHARE, SOFT_WIDTH_PX = 12, 0.1, 4.0
 """Of smoothed outlines: how many colours there are at least, of how much of the picture, and how wide at most."""
 MIN_BORDER_SHARE, MIN_AROUND_SHARE = 0.6, 0.3
-"""Of the picture's border and of its area: what is there and called no object is the background."""
+"""Shares of the picture's border and area: what is there and called no object is the background."""
 MARKED_IOU = 0.5
-"""Of a mask's bounds with a box that marks the same."""
+"""Overlap of a mask's bounds with a box that marks the same."""
 EVEN_SHARE = 0.8
-"""Of neighbours with different numbers: if so many differ by one, the numbers are measurements."""
+"""Share of neighbours with different numbers: if so many differ by one, the numbers are measurements."""
 InstanceBoxes = tuple[tuple[int, LabelledBox], ...]
 
 

@@ -25,7 +25,7 @@ from diorama_core.perception.inputs.masks.stack import MaskMap, painted
 from diorama_core.perception.inputs.source import Source
 
 MAX_TOTAL_MEGAPIXELS = 600
-"""Of all masks of a folder or a file together."""
+"""Limit of all masks of a folder or a file together."""
 
 
 def read_segments(source: Source, photo_name: str, photo_size: Size) -> MaskMap:
