@@ -131,7 +131,8 @@ def _imported(glb: bytes) -> set[Any]:
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "room.glb"
         path.write_bytes(glb)
-        bpy.ops.import_scene.gltf(filepath=str(path))
+        # The file's candela are relative to its white; taken for physical ones they are dark in Blender's exposure.
+        bpy.ops.import_scene.gltf(filepath=str(path), export_import_convert_lighting_mode="COMPAT")
     bpy.context.view_layer.update()
     return set(bpy.data.objects) - before
 
@@ -162,6 +163,7 @@ def _set_aside(scene: Any, item: Any) -> None:
         item.hide_viewport = True
     if item.type == "CAMERA":
         scene.camera = item
+        scene.render.resolution_x, scene.render.resolution_y = int(item["width"]), int(item["height"])
 
 
 def _collect(scene: Any, project: str, items: Iterable[Any]) -> None:

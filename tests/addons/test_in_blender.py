@@ -101,6 +101,19 @@ def test_objects_are_where_they_were_under_what_holds_them(blender: Blender, ope
     camera = blender.do("answer = list(bpy.context.scene.camera.matrix_world.translation)")
     assert opened.camera is not None
     np.testing.assert_allclose(camera, opened.camera.position, atol=1e-5)
+    k = opened.camera.intrinsics
+    size = "r = bpy.context.scene.render; answer = [r.resolution_x, r.resolution_y]"
+    assert blender.do(size) == [k.width, k.height]
+
+
+def test_a_room_that_is_opened_again_leaves_nothing_behind(blender: Blender, opened: Scene) -> None:
+    kinds = "('objects', 'meshes', 'materials', 'images', 'lights', 'cameras', 'collections')"
+    count = f"answer = [len(getattr(bpy.data, k)) for k in {kinds}]"
+    before = blender.do(count)
+    assert blender.do("bpy.ops.diorama.open_room()") is None
+    assert blender.do(count) == before
+    filled = "answer = [c.name for c in bpy.data.collections if c.objects]"
+    assert blender.do(filled) == ["Diorama demo"]
 
 
 def test_what_was_done_is_one_step_that_the_editor_takes_back(
