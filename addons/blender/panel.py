@@ -101,7 +101,7 @@ class SendChanges(_Step):
         here = room.objects_by_id(context.scene)
         room.put({o: Matrix(transforms.matrix_of_entry(entries[i])) for i, o in here.items() if i in entries})
         room.note(context.scene, project, answer["version"], [entries[i] for i in here if i in entries])
-        return "; ".join([*answer["lines"], *answer["notes"], *made.notes])
+        return "; ".join([*made.notes, *answer["notes"], *answer["lines"]])  # Blender cuts long lines at the end
 
 
 class ReloadRoom(_Step):

@@ -142,7 +142,11 @@ def _placed(item: OpenedObject, matrix: Matrix) -> _Placed:
     turned = _product(((c, -s, 0.0, 0.0), (s, c, 0.0, 0.0), (0.0, 0.0, 1.0, 0.0), (0.0, 0.0, 0.0, 1.0)), old)
     rigid = tuple((*t[:3], n[3]) for t, n in zip(turned, new, strict=True))
     tilted = max(abs(rigid[i][j] - new[i][j]) for i in range(3) for j in range(3)) > UPRIGHT
-    notes = (f"{item.label} ({item.id}) keeps its tilt: only turns about the vertical are sent",) if tilted else ()
+    notes = (
+        (f"{item.label} ({item.id}) is not tilted or sheared: only turns about the vertical are sent",)
+        if tilted
+        else ()
+    )
     return _Placed(rigid, (x, y, z), resized, math.degrees(_heading(rigid)), notes)
 
 

@@ -132,7 +132,7 @@ def test_a_tilt_is_told_and_not_sent() -> None:
     tilt = np.eye(4)
     tilt[1:3, 1:3] = [[0.9, -np.sqrt(1 - 0.81)], [np.sqrt(1 - 0.81), 0.9]]
     now["chair_1"] = rows(np.array(now["chair_1"]) @ tilt)
-    assert "keeps its tilt" in changes(opened, now).notes[0]
+    assert "is not tilted" in changes(opened, now).notes[0]
 
 
 def test_what_hangs_at_a_tilt_keeps_it_when_it_is_turned() -> None:
