@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import base64
 import io
 import json
 import zipfile
+import zlib
 
 import numpy as np
 from PIL import Image
@@ -78,8 +80,17 @@ def mask_samples() -> tuple[bytes, ...]:
     runs = {"size": [64, 96], "counts": [100, 200, 5844]}
     shape = {"label": "x", "shape_type": "polygon", "points": [[5, 5], [60, 5], [60, 50]]}
     polygons = {"shapes": [shape], "imageWidth": 96, "imageHeight": 64}
-    segments = (json.dumps([{"segmentation": runs}]).encode(), json.dumps(polygons).encode())
-    return npy(ids), npy(np.stack([ids == 1, ids == 2])), _archive(masks=ids), stream.getvalue(), *segments
+    region = {"shape_attributes": {"name": "polygon", "all_points_x": [5, 60, 60], "all_points_y": [5, 5, 50]}}
+    via = {"photo.png123": {"filename": "photo.png", "size": 123, "regions": [{**region, "region_attributes": {}}]}}
+    part = base64.b64encode(zlib.compress(encoded(Image.fromarray(np.full((9, 9), 255, np.uint8))))).decode()
+    bitmap = {"classTitle": "chair", "bitmap": {"data": part, "origin": [5, 5]}}
+    bitmaps = {"size": {"height": 64, "width": 96}, "objects": [bitmap]}
+    segments = (json.dumps(d).encode() for d in ([{"segmentation": runs}], polygons, via, bitmaps))
+    polygon_rows = b"0 0.1 0.1 0.6 0.1 0.6 0.8\n1 0.2 0.3 0.5 0.3 0.5 0.9\n"
+    first, second = ids == 1, ids == 2
+    stacks = npy(np.stack([first, second])), npy(np.stack([first, second]).astype(np.float32) * 0.9)
+    archives = _archive(masks=ids), _archive(chair=first, table=second), stream.getvalue()
+    return npy(ids), *stacks, *archives, *segments, polygon_rows
 
 
 def read_masks(data: bytes) -> object:
