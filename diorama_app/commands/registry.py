@@ -10,7 +10,7 @@ import viser
 
 from diorama_app.session.client import Client
 
-Run = Callable[[Client], None]
+Run = Callable[[Client], object]
 
 
 @dataclass(frozen=True)

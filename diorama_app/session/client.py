@@ -247,6 +247,6 @@ class Client:
         else:
             self.toast(message, False)
 
-    def post(self, task: Callable[[], None], *, key: str | None = None) -> None:
+    def post(self, task: Callable[[], object], *, key: str | None = None) -> None:
         """Do `task` on the UI thread; the user is notified when it fails. May be called from any thread."""
         self.session.post(self.id, task, key=None if key is None else f"{self.id} {key}")

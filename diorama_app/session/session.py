@@ -498,7 +498,7 @@ class EditorSession:
         """Tell every browser."""
         self.notice(None, message, kind)
 
-    def post(self, client_id: int | None, task: Callable[[], None], *, key: str | None = None) -> None:
+    def post(self, client_id: int | None, task: Callable[[], object], *, key: str | None = None) -> None:
         """Do `task` on the UI thread for one browser, which is told when it fails. May be called from any thread.
 
         Args:

@@ -28,7 +28,7 @@ MAX_ANSWER_S = 30.0
 """Within which another thread gets an answer: an edit of a large scene takes a second."""
 
 T = TypeVar("T")
-Task = Callable[[], None]
+Task = Callable[[], object]
 OnError = Callable[[str], None]
 
 

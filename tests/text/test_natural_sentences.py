@@ -111,7 +111,6 @@ NATURAL: dict[str, Check] = {
     ),
 }
 REFUSED = {
-    "Open the door.": "door 1 has nothing that opens; other shapes of the library do",
     "Make the light warmer.": "the light has its colour from the hour and the lamps",
 }
 """What this room or the page cannot do, and why."""
