@@ -180,11 +180,11 @@ class PhotoPanel:
             if session.inputs is not before:
                 raise InputError("the photo or its boxes changed meanwhile; upload the file again")
             keep_given(project, replace(upload, depth=upload.depth if "depth" in new else None, masks=new.get("masks")))
-            if read.warnings:
-                client.notice(sentences(read.warnings[:3]))
             attitude = None if turn or bend else before.camera_attitude
             inputs = replace(read.inputs, camera_attitude=attitude, camera_height_m=before.camera_height_m)
             session.annotate(label, inputs, by=client)
+            if read.warnings:  # in place of the step's name
+                client.to_say = sentences(read.warnings[:3]), True
 
         def ask(unknown: AmbiguousDepthError) -> None:
             ask_depth(client, unknown, lambda chosen: self._read_again(label, new, chosen, turn=turn, bend=bend))
