@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, ClassVar
 from urllib.parse import urlsplit
 
 import bpy
@@ -36,13 +36,9 @@ def _client(context: Any) -> Client:
 
 
 class _Step(bpy.types.Operator):
-    """An operator whose errors are one line."""
+    """An operator whose errors are one line; `work` of each does it and gives what was done."""
 
-    bl_options = {"REGISTER"}  # noqa: RUF012  # Blender's form
-
-    def work(self, context: Any) -> str:
-        """Do it; gives what was done."""
-        raise NotImplementedError
+    bl_options: ClassVar[set[str]] = {"REGISTER"}
 
     def execute(self, context: Any) -> set[str]:
         """Do it, and tell what was done."""
@@ -74,7 +70,7 @@ class OpenRoom(_Step):
     """Bring the room into this scene, in place of the one that is there."""
 
     bl_idname, bl_label = "diorama.open_room", "Open"
-    bl_options = {"REGISTER", "UNDO"}  # noqa: RUF012
+    bl_options: ClassVar[set[str]] = {"REGISTER", "UNDO"}
 
     def work(self, context: Any) -> str:
         """Import the room that is chosen."""
@@ -87,7 +83,7 @@ class SendChanges(_Step):
     """Send what was moved, turned, scaled or deleted since, as one step that the editor can undo."""
 
     bl_idname, bl_label = "diorama.send_changes", "Send Changes"
-    bl_options = {"REGISTER", "UNDO"}  # noqa: RUF012
+    bl_options: ClassVar[set[str]] = {"REGISTER", "UNDO"}
 
     def work(self, context: Any) -> str:
         """Send the edits, and take over where the editor has put things."""
@@ -108,7 +104,7 @@ class ReloadRoom(_Step):
     """Take over what others have changed; what you changed and have not sent stays."""
 
     bl_idname, bl_label = "diorama.reload_room", "Reload"
-    bl_options = {"REGISTER", "UNDO"}  # noqa: RUF012
+    bl_options: ClassVar[set[str]] = {"REGISTER", "UNDO"}
 
     def work(self, context: Any) -> str:
         """Import the room again, and do again what was not sent."""

@@ -183,8 +183,9 @@ class PhotoPanel:
             attitude = None if turn or bend else before.camera_attitude
             inputs = replace(read.inputs, camera_attitude=attitude, camera_height_m=before.camera_height_m)
             session.annotate(label, inputs, by=client)
-            if read.warnings:  # after the step, whose name would take its place
-                client.toast(sentences(read.warnings[:3]), True)
+            if read.warnings:  # in place of the step's name, now or when the page is drawn next
+                client.to_say = sentences(read.warnings[:3]), True
+                client.refresh()
 
         def ask(unknown: AmbiguousDepthError) -> None:
             ask_depth(client, unknown, lambda chosen: self._read_again(label, new, chosen, turn=turn, bend=bend))

@@ -73,7 +73,7 @@ def test_confidence_is_dropped_onto_its_depth(editor: EditorPage, tmp_path: Path
     editor.until(lambda: editor.session.inputs.depth_m is not None, "photo and depth", seconds=90)
     editor.until(lambda: "depth" in editor.session.project.uploads(), "kept")
     drop(editor, levels)
-    editor.until(lambda: "confidence" in editor.session.project.uploads(), "kept with its depth", seconds=90)
+    editor.notice("25% of the depth is unsure by confidence.png, and left out.")
     keep_picture(editor, "dropped-confidence")
     measured = editor.session.inputs.depth_m > 0
     assert not measured[:115].any()

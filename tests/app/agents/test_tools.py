@@ -25,6 +25,7 @@ from diorama_app.agents.tools import Tools
 from diorama_app.http_api import beside
 from diorama_app.serve import Running
 from diorama_core.scene import edits
+from diorama_core.scene.types import Scene
 
 Work = Callable[[Client], Awaitable[None]]
 
@@ -140,8 +141,7 @@ def test_errors_say_in_one_line_what_to_do(agent, running: Running, tmp_path: Pa
         assert "object_id" in await refused(client, "ask", about="one object")
         assert "orbit" in await refused(client, "look", view="sideways")
         await told(client, "ask")
-        hidden = lambda scene: edits.set_hidden(scene, "lamp_1", True)  # noqa: E731
-        session.ui_thread.ask(lambda: session.edit("hide lamp", hidden, author="User 1"))
+        session.ui_thread.ask(lambda: session.edit("hide lamp", _with_hidden_lamp, author="User 1"))
         stale = await refused(client, "edit", words="remove the lamp")
         assert "by User 1" in stale
         assert "look at it again" in stale
@@ -161,3 +161,7 @@ def test_without_an_open_room_an_agent_is_told_how_to_begin(address: str) -> Non
             assert room["version"]
 
     anyio.run(work)
+
+
+def _with_hidden_lamp(scene: Scene) -> Scene:
+    return edits.set_hidden(scene, "lamp_1", True)
