@@ -78,7 +78,14 @@ def build_commands(
         *_overlays(views, outlines),
         *_ways(),
         Command("save", "Save", save, "S", "cmd/ctrl", "Save now (every change is saved anyway)"),
-        Command("measure", "Measure", start_measuring, "M", None, "Measure between two clicks; rescale by it"),
+        Command(
+            "measure",
+            "Measure",
+            start_measuring,
+            "M",
+            None,
+            "Measure between two clicks, which snap to corners; rescale by it",
+        ),
         Command("picture", "Picture", show_picture, "I", None, "Draw a picture or a film of the scene to download"),
         Command(
             "find_furniture",

@@ -132,6 +132,13 @@ def start_placing(client: Client, shape_id: str) -> None:
     client.refresh()
 
 
+def stop_placing(client: Client) -> None:
+    """Place nothing after all."""
+    if isinstance(client.doing, Placing):
+        client.doing = None
+        client.refresh()
+
+
 def place_at(client: Client, shape_id: str, origin: Float[np.ndarray, "3"], direction: Float[np.ndarray, "3"]) -> None:
     """Put a shape where a ray from the eye meets a surface it can stand on or hang at.
 

@@ -10,26 +10,53 @@ from diorama_app.session.client import Client, Measuring
 from diorama_app.session.units import format_length
 from diorama_core.errors import EditRefused
 from diorama_core.geometry.casting import cast_box, cast_planes
+from diorama_core.geometry.vectors import unit
 from diorama_core.scene.types import Scene
+
+SNAP_RAD = 0.018
+"""A click snaps to a corner within this angle of its ray: about twelve pixels of a view."""
+HIDDEN_M = 0.1
+"""A corner so far behind what is clicked is hidden by it."""
 
 
 def point_under(
     scene: Scene, origin: Float[np.ndarray, "3"], direction: Float[np.ndarray, "3"]
 ) -> Float[np.ndarray, "3"] | None:
-    """The nearest point of the room or of an object's box on a ray; planes seen from behind are passed through."""
-    facing = tuple(p for p in scene.architecture.planes if float(p.normal @ direction) < 0)
-    distances = [float(cast_planes(origin, direction[None], facing)[0][0])] if facing else []
+    """The corner that a ray nearly meets, or else the nearest point of the room or of an object's box on it.
+
+    Planes seen from behind are passed through.
+    """
+    ahead = unit(direction)
+    facing = tuple(p for p in scene.architecture.planes if float(p.normal @ ahead) < 0)
+    distances = [float(cast_planes(origin, ahead[None], facing)[0][0])] if facing else []
+    corners = [p.polygon for p in facing]
     for item in scene.objects:
         if not item.hidden:
             pose = item.pose
-            distance, _ = cast_box(origin, direction[None], pose.R_world_object, pose.position, item.size_m)
+            distance, _ = cast_box(origin, ahead[None], pose.R_world_object, pose.position, item.size_m)
             distances.append(float(distance[0]))
+            corners.append(item.corners_world)
     nearest = min(distances, default=np.inf)
-    return origin + nearest * direction if np.isfinite(nearest) else None
+    corner = _corner_near(origin, ahead, np.concatenate(corners), nearest) if corners else None
+    if corner is None and np.isfinite(nearest):
+        return np.asarray(origin + nearest * ahead)
+    return corner
+
+
+def _corner_near(
+    origin: Float[np.ndarray, "3"], ahead: Float[np.ndarray, "3"], corners: Float[np.ndarray, "n 3"], nearest_m: float
+) -> Float[np.ndarray, "3"] | None:
+    """The corner that a ray (of unit length) passes closest by, unless what the ray meets hides it."""
+    offsets = corners - origin
+    away = np.linalg.norm(offsets, axis=1)
+    angles = np.arccos(np.clip(offsets @ ahead / np.maximum(away, 1e-9), -1.0, 1.0))
+    angles[away > nearest_m + HIDDEN_M] = np.inf
+    closest = int(np.argmin(angles))
+    return corners[closest] if angles[closest] < SNAP_RAD else None
 
 
 def start_measuring(client: Client) -> None:
-    """The next two clicks in the view are the ends of a length."""
+    """The next two clicks in the view are the ends of a length; near a corner they take the corner."""
     client.doing = Measuring()
     client.view.show_measure((), "")
     client.refresh()

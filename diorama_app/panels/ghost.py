@@ -1,6 +1,7 @@
 """What is being placed, as a ghost under the pointer.
 
-The page moves it by itself (`static/ghost.js`): it is told the model's node and the surfaces of the room.
+The page moves it by itself (`static/ghost.js`): it is told the model's node and the surfaces of the room, and tells
+where a tile of the catalogue is dropped.
 """
 
 from __future__ import annotations
@@ -8,11 +9,14 @@ from __future__ import annotations
 import json
 from typing import Any
 
+import numpy as np
 import viser
 
+from diorama_app.commands.insert import place_at
 from diorama_app.session.client import Client, Placing
-from diorama_app.web.html import run_once
+from diorama_app.web.html import Action, LiveHtml, run_once
 from diorama_core.editing.placing import DOOR, places_of
+from diorama_core.errors import EditRefused
 from diorama_core.library.record import Shape, ShapeLibrary
 from diorama_core.library.taxonomy import resolve
 from diorama_core.scene.types import Scene
@@ -22,12 +26,16 @@ FAR_M = (0.0, 0.0, -1000.0)
 """Where it is until the pointer moves."""
 
 
+DROP = '<button type="button" id="dio-ghost-drop" data-do="drop" style="display:none" tabindex="-1"></button>'
+
+
 class PlacingGhost:
-    """Shown while a click is awaited that places a shape."""
+    """Shown while a click is awaited that places a shape, or a tile of the catalogue is dragged."""
 
     def __init__(self, gui: viser.GuiApi, client: Client) -> None:
         self._client = client
         self._html = gui.add_html("")
+        LiveHtml(gui, lambda action: client.post(lambda: self._dropped(action))).show(DROP)
         self._node: viser.GlbHandle | None = None
         self._shape_id: str | None = None
         self._told: str = ""
@@ -49,6 +57,16 @@ class PlacingGhost:
         if told != (self._told or "null"):
             self._told = told
             self._html.content = run_once(f"window.__dioGhost({told});")
+
+    def _dropped(self, action: Action) -> None:
+        """Put what is dragged onto the view where the ray of the pointer ends."""
+        doing = self._client.doing
+        if isinstance(doing, Placing):
+            try:
+                origin, direction = np.array(action.parsed, dtype=np.float64).reshape(2, 3)
+            except (ValueError, TypeError) as error:
+                raise EditRefused("nothing can be put there; drop it onto the floor, a table or a wall") from error
+            place_at(self._client, doing.shape_id, origin, direction)
 
 
 def where_it_goes(scene: Scene, library: ShapeLibrary, shape: Shape) -> dict[str, Any]:

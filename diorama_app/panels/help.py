@@ -10,7 +10,7 @@ from diorama_app.commands.registry import Command, CommandTable
 from diorama_app.panels.dialog import dialog
 from diorama_app.panels.fields import on_press
 from diorama_app.session.client import Client
-from diorama_app.web.html import STYLE, text
+from diorama_app.web.html import text
 
 MOUSE = (
     ("Select", "Click"),
@@ -42,7 +42,7 @@ def show_help(client: Client, commands: CommandTable) -> None:
         rest = ", ".join(text(c.label) for c in commands.all if not c.keys)
         on_press(gui.add_button("Close"), lambda: client.post(close))
         gui.add_html(
-            f'{STYLE}<div class="dio dio-help">{titled}</div>'
+            f'<div class="dio dio-help">{titled}</div>'
             f'<div class="dio dim">Without a key, in the command palette (Ctrl+K): {rest}.</div>'
         )
 

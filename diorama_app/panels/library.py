@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, get_args
 import viser
 
 from diorama_app.commands.import_model import import_model
-from diorama_app.commands.insert import insert_shape, start_placing, toggle_favourite
+from diorama_app.commands.insert import insert_shape, start_placing, stop_placing, toggle_favourite
 from diorama_app.panels.fields import on_change
 from diorama_app.panels.own_shelf import OwnShelf
 from diorama_app.panels.upload_field import UploadField
@@ -70,7 +70,7 @@ class LibraryPanel:
         """Draw the filters and what was found."""
         selected, preferences = self._client.selected, self._client.preferences
         where = "on the floor in view" + (f", small things on the selected {text(selected.label)}" if selected else "")
-        words_where = f"<b>Insert</b> puts it {where}; <b>Place</b> waits for your click in the view."
+        words_where = f"Drag it into the view. <b>Insert</b> puts it {where}; <b>Place</b> waits for your click."
         if isinstance(self._client.doing, Placing):
             words_where = "<b>Click in the view</b> where it should be; Esc cancels."
         self._where.show(f'<p class="dim">{words_where}</p>')
@@ -164,7 +164,7 @@ class LibraryPanel:
         )
         fit = '<span class="chip" title="No free place is large enough">too large</span>' if too_large else ""
         return (
-            f'<div class="tile" title="{name}&#10;{about}">{star}'
+            f'<div class="tile" draggable="true" data-grab="{text(shape.id)}" title="{name}&#10;{about}">{star}'
             f"{self._client.session.thumbnails.html(shape.id)}<b>{name}</b><small>{about}</small>{fit}"
             '<div class="bar" style="margin:4px 0 0 0">'
             + button("Insert", "insert", shape.id, title=f"Insert: {shape.caption}")
@@ -185,8 +185,10 @@ class LibraryPanel:
         client, filters = self._client, self._filters
         if action.do == "insert":
             insert_shape(client, action.arg)
-        elif action.do == "place":
+        elif action.do in ("place", "grab"):
             start_placing(client, action.arg)
+        elif action.do == "release":
+            stop_placing(client)
         elif action.do == "favourite":
             toggle_favourite(client, action.arg)
         elif action.do == "more":

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import time
 import zlib
 from collections.abc import Mapping, Sequence
@@ -13,9 +14,12 @@ from diorama_app.commands import edit as editing
 from diorama_app.panels.toolbar import title_bar
 from diorama_app.session.client import Client
 from diorama_app.viewport.decorations import is_unsure
-from diorama_app.web.html import Action, LiveHtml, button, text
+from diorama_app.web.html import Action, LiveHtml, button, run_once, text
+from diorama_core.editing.sensible_support import why_not_on
 from diorama_core.errors import EditRefused
 from diorama_core.io.text import number_of
+from diorama_core.library.taxonomy import resolve
+from diorama_core.scene.support import descendants
 from diorama_core.scene.types import Plane, Scene, SceneObject
 
 EYE = (
@@ -31,6 +35,13 @@ CLOSED, OPEN = "M8 11V8a4 4 0 0 1 8 0v3", "M8 11V8a4 4 0 0 1 7.5-2"
 
 LONGEST_DRAG_S = 15.0
 """The list is drawn again after this long, in case a browser left in the middle of a drag."""
+
+_MARK = """
+const takers = %s;
+for (const row of document.querySelectorAll('.dio [role=tree] .row')) {
+  row.classList.toggle('takes', takers.includes(row.dataset.drop));
+}
+"""
 
 Cursors = Sequence[tuple[str, tuple[int, int, int], tuple[str, ...]]]
 
@@ -56,6 +67,7 @@ class Outliner:
     def __init__(self, gui: viser.GuiApi, client: Client) -> None:
         self._client = client
         self._html = LiveHtml(gui, self._act)
+        self._takers = gui.add_html("")
         self._paused_until = 0.0
 
     def refresh(self) -> None:
@@ -68,6 +80,10 @@ class Outliner:
             f"<p>{title_bar(client)}</p>" + tree_html(session.scene, client.selection, session.badges, others)
         )
 
+    def _mark(self, ids: Sequence[str]) -> None:
+        """Mark rows as places to drop onto; without drawing the tree anew, which would end the drag."""
+        self._takers.content = run_once(_MARK % json.dumps(list(ids)))
+
     def _act(self, action: Action) -> None:
         self._client.post(lambda: self._do(action))
 
@@ -75,9 +91,11 @@ class Outliner:
         client, scene = self._client, self._client.session.scene
         if action.do == "grab":
             self._paused_until = time.monotonic() + LONGEST_DRAG_S
+            self._mark(takers(scene, action.arg) if scene.has_object(action.arg) else ())
             return
         if action.do in ("drop", "release"):
             self._paused_until = 0.0
+            self._mark(())
         if action.do == "release":
             self.refresh()
             return
@@ -113,6 +131,15 @@ class Outliner:
             editing.set_locked(client, (item.id,), not item.locked)
         elif action.do == "hide":
             editing.set_hidden(client, (item.id,), not item.hidden)
+
+
+def takers(scene: Scene, object_id: str) -> tuple[str, ...]:
+    """Ids of the planes and objects that usually carry an object of its kind and size, but for what does so now."""
+    edge, mount = scene.support_of(object_id), resolve(scene.object(object_id).category).category.mount
+    without = {object_id, *descendants(scene, object_id), "" if edge is None else edge.parent}
+    planes = (p.id for p in scene.architecture.planes if p.role in ("floor", mount))
+    every = (*planes, *(o.id for o in scene.objects))
+    return tuple(i for i in every if i not in without and not why_not_on(scene, object_id, i))
 
 
 def plane_name(scene: Scene, plane: Plane) -> str:

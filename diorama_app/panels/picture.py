@@ -9,7 +9,7 @@ import viser
 from diorama_app.panels.dialog import dialog
 from diorama_app.reconstruction.picture_job import PictureView, film_suffix, picture_size, take_picture
 from diorama_app.session.client import Client
-from diorama_app.web.html import STYLE, Action, LiveHtml, button, text
+from diorama_app.web.html import Action, LiveHtml, button, text
 
 WIDTHS = (640, 1280, 1920, 2560, 3840)
 FILM_WIDTHS = (480, 640, 960, 1280)
@@ -25,7 +25,6 @@ def show_picture(client: Client) -> None:
     """Open the choices over the page; the picture itself is a job."""
     gui: viser.GuiApi = client.viser_client.gui
     with dialog(client, "Picture") as close:
-        gui.add_html(STYLE)
         _Choices(gui, client, close).show()
 
 

@@ -8,7 +8,7 @@ import viser
 
 from diorama_app.commands.registry import CommandTable
 from diorama_app.session.client import Client, Measuring
-from diorama_app.web.html import STYLE, Action, LiveHtml, button, text
+from diorama_app.web.html import Action, LiveHtml, button, text
 
 ICONS = {
     "undo": '<path d="M9 5 4 10l5 5M4 10h10a6 6 0 0 1 0 12h-3"/>',
@@ -37,7 +37,6 @@ class Toolbar:
 
     def __init__(self, gui: viser.GuiApi, client: Client, commands: CommandTable) -> None:
         self._client, self._commands = client, commands
-        gui.add_html(STYLE)
         self._html = LiveHtml(gui, self._act, floating="dio-toolbar")
 
     def refresh(self) -> None:

@@ -1,5 +1,5 @@
 // What is being placed follows the pointer: the page is told what and onto which surfaces (panels/ghost.py), and moves it by
-// itself. A click is told to the server, which puts it where it is seen.
+// itself. A click is told to the server, which puts it where it is seen; so is the drop of a tile of the catalogue.
 (() => {
   let told = null, at = null;
   const dot = (a, b) => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
@@ -65,6 +65,19 @@
   addEventListener("pointermove", (event) => {
     at = [event.clientX, event.clientY];
     if (told) requestAnimationFrame(move);
+  });
+  const onView = (event) => told && event.target === window.__viserMutable?.canvas;
+  addEventListener("dragover", (event) => {
+    at = [event.clientX, event.clientY];
+    if (told) requestAnimationFrame(move);
+    if (onView(event)) event.preventDefault();
+  });
+  addEventListener("drop", (event) => {
+    const button = document.getElementById("dio-ghost-drop"), m = window.__viserMutable;
+    if (!onView(event) || !button) return;
+    event.preventDefault();
+    button.dataset.arg = JSON.stringify(ray(m, m.nodeRefFromName[""]));
+    button.click();
   });
   window.__dioGhost = (what) => {
     told = what;

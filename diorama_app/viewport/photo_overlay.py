@@ -15,6 +15,8 @@ from diorama_core.geometry.rotations import quaternion_wxyz
 from diorama_core.scene.types import Camera
 
 PYRAMID_SCALE = 0.12
+HOVERED_PX = 360
+"""Longest side of its picture, which the page shows beside the pointer (`static/silhouettes.js`)."""
 OVERLAY_DEPTH_M = 0.12
 LAYER_DEPTH_M = 0.11
 """Just in front of the photo that is laid over the model."""
@@ -61,7 +63,7 @@ class PhotoOverlay:
         self._show_pyramids()
 
     def show_cameras(self, cameras: Sequence[PhotoCamera]) -> None:
-        """Photos in small pyramids where they were taken, out of the way of the view through one of them."""
+        """Small pyramids where photos were taken, out of the way of the view through one of them."""
         wanted = {c.name: c for c in cameras}
         for name in [n for n, p in self._pyramids.items() if not p.shows(wanted.get(n))]:
             self._pyramids.pop(name).handle.remove()
@@ -81,7 +83,7 @@ class PhotoOverlay:
             thickness=1.5,
             thickness_units="screen",
             color=(70, 78, 92),
-            image=None if shown.photo is None else reduced(shown.photo, 512),
+            image=None if shown.photo is None else reduced(shown.photo, HOVERED_PX),
             wxyz=quaternion_wxyz(camera.T_world_camera[:3, :3]),
             position=camera.position,
             cast_shadow=False,

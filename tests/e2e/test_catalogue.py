@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from playwright.sync_api import expect
+from playwright.sync_api import Locator, expect
 
 from tests.e2e.browser import EditorPage
+from tests.e2e.conftest import keep_picture
 from tests.e2e.test_handles_and_supports import at_rest
 
 pytestmark = pytest.mark.browser
@@ -58,3 +59,34 @@ def test_a_ghost_follows_the_pointer_and_the_click_puts_it_there(editor: EditorP
     assert 2 * np.arctan2(turn[2], turn[3]) == pytest.approx(placed.pose.yaw_rad, abs=0.01)
     page.wait_for_function("!window.__viserMutable.nodeRefFromName['/ghost']")
     assert editor.client.preferences.recent[0] == "table_a"
+
+
+def test_a_tile_is_dragged_into_the_view_and_let_go_elsewhere_places_nothing(editor: EditorPage) -> None:
+    page, count = editor.page, len(editor.session.scene.objects)
+    page.keyboard.press("t")
+    spot = np.array([-1.4, 0.4, 0.0])
+    at_rest(editor, spot)
+    editor.tab("Library")
+    tile = page.locator('.dio .tile[data-grab="table_a"]')
+    tile.hover()
+    editor.pull(_middle(tile), editor.place_of(spot + np.array([0.3, 0.0, 0.0])))
+    editor.until(lambda: editor.client.doing is not None, "it is held")
+    page.wait_for_function("!!window.__viserMutable.nodeRefFromName['/ghost']")
+    page.mouse.move(*editor.place_of(spot))
+    page.wait_for_function("!!window.__dioGhostAt")
+    keep_picture(editor, "dragged_from_the_catalogue")
+    page.mouse.up()
+    editor.until(lambda: len(editor.session.scene.objects) == count + 1, "put there")
+    np.testing.assert_allclose(editor.session.scene.objects[-1].pose.position[:2], spot[:2], atol=0.05)
+    assert editor.client.doing is None
+    editor.pull(_middle(tile), _middle(page.get_by_role("tab", name="Scene")))
+    editor.until(lambda: editor.client.doing is not None, "held again")
+    page.mouse.up()
+    editor.until(lambda: editor.client.doing is None, "let go")
+    assert len(editor.session.scene.objects) == count + 1
+
+
+def _middle(element: Locator) -> tuple[float, float]:
+    box = element.bounding_box()
+    assert box is not None
+    return box["x"] + box["width"] / 2, box["y"] + box["height"] / 3

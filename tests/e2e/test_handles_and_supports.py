@@ -1,4 +1,4 @@
-"""Handles win over bodies, pasted objects land in view, absurd supports are offered, recipes tell what got worse."""
+"""Handles win over bodies, pasted objects land in view, supports by dragged rows, recipes tell what got worse."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from playwright.sync_api import expect
+from playwright.sync_api import Locator, expect
 
 from diorama_app.commands import optimise as commands
 from diorama_app.interaction.gestures import Gestures
@@ -19,6 +19,7 @@ from diorama_core.scene import edits
 from diorama_core.scene.types import Scene, Support
 from tests.app.small_room import PlainLibrary, make_project
 from tests.e2e.browser import EditorPage
+from tests.e2e.conftest import keep_picture
 
 pytestmark = pytest.mark.browser
 
@@ -137,3 +138,33 @@ def test_what_a_recipe_made_worse_is_named_marked_and_put_back(editor: EditorPag
     editor.until(lambda: "floats" in session.badges.get("lamp_1", ()), "marked in the list and the view")
     card.get_by_role("button", name="Put back what got worse").click()
     editor.until(lambda: session.scene.object("lamp_1").pose == before.object("lamp_1").pose, "put back")
+
+
+def test_rows_that_can_carry_what_is_dragged_are_marked_until_it_is_dropped(editor: EditorPage) -> None:
+    editor.tab("Scene")
+    editor.settle()
+    marked = editor.page.locator(".dio .row.takes")
+
+    def pulled(object_id: str, onto: str) -> set[str]:
+        """The marked rows while one is dragged over another."""
+        row, other = (editor.page.locator(f".dio .row[data-{w}]") for w in (f'grab="{object_id}"', f'drop="{onto}"'))
+        editor.pull(_middle(row), _middle(other))
+        editor.until(lambda: marked.count() > 0, "places to drop onto are marked")
+        return set(marked.evaluate_all("rows => rows.map(r => r.dataset.drop)"))
+
+    names = pulled("lamp_1", "chair_1")
+    assert {"floor", "chair_1"} <= names
+    assert not names & {"table_1", "lamp_1", "wall_1", "ceiling"}, "not where it stands, and lamps stand on no walls"
+    keep_picture(editor, "rows_that_take")
+    editor.page.mouse.move(*_middle(editor.page.locator('.dio .row[data-drop="floor"]')))
+    editor.page.mouse.up()
+    editor.until(lambda: marked.count() == 0, "no marks are left")
+    assert "wall_1" in pulled("picture_1", "wall_1")
+    editor.page.mouse.up()
+    editor.until(lambda: marked.count() == 0, "none again")
+
+
+def _middle(element: Locator) -> tuple[float, float]:
+    box = element.bounding_box()
+    assert box is not None
+    return box["x"] + box["width"] / 3, box["y"] + box["height"] / 2

@@ -11,6 +11,7 @@ from playwright.sync_api import expect
 from diorama_core.scene import edits
 from diorama_core.scene.types import Scene
 from tests.e2e.browser import EditorPage
+from tests.e2e.conftest import keep_picture
 
 pytestmark = pytest.mark.browser
 
@@ -183,5 +184,33 @@ def test_selection_and_hover_are_one_line_behind_the_object_and_the_name_is_show
     assert editor.page.evaluate(LINES)[mesh][2] == "#4c8dff"
     editor.page.keyboard.press("Escape")
     editor.page.wait_for_function(f"!('{lamp}' in ({LINES})())")
+    editor.page.get_by_text("Scene", exact=True).first.hover()
+    expect(editor.page.locator("#dio-tag")).to_be_hidden()
+
+
+def test_a_cameras_photo_is_shown_on_hover_beside_the_pointer_and_not_in_the_room(editor: EditorPage) -> None:
+    camera = editor.session.scene.camera
+    assert camera is not None
+    back = camera.T_world_camera[:3, 2] * (1.0, 1.0, 0.0)
+    editor.session.ui_thread.post(
+        lambda: editor.client.view.camera.move(
+            camera.position - 1.5 * back + np.array([0.0, 0.0, 0.3]), camera.position
+        )
+    )
+    editor.settle()
+    picture = camera.position + 0.1 * camera.T_world_camera[:3, 2]
+    x, y = editor.place_of(picture)
+    assert editor.on_canvas(x, y)
+    editor.page.mouse.move(x - 3, y)
+    editor.page.mouse.move(x, y)
+    shown = editor.page.locator("#dio-tag canvas")
+    expect(shown).to_be_visible()
+    size = shown.bounding_box()
+    assert size is not None
+    assert size["width"] / size["height"] == pytest.approx(camera.intrinsics.width / camera.intrinsics.height, abs=0.02)
+    planes = """() => { let seen = 0; window.__viserMutable.nodeRefFromName['/photo_camera'].traverse((o) => {
+        if (o.material?.map && o.material.visible) seen += 1; }); return seen; }"""
+    assert editor.page.evaluate(planes) == 0
+    keep_picture(editor, "photo_on_hover")
     editor.page.get_by_text("Scene", exact=True).first.hover()
     expect(editor.page.locator("#dio-tag")).to_be_hidden()
