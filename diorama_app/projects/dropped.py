@@ -31,7 +31,7 @@ Action = Literal["photo", "inputs", "photos", "room", "models", "scene", "projec
 packed project."""
 
 MAX_FILES, MAX_BYTES, MAX_NAMED = 2000, 1_000_000_000, 6
-"""Of what was dropped: files, bytes that it may unpack to, and files that a message names."""
+"""Largest number of dropped files, of bytes they may unpack to, and of file names in a message."""
 MIN_ROOM_M = (1.8, 1.8, 1.5)
 """Extents from which several parts in one file may be a room."""
 _REFER_TO_PICTURES = ("glTF", "OBJ", "FBX", "USD", "Collada", "3DS")

@@ -37,7 +37,7 @@ class PhotoFiles:
     """fx, fy, cx, cy in pixels of the upright original photo."""
     fov_deg: float | None = None
     distortion: tuple[float, ...] = ()
-    """Of the lens, in OpenCV's order: k1, k2, p1, p2, k3."""
+    """Lens coefficients in OpenCV's order: k1, k2, p1, p2, k3."""
     half_turn: bool = False
     """Whether all of them are upside down."""
 

@@ -25,7 +25,7 @@ def optimise(
     progress: Progress | None = None,
     preview: Preview | None = None,
 ) -> Reconstruction:
-    """The same with a layout in which objects rest on their supports and do not overlap.
+    """Lay out a reconstruction so that objects rest on their supports and do not overlap.
 
     Args:
         reconstruction: its scene is optimised.

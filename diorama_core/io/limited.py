@@ -27,7 +27,7 @@ R = TypeVar("R")
 MAX_MEMORY = 2_000_000_000
 """Address space of the process, code and libraries (up to half a gigabyte) included."""
 MAX_SECONDS = 60.0
-"""Of work; the time in which it waits for a processor does not count."""
+"""Processor time; waiting for a processor does not count."""
 
 _GLANCE_S = 0.2
 """How often a cancel, and the end of the program, is looked for."""

@@ -29,7 +29,7 @@ log = logging.getLogger(__name__)
 
 MAX_PHOTOS = 64
 MAX_POSES = 8
-"""Of one object: after an undo, those of earlier builds are the program's, too."""
+"""Remembered poses of one object: after an undo, those of earlier builds are the program's, too."""
 MAX_NOTED_BYTES = 32_000_000
 SAME_M = 1e-4
 PLANE = "plane "

@@ -15,7 +15,7 @@ from diorama_core.project.storage import Project, jpeg
 MAX_BYTES = 40_000_000
 ENTRY = "plan_picture"
 MIN_METRES, MAX_METRES = 1e-5, 10.0
-"""Of a pixel."""
+"""Side of a pixel (m)."""
 REACH_M = 10_000.0
 
 
@@ -28,7 +28,7 @@ class PlanPicture:
     at: tuple[float, float]
     """Its middle, x and y in the world (m)."""
     metres: float
-    """Of a pixel."""
+    """Side of a pixel (m)."""
 
     def __post_init__(self) -> None:
         """Raises `InputError` for a place or a scale that no plan has."""

@@ -39,7 +39,7 @@ MAX_INFO_BYTES = 4_000_000
 MAX_NAME = 120
 MAX_UPLOAD_BYTES = 256 * 1024 * 1024
 MAX_TEXTURE_PIXELS = 200_000_000
-"""Of a whole scene together; the rest are shown in their plain colour."""
+"""Texture pixels of a whole scene together; the rest are shown in their plain colour."""
 
 OWN_SHAPES = "./shapes"
 """Part of a library's name in `project.json`: the shapes in the project's own folder."""

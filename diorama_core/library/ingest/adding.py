@@ -27,7 +27,7 @@ from diorama_core.progress import Progress
 from diorama_core.workers import Workers
 
 LEARNING_SHARE = 0.8
-"""Of a first import's time, what goes into learning the built-in shapes."""
+"""Share of a first import's time that goes into learning the built-in shapes."""
 UNSURE = 0.8
 """Guesses less sure than this are worth a person's look."""
 

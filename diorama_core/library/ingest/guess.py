@@ -28,7 +28,7 @@ from diorama_core.library.kind_sizes import is_possible
 from diorama_core.library.record import Assumption, Guess
 
 PROMISED_UP = "+y"
-"""Of formats that promise a frame (glTF)."""
+"""Up axis of formats that specify one (glTF)."""
 SIMILARITY = 60.0
 """Log-probability lost per unit of mean relief difference to the likest known shapes."""
 MIRRORED = 6.0
@@ -42,13 +42,13 @@ WORST_SIZE, WORSE_BY = -6.0, 3.0
 ANY_SCALE = 1e-4
 """Prior of a unit that is none of the usual ones."""
 LIKELY_OTHER, LIKELY_KNOWN = 0.0, -4.0
-"""Of being no particular category against one it looks like, when it has a name that speaks of none we know."""
+"""Log prior of an unknown, and of a known category, for a model whose name matches none."""
 UNNAMED_OTHER, UNNAMED_KNOWN = -2.5, -1.5
-"""The same when it has no name at all."""
+"""Log prior of an unknown, and of a known category, for a model without a name."""
 OTHER_WORD = 0.7
 """How sure a kind can be by looks, of a model whose name is a word for none."""
 UNTRUE_NAME = -300.0
-"""Of being none of the kinds that its name speaks of: only where it cannot be any of them."""
+"""Log prior of a kind other than those of its name: taken only where none of those is possible."""
 MIN_METRES, MAX_METRES = 0.01, 18.0
 """Longest sides between which a promise of metres is kept: beyond, every kind is off by a factor above 3."""
 ALIKE, LIKEST = 1, 8

@@ -10,7 +10,7 @@ class Limits:
     """Bounds on one model and everything it refers to; what lies beyond is refused or left out, with a reason."""
 
     file_bytes: int = 512 * 2**20
-    """Of any one file read, referenced ones included."""
+    """Size of any one file read, referenced ones included."""
     json_bytes: int = 64 * 2**20
     triangles: int = 1_500_000
     nodes: int = 50_000
@@ -19,9 +19,9 @@ class Limits:
     texture_side_px: int = 1024
     """Kept textures are made no larger than this."""
     seconds: float = 180.0
-    """Of work on one model."""
+    """Processor time for one model."""
     memory_bytes: int = 8 * 2**30
-    """Of address space of a worker process."""
+    """Address space of a worker process."""
 
 
 DEFAULT_LIMITS = Limits()

@@ -133,7 +133,7 @@ class GuardedResolver(trimesh.resolvers.Resolver):  # type: ignore[misc]  # unty
         raise NotImplementedError
 
     def namespaced(self, namespace: str) -> GuardedResolver:
-        """The same files: names are relative to the model."""
+        """Return this resolver: names in any namespace are relative to the model."""
         return self
 
     def keys(self) -> Iterator[str]:

@@ -10,7 +10,7 @@ from jaxtyping import Float
 
 MIN_TURN_RAD = float(np.radians(1.5))
 MIN_AGREEMENT = 0.6
-"""Of the upright faces' directions, modulo a quarter: round and rough things have none."""
+"""Agreement of the upright faces' directions modulo a quarter turn; round and rough shapes have less."""
 MIN_SHRINK = 0.97
 """The box around a squared model is smaller than this share of the one before."""
 UPRIGHT_COS = 0.25

@@ -11,7 +11,7 @@ from diorama_core.library.record import SymmetryFold
 _SAME = 0.035
 """Mean difference of two reliefs below which they are one shape seen twice."""
 _COINCIDES = 0.02
-"""Of the largest extent: how near nearly all of a turned surface comes to where it was."""
+"""Share of the largest extent within which nearly all of a turned surface coincides with itself."""
 _NEARLY_ALL = 0.98
 _POINTS = 1000
 _ODD_FOLDS: tuple[SymmetryFold, ...] = (3, 5)

@@ -10,9 +10,9 @@ from jaxtyping import Float
 from trimesh.visual.texture import TextureVisuals
 
 FLAT = 1e-3
-"""Of the longest side: what is thinner is flat."""
+"""Share of the longest side below which a model is flat."""
 THICKNESS = 0.005
-"""Of the longest side that a flat model gets: 4 mm of a picture, 1 cm of a rug."""
+"""Thickness given to a flat model, as a share of its longest side: 4 mm for a picture, 1 cm for a rug."""
 
 
 def with_thickness(meshes: Sequence[trimesh.Trimesh]) -> tuple[tuple[trimesh.Trimesh, ...], bool]:

@@ -58,7 +58,7 @@ def usd_errors(path: Path) -> Iterator[None]:
 
 
 def _reason(error: Exception, path: Path) -> str:
-    """Of "Error in '...' at line ... : 'Failed to open layer @/path/room.usdz@'" people need the last words only."""
+    """Last words of "Error in '...' at line ... : 'Failed to open layer @/path/room.usdz@'", enough to read."""
     try:
         words = str(error)
     except UnicodeDecodeError:  # OpenUSD quotes bytes of the file
