@@ -35,6 +35,12 @@ def cast_plane(
 
     Both sides count. `slack_m` widens a convex polygon, so that neighbouring planes leave no gap between them; other
     polygons (an L, a wall with a doorway) are taken as they are.
+
+    Args:
+        origin: of all rays, in the world (m).
+        directions: of any length, in the world.
+        plane: with its outline.
+        slack_m: by which a convex outline is widened.
     """
     slope = directions @ plane.normal
     with np.errstate(divide="ignore", invalid="ignore"):
@@ -57,7 +63,14 @@ def cast_planes(
     planes: tuple[Plane, ...],
     slack_m: float = 1e-3,
 ) -> tuple[Float[np.ndarray, "*n"], Int[np.ndarray, "*n"]]:
-    """Nearest hit among bounded planes: distance (`inf` where none) and index of the plane (-1 where none)."""
+    """Nearest hit among bounded planes: distance (`inf` where none) and index of the plane (-1 where none).
+
+    Args:
+        origin: of all rays, in the world (m).
+        directions: of any length, in the world.
+        planes: with their outlines.
+        slack_m: by which convex outlines are widened.
+    """
     nearest = np.full(directions.shape[:-1], np.inf)
     which = np.full(directions.shape[:-1], -1)
     for index, plane in enumerate(planes):
@@ -76,6 +89,13 @@ def cast_box(
     size_m: Float[np.ndarray, "3"],
 ) -> tuple[Float[np.ndarray, "*n"], Float[np.ndarray, "*n 3"]]:
     """Where rays enter an oriented box (slab method).
+
+    Args:
+        origin: of all rays, in the world (m).
+        directions: of any length, in the world.
+        R_world_box: rotation from the box's axes to the world.
+        centre: of the box, in the world (m).
+        size_m: of the box, along its own axes.
 
     Returns:
         Distances in units of each direction's length, `inf` where they miss, and the outward world normals of the

@@ -88,7 +88,14 @@ def pack_parts(parts: Sequence[Sequence[ConvexPart]]) -> PaddedParts:
 def place_bodies(
     packed: PaddedParts, R: Float[np.ndarray, "n 3 3"], p: Float[np.ndarray, "n 3"], scale: Float[np.ndarray, "n 3"]
 ) -> PosedBodies:
-    """All parts of all objects, posed."""
+    """All parts of all objects, posed.
+
+    Args:
+        packed: convex parts in their objects' frames.
+        R: rotations from the objects' frames to the world.
+        p: centres in the world (m).
+        scale: per axis of each object's frame.
+    """
     to_world, S = R.transpose(0, 2, 1)[packed.owner], scale[packed.owner][:, None, :]
     world = np.matmul(packed.vertices * S, to_world) + p[packed.owner][:, None, :]
     return PosedBodies(
@@ -109,6 +116,11 @@ def pair_axes(
 
     With `faces_only` those of two edges are left out: far fewer, and what they part is apart for certain, but bodies
     that pass corner to corner count as touching.
+
+    Args:
+        bodies: in the world.
+        a, b: indices of the two bodies of every pair.
+        faces_only: whether directions across two edges are left out.
     """
     most = np.maximum(bodies.counts[a], bodies.counts[b])
     order = np.lexsort((most[:, 0], most[:, 2], most[:, 1]))

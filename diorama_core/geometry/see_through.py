@@ -72,7 +72,13 @@ class SeeThrough:
     def of(
         cls, rgb: UInt8[np.ndarray, "h w 3"], seen: Observed, settings: SeeThroughSettings = SETTINGS
     ) -> SeeThrough | None:
-        """Look at one object; None where its mask is sure already, or too little of it or around it is seen."""
+        """Look at one object; None where its mask is sure already, or too little of it or around it is seen.
+
+        Args:
+            rgb: the photo, sRGB, eight bits.
+            seen: the object's cells, its mask's share in each, and what is in front.
+            settings: when enough is seen.
+        """
         x1, y1, x2, y2 = seen.box
         x, y = seen.window.centres_px.T
         boxed = (x >= x1) & (x < x2) & (y >= y1) & (y < y2)

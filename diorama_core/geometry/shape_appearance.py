@@ -235,6 +235,11 @@ class AppearanceStore:
         """The appearance under `key`: from memory, from a file in `folder`, or made from `parts()` and written there.
 
         A folder that cannot be written costs time, nothing else. Without a key nothing is cached.
+
+        Args:
+            key: of the shape's geometry; "" caches nothing.
+            folder: of the files.
+            parts: reads the shape's meshes, with their materials.
         """
         if not key:
             return appearance_of(parts())

@@ -144,7 +144,13 @@ class ShapeCaster:
     def covers(
         self, origin_world: Float[np.ndarray, "3"], directions_world: Float[np.ndarray, "r 3"], poses: PoseBatch
     ) -> Bool[np.ndarray, "p r"]:
-        """Whether every ray meets the shape under every pose: faster than `cast`, where that is all."""
+        """Whether every ray meets the shape under every pose: faster than `cast`, where that is all.
+
+        Args:
+            origin_world: of all rays (m).
+            directions_world: of any length.
+            poses: of the shape, p of them.
+        """
         rays = _rays(origin_world, directions_world, poses)
         met = self._scene.test_occlusions(o3d.core.Tensor(rays.reshape(-1, 6)), tnear=NEAR_M, nthreads=ALL_CORES)
         return np.asarray(met.numpy().reshape(rays.shape[:2]))
@@ -152,7 +158,13 @@ class ShapeCaster:
     def cast(
         self, origin_world: Float[np.ndarray, "3"], directions_world: Float[np.ndarray, "r 3"], poses: PoseBatch
     ) -> ShapeHits:
-        """First hits of every ray with the shape under every pose."""
+        """First hits of every ray with the shape under every pose.
+
+        Args:
+            origin_world: of all rays (m).
+            directions_world: of any length.
+            poses: of the shape, p of them.
+        """
         rays = _rays(origin_world, directions_world, poses)
         depth, normals, triangles = self._cast(rays.reshape(-1, 6))
         shape = rays.shape[:2]

@@ -19,7 +19,13 @@ class Window:
 
     @classmethod
     def around(cls, box: tuple[float, float, float, float], margin: float, cells: int) -> Window:
-        """The window of a box widened on every side by `margin` of its size (at least two pixels)."""
+        """The window of a box widened on every side by `margin` of its size (at least two pixels).
+
+        Args:
+            box: x1, y1, x2, y2 in pixels.
+            margin: share of the box's width and height that is added on either side.
+            cells: of the window, along each side.
+        """
         x1, y1, x2, y2 = box
         dx, dy = max(margin * (x2 - x1), 2.0), max(margin * (y2 - y1), 2.0)
         return cls((x1 - dx, y1 - dy, x2 + dx, y2 + dy), cells)

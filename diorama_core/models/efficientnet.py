@@ -95,11 +95,26 @@ class _GraphWriter:
         return name
 
     def add(self, operator: str, inputs: list[str], name: str, **attributes: object) -> str:
+        """Add a node to the graph and return the name of its output.
+
+        Args:
+            operator: of ONNX.
+            inputs: names of its inputs.
+            name: of its output.
+            attributes: of the operator.
+        """
         self.nodes.append(self._helper.make_node(operator, inputs, [name], **attributes))
         return name
 
     def convolution(self, x: str, of: tuple[str, str], stride: int = 1, linear: bool = False) -> str:
-        """A convolution (name of its weights) with its normalisation (likewise) folded in, then ReLU6."""
+        """A convolution (name of its weights) with its normalisation (likewise) folded in, then ReLU6.
+
+        Args:
+            x: name of the input.
+            of: names of the weights of the convolution and of its normalisation.
+            stride: in both directions.
+            linear: whether ReLU6 is left out.
+        """
         convolution, norm = of
         kernel = self._weights[f"{convolution}.weight"].astype(np.float64)
         deviation = np.sqrt(self._weights[f"{norm}.running_var"].astype(np.float64) + _EPSILON)

@@ -34,7 +34,11 @@ class RenderedDepth:
         architecture: ArchitectureEstimate,
         progress: Progress,
     ) -> DepthMap:
-        """Depth and normals of every pixel; zero where neither the room nor an object is."""
+        """Depth and normals of every pixel; zero where neither the room nor an object is.
+
+        Args:
+            inputs, objects, geometry, architecture, progress: as documented in `protocols.DepthStage`.
+        """
         progress.report(0.0, "Rendering depth from room and objects")
         depth, normals = render_geometry(geometry, objects, architecture.architecture)
         progress.report(1.0, "Depth is rendered")
@@ -54,6 +58,9 @@ class MeasuredDepth:
         progress: Progress,
     ) -> DepthMap:
         """Measured depth where there is some, rendered elsewhere; normals from the grid where they can be told.
+
+        Args:
+            inputs, objects, geometry, architecture, progress: as documented in `protocols.DepthStage`.
 
         Raises:
             ValueError: when the inputs hold no measured depth.
@@ -75,7 +82,15 @@ def filled_depth(
     rendered: tuple[Float32[np.ndarray, "h w"], Float32[np.ndarray, "h w 3"]],
     source: DepthSource,
 ) -> DepthMap:
-    """A depth map and its normals; where either is zero, the rendered depth or world normal stands instead."""
+    """A depth map and its normals; where either is zero, the rendered depth or world normal stands instead.
+
+    Args:
+        depth_m: z in camera in metres; 0 where missing.
+        normals_camera: unit, toward the camera; zero where missing.
+        camera: in the world.
+        rendered: depth in metres and world normals that fill the gaps.
+        source: of the result.
+    """
     depth, normals = rendered
     known = np.any(normals_camera != 0, axis=-1, keepdims=True)
     return DepthMap(

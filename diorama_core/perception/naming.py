@@ -19,7 +19,11 @@ class OwnNaming:
     recogniser: Recogniser
 
     def name(self, photo: Photo, objects: tuple[DetectedObject, ...], progress: Progress) -> tuple[SeenKinds, ...]:
-        """Probabilities of all categories, as if all were equally frequent, and of all forms, for every object."""
+        """Probabilities of all categories, as if all were equally frequent, and of all forms, for every object.
+
+        Args:
+            photo, objects, progress: as documented in `protocols.NamingStage`.
+        """
         progress.report(0.0, f"Looking at {len(objects)} objects")
         boxes = np.array([item.box for item in objects], dtype=float).reshape(-1, 4)
         found, names = self.recogniser.look(photo.rgb, boxes), self.recogniser.categories

@@ -131,6 +131,13 @@ class _Fit(ArrayValue):
 
     @classmethod
     def of(cls, looks: Sequence[AnnotatedLooks], kinds: tuple[str, ...], table: Path) -> _Fit:
+        """Gather what the networks say of all annotated boxes, with the truth.
+
+        Args:
+            looks: what the networks say of annotated objects.
+            kinds: names of the categories.
+            table: file of the class table.
+        """
         own, logits, features = (np.concatenate([getattr(p, n) for p in looks]) for n in ("own", "logits", "features"))
         classes, shares = read_class_table(table, kinds), meanings(UNKNOWN.name, UNKNOWN.name)
         frequency = np.log([max(shares.get(kind, 0.0), _NEVER) for kind in kinds])

@@ -82,7 +82,11 @@ class MeteredGraph:
     def relate(
         self, inputs: Inputs, objects: tuple[DetectedObject, ...], geometry: ObjectGeometry, progress: Progress
     ) -> SceneGraph:
-        """The stage's graph."""
+        """The stage's graph.
+
+        Args:
+            inputs, objects, geometry, progress: as documented in `protocols.GraphStage`.
+        """
         began = time.perf_counter()
         graph = self.stage.relate(inputs, objects, geometry, progress)
         if (use := graph.source.asked) is not None:

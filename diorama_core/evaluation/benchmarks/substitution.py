@@ -106,6 +106,11 @@ class _TrueGeometry:
     def measure(
         self, inputs: Inputs, camera: CameraEstimate, objects: tuple[DetectedObject, ...], progress: Progress
     ) -> ObjectGeometry:
+        """Return the stage's geometry with the true camera, sizes or places that the benchmark substitutes.
+
+        Args:
+            inputs, camera, objects, progress: as documented in `protocols.GeometryStage`.
+        """
         truth = true_objects_of(objects, self.view)
         geometry = self.stage.measure(inputs, camera, objects, progress)
         return geometry_with(geometry, truth, self.view, self.given)
@@ -119,6 +124,11 @@ class _TrueRoom:
     def reconstruct(
         self, inputs: Inputs, objects: tuple[DetectedObject, ...], geometry: ObjectGeometry, progress: Progress
     ) -> ArchitectureEstimate:
+        """Return the true room, turned to the heading of the estimated one.
+
+        Args:
+            inputs, objects, geometry, progress: as documented in `protocols.ArchitectureStage`.
+        """
         Q = heading_change(geometry, self.view)
         planes = tuple(_turned(p, Q) for p in self.view.scene.architecture.planes)
         room = replace(self.view.scene.architecture, planes=planes)
@@ -133,6 +143,11 @@ class _TrueShape:
     def retrieve(
         self, inputs: Inputs, objects: tuple[DetectedObject, ...], geometry: ObjectGeometry, progress: Progress
     ) -> tuple[RankedShapes, ...]:
+        """Return the stage's shapes, with the true one alone where an object's truth is known.
+
+        Args:
+            inputs, objects, geometry, progress: as documented in `protocols.RetrievalStage`.
+        """
         truth = true_objects_of(objects, self.view)
         found = self.stage.retrieve(inputs, objects, geometry, progress)
         return tuple(

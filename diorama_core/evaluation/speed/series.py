@@ -74,7 +74,13 @@ class Collected:
         self._costs: dict[str, list[tuple[float, Cost]]] = {}
 
     def add(self, what: str, quantity: float, cost: Cost) -> None:
-        """One more point."""
+        """One more point.
+
+        Args:
+            what: the step that was timed.
+            quantity: how much there was of it: objects, files, triangles.
+            cost: its time and memory.
+        """
         self._costs.setdefault(what, []).append((quantity, cost))
 
     def series(self) -> list[Series]:

@@ -192,7 +192,15 @@ def _turned_model(model: Repaired, R: Float[np.ndarray, "3 3"]) -> Repaired:
 def packed_shape(
     record: Shape, meshes: Sequence[trimesh.Trimesh], painter: Painter | None, key: str, warnings: tuple[str, ...]
 ) -> Ingested:
-    """Measure and pack meshes in the canonical frame; what follows from them replaces what the record says."""
+    """Measure and pack meshes in the canonical frame; what follows from them replaces what the record says.
+
+    Args:
+        record: what is known of the shape.
+        meshes: in the object frame (m).
+        painter: makes its preview; None leaves it out.
+        key: of the file that it came from.
+        warnings: of reading it.
+    """
     scene = trimesh.Scene()
     for number, mesh in enumerate(meshes):
         name = f"{number:03d} {mesh.metadata.get('name', '')}"[:60].strip()

@@ -60,7 +60,13 @@ class Lines:
     def of(
         cls, segments_px: Float[np.ndarray, "n 4"], intrinsics: Intrinsics, settings: LineCameraSettings = SETTINGS
     ) -> Lines:
-        """Segments in pixels seen by a camera; only its centre and the proportion of its focal lengths are used."""
+        """Segments in pixels seen by a camera; only its centre and the proportion of its focal lengths are used.
+
+        Args:
+            segments_px: x1, y1, x2, y2 of every segment.
+            intrinsics: of the picture.
+            settings: of the line camera.
+        """
         side = max(intrinsics.width, intrinsics.height)
         scale = np.array([1.0, intrinsics.fx / intrinsics.fy]) / side
         ends = (segments_px.reshape(-1, 2, 2) - [intrinsics.cx, intrinsics.cy]) * scale

@@ -41,7 +41,11 @@ class GeometricGraph:
     def relate(
         self, inputs: Inputs, objects: tuple[DetectedObject, ...], geometry: ObjectGeometry, progress: Progress
     ) -> SceneGraph:
-        """The graph that explains masks, cuboids and (where there is any) depth best."""
+        """The graph that explains masks, cuboids and (where there is any) depth best.
+
+        Args:
+            inputs, objects, geometry, progress: as documented in `protocols.GraphStage`.
+        """
         progress.report(0.0, "Working out what stands on what")
         items = observed(inputs, objects, geometry, self.settings)
         believed = {s.child: s for s in geometry.supports}

@@ -45,7 +45,14 @@ def observed(
     geometry: ObjectGeometry,
     settings: GeometricGraphSettings = SETTINGS,
 ) -> tuple[ObjectSurroundings, ...]:
-    """Every object that has a cuboid, in the order given."""
+    """Every object that has a cuboid, in the order given.
+
+    Args:
+        inputs: photo, and depth where there is some.
+        objects: with masks of shape (h, w).
+        geometry: camera and cuboids in the world.
+        settings: of the graph.
+    """
     cuboids = {c.object_id: c for c in geometry.cuboids}
     present = [o for o in objects if o.id in cuboids]
     owners = owner_map(present, (inputs.photo.height, inputs.photo.width))

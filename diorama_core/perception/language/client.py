@@ -177,6 +177,13 @@ class LmmClient:
     ) -> Reply[T]:
         """One question with PNG or JPEG pictures; `vote` tells repeated questions apart.
 
+        Args:
+            prompt: the question.
+            pictures: bytes of PNG or JPEG files.
+            schema: that the reply must satisfy.
+            progress: reports and cancellation.
+            vote: number of a repeated question, so that each is asked anew.
+
         Raises:
             UnavailableError: the endpoint cannot be used: one line that says why.
             UnusableReplyError: it can, but no reply passed validation.

@@ -58,6 +58,9 @@ class LanguageGraph:
     ) -> SceneGraph:
         """One acyclic edge per object that has a cuboid.
 
+        Args:
+            inputs, objects, geometry, progress: as documented in `protocols.GraphStage`.
+
         Raises:
             UnavailableError: when it is asked wrongly (key, model). One that is slow or down leaves it to geometry.
         """

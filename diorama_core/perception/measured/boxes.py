@@ -164,7 +164,15 @@ def usual_plan(size: Float[np.ndarray, "3"], category: Category) -> Float[np.nda
 def to_cuboid(
     object_id: str, extent: TurnedExtent, category: Category, camera_position: Float[np.ndarray, "3"], confidence: float
 ) -> Cuboid:
-    """The cuboid with +X its likely front: the wide side that looks to the camera, where width and depth tell."""
+    """The cuboid with +X its likely front: the wide side that looks to the camera, where width and depth tell.
+
+    Args:
+        object_id: of the result.
+        extent: the measured box, turned about the world's up axis (m).
+        category: whose usual sizes tell width from depth.
+        camera_position: in the world (m).
+        confidence: of the result, 0 to 1.
+    """
     prior = category.priors[0]
     size = extent.size
     usual, sigma = np.array([prior.depth_m, prior.width_m]), np.array([prior.sigma_depth, prior.sigma_width])

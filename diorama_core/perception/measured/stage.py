@@ -31,6 +31,9 @@ class MeasuredGeometry:
     ) -> ObjectGeometry:
         """The posed camera, a cuboid for every object, and what stands on what.
 
+        Args:
+            inputs, camera, objects, progress: as documented in `protocols.GeometryStage`.
+
         Raises:
             ValueError: when the inputs hold no measured depth.
         """
@@ -95,7 +98,16 @@ def measured_extent(
     camera: Camera,
     settings: MeasuredSettings,
 ) -> tuple[TurnedExtent, float]:
-    """The box of one object and how far it can be trusted."""
+    """The box of one object and how far it can be trusted.
+
+    Args:
+        found: the object, with a mask of shape (h, w).
+        category: of the object.
+        points_world: measured points of every pixel (m).
+        depth_m: z in camera in metres; 0 where missing.
+        camera: in the world.
+        settings: how points are chosen, and what a guess is worth.
+    """
     points = object_points(found, points_world, depth_m, settings)
     flat = category.priors[0].height_m < 0.1
     above = points[points[:, 2] > 0.03] if not flat else points

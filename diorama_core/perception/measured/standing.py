@@ -81,6 +81,12 @@ def grounded(
     """The boxes reaching down to what holds them: the floor, or the supporter's top or seat.
 
     What people put on furniture and is seen well above the floor stays as it is: nobody marked what is below it.
+
+    Args:
+        extents: measured boxes by object id, in the world (m).
+        categories: by object id.
+        edges: what stands on what.
+        settings: how far above the floor a thing may be and still stand on it.
     """
     out = dict(extents)
     for edge in edges:
