@@ -11,7 +11,7 @@ import socket
 import threading
 import time
 import webbrowser
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from concurrent.futures import Future
 from dataclasses import dataclass
 from pathlib import Path
@@ -87,6 +87,7 @@ def start(
     low_graphics: bool = False,
     token: str | None = None,
     library: str | ShapeLibrary = "built-in",
+    frame_origins: Sequence[str] = (),
 ) -> Running:
     """Start the editor in the background.
 
@@ -98,9 +99,10 @@ def start(
         low_graphics: no shadows, no environment map.
         token: access token of clients; generated when other machines can reach the server and none is given.
         library: where shapes come from, or its name.
+        frame_origins: whose pages may show the editor in a frame; see `Visitors`.
 
     Raises:
-        InputError: the port is taken.
+        InputError: the port is taken, or an origin is none.
         LibraryError: there is no library of that name.
         ProjectError, SceneError: the project cannot be opened.
     """
@@ -118,7 +120,7 @@ def start(
         host=host,
         port=port,
         label="Diorama",
-        visitors=Visitors(host, token),
+        visitors=Visitors(host, token, tuple(frame_origins)),
         refused=refused,
         pictures=lambda name: made[0].picture(name) if made else _no_picture(),
         projects=_Opening(made),
@@ -177,6 +179,7 @@ def serve(
     low_graphics: bool,
     token: str | None,
     library: str | ShapeLibrary = "built-in",
+    frame_origins: Sequence[str] = (),
     beside: Beside | None = None,
 ) -> None:
     """Run the editor until Ctrl+C.
@@ -190,6 +193,7 @@ def serve(
         low_graphics: whether to draw for machines without a graphics card.
         token: that pages must bring; None for none.
         library: by name, or itself.
+        frame_origins: whose pages may show the editor in a frame.
         beside: what runs beside it, of its editor and token: the HTTP interface.
     """
     token = with_token(host or "0.0.0.0", token)
@@ -201,6 +205,7 @@ def serve(
         low_graphics=low_graphics,
         token=token,
         library=library,
+        frame_origins=frame_origins,
     )
     print(f"Diorama is at {running.url} (Ctrl+C stops it)", flush=True)
     if host in ANY_HOST:

@@ -52,6 +52,14 @@ def add_serve(commands: Any) -> None:
     p.add_argument("--low-graphics", action="store_true", help="no shadows or environment light (software WebGL)")
     p.add_argument("--token", metavar="T", help="browsers must give this token: needed for hosts other than this one")
     p.add_argument("--library", metavar="NAME", help="shape library (default: the project's own, or built-in)")
+    p.add_argument(
+        "--frame-origin",
+        action="append",
+        default=[],
+        metavar="ORIGIN",
+        help="pages of this origin may show the editor in a frame, such as http://localhost:8888 of a notebook; may be "
+        "given several times (default: none may)",
+    )
 
 
 def _serve(a: argparse.Namespace) -> None:
@@ -70,6 +78,7 @@ def _serve(a: argparse.Namespace) -> None:
         open_browser=not a.no_open,
         low_graphics=a.low_graphics,
         token=a.token,
+        frame_origins=a.frame_origin,
         beside=_api_beside(),
     )
 

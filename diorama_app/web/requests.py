@@ -72,13 +72,14 @@ def request_check(
         is_page = urlsplit(request.path).path in ("", "/") and request.headers.get("Upgrade") != "websocket"
         first = projects.first() if projects is not None and is_page and project_of(request.path) is None else None
         if first is not None:
-            redirect = redirected(request, first)
-            add_headers(redirect, remember=visitors.token if visitors.brings_token(request) else None)
-            return redirect
-        response = handler(connection, request) if handler is not None else None
+            response = redirected(request, first)
+        else:
+            response = handler(connection, request) if handler is not None else None
+            if response is not None:
+                prepend_scripts(response)
         if response is not None:
-            prepend_scripts(response)
-            add_headers(response, remember=visitors.token if visitors.brings_token(request) else None)
+            remember = visitors.token if visitors.brings_token(request) else None
+            add_headers(response, remember=remember, frame_origins=visitors.frame_origins)
         return response
 
     return process_request

@@ -6,6 +6,7 @@ import asyncio
 import functools
 import gzip
 import http
+from collections.abc import Sequence
 from concurrent.futures import Future
 from http.cookies import SimpleCookie
 
@@ -66,10 +67,20 @@ async def picture(connection: ServerConnection, asked: Future[bytes | None]) -> 
     return response
 
 
-def add_headers(response: Response, *, remember: str | None) -> None:
-    """Add the security headers, and the access token as a cookie where one is given."""
+def add_headers(response: Response, *, remember: str | None, frame_origins: Sequence[str] = ()) -> None:
+    """Add the security headers, and the access token as a cookie where one is given.
+
+    Args:
+        response: to a page's request.
+        remember: the token.
+        frame_origins: whose pages may show the answer in a frame, beside our own.
+    """
     for name, value in SECURITY_HEADERS.items():
         response.headers[name] = value
+    if frame_origins:
+        del response.headers["X-Frame-Options"]  # knows no list of origins
+        policy = " ".join((response.headers.pop("Content-Security-Policy"), *frame_origins))
+        response.headers["Content-Security-Policy"] = policy  # frame-ancestors is its last directive
     if remember is not None:
         cookie = SimpleCookie({TOKEN_COOKIE: remember})
         cookie[TOKEN_COOKIE].update({"path": "/", "httponly": "1", "samesite": "Strict"})

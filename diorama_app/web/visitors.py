@@ -5,6 +5,7 @@ from __future__ import annotations
 import functools
 import hmac
 import ipaddress
+import re
 import secrets
 import socket
 from dataclasses import dataclass
@@ -14,9 +15,13 @@ from urllib.parse import parse_qs, urlsplit
 from websockets.http11 import Request
 
 from diorama_app.web.responses import TOKEN_COOKIE
+from diorama_core.errors import InputError
+from diorama_core.io.text import clean_text
 
 LOOPBACK_NAMES = frozenset({"127.0.0.1", "localhost", "::1"})
 ANY_HOST = frozenset({"", "0.0.0.0", "::"})
+ORIGIN = re.compile(r"https?://([a-z0-9.-]+|\[[0-9a-f:.]+\])(:\d{1,5})?", re.IGNORECASE)
+"""No wildcards: a frame of any page could lead clicks to buttons that nobody sees."""
 
 
 def page_address(host: str, port: int, token: str | None) -> str:
@@ -40,6 +45,16 @@ class Visitors:
     """The address it listens on."""
     token: str | None = None
     """When set, the first page load must carry `?token=...`; a cookie remembers it."""
+    frame_origins: tuple[str, ...] = ()
+    """Origins whose pages may show ours in a frame (`http://localhost:8888`); without them only our own may."""
+
+    def __post_init__(self) -> None:
+        for origin in self.frame_origins:
+            if ORIGIN.fullmatch(origin) is None:
+                raise InputError(
+                    f"{clean_text(origin)[:100]!r} is no origin of a page; give scheme, host and port alone, such as "
+                    "http://localhost:8888"
+                )
 
     def refusal(self, request: Request) -> str | None:
         """Why a request is not served, or None when it is. Headers that make no sense are a reason."""
