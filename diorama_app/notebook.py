@@ -72,9 +72,10 @@ def show(
         InputError: the room is in no project and no folder is given, an origin is none, or the port is taken.
         ProjectError: the folder cannot be written, or holds something else.
     """
-    if folder is None and room.project is None:
+    folder = folder or (None if room.project is None else room.project.folder)
+    if folder is None:
         raise InputError("the room is in no project yet; say in which folder it is kept: show(room, 'my-room')")
-    place = Path(folder if room.project is None or folder is not None else room.project.folder).resolve()
+    place = Path(folder).resolve()
     if place in _SHOWN:
         _SHOWN[place].stop()
     room.save(place)

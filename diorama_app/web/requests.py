@@ -71,12 +71,11 @@ def request_check(
             return picture(connection, pictures(name))
         is_page = urlsplit(request.path).path in ("", "/") and request.headers.get("Upgrade") != "websocket"
         first = projects.first() if projects is not None and is_page and project_of(request.path) is None else None
+        response: Response | None = None
         if first is not None:
             response = redirected(request, first)
-        else:
-            response = handler(connection, request) if handler is not None else None
-            if response is not None:
-                prepend_scripts(response)
+        elif handler is not None and (response := handler(connection, request)) is not None:
+            prepend_scripts(response)
         if response is not None:
             remember = visitors.token if visitors.brings_token(request) else None
             add_headers(response, remember=remember, frame_origins=visitors.frame_origins)

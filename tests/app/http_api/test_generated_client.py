@@ -16,8 +16,8 @@ from PIL import Image
 
 pytest.importorskip("fastapi", reason="needs FastAPI (pip install 'diorama[api]')")
 pytest.importorskip("uvicorn", reason="needs uvicorn (pip install 'diorama[api]')")
-pytest.importorskip("openapi_python_client", reason="needs a generator (pip install openapi-python-client)")
-pytest.importorskip("httpx", reason="needs what generated clients need (pip install httpx)")
+pytest.importorskip("openapi_python_client", reason="needs a generator (extra 'dev')")
+pytest.importorskip("httpx", reason="needs what generated clients need (extra 'dev')")
 
 from tests.app.http_api.openapi_client import send  # after the check for its libraries
 from tests.app.http_api.test_server import running
@@ -37,7 +37,7 @@ def generated(url: str, folder: Path) -> Path:
 
 @pytest.mark.slow
 def test_a_photo_becomes_a_scene_and_a_file(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    image, boxes = write_room(tmp_path)
+    image, boxes = write_room(tmp_path, marked=1)
     with running(tmp_path / "projects") as (url, _):
         generated(url, tmp_path)
         monkeypatch.syspath_prepend(str(tmp_path))
@@ -68,9 +68,8 @@ def test_a_photo_becomes_a_scene_and_a_file(tmp_path: Path, monkeypatch: pytest.
         assert Image.open(io.BytesIO(picture.content)).size == (200, 100)
         project = module("api.default.get_project").sync(job.id, client=client)
         first = project.objects[0].id
-        body = models.EditRequest(
-            version=project.version, edits=[models.SetState(objects=[first], state="hidden", do="set")], author="Client"
-        )
+        hide = models.SetState(objects=[first], state=models.SetStateState.HIDDEN)
+        body = models.EditRequest(version=project.version, edits=[hide], author="Client")
         edited = module("api.default.edit_project").sync(job.id, client=client, body=body)
         assert edited.changed == [first]
         stale = module("api.default.edit_project").sync(job.id, client=client, body=body)

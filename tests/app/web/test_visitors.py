@@ -10,6 +10,7 @@ import viser
 
 from diorama_app.web.viser_adapter import create_server, stop_server
 from diorama_app.web.visitors import Visitors, page_address, with_token
+from diorama_core.errors import InputError
 from tests.app.web.http_client import connects, fetch
 
 
@@ -80,3 +81,11 @@ def test_the_address_that_is_printed_answers_and_lets_in(host: str) -> None:
                 urllib.request.urlopen(page_address(host, made.get_port(), None), timeout=60)
     finally:
         stop_server(made)
+
+
+@pytest.mark.parametrize(
+    "origin", ["*", "https://*.example", "http://localhost:8888/lab", "localhost:8888", "http://a; x"]
+)
+def test_what_is_no_origin_of_a_page_may_frame_nothing(origin: str) -> None:
+    with pytest.raises(InputError, match="give scheme, host and port alone"):
+        Visitors("127.0.0.1", frame_origins=(origin,))
