@@ -1,10 +1,11 @@
 """Procedural patterns of floors, walls and ceilings: boards, tiles, carpet, paint, paper, plaster and brick.
 
-Each pattern is a function of the picture's size, its texels per metre, a colour, a source of chance and the plane's
-role. Nothing is read from files.
+Each pattern is a function of a `Swatch`. Nothing is read from files.
 """
 
 from __future__ import annotations
+
+from dataclasses import dataclass, replace
 
 import cv2
 import numpy as np
@@ -22,120 +23,144 @@ COLOURS: dict[str, tuple[float, float, float]] = {
 Picture = Float[np.ndarray, "h w 3"]
 
 
-def _noise(rng: np.random.Generator, height: int, width: int, cell: tuple[float, float]) -> Float[np.ndarray, "h w"]:
-    """Smooth noise, about -1 to 1, whose bumps are `cell` (rows, columns) texels across."""
-    small = rng.normal(0.0, 0.5, (max(2, round(height / cell[0])), max(2, round(width / cell[1])))).astype(np.float32)
-    return cv2.resize(small, (width, height), interpolation=cv2.INTER_CUBIC)
+@dataclass(frozen=True, eq=False)
+class Swatch:
+    """What a pattern is painted for: the picture's size, and what the plane and its finish say."""
+
+    height: int
+    width: int
+    """Both in texels."""
+    texels_per_m: float
+    colour: Float[np.ndarray, "3"]
+    """sRGB, 0 to 1."""
+    rng: np.random.Generator
+    role: str
+    """Kind of plane: walls have smaller tiles, and a skirting board."""
+
+    def grid(self) -> tuple[Float[np.ndarray, "h w"], Float[np.ndarray, "h w"]]:
+        """Row and column of every texel."""
+        y, x = np.mgrid[0 : self.height, 0 : self.width].astype(np.float32)
+        return y, x
+
+    def noise(self, cell: tuple[float, float]) -> Float[np.ndarray, "h w"]:
+        """Smooth noise, about -1 to 1, whose bumps are `cell` (rows, columns) texels across."""
+        size = max(2, round(self.height / cell[0])), max(2, round(self.width / cell[1]))
+        small = self.rng.normal(0.0, 0.5, size).astype(np.float32)
+        return cv2.resize(small, (self.width, self.height), interpolation=cv2.INTER_CUBIC)
+
+    def shaded(self, tone: Float[np.ndarray, "h w"]) -> Picture:
+        """The colour made brighter by a share of itself, texel by texel."""
+        return np.broadcast_to(self.colour, (self.height, self.width, 3)) * (1 + tone)[..., None]
 
 
-def _grid(height: int, width: int) -> tuple[np.ndarray, np.ndarray]:
-    y, x = np.mgrid[0:height, 0:width].astype(np.float32)
-    return y, x
-
-
-def _shaded(height: int, width: int, colour: np.ndarray, tone: np.ndarray) -> Picture:
-    return np.broadcast_to(colour, (height, width, 3)) * (1 + tone)[..., None]
-
-
-def planks(h: int, w: int, s: float, colour: np.ndarray, rng: np.random.Generator, role: str) -> Picture:
+def planks(swatch: Swatch) -> Picture:
     """Boards along the rows, each of its own tone."""
-    y, x = _grid(h, w)
+    s = swatch.texels_per_m
+    y, x = swatch.grid()
     board, long = 0.14 * s, 1.4 * s
     row = (y // board).astype(int)
-    shift = rng.uniform(0, long, row.max() + 1)[row]
+    shift = swatch.rng.uniform(0, long, row.max() + 1)[row]
     number = ((x + shift) // long).astype(int)
-    tone = rng.normal(0.0, 0.075, (row.max() + 1, number.max() + 2))[row, number]
-    grain = 0.05 * _noise(rng, h, w, (0.008 * s, 0.5 * s)) + 0.04 * _noise(rng, h, w, (0.02 * s, 0.25 * s))
+    tone = swatch.rng.normal(0.0, 0.075, (row.max() + 1, number.max() + 2))[row, number]
+    grain = 0.05 * swatch.noise((0.008 * s, 0.5 * s)) + 0.04 * swatch.noise((0.02 * s, 0.25 * s))
     seam = (np.minimum(y % board, board - y % board) < 0.9) | (((x + shift) % long) < 1.5)
-    return _shaded(h, w, colour, tone + grain - 0.35 * seam)
+    return swatch.shaded(tone + grain - 0.35 * seam)
 
 
-def parquet(h: int, w: int, s: float, colour: np.ndarray, rng: np.random.Generator, role: str) -> Picture:
+def parquet(swatch: Swatch) -> Picture:
     """Blocks of five strips, turned by turns."""
-    y, x = _grid(h, w)
+    s = swatch.texels_per_m
+    y, x = swatch.grid()
     block = 0.36 * s
     i, j = (y // block).astype(int), (x // block).astype(int)
     across = (i + j) % 2 == 0
     strip = (np.where(across, y % block, x % block) // (block / 5)).astype(int)
-    tone = rng.normal(0.0, 0.09, (i.max() + 1, j.max() + 1, 6))[i, j, np.minimum(strip, 5)]
+    tone = swatch.rng.normal(0.0, 0.09, (i.max() + 1, j.max() + 1, 6))[i, j, np.minimum(strip, 5)]
     seam = (np.where(across, y % block, x % block) % (block / 5)) < 1.0
-    grain = 0.05 * np.where(across, _noise(rng, h, w, (0.006 * s, 0.2 * s)), _noise(rng, h, w, (0.2 * s, 0.006 * s)))
-    return _shaded(h, w, colour, tone + grain - 0.25 * seam)
+    grain = 0.05 * np.where(across, swatch.noise((0.006 * s, 0.2 * s)), swatch.noise((0.2 * s, 0.006 * s)))
+    return swatch.shaded(tone + grain - 0.25 * seam)
 
 
-def tiles(h: int, w: int, s: float, colour: np.ndarray, rng: np.random.Generator, role: str) -> Picture:
+def tiles(swatch: Swatch) -> Picture:
     """Square tiles; on walls small ones in running bond."""
-    y, x = _grid(h, w)
-    tall, wide = (0.1, 0.2) if role == "wall" else (0.42, 0.42)
+    s = swatch.texels_per_m
+    y, x = swatch.grid()
+    tall, wide = (0.1, 0.2) if swatch.role == "wall" else (0.42, 0.42)
     tall, wide = tall * s, wide * s
     i = (y // tall).astype(int)
-    offset = (i % 2) * wide / 2 if role == "wall" else np.zeros_like(x)
+    offset = (i % 2) * wide / 2 if swatch.role == "wall" else np.zeros_like(x)
     j = ((x + offset) // wide).astype(int)
-    tone = rng.normal(0.0, 0.03, (i.max() + 1, j.max() + 2))[i, j] + 0.03 * _noise(rng, h, w, (0.06 * s, 0.06 * s))
+    tone = swatch.rng.normal(0.0, 0.03, (i.max() + 1, j.max() + 2))[i, j] + 0.03 * swatch.noise((0.06 * s, 0.06 * s))
     joint = ((y % tall) < 1.6) | (((x + offset) % wide) < 1.6)
-    picture = _shaded(h, w, colour, tone)
-    picture[joint] = np.array([0.62, 0.61, 0.59]) if colour.mean() > 0.5 else np.array([0.55, 0.54, 0.52])
+    picture = swatch.shaded(tone)
+    picture[joint] = np.array([0.62, 0.61, 0.59]) if swatch.colour.mean() > 0.5 else np.array([0.55, 0.54, 0.52])
     return picture
 
 
-def checker(h: int, w: int, s: float, colour: np.ndarray, rng: np.random.Generator, role: str) -> Picture:
+def checker(swatch: Swatch) -> Picture:
     """Square tiles in two colours by turns."""
-    y, x = _grid(h, w)
+    s = swatch.texels_per_m
+    y, x = swatch.grid()
     side = 0.3 * s
     odd = ((y // side).astype(int) + (x // side).astype(int)) % 2 == 0
-    picture = np.where(odd[..., None], colour, np.array([0.87, 0.84, 0.78]))
+    picture = np.where(odd[..., None], swatch.colour, np.array([0.87, 0.84, 0.78]))
     joint = ((y % side) < 1.2) | ((x % side) < 1.2)
-    tone = 0.04 * _noise(rng, h, w, (0.05 * s, 0.05 * s)) - 0.15 * joint
+    tone = 0.04 * swatch.noise((0.05 * s, 0.05 * s)) - 0.15 * joint
     return picture * (1 + tone)[..., None]
 
 
-def carpet(h: int, w: int, s: float, colour: np.ndarray, rng: np.random.Generator, role: str) -> Picture:
+def carpet(swatch: Swatch) -> Picture:
     """Woven pile."""
-    fine = rng.normal(0.0, 0.06, (h, w))
-    return _shaded(h, w, colour, fine + 0.04 * _noise(rng, h, w, (0.3 * s, 0.3 * s)))
+    s = swatch.texels_per_m
+    fine = swatch.rng.normal(0.0, 0.06, (swatch.height, swatch.width))
+    return swatch.shaded(fine + 0.04 * swatch.noise((0.3 * s, 0.3 * s)))
 
 
-def paint(h: int, w: int, s: float, colour: np.ndarray, rng: np.random.Generator, role: str) -> Picture:
+def paint(swatch: Swatch) -> Picture:
     """Painted plaster, on walls above a skirting board."""
-    tone = 0.012 * _noise(rng, h, w, (0.5 * s, 0.5 * s)) + rng.normal(0.0, 0.008, (h, w))
-    return with_skirting(_shaded(h, w, colour, tone), s, role)
+    s = swatch.texels_per_m
+    tone = 0.012 * swatch.noise((0.5 * s, 0.5 * s)) + swatch.rng.normal(0.0, 0.008, (swatch.height, swatch.width))
+    return with_skirting(swatch.shaded(tone), s, swatch.role)
 
 
-def paper(h: int, w: int, s: float, colour: np.ndarray, rng: np.random.Generator, role: str) -> Picture:
+def paper(swatch: Swatch) -> Picture:
     """Wallpaper of stripes or dots, by chance."""
-    y, x = _grid(h, w)
-    period = float(rng.uniform(0.12, 0.3)) * s
-    if rng.random() < 0.5:
+    s = swatch.texels_per_m
+    y, x = swatch.grid()
+    period = float(swatch.rng.uniform(0.12, 0.3)) * s
+    if swatch.rng.random() < 0.5:
         figure = np.sin(2 * np.pi * x / period) > 0
     else:
         centred = ((x + (y // period % 2) * period / 2) % period - period / 2, y % period - period / 2)
         figure = np.hypot(*centred) < 0.22 * period
-    ink = colour * float(rng.uniform(0.82, 0.9))
-    return with_skirting(colour + (ink - colour) * figure[..., None] + rng.normal(0, 0.006, (h, w, 1)), s, role)
+    ink = swatch.colour * float(swatch.rng.uniform(0.82, 0.9))
+    return with_skirting(_printed(swatch, figure, ink), s, swatch.role)
 
 
-def brick(h: int, w: int, s: float, colour: np.ndarray, rng: np.random.Generator, role: str) -> Picture:
+def brick(swatch: Swatch) -> Picture:
     """Bricks in running bond."""
-    y, x = _grid(h, w)
+    s = swatch.texels_per_m
+    y, x = swatch.grid()
     tall, wide = 0.075 * s, 0.24 * s
     i = (y // tall).astype(int)
     shifted = x + (i % 2) * wide / 2
     j = (shifted // wide).astype(int)
-    tone = rng.normal(0.0, 0.1, (i.max() + 1, j.max() + 2))[i, j] + 0.06 * _noise(rng, h, w, (0.03 * s, 0.03 * s))
-    picture = _shaded(h, w, colour, tone)
+    tone = swatch.rng.normal(0.0, 0.1, (i.max() + 1, j.max() + 2))[i, j] + 0.06 * swatch.noise((0.03 * s, 0.03 * s))
+    picture = swatch.shaded(tone)
     picture[((y % tall) < 0.012 * s) | ((shifted % wide) < 0.012 * s)] = (0.76, 0.73, 0.69)
     return picture
 
 
-def panelled(h: int, w: int, s: float, colour: np.ndarray, rng: np.random.Generator, role: str) -> Picture:
+def panelled(swatch: Swatch) -> Picture:
     """Paint above boards of one metre."""
-    picture = paint(h, w, s, np.minimum(colour * 1.05, 0.95), rng, role)
-    y, x = _grid(h, w)
+    s = swatch.texels_per_m
+    picture = paint(replace(swatch, colour=np.minimum(swatch.colour * 1.05, 0.95)))
+    y, x = swatch.grid()
     board = 0.11 * s
-    low = (h - y) < 1.0 * s
-    picture[low] = picture[low] * np.where(colour.mean() > 0.85, 0.93, 1.06)
+    low = (swatch.height - y) < 1.0 * s
+    picture[low] = picture[low] * np.where(swatch.colour.mean() > 0.85, 0.93, 1.06)
     picture[low & ((x % board) < 1.5)] *= 0.82
-    picture[np.abs((h - y) - 1.0 * s) < 0.03 * s] = 0.92
+    picture[np.abs((swatch.height - y) - 1.0 * s) < 0.03 * s] = 0.92
     return picture
 
 
@@ -148,40 +173,45 @@ def with_skirting(picture: Picture, s: float, role: str) -> Picture:
     return picture
 
 
-def plaster(h: int, w: int, s: float, colour: np.ndarray, rng: np.random.Generator, role: str) -> Picture:
+def plaster(swatch: Swatch) -> Picture:
     """Lime plaster or bare concrete, in clouds."""
-    clouds = sum(0.03 * 0.6**k * _noise(rng, h, w, (0.5 * 0.5**k * s, 0.7 * 0.5**k * s)) for k in range(4))
-    return _shaded(h, w, colour, np.asarray(clouds) + rng.normal(0.0, 0.008, (h, w)))
+    s = swatch.texels_per_m
+    clouds = sum(0.03 * 0.6**k * swatch.noise((0.5 * 0.5**k * s, 0.7 * 0.5**k * s)) for k in range(4))
+    return swatch.shaded(np.asarray(clouds) + swatch.rng.normal(0.0, 0.008, (swatch.height, swatch.width)))
 
 
-def stripes(h: int, w: int, s: float, colour: np.ndarray, rng: np.random.Generator, role: str) -> Picture:
+def stripes(swatch: Swatch) -> Picture:
     """Wallpaper of upright stripes."""
-    _, x = _grid(h, w)
+    s = swatch.texels_per_m
+    _, x = swatch.grid()
     band = 0.08 * s
     edge = np.clip(0.5 + band * np.sin(np.pi * x / band) / np.pi, 0.0, 1.0)
-    return _printed(h, w, colour, edge, rng)
+    return _printed(swatch, edge)
 
 
-def dots(h: int, w: int, s: float, colour: np.ndarray, rng: np.random.Generator, role: str) -> Picture:
+def dots(swatch: Swatch) -> Picture:
     """Wallpaper of dots."""
-    dx, dy, _, _ = _staggered(h, w, 0.11 * s)
-    return _printed(h, w, colour, np.clip(0.5 + 0.02 * s - np.hypot(dx, dy), 0.0, 1.0), rng)
+    s = swatch.texels_per_m
+    dx, dy, _, _ = _staggered(swatch, 0.11 * s)
+    return _printed(swatch, np.clip(0.5 + 0.02 * s - np.hypot(dx, dy), 0.0, 1.0))
 
 
-def leaves(h: int, w: int, s: float, colour: np.ndarray, rng: np.random.Generator, role: str) -> Picture:
+def leaves(swatch: Swatch) -> Picture:
     """Wallpaper of leaves that lean left and right by turns."""
-    dx, dy, row, column = _staggered(h, w, 0.1 * s)
+    s = swatch.texels_per_m
+    dx, dy, row, column = _staggered(swatch, 0.1 * s)
     lean = np.where((row + column) % 2 == 0, 0.6, -0.6)
     along, across = dx * np.sin(lean) + dy * np.cos(lean), dx * np.cos(lean) - dy * np.sin(lean)
     long, wide = 0.052 * s, 0.016 * s
     inside = wide * (1.0 - (along / long) ** 2) - np.abs(across)
     vein = (np.abs(across) < 0.0012 * s) & (along > -0.7 * long)
-    return _printed(h, w, colour, np.clip(0.5 + inside, 0.0, 1.0) * ~vein, rng)
+    return _printed(swatch, np.clip(0.5 + inside, 0.0, 1.0) * ~vein)
 
 
-def herringbone(h: int, w: int, s: float, colour: np.ndarray, rng: np.random.Generator, role: str) -> Picture:
+def herringbone(swatch: Swatch) -> Picture:
     """Strips six times as long as wide, laid at right angles to one another."""
-    y, x = _grid(h, w)
+    s = swatch.texels_per_m
+    y, x = swatch.grid()
     ratio, wide = 6, 0.09 * s
     column, row = np.floor(x / wide).astype(int), np.floor(y / wide).astype(int)
     step = (column - row) % (2 * ratio)
@@ -189,27 +219,28 @@ def herringbone(h: int, w: int, s: float, colour: np.ndarray, rng: np.random.Gen
     along = np.where(lying, step, 2 * ratio - 1 - step)
     first = (np.where(lying, column - along, column), np.where(lying, row, row - along))
     number = (first[0] * 7919 + first[1] * 104729) % 4093
-    tone = rng.normal(0.0, 0.085, 4093)[number]
-    grain = np.where(lying, _noise(rng, h, w, (0.006 * s, 0.2 * s)), _noise(rng, h, w, (0.2 * s, 0.006 * s)))
+    tone = swatch.rng.normal(0.0, 0.085, 4093)[number]
+    grain = np.where(lying, swatch.noise((0.006 * s, 0.2 * s)), swatch.noise((0.2 * s, 0.006 * s)))
     px, py = x - column * wide, y - row * wide
     edge = np.where(lying, np.minimum(py, wide - py), np.minimum(px, wide - px))
     end = np.where(lying, px, py)
     edge = np.where(along == 0, np.minimum(edge, end), edge)
     edge = np.where(along == ratio - 1, np.minimum(edge, wide - end), edge)
-    return _shaded(h, w, colour, tone + 0.05 * grain - 0.35 * np.clip(1.3 - edge, 0.0, 1.0))
+    return swatch.shaded(tone + 0.05 * grain - 0.35 * np.clip(1.3 - edge, 0.0, 1.0))
 
 
-def _staggered(h: int, w: int, period: float) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+def _staggered(swatch: Swatch, period: float) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
     """Texels from the middle of the nearest cell to the right and down, and the cell's row and column."""
-    y, x = _grid(h, w)
+    y, x = swatch.grid()
     row = np.floor(y / period).astype(int)
     shifted = x + (row % 2) * period / 2
     column = np.floor(shifted / period).astype(int)
     return shifted - (column + 0.5) * period, y - (row + 0.5) * period, row, column
 
 
-def _printed(h: int, w: int, colour: np.ndarray, figure: Float[np.ndarray, "h w"], rng: np.random.Generator) -> Picture:
-    """Paper with a figure in a darker shade of its colour."""
-    ink = colour * 0.84
-    picture: Picture = colour + (ink - colour) * figure[..., None] + rng.normal(0.0, 0.006, (h, w, 1))
+def _printed(swatch: Swatch, figure: np.ndarray, ink: Float[np.ndarray, "3"] | None = None) -> Picture:
+    """Paper with a figure, a share of ink for each texel; a darker shade of the paper's colour by default."""
+    ink = swatch.colour * 0.84 if ink is None else ink
+    noise = swatch.rng.normal(0.0, 0.006, (swatch.height, swatch.width, 1))
+    picture: Picture = swatch.colour + (ink - swatch.colour) * figure[..., None] + noise
     return picture

@@ -15,6 +15,7 @@ import numpy as np
 from jaxtyping import UInt8
 
 from diorama_core.appearance import patterns
+from diorama_core.appearance.patterns import Swatch
 from diorama_core.geometry.planes import plane_rectangle
 from diorama_core.scene.types import Plane, PlaneRole, Scene, SurfaceFinish, SurfacePattern
 
@@ -22,7 +23,7 @@ MARK = "finish-"
 """Begins the names of pictures of finishes."""
 
 Pictures = Mapping[str, UInt8[np.ndarray, "_ _ 3"]]
-Painter = Callable[[int, int, float, np.ndarray, np.random.Generator, str], np.ndarray]
+Painter = Callable[[Swatch], np.ndarray]
 
 
 @dataclass(frozen=True)
@@ -101,7 +102,7 @@ def finish_picture(finish: SurfaceFinish, role: PlaneRole, size_m: tuple[float, 
     turn = finish.direction_rad + kind.turned_rad if kind.directed else 0.0
     c, s = abs(np.cos(turn)), abs(np.sin(turn))
     w, h = (int(np.ceil(e - 1e-6)) for e in (width * c + height * s, width * s + height * c))
-    picture = kind.paint(h, w, texels * finish.scale, np.array(finish.colour), rng, kind.role)
+    picture = kind.paint(Swatch(h, w, texels * finish.scale, np.array(finish.colour), rng, kind.role))
     if abs(turn) > 1e-6:
         rotation = cv2.getRotationMatrix2D(((w - 1) / 2, (h - 1) / 2), float(np.degrees(turn)), 1.0)
         rotation[:, 2] += ((width - w) / 2, (height - h) / 2)

@@ -13,7 +13,7 @@ import numpy as np
 from jaxtyping import UInt8
 
 from diorama_core.appearance import patterns
-from diorama_core.appearance.patterns import COLOURS
+from diorama_core.appearance.patterns import COLOURS, Swatch
 from diorama_core.geometry.planes import plane_rectangle
 from diorama_core.scene.types import Architecture, Plane
 from diorama_core.synthesis.splits import Split, share_out
@@ -111,5 +111,5 @@ def _picture(name: str, role: str, plane_id: str, width_m: float, height_m: floa
     scale = min(TEXELS_PER_M, LARGEST_TEXELS / max(width_m, height_m))
     width, height = (max(8, round(e * scale)) for e in (width_m, height_m))
     rng = np.random.default_rng((int(seed), zlib.crc32(f"{role}{plane_id}".encode())))
-    picture = PATTERNS[style](height, width, scale, np.array(COLOURS[colour]), rng, role)
+    picture = PATTERNS[style](Swatch(height, width, scale, np.array(COLOURS[colour]), rng, role))
     return np.clip(np.rint(picture * 255), 0, 255).astype(np.uint8)
