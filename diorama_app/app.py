@@ -40,6 +40,7 @@ from diorama_app.panels.photo import PhotoPanel
 from diorama_app.panels.photo_camera import PhotoCamera
 from diorama_app.panels.photo_correction import PhotoCorrection
 from diorama_app.panels.photo_strip import PhotoStrip
+from diorama_app.panels.physics import Physics
 from diorama_app.panels.picture import show_picture
 from diorama_app.panels.plan import Plan
 from diorama_app.panels.projects import Projects
@@ -240,6 +241,7 @@ class Editor:
             place("The alternatives", lambda: Alternatives(gui, client))
             place("The properties", lambda: Properties(gui, client))
             place("What supports it", lambda: Supports(gui, client))
+            place("The physics", lambda: Physics(gui, client))
             place("The correction by the photo", lambda: PhotoCorrection(gui, client))
         with library:
             place("The library", lambda: LibraryPanel(gui, client))

@@ -11,7 +11,7 @@ from diorama_app.commands import edit as editing
 from diorama_app.panels.fields import on_change, show_if, show_value
 from diorama_app.session.client import Client
 from diorama_app.session.units import UNITS, Unit, format_length, in_unit, parse_length
-from diorama_app.web.html import Action, LiveHtml, button, text
+from diorama_app.web.html import Action, LiveHtml, button, fold_button, text
 from diorama_core.arrangement.explain import in_words, strongest
 from diorama_core.artefacts import Reason
 from diorama_core.editing.clearances import Clearance, clearances
@@ -74,7 +74,8 @@ class Properties:
         item, numbers = self._client.selected, self._client.preferences.numbers
         show_if(item is not None, self._colour)
         show_if(item is not None and numbers, self._name)
-        self._fold.show("" if item is None else _fold_button(unfolded=numbers))
+        fold = fold_button("Name, position and size", "numbers", "the fields for exact numbers", unfolded=numbers)
+        self._fold.show("" if item is None else fold)
         self._fields.show(self._lengths(item) if item is not None and numbers else "")
         if item is None:
             self._own.show("")
@@ -201,13 +202,6 @@ def _surface(item: SceneObject) -> str:
     return (
         f'{taken if item.photo_materials else ""}{paint}<h4>Finish</h4><div class="bar tight one-row">{finishes}</div>'
     )
-
-
-def _fold_button(*, unfolded: bool) -> str:
-    sign, words = ("▾", "Hides") if unfolded else ("▸", "Shows")
-    label = f"{sign} Name, position and size"
-    fold = button(label, "numbers", title=f"{words} the fields for exact numbers")
-    return f'<div class="bar wide">{fold.replace("<button", f"<button aria-expanded={str(unfolded).lower()}")}</div>'
 
 
 def _why(reasons: Sequence[Reason]) -> str:

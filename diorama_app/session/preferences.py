@@ -54,6 +54,8 @@ class Preferences:
     """Whether a swap goes to every object of the same shape."""
     numbers: bool = False
     """Whether the object's name, position and size are shown as fields."""
+    physics: bool = False
+    """Whether the object's mass, friction, joints and colliders are shown."""
     favourites: tuple[str, ...] = ()
     """Ids of the library's shapes that the person marked."""
     recent: tuple[str, ...] = ()

@@ -7,7 +7,7 @@ from typing import Literal
 
 import numpy as np
 import viser
-from jaxtyping import Float
+from jaxtyping import Float, Int
 
 from diorama_app.viewport.annotation_canvas import AnnotationCanvas
 from diorama_app.viewport.camera import ViewCamera
@@ -19,6 +19,7 @@ PLANE_COLOURS = {"floor": (190, 120, 30), "wall": (30, 110, 220), "ceiling": (12
 PLANE_LIFT_M = 0.01
 DISTANCE_COLOUR = (47, 111, 214)
 TAPE_COLOUR = (200, 60, 110)
+COLLIDER_COLOUR = (20, 150, 110)
 BRAND_COLOUR = (47, 111, 214)
 
 Vector = Float[np.ndarray, "3"]
@@ -36,6 +37,7 @@ class ClientView:
         self._planes: list[viser.SceneNodeHandle] = []
         self._tape: list[viser.SceneNodeHandle] = []
         self._surface: viser.SceneNodeHandle | None = None
+        self._colliders: viser.SceneNodeHandle | None = None
         self._distances: list[tuple[viser.LineSegmentsHandle, viser.LabelHandle]] = []
 
     def notice(self, message: str, kind: NoticeKind = "info", seconds: float | None = None) -> None:
@@ -112,6 +114,22 @@ class ClientView:
                 colors=SELECTED_COLOUR,
                 thickness=4.0,
                 thickness_units="screen",
+            )
+
+    def show_colliders(self, vertices: Float[np.ndarray, "n 3"] | None, faces: Int[np.ndarray, "m 3"]) -> None:
+        """The edges of convex bodies, in the world; none without."""
+        if self._colliders is not None:
+            self._colliders.remove()
+            self._colliders = None
+        if vertices is not None:
+            self._colliders = self._viser_client.scene.add_mesh_simple(
+                "/colliders",
+                vertices=vertices,
+                faces=faces,
+                color=COLLIDER_COLOUR,
+                wireframe=True,
+                cast_shadow=False,
+                receive_shadow=False,
             )
 
     def show_planes(self, planes: Sequence[tuple[str, Plane]]) -> None:

@@ -193,6 +193,20 @@ def button(label: str, do: str, arg: object = "", *, title: str = "", on: bool =
     return f'<button class="{"on" if on else ""}" {attributes} {"disabled" if disabled else ""}>{label}</button>'
 
 
+def fold_button(label: str, do: str, what: str, *, unfolded: bool) -> str:
+    """A button that unfolds what is below it.
+
+    Args:
+        label: shown.
+        do: name of the action.
+        what: it shows and hides.
+        unfolded: whether it is shown now.
+    """
+    sign, verb = ("▾", "Hides") if unfolded else ("▸", "Shows")
+    made = button(f"{sign} {text(label)}", do, title=f"{verb} {what}")
+    return f'<div class="bar wide">{made.replace("<button", f"<button aria-expanded={str(unfolded).lower()}")}</div>'
+
+
 def switch(name: str, hint: str, arg: object, *, on: bool = False, disabled: bool = False) -> str:
     """A name with its explanation that is switched on and off; a click is the action `switch` with `arg`.
 

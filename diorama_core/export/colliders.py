@@ -16,15 +16,15 @@ from jaxtyping import Float
 from scipy.spatial import ConvexHull, QhullError
 
 from diorama_core.export.bodies import MovingPart, PhysicalScene, Points, RigidBody, StaticSlab, is_soft
-from diorama_core.export.gathering import ExportObject, ExportScene, rigid_inverse
+from diorama_core.export.gathering import ExportObject, ExportOptions, ExportScene, gather, rigid_inverse
 from diorama_core.export.limbs import ExportLimb, limb_parts
 from diorama_core.export.overlaps import Cuts, cut
 from diorama_core.export.physics import GRAVITY, Inertia, friction_of, inertia_of, plausible_mass_kg
 from diorama_core.geometry.convex import ConvexPart
 from diorama_core.geometry.planes import plane_axes
 from diorama_core.layout.problem.parts import parts_of_shape
-from diorama_core.library.record import Shape, record_of
-from diorama_core.scene.types import Plane, box_corners
+from diorama_core.library.record import Shape, ShapeLibrary, record_of
+from diorama_core.scene.types import Plane, Scene, box_corners
 
 NEAR_FLOOR_M = 0.03
 """An object without support stands on the floor when its bottom is this near to it."""
@@ -74,17 +74,29 @@ def physical_scene(gathered: ExportScene) -> PhysicalScene:
     return PhysicalScene(done, slabs, tuple(sorted(cuts.ignored)), tuple(notes))
 
 
+def body_of(scene: Scene, library: ShapeLibrary, object_id: str) -> RigidBody:
+    """One object of a scene as a simulator sees it, with its joints, before others cut into its parts.
+
+    Raises:
+        LibraryError: when its shape is missing.
+    """
+    shown = replace(scene, objects=tuple(replace(o, hidden=False) if o.id == object_id else o for o in scene.objects))
+    options = ExportOptions(only=frozenset((object_id,)), joints=True, lights="none")
+    gathered = gather(shown, library, options=options)
+    return _body(gathered, gathered.objects[0])
+
+
 def balanced(body: RigidBody, carrier: RigidBody | None = None) -> RigidBody:
     """The body with its centre of mass above its foot, or above that part of it which its carrier holds up.
 
     What stands in a photo is in balance; where guessed masses say otherwise, as for lamps with weighted feet, they are
     wrong. The centre moves to the nearest place well inside the foot's outline.
     """
-    low = min((float(p[:, 2].min()) for p in _world_parts(body)), default=0.0)
-    foot = [p[p[:, 2] < low + FOOT_M][:, :2] for p in _world_parts(body)]
+    low = min((float(p[:, 2].min()) for p in world_parts(body)), default=0.0)
+    foot = [p[p[:, 2] < low + FOOT_M][:, :2] for p in world_parts(body)]
     outline = np.concatenate(foot) if foot else np.zeros((0, 2))
     if carrier is not None:
-        tops = [p[np.abs(p[:, 2] - low) < NEAR_TOP_M][:, :2] for p in _world_parts(carrier)]
+        tops = [p[np.abs(p[:, 2] - low) < NEAR_TOP_M][:, :2] for p in world_parts(carrier)]
         outline = _shared_outline(outline, np.concatenate(tops))
     total = body.mass_kg + sum(m.inertia.mass_kg for m in body.moving)
     weighed = [
@@ -109,7 +121,7 @@ def _held_parts(rug: RigidBody, riders: Iterable[RigidBody]) -> tuple[Points, ..
     corners = rug.node.item.corners_world
     found = []
     for rider in riders:
-        parts = _world_parts(rider)
+        parts = world_parts(rider)
         low = min((float(p[:, 2].min()) for p in parts), default=0.0)
         for part in parts:
             foot = part[part[:, 2] < low + FOOT_M][:, :2]
@@ -122,7 +134,8 @@ def _held_parts(rug: RigidBody, riders: Iterable[RigidBody]) -> tuple[Points, ..
     return tuple(found)
 
 
-def _world_parts(body: RigidBody) -> list[Points]:
+def world_parts(body: RigidBody) -> list[Points]:
+    """Corners of all convex bodies of an object in the world, those that its joints move as they stand."""
     T = body.node.T_world
     moving = [_placed(T @ m.limb.T_object_limb, q) for m in body.moving for q in m.parts]
     return [*(_placed(T, p) for p in body.parts), *moving]
