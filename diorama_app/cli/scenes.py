@@ -129,9 +129,9 @@ def add_build(commands: Any) -> None:
     )
     p.add_argument(
         "--depth-kind",
-        choices=("auto", "depth", "distance", "inverse"),
+        choices=("auto", "depth", "distance", "inverse", "root", "logarithm"),
         default="auto",
-        help="along the optical axis, along the rays, or inverse depth and disparity (default: what the picture says)",
+        help="along the optical axis or the rays, inverse, its root or logarithm (default: what it looks like)",
     )
     p.add_argument("--depth-encoding", choices=("linear", "sunrgbd"), default="linear", help="how a PNG stores depth")
     inner = p.add_mutually_exclusive_group()

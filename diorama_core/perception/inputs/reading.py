@@ -58,8 +58,8 @@ def read_inputs(
         depth_scale: Units of depth per metre; by default whole numbers are millimetres and others metres, unless the
             picture contradicts it.
         depth_encoding: "sunrgbd" where a PNG's bits are rotated as in SUN RGB-D.
-        depth_kind: What the numbers are: depth along the optical axis, distance along the rays, or inverse depth; by
-            default what the picture says.
+        depth_kind: What the numbers are: depth along the optical axis, distance along the rays, inverse depth, or
+            the root or logarithm of depth; by default what the picture says.
         intrinsics: fx, fy, cx, cy in pixels of the upright original photo.
         fov_deg: Horizontal field of view of the upright photo in degrees, instead of `intrinsics`.
         boxes: In any form of `BOX_FORMS`, by default in pixels of the upright original photo.

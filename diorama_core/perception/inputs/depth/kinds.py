@@ -1,4 +1,4 @@
-"""What the numbers of a depth map are, by likelihood: depth, distance along the rays, or inverse depth.
+"""What the numbers of a depth map are, by likelihood: depth, its root or logarithm, inverse depth, or along the rays.
 
 Each reading has one score: how many pixels lie on planes under it, and whether what is nearer in the picture (the
 floor's lower end, things before walls) is nearer in the map.
@@ -7,7 +7,7 @@ floor's lower end, things before walls) is nearer in the map.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Literal
 
 import numpy as np
@@ -15,19 +15,23 @@ from jaxtyping import Bool, Float
 
 from diorama_core.artefacts import LabelledBox
 from diorama_core.library.taxonomy import UNKNOWN, category
+from diorama_core.perception.inputs.depth.functions import DEPTH, INVERSE, ROOT, DepthFunction
 from diorama_core.perception.inputs.depth.planes import TRIALS, PlaneFit, SampledDepth, planes_of, sampled
 
-Kind = Literal["depth", "distance", "inverse"]
-DepthKind = Literal["auto", "depth", "distance", "inverse"]
-"""Along the optical axis; along the rays; inverse depth or disparity of any offset; or inferred from the picture."""
+Kind = Literal["depth", "distance", "inverse", "root", "logarithm"]
+DepthKind = Literal["auto", "depth", "distance", "inverse", "root", "logarithm"]
+"""Along the optical axis; along the rays; inverse depth or disparity of any offset; its square root or logarithm; or
+inferred from the picture."""
 
 PLANE_WEIGHT = 40.0
 """Nats for all pixels on planes: wrong readings of measured maps explain 0.05 to 0.4 less."""
 ORDER_WEIGHT = 3.0
-PRIOR = {"depth": 1.5, "distance": 0.0, "inverse": 0.0}
+PRIOR = {"depth": 1.5, "distance": 0.0, "inverse": 0.0, "root": 0.0, "logarithm": 0.0}
 """Most maps that are called depth are depth along the axis, and a fitted focal length explains a little by itself."""
 RAY_FOCALS = (0.45, 0.6, 0.8, 1.1)
 """Focal lengths over the longer side that are tried where none is known."""
+LOG_RANGES = (0.4, 0.6, 0.85, 1.2, 1.8)
+"""Logarithms of far over near depth in a room, which tell a logarithm's base: they are tried."""
 EXACT, NEARLY = 0.8, 0.04
 """Share of pixels on planes from which nothing else is asked, and by which a first look may be behind."""
 SEARCH_POINTS, SEARCH_TRIALS = 800, 60
@@ -45,6 +49,8 @@ class DepthReading:
     kind: Kind
     score: float
     fit: PlaneFit
+    function: DepthFunction
+    """Of depth that the numbers are, rays apart."""
     focal: float | None
     """Over the longer side: the one under which distances along rays form planes."""
     order: float
@@ -56,24 +62,30 @@ def depth_readings(
     valid: Bool[np.ndarray, "h w"],
     boxes: Sequence[LabelledBox],
     focal: float | None,
+    asked: DepthKind = "auto",
 ) -> tuple[DepthReading, ...]:
-    """All readings, likeliest first.
+    """All readings that come into question, likeliest first.
 
     Args:
         values: the map's positive numbers.
         valid: where there are some.
         boxes: named things in shares of the longer side.
         focal: over the longer side, where it is known.
+        asked: what they are said to be; a reading of that kind is among the answer.
     """
     sample, order = sampled(values, valid), near_and_far(values, valid, boxes)
     scale = max(float(np.median(sample.values)), 1e-12)
     sample = SampledDepth(sample.x, sample.y, sample.values / scale)
     readings = [
-        _reading("depth", planes_of(sample, inverse=False), order, None),
-        _reading("inverse", planes_of(sample, inverse=True), -order, None),
+        _reading("depth", DEPTH, planes_of(sample), order),
+        _reading("inverse", INVERSE, planes_of(sample, INVERSE), -order),
     ]
-    for trial in (focal,) if focal is not None else _ray_focals(sample, readings[0].fit.explained):
-        readings.append(_reading("distance", planes_of(on_axis(sample, trial), inverse=False), order, trial))
+    exact = readings[0].fit.explained > EXACT
+    rays = () if exact and asked != "distance" else _ray_focals(sample, always=asked == "distance")
+    for trial in rays if focal is None else (focal,):
+        readings.append(_reading("distance", DEPTH, planes_of(on_axis(sample, trial)), order, trial))
+    for kind, function in () if exact and asked not in ("root", "logarithm") else _bent(sample, asked):
+        readings.append(_reading(kind, function, planes_of(sample, function), order))
     restored = [_in_unit(r, scale) for r in readings]
     return tuple(sorted(restored, key=lambda r: -r.score))
 
@@ -111,21 +123,14 @@ def rays_of(height: int, width: int, focal: float) -> Float[np.ndarray, "h w"]:
     return np.sqrt(1.0 + x[None, :] ** 2 + y[:, None] ** 2)
 
 
-def _ray_focals(sample: SampledDepth, explained: float) -> tuple[float, ...]:
-    """The focal length under which distances form planes best, where they do so nearly as well as depth does.
-
-    Args:
-        sample: the numbers.
-        explained: share of them on planes where they are depth along the axis.
-    """
-    if explained > EXACT:
-        return ()
+def _ray_focals(sample: SampledDepth, *, always: bool) -> tuple[float, ...]:
+    """The focal length under which distances form planes best; none where depth forms clearly more."""
     few = sample.thinned(SEARCH_POINTS)
-    scores = {f: _share(on_axis(few, f), SEARCH_TRIALS) for f in RAY_FOCALS}
-    best, as_depth = max(scores, key=lambda f: scores[f]), _share(few, SEARCH_TRIALS)
-    if scores[best] < as_depth - NEARLY:
+    scores = {f: _share(on_axis(few, f), trials=SEARCH_TRIALS) for f in RAY_FOCALS}
+    best, as_depth = max(scores, key=lambda f: scores[f]), _share(few, trials=SEARCH_TRIALS)
+    if scores[best] < as_depth - NEARLY and not always:
         return ()
-    if scores[best] > as_depth:
+    if scores[best] > as_depth or always:
         scores = {best: _share(on_axis(sample, best))}
         for step in (1.15, 1.07, 1.035):
             for near in (best / step, best * step):
@@ -134,20 +139,38 @@ def _ray_focals(sample: SampledDepth, explained: float) -> tuple[float, ...]:
     return (best,)
 
 
-def _share(sample: SampledDepth, trials: int = TRIALS) -> float:
-    return planes_of(sample, inverse=False, trials=trials).explained
+def _bent(sample: SampledDepth, asked: DepthKind) -> tuple[tuple[Kind, DepthFunction], ...]:
+    """The root and the logarithm of depth, where the numbers form about as many planes as one as they do as depth."""
+    few = sample.thinned(SEARCH_POINTS)
+    enough = _share(few, trials=SEARCH_TRIALS) - NEARLY
+
+    def planar(spread: float) -> float:
+        return _share(few, DepthFunction(rate=spread / few.spread), SEARCH_TRIALS)
+
+    spread = max(LOG_RANGES, key=planar)
+    for step in (1.2, 1.1, 1.05):
+        spread = max((spread, spread / step, spread * step), key=planar)
+    kinds: dict[Kind, DepthFunction] = {"root": ROOT, "logarithm": DepthFunction(rate=spread / few.spread)}
+    return tuple((k, f) for k, f in kinds.items() if k == asked or _share(few, f, SEARCH_TRIALS) > enough)
 
 
-def _reading(kind: Kind, fit: PlaneFit, order: float, focal: float | None) -> DepthReading:
+def _share(sample: SampledDepth, function: DepthFunction = DEPTH, trials: int = TRIALS) -> float:
+    return planes_of(sample, function, trials).explained
+
+
+def _reading(
+    kind: Kind, function: DepthFunction, fit: PlaneFit, order: float, focal: float | None = None
+) -> DepthReading:
     score = PLANE_WEIGHT * fit.explained + ORDER_WEIGHT * order + PRIOR[kind]
-    return DepthReading(kind, score, fit, focal, order)
+    return DepthReading(kind, score, fit, function, focal, order)
 
 
 def _in_unit(reading: DepthReading, scale: float) -> DepthReading:
-    """The reading's planes in the map's own unit."""
-    factor = scale if reading.kind == "inverse" else 1.0 / scale
+    """The reading in the map's own unit."""
+    function, one = reading.function.of_larger(scale), np.ones(1)
+    factor = float(function.inverse_depth(scale * one)[0] / reading.function.inverse_depth(one)[0])
     fit = PlaneFit(reading.fit.explained, reading.fit.planes * factor, reading.fit.shares)
-    return DepthReading(reading.kind, reading.score, fit, reading.focal, reading.order)
+    return replace(reading, fit=fit, function=function)
 
 
 def _before_background(values: np.ndarray, valid: np.ndarray, box: LabelledBox, spread: float) -> float | None:

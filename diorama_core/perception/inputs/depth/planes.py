@@ -2,8 +2,8 @@
 
 In the pixels of a perspective photo a plane's inverse depth is an affine function, whatever the focal length. So the
 numbers themselves are piecewise affine where they are inverse depth or disparity (with any offset), their inverses are
-where they are depth along the optical axis, and the inverses of their product with the rays' cosines are where they are
-distances along the rays.
+where they are depth along the optical axis, the inverses of their squares where they are its square root, and the
+inverses of their product with the rays' cosines where they are distances along the rays.
 """
 
 from __future__ import annotations
@@ -11,7 +11,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from jaxtyping import Float
+from jaxtyping import Bool, Float
+
+from diorama_core.perception.inputs.depth.functions import DEPTH, DepthFunction
 
 MAX_PLANES = 5
 """Floor, ceiling and three walls are all that one photo of a room shows."""
@@ -23,6 +25,8 @@ MIN_NEW_SHARE = 0.01
 """Of the points, for a further plane."""
 _SEED = 7
 _ALL = slice(None)
+_NEIGHBOURS = 2
+"""Pixels around a sampled one whose median it is: a sensor's noise must not hide which reading makes planes."""
 _REACH = 0.35
 """Share of the picture's width within which the three points of a trial lie: of one surface, mostly."""
 
@@ -62,28 +66,34 @@ class PlaneFit:
     """Of the points, for each."""
 
 
-def sampled(values: Float[np.ndarray, "h w"], valid: np.ndarray) -> SampledDepth:
-    """Evenly spread valid numbers of a map."""
+def sampled(values: Float[np.ndarray, "h w"], valid: Bool[np.ndarray, "h w"]) -> SampledDepth:
+    """Evenly spread valid numbers of a map, each the median of its neighbourhood."""
     height, width = values.shape
     step = max(1, int(np.sqrt(valid.sum() / MAX_POINTS)))
     rows, columns = np.nonzero(valid[step // 2 :: step, step // 2 :: step])
     rows, columns = rows * step + step // 2, columns * step + step // 2
     side = max(height, width)
     x, y = (columns + 0.5 - width / 2) / side, (rows + 0.5 - height / 2) / side
-    return SampledDepth(x, y, values[rows, columns].astype(np.float64))
+    around = np.arange(-_NEIGHBOURS, _NEIGHBOURS + 1)
+    near = (
+        np.clip(rows[:, None, None] + around[:, None], 0, height - 1),
+        np.clip(columns[:, None, None] + around, 0, width - 1),
+    )
+    known = np.where(valid[near], values[near].astype(np.float64), np.nan)
+    return SampledDepth(x, y, np.nanmedian(known.reshape(len(rows), -1), axis=1))
 
 
-def planes_of(sample: SampledDepth, *, inverse: bool, trials: int = TRIALS) -> PlaneFit:
+def planes_of(sample: SampledDepth, function: DepthFunction = DEPTH, trials: int = TRIALS) -> PlaneFit:
     """The planes of a map, one after another by random trials.
 
     Args:
         sample: the numbers.
-        inverse: whether they are inverse depth, so that they are affine on planes; otherwise their inverses are.
+        function: of depth that they are.
         trials: planes through three points that are tried for each plane found.
     """
     random = np.random.default_rng(_SEED)
     basis = np.stack([sample.x, sample.y, np.ones_like(sample.x)], axis=1)
-    numbers = _Numbers(basis, sample.values, sample.spread, inverse)
+    numbers = _Numbers(basis, sample.values, sample.spread, function)
     left = np.ones(len(basis), bool)
     found, shares, explained = [], [], np.zeros(len(TOLERANCES))
     for _ in range(MAX_PLANES):
@@ -111,19 +121,16 @@ class _Numbers:
     basis: Float[np.ndarray, "n 3"]
     values: Float[np.ndarray, "n"]
     spread: float
-    inverse: bool
+    function: DepthFunction
 
     @property
     def affine(self) -> Float[np.ndarray, "n"]:
         """What is affine on planes."""
-        return self.values if self.inverse else 1.0 / self.values
+        return self.function.inverse_depth(self.values)
 
     def off(self, planes: Float[np.ndarray, "*k 3"], some: np.ndarray | slice = _ALL) -> Float[np.ndarray, "*k m"]:
         """Residuals of some numbers under planes, in shares of the spread: of all readings in the numbers' own unit."""
-        found = planes @ self.basis[some].T
-        if not self.inverse:
-            with np.errstate(divide="ignore"):
-                found = 1.0 / found
+        found = self.function.numbers(planes @ self.basis[some].T)
         return np.abs(found - self.values[some]) / self.spread
 
 

@@ -10,19 +10,13 @@ from jaxtyping import Bool, Float32, Shaped
 
 from diorama_core.artefacts import Box, LabelledBox
 from diorama_core.errors import InputError
+from diorama_core.perception.inputs.depth.choosing import chosen_reading
 from diorama_core.perception.inputs.depth.confidence import without_unsure
 from diorama_core.perception.inputs.depth.containers import DEPTH_FORMS
 from diorama_core.perception.inputs.depth.flips import turned, turned_over
-from diorama_core.perception.inputs.depth.kinds import (
-    CONTRADICTION,
-    MIN_ORDER,
-    DepthKind,
-    DepthReading,
-    depth_readings,
-    rays_of,
-)
+from diorama_core.perception.inputs.depth.kinds import DepthKind, depth_readings, rays_of
 from diorama_core.perception.inputs.depth.numpy_files import DepthContent, RawDepth
-from diorama_core.perception.inputs.depth.relative import metric_depth
+from diorama_core.perception.inputs.depth.relative import metric_depth, metric_of_bent
 from diorama_core.perception.inputs.depth.scale import focal_of_planes, scale_evidence
 from diorama_core.perception.inputs.depth.units import AmbiguousDepthError, DepthAnswer, unit_of
 from diorama_core.perception.inputs.depth.voids import measured
@@ -40,12 +34,8 @@ ROOM_MEDIAN_M = (0.15, 20.0)
 """Median depth of a photo of a room; outside, the unit is wrong."""
 MIN_COVERAGE = 0.01
 LOW_COVERAGE = 0.2
-CONTRADICTING_PLANES = 0.08
-"""Share of pixels by which inverse depth forms more planes, from which it would have to be what is given."""
 MIN_PIXELS = 1500
 """Measured, from which a map is looked at: fewer do not show what planes are."""
-MORE_PLANES = 0.015
-"""Share of pixels by which planes must speak for another reading, whatever near and far say."""
 MILLIMETRES = 1000.0
 MOSTLY = 0.5
 """Share of the pixels that must be negative, for a map of a camera that looks along -z."""
@@ -164,16 +154,20 @@ def _understood(
     told = options.kind == "depth" and options.per_metre is not None
     if told or (options.kind == "auto" and valid.sum() < MIN_PIXELS):
         return _in_metres(numbers, options.per_metre or stated), ()
-    readings = depth_readings(numbers, valid, scene.boxes, scene.focal)
-    reading, notes = _chosen(name, readings, raw, options.kind)
+    readings = depth_readings(numbers, valid, scene.boxes, scene.focal, options.kind)
+    reading, notes = chosen_reading(name, readings, raw.stated_kind, options.kind)
     if reading.kind == "inverse":
         depth, more = metric_depth(name, numbers, valid, reading.fit, scene.boxes, scene.focal)
+        return depth.astype(np.float32), (*notes, *more)
+    if reading.kind in ("root", "logarithm"):
+        depth, more = metric_of_bent(name, numbers, valid, reading, scene.boxes, scene.focal, options.per_metre)
         return depth.astype(np.float32), (*notes, *more)
     along = numbers
     if reading.kind == "distance" and reading.focal is not None:
         along = (numbers / rays_of(numbers.shape[0], numbers.shape[1], reading.focal)).astype(np.float32)
     focal = scene.focal or reading.focal or focal_of_planes(reading.fit)
-    unit = unit_of(scale_evidence(along, valid, reading.fit, focal, scene.boxes), options.per_metre or stated)
+    evidence = scale_evidence(along, valid, reading.fit, focal, scene.boxes)
+    unit = unit_of(evidence, options.per_metre or stated)
     if options.per_metre is not None:
         doubt = f"{unit.note or unit.question}".split("; ")[0]
         notes += (f"{doubt}: check --depth-scale",) if unit.note or unit.question else ()
@@ -181,56 +175,13 @@ def _understood(
     if unit.question:
         answers = tuple(DepthAnswer(words, per_metre) for per_metre, words in unit.choices)
         raise AmbiguousDepthError(f"{name}: {unit.question}", answers)
+    if evidence is None and not raw.is_float:
+        notes += ("the depth was taken for millimetres, which neither a floor nor named things confirm: --depth-scale",)
     return _in_metres(along, unit.per_metre), (*notes, *([unit.note] if unit.note else []))
 
 
 def _in_metres(numbers: Float32[np.ndarray, "h w"], per_metre: float) -> Float32[np.ndarray, "h w"]:
     return numbers if per_metre == 1.0 else (numbers / np.float64(per_metre)).astype(np.float32)
-
-
-def _chosen(
-    name: str, readings: tuple[DepthReading, ...], raw: RawDepth, kind: DepthKind
-) -> tuple[DepthReading, tuple[str, ...]]:
-    """The reading that is used, and what to say about it.
-
-    Raises:
-        AmbiguousDepthError: the map is inverse depth.
-        InputError: it contradicts the picture.
-    """
-    best, of_kind = readings[0], {r.kind: r for r in readings}
-    if kind != "auto":
-        given = of_kind[kind]
-        against = best.score - given.score > CONTRADICTION
-        note = f"{name} was read as {_WORDS[kind]} as asked, but its planes look like {_WORDS[best.kind]}"
-        return given, (note,) if against else ()
-    if raw.stated_kind == "inverse" and best.kind != "inverse":
-        best = of_kind["inverse"]
-    flat, order = of_kind["inverse"].fit.explained - of_kind["depth"].fit.explained, of_kind["inverse"].order
-    if flat > CONTRADICTING_PLANES and order < MIN_ORDER:
-        raise InputError(
-            f"{name}: this contradicts the picture: walls and floor are not flat, near and far are not the photo's; "
-            "give z in the camera, or say what it is by --depth-kind"
-        )
-    clearly = (
-        best.score - of_kind["depth"].score > CONTRADICTION / 2
-        and best.fit.explained > of_kind["depth"].fit.explained + MORE_PLANES
-    )
-    if best.kind == "depth" or not clearly:
-        return of_kind["depth"], ()
-    if best.kind == "distance":
-        note = f"{name} holds distances along the rays, not along the optical axis: only so are walls and floor flat"
-        return best, (note + "; they were converted (--depth-kind depth keeps them)",)
-    raise AmbiguousDepthError(
-        f"{name}: this is inverse depth or disparity (larger is nearer), which has no unit; give metric depth, or add "
-        "--depth-kind inverse to fit it to the things' usual sizes",
-        (
-            DepthAnswer("inverse depth, fitted to the usual sizes of things", kind="inverse"),
-            DepthAnswer("depth along the optical axis after all", kind="depth"),
-        ),
-    )
-
-
-_WORDS = {"depth": "depth along the optical axis", "distance": "distances along the rays", "inverse": "inverse depth"}
 
 
 def _positive(

@@ -1,4 +1,7 @@
-"""Inverse depth of unknown offset and unit made metric: walls meet floors at right angles, things have their sizes."""
+"""Inverse depth of any offset and unit, and roots and logarithms of depth made metric.
+
+Walls meet floors at right angles, things have their sizes, and a camera is held at a person's height.
+"""
 
 from __future__ import annotations
 
@@ -9,13 +12,26 @@ from jaxtyping import Bool, Float
 
 from diorama_core.artefacts import LabelledBox
 from diorama_core.errors import InputError
+from diorama_core.perception.inputs.depth.functions import DepthFunction
+from diorama_core.perception.inputs.depth.kinds import DepthReading
 from diorama_core.perception.inputs.depth.planes import PlaneFit
-from diorama_core.perception.inputs.depth.scale import focal_score, scale_evidence, size_scatter
+from diorama_core.perception.inputs.depth.scale import (
+    ScaleEvidence,
+    focal_of_planes,
+    focal_score,
+    scale_evidence,
+    size_scatter,
+)
+from diorama_core.perception.inputs.depth.units import CONTRADICTED_BY
 
 OFFSETS = np.concatenate([[0.0], np.geomspace(0.003, 2.0, 60), -np.geomspace(0.003, 0.95, 40)])
 """Added to the numbers, in shares of their smallest: what a network or a program subtracted before."""
 SCATTER_WEIGHT = 12.0
 """Nats for a scatter of one e-fold among the sizes of named things."""
+BASES = (1.0, float(np.log(2.0)), float(np.log(10.0)))
+"""Rates of the logarithms that are in use."""
+NEAR_BASE = 0.15
+"""Of the logarithm of a fitted rate and one of those: planes tell it to a tenth."""
 
 
 def metric_depth(
@@ -53,13 +69,56 @@ def metric_depth(
     _, offset, used = best
     depth = _inverted(values, valid, offset, smallest)
     moved = PlaneFit(fit.explained, fit.planes + np.array([0.0, 0.0, offset]), fit.shares)
-    evidence = scale_evidence(depth, valid, moved, used, boxes)
+    factor = _factor(name, scale_evidence(depth, valid, moved, used, boxes))
+    note = f"{name} is inverse depth; its size and offset were fitted to walls, floor and the usual sizes of things"
+    return depth * factor, (note,)
+
+
+def metric_of_bent(
+    name: str,
+    values: Float[np.ndarray, "h w"],
+    valid: Bool[np.ndarray, "h w"],
+    reading: DepthReading,
+    boxes: Sequence[LabelledBox],
+    focal: float | None,
+    per_metre: float | None,
+) -> tuple[Float[np.ndarray, "h w"], tuple[str, ...]]:
+    """Depth in metres of its root or logarithm, with a note how it came about.
+
+    Args:
+        name: of the file.
+        values: the root or logarithm.
+        valid: where there are some.
+        reading: of the numbers.
+        boxes: named things in shares of the longer side.
+        focal: over the longer side, where it is known.
+        per_metre: numbers for one of metres: their root times this, or their natural logarithm; None to fit it.
+
+    Raises:
+        InputError: neither named things nor a floor give it a size.
+    """
+    rate, function = reading.function.rate, reading.function
+    if per_metre is not None:
+        natural = function if rate is None else DepthFunction(rate=1.0)
+        return np.where(valid, 1.0 / natural.inverse_depth(values / per_metre), 0.0), ()
+    base = None if rate is None else min(BASES, key=lambda b: abs(np.log(rate / b)))
+    usual = rate is None or (base is not None and abs(np.log(rate / base)) < NEAR_BASE)
+    if usual and base is not None:
+        function = DepthFunction(rate=base)
+    depth = np.where(valid, 1.0 / function.inverse_depth(values), 0.0)
+    evidence = scale_evidence(depth, valid, reading.fit, focal or focal_of_planes(reading.fit), boxes)
+    if usual and (evidence is None or abs(evidence.log_scale) < CONTRADICTED_BY):
+        return depth, (f"{name} was read as the {reading.kind} of metres",)
+    note = f"{name} is a {reading.kind} of depth; its size was fitted to the floor and the usual sizes of things"
+    return depth * _factor(name, evidence), (note,)
+
+
+def _factor(name: str, evidence: ScaleEvidence | None) -> float:
     if evidence is None:
         raise InputError(
-            f"{name}: inverse depth has no unit, and no named thing or floor gives it one; add --boxes, or metric depth"
+            f"{name}: this depth has no unit, and no named thing or floor gives it one; add --boxes, or metric depth"
         )
-    note = f"{name} is inverse depth; its size and offset were fitted to walls, floor and the usual sizes of things"
-    return depth * float(np.exp(evidence.log_scale)), (note,)
+    return float(np.exp(evidence.log_scale))
 
 
 def _inverted(values: np.ndarray, valid: np.ndarray, offset: float, smallest: float) -> np.ndarray:

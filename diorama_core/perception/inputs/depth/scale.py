@@ -1,4 +1,4 @@
-"""How long the unit of a depth map is: named things have their usual sizes, and the camera the height of a person."""
+"""How long the unit of a depth map is: named things have usual sizes, rooms usual heights, and so have cameras."""
 
 from __future__ import annotations
 
@@ -22,6 +22,12 @@ PAIR_WEIGHT = 40.0
 """Nats for two planes of all pixels that meet at a right angle."""
 HEIGHT_PRIOR = (1.5, 0.22)
 """Camera height over the floor in metres: median, and standard deviation of the logarithm."""
+ROOM_HEIGHT_PRIOR = (2.6, 0.15)
+"""Height of a room in metres, likewise: homes and offices, not halls."""
+HEIGHTS_AGREE = float(np.log(1.35))
+"""Of what the camera's and the room's heights say, within which both say it."""
+MIN_LEVEL_SHARE = 0.03
+"""Of the points, that a floor or ceiling has."""
 SIZE_SIGMA = 0.55
 """Of the logarithm of one thing's seen size over its kind's: occlusion, pose and the kind's own variation."""
 MIN_SIZE_SIGMA = 0.15
@@ -46,6 +52,16 @@ class ScaleEvidence:
     """Named things that say so."""
     floor_height: float | None
     """Of the camera over the floor, in the map's unit; None where no floor is seen."""
+    room_height: float | None = None
+    """Of the ceiling over the floor, likewise."""
+
+    @property
+    def heights_agree(self) -> bool:
+        """Whether the camera's height and the room's tell the same unit."""
+        if self.floor_height is None or self.room_height is None:
+            return False
+        expected = ROOM_HEIGHT_PRIOR[0] / HEIGHT_PRIOR[0]
+        return abs(float(np.log(self.room_height / self.floor_height / expected))) < HEIGHTS_AGREE
 
 
 def focal_of_planes(fit: PlaneFit) -> float:
@@ -91,7 +107,7 @@ def scale_evidence(
         boxes: in shares of the longer side of the map, x and y from its upper left.
     """
     logs = [v for box in boxes for v in _log_scales(depth, valid, focal, box)]
-    height = _floor_height(fit, focal)
+    height, room = _heights(fit, focal)
     terms = []
     if logs:
         spread = max(MIN_SIZE_SIGMA, SIZE_SIGMA / np.sqrt(len(logs) / 2))
@@ -103,11 +119,13 @@ def scale_evidence(
     if len(terms) == 2 and abs(terms[0][0] - terms[1][0]) > DISAGREEMENT:
         # The lowest plane is a table's top, or things are of unusual sizes: several things decide, one does not.
         if len(logs) < 6:
-            return ScaleEvidence(terms[0][0], terms[0][1], 0, height)
+            return ScaleEvidence(terms[0][0], terms[0][1], 0, height, room)
         terms = terms[:1]
+    if room is not None and not logs:
+        terms.append((float(np.log(ROOM_HEIGHT_PRIOR[0] / room)), ROOM_HEIGHT_PRIOR[1]))
     weights = np.array([1.0 / s**2 for _, s in terms])
     mean = float(weights @ [m for m, _ in terms] / weights.sum())
-    return ScaleEvidence(mean, float(weights.sum() ** -0.5), len(logs) // 2, height)
+    return ScaleEvidence(mean, float(weights.sum() ** -0.5), len(logs) // 2, height, room)
 
 
 def _cosine(one: np.ndarray, other: np.ndarray) -> Float[np.ndarray, "f"]:
@@ -117,13 +135,15 @@ def _cosine(one: np.ndarray, other: np.ndarray) -> Float[np.ndarray, "f"]:
     return (a * b).sum(axis=1) / np.maximum(np.linalg.norm(a, axis=1) * np.linalg.norm(b, axis=1), 1e-12)
 
 
-def _floor_height(fit: PlaneFit, focal: float) -> float | None:
-    """Of the camera over the lowest large plane that faces up."""
+def _heights(fit: PlaneFit, focal: float) -> tuple[float | None, float | None]:
+    """Of the camera over the lowest large plane that faces up, and of the highest that faces down over that."""
     normals = fit.planes * [focal, focal, 1.0]
     lengths = np.maximum(np.linalg.norm(normals, axis=1), 1e-12)
-    level = normals[:, 1] / lengths > FLOOR_COSINE
-    heights = (1.0 / lengths)[level & (fit.shares > 0.03)]
-    return float(heights.max()) if len(heights) else None
+    away, downward = 1.0 / lengths, normals[:, 1] / lengths
+    large = fit.shares > MIN_LEVEL_SHARE
+    floors, ceilings = away[large & (downward > FLOOR_COSINE)], away[large & (downward < -FLOOR_COSINE)]
+    floor = float(floors.max()) if len(floors) else None
+    return floor, None if floor is None or not len(ceilings) else floor + float(ceilings.max())
 
 
 def _log_scales(depth: np.ndarray, valid: np.ndarray, focal: float, box: LabelledBox) -> list[float]:

@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
+from diorama_core.perception.inputs.depth.choosing import chosen_reading
 from diorama_core.perception.inputs.depth.kinds import depth_readings, near_and_far, rays_of
 from diorama_core.perception.inputs.depth.planes import PlaneFit, planes_of, sampled
-from diorama_core.perception.inputs.depth.relative import metric_depth
-from diorama_core.perception.inputs.depth.scale import focal_of_planes, scale_evidence
-from diorama_core.perception.inputs.depth.units import unit_of
-from tests.perception.inputs.depth.rooms import CAMERA_M, FOCAL, HEIGHT, WIDTH, room
+from diorama_core.perception.inputs.depth.relative import metric_depth, metric_of_bent
+from diorama_core.perception.inputs.depth.scale import ScaleEvidence, focal_of_planes, scale_evidence
+from diorama_core.perception.inputs.depth.units import AmbiguousDepthError, unit_of
+from tests.perception.inputs.depth.rooms import CAMERA_M, CEILING_M, FOCAL, HEIGHT, WIDTH, room
 
 DEPTH, THINGS = room()
 SEEN = np.ones(DEPTH.shape, bool)
@@ -53,7 +56,7 @@ def test_near_and_far() -> None:
 
 
 def test_planes_of_a_room_meet_at_right_angles_under_its_focal_length() -> None:
-    fit = planes_of(sampled(DEPTH, SEEN), inverse=False)
+    fit = planes_of(sampled(DEPTH, SEEN))
     assert fit.explained > 0.7
     turned = np.array([[np.sin(a), 0.0, np.cos(a)] for a in (0.5, 0.5 + np.pi / 2)])  # two walls seen at an angle
     walls = PlaneFit(1.0, turned * [1 / FOCAL, 1 / FOCAL, 1.0], np.array([0.5, 0.4]))
@@ -78,7 +81,9 @@ def test_the_scale_is_told_by_things_and_the_floor(per_metre: float) -> None:
 def test_without_things_the_stated_unit_stays_and_an_odd_height_is_remarked() -> None:
     reading = best(DEPTH * 5.0)
     evidence = scale_evidence(DEPTH * 5.0, SEEN, reading.fit, FOCAL, ())
-    unit = unit_of(evidence, 1.0)
+    assert evidence is not None
+    assert "13.0 m high and the camera 8.0 m above the floor" in unit_of(evidence, 1.0).question
+    unit = unit_of(replace(evidence, room_height=None), 1.0)
     assert (unit.per_metre, unit.question) == (1.0, "")
     assert "8.0 m above the floor" in unit.note
     assert unit_of(None, 1000.0).note == ""
@@ -92,3 +97,66 @@ def test_inverse_depth_becomes_metric_by_walls_and_things() -> None:
     assert abs(np.median(off)) < 0.25
     assert np.percentile(np.abs(off - np.median(off)), 90) < 0.1
     assert "inverse depth" in notes[0]
+
+
+@pytest.mark.parametrize(
+    ("kind", "values"),
+    [
+        ("root", np.sqrt(DEPTH)),
+        ("root", np.sqrt(DEPTH) * 90.0),
+        ("logarithm", np.log(DEPTH)),
+        ("logarithm", np.log10(1000.0 * DEPTH)),
+        ("logarithm", 255.0 * np.log(DEPTH / 0.3) / np.log(40.0)),
+    ],
+)
+def test_roots_and_logarithms_are_asked_for_without_any_box(kind: str, values: np.ndarray) -> None:
+    values = values.astype(np.float32)
+    readings = depth_readings(values, SEEN, (), None)
+    with pytest.raises(AmbiguousDepthError, match=f"--depth-kind {kind}") as asked:
+        chosen_reading("d.npy", readings, None, "auto")
+    assert [c.kind for c in asked.value.choices] == [kind, "depth"]
+    reading, _ = chosen_reading("d.npy", depth_readings(values, SEEN, (), None, kind), None, kind)
+    depth, notes = metric_of_bent("d.npy", values, SEEN, reading, THINGS, FOCAL, None)
+    off = np.log(depth / DEPTH)
+    assert abs(np.median(off)) < 0.25
+    assert np.percentile(np.abs(off - np.median(off)), 90) < 0.03
+    assert kind in notes[0]
+
+
+def test_roots_and_logarithms_in_a_stated_unit_are_exact() -> None:
+    for kind, values in (("root", 8.0 * np.sqrt(DEPTH)), ("logarithm", 8.0 * np.log(DEPTH))):
+        reading = depth_readings(values, SEEN, (), None, kind)
+        chosen, _ = chosen_reading("d.npy", reading, None, kind)
+        depth, notes = metric_of_bent("d.npy", values, SEEN, chosen, (), None, 8.0)
+        assert depth == pytest.approx(DEPTH, rel=1e-5)
+        assert notes == ()
+
+
+@pytest.mark.parametrize("kind", ["depth", "distance", "inverse", "root", "logarithm"])
+def test_a_kind_that_is_given_is_among_the_readings(kind: str) -> None:
+    assert kind in {r.kind for r in depth_readings(DEPTH, SEEN, (), None, kind)}
+
+
+def test_depth_whose_planes_noise_hides_is_no_other_function() -> None:
+    for share in (0.005, 0.02, 0.05):
+        readings = depth_readings(noisy(DEPTH, share), SEEN, (), None)
+        assert chosen_reading("d.npy", readings, None, "auto")[0].kind == "depth"
+        assert chosen_reading("d.npy", readings, None, "auto")[1] == ()
+
+
+@pytest.mark.parametrize(("unit", "likely"), [(512.0, {500.0, 512.0}), (256.0, {256.0}), (5000.0, {5000.0, 4000.0})])
+def test_the_heights_of_room_and_camera_contradict_a_unit_without_any_box(unit: float, likely: set[float]) -> None:
+    values = (DEPTH * unit).astype(np.float32)
+    evidence = scale_evidence(values, SEEN, best(values, ()).fit, FOCAL, ())
+    assert evidence is not None
+    assert evidence.heights_agree
+    assert evidence.room_height == pytest.approx((CAMERA_M + CEILING_M) * unit, rel=0.05)
+    found = unit_of(evidence, 1000.0)
+    assert "the room is" in found.note + found.question
+    assert likely & {found.per_metre, *(u for u, _ in found.choices)}
+
+
+def test_a_high_hall_contradicts_nothing() -> None:
+    evidence = ScaleEvidence(float(np.log(0.7)), 0.1, 0, 1.6, 5.2)
+    assert not evidence.heights_agree
+    assert unit_of(evidence, 1.0) == unit_of(None, 1.0)

@@ -54,6 +54,12 @@ def test_rotated_bits_are_turned_back(value: int) -> None:
     assert found[0, 0] == pytest.approx(expected)
 
 
+def test_whole_numbers_that_nothing_confirms_are_remarked() -> None:
+    _, notes = read(depth_png(FLAT * 1000))
+    assert "taken for millimetres" in notes[0]
+    assert read(npy(FLAT))[1] == ()
+
+
 def test_every_way_of_saying_nothing_seen_is_zero() -> None:
     depth = FLAT.copy()
     depth[0, :7] = [np.nan, np.inf, -np.inf, -1.0, 0.0, 2 * SKY_M, FARTHEST_M + 1]
