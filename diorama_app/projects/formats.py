@@ -27,7 +27,7 @@ HTML = Format(
     "Viewer in one page",
     (".html",),
     "what one sees, to turn around in any browser without a server",
-    "diorama_app.web.html_viewer:write_html",
+    "diorama_app.viewport.html_viewer:write_html",
 )
 EXPORT_FORMATS: Mapping[str, Format] = {**FORMATS, HTML.name: HTML}
 """By the name the command line knows them by."""

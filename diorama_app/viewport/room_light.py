@@ -17,7 +17,6 @@ import viser
 from jaxtyping import Float
 
 from diorama_app.viewport.mesh_assets import ShapeBytes, plane_triangles
-from diorama_app.web.lights import AROUND, GROUND, MAIN_LIGHT_AWAY_M, MAIN_LIGHT_EVEN, MAIN_LIGHT_STRENGTH, SKY
 from diorama_core.geometry.openings import OPENING_CATEGORIES, with_openings
 from diorama_core.geometry.sun import Daylight, daylight
 from diorama_core.geometry.sun_patches import sun_patches
@@ -25,6 +24,10 @@ from diorama_core.geometry.unseen_walls import closed_room
 from diorama_core.scene.light_settings import LightSettings
 from diorama_core.scene.types import Architecture, Plane, RoomLight, Scene, SceneObject
 
+MAIN_LIGHT_AWAY_M = 12.0
+MAIN_LIGHT_EVEN, MAIN_LIGHT_STRENGTH = 0.6, 2.2
+"""Its intensity where light comes from everywhere, and how much that grows up to light from one side alone."""
+SKY, GROUND, AROUND = (255, 252, 246), (176, 170, 162), (255, 250, 244)
 WHITE = (255, 255, 255)
 ABOVE = (-0.2, 0.2, 1.0)
 """Where light comes from in a room that no photo shows."""

@@ -9,8 +9,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 from PIL import Image
+from playwright.sync_api import expect
 
-from diorama_app.web.html_viewer import write_html
+from diorama_app.viewport.html_viewer import write_html
 from diorama_core.export.gathering import gather
 from diorama_core.scene.types import RoomLight
 from tests.e2e.browser import FLAGS
@@ -43,6 +44,37 @@ def test_it_opens_from_disk_and_shows_the_room(driver, program: str, tmp_path: P
     assert [u for u in asked if u.startswith("http")] == []
     assert shows_the_ball(pixels), "the red ball on the table is seen"
     assert (pixels.min(axis=2) > 250).mean() < 0.3, "it is not lit so brightly that all is white"
+
+
+def test_title_views_and_exposure_are_the_editors_and_there_is_no_tree(driver, program: str, tmp_path: Path) -> None:
+    room = furnished_room(LIBRARY)
+    dark = replace(room, light=None, light_settings=replace(room.light_settings, exposure_ev=-1.0))
+    write_html(gather(dark, LIBRARY, name="The <b>room</b> `${1}`"), tmp_path / "room.html")
+    with driver.chromium.launch(executable_path=program, args=list(FLAGS)) as browser:
+        page = browser.new_context(viewport={"width": 480, "height": 360}, offline=True).new_page()
+        page.goto((tmp_path / "room.html").as_uri())
+        expect(page.get_by_role("heading")).to_have_text("The <b>room</b> `${1}`")
+        page.wait_for_function(f"!!window.__viserMutable?.nodeRefFromName['/scene'] && ({LIGHTS})().length > 1")
+        assert sorted(page.evaluate(LIGHTS)) == pytest.approx([0.2, 1.5]), "half of the editor's"
+        expect(page.locator("#root button:visible")).to_have_count(0)
+        eyes = []
+        for name in ("Photo", "Room", "Top"):
+            button = page.get_by_role("button", name=name)
+            button.click()
+            expect(button).to_have_attribute("aria-pressed", "true")
+            page.wait_for_timeout(500)
+            eyes.append(page.evaluate(EYE))
+        page.screenshot(path=str(tmp_path / "top.png"), timeout=60_000)
+    assert room.camera is not None
+    np.testing.assert_allclose(eyes[0], room.camera.position, atol=1e-3)
+    assert eyes[1][2] > room.camera.position[2], "the room is seen from above"
+    assert eyes[2][2] > eyes[1][2] + 5.0, "from far above, with hardly any perspective"
+
+
+LIGHTS = """() => { const found = []; window.__viserMutable.scene?.traverse((o) =>
+    o.isDirectionalLight && o.visible && found.push(o.intensity)); return found; }"""
+EYE = """() => { const m = window.__viserMutable;
+    return m.nodeRefFromName[''].worldToLocal(m.camera.position.clone()).toArray(); }"""
 
 
 def shows_the_ball(pixels: np.ndarray) -> bool:

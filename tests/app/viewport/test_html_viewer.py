@@ -7,7 +7,7 @@ import re
 
 import pytest
 
-from diorama_app.web.html_viewer import write_html
+from diorama_app.viewport.html_viewer import write_html
 from diorama_core.errors import Cancelled
 from diorama_core.export.gathering import gather
 from diorama_core.progress import CancelToken, Progress
