@@ -37,7 +37,7 @@ from diorama_app.panels.outliner import Outliner
 from diorama_app.panels.overlays import Overlays
 from diorama_app.panels.own_model import OwnModel
 from diorama_app.panels.photo import PhotoPanel
-from diorama_app.panels.photo_camera import PhotoCamera
+from diorama_app.panels.photo_camera import PhotoCameraPanel
 from diorama_app.panels.photo_correction import PhotoCorrection
 from diorama_app.panels.photo_strip import PhotoStrip
 from diorama_app.panels.physics import Physics
@@ -205,7 +205,7 @@ class Editor:
         with from_photo:
             place("The photos of the room", lambda: PhotoStrip(gui, client, self.views))
             photo = place("The photo", lambda: PhotoPanel(gui, client, self.commands))
-            place("The photo's camera", lambda: PhotoCamera(gui, client, self.views))
+            place("The photo's camera", lambda: PhotoCameraPanel(gui, client, self.views))
         with arrange:
             client.curves = place("The layout", lambda: Optimiser(gui, client))
         with projects:

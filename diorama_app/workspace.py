@@ -30,7 +30,7 @@ CLOSED_AFTER_S = 60.0
 
 
 class Workspace:
-    """Implements `Projects` of the web server. May be used from any thread."""
+    """Implements `ProjectServers`. May be used from any thread."""
 
     def __init__(self, library: ShapeLibrary, projects_dir: Path, *, low_graphics: bool) -> None:
         """Without any project at first.

@@ -11,7 +11,7 @@ import numpy as np
 
 from diorama_core.appearance.surface_finish import usual_finish, with_finish_pictures
 from diorama_core.arrangement.surfaces import plane_surface
-from diorama_core.editing.placing import Hit, Place, free_spot, hits_along, insertion, places_of
+from diorama_core.editing.placing import Hit, SupportTarget, free_spot, hits_along, insertion, places_of
 from diorama_core.export.pictures import Picture
 from diorama_core.importing.scene_import import import_scene
 from diorama_core.library.record import Shape, ShapeLibrary
@@ -115,5 +115,5 @@ def _hung(scene: Scene, shape: Shape, wall: Plane, along: float) -> Scene:
     """A shape hung on a wall at a share of its width, as by a click on the wall."""
     corners = wall.polygon[np.argsort(wall.polygon[:, 2])[:2]]
     point = corners[0] + along * (corners[1] - corners[0]) + np.array([0.0, 0.0, 1.4])
-    hit = Hit(Place(plane_surface(wall), wall.id, of_object=False), point, 0.0)
+    hit = Hit(SupportTarget(plane_surface(wall), wall.id, of_object=False), point, 0.0)
     return edits.insert(scene, *insertion(scene, shape, edits.fresh_id(scene, shape.category), hit, 0.0))

@@ -19,7 +19,7 @@ from diorama_core.progress import Progress
 from diorama_core.scene.types import Scene
 
 if TYPE_CHECKING:
-    from diorama_core.library.ingest.shaping import Source
+    from diorama_core.library.ingest.shaping import ModelSource
 
 
 def import_model(client: Client, name: str, content: bytes) -> None:
@@ -68,7 +68,7 @@ def _taken_in(user_library: UserLibrary, name: str, content: bytes, progress: Pr
         return found[0].id
 
 
-def _note_names(user_library: UserLibrary, found: Sequence[Source], stem: str) -> None:
+def _note_names(user_library: UserLibrary, found: Sequence[ModelSource], stem: str) -> None:
     """Each model has its file's name until its owner gives another; one added again is deleted no more."""
     models = user_library.own_models
     for source in found:

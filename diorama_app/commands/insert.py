@@ -13,7 +13,7 @@ from diorama_core.editing.clear_of_walls import clear_of_walls
 from diorama_core.editing.opening_insertion import with_opening
 from diorama_core.editing.placing import (
     Hit,
-    Place,
+    SupportTarget,
     facing,
     fits,
     free_spot,
@@ -177,5 +177,7 @@ def _on_ground(origin: np.ndarray, direction: np.ndarray) -> Hit | None:
     """Where there is no floor yet: level ground at height 0."""
     big = 50.0
     outline = np.array([[-big, -big, 0.0], [big, -big, 0.0], [big, big, 0.0], [-big, big, 0.0]])
-    ground = Place(Surface.of(outline, np.array([0.0, 0.0, 1.0]), float("inf"), of_plane=True), "", of_object=False)
+    ground = SupportTarget(
+        Surface.of(outline, np.array([0.0, 0.0, 1.0]), float("inf"), of_plane=True), "", of_object=False
+    )
     return next(iter(hits_along(origin, direction, [ground])), None)

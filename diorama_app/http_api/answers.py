@@ -19,7 +19,7 @@ MAX_COUNTED = 2048
 """Scenes whose objects are counted once, for as long as their files stay as they are."""
 
 
-class Problem(BaseModel):
+class ErrorAnswer(BaseModel):
     """Every error."""
 
     error: str = Field(description="What was wrong and what to do, in one line.")

@@ -9,7 +9,7 @@ from fastapi.exceptions import RequestValidationError
 from fastapi.responses import JSONResponse
 from starlette.exceptions import HTTPException as StarletteHTTPException
 
-from diorama_app.http_api.answers import Problem
+from diorama_app.http_api.answers import ErrorAnswer
 from diorama_app.http_api.jobs import JobStateError, QueueFullError, UnknownJobError
 from diorama_app.http_api.open_projects import StaleVersionError, UnknownProjectError
 from diorama_core.errors import DioramaError, EditRefused, ExportError, InputError, UnavailableError
@@ -44,7 +44,7 @@ WORDS = {
 
 def documented(*statuses: int) -> dict[int | str, dict[str, Any]]:
     """The errors of an address for the OpenAPI document; those of access are everywhere."""
-    return {s: {"model": Problem, "description": WORDS[s]} for s in (401, 403, *statuses)}
+    return {s: {"model": ErrorAnswer, "description": WORDS[s]} for s in (401, 403, *statuses)}
 
 
 def told(request: Request, error: Exception) -> Response:

@@ -35,7 +35,7 @@ MIN_SHOWN_M = 0.005
 
 
 @dataclass(frozen=True)
-class Turn:
+class GizmoDrag:
     """A gizmo drag in progress, with the scene at its start."""
 
     object_id: str
@@ -43,7 +43,7 @@ class Turn:
 
 
 @dataclass
-class _Drag:
+class _BodyDrag:
     """A drag of an object's body, with its current pose."""
 
     slide: Slide
@@ -57,7 +57,7 @@ class Gestures:
         self._client = client
         self._session = client.session
         self._collisions = collisions
-        self._drag: Turn | _Drag | None = None
+        self._drag: GizmoDrag | _BodyDrag | None = None
         self._gizmo: viser.TransformControlsHandle | None = None
         self._gizmo_key: tuple[str, GizmoMode, float] | None = None
         self._last_pick: tuple[float, float] | None = None
@@ -141,10 +141,10 @@ class Gestures:
             slide = Slide.begin(session.scene, session.library, object_id, grabbed, client.selection)
             self._remove()
             self._handles.show(None)
-            self._drag = _Drag(slide, session.scene)
+            self._drag = _BodyDrag(slide, session.scene)
             return
         drag = self._drag
-        if not isinstance(drag, _Drag):
+        if not isinstance(drag, _BodyDrag):
             return
         if phase == "update":
             eye = np.asarray(client.viser_client.camera.position, dtype=np.float64)
@@ -187,7 +187,7 @@ class Gestures:
         if drag is None:
             client.view.show_distances(())
             return
-        dragged = drag.slide.item.id if isinstance(drag, _Drag) else drag.object_id
+        dragged = drag.slide.item.id if isinstance(drag, _BodyDrag) else drag.object_id
         client.view.show_distances(
             [
                 (c.start, c.end, format_length(c.distance_m, client.preferences.unit))
@@ -204,7 +204,7 @@ class Gestures:
 
     def _moving(self) -> Iterable[str]:
         drag = self._drag
-        if isinstance(drag, _Drag):
+        if isinstance(drag, _BodyDrag):
             item = drag.slide.item
             return (item.id, *descendants(drag.slide.scene, item.id), *drag.slide.along)
         return () if drag is None else (drag.object_id, *descendants(drag.scene, drag.object_id))
@@ -223,7 +223,7 @@ class Gestures:
             item is None
             or item.locked
             or item.hidden
-            or isinstance(self._drag, _Drag)
+            or isinstance(self._drag, _BodyDrag)
             or self._client.doing is not None
         ):
             item = None
@@ -265,7 +265,7 @@ class Gestures:
         return gizmo
 
     def _remove(self) -> None:
-        if self._gizmo is not None and not isinstance(self._drag, Turn):
+        if self._gizmo is not None and not isinstance(self._drag, GizmoDrag):
             self._gizmo.remove()
             self._gizmo = self._gizmo_key = None
 
@@ -274,9 +274,9 @@ class Gestures:
         if self._drag is None:
             if item is None or phase != "start":
                 return
-            self._drag = Turn(item.id, self._session.scene)
+            self._drag = GizmoDrag(item.id, self._session.scene)
         drag = self._drag
-        if not isinstance(drag, Turn):
+        if not isinstance(drag, GizmoDrag):
             return
         start = drag.scene.object(drag.object_id)
         pose = Pose(rotation_from_quaternion(wxyz), position, start.pose.scale)

@@ -29,7 +29,7 @@ FIELDS = {
 }
 
 
-class PhotoCamera:
+class PhotoCameraPanel:
     """A folded list below the photo."""
 
     def __init__(self, gui: viser.GuiApi, client: Client, views: Views) -> None:

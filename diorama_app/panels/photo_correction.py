@@ -15,7 +15,7 @@ from diorama_core.artefacts import LabelledBox
 from diorama_core.errors import EditRefused
 
 if TYPE_CHECKING:
-    from diorama_core.editing.outline import Outline
+    from diorama_core.editing.outline import MaskDraft
 
 
 class PhotoCorrection:
@@ -24,7 +24,7 @@ class PhotoCorrection:
     def __init__(self, gui: viser.GuiApi, client: Client) -> None:
         self._client = client
         self._html = LiveHtml(gui, self._act)
-        self._outline: Outline | None = None
+        self._outline: MaskDraft | None = None
         self._of: str | None = None
 
     def refresh(self) -> None:

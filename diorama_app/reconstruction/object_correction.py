@@ -19,7 +19,7 @@ from diorama_core.scene import edits
 from diorama_core.scene.types import Scene, SceneObject
 
 if TYPE_CHECKING:
-    from diorama_core.editing.outline import Outline
+    from diorama_core.editing.outline import MaskDraft
     from diorama_core.pipeline.reconstruct_object import Found  # the whole pipeline; opening a project does without it
 
 
@@ -55,7 +55,7 @@ def redraw_box(client: Client, object_id: str, box: Box) -> None:
     _reconstruct(client, item.box_px, now, object_id, label, _replaced(client, object_id))
 
 
-def use_outline(client: Client, object_id: str, outline: Outline) -> None:
+def use_outline(client: Client, object_id: str, outline: MaskDraft) -> None:
     """Change an object's mask: retrieves and poses it again."""
     item = client.session.scene.object(object_id)
     if not outline.mask.any():
@@ -65,17 +65,17 @@ def use_outline(client: Client, object_id: str, outline: Outline) -> None:
     _reconstruct(client, item.box_px, box, object_id, label, _replaced(client, object_id), drawn=outline.mask)
 
 
-def start_outline(client: Client, object_id: str) -> Outline:
+def start_outline(client: Client, object_id: str) -> MaskDraft:
     """The present outline of an object: as it was given, or as far as its box tells."""
     item, inputs = _seen(client, object_id), _inputs(client)
-    from diorama_core.editing.outline import Outline
+    from diorama_core.editing.outline import MaskDraft
     from diorama_core.perception.masks import EmbeddedMasks
 
     assert item.box_px is not None
     mask = given_outline(inputs, item.box_px)
     if mask is None:
         mask, _ = EmbeddedMasks().inside_box(inputs.photo.rgb, item.box_px)
-    return Outline(inputs.photo.rgb, item.box_px, mask)
+    return MaskDraft(inputs.photo.rgb, item.box_px, mask)
 
 
 def _reconstruct(

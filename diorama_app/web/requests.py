@@ -32,7 +32,7 @@ PROJECT = "project"
 
 
 @runtime_checkable
-class Projects(Protocol):
+class ProjectServers(Protocol):
     """Which project an address leads to."""
 
     def first(self) -> str | None:
@@ -45,7 +45,7 @@ class Projects(Protocol):
 
 
 def request_check(
-    handler: HttpHandler | None, visitors: Visitors, pictures: Pictures | None, projects: Projects | None
+    handler: HttpHandler | None, visitors: Visitors, pictures: Pictures | None, projects: ProjectServers | None
 ) -> Answer:
     """What websockets asks before anything else: refuses, redirects and serves pictures; the rest is viser's.
 

@@ -31,7 +31,7 @@ from websockets.asyncio.server import ServerConnection
 from websockets.exceptions import InvalidMessage
 
 from diorama_app.web.bridge import Bridge, ConnectionHandler
-from diorama_app.web.requests import HttpHandler, Pictures, Projects, paced, project_of, request_check
+from diorama_app.web.requests import HttpHandler, Pictures, ProjectServers, paced, project_of, request_check
 from diorama_app.web.upload_limits import RunningUpload, why_refused
 from diorama_app.web.visitors import Visitors
 from diorama_core.errors import InputError
@@ -95,7 +95,7 @@ def create_server(
     visitors: Visitors,
     refused: Refused | None = None,
     pictures: Pictures | None = None,
-    projects: Projects | None = None,
+    projects: ProjectServers | None = None,
 ) -> viser.ViserServer:
     """A hardened viser server.
 
@@ -231,7 +231,7 @@ def _check_port(host: str, port: int) -> None:
 
 
 @contextlib.contextmanager
-def _guarded_serve(visitors: Visitors, pictures: Pictures | None, projects: Projects | None) -> Iterator[None]:
+def _guarded_serve(visitors: Visitors, pictures: Pictures | None, projects: ProjectServers | None) -> Iterator[None]:
     """While it lasts, websocket servers are started with the visitors' check in front."""
     original = websockets.asyncio.server.serve
 
@@ -246,7 +246,7 @@ def _guarded_serve(visitors: Visitors, pictures: Pictures | None, projects: Proj
         yield
 
 
-def _routed(handler: ConnectionHandler, projects: Projects) -> ConnectionHandler:
+def _routed(handler: ConnectionHandler, projects: ProjectServers) -> ConnectionHandler:
     """A handler that gives a connection to the server of the project in its address, or else to `handler`."""
 
     async def handle(connection: ServerConnection) -> None:

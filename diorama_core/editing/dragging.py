@@ -13,7 +13,7 @@ import numpy as np
 from jaxtyping import Float
 
 from diorama_core.arrangement.surfaces import Surface, plane_surface
-from diorama_core.editing.placing import Place, fits, hits_along, inside, places_of, to_wall, within_wall
+from diorama_core.editing.placing import SupportTarget, fits, hits_along, inside, places_of, to_wall, within_wall
 from diorama_core.errors import EditRefused
 from diorama_core.layout.feasible.local import DragSolver
 from diorama_core.library.record import ShapeLibrary
@@ -68,7 +68,7 @@ class Slide:
         return cls(scene, library, item, np.asarray(grabbed, dtype=np.float64), tuple(along))
 
     @cached_property
-    def places(self) -> tuple[Place, ...]:
+    def places(self) -> tuple[SupportTarget, ...]:
         """Where it may go: what hangs stays on walls or ceiling, what stands on the floor leaves tables alone."""
         own = {self.item.id, *descendants(self.scene, self.item.id), *self.along}
         places = places_of(self.scene, self.library, own)
@@ -111,7 +111,7 @@ class Slide:
         start = {o.id: o for o in self.scene.objects}
         return scene, {o.id: o.pose for o in scene.objects if o is not start.get(o.id)}
 
-    def _moved(self, pose: Pose, place: Place | None) -> Scene:
+    def _moved(self, pose: Pose, place: SupportTarget | None) -> Scene:
         scene = edits.move(self.scene, self.item.id, pose)
         edge = self.scene.support_of(self.item.id)
         if place is not None and (edge is None or edge.parent != place.parent):
@@ -121,14 +121,14 @@ class Slide:
             scene = edits.move(scene, other, scene.object(other).pose.moved(shift * (1.0, 1.0, 0.0)))
         return scene
 
-    def _target(self, eye: np.ndarray, direction: np.ndarray) -> tuple[Pose, Place | None]:
+    def _target(self, eye: np.ndarray, direction: np.ndarray) -> tuple[Pose, SupportTarget | None]:
         edge = self.scene.support_of(self.item.id)
         hung = edge is not None and bool(self.places) and not self.places[0].upward
         if hung:
             return self._on_walls(eye, direction)
         return self._standing(eye, direction)
 
-    def _standing(self, eye: np.ndarray, direction: np.ndarray) -> tuple[Pose, Place | None]:
+    def _standing(self, eye: np.ndarray, direction: np.ndarray) -> tuple[Pose, SupportTarget | None]:
         item = self.item
         base = item.pose.position - item.pose.R_world_object[:, 2] * item.size_m[2] / 2
         reach = self.grabbed - base
@@ -152,7 +152,7 @@ class Slide:
         distance = (self.grabbed[2] - eye[2]) / direction[2]
         return eye + distance * direction if 0 < distance < 50.0 else None
 
-    def _on_walls(self, eye: np.ndarray, direction: np.ndarray) -> tuple[Pose, Place | None]:
+    def _on_walls(self, eye: np.ndarray, direction: np.ndarray) -> tuple[Pose, SupportTarget | None]:
         item, start = self.item, self._start_surface()
         lift = float(start.normal @ self.grabbed) - start.level
         hits = hits_along(eye, direction, self.places, lift_m=lift) or hits_along(
@@ -176,7 +176,7 @@ class Slide:
         assert edge is not None
         return plane_surface(self.scene.plane(edge.parent))
 
-    def _snapped(self, pose: Pose, place: Place | None) -> Pose:
+    def _snapped(self, pose: Pose, place: SupportTarget | None) -> Pose:
         if place is not None and not place.upward and abs(float(place.surface.normal[2])) < 0.7:
             n = place.surface.normal
             across = np.array([-n[1], n[0], 0.0])

@@ -8,7 +8,7 @@ import numpy as np
 from jaxtyping import Float
 
 from diorama_core.arrangement.surfaces import plane_surface
-from diorama_core.editing.placing import DOOR, Hit, Place, insertion
+from diorama_core.editing.placing import DOOR, Hit, SupportTarget, insertion
 from diorama_core.editing.plan_edits import WallFoot, wall_feet
 from diorama_core.errors import EditRefused
 from diorama_core.geometry.openings import OPENING_CATEGORIES, wall_of
@@ -60,7 +60,7 @@ def with_opening(
     along = next((spot for spot in spots if spot is not None), None)
     if along is None:
         raise EditRefused(f"no part of this wall is free for a {category} of {2 * half:.2f} m; move what is in it")
-    place = Place(plane_surface(wall), wall_id, of_object=False)
+    place = SupportTarget(plane_surface(wall), wall_id, of_object=False)
     hit = Hit(place, np.append(foot.start + along * foot.along, level), 0.0)
     new_id = edits.fresh_id(scene, category)
     item, edge = insertion(scene, shape, new_id, hit, 0.0)

@@ -21,7 +21,7 @@ _SEED = 7
 
 
 @dataclass(frozen=True, eq=False)
-class Outline:
+class MaskDraft:
     """A mask in progress; every click is a new outline."""
 
     rgb: UInt8[np.ndarray, "h w 3"]
@@ -30,7 +30,7 @@ class Outline:
     clicks: tuple[tuple[float, float, bool], ...] = ()
     """x, y in photo pixels, and whether it is part of the object."""
 
-    def clicked(self, x: float, y: float, *, part: bool) -> Outline:
+    def clicked(self, x: float, y: float, *, part: bool) -> MaskDraft:
         """The outline after one more click.
 
         Args:

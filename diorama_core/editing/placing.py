@@ -30,7 +30,7 @@ WALL_MAGNET_RAD = float(np.radians(12.0))
 
 
 @dataclass(frozen=True, eq=False)
-class Place:
+class SupportTarget:
     """A surface in the world, and the edge's parent for what stands on or hangs at it."""
 
     surface: Surface
@@ -53,15 +53,15 @@ class Place:
 class Hit:
     """Where a ray meets a place."""
 
-    place: Place
+    place: SupportTarget
     point: Float[np.ndarray, "3"]
     distance: float
 
 
-def places_of(scene: Scene, library: ShapeLibrary, without: Iterable[str] = ()) -> tuple[Place, ...]:
+def places_of(scene: Scene, library: ShapeLibrary, without: Iterable[str] = ()) -> tuple[SupportTarget, ...]:
     """Every surface of the room and of its visible objects, apart from some objects' own."""
     gone = frozenset(without)
-    places = [Place(plane_surface(p), p.id, of_object=False) for p in scene.architecture.planes]
+    places = [SupportTarget(plane_surface(p), p.id, of_object=False) for p in scene.architecture.planes]
     for item in scene.objects:
         if item.id in gone or item.hidden:
             continue
@@ -69,14 +69,14 @@ def places_of(scene: Scene, library: ShapeLibrary, without: Iterable[str] = ()) 
         if not shape.surfaces:
             continue
         for index, surface in enumerate(object_surfaces(shape, item)):
-            places.append(Place(surface.in_world(item.pose), item.id, of_object=True, index=index))
+            places.append(SupportTarget(surface.in_world(item.pose), item.id, of_object=True, index=index))
     return tuple(places)
 
 
 def hits_along(
     origin: Float[np.ndarray, "3"],
     direction: Float[np.ndarray, "3"],
-    places: Iterable[Place],
+    places: Iterable[SupportTarget],
     *,
     lift_m: float = 0.0,
     slack_m: float = 1e-6,
@@ -108,7 +108,7 @@ def hits_along(
     return sorted(found, key=lambda hit: hit.distance)
 
 
-def fits(place: Place, size_m: Float[np.ndarray, "3"], base: Float[np.ndarray, "3"], R: np.ndarray) -> bool:
+def fits(place: SupportTarget, size_m: Float[np.ndarray, "3"], base: Float[np.ndarray, "3"], R: np.ndarray) -> bool:
     """Whether an object of this size with its base here may stand on an object's surface.
 
     Args:
@@ -142,7 +142,7 @@ def seated(scene: Scene, library: ShapeLibrary, object_id: str) -> Scene:
         return edits.move(scene, object_id, _hung(item, options[0].surface))
     base = item.pose.position - item.pose.R_world_object[:, 2] * item.size_m[2] / 2
 
-    def far(place: Place) -> tuple[bool, float]:
+    def far(place: SupportTarget) -> tuple[bool, float]:
         tight = bool(item.size_m[2] > place.surface.clearance_m + TALLER_M)
         return tight, outside_m(place.surface, base) + abs(place.surface.level - float(base[2]))
 
@@ -152,14 +152,14 @@ def seated(scene: Scene, library: ShapeLibrary, object_id: str) -> Scene:
     return edits.move(scene, object_id, item.pose.moved(target - base))
 
 
-def _box_top(item: SceneObject) -> Place:
+def _box_top(item: SceneObject) -> SupportTarget:
     from diorama_core.arrangement.surfaces import convex_outline
 
     corners = item.corners_world
     top = corners[corners[:, 2] > corners[:, 2].max() - 0.01]
     up = np.array([0.0, 0.0, 1.0])
     outline = convex_outline(np.column_stack([top[:, :2], np.full(len(top), corners[:, 2].max())]), up)
-    return Place(Surface.of(outline, up, float("inf"), of_plane=False), item.id, of_object=True)
+    return SupportTarget(Surface.of(outline, up, float("inf"), of_plane=False), item.id, of_object=True)
 
 
 def inside(surface: Surface, point: Float[np.ndarray, "3"]) -> Float[np.ndarray, "3"]:
@@ -264,7 +264,7 @@ def spot_in_view(
     planes = planes or list(scene.architecture.by_role("ceiling" if on_ceiling else "wall"))
     if not planes:
         return None
-    places = [Place(plane_surface(p), p.id, of_object=False) for p in planes]
+    places = [SupportTarget(plane_surface(p), p.id, of_object=False) for p in planes]
     hits = hits_along(eye, ahead, places)
     if hits:
         place, point = hits[0].place, hits[0].point

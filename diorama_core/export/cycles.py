@@ -28,7 +28,7 @@ LAMP_BY_DAY_W_PER_M2 = 4.0
 
 
 @dataclass(frozen=True, eq=False)
-class Opening:
+class LightPortal:
     """A hole in the room's walls through which daylight comes: paths that leave the room are sent there first."""
 
     centre: Float[np.ndarray, "3"]
@@ -51,7 +51,7 @@ class Outdoors:
     """Unit, toward the sun."""
     sun_angle_rad: float
     """Across its disc: 0.0093 in a clear sky, more through haze or a net curtain."""
-    openings: tuple[Opening, ...]
+    openings: tuple[LightPortal, ...]
 
 
 @dataclass(frozen=True)
@@ -180,7 +180,7 @@ def _traced(job: Mapping[str, Any], progress: Progress | None, timeout_s: float)
     run_in_blender(worker, job, name="Cycles", progress=progress, timeout_s=timeout_s)
 
 
-def _portal(opening: Opening) -> dict[str, object]:
+def _portal(opening: LightPortal) -> dict[str, object]:
     """The hole as a light that gives none of its own: it says where daylight comes from."""
     up = np.array([0.0, 0.0, 1.0])
     across = np.cross(up, -opening.inward)

@@ -25,7 +25,7 @@ from diorama_core.library.ingest.given import Given, axis_vector
 from diorama_core.library.ingest.known_shapes import KnownShapes, known_shapes
 from diorama_core.library.ingest.models import RawModel
 from diorama_core.library.ingest.names import words_of
-from diorama_core.library.ingest.shaping import Source, ingest_model
+from diorama_core.library.ingest.shaping import ModelSource, ingest_model
 from diorama_core.library.ingest.sink import Ingested, ShapeSink
 from diorama_core.library.record import Shape
 from diorama_core.progress import Progress
@@ -121,7 +121,7 @@ def _taken_in(part: Part, path: Path, sink: ShapeSink, known: KnownShapes) -> _S
 
 def _ingested(part: Part, shape_id: str, path: Path, given: Given, known: KnownShapes) -> Ingested:
     raw = RawModel(part.unturned, (part.name,), UNKNOWN, ())
-    source = Source(Path(f"{part.name.replace('/', ' ')}.glb"), Path(), shape_id, f"{path.name} {shape_id}", given)
+    source = ModelSource(Path(f"{part.name.replace('/', ' ')}.glb"), Path(), shape_id, f"{path.name} {shape_id}", given)
     return ingest_model(raw, source, known, square=False)
 
 

@@ -38,7 +38,7 @@ _BLUR = 0.45
 
 
 @dataclass(frozen=True)
-class Outliner:
+class BoxOutliner:
     """Input: an upright RGB picture, eight bits, any size, and boxes in its pixels. Output: shares of their windows.
 
     Args:
@@ -51,7 +51,7 @@ class Outliner:
     pool: SessionPool = field(default=SHARED_SESSIONS, repr=False, compare=False)
 
     @classmethod
-    def of(cls, folder: Path) -> Outliner:
+    def of(cls, folder: Path) -> BoxOutliner:
         """The outliner of a folder.
 
         Raises:
@@ -85,13 +85,13 @@ class Outliner:
 
 
 @cache
-def own_outliner() -> Outliner:
+def own_outliner() -> BoxOutliner:
     """The outliner whose weights come with Diorama.
 
     Raises:
         UnavailableError: when they are not there.
     """
-    return Outliner.of(own_weights.FOLDER)
+    return BoxOutliner.of(own_weights.FOLDER)
 
 
 def window(rgb: UInt8[np.ndarray, "h w 3"], box: Box) -> Float32[np.ndarray, "4 s s"]:

@@ -16,7 +16,7 @@ import numpy as np
 from jaxtyping import Bool, Float32, UInt8
 
 from diorama_core.artefacts import Box, DetectedObject, Inputs, LabelledBox
-from diorama_core.models.outliner import Outliner, own_outliner, pixels_of
+from diorama_core.models.outliner import BoxOutliner, own_outliner, pixels_of
 from diorama_core.progress import Progress
 
 _MIN_SHARE = 0.02
@@ -35,7 +35,7 @@ _MIN_PIXELS = 16
 class EmbeddedMasks:
     """The object stage without downloaded networks."""
 
-    outliner: Outliner = field(default_factory=own_outliner)
+    outliner: BoxOutliner = field(default_factory=own_outliner)
     crop_px: int = 240
     """Longest side at which a box is looked at by GrabCut."""
 

@@ -21,7 +21,7 @@ _DARKEST = 1e-4
 
 
 @dataclass(frozen=True)
-class PhotoCamera:
+class CameraResponse:
     """A camera's character; the defaults are those of a good compact camera in a bright room."""
 
     mid_grey: float = 0.29
@@ -46,7 +46,7 @@ def photographed(
     radiance: Float[np.ndarray, "h w 3"],
     intrinsics: Intrinsics,
     white: Float[np.ndarray, "3"],
-    camera: PhotoCamera = PhotoCamera(),
+    camera: CameraResponse = CameraResponse(),
     *,
     seed: int = 0,
 ) -> UInt8[np.ndarray, "h w 3"]:
@@ -85,7 +85,7 @@ def falloff(k: Intrinsics, share: float) -> Float[np.ndarray, "h w"]:
     return 1.0 - share * (1.0 - natural)
 
 
-def noisy(exposed: Float[np.ndarray, "h w 3"], camera: PhotoCamera, seed: int) -> Float[np.ndarray, "h w 3"]:
+def noisy(exposed: Float[np.ndarray, "h w 3"], camera: CameraResponse, seed: int) -> Float[np.ndarray, "h w 3"]:
     """Brightness as a sensor counts it: whole electrons, as many as chance gives, none above twice a full pixel."""
     rng = np.random.default_rng(seed)
     electrons = rng.poisson(np.minimum(exposed, 2.0) * camera.full_well_e)
@@ -99,7 +99,7 @@ def white_gains(white: Float[np.ndarray, "3"], balance: float) -> Float[np.ndarr
     return gains / float((cast * gains) @ _LUMINANCE)
 
 
-def developed(light: Float[np.ndarray, "h w 3"], camera: PhotoCamera) -> UInt8[np.ndarray, "h w 3"]:
+def developed(light: Float[np.ndarray, "h w 3"], camera: CameraResponse) -> UInt8[np.ndarray, "h w 3"]:
     """Display values of linear light: more contrast, and highlights bent towards 1, which they never reach."""
     toned = camera.mid_grey * (np.maximum(light, 0.0) / camera.mid_grey) ** camera.contrast
     rest = 1.0 - camera.shoulder

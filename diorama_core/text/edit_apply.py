@@ -26,11 +26,11 @@ from diorama_core.text.edit_plan import (
     Edit,
     Exchange,
     Insert,
+    InsertOpening,
     Light,
     Measure,
     Move,
     MoveWall,
-    Opening,
     Paint,
     Place,
     Remove,
@@ -67,7 +67,7 @@ class EditApplier:
             return wall_moved(scene, edit)
         if isinstance(edit, DrawRoom):
             return outlined(scene, edit)
-        if isinstance(edit, (Paint, RoomLength, Light, Opening)):
+        if isinstance(edit, (Paint, RoomLength, Light, InsertOpening)):
             return self._room(scene, edit)
         if isinstance(edit, Insert):
             done = inserted(self.positioner, scene, edit, self._relations(scene, edit.places))
@@ -93,8 +93,8 @@ class EditApplier:
             return resized(self.positioner, scene, ids, edit.factor)
         return self._object(scene, ids, edit)
 
-    def _room(self, scene: Scene, edit: Paint | RoomLength | Light | Opening) -> Done:
-        if isinstance(edit, (Paint, Opening)) and edit.behind:
+    def _room(self, scene: Scene, edit: Paint | RoomLength | Light | InsertOpening) -> Done:
+        if isinstance(edit, (Paint, InsertOpening)) and edit.behind:
             edit = edit.model_copy(update={"behind": self._ids(scene, [edit.behind])[0]})
         if isinstance(edit, Paint):
             return covered(scene, edit)

@@ -38,7 +38,7 @@ from diorama_core.text.edit_words_objects import object_edits
 from diorama_core.text.edit_words_room import room_edits
 from diorama_core.text.foreign_words import in_english
 from diorama_core.text.looks import look_of
-from diorama_core.text.phrases import NUMBERS, Placing, noun_phrase, split_places
+from diorama_core.text.phrases import NUMBERS, PlacePhrase, noun_phrase, split_places
 from diorama_core.text.selecting import Selector
 
 _VERBS = {
@@ -250,7 +250,7 @@ def _move(selector: Selector, clause: str, rest: str) -> Edit:
         return shift
     toward = re.match(r"(.*?)\s+\bto\s+(.+)$", rest)
     if not places and toward is not None:
-        head, places = toward[1], [Placing(_usual_relation(selector, toward[1], toward[2]), toward[2])]
+        head, places = toward[1], [PlacePhrase(_usual_relation(selector, toward[1], toward[2]), toward[2])]
     if not places:
         raise EditRefused(f"“{clause}”: where to? For example: move the lamp beside the sofa")
     qualifiers, goals = _split(selector, head, places)
@@ -269,7 +269,7 @@ def _usual_relation(selector: Selector, head: str, goal: str) -> RelationKind:
     return "on" if carries and category(item.category).mount == "surface" else "beside"
 
 
-def _split(selector: Selector, head: str, places: list[Placing]) -> tuple[list[Placing], list[Placing]]:
+def _split(selector: Selector, head: str, places: list[PlacePhrase]) -> tuple[list[PlacePhrase], list[PlacePhrase]]:
     """What tells the object from others of its kind, and where it goes: "the lamp on the desk", "beside the sofa"."""
     if len(places) < 2:
         return [], places

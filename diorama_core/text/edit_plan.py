@@ -191,7 +191,7 @@ class Light(_Strict):
     lamps: Literal["", "on", "off"] = ""
 
 
-class Opening(_Strict):
+class InsertOpening(_Strict):
     """A door or a window in a wall."""
 
     do: Literal["opening"] = "opening"
@@ -265,7 +265,7 @@ Edit = (
     | Paint
     | RoomLength
     | Light
-    | Opening
+    | InsertOpening
     | SetPlace
     | SetSupport
     | MoveWall

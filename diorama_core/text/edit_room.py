@@ -24,7 +24,7 @@ from diorama_core.scene.room_edits import (
 )
 from diorama_core.scene.types import Plane, Scene
 from diorama_core.text.edit_outcome import Done
-from diorama_core.text.edit_plan import Light, Opening, Paint, RoomLength
+from diorama_core.text.edit_plan import InsertOpening, Light, Paint, RoomLength
 from diorama_core.text.surface_words import covering_in_words
 
 ACROSS = 0.7
@@ -85,7 +85,7 @@ def lit(scene: Scene, edit: Light) -> Done:
     return Done(set_light(scene, settings), tuple(lines))
 
 
-def opened_wall(library: ShapeLibrary, scene: Scene, edit: Opening) -> Done:
+def opened_wall(library: ShapeLibrary, scene: Scene, edit: InsertOpening) -> Done:
     """A new door or window in a wall."""
     feet = wall_feet(scene)
     if not feet:

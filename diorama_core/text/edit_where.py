@@ -7,11 +7,11 @@ from collections.abc import Sequence
 
 from diorama_core.geometry.openings import OPENING_CATEGORIES
 from diorama_core.text.edit_plan import Place
-from diorama_core.text.phrases import Placing
+from diorama_core.text.phrases import PlacePhrase
 from diorama_core.text.selecting import Selector
 
 
-def places_of_phrases(selector: Selector, places: Sequence[Placing]) -> list[Place]:
+def places_of_phrases(selector: Selector, places: Sequence[PlacePhrase]) -> list[Place]:
     """Where phrases of place say that something goes; raises `EditRefused` where they name what is not there."""
     found = []
     for place in places:

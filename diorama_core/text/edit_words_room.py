@@ -8,7 +8,7 @@ from typing import Literal, cast
 from diorama_core.errors import EditRefused
 from diorama_core.geometry.openings import OPENING_CATEGORIES
 from diorama_core.text.edit_lengths import length_in
-from diorama_core.text.edit_plan import Edit, Light, Opening, Paint, RoomLength
+from diorama_core.text.edit_plan import Edit, InsertOpening, Light, Paint, RoomLength
 from diorama_core.text.selecting import Selector
 from diorama_core.text.surface_words import covering_in_words
 
@@ -184,4 +184,6 @@ def _openings(selector: Selector, clause: str) -> tuple[Edit, ...] | None:
         return None
     side = {"far": "back", "opposite": "back"}.get(found[2] or "", found[2] or "")
     behind = selector.targets(found[3])[0] if found[3] else ""
-    return (Opening(what=found[1], wall=cast("Literal['', 'left', 'right', 'back', 'front']", side), behind=behind),)
+    return (
+        InsertOpening(what=found[1], wall=cast("Literal['', 'left', 'right', 'back', 'front']", side), behind=behind),
+    )

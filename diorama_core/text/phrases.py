@@ -203,7 +203,7 @@ class NounPhrase:
 
 
 @dataclass(frozen=True)
-class Placing:
+class PlacePhrase:
     """One phrase of place: what relation, and to what."""
 
     kind: RelationKind
@@ -219,7 +219,7 @@ def relation_pattern() -> re.Pattern[str]:
     )
 
 
-def split_places(text: str) -> tuple[str, list[Placing]]:
+def split_places(text: str) -> tuple[str, list[PlacePhrase]]:
     """The words before the first phrase of place, and each phrase with what it refers to."""
     matches = list(relation_pattern().finditer(text))
     if not matches:
@@ -228,7 +228,7 @@ def split_places(text: str) -> tuple[str, list[Placing]]:
     for match, after in zip(matches, [*matches[1:], None]):
         kind = RELATION_WORDS[int(str(match.lastgroup)[1:])][1]
         assert kind is not None
-        found.append(Placing(kind, text[match.end() : after.start() if after else len(text)].strip(" ,")))
+        found.append(PlacePhrase(kind, text[match.end() : after.start() if after else len(text)].strip(" ,")))
     return text[: matches[0].start()].strip(), found
 
 

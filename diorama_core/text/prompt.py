@@ -11,7 +11,7 @@ from diorama_core.library.taxonomy import broad, category, having, is_furniture,
 from diorama_core.synthesis import RoomKind
 from diorama_core.text.customs import usual_relations_of
 from diorama_core.text.foreign_words import in_english
-from diorama_core.text.phrases import MAX_OF_A_KIND, NUMBERS, NounPhrase, Placing, noun_phrase, split_places
+from diorama_core.text.phrases import MAX_OF_A_KIND, NUMBERS, NounPhrase, PlacePhrase, noun_phrase, split_places
 from diorama_core.text.rows import with_marks
 
 _ROOMS: tuple[tuple[str, RoomKind], ...] = (
@@ -135,7 +135,7 @@ class _Reading:
     """The request that "it" means."""
     hosts: int | None = None
     """The request for each of which the following ones are meant."""
-    waiting: list[tuple[Placing, str]] = field(default_factory=list)
+    waiting: list[tuple[PlacePhrase, str]] = field(default_factory=list)
     """Places, with their clauses, that were named before any object: "a reading nook by the window"."""
 
 
@@ -259,7 +259,7 @@ def _add_seats(reading: _Reading, room: RoomKind, text: str) -> None:
     reading.objects.append(RequestedObject("chair", "chair", max(1, min(count, MAX_OF_A_KIND)), wishes=(around,)))
 
 
-def _place(reading: _Reading, index: int | None, place: Placing, clause: str) -> None:
+def _place(reading: _Reading, index: int | None, place: PlacePhrase, clause: str) -> None:
     """Add a wish to a request; what it refers to is asked for, too, where it was not named before."""
     if place.kind in OF_ROOM:
         _wish(reading, index, Wish(place.kind))

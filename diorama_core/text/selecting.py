@@ -16,7 +16,7 @@ from diorama_core.library.taxonomy import broad, category, is_furniture, with_ki
 from diorama_core.scene.support import descendants
 from diorama_core.scene.types import Scene, SceneObject
 from diorama_core.text.looks import has_look
-from diorama_core.text.phrases import NounPhrase, Placing, noun_phrase
+from diorama_core.text.phrases import NounPhrase, PlacePhrase, noun_phrase
 
 LISTED = 12
 _ORDINALS = {"first": 1, "second": 2, "third": 3, "fourth": 4, "fifth": 5, "sixth": 6, "last": 0}
@@ -41,7 +41,7 @@ class Selector:
         self.last, self.selected = tuple(last), tuple(selected)
         self._frame = RoomFrame.of(scene)
 
-    def objects(self, words: str, places: Sequence[Placing] = (), *, movable: bool = False) -> tuple[str, ...]:
+    def objects(self, words: str, places: Sequence[PlacePhrase] = (), *, movable: bool = False) -> tuple[str, ...]:
         """Ids of the objects that a phrase means, with the phrases of place that tell them apart.
 
         Args:
@@ -134,7 +134,7 @@ class Selector:
                 raise EditRefused(f"no {kind} here is {word}; there are {len(found)}: {_names(found)}")
         return found
 
-    def _in_place(self, found: list[SceneObject], places: Sequence[Placing], words: str) -> list[SceneObject]:
+    def _in_place(self, found: list[SceneObject], places: Sequence[PlacePhrase], words: str) -> list[SceneObject]:
         for place in places:
             targets = self.targets(place.words) if place.words else ()
             if place.kind == "on" and targets:

@@ -10,7 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from diorama_core.errors import UnavailableError
-from diorama_core.models.outliner import SIDE, Outliner, in_photo, own_outliner, pixels_of, resampled, window
+from diorama_core.models.outliner import SIDE, BoxOutliner, in_photo, own_outliner, pixels_of, resampled, window
 
 SIDES = st.floats(0.02, 1.0)
 
@@ -70,4 +70,4 @@ def test_many_boxes_are_outlined_as_each_alone(rng: np.random.Generator) -> None
 
 def test_missing_weights_are_one_clear_line(tmp_path: Path) -> None:
     with pytest.raises(UnavailableError, match="restore it from the repository"):
-        Outliner.of(tmp_path)
+        BoxOutliner.of(tmp_path)

@@ -11,7 +11,7 @@ import pytest
 
 from diorama_core.errors import SceneError, UnavailableError
 from diorama_core.export.blender import PYTHON_VARIABLE
-from diorama_core.export.cycles import Opening, Outdoors, cycles_radiance
+from diorama_core.export.cycles import LightPortal, Outdoors, cycles_radiance
 from diorama_core.library.catalogue import built_in_library
 from diorama_core.scene.types import Architecture, Camera, Intrinsics, Plane, Scene
 from diorama_core.synthesis import furnished_room, in_photo_world, sample_cameras
@@ -73,7 +73,7 @@ def test_daylight_comes_through_the_opening_and_falls_where_the_sun_sends_it():
         wall("right", 2, 1), wall("back", 3, 2), wall("near", 1, 0),
     )  # fmt: skip
     camera = Camera(Intrinsics.from_fov(48, 36, np.radians(70.0)), _looking_ahead([0.0, 0.3, 1.25]))
-    opening = Opening(np.array([-2.0, 2.5, 1.25]), np.array([1.0, 0.0, 0.0]), 5.0, 2.5)
+    opening = LightPortal(np.array([-2.0, 2.5, 1.25]), np.array([1.0, 0.0, 0.0]), 5.0, 2.5)
     down = np.array([-0.7, 0.0, 0.7])
     outdoors = Outdoors(np.array([2.0, 2.0, 2.0]), np.array([50.0, 50.0, 50.0]), down, 0.01, (opening,))
     light = cycles_radiance(Scene(camera, Architecture(planes)), built_in_library(), outdoors, samples=8)

@@ -9,7 +9,7 @@ import pytest
 
 from diorama_core.scene.types import Intrinsics
 from diorama_core.synthesis.photograph import (
-    PhotoCamera,
+    CameraResponse,
     developed,
     falloff,
     middle_tone,
@@ -20,7 +20,7 @@ from diorama_core.synthesis.photograph import (
 
 K = Intrinsics(64, 48, 50.0, 50.0, 32.0, 24.0)
 GREY = np.ones(3)
-QUIET = PhotoCamera(vignetting=0.0, full_well_e=1e9, read_noise_e=0.0, blur_px=0.0)
+QUIET = CameraResponse(vignetting=0.0, full_well_e=1e9, read_noise_e=0.0, blur_px=0.0)
 
 
 def test_exposure_does_not_depend_on_the_unit_of_light() -> None:
@@ -47,7 +47,7 @@ def test_corners_are_darker_than_the_axis_and_only_as_far_as_asked() -> None:
 
 
 def test_noise_is_that_of_photons_and_of_reading() -> None:
-    camera = PhotoCamera(full_well_e=1000.0, read_noise_e=5.0)
+    camera = CameraResponse(full_well_e=1000.0, read_noise_e=5.0)
     for brightness in (0.01, 0.5):
         read = noisy(np.full((200, 200, 3), brightness), camera, seed=1)
         assert read.mean() == pytest.approx(brightness, rel=0.01)
@@ -74,7 +74,7 @@ def test_white_balance_makes_the_rooms_light_white() -> None:
 
 def test_highlights_keep_their_order_and_never_pass_white() -> None:
     light = np.linspace(0.0, 3.0, 300).reshape(1, -1, 1).repeat(3, axis=2)
-    shown = developed(light, PhotoCamera())[0, :, 0].astype(int)
+    shown = developed(light, CameraResponse())[0, :, 0].astype(int)
     assert (np.diff(shown) >= 0).all()
     assert shown[0] == 0
     assert 200 < shown[99] < 255  # brightness 1 is bright, and not yet burnt out

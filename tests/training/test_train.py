@@ -10,7 +10,7 @@ import torch
 
 from diorama_core.errors import Cancelled, InputError
 from diorama_core.models.box_crops import box_crop, box_geometry
-from diorama_core.models.outliner import SIDE, Outliner, in_photo, window
+from diorama_core.models.outliner import SIDE, BoxOutliner, in_photo, window
 from diorama_core.models.own_weights import CARD, DETECTOR, NAMER, OUTLINER
 from diorama_core.models.recogniser import Recogniser
 from diorama_core.models.runtime import SessionPool
@@ -139,5 +139,5 @@ def test_the_exported_outliner_answers_as_the_network_did(tmp_path: Path, rng: n
     seen = torch.from_numpy(window(rgb, box)[None])
     with torch.no_grad():
         share = torch.sigmoid((network(seen) + network(seen.flip(3)).flip(2)) / 2)[0].numpy()
-    (found,) = Outliner.of(tmp_path).outlines(rgb, [box])
+    (found,) = BoxOutliner.of(tmp_path).outlines(rgb, [box])
     np.testing.assert_allclose(found, in_photo(share, box, (90, 130)), atol=1e-4)

@@ -16,7 +16,7 @@ from diorama_core.io.bounded import megabytes, parse_json, read_bytes
 from diorama_core.library import taxonomy
 from diorama_core.library.ingest.finding import sources
 from diorama_core.library.ingest.given import Given
-from diorama_core.library.ingest.shaping import Source
+from diorama_core.library.ingest.shaping import ModelSource
 
 MAX_METADATA_BYTES = 600_000_000
 """Bytes of one file of a data set, unpacked; the largest published ones have a tenth of it."""
@@ -46,7 +46,7 @@ class Dataset:
     """Its models under a folder, in a stable order; those whose files are absent are left out."""
 
 
-def as_sources(dataset: Dataset, folder: Path, given: Given) -> tuple[Source, ...]:
+def as_sources(dataset: Dataset, folder: Path, given: Given) -> tuple[ModelSource, ...]:
     """The models of a local copy, ready to be taken in; `given` (flags of the user) goes before what the set says.
 
     Raises:

@@ -20,7 +20,7 @@ from diorama_core.library.ingest.guess import MAX_METRES, MIN_METRES
 from diorama_core.library.ingest.joint import Evidence, asked_of, groups_of, joint_convention
 from diorama_core.library.ingest.known_shapes import KnownShapes, known_shapes
 from diorama_core.library.ingest.limits import DEFAULT_LIMITS, Limits
-from diorama_core.library.ingest.shaping import Painter, Source, confidence, evidence_of, ingest_file
+from diorama_core.library.ingest.shaping import ModelSource, Painter, confidence, evidence_of, ingest_file
 from diorama_core.library.ingest.sink import Ingested, ShapeSink
 from diorama_core.library.record import Shape
 from diorama_core.progress import Progress
@@ -52,7 +52,7 @@ class Added:
 
 
 def add_models(
-    found: Sequence[Source],
+    found: Sequence[ModelSource],
     sink: ShapeSink,
     workers: Workers,
     *,
@@ -105,8 +105,8 @@ def add_models(
 
 
 def with_conventions(
-    waiting: Sequence[Source], found: Sequence[Source], workers: Workers, limits: Limits, progress: Progress
-) -> list[Source]:
+    waiting: Sequence[ModelSource], found: Sequence[ModelSource], workers: Workers, limits: Limits, progress: Progress
+) -> list[ModelSource]:
     """The sources with what their whole packs say of frame and unit; some files of each pack are asked.
 
     Args:
@@ -138,7 +138,7 @@ def with_conventions(
     return [replace(s, convention=known.get(s.path)) for s in waiting]
 
 
-def _asked(source: Source, limits: Limits) -> tuple[Evidence, Convention, float]:
+def _asked(source: ModelSource, limits: Limits) -> tuple[Evidence, Convention, float]:
     _bound_memory(limits.memory_bytes)
     with _time_limit(limits.seconds):
         return evidence_of(source, _known(), limits)
@@ -157,7 +157,7 @@ def _learn(progress: Progress) -> float:
     return LEARNING_SHARE if took else 0.0
 
 
-def _work(source: Source, painter: Painter | None, limits: Limits) -> Ingested:
+def _work(source: ModelSource, painter: Painter | None, limits: Limits) -> Ingested:
     """One piece of work, in a process of its own kind: bounded in memory and time."""
     _bound_memory(limits.memory_bytes)
     with _time_limit(limits.seconds):

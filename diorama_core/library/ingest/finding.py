@@ -17,7 +17,7 @@ from diorama_core.io.file_heads import head_of
 from diorama_core.io.other_files import OtherFile, what_else
 from diorama_core.library.ingest.given import Given
 from diorama_core.library.ingest.models import SUFFIXES, form_of
-from diorama_core.library.ingest.shaping import Source
+from diorama_core.library.ingest.shaping import ModelSource
 
 REVISION = 2
 """Version of what ingestion makes of a file: raise it when results change; a repeated run takes files in anew."""
@@ -112,7 +112,7 @@ def members_of(path: Path) -> tuple[str, ...]:
 
 def sources(
     folder: Path, paths: Sequence[Path], given: Given, table: Mapping[str, Given], ids: Mapping[Path, str] | None = None
-) -> tuple[Source, ...]:
+) -> tuple[ModelSource, ...]:
     """What to take in: an id for each file, and what is known of it.
 
     Args:
@@ -135,7 +135,7 @@ def sources(
             taken.add(shape_id)
             known = table[within].over(given) if within in table else given
             key = _key(path, f"{within}{member}", shape_id, known)
-            made.append(Source(path, folder, shape_id, key, known, member))
+            made.append(ModelSource(path, folder, shape_id, key, known, member))
     return tuple(made)
 
 

@@ -22,7 +22,7 @@ from diorama_core.library.hyponyms import meanings
 from diorama_core.library.ingest.convention import Convention
 from diorama_core.library.ingest.given import AXES, UNITS, Given, axis_name
 from diorama_core.library.ingest.known_shapes import KnownShapes, relief_features
-from diorama_core.library.ingest.names import Named
+from diorama_core.library.ingest.names import NameEvidence
 from diorama_core.library.ingest.relief import Relief, quarter_turns, turned
 from diorama_core.library.kind_sizes import is_possible
 from diorama_core.library.record import Assumption, Guess
@@ -69,7 +69,7 @@ def guess_frame(
     mesh: trimesh.Trimesh,
     pictures: Relief,
     convention: Convention,
-    named: Named,
+    named: NameEvidence,
     known: KnownShapes,
     given: Given,
 ) -> Frame:
@@ -90,7 +90,7 @@ def guess_frame(
 
 
 def frame_evidence(
-    mesh: trimesh.Trimesh, pictures: Relief, named: Named, known: KnownShapes, given: Given
+    mesh: trimesh.Trimesh, pictures: Relief, named: NameEvidence, known: KnownShapes, given: Given
 ) -> Float[np.ndarray, "24 u"]:
     """How likely each turn and usual unit is by the model alone, whatever its format promises; logarithms.
 
@@ -117,7 +117,7 @@ def _table(
     mesh: trimesh.Trimesh,
     pictures: Relief,
     convention: Convention,
-    named: Named,
+    named: NameEvidence,
     known: KnownShapes,
     given: Given,
     units: Mapping[float, float],
@@ -162,7 +162,7 @@ def _chosen(
     log_extents: Float[np.ndarray, "24 3"],
     convention: Convention,
     given: Given,
-    named: Named,
+    named: NameEvidence,
 ) -> Frame:
     """The best entry of the table, and how sure each of its answers is."""
     categories, table = list(scores), np.stack(list(scores.values()))

@@ -151,7 +151,7 @@ def words_of(name: str) -> tuple[str, ...]:
 
 
 @dataclass(frozen=True)
-class Named:
+class NameEvidence:
     """What names say."""
 
     weights: Mapping[str, float] | None
@@ -161,7 +161,7 @@ class Named:
     """How sure a kind can be by them."""
 
 
-def named_categories(stem: str, folders: Iterable[str] = (), parts: Iterable[str] = ()) -> Named:
+def named_categories(stem: str, folders: Iterable[str] = (), parts: Iterable[str] = ()) -> NameEvidence:
     """Categories that names speak of.
 
     The file's own name is asked first; then the folders from the innermost outwards; then the names of its parts.
@@ -172,13 +172,13 @@ def named_categories(stem: str, folders: Iterable[str] = (), parts: Iterable[str
             near = {} if exact else _label_of(words_of(name))
             if exact or near:
                 weights = {category: weight + less for category, weight in (exact or near).items()}
-                return Named(weights, certainty if exact else NEARLY)
+                return NameEvidence(weights, certainty if exact else NEARLY)
     for name in parts:
         found = _spoken_of(words_of(name))
         if found:
             weights = {category: weight + ELSEWHERE for category, weight in found.items()}
-            return Named({UNKNOWN.name: ONE_WORD + ELSEWHERE, **weights}, OF_A_PART)
-    return Named({} if words_of(stem) else None)
+            return NameEvidence({UNKNOWN.name: ONE_WORD + ELSEWHERE, **weights}, OF_A_PART)
+    return NameEvidence({} if words_of(stem) else None)
 
 
 def named_kind(name: str) -> str | None:

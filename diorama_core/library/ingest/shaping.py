@@ -22,7 +22,7 @@ from diorama_core.library.ingest.joint import Evidence
 from diorama_core.library.ingest.known_shapes import KnownShapes
 from diorama_core.library.ingest.limits import DEFAULT_LIMITS, Limits
 from diorama_core.library.ingest.models import RawModel, read_model
-from diorama_core.library.ingest.names import Named, named_categories, words_of
+from diorama_core.library.ingest.names import NameEvidence, named_categories, words_of
 from diorama_core.library.ingest.relief import relief, turned
 from diorama_core.library.ingest.repair import Repaired, repaired
 from diorama_core.library.ingest.sink import Ingested
@@ -38,7 +38,7 @@ TINY_M, HUGE_M = 1e-3, 50.0
 
 
 @dataclass(frozen=True)
-class Source:
+class ModelSource:
     """One model to take in."""
 
     path: Path
@@ -99,7 +99,7 @@ class LoneShape:
 
 
 def ingest_file(
-    source: Source, known: KnownShapes, painter: Painter | None = None, limits: Limits = DEFAULT_LIMITS
+    source: ModelSource, known: KnownShapes, painter: Painter | None = None, limits: Limits = DEFAULT_LIMITS
 ) -> Ingested:
     """Take in one file.
 
@@ -117,7 +117,7 @@ def ingest_file(
 
 
 def evidence_of(
-    source: Source, known: KnownShapes, limits: Limits = DEFAULT_LIMITS
+    source: ModelSource, known: KnownShapes, limits: Limits = DEFAULT_LIMITS
 ) -> tuple[Evidence, Convention, float]:
     """What a file says of its pack's frame and unit, what its format promises, and how long its longest side is.
 
@@ -132,7 +132,7 @@ def evidence_of(
 
 def ingest_model(
     raw: RawModel,
-    source: Source,
+    source: ModelSource,
     known: KnownShapes,
     painter: Painter | None = None,
     limits: Limits = DEFAULT_LIMITS,
@@ -170,7 +170,7 @@ def ingest_model(
     return packed_shape(record, meshes, painter, source.key, (*remarks, *model.warnings))
 
 
-def _named(raw: RawModel, source: Source) -> Named:
+def _named(raw: RawModel, source: ModelSource) -> NameEvidence:
     return named_categories(source.stem, _folders(source), raw.names)
 
 
@@ -222,7 +222,7 @@ def packed_shape(
     return Ingested(record, glb, picture, key, warnings)
 
 
-def _folders(source: Source) -> list[str]:
+def _folders(source: ModelSource) -> list[str]:
     """Folders between the model and the root, the innermost first."""
     try:
         return list(reversed(source.path.parent.relative_to(source.root).parts))
@@ -260,7 +260,7 @@ def _whole(meshes: Sequence[trimesh.Trimesh]) -> trimesh.Trimesh:
     return Repaired(tuple(meshes), ()).whole
 
 
-def _record(source: Source, given: Given, frame: Frame, fold: SymmetryFold) -> Shape:
+def _record(source: ModelSource, given: Given, frame: Frame, fold: SymmetryFold) -> Shape:
     words = " ".join(words_of(source.stem))
     return Shape(
         id=source.id,

@@ -73,11 +73,11 @@ def test_a_photo_becomes_a_scene_and_a_file(tmp_path: Path, monkeypatch: pytest.
         edited = module("api.default.edit_project").sync(job.id, client=client, body=body)
         assert edited.changed == [first]
         stale = module("api.default.edit_project").sync(job.id, client=client, body=body)
-        assert isinstance(stale, models.Problem)
+        assert isinstance(stale, models.ErrorAnswer)
         undone = module("api.default.undo_project").sync(
             job.id, client=client, body=models.StepRequest(author="Client")
         )
         assert undone.version != edited.version
         missing = module("api.default.get_job").sync("nobody", client=client)
-        assert isinstance(missing, models.Problem)
+        assert isinstance(missing, models.ErrorAnswer)
         assert "nobody" in missing.error

@@ -238,4 +238,4 @@ def test_the_document_says_what_the_api_is(client: Client) -> None:
         if any(k.get("format") == "binary" for k in (field, *field.get("anyOf", ())))
     }
     assert files == {"photo", "masks", "depth"}, "generators of clients take other strings for text"
-    assert json.dumps(client.document).count('"#/components/schemas/Problem"') > 20
+    assert json.dumps(client.document).count('"#/components/schemas/ErrorAnswer"') > 20

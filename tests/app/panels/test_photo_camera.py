@@ -4,15 +4,15 @@ import numpy as np
 import pytest
 
 from diorama_app.panels import photo_camera
-from diorama_app.panels.photo_camera import PhotoCamera, figures
+from diorama_app.panels.photo_camera import PhotoCameraPanel, figures
 from diorama_core.geometry.camera_attitude import CameraAttitude
 from tests.app.page import Page
 from tests.app.small_room import photo_camera as camera_of_the_photo
 
 
 @pytest.fixture
-def panel(page: Page, client, views) -> PhotoCamera:
-    made = PhotoCamera(page, client, views)
+def panel(page: Page, client, views) -> PhotoCameraPanel:
+    made = PhotoCameraPanel(page, client, views)
     client.panels = [made]
     made.refresh()
     return made

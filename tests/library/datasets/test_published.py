@@ -14,7 +14,7 @@ from diorama_core.errors import InputError
 from diorama_core.library.datasets import as_sources, dataset_named, layout, recognised
 from diorama_core.library.ingest.given import Given
 from diorama_core.library.ingest.models import read_model
-from diorama_core.library.ingest.shaping import Source
+from diorama_core.library.ingest.shaping import ModelSource
 from tests.library.ingest.models import chair, table, y_up
 
 
@@ -96,7 +96,7 @@ EXPECTED = {
 }
 
 
-def made(name: str, root: Path, given: Given | None = None) -> tuple[Source, ...]:
+def made(name: str, root: Path, given: Given | None = None) -> tuple[ModelSource, ...]:
     MAKERS[name](root)
     return as_sources(dataset_named(name), root, given or Given())
 

@@ -22,7 +22,7 @@ from diorama_core.library.ingest.given import Given
 from diorama_core.library.ingest.known_shapes import KnownShapes, relief_features
 from diorama_core.library.ingest.limits import Limits
 from diorama_core.library.ingest.relief import relief
-from diorama_core.library.ingest.shaping import Source
+from diorama_core.library.ingest.shaping import ModelSource
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.library.store import StoredLibrary
 from diorama_core.progress import CancelToken, Progress, ProgressEvent
@@ -241,7 +241,7 @@ def test_a_correction_that_makes_no_sense_is_refused(folder: Path, library: Stor
 def test_a_source_is_a_plain_value(folder: Path) -> None:
     paths, _ = model_files(folder)
     made = sources(folder, paths, Given(), {})
-    assert all(isinstance(s, Source) for s in made)
+    assert all(isinstance(s, ModelSource) for s in made)
     assert len({s.id for s in made}) == len(made)
     assert made == sources(folder, paths, Given(), {})
 

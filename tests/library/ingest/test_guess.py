@@ -16,7 +16,7 @@ from diorama_core.library.ingest.guess import Frame, guess_frame
 from diorama_core.library.ingest.known_shapes import KnownShapes, known_shapes, relief_features
 from diorama_core.library.ingest.limits import DEFAULT_LIMITS
 from diorama_core.library.ingest.models import read_model
-from diorama_core.library.ingest.names import Named, named_categories
+from diorama_core.library.ingest.names import NameEvidence, named_categories
 from diorama_core.library.ingest.relief import Relief, quarter_turns, relief, turned
 from diorama_core.library.ingest.repair import repaired
 from tests.library.ingest.models import block, chair, table, y_up
@@ -44,7 +44,7 @@ def guessed(
     given: Given | None = None,
     named: dict[str, float] | None = None,
 ) -> Frame:
-    return guess_frame(mesh, relief(mesh), convention, Named(named), few, given or Given())
+    return guess_frame(mesh, relief(mesh), convention, NameEvidence(named), few, given or Given())
 
 
 def legless() -> trimesh.Trimesh:

@@ -49,7 +49,7 @@ class AmbiguousDepthError(InputError):
 
 
 @dataclass(frozen=True)
-class Unit:
+class DepthUnit:
     """Units per metre, and what to tell."""
 
     per_metre: float
@@ -60,7 +60,7 @@ class Unit:
     """Likely units per metre and their words, where it cannot be told."""
 
 
-def unit_of(evidence: ScaleEvidence | None, stated: float) -> Unit:
+def unit_of(evidence: ScaleEvidence | None, stated: float) -> DepthUnit:
     """The unit of a map.
 
     Args:
@@ -68,26 +68,26 @@ def unit_of(evidence: ScaleEvidence | None, stated: float) -> Unit:
         stated: units per metre that the container has.
     """
     if evidence is None or (evidence.things < MIN_THINGS and not evidence.heights_agree):
-        return Unit(stated, _doubtful_height(evidence, stated))
+        return DepthUnit(stated, _doubtful_height(evidence, stated))
     seen = -evidence.log_scale
     off = abs(seen - np.log(stated))
     if off < CONTRADICTED_BY or off < 3.0 * evidence.sigma:
-        return Unit(stated)
+        return DepthUnit(stated)
     sigma = float(np.hypot(TOLERANCE, evidence.sigma / 2))
     nats = {u: -0.5 * ((seen - np.log(u)) / sigma) ** 2 for u in USUAL_UNITS}
     likely = sorted(nats, key=lambda u: -nats[u])[:2]
     wrong = _words(stated, float(np.exp(seen)) / stated, evidence)
     if nats[likely[0]] < -4.5:
-        return Unit(stated, question=f"{wrong}; its unit is unknown: give --depth-scale {np.exp(seen):.3g} or so")
+        return DepthUnit(stated, question=f"{wrong}; its unit is unknown: give --depth-scale {np.exp(seen):.3g} or so")
     if nats[likely[0]] - nats[likely[1]] < CERTAIN_NATS:
         best, other = likely
-        return Unit(
+        return DepthUnit(
             stated,
             question=f"{wrong}; give --depth-scale {best:g} ({USUAL_UNITS[best]}) or --depth-scale {other:g}",
             choices=tuple((u, USUAL_UNITS[u]) for u in (best, other, stated) if u in USUAL_UNITS),
         )
     best = likely[0]
-    return Unit(best, f"{wrong}; it was read as {USUAL_UNITS[best]} (--depth-scale {best:g})")
+    return DepthUnit(best, f"{wrong}; it was read as {USUAL_UNITS[best]} (--depth-scale {best:g})")
 
 
 def _words(stated: float, factor: float, evidence: ScaleEvidence) -> str:
