@@ -5,9 +5,12 @@ The port opens first: while a browser fetches the page, the editor and the libra
 
 from __future__ import annotations
 
+import atexit
 import contextlib
+import os
 import signal
 import socket
+import sys
 import threading
 import time
 import webbrowser
@@ -35,6 +38,8 @@ if TYPE_CHECKING:
 
 SIGNALS_S = 1.0
 """How often Ctrl+C and a request to end are looked for, in seconds."""
+MAX_LOADING_S = 5.0
+"""How long stopping waits for libraries that are being loaded: nobody needs them any more."""
 MAX_START_S = 60.0
 """How long a browser waits that came before the editor was there."""
 
@@ -68,14 +73,20 @@ class Running:
         return int(self.server.get_port())
 
     def stop(self) -> None:
-        """Save, end jobs, close the port; wait for a library that is being loaded.
-
-        An interpreter that ends while another thread loads native code aborts.
-        """
+        """Save, end jobs, close the port; wait a little for libraries that are being loaded."""
         self.stopped.set()
         self.workspace.close()
         stop_server(self.server)
-        self.loading.join()
+        self.loading.join(MAX_LOADING_S)
+        if self.loading.is_alive():  # an interpreter that ends while another thread loads native code aborts
+            atexit.register(self.loading.join)
+
+    def leave(self) -> None:
+        """End the process after `stop` where a library is still being loaded, which takes minutes on a busy machine."""
+        if self.loading.is_alive():
+            sys.stdout.flush()
+            sys.stderr.flush()
+            os._exit(0)
 
 
 def start(
@@ -223,3 +234,4 @@ def serve(
         print("Saving and stopping.", flush=True)
     finally:
         running.stop()
+    running.leave()

@@ -113,3 +113,4 @@ def _editor(folder: Path | None, projects_dir: Path) -> Iterator[tuple[Api, str 
             yield Api(address), None if opened is None else opened.folder.name
     finally:
         running.stop()
+    running.leave()

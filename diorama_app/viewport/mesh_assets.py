@@ -154,9 +154,9 @@ def plane_triangles(plane: Plane) -> Int32[np.ndarray, "m 3"]:
 
 def plane_glb(plane: Plane, texture: UInt8[np.ndarray, "h w 3"]) -> bytes:
     """A plane with its rectified picture, visible from inside the room only."""
-    material = PBRMaterial(
-        baseColorTexture=Image.fromarray(texture), metallicFactor=0.0, roughnessFactor=0.9, doubleSided=False
-    )
+    picture = Image.fromarray(texture)
+    picture.format = "JPEG"  # of any other trimesh makes a PNG, in ten times the time and size
+    material = PBRMaterial(baseColorTexture=picture, metallicFactor=0.0, roughnessFactor=0.9, doubleSided=False)
     mesh = trimesh.Trimesh(
         vertices=plane.polygon,
         faces=plane_triangles(plane),

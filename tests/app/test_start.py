@@ -148,3 +148,31 @@ running.stop()
     done = subprocess.run(command, capture_output=True, text=True, timeout=120)
     assert (done.returncode, done.stderr) == (0, "")
     assert "Memory Statistics" not in done.stdout, "Open3D was torn down while it was being loaded"
+
+
+BUSY = """
+import sys, time
+from pathlib import Path
+from diorama_app import serve
+from tests.app.small_room import PlainLibrary, make_project
+
+serve.warm_up = lambda stopped: time.sleep(600)
+serve.MAX_LOADING_S = 0.1
+folder = make_project(Path(sys.argv[1]) / "demo").folder
+more = {"open_browser": False, "low_graphics": True, "token": None, "library": PlainLibrary()}
+serve.serve(project=folder, projects_dir=folder.parent, host="127.0.0.1", port=0, **more)
+"""
+
+
+def test_stopping_does_not_wait_for_libraries_that_are_still_loading(tmp_path: Path) -> None:
+    command = [sys.executable, "-c", BUSY, str(tmp_path)]
+    process = subprocess.Popen(command, stdout=subprocess.PIPE, text=True)
+    assert process.stdout is not None
+    try:
+        assert "Diorama is at" in process.stdout.readline()
+        process.terminate()
+        assert process.wait(60) == 0
+    finally:
+        process.kill()
+        process.wait()
+        process.stdout.close()

@@ -111,7 +111,7 @@ def test_an_agent_joins_the_page_that_a_person_has_open(home: Path, environment:
         anyio.run(work)
     finally:
         served.send_signal(signal.SIGINT)
-        assert served.wait(180) == 0
+        assert served.wait(60) == 0
         served.stdout.close()
     assert not list(noted.glob(f"{served.pid}-*.json"))
     assert "armchair" not in json.dumps([o["id"] for o in json.loads((room / "scene.json").read_text())["objects"]])

@@ -7,12 +7,13 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from diorama_app.viewport.mesh_assets import ShapeBytes, reduced
+from diorama_app.viewport.mesh_assets import ShapeBytes, plane_glb, reduced
 from diorama_app.viewport.scene_view import MESH_NAMES, Viewport
 from diorama_core.geometry.rotations import quaternion_wxyz
+from diorama_core.io.glb import read_glb
 from diorama_core.scene import edits
 from diorama_core.scene.types import Pose
-from tests.app.small_room import PlainLibrary, furnished_scene
+from tests.app.small_room import PlainLibrary, furnished_scene, room_planes
 
 SCENE = furnished_scene()
 
@@ -161,3 +162,9 @@ def test_the_room_stands_on_its_ground_where_graphics_are_not_low(server, viewpo
     low.light(low_graphics=True)
     low.show(SCENE, {})
     assert "/ground" not in nodes(server)
+
+
+def test_a_plane_s_picture_travels_as_a_jpeg() -> None:
+    picture = np.random.default_rng(0).integers(0, 255, (64, 64, 3), dtype=np.uint8)
+    document, _ = read_glb(plane_glb(room_planes()[0], picture))
+    assert [image["mimeType"] for image in document["images"]] == ["image/jpeg"]
