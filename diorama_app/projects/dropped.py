@@ -16,6 +16,7 @@ import numpy as np
 from diorama_app.projects.packing import is_packed
 from diorama_app.projects.photo_folder import DATA, PHOTOS
 from diorama_core.errors import DioramaError, InputError
+from diorama_core.importing.array_clouds import is_array_cloud
 from diorama_core.io.archives import content_of, unpacked
 from diorama_core.io.file_heads import FileHead, head_of
 from diorama_core.io.other_files import what_else
@@ -143,7 +144,7 @@ def _of_file(path: Path, name: str, photo_size: tuple[int, int] | None) -> tuple
     head = head_of(path)
     if is_packed(head.names):
         return (Reading("project", "a packed project, as a new one"),)
-    flat = head.head.startswith(_FLAT) or head.head[4:8] == b"ftyp"
+    flat = (head.head.startswith(_FLAT) and not is_array_cloud(head)) or head.head[4:8] == b"ftyp"
     solid = () if flat or head.text[:1] in ("[", "{", "<") else _solid_readings(path, head)
     if solid and not head.text:
         return solid

@@ -1,4 +1,4 @@
-"""Measured points: clouds in PLY, LAS, LAZ, E57, PCD and plain text, Gaussian splats, and the folders of scanner apps.
+"""Measured points: clouds in PLY, LAS, LAZ, E57, PCD, text and arrays, Gaussian splats, and scanner apps' folders.
 
 LAS and LAZ need laspy, E57 needs pye57 (extra `scan`). `POINT_FORMS` is the table of what is read.
 """
@@ -16,6 +16,7 @@ import trimesh
 from jaxtyping import Float
 
 from diorama_core.errors import DioramaError, InputError, UnavailableError
+from diorama_core.importing.array_clouds import is_array_cloud, is_float_dump, read_array_cloud, read_float_dump
 from diorama_core.importing.cloud_units import likely_unit
 from diorama_core.importing.depth_frames import FRAME_FORMS, UP_Y, UP_Z, FrameForm, cloud_of_frames
 from diorama_core.importing.point_cloud import MAX_POINTS, MIN_POINTS, PointCloud, in_metres, points_of_mesh, unit_note
@@ -183,6 +184,10 @@ POINT_FORMS = (
     PointForm(
         "points in plain text", ", ".join(TEXT_SUFFIXES), lambda h: h.suffix in TEXT_SUFFIXES and is_text_cloud(h.text),
         partial(_from_array, read_text_cloud, ""),
+    ),
+    PointForm("points as an array of numpy", ".npy, .npz", is_array_cloud, partial(_from_array, read_array_cloud, "")),
+    PointForm(
+        "points as bare floats, as of KITTI", ".bin", is_float_dump, partial(_from_array, read_float_dump, "")
     ),
     *(_framed(form) for form in FRAME_FORMS),
     PointForm(

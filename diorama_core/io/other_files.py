@@ -63,6 +63,9 @@ OTHER_FILES = (
     OtherFile("a folder of photos", "build a room from it: diorama build FOLDER", lambda h: h.is_folder and h.has(".jpg", ".jpeg", ".heic") and not h.has(".glb", ".obj", ".ply", ".usdz")),
     OtherFile("a picture", "build a room from it: diorama build PHOTO", lambda h: h.head.startswith(_PICTURES) or h.head[4:12] in (b"ftypheic", b"ftypavif", b"ftypmif1") or h.head[8:12] == b"WEBP"),
     OtherFile("a film", "build a room from it: diorama build FILM", lambda h: h.suffix in (".mp4", ".mov", ".avi", ".mkv")),
+    OtherFile("an array of numbers", "depth goes with its photo: diorama build PHOTO --depth FILE; points need three columns", lambda h: h.head.startswith(b"\x93NUMPY") or (h.is_zip and bool(h.names) and all(n.endswith(".npy") for n in h.names))),
+    OtherFile("a MATLAB file", "save depth as .npy or 16-bit PNG, points as XYZ", _begins(b"MATLAB")),
+    OtherFile("an HDF5 file", "save depth as .npy or 16-bit PNG, points as XYZ", _begins(b"\x89HDF")),
     OtherFile("an archive that is not read", "unpack it first", lambda h: h.head.startswith((b"7z\xbc\xaf", b"Rar!", b"\x1f\x8b")) or h.suffix in (".tar", ".rar", ".7z")),
     OtherFile("a PDF", "a plan of it can be traced in the editor", _begins(b"%PDF")),
 )  # fmt: skip

@@ -15,7 +15,8 @@ from diorama_core.perception.inputs.depth.confidence import is_confidence
 from diorama_core.perception.inputs.depth.containers import DEPTH_FORMS
 from diorama_core.perception.inputs.depth.numpy_files import DepthContent
 from diorama_core.perception.inputs.form import form_of
-from diorama_core.perception.inputs.photos.decoding import open_picture, what_it_is
+from diorama_core.perception.inputs.masks.pictures import white_on_black
+from diorama_core.perception.inputs.photos.decoding import load_pixels, open_picture, what_it_is
 from diorama_core.perception.inputs.photos.frame import ASPECT_TOLERANCE
 from diorama_core.perception.inputs.photos.raw import raw_kind
 from diorama_core.perception.inputs.source import Source
@@ -89,6 +90,8 @@ def _of_numbers(source: Source, photo_size: tuple[int, int] | None) -> tuple[Rec
 
 def _of_picture(picture: Image.Image, source: Source, photo_size: tuple[int, int] | None) -> tuple[Recognised, ...]:
     photo = Recognised("photo", f"a photo ({picture.width} x {picture.height})")
+    if photo_size is not None and picture.format == "JPEG":
+        return (Recognised("masks", "one object, white on black"), photo) if _is_mask(picture, source) else (photo,)
     if photo_size is None or picture.format in ("JPEG", "MPO", "HEIF", "AVIF"):
         return (photo,)
     if picture.mode == "F" or picture.mode.startswith("I"):
@@ -107,6 +110,16 @@ def _of_picture(picture: Image.Image, source: Source, photo_size: tuple[int, int
         return (photo, packed) if bool((pixels[:, :3] == pixels[:, :1]).all()) else (packed, photo)
     grey = bool((pixels[:, :3] == pixels[:, :1]).all())
     return (photo, Recognised("depth", "a depth map of 8 bits")) if grey else (photo,)
+
+
+def _is_mask(picture: Image.Image, source: Source) -> bool:
+    """Whether a JPEG is of black and white, by a look at it reduced."""
+    picture.draft("RGB", (2 * _SAMPLED_PX, 2 * _SAMPLED_PX))
+    try:
+        mask = white_on_black(load_pixels(picture, source))
+    except InputError:
+        return False
+    return mask is not None and bool(mask.any())
 
 
 def _of_text(source: Source) -> tuple[Recognised, ...]:

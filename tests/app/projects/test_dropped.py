@@ -20,7 +20,7 @@ from diorama_core.perception.inputs.depth.reading import DepthOptions, read_dept
 from diorama_core.perception.inputs.photos.reading import read_photo
 from diorama_core.perception.inputs.source import read_source
 from tests.perception.inputs.depth.rooms import HEIGHT, WIDTH, room
-from tests.perception.inputs.files import box, boxes_json, depth_png, encoded, picture
+from tests.perception.inputs.files import box, boxes_json, depth_png, encoded, npy, picture
 
 PHOTO = encoded(picture(WIDTH, HEIGHT), "JPEG")
 BOXES = boxes_json(box(10, 20, 60, 90))
@@ -126,6 +126,19 @@ def test_a_model_a_room_and_a_scan() -> None:
     assert found.left_out == ("readme.txt",)
     points = trimesh.PointCloud(np.random.default_rng(0).uniform(0, 3, (MIN_POINTS, 3))).export(file_type="ply")
     assert [r.action for r in understood(points, "scan.ply", None).readings] == ["scene"]
+
+
+def test_arrays_of_points_are_scans_and_lossy_masks_are_masks() -> None:
+    points = np.random.default_rng(0).uniform(0, 3, (MIN_POINTS, 3)).astype(np.float32)
+    assert [r.action for r in understood(npy(points), "scan.npy", (WIDTH, HEIGHT)).readings] == ["scene"]
+    bright = np.column_stack([points, np.zeros(len(points), np.float32)])
+    assert [r.action for r in understood(bright.tobytes(), "scan.bin", None).readings] == ["scene"]
+    assert [r.action for r in understood(npy(room()[0]), "depth.npy", (WIDTH, HEIGHT)).readings] == ["inputs"]
+    lossy = encoded(Image.open(io.BytesIO(OBJECT)), "JPEG")
+    found = dropped({"a.jpg": PHOTO, "masks/0.jpg": lossy, "masks/1.jpg": lossy})
+    assert [(r.action, r.photos[0].beside) for r in found.readings] == [
+        ("photo", (("masks", "masks/0.jpg"), ("masks", "masks/1.jpg")))
+    ]
 
 
 def test_what_is_not_read_is_said() -> None:

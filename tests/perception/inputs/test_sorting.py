@@ -26,6 +26,8 @@ PHOTO = (WIDTH * 2, HEIGHT * 2)
         (encoded(picture(300, 100)), ["photo"]),
         (encoded(picture(WIDTH, HEIGHT, "L")), ["photo", "depth"]),
         (encoded(Image.fromarray(IDS)), ["masks"]),
+        (encoded(Image.fromarray(np.where(IDS > 1, 255, 0).astype(np.uint8)), "JPEG"), ["masks", "photo"]),
+        (encoded(Image.fromarray(IDS), "JPEG"), ["photo"]),
         (depth_png(DEPTH * 1000), ["depth", "photo"]),
         (npy(DEPTH), ["depth"]),
         (npy(IDS > 0), ["masks"]),

@@ -18,7 +18,7 @@ from diorama_core.perception.inputs.source import Folder, Source
 
 AROUND_SHARE = 0.6
 """Share of the picture's border that each mask covers, where they are black on white."""
-_PICTURES = (".npy", ".png", ".tif", ".tiff", ".bmp", ".gif", ".webp", ".pgm", ".ppm", ".pbm")
+_PICTURES = (".npy", ".png", ".tif", ".tiff", ".bmp", ".gif", ".webp", ".pgm", ".ppm", ".pbm", ".jpg", ".jpeg")
 
 
 def read_folder_of_masks(folder: Folder) -> MaskMap:
@@ -38,9 +38,9 @@ def read_folder_of_masks(folder: Folder) -> MaskMap:
         if mask.any() and not mask.all():
             masks.append(mask)
     shown = ", ".join(left_out[:3]) + (f" and {len(left_out) - 3} more" if len(left_out) > 3 else "")
-    notes = (f"{folder.name}: {shown} has the colours of a photo and was left out",) if left_out else ()
+    notes = (f"{folder.name}: {shown} is not white on black and was left out",) if left_out else ()
     if left_out and not masks:
-        raise InputError(f"{folder.name}: {shown} has the colours of a photo; give masks, white on black")
+        raise InputError(f"{folder.name}: {shown} is not white on black; give one PNG for each object, white on black")
     if len(masks) > 1 and all(_is_around(mask) for mask in masks):
         masks, notes = [~mask for mask in masks], (*notes, f"{folder.name}: the masks are black on white")
     found = painted(masks, folder.name, "masks")

@@ -24,6 +24,13 @@ PHOTO_SHARE, PHOTO_LEVELS = 0.15, 64
 """Share of pixels neither dark nor bright, and number of their levels: smoothed outlines have far fewer."""
 THIN_SHARE = 0.012
 """Of the longer side: half the width up to which a region is an outline."""
+LOSSY_FORMATS = ("JPEG", "MPO")
+BRIGHT = 100
+"""Of white after a lossy format; what is darker everywhere is an empty mask, or one of small numbers."""
+GREY_OFF = 24
+"""Differences of channels that a lossy format makes of grey."""
+MAX_BLURRED_SHARE = 0.08
+"""Of the pixels of white on black, that lie between both along outlines."""
 CUT_OUT_COLOURS = 256
 """Under transparency more colours than these are a photo's."""
 
@@ -35,6 +42,10 @@ def read_picture(source: Source) -> MaskMap:
         InputError: it is no picture, damaged, or of a format that blurs colours.
     """
     picture = open_picture(source, "mask", MAX_MASK_MEGAPIXELS)
+    if picture.format in LOSSY_FORMATS:
+        mask = white_on_black(load_pixels(picture, source, "mask"))
+        if mask is not None and mask.any():
+            return MaskMap(mask.astype(np.int32), (f"{source.name} is lossy; it was read as white on black",))
     if picture.format not in EXACT_FORMATS:
         raise InputError(f"{source.name}: masks need exact colours, which {picture.format} blurs; save them as PNG")
     if picture.format == "TIFF" and getattr(picture, "n_frames", 1) > 1:
@@ -55,6 +66,8 @@ def one_object(source: Source) -> Bool[np.ndarray, "h w"] | None:
         InputError: it is no such picture.
     """
     picture = load_pixels(open_picture(source, "mask", MAX_MASK_MEGAPIXELS), source, "mask")
+    if picture.format in LOSSY_FORMATS:
+        return white_on_black(picture)
     if picture.mode in ("RGBA", "LA", "PA") or "transparency" in picture.info:
         alpha = np.asarray(picture.convert("RGBA").getchannel("A"))
         if alpha.min() < 128:
@@ -65,6 +78,18 @@ def one_object(source: Source) -> Bool[np.ndarray, "h w"] | None:
     if most > 1 and float(between.mean()) > PHOTO_SHARE and len(np.unique(grey)) > PHOTO_LEVELS:
         return None
     return np.asarray(grey > (most / 2 if most > 1 else 0))
+
+
+def white_on_black(picture: Image.Image) -> Bool[np.ndarray, "h w"] | None:
+    """The white of a lossy picture of black and white; all False where it is dark; None where it has other tones."""
+    pixels = np.asarray(picture.convert("RGB")).astype(np.int16)
+    grey = pixels[..., 1]
+    blurred = (grey > 0.15 * 255) & (grey < 0.85 * 255)
+    if np.ptp(pixels, axis=2).max() > 2 * GREY_OFF or (np.ptp(pixels, axis=2) > GREY_OFF).mean() > MAX_BLURRED_SHARE:
+        return None
+    if grey.max() < BRIGHT:
+        return np.zeros(grey.shape, bool) if grey.max() < GREY_OFF else None
+    return np.asarray(grey >= 128) if blurred.mean() <= MAX_BLURRED_SHARE else None
 
 
 def _of_picture(picture: Image.Image, name: str) -> MaskMap:

@@ -48,7 +48,7 @@ MASK_FORMS: tuple[Form[MaskContent, MaskMap], ...] = (
     Form(
         "folder or zip of masks",
         "SAM (amg.py), SAM 3D Objects, Grounded-SAM",
-        "one file an object, white on black or cut out of the photo; of overlapping masks the smaller is in front",
+        "one file an object, white on black (JPEG too) or cut out of the photo; smaller ones in front of larger",
         _is_folder,
         _folder,
     ),

@@ -209,9 +209,29 @@ def test_masks_black_on_white_and_arrays_of_one_each() -> None:
     np.testing.assert_array_equal(found(Folder("f", files)), IDS)
 
 
+def lossy(mask: np.ndarray, name: str, quality: int = 40) -> Source:
+    return Source(encoded(Image.fromarray(np.where(mask, 255, 0).astype(np.uint8)), "JPEG", quality=quality), name)
+
+
+def test_lossy_masks_are_white_on_black_or_refused() -> None:
+    photo = Image.fromarray(np.random.default_rng(1).integers(0, 256, (HEIGHT, WIDTH, 3), dtype=np.uint8))
+    files = (lossy(LARGE, "1.jpg"), lossy(SMALL, "2.jpeg"), lossy(SMALL & ~SMALL, "3.jpg"))
+    values, _, notes = read_masks(
+        Folder("f", (*files, Source(encoded(photo, "JPEG"), "photo.jpg"))), (), decoded(WIDTH, HEIGHT)
+    )
+    assert (values != IDS).mean() < 0.01
+    assert any("photo.jpg is not white on black" in n for n in notes)
+    values, _, notes = read_masks(lossy(LARGE, "m.jpg"), (), decoded(WIDTH, HEIGHT))
+    assert ((values > 0) != LARGE).mean() < 0.01
+    assert "lossy" in notes[0]
+    for image in (Image.fromarray(RGB), Image.fromarray(IDS), photo):
+        with pytest.raises(InputError, match="exact colours, which JPEG blurs"):
+            found(Source(encoded(image, "JPEG"), "m.jpg"))
+
+
 def test_photos_and_measurements_are_no_masks() -> None:
     noise = np.random.default_rng(1).integers(0, 256, (HEIGHT, WIDTH, 3), dtype=np.uint8)
-    with pytest.raises(InputError, match="colours of a photo"):
+    with pytest.raises(InputError, match="not white on black"):
         found(Folder("f", (picture(Image.fromarray(noise)),)))
     ramp = np.tile(np.arange(WIDTH, dtype=np.uint8), (HEIGHT, 1))
     with pytest.raises(InputError, match="change evenly"):
