@@ -113,7 +113,7 @@ def _try(store: ModelStore, network_ids: Sequence[str]) -> None:
         failed = rejected(store, network_ids, example_inputs().inputs, progress)
     if failed:
         told = "; ".join(f"{c.network.title}: {c.words}" for c in failed)
-        raise UnavailableError(f"these files are not what they were taken for and were deleted again: {told}")
+        raise UnavailableError(f"these files were damaged or changed, so they were deleted: {told}")
 
 
 def _members(what: str) -> tuple[Network, ...]:

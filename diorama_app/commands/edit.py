@@ -38,7 +38,7 @@ def delete_selected(client: Client) -> None:
     )
     if loads:
         on_it = names_of(session.scene, loads)
-        label = "Delete it, too" if len(loads) == 1 else "Delete them, too"
+        label = "Delete it too" if len(loads) == 1 else "Delete them too"
         said = f"Deleted {names}; what stood on {'it' if len(chosen) == 1 else 'them'} is lower now: {on_it}"
         client.offer(said, label, partial(_delete_loads, client, loads))
 

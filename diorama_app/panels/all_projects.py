@@ -89,7 +89,7 @@ class AllProjects:
             f'{picture}</button><input data-change="rename" data-arg="{text(address)}" value="{text(name)}" '
             f'aria-label="Name of {text(name)}" title="Type to rename"><small>{when}</small><div class="bar">'
             + button("Duplicate", "copy", address)
-            + button("Delete", "bin", address, title="Moves it to the bin", disabled=current)
+            + button("Delete", "bin", address, title="Move it to the bin", disabled=current)
             + "</div></div>"
         )
 

@@ -49,7 +49,7 @@ class Compare:
 
 def _slider(value: int) -> str:
     return (
-        '<label title="In the photo view: fades between the model and the photo"><span>Model</span>'
+        '<label title="Fade between the model and the photo, in the photo view"><span>Model</span>'
         f'<input type="range" min="0" max="100" step="{STEP}" value="{value}" data-change="over" oninput="{_LIVE}" '
         'aria-label="Photo over model"><span>Photo</span></label>'
     )

@@ -32,14 +32,14 @@ SEARCHED = 240
 SHELVES: dict[Shelf, tuple[str, str]] = {
     "all": ("All", "The whole library"),
     "favourites": ("★", "Your favourites"),
-    "recent": ("Recent", "What you inserted lately"),
+    "recent": ("Recent", "What you inserted last"),
     "own": ("Mine", "Models of your own"),
 }
 EMPTY: dict[Shelf, str] = {
     "all": "Nothing in the library passes these filters.",
-    "favourites": "No favourites here yet: press ☆ on a tile.",
-    "recent": "Nothing here yet: what you insert is listed.",
-    "own": "No models of your own here yet: add a file above.",
+    "favourites": "No favourites yet. Press ☆ on a tile.",
+    "recent": "Nothing yet. What you insert appears here.",
+    "own": "No models of your own yet. Add a file above.",
 }
 SIZE_NAMES: dict[SizeClass, str] = {"small": "Up to 0.5 m", "medium": "0.5 to 1.5 m", "large": "Above 1.5 m"}
 
@@ -160,7 +160,7 @@ class LibraryPanel:
         star = (
             f'<button type="button" class="star" data-do="favourite" data-arg="{text(shape.id)}" '
             f'aria-pressed="{"true" if marked else "false"}" aria-label="Favourite: {name}" '
-            f'title="{"No favourite any more" if marked else "Add to favourites"}">{"★" if marked else "☆"}</button>'
+            f'title="{"Remove from favourites" if marked else "Add to favourites"}">{"★" if marked else "☆"}</button>'
         )
         fit = '<span class="chip" title="No free place is large enough">too large</span>' if too_large else ""
         return (

@@ -68,7 +68,7 @@ class LightPanel:
         as_before = "As in the photo" if scene.camera is not None else "Even light"
         self._modes.show(
             '<div class="bar">'
-            + button(as_before, "photo", title="Takes back everything set here", on=settings.hour is None)
+            + button(as_before, "photo", title="Undo all settings of the light", on=settings.hour is None)
             + button("Daylight", "day", title="Sun and sky at a time of day", on=settings.hour is not None)
             + "</div>"
         )
@@ -132,7 +132,7 @@ def told_light(scene: Scene) -> dict[str, Any]:
 def _lamps(scene: Scene) -> str:
     lamps = lamps_of(scene)
     if not lamps:
-        return '<h4>Lamps</h4><p class="dim">There are no lamps in the room. The Library has some.</p>'
+        return '<h4>Lamps</h4><p class="dim">The room has no lamps. Insert one from the Library.</p>'
     on = scene.light_settings.lamps_on or ()
     rows = "".join(
         button(
@@ -160,7 +160,7 @@ def _number(words: str) -> float:
     try:
         number = float(words)
     except ValueError as error:
-        raise InputError(f"“{words[:20]}” is no number") from error
+        raise InputError(f"“{words[:20]}” is not a number; write for example 0.5") from error
     if not np.isfinite(number):
-        raise InputError("the number is not finite")
+        raise InputError("the number is not finite; write for example 0.5")
     return number

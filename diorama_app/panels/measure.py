@@ -28,7 +28,7 @@ class Tape:
             f'<div class="card"><b>{shown}</b> between the two points.'
             '<div style="display:flex;gap:4px;margin-top:6px;align-items:center">'
             f'<input data-change="true" placeholder="true length, e.g. 2.4 m" aria-label="True length" '
-            f'title="Rescales the scene to this length">{button("Done", "done")}</div></div>'
+            f'title="Rescale the scene to this length">{button("Done", "done")}</div></div>'
         )
 
     def _act(self, action: Action) -> None:

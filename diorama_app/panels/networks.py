@@ -38,7 +38,7 @@ class Networks:
             self._offer = LiveHtml(gui)
             self._accept = gui.add_checkbox("I accept these licences", False)
             self._get = gui.add_button(
-                "Download networks", color="blue", hint="Downloads missing networks; can be cancelled"
+                "Download networks", color="blue", hint="Download the missing networks; this can be cancelled"
             )
         self._state: tuple[object, ...] = ()
         self._polled_at = 0.0

@@ -53,7 +53,7 @@ class ObjectCard:
         return (
             '<div class="card"><b>Click an object</b> in the view or in the list, or <b>drag it</b> to where it should '
             "be.<br><span class='dim'>Shift-click selects several, Shift-drag selects by rectangle, Esc clears. "
-            "Click a wall, the floor or the ceiling to finish it.</span>"
+            "Click a wall, the floor or the ceiling to paint or cover it.</span>"
             "</div>"
         )
 

@@ -56,7 +56,7 @@ class Optimiser:
         on_press(self._even, lambda: client.post(self._evened))
         self._start = gui.add_button("Optimise layout", hint="One undo step; Cancel restores the layout")
         self._start_some = gui.add_button(
-            "Optimise selection", color=QUIET_COLOUR, hint="Moves only the selection and what stands on it"
+            "Optimise selection", color=QUIET_COLOUR, hint="Move only the selection and what stands on it"
         )
         on_press(self._start, lambda: self._started(some=False))
         on_press(self._start_some, lambda: self._started(some=True))
@@ -208,7 +208,7 @@ def _worse(run: LayoutRun, labels: Mapping[str, str]) -> str:
         return ""
     back = button("Put back what got worse", "back worse", title="One undo step") if run.worse else ""
     tidy = (
-        button("Tidy up", "tidy", title="Moves objects onto their supports and apart")
+        button("Tidy up", "tidy", title="Move objects onto their supports and apart")
         if run.recipe != "feasible"
         else ""
     )
@@ -222,7 +222,7 @@ def _told(run: LayoutRun, scene: Scene) -> str:
     lines = list(resized_in_words(run.start, scene))
     if run.left:
         lines.append(f"{number_of(run.left)} that people placed stayed in place.")
-    bar = button("Tidy up all", "tidy all", title="Also moves what people placed") if run.left else ""
+    bar = button("Tidy up all", "tidy all", title="Move what people placed, too") if run.left else ""
     bar = f'<div class="bar tight" style="margin:6px 0 0 0">{bar}</div>' if bar else ""
     told = "".join(f"<p>{text(line[:1].upper() + line[1:])}</p>" for line in lines)
     return f'<div class="card" role="status" style="margin-bottom:6px">{told}{bar}</div>' if lines else ""

@@ -205,7 +205,8 @@ def _children(tree: _Tree, ids: tuple[str, ...]) -> str:
 def _plane_row(scene: Scene, plane: Plane) -> str:
     key = text(plane.id)
     return _heading(
-        plane_name(scene, plane), f'data-drop="{key}" data-do="surface" data-arg="{key}" title="Click to finish it"'
+        plane_name(scene, plane),
+        f'data-drop="{key}" data-do="surface" data-arg="{key}" title="Click to paint or cover it"',
     )
 
 

@@ -54,7 +54,7 @@ class OwnShelf:
         """The name and the folder of a model, to be typed, and its deletion."""
         models, key = self.models, text(shape.id)
         name, folder = models.names.get(shape.id, shape.caption), models.folders.get(shape.id, "")
-        gone = button("Delete", "model-delete", shape.id, title=f"Delete {name}; scenes that hold it stay as they are")
+        gone = button("Delete", "model-delete", shape.id, title=f"Delete {name}; scenes that use it keep it")
         return (
             f'<input data-change="model-name" data-arg="{key}" value="{text(name)}" aria-label="Name of {text(name)}">'
             f'<input data-change="model-folder" data-arg="{key}" value="{text(folder)}" placeholder="Folder" '

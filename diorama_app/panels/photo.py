@@ -89,7 +89,7 @@ class PhotoPanel:
         self._upload(gui, "photo", "Upload a photo", "image/*")
         self._words = gui.add_text("Describe a room", "", hint="For example: a bedroom with a double bed and two lamps")
         self._describe = gui.add_button(
-            "Create room", color=GO_COLOUR, hint="Creates a new project from this description"
+            "Create room", color=GO_COLOUR, hint="Create a new project from this description"
         )
         on_change(self._words, lambda _: client.post(self.refresh, key="words"))
         on_press(self._describe, lambda: client.post(lambda: describe_room(client, self._words.value)))
@@ -214,7 +214,7 @@ class PhotoPanel:
             "board": boxes.open,
             "add box": self._add_selected,
             "turn": lambda: self._read_again("turn the photo", {}, turn=True),
-            "bend": lambda: self._read_again("leave the photo bent", {}, bend=True),
+            "bend": lambda: self._read_again("undo straightening", {}, bend=True),
             "build": lambda: work.build(client.session),
             "join": lambda: join_photo(client),
             "named": lambda: boxes.name(action.pair[1]),
@@ -263,7 +263,7 @@ def _detection() -> tuple[bool, str]:
         return finds, ""
     size = f"{sum(n.size_bytes for n in missing) / 1e6:.0f} MB"
     licences = ", ".join(sorted({n.licence for n in missing}))
-    fetch = button(f"Download {size} and detect", "download", title=f"Accepts their licences: {licences}")
+    fetch = button(f"Download {size} and detect", "download", title=f"Accept their licences: {licences}")
     return finds, (
         f'<p class="dim">{text(PROPOSALS_ONLY if finds else NO_DETECTOR)}</p>{fetch}'
         f'<p class="dim">Licences: {text(licences)}.</p>'

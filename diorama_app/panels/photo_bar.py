@@ -23,16 +23,16 @@ def photo_bar(client: Client, inputs: Inputs, proposals: int) -> str:
     pieces = []
     if proposals:
         pieces.append(f'<span class="lead">{number_of(proposals, "proposal")}</span>')
-        pieces.append(button("Accept all", "accept all", title="Makes boxes of all proposals; one undo step"))
+        pieces.append(button("Accept all", "accept all", title="Accept all proposals as boxes; one undo step"))
     if not client.view.canvas.is_open:
-        pieces.append(button(marking_label(inputs), "board", title="Shows the photo to mark furniture on it"))
+        pieces.append(button(marking_label(inputs), "board", title="Show the photo and mark furniture on it"))
     if further is None and scene.objects and client.selected_box is not None:
-        hint = "Reconstructs only the selected box; everything else stays"
+        hint = "Reconstruct only the selected box; everything else stays"
         pieces.append(button("Add selected box to the scene", "add box", title=hint, disabled=busy))
     if further is None:
         pieces.append(build_button(inputs, busy=busy))
     if further is not None or awaits_photo(scene):
-        hint = "Finds where this photo was taken, joins its objects with the scene's and inserts the others"
+        hint = "Find where this photo was taken, match its objects with those of the scene and insert the others"
         pieces.append(button("Add to the scene", "join", title=hint, disabled=busy))
     doubt = upside_down_note() if further is None and is_upside_down(inputs.boxes, inputs.photo.height) else ""
     doubt += straightened_note() if further is None and _may_be_bent_back(client, inputs) else ""
@@ -41,16 +41,15 @@ def photo_bar(client: Client, inputs: Inputs, proposals: int) -> str:
 
 def upside_down_note() -> str:
     """What is said of a photo whose things lie as in one that was turned by 180 degrees, and the button to turn it."""
-    turn = button("Turn photo", "turn", title="Turns the photo by 180 degrees, with its boxes, depth and masks")
+    turn = button("Turn photo", "turn", title="Turn the photo by 180 degrees, with its boxes, depth and masks")
     return f'<div class="bar"><span class="lead">The photo seems to be upside down.</span>{turn}</div>'
 
 
 def straightened_note() -> str:
     """What is said of a photo that was straightened by its own lines, and the button that undoes it."""
-    back = button("Undo straightening", "bend", title="Takes the photo as its file has it")
-    return (
-        f'<div class="bar"><span class="lead">The lens bent straight lines; they are straight now.</span>{back}</div>'
-    )
+    back = button("Undo straightening", "bend", title="Use the photo as it is in its file")
+    said = "The lens bent straight lines, so the photo was straightened."
+    return f'<div class="bar"><span class="lead">{said}</span>{back}</div>'
 
 
 def _may_be_bent_back(client: Client, inputs: Inputs) -> bool:
@@ -76,5 +75,5 @@ def marking_label(inputs: Inputs) -> str:
 def build_button(inputs: Inputs, *, busy: bool) -> str:
     """The button that builds the scene, with the number of boxes."""
     count = f" ({len(inputs.boxes)})" if inputs.boxes else ""
-    hint = "Builds a scene from the photo and its boxes"
+    hint = "Build a scene from the photo and its boxes"
     return button(f"Build scene{count}", "build", title=hint, disabled=busy or not ready_to_build(inputs))

@@ -212,7 +212,7 @@ def box_list(inputs: Inputs, selected: int | None) -> str:
         return f'<p class="dim">{found} each piece of furniture in the photo, or drag a box around it.</p>'
     rows = []
     for index, box in enumerate(inputs.boxes):
-        unknown = ' <span class="dim">as an object</span>' if box.category == "object" else ""
+        unknown = ' <span class="dim">unknown kind</span>' if box.category == "object" else ""
         rows.append(
             f'<div class="row {"on" if index == selected else ""}" data-do="mark" data-arg="{index}" role="treeitem" '
             f'tabindex="0" aria-selected="{"true" if index == selected else "false"}">'

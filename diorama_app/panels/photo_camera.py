@@ -57,11 +57,11 @@ class PhotoCameraPanel:
         shown_as = {name: f"{round(value, 1) + 0.0:.1f}" for name, value in values.items()}  # no minus before a zero
         rows = "".join(_row(label, name, shown_as[name], hint) for name, (label, hint) in FIELDS.items())
         shown = format_length(camera_height_m(session.scene) or 0.0, self._client.preferences.unit)
-        rows += _row("Camera height", "height", shown, "Rescales the whole scene")
+        rows += _row("Camera height", "height", shown, "The whole scene is rescaled to it")
         again = button(
             "Rebuild with this camera",
             "build",
-            title="Keeps outlines; recomputes poses, shapes and layout. One undo step",
+            title="Recompute poses, shapes and layout; outlines stay. One undo step",
             disabled=not self._typed or session.jobs.status is not None,
         )
         back = button("Cancel", "back", title="Reset") if self._typed else ""
@@ -70,7 +70,7 @@ class PhotoCameraPanel:
             back = button(
                 "Estimate tilt",
                 "find",
-                title="Discards the tilt and roll set by hand, and rebuilds",
+                title="Discard the tilt and roll set by hand, and rebuild",
                 disabled=session.jobs.status is not None,
             )
         explained = '<p class="dim">The grid should lie on the floor of the photo.</p>' if self._typed else ""

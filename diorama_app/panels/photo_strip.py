@@ -21,7 +21,9 @@ from diorama_core.artefacts import FurtherPhoto
 
 TILE_PX = 200
 """Size of the pictures, which are shown at half of it."""
-ADVICE = "Take it one or two steps to the side, with most of the same furniture in view. The scene is kept."
+ADVICE = (
+    "Take another photo from one or two steps to the side, with most of the same furniture in view. The scene stays."
+)
 KEPT = 128
 """Encoded pictures."""
 
@@ -107,9 +109,9 @@ class PhotoStrip:
 def _about(photo: FurtherPhoto) -> str:
     """What is to do with the chosen photo."""
     if photo.camera is None:
-        said = "Mark what it shows, as far as it is not in the first photo or stands better here, then add it."
+        said = "Mark the furniture that the first photo does not show, or shows less well. Then add it to the scene."
     else:
         count = len(photo.seen)
         said = "1 object of the scene is seen in it." if count == 1 else f"{count} objects of the scene are seen in it."
-    out = button("Take out", "out", title="Takes the photo away; its objects stay. One undo step")
+    out = button("Remove photo", "out", title="Remove the photo; its objects stay. One undo step")
     return f'<p class="dim" style="margin-top:6px">{text(said)}</p><div class="bar tight">{out}</div>'

@@ -40,8 +40,8 @@ MADE_OPEN = frozenset(("laptop",))
 """Kinds whose shapes stand open and are closed by their joint."""
 
 FIELDS: dict[str, tuple[str, str, tuple[str, str, str]]] = {
-    "Position": ("place", "Of the centre of its base", ("x", "y", "Height")),
-    "Size": ("size", "As it stands", ("Width", "Depth", "Height")),
+    "Position": ("place", "Centre of its base", ("x", "y", "Height")),
+    "Size": ("size", "Width, depth and height of the object", ("Width", "Depth", "Height")),
 }
 """What the fields are called: the action, a hint, and the name of every axis."""
 
@@ -54,7 +54,7 @@ class Properties:
 
     def __init__(self, gui: viser.GuiApi, client: Client) -> None:
         self._client = client
-        self._colour = gui.add_rgb("Colour", (200, 200, 200), visible=False, hint="Paints its main material")
+        self._colour = gui.add_rgb("Colour", (200, 200, 200), visible=False, hint="Paint its main material")
         self._own = LiveHtml(gui, self._act)
         self._fold = LiveHtml(gui, self._act)
         self._name = gui.add_text("Name", "", visible=False)
@@ -113,7 +113,7 @@ class Properties:
         units = "".join(f"<option {'selected' if u == unit else ''}>{u}</option>" for u in UNITS)
         cells = (
             f'<label>Direction (°)<input data-change="turn" value="{turn:g}" aria-label="Direction (°)" '
-            'inputmode="decimal" title="Of its front, around the vertical axis"></label>'
+            'inputmode="decimal" title="Where its front points, around the vertical axis"></label>'
             f'<label>Unit<select data-change="unit" aria-label="Unit">{units}</select></label>'
         )
         return "".join(rows) + _grid(cells)
@@ -132,7 +132,7 @@ class Properties:
             )
 
         cells = "".join(map(cell, clearances(scene, item.id)))
-        hint = "Free length on each side, to the nearest wall or neighbour; type to place it"
+        hint = "Free length on each side, to the nearest wall or neighbour; type one to move the object"
         heading = f'<h4 title="{hint}">Distances{"" if unit == "ft-in" else f" ({unit})"}</h4>'
         return heading + _grid(cells).replace('class="fields"', 'class="fields four"') if cells else ""
 
@@ -192,7 +192,7 @@ def _surface(item: SceneObject) -> str:
         button(label, "finish", finish or "", title=hint, on=item.finish == finish)
         for finish, (label, hint) in FINISHES.items()
     )
-    own = button("Original colours", "own", title="Removes the paint") if item.colour is not None else ""
+    own = button("Original colours", "own", title="Remove the paint") if item.colour is not None else ""
     paint = f'<div class="bar tight wide">{own}</div>' if own else ""
     sources = "".join(
         button(label, "materials", source, title=hint, on=item.material_source == source)

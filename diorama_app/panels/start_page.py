@@ -167,7 +167,7 @@ class StartPage:
             + button("✕", "close", title="Close")
             + '</header><div class="ways">'
             f'<section class="first drop"><h2>A photo</h2><p>Drop one here, or choose a file. You '
-            "mark the furniture, Diorama builds the room.</p>"
+            "mark the furniture; Diorama builds the room.</p>"
             f'<label class="choose main" for="file_upload_{photo}" tabindex="0">Choose a photo</label></section>'
             "<section><h2>A description</h2><p>Describe the room in a sentence.</p>"
             f'<textarea data-change="words" rows="3" aria-label="Description of the room" '

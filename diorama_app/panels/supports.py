@@ -12,7 +12,7 @@ from diorama_core.scene.types import Scene
 
 NOTHING = "nothing"
 NO_WALL = "no wall"
-LIES, HANGS = "stands or lies on it", "is fastened to it"
+LIES, HANGS = "stands or lies", "is fastened"
 
 
 class Supports:
@@ -25,7 +25,7 @@ class Supports:
         self._parent = gui.add_dropdown(
             "Stands on", [NOTHING], visible=False, hint="The object or surface that supports it; it moves along"
         )
-        self._relation = gui.add_dropdown("and", [LIES, HANGS], visible=False, hint="Kind of support")
+        self._relation = gui.add_dropdown("How", [LIES, HANGS], visible=False, hint="Kind of support")
         self._wall = gui.add_dropdown("Against", [NO_WALL], visible=False, hint="The wall it stands against")
         on_change(self._parent, lambda name: client.post(lambda: self._chosen(name)))
         on_change(self._relation, lambda name: client.post(lambda: self._related(name)))

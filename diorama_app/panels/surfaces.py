@@ -62,12 +62,14 @@ class Surfaces:
         if plane.role == "wall" and len(scene.architecture.by_role("wall")) > 1:
             parts.append(
                 '<div class="bar tight">'
-                + button("This wall", "one", title="Finish only this wall", on=not self._all_walls)
-                + button("All walls", "all", title="Finish all walls alike", on=self._all_walls)
+                + button("This wall", "one", title="Change only this wall", on=not self._all_walls)
+                + button("All walls", "all", title="Change all walls alike", on=self._all_walls)
                 + "</div>"
             )
         if plane.role == "wall":
-            openings = (button(f"Add a {c}", "opening", c, title=f"A {c} in this wall") for c in OPENING_CATEGORIES)
+            openings = (
+                button(f"Add a {c}", "opening", c, title=f"Put a {c} into this wall") for c in OPENING_CATEGORIES
+            )
             parts.append(f'<div class="bar">{"".join(openings)}</div>')
         finish = plane.finish
         before = "As in the photo" if scene.camera is not None else "Plain"

@@ -34,8 +34,8 @@ class UnsavedChanges:
         if session.read_only:
             return (
                 f'<div class="card warn">{text(session.read_only)}<div class="bar tight" style="margin:6px 0 0 0">'
-                + button("Work on a copy", "copy", title="Creates a new project from the current state")
-                + button("Try again", "again", title="After closing it there")
+                + button("Work on a copy", "copy", title="Create a new project from the current state")
+                + button("Try again", "again", title="Close it there first")
                 + "</div></div>"
             )
         return f'<div class="card warn">{text(session.autosave.trouble)}</div>' if session.autosave.trouble else ""
@@ -59,7 +59,7 @@ class UnsavedChanges:
         return (
             '<div class="card warn">Diorama ended while this scene was being built.'
             '<div class="bar tight" style="margin:6px 0 0 0">'
-            + button("Continue building", "build", title="Continues where the build stopped")
+            + button("Continue building", "build", title="Continue where the build stopped")
             + button("Not now", "no build", title="Build it later with “Build scene”")
             + "</div></div>"
         )

@@ -253,7 +253,7 @@ def _of_photos(folder: Path, name: str, names: Sequence[str], photo_size: tuple[
     photos = [n for n, found in sorts.items() if found[0].sort == "photo"]
     inputs = {n: found[0] for n, found in sorts.items() if found[0].sort != "photo"}
     if not photos and not (photo_size and inputs):
-        what = "holds no photo, model or scan that is read"
+        what = "holds no photo, model or scan that can be read"
         raise InputError(f"{name} {what} (in it: {', '.join(Path(n).name for n in names[:3])})")
     if not photos:
         words = _list_of(list(dict.fromkeys(what.words for what in inputs.values())))

@@ -26,7 +26,7 @@ HTML = Format(
     "html",
     "Viewer in one page",
     (".html",),
-    "what one sees, to turn around in any browser without a server",
+    "what you see, lit as here, to look at from all sides in any browser",
     "diorama_app.viewport.html_viewer:write_html",
 )
 EXPORT_FORMATS: Mapping[str, Format] = {**FORMATS, HTML.name: HTML}
@@ -57,7 +57,7 @@ GUIDES: Mapping[str, Guide] = {
     "urdf": Guide(SIMULATORS, "RViz, MoveIt, PyBullet", _BODIES),
     "sdf": Guide(SIMULATORS, "Gazebo, Drake", _BODIES),
     "svg": Guide(PLANS, "browsers, Inkscape, Illustrator", _FURNITURE),
-    "pdf": Guide(PLANS, "anything; prints in scale", _FURNITURE),
+    "pdf": Guide(PLANS, "any PDF viewer; prints to scale", _FURNITURE),
     "dxf": Guide(PLANS, "AutoCAD, LibreCAD, QCAD", _FURNITURE),
     "sh3d": Guide(PLANS, "version 5.3 and newer", _FURNITURE | frozenset[Choice]({"textures"})),
     "ifc": Guide(PLANS, "Revit, Bonsai for Blender, IFC viewers", _SHAPES),

@@ -97,7 +97,7 @@ def checked_angles(tilt_deg: float, roll_deg: float) -> CameraAttitude:
     """Camera attitude; raises `InputError` when it is not plausible."""
     if abs(tilt_deg) > MAX_TILT_DEG or abs(roll_deg) > MAX_ROLL_DEG:
         raise InputError(
-            f"tilted by {tilt_deg:g}° and rolled by {roll_deg:g}° is no photo of a room; "
+            f"a tilt of {tilt_deg:g}° and a roll of {roll_deg:g}° are not possible for a photo of a room; "
             f"give up to {MAX_TILT_DEG:g}° and {MAX_ROLL_DEG:g}°"
         )
     return CameraAttitude(float(np.radians(tilt_deg)), float(np.radians(roll_deg)))

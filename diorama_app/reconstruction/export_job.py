@@ -32,7 +32,7 @@ def export(client: Client, format_name: str, options: ExportOptions) -> None:
     if not scene.objects and not scene.architecture.planes:
         raise EditRefused("there is nothing to export yet; build or open a scene first")
     if format_name not in EXPORT_FORMATS:
-        raise ExportError(f"cannot export as {format_name!r}; choose a format of the list")
+        raise ExportError(f"cannot export as {format_name!r}; choose a format from the list")
     chosen = EXPORT_FORMATS[format_name]
     chosen.writer()  # says at once what is missing
     name = project.name if project is not None else "scene"

@@ -97,7 +97,7 @@ def _try(fetched: Sequence[Network], progress: Progress) -> None:
     failed = rejected(ModelStore.default(), [n.id for n in fetched], example_inputs().inputs, progress)
     if failed:
         told = "; ".join(f"{c.network.title}: {c.words}" for c in failed)
-        raise UnavailableError(f"these files are not what they were taken for and were deleted again: {told}")
+        raise UnavailableError(f"these files were damaged or changed, so they were deleted: {told}")
 
 
 def find_furniture(client: Client) -> None:

@@ -32,9 +32,9 @@ def start_empty_room(client: Client, width_m: float, depth_m: float, height_m: f
     scene, made = with_finish_pictures(empty_room(width_m, depth_m, height_m), {})
     session.autosave.flush()
     project = begin_with_scene(
-        session.projects_dir, "Empty room", scene, made, ("begun as an empty room",), session.library
+        session.projects_dir, "Empty room", scene, made, ("started as an empty room",), session.library
     )
-    session.visit(client, project, "Insert furniture from the Library; click a wall or the floor to finish it.")
+    session.visit(client, project, "Insert furniture from the Library; click a wall or the floor to paint or cover it.")
 
 
 def open_example(client: Client, kind: str) -> None:

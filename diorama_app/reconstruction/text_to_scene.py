@@ -96,7 +96,7 @@ def _draw_and_build(
     what = f"The scene has {number_of(count)}" if count else "No furniture was found; draw boxes"
     lacking = unmet(said, built.scene)
     if lacking:
-        missing = f"of the description is missing: {', '.join(lacking)}"
+        missing = f"missing from the scene: {', '.join(lacking)}"
         project.update_info(notes=[missing, *project.info().get("notes", ())])
         what += f"; {missing}"
     return f"{what}; drawn by {endpoint.model}."

@@ -53,7 +53,7 @@
     const high = Math.round(Math.asin(Math.max(-1, Math.min(1, set.up))) * 180 / Math.PI);
     dial.setAttribute("aria-valuetext", `from the ${side}`);
     box.querySelector("[data-about]").textContent = up
-      ? `The sun stands ${high}° high in the ${side}. Drag it around the room, which is seen from above.`
+      ? `The sun stands ${high}° high in the ${side}. Drag it around the room (seen from above).`
       : "The sun is down. Lamps can be switched on below.";
   };
   const turned = (azimuth) => {

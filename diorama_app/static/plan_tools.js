@@ -3,9 +3,9 @@
 (() => {
   const P = window.__dioPlan, NEAR_PX = 26, CLOSE_PX = 12, ALONG_PX = 7;
   const TOOLS = {
-    split: ["Split wall", "Click a wall where it is split."],
-    door: ["Door", "Click a wall where the door goes."],
-    window: ["Window", "Click a wall where the window goes."],
+    split: ["Split wall", "Click a wall where it should be split."],
+    door: ["Door", "Click a wall where the door should be."],
+    window: ["Window", "Click a wall where the window should be."],
     room: ["Draw room", "Click the corners; Enter or the first corner closes the room, Backspace takes one back."],
     scale: ["Scale picture", "Click both ends of a length that you know."],
     shift: ["Move picture", "Drag the picture."],

@@ -30,7 +30,7 @@ def test_a_category_is_chosen_a_favourite_marked_and_found_after_a_reload(editor
     page.locator(".dio [data-do=shelf][data-arg=favourites]").click()
     expect(page.locator(".dio .tile:visible")).to_have_count(1)
     star.click()
-    expect(page.get_by_text("No favourites here yet")).to_be_visible()
+    expect(page.get_by_text("No favourites yet")).to_be_visible()
     page.locator(".dio [data-do=shelf][data-arg=all]").click()
 
 

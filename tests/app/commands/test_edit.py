@@ -55,7 +55,7 @@ def test_what_stood_on_a_deleted_table_comes_down_and_may_go_too(session: Editor
     assert session.scene.support_of("lamp_1").parent == "floor"
     message, label, do = offered[-1]
     assert message == "Deleted dining table; what stood on it is lower now: lamp"
-    assert label == "Delete it, too"
+    assert label == "Delete it too"
     do()
     assert not session.scene.has_object("lamp_1")
     session.undo(client)
