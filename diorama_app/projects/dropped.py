@@ -115,7 +115,7 @@ def is_one_file(head: FileHead) -> bool:
 def _is_flat(head: FileHead) -> bool:
     """Whether photos and small files lie side by side, as in no scan: told without the readers of scans and models."""
     paths = [Path(name) for name in head.names]
-    if not paths or any(p.parent != paths[0].parent or p.name.startswith("frame_") for p in paths):
+    if not paths or any(p.parent != paths[0].parent or p.name.startswith(("frame_", "frame-")) for p in paths):
         return False
     return all(p.suffix.lower() in _FLAT_SUFFIXES for p in paths)
 

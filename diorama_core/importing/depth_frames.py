@@ -90,10 +90,10 @@ def scanner_app_frames(folder: Path) -> Frames:
 
 def stray_frames(folder: Path) -> Frames:
     """`depth/000000.png`, `confidence/`, `camera_matrix.csv` of the film, `odometry.csv`; ARKit's world, +Y up."""
-    K = _table(folder / "camera_matrix.csv").reshape(3, 3)
+    K = numbers_of(folder / "camera_matrix.csv").reshape(3, 3)
     k = Intrinsics(round(2 * K[0, 2]), round(2 * K[1, 2]), K[0, 0], K[1, 1], K[0, 2], K[1, 2])
     files, frames = ContainedFiles(folder, InputError), []
-    for row in _table(folder / "odometry.csv", heading=True)[:, :9]:
+    for row in numbers_of(folder / "odometry.csv", heading=True)[:, :9]:
         name = f"{int(row[1]):06d}.png"
         depth, sure = folder / "depth" / name, folder / "confidence" / name
         if files.holds(depth):
@@ -104,16 +104,16 @@ def stray_frames(folder: Path) -> Frames:
 
 def tum_frames(folder: Path) -> Frames:
     """`depth.txt` and `groundtruth.txt` with times; depth in 1/5000 m; the motion capture's world, +Z up."""
-    poses = _table(folder / "groundtruth.txt")
-    listed = [line.split() for line in _text(folder / "depth.txt").splitlines() if line and line[0] != "#"]
-    pictures = [line.split() for line in _text(folder / "rgb.txt").splitlines() if line and line[0] != "#"]
+    poses = numbers_of(folder / "groundtruth.txt")
+    listed = [line.split() for line in text_of(folder / "depth.txt").splitlines() if line and line[0] != "#"]
+    pictures = [line.split() for line in text_of(folder / "rgb.txt").splitlines() if line and line[0] != "#"]
     files, frames = ContainedFiles(folder, InputError), []
     for time, name, *_ in listed:
         nearest = int(np.abs(poses[:, 0] - float(time)).argmin())
         depth = folder / name
         if abs(poses[nearest, 0] - float(time)) > TUM_APART_S or not files.holds(depth):
             continue
-        with Image.open(depth, formats=("PNG",)) as opened:
+        with Image.open(depth, formats=("PNG", "PPM")) as opened:
             k = KINECT.scaled(*opened.size)
         shown = min(pictures, key=lambda p: abs(float(p[0]) - float(time)), default=None)
         picture = folder / shown[1] if shown is not None and files.holds(folder / shown[1]) else None
@@ -124,15 +124,15 @@ def tum_frames(folder: Path) -> Frames:
 
 def scannet_frames(folder: Path) -> Frames:
     """`depth/0.png` in millimetres, `pose/0.txt`, `intrinsic/intrinsic_depth.txt`; +Z up."""
-    K = _table(folder / "intrinsic" / "intrinsic_depth.txt")
+    K = numbers_of(folder / "intrinsic" / "intrinsic_depth.txt")
     files, frames = ContainedFiles(folder, InputError), []
     for depth in sorted(filter(files.holds, (folder / "depth").glob("*.png")), key=lambda p: (len(p.stem), p.stem)):
         pose, picture = folder / "pose" / f"{depth.stem}.txt", folder / "color" / f"{depth.stem}.jpg"
         if not files.holds(pose):
             continue
-        T = _table(pose).reshape(4, 4)
+        T = numbers_of(pose).reshape(4, 4)
         if np.isfinite(T).all():
-            with Image.open(depth, formats=("PNG",)) as opened:
+            with Image.open(depth, formats=("PNG", "PPM")) as opened:
                 k = Intrinsics(*opened.size, K[0, 0], K[1, 1], K[0, 2], K[1, 2])
             frames.append(DepthFrame(depth, Camera(k, T), None, picture if files.holds(picture) else None))
     return Frames(tuple(frames), UP_Z)
@@ -183,8 +183,8 @@ def cloud_of_frames(folder: Path, form: FrameForm) -> PointCloud:
 
 
 def read_depth(path: Path, unit_m: float = MILLIMETRE) -> Float[np.ndarray, "h w"]:
-    """Depth along the viewing axis in metres, from a PNG; 0 where the sensor saw nothing."""
-    with Image.open(path, formats=("PNG",)) as opened:
+    """Depth along the viewing axis in metres, from a PNG or PGM; 0 where the sensor saw nothing."""
+    with Image.open(path, formats=("PNG", "PPM")) as opened:
         return np.asarray(opened).astype(np.float64) * unit_m
 
 
@@ -192,7 +192,7 @@ def _points(frame: DepthFrame, step: int) -> Float[np.ndarray, "n 3"]:
     depth = read_depth(frame.depth, frame.unit_m)
     good = (depth > 0.05) & (depth < MAX_DEPTH_M)
     if frame.confidence is not None:
-        with Image.open(frame.confidence, formats=("PNG",)) as opened:
+        with Image.open(frame.confidence, formats=("PNG", "PPM")) as opened:
             sure = np.asarray(opened)
         if sure.shape != depth.shape:
             raise InputError(f"{frame.confidence.name} has another size than its depth; export the scan again")
@@ -223,7 +223,8 @@ def _posed(position: Float[np.ndarray, "3"], quaternion: Float[np.ndarray, "4"])
     return T
 
 
-def _text(path: Path) -> str:
+def text_of(path: Path) -> str:
+    """A small text file; empty where there is none."""
     return (
         read_bytes(path, MAX_TEXT_BYTES, InputError).decode("utf-8", "replace")
         if ContainedFiles(path.parent, InputError).holds(path)
@@ -231,9 +232,9 @@ def _text(path: Path) -> str:
     )
 
 
-def _table(path: Path, *, heading: bool = False) -> Float[np.ndarray, "n m"]:
+def numbers_of(path: Path, *, heading: bool = False) -> Float[np.ndarray, "n m"]:
     """Rows of numbers, by commas or blanks."""
-    lines = [line for line in _text(path).replace(",", " ").splitlines() if line.strip() and line.lstrip()[0] != "#"]
+    lines = [line for line in text_of(path).replace(",", " ").splitlines() if line.strip() and line.lstrip()[0] != "#"]
     if not lines[heading:]:
         raise InputError(f"{path} holds no numbers; export the scan again")
     return np.array([[float(v) for v in line.split()] for line in lines[heading:]])

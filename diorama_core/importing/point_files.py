@@ -18,6 +18,7 @@ from jaxtyping import Float
 from diorama_core.errors import DioramaError, InputError, UnavailableError
 from diorama_core.importing.array_clouds import is_array_cloud, is_float_dump, read_array_cloud, read_float_dump
 from diorama_core.importing.cloud_units import likely_unit
+from diorama_core.importing.data_set_frames import DATA_SET_FORMS
 from diorama_core.importing.depth_frames import FRAME_FORMS, UP_Y, UP_Z, FrameForm, cloud_of_frames
 from diorama_core.importing.point_cloud import MAX_POINTS, MIN_POINTS, PointCloud, in_metres, points_of_mesh, unit_note
 from diorama_core.importing.splats import SPLAT, is_splat_ply, read_splat_ply, read_splats
@@ -189,7 +190,7 @@ POINT_FORMS = (
     PointForm(
         "points as bare floats, as of KITTI", ".bin", is_float_dump, partial(_from_array, read_float_dump, "")
     ),
-    *(_framed(form) for form in FRAME_FORMS),
+    *(_framed(form) for form in (*FRAME_FORMS, *DATA_SET_FORMS)),
     PointForm(
         "the mesh of a scanner app", "a folder, or its zip",
         lambda h: h.is_folder and "scene.json" not in h.names and any(_meshes_in(h.path)), _from_app_mesh,

@@ -26,6 +26,7 @@ PHOTO = encoded(picture(WIDTH, HEIGHT), "JPEG")
 BOXES = boxes_json(box(10, 20, 60, 90))
 DEPTH = depth_png(room()[0] * 1000)
 OBJECT = encoded(Image.fromarray(np.pad(np.full((60, 60), 255, np.uint8), ((30, HEIGHT - 90), (30, WIDTH - 90)))))
+FRAME = {"color.png": PHOTO, "depth.png": DEPTH, "pose.txt": b"1 0 0 0\n0 1 0 0\n0 0 1 0\n0 0 0 1\n"}
 YOLO = b"0 0.5 0.5 0.2 0.2\n1 0.3 0.3 0.2 0.2\n0 0.7 0.6 0.2 0.2\n"
 
 
@@ -139,6 +140,11 @@ def test_arrays_of_points_are_scans_and_lossy_masks_are_masks() -> None:
     assert [(r.action, r.photos[0].beside) for r in found.readings] == [
         ("photo", (("masks", "masks/0.jpg"), ("masks", "masks/1.jpg")))
     ]
+
+
+def test_frames_of_a_data_set_are_no_photos() -> None:
+    frames = {f"frame-{n:06d}.{what}": data for n in range(3) for what, data in FRAME.items()}
+    assert [r.words for r in dropped(frames).readings] == ["a scan (7-Scenes, ScanNet frames), as a new project"]
 
 
 def test_what_is_not_read_is_said() -> None:
