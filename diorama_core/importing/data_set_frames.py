@@ -62,17 +62,18 @@ def replica_frames(folder: Path) -> Frames:
     rows = numbers_of(folder / "traj.txt")
     if rows.shape[1:] != (16,):
         raise InputError(f"{folder / 'traj.txt'} has not 16 numbers a row; take the one beside the pictures")
-    k, steps, notes = REPLICA, REPLICA_STEPS, ("the camera is that of NICE-SLAM's Replica (600 of 1200 pixels)",)
+    k, steps = REPLICA, REPLICA_STEPS
     text = text_of(folder / "cam_params.json")
     if text:
         given = json.loads(text)["camera"]
         k = Intrinsics(given["w"], given["h"], *(float(given[key]) for key in ("fx", "fy", "cx", "cy")))
-        steps, notes = float(given["scale"]), ()
+        steps = float(given["scale"])
     frames = []
     for depth, row in zip(_found(folder, files, "results/depth*.png"), rows, strict=False):
         picture = next(filter(files.holds, depth.parent.glob(depth.stem.replace("depth", "frame") + ".*")), None)
         frames.append(DepthFrame(depth, Camera(k.scaled(*_size(depth)), row.reshape(4, 4)), None, picture, 1 / steps))
-    return Frames(tuple(frames), None, notes)
+    said = () if text else ("the camera is that of NICE-SLAM's Replica (600 of 1200 pixels)",)
+    return Frames(tuple(frames), None, said)
 
 
 def matterport_frames(folder: Path) -> Frames:
