@@ -129,9 +129,9 @@ def add_build(commands: Any) -> None:
     )
     p.add_argument(
         "--depth-kind",
-        choices=("auto", "depth", "distance", "inverse", "root", "logarithm"),
+        choices=("auto", "depth", "distance", "inverse", "root", "logarithm", "shifted"),
         default="auto",
-        help="along the optical axis or the rays, inverse, its root or logarithm (default: what it looks like)",
+        help="along the optical axis or the rays, inverse, root, logarithm, less a constant (default: by its looks)",
     )
     p.add_argument("--depth-encoding", choices=("linear", "sunrgbd"), default="linear", help="how a PNG stores depth")
     inner = p.add_mutually_exclusive_group()

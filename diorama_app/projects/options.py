@@ -48,7 +48,7 @@ class BuildOptions:
 
     depth_scale: float | None = None
     depth_encoding: Literal["linear", "sunrgbd"] = "linear"
-    depth_kind: Literal["auto", "depth", "distance", "inverse", "root", "logarithm"] = "auto"
+    depth_kind: Literal["auto", "depth", "distance", "inverse", "root", "logarithm", "shifted"] = "auto"
     profile: Literal["auto", "embedded", "foundation"] = "auto"
     detector: str | None = None
     depth_network: str | None = None

@@ -62,7 +62,7 @@ def build(
             picture contradicts it.
         depth_encoding: "sunrgbd" where a PNG's bits are rotated as in SUN RGB-D.
         depth_kind: "depth" along the optical axis, "distance" along the rays, "inverse", or its
-            "root" or "logarithm"; by default inferred.
+            "root" or "logarithm", or "shifted" by a constant; by default inferred.
         intrinsics: fx, fy, cx, cy in pixels of the upright original photo.
         fov_deg: horizontal field of view in degrees, instead of `intrinsics`.
         distortion: of the lens, in OpenCV's order: k1, k2, p1, p2, k3; the photo is straightened before it is used.

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from diorama_core.errors import InputError
-from diorama_core.perception.inputs.depth.kinds import CONTRADICTION, MIN_ORDER, DepthKind, DepthReading
+from diorama_core.perception.inputs.depth.kinds import BENT, CONTRADICTION, MIN_ORDER, DepthKind, DepthReading
 from diorama_core.perception.inputs.depth.units import AmbiguousDepthError, DepthAnswer
 
 CONTRADICTING_PLANES = 0.08
@@ -19,6 +19,7 @@ WORDS = {
     "inverse": "inverse depth",
     "root": "the square root of depth",
     "logarithm": "the logarithm of depth",
+    "shifted": "depth less a constant, as programs normalise it",
 }
 _INVERSE_ANSWERS = (
     DepthAnswer("inverse depth, fitted to the usual sizes of things", kind="inverse"),
@@ -76,9 +77,9 @@ def _bent(name: str, readings: tuple[DepthReading, ...]) -> tuple[str, ...]:
         AmbiguousDepthError: they are much flatter.
     """
     flattest = max(readings, key=lambda r: r.fit.explained)
-    if flattest.kind not in ("root", "logarithm"):
+    if flattest.kind not in BENT:
         return ()
-    more = flattest.fit.explained - max(r.fit.explained for r in readings if r.kind not in ("root", "logarithm"))
+    more = flattest.fit.explained - max(r.fit.explained for r in readings if r.kind not in BENT)
     looks = f"walls and floor are flat only if this is {WORDS[flattest.kind]}"
     if more > BENT_PLANES:
         raise AmbiguousDepthError(

@@ -10,26 +10,34 @@ from jaxtyping import Float
 
 @dataclass(frozen=True)
 class DepthFunction:
-    """Depth in some unit is a power of the numbers, or their exponential."""
+    """Depth in some unit is a power of the numbers, the numbers and a constant, or their exponential."""
 
     power: float = 1.0
+    offset: float = 0.0
+    """Added to the numbers first."""
     rate: float | None = None
     """Depth is `exp(rate * number)`; None where it is a power."""
 
     def inverse_depth(self, numbers: Float[np.ndarray, "*n"]) -> Float[np.ndarray, "*n"]:
         """Of positive numbers; affine in the picture on planes."""
-        return np.asarray(numbers**-self.power if self.rate is None else np.exp(-self.rate * numbers))
+        if self.rate is not None:
+            return np.asarray(np.exp(-self.rate * numbers))
+        return np.asarray((numbers + self.offset) ** -self.power)
 
     def numbers(self, inverse: Float[np.ndarray, "*n"]) -> Float[np.ndarray, "*n"]:
         """The numbers of inverse depth; infinite where no number stands for it."""
         positive = np.where(inverse > 0, inverse, 1.0)
-        found = positive ** (-1.0 / self.power) if self.rate is None else -np.log(positive) / self.rate
+        if self.rate is not None:
+            found = -np.log(positive) / self.rate
+        else:
+            found = positive ** (-1.0 / self.power) - self.offset
         return np.where(inverse > 0, found, np.inf)
 
     def of_larger(self, factor: float) -> DepthFunction:
         """The function of numbers that are so many times as large."""
-        return self if self.rate is None else DepthFunction(rate=self.rate / factor)
+        rate = None if self.rate is None else self.rate / factor
+        return DepthFunction(self.power, self.offset * factor, rate)
 
 
-DEPTH, ROOT, INVERSE = DepthFunction(), DepthFunction(2.0), DepthFunction(-1.0)
+DEPTH, ROOT, INVERSE = DepthFunction(), DepthFunction(power=2.0), DepthFunction(power=-1.0)
 """Depth itself, its square root, and its inverse."""

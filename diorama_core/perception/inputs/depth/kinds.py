@@ -6,7 +6,7 @@ floor's lower end, things before walls) is nearer in the map.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from typing import Literal
 
@@ -18,20 +18,24 @@ from diorama_core.library.taxonomy import UNKNOWN, category
 from diorama_core.perception.inputs.depth.functions import DEPTH, INVERSE, ROOT, DepthFunction
 from diorama_core.perception.inputs.depth.planes import TRIALS, PlaneFit, SampledDepth, planes_of, sampled
 
-Kind = Literal["depth", "distance", "inverse", "root", "logarithm"]
-DepthKind = Literal["auto", "depth", "distance", "inverse", "root", "logarithm"]
-"""Along the optical axis; along the rays; inverse depth or disparity of any offset; its square root or logarithm; or
-inferred from the picture."""
+Kind = Literal["depth", "distance", "inverse", "root", "logarithm", "shifted"]
+DepthKind = Literal["auto", "depth", "distance", "inverse", "root", "logarithm", "shifted"]
+"""Along the optical axis; along the rays; inverse depth or disparity of any offset; the square root or logarithm of
+depth; depth less a constant; or inferred from the picture."""
+BENT = ("root", "logarithm", "shifted")
+"""Kinds under which larger is farther, but planes of depth are none of the numbers."""
 
 PLANE_WEIGHT = 40.0
 """Nats for all pixels on planes: wrong readings of measured maps explain 0.05 to 0.4 less."""
 ORDER_WEIGHT = 3.0
-PRIOR = {"depth": 1.5, "distance": 0.0, "inverse": 0.0, "root": 0.0, "logarithm": 0.0}
+PRIOR = {"depth": 1.5, "distance": 0.0, "inverse": 0.0, **dict.fromkeys(BENT, 0.0)}
 """Most maps that are called depth are depth along the axis, and a fitted focal length explains a little by itself."""
 RAY_FOCALS = (0.45, 0.6, 0.8, 1.1)
 """Focal lengths over the longer side that are tried where none is known."""
 LOG_RANGES = (0.4, 0.6, 0.85, 1.2, 1.8)
 """Logarithms of far over near depth in a room, which tell a logarithm's base: they are tried."""
+OFFSETS = (0.1, 0.2, 0.4, 0.8, 1.6)
+"""Nearest depth over the range of depth, which is what normalised depth lacks: they are tried."""
 EXACT, NEARLY = 0.8, 0.04
 """Share of pixels on planes from which nothing else is asked, and by which a first look may be behind."""
 SEARCH_POINTS, SEARCH_TRIALS = 800, 60
@@ -84,7 +88,7 @@ def depth_readings(
     rays = () if exact and asked != "distance" else _ray_focals(sample, always=asked == "distance")
     for trial in rays if focal is None else (focal,):
         readings.append(_reading("distance", DEPTH, planes_of(on_axis(sample, trial)), order, trial))
-    for kind, function in () if exact and asked not in ("root", "logarithm") else _bent(sample, asked):
+    for kind, function in () if exact and asked not in BENT else _bent(sample, asked):
         readings.append(_reading(kind, function, planes_of(sample, function), order))
     restored = [_in_unit(r, scale) for r in readings]
     return tuple(sorted(restored, key=lambda r: -r.score))
@@ -140,18 +144,25 @@ def _ray_focals(sample: SampledDepth, *, always: bool) -> tuple[float, ...]:
 
 
 def _bent(sample: SampledDepth, asked: DepthKind) -> tuple[tuple[Kind, DepthFunction], ...]:
-    """The root and the logarithm of depth, where the numbers form about as many planes as one as they do as depth."""
+    """The root, logarithm and offset of depth, where the numbers form about as many planes so as they do as depth."""
     few = sample.thinned(SEARCH_POINTS)
     enough = _share(few, trials=SEARCH_TRIALS) - NEARLY
 
-    def planar(spread: float) -> float:
-        return _share(few, DepthFunction(rate=spread / few.spread), SEARCH_TRIALS)
+    def planar(function: DepthFunction) -> float:
+        return _share(few, function, SEARCH_TRIALS)
 
-    spread = max(LOG_RANGES, key=planar)
-    for step in (1.2, 1.1, 1.05):
-        spread = max((spread, spread / step, spread * step), key=planar)
-    kinds: dict[Kind, DepthFunction] = {"root": ROOT, "logarithm": DepthFunction(rate=spread / few.spread)}
-    return tuple((k, f) for k, f in kinds.items() if k == asked or _share(few, f, SEARCH_TRIALS) > enough)
+    def best(make: Callable[[float], DepthFunction], tried: Sequence[float]) -> DepthFunction:
+        chosen = max(tried, key=lambda v: planar(make(v)))
+        for step in (1.2, 1.1, 1.05):
+            chosen = max((chosen, chosen / step, chosen * step), key=lambda v: planar(make(v)))
+        return make(chosen)
+
+    kinds: dict[Kind, DepthFunction] = {
+        "root": ROOT,
+        "logarithm": best(lambda v: DepthFunction(rate=v / few.spread), LOG_RANGES),
+        "shifted": best(lambda v: DepthFunction(offset=v * few.spread), OFFSETS),
+    }
+    return tuple((k, f) for k, f in kinds.items() if k == asked or planar(f) > enough)
 
 
 def _share(sample: SampledDepth, function: DepthFunction = DEPTH, trials: int = TRIALS) -> float:

@@ -14,7 +14,7 @@ from diorama_core.perception.inputs.depth.choosing import chosen_reading
 from diorama_core.perception.inputs.depth.confidence import without_unsure
 from diorama_core.perception.inputs.depth.containers import DEPTH_FORMS
 from diorama_core.perception.inputs.depth.flips import turned, turned_over
-from diorama_core.perception.inputs.depth.kinds import DepthKind, depth_readings, rays_of
+from diorama_core.perception.inputs.depth.kinds import BENT, DepthKind, depth_readings, rays_of
 from diorama_core.perception.inputs.depth.numpy_files import DepthContent, RawDepth
 from diorama_core.perception.inputs.depth.relative import metric_depth, metric_of_bent
 from diorama_core.perception.inputs.depth.scale import focal_of_planes, scale_evidence
@@ -159,7 +159,7 @@ def _understood(
     if reading.kind == "inverse":
         depth, more = metric_depth(name, numbers, valid, reading.fit, scene.boxes, scene.focal)
         return depth.astype(np.float32), (*notes, *more)
-    if reading.kind in ("root", "logarithm"):
+    if reading.kind in BENT:
         depth, more = metric_of_bent(name, numbers, valid, reading, scene.boxes, scene.focal, options.per_metre)
         return depth.astype(np.float32), (*notes, *more)
     along = numbers

@@ -1,4 +1,4 @@
-"""Inverse depth of any offset and unit, and roots and logarithms of depth made metric.
+"""Inverse depth of any offset and unit, and roots, logarithms and offsets of depth made metric.
 
 Walls meet floors at right angles, things have their sizes, and a camera is held at a person's height.
 """
@@ -87,7 +87,7 @@ def metric_of_bent(
 
     Args:
         name: of the file.
-        values: the root or logarithm.
+        values: the root, the logarithm, or depth less a constant.
         valid: where there are some.
         reading: of the numbers.
         boxes: named things in shares of the longer side.
@@ -102,14 +102,14 @@ def metric_of_bent(
         natural = function if rate is None else DepthFunction(rate=1.0)
         return np.where(valid, 1.0 / natural.inverse_depth(values / per_metre), 0.0), ()
     base = None if rate is None else min(BASES, key=lambda b: abs(np.log(rate / b)))
-    usual = rate is None or (base is not None and abs(np.log(rate / base)) < NEAR_BASE)
+    usual = reading.kind == "root" or (base is not None and rate is not None and abs(np.log(rate / base)) < NEAR_BASE)
     if usual and base is not None:
         function = DepthFunction(rate=base)
     depth = np.where(valid, 1.0 / function.inverse_depth(values), 0.0)
     evidence = scale_evidence(depth, valid, reading.fit, focal or focal_of_planes(reading.fit), boxes)
     if usual and (evidence is None or abs(evidence.log_scale) < CONTRADICTED_BY):
         return depth, (f"{name} was read as the {reading.kind} of metres",)
-    note = f"{name} is a {reading.kind} of depth; its size was fitted to the floor and the usual sizes of things"
+    note = f"{name} was read as {reading.kind}; its size was fitted to the floor and the usual sizes of things"
     return depth * _factor(name, evidence), (note,)
 
 

@@ -107,6 +107,8 @@ def test_inverse_depth_becomes_metric_by_walls_and_things() -> None:
         ("logarithm", np.log(DEPTH)),
         ("logarithm", np.log10(1000.0 * DEPTH)),
         ("logarithm", 255.0 * np.log(DEPTH / 0.3) / np.log(40.0)),
+        ("shifted", 0.001 + (DEPTH - DEPTH.min()) / np.ptp(DEPTH)),
+        ("shifted", 1.0 + 65000.0 * (DEPTH - DEPTH.min()) / np.ptp(DEPTH)),
     ],
 )
 def test_roots_and_logarithms_are_asked_for_without_any_box(kind: str, values: np.ndarray) -> None:
@@ -132,7 +134,7 @@ def test_roots_and_logarithms_in_a_stated_unit_are_exact() -> None:
         assert notes == ()
 
 
-@pytest.mark.parametrize("kind", ["depth", "distance", "inverse", "root", "logarithm"])
+@pytest.mark.parametrize("kind", ["depth", "distance", "inverse", "root", "logarithm", "shifted"])
 def test_a_kind_that_is_given_is_among_the_readings(kind: str) -> None:
     assert kind in {r.kind for r in depth_readings(DEPTH, SEEN, (), None, kind)}
 
