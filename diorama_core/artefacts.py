@@ -304,6 +304,8 @@ class PosedCandidates:
     confidence: float
     reasons: tuple[Reason, ...] = ()
     """What decided which way it faces."""
+    headings: tuple[float, ...] = ()
+    """Probabilities of evenly spread headings, from +X of the world on; empty where the stage does not tell."""
 
 
 @dataclass(frozen=True)

@@ -25,7 +25,7 @@ VIEW = Field(
 )
 INSTRUCTIONS = """Rooms that are open in Diorama's editor. A person may have the same room in a browser, and sees every
 step. Begin with `rooms` and `open_room`, or with `build`. `look` shows pictures with the objects' ids; `ask` tells
-sizes, places, distances, free floor, supports and doubts; `edit` changes things; `check` says whether people could use
+sizes, places, distances, free floor, supports and doubts; `questions` tells what to look at first, `answer` settles it; `edit` changes things; `check` says whether people could use
 the room. Lengths are metres, +Z is up, headings are degrees counter-clockwise from +X. An error says what to do. Where
 somebody has changed the room meanwhile, look or ask again first."""
 
@@ -48,6 +48,7 @@ class Tools:
         """The tools, by the names of their methods."""
         return (
             *(self.rooms, self.open_room, self.build, self.look, self.ask),
+            *(self.questions, self.answer),
             *(self.edit, self.optimise, self.check, self.undo, self.redo, self.export),
         )
 
@@ -156,6 +157,21 @@ class Tools:
         """Whether people could use the room: collisions, floating, walkways, what is hard to reach; what to do."""
         found: dict[str, Any] = self._api.get(self._path("/check"))
         return found
+
+    def questions(self) -> dict[str, Any]:
+        """What you or the person could tell of the room, the answer that makes most objects right first."""
+        asked: dict[str, Any] = self._api.get(self._path("/questions"))
+        return self._changed(asked)
+
+    def answer(
+        self,
+        question: Annotated[str, Field(description="Its id, as `questions` tells it.")],
+        value: Annotated[str, Field(description="One of its choices; any category, any id of an object or plane.")],
+    ) -> dict[str, Any]:
+        """Answer a question: what it asks is certain then, and only what depends on it changes. One step."""
+        self._need_seen()
+        body = {"version": self._version, "question": question, "answer": value, "author": AUTHOR}
+        return self._changed(self._api.post(self._path("/answers"), body))
 
     def undo(self) -> dict[str, Any]:
         """Take back your own last step."""

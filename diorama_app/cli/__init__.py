@@ -19,13 +19,14 @@ from diorama_app.cli.library import add_library
 from diorama_app.cli.mcp import add_mcp
 from diorama_app.cli.models import add_models
 from diorama_app.cli.project import add_project
+from diorama_app.cli.review import add_review
 from diorama_app.cli.scenes import add_build, add_export, add_optimise, add_picture, add_serve
 from diorama_app.cli.text import add_text
 from diorama_core.errors import Cancelled, DioramaError
 from diorama_core.io.quick_imports import load_quickly
 from diorama_core.io.text import clean_strings
 
-LOAD_MUCH = ("api", "mcp", "build", "optimise", "export", "import", "picture", "text", "edit", "library", "bench")
+LOAD_MUCH = ("api", "mcp", "build", "optimise", "export", "import", "picture", "text", "edit", "review", "library", "bench")
 """Commands that need most libraries whatever they are told."""
 
 
@@ -94,6 +95,7 @@ def _parser() -> argparse.ArgumentParser:
         add_picture,
         add_text,
         add_edit,
+        add_review,
         add_library,
         add_models,
         add_bench,

@@ -48,6 +48,32 @@ class ObjectAnswer(BaseModel):
     doubts: list[str] = Field(description="What the build of the photo was not sure of.")
 
 
+class ChoiceAnswer(BaseModel):
+    """One answer that a question offers."""
+
+    value: str
+    label: str
+    probability: float = Field(ge=0, le=1)
+
+
+class QuestionAnswer(BaseModel):
+    """Something about an object that a person can tell better than the build."""
+
+    id: str
+    object_id: str
+    subject: str = Field(description="presence, kind, front or supporter.")
+    sentence: str
+    choices: list[ChoiceAnswer] = Field(description="Likeliest first. Other kinds and supporters may be answered, too.")
+    gain: float = Field(description="How many more objects are right after the answer, as far as can be expected.")
+
+
+class QuestionsAnswer(BaseModel):
+    """What is worth asking about a scene, the most helpful question first."""
+
+    version: str
+    questions: list[QuestionAnswer]
+
+
 class PlaneAnswer(BaseModel):
     """Floor, wall or ceiling."""
 

@@ -32,6 +32,15 @@ class EditRequest(_Body):
         return self
 
 
+class ReviewRequest(_Body):
+    """An answer to one of the questions about a scene."""
+
+    version: str = Field(max_length=40, description="Of the scene that the question was about.")
+    question: str = Field(max_length=300, description="Its id, such as kind:chair_1.")
+    answer: str = Field(max_length=300, description="A value of its choices; any category, any object or plane.")
+    author: Author = AUTHOR
+
+
 class DescribeRequest(_Body):
     """A room in words."""
 

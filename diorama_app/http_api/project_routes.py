@@ -10,6 +10,7 @@ from fastapi import APIRouter, Depends, Form, Query, Request, Response
 from fastapi.sse import EventSourceResponse, ServerSentEvent
 from starlette.concurrency import run_in_threadpool
 
+from diorama_app.commands import review
 from diorama_app.commands.optimise import optimise
 from diorama_app.http_api import project_answers as answers
 from diorama_app.http_api.files import FILE, PICTURE, VIEWS, file_answer, format_of, png
@@ -24,6 +25,7 @@ from diorama_app.http_api.project_forms import (
     EventData,
     OptimiseRequest,
     ProjectList,
+    ReviewRequest,
     StepAnswer,
     StepRequest,
 )
@@ -32,6 +34,7 @@ from diorama_app.reconstruction.build_job import build
 from diorama_app.session.session import EditorSession
 from diorama_core.export.gathering import ExportOptions
 from diorama_core.io.bounded import shortened
+from diorama_core.review.questions import questions
 from diorama_core.scene.schema import scene_to_json
 
 MAX_WAIT_S = 60.0
@@ -112,6 +115,28 @@ def edit_project(session: Session, body: EditRequest) -> EditAnswer:
     done = edit(session, body.version, body.edits or body.words.strip(), body.author)
     made = done.proposed
     return EditAnswer(version=done.version, lines=[*made.lines], notes=[*made.notes], changed=[*made.changed])
+
+
+@project_router.get("/{name}/questions", operation_id="get_questions")
+def get_questions(session: Session) -> answers.QuestionsAnswer:
+    """What a person could tell of the scene, the answer that makes most objects right first."""
+    scene, version = session.ui_thread.ask(lambda: (session.scene, session.document.version))
+    return answers.QuestionsAnswer.model_validate(
+        {"version": version, "questions": [q.to_json() for q in questions(scene)]}
+    )
+
+
+@project_router.post("/{name}/answers", operation_id="answer_question", responses=documented(409, 422))
+def answer_question(session: Session, body: ReviewRequest) -> StepAnswer:
+    """Answer a question, as one undo step. 409: somebody has changed the scene; ask for the questions again."""
+
+    def answer() -> StepAnswer:
+        session.need_writable()
+        need_version(session, body.version)
+        review.answer(session, body.question, body.answer, author=body.author)
+        return StepAnswer(version=session.document.version, label=session.document.history.current.label)
+
+    return session.ui_thread.ask(answer)
 
 
 @project_router.post("/{name}/undo", operation_id="undo_project", responses=documented(422))

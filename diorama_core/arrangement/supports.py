@@ -43,8 +43,8 @@ class SupportChoice:
     runner_up: SupportHypothesis | None
     shares: dict[str, float]
     """By term, how much more speaks against the runner-up than against the choice, nats."""
-    probability: float
-    """Probability of the choice, all other objects staying."""
+    probabilities: Mapping[str, float]
+    """By supporter how likely it is, all other objects staying."""
 
     @property
     def edge(self) -> Support:
@@ -93,7 +93,10 @@ def _choice(
     own = weights.shares(of_one[chosen])
     shares = {} if not others else {n: v - own[n] for n, v in weights.shares(of_one[others[0]]).items()}
     second = of_one[others[0]] if others else None
-    return SupportChoice(of_one[chosen], second, shares, float(likely[chosen] / likely.sum()))
+    probabilities: dict[str, float] = {}
+    for hypothesis, share in zip(of_one, (likely / likely.sum()).tolist(), strict=True):
+        probabilities[hypothesis.edge.parent] = probabilities.get(hypothesis.edge.parent, 0.0) + share
+    return SupportChoice(of_one[chosen], second, shares, probabilities)
 
 
 def with_decided_supports(

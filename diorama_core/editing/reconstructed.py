@@ -39,14 +39,14 @@ def _clear(scene: Scene, object_id: str, library: ShapeLibrary) -> Scene:
     if not met:
         return scene
     for carrier in dict.fromkeys(met):
-        on_it = _onto(scene, object_id, carrier, library)
+        on_it = moved_onto(scene, object_id, carrier, library)
         if on_it is not None and not positioner.collisions.of(on_it, [object_id]):
             return on_it
     spot = positioner.nearby(scene, object_id)
     return scene if spot is None else edits.move(scene, object_id, spot.pose)
 
 
-def _onto(scene: Scene, object_id: str, carrier_id: str, library: ShapeLibrary) -> Scene | None:
+def moved_onto(scene: Scene, object_id: str, carrier_id: str, library: ShapeLibrary) -> Scene | None:
     """An object where the photo shows its foot on top of another one, as large as it is seen; None where it does not.
 
     What seems to stand on the floor behind a sideboard looks like something smaller that stands nearer, on its top.

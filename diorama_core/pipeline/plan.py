@@ -19,6 +19,7 @@ from diorama_core.artefacts import Inputs
 from diorama_core.layout.clear_shapes import clear_shapes
 from diorama_core.perception.graph.apply import with_graph
 from diorama_core.pipeline.assemble import assemble
+from diorama_core.pipeline.beliefs import with_beliefs
 from diorama_core.pipeline.findings import finding
 from diorama_core.pipeline.look_ahead import looking_ahead
 from diorama_core.pipeline.network_inputs import with_network_inputs
@@ -147,7 +148,7 @@ PLAN: tuple[Step, ...] = (
     LayoutStep("layout", laid_out, ("not_laid_out", "preview"), "laid_out", 0.08),
     LayoutStep("refinement", refined, ("laid_out", "observed", "furniture_objects"), "refined", 0.06),
     Derivation(finished, ("refined", "appearance", "plane_pictures", "white_room", "inputs"), "finished"),
-    Derivation(lambda finished: finished.scene, ("finished",), "scene"),
+    Derivation(with_beliefs, ("finished", "inputs", "geometry", "posed", "supports", "noise", "library"), "scene"),
     Derivation(lambda finished: finished.textures, ("finished",), "textures"),
     Derivation(dressed, ("observed", "appearance", "plane_pictures"), "dressed_observed"),
     Derivation(

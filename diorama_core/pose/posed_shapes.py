@@ -45,4 +45,5 @@ def candidates_of(
     )
     confidence = task.fine.confidence(best.error, task.cuboid.confidence) * (1.0 - 0.5 * best.doubt)
     reasons = tuple(share for share in facings.shares if share.object_id == task.item.id)
-    return PosedCandidates(task.item.id, candidates, confidence, reasons)
+    headings = facings.probabilities_of(task.item.id)
+    return PosedCandidates(task.item.id, candidates, confidence, reasons, headings)

@@ -17,6 +17,7 @@ from pydantic import BaseModel, ConfigDict, Field, FiniteFloat, ValidationError
 
 from diorama_core.errors import SceneError
 from diorama_core.io.bounded import parse_json, shortened
+from diorama_core.scene.belief import Belief
 from diorama_core.scene.light_settings import MAX_EXPOSURE_EV, PHOTO_LIGHT, LightSettings
 from diorama_core.scene.support import check_scene
 from diorama_core.scene.types import (
@@ -57,6 +58,9 @@ MIGRATIONS: Mapping[int, Migration] = {}
 
 MAX_ITEMS = 5000
 """Objects, planes, candidates of one object, corners of one polygon."""
+
+MAX_SIGMA = 1e4
+"""Standard deviations that a file may hold."""
 
 # Wide enough for any room and any photo, narrow enough that no arithmetic on them overflows.
 Number = Annotated[float, Field(ge=-1e9, le=1e9, allow_inf_nan=False)]
@@ -140,6 +144,15 @@ class _PhotoMaterialFile(_Model):
     main: bool
 
 
+class _BeliefFile(_Model):
+    present: Unit
+    kinds: Annotated[list[tuple[Words, Unit]], Field(max_length=MAX_ITEMS)]
+    fronts: Annotated[list[Unit], Field(max_length=4)]
+    supporters: Annotated[list[tuple[Id, Unit]], Field(max_length=MAX_ITEMS)]
+    place_sigma_m: Annotated[float, Field(ge=0.0, le=MAX_SIGMA)]
+    size_sigma: Annotated[float, Field(ge=0.0, le=MAX_SIGMA)]
+
+
 class _ObjectFile(_Model):
     id: Id
     label: Words
@@ -162,6 +175,7 @@ class _ObjectFile(_Model):
     material_source: MaterialSource = "photo"
     open_share: Unit = 0.0
     by_hand: bool = False
+    belief: _BeliefFile | None = None
 
 
 class _LightFile(_Model):
@@ -341,6 +355,7 @@ def _object_to_file(item: SceneObject, support: Support | None) -> dict[str, Any
         "material_source": item.material_source,
         "open_share": item.open_share,
         "by_hand": item.by_hand,
+        "belief": None if item.belief is None else asdict(item.belief),
     }
 
 
@@ -434,6 +449,18 @@ def _object_from_file(file: _ObjectFile) -> SceneObject:
         material_source=file.material_source,
         open_share=file.open_share,
         by_hand=file.by_hand,
+        belief=None if file.belief is None else _belief_from_file(file.belief),
+    )
+
+
+def _belief_from_file(file: _BeliefFile) -> Belief:
+    return Belief(
+        file.present,
+        tuple(file.kinds),
+        tuple(file.fronts),
+        tuple(file.supporters),
+        file.place_sigma_m,
+        file.size_sigma,
     )
 
 

@@ -13,6 +13,7 @@ from typing import Literal
 import numpy as np
 from jaxtyping import Float
 
+from diorama_core.scene.belief import Belief
 from diorama_core.scene.frames import UP_WORLD
 from diorama_core.scene.light_settings import PHOTO_LIGHT, LightSettings
 from diorama_core.scene.values import ArrayValue, Vector3, frozen_array
@@ -338,6 +339,8 @@ class SceneObject:
     """How far its doors, drawers and lids stand open, 0 to 1; nothing for shapes that have none."""
     by_hand: bool = False
     """Whether a person placed, turned or sized it: no automatic step does so afterwards unless asked."""
+    belief: Belief | None = None
+    """How sure the build was of it; None for what no build found."""
 
     @property
     def shown_photo_materials(self) -> tuple[PhotoMaterial, ...]:

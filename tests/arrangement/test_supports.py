@@ -37,7 +37,7 @@ def test_a_cup_on_a_table_is_taken_off_the_floor_that_was_believed_to_hold_it(ro
     found = with_decided_supports(room.scene(camera=looking_north()), LIBRARY, MEASURED, SupportEvidence())
     assert found.scene.support_of(cup) == Support(cup, table)
     assert found.scene.support_of(table).parent == "floor"
-    assert found.choices[cup].probability > 0.7
+    assert found.choices[cup].probabilities[table] > 0.7
 
 
 def test_a_change_is_told_in_words_and_by_terms(room: Room) -> None:

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from jaxtyping import Float, Int
 
-from diorama_core.arrangement.facing.evidence import HEADINGS, FacingRoom, HeadingCosts
+from diorama_core.arrangement.facing.evidence import HEADINGS, STEP_RAD, FacingRoom, HeadingCosts
 from diorama_core.arrangement.facing.terms import TERMS, Term, pairs_of
 from diorama_core.arrangement.facing.weights import FacingWeights
 from diorama_core.artefacts import Reason
@@ -49,13 +49,25 @@ class Facings:
     costs: Float[np.ndarray, "n 24"]
     """What speaks against headings by all terms and what the others say, the picture of the object itself left out;
     0 for the best, in the units of `FacingObject.picture`."""
+    likely: Float[np.ndarray, "n 24"]
+    """Logarithms of how likely headings are by everything, up to a constant for each object."""
     shares: tuple[Reason, ...]
     """Why, term by term."""
 
     def costs_of(self, object_id: str) -> HeadingCosts:
         """The costs of one object's headings."""
-        k = next(k for k, item in enumerate(self.room.objects) if item.object_id == object_id)
+        k = self._index(object_id)
         return HeadingCosts(self.room.objects[k].yaw_rad, self.costs[k])
+
+    def probabilities_of(self, object_id: str) -> tuple[float, ...]:
+        """Probabilities of headings of one object, from +X of the world on, to the nearest of them."""
+        k = self._index(object_id)
+        shares = np.exp(self.likely[k] - self.likely[k].max())
+        turned = np.roll(shares / shares.sum(), round(self.room.objects[k].yaw_rad / STEP_RAD))
+        return tuple(turned.tolist())
+
+    def _index(self, object_id: str) -> int:
+        return next(k for k, item in enumerate(self.room.objects) if item.object_id == object_id)
 
 
 def solve(room: FacingRoom, weights: FacingWeights) -> Facings:
@@ -64,7 +76,7 @@ def solve(room: FacingRoom, weights: FacingWeights) -> Facings:
     own, context = beliefs(factors, weights)
     headings = (own + context).argmax(axis=1)
     costs = (context.max(axis=1, keepdims=True) - context) / weights.picture
-    return Facings(room, headings, costs, _shares(factors, weights, headings, own + context))
+    return Facings(room, headings, costs, own + context, _shares(factors, weights, headings, own + context))
 
 
 def beliefs(factors: Factors, weights: FacingWeights) -> tuple[Float[np.ndarray, "n 24"], Float[np.ndarray, "n 24"]]:

@@ -1,0 +1,32 @@
+"""Answers to questions about the scene, each one undo step."""
+
+from __future__ import annotations
+
+from diorama_app.session.client import Client
+from diorama_app.session.session import EditorSession
+from diorama_core.review.answers import answered
+from diorama_core.scene.types import Scene
+
+
+def answer(
+    session: EditorSession, question_id: str, value: str, *, by: Client | None = None, author: str = ""
+) -> None:
+    """Answer a question about the scene.
+
+    Args:
+        session: of the project.
+        question_id: of the question.
+        value: of the answer.
+        by: who answers in a browser.
+        author: who does so elsewhere.
+
+    Raises:
+        EditRefused: it is no answer, or the object is gone or locked.
+    """
+    subject, _, object_id = question_id.partition(":")
+    label = f"{subject} of {session.scene.object(object_id).label}" if session.scene.has_object(object_id) else subject
+
+    def change(scene: Scene) -> Scene:
+        return answered(scene, session.library, question_id, value)
+
+    session.edit(label, change, by=by, author=author, by_hand=subject in ("front", "supporter"))

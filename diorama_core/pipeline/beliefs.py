@@ -1,0 +1,147 @@
+"""How sure a build is of every object, from what its steps compared: probabilities and standard deviations."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from diorama_core.arrangement.noise import ObservationNoise
+from diorama_core.arrangement.supports import DecidedSupports
+from diorama_core.artefacts import Inputs, ObjectGeometry, PosedCandidates
+from diorama_core.library.record import ShapeLibrary, record_of
+from diorama_core.pipeline.scene_steps import FinishedScene
+from diorama_core.scene.belief import Belief, Shares
+from diorama_core.scene.types import Scene, SceneObject
+
+QUARTER_RAD = np.pi / 2
+
+
+@dataclass(frozen=True)
+class BeliefSettings:
+    """How what the steps compared becomes probabilities; fitted on annotated photos by `bench review`."""
+
+    present: tuple[float, float] = (0.0, 1.0)
+    """Of a box that a detector found: the log odds that it is right, per log odds of its score, from this on."""
+    kind: float = 1.0
+    """Power of the best scores of the kinds among an object's candidates."""
+    front: float = 1.0
+    """Power of the probabilities of headings."""
+    support: float = 1.0
+    """Power of the probabilities of supporters."""
+    rare: float = 1e-3
+    """Least probability of what was decided."""
+    told: int = 4
+    """Alternatives that are told."""
+    foot_hidden: float = 0.13
+    """Spread of the distance where no foot is seen, as its share: measured on rendered rooms (docs/benchmark.md)."""
+    hung: float = 0.08
+    """The same of things on walls and ceilings."""
+
+
+SETTINGS = BeliefSettings()
+
+
+def with_beliefs(
+    finished: FinishedScene,
+    inputs: Inputs,
+    geometry: ObjectGeometry,
+    posed: Sequence[PosedCandidates],
+    supports: DecidedSupports,
+    noise: ObservationNoise,
+    library: ShapeLibrary,
+    settings: BeliefSettings = SETTINGS,
+) -> Scene:
+    """The finished scene, every object of it with how sure the build is of it.
+
+    Args:
+        finished: the scene.
+        inputs: boxes of a detector tell how likely each object is there; those that a person drew are certain.
+        geometry: tells whose lower ends the photo shows.
+        posed: candidates and headings of the objects, with their probabilities.
+        supports: what may hold each object.
+        noise: of observed positions.
+        library: knows the kinds of shapes.
+        settings: how probabilities are made.
+    """
+    scene, headings = finished.scene, {p.object_id: p.headings for p in posed}
+    scores = {b.box: b.score for b in inputs.boxes if b.guessed and b.score < 1.0}
+    feet = {c.object_id for c in geometry.cuboids if c.foot_seen}
+
+    def believed(item: SceneObject) -> SceneObject:
+        choice, edge = supports.choices.get(item.id), scene.support_of(item.id)
+        holders = {} if choice is None or edge is None else _powered(choice.probabilities, settings.support)
+        sigma = _distance_sigma(scene, item, noise, settings, foot_seen=item.id in feet)
+        belief = Belief(
+            1.0 if item.box_px not in scores else _presence(scores[item.box_px], settings),
+            _decided_first(_kinds(item, library, settings), record_of(library, item.shape_id).category, settings),
+            _fronts(item, headings.get(item.id, ()), library, settings),
+            () if edge is None or not holders else _decided_first(holders, edge.parent, settings),
+            round(float(np.hypot(sigma * _distance_m(scene, item), noise.across_m)), 3),
+            round(sigma, 3),
+        )
+        return replace(item, belief=belief)
+
+    return replace(scene, objects=tuple(believed(item) for item in scene.objects))
+
+
+def _presence(score: float, settings: BeliefSettings) -> float:
+    start, slope = settings.present
+    odds = start + slope * float(np.log(max(score, settings.rare) / max(1.0 - score, settings.rare)))
+    return round(float(1.0 / (1.0 + np.exp(-odds))), 3)
+
+
+def _kinds(item: SceneObject, library: ShapeLibrary, settings: BeliefSettings) -> dict[str, float]:
+    """By category the score of its best candidate, as a probability."""
+    best: dict[str, float] = {}
+    for candidate in item.candidates:
+        kind = record_of(library, candidate.shape_id).category
+        best[kind] = max(best.get(kind, 0.0), candidate.score)
+    return _powered(best, settings.kind)
+
+
+def _fronts(
+    item: SceneObject, headings: tuple[float, ...], library: ShapeLibrary, settings: BeliefSettings
+) -> tuple[float, ...]:
+    """Probabilities of the four quarter turns from where it faces on; what looks the same is added to the first."""
+    if not headings:
+        return ()
+    steps = np.arange(len(headings)) * 2 * np.pi / len(headings)
+    quarters = np.rint((steps - item.pose.yaw_rad) / QUARTER_RAD).astype(int) % 4
+    shares = np.bincount(quarters, np.array(headings) ** settings.front, 4)
+    fold = record_of(library, item.shape_id).symmetry
+    if fold > 2:
+        shares = np.array([shares.sum(), 0.0, 0.0, 0.0])
+    elif fold == 2:
+        shares = np.array([shares[0] + shares[2], shares[1] + shares[3], 0.0, 0.0])
+    return tuple(np.round(shares / shares.sum(), 4).tolist())
+
+
+def _distance_sigma(
+    scene: Scene, item: SceneObject, noise: ObservationNoise, settings: BeliefSettings, *, foot_seen: bool
+) -> float:
+    """Standard deviation of an object's distance, as its share; its size is as far wrong."""
+    edge = scene.support_of(item.id)
+    if noise.measured:
+        return noise.along
+    if edge is not None and edge.relation == "mounted on":
+        return settings.hung
+    return noise.along if foot_seen else settings.foot_hidden
+
+
+def _distance_m(scene: Scene, item: SceneObject) -> float:
+    return 0.0 if scene.camera is None else float(np.linalg.norm(item.pose.position - scene.camera.position))
+
+
+def _powered(shares: Mapping[str, float], power: float) -> dict[str, float]:
+    raised = {name: share**power for name, share in shares.items()}
+    whole = sum(raised.values())
+    return {name: share / whole for name, share in raised.items()} if whole > 0 else {}
+
+
+def _decided_first(shares: Mapping[str, float], decided: str, settings: BeliefSettings) -> Shares:
+    """The likeliest alternatives, what was decided before all others."""
+    others = sorted(((n, p) for n, p in shares.items() if n != decided), key=lambda found: (-found[1], found[0]))
+    chosen = ((decided, max(shares.get(decided, 0.0), settings.rare)), *others)[: settings.told]
+    return tuple((name, round(share, 4)) for name, share in chosen if share >= settings.rare)

@@ -1,0 +1,127 @@
+"""Questions about a scene: the one whose answer brings the scene nearest to right, by what is expected of it, first.
+
+An object is right when it is there, of its kind, turned the right way and on its supporter. An answer makes one of
+these certain; it is worth the probability that this was wrong times that of everything else about the object being
+right, and where it moves or removes the object, as much again for everything that stands on it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import asdict, dataclass
+from typing import Any, Literal
+
+from diorama_core.library.labels import with_article
+from diorama_core.scene.belief import Belief
+from diorama_core.scene.support import descendants
+from diorama_core.scene.types import Scene, SceneObject
+
+Subject = Literal["presence", "kind", "front", "supporter"]
+SUBJECTS: tuple[Subject, ...] = ("presence", "kind", "front", "supporter")
+YES, NO = "yes", "no"
+TURNS = ("as it is", "left", "backwards", "right")
+"""Where an object faces, as seen from itself: quarter turns counter-clockwise."""
+LEAST_GAIN = 0.01
+"""Objects that an answer makes right, below which nobody is asked: one in a hundred."""
+
+
+@dataclass(frozen=True)
+class Choice:
+    """One answer that is offered."""
+
+    value: str
+    """What the answer says: yes or no, a category, one of `TURNS`, an id."""
+    label: str
+    """The same for people."""
+    probability: float
+
+
+@dataclass(frozen=True)
+class Question:
+    """Something about one object that a person can tell."""
+
+    object_id: str
+    subject: Subject
+    sentence: str
+    choices: tuple[Choice, ...]
+    """Likeliest first, what was decided among them; kinds and supporters that are not offered may be answered, too."""
+    gain: float
+    """How many more objects are right after the answer, as far as can be expected."""
+
+    @property
+    def id(self) -> str:
+        """Names it within the scene: `kind:chair_1`."""
+        return f"{self.subject}:{self.object_id}"
+
+    def to_json(self) -> dict[str, Any]:
+        """The question as JSON values."""
+        return {"id": self.id, **asdict(self)}
+
+
+def questions(scene: Scene) -> tuple[Question, ...]:
+    """All that is worth asking about a scene, the most helpful question first.
+
+    What a person has decided since the build, by an answer or by an edit, is not asked.
+    """
+    found = [q for item in scene.objects if item.belief is not None for q in _about(scene, item, item.belief)]
+    return tuple(sorted((q for q in found if q.gain >= LEAST_GAIN), key=lambda q: (-q.gain, q.id)))
+
+
+def _about(scene: Scene, item: SceneObject, belief: Belief) -> Iterator[Question]:
+    loads = sum(o.belief.right if o.belief is not None else 1.0 for o in map(scene.object, descendants(scene, item.id)))
+    edge = scene.support_of(item.id)
+    if belief.present < 1.0:
+        # Where it is no object, what is right afterwards is that nothing is there.
+        gain = (1.0 - belief.present) * (1.0 + belief.right + loads)
+        choices = (Choice(YES, "Yes", belief.present), Choice(NO, "Not an object", 1.0 - belief.present))
+        yield Question(item.id, "presence", f"Is this {with_article(item.label)}?", choices, gain)
+    if belief.kinds and belief.kinds[0][0] == item.category and belief.kinds[0][1] < 1.0:
+        yield _question(item, "kind", f"Is this {with_article(item.category)}?", belief.kinds, belief, 0.0, str)
+    if belief.fronts and belief.fronts[0] < 1.0 and not item.by_hand:
+        turns = tuple(zip(TURNS, belief.fronts, strict=True))
+        turns = tuple(turn for turn in turns if turn[1] > 0.0)
+        yield _question(item, "front", f"Which way does the {item.label} face?", turns, belief, 0.0, str)
+    if (
+        belief.supporters
+        and edge is not None
+        and belief.supporters[0][0] == edge.parent
+        and belief.supporters[0][1] < 1.0
+    ):
+        verb = "hang on" if edge.relation == "mounted on" else "stand on"
+        sentence = f"What does the {item.label} {verb}?"
+        yield _question(item, "supporter", sentence, belief.supporters, belief, loads, lambda i: name_of(scene, i))
+
+
+def _question(
+    item: SceneObject,
+    subject: Subject,
+    sentence: str,
+    shares: tuple[tuple[str, float], ...],
+    belief: Belief,
+    loads: float,
+    label: Callable[[str], str],
+) -> Question:
+    """A question whose first alternative is what was decided.
+
+    Args:
+        item: what is asked about.
+        subject: of the question.
+        sentence: that people read.
+        shares: alternatives with their probabilities.
+        belief: of the object.
+        loads: objects on it that are expected to be right.
+        label: of an alternative's value.
+    """
+    decided = max(shares[0][1], 1e-6)
+    gain = (1.0 - decided) * (belief.right / decided + loads)
+    ordered = sorted(shares, key=lambda share: -share[1])
+    return Question(item.id, subject, sentence, tuple(Choice(v, label(v), p) for v, p in ordered), gain)
+
+
+def name_of(scene: Scene, any_id: str) -> str:
+    """An object's label or a plane's role, as people read it."""
+    if scene.has_object(any_id):
+        return f"the {scene.object(any_id).label}"
+    plane = scene.plane(any_id)
+    same = scene.architecture.by_role(plane.role)
+    return f"the {plane.role}" if len(same) == 1 else f"{plane.role} {same.index(plane) + 1}"
