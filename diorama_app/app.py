@@ -45,6 +45,7 @@ from diorama_app.panels.picture import show_picture
 from diorama_app.panels.plan import Plan
 from diorama_app.panels.projects import Projects
 from diorama_app.panels.properties import Properties
+from diorama_app.panels.review import Review
 from diorama_app.panels.room_size import RoomSize
 from diorama_app.panels.silhouettes import Silhouettes
 from diorama_app.panels.start_page import StartPage
@@ -199,6 +200,7 @@ class Editor:
 
         with scene:
             place("Edits by words", lambda: EditByWords(gui, client))
+            place("The review", lambda: Review(gui, client))
             place("The list of objects", lambda: Outliner(gui, client))
             place("The size of the room", lambda: RoomSize(gui, client))
             place("The light", lambda: LightPanel(gui, client))

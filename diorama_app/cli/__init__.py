@@ -26,7 +26,9 @@ from diorama_core.errors import Cancelled, DioramaError
 from diorama_core.io.quick_imports import load_quickly
 from diorama_core.io.text import clean_strings
 
-LOAD_MUCH = ("api", "mcp", "build", "optimise", "export", "import", "picture", "text", "edit", "review", "library", "bench")
+LOAD_MUCH = (
+    *("api", "mcp", "build", "optimise", "export", "import", "picture", "text", "edit", "review", "library", "bench"),
+)
 """Commands that need most libraries whatever they are told."""
 
 

@@ -8,9 +8,7 @@ from diorama_core.review.answers import answered
 from diorama_core.scene.types import Scene
 
 
-def answer(
-    session: EditorSession, question_id: str, value: str, *, by: Client | None = None, author: str = ""
-) -> None:
+def answer(session: EditorSession, question_id: str, value: str, *, by: Client | None = None, author: str = "") -> None:
     """Answer a question about the scene.
 
     Args:

@@ -11,11 +11,13 @@ from diorama_core.arrangement.noise import ObservationNoise
 from diorama_core.arrangement.supports import DecidedSupports
 from diorama_core.artefacts import Inputs, ObjectGeometry, PosedCandidates
 from diorama_core.library.record import ShapeLibrary, record_of
+from diorama_core.library.taxonomy import having
 from diorama_core.pipeline.scene_steps import FinishedScene
-from diorama_core.scene.belief import Belief, Shares
+from diorama_core.scene.belief import CERTAIN_FRONT, Belief, Shares
 from diorama_core.scene.types import Scene, SceneObject
 
 QUARTER_RAD = np.pi / 2
+_NO_FRONT = having("no_front")
 
 
 @dataclass(frozen=True)
@@ -105,6 +107,8 @@ def _fronts(
     item: SceneObject, headings: tuple[float, ...], library: ShapeLibrary, settings: BeliefSettings
 ) -> tuple[float, ...]:
     """Probabilities of the four quarter turns from where it faces on; what looks the same is added to the first."""
+    if item.category in _NO_FRONT:
+        return CERTAIN_FRONT
     if not headings:
         return ()
     steps = np.arange(len(headings)) * 2 * np.pi / len(headings)

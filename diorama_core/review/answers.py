@@ -54,15 +54,19 @@ def _of_kind(scene: Scene, library: ShapeLibrary, object_id: str, kind: str) -> 
     _need(kind, {c.name for c in CATEGORIES}, "a kind of thing, such as armchair")
     item = scene.object(object_id)
     if record_of(library, item.shape_id).category != kind:
-        scene = edits.swap(scene, object_id, _candidate(library, item, kind), keep_pose=True)
+        scene = edits.swap(scene, object_id, candidate_of(library, item, kind), keep_pose=True)
         scene = seated(scene, library, object_id)
     named = replace(scene.object(object_id), category=kind, label=kind if item.category != kind else item.label)
     scene = replace(scene, objects=tuple(named if o.id == object_id else o for o in scene.objects))
     return _believed(scene, object_id, _belief(scene, object_id).with_kind(kind))
 
 
-def _candidate(library: ShapeLibrary, item: SceneObject, kind: str) -> Candidate:
-    """The object's best candidate of a kind; else the kind's shape that is nearest to it in size, made as large."""
+def candidate_of(library: ShapeLibrary, item: SceneObject, kind: str) -> Candidate:
+    """The object's best candidate of a kind; else the kind's shape that is nearest to it in size, made as large.
+
+    Raises:
+        EditRefused: the library has no shape of that kind.
+    """
     known = [c for c in item.candidates if record_of(library, c.shape_id).category == kind]
     if known:
         return max(known, key=lambda c: c.score)

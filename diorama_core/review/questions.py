@@ -11,6 +11,8 @@ from collections.abc import Callable, Iterator
 from dataclasses import asdict, dataclass
 from typing import Any, Literal
 
+import numpy as np
+
 from diorama_core.library.labels import with_article
 from diorama_core.scene.belief import Belief
 from diorama_core.scene.support import descendants
@@ -21,8 +23,10 @@ SUBJECTS: tuple[Subject, ...] = ("presence", "kind", "front", "supporter")
 YES, NO = "yes", "no"
 TURNS = ("as it is", "left", "backwards", "right")
 """Where an object faces, as seen from itself: quarter turns counter-clockwise."""
-LEAST_GAIN = 0.01
-"""Objects that an answer makes right, below which nobody is asked: one in a hundred."""
+DIRECTIONS = ("away from the camera", "to the left", "toward the camera", "to the right")
+"""Where things face in a photo, by quarter turns counter-clockwise."""
+LEAST_GAIN = 0.05
+"""Objects that an answer makes right, below which nobody is asked: one in twenty."""
 
 
 @dataclass(frozen=True)
@@ -80,7 +84,8 @@ def _about(scene: Scene, item: SceneObject, belief: Belief) -> Iterator[Question
     if belief.fronts and belief.fronts[0] < 1.0 and not item.by_hand:
         turns = tuple(zip(TURNS, belief.fronts, strict=True))
         turns = tuple(turn for turn in turns if turn[1] > 0.0)
-        yield _question(item, "front", f"Which way does the {item.label} face?", turns, belief, 0.0, str)
+        sentence = f"Which way does the {item.label} face?"
+        yield _question(item, "front", sentence, turns, belief, 0.0, lambda turn: _direction(scene, item, turn))
     if (
         belief.supporters
         and edge is not None
@@ -116,6 +121,15 @@ def _question(
     gain = (1.0 - decided) * (belief.right / decided + loads)
     ordered = sorted(shares, key=lambda share: -share[1])
     return Question(item.id, subject, sentence, tuple(Choice(v, label(v), p) for v, p in ordered), gain)
+
+
+def _direction(scene: Scene, item: SceneObject, turn: str) -> str:
+    """Where an object would face after a turn, as one sees it in the photo; the turn itself without a photo."""
+    if scene.camera is None:
+        return turn
+    view = scene.camera.T_world_camera[:2, 2]
+    yaw = item.pose.yaw_rad + TURNS.index(turn) * np.pi / 2 - np.arctan2(view[1], view[0])
+    return DIRECTIONS[round(yaw / (np.pi / 2)) % len(DIRECTIONS)]
 
 
 def name_of(scene: Scene, any_id: str) -> str:

@@ -26,6 +26,7 @@ from diorama_app.http_api import beside
 from diorama_app.serve import Running
 from diorama_core.scene import edits
 from diorama_core.scene.types import Scene
+from tests.review.doubtful_room import doubtful_scene
 
 Work = Callable[[Client], Awaitable[None]]
 
@@ -68,7 +69,7 @@ async def refused(client: Client, tool: str, **arguments: Any) -> str:
 def test_the_tools_and_resources_are_listed(agent) -> None:
     async def work(client: Client) -> None:
         tools = {tool.name: tool for tool in (await client.list_tools()).tools}
-        names = "rooms open_room build look ask edit optimise check undo redo export"
+        names = "rooms open_room build look ask questions answer edit optimise check undo redo export"
         assert set(tools) == set(names.split())
         assert all(tool.description for tool in tools.values())
         assert '"outward_m"' in json.dumps(tools["edit"].input_schema), "the edits are described field by field"
@@ -109,6 +110,24 @@ def test_an_agent_looks_asks_edits_and_undoes(agent, running: Running) -> None:
 
     agent(work)
     assert running.session.scene == before
+
+
+def test_an_agent_answers_what_the_build_is_not_sure_of(agent, running: Running) -> None:
+    session = running.session
+    before = session.scene
+    session.ui_thread.ask(lambda: session.commit("doubt", doubtful_scene()))
+
+    async def work(client: Client) -> None:
+        first, *others = (await told(client, "questions"))["questions"]
+        await told(client, "answer", question=first["id"], value=first["choices"][0]["value"])
+        left = (await told(client, "questions"))["questions"]
+        assert {q["id"] for q in left} == {q["id"] for q in others}
+        assert "armchair" in await refused(client, "answer", question="kind:chair_1", value="unicorn")
+        await told(client, "undo")
+
+    agent(work)
+    assert session.scene == doubtful_scene()
+    session.ui_thread.ask(lambda: session.commit("as before", before))
 
 
 def test_an_agent_tidies_up_and_exports(agent, running: Running, tmp_path: Path) -> None:

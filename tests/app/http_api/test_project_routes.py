@@ -21,6 +21,7 @@ from diorama_app.http_api.beside import api_beside, noted_servers
 from diorama_app.serve import Running
 from tests.app.http_api.openapi_client import Client
 from tests.app.people import join
+from tests.review.doubtful_room import doubtful_scene
 from tests.waiting import until
 
 TOKEN = "secret"
@@ -98,6 +99,23 @@ def test_a_stale_edit_is_told_what_changed(client: Client, scene: dict) -> None:
     assert undone.body["version"] != scene["version"]
     assert client.redo_project(name="demo", author="Tester").status == 200
     client.undo_project(name="demo", author="Tester")
+
+
+def test_questions_are_told_and_answered(running: Running, client: Client) -> None:
+    session = running.session
+    before = session.scene
+    session.ui_thread.ask(lambda: session.commit("doubt", doubtful_scene()))
+    asked = client.get_questions(name="demo").body
+    first = asked["questions"][0]
+    answer = {"question": first["id"], "answer": first["choices"][0]["value"], "author": "Tester"}
+    assert client.answer_question(name="demo", version="old", **answer).status == 409
+    assert client.answer_question(name="demo", version=asked["version"], question="kind:x", answer="y").status == 422
+    done = client.answer_question(name="demo", version=asked["version"], **answer)
+    assert done.status == 200
+    left = client.get_questions(name="demo").body
+    assert left["version"] == done.body["version"]
+    assert first["id"] not in {q["id"] for q in left["questions"]}
+    session.ui_thread.ask(lambda: session.commit("as before", before))
 
 
 def test_programs_take_back_only_what_is_theirs(client: Client, scene: dict) -> None:

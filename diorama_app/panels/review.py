@@ -1,0 +1,204 @@
+"""Review: one question about the scene after another, the most helpful first; an answer is an edit like any other."""
+
+from __future__ import annotations
+
+import base64
+import io
+from dataclasses import dataclass
+
+import numpy as np
+import viser
+from PIL import Image
+
+from diorama_app.commands import review
+from diorama_app.panels.fields import on_change, show_if, show_value
+from diorama_app.session.client import Client
+from diorama_app.viewport.thumbnails import SIDE_PX, Paint
+from diorama_app.web.html import Action, LiveHtml, button, text
+from diorama_core.errors import EditRefused
+from diorama_core.io.text import number_of
+from diorama_core.library.labels import understand_label
+from diorama_core.library.taxonomy import UNKNOWN
+from diorama_core.render.views import StudioView, render_shape
+from diorama_core.review.answers import answered, candidate_of
+from diorama_core.review.questions import TURNS, Choice, Question, questions
+from diorama_core.scene.types import SceneObject
+
+CROP_PX = 300
+MARGIN = 0.5
+"""How much of the photo is shown around an object, as a share of its box."""
+SETTLED = 0.8
+"""Share of what answers can bring that counts as most of it."""
+
+
+@dataclass(frozen=True)
+class Doubt:
+    """How much of a scene is expected to be right, and what it takes to settle most of the rest."""
+
+    right: float
+    answers: int
+
+    @classmethod
+    def of(cls, items: tuple[SceneObject, ...], asked: tuple[Question, ...]) -> Doubt:
+        """The doubt of a scene's objects, given its questions."""
+        known = [o.belief.right for o in items if o.belief is not None]
+        gains = np.cumsum([q.gain for q in asked])
+        enough = int(np.searchsorted(gains, SETTLED * gains[-1])) + 1 if len(gains) else 0
+        return cls(float(np.mean(known)) if known else 1.0, enough)
+
+
+class Review:
+    """A card that tells how sure the scene is, and the open question."""
+
+    def __init__(self, gui: viser.GuiApi, client: Client) -> None:
+        self._client = client
+        self._open = False
+        self._later: frozenset[str] = frozenset()
+        """Questions that were put off; all are asked again when the review is opened anew."""
+        self._html = LiveHtml(gui, lambda action: client.post(lambda: self._act(action), key=_key(action)))
+        self._other = gui.add_text(
+            "It is another kind", "", visible=False, hint="Type what it is: armchair, wardrobe, …"
+        )
+        on_change(self._other, lambda words: client.post(lambda: self._name(str(words)), key="other kind"))
+
+    def refresh(self) -> None:
+        """Draw the card for the scene as it is."""
+        scene = self._client.session.scene
+        asked = questions(scene)
+        left = tuple(q for q in asked if q.id not in self._later)
+        self._open = self._open and bool(left)
+        show_if(self._open and left[0].subject == "kind", self._other)
+        if not asked:
+            self._html.show("")
+            return
+        doubt = Doubt.of(scene.objects, asked)
+        self._html.show(self._asking(left[0], len(left)) if self._open else _summary(doubt))
+
+    def _asking(self, question: Question, left: int) -> str:
+        item = self._client.session.scene.object(question.object_id)
+        tiles = "".join(self._tile(item, question, choice, k) for k, choice in enumerate(question.choices, 1))
+        after = button("Later", "later", question.id, title="Ask something else first") + button(
+            "Close", "close", title="Go on another time: answers are kept"
+        )
+        count = text(number_of(left, "question"))
+        return (
+            f'<div class="card review" role="group" aria-label="Review"><h4>{count} left</h4>'
+            f"{self._crop(item)}<p><b>{text(question.sentence)}</b></p>"
+            f'<div class="grid two">{tiles}</div><div class="bar tight">{after}</div></div>'
+        )
+
+    def _tile(self, item: SceneObject, question: Question, choice: Choice, number: int) -> str:
+        picture = ""
+        if question.subject == "kind":
+            shape = candidate_of(self._client.session.library, item, choice.value).shape_id
+            picture = self._client.session.thumbnails.html(shape, (item.colour, item.finish))
+        elif question.subject == "front":
+            picture = self._turned(item, choice.value)
+        label, key = text(choice.label[:1].upper() + choice.label[1:]), text(f"{question.id}={choice.value}")
+        return (
+            f'<button type="button" class="tile" data-do="answer" data-arg="{key}" data-peek="{key}" '
+            f'data-digit="{number}" title="Point at it to see it in the room; key {number}">'
+            f"{picture}<b>{number} · {label}</b><small>{100 * choice.probability:.0f} %</small></button>"
+        )
+
+    def _turned(self, item: SceneObject, turn: str) -> str:
+        """The object as the photo's camera would see it after a turn; nothing without a camera."""
+        session, camera = self._client.session, self._client.session.scene.camera
+        if camera is None:
+            return ""
+        x, y, z = camera.position - item.pose.position
+        yaw = float(np.arctan2(y, x)) - item.pose.yaw_rad - TURNS.index(turn) * np.pi / 2
+        view = StudioView(yaw, float(np.arctan2(z, np.hypot(x, y))))
+        paint: Paint = (item.colour, item.finish)
+
+        def draw() -> bytes:
+            buffer = io.BytesIO()
+            rgba = render_shape(session.library, item.shape_id, (SIDE_PX, SIDE_PX), view, paint=paint)
+            Image.fromarray(rgba).save(buffer, "PNG")
+            return buffer.getvalue()
+
+        return session.thumbnails.of(f"{item.shape_id} {view} {paint}", draw)
+
+    def _crop(self, item: SceneObject) -> str:
+        """The object in the photo, as an image of the page."""
+        inputs = self._client.session.inputs
+        if inputs is None or item.box_px is None:
+            return ""
+        x1, y1, x2, y2 = item.box_px
+        side = max(x2 - x1, y2 - y1) * (0.5 + MARGIN)
+        x, y = (x1 + x2) / 2, (y1 + y2) / 2
+        picture = Image.fromarray(inputs.photo.rgb).crop(
+            (max(0, round(x - side)), max(0, round(y - side)), min(inputs.photo.width, round(x + side)),
+             min(inputs.photo.height, round(y + side)))
+        )  # fmt: skip
+        picture.thumbnail((CROP_PX, CROP_PX))
+        buffer = io.BytesIO()
+        picture.save(buffer, "JPEG", quality=85)
+        uri = base64.b64encode(buffer.getvalue()).decode()
+        return f'<img class="crop" alt="{text(item.label)} in the photo" src="data:image/jpeg;base64,{uri}">'
+
+    def _act(self, action: Action) -> None:
+        client = self._client
+        if action.do == "review":
+            self._open, self._later = True, frozenset()
+        elif action.do == "close":
+            self._open = False
+        elif action.do == "later":
+            self._later |= {action.arg}
+        elif action.do in ("answer", "peek"):
+            question, _, value = action.arg.partition("=")
+            if action.do == "peek":
+                self._peek(question, value)
+                return
+            review.answer(client.session, question, value, by=client)
+        self._show_object()
+
+    def _name(self, words: str) -> None:
+        """Answer the open question with a kind in words."""
+        question = self._question()
+        if question is None or question.subject != "kind" or not words.strip():
+            return
+        kind = understand_label(words).category
+        if kind.name == UNKNOWN.name:
+            raise EditRefused(f"“{words}” is no kind of thing that the library has; try another word")
+        show_value(self._other, "")
+        review.answer(self._client.session, question.id, kind.name, by=self._client)
+        self._show_object()
+
+    def _question(self) -> Question | None:
+        """The question that is open now."""
+        left = (q for q in questions(self._client.session.scene) if q.id not in self._later)
+        return next(left, None) if self._open else None
+
+    def _show_object(self) -> None:
+        """Select what is asked about, so that it is marked in the view and in the list."""
+        question = self._question()
+        if question is not None:
+            self._client.select((question.object_id,))
+        self._client.refresh()
+
+    def _peek(self, question: str, value: str) -> None:
+        """Show what an answer would do, without giving it; nothing for no answer."""
+        session = self._client.session
+        object_id = question.partition(":")[2]
+        if not session.scene.has_object(object_id) or session.jobs.status is not None:
+            session.refresh()
+            return
+        shown = answered(session.scene, session.library, question, value)
+        if shown.has_object(object_id):
+            session.viewport.preview_item(shown.object(object_id))
+
+
+def _key(action: Action) -> str | None:
+    return "peek" if action.do == "peek" else None
+
+
+def _summary(doubt: Doubt) -> str:
+    """How sure the scene is, and what a few answers would do."""
+    share = round(100 * doubt.right)
+    words = f"{number_of(doubt.answers, 'answer')} would settle most of the rest"
+    start = button("Review", "review", title="Answer what the build is not sure of, the most helpful question first")
+    return (
+        f'<div class="job card"><span class="words"><b>{share} % sure</b> · {text(words)}</span>{start}'
+        f'<meter min="0" max="100" value="{share}" aria-label="How sure the scene is"></meter></div>'
+    )

@@ -1,0 +1,69 @@
+from __future__ import annotations
+
+import pytest
+
+from diorama_app.panels.review import Doubt, Review
+from diorama_core.review.questions import questions
+from tests.review.doubtful_room import doubtful_scene
+
+
+@pytest.fixture
+def panel(session, page, client) -> Review:
+    made = Review(page, client)
+    client.panels = [made]
+    session.commit("doubt", doubtful_scene())
+    session.ui_thread.wait()
+    return made
+
+
+def test_a_scene_that_nobody_doubts_has_no_card(page, client) -> None:
+    Review(page, client).refresh()
+    assert "sure" not in page.html
+
+
+def test_the_card_tells_how_sure_the_scene_is_and_how_few_answers_settle_it(page, panel) -> None:
+    doubt = Doubt.of(doubtful_scene().objects, questions(doubtful_scene()))
+    assert f"{round(100 * doubt.right)} % sure" in page.html
+    assert 1 < doubt.answers < len(questions(doubtful_scene()))
+
+
+def test_one_question_after_another_is_answered_by_a_click_and_undone(session, client, page, panel) -> None:
+    page.act("review")
+    first = questions(session.scene)[0]
+    assert client.selection == (first.object_id,)
+    page.act("answer", f"{first.id}={first.choices[0].value}")
+    session.ui_thread.wait()
+    second = questions(session.scene)[0]
+    assert second.id != first.id
+    assert page.shows("answer", f"{second.id}={second.choices[0].value}")
+    session.undo(client)
+    assert questions(session.scene)[0].id == first.id
+
+
+def test_later_asks_something_else_first_and_close_keeps_the_answers(session, page, panel) -> None:
+    page.act("review")
+    first, second, *_ = questions(session.scene)
+    page.act("later", first.id)
+    assert page.shows("answer", f"{second.id}={second.choices[0].value}")
+    page.act("close")
+    assert page.shows("review")
+
+
+def test_pointing_at_an_answer_shows_it_and_changes_nothing(session, page, panel) -> None:
+    page.act("review")
+    before, name = session.scene, session.viewport.mesh_name("chair_1")
+    panel._peek("kind:chair_1", "table")
+    assert session.scene is before
+    assert session.viewport.mesh_name("chair_1") != name
+    panel._peek("", "")
+    assert session.scene is before
+
+
+def test_another_kind_is_answered_in_words(session, page, panel) -> None:
+    page.act("review")
+    while (asked := panel._question()) is not None and asked.subject != "kind":
+        page.act("later", asked.id)
+    assert page.field("It is another kind").visible
+    page.write("It is another kind", "table")
+    session.ui_thread.wait()
+    assert session.scene.object(asked.object_id).category == "table"
