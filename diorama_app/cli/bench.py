@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from diorama_app.cli.arguments import command, progress_bar
 from diorama_app.cli.bench_output import Bench, show_bench, write_json, write_text
-from diorama_app.cli.bench_photos import add_photos
+from diorama_app.cli.bench_photos import add_photos, add_review_bench
 from diorama_core.errors import InputError
 
 if TYPE_CHECKING:
@@ -80,6 +80,7 @@ def add_bench(commands: Any) -> None:
             )
             one.add_argument("--quick", action="store_true", help="small quantities only, about a minute")
     add_photos(tables)
+    add_review_bench(tables)
     _add_recognition(tables)
 
 

@@ -1,4 +1,4 @@
-"""`diorama bench photos`: annotated photos, as they are, perturbed, and in folds."""
+"""`diorama bench photos` and `bench review`: annotated photos as they are, perturbed, in folds, and reviewed."""
 
 from __future__ import annotations
 
@@ -20,19 +20,7 @@ def add_photos(tables: Any) -> None:
     """Declare `diorama bench photos`."""
     example = "diorama bench photos annotations.json --photos pictures"
     one = command(tables, "photos", _bench_photos, "Photos against what a person annotated in them.", example)
-    one.add_argument(
-        "annotations", type=Path, nargs="+", metavar="ANNOTATIONS", help="boxes, kinds, colours, fronts... (JSON)"
-    )
-    one.add_argument(
-        "--photos",
-        type=Path,
-        nargs="+",
-        required=True,
-        metavar="DIR",
-        help="pictures named by the annotations' ids: one folder for each file of annotations",
-    )
-    one.add_argument("--unnamed", action="store_true", help="give the boxes without their words")
-    one.add_argument("--only", nargs="+", default=(), metavar="ID", help="take these photos only")
+    _add_sources(one)
     one.add_argument(
         "--perturbed",
         nargs="?",
@@ -50,12 +38,46 @@ def add_photos(tables: Any) -> None:
         help="other values of settings (JSON): one file for all photos, or one for each fold, fitted on the others",
     )
     one.add_argument("--workers", type=int, default=1, metavar="N", help="photos built at once (default: %(default)s)")
-    one.add_argument("--stages", type=Path, metavar="DIR", help="keep stage results, so that a later run resumes")
-    one.add_argument(
-        "--json", type=Path, metavar="FILE", help="write the results as JSON too; a later run resumes them"
-    )
-    one.add_argument("--markdown", type=Path, metavar="FILE", help="write the tables as Markdown, or into their place")
     one.add_argument("--sheet", type=Path, metavar="FILE", help="write a sheet of photos beside their scenes")
+
+
+def add_review_bench(tables: Any) -> None:
+    """Declare `diorama bench review`."""
+    example = "diorama bench review annotations.json --photos pictures"
+    text = "What answers to a review are worth, by annotated photos, and how sure builds are."
+    _add_sources(command(tables, "review", _bench_review, text, example))
+
+
+def _add_sources(one: argparse.ArgumentParser) -> None:
+    """Declare which photos are built, and where results go."""
+    one.add_argument(
+        "annotations", type=Path, nargs="+", metavar="ANNOTATIONS", help="boxes, kinds, colours, fronts... (JSON)"
+    )
+    one.add_argument(
+        "--photos",
+        type=Path,
+        nargs="+",
+        required=True,
+        metavar="DIR",
+        help="pictures named by the annotations' ids: one folder for each file of annotations",
+    )
+    one.add_argument("--unnamed", action="store_true", help="give the boxes without their words")
+    one.add_argument("--only", nargs="+", default=(), metavar="ID", help="take these photos only")
+    one.add_argument("--stages", type=Path, metavar="DIR", help="keep stage results, so that a later run resumes")
+    one.add_argument("--json", type=Path, metavar="FILE", help="write the results as JSON too")
+    one.add_argument("--markdown", type=Path, metavar="FILE", help="write the tables as Markdown, or into their place")
+
+
+def _bench_review(a: argparse.Namespace) -> None:
+    from diorama_core.evaluation.benchmarks import photos as photos_bench
+    from diorama_core.evaluation.benchmarks import review
+    from diorama_core.library.catalogue import built_in_library
+
+    sources = _sources(a.annotations, a.photos)
+    asked = photos_bench.plan(sources, named=not a.unnamed, only=tuple(a.only), cache=a.stages)
+    with progress_bar() as progress:
+        bench = review.run(asked.tasks, built_in_library(), progress)
+    show_bench(bench, a)
 
 
 def _bench_photos(a: argparse.Namespace) -> None:

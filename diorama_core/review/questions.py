@@ -1,8 +1,7 @@
 """Questions about a scene: the one whose answer brings the scene nearest to right, by what is expected of it, first.
 
 An object is right when it is there, of its kind, turned the right way and on its supporter. An answer makes one of
-these certain; it is worth the probability that this was wrong times that of everything else about the object being
-right, and where it moves or removes the object, as much again for everything that stands on it.
+these certain; it is worth the probability that this was wrong times that of everything else about it being right.
 """
 
 from __future__ import annotations
@@ -15,7 +14,6 @@ import numpy as np
 
 from diorama_core.library.labels import with_article
 from diorama_core.scene.belief import Belief
-from diorama_core.scene.support import descendants
 from diorama_core.scene.types import Scene, SceneObject
 
 Subject = Literal["presence", "kind", "front", "supporter"]
@@ -72,20 +70,19 @@ def questions(scene: Scene) -> tuple[Question, ...]:
 
 
 def _about(scene: Scene, item: SceneObject, belief: Belief) -> Iterator[Question]:
-    loads = sum(o.belief.right if o.belief is not None else 1.0 for o in map(scene.object, descendants(scene, item.id)))
     edge = scene.support_of(item.id)
     if belief.present < 1.0:
         # Where it is no object, what is right afterwards is that nothing is there.
-        gain = (1.0 - belief.present) * (1.0 + belief.right + loads)
+        gain = (1.0 - belief.present) * (1.0 + belief.right)
         choices = (Choice(YES, "Yes", belief.present), Choice(NO, "Not an object", 1.0 - belief.present))
         yield Question(item.id, "presence", f"Is this {with_article(item.label)}?", choices, gain)
     if belief.kinds and belief.kinds[0][0] == item.category and belief.kinds[0][1] < 1.0:
-        yield _question(item, "kind", f"Is this {with_article(item.category)}?", belief.kinds, belief, 0.0, str)
+        yield _question(item, "kind", f"Is this {with_article(item.category)}?", belief.kinds, belief, str)
     if belief.fronts and belief.fronts[0] < 1.0 and not item.by_hand:
         turns = tuple(zip(TURNS, belief.fronts, strict=True))
         turns = tuple(turn for turn in turns if turn[1] > 0.0)
         sentence = f"Which way does the {item.label} face?"
-        yield _question(item, "front", sentence, turns, belief, 0.0, lambda turn: _direction(scene, item, turn))
+        yield _question(item, "front", sentence, turns, belief, lambda turn: _direction(scene, item, turn))
     if (
         belief.supporters
         and edge is not None
@@ -94,7 +91,7 @@ def _about(scene: Scene, item: SceneObject, belief: Belief) -> Iterator[Question
     ):
         verb = "hang on" if edge.relation == "mounted on" else "stand on"
         sentence = f"What does the {item.label} {verb}?"
-        yield _question(item, "supporter", sentence, belief.supporters, belief, loads, lambda i: name_of(scene, i))
+        yield _question(item, "supporter", sentence, belief.supporters, belief, lambda i: name_of(scene, i))
 
 
 def _question(
@@ -103,7 +100,6 @@ def _question(
     sentence: str,
     shares: tuple[tuple[str, float], ...],
     belief: Belief,
-    loads: float,
     label: Callable[[str], str],
 ) -> Question:
     """A question whose first alternative is what was decided.
@@ -114,11 +110,10 @@ def _question(
         sentence: that people read.
         shares: alternatives with their probabilities.
         belief: of the object.
-        loads: objects on it that are expected to be right.
         label: of an alternative's value.
     """
     decided = max(shares[0][1], 1e-6)
-    gain = (1.0 - decided) * (belief.right / decided + loads)
+    gain = (1.0 - decided) * belief.right / decided
     ordered = sorted(shares, key=lambda share: -share[1])
     return Question(item.id, subject, sentence, tuple(Choice(v, label(v), p) for v, p in ordered), gain)
 

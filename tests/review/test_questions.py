@@ -45,12 +45,6 @@ def test_an_object_of_which_the_rest_is_sure_is_asked_about_before_one_that_stay
     assert questions(scene)[0].id == "kind:chair_2"
 
 
-def test_what_carries_others_is_asked_about_first() -> None:
-    unsure = Belief(supporters=(("floor", 0.7), ("wall_1", 0.3)))
-    scene = believed(furnished_scene(), {"table_1": unsure, "chair_1": unsure})
-    assert [q.id for q in questions(scene)] == ["supporter:table_1", "supporter:chair_1"]
-
-
 def test_what_a_person_decided_since_is_not_asked() -> None:
     scene = doubtful_scene()
     chair = scene.object("chair_1")

@@ -119,8 +119,8 @@ def measured(
         form=compared(annotated.attributes, design),
         has_colour=None if annotated.colour is None else item.colour is not None,
         colour_difference=_colour_difference(annotated, shown),
-        front_error_deg=_front_error_deg(annotated, item, scene.camera, shape.symmetry),
-        supporter=None if annotated.on is None else _carrier(scene, item.id, index_of) == annotated.on,
+        front_error_deg=front_error_of(annotated, item, scene.camera, shape.symmetry),
+        supporter=None if annotated.on is None else carrier_of(scene, item.id, index_of) == annotated.on,
         iou=shape_iou(scene, item.id, annotated.bbox, library),
     )
 
@@ -138,7 +138,7 @@ def _colour_difference(annotated: AnnotatedObject, shown: Float[np.ndarray, "3"]
     return float(perceived_difference(np.array(annotated.colour) / 255.0, shown))
 
 
-def _front_error_deg(annotated: AnnotatedObject, item: SceneObject, camera: Camera | None, fold: int) -> float | None:
+def front_error_of(annotated: AnnotatedObject, item: SceneObject, camera: Camera | None, fold: int) -> float | None:
     """Smallest angle to any of the turns that leave the shape the same."""
     if annotated.front is None or camera is None:
         return None
@@ -147,7 +147,8 @@ def _front_error_deg(annotated: AnnotatedObject, item: SceneObject, camera: Came
     return float(min(off, period - off))
 
 
-def _carrier(scene: Scene, object_id: str, index_of: Mapping[str, int]) -> str | int | None:
+def carrier_of(scene: Scene, object_id: str, index_of: Mapping[str, int]) -> str | int | None:
+    """What carries an object, as annotations say it: the role of a plane, or the place of an object."""
     edge = scene.support_of(object_id)
     if edge is None:
         return None

@@ -1,0 +1,187 @@
+"""What answers are worth: scenes of annotated photos, reviewed by somebody who knows the truth.
+
+The same scenes are reviewed in the order of the review, the most doubtful thing first, and at random; and how sure a
+build is of its decisions is compared with how often they are right.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+
+from diorama_core.errors import EditRefused
+from diorama_core.evaluation.adapters.photo_annotations import AnnotatedObject
+from diorama_core.evaluation.benchmarks.photo_build import PhotoTask, annotated_inputs
+from diorama_core.evaluation.metrics.annotated import carrier_of, front_error_of
+from diorama_core.evaluation.reports.tables import Column, Row, Table
+from diorama_core.library.record import ShapeLibrary, record_of
+from diorama_core.pipeline.run import build_scene
+from diorama_core.progress import Progress
+from diorama_core.review.answers import answered
+from diorama_core.review.questions import TURNS, YES, Question, Subject, questions
+from diorama_core.scene.types import Scene
+
+COUNTS = (0, 1, 3, 5, 10)
+"""Answers after which scenes are compared with the truth."""
+RIGHT_DEG = 45.0
+BINS = (0.0, 0.5, 0.7, 0.85, 0.95, 1.0)
+"""Edges of the probabilities that are told apart."""
+ROUNDS = 5
+"""How often questions are asked at random."""
+
+Order = Callable[[Sequence[Question]], Question]
+
+
+@dataclass(frozen=True)
+class ReviewBench:
+    """Results of all scenes."""
+
+    scenes: tuple[Reviewed, ...]
+
+    def tables(self) -> tuple[Table, ...]:
+        """What answers are worth, and how sure builds are."""
+        return answers_table(self.scenes), calibration_table(self.scenes)
+
+    def to_json(self) -> dict[str, object]:
+        """The tables."""
+        return {"bench": "review", "photos": len(self.scenes), "tables": [t.to_json() for t in self.tables()]}
+
+
+@dataclass(frozen=True)
+class Reviewed:
+    """A built scene and what is true of it."""
+
+    scene: Scene
+    truth: Mapping[str, AnnotatedObject]
+    """By object what was annotated."""
+    index_of: Mapping[str, int]
+    """Places of the objects in the annotation, which supporters are named by."""
+    library: ShapeLibrary
+
+    def right(self, scene: Scene, object_id: str) -> dict[Subject, bool]:
+        """What is right of an object, of all that was annotated."""
+        item, truth, found = scene.object(object_id), self.truth[object_id], dict[Subject, bool]()
+        shape = record_of(self.library, item.shape_id)
+        if truth.nameable:
+            found["kind"] = shape.category == truth.kind
+        error = front_error_of(truth, item, scene.camera, shape.symmetry)
+        if error is not None:
+            found["front"] = error <= RIGHT_DEG
+        if truth.on is not None:
+            found["supporter"] = carrier_of(scene, object_id, self.index_of) == truth.on
+        return found
+
+    def answer(self, scene: Scene, question: Question) -> str | None:
+        """What somebody who knows the truth answers; None where the annotation does not say."""
+        truth = self.truth[question.object_id]
+        if question.subject == "presence":
+            return YES
+        if question.subject == "kind":
+            return truth.kind if truth.nameable else None
+        if question.subject == "supporter":
+            return self._supporter(scene, question)
+        turned = ((t, answered(scene, self.library, question.id, t)) for t in TURNS)
+        return next((t for t, after in turned if self.right(after, question.object_id).get("front")), None)
+
+    def _supporter(self, scene: Scene, question: Question) -> str | None:
+        """The annotated supporter: of several walls the likeliest."""
+        on = self.truth[question.object_id].on
+        if isinstance(on, int):
+            return next((name for name, index in self.index_of.items() if index == on and scene.has_object(name)), None)
+        planes = [p.id for p in scene.architecture.planes if p.role == on]
+        return next((c.value for c in question.choices if c.value in planes), next(iter(planes), None))
+
+
+def built(task: PhotoTask, library: ShapeLibrary, progress: Progress | None = None) -> Reviewed:
+    """The scene of an annotated photo, with the truth of its objects.
+
+    Raises:
+        DioramaError: the photo cannot be built.
+        Cancelled: on request.
+    """
+    case = annotated_inputs(task)
+    scene = build_scene(case.inputs, library, cache=task.cache, progress=progress).scene
+    known = {o.id: o.mask_id - 1 for o in scene.objects if o.mask_id is not None}
+    return Reviewed(scene, {name: case.annotation.objects[k] for name, k in known.items()}, known, library)
+
+
+def run(tasks: Sequence[PhotoTask], library: ShapeLibrary, progress: Progress | None = None) -> ReviewBench:
+    """Build and review annotated photos.
+
+    Raises:
+        DioramaError: a photo cannot be built.
+        Cancelled: on request.
+    """
+    progress, scenes = progress or Progress(), []
+    for k, task in enumerate(tasks):
+        scenes.append(built(task, library, progress.part(k / len(tasks), (k + 1) / len(tasks))))
+    return ReviewBench(tuple(scenes))
+
+
+def answers_table(scenes: Sequence[Reviewed], seed: int = 0) -> Table:
+    """What answers are worth in each order."""
+    rng = np.random.default_rng(seed)
+    orders: dict[str, tuple[int, Order]] = {
+        "the review": (1, lambda asked: asked[0]),
+        "most doubtful first": (1, lambda asked: min(asked, key=lambda q: (q.choices[0].probability, q.id))),
+        "at random": (ROUNDS, lambda asked: asked[int(rng.integers(len(asked)))]),
+    }
+    rows = []
+    for name, (rounds, order) in orders.items():
+        counted = np.array([shares_right(s, order) for _ in range(rounds) for s in scenes])
+        rows.append(Row(name, tuple((counted[..., 0].sum(axis=0) / counted[..., 1].sum(axis=0)).tolist())))
+    columns = tuple(Column(f"{count} answers", ".3f", "↑") for count in COUNTS)
+    return Table("Objects right in kind, front and supporter", columns, tuple(rows))
+
+
+def shares_right(reviewed: Reviewed, order: Order) -> list[tuple[int, int]]:
+    """Objects that are right in everything annotated, and all of them, after each of `COUNTS` answers."""
+    scene, done, over = reviewed.scene, 0, set[str]()
+    shares = []
+    for count in COUNTS:
+        while done < count and (
+            asked := [q for q in questions(scene) if q.id not in over and q.object_id in reviewed.truth]
+        ):
+            question = order(asked)
+            over.add(question.id)
+            value = reviewed.answer(scene, question)
+            if value is not None:
+                scene, done = _after(scene, question, value, reviewed.library), done + 1
+        right = [all(reviewed.right(scene, name).values()) for name in reviewed.truth if scene.has_object(name)]
+        shares.append((sum(right), len(reviewed.truth)))
+    return shares
+
+
+def _after(scene: Scene, question: Question, value: str, library: ShapeLibrary) -> Scene:
+    try:
+        return answered(scene, library, question.id, value)
+    except EditRefused:  # the library has no such kind
+        return scene
+
+
+def calibration_table(scenes: Sequence[Reviewed]) -> Table:
+    """How often what a build decided is right, by how sure it was."""
+    pairs: dict[Subject, list[tuple[float, bool]]] = {"kind": [], "front": [], "supporter": []}
+    for reviewed in scenes:
+        for name in reviewed.truth:
+            belief = reviewed.scene.object(name).belief
+            if belief is None:
+                continue
+            said = {"kind": belief.kinds[:1], "supporter": belief.supporters[:1]}
+            sure = {subject: of_one[0][1] for subject, of_one in said.items() if of_one}
+            sure |= {"front": belief.fronts[0]} if belief.fronts else {}
+            for subject, right in reviewed.right(reviewed.scene, name).items():
+                if subject in sure:
+                    pairs[subject].append((sure[subject], right))
+    rows = []
+    for subject, found in pairs.items():
+        for low, high in pairwise(BINS):
+            within = np.array([pair for pair in found if low < pair[0] <= high], dtype=float)
+            if len(within):
+                said_share, right_share = within.mean(axis=0).tolist()
+                rows.append(Row(f"{subject}, {low:.2f} to {high:.2f}", (len(within), said_share, right_share)))
+    columns = (Column("decisions", "d"), Column("said", ".2f"), Column("right", ".2f"))
+    return Table("How sure a build is, and how often it is right", columns, tuple(rows))
