@@ -16,9 +16,9 @@ MOUSE = (
     ("Select", "Click"),
     ("Select more", "Shift-click"),
     ("Select in a rectangle", "Shift-drag"),
-    ("Move an object", "Drag the object"),
+    ("Move an object", "Drag it"),
     ("Move, snapping inverted", "Alt-drag"),
-    ("Rotate the view", "Drag the background"),
+    ("Rotate the view", "Drag beside it"),
     ("Pan the view", "Right-drag"),
     ("All commands", "Ctrl+K"),
 )

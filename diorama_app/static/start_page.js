@@ -30,6 +30,10 @@
       event.target.click();
     }
     if (!open) return;
+    // viser hears no key in a field.
+    if (event.key === "Escape" && event.target.matches?.("[type=search]")) {
+      document.querySelector(`:is(${OVER}) [data-do=close]`)?.click();
+    }
     const own = ["Tab", "Escape", "Enter", " "].includes(event.key) || event.target.matches?.("input, textarea, select");
     if (!own) event.stopImmediatePropagation(); // it would change the view behind
     if (event.key !== "Tab") return;

@@ -16,6 +16,7 @@ from diorama_core.perception.inputs import read_inputs
 from diorama_core.progress import Progress
 from tests.app.small_room import PlainLibrary, make_project
 from tests.e2e.browser import BEEN_HERE, PROJECT, QUERY, SIZE, EditorPage
+from tests.e2e.conftest import keep_picture
 from tests.ports import lasting_port
 
 pytestmark = pytest.mark.browser
@@ -240,3 +241,37 @@ def test_a_dead_server_is_told_and_the_page_goes_on_by_itself(
     serve(folder, PlainLibrary(), port=port)
     expect(editor.page.locator("#dio-lost")).to_be_hidden(timeout=30_000)
     editor.page.wait_for_selector("#dio-toolbar")
+
+
+SQUARE = """() => [...document.querySelectorAll('#root *, .mantine-Modal-root *, [id^=dio-] *')].filter((e) => {
+    const s = getComputedStyle(e), b = e.getBoundingClientRect();
+    if (b.width < 12 || b.height < 12 || s.visibility === 'hidden') return false;
+    const drawn = (side) => parseFloat(s[`border${side}Width`]) > 0 && !/, 0\\)$/.test(s[`border${side}Color`]);
+    const edged = ['Top', 'Right', 'Bottom', 'Left'].every(drawn) || e.matches('.mantine-Modal-content');
+    return edged && parseFloat(s.borderTopLeftRadius) < 4;
+}).map((e) => `${e.tagName} ${e.className} ${e.getAttribute('aria-label') ?? ''}`)"""
+"""What has an edge all around it and square corners."""
+
+
+def test_nothing_has_square_corners(editor: EditorPage) -> None:
+    editor.row("dining table").click()
+    square: set[str] = set()
+    for tab in ("Scene", "Photo", "Arrange", "Project", "Object", "Library", "Export"):
+        editor.tab(tab)
+        editor.settle()
+        square |= {f"{tab}: {what}" for what in editor.page.evaluate(SQUARE)}
+    editor.page.keyboard.press("Shift+?")
+    editor.page.locator(".mantine-Modal-content").wait_for()
+    square |= {f"help: {what}" for what in editor.page.evaluate(SQUARE)}
+    keep_picture(editor, "help")
+    editor.page.keyboard.press("Escape")
+    assert not square
+
+
+def test_escape_in_the_search_of_all_projects_leads_back(editor: EditorPage) -> None:
+    editor.tab("Project")
+    editor.page.get_by_role("button", name="All projects").first.click()
+    search = editor.page.get_by_label("Search projects")
+    expect(search).to_be_focused()
+    editor.page.keyboard.press("Escape")
+    expect(search).to_have_count(0)

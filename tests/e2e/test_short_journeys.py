@@ -33,7 +33,7 @@ SOFA, RUG = (875.0, 565.0), (640.0, 800.0, 1240.0, 940.0)
 def hand(context, serve: Callable[..., Running], request: pytest.FixtureRequest) -> Iterator[Hand]:
     """A stranger before the start page."""
     editor = EditorPage.open(context, serve(library=few_shapes(example_scene())), newcomer=True)
-    expect(editor.page.locator("#dio-start")).to_be_visible(timeout=30_000)
+    expect(editor.page.locator("#dio-start")).to_be_visible()
     hand = Hand(editor)
     yield hand
     keep_picture(editor, request.node.name)
