@@ -128,7 +128,7 @@ def _bench_rooms(a: argparse.Namespace) -> None:
     from diorama_core.library.catalogue import built_in_library
     from diorama_core.models.store import ModelStore
     from diorama_core.perception.language.client import LmmSettings
-    from diorama_core.pipeline.learned_retrieval import published_embeddings
+    from diorama_core.pipeline.network_stages import published_embeddings
 
     _check(a)
     library = built_in_library()
@@ -154,7 +154,7 @@ def _bench_rooms(a: argparse.Namespace) -> None:
 
 def _look_writer(folder: Path | None) -> Show | None:
     """Writes a room's photo, its flat colours and its own look side by side."""
-    from diorama_core.evaluation.benchmarks.case_pictures import write_picture
+    from diorama_core.evaluation.benchmarks.photo_build import write_picture
     from diorama_core.render.compare import side_by_side
 
     if folder is None:
@@ -172,8 +172,8 @@ def _look_writer(folder: Path | None) -> Show | None:
 
 def _bench_system(a: argparse.Namespace) -> None:
     from diorama_core.evaluation.benchmarks import system as system_bench
-    from diorama_core.evaluation.benchmarks.case_pictures import case_writer
     from diorama_core.evaluation.benchmarks.cases import parse_seeds
+    from diorama_core.evaluation.benchmarks.photo_build import case_writer
     from diorama_core.evaluation.benchmarks.substitution import parse_substitutes
     from diorama_core.library.catalogue import built_in_library
 
@@ -216,7 +216,7 @@ def _bench_dataset(a: argparse.Namespace) -> None:
 
 def _bench_survey(a: argparse.Namespace) -> None:
     from diorama_core.evaluation.benchmarks import rooms as rooms_bench
-    from diorama_core.evaluation.benchmarks.case_pictures import write_picture
+    from diorama_core.evaluation.benchmarks.photo_build import write_picture
     from diorama_core.library.catalogue import built_in_library
 
     _check(a)
@@ -231,7 +231,7 @@ def _bench_survey(a: argparse.Namespace) -> None:
 
 def _bench_text(a: argparse.Namespace) -> None:
     from diorama_core.evaluation.benchmarks import text as text_bench
-    from diorama_core.evaluation.benchmarks.case_pictures import write_picture
+    from diorama_core.evaluation.benchmarks.photo_build import write_picture
     from diorama_core.library.catalogue import built_in_library
 
     _check(a)

@@ -82,7 +82,7 @@ def _bench_review(a: argparse.Namespace) -> None:
 
 def _bench_photos(a: argparse.Namespace) -> None:
     from diorama_core.evaluation.benchmarks import photos as photos_bench
-    from diorama_core.evaluation.benchmarks.case_pictures import write_picture
+    from diorama_core.evaluation.benchmarks.photo_build import write_picture
     from diorama_core.library.catalogue import built_in_library
 
     asked = _plan(a)

@@ -9,7 +9,7 @@ from jaxtyping import Float
 
 from diorama_app.session.client import Client, Placing
 from diorama_core.arrangement.surfaces import Surface
-from diorama_core.editing.clear_of_walls import clear_of_walls
+from diorama_core.editing.clearances import clear_of_walls
 from diorama_core.editing.opening_insertion import with_opening
 from diorama_core.editing.placing import (
     Hit,

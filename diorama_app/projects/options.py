@@ -118,7 +118,7 @@ def with_options(stages: Stages, files: PhotoFiles, options: BuildOptions) -> St
     if options.system == "acdc":
         if options.room != "closed" or options.pose is not None:
             raise InputError("--system acdc has a room and poses of its own; leave out --room and --pose")
-        from diorama_core.pipeline.acdc import acdc_stages
+        from diorama_core.pipeline.published import acdc_stages
 
         return acdc_stages(stages, has_depth, diorama.open_library(options.library))
     if options.room != "closed":

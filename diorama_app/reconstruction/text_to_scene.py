@@ -88,7 +88,7 @@ def _draw_and_build(
     """Build the endpoint's picture in a new project; what to tell the user."""
     from diorama_core.project.build import build_project
     from diorama_core.text.pictures import picture_of
-    from diorama_core.text.unmet import unmet
+    from diorama_core.text.scene_from_text import unmet
 
     made = picture_of(said, endpoint, progress.part(0.0, 0.2))
     built = build_project(project, made.inputs, library, warnings=made.notes, progress=progress.part(0.2, 1.0))

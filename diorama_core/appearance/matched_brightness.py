@@ -14,7 +14,7 @@ import cv2
 import numpy as np
 from jaxtyping import Bool, UInt8
 
-from diorama_core.appearance.settings import SETTINGS, AppearanceSettings
+from diorama_core.appearance.room_cues import SETTINGS, AppearanceSettings
 from diorama_core.appearance.surface_materials import MAX_LINEAR
 from diorama_core.io.srgb import linear_to_srgb, luminance, srgb_to_linear
 from diorama_core.library.record import ShapeLibrary

@@ -16,9 +16,8 @@ from diorama_core.appearance.flat_faces import FlatFace, faces_of
 from diorama_core.appearance.irradiance import irradiance_map
 from diorama_core.appearance.light import SHINING, estimated_light
 from diorama_core.appearance.matched_brightness import brightened, brightness_gains
-from diorama_core.appearance.room_cues import toward_window, wall_shade
+from diorama_core.appearance.room_cues import SETTINGS, AppearanceSettings, toward_window, wall_shade
 from diorama_core.appearance.sets import SETS, shared_materials
-from diorama_core.appearance.settings import SETTINGS, AppearanceSettings
 from diorama_core.appearance.surface_materials import (
     ROUGHNESS,
     SlotPixels,

@@ -9,8 +9,8 @@ from functools import lru_cache
 import numpy as np
 from jaxtyping import Float
 
-from diorama_core.geometry.cross import cross
 from diorama_core.geometry.planes import plane_axes
+from diorama_core.geometry.vectors import cross
 from diorama_core.library import taxonomy
 from diorama_core.library.record import Shape, SupportSurface
 from diorama_core.scene.frames import FACE_NORMALS_OBJECT

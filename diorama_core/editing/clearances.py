@@ -1,4 +1,4 @@
-"""How far an object is from walls and neighbours on its four sides, and where it would be at another distance."""
+"""How far an object is from walls and neighbours, moved to another distance, and kept clear of walls."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from diorama_core.geometry.casting import cast_plane
 from diorama_core.geometry.planes import in_plane_polygon
 from diorama_core.scene import edits
 from diorama_core.scene.support import ancestors, descendants
-from diorama_core.scene.types import Plane, Scene, SceneObject
+from diorama_core.scene.types import Plane, Pose, Scene, SceneObject
 
 Side = Literal["front", "back", "left", "right"]
 SIDES: dict[Side, tuple[int, float]] = {"front": (0, 1.0), "back": (0, -1.0), "left": (1, 1.0), "right": (1, -1.0)}
@@ -169,3 +169,27 @@ def room_before(scene: Scene, plane_id: str) -> Clearance | None:
     if not np.isfinite(distance):
         return None
     return Clearance("front", distance, middle, middle + distance * plane.normal, other)
+
+
+UPRIGHT = 0.3
+"""A wall's normal rises by less."""
+
+
+def clear_of_walls(scene: Scene, item: SceneObject) -> Pose:
+    """The pose of an object, pushed into the room where it would reach through a wall that its middle is before.
+
+    A page does the same with the ghost of what is being placed (`static/ghost.js`).
+    """
+    pose = item.pose
+    half = item.size_m / 2
+    for wall in scene.architecture.by_role("wall"):
+        if abs(float(wall.normal[2])) > UPRIGHT:
+            continue
+        reach = float(np.abs(wall.normal @ pose.R_world_object) @ half)
+        gap = float(pose.position @ wall.normal) - wall.offset
+        heights = wall.polygon[:, 2]
+        foot = pose.position - gap * wall.normal
+        foot[2] = np.clip(foot[2], float(heights.min()) + UPRIGHT, float(heights.max()) - UPRIGHT)
+        if -reach < gap < reach and in_plane_polygon(foot[None], wall)[0]:
+            pose = pose.moved((reach - gap) * wall.normal)
+    return pose

@@ -14,7 +14,7 @@ from scipy.spatial import ConvexHull, QhullError
 from diorama_core.export.gathering import ExportObject
 from diorama_core.export.limbs import ExportLimb
 from diorama_core.export.physics import Inertia
-from diorama_core.geometry.cross import cross
+from diorama_core.geometry.vectors import cross
 from diorama_core.library import taxonomy
 from diorama_core.scene.types import Plane
 

@@ -14,7 +14,7 @@ import numpy as np
 from jaxtyping import Bool, Float, Int
 
 from diorama_core.geometry.convex import ConvexPart
-from diorama_core.geometry.cross import cross
+from diorama_core.geometry.vectors import cross
 
 _DEGENERATE = 1e-6
 """Cross products shorter than this (of unit vectors) give no axis."""

@@ -20,7 +20,7 @@ from diorama_core.importing.opening import Opened
 from diorama_core.importing.part import Part
 from diorama_core.importing.parts import shape_parts
 from diorama_core.importing.room import room_of, supports_of
-from diorama_core.library.ingest.convention import UNKNOWN
+from diorama_core.library.ingest.frames import UNKNOWN
 from diorama_core.library.ingest.given import Given, axis_vector
 from diorama_core.library.ingest.known_shapes import KnownShapes, known_shapes
 from diorama_core.library.ingest.models import RawModel

@@ -16,7 +16,7 @@ from diorama_core.importing.measured_types import (
     MeasuredFloor,
 )
 from diorama_core.io.bounded import shortened
-from diorama_core.library.hyponyms import meanings
+from diorama_core.library.labels import meanings
 from diorama_core.library.taxonomy import UNKNOWN, column, resolve
 
 SAME_LEVEL_M = 0.3

@@ -21,7 +21,7 @@ from diorama_core.importing.measured_types import MeasuredBox, MeasuredRoom
 from diorama_core.importing.point_cloud import ScanPhoto
 from diorama_core.importing.scanned_shapes import ScannedSurface
 from diorama_core.io.bounded import read_picture
-from diorama_core.library.hyponyms import meanings
+from diorama_core.library.labels import meanings
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.library.taxonomy import UNKNOWN, category
 from diorama_core.perception.naming import OwnNaming, own_naming

@@ -7,8 +7,8 @@ from collections.abc import Sequence
 import numpy as np
 from jaxtyping import Float
 
-from diorama_core.geometry.cross import cross
 from diorama_core.geometry.sat import PairAxes
+from diorama_core.geometry.vectors import cross
 
 
 def ring(R: Float[np.ndarray, "3 3"], span: Float[np.ndarray, "3 c"], count: int = 24) -> Float[np.ndarray, "d 3"]:

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 from jaxtyping import Bool, Float, Int
 
-from diorama_core.geometry.cross import cross
+from diorama_core.geometry.vectors import cross
 
 EPSILON = 1e-9
 """Smooths the norms where they vanish; metres or radians."""

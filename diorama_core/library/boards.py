@@ -1,4 +1,4 @@
-"""Shapes whose boards are at other heights: bookcases with adjustable shelves, known by their ids.
+"""Shapes whose boards are at other heights, known by their ids, and piecewise linear maps of an axis.
 
 `bookshelf-oak-four+boards-96-310-540-790` is the shape `bookshelf-oak-four` with its places, from the lowest one up, at
 these thousandths of its height. The bounding box stays, boards keep their thickness, and what lies between them is
@@ -16,10 +16,27 @@ import trimesh
 from jaxtyping import Float
 
 from diorama_core.errors import LibraryError
-from diorama_core.library.axis_map import AxisMap
 from diorama_core.library.furniture.measures import MARK as MADE_MARK
 from diorama_core.library.record import Shape, SupportSurface
 from diorama_core.library.slots import placed_vertices, transform_of
+
+
+@dataclass(frozen=True, eq=False)
+class AxisMap:
+    """A piecewise linear map of one axis onto itself; both ends stay."""
+
+    knots: Float[np.ndarray, "k"]
+    values: Float[np.ndarray, "k"]
+
+    def __call__(self, x: Float[np.ndarray, "n"]) -> Float[np.ndarray, "n"]:
+        """Where coordinates go."""
+        return np.interp(x, self.knots, self.values)
+
+    def slope(self, x: Float[np.ndarray, "n"]) -> Float[np.ndarray, "n"]:
+        """How much lengths grow there."""
+        k = np.clip(np.searchsorted(self.knots, x, side="right") - 1, 0, len(self.knots) - 2)
+        return np.asarray(np.diff(self.values)[k] / np.maximum(np.diff(self.knots)[k], 1e-12))
+
 
 _MARK = "+boards-"
 _THOUSAND = 1000

@@ -1,8 +1,8 @@
-"""What a label says a thing is: the word of the taxonomy, or the loose one, that people and data sets mean by it.
+"""The word of the taxonomy that a label means, and what plain words mean, each with its frequency.
 
 "a wooden coffee table with a glass top", "chair_2", "Statue (sculpture)" and "arm chair" name a coffee table, a chair,
 a statue and an armchair: what follows "with" or "on" and what brackets hold describes, the last words before it name.
-Where none is known the nearest in form is taken (`near_names`), then the nearest spelling.
+Where none is known the nearest in form is taken (`naming.near_names`), then the nearest spelling.
 """
 
 from __future__ import annotations
@@ -14,8 +14,8 @@ from functools import cache
 from diorama_core.library import taxonomy
 from diorama_core.library.language import JOINTS, broader, narrower, size_request, tokens
 from diorama_core.library.loose_words import LABELS, MEANINGS
-from diorama_core.library.near_names import near_names
-from diorama_core.library.taxonomy import CATEGORIES, UNKNOWN, Resolution, category, resolve
+from diorama_core.library.naming import near_names
+from diorama_core.library.taxonomy import CATEGORIES, UNKNOWN, Resolution, category, column, resolve
 
 _POSITIONS = frozenset({"left", "right", "front", "back", "middle", "corner", "first", "second", "upper", "lower"})
 
@@ -121,3 +121,45 @@ def _names() -> Mapping[Words, str]:
 def with_article(words: str) -> str:
     """Words with "a" or "an" before them."""
     return f"{'an' if words[:1] in 'aeiou' else 'a'} {words}"
+
+
+_SPECIAL_SHARE = 0.08
+"""Share of a category's name where no row says more: what all its special kinds have together."""
+
+_RARE = 0.15
+FREQUENCIES: Mapping[str, float] = column("frequency")
+"""How often a thing in a room is of a kind, of a hundred; `_RARE` for the others: what something without a name is."""
+
+
+@cache
+def meanings(label: str, category: str) -> Mapping[str, float]:
+    """How often each kind is meant by a label, as probabilities, the most frequent first.
+
+    Args:
+        label: as a person or a detector called the thing.
+        category: the canonical category that it was understood as; its own special kinds where no row says more.
+    """
+    word = plain_word(label)
+    if word is None or word == UNKNOWN.name:
+        shares = {c.name: FREQUENCIES.get(c.name, _RARE) for c in CATEGORIES if c is not UNKNOWN}
+        if category in shares:
+            shares[category] = 2 * max(shares.values())
+        return _ordered(shares)
+    if word in MEANINGS:
+        shares = dict(MEANINGS[word])
+    else:
+        special = [c.name for c in CATEGORIES if c.kin == category]
+        shares = {category: 1.0, **{name: _SPECIAL_SHARE / len(special) for name in special}}
+    if category != UNKNOWN.name:
+        shares.setdefault(category, min(shares.values()))
+    return _ordered(shares)
+
+
+def is_named(label: str) -> bool:
+    """Whether a label says anything of what a thing is."""
+    return plain_word(label) not in (None, UNKNOWN.name)
+
+
+def _ordered(shares: Mapping[str, float]) -> dict[str, float]:
+    whole = sum(shares.values())
+    return {kind: share / whole for kind, share in sorted(shares.items(), key=lambda row: (-row[1], row[0]))}

@@ -1,4 +1,4 @@
-"""What a text asks for: which category, how it should look, how large it should be."""
+"""The category, look and size that a text asks for, and names that are no category of their own."""
 
 from __future__ import annotations
 
@@ -12,7 +12,18 @@ import numpy as np
 
 from diorama_core.library import taxonomy
 from diorama_core.library.language import IGNORED, JOINTS, size_in, tokens
-from diorama_core.library.near_names import near_names
+from diorama_core.library.taxonomy import column
+
+
+@cache
+def near_names() -> dict[tuple[str, ...], str]:
+    """Normal words of each name (`language.tokens`), and the category it is near to."""
+    table: dict[tuple[str, ...], str] = {}
+    for category, names in column("other_names").items():
+        for name in names:
+            table.setdefault(tokens(name), category)
+    return table
+
 
 _SLIP = 0.8
 """Least similarity of spelling (Ratcliff and Obershelp) that is taken for a slip of the pen."""

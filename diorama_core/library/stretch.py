@@ -15,7 +15,7 @@ from jaxtyping import Float, Int
 from scipy.sparse import coo_matrix
 from scipy.sparse.csgraph import connected_components
 
-from diorama_core.library.axis_map import AxisMap
+from diorama_core.library.boards import AxisMap
 from diorama_core.library.catalogue import default_cache_dir
 from diorama_core.library.slots import placed_vertices, transform_of
 from diorama_core.library.thin_matter import kept_thin_matter

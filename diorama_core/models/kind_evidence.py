@@ -21,8 +21,8 @@ from scipy.special import softmax
 from diorama_core.errors import UnavailableError
 from diorama_core.io.derived import read_arrays
 from diorama_core.models import own_weights
-from diorama_core.models.box_crops import box_crop
 from diorama_core.models.efficientnet import CLASSES, FEATURES, SIDE_PX, lite0_graph
+from diorama_core.models.images import box_crop
 from diorama_core.models.runtime import SHARED_SESSIONS, SessionPool
 from diorama_core.scene.values import ArrayValue
 

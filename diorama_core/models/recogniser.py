@@ -18,8 +18,8 @@ from scipy.special import expit, softmax
 
 from diorama_core.errors import UnavailableError
 from diorama_core.models import own_weights
-from diorama_core.models.box_crops import FILL, box_crop, box_geometry
 from diorama_core.models.boxes import Detections, clipped, joined, without_doubles
+from diorama_core.models.images import FILL, box_crop, box_geometry
 from diorama_core.models.kind_evidence import KindEvidence, own_evidence, with_evidence
 from diorama_core.models.own_weights import CARD, DETECTOR, NAMER
 from diorama_core.models.runtime import SHARED_SESSIONS, SessionPool

@@ -19,9 +19,17 @@ from diorama_core.errors import InputError
 from diorama_core.geometry.projection import box_iou
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.library.taxonomy import broad, category
-from diorama_core.multiview.agreement import with_agreeing_boxes
 from diorama_core.multiview.better_seen import better_seen
-from diorama_core.multiview.joining import RoomPhoto, Sighted, Track, claims, fitted_track, overlap, shown
+from diorama_core.multiview.joining import (
+    RoomPhoto,
+    Sighted,
+    Track,
+    claims,
+    fitted_track,
+    overlap,
+    shown,
+    with_agreeing_boxes,
+)
 from diorama_core.multiview.joint_fit import JointCuboid
 from diorama_core.multiview.mounted_walls import hangs_on_wall, seen_whole, walls_at_mounted
 from diorama_core.multiview.one_scene import acyclic, edge_in_room, filling, moved_to_room

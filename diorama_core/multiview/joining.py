@@ -1,4 +1,4 @@
-"""Which boxes of different photos are of one object: projected cuboids claim boxes in the next photo."""
+"""Which boxes of different photos are of one object, which of them agree, and which are cut short."""
 
 from __future__ import annotations
 
@@ -6,9 +6,10 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from jaxtyping import Float
+from jaxtyping import Bool, Float
 from scipy.optimize import linear_sum_assignment
 
+from diorama_core.artefacts import DetectedObject
 from diorama_core.geometry.projection import box_iou, cuboid_corners, visible_bounds
 from diorama_core.library.taxonomy import PORTABLE, Category, broad
 from diorama_core.multiview.joint_fit import JointCuboid, PosedBoxes, fit_jointly, meeting_point
@@ -213,3 +214,61 @@ def shown(photo: RoomPhoto, box: int, settings: JoiningSettings = SETTINGS) -> f
     unseen = int((seen.hidden(box) | seen.truncated[box]).sum())
     k = photo.boxes.camera.intrinsics
     return float((x2 - x1) * (y2 - y1) / (k.width * k.height)) * settings.unseen_edge**unseen
+
+
+def with_agreeing_boxes(track: Track, photos: Sequence[RoomPhoto], settings: JoiningSettings = SETTINGS) -> Track:
+    """The object with the cuboid of those boxes that agree.
+
+    One photo by itself says what it says at no cost. Of two that disagree the one that shows the object better counts,
+    of more those that are left when the one goes without which the others agree best.
+    """
+    fitted = track
+    while len(fitted.boxes) > 1 and fitted.cuboid.cost > settings.left_out_cost:
+        fewer = [fitted_track(tuple(b for b in fitted.boxes if b != out), photos, settings) for out in fitted.boxes]
+        best = min(fewer, key=lambda t: (t.cuboid.cost, -max(shown(photos[p], box, settings) for p, box in t.boxes)))
+        if best.cuboid.cost + settings.left_out_cost >= fitted.cuboid.cost:
+            break
+        fitted = best
+    left_out = tuple(b for b in track.boxes if b not in fitted.boxes)
+    return replace(track, cuboid=fitted.cuboid, left_out=left_out)
+
+
+def edges_cut_short(
+    objects: Sequence[DetectedObject],
+    boxes_px: Float[np.ndarray, "n 4"],
+    distances_m: Float[np.ndarray, "n"],
+    settings: JoiningSettings = SETTINGS,
+) -> Bool[np.ndarray, "n 4"]:
+    """For every object and edge (left, top, right, bottom) whether it may go on behind something nearer.
+
+    Args:
+        objects: of one photo.
+        boxes_px: their boxes.
+        distances_m: how far their middles are from the camera.
+        settings: numbers to work with.
+    """
+    found = np.zeros((len(objects), 4), dtype=bool)
+    for i, box in enumerate(boxes_px):
+        near = [o.mask for j, o in enumerate(objects) if j != i and distances_m[j] < settings.nearer * distances_m[i]]
+        if not near:
+            continue
+        before = np.any(near, axis=0) & ~objects[i].mask
+        for edge, rows, columns in _strips(box, before.shape, settings):
+            strip = before[rows, columns]
+            found[i, edge] = bool(strip.size) and strip.mean() >= settings.min_covered
+    return found
+
+
+def _strips(
+    box: Float[np.ndarray, "4"], shape: tuple[int, ...], settings: JoiningSettings = SETTINGS
+) -> list[tuple[int, slice, slice]]:
+    """The strips outside a box's edges, as far as they are in the picture."""
+    x1, y1, x2, y2 = (round(float(v)) for v in box)
+    wide, high = (max(settings.min_strip_px, round(settings.strip * side)) for side in (x2 - x1, y2 - y1))
+    beside, across = slice(max(y1, 0), y2), slice(max(x1, 0), x2)
+    return [
+        (0, beside, slice(max(x1 - wide, 0), max(x1, 0))),
+        (1, slice(max(y1 - high, 0), max(y1, 0)), across),
+        (2, beside, slice(min(x2, shape[1]), x2 + wide)),
+        (3, slice(min(y2, shape[0]), y2 + high), across),
+    ]

@@ -25,10 +25,16 @@ from diorama_core.errors import InputError
 from diorama_core.geometry.openings import OPENING_CATEGORIES
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.library.taxonomy import category
-from diorama_core.multiview.agreement import with_agreeing_boxes
 from diorama_core.multiview.alignment import PhotoReading, RoomAlignment, align
-from diorama_core.multiview.cut_short import edges_cut_short
-from diorama_core.multiview.joining import RoomPhoto, Sighted, Track, joined_objects, shown
+from diorama_core.multiview.joining import (
+    RoomPhoto,
+    Sighted,
+    Track,
+    edges_cut_short,
+    joined_objects,
+    shown,
+    with_agreeing_boxes,
+)
 from diorama_core.multiview.joint_fit import JointCuboid, PosedBoxes
 from diorama_core.multiview.joint_room import SeenRoom, joint_room, with_open_doorways
 from diorama_core.multiview.mounted_walls import hangs_on_wall, room_holding, seen_whole, walls_at_mounted

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import replace
 
 from diorama_core.artefacts import ArchitectureEstimate, DetectedObject, ObjectGeometry, PosedCandidates
-from diorama_core.library.hyponyms import meanings
+from diorama_core.library.labels import meanings
 from diorama_core.library.record import ShapeLibrary, record_of
 from diorama_core.library.taxonomy import UNKNOWN
 from diorama_core.scene.support import check_scene

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
+from diorama_core.library.record import ShapeLibrary
 from diorama_core.models.clip import DuoduoClip, OpenClip
 from diorama_core.models.depth import GeometryNetwork, Metric3d, Moge2
 from diorama_core.models.depth_anything import DepthAnything3
@@ -19,7 +22,11 @@ from diorama_core.models.segment_anything import BoxSegmenter, Sam2, SlimSam, sa
 from diorama_core.models.store import ModelStore
 from diorama_core.models.yolox import Yolox
 from diorama_core.perception.foundation.detection import EverydayDetection, OpenVocabularyDetection
+from diorama_core.pipeline import network_stages
+from diorama_core.pipeline.stages import Stages
 from diorama_core.protocols import DetectionStage
+from diorama_core.retrieval.hierarchical import HierarchicalRetrieval
+from diorama_core.retrieval.joint import ClipEmbedding, JointEmbedding, JointSimilarity, PointEmbedding
 
 OPENCLIP_WIDTHS = {"openclip-bigg14": 1280}
 """Numbers of a vector of OpenCLIP, by the network's id; the others have 512."""
@@ -108,3 +115,28 @@ def scale_network(store: ModelStore, chosen: Network) -> GigaPoseScale:
     """GigaPose's second network."""
     features, regressor = (store.path(chosen, f.path) for f in chosen.files)
     return GigaPoseScale(features, regressor, store.identity(chosen))
+
+
+def with_joint_retrieval(base: Stages, library: ShapeLibrary, store: ModelStore) -> Stages:
+    """`base` with looks compared in OpenCLIP's space, shapes by DuoduoCLIP's tower where the user converted one."""
+    clip, tower = network("openclip-b32"), network("duoduoclip")
+    if not store.has(clip):
+        return base
+    shapes = network_stages.shape_tower(store, tower) if store.has(tower) else None
+    embedding = ClipEmbedding(network_stages.open_clip(store, clip), shapes)
+    return replace(base, retrieval=HierarchicalRetrieval(library, similarity=JointSimilarity(library, embedding)))
+
+
+def published_embeddings(store: ModelStore) -> dict[str, JointEmbedding]:
+    """The embeddings of the publication's retrieval table whose networks are here, by their names there."""
+    found: dict[str, JointEmbedding] = {}
+    large, points = network("openclip-bigg14"), network("openshape")
+    small, tower = network("openclip-b32"), network("duoduoclip")
+    if store.has(large):
+        clip = network_stages.open_clip(store, large)
+        found["CLIP"] = ClipEmbedding(clip)
+        if store.has(points):
+            found["OS"] = PointEmbedding(clip, network_stages.point_tower(store, points))
+    if store.has(small) and store.has(tower):
+        found["DD"] = ClipEmbedding(network_stages.open_clip(store, small), network_stages.shape_tower(store, tower))
+    return found

@@ -22,7 +22,6 @@ from diorama_core.pipeline.assemble import assemble
 from diorama_core.pipeline.beliefs import with_beliefs
 from diorama_core.pipeline.findings import finding
 from diorama_core.pipeline.look_ahead import looking_ahead
-from diorama_core.pipeline.network_inputs import with_network_inputs
 from diorama_core.pipeline.reasons import reasons_of_build
 from diorama_core.pipeline.runner import Runner
 from diorama_core.pipeline.scene_steps import (
@@ -41,6 +40,7 @@ from diorama_core.pipeline.scene_steps import (
     position_noise,
     refined,
     supported,
+    with_network_inputs,
 )
 from diorama_core.pipeline.stages import ProposalStages, Stages
 from diorama_core.pipeline.steps import (

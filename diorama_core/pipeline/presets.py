@@ -26,7 +26,7 @@ from diorama_core.models.own_files import FileDepth, FileDetector
 from diorama_core.models.own_weights import has_own_recogniser
 from diorama_core.models.recogniser import own_recogniser
 from diorama_core.models.store import ModelStore, how_to_get
-from diorama_core.perception.camera.given_attitude import with_given_attitude
+from diorama_core.perception.camera.estimate import with_given_attitude
 from diorama_core.perception.foundation.depth_prediction import (
     NetworkCamera,
     NetworkDepth,
@@ -62,7 +62,7 @@ from diorama_core.pipeline.choices import (
     NetworkChoice,
     best_here,
 )
-from diorama_core.pipeline.learned_retrieval import with_joint_retrieval
+from diorama_core.pipeline.network_stages import with_joint_retrieval
 from diorama_core.pipeline.plan import evaluate
 from diorama_core.pipeline.runner import Runner
 from diorama_core.pipeline.stages import DEFAULT_RECIPE, ProposalStages, Stages, embedded_stages

@@ -9,8 +9,7 @@ import numpy as np
 from diorama_core.arrangement.explain import SCALE, reasons_of_change
 from diorama_core.arrangement.noise import ObservationNoise
 from diorama_core.artefacts import DetectedObject, Inputs, ObjectGeometry, PosedCandidates, Reason, SceneGraph
-from diorama_core.library.hyponyms import is_named, meanings
-from diorama_core.library.labels import with_article
+from diorama_core.library.labels import is_named, meanings, with_article
 from diorama_core.library.taxonomy import CATEGORIES
 from diorama_core.pipeline.provenance_text import graph_sentence
 from diorama_core.pipeline.steps import Corrected, LaidOut

@@ -1,4 +1,4 @@
-"""Functions of the plan's last steps: from posed candidates to the finished scene."""
+"""Steps of the plan: network predictions added to the inputs, posed candidates made a finished scene."""
 
 from __future__ import annotations
 
@@ -19,8 +19,19 @@ from diorama_core.arrangement.noise import MEASURED, REASONED, ObservationNoise
 from diorama_core.arrangement.support_hypotheses import SupportEvidence
 from diorama_core.arrangement.support_terms import sentence_of
 from diorama_core.arrangement.supports import DecidedSupports, SupportChoice, with_decided_supports
-from diorama_core.artefacts import ArchitectureEstimate, DetectedObject, Inputs, ObjectGeometry, PosedCandidates, Reason
+from diorama_core.artefacts import (
+    ArchitectureEstimate,
+    DepthPrediction,
+    DetectedObject,
+    Inputs,
+    LabelledBox,
+    ObjectGeometry,
+    PosedCandidates,
+    Reason,
+)
 from diorama_core.library.record import ShapeLibrary
+from diorama_core.library.taxonomy import UNKNOWN
+from diorama_core.perception.foundation.depth_prediction import with_depth
 from diorama_core.perception.illuminant import Illuminant
 from diorama_core.pipeline.colours import photo_colours, room_illuminant, shared_by_sets
 from diorama_core.pipeline.steps import Corrected, LaidOut
@@ -231,3 +242,19 @@ def _at_given_height(scene: Scene, camera_height_m: float | None) -> Scene:
     if camera_height_m is None or scene.camera is None:
         return scene
     return rescale_to_length(scene, float(scene.camera.position[2]) - floor_height(scene), camera_height_m)
+
+
+def with_network_inputs(
+    given: Inputs, detected: tuple[LabelledBox, ...] | None, predicted: DepthPrediction | None
+) -> Inputs:
+    """The inputs with detected boxes and predicted depth; None adds nothing.
+
+    A guessed word is left out: what a box looks like is asked again of its outline, and with it everything else.
+    """
+    boxes = () if detected is None else tuple(_nameless(box) if box.guessed else box for box in detected)
+    inputs = given if detected is None else replace(given, boxes=boxes)
+    return inputs if predicted is None else with_depth(inputs, predicted)
+
+
+def _nameless(box: LabelledBox) -> LabelledBox:
+    return replace(box, category=UNKNOWN.name, label=UNKNOWN.name)

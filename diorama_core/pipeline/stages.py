@@ -11,8 +11,7 @@ from diorama_core.artefacts import Inputs
 from diorama_core.layout.recipes import recipe as layout_recipe
 from diorama_core.layout.refinement.stage import MaskRefinement
 from diorama_core.library.record import ShapeLibrary
-from diorama_core.perception.camera.estimate import EmbeddedCamera
-from diorama_core.perception.camera.given_attitude import with_given_attitude
+from diorama_core.perception.camera.estimate import EmbeddedCamera, with_given_attitude
 from diorama_core.perception.depth import MeasuredDepth, RenderedDepth
 from diorama_core.perception.graph.geometric import GeometricGraph
 from diorama_core.perception.masks import EmbeddedMasks

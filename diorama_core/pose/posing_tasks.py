@@ -11,7 +11,7 @@ from diorama_core.arrangement.facing.evidence import HeadingCosts, WallSamples
 from diorama_core.artefacts import Cuboid, DepthMap, DetectedObject, Inputs, ObjectGeometry
 from diorama_core.geometry.observed import observe_among
 from diorama_core.geometry.see_through import SeeThrough
-from diorama_core.library.hyponyms import is_named
+from diorama_core.library.labels import is_named
 from diorama_core.library.record import Shape
 from diorama_core.library.taxonomy import NEVER_OPEN, category
 from diorama_core.pose.agree import SETS

@@ -18,7 +18,7 @@ from diorama_core.arrangement.facing.evidence import (
     yaws_of,
 )
 from diorama_core.artefacts import DepthMap, DetectedObject, ObjectGeometry
-from diorama_core.library.hyponyms import is_named
+from diorama_core.library.labels import is_named
 from diorama_core.library.record import Shape
 from diorama_core.library.taxonomy import UNKNOWN
 from diorama_core.pose.hypotheses import Hypotheses

@@ -17,9 +17,8 @@ from PIL import Image
 from trimesh.visual.color import ColorVisuals
 from trimesh.visual.material import PBRMaterial
 
-from diorama_core.geometry.cross import cross
 from diorama_core.geometry.rows import unique_rows
-from diorama_core.geometry.vectors import dot, unit
+from diorama_core.geometry.vectors import cross, dot, unit
 from diorama_core.io.cache import LruCache
 from diorama_core.library.paint import painted
 from diorama_core.library.photo_materials import PhotographedMaterial, Pictures, with_photo_materials

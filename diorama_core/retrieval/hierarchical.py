@@ -17,7 +17,7 @@ from diorama_core.geometry.see_through import SeeThrough
 from diorama_core.geometry.shape_appearance import SHARED_APPEARANCES, ShapeAppearance
 from diorama_core.geometry.silhouette import PoseBatch
 from diorama_core.library.catalogue import default_cache_dir
-from diorama_core.library.hyponyms import is_named
+from diorama_core.library.labels import is_named
 from diorama_core.library.record import Shape, ShapeLibrary
 from diorama_core.library.taxonomy import NEVER_OPEN, UNKNOWN, Mount, category, having
 from diorama_core.progress import Progress

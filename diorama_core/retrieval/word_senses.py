@@ -17,8 +17,7 @@ import numpy as np
 from jaxtyping import Float
 
 from diorama_core.artefacts import CameraEstimate, DetectedObject
-from diorama_core.library.hyponyms import is_named, meanings
-from diorama_core.library.labels import names_a_kind
+from diorama_core.library.labels import is_named, meanings, names_a_kind
 from diorama_core.library.taxonomy import UNKNOWN, Mount, category
 from diorama_core.retrieval.box_views import HEIGHTS_M, BoxView, box_likelihood, box_view
 from diorama_core.retrieval.kinds_together import Lying, carriers, carries, kinds_together

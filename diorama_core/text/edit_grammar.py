@@ -33,8 +33,7 @@ from diorama_core.text.edit_plan import (
     Swap,
     Turn,
 )
-from diorama_core.text.edit_where import places_of_phrases
-from diorama_core.text.edit_words_objects import object_edits
+from diorama_core.text.edit_words_objects import object_edits, places_of_phrases
 from diorama_core.text.edit_words_room import room_edits
 from diorama_core.text.foreign_words import in_english
 from diorama_core.text.looks import look_of

@@ -1,18 +1,38 @@
-"""Words about objects beyond where they stand: sizes of one side, copies, exchanges, states, names, lines."""
+"""Words about objects: phrases of place, sizes of one side, copies, exchanges, states, names, lines."""
 
 from __future__ import annotations
 
 import re
+from collections.abc import Sequence
 from typing import Literal, cast
 
 from diorama_core.editing.relations import Relation, is_met
 from diorama_core.editing.room_frame import RoomFrame
 from diorama_core.errors import EditRefused
+from diorama_core.geometry.openings import OPENING_CATEGORIES
 from diorama_core.text.edit_lengths import Subject, length_in, without_lengths
 from diorama_core.text.edit_plan import Align, Copy, Edit, Exchange, Measure, Place, Rename, SetState, Shift
-from diorama_core.text.edit_where import places_of_phrases
-from diorama_core.text.phrases import NUMBERS, split_places
+from diorama_core.text.phrases import NUMBERS, PlacePhrase, split_places
 from diorama_core.text.selecting import Selector
+
+
+def places_of_phrases(selector: Selector, places: Sequence[PlacePhrase]) -> list[Place]:
+    """Where phrases of place say that something goes; raises `EditRefused` where they name what is not there."""
+    found = []
+    for place in places:
+        if place.words in ("", "each other", "one another"):
+            found.append(Place(relation=place.kind, targets=[]))
+        elif re.fullmatch(r"(?:the |this )?(?:\w+ )?(?:room|bedroom|kitchen|office|scene|floor|ground)", place.words):
+            continue
+        elif re.fullmatch(r"(?:the |a )?(?:\w+ )?walls?", place.words):
+            found.append(Place(relation="against wall", targets=[]))
+        else:
+            targets = list(selector.targets(place.words))
+            openings = all(selector.scene.object(t).category in OPENING_CATEGORIES for t in targets)
+            by = place.kind == "under" and openings  # under a window is at it, on the floor
+            found.append(Place(relation="near" if by else place.kind, targets=targets))
+    return found
+
 
 _SIDES: dict[str, tuple[Literal["width", "depth", "height"], float]] = {
     "wide": ("width", 1), "wider": ("width", 1), "broad": ("width", 1), "broader": ("width", 1),

@@ -9,8 +9,8 @@ from diorama_core.errors import EditRefused
 from diorama_core.geometry.openings import OPENING_CATEGORIES
 from diorama_core.text.edit_lengths import length_in
 from diorama_core.text.edit_plan import Edit, InsertOpening, Light, Paint, RoomLength
+from diorama_core.text.edit_room import covering_in_words
 from diorama_core.text.selecting import Selector
-from diorama_core.text.surface_words import covering_in_words
 
 _ROLES: dict[str, tuple[Literal["walls", "floor", "ceiling"], str]] = {
     "wall": ("walls", "wall"),

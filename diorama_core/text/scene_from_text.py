@@ -1,21 +1,42 @@
-"""A scene from words: composed from the library, and the result itself, not rebuilt from a picture of it."""
+"""A scene from words: composed from the library and made ready to be shown; what it lacks of the words."""
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from jaxtyping import UInt8
 
 from diorama_core.errors import InputError, UnavailableError
+from diorama_core.geometry.openings import OPENING_CATEGORIES
 from diorama_core.library.record import ShapeLibrary
+from diorama_core.library.taxonomy import category, with_kin
 from diorama_core.perception.language.client import LmmSettings
 from diorama_core.progress import Progress
 from diorama_core.scene.types import Scene
+from diorama_core.synthesis import in_photo_world
+from diorama_core.synthesis.finishes import finish_textures
 from diorama_core.text.compose import composed_room
-from diorama_core.text.finish import finished
 from diorama_core.text.language import listed_request, mended
+from diorama_core.text.prompt import RequestedObject, understood_prompt
+from diorama_core.text.viewpoint import best_viewpoint
+
+SIZE = (1024, 768)
+
+
+def finished(
+    scene: Scene, library: ShapeLibrary, size: tuple[int, int] = SIZE
+) -> tuple[Scene, Mapping[str, UInt8[np.ndarray, "_ _ 3"]]]:
+    """The room in the world of a camera that shows most of it, and its planes' pictures by name."""
+    # Every room has doors and windows; a picture may do without.
+    worth = {o.id: 0.2 if o.category in OPENING_CATEGORIES else 1.0 for o in scene.objects}
+    scene = in_photo_world(replace(scene, camera=best_viewpoint(scene, library, size, worth)))
+    textures = finish_textures(scene.architecture)
+    planes = tuple(replace(p, texture=p.id if p.id in textures else None) for p in scene.architecture.planes)
+    return replace(scene, architecture=replace(scene.architecture, planes=planes)), textures
+
 
 MAX_PROMPT_CHARS = 2000
 
@@ -85,3 +106,35 @@ def scene_from_text(
         scene, notes = better.scene, (*notes, *better.notes)
     progress.report(1.0, "The room is ready")
     return SceneFromText(scene, textures, notes)
+
+
+def unmet(prompt: str, scene: Scene) -> tuple[str, ...]:
+    """Every request of a description that a scene does not meet, one line each; empty where all are met.
+
+    An object counts for the first request that names its category, else for one of a kindred category.
+    """
+    request = understood_prompt(prompt)
+    there = Counter(o.category for o in scene.objects)
+    lines = []
+    for asked in request.objects:
+        found = _take(there, asked)
+        if found < asked.count:
+            lines.append(_line(asked, found))
+    return (*lines, *(f"the library has nothing called “{words}”" for words in request.ignored))
+
+
+def _take(there: Counter[str], asked: RequestedObject) -> int:
+    """How many of what is asked for are there, taken out so that they count once."""
+    found = 0
+    for name in (asked.category, *sorted(with_kin(asked.category) - {asked.category})):
+        here = min(there[name], asked.count - found)
+        there[name] -= here
+        found += here
+    return found
+
+
+def _line(asked: RequestedObject, found: int) -> str:
+    name = asked.label or category(asked.category).name
+    if not found:
+        return f"no {name}" if asked.count == 1 else f"none of {asked.count} {name}"
+    return f"{found} of {asked.count} {name}"

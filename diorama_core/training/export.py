@@ -1,4 +1,4 @@
-"""Trained networks as ONNX graphs, with the names of their outputs beside them."""
+"""Trained networks as ONNX graphs with the names of their outputs; scores on annotated photos."""
 
 from __future__ import annotations
 
@@ -9,11 +9,14 @@ from pathlib import Path
 import torch
 from torch import nn
 
+from diorama_core.evaluation.benchmarks.recognition import BEST, RecognitionBench, run
 from diorama_core.io.atomic import write_atomically
 from diorama_core.library.form import MEASURED, VALUES
-from diorama_core.models.box_crops import CROP_SIDE
+from diorama_core.models.images import CROP_SIDE
 from diorama_core.models.onnx_export import write_graph
 from diorama_core.models.outliner import SIDE
+from diorama_core.models.recogniser import Recogniser
+from diorama_core.perception.foundation.proposals import OwnDetection, names_of
 
 
 def export_detector(network: nn.Module, path: Path) -> None:
@@ -49,3 +52,9 @@ def write_card(path: Path, categories: Sequence[str], **more: object) -> None:
     """The names of the outputs, and how the weights were made."""
     forms = {name: list(VALUES[name]) for name in MEASURED}
     write_atomically(path, json.dumps({"categories": list(categories), "forms": forms, **more}, indent=1).encode())
+
+
+def score(annotations: Path, photos: Path, recogniser: Recogniser) -> RecognitionBench:
+    """Boxes and names on every annotated photo."""
+    routes = {"own": OwnDetection(recogniser, threshold=0.01, most=BEST)}
+    return run(annotations, photos, routes, {"own": lambda photo, boxes: names_of(recogniser, photo, boxes)}, {})

@@ -19,7 +19,7 @@ from scipy.special import log_softmax
 from diorama_core.evaluation.adapters.photo_annotations import picture_of, read_annotations
 from diorama_core.evaluation.benchmarks.recognition import in_photo
 from diorama_core.io.derived import write_arrays
-from diorama_core.library.hyponyms import meanings
+from diorama_core.library.labels import meanings
 from diorama_core.library.taxonomy import UNKNOWN
 from diorama_core.models import own_weights
 from diorama_core.models.efficientnet import lite0_graph

@@ -9,7 +9,7 @@ import numpy as np
 from jaxtyping import Float32
 
 from diorama_core.errors import InputError
-from diorama_core.models.box_crops import box_geometry
+from diorama_core.models.images import box_geometry
 from diorama_core.training.pictures import LabelledPicture, count_pictures, read_boxes, read_picture
 
 

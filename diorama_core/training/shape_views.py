@@ -17,7 +17,7 @@ from jaxtyping import Bool, Float32, Int8, UInt8
 from diorama_core.errors import InputError
 from diorama_core.library.form import MEASURED, VALUES, form_at, value_indices
 from diorama_core.library.record import Shape, ShapeLibrary
-from diorama_core.models.box_crops import CROP_SIDE, FILL, MARGIN
+from diorama_core.models.images import CROP_SIDE, FILL, MARGIN
 from diorama_core.progress import Progress
 from diorama_core.render.views import StudioView, render_shape
 from diorama_core.scene.values import ArrayValue
@@ -133,7 +133,7 @@ def read_shape(path: Path) -> ShapeViews:
 def crop_before(
     background: UInt8[np.ndarray, "h w 3"], files: ShapeViewFiles, rng: np.random.Generator
 ) -> tuple[UInt8[np.ndarray, "s s 3"], tuple[float, float], ShapeViews]:
-    """A crop of a shape in its box, as `models.box_crops.box_crop` cuts it, before a part of a picture.
+    """A crop of a shape in its box, as `models.images.box_crop` cuts it, before a part of a picture.
 
     Args:
         background: any picture of a room.

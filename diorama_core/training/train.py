@@ -14,7 +14,7 @@ from jaxtyping import Float32, UInt8
 from torch import Tensor, nn
 from torch.utils.data import DataLoader, Dataset
 
-from diorama_core.models.box_crops import box_crop, box_geometry
+from diorama_core.models.images import box_crop, box_geometry
 from diorama_core.models.recogniser import places
 from diorama_core.progress import Progress
 from diorama_core.training.augment import MOSAIC_SHARE, photographed, training_picture

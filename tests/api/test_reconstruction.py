@@ -2,16 +2,23 @@
 
 from __future__ import annotations
 
+import base64
+import io
 import json
+import re
 from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
+from PIL import Image
 
 import diorama_core as diorama
+from diorama_core.api import Reconstruction
 from diorama_core.errors import ProjectError
 from diorama_core.scene import edits
+from diorama_core.scene.types import Scene
+from tests.app.small_room import PlainLibrary, furnished_scene
 
 
 def test_saving_and_loading_give_the_same_room(room: diorama.Reconstruction, tmp_path: Path) -> None:
@@ -46,3 +53,18 @@ def test_saving_over_other_files_is_refused(room: diorama.Reconstruction, tmp_pa
     (tmp_path / "letter.txt").write_text("dear")
     with pytest.raises(ProjectError, match="holds other files"):
         room.save(tmp_path)
+
+
+def test_a_notebook_shows_the_picture_and_the_objects() -> None:
+    formatters = pytest.importorskip("IPython.core.formatters", reason="needs IPython")
+    room = Reconstruction(furnished_scene(), PlainLibrary(), {})
+    shown, _ = formatters.DisplayFormatter().format(room)
+    page = shown["text/html"]
+    (picture,) = re.findall(r"data:image/jpeg;base64,([^\"]+)", page)
+    assert Image.open(io.BytesIO(base64.b64decode(picture))).size == (480, 360)
+    assert "5 objects" in page
+    assert "chair &lt;b&gt;by the window&lt;/b&gt;" in page, "names are data"
+
+
+def test_an_empty_room_is_a_line() -> None:
+    assert Reconstruction(Scene(), PlainLibrary(), {})._repr_html_() == "<p>0 objects, 0 planes</p>"

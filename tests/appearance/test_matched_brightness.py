@@ -8,7 +8,7 @@ import pytest
 
 from diorama_core.appearance.matched_brightness import brightened, brightness_gains
 from diorama_core.appearance.photo_appearance import photo_appearance
-from diorama_core.appearance.settings import SETTINGS
+from diorama_core.appearance.room_cues import SETTINGS
 from diorama_core.io.srgb import linear_to_srgb, srgb_to_linear
 from diorama_core.library.catalogue import built_in_library
 from diorama_core.render.picture import picture

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from diorama_core.editing.clear_of_walls import clear_of_walls
+from diorama_core.editing.clearances import clear_of_walls
 from diorama_core.editing.new_room import empty_room
 from diorama_core.scene.types import Pose
 from tests.editing.objects import item

@@ -1,8 +1,10 @@
 from __future__ import annotations
 
 import numpy as np
+from hypothesis import given
+from hypothesis import strategies as st
 
-from diorama_core.geometry.vectors import dot, face_normals, facing, unit
+from diorama_core.geometry.vectors import cross, dot, face_normals, facing, unit
 
 
 def test_products_are_of_rows_and_broadcast(rng) -> None:
@@ -24,3 +26,17 @@ def test_normals_follow_the_right_hand_and_are_null_without_area() -> None:
 def test_normals_are_turned_against_the_view() -> None:
     seen = np.array([[0.0, 0.0, 1.0], [0.0, 0.0, -1.0]])
     np.testing.assert_array_equal(facing(seen, np.array([[0.0, 0.1, -1.0]] * 2)), [[0, 0, 1], [0, 0, 1]])
+
+
+vector = st.tuples(*[st.floats(-1e3, 1e3)] * 3).map(np.array)
+
+
+@given(vector, vector)
+def test_it_is_numpys_vector_product(a, b) -> None:
+    np.testing.assert_array_equal(cross(a, b), np.cross(a, b))
+
+
+def test_it_broadcasts_over_the_last_axis(rng) -> None:
+    a, b = rng.normal(size=(4, 1, 3)), rng.normal(size=(5, 3))
+    np.testing.assert_allclose(cross(a, b), np.cross(a, b), rtol=1e-12)
+    np.testing.assert_allclose(cross(a[:, 0], b[0]), np.cross(a[:, 0], b[0]), rtol=1e-12)

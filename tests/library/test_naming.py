@@ -6,8 +6,7 @@ from hypothesis import strategies as st
 
 from diorama_core.library import taxonomy
 from diorama_core.library.language import narrower, normal, size_in, tokens
-from diorama_core.library.naming import size_distance, understand
-from diorama_core.library.near_names import near_names
+from diorama_core.library.naming import near_names, size_distance, understand
 
 
 @pytest.mark.parametrize(

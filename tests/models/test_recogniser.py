@@ -10,7 +10,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from diorama_core.errors import UnavailableError
-from diorama_core.models.box_crops import CROP_SIDE, box_crop, box_geometry
+from diorama_core.models.images import CROP_SIDE, box_crop, box_geometry
 from diorama_core.models.own_weights import FOLDER
 from diorama_core.models.recogniser import Recogniser, fitted, own_recogniser
 

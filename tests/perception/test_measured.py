@@ -8,8 +8,7 @@ import numpy as np
 import pytest
 
 from diorama_core.perception.measured import MeasuredGeometry
-from diorama_core.perception.measured.cloud import largest_piece, main_layer
-from diorama_core.perception.measured.settings import SETTINGS
+from diorama_core.perception.measured.cloud import SETTINGS, largest_piece, main_layer
 from diorama_core.progress import Progress
 from diorama_core.provenance import ScaleSource
 from tests.synthetic_rooms import box_room, cuboid, look, shoot

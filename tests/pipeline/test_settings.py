@@ -14,8 +14,8 @@ from diorama_core.errors import InputError
 from diorama_core.layout.settings import LAYOUT, REFINEMENT
 from diorama_core.library.catalogue import built_in_library
 from diorama_core.perception.camera import settings as lines
-from diorama_core.perception.graph import settings as graph
-from diorama_core.perception.measured import settings as measured_objects
+from diorama_core.perception.graph import object_observations as graph
+from diorama_core.perception.measured import cloud as measured_objects
 from diorama_core.perception.metrology import settings as metrology
 from diorama_core.pipeline.settings import settings_of, with_settings
 from diorama_core.pipeline.stages import Stages, embedded_stages

@@ -3,7 +3,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from diorama_core.library.hyponyms import meanings
+from diorama_core.library.labels import meanings
 from diorama_core.library.taxonomy import category
 from diorama_core.retrieval.measured_sizes import as_measured
 

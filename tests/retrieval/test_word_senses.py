@@ -8,8 +8,7 @@ import numpy as np
 import pytest
 
 from diorama_core.artefacts import CameraEstimate, CameraHypothesis, DetectedObject
-from diorama_core.library.hyponyms import meanings
-from diorama_core.library.labels import understand_label
+from diorama_core.library.labels import meanings, understand_label
 from diorama_core.library.taxonomy import category, resolve
 from diorama_core.provenance import AttitudeSource, CameraSource, FocalSource, HeadingSource
 from diorama_core.retrieval.word_senses import sense_probabilities, with_word_senses

@@ -7,7 +7,7 @@ from diorama_core.editing.opening_insertion import with_opening
 from diorama_core.errors import EditRefused
 from diorama_core.library.catalogue import built_in_library
 from diorama_core.text.edit_plan import Light, Paint, RoomLength
-from diorama_core.text.edit_room import covered, lengthened, lit, off_wall
+from diorama_core.text.edit_room import covered, covering_in_words, lengthened, lit, off_wall
 from diorama_core.text.edit_words_room import room_edits
 from diorama_core.text.selecting import Selector
 from tests.text.edited import living_room
@@ -45,3 +45,27 @@ def test_what_is_not_about_the_room_is_left_to_others() -> None:
     selector = Selector(living_room(), built_in_library())
     for clause in ("move the lamp to the wall", "a wooden chair by the wall", "remove the rug on the floor"):
         assert room_edits(selector, clause) is None
+
+
+@pytest.mark.parametrize(
+    ("words", "pattern"),
+    [("brick", "brick"), ("oak boards", "boards"), ("white metro tiles", "metro"), ("light blue", "paint"),
+     ("striped wallpaper", "stripes"), ("wooden", "boards"), ("grey carpet", "carpet"),
+     ("walnut herringbone", "herringbone")],
+)  # fmt: skip
+def test_coverings_have_their_words(words: str, pattern: str) -> None:
+    found = covering_in_words(words, living_room().plane("floor"))
+    assert found is not None
+    assert found.pattern == pattern
+
+
+@pytest.mark.parametrize("words", ["zorkmid", "the lamp", "", "darker lamp"])
+def test_other_words_name_no_covering(words: str) -> None:
+    assert covering_in_words(words, living_room().plane("floor")) is None
+
+
+def test_darker_is_of_what_there_is() -> None:
+    plane = living_room().plane("wall_0")
+    darker = covering_in_words("a bit darker", plane)
+    assert darker is not None
+    assert sum(darker.colour) < sum(plane.colour)

@@ -8,8 +8,7 @@ from diorama_core.errors import EditRefused
 from diorama_core.library.catalogue import built_in_library
 from diorama_core.text.edit_plan import Align, Exchange, Measure, SetState
 from diorama_core.text.edit_states import aligned, exchanged, measured, put_in_state
-from diorama_core.text.edit_where import places_of_phrases
-from diorama_core.text.edit_words_objects import object_edits
+from diorama_core.text.edit_words_objects import object_edits, places_of_phrases
 from diorama_core.text.phrases import Placing
 from diorama_core.text.selecting import Selector
 from tests.text.edited import assert_sound, living_room

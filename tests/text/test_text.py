@@ -20,11 +20,10 @@ from diorama_core.perception.language.client import LmmSettings
 from diorama_core.scene.support import check_scene
 from diorama_core.text.compose import composed_room
 from diorama_core.text.customs import ESSENTIALS, stands_in_for, usual_relations_of
-from diorama_core.text.finish import finished
 from diorama_core.text.language import LOOKS
 from diorama_core.text.pictures import ImageSettings, picture_of
 from diorama_core.text.prompt import RequestedObject, RoomRequest, Wish, understood_prompt
-from diorama_core.text.scene_from_text import scene_from_text
+from diorama_core.text.scene_from_text import finished, scene_from_text
 from tests.perception.language.stub_lmm import StubLmm, answering
 
 READINGS = {

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from diorama_core.errors import InputError
-from diorama_core.models.box_crops import CROP_SIDE, MARGIN
+from diorama_core.models.images import CROP_SIDE, MARGIN
 from diorama_core.training import shape_views
 from diorama_core.training.shape_views import ShapeViewFiles, ShapeViews, crop_before, make_shape_views, read_shape
 from tests.primitives import PrimitiveLibrary

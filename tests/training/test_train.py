@@ -9,7 +9,7 @@ import pytest
 import torch
 
 from diorama_core.errors import Cancelled, InputError
-from diorama_core.models.box_crops import box_crop, box_geometry
+from diorama_core.models.images import box_crop, box_geometry
 from diorama_core.models.outliner import SIDE, BoxOutliner, in_photo, window
 from diorama_core.models.own_weights import CARD, DETECTOR, NAMER, OUTLINER
 from diorama_core.models.recogniser import Recogniser

@@ -30,8 +30,7 @@ from diorama_core.evaluation.benchmarks.pose_comparison import (
     predict,
     shapes_of,
 )
-from diorama_core.evaluation.metrics.colour import delta_e_2000, lab_of
-from diorama_core.evaluation.metrics.light import light_error_deg, main_light
+from diorama_core.evaluation.metrics.colour import delta_e_2000, lab_of, light_error_deg, main_light
 from diorama_core.evaluation.metrics.shape import chamfer, points_of, shape_distance
 from diorama_core.evaluation.reports.tables import Column, Row, Table
 from diorama_core.geometry.silhouette import PoseBatch, ShapeCaster

@@ -28,8 +28,7 @@ from diorama_core.evaluation.reports.tables import Table
 from diorama_core.library.loose_words import MEANINGS
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.library.taxonomy import UNKNOWN, resolve
-from diorama_core.pipeline.acdc import acdc_stages
-from diorama_core.pipeline.published import published_acdc_stages, published_stages
+from diorama_core.pipeline.published import acdc_stages, published_acdc_stages, published_stages
 from diorama_core.pipeline.run import Built, build_scene
 from diorama_core.pipeline.stages import Stages, embedded_stages
 from diorama_core.progress import Progress

@@ -19,7 +19,7 @@ from diorama_core.progress import Progress
 from diorama_core.render.picture import picture
 from diorama_core.scene.types import Scene
 from diorama_core.text.compose import composed_room
-from diorama_core.text.finish import finished
+from diorama_core.text.scene_from_text import finished
 
 SERIES = ("development", "reporting")
 PICTURE_PX = (480, 360)

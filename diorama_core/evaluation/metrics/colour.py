@@ -1,10 +1,21 @@
-"""Colour differences as people see them: CIEDE2000 (Sharma, Wu and Dalal 2005)."""
+"""Differences of colour (CIEDE2000: Sharma, Wu and Dalal 2005), and of the main light's direction."""
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 import cv2
 import numpy as np
-from jaxtyping import Float
+from jaxtyping import Float, UInt8
+
+from diorama_core.geometry.vectors import dot, unit
+from diorama_core.io.srgb import linear_to_srgb, luminance
+from diorama_core.library.record import ShapeLibrary
+from diorama_core.render.gloss import gloss_share
+from diorama_core.render.lighting import Lighting, unshadowed
+from diorama_core.render.raycast import PinholeView, pixel_centres
+from diorama_core.render.world import Places, scene_world
+from diorama_core.scene.types import Camera, RoomLight, Scene
 
 HALF_LIGHTNESS = 2.0
 """Parametric factor k_L at which a difference of lightness counts half: photographs are not evenly lit."""
@@ -55,3 +66,90 @@ def perceived_difference(
 ) -> Float[np.ndarray, "*n"]:
     """CIEDE2000 of sRGB colours from 0 to 1, with lightness at half weight."""
     return delta_e_2000(lab_of(srgb_1), lab_of(srgb_2), HALF_LIGHTNESS)
+
+
+_TURNS, _LEVELS = 24, 12
+
+
+def main_light(light: Lighting, points: Float[np.ndarray, "n 3"]) -> Float[np.ndarray, "3"]:
+    """What a light is at some places on average, in the terms of `RoomLight`: direction times strength.
+
+    Args:
+        light: Any.
+        points: In the world.
+    """
+    height = (np.arange(_LEVELS) + 0.5) / _LEVELS * 2 - 1
+    turn = (np.arange(_TURNS) + 0.5) / _TURNS * 2 * np.pi
+    h, t = (grid.ravel() for grid in np.meshgrid(height, turn))
+    across = np.sqrt(1 - h**2)
+    normals = np.stack([across * np.cos(t), across * np.sin(t), h], axis=1).astype(np.float32)
+    fallen = [
+        luminance(unshadowed(np.broadcast_to(p, normals.shape).astype(np.float32), normals, light)) for p in points
+    ]
+    design = np.column_stack([np.ones(len(normals)), normals])
+    even, *sloped = np.linalg.lstsq(design, np.mean(fallen, axis=0), rcond=None)[0]
+    return np.array(sloped) / max(float(even), 1e-9)
+
+
+def light_error_deg(
+    true: Float[np.ndarray, "3"], true_camera: Camera, found: RoomLight | None, camera: Camera
+) -> float | None:
+    """Angle between both directions as the photo sees them; None where no light was found.
+
+    Args:
+        true: Direction to the light, world.
+        true_camera: Of the true scene.
+        found: The estimate; None without.
+        camera: Of the estimate.
+    """
+    if found is None:
+        return None
+    seen = camera.T_world_camera[:3, :3].T @ np.array(found.direction)
+    wanted = true_camera.T_world_camera[:3, :3].T @ true
+    cosine = float(seen @ wanted) / max(float(np.linalg.norm(seen) * np.linalg.norm(wanted)), 1e-9)
+    return float(np.degrees(np.arccos(np.clip(cosine, -1.0, 1.0))))
+
+
+_SIDE_PX = 400
+
+
+def visible_colours(
+    scene: Scene, library: ShapeLibrary, textures: Mapping[str, UInt8[np.ndarray, "_ _ 3"]] | None = None
+) -> dict[str, Float[np.ndarray, "3"]]:
+    """What the material that most of an object's visible pixels show looks like in even light, by object id.
+
+    Mean colour (sRGB 0 to 1) of its surface and of its gloss: dark wood that mirrors much looks grey.
+    Objects that are out of the photo's view or wholly hidden are left out.
+    """
+    if scene.camera is None or not scene.objects:
+        return {}
+    world = scene_world(scene, library, textures=textures)
+    view = PinholeView(_reduced(scene.camera))
+    rays = view.rays(pixel_centres(view.width, view.height)).reshape(-1, 6)
+    hits = world.caster.first_hits(rays)
+    rays, hits = rays[hits.found], hits.chosen(hits.found)
+    places = world.places(rays, hits)
+    _, light = world.rough_appearance(hits)
+    shown = _with_gloss(light, places, rays)
+    found = {}
+    for index, item in enumerate(scene.objects):
+        mine = np.flatnonzero(places.instance == index)
+        if len(mine):
+            _, material, counts = np.unique(np.round(light[mine], 4), axis=0, return_inverse=True, return_counts=True)
+            main = mine[material.ravel() == np.argmax(counts)]
+            found[item.id] = np.asarray(linear_to_srgb(shown[main].mean(axis=0)))
+    return found
+
+
+def _with_gloss(base: Float[np.ndarray, "n 3"], places: Places, rays: Float[np.ndarray, "n 6"]) -> np.ndarray:
+    """Linear colours of places with what they mirror of even light."""
+    metallic, smooth = places.metallic[:, None], 1.0 - places.roughness[:, None]
+    cosine = np.clip(-dot(places.normals, unit(rays[:, 3:])), 0.0, 1.0)[:, None]
+    gloss = gloss_share(base, metallic, smooth, cosine)
+    return np.minimum(base * (1 - metallic) + gloss, 1.0).astype(np.float64)
+
+
+def _reduced(camera: Camera) -> Camera:
+    k = camera.intrinsics
+    scale = min(1.0, _SIDE_PX / max(k.width, k.height))
+    return Camera(k.scaled(max(1, round(k.width * scale)), max(1, round(k.height * scale))), camera.T_world_camera)

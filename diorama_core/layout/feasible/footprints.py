@@ -7,8 +7,8 @@ from itertools import combinations
 import numpy as np
 from scipy.optimize import linprog
 
-from diorama_core.geometry.cross import cross
 from diorama_core.geometry.planes import plane_axes
+from diorama_core.geometry.vectors import cross
 
 INSET_M = 2e-4
 """Kept between a contact face and the edge of its support, and under a shelf's ceiling."""

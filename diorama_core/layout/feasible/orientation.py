@@ -8,7 +8,7 @@ import numpy as np
 from jaxtyping import Float
 
 from diorama_core.arrangement.surfaces import Surface, is_wall_like
-from diorama_core.geometry.cross import cross
+from diorama_core.geometry.vectors import cross
 
 UPRIGHT_WITHIN = float(np.cos(np.deg2rad(35.0)))
 """Objects hung within this angle of upright hang upright; others keep their roll."""

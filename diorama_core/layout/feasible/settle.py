@@ -8,8 +8,8 @@ import numpy as np
 from jaxtyping import Float
 
 from diorama_core.arrangement.surfaces import Surface, is_wall_like
-from diorama_core.geometry.cross import cross
 from diorama_core.geometry.planes import plane_axes
+from diorama_core.geometry.vectors import cross
 from diorama_core.layout.feasible.footprints import INSET_M, largest_share
 from diorama_core.layout.feasible.orientation import aligned
 from diorama_core.layout.feasible.photo_observations import PhotoObservations

@@ -12,8 +12,8 @@ from dataclasses import dataclass
 import numpy as np
 from jaxtyping import Float
 
-from diorama_core.geometry.cross import cross
 from diorama_core.geometry.rotations import rotation_from_vector
+from diorama_core.geometry.vectors import cross
 from diorama_core.layout import gradients
 from diorama_core.layout.problem.problem import Problem
 from diorama_core.layout.problem.volumes import Volumes, contact_templates

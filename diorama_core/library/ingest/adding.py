@@ -14,8 +14,8 @@ from pathlib import Path
 from types import FrameType
 
 from diorama_core.errors import DioramaError, LibraryError
-from diorama_core.library.ingest.convention import Convention
 from diorama_core.library.ingest.finding import Trouble
+from diorama_core.library.ingest.frames import Convention
 from diorama_core.library.ingest.guess import MAX_METRES, MIN_METRES
 from diorama_core.library.ingest.joint import Evidence, asked_of, groups_of, joint_convention
 from diorama_core.library.ingest.known_shapes import KnownShapes, known_shapes

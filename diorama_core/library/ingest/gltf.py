@@ -18,10 +18,10 @@ from diorama_core.errors import LibraryError
 from diorama_core.io.bounded import parse_json, shortened
 from diorama_core.io.contained import shown
 from diorama_core.io.glb import GlbError, is_glb, split_glb, write_glb
+from diorama_core.library.ingest.frames import OwnFrame, own_frame
 from diorama_core.library.ingest.gltf_compressed import is_fallback, meshopt_view, undo_draco
 from diorama_core.library.ingest.gltf_materials import place_textures, use_specular_glossiness
 from diorama_core.library.ingest.limits import Limits
-from diorama_core.library.ingest.own_frame import OwnFrame, own_frame
 from diorama_core.library.ingest.references import References
 
 Json = dict[str, Any]

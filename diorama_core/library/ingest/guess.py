@@ -18,13 +18,13 @@ from jaxtyping import Bool, Float, Int
 from scipy.special import logsumexp
 
 from diorama_core.library import taxonomy
-from diorama_core.library.hyponyms import meanings
-from diorama_core.library.ingest.convention import Convention
+from diorama_core.library.ingest.frames import Convention
 from diorama_core.library.ingest.given import AXES, UNITS, Given, axis_name
 from diorama_core.library.ingest.known_shapes import KnownShapes, relief_features
 from diorama_core.library.ingest.names import NameEvidence
 from diorama_core.library.ingest.relief import Relief, quarter_turns, turned
 from diorama_core.library.kind_sizes import is_possible
+from diorama_core.library.labels import meanings
 from diorama_core.library.record import Assumption, Guess
 
 PROMISED_UP = "+y"

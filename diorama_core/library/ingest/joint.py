@@ -15,7 +15,7 @@ import numpy as np
 from jaxtyping import Float
 from scipy.special import logsumexp
 
-from diorama_core.library.ingest.convention import Convention
+from diorama_core.library.ingest.frames import Convention
 from diorama_core.library.ingest.given import UNITS, axis_name
 from diorama_core.library.ingest.guess import convention_prior
 from diorama_core.library.ingest.relief import quarter_turns

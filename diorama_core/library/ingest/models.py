@@ -20,10 +20,9 @@ from diorama_core.io.file_heads import FileHead, head_of
 from diorama_core.io.other_files import what_else
 from diorama_core.io.xml_text import parse_xml
 from diorama_core.library.ingest import fbx, gltf
-from diorama_core.library.ingest.convention import GLTF, OBJ, PLY, STL, THREE_DS, Convention
+from diorama_core.library.ingest.frames import GLTF, OBJ, PLY, STL, THREE_DS, Convention, OwnFrame
 from diorama_core.library.ingest.limits import DEFAULT_LIMITS, Limits
 from diorama_core.library.ingest.obj import absolute_indices
-from diorama_core.library.ingest.own_frame import OwnFrame
 from diorama_core.library.ingest.references import GuardedResolver, References, read_bytes
 from diorama_core.library.ingest.three_ds import read_3ds
 from diorama_core.library.ingest.three_mf import read_3mf

@@ -15,7 +15,7 @@ from trimesh.visual.texture import TextureVisuals
 from diorama_core.errors import LibraryError
 from diorama_core.library import taxonomy
 from diorama_core.library.catalogue import BULK_DENSITY
-from diorama_core.library.ingest.convention import Convention
+from diorama_core.library.ingest.frames import Convention, squaring_turn
 from diorama_core.library.ingest.given import Given
 from diorama_core.library.ingest.guess import PROMISED_UP, Frame, frame_evidence, guess_frame
 from diorama_core.library.ingest.joint import Evidence
@@ -26,7 +26,6 @@ from diorama_core.library.ingest.names import NameEvidence, named_categories, wo
 from diorama_core.library.ingest.relief import relief, turned
 from diorama_core.library.ingest.repair import Repaired, repaired
 from diorama_core.library.ingest.sink import Ingested
-from diorama_core.library.ingest.squared import squaring_turn
 from diorama_core.library.ingest.symmetry import symmetry_fold
 from diorama_core.library.record import Guess, Shape, ShapeLibrary, SymmetryFold, usual_contact_faces
 from diorama_core.library.surfaces import support_surfaces

@@ -1,4 +1,4 @@
-"""The embedded camera stage, without networks."""
+"""The embedded camera stage, and a camera whose tilt and roll a person has stated."""
 
 from __future__ import annotations
 
@@ -8,12 +8,14 @@ import numpy as np
 from jaxtyping import Float
 
 from diorama_core.artefacts import CameraEstimate, CameraHypothesis, Inputs, Photo
+from diorama_core.geometry.rotations import CameraAttitude
 from diorama_core.geometry.segments import line_segments_px
 from diorama_core.perception.camera.frames import frame_difference_rad
 from diorama_core.perception.camera.gravity_depth import GravityFrame, frame_from_depth
 from diorama_core.perception.camera.settings import SETTINGS, LineCameraSettings
 from diorama_core.perception.camera.vanishing import FrameFit, Lines, prior_frame, search_frames
 from diorama_core.progress import Progress
+from diorama_core.protocols import CameraStage
 from diorama_core.provenance import AttitudeSource, CameraSource, FocalSource, HeadingSource
 from diorama_core.scene.types import Intrinsics
 
@@ -161,3 +163,27 @@ def _depth_source(frame: GravityFrame, focal: FocalSource, settings: LineCameraS
 
 def _unit(value: float) -> float:
     return float(np.clip(value, 0.0, 1.0))
+
+
+@dataclass(frozen=True)
+class GivenAttitudeCamera:
+    """A camera stage that replaces the attitude of another stage's cameras by a given one."""
+
+    stage: CameraStage
+    camera_attitude: CameraAttitude
+
+    def estimate(self, inputs: Inputs, progress: Progress) -> CameraEstimate:
+        """One reading: the other stage's best, tilted and rolled as given; its heading stays."""
+        found = self.stage.estimate(inputs, progress)
+        best = replace(
+            found.best, R_world_camera=self.camera_attitude.rotation(found.best.R_world_camera[:, 2]), score=1.0
+        )
+        source = replace(found.source, attitude_corrected=True)
+        return replace(found, hypotheses=(best,), confidence=1.0, source=source)
+
+
+def with_given_attitude(stage: CameraStage, camera_attitude: CameraAttitude | None) -> CameraStage:
+    """The stage with the given attitude, where there is one."""
+    if camera_attitude is None or isinstance(stage, GivenAttitudeCamera):
+        return stage
+    return GivenAttitudeCamera(stage, camera_attitude)

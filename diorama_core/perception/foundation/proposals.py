@@ -9,7 +9,7 @@ import numpy as np
 from jaxtyping import Float
 
 from diorama_core.artefacts import Box, LabelledBox, Photo
-from diorama_core.library.hyponyms import is_named, meanings
+from diorama_core.library.labels import is_named, meanings
 from diorama_core.library.taxonomy import ARCHITECTURE_WORDS, UNKNOWN
 from diorama_core.models.boxes import Detections, areas, joined, overlaps
 from diorama_core.models.recogniser import Recogniser

@@ -16,8 +16,12 @@ from diorama_core.artefacts import DetectedObject, Inputs, ObjectGeometry, Scene
 from diorama_core.geometry.openings import OPENING_CATEGORIES
 from diorama_core.library.company import STACKED_ON, WITH_BOARDS
 from diorama_core.library.taxonomy import UNKNOWN, Category, having
-from diorama_core.perception.graph.object_observations import ObjectSurroundings, observed
-from diorama_core.perception.graph.settings import SETTINGS, GeometricGraphSettings
+from diorama_core.perception.graph.object_observations import (
+    SETTINGS,
+    GeometricGraphSettings,
+    ObjectSurroundings,
+    observed,
+)
 from diorama_core.progress import Progress
 from diorama_core.scene.types import Relation, Support
 

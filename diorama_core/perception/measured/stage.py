@@ -12,8 +12,7 @@ from diorama_core.artefacts import CameraEstimate, DetectedObject, Inputs, Objec
 from diorama_core.geometry.depth_grid import points_camera, reduced, smooth_normals_camera
 from diorama_core.library.taxonomy import Category, resolve
 from diorama_core.perception.measured.boxes import TurnedExtent, completed, observed_extent, to_cuboid
-from diorama_core.perception.measured.cloud import MIN_POINTS, object_points
-from diorama_core.perception.measured.settings import SETTINGS, MeasuredSettings
+from diorama_core.perception.measured.cloud import MIN_POINTS, SETTINGS, MeasuredSettings, object_points
 from diorama_core.perception.measured.standing import grounded, supporters
 from diorama_core.progress import Progress
 from diorama_core.provenance import ScaleSource

@@ -8,7 +8,7 @@ import numpy as np
 
 from diorama_core.library.taxonomy import Category
 from diorama_core.perception.measured.boxes import TurnedExtent
-from diorama_core.perception.measured.settings import SETTINGS, MeasuredSettings
+from diorama_core.perception.measured.cloud import SETTINGS, MeasuredSettings
 from diorama_core.scene.types import Support, yaw_rotation
 
 

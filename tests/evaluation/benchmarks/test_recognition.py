@@ -27,9 +27,8 @@ from diorama_core.pipeline.network_stages import everyday_detector
 from diorama_core.pipeline.presets import clickers, namers
 from diorama_core.progress import Progress
 from diorama_core.training.detector import Detector
-from diorama_core.training.export import export_detector, export_namer, write_card
+from diorama_core.training.export import export_detector, export_namer, score, write_card
 from diorama_core.training.naming import Namer
-from diorama_core.training.score import score
 
 ANNOTATIONS = Path(__file__).parents[2] / "photo_annotations.json"
 OBJECTS = [

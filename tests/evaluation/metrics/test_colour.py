@@ -2,12 +2,27 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from diorama_core.evaluation.metrics.colour import HALF_LIGHTNESS, delta_e_2000, lab_of, perceived_difference
+from diorama_core.evaluation.metrics.colour import (
+    HALF_LIGHTNESS,
+    delta_e_2000,
+    lab_of,
+    light_error_deg,
+    main_light,
+    perceived_difference,
+    visible_colours,
+)
+from diorama_core.library.catalogue import built_in_library
+from diorama_core.render.lighting import room_lighting
+from diorama_core.scene.types import Pose, RoomLight, Scene, SceneObject
+from tests.pose.rooms import camera_at
+from tests.synthetic_rooms import look
 
 PUBLISHED = (
     ((50.0, 2.6772, -79.7751), (50.0, 0.0, -82.7485), 2.0425),
@@ -43,3 +58,52 @@ def test_grays_differ_half_as_much_with_lightness_at_half_weight(a, b) -> None:
     first, second = lab_of(np.full(3, a)) * (1, 0, 0), lab_of(np.full(3, b)) * (1, 0, 0)
     half = delta_e_2000(first, second, HALF_LIGHTNESS)
     assert half == pytest.approx(delta_e_2000(first, second) / 2, abs=1e-9)
+
+
+BOUNDS = np.array([[-2.0, -2.0, 0.0], [2.0, 2.0, 2.5]])
+
+
+@pytest.mark.parametrize("direction", [(0.0, 0.0, 1.0), (0.8, 0.0, 0.6), (0.0, -0.6, 0.8)])
+def test_the_main_light_of_pictures_is_the_one_they_were_made_with(direction: tuple[float, float, float]) -> None:
+    found = main_light(room_lighting(BOUNDS, RoomLight(direction, 0.5)), BOUNDS.mean(axis=0)[None])
+    assert np.degrees(np.arccos(found @ np.array(direction) / np.linalg.norm(found))) < 8.0
+
+
+def test_directions_are_compared_as_the_photo_sees_them() -> None:
+    camera = camera_at()
+    turn = np.array([[0.0, -1, 0], [1, 0, 0], [0, 0, 1]])
+    T = camera.T_world_camera.copy()
+    T[:3, :3] = turn @ T[:3, :3]
+    turned = replace(camera, T_world_camera=T)
+    true, found = np.array([0.6, 0.0, 0.8]), RoomLight((0.0, 0.6, 0.8), 0.4)
+    assert light_error_deg(true, camera, found, turned) == pytest.approx(0.0, abs=1e-4)
+    assert light_error_deg(true, camera, found, camera) == pytest.approx(50.2, abs=0.1)
+    assert light_error_deg(true, camera, None, camera) is None
+
+
+@pytest.fixture(scope="module")
+def library():
+    return built_in_library()
+
+
+def seen(library, shape_id, **changes):
+    shape = library.shape(shape_id)
+    item = SceneObject(
+        id="a", label="a", category=shape.category, shape_id=shape.id, shape_size_m=shape.size_m,
+        pose=Pose.upright((0.0, 3.0, shape.size_m[2] / 2), -np.pi / 2),
+    )  # fmt: skip
+    return visible_colours(Scene(camera=look(0, 12), objects=(replace(item, **changes),)), library)
+
+
+def test_paint_shows(library):
+    red = seen(library, "sofa-grey-three", colour=(0.7, 0.1, 0.1))["a"]
+    assert red[0] > 2.5 * red[1]
+
+
+def test_the_shapes_own_colour_shows_without_paint(library):
+    grey = seen(library, "sofa-grey-three")["a"]
+    assert np.ptp(grey) < 0.1
+
+
+def test_what_is_out_of_view_is_left_out(library):
+    assert seen(library, "sofa-grey-three", pose=Pose.upright((0.0, -3.0, 0.4))) == {}

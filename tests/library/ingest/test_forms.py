@@ -15,18 +15,15 @@ import trimesh
 from diorama_core.errors import LibraryError
 from diorama_core.io.file_heads import head_of
 from diorama_core.io.glb import read_glb, write_glb
-from diorama_core.library.ingest.convention import OBJ
 from diorama_core.library.ingest.finding import members_of
+from diorama_core.library.ingest.frames import OBJ, own_frame, squaring_turn
 from diorama_core.library.ingest.gltf_compressed import meshopt_view
 from diorama_core.library.ingest.gltf_materials import use_specular_glossiness
 from diorama_core.library.ingest.joint import exporter_of, groups_of, joint_convention
 from diorama_core.library.ingest.limits import DEFAULT_LIMITS
 from diorama_core.library.ingest.models import MODEL_FORMS, form_of, read_model
 from diorama_core.library.ingest.obj import absolute_indices, plain_mtl
-from diorama_core.library.ingest.own_frame import own_frame
-from diorama_core.library.ingest.repair import repaired
-from diorama_core.library.ingest.squared import squaring_turn
-from diorama_core.library.ingest.thickness import with_thickness
+from diorama_core.library.ingest.repair import repaired, with_thickness
 from diorama_core.library.ingest.three_ds import read_3ds
 from diorama_core.library.ingest.three_mf import read_3mf
 from diorama_core.library.ingest.usd_stage import frame_of, opened_stage

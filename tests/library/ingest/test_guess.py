@@ -10,7 +10,7 @@ import trimesh
 
 from diorama_core.errors import InputError
 from diorama_core.library import taxonomy
-from diorama_core.library.ingest.convention import GLTF, STL, UNKNOWN, Convention
+from diorama_core.library.ingest.frames import GLTF, STL, UNKNOWN, Convention
 from diorama_core.library.ingest.given import Given, axis_name, axis_vector
 from diorama_core.library.ingest.guess import Frame, guess_frame
 from diorama_core.library.ingest.known_shapes import KnownShapes, known_shapes, relief_features

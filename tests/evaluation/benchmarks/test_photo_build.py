@@ -8,7 +8,7 @@ from PIL import Image
 
 from diorama_core.artefacts import Inputs, Photo
 from diorama_core.errors import InputError
-from diorama_core.evaluation.benchmarks.case_pictures import SIZE, case_picture, case_writer, write_picture
+from diorama_core.evaluation.benchmarks.photo_build import SIZE, case_picture, case_writer, write_picture
 from diorama_core.pipeline.run import Built
 from diorama_core.scene.types import Scene
 from diorama_core.synthesis.truth import TruthView

@@ -3,7 +3,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 from diorama_core.scene.types import Scene
-from diorama_core.text.unmet import unmet
+from diorama_core.text.scene_from_text import unmet
 from tests.app.small_room import furnished_scene
 
 

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 
 from diorama_core.artefacts import DepthPrediction, Inputs, LabelledBox, Photo
-from diorama_core.pipeline.network_inputs import with_network_inputs
+from diorama_core.pipeline.scene_steps import with_network_inputs
 from diorama_core.scene.types import Intrinsics
 
 K = Intrinsics.from_fov(8, 6, 1.0)

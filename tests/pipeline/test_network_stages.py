@@ -8,7 +8,7 @@ import pytest
 from diorama_core.artefacts import Inputs, Photo
 from diorama_core.models.manifest import network
 from diorama_core.models.store import ModelStore
-from diorama_core.pipeline.learned_retrieval import published_embeddings, with_joint_retrieval
+from diorama_core.pipeline.network_stages import published_embeddings, with_joint_retrieval
 from diorama_core.pipeline.presets import stages_for
 from diorama_core.pipeline.stages import Stages
 from diorama_core.retrieval.hierarchical import HierarchicalRetrieval
