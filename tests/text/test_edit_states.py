@@ -9,7 +9,7 @@ from diorama_core.library.catalogue import built_in_library
 from diorama_core.text.edit_plan import Align, Exchange, Measure, SetState
 from diorama_core.text.edit_states import aligned, exchanged, measured, put_in_state
 from diorama_core.text.edit_words_objects import object_edits, places_of_phrases
-from diorama_core.text.phrases import Placing
+from diorama_core.text.phrases import PlacePhrase
 from diorama_core.text.selecting import Selector
 from tests.text.edited import assert_sound, living_room
 
@@ -43,7 +43,7 @@ def test_other_clauses_are_left_to_others() -> None:
     selector = Selector(living_room(), built_in_library())
     for clause in ("make the sofa red", "move the lamp", "turn the sofa around", "swap the sofa for a leather one"):
         assert object_edits(selector, clause, lambda s, words: s.objects(words)) is None
-    (place,) = places_of_phrases(selector, [Placing("beside", "the sofa")])
+    (place,) = places_of_phrases(selector, [PlacePhrase("beside", "the sofa")])
     assert place.targets == ["sofa_1"]
 
 
