@@ -139,6 +139,7 @@ def _print_report(report: Added, name: str) -> None:
         ("not read", _by_reason(report.skipped)),
         ("repaired", _by_note(report)),
         ("unsure how it stands or what it is", list(report.unsure)),
+        ("against glTF's promise of +Y up, since the whole folder stands so", _broken_promises(report)),
         ("refused", _by_reason(report.failed)),
     ):
         for line in lines[:SHOWN]:
@@ -152,6 +153,13 @@ def _print_report(report: Added, name: str) -> None:
     print(f"{name}: {len(report.added)} shapes added{before}{refused}")
     if report.added:
         print(f"Use them: diorama build PHOTO -o ROOM --library {name} (or --library {name}+built-in)")
+
+
+def _broken_promises(report: Added) -> list[str]:
+    from diorama_core.library.ingest.joint import FOLDERS
+
+    guesses = ((s.id, s.guess) for s in report.shapes if s.guess is not None)
+    return [f"{name} has {guess.up.value} up" for name, guess in guesses if FOLDERS in guess.up.reason]
 
 
 def _by_reason(troubles: Sequence[Trouble]) -> list[str]:

@@ -1,7 +1,8 @@
 """One guess of up, front and unit for all files of a folder and exporter: a pack is written by one program.
 
 Each file says how likely every frame and unit is by its shape, its size and its name; the product of what some of them
-say, with a small chance for each to be an exception, sharpens what the format promises.
+say, with a small chance for each to be an exception, sharpens what the format promises. Where all of them stand another
+way, the folder's exporter broke the promise.
 """
 
 from __future__ import annotations
@@ -26,6 +27,11 @@ ASKED = 12
 """Files of a group that are asked, evenly spread."""
 EXCEPTION, TURNED = 0.02, 0.1
 """Share of the files of a pack that have another up or unit than the rest, and another front."""
+FOLDERS = "folder's"
+"""Name of the convention of a folder whose files do not keep their format's promise."""
+BROKEN = 0.99
+"""Probability of another up, against what the format promises, from which that is not what the folder does: 10.8 nats
+against it. Of 4,000 draws of three models that keep it the largest were 6.9; three that all stand on +Z give 16."""
 HEADER_BYTES = 400
 
 Evidence = Float[np.ndarray, "24 u"]
@@ -87,8 +93,11 @@ def joint_convention(promised: Convention, evidence: Sequence[Evidence]) -> Conv
     of_best = posterior[[u == best for u in ups]].sum(axis=1)
     front = dict(zip((f for f, u in zip(fronts, ups, strict=True) if u == best), of_best / of_best.sum(), strict=True))
     unit = dict(zip(units, posterior.sum(axis=0), strict=True))
+    broken = len(evidence) >= MIN_FILES and promised.up.get(best, 0.0) < 0.5 and up[best] > BROKEN
     return replace(
         promised,
+        name=FOLDERS if promised.promises and broken else promised.name,
+        promises=promised.promises and not broken,
         up=_loosened(up, EXCEPTION),
         front=_loosened({axis: float(front.get(axis, 0.0)) for axis in up}, TURNED),
         unit={u: (1 - EXCEPTION) * float(p) + EXCEPTION / len(unit) for u, p in unit.items()},
