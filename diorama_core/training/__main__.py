@@ -7,6 +7,7 @@ import json
 import sys
 from pathlib import Path
 
+import numpy as np
 import torch
 
 from diorama_core.arrangement.facing.weights import PATH as WEIGHTS
@@ -14,9 +15,10 @@ from diorama_core.errors import DioramaError, InputError, UnavailableError
 from diorama_core.evaluation.benchmarks.photos import PhotoSource, plan
 from diorama_core.io.atomic import write_atomically
 from diorama_core.library.catalogue import built_in_library
-from diorama_core.models.own_weights import CARD, DETECTOR, NAMER, OUTLINER
+from diorama_core.models.own_weights import CARD, DETECTOR, FOLDER, NAMER, OUTLINER
 from diorama_core.models.recogniser import Recogniser
 from diorama_core.progress import Progress
+from diorama_core.training.adapting import adapted_detector, labelled_photos
 from diorama_core.training.export import export_detector, export_namer, export_outliner, score, write_card
 from diorama_core.training.facings import FacingModel, as_settings, beginning, certificate, gathered
 from diorama_core.training.joined import join_namers
@@ -81,6 +83,15 @@ def _parser() -> argparse.ArgumentParser:
     export.add_argument("--pictures", type=Path, required=True, help="of the outliner: the folder of windows")
     export.add_argument("--checkpoints", type=Path, required=True)
     export.add_argument("-o", "--output", type=Path, required=True)
+    adapt = steps.add_parser("adapt", help="adapt the shipped detector to annotated photos")
+    adapt.set_defaults(run=_adapt)
+    adapt.add_argument(
+        "--photos", type=Path, nargs=2, action="append", required=True, metavar=("ANNOTATIONS", "FOLDER")
+    )
+    adapt.add_argument("--pictures", type=Path, required=True, help="folder of rendered rooms")
+    adapt.add_argument("--detector", type=Path, default=FOLDER / DETECTOR, help="adapted (default: the shipped one)")
+    adapt.add_argument("--fold", type=int, nargs=2, metavar=("K", "OF"), help="hold back this fold of the photos")
+    adapt.add_argument("-o", "--output", type=Path, required=True)
     join = steps.add_parser("join", help="make one namer of several, which says the mean of what they say")
     join.set_defaults(run=_join)
     join.add_argument("namers", type=Path, nargs="+")
@@ -173,6 +184,20 @@ def _export_recogniser(a: argparse.Namespace) -> None:
         detector={"steps": detector.step, "batch": detector.schedule.batch, "seed": detector.schedule.seed},
         namer={"steps": namer.step, "batch": namer.schedule.batch, "seed": namer.schedule.seed},
     )
+
+
+def _adapt(a: argparse.Namespace) -> None:
+    kinds = category_names(built_in_library())
+    photos = {k: v for marked, folder in a.photos for k, v in labelled_photos(marked, folder, kinds).items()}
+    if a.fold:
+        order = np.random.default_rng(0).permutation(len(photos))
+        held = {list(photos)[k] for k in order[a.fold[0] :: a.fold[1]]}
+        print("held back: " + " ".join(sorted(held)))
+        photos = {name: photo for name, photo in photos.items() if name not in held}
+    torch.set_num_threads(1)
+    rendered = PictureFiles.of(a.pictures)
+    adapted_detector(a.detector, tuple(photos.values()), rendered, len(kinds), a.output, progress=_told())
+    print(f"detector written: {a.output}")
 
 
 def _join(a: argparse.Namespace) -> None:

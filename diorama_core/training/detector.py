@@ -110,7 +110,7 @@ def detector_loss(
     Args:
         rows: the network's output.
         target_boxes: for every place the box it answers for, pixels; anything where there is none.
-        target_kinds: category of that box; -1 where there is none.
+        target_kinds: category of that box, the one after the last where nobody knows it; -1 where there is none.
         centres: of the places, pixels.
         strides: of the places, pixels.
     """
@@ -125,7 +125,8 @@ def detector_loss(
     probability = rows[..., 0].sigmoid()
     weight = torch.where(positive, quality, 0.75 * probability.detach() ** 2)
     score = functional.binary_cross_entropy_with_logits(rows[..., 0], quality, weight, reduction="sum") / count
-    kind = functional.cross_entropy(rows[..., 5:][positive], target_kinds[positive], reduction="sum") / count
+    kinds = rows[..., 5:][positive]
+    kind = functional.cross_entropy(kinds, target_kinds[positive], reduction="sum", ignore_index=kinds.shape[1]) / count
     return DetectorLoss(score, (1 - generalised).sum() / count, kind)
 
 

@@ -6,7 +6,7 @@ import copy
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import Any
+from typing import Any, Protocol, runtime_checkable
 
 import numpy as np
 import torch
@@ -30,6 +30,15 @@ SIZE = (320, 256)
 """Width and height of the detector's training pictures; 32 divides both."""
 AHEAD = 3
 """Batches that each worker prepares while others are learnt from."""
+
+
+@runtime_checkable
+class Pictures(Protocol):
+    """What pictures are drawn from."""
+
+    def draw(self, rng: np.random.Generator) -> LabelledPicture:
+        """A picture of chance."""
+        ...
 
 
 @dataclass(frozen=True)
@@ -192,7 +201,7 @@ def detector_trainer(
     return Trainer(Detector(kinds), loss, batch_of, schedule, checkpoint, device, workers)
 
 
-def detector_batch(files: PictureFiles, count: int, rng: np.random.Generator) -> tuple[Tensor, Tensor, Tensor]:
+def detector_batch(files: Pictures, count: int, rng: np.random.Generator) -> tuple[Tensor, Tensor, Tensor]:
     """Pictures, and for every place its box and category (-1 for none)."""
     pixels, boxes, kinds = [], [], []
     for _ in range(count):
