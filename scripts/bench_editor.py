@@ -313,7 +313,7 @@ class Bench:
         for k in range(100):
             shift = 0.3 * np.sin(k / 5)
             poses = {o.id: o.pose.moved((shift, 0.0, 0.0)) for o in items}
-            self.session.ui_thread.post(lambda p=poses: self.session.preview(p), key="preview")
+            self.session.ui_thread.post(lambda p=poses: self.session.viewport.preview(p), key="preview")
             page.wait_for_timeout(50)
         torn, seen = page.evaluate("[window.__torn, window.__seen]")
         self._do(self.session.refresh)

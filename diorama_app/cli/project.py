@@ -79,15 +79,19 @@ def _unzip(a: argparse.Namespace) -> None:
 
 
 def _folder(a: argparse.Namespace) -> Path:
-    """The folder of a project that is named by its folder, or by its name among the projects."""
-    from diorama_app.projects.manage import find_project
+    """The folder of a project that is given by its folder, by that folder's name or by the project's own."""
+    from diorama_app.projects.manage import find_project, name_of, recent_projects
 
     if a.project.is_dir():
         return Path(a.project).resolve()
-    found = find_project(projects_folder(a.projects), str(a.project))
-    if found is None:
-        raise InputError(f"there is no project {a.project}; 'diorama project list' names those that there are")
-    return found
+    folder, given = projects_folder(a.projects), str(a.project)
+    found = find_project(folder, given)
+    named = [found] if found is not None else [f for f in recent_projects(folder) if name_of(f) == given]
+    if not named:
+        raise InputError(f"there is no project {given}; 'diorama project list' names those that there are")
+    if len(named) > 1:
+        raise InputError(f"{len(named)} projects are called {given}; give a folder: {', '.join(f.name for f in named)}")
+    return named[0]
 
 
 def _say(a: argparse.Namespace, path: Path, about: str) -> None:

@@ -147,7 +147,7 @@ def _selection(session: EditorSession) -> tuple[Command, ...]:
 
 def _objects(session: EditorSession) -> tuple[Command, ...]:
     def copy(client: Client) -> None:
-        session.clip = copied(session.scene, client.need_selection())
+        session.shared.clip = copied(session.scene, client.need_selection())
         client.notice(f"Copied {editing.names_of(session.scene, client.selection)}.")
 
     def cut(client: Client) -> None:
@@ -155,9 +155,9 @@ def _objects(session: EditorSession) -> tuple[Command, ...]:
         editing.delete_selected(client)
 
     def paste(client: Client) -> None:
-        if session.clip is None:
+        if session.shared.clip is None:
             raise EditRefused("nothing was copied yet; select something and press Ctrl+C")
-        clip, here = session.clip, session.scene
+        clip, here = session.shared.clip, session.scene
         original = all(here.has_object(o.id) and here.object(o.id) == o for o in clip.objects)
         scene, heads = (
             pasted(here, clip, free_offset(here, clip))

@@ -144,7 +144,7 @@ def show_before(session: EditorSession, before: bool) -> None:
     poses = {o.id: o.pose for o in session.scene.objects}
     if before:
         poses |= {o.id: o.pose for o in run.start.objects if o.id in poses}
-    session.preview(poses)
+    session.viewport.preview(poses)
     session.refresh_panels()
 
 
@@ -199,7 +199,7 @@ def _between(a: Pose, b: Pose, share: float) -> Pose:
 
 
 def _show_step(session: EditorSession, scene: Scene, run: LayoutRun, samples: Samples) -> None:
-    session.preview(untouched(session.scene, run.start, scene))
+    session.viewport.preview(untouched(session.scene, run.start, scene))
     now = time.monotonic()
     if now - run.drawn_at < CURVES_EVERY_S:
         return

@@ -174,7 +174,7 @@ class Gestures:
         session.edit(f"move {label}", apply, by=client, by_hand=True)
 
     def _show(self, start: Scene, poses: Mapping[str, Pose], scene: Scene) -> None:
-        self._session.preview(poses)
+        self._session.viewport.preview(poses)
         moving = [i for i in poses if i in {*self._moving()}] or list(poses)
         self._show_distances(scene)
         pairs = self._collisions.of(scene, moving)
@@ -198,7 +198,7 @@ class Gestures:
 
     def _resizing(self, start: Scene, now: Scene) -> None:
         poses = changed_poses(start, now)
-        self._session.preview(poses)
+        self._session.viewport.preview(poses)
         self._client.marks.collide({i for pair in self._collisions.of(now, list(poses)) for i in pair})
         self._client.show_marks(now)
 

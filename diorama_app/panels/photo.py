@@ -182,7 +182,7 @@ class PhotoPanel:
             keep_given(project, replace(upload, depth=upload.depth if "depth" in new else None, masks=new.get("masks")))
             attitude = None if turn or bend else before.camera_attitude
             inputs = replace(read.inputs, camera_attitude=attitude, camera_height_m=before.camera_height_m)
-            session.annotate(label, inputs, by=client)
+            session.commit(label, session.scene, inputs=inputs, by=client)
             if read.warnings:  # in place of the step's name, now or when the page is drawn next
                 client.to_say = sentences(read.warnings[:3]), True
                 client.refresh()

@@ -48,6 +48,6 @@ def example_project(projects_dir: Path) -> Project | None:
 
 def example_inputs() -> ReadInputs:
     """The example's rendering with its boxes and camera."""
-    k = json.loads((EXAMPLE / "intrinsics.json").read_text())
+    k = json.loads((EXAMPLE / "intrinsics.json").read_text(encoding="utf-8"))
     camera = (k["fx"], k["fy"], k["cx"], k["cy"])
     return read_inputs(EXAMPLE / "photo.jpg", boxes=EXAMPLE / "boxes.json", intrinsics=camera, name=PHOTO_NAME)

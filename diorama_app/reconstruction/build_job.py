@@ -192,7 +192,7 @@ def show_built(
     known = {} if made.again is None else {p.name: p for p in made.again.photos}
     further = tuple(known.get(p.name, p) for p in session.further_photos)
     inputs = made.inputs if session.inputs is said else None
-    session.inputs_are_saved(inputs)
+    session.saving.inputs_are_saved(inputs)
     session.commit(label, made.scene, inputs=inputs, further=further if made.again is not None else None)
     session.view.show_whole_room()
     message = message or f"The scene has {number_of(len(made.scene.objects))}. Click one to change it."

@@ -36,7 +36,7 @@ def take_photo(client: Client, file_name: str, inputs: Inputs) -> None:
     """
     session = client.session
     if awaits_photo(session.scene):
-        session.annotate(f"add the photo {inputs.photo.name}", inputs, by=client)
+        session.commit(f"add the photo {inputs.photo.name}", session.scene, inputs=inputs, by=client)
         _to_be_marked(client, None)
         return
     need_joinable(session.scene, session.inputs)
@@ -44,7 +44,8 @@ def take_photo(client: Client, file_name: str, inputs: Inputs) -> None:
     if len(photos) >= MAX_PHOTOS:
         raise EditRefused(f"a room takes {MAX_PHOTOS} further photos; take one out first")
     name = fresh_name(file_name, [p.name for p in photos])
-    session.annotate_further(f"add the photo {name}", (*photos, FurtherPhoto(name, inputs)), by=client)
+    further = (*photos, FurtherPhoto(name, inputs))
+    session.commit(f"add the photo {name}", session.scene, further=further, by=client)
     _to_be_marked(client, name)
 
 
@@ -84,7 +85,8 @@ def fresh_name(file_name: str, taken: Sequence[str]) -> str:
 def take_out(client: Client, name: str) -> None:
     """Take a further photo away; the objects that it brought stay."""
     photos = client.session.further_photos
-    client.session.annotate_further(f"take out the photo {name}", (p for p in photos if p.name != name), by=client)
+    further = tuple(p for p in photos if p.name != name)
+    client.session.commit(f"take out the photo {name}", client.session.scene, further=further, by=client)
     client.choose_photo(None)
     client.refresh()
 

@@ -123,10 +123,10 @@ class Client:
         """Change what is said of the chosen photo, as one undo step."""
         further = self.further_photo
         if further is None:
-            self.session.annotate(label, inputs, by=self)
+            self.session.commit(label, self.session.scene, inputs=inputs, by=self)
             return
         now = tuple(replace(p, inputs=inputs) if p is further else p for p in self.session.further_photos)
-        self.session.annotate_further(label, now, by=self)
+        self.session.commit(label, self.session.scene, further=now, by=self)
 
     def choose_photo(self, name: str | None) -> None:
         """Mark and look through another photo."""

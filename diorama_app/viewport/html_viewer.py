@@ -89,7 +89,7 @@ def _page(glb: bytes, gathered: ExportScene) -> str:
     # As functions: in a template, a backslash of the name would be an escape.
     page = re.sub(r"<title>.*?</title>", lambda _: f"<title>{title}</title>", page, count=1, flags=re.DOTALL)
     told = {"VIEWS": json.dumps(views), "ASPECTS": json.dumps(ASPECTS)}
-    over = re.sub("|".join(told), lambda found: told[found[0]], (STATIC / "viewer.html").read_text())
+    over = re.sub("|".join(told), lambda found: told[found[0]], (STATIC / "viewer.html").read_text(encoding="utf-8"))
     return page.replace("<head>", f"<head>{NOTICE}", 1).replace("</head>", f"{over}</head>", 1)
 
 

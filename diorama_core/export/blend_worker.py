@@ -95,4 +95,4 @@ def _camera(bpy: Any, camera: Any, k: dict[str, float], photo: str | None) -> No
 
 
 if __name__ == "__main__":
-    save(json.loads(Path(sys.argv[1]).read_text()))
+    save(json.loads(Path(sys.argv[1]).read_text(encoding="utf-8")))

@@ -74,7 +74,7 @@ def run_in_blender(
     progress, python = progress or Progress(), blender_python()
     with tempfile.TemporaryDirectory() as folder, tempfile.TemporaryFile("w+") as errors:
         file = Path(folder) / "job.json"
-        file.write_text(json.dumps(dict(job)))
+        file.write_text(json.dumps(dict(job)), encoding="utf-8")
         # -P: Blender's own add-on is called "cycles" too, and must not find a module beside the worker.
         command = [python, "-P", str(worker), str(file)]
         process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=errors, text=True, errors="replace")

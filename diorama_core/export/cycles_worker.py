@@ -115,4 +115,4 @@ def report(stats: str, *_: Any) -> None:
 
 
 if __name__ == "__main__":
-    render(json.loads(Path(sys.argv[1]).read_text()))
+    render(json.loads(Path(sys.argv[1]).read_text(encoding="utf-8")))

@@ -106,7 +106,7 @@ def urdf_model(path: Path) -> Any:
             path = Path(unpacked) / f"{path.stem}.urdf"
         folder = path.with_name(companion_folder(path, "urdf"))
         room = mujoco.MjSpec.from_file(str(path))
-        for pose in json.loads((folder / POSES).read_text())["objects"]:
+        for pose in json.loads((folder / POSES).read_text(encoding="utf-8"))["objects"]:
             thing = mujoco.MjSpec.from_file(str(folder / pose["file"]))
             frame = room.worldbody.add_frame(pos=pose["position_m"], quat=pose["quaternion_wxyz"])
             frame.attach_body(thing.worldbody.first_body(), f"{pose['name']}/", "").add_freejoint()

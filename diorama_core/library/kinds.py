@@ -66,7 +66,9 @@ def outline_of(name: str) -> Float[np.ndarray, "40 3"]:
 
 @cache
 def _table() -> dict[str, tuple[KindMode, ...]]:
-    return {name: tuple(_mode(m) for m in modes) for name, modes in json.loads(PATH.read_text()).items()}
+    return {
+        name: tuple(_mode(m) for m in modes) for name, modes in json.loads(PATH.read_text(encoding="utf-8")).items()
+    }
 
 
 def _mode(entry: dict[str, Any]) -> KindMode:

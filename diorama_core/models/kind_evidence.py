@@ -143,7 +143,7 @@ def read_class_table(path: Path, kinds: tuple[str, ...]) -> Float[np.ndarray, "k
     found = np.zeros((len(kinds), CLASSES))
     row = {kind: k for k, kind in enumerate(kinds)}
     try:
-        lines = path.read_text().splitlines()
+        lines = path.read_text(encoding="utf-8").splitlines()
     except OSError as error:
         raise UnavailableError(f"{path}: is missing; restore it from the repository") from error
     for number, line in enumerate(lines, 1):

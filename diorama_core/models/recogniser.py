@@ -81,7 +81,7 @@ class Recogniser:
         if absent:
             raise UnavailableError(f"{folder}: {', '.join(absent)} is missing; restore it from the repository")
         try:
-            card = json.loads(paths[2].read_text())
+            card = json.loads(paths[2].read_text(encoding="utf-8"))
             categories = tuple(str(c) for c in card["categories"])
             form_values = tuple(len(values) for values in card["forms"].values())
         except (ValueError, KeyError, TypeError, AttributeError) as error:

@@ -324,9 +324,9 @@ def write_colmap(folder: Path, photos: tuple[PosedPhoto, ...], kind: Kind = "tex
     ks = [p.camera.intrinsics for p in photos]
     if kind == "text":
         cameras = [f"{n} PINHOLE {k.width} {k.height} {k.fx!r} {k.fy!r} {k.cx!r} {k.cy!r}" for n, k in enumerate(ks, 1)]
-        (folder / "cameras.txt").write_text("\n".join(["# cameras", *cameras]) + "\n")
+        (folder / "cameras.txt").write_text("\n".join(["# cameras", *cameras]) + "\n", encoding="utf-8")
         images = [f"{n} {' '.join(map(repr, v))} {n} {p.name}\n" for n, (p, v) in enumerate(rows, 1)]
-        (folder / "images.txt").write_text("# images\n" + "\n".join(images) + "\n")
+        (folder / "images.txt").write_text("# images\n" + "\n".join(images) + "\n", encoding="utf-8")
         return
     packed = [struct.pack("<iiQQ4d", n, 1, k.width, k.height, k.fx, k.fy, k.cx, k.cy) for n, k in enumerate(ks, 1)]
     (folder / "cameras.bin").write_bytes(struct.pack("<Q", len(ks)) + b"".join(packed))

@@ -165,7 +165,7 @@ def editor(shared_page: EditorPage, tmp_path: Path, request: pytest.FixtureReque
 
     def begin() -> None:
         session.projects_dir = tmp_path / "projects"
-        session.clip = None
+        session.shared.clip = None
         client = shared_page.client
         client.view.canvas.close()
         client.preferences = Preferences(numbers=True)

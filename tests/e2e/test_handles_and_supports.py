@@ -74,7 +74,7 @@ def test_what_is_pasted_into_another_project_lands_in_view_inside(
     editor.row("dining table").click()
     editor.until(lambda: editor.selection == ("table_1",))
     editor.page.keyboard.press("Control+c")
-    editor.until(lambda: editor.session.clip is not None, "copied")
+    editor.until(lambda: editor.session.shared.clip is not None, "copied")
     editor.page.evaluate("window.__dioGoTo('near')")
     editor.until(lambda: editor.session.project.name == "near" and bool(editor.session.clients), "another project")
     editor.settle()

@@ -44,9 +44,9 @@ def committed_figures(path: Path | None = None) -> dict[str, float]:
     """
     try:
         if path is None:
-            text = resources.files("diorama_core.evaluation").joinpath(REGRESSION_FILE).read_text()
+            text = resources.files("diorama_core.evaluation").joinpath(REGRESSION_FILE).read_text(encoding="utf-8")
         else:
-            text = path.read_text()
+            text = path.read_text(encoding="utf-8")
         figures = json.loads(text)["figures"]
         return {str(name): float(value) for name, value in figures.items()}
     except (OSError, ValueError, KeyError, TypeError, AttributeError) as error:

@@ -18,7 +18,7 @@ def test_photos_are_chosen_looked_through_and_taken_out(client: Client, page: Pa
     strip.refresh()
     assert "Photos of this room" not in page.html
     joined = FurtherPhoto("beside", Inputs(plain_photo()), photo_camera(), (("chair_1", (1.0, 2.0, 3.0, 4.0)),))
-    client.session.annotate_further("add", (joined, FurtherPhoto("new", Inputs(plain_photo()))))
+    client.session.commit("add", client.session.scene, further=(joined, FurtherPhoto("new", Inputs(plain_photo()))))
     strip.refresh()
     assert page.html.count('class="tile') == 3
     assert page.html.count("not in the scene yet") == 1

@@ -33,7 +33,7 @@ def test_photos_have_their_new_cameras_and_those_that_do_not_join_are_named(
     own = photo_camera()
     joined = FurtherPhoto("one", Inputs(plain_photo()), own, (("table_1", (1.0, 2.0, 3.0, 4.0)),))
     lost, added = FurtherPhoto("two", Inputs(plain_photo()), own), FurtherPhoto("three", Inputs(plain_photo()))
-    session.annotate_further("photos", (joined, lost, added), by=client)
+    session.commit("photos", session.scene, further=(joined, lost, added), by=client)
     said: list[str] = []
     monkeypatch.setattr(session, "notice_all", lambda message, kind: said.append(message))
     scene = replace(session.scene, camera=turned(own))
@@ -108,7 +108,7 @@ def test_boxes_that_a_person_draws_while_a_scene_is_built_stay(session: EditorSe
     said = Inputs(plain_photo(), (LabelledBox((1.0, 1.0, 9.0, 9.0), "chair", "chair"),))
     made = NewScene(built.scene, built.textures, Inputs(plain_photo()), ())
     before = session.inputs
-    session.annotate("draw a box", said)
+    session.commit("draw a box", session.scene, inputs=said)
     show_built(session, session.project, made, label="build", said=before)
     assert session.inputs is said
     session.autosave.flush()

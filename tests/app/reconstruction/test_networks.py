@@ -147,7 +147,7 @@ def test_found_furniture_joins_the_boxes_drawn_by_hand(
     graph = tiny_networks.export(_Yolox(), example, tmp_path / "y.onnx", ["images"], ["output"])
     install(store, "yolox-nano", [graph])
     drawn = LabelledBox((2.0, 2.0, 20.0, 20.0), "lamp", "lamp")
-    client.session.annotate("draw", replace(client.session.inputs, boxes=(drawn,)))
+    client.annotate("draw", replace(client.session.inputs, boxes=(drawn,)))
     boards: list[int] = []
     client.open_board = lambda: boards.append(1)
     find_furniture(client)

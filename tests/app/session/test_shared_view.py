@@ -77,7 +77,7 @@ def test_who_clicks_the_photos_camera_asks_to_look_through_it(
     session.view.on_photo_camera = lambda who, name: asked.append((who, name))
     beside = FurtherPhoto("beside", Inputs(plain_photo()), photo_camera())
     unjoined = FurtherPhoto("elsewhere", Inputs(plain_photo()))
-    session.annotate_further("add photos", (unjoined, beside))
+    session.commit("add photos", session.scene, further=(unjoined, beside))
     shown.clear()
     session.view.show_photo_camera(client)
     assert [camera.name for camera in shown] == ["", "_1"]
