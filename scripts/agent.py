@@ -119,7 +119,7 @@ async def session(home: Path, out: Path, pictures: Path) -> None:
         after = await agent.call("check")
         agent.say(f"collisions {len(before['collisions'])} -> {len(after['collisions'])}, objects with problems "
                   f"{len(before['problems'])} -> {len(after['problems'])}, walkways {after['walkways']}")  # fmt: skip
-        await agent.call("look", view="look:-2.5,0.1,2.1:0.8,4.3,0.6", ids=False)
+        await agent.call("look", view="orbit:20", ids=False)
         await agent.call("undo")
         await agent.call("redo")
         file = await agent.call("export", path=str(home / "room.glb"), format="glb")
