@@ -113,6 +113,7 @@ def test_errors_pass_through(ready: None) -> None:
         each_there(refused, [(k,) for k in range(4)])
 
 
+@pytest.mark.posix
 def test_a_killed_process_loses_nothing(ready: None) -> None:
     assert there(killed_elsewhere, os.getpid()) == "done"
     assert there(doubled, 2) == 4  # done here

@@ -164,6 +164,7 @@ serve.serve(project=folder, projects_dir=folder.parent, host="127.0.0.1", port=0
 """
 
 
+@pytest.mark.posix
 def test_stopping_does_not_wait_for_libraries_that_are_still_loading(tmp_path: Path) -> None:
     command = [sys.executable, "-c", BUSY, str(tmp_path)]
     process = subprocess.Popen(command, stdout=subprocess.PIPE, text=True)

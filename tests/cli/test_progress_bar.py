@@ -9,6 +9,8 @@ import pytest
 from diorama_app.cli.progress_bar import progress_bar
 from diorama_core.errors import Cancelled
 
+pytestmark = pytest.mark.posix
+
 
 def interrupt() -> None:
     """As Ctrl+C does; the handler runs at the next instruction."""

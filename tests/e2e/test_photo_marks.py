@@ -185,6 +185,7 @@ def saved_boxes(folder: Path) -> tuple[LabelledBox, ...]:
     return inputs.boxes
 
 
+@pytest.mark.posix
 def test_what_was_drawn_outlives_a_killed_server(context, serve_apart, photo: Path, tmp_path: Path) -> None:
     port = lasting_port()
     server = serve_apart(port)

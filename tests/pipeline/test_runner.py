@@ -136,6 +136,7 @@ def test_progress_of_parts_is_on_the_whole_jobs_scale() -> None:
     assert events[0].fraction == pytest.approx(0.75)
 
 
+@pytest.mark.posix
 def test_results_in_a_folder_of_somebody_else_are_never_deleted(tmp_path: Path) -> None:
     """A received project may have a link in place of its folder of stage results."""
     theirs = tmp_path / "theirs"

@@ -79,6 +79,7 @@ def test_the_same_scene_is_kept_once(project: Project, monkeypatch: pytest.Monke
     assert _numbers(project) == [1, 0]
 
 
+@pytest.mark.posix
 def test_nothing_is_deleted_in_a_folder_of_somebody_else(
     project: Project, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -95,6 +96,7 @@ def test_nothing_is_deleted_in_a_folder_of_somebody_else(
     assert all((theirs / name).read_text() == "theirs" for name in names)
 
 
+@pytest.mark.posix
 def test_files_that_are_no_versions_are_left_alone(
     project: Project, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:

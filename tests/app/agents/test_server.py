@@ -25,6 +25,8 @@ from diorama_app.projects.manage import duplicate_project
 from tests.cli.room_photo import write_room
 from tests.waiting import until
 
+pytestmark = pytest.mark.posix
+
 ROOT = Path(__file__).resolve().parents[3]
 COMMAND = ["-m", "diorama_app.cli", "mcp"]
 

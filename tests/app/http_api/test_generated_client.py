@@ -23,6 +23,8 @@ from tests.app.http_api.openapi_client import send  # after the check for its li
 from tests.app.http_api.test_server import running
 from tests.cli.room_photo import write_room
 
+pytestmark = pytest.mark.posix
+
 
 def generated(url: str, folder: Path) -> Path:
     """The package of a client for the server."""

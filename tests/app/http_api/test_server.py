@@ -26,6 +26,8 @@ from tests.cli.room_photo import write_room
 from tests.io.test_bombs import png
 from tests.waiting import until
 
+pytestmark = pytest.mark.posix
+
 pytest.importorskip("fastapi", reason="needs FastAPI (pip install 'diorama[api]')")
 pytest.importorskip("uvicorn", reason="needs uvicorn (pip install 'diorama[api]')")
 ROOT = Path(__file__).resolve().parents[3]

@@ -58,6 +58,7 @@ def killing(project: Path, times: int):
     watcher.join()
 
 
+@pytest.mark.posix
 @pytest.mark.slow
 def test_a_killed_worker_costs_its_own_photo_a_second_try_and_what_died_twice_is_built_by_the_next_run(
     folder: Path, tmp_path: Path

@@ -33,6 +33,7 @@ def test_a_copy_cut_short_is_not_in_the_list(tmp_path: Path, monkeypatch: pytest
     assert [p.name for p in tmp_path.iterdir()] == ["room"]
 
 
+@pytest.mark.posix
 def test_a_copy_has_files_and_folders_only(tmp_path: Path) -> None:
     """A device or a pipe in a received project was copied for ever, a link copied what it led to."""
     project = make_project(tmp_path / "room")

@@ -20,13 +20,14 @@ def without(name: str, scene: Scene) -> Scene:
 
 def test_a_program_takes_back_its_own_step_alone(session: EditorSession) -> None:
     document: SharedDocument = session
-    person = join(session)
+    person, said = join(session), list[str]()
+    person.toast = lambda message, offers_undo: said.append(message)
     document.edit("remove the lamp", partial(without, "lamp_1"), author="Agent")
     document.edit("remove a chair", partial(without, "chair_1"), by=person)
     assert document.undo("Agent").label == "remove the lamp"
     assert document.scene.has_object("lamp_1")
     assert not document.scene.has_object("chair_1")
-    assert person.to_say == ("Undone: remove the lamp", False)
+    assert said == ["Agent: Remove the lamp", "Remove a chair", "Undone: remove the lamp"]
 
 
 def test_a_refused_edit_and_one_that_changes_nothing_leave_no_step(session: EditorSession) -> None:
