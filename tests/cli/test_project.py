@@ -8,7 +8,6 @@ import pytest
 
 from diorama_app.cli import main
 from diorama_app.cli.project import add_project
-from diorama_core.project.storage import Project
 from tests.app.small_room import make_project
 
 
@@ -52,7 +51,7 @@ def test_a_project_is_found_by_its_own_name_where_one_alone_has_it(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     for folder, name in (("a", "My room"), ("b", "Attic"), ("c", "Attic")):
-        Project.create(tmp_path / folder, name=name)
+        make_project(tmp_path / folder).update_info(name=name)
     assert main(["project", "copy", "My room", "--projects", str(tmp_path)]) == 0
     assert "a copy of a" in capsys.readouterr().out
     assert main(["project", "copy", "Attic", "--projects", str(tmp_path)]) == 1
