@@ -192,7 +192,9 @@ def object_answer(scene: Scene, item: SceneObject, bad: Problems, reasons: Seque
 
 
 def _doubts(item: SceneObject, reasons: Sequence[Reason]) -> list[str]:
-    found = [f"the photo hardly supports its place (confidence {item.confidence:.2f})"] if is_unsure(item) else []
+    found = (
+        [f"it may be wrong (confidence {item.confidence:.2f}); see the questions about it"] if is_unsure(item) else []
+    )
     if item.by_hand:
         return found  # somebody has decided since
     scores = [c.score for c in item.candidates if c.shape_id != item.shape_id]

@@ -254,7 +254,8 @@ def _chips(tree: _Tree, item: SceneObject) -> str:
         more = f" +{len(problems) - 1}" if len(problems) > 1 else ""
         chips = f'<span class="chip bad" title="{text(", ".join(problems))}">{text(problems[0])}{more}</span>'
     elif is_unsure(item):
-        sure = f"{100 * item.confidence:.0f}% confidence in its pose; compare it with the photo"
+        share = item.confidence if item.belief is None else min(item.confidence, item.belief.right)
+        sure = f"{100 * share:.0f} % sure; review it, or compare it with the photo"
         chips += f'<span class="chip" title="{sure}">unsure</span>'
     return chips
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import asdict, replace
 from typing import Any
 
 from diorama_core.api import Reconstruction
@@ -83,6 +83,7 @@ def build_report(room: Reconstruction, scenes: tuple[str, ...]) -> dict[str, Any
                 "shape": o.shape_id,
                 "size_m": [round(float(v), 4) for v in o.size_m],
                 "confidence": round(o.confidence, 3),
+                "belief": None if o.belief is None else asdict(o.belief),
             }
             for o in scene.objects
         ],

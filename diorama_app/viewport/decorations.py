@@ -17,8 +17,8 @@ from diorama_core.scene.types import Scene, SceneObject
 SELECTED_COLOUR = (255, 122, 26)
 LOCKED_COLOUR = (120, 130, 150)
 COLLIDING_COLOUR = (224, 44, 44)
-UNSURE = 0.35
-"""Poses below this confidence are marked as uncertain."""
+UNSURE, LIKELIER_WRONG = 0.35, 0.5
+"""What is marked as uncertain: poses below this confidence, and objects less likely right than this."""
 
 Colour = tuple[int, int, int]
 NodeName = Callable[[str], str | None]
@@ -150,8 +150,9 @@ class Decorations:
 
 
 def is_unsure(item: SceneObject) -> bool:
-    """Whether the photo hardly supports an object's pose."""
-    return item.box_px is not None and item.confidence < UNSURE
+    """Whether an object of the photo is likelier wrong than right, or the photo hardly supports its pose."""
+    wrong = item.belief is not None and item.belief.right < LIKELIER_WRONG
+    return item.box_px is not None and (item.confidence < UNSURE or wrong)
 
 
 def remove_quietly(handle: Any) -> None:

@@ -15,6 +15,7 @@ from diorama_app.viewport.decorations import (
     remove_quietly,
 )
 from diorama_core.scene import edits
+from diorama_core.scene.belief import Belief
 from tests.app.people import LocalClient
 from tests.app.small_room import furnished_scene
 
@@ -110,7 +111,10 @@ def test_only_objects_of_the_photo_can_be_unsure() -> None:
     item = SCENE.object("chair_1")
     assert not is_unsure(replace(item, confidence=0.0))
     assert is_unsure(replace(item, confidence=0.0, box_px=(0.0, 0.0, 1.0, 1.0)))
-    assert not is_unsure(replace(item, confidence=UNSURE, box_px=(0.0, 0.0, 1.0, 1.0)))
+    seen = replace(item, confidence=UNSURE, box_px=(0.0, 0.0, 1.0, 1.0))
+    assert not is_unsure(seen)
+    assert is_unsure(replace(seen, belief=Belief(kinds=(("chair", 0.4), ("stool", 0.6)))))
+    assert not is_unsure(replace(seen, belief=Belief(kinds=(("chair", 0.6), ("stool", 0.4)))))
 
 
 def test_a_node_that_went_with_its_parent_is_removed_quietly(server) -> None:
