@@ -186,7 +186,7 @@ def _glide(session: EditorSession, start: Scene, final: Scene, progress: Progres
     for frame in range(1, frames + 1):
         share = 0.5 - 0.5 * np.cos(np.pi * frame / frames)
         between = {o.id: _between(start.object(o.id).pose, o.pose, float(share)) for o in final.objects}
-        session.ui_thread.post(partial(session.preview, between), key="preview")
+        session.ui_thread.post(partial(session.viewport.preview, between), key="preview")
         time.sleep(PREVIEW_EVERY_S)
         progress.report(1.0, "Settling")
 
