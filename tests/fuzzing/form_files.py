@@ -104,6 +104,16 @@ def text_clouds() -> tuple[bytes, ...]:
 
 
 @cache
+def array_clouds() -> tuple[bytes, ...]:
+    """Points as an array, an archive of arrays, and bare floats."""
+    points = room_points(count=3000).astype(np.float32)
+    array, archive = io.BytesIO(), io.BytesIO()
+    np.save(array, points)
+    np.savez(archive, points=points, colours=np.zeros((9, 3), np.uint8))
+    return array.getvalue(), archive.getvalue(), np.column_stack([points, points[:, 0] / 9]).tobytes()
+
+
+@cache
 def splat_samples() -> tuple[bytes, ...]:
     """Splats as PLY."""
     points = room_points(count=3000)
@@ -169,6 +179,12 @@ def read_archive(data: bytes) -> object:
 def read_text_points(data: bytes) -> object:
     """A cloud in plain text or PCD, to the room in it."""
     return _points(data, ".pcd" if b"VERSION" in data[:300] else ".xyz")
+
+
+def read_array_points(data: bytes) -> object:
+    """A cloud of bare numbers, to the room in it."""
+    starts = {b"\x93NUM": ".npy", b"PK\x03\x04": ".npz"}
+    return _points(data, starts.get(data[:4], ".bin"))
 
 
 def read_splats(data: bytes) -> object:

@@ -90,7 +90,16 @@ def mask_samples() -> tuple[bytes, ...]:
     first, second = ids == 1, ids == 2
     stacks = npy(np.stack([first, second])), npy(np.stack([first, second]).astype(np.float32) * 0.9)
     archives = _archive(masks=ids), _archive(chair=first, table=second), stream.getvalue()
-    return npy(ids), *stacks, *archives, *segments, polygon_rows
+    figures = '<polygon points="5,5;60,5;60,50"/><mask left="5" top="5" width="9" height="2" rle="3, 15"/>'
+    cvat = f'<annotations><image name="photo.png" width="96" height="64">{figures}</image></annotations>'.encode()
+    return npy(ids), *stacks, *archives, *segments, polygon_rows, cvat, json.dumps(_brush()).encode()
+
+
+def _brush() -> list[object]:
+    """Label Studio's region of a brush: 24,576 bytes in one run."""
+    bits = f"{4 * 64 * 96:032b}{7:05b}{2:04b}{3:04b}{7:04b}{15:04b}1{3:02b}{4 * 64 * 96 - 1:016b}{255:08b}"
+    packed = [int(bits[k : k + 8].ljust(8, "0"), 2) for k in range(0, len(bits), 8)]
+    return [{"original_width": 96, "original_height": 64, "value": {"format": "rle", "rle": packed}}]
 
 
 def read_masks(data: bytes) -> object:

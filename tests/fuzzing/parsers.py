@@ -330,6 +330,7 @@ PARSERS: dict[str, Parser] = {
     "threeds": Parser(lambda: (forms.three_ds(),), forms.read_as_model(".3ds"), damaged),
     "off": Parser(lambda: (forms.box("off"),), forms.read_as_model(".off"), damaged),
     "archive": Parser(forms.archives, _in_process(forms.read_archive), strange_zip, round=15),
+    "arrays": Parser(forms.array_clouds, _in_process(forms.read_array_points), damaged, round=15),
     "text": Parser(forms.text_clouds, _in_process(forms.read_text_points), damaged, round=15),
     "splats": Parser(forms.splat_samples, _in_process(forms.read_splats), damaged, round=15),
     "table": Parser(measured.table_samples, measured.read_models_table, damaged),

@@ -13,6 +13,8 @@ from diorama_core.perception.inputs.boxes.entry import UNNAMED, Corners, Layout,
 
 MAX_COORDINATE = 1e9
 MAX_WORD = 200
+_SCORE = re.compile(r"\s*(?:\(\s*[01]?\.\d+\s*\)|\s[01]?\.\d+)\s*$")
+"""Behind a word, as in "chair(0.45)" of Grounding DINO and "chair 0.87" of drawn labels."""
 _LISTS: tuple[tuple[str, Layout], ...] = (
     ("bbox", "corners"), ("box", "corners"), ("xyxy", "corners"), ("bboxxyxy", "corners"), ("boxxyxy", "corners"),
     ("bbox2d", "corners"), ("box2d", "corners"), ("rect", "corners"), ("xywh", "sized"), ("bboxxywh", "sized"),
@@ -160,7 +162,7 @@ def _word(value: Any) -> str | None:
         value = value[0]
     if not isinstance(value, str) or not value.strip():
         return None
-    return value[:MAX_WORD]
+    return _SCORE.sub("", value[:MAX_WORD]) or value[:MAX_WORD]
 
 
 def _is_points(values: list[Any]) -> bool:

@@ -91,6 +91,7 @@ def read_entries(
         InputError: an entry has no box, or none of four finite numbers.
     """
     found, ambiguous = [], True
+    rows = [r for r in rows if has_box(r) or word_of(r).lower() != "background"]  # Grounded-SAM lists it as well
     for index, row in enumerate(rows):
         box = box_numbers(row, f"{name}: entry {index}")
         if box is None:
@@ -146,7 +147,8 @@ def read_columns(text: BoxText) -> BoxFile:
     keys = keys_of(_columns(document) or {})
     name = text.source.name
     boxes = next(rows for k in _COLUMNS if (rows := _rows_of_four(keys.get(k))))
-    words = next((keys[k] for k in _COLUMN_WORDS if isinstance(keys.get(k), list)), None)
+    columns = [keys[k] for k in _COLUMN_WORDS if isinstance(keys.get(k), list)]
+    words = next((c for c in columns if len(c) == len(boxes)), columns[0] if columns else None)
     scores = next((keys[k] for k in _COLUMN_SCORES if isinstance(keys.get(k), list)), None)
     for what, column in (("names", words), ("scores", scores)):
         if column is not None and len(column) != len(boxes):

@@ -54,7 +54,7 @@ def read_cvat(text: BoxText) -> BoxFile:
         InputError: of several pictures none is the photo, or a box has no four numbers.
     """
     root = _root(text)
-    image = _image_of(root.findall("image"), text)
+    image = image_of(root.findall("image"), text)
     figures: list[tuple[str, Element]] = []
     if image is not None:
         figures = [(f.get("label") or UNNAMED, f) for f in image]
@@ -80,13 +80,21 @@ def _root(text: BoxText) -> Element:
 def _figure(figure: Element, where: str) -> Corners | None:
     if figure.tag == "box":
         return numbers([figure.get(k) for k in ("xtl", "ytl", "xbr", "ybr")], where)
+    if figure.tag == "mask":
+        left, top, width, height = numbers([figure.get(k) for k in ("left", "top", "width", "height")], where)
+        return left, top, left + width, top + height
     if figure.tag not in ("polygon", "polyline"):
         return None
     pairs = [p.split(",") for p in (figure.get("points") or "").split(";")]
     return box_of({"points": [[_number(p[0]), _number(p[1])] for p in pairs if len(p) == 2]}, where)
 
 
-def _image_of(images: list[Element], text: BoxText) -> Element | None:
+def image_of(images: list[Element], text: BoxText) -> Element | None:
+    """The picture that is the photo; None where there is none.
+
+    Raises:
+        InputError: of several pictures none is the photo.
+    """
     return picture_of(images, [i.get("name") for i in images], text, "CVAT file") if images else None
 
 

@@ -20,7 +20,7 @@ from diorama_core.perception.inputs.boxes.nested import size_in
 from diorama_core.perception.inputs.boxes.tools import is_via, regions_of
 from diorama_core.perception.inputs.json_values import objects_of, size_of
 from diorama_core.perception.inputs.masks.pictures import MAX_MASK_MEGAPIXELS, one_object
-from diorama_core.perception.inputs.masks.run_lengths import decoded_runs
+from diorama_core.perception.inputs.masks.run_lengths import decoded_brush, decoded_runs
 from diorama_core.perception.inputs.masks.stack import MaskMap, painted
 from diorama_core.perception.inputs.source import Source
 
@@ -69,7 +69,7 @@ def read_polygon_list(source: Source, photo_size: Size) -> MaskMap:
         shares = [float(v) for v in line.split()[1:]]
         if shares:
             pixels = [v * photo_size[k % 2] for k, v in enumerate(shares)]
-            masks.append(_polygon([pixels], photo_size, source.name))
+            masks.append(filled_polygon([pixels], photo_size, source.name))
     return painted([m for m in masks if m.any()], source.name, "polygons")
 
 
@@ -89,8 +89,10 @@ def _of_photo(text: BoxText) -> tuple[Any, Size | None]:
 
 def _mask(segment: Any, size: Size, name: str) -> Bool[np.ndarray, "h w"]:
     if isinstance(segment, dict):
+        if "rle" in segment:
+            return decoded_brush(segment, name)
         return _bitmap(segment, size, name) if "data" in segment else decoded_runs(segment, name)
-    return _polygon(segment, size, name)
+    return filled_polygon(segment, size, name)
 
 
 def _bitmap(segment: dict[str, Any], size: Size, name: str) -> Bool[np.ndarray, "h w"]:
@@ -120,16 +122,30 @@ def _segments(value: Any, level: int = 0) -> Iterator[Any]:
         if "counts" in value and "size" in value:
             yield value
             return
+        brush = value.get("value")
+        if isinstance(brush, dict) and brush.get("format") == "rle" and isinstance(brush.get("rle"), list):
+            yield {"rle": brush["rle"], "size": [value.get("original_height"), value.get("original_width")]}
+            return
         bitmap = value.get("bitmap")
         if isinstance(bitmap, dict) and "data" in bitmap and "origin" in bitmap:
             yield bitmap
             return
         points, across, down = (value.get(k) for k in ("points", "all_points_x", "all_points_y"))
+        outline = value.get("segments")  # Ultralytics
+        if isinstance(outline, dict):
+            across, down = outline.get("x"), outline.get("y")
         if isinstance(across, list) and isinstance(down, list):
             yield [[[x, y] for x, y in zip(across, down, strict=False)]]
             return
         if isinstance(points, dict) and isinstance(points.get("exterior"), list) and len(points["exterior"]) > 2:
             yield [points["exterior"]]
+            return
+        if (
+            isinstance(points, list)
+            and len(points) > 2
+            and all(isinstance(p, dict) and {"x", "y"} <= p.keys() for p in points)
+        ):
+            yield [[[p["x"], p["y"]] for p in points]]  # Roboflow
             return
         if value.get("shape_type") == "polygon" and isinstance(points, list) and len(points) > 2:
             yield [points]
@@ -142,8 +158,12 @@ def _segments(value: Any, level: int = 0) -> Iterator[Any]:
             yield from _segments(inner, level + 1)
 
 
-def _polygon(rings: list[Any], size: Size, name: str) -> Bool[np.ndarray, "h w"]:
-    """Rings of x, y, x, y... or of [x, y] filled."""
+def filled_polygon(rings: list[Any], size: Size, name: str) -> Bool[np.ndarray, "h w"]:
+    """Rings of x, y, x, y... or of [x, y] filled.
+
+    Raises:
+        InputError: the picture is too large, or a ring holds no numbers.
+    """
     if size[0] * size[1] > MAX_MASK_MEGAPIXELS * 1_000_000:
         raise InputError(f"{name}: its picture of {size[0]} x {size[1]} pixels is too large for masks")
     canvas = Image.new("L", size)

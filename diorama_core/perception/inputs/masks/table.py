@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 from diorama_core.perception.inputs.form import Form
 from diorama_core.perception.inputs.masks.files import read_arrays, read_folder_of_masks
+from diorama_core.perception.inputs.masks.markup import is_markup, read_cvat_masks
 from diorama_core.perception.inputs.masks.pictures import read_picture
 from diorama_core.perception.inputs.masks.segments import is_polygon_list, read_polygon_list, read_segments
 from diorama_core.perception.inputs.masks.stack import MaskMap
@@ -61,10 +62,17 @@ MASK_FORMS: tuple[Form[MaskContent, MaskMap], ...] = (
     ),
     Form(
         "segments in JSON",
-        "COCO, SAM's automatic masks, LabelMe, VIA, Supervisely",
+        "COCO, SAM, LabelMe, Label Studio's brush, VIA, Supervisely, Roboflow",
         "run lengths, plain or packed, bitmaps and polygons, of the photo's file name",
         _is_json,
         lambda content: read_segments(content.source, content.photo_name, content.photo_size),
+    ),
+    Form(
+        "CVAT",
+        "CVAT for images",
+        "polygons and masks of the photo",
+        lambda content: is_markup(content.source),
+        lambda content: read_cvat_masks(content.source, content.photo_name, content.photo_size),
     ),
     Form(
         "YOLO polygons",

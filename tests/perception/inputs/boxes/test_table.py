@@ -363,3 +363,38 @@ def test_one_annotation_in_anybody_s_words() -> None:
     assert box_of({"polygon": [[1, 2], [5, 3], [2, 9]]}, "") == (1, 2, 5, 9)
     assert box_of({"cx": 5, "cy": 5, "w": 2, "h": 4}, "") == (4, 3, 6, 7)
     assert box_of({"name": "x"}, "") is None
+
+
+def words_of(document: object) -> list[str]:
+    source = Source(json.dumps(document).encode(), "a.json")
+    return [b.label for b in read_boxes(source, decoded(*SIZE))[0]]
+
+
+def test_words_without_the_scores_behind_them() -> None:
+    boxes = [list(b[:4]) for b in BOXES]
+    assert words_of({"boxes": boxes, "labels": ["chair(0.45)", "sofa 0.87"]}) == ["chair", "sofa"]
+    assert words_of([{"bbox": b, "class": w} for b, w in zip(boxes, ("chair (.5)", "sofa 2"), strict=True)]) == [
+        "chair",
+        "sofa 2",
+    ]
+
+
+def test_the_background_in_a_list_of_boxes_is_none() -> None:
+    rows = [{"value": 0, "label": "background"}, *({"label": b[4], "box": list(b[:4])} for b in BOXES)]
+    assert words_of(rows) == ["chair", "sofa"]
+
+
+def test_class_names_beside_class_numbers_of_another_count() -> None:
+    document = {"pred_boxes": [list(b[:4]) for b in BOXES], "pred_classes": [0, 2]}
+    assert words_of({**document, "class_names": ["chair", "lamp", "sofa"]}) == ["chair", "sofa"]
+
+
+def test_bounds_of_cvat_s_masks() -> None:
+    masks = "".join(
+        f'<mask label="{w}" rle="0, 9" left="{x1}" top="{y1}" width="{x2 - x1}" height="{y2 - y1}"/>'
+        for x1, y1, x2, y2, w in BOXES
+    )
+    image = f'<image name="photo.png" width="400" height="300">{masks}</image>'
+    source = Source(f"<annotations>{image}</annotations>".encode(), "a.xml")
+    found = read_boxes(source, decoded(*SIZE))[0]
+    assert [(b.box, b.label) for b in found] == [(tuple(map(float, b[:4])), b[4]) for b in BOXES]

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import base64
 import io
+import itertools
 import json
 import zipfile
 import zlib
@@ -193,6 +194,66 @@ def test_segments_of_other_pictures_are_refused() -> None:
 def test_polygons_of_yolo() -> None:
     text = "0 " + " ".join(f"{x / WIDTH:.5f} {y / HEIGHT:.5f}" for x, y in POLYGON)
     assert (found(Source(text.encode(), "m.txt")) > 0).mean() == pytest.approx(LARGE.mean(), abs=0.02)
+
+
+def corners_of(mask: np.ndarray) -> list[tuple[int, int]]:
+    rows, columns = np.flatnonzero(mask.any(axis=1)), np.flatnonzero(mask.any(axis=0))
+    left, right, top, bottom = int(columns[0]), int(columns[-1]), int(rows[0]), int(rows[-1])
+    return [(left, top), (right, top), (right, bottom), (left, bottom)]
+
+
+def cvat(figures: str) -> Source:
+    image = f'<image id="0" name="photo.jpg" width="{WIDTH}" height="{HEIGHT}">{figures}</image>'
+    return Source(f'<?xml version="1.0"?><annotations><version>1.1</version>{image}</annotations>'.encode(), "a.xml")
+
+
+def test_cvat_s_polygons_and_masks() -> None:
+    polygons = [";".join(f"{x},{y}" for x, y in corners_of(m)) for m in (LARGE, SMALL)]
+    np.testing.assert_array_equal(found(cvat("".join(f'<polygon label="a" points="{p}"/>' for p in polygons))), IDS)
+    (left, top), _, (right, bottom), _ = corners_of(SMALL)
+    size = f'left="{left}" top="{top}" width="{right - left + 1}" height="{bottom - top + 1}"'
+    mask = f'<mask label="a" rle="0, {(right - left + 1) * (bottom - top + 1)}" {size}/>'
+    np.testing.assert_array_equal(found(cvat(mask)) > 0, SMALL)
+    for damaged in (mask.replace("0, ", "1, "), mask.replace('left="5', 'left="15'), '<polygon points="1,a"/>'):
+        with pytest.raises(InputError, match="damaged; export it again"):
+            found(cvat(damaged))
+    with pytest.raises(InputError, match="this XML holds no masks"):
+        found(Source(b"<annotation><object/></annotation>", "a.xml"))
+
+
+def brushed(mask: np.ndarray) -> dict[str, object]:
+    """Label Studio's region of a brush, all of whose runs are of 16 bits, some of them literal."""
+    values = np.repeat(np.where(mask, 255, 0).astype(np.uint8).ravel(), 4)
+    bits = f"{len(values):032b}{7:05b}{2:04b}{3:04b}{7:04b}{15:04b}"
+    starts = np.concatenate([[0], np.flatnonzero(np.diff(values)) + 1, [len(values)]])
+    for start, end in itertools.pairwise(starts):
+        for first in range(start, end, 65536):
+            length = min(65536, end - first)
+            literal = length < 6
+            words = "".join(f"{values[first]:08b}" for _ in range(length if literal else 1))
+            bits += f"{0 if literal else 1}11{length - 1:016b}{words}"
+    packed = [int(bits[k : k + 8].ljust(8, "0"), 2) for k in range(0, len(bits), 8)]
+    return {"original_width": WIDTH, "original_height": HEIGHT, "value": {"format": "rle", "rle": packed}}
+
+
+def test_brushes_of_label_studio() -> None:
+    stripes = SMALL & (np.arange(WIDTH) % 3 > 0)
+    for masks in ((LARGE, SMALL), (stripes,)):
+        regions = [brushed(m) for m in masks]
+        document = [{"data": {"image": "photo.jpg"}, "annotations": [{"result": regions}]}]
+        values = found(Source(json.dumps(document).encode(), "brush.json"))
+        np.testing.assert_array_equal(values > 0, np.logical_or.reduce(masks))
+    del regions[0]["value"]["rle"][40:]
+    with pytest.raises(InputError, match="brush are damaged"):
+        found(Source(json.dumps(document).encode(), "brush.json"))
+
+
+def test_outlines_of_roboflow_and_ultralytics() -> None:
+    both = [corners_of(m) for m in (LARGE, SMALL)]
+    roboflow = {"predictions": [{"class": "a", "points": [{"x": x, "y": y} for x, y in c]} for c in both]}
+    np.testing.assert_array_equal(found(Source(json.dumps(roboflow).encode(), "r.json")), IDS)
+    rows = [{"name": "a", "segments": {"x": [x for x, _ in c], "y": [y for _, y in c]}} for c in both]
+    np.testing.assert_array_equal(found(Source(json.dumps(rows).encode(), "u.json")), IDS)
 
 
 def test_masks_black_on_white_and_arrays_of_one_each() -> None:
