@@ -141,3 +141,29 @@ def test_a_second_browser_and_a_reload_see_the_same_document(editor: EditorPage,
     editor.load()
     expect(editor.row("chair <b>by the window</b>")).to_have_count(1)
     select_chair(editor)
+
+
+def test_what_stood_on_a_deleted_table_comes_down_and_may_go_too(editor: EditorPage) -> None:
+    editor.row("dining table").click()
+    editor.until(lambda: selection(editor) == ("table_1",))
+    editor.page.keyboard.press("Delete")
+    editor.until(lambda: not scene(editor).has_object("table_1"), "deleted")
+    editor.notice("is lower now: lamp")
+    assert scene(editor).object("lamp_1").corners_world[:, 2].min() == pytest.approx(0.0, abs=1e-6)
+    editor.button("Delete it too").click()
+    editor.until(lambda: not scene(editor).has_object("lamp_1"), "with what stood on it")
+
+
+def test_tidying_up_leaves_what_a_person_moved_and_says_so(editor: EditorPage) -> None:
+    select_chair(editor)
+    x = editor.page.get_by_label("Position: x")
+    x.fill("0.65")
+    x.press("Tab")
+    editor.until(lambda: scene(editor).object("chair_2").by_hand, "a person placed it")
+    placed = scene(editor).object("chair_2").pose
+    editor.tab("Arrange")
+    editor.button("Optimise layout").click()
+    editor.until(lambda: editor.session.layout_run is not None and editor.session.layout_run.final is not None, "tidy")
+    np.testing.assert_allclose(scene(editor).object("chair_2").pose.position, placed.position, atol=5e-3)
+    expect(editor.page.get_by_text("1 object that people placed stayed in place.")).to_be_visible()
+    expect(editor.button("Tidy up all")).to_be_visible()
