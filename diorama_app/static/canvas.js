@@ -148,9 +148,9 @@
   };
 
   // Names stay on the photo: below the upper edge of boxes at its top, from the right edge of boxes in its right half.
-  const nameSide = ([x1, y1]) => {
+  const nameSide = ([x1, y1, x2]) => {
     const [width, height] = state.photo.size;
-    return `${y1 / height < 0.06 ? " inside" : ""}${x1 / width > 0.5 ? " right" : ""}`;
+    return `${y1 / height < 0.06 ? " inside" : ""}${x1 + x2 > width ? " right" : ""}`;
   };
   const boxElement = (row, i) => {
     const on = i === state.selected, [width, height] = state.photo.size;
