@@ -76,7 +76,7 @@ def time_left(status: JobStatus, now: float) -> str:
         now: on the clock of `JobStatus.started_at` (s).
     """
     spent = now - status.started_at
-    if status.cancelling or status.fraction < MIN_SHARE or spent < MIN_S:
+    if status.cancelling or not MIN_SHARE <= status.fraction < 1.0 or spent < MIN_S:
         return ""
     left = spent * (1.0 - status.fraction) / status.fraction
     if left < 60.0:

@@ -65,6 +65,7 @@ def test_an_optimisation_can_be_paused(session, page: Page, client, running) -> 
     [
         (0.5, 20.0, "about 20 s left"),
         (0.99, 60.0, "about 5 s left"),
+        (1.0, 60.0, ""),
         (0.1, 60.0, "about 9 min left"),
         (0.05, 60.0, ""),
         (0.5, 1.0, ""),
