@@ -24,7 +24,7 @@ from scipy.ndimage import gaussian_filter
 from diorama_app.projects.example import PHOTO_NAME
 from diorama_core.errors import UnavailableError
 from diorama_core.export.blender import missing_blender
-from diorama_core.export.cycles import CyclesLens, Opening, Outdoors, cycles_radiance
+from diorama_core.export.cycles import CyclesLens, LightPortal, Outdoors, cycles_radiance
 from diorama_core.library.catalogue import built_in_library
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.perception.inputs import read_inputs
@@ -207,7 +207,7 @@ def bars(window: Window) -> list[tuple[float, float, float, float]]:
     return upright + level
 
 
-def openings() -> tuple[Opening, ...]:
+def openings() -> tuple[LightPortal, ...]:
     """The windows as holes through which daylight comes, just outside the walls."""
     found = []
     for name, windows in WINDOWS.items():
@@ -217,7 +217,7 @@ def openings() -> tuple[Opening, ...]:
         for window in windows:
             middle = start + along * (window.start + window.stop) / 2 - inward * 0.08
             middle = middle + np.array([0.0, 0.0, (window.sill + window.head) / 2])
-            found.append(Opening(middle, inward, window.stop - window.start, window.head - window.sill))
+            found.append(LightPortal(middle, inward, window.stop - window.start, window.head - window.sill))
     return tuple(found)
 
 

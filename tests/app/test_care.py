@@ -16,7 +16,7 @@ from diorama_app.commands.measure import point_under
 from diorama_app.projects import manage as project_care
 from diorama_app.session.client import Client
 from diorama_app.session.layout_run import LayoutRun
-from diorama_core.editing.outline import Outline
+from diorama_core.editing.outline import MaskDraft
 from diorama_core.errors import EditRefused, ProjectError
 from diorama_core.library.user_library import OWN, UserLibrary
 from diorama_core.scene import edits
@@ -61,7 +61,7 @@ def test_clicks_add_to_an_outline_and_take_away_from_it() -> None:
     rgb[40:90, 90:130] = (160, 60, 40)
     blue = np.zeros((120, 160), dtype=bool)
     blue[40:90, 30:70] = True
-    outline = Outline(rgb, (28.0, 38.0, 132.0, 92.0), blue)
+    outline = MaskDraft(rgb, (28.0, 38.0, 132.0, 92.0), blue)
     both = outline.clicked(110.0, 65.0, part=True)
     assert both.mask[65, 110]
     assert both.mask[65, 50]
