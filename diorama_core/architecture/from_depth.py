@@ -39,6 +39,9 @@ class PlanarRoom:
     ) -> ArchitectureEstimate:
         """Floor always, at least one wall always, ceiling where it is measured.
 
+        Args:
+            inputs, objects, geometry, progress: as documented in `protocols.ArchitectureStage`.
+
         Raises:
             ValueError: when the inputs hold no measured depth.
         """

@@ -55,6 +55,13 @@ def is_out_of_reach(
     """Whether a thing that people put on others was seen clearly away from where an edge puts it.
 
     Where distances were reasoned only its height tells: over what it was seen follows from what holds it.
+
+    Args:
+        scene: with the object and its supporter.
+        library: of the scene's shapes.
+        item: the object as it was seen.
+        edge: its support.
+        measured: whether distances were measured, not inferred from sizes.
     """
     kind = taxonomy.resolve(item.category).category
     if measured and kind.mount == "wall" and scene.has_plane(edge.parent) and edge.relation == "mounted on":

@@ -47,7 +47,14 @@ STANDING_TERMS: Mapping[str, Callable[[WallRelation], float]] = {
 
 
 def wall_relation(scene: Scene, item: SceneObject, wall: Plane, noise: ObservationNoise) -> WallRelation | None:
-    """How an object stands to a wall; None where it is beside it, far away or aslant."""
+    """How an object stands to a wall; None where it is beside it, far away or aslant.
+
+    Args:
+        scene: whose camera tells how sure positions are.
+        item: the object, posed in the world.
+        wall: a vertical plane of the room.
+        noise: of positions along and across the line of sight.
+    """
     along = np.cross([0.0, 0.0, 1.0], wall.normal)
     ends, place = wall.polygon @ along, float(item.pose.position @ along)
     if not ends.min() <= place <= ends.max():

@@ -55,7 +55,14 @@ class Surface:
 
     @classmethod
     def of(cls, polygon: np.ndarray, normal: np.ndarray, clearance_m: float, *, of_plane: bool) -> Surface:
-        """A surface from its convex outline."""
+        """A surface from its convex outline.
+
+        Args:
+            polygon: convex, (n, 3), counter-clockwise about the normal (m).
+            normal: unit, out of the surface.
+            clearance_m: free depth along the normal, at scale 1.
+            of_plane: whether it belongs to the room and so does not move with an object.
+        """
         sides = np.roll(polygon, -1, axis=0) - polygon
         lengths = np.linalg.norm(sides, axis=1)
         long = lengths > 1e-9
@@ -68,7 +75,13 @@ class Surface:
         return self if pose is None else self.at(pose.R_world_object, pose.position, pose.scale)
 
     def at(self, R: np.ndarray, p: np.ndarray, scale: np.ndarray) -> Surface:
-        """The surface of an owner with this rotation, centre and scale."""
+        """The surface of an owner with this rotation, centre and scale.
+
+        Args:
+            R: rotation (3, 3) from the owner's frame to the world.
+            p: the owner's centre in the world (m).
+            scale: per axis of the owner.
+        """
         if self.of_plane:
             return self
         axis = int(np.abs(self.normal).argmax())
@@ -146,7 +159,14 @@ def _box_face(size: tuple[float, float, float], axis: int, sign: float) -> Surfa
 
 
 def choose_surface(scene: Scene, item: SceneObject, edge: Support, supporter: Shape | None) -> Surface:
-    """The surface on which the child of an edge rests, as observed."""
+    """The surface on which the child of an edge rests, as observed.
+
+    Args:
+        scene: with the object and its supporter.
+        item: the child, as observed.
+        edge: what it rests on.
+        supporter: shape of the parent; None where the parent is a plane of the room.
+    """
     options = possible_surfaces(scene, item, edge, supporter)
     if len(options) == 1:
         return options[0]
@@ -155,7 +175,14 @@ def choose_surface(scene: Scene, item: SceneObject, edge: Support, supporter: Sh
 
 
 def possible_surfaces(scene: Scene, item: SceneObject, edge: Support, supporter: Shape | None) -> tuple[Surface, ...]:
-    """The surfaces on which the child of an edge may rest: several where a supporter has several levels."""
+    """The surfaces on which the child of an edge may rest: several where a supporter has several levels.
+
+    Args:
+        scene: with the object and its supporter.
+        item: the child, as observed.
+        edge: what it rests on.
+        supporter: shape of the parent; None where the parent is a plane of the room.
+    """
     if supporter is None:
         return (plane_surface(scene.plane(edge.parent)),)
     parent = scene.object(edge.parent)
@@ -225,7 +252,14 @@ def outside_m(surface: Surface, point: Float[np.ndarray, "3"]) -> float:
 def choose_contact(
     scene: Scene, item: SceneObject, edge: Support | None, surface: Surface | None
 ) -> Float[np.ndarray, "3"]:
-    """Outward normal of the face that touches the supporter, in the object frame."""
+    """Outward normal of the face that touches the supporter, in the object frame.
+
+    Args:
+        scene: with the object and its supporter.
+        item: the child.
+        edge: what it rests on; its bottom touches where there is none.
+        surface: of the supporter, in the supporter's object frame; that of a plane in the world.
+    """
     if edge is None or surface is None:
         return np.array(FACE_NORMALS_OBJECT["bottom"])
     if edge.child_face is not None:
@@ -246,7 +280,14 @@ def choose_contact(
 def wall_faces(
     R: Float[np.ndarray, "n 3 3"], p: Float[np.ndarray, "n 3"], sizes: Float[np.ndarray, "n 3"], wall: Plane
 ) -> tuple[Float[np.ndarray, "n 3"], Float[np.ndarray, " n"], Float[np.ndarray, " n"]]:
-    """How objects stand to a wall: the face that looks at it, its gap in metres (inf beside it), how parallel it is."""
+    """How objects stand to a wall: the face that looks at it, its gap in metres (inf beside it), how parallel it is.
+
+    Args:
+        R: rotations from the objects' frames to the world.
+        p: centres in the world (m).
+        sizes: depth, width and height of the objects (m).
+        wall: a plane of the room.
+    """
     toward = -(wall.normal @ R)
     axis = np.abs(toward[:, :2]).argmax(axis=1)
     rows = np.arange(len(R))
@@ -262,7 +303,14 @@ def wall_faces(
 
 
 def is_wide_enough(item: SceneObject, edge: Support, supporter: SceneObject, shape: Shape) -> bool:
-    """Whether some surface of a supporter is at least `SMALLEST_SHARE` as wide as the object on it."""
+    """Whether some surface of a supporter is at least `SMALLEST_SHARE` as wide as the object on it.
+
+    Args:
+        item: the child.
+        edge: what it rests on.
+        supporter: the parent.
+        shape: of the parent.
+    """
     if edge.relation == "mounted on":
         return True
     widths = sorted(np.sort(item.size_m)[1:] if edge.child_face else item.size_m[:2])
@@ -374,7 +422,14 @@ def surfaces_below(item: SceneObject, other: SceneObject, shape: Shape, *, under
 
 
 def resting_cost(scene: Scene, item: SceneObject, edge: Support, surface: Surface) -> float:
-    """Distance in metres of an object's touching face from a surface (world), and by which it misses it."""
+    """Distance in metres of an object's touching face from a surface (world), and by which it misses it.
+
+    Args:
+        scene: with the object and its supporter.
+        item: the child.
+        edge: what it rests on.
+        surface: in the world.
+    """
     contact = choose_contact(scene, item, edge, surface)
     centre = item.pose.position + item.pose.R_world_object @ (contact * item.size_m / 2)
     return abs(float(surface.normal @ centre) - surface.level) + outside_m(surface, item.pose.position)

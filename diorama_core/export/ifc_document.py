@@ -83,7 +83,13 @@ class IfcDocument:
         return self.extruded(corners + np.array(low[:2]), low[2], float(size[2]))
 
     def extruded(self, outline: Float[np.ndarray, "n 2"], bottom_m: float, height_m: float) -> Any:
-        """A level outline drawn upward."""
+        """A level outline drawn upward.
+
+        Args:
+            outline: corners in order, x and y in metres.
+            bottom_m: height at which it begins.
+            height_m: by which it rises.
+        """
         corners = self.add("IfcPolyline", [self.point(p) for p in (*outline, outline[0])])
         profile = self.add("IfcArbitraryClosedProfileDef", "AREA", None, corners)
         T = np.eye(4)

@@ -113,6 +113,13 @@ class _BodyWriter:
         self._folder = folder
 
     def write(self, parent: Element, body: RigidBody, T_world_parent: Float[np.ndarray, "4 4"]) -> None:
+        """Add a body, what moves in it, and the bodies on it to an element of the model.
+
+        Args:
+            parent: element that gets the body.
+            body: with its colliders, joints and mass.
+            T_world_parent: pose of the parent's frame in the world.
+        """
         node = body.node
         T = rigid_inverse(T_world_parent) @ node.T_world
         element = SubElement(parent, "body", {"name": node.slug, **_placement(T)})

@@ -233,7 +233,14 @@ def add_even_light(stage: Usd.Stage, path: str, light: EvenLight) -> None:
 
 
 def add_main_light(stage: Usd.Stage, path: str, light: MainLight, strength: float) -> None:
-    """The photo's main light, infinitely far away and a little soft; `strength` is a factor of its lux."""
+    """The photo's main light, infinitely far away and a little soft; `strength` is a factor of its lux.
+
+    Args:
+        stage: that gets the light.
+        path: of the new prim.
+        light: direction, colour and lux.
+        strength: factor of its lux.
+    """
     made = UsdLux.DistantLight.Define(stage, path)
     made.CreateIntensityAttr(strength * light.lux)
     made.CreateAngleAttr(SOFT_DEG)

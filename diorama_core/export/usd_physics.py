@@ -89,7 +89,13 @@ class _Colliders:
         self._of: dict[str, tuple[tuple[Points, ...], Sdf.Path]] = {}
 
     def add(self, path: str, parts: tuple[Points, ...], grip: UsdShade.Material) -> None:
-        """Those of one prim."""
+        """Those of one prim.
+
+        Args:
+            path: of the prim.
+            parts: vertices (n, 3) of its convex parts, in the prim's frame (m).
+            grip: the friction of their surface.
+        """
         self._of[path] = parts, grip.GetPath()
 
     def write(self, layer: Sdf.Layer) -> None:

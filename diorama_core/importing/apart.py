@@ -19,12 +19,26 @@ R = TypeVar("R")
 
 
 def imported_apart(path: Path, shapes: Path, library_name: str | None, progress: Progress) -> Imported:
-    """`import_scene` in a process of its own; it raises the same, and `InputError` where that process had to end."""
+    """`import_scene` in a process of its own; it raises the same, and `InputError` where that process had to end.
+
+    Args:
+        path: the file.
+        shapes: the project's folder of shapes, made where shapes come out of the file.
+        library_name: of the library where shapes are looked up first; None takes the one that the file names.
+        progress: reports and cancellation.
+    """
     return _apart(path, _imported, path, shapes, library_name, progress=progress)
 
 
 def read_apart(path: Path, shapes: Path, known: frozenset[str], progress: Progress) -> Opened:
-    """`read_scene` in a process of its own; it raises the same, and `InputError` where that process had to end."""
+    """`read_scene` in a process of its own; it raises the same, and `InputError` where that process had to end.
+
+    Args:
+        path: the file.
+        shapes: the project's folder of shapes, made where shapes come out of the file.
+        known: ids of the shapes that are there already.
+        progress: reports and cancellation.
+    """
     return _apart(path, read_scene, path, shapes, known, progress=progress)
 
 

@@ -9,9 +9,9 @@ from jaxtyping import Float
 
 HEIGHT_M, HEIGHT_LOG_SIGMA = 2.6, 0.3
 WIDTH_M, WIDTH_LOG_SIGMA = 4.5, 0.8
-"""Of a room: its height, and the square root of its floor's area."""
+"""Size of a room: its height, and the square root of its floor's area."""
 BINS = 150
-"""Of the histogram that tells levels from other axes."""
+"""Number of bins of the histogram that tells levels from other axes."""
 
 
 @dataclass(frozen=True)
@@ -21,7 +21,7 @@ class Unit:
     name: str
     metres: float
     share: float
-    """Of the clouds that do not say theirs."""
+    """Prior probability among the clouds that do not state their unit."""
 
 
 UNITS = (

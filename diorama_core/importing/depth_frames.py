@@ -25,7 +25,7 @@ from diorama_core.perception.inputs.depth.voids import is_sure
 from diorama_core.scene.types import Camera, Intrinsics
 
 MAX_DEPTH_M = 6.0
-"""Of a phone's depth: what is farther is guessed."""
+"""Reliable range of a phone's depth sensor; farther values are guesses."""
 MAX_FRAMES = 400
 MILLIMETRE = 0.001
 TUM_UNIT_M = 1 / 5000
@@ -43,7 +43,7 @@ class DepthFrame:
 
     depth: Path
     camera: Camera
-    """Of the picture or of the depth, which have the same view."""
+    """Camera of the picture or of the depth; both share one view."""
     confidence: Path | None = None
     picture: Path | None = None
     unit_m: float = MILLIMETRE

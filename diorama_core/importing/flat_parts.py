@@ -14,7 +14,7 @@ FLAT_M = 1e-3
 FLUSH_M = 0.03
 """So near to a face a flat part lies on it."""
 MIN_SHARE = 0.3
-"""Of the face that it covers: a mat on a table is a thing of its own."""
+"""Smallest covered share of a face; a mat on a table covers less and is an object of its own."""
 
 
 def joined_flat_parts(parts: Sequence[Part]) -> tuple[Part, ...]:

@@ -88,6 +88,15 @@ def take_missing_shapes(
 ) -> None:
     """Take shapes that no library has out of a file that Diorama wrote, under their own ids.
 
+    Args:
+        path: the file.
+        marked: the marks that Diorama left in it.
+        scene: that it holds.
+        missing: ids of the shapes.
+        sink: receives them.
+        progress: reports and cancellation.
+        known: how the built-in shapes look; learnt where None.
+
     Raises:
         InputError: the file does not hold the geometry of one of them.
         LibraryError: a shape cannot be kept.

@@ -34,25 +34,25 @@ FARTHEST_M = 1e8
 """From the file's zero: surveyors' grids are within 10,000 km."""
 VOXEL_M = 0.03
 LEVEL_SHARE = 0.3
-"""Of the densest level that another one has to be a floor or a ceiling."""
+"""Points of a floor or ceiling, as a share of the densest level's."""
 LEVEL_PEAK = 1.5
 """As many points as at most heights are on a floor or a ceiling."""
 BEYOND_SHARE = 0.1
-"""Of all points that may lie below the floor, or above the ceiling."""
+"""Largest share of all points below the floor, or above the ceiling."""
 LOWEST_ROOM_M = 1.8
 LINE_M = 0.03
-"""Of the histograms across walls."""
+"""Bin width of the histograms across walls."""
 SPAN_M = 0.1
 """Along walls."""
 REACH_SHARE = 0.45
-"""Of the height above furniture that points of a wall cover."""
+"""Share of the height above furniture that the points of a wall cover."""
 FURNITURE_M = 1.0
 """Lines are looked for above this height."""
 MIN_WALL_M = 0.5
 APART_M = 0.15
 """Nearer parallel lines are one wall."""
 SCANNED_SHARE = 0.45
-"""Of a cell of the plan, to be of the room."""
+"""Scanned share from which a cell of the plan belongs to the room."""
 
 
 def measured_cloud(cloud: PointCloud) -> MeasuredRoom:

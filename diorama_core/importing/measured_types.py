@@ -19,7 +19,7 @@ class MeasuredWall:
     id: str
     polygon: Float[np.ndarray, "n 3"]
     thickness_m: float = 0.0
-    """Of a slab, half of which is on the room's side of the corners; 0 where they are on the surface."""
+    """Thickness of a slab centred on the corners; 0 where the corners lie on the surface."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -48,7 +48,7 @@ class MeasuredBox:
     """Along x (depth), y (width), z (height)."""
     confidence: float = 1.0
     points: Float[np.ndarray, "n 3"] | None = None
-    """Of the thing's surface, in the world, where it was scanned."""
+    """Scanned points of the object's surface, in the world (m)."""
     kinds_know_size: bool = False
     """Whether the shares of its kinds say already how usual its size is for each."""
     fits: Mapping[str, float] = field(default_factory=dict)

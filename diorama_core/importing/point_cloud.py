@@ -33,7 +33,7 @@ class ScanPhoto:
 
     picture: Path
     depth: Path
-    """Of any size, `unit_m` a step."""
+    """Depth picture of any size, `unit_m` a step."""
     camera: Camera
     """In the world of the points; its intrinsics are the picture's."""
     unit_m: float = 0.001

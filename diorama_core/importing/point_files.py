@@ -30,7 +30,7 @@ from diorama_core.library.ingest.limits import DEFAULT_LIMITS
 from diorama_core.library.ingest.references import GuardedResolver, References
 
 MESH_NAMES = ("raw.glb", "export.obj", "export_refined.obj", "textured_output.obj", "*.glb", "*.obj", "*.ply")
-"""Of a scanner app's mesh, the likeliest first."""
+"""File names of a scanner app's mesh, likeliest first."""
 MAX_BYTES = 2_000_000_000
 OWN_PLY = b"comment Diorama: metres, +Z up"
 

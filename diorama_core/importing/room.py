@@ -19,7 +19,7 @@ from diorama_core.scene.types import Plane, PlaneRole, Scene, SceneObject, Suppo
 THIN_M = 0.5
 """Parts thicker than this are no wall, floor or ceiling, whatever they are called."""
 LARGE_M = 1.0
-"""Nor are those with a smaller second side."""
+"""Parts whose second-longest side is shorter are no wall, floor or ceiling either."""
 ROUND_M = 0.3
 """Floor around the objects where a file has none."""
 RESTS_M = 0.05

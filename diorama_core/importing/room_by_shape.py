@@ -37,7 +37,7 @@ SAME_M = 0.02
 TWO_FACES_M = 0.5
 """Parallel faces that are nearer are the two sides of one wall."""
 FLAT_SHARE = 0.8
-"""Of a slab's broad area that lies on its two outer sides; shelves have boards between them."""
+"""Share of a slab's broad area on its two outer sides; shelves have boards between theirs."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -149,7 +149,7 @@ def _face(mesh: trimesh.Trimesh, chosen: np.ndarray, direction: np.ndarray, leve
 
 
 def _outline(triangles: Sequence[Polygon]) -> Float[np.ndarray, "n 2"]:
-    """Of the largest piece that triangles cover."""
+    """Outline of the largest piece that the triangles cover."""
     whole = unary_union([t.buffer(JOINS_M, join_style="mitre") for t in triangles if t.area > 0])
     whole = whole.buffer(-JOINS_M, join_style="mitre")
     largest = max(whole.geoms, key=lambda p: p.area) if isinstance(whole, MultiPolygon) else whole
@@ -157,7 +157,7 @@ def _outline(triangles: Sequence[Polygon]) -> Float[np.ndarray, "n 2"]:
 
 
 def _inner(walls: Sequence[Face], middle: Float[np.ndarray, "3"]) -> list[Face]:
-    """Of the two sides of a wall the one nearer to the middle."""
+    """Select the side of each wall that is nearer to the middle."""
     kept: list[Face] = []
     for wall in sorted(walls, key=lambda f: abs(f.offset - float(f.normal @ middle))):
         side = np.sign(wall.offset - float(wall.normal @ middle))

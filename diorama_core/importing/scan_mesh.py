@@ -12,7 +12,7 @@ from diorama_core.importing.part import Part
 from diorama_core.importing.point_cloud import PointCloud, points_of_mesh
 
 MIN_SPAN_M, MIN_HEIGHT_M = 2.0, 1.5
-"""Of a room: the shorter side of its plan, and its height."""
+"""Smallest room: the shorter side of its plan, and its height."""
 MIN_TRIANGLES = 2000
 LONG_EDGE_M = 0.6
 """Scanners make few larger triangles than this, unless the mesh was reduced."""
@@ -23,7 +23,7 @@ EXACT_COS, EXACT_M, MIN_PLANE_M2 = 1e-3, 2e-3, 0.3
 MAX_EXACT = 0.35
 """Share of the area in exact planes: a reduced scan has large triangles, but none of them are level or upright."""
 MIN_SHARE = 0.7
-"""Of the file's area that is one scan; chairs modelled beside it would be more."""
+"""Smallest share of the file's area in one scan; chairs modelled beside it leave less."""
 SAID_NOTHING = re.compile(
     r"^(mesh|node|object|obj|geometry|geom|default|scan|chunk|group|root|scene|world|model|textured|output|material|mat|"
     r"polygon|part|piece|sub|tile|raw|export|[0-9a-f]{6,}|[\d_.\s-])*$",

@@ -21,7 +21,7 @@ from scipy import ndimage
 from diorama_core.importing.measured_types import MeasuredOpening, MeasuredWall
 
 CELL_M, MAX_CELL_M = 0.05, 0.12
-"""Of the grid on a wall, and where points are so few that a cell must be larger to hold some."""
+"""Cell side of the grid on a wall, and its largest value where points are sparse."""
 POINTS_A_CELL = 4.0
 """Fewer on average, and cells would be empty by chance."""
 ON_WALL_M = 0.09
@@ -31,7 +31,7 @@ BEFORE_M = 0.8
 RELIEF_M = 0.012
 """A surface so far off the wall's is not the wall's."""
 MIN_SIDE_M, MIN_FILL = 0.35, 0.75
-"""Of an opening, and how much of its rectangle it fills."""
+"""Shortest side of an opening, and the share of its rectangle that it fills at least."""
 MIN_RIM = 0.7
 """Share of the cells right around an opening that are wall or frame."""
 SILL_M = 0.15

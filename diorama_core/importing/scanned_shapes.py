@@ -20,14 +20,14 @@ POINTS = 500
 SHAPES_OF_KIND = 4
 """Those nearest in size are compared."""
 SHAPES_COMPARED = 24
-"""Of the kind that a thing is."""
+"""Shapes of the object's own kind that are compared at most."""
 FIT_SIGMA_M = 0.02
 TURN_COST_M = 0.006
 """Metres that another front must be nearer."""
 FAR_M = 0.15
 """What is farther apart counts no more."""
 UNSEEN_WEIGHT = 0.5
-"""Of a shape's surface that has no points nearby: some of it faced a wall, or was never looked at."""
+"""Weight of a shape's surface without points nearby: part of it faced a wall or was never scanned."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -41,7 +41,7 @@ class ScannedSurface:
 
     @classmethod
     def of(cls, box: MeasuredBox) -> ScannedSurface:
-        """Of a box that was scanned."""
+        """Return the surface of a scanned box."""
         if box.points is None:
             raise ValueError("the box has no points")
         local = (box.points - box.centre) @ box.R_world_box

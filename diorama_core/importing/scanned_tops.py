@@ -16,10 +16,10 @@ MIN_BOARD = 0.6
 MAX_ABOVE = 0.45
 """Share of the outline that may be filled at any height above it."""
 MIN_HEIGHT_M = 0.25
-"""Of a board above the thing's foot: lower ones are rugs, plinths and pedals."""
+"""Height of a board above the object's foot; lower ones are rugs, plinths and pedals."""
 MIN_ABOVE_M = 0.08
 REACHES_ALONG, REACHES_ACROSS = 0.78, 0.9
-"""Of the longer side, and of the shorter one of what is not about square: what reaches so far belongs to the thing."""
+"""Shares of the longer side, and of the shorter one unless about square, at which a part belongs to the object."""
 SQUARE = 0.75
 
 

@@ -10,7 +10,7 @@ from diorama_core.library.ingest.given import AXES, axis_vector
 from diorama_core.library.ingest.models import RawModel
 
 LOWER = 0.85
-"""Of the other candidate's extent that a vertical axis has at most, to be it against the format's habit."""
+"""Largest ratio of extents at which the shorter axis is vertical although the format's habit says otherwise."""
 
 
 def frame_of_scene(raw: RawModel) -> tuple[Float[np.ndarray, "4 4"], tuple[str, ...]]:

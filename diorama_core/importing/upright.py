@@ -6,11 +6,11 @@ import numpy as np
 from jaxtyping import Float
 
 LEVEL_M = 0.02
-"""Of the histogram of heights."""
+"""Bin height of the histogram of heights."""
 WALL_SHARE = 0.08
-"""Of the plan at its border, where points are walls' and say nothing."""
+"""Share of the plan at its border, ignored because its points belong to walls."""
 LEVEL_SHARE = 0.06
-"""Of the height at both ends: floor and ceiling."""
+"""Share of the height at each end that counts as floor and as ceiling."""
 UPSIDE_DOWN = 1.6
 """So many times more things above the middle than below it are a room on its head."""
 MAX_ASKED = 200_000

@@ -35,7 +35,13 @@ class Details:
     def of(
         cls, rgb: UInt8[np.ndarray, "h w 3"], seen: Observed, settings: PoseEvidenceSettings = SETTINGS.evidence
     ) -> Details:
-        """What the photo shows of an object."""
+        """What the photo shows of an object.
+
+        Args:
+            rgb: the photo, sRGB, eight bits.
+            seen: the object's cells, and its mask's share in each.
+            settings: of the evidence.
+        """
         return cls(
             InnerEdges.of(rgb, seen, settings),
             seen.covered * seen.weight,

@@ -43,7 +43,11 @@ class DiscreteTurns:
         shapes: tuple[RankedShapes, ...],
         progress: Progress,
     ) -> tuple[PosedCandidates, ...]:
-        """Posed candidates, the most similar first; objects with next to no depth are left out."""
+        """Posed candidates, the most similar first; objects with next to no depth are left out.
+
+        Args:
+            inputs, objects, geometry, depth, shapes, progress: as documented in `protocols.PoseStage`.
+        """
         ranked = {r.object_id: r.ranked for r in shapes if r.ranked}
         records = {s.id: s for s in self.views.library.shapes()}
         wanted = [o for o in objects if o.id in ranked]

@@ -31,7 +31,13 @@ class Anchor:
     """A point of the anchored face."""
 
     def placed(self, centres: np.ndarray, R: np.ndarray, sizes_m: np.ndarray) -> Float[np.ndarray, "p 3"]:
-        """The centres moved along the axis so that boxes of these sizes touch the anchored face."""
+        """The centres moved along the axis so that boxes of these sizes touch the anchored face.
+
+        Args:
+            centres: (p, 3) in the world (m).
+            R: (p, 3, 3), from the object frame to the world.
+            sizes_m: (p, 3), along the object's axes.
+        """
         half = 0.5 * (np.abs(np.einsum("pij,i->pj", R, self.axis_world)) * sizes_m).sum(axis=1)
         height = (centres - self.point_world) @ self.axis_world
         return centres + (half - height)[:, None] * self.axis_world
@@ -85,6 +91,15 @@ def hypotheses_for(
     Quarter turns of the cuboid for all; finer ones for categories that often stand at odd angles. The whole cuboid may
     be turned by a quarter where its front is not known, and no measured depth says which side is the long one: of a
     thing seen at an angle one picture hardly tells.
+
+    Args:
+        cuboid: of the object, in the world (m).
+        category_name: of the object.
+        symmetry: number of turns about the up axis that leave the shape as it is.
+        limits: of the shape's scale.
+        anchor: the face that stays where it is when the size changes.
+        sides_known: whether it is known which side is the long one.
+        settings: of the search.
     """
     quarters = np.arange(4) * (np.pi / 2)
     fine = np.arange(-2, 4) * _FINE_STEP_RAD if category(category_name).quarter_turns_free else np.zeros(1)
@@ -154,6 +169,14 @@ def unlike_best(
     """Indices of up to `count` good poses, best first, none nearly the same as a better one.
 
     Neighbours of one good pose are all drawn to the same optimum; another mode may be the right one.
+
+    Args:
+        poses: p poses of one shape.
+        scores: higher is better.
+        symmetry: number of turns about the up axis that leave the shape as it is.
+        shape_size_m: unscaled.
+        count: at most.
+        settings: what counts as nearly the same.
     """
     order = np.argsort(-scores, kind="stable")
     yaw = np.arctan2(poses.R[:, 1, 0], poses.R[:, 0, 0])

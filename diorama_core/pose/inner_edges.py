@@ -33,7 +33,13 @@ class InnerEdges:
     def of(
         cls, rgb: UInt8[np.ndarray, "h w 3"], seen: Observed, settings: PoseEvidenceSettings = SETTINGS.evidence
     ) -> InnerEdges:
-        """The edges of an object in the photo."""
+        """The edges of an object in the photo.
+
+        Args:
+            rgb: the photo, sRGB, eight bits.
+            seen: the object's cells, and its mask's share in each.
+            settings: of the evidence.
+        """
         cells = seen.window.cells
         grey = seen.window.means(rgb) @ np.array([0.299, 0.587, 0.114])
         whole = (seen.covered * seen.weight > settings.whole_cell).reshape(cells, cells).astype(np.uint8)

@@ -55,6 +55,14 @@ class SizeLimits:
         """Limits for a shape standing for an object of a category, by the size prior nearest to what was observed.
 
         A measured height is plausible, however tall for its kind: what hides a thing leaves its top to be seen.
+
+        Args:
+            shape_size_m: of the shape, unscaled.
+            category_name: of the object.
+            observed_m: depth, width and height of the object's cuboid.
+            measured: whether depth was measured.
+            sides_log: largest deviation of the logarithm of a side's scale from the mean of both sides'.
+            settings: of the search.
         """
         own = np.asarray(shape_size_m, dtype=np.float64)
         least, most = _category_range(category_name, observed_m, own, settings)

@@ -50,7 +50,11 @@ class MadeToMeasure:
         shapes: tuple[RankedShapes, ...],
         progress: Progress,
     ) -> tuple[PosedCandidates, ...]:
-        """Posed candidates, best first; a made shape stands in the pose of the one that it is derived from."""
+        """Posed candidates, best first; a made shape stands in the pose of the one that it is derived from.
+
+        Args:
+            inputs, objects, geometry, depth, shapes, progress: as documented in `protocols.PoseStage`.
+        """
         posed = self.stage.pose(inputs, objects, geometry, depth, shapes, progress.part(0.0, 0.8))
         return self.fitted(posed, inputs, objects, geometry, depth, progress.part(0.8, 1.0))
 
@@ -63,7 +67,12 @@ class MadeToMeasure:
         depth: DepthMap,
         progress: Progress,
     ) -> tuple[PosedCandidates, ...]:
-        """The candidates with the first of each made to measure, where the picture tells how."""
+        """The candidates with the first of each made to measure, where the picture tells how.
+
+        Args:
+            posed: candidates of every object, best first.
+            inputs, objects, geometry, depth, progress: as documented in `protocols.PoseStage`.
+        """
         seen = seen_objects(posed, inputs, objects, geometry, depth, self.settings)
         progress.report(0.0, "Making shapes to measure")
         posed = self._best_fitting(posed, seen)

@@ -108,6 +108,13 @@ class Evidence:
 
         The logarithm lets a nearly perfect silhouette overrule what objects usually do, and lets habit decide
         between silhouettes that fit equally badly.
+
+        Args:
+            errors: share of the silhouette that disagrees with the mask, one a pose.
+            poses: p of them.
+            off_axis_rad: angle from the nearest axis of the cuboid.
+            misfit: of the cuboid, in logarithms of its sides.
+            limits: of the shape's scale.
         """
         cost = self.habit_cost(poses, limits)
         cost = cost + 0.5 * (misfit / self.settings.misfit_sigma) ** 2
@@ -152,6 +159,11 @@ class Evidence:
         Shapes are made in metres: the very one fits without being enlarged or stretched much. Where the library has
         none of that size, how much exactly one that is like it was changed says little: the tails are those of a Cauchy
         distribution.
+
+        Args:
+            error: share of the silhouette that disagrees with the mask.
+            scale: of the shape, an axis each.
+            limits: of the shape's scale.
         """
         logs = np.log(scale[~limits.thin]) if not limits.thin.all() else np.log(scale)
         deviations = np.array(

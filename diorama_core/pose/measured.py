@@ -125,7 +125,13 @@ class MeasuredObject:
         return self.outline is None or not self.outline.known.all()
 
     def turned(self, best: PoseBatch, symmetry: SymmetryFold, limits: SizeLimits) -> PoseBatch:
-        """A pose turned by quarters in its place, each turn that the symmetry tells apart, at an even scale."""
+        """A pose turned by quarters in its place, each turn that the symmetry tells apart, at an even scale.
+
+        Args:
+            best: one pose.
+            symmetry: number of turns about the up axis that leave the shape as it is.
+            limits: which axes keep their scale, because the shape is thin along them.
+        """
         turns = np.arange(1, max(4 // symmetry, 1)) * np.pi / 2
         R = np.array([best.R[0] @ yaw_rotation(angle) for angle in turns]).reshape(-1, 3, 3)
         even = np.exp(np.log(best.scale[0][~limits.thin]).mean()) if not limits.thin.all() else 1.0
@@ -154,6 +160,12 @@ def foot_height_m(
     """Height in the world of the lowest measured pixels of a mask; None where hardly any was measured.
 
     Legs have too few points to count among those of the whole object, but their ends are the lowest of its mask.
+
+    Args:
+        depth: z in camera in metres.
+        mask: of the object.
+        camera: in the world.
+        settings: number of pixels that are the lowest.
     """
     rows, columns = np.nonzero(mask & (depth.depth_m > 0))
     if len(rows) < settings.foot_px:

@@ -53,7 +53,13 @@ class _Moves:
     scale: list[Float[np.ndarray, "3"]]
 
     def add(self, R: Float[np.ndarray, "3 3"], position: Float[np.ndarray, "3"], scale: Float[np.ndarray, "3"]) -> None:
-        """One more."""
+        """Append one pose.
+
+        Args:
+            R: rotation from the object frame to the world.
+            position: of the centre, in the world (m).
+            scale: along the object's axes.
+        """
         self.R.append(R)
         self.position.append(position)
         self.scale.append(scale)

@@ -219,7 +219,14 @@ class ParameterFit:
 def can_have(
     name: str, value: Value, size_m: Float[np.ndarray, "3"], settings: ShapeFitSettings = SETTINGS.shapes
 ) -> bool:
-    """Whether a shape of this depth, width and height can have a parameter's value: its drawers are for things."""
+    """Whether a shape of this depth, width and height can have a parameter's value: its drawers are for things.
+
+    Args:
+        name: of the parameter.
+        value: that it would have.
+        size_m: depth, width and height.
+        settings: smallest drawers.
+    """
     bays = value if name == "bays" and isinstance(value, tuple) else ()
     drawers = [int(v) for v in bays if str(v).isdecimal()]
     if not drawers:

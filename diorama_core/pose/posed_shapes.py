@@ -36,7 +36,14 @@ def ordered_shapes(found: Sequence[PosedShape], ranks: Mapping[str, float]) -> t
 def candidates_of(
     task: PosingTask, ordered: Sequence[PosedShape], ranks: Mapping[str, float], facings: Facings
 ) -> PosedCandidates:
-    """The posed shapes of one object; scores are relative to the best one's agreement with the picture."""
+    """The posed shapes of one object; scores are relative to the best one's agreement with the picture.
+
+    Args:
+        task: of the object.
+        ordered: its posed shapes, best first.
+        ranks: log score of each shape id.
+        facings: what was decided about all objects' fronts, with reasons.
+    """
     best = ordered[0]
     top = ranks[best.shape.id]
     candidates = tuple(

@@ -134,7 +134,13 @@ class _Surroundings:
         return [positions.get(parent_of.get(o.id, "")) for o in self.items]
 
     def task(self, i: int, kind: str, cells: tuple[int, int]) -> PosingTask:
-        """One object's, as a kind."""
+        """One object's, as a kind.
+
+        Args:
+            i: index of the object.
+            kind: category it is taken for.
+            cells: along each side of the coarse and of the fine window.
+        """
         item, cuboid, camera, depth = self.items[i], self.cuboids[i], self.geometry.camera, self.depth
         held_by = next((s.parent for s in self.geometry.supports if s.child == item.id), None)
         on_wall = held_by == "wall" and category(kind).mount != "floor"

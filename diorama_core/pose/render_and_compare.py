@@ -74,7 +74,11 @@ class RenderAndCompare:
         shapes: tuple[RankedShapes, ...],
         progress: Progress,
     ) -> tuple[PosedCandidates, ...]:
-        """Posed candidates, best first, of every object that has a cuboid and at least one ranked shape."""
+        """Posed candidates, best first, of every object that has a cuboid and at least one ranked shape.
+
+        Args:
+            inputs, objects, geometry, depth, shapes, progress: as documented in `protocols.PoseStage`.
+        """
         trials = self.trials(inputs, objects, geometry, depth, shapes, progress.part(0.0, 0.5))
         facings = solve(trials.room, self.facing)
         tasks = [task.with_facing(facings.costs_of(task.item.id)) for task in trials.tasks]
@@ -101,7 +105,11 @@ class RenderAndCompare:
         shapes: tuple[RankedShapes, ...],
         progress: Progress,
     ) -> Trials:
-        """What is known before it is decided which way objects face; arguments as of `pose`."""
+        """What is known before it is decided which way objects face; arguments as of `pose`.
+
+        Args:
+            inputs, objects, geometry, depth, shapes, progress: as documented in `protocols.PoseStage`.
+        """
         ranked = {r.object_id: r.ranked for r in shapes if r.ranked}
         records = {s.id: s for s in self.library.shapes()}
         kinds = likeliest_kinds(objects, ranked, records)
@@ -261,7 +269,13 @@ class RenderAndCompare:
         return both, errors, scores
 
     def compared_finely(self, task: PosingTask, tried: TriedShape, count: int) -> TriedShape:
-        """A tried shape with its best unlike poses refined beside the others, which are worth a little less then."""
+        """A tried shape with its best unlike poses refined beside the others, which are worth a little less then.
+
+        Args:
+            task: of the object.
+            tried: the shape with its poses and their scores.
+            count: of poses to refine.
+        """
         fold, size_m = tried.shape.symmetry, tried.limits.shape_size_m
         start = tried.hypotheses[
             unlike_best(tried.hypotheses.poses, tried.scores, fold, size_m, count, self.settings.search)

@@ -125,7 +125,14 @@ def likelihood(label: str, tried: TriedShape, settings: PoseSearchSettings = SET
 def wall_samples(
     depth: DepthMap, camera: Camera, objects: Sequence[DetectedObject], settings: PoseSearchSettings
 ) -> WallSamples:
-    """Pixels outside all boxes whose surface is upright: the walls, as far as they are seen."""
+    """Pixels outside all boxes whose surface is upright: the walls, as far as they are seen.
+
+    Args:
+        depth: z in camera and world normals of every pixel.
+        camera: in the world.
+        objects: with boxes in pixels.
+        settings: number of samples.
+    """
     normals = depth.normals_world
     free = np.isfinite(depth.depth_m) & (depth.depth_m > 0) & (np.abs(normals[..., 2]) < 0.25)
     for item in objects:

@@ -87,7 +87,13 @@ def seen_objects(
     depth: DepthMap,
     settings: PoseSettings,
 ) -> dict[str, SeenObject]:
-    """What the picture says of every posed object of which enough is seen, by its id."""
+    """What the picture says of every posed object of which enough is seen, by its id.
+
+    Args:
+        posed: candidates of every object, best first; the first one's pose is taken.
+        inputs, objects, geometry, depth: as documented in `protocols.PoseStage`.
+        settings: of the pose stage.
+    """
     pose_of = {p.object_id: p.candidates[0].pose for p in posed if p.candidates}
     cuboid_of = {c.object_id: c for c in geometry.cuboids}
     items = [o for o in objects if o.id in cuboid_of]

@@ -52,7 +52,18 @@ class TurnSearch:
         start: PoseBatch,
         settings: PoseSearchSettings,
     ) -> TurnSearch:
-        """The search around one pose, believing pixels as far as they fit it."""
+        """The search around one pose, believing pixels as far as they fit it.
+
+        Args:
+            close: compares the shape's appearance with the photo.
+            observations: the object's mask.
+            measured: its measured surface, if any.
+            appearance: colours of the shape's surface.
+            limits: of the shape's scale.
+            fold: number of turns about the up axis that leave the shape as it is.
+            start: one pose.
+            settings: of the search.
+        """
         badly = max(close.misfit(appearance, start) - settings.usual_misfit, 0.0)
         return cls(
             close,

@@ -40,6 +40,9 @@ class PlainRecon:
     ) -> ArchitectureEstimate:
         """Floor and walls; an assumed floor below the camera when none is found.
 
+        Args:
+            inputs, objects, geometry, progress: as documented in `protocols.ArchitectureStage`.
+
         Raises:
             ValueError: when the inputs hold no measured depth.
         """

@@ -51,6 +51,12 @@ def best_layout(
     """The cheapest feasible layout of the proposed planes, with lines at which some of them may end besides.
 
     None where the search finds no labelling that fills the picture.
+
+    Args:
+        surface: measured points in the world, and which of them belong to objects.
+        found: the proposed planes.
+        camera: of the photo, in the world.
+        hidden_ends: further lines at which planes may end, in the picture.
     """
     k = camera.intrinsics
     inverse = inverse_depths(found.normals, found.offsets, camera)
@@ -62,7 +68,14 @@ def best_layout(
 def cell_costs(
     cells: Arrangement, surface: MeasuredSurface, found: Proposals, camera: Camera
 ) -> Float[np.ndarray, "c p"]:
-    """Disagreement of each plane in each cell, in shares of the picture; infinite behind the camera."""
+    """Disagreement of each plane in each cell, in shares of the picture; infinite behind the camera.
+
+    Args:
+        cells: the c cells into which the planes' lines divide the picture.
+        surface: measured points in the world, and which of them belong to objects.
+        found: the p proposed planes.
+        camera: of the photo, in the world.
+    """
     pixels = camera.project(surface.points)
     cell = cells.holds(pixels)
     measured = 1.0 / np.maximum(surface.depth_m, 1e-6)

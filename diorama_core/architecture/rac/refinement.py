@@ -52,7 +52,15 @@ def refined_layout(
     camera: Camera,
     settings: LayoutRefinementSettings = SETTINGS,
 ) -> RoomLayout:
-    """The layout with walls ended where the picture looks past them, as far as that explains the depth better."""
+    """The layout with walls ended where the picture looks past them, as far as that explains the depth better.
+
+    Args:
+        layout: the cheapest layout of the proposed planes.
+        surface: measured points in the world, and which of them belong to objects.
+        found: the proposed planes.
+        camera: of the photo, in the world.
+        settings: rounds, and the errors in metres that are worth one.
+    """
     pixels = camera.project(surface.points)
     ends: tuple[PlaneLine, ...] = ()
     for _ in range(settings.max_rounds):
@@ -80,7 +88,15 @@ def hidden_ends(
     camera: Camera,
     settings: LayoutRefinementSettings = SETTINGS,
 ) -> tuple[PlaneLine, ...]:
-    """For every wall about which the layout is wrong, the line along which the depth leaves it."""
+    """For every wall about which the layout is wrong, the line along which the depth leaves it.
+
+    Args:
+        layout: the layout that may be wrong.
+        surface: measured points in the world, and which of them belong to objects.
+        found: the proposed planes.
+        camera: of the photo, in the world.
+        settings: by how many metres, and over what share of the picture, a wall must be wrong.
+    """
     pixels = camera.project(surface.points)
     shown, rendered = layout.planes_at(pixels), layout.depth_at(pixels)
     size = surface.grid_rows, surface.grid_columns

@@ -43,6 +43,9 @@ class RenderAndCompareRoom:
     ) -> ArchitectureEstimate:
         """Floor, walls and ceiling as far as the picture shows them.
 
+        Args:
+            inputs, objects, geometry, progress: as documented in `protocols.ArchitectureStage`.
+
         Raises:
             ValueError: when the inputs hold no measured depth.
             InputError: when no set of polygons fills the picture, or none of them is a floor.

@@ -240,7 +240,14 @@ def response(
     inside: Bool[np.ndarray, "*n"],
     scale: float,
 ) -> Float[np.ndarray, "*n"]:
-    """An edge map's values at pixels of the photo; the neutral one outside."""
+    """An edge map's values at pixels of the photo; the neutral one outside.
+
+    Args:
+        edge_map: responses of a map that is `scale` times as large as the photo.
+        pixels: columns and rows in the photo.
+        inside: whether each pixel lies within the photo.
+        scale: pixels of the map a pixel of the photo.
+    """
     columns, rows = np.moveaxis(np.where(inside[..., None], pixels * scale, 0.0).astype(int), -1, 0)
     height, width = edge_map.shape
     return np.where(inside, edge_map[rows.clip(0, height - 1), columns.clip(0, width - 1)], EDGE_THRESHOLD)

@@ -218,7 +218,15 @@ def gather_room_cues(
     cuboids: tuple[Cuboid, ...],
     settings: RoomCueSettings = SETTINGS.cues,
 ) -> RoomCues:
-    """Compute the room cues of a photo from its camera and objects."""
+    """Compute the room cues of a photo from its camera and objects.
+
+    Args:
+        rgb: the photo, (h, w, 3), sRGB, eight bits.
+        camera: of the photo, in the world.
+        objects: with masks of shape (h, w); lines within what stands in the room are left out.
+        cuboids: of the objects, in the world.
+        settings: of the cues.
+    """
     segments = line_segments_px(rgb, min_length=0.015)
     axes = segment_axes(segments, camera)
     oblique, segments, axes = segments[axes < 0], segments[axes >= 0], axes[axes >= 0]

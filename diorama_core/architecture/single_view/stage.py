@@ -49,7 +49,11 @@ class PhotoRoom:
     def reconstruct(
         self, inputs: Inputs, objects: tuple[DetectedObject, ...], geometry: ObjectGeometry, progress: Progress
     ) -> ArchitectureEstimate:
-        """Floor, walls and ceiling, with "floor" and "wall" supports resolved."""
+        """Floor, walls and ceiling, with "floor" and "wall" supports resolved.
+
+        Args:
+            inputs, objects, geometry, progress: as documented in `protocols.ArchitectureStage`.
+        """
         progress.report(0.0, "Looking for the room's walls")
         cues = gather_room_cues(inputs.photo.rgb, geometry.camera, objects, geometry.cuboids, self.settings.cues)
         box = find_box(cues, self.settings.search)[0]

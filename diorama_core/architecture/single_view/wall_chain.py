@@ -324,7 +324,13 @@ def leaves(
     low: Float[np.ndarray, "2"],
     high: Float[np.ndarray, "2"],
 ) -> Float[np.ndarray, "m"]:
-    """Distance at which sights along the unit directions `across` leave a footprint; `inf` for those that miss it."""
+    """Distance at which sights along the unit directions `across` leave a footprint; `inf` for those that miss it.
+
+    Args:
+        eye: where sights begin, x and y in the world (m).
+        across: unit directions in the plan.
+        low, high: corners of the footprint with the smallest and largest x and y (m).
+    """
     safe = np.where(np.abs(across) < 1e-9, 1e-9, across)
     ends = np.stack([(low - eye) / safe, (high - eye) / safe])
     first, last = ends.min(axis=0).max(axis=1), ends.max(axis=0).min(axis=1)

@@ -55,6 +55,12 @@ def coloured(
     """The planes with the colour that most of their visible pixels have.
 
     A plane that is hardly seen takes the colour of the one of its role that is seen best, else a plain one.
+
+    Args:
+        planes: of the room, in the world.
+        rgb: the photo, sRGB, eight bits.
+        camera: of the photo, in the world.
+        objects: with masks of shape (h, w), which hide the planes.
     """
     step = max(1, max(rgb.shape[:2]) // GRID_PX)
     seen = visible_planes(planes, camera, step)

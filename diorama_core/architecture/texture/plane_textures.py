@@ -365,6 +365,12 @@ def strays(
 
     A poster or a socket has the plane's own material all around; a plant nobody pointed at goes on below the rim of a
     mask or stands on the floor, the glow around a lamp and the shadow at a table's foot go on behind the mask.
+
+    Args:
+        seen: texels of the plane that the photo shows.
+        own: of those, the ones that show the plane's own material.
+        pixel_m: side of a texel (m).
+        wall: whether the plane is a wall.
     """
     pieces = (seen & ~own).astype(np.uint8)
     count, labels, stats, _ = cv2.connectedComponentsWithStats(pieces, connectivity=8)

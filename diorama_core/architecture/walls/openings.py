@@ -57,7 +57,15 @@ def find_openings(
 def is_shut(
     surface: MeasuredSurface, piece: WallPiece, opening: WallOpening, top_m: float, settings: WallSettings
 ) -> bool:
-    """Whether more of what is measured within a rectangle lies on the wall than behind it."""
+    """Whether more of what is measured within a rectangle lies on the wall than behind it.
+
+    Args:
+        surface: measured points in the world.
+        piece: the wall.
+        opening: the rectangle on it, in metres along and above the wall's foot.
+        top_m: height to which the room was measured.
+        settings: the cell size and tolerances of walls.
+    """
     if piece.candidate is None:
         return False
     passed, stopped = _rays(surface, piece, piece.candidate, top_m, settings)

@@ -100,6 +100,12 @@ def averaged(
     """The map at about `max_side` pixels: blocks are averaged in inverse depth where they hold one surface.
 
     Elsewhere a block takes its middle sample, so that nothing is measured between two surfaces.
+
+    Args:
+        depth_m: z in camera in metres; 0 and NaN where missing.
+        intrinsics: of the map.
+        max_side: of the result, pixels.
+        settings: when a block counts as one surface.
     """
     height, width = depth_m.shape
     block = max(1, round(max(height, width) / max_side))

@@ -146,7 +146,14 @@ def meeting_point(a: WallCandidate, b: WallCandidate) -> Float[np.ndarray, "2"] 
 def point_at(
     wall: WallCandidate, toward: float, origin: Float[np.ndarray, "2"], settings: WallSettings
 ) -> Float[np.ndarray, "2"] | None:
-    """The point of a wall's line in a heading; none where the line is not met in front."""
+    """The point of a wall's line in a heading; none where the line is not met in front.
+
+    Args:
+        wall: its line is taken, in the plan.
+        toward: heading in radians, from +y toward +x.
+        origin: where the heading is taken, x and y in the world (m).
+        settings: how far a wall may be.
+    """
     direction = np.array([np.sin(toward), np.cos(toward)])
     slope = float(direction @ wall.normal)
     if abs(slope) < 0.02:

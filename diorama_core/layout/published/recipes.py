@@ -166,7 +166,14 @@ class _Terms:
             self.template = torch.tensor(contact_templates(problem, self.supported)[0])
 
     def at(self, turn: torch.Tensor, p: torch.Tensor, scale: torch.Tensor, state: State) -> Mapping[str, torch.Tensor]:
-        """3 e_align, e_sem, 5 e_place, e_rel, e_vol and e_col, weighted; adherence is part of the first and third."""
+        """3 e_align, e_sem, 5 e_place, e_rel, e_vol and e_col, weighted; adherence is part of the first and third.
+
+        Args:
+            turn: small rotations, (n, 3) in radians about the world's axes, over those of `state`.
+            p: centres in the world, (n, 3), metres.
+            scale: of every object, (n, 3).
+            state: where the rotations began.
+        """
         x, y, z = turn.T
         zero = torch.zeros_like(x)
         K = torch.stack([zero, -z, y, z, zero, -x, -y, x, zero], dim=1).reshape(-1, 3, 3)

@@ -29,7 +29,11 @@ class NetworkDepthPrediction:
     network: GeometryNetwork
 
     def predict(self, photo: Photo, intrinsics: Intrinsics | None, progress: Progress) -> DepthPrediction:
-        """Depth, normals and intrinsics; given intrinsics are not replaced."""
+        """Depth, normals and intrinsics; given intrinsics are not replaced.
+
+        Args:
+            photo, intrinsics, progress: as documented in `protocols.DepthPredictionStage`.
+        """
         progress.report(0.0, "Reading depth from the photo")
         seen = self.network.predict(photo.rgb, intrinsics)
         return DepthPrediction(seen.depth_m, seen.normals_camera, seen.intrinsics)
@@ -73,6 +77,9 @@ class NetworkDepth:
         progress: Progress,
     ) -> DepthMap:
         """Depth and normals of every pixel.
+
+        Args:
+            inputs, objects, geometry, architecture, progress: as documented in `protocols.DepthStage`.
 
         Raises:
             ValueError: when the inputs hold no depth.

@@ -57,6 +57,9 @@ class OpenVocabularyDetection:
         """Boxes of all objects that match the words (a built-in indoor vocabulary without words), best first.
 
         Walls, floor and ceiling are never returned as objects.
+
+        Args:
+            photo, words, progress: as documented in `protocols.DetectionStage`.
         """
         asked = tuple(dict.fromkeys(w for w in words or INDOOR_WORDS if w.lower() not in ARCHITECTURE_WORDS))
         phrases = [self.template.format(w) for w in asked]
@@ -75,7 +78,11 @@ class EverydayDetection:
     part_share: float = 0.8
 
     def detect(self, photo: Photo, words: tuple[str, ...], progress: Progress) -> tuple[LabelledBox, ...]:
-        """Boxes of everyday objects in the photo, best first; `words` is ignored."""
+        """Boxes of everyday objects in the photo, best first; `words` is ignored.
+
+        Args:
+            photo, words, progress: as documented in `protocols.DetectionStage`.
+        """
         progress.report(0.0, "Looking for furniture")
         found = self.detector.detect(photo.rgb, self.threshold)
         inside = np.array([COCO_CLASSES[k] in _IN_ROOMS for k in found.labels], dtype=bool)
@@ -92,7 +99,11 @@ class FileDetection:
     part_share: float = 0.8
 
     def detect(self, photo: Photo, words: tuple[str, ...], progress: Progress) -> tuple[LabelledBox, ...]:
-        """Boxes of known kinds in the photo, best first; `words` is ignored."""
+        """Boxes of known kinds in the photo, best first; `words` is ignored.
+
+        Args:
+            photo, words, progress: as documented in `protocols.DetectionStage`.
+        """
         progress.report(0.0, "Looking for furniture")
         found = self.detector.detect(photo.rgb, self.threshold)
         names = tuple(_WORDS.get(name, name) for name in self.detector.labels)

@@ -43,6 +43,9 @@ class EmptyRoomArchitecture:
     ) -> ArchitectureEstimate:
         """The room from what is seen of it and, behind objects, from the depth of the emptied picture.
 
+        Args:
+            inputs, objects, geometry, progress: as documented in `protocols.ArchitectureStage`.
+
         Raises:
             ValueError: when the inputs hold no depth.
         """

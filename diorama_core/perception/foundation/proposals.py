@@ -44,7 +44,11 @@ class OwnDetection:
     most: int = MOST
 
     def detect(self, photo: Photo, words: tuple[str, ...], progress: Progress) -> tuple[LabelledBox, ...]:
-        """Boxes of likely objects, best first; `words` is ignored."""
+        """Boxes of likely objects, best first; `words` is ignored.
+
+        Args:
+            photo, words, progress: as documented in `protocols.DetectionStage`.
+        """
         progress.report(0.0, "Looking for furniture")
         found = self.recogniser.propose(photo.rgb, self.threshold, self.most)
         large = np.flatnonzero((found.boxes[:, 2:] - found.boxes[:, :2]).min(axis=1, initial=np.inf) >= MIN_SIDE_PX)
@@ -67,7 +71,11 @@ class JoinedDetection:
     own: OwnDetection
 
     def detect(self, photo: Photo, words: tuple[str, ...], progress: Progress) -> tuple[LabelledBox, ...]:
-        """Boxes of both, best first; of two that overlap the everyday detector's stays, since it learnt from photos."""
+        """Boxes of both, best first; of two that overlap the everyday detector's stays, since it learnt from photos.
+
+        Args:
+            photo, words, progress: as documented in `protocols.DetectionStage`.
+        """
         everyday = self.everyday.detect(photo, words, progress.part(0.0, 0.5))
         own = self.own.detect(photo, words, progress.part(0.5, 1.0))
         return joined_boxes(everyday, own)

@@ -21,7 +21,7 @@ Masks = Int[np.ndarray, "h w"]
 Depth = Float[np.ndarray, "h w"]
 """z in camera in metres; 0 and NaN where missing."""
 Boxes = Sequence[Mapping[str, Any]]
-"""Of `{"bbox": [x1, y1, x2, y2], "class": "chair"}`, in pixels of the upright original photo."""
+"""List of `{"bbox": [x1, y1, x2, y2], "class": "chair"}`, in pixels of the upright original photo."""
 
 MAX_ID = 65535
 

@@ -23,7 +23,7 @@ from diorama_core.perception.inputs.source import Source
 
 Sort = Literal["photo", "boxes", "masks", "depth", "confidence"]
 FEW_COLOURS = 80
-"""Of a picture's pixels sampled without smoothing: masks of the fullest scenes have no more, photos have thousands."""
+"""Colours among sampled pixels, without smoothing: masks of the fullest scenes have no more, photos thousands."""
 _SAMPLED_PX = 256
 _TEXT_STARTS = (b"[", b"{", b"<")
 

@@ -12,9 +12,9 @@ from diorama_core.errors import InputError
 
 MAX_FILE_MB = 200
 MAX_FILES = 600
-"""Of a folder: some more than the objects of the fullest scene."""
+"""Files of a folder: somewhat more than the objects of the fullest scene."""
 MAX_BESIDE_BYTES = 64_000_000
-"""Of a file beside another: the largest is a COCO data set with its categories."""
+"""Size of a file beside another: the largest is a COCO data set with its categories."""
 
 
 @dataclass(frozen=True)

@@ -30,7 +30,15 @@ def distinct(
 
 
 def alike(some: Cuboids, a: int, others: Cuboids, b: int, settings: PlacementSettings) -> bool:
-    """Whether a reading and another one hardly differ in place, heading and size."""
+    """Whether a reading and another one hardly differ in place, heading and size.
+
+    Args:
+        some: a batch of cuboids, and `a` the row of one.
+        a: row of the first cuboid.
+        others: another batch, or the same.
+        b: row of the second cuboid.
+        settings: what is near enough in metres and in logarithms of sizes.
+    """
     return bool(
         np.linalg.norm(some.centre[a] - others.centre[b]) < settings.same_place_m
         and np.abs(np.log(_footprint_axes(some, a) / _footprint_axes(others, b))).max() < settings.same_size

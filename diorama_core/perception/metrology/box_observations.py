@@ -109,7 +109,13 @@ class BoxObservations:
 def gather(
     objects: tuple[DetectedObject, ...], width: int, height: int, settings: MetrologySettings = SETTINGS
 ) -> BoxObservations:
-    """The evidence of the objects of a picture of `width` x `height` pixels."""
+    """The evidence of the objects of a picture of `width` x `height` pixels.
+
+    Args:
+        objects: with boxes in pixels and masks of shape (h, w).
+        width, height: of the picture, pixels.
+        settings: of metrology.
+    """
     boxes = np.array([_proper(o.box, width, height, settings.observed) for o in objects], dtype=float).reshape(-1, 4)
     extent = np.tile(boxes[:, 2:] - boxes[:, :2], 2)
     sigma = settings.observed.share_sigma * extent + settings.observed.pixel_sigma * max(width, height) / 640

@@ -71,6 +71,13 @@ def place_on_floor(
     """Rows for an object on the floor, with odd headings where its category stands freely.
 
     `modes` are the sizes it may have, those of its category by default.
+
+    Args:
+        observations: of all objects.
+        index: of the object.
+        height_m: of the camera above the floor.
+        modes: sizes that the object may have.
+        settings: of metrology.
     """
     category, rows = observations.categories[index], []
     for mode in modes or observations.size_modes(index):

@@ -102,6 +102,12 @@ def place_all(
     """Place every object: first on the floor, then on others, on walls and below the ceiling, the cheapest way each.
 
     Shelves that hang on walls come before the things that may lie on them.
+
+    Args:
+        observations: of all objects.
+        view: intrinsics, and rotation from camera to world.
+        height_m: of the camera above the floor.
+        settings: of metrology.
     """
     floor = _not_through_tops(_on_floor(observations, view, height_m, settings), observations, view, height_m, settings)
     standing = [p for p in floor.values() if _tells_the_room(p, observations, settings.placement)]
@@ -336,7 +342,14 @@ def _supported_rows(
 def readings_of(
     solved: Solutions, observations: BoxObservations, view: View, settings: MetrologySettings = SETTINGS
 ) -> dict[int, Readings]:
-    """Distinct readings of every object in a batch, masks counted in."""
+    """Distinct readings of every object in a batch, masks counted in.
+
+    Args:
+        solved: cuboids and their costs, several an object.
+        observations: of all objects.
+        view: intrinsics, and rotation from camera to world.
+        settings: of metrology.
+    """
     boxes = cuboids(solved.unknowns, solved.problems, view)
     names = tuple(c.name for c in observations.categories)
     masks = (observations.mask_reach, observations.corner_weight, observations.mask_exact)

@@ -172,7 +172,14 @@ def _whitening(covariance: Float[np.ndarray, "3 3"]) -> Float[np.ndarray, "3 3"]
 
 
 def plain_mode(log_size: Float[np.ndarray, "3"], sigma: Float[np.ndarray, "3"], cost: float, name: str) -> SizeMode:
-    """A mode whose extents vary independently."""
+    """A mode whose extents vary independently.
+
+    Args:
+        log_size: logarithms of depth, width and height in metres.
+        sigma: their standard deviations.
+        cost: of the mode, in nats.
+        name: of the category, which tells the outline.
+    """
     return SizeMode(log_size, sigma, cost, outline_of(name), np.diag(1.0 / sigma))
 
 

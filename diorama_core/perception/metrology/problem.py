@@ -172,7 +172,14 @@ class Values:
 def residuals(
     unknowns: Float[np.ndarray, "n 6"], problems: Problems, view: View, settings: CuboidFitSettings = SETTINGS.fit
 ) -> Float[np.ndarray, "n r"]:
-    """Everything that speaks against a row's cuboid, in sigmas."""
+    """Everything that speaks against a row's cuboid, in sigmas.
+
+    Args:
+        unknowns: of every row's cuboid.
+        problems: what was seen of every row's object, and what is expected.
+        view: intrinsics, and rotation from camera to world.
+        settings: of the fit.
+    """
     return values(unknowns, problems, view, settings=settings).residuals
 
 
@@ -187,6 +194,13 @@ def values(
 
     `inset_px` is by how much the objects' outlines stay within their cuboids here or nearby, where it is known: it
     hardly changes with small steps.
+
+    Args:
+        unknowns: of every row's cuboid.
+        problems: what was seen of every row's object, and what is expected.
+        view: intrinsics, and rotation from camera to world.
+        inset_px: left, top, right and bottom; None computes it.
+        settings: of the fit.
     """
     boxes = cuboids(unknowns, problems, view)
     corners = corners_camera(boxes, problems.camera_height_m, view)
@@ -261,6 +275,14 @@ def edge_residuals(
     """How far the projected box is from the observed one, edge by edge; lenient as far as something hides the rest.
 
     Each residual depends on its own edge of `bounds` alone.
+
+    Args:
+        bounds: left, top, right and bottom of the projected cuboids, pixels.
+        visible: whether anything of a cuboid is in front of the camera.
+        unfilled: by how much each object's outline stays within its cuboid, pixels.
+        problems: what was seen of every row's object.
+        view: intrinsics, and rotation from camera to world.
+        settings: of the fit.
     """
     k = view.intrinsics
     border = np.abs(bounds - [0.0, 0.0, k.width, k.height]) < 1e-6

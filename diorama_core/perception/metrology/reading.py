@@ -50,7 +50,14 @@ def confidence_of(
     height_log_sigma: float,
     settings: HeightScanSettings = SETTINGS.heights,
 ) -> float:
-    """Between 0 and 1: low for implausible sizes, bad fits, hidden or cut boxes, and an unsure camera height."""
+    """Between 0 and 1: low for implausible sizes, bad fits, hidden or cut boxes, and an unsure camera height.
+
+    Args:
+        placement: of one object.
+        observations: of all objects.
+        height_log_sigma: standard deviation of the logarithm of the camera's height.
+        settings: of confidences.
+    """
     index = placement.index
     parent = placement.supporter if placement.supporter >= 0 else None
     unseen = int((observations.hidden(index, parent) | observations.truncated[index]).sum())

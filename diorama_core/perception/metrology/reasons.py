@@ -32,7 +32,14 @@ TERMS: Mapping[str, tuple[slice, str, str]] = {
 def reasons_of(
     placements: Sequence[Placement], view: View, objects: Sequence[DetectedObject], settings: CuboidFitSettings
 ) -> tuple[Reason, ...]:
-    """By how many nats each term opposes that an object is a tenth farther or nearer, larger or smaller."""
+    """By how many nats each term opposes that an object is a tenth farther or nearer, larger or smaller.
+
+    Args:
+        placements: of the objects.
+        view: intrinsics, and rotation from camera to world.
+        objects: by the indices of the placements.
+        settings: of the fit.
+    """
     if not placements:
         return ()
     problems = stacked([p.problem for p in placements])

@@ -80,7 +80,14 @@ def contact_start(
 def size_start(
     problems: Problems, view: View, farther: float = 1.0, settings: CuboidFitSettings = SETTINGS.fit
 ) -> Float[np.ndarray, "n 6"]:
-    """Start at the distance (times `farther`) at which a thing of the expected size fills the box."""
+    """Start at the distance (times `farther`) at which a thing of the expected size fills the box.
+
+    Args:
+        problems: n rows.
+        view: intrinsics, and rotation from camera to world.
+        farther: factor of the distance.
+        settings: of the fit.
+    """
     box, k = problems.box_px, view.intrinsics
     rays = _rays((box[:, :2] + box[:, 2:]) / 2, view)
     size = np.exp(problems.log_size)
@@ -95,6 +102,12 @@ def other_start(
     """Start as `size_start`; where the lower end may be hidden, with a usual height and the top where the box has it.
 
     The visible part alone would be taken for a thing far away.
+
+    Args:
+        problems: n rows.
+        view: intrinsics, and rotation from camera to world.
+        farther: factor of the distance.
+        settings: of the fit.
     """
     box = problems.box_px
     rays = _rays(np.column_stack([(box[:, 0] + box[:, 2]) / 2, box[:, 1]]), view)

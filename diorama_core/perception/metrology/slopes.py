@@ -44,6 +44,13 @@ def jacobian(
     """Derivatives of every residual; outlines are not needed, insets are taken to stay.
 
     Where the near plane cuts a cuboid, or where nothing of it is seen, they are forward differences.
+
+    Args:
+        problems: n rows.
+        unknowns: where derivatives are taken.
+        here: the values there.
+        view: intrinsics, and rotation from camera to world.
+        settings: of the fit.
     """
     boxes = cuboids(unknowns, problems, view)
     corners = corners_camera(boxes, problems.camera_height_m, view)
@@ -81,7 +88,13 @@ class _Frame:
 
     @classmethod
     def of(cls, boxes: Cuboids, problems: Problems, view: View) -> _Frame:
-        """The frame of every row."""
+        """The frame of every row.
+
+        Args:
+            boxes: of n rows, in the world (m).
+            problems: of the same rows.
+            view: intrinsics, and rotation from camera to world.
+        """
         R, heading = view.R_world_camera, view.heading
         plan = boxes.centre[:, :2]
         forward = plan @ heading

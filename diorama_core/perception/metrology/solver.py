@@ -47,7 +47,15 @@ def solve(
     iterations: int = 14,
     settings: CuboidFitSettings = SETTINGS.fit,
 ) -> Solutions:
-    """Minimise every row's cost from its start; rows that have settled are left alone."""
+    """Minimise every row's cost from its start; rows that have settled are left alone.
+
+    Args:
+        problems: n rows.
+        start: unknowns of every row; they are brought within their bounds.
+        view: intrinsics, and rotation from camera to world.
+        iterations: at most.
+        settings: of the fit.
+    """
     low, high = _bounds(problems, settings)
     unknowns = np.clip(start, low, high)
     at = values(unknowns, problems, view, settings=settings)

@@ -35,6 +35,9 @@ class SingleViewMetrology:
     ) -> ObjectGeometry:
         """The camera's height and every object's cuboid, support and confidence.
 
+        Args:
+            inputs, camera, objects, progress: as documented in `protocols.GeometryStage`.
+
         Returns:
             One cuboid and one support edge per object, in the order given.
         """

@@ -75,6 +75,12 @@ def supporters_of(
 
     Both boxes' edges are drawn by people or detectors; the bottom may be above the candidate by as much as that leaves
     open, or by a share of the candidate's height.
+
+    Args:
+        observations: of all objects.
+        index: of the object.
+        candidates: indices of possible supporters.
+        settings: of placement.
     """
     box = observations.box_px[index]
     found = []
@@ -100,7 +106,17 @@ def place_on(
     cost: float,
     settings: MetrologySettings = SETTINGS,
 ) -> list[Problems]:
-    """Rows for an object on another's top, seat or shelves; `parent_cuboid` is a batch of one."""
+    """Rows for an object on another's top, seat or shelves; `parent_cuboid` is a batch of one.
+
+    Args:
+        observations: of all objects.
+        index: of the object.
+        parent: index of its supporter.
+        parent_cuboid: the supporter's, in the world (m).
+        height_m: of the camera above the floor.
+        cost: of resting there, in nats.
+        settings: of metrology.
+    """
     tall = float(parent_cuboid.size_m[0, 2])
     bottom = float(parent_cuboid.base_m[0])
     names = (observations.categories[parent].name, observations.categories[index].name)
@@ -184,7 +200,16 @@ def place_on_wall(
     cost: float,
     settings: MetrologySettings = SETTINGS,
 ) -> list[Problems]:
-    """Rows for an object on the wall ahead, on the left and on the right."""
+    """Rows for an object on the wall ahead, on the left and on the right.
+
+    Args:
+        observations: of all objects.
+        index: of the object.
+        height_m: of the camera above the floor.
+        room: where the walls are, in the world (m).
+        cost: of hanging there, in nats.
+        settings: of metrology.
+    """
     category = observations.categories[index]
     door = category.name == "door"
     walls = (
@@ -228,7 +253,16 @@ def place_below_ceiling(
     cost: float,
     settings: MetrologySettings = SETTINGS,
 ) -> list[Problems]:
-    """Rows for an object hanging from the ceiling, over the things on the floor."""
+    """Rows for an object hanging from the ceiling, over the things on the floor.
+
+    Args:
+        observations: of all objects.
+        index: of the object.
+        height_m: of the camera above the floor.
+        room: how far it reaches, in the world (m).
+        cost: of hanging there, in nats.
+        settings: of metrology.
+    """
     return [
         row(
             observations,

@@ -50,6 +50,12 @@ def similarities(
     """Cosine similarity of the picture's foreground patches with every patch of all views; -1 outside their shape.
 
     One matrix product for all views.
+
+    Args:
+        query: unit features of the picture's p patches.
+        views: unit features of the patches of v views.
+        query_inside: which patches of the picture are foreground, q of them.
+        view_inside: which patches of each view show the shape.
     """
     inside = query[query_inside]
     flat = views.reshape(-1, views.shape[-1])

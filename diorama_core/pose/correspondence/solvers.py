@@ -81,7 +81,11 @@ class CorrespondencePose:
         shapes: tuple[RankedShapes, ...],
         progress: Progress,
     ) -> tuple[PosedCandidates, ...]:
-        """Posed candidates, most alike first; shapes for which no pose was found are left out."""
+        """Posed candidates, most alike first; shapes for which no pose was found are left out.
+
+        Args:
+            inputs, objects, geometry, depth, shapes, progress: as documented in `protocols.PoseStage`.
+        """
         return self.pose_by((self.kind,), inputs, objects, geometry, depth, shapes, progress)[self.kind]
 
     def pose_by(
@@ -94,7 +98,12 @@ class CorrespondencePose:
         shapes: tuple[RankedShapes, ...],
         progress: Progress,
     ) -> dict[Kind, tuple[PosedCandidates, ...]]:
-        """As `pose`, by several solvers that share one comparison of pictures and views."""
+        """As `pose`, by several solvers that share one comparison of pictures and views.
+
+        Args:
+            kinds: the solvers whose poses are wanted.
+            inputs, objects, geometry, depth, shapes, progress: as documented in `protocols.PoseStage`.
+        """
         ranked = {r.object_id: r.ranked for r in shapes if r.ranked}
         records = {s.id: s for s in self.library.shapes()}
         wanted = [o for o in objects if o.id in ranked]

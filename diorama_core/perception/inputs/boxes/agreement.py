@@ -12,7 +12,7 @@ from diorama_core.perception.inputs.boxes.entry import Corners
 WORKING_SIDE_PX = 512
 """Edges are read at no more than so many pixels a side."""
 SLACK_SHARE = 0.008
-"""Of the longer side by which a drawn box may miss its object."""
+"""Share of the longer side by which a drawn box may miss its object."""
 
 
 class EdgeMap:

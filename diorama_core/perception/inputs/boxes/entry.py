@@ -13,7 +13,7 @@ from diorama_core.perception.inputs.source import Source
 
 Corners = tuple[float, float, float, float]
 Unit = Literal["pixels", "shares", "percent", "thousandths"]
-"""Of what coordinates are: of the picture's sides, except pixels."""
+"""Unit of coordinates; all but pixels are relative to the picture's sides."""
 Layout = Literal["corners", "sized", "centred", "rows"]
 """Four numbers as x1, y1, x2, y2; x, y, width, height; middle x, middle y, width, height; or y1, x1, y2, x2."""
 T = TypeVar("T")
@@ -57,7 +57,7 @@ class BoxText:
     """A JSON value, an XML root element, or the lines of a text."""
     photo_name: str
     photo_size: Size
-    """Of the upright original."""
+    """Size of the upright original."""
 
 
 def is_of(name: object, photo_name: str) -> bool:

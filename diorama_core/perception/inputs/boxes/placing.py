@@ -19,7 +19,7 @@ MARGIN_OF_ONE = 0.25
 """By which another reading of a single box would have to agree better; of several, less by the root of their number."""
 MIN_MARGIN = 0.06
 MIN_AGREEMENT = 1.1
-"""Of boxes that do not fit as they are: measured, right ones of 23 photos agree from 1.17, wrong ones up to 1.14."""
+"""Agreement of boxes that do not fit as given: over 23 photos, right readings reach 1.17, wrong ones at most 1.14."""
 CLEAR_AGREEMENT = 1.25
 """At which boxes are right as they are, without a look at other readings: wrong ones never reach it."""
 SMALL_EXTENT = 0.6
@@ -33,7 +33,7 @@ LONG_SIDES = (
     2592, 3000, 3024, 3264, 3840, 4000, 4032, 4080, 4096, 4128, 4160, 4608, 4624, 5184, 5472, 5712, 6000,
     6016, 8000, 8064, 9248,
 )  # fmt: skip
-"""Of the copies that networks and programs make, and of phones' and cameras' originals."""
+"""Picture sides of the copies that networks and programs make, and of phones' and cameras' originals."""
 
 _LAYOUTS: dict[Layout, str] = {
     "sized": "x, y, width, height",

@@ -19,7 +19,7 @@ from diorama_core.perception.inputs.source import Source
 
 MAX_OBJECTS = 500
 MAX_BOXES_BYTES = 4_000_000
-"""Of a boxes file: twenty times what five hundred boxes take; data sets of many pictures may be larger."""
+"""Size of a boxes file: twenty times what five hundred boxes take; data sets of many pictures may be larger."""
 MIN_BOX_PX = 2.0
 CLIP_NOTICE_PX = 2.0
 

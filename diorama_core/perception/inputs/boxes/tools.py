@@ -13,7 +13,7 @@ from diorama_core.perception.inputs.boxes.entry import BoxEntry, BoxFile, BoxTex
 from diorama_core.perception.inputs.boxes.nested import size_in
 
 MAX_NESTING = 8
-"""Of the results of a task: a task, its annotations, their results, each in a list."""
+"""Nesting depth of results: a task, its annotations, their results, each in a list."""
 
 
 def is_labelme(text: BoxText) -> bool:

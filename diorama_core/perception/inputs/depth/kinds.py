@@ -41,7 +41,7 @@ EXACT, NEARLY = 0.8, 0.04
 SEARCH_POINTS, SEARCH_TRIALS = 800, 60
 """For the first look at a focal length: enough to tell whether a closer one is worth its time."""
 MIN_ORDER = 0.15
-"""Of -1 to 1: below, the map says nothing of near and far, or the contrary of its reading."""
+"""Rank correlation, -1 to 1, below which the map does not order near and far as its reading claims."""
 CONTRADICTION = 3.0
 """Nats by which another reading must be better for a map to contradict its given kind."""
 

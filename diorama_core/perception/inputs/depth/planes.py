@@ -22,7 +22,7 @@ MAX_POINTS = 2400
 TOLERANCES = (0.002, 0.005, 0.012, 0.03)
 """Shares of the numbers' spread within which a number lies on a plane: of exact renderings up to noisy sensors."""
 MIN_NEW_SHARE = 0.01
-"""Of the points, for a further plane."""
+"""Smallest share of the points that a further plane explains."""
 _SEED = 7
 _ALL = slice(None)
 _NEIGHBOURS = 2
@@ -63,7 +63,7 @@ class PlaneFit:
     planes: Float[np.ndarray, "k 3"]
     """Coefficients of x, y and 1 of the affine functions, largest plane first."""
     shares: Float[np.ndarray, "k"]
-    """Of the points, for each."""
+    """Share of the points on each plane."""
 
 
 def sampled(values: Float[np.ndarray, "h w"], valid: Bool[np.ndarray, "h w"]) -> SampledDepth:

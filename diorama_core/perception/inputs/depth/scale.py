@@ -29,15 +29,15 @@ HEIGHTS_AGREE = float(np.log(1.35))
 MIN_LEVEL_SHARE = 0.03
 """Of the points, that a floor or ceiling has."""
 SIZE_SIGMA = 0.55
-"""Of the logarithm of one thing's seen size over its kind's: occlusion, pose and the kind's own variation."""
+"""Standard deviation of log(seen size / size of the kind): occlusion, pose and variation within the kind."""
 MIN_SIZE_SIGMA = 0.15
-"""Of many things together, whose kinds' sizes err alike."""
+"""Smallest standard deviation for many objects together, because the sizes of kinds err alike."""
 DISAGREEMENT = float(np.log(1.8))
-"""Of the camera's height and the things' sizes, from which on one of them is mistaken."""
+"""Log ratio of the scales by camera height and by object sizes above which one of them is wrong."""
 FLOOR_COSINE = 0.77
 """Between a floor's normal and the picture's downward direction: a camera is tilted by 40 degrees at most."""
 NEAR_PERCENTILE = 30
-"""Of the depths within a box: the thing itself, not what is seen beside and through it."""
+"""Percentile of the depths within a box that belongs to the object, not to what is seen beside and through it."""
 MARGIN = 0.01
 """Share of the photo within which a box touches its side, and its thing is cut off."""
 
@@ -51,7 +51,7 @@ class ScaleEvidence:
     things: int
     """Named things that say so."""
     floor_height: float | None
-    """Of the camera over the floor, in the map's unit; None where no floor is seen."""
+    """Height of the camera over the floor, in the map's unit; None where no floor is seen."""
     room_height: float | None = None
     """Of the ceiling over the floor, likewise."""
 
@@ -85,7 +85,14 @@ def focal_score(fit: PlaneFit) -> tuple[float, float]:
 def size_scatter(
     depth: Float[np.ndarray, "h w"], valid: Bool[np.ndarray, "h w"], focal: float, boxes: Sequence[LabelledBox]
 ) -> float:
-    """The median deviation of the logarithms of things' sizes from their median; 0 for fewer than three things."""
+    """The median deviation of the logarithms of things' sizes from their median; 0 for fewer than three things.
+
+    Args:
+        depth: z in camera, in the map's unit.
+        valid: where it was measured.
+        focal: focal length in shares of the picture's longer side.
+        boxes: of named things, in shares of the longer side.
+    """
     logs = np.array([v for box in boxes for v in _log_scales(depth, valid, focal, box)])
     return float(np.median(np.abs(logs - np.median(logs)))) if len(logs) >= 6 else 0.0
 

@@ -8,7 +8,7 @@ from jaxtyping import Bool, Shaped
 SKY_M = 1e4
 """What renderers write where there is nothing (Blender 1e10, half floats 65504) is beyond this."""
 MIN_VOID_SHARE = 0.003
-"""Of a map's pixels that one number must be to mean nothing."""
+"""Share of a map's pixels from which one repeated number stands for missing depth."""
 GAP = 1.25
 """By which such a number is beyond what nearly all other pixels measured."""
 REPEATED = 8.0

@@ -23,7 +23,7 @@ DENSE = 3
 PHOTO_SHARE, PHOTO_LEVELS = 0.15, 64
 """Share of pixels neither dark nor bright, and number of their levels: smoothed outlines have far fewer."""
 THIN_SHARE = 0.012
-"""Of the longer side: half the width up to which a region is an outline."""
+"""Share of the longer side: half the width up to which a region is an outline."""
 LOSSY_FORMATS = ("JPEG", "MPO")
 BRIGHT = 100
 """Of white after a lossy format; what is darker everywhere is an empty mask, or one of small numbers."""

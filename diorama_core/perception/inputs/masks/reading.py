@@ -20,7 +20,7 @@ SPECK_SHARE = 1e-4
 """An instance or a loose piece of one smaller than this share of the picture is a speck."""
 MIN_SPECK_PX = 20
 SOFT_COLOURS, SOFT_SHARE, SOFT_WIDTH_PX = 12, 0.1, 4.0
-"""Of smoothed outlines: how many colours there are at least, of how much of the picture, and how wide at most."""
+"""Smoothed outlines: fewest colours, smallest share of the picture, and largest width."""
 MIN_BORDER_SHARE, MIN_AROUND_SHARE = 0.6, 0.3
 """Shares of the picture's border and area: what is there and called no object is the background."""
 MARKED_IOU = 0.5

@@ -9,7 +9,7 @@ from PIL import Image
 from diorama_core.perception.inputs.source import Source
 
 USED_BITS = (8, 10, 12, 14)
-"""Of sensors whose numbers are stored in 16 bits."""
+"""Bit depths of sensors whose numbers are stored in 16 bits."""
 DARK_LEVEL = 64
 """Eight-bit level below which all of a colour picture of 16 bits lies whose numbers have at most 14."""
 _STRIP = 256

@@ -9,15 +9,15 @@ Margins = tuple[int, int, int, int]
 """Left, top, right and bottom, pixels."""
 
 MIN_SHARE = 0.015
-"""Of the side, for a border to count: narrower ones are left by rectification and are dealt with as lines."""
+"""Smallest border, as a share of the side: narrower ones are left by rectification and are treated as lines."""
 MAX_SHARE = 0.45
-"""Of the side: what is left must be most of a picture."""
+"""Largest border, as a share of the side: most of the picture must remain."""
 COLOUR_TOLERANCE = 14.0
 """Levels by which a border's pixels may differ from its colour: JPEG's noise."""
 PLAIN_SHARE = 0.985
-"""Of a line's pixels that have the border's colour."""
+"""Share of a border line's pixels that have the border's colour."""
 INNER_SHARE = 0.6
-"""Of the first line within that must differ: a photo ends there, not an object before a plain background."""
+"""Share of the first inner line that differs: a photo ends there, not an object before a plain background."""
 BLUR_PX = 3
 """Lines between border and photo that mix both."""
 

@@ -19,11 +19,11 @@ _SPHERE_ASPECT = (1.97, 2.03)
 _CUSTOM_RENDERED, _PANORAMA = 0xA401, 6
 _PROJECTION = re.compile(rb"ProjectionType[\s\"'=>]+([A-Za-z]+)")
 SEAM_SHARE = 0.35
-"""Of the difference between unrelated columns, up to which the first and last column continue each other."""
+"""Largest difference of the first and last column of a panorama, as a share of that of unrelated columns."""
 SEAM_STEPS = 3.0
-"""Of the difference between neighbouring columns, up to which the same holds."""
+"""Largest difference of the first and last column of a panorama, as a multiple of that of neighbouring columns."""
 POLE_SHARE = 0.4
-"""Of the middle rows' variation, up to which the first and last row show one point, the pole."""
+"""Largest variation of the first and last row, which show the poles, as a share of the middle rows'."""
 
 
 def check_perspective(name: str, picture: Image.Image, exif: Mapping[int, Any], *, has_focal: bool) -> tuple[str, ...]:

@@ -25,7 +25,7 @@ from diorama_core.perception.inputs.source import Source
 MIN_SIDE_PX = 32
 MAX_ASPECT = 8.0
 BLACK_LEVEL = 12
-"""Of 255: a photo whose brightest hundredth is below shows nothing."""
+"""Level, of 255: a photo whose brightest hundredth is darker shows nothing."""
 
 _EXIF_DIRECTORY = 0x8769
 _ORIENTATION = 0x0112
@@ -91,7 +91,7 @@ def half_turned(decoded: DecodedPhoto) -> DecodedPhoto:
 
 
 def _largest_page(picture: Image.Image, source: Source) -> tuple[Image.Image, tuple[str, ...]]:
-    """Of a file of several pictures the largest, the first of equals; other formats than TIFF hold frames of a film."""
+    """Select the largest picture of a TIFF file, the first of equals; other formats hold frames of a film."""
     count = int(getattr(picture, "n_frames", 1) or 1) if picture.format in ("TIFF", "GIF", "WEBP", "PNG") else 1
     if count < 2:
         return picture, ()
