@@ -162,6 +162,14 @@ def _look_writer(folder: Path | None) -> Show | None:
     folder.mkdir(parents=True, exist_ok=True)
 
     def show(name: str, photo: Picture, before: Picture, after: Picture) -> None:
+        """Write the pictures of one case beside each other.
+
+        Args:
+            name: of the case.
+            photo: sRGB, (h, w, 3).
+            before: likewise, before the layout.
+            after: likewise, after it.
+        """
         write_picture(
             folder / f"{name.replace(', ', '-').replace(' ', '-')}.jpg",
             side_by_side(side_by_side(photo, before), after),

@@ -8,7 +8,7 @@ import numpy as np
 from jaxtyping import Float
 
 from diorama_app.session.client import Client, Placing
-from diorama_core.arrangement.surfaces import Surface
+from diorama_core.arrangement.surfaces import RestingSurface
 from diorama_core.editing.clearances import clear_of_walls
 from diorama_core.editing.opening_insertion import with_opening
 from diorama_core.editing.placing import (
@@ -178,6 +178,6 @@ def _on_ground(origin: np.ndarray, direction: np.ndarray) -> Hit | None:
     big = 50.0
     outline = np.array([[-big, -big, 0.0], [big, -big, 0.0], [big, big, 0.0], [-big, big, 0.0]])
     ground = SupportTarget(
-        Surface.of(outline, np.array([0.0, 0.0, 1.0]), float("inf"), of_plane=True), "", of_object=False
+        RestingSurface.of(outline, np.array([0.0, 0.0, 1.0]), float("inf"), of_plane=True), "", of_object=False
     )
     return next(iter(hits_along(origin, direction, [ground])), None)

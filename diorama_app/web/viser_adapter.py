@@ -296,6 +296,14 @@ class _Uploads:
         start, part = gui._handle_file_transfer_start, gui._handle_file_transfer_part
 
         def refuse(client_id: Any, message: Any, name: str, reason: str) -> None:
+            """End an upload that is refused, and say why to whoever is told of refusals.
+
+            Args:
+                client_id: of the browser.
+                message: that began the upload.
+                name: of the file.
+                reason: in words.
+            """
             _end_transfer(gui, message)
             if refused is not None:
                 refused(int(client_id), f"{name[:100]} was refused: {reason}")

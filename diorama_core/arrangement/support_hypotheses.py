@@ -9,7 +9,7 @@ from typing import Literal
 import numpy as np
 
 from diorama_core.arrangement.noise import ObservationNoise
-from diorama_core.arrangement.surfaces import Surface, choose_contact, object_surfaces, outside_m, plane_surface
+from diorama_core.arrangement.surfaces import RestingSurface, choose_contact, object_surfaces, outside_m, plane_surface
 from diorama_core.library import taxonomy
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.library.taxonomy import Category
@@ -125,7 +125,7 @@ def _on_object(
     scene: Scene,
     item: SceneObject,
     other: SceneObject,
-    places: tuple[Surface, ...],
+    places: tuple[RestingSurface, ...],
     noise: ObservationNoise,
     evidence: SupportEvidence,
 ) -> SupportHypothesis | None:

@@ -36,7 +36,7 @@ FLAT = 0.7
 
 
 @dataclass(frozen=True, eq=False)
-class Surface:
+class RestingSurface:
     """A flat convex place to rest on, in its owner's frame (the world for planes)."""
 
     polygon: Float[np.ndarray, "k 3"]
@@ -54,7 +54,7 @@ class Surface:
     of_plane: bool
 
     @classmethod
-    def of(cls, polygon: np.ndarray, normal: np.ndarray, clearance_m: float, *, of_plane: bool) -> Surface:
+    def of(cls, polygon: np.ndarray, normal: np.ndarray, clearance_m: float, *, of_plane: bool) -> RestingSurface:
         """A surface from its convex outline.
 
         Args:
@@ -70,11 +70,11 @@ class Surface:
         offset = (outward * polygon[long]).sum(axis=1)
         return cls(polygon, normal, outward, offset, float(normal @ polygon.mean(axis=0)), clearance_m, of_plane)
 
-    def in_world(self, pose: Pose | None) -> Surface:
+    def in_world(self, pose: Pose | None) -> RestingSurface:
         """The surface at its owner's pose."""
         return self if pose is None else self.at(pose.R_world_object, pose.position, pose.scale)
 
-    def at(self, R: np.ndarray, p: np.ndarray, scale: np.ndarray) -> Surface:
+    def at(self, R: np.ndarray, p: np.ndarray, scale: np.ndarray) -> RestingSurface:
         """The surface of an owner with this rotation, centre and scale.
 
         Args:
@@ -89,7 +89,7 @@ class Surface:
         outward = self.outward / scale
         length = np.sqrt((outward * outward).sum(axis=1))
         outward = (outward / length[:, None]) @ R.T
-        return Surface(
+        return RestingSurface(
             polygon=(self.polygon * scale) @ R.T + p,
             normal=normal,
             outward=outward,
@@ -105,15 +105,15 @@ def is_soft(item: SceneObject) -> bool:
     return taxonomy.resolve(item.category).category.soft
 
 
-def is_wall_like(surface: Surface | None) -> bool:
+def is_wall_like(surface: RestingSurface | None) -> bool:
     """Whether objects are mounted on a surface rather than placed on it."""
     return surface is not None and surface.of_plane and abs(float(surface.normal[2])) < FLAT
 
 
 @lru_cache(maxsize=256)
-def plane_surface(plane: Plane) -> Surface:
+def plane_surface(plane: Plane) -> RestingSurface:
     """A plane of the room as a place to rest on (its convex hull)."""
-    return Surface.of(convex_outline(plane.polygon, plane.normal), plane.normal, float("inf"), of_plane=True)
+    return RestingSurface.of(convex_outline(plane.polygon, plane.normal), plane.normal, float("inf"), of_plane=True)
 
 
 def convex_outline(polygon: Float[np.ndarray, "n 3"], normal: Float[np.ndarray, "3"]) -> Float[np.ndarray, "k 3"]:
@@ -139,26 +139,28 @@ def _cross(a: np.ndarray, b: np.ndarray) -> float:
     return float(a[0] * b[1] - a[1] * b[0])
 
 
-def object_surfaces(shape: Shape, item: SceneObject) -> tuple[Surface, ...]:
+def object_surfaces(shape: Shape, item: SceneObject) -> tuple[RestingSurface, ...]:
     """Upward places of an object, in its frame; the top of its box when the shape has none."""
     return tuple(_shape_surface(s) for s in shape.surfaces) or (_box_face(item.shape_size_m, 2, 1.0),)
 
 
 @lru_cache(maxsize=4096)
-def _shape_surface(surface: SupportSurface) -> Surface:
-    return Surface.of(np.asarray(surface.polygon), np.array([0.0, 0.0, 1.0]), surface.clearance_m, of_plane=False)
+def _shape_surface(surface: SupportSurface) -> RestingSurface:
+    return RestingSurface.of(
+        np.asarray(surface.polygon), np.array([0.0, 0.0, 1.0]), surface.clearance_m, of_plane=False
+    )
 
 
 @lru_cache(maxsize=1024)
-def _box_face(size: tuple[float, float, float], axis: int, sign: float) -> Surface:
+def _box_face(size: tuple[float, float, float], axis: int, sign: float) -> RestingSurface:
     normal = np.zeros(3)
     normal[axis] = sign
     corners = box_corners(size)
     face = corners[corners[:, axis] * sign > 0]
-    return Surface.of(convex_outline(face, normal), normal, float("inf"), of_plane=False)
+    return RestingSurface.of(convex_outline(face, normal), normal, float("inf"), of_plane=False)
 
 
-def choose_surface(scene: Scene, item: SceneObject, edge: Support, supporter: Shape | None) -> Surface:
+def choose_surface(scene: Scene, item: SceneObject, edge: Support, supporter: Shape | None) -> RestingSurface:
     """The surface on which the child of an edge rests, as observed.
 
     Args:
@@ -174,7 +176,9 @@ def choose_surface(scene: Scene, item: SceneObject, edge: Support, supporter: Sh
     return min(options, key=lambda s: misfit(item, s.in_world(pose)))
 
 
-def possible_surfaces(scene: Scene, item: SceneObject, edge: Support, supporter: Shape | None) -> tuple[Surface, ...]:
+def possible_surfaces(
+    scene: Scene, item: SceneObject, edge: Support, supporter: Shape | None
+) -> tuple[RestingSurface, ...]:
     """The surfaces on which the child of an edge may rest: several where a supporter has several levels.
 
     Args:
@@ -194,31 +198,31 @@ def possible_surfaces(scene: Scene, item: SceneObject, edge: Support, supporter:
     return (_spread(options),) if is_soft(item) else options
 
 
-def _spread(options: Sequence[Surface]) -> Surface:
+def _spread(options: Sequence[RestingSurface]) -> RestingSurface:
     """The largest place, widened over all others at its height: where pillows lie, those of the shape give way."""
     largest = max(options, key=lambda s: float(np.prod(np.ptp(s.polygon, axis=0)[:2])))
     points = np.vstack([s.polygon for s in options])
     points[:, 2] = largest.level
     outline = convex_outline(points, largest.normal)
-    return Surface.of(outline, largest.normal, largest.clearance_m, of_plane=False)
+    return RestingSurface.of(outline, largest.normal, largest.clearance_m, of_plane=False)
 
 
-def _nearest_side(item: SceneObject, parent: SceneObject) -> Surface:
+def _nearest_side(item: SceneObject, parent: SceneObject) -> RestingSurface:
     sides = [_box_face(parent.shape_size_m, axis, sign) for axis in (0, 1) for sign in (1.0, -1.0)]
 
-    def gap(side: Surface) -> float:
+    def gap(side: RestingSurface) -> float:
         world = side.in_world(parent.pose)
         return outside_m(world, item.pose.position) + abs(float(world.normal @ item.pose.position) - world.level)
 
     return min(sides, key=gap)
 
 
-def misfit(item: SceneObject, surface: Surface) -> float:
+def misfit(item: SceneObject, surface: RestingSurface) -> float:
     """How badly an object's observed pose agrees with resting on a surface (world): metres, lower is better."""
     return box_misfit(item.corners_world, item.size_m, surface)
 
 
-def box_misfit(corners: Float[np.ndarray, "8 3"], size: Float[np.ndarray, "3"], surface: Surface) -> float:
+def box_misfit(corners: Float[np.ndarray, "8 3"], size: Float[np.ndarray, "3"], surface: RestingSurface) -> float:
     """How badly a box with these corners (world) and extents agrees with resting on a surface, metres."""
     along = corners @ surface.normal
     low, height = float(along.min()), float(np.ptp(along))
@@ -228,7 +232,7 @@ def box_misfit(corners: Float[np.ndarray, "8 3"], size: Float[np.ndarray, "3"], 
     return gap + outside_m(surface, corners.mean(axis=0)) + 0.5 * over + squeezed + 0.5 * _too_wide(size, surface)
 
 
-def reaches(item: SceneObject, surface: Surface) -> bool:
+def reaches(item: SceneObject, surface: RestingSurface) -> bool:
     """Whether an object was measured so near to a surface (world) that it may rest there."""
     corners = item.corners_world
     gap = abs(float((corners @ surface.normal).min()) - surface.level)
@@ -236,7 +240,7 @@ def reaches(item: SceneObject, surface: Surface) -> bool:
     return gap <= OUT_OF_REACH_M and outside_m(surface, item.pose.position) <= max(BESIDE_M, BESIDE_SHARE * wide)
 
 
-def _too_wide(size: Float[np.ndarray, "3"], surface: Surface) -> float:
+def _too_wide(size: Float[np.ndarray, "3"], surface: RestingSurface) -> float:
     """How much a box exceeds the surface in the narrower direction, metres."""
     widths = sorted(size)[1:]
     u, v = plane_axes(surface.normal)
@@ -244,13 +248,13 @@ def _too_wide(size: Float[np.ndarray, "3"], surface: Surface) -> float:
     return max(min(widths) - room[0], 0.0) + max(max(widths) - room[1], 0.0)
 
 
-def outside_m(surface: Surface, point: Float[np.ndarray, "3"]) -> float:
+def outside_m(surface: RestingSurface, point: Float[np.ndarray, "3"]) -> float:
     """Distance (in the plane) by which a point's projection misses the surface; 0 inside."""
     return max(float((surface.outward @ point - surface.offset).max()), 0.0)
 
 
 def choose_contact(
-    scene: Scene, item: SceneObject, edge: Support | None, surface: Surface | None
+    scene: Scene, item: SceneObject, edge: Support | None, surface: RestingSurface | None
 ) -> Float[np.ndarray, "3"]:
     """Outward normal of the face that touches the supporter, in the object frame.
 
@@ -404,7 +408,7 @@ def _most_plausible(
     return min(options, key=lambda o: o[:2])[2] if options else None
 
 
-def surfaces_below(item: SceneObject, other: SceneObject, shape: Shape, *, under: float = 0.0) -> list[Surface]:
+def surfaces_below(item: SceneObject, other: SceneObject, shape: Shape, *, under: float = 0.0) -> list[RestingSurface]:
     """Surfaces of another object, in the world, that lie below an object.
 
     Args:
@@ -421,7 +425,7 @@ def surfaces_below(item: SceneObject, other: SceneObject, shape: Shape, *, under
     return [w for w in found if w.level < float(w.normal @ centre) + half and outside_m(w, centre) < NEAR_SURFACE_M]
 
 
-def resting_cost(scene: Scene, item: SceneObject, edge: Support, surface: Surface) -> float:
+def resting_cost(scene: Scene, item: SceneObject, edge: Support, surface: RestingSurface) -> float:
     """Distance in metres of an object's touching face from a surface (world), and by which it misses it.
 
     Args:

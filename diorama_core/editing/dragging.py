@@ -12,7 +12,7 @@ from functools import cached_property
 import numpy as np
 from jaxtyping import Float
 
-from diorama_core.arrangement.surfaces import Surface, plane_surface
+from diorama_core.arrangement.surfaces import RestingSurface, plane_surface
 from diorama_core.editing.placing import SupportTarget, fits, hits_along, inside, places_of, to_wall, within_wall
 from diorama_core.errors import EditRefused
 from diorama_core.layout.feasible.local import DragSolver
@@ -171,7 +171,7 @@ class Slide:
         wall = self.scene.plane(hit.place.parent) if self.scene.has_plane(hit.place.parent) else None
         return (pose if wall is None else within_wall(replace(item, pose=pose), wall)), hit.place
 
-    def _start_surface(self) -> Surface:
+    def _start_surface(self) -> RestingSurface:
         edge = self.scene.support_of(self.item.id)
         assert edge is not None
         return plane_surface(self.scene.plane(edge.parent))
@@ -214,7 +214,7 @@ def _turn(before: np.ndarray, after: np.ndarray) -> np.ndarray:
     return yaw_rotation(float(np.arctan2(after[1], after[0]) - np.arctan2(before[1], before[0])))
 
 
-def _clamped_to(surface: Surface, position: np.ndarray, item: SceneObject) -> np.ndarray:
+def _clamped_to(surface: RestingSurface, position: np.ndarray, item: SceneObject) -> np.ndarray:
     """The centre moved so that the object's middle stays over the surface."""
     foot = position - (float(surface.normal @ position) - surface.level) * surface.normal
     return position + inside(surface, foot) - foot

@@ -11,7 +11,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from jaxtyping import Float
 
-from diorama_core.arrangement.surfaces import Surface, object_surfaces, outside_m, plane_surface
+from diorama_core.arrangement.surfaces import RestingSurface, object_surfaces, outside_m, plane_surface
 from diorama_core.library.record import Shape, ShapeLibrary
 from diorama_core.scene import edits
 from diorama_core.scene.support import descendants
@@ -33,7 +33,7 @@ WALL_MAGNET_RAD = float(np.radians(12.0))
 class SupportTarget:
     """A surface in the world, and the edge's parent for what stands on or hangs at it."""
 
-    surface: Surface
+    surface: RestingSurface
     parent: str
     of_object: bool
     index: int | None = None
@@ -159,10 +159,10 @@ def _box_top(item: SceneObject) -> SupportTarget:
     top = corners[corners[:, 2] > corners[:, 2].max() - 0.01]
     up = np.array([0.0, 0.0, 1.0])
     outline = convex_outline(np.column_stack([top[:, :2], np.full(len(top), corners[:, 2].max())]), up)
-    return SupportTarget(Surface.of(outline, up, float("inf"), of_plane=False), item.id, of_object=True)
+    return SupportTarget(RestingSurface.of(outline, up, float("inf"), of_plane=False), item.id, of_object=True)
 
 
-def inside(surface: Surface, point: Float[np.ndarray, "3"]) -> Float[np.ndarray, "3"]:
+def inside(surface: RestingSurface, point: Float[np.ndarray, "3"]) -> Float[np.ndarray, "3"]:
     """The point of a surface nearest to a point above or beside it (a few projections: outlines are convex)."""
     found = np.array(point, dtype=np.float64)
     for _ in range(12):
@@ -174,7 +174,7 @@ def inside(surface: Surface, point: Float[np.ndarray, "3"]) -> Float[np.ndarray,
     return found
 
 
-def _hung(item: SceneObject, surface: Surface) -> Pose:
+def _hung(item: SceneObject, surface: RestingSurface) -> Pose:
     """An object flat against a wall (its back to it) or below a ceiling, as near as possible."""
     n = surface.normal
     if abs(float(n[2])) > UPWARD:
@@ -191,7 +191,7 @@ def against_wall(scene: Scene, object_id: str, wall: Plane) -> Scene:
     return edits.move(scene, object_id, backed(scene.object(object_id), plane_surface(wall)))
 
 
-def backed(item: SceneObject, wall: Surface) -> Pose:
+def backed(item: SceneObject, wall: RestingSurface) -> Pose:
     """The pose with its back flat against a wall, at the same height."""
     n = wall.normal
     R = yaw_rotation(float(np.arctan2(n[1], n[0])))
@@ -200,7 +200,7 @@ def backed(item: SceneObject, wall: Surface) -> Pose:
     return Pose(R, item.pose.position - gap * flat / max(float(flat @ n), 1e-6), item.pose.scale)
 
 
-def to_wall(item: SceneObject, walls: Iterable[Surface], reach_m: float = WALL_MAGNET_M) -> Pose:
+def to_wall(item: SceneObject, walls: Iterable[RestingSurface], reach_m: float = WALL_MAGNET_M) -> Pose:
     """The pose pulled flush to a wall right behind it; unchanged when there is none."""
     for wall in walls:
         n = wall.normal

@@ -50,6 +50,12 @@ def moved_onto(scene: Scene, object_id: str, carrier_id: str, library: ShapeLibr
     """An object where the photo shows its foot on top of another one, as large as it is seen; None where it does not.
 
     What seems to stand on the floor behind a sideboard looks like something smaller that stands nearer, on its top.
+
+    Args:
+        scene: with both objects and the photo's camera.
+        object_id: of what is moved.
+        carrier_id: of what it may stand on.
+        library: of the scene's shapes.
     """
     item, carrier, camera = scene.object(object_id), scene.object(carrier_id), scene.camera
     if camera is None or item.box_px is None or not category(carrier.category).supports_objects:

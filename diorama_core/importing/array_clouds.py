@@ -22,7 +22,7 @@ MAX_COLUMNS = 12
 WIDTHS = (3, 4, 5, 6)
 """Floats a point: position; how bright (KITTI); its ring (nuScenes); or a colour."""
 MIN_DIFFERENCE = 0.06
-"""Of the columns' distributions, in shares of their spread: of a wrong width each column is a mixture of all."""
+"""Distance of the columns' distributions, in shares of their spread; with a wrong width each column mixes all."""
 FARTHEST, NEAREST = 1e5, 1e-6
 """Between which the floats of positions lie, but for zeros: bytes of another meaning are beyond."""
 MAX_ODD_SHARE = 0.02

@@ -30,7 +30,7 @@ from diorama_core.scene.types import Camera, Intrinsics
 SEVEN_SCENES = Intrinsics(640, 480, 585.0, 585.0, 320.0, 240.0)
 """What 7-Scenes' page gives for its depth."""
 REPLICA = Intrinsics(1200, 680, 600.0, 600.0, 599.5, 339.5)
-"""Of NICE-SLAM's renderings of Replica, where `cam_params.json` is not at hand."""
+"""Intrinsics of NICE-SLAM's renderings of Replica, used where `cam_params.json` is absent."""
 REPLICA_STEPS, MATTERPORT_STEPS = 6553.5, 4000.0
 """Steps of depth a metre."""
 

@@ -40,7 +40,7 @@ class BeliefSettings:
     foot_hidden: float = 0.13
     """Spread of the distance where no foot is seen, as its share: measured on rendered rooms (docs/benchmark.md)."""
     hung: float = 0.08
-    """The same of things on walls and ceilings."""
+    """Spread of the distance of things on walls and ceilings, as its share."""
 
 
 SETTINGS = BeliefSettings()

@@ -34,7 +34,7 @@ class Choice:
     value: str
     """What the answer says: yes or no, a category, one of `TURNS`, an id."""
     label: str
-    """The same for people."""
+    """The answer in words for people."""
     probability: float
 
 

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from scipy.spatial import ConvexHull
 
 from diorama_core.arrangement.surfaces import (
-    Surface,
+    RestingSurface,
     choose_contact,
     choose_surface,
     complete_edges,
@@ -31,7 +31,7 @@ from tests.layout.small_rooms import Room, tilted
 
 SQUARE = np.array([[-1.0, -0.5, 0.2], [1.0, -0.5, 0.2], [1.0, 0.5, 0.2], [-1.0, 0.5, 0.2]])
 UP = np.array([0.0, 0.0, 1.0])
-TOP = Surface.of(SQUARE, UP, 0.3, of_plane=False)
+TOP = RestingSurface.of(SQUARE, UP, 0.3, of_plane=False)
 
 coordinate = st.floats(-3, 3)
 vector = st.tuples(coordinate, coordinate, coordinate).map(np.array)
@@ -53,7 +53,7 @@ def test_a_surface_at_a_pose_holds_the_posed_points(turn, p, scale, point) -> No
 
 
 def test_planes_stay_where_they_are() -> None:
-    floor = Surface.of(SQUARE, UP, np.inf, of_plane=True)
+    floor = RestingSurface.of(SQUARE, UP, np.inf, of_plane=True)
     assert floor.in_world(Pose.upright((1, 2, 3))) is floor
     assert TOP.in_world(None) is TOP
 
@@ -93,15 +93,15 @@ def item_at(position, size=(0.2, 0.3, 0.4), **more) -> SceneObject:
 
 
 def test_misfit_is_none_for_what_rests_and_counts_every_fault() -> None:
-    low_shelf = Surface.of(SQUARE, UP, 0.35, of_plane=False)
-    open_top = Surface.of(SQUARE, UP, np.inf, of_plane=False)
+    low_shelf = RestingSurface.of(SQUARE, UP, 0.35, of_plane=False)
+    open_top = RestingSurface.of(SQUARE, UP, np.inf, of_plane=False)
     rests = item_at((0, 0, 0.4))
     assert misfit(rests, open_top) == pytest.approx(0.0)
     assert misfit(item_at((0, 0, 0.5)), open_top) == pytest.approx(0.1)
     assert misfit(item_at((1.2, 0, 0.4)), open_top) == pytest.approx(0.2)
     # 5 cm higher than the clearance, but more than three quarters of its height are free.
     assert misfit(rests, low_shelf) == pytest.approx(0.025)
-    assert misfit(rests, Surface.of(SQUARE, UP, 0.2, of_plane=False)) == pytest.approx(1.1)
+    assert misfit(rests, RestingSurface.of(SQUARE, UP, 0.2, of_plane=False)) == pytest.approx(1.1)
     assert misfit(item_at((0, 0, 1.7), (3.0, 3.0, 3.0)), open_top) == pytest.approx(0.5 * (2.0 + 1.0))
 
 
@@ -158,7 +158,7 @@ def test_what_is_mounted_on_an_object_goes_to_its_nearest_side(room: Room) -> No
     np.testing.assert_allclose(surface.in_world(item.pose).normal, [0.0, 1.0, 0.0], atol=1e-12)
 
 
-def contact(scene: Scene, item: SceneObject, edge: Support | None, surface: Surface | None) -> list[float]:
+def contact(scene: Scene, item: SceneObject, edge: Support | None, surface: RestingSurface | None) -> list[float]:
     return choose_contact(scene, item, edge, surface).tolist()
 
 

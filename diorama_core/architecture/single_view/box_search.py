@@ -113,6 +113,14 @@ def _line_values(
     x0, x1, y1, top = box
 
     def crossing(rays: np.ndarray, known: int, value: float, wanted: int) -> np.ndarray:
+        """Coordinates at which rays from the camera pass, where another coordinate has a known value.
+
+        Args:
+            rays: (n, 3) in the world.
+            known: axis of the known coordinate.
+            value: of that coordinate (m).
+            wanted: axis of the coordinate that is returned.
+        """
         with np.errstate(divide="ignore", invalid="ignore"):
             t = (value - origin[known]) / rays[:, known]
         found = origin[wanted] + t * rays[:, wanted]

@@ -139,7 +139,14 @@ def _colour_difference(annotated: AnnotatedObject, shown: Float[np.ndarray, "3"]
 
 
 def front_error_of(annotated: AnnotatedObject, item: SceneObject, camera: Camera | None, fold: int) -> float | None:
-    """Smallest angle to any of the turns that leave the shape the same."""
+    """Smallest angle in degrees to any of the turns that leave the shape the same.
+
+    Args:
+        annotated: with its front as seen in the photo, degrees.
+        item: the object, posed in the world.
+        camera: of the photo; the error is None without one, or without an annotated front.
+        fold: number of turns about the up axis that leave the shape as it is.
+    """
     if annotated.front is None or camera is None:
         return None
     period = 360.0 / fold

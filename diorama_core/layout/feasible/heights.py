@@ -14,7 +14,7 @@ import numpy as np
 from jaxtyping import Float
 from scipy.optimize import lsq_linear
 
-from diorama_core.arrangement.surfaces import Surface, box_misfit, is_wall_like
+from diorama_core.arrangement.surfaces import RestingSurface, box_misfit, is_wall_like
 from diorama_core.layout.feasible.photo_observations import PhotoObservations
 from diorama_core.layout.problem.problem import Problem
 from diorama_core.layout.settings import LayoutSettings
@@ -91,7 +91,7 @@ def _is_sought(problem: Problem, observations: PhotoObservations, i: int) -> boo
     return upright and float(surface.normal[2]) > problem.settings.upward
 
 
-def _observed_place(problem: Problem, i: int) -> Surface:
+def _observed_place(problem: Problem, i: int) -> RestingSurface:
     """The place on its supporter that agrees best with where an object was observed, as `problem.levels` has it."""
     j, size = int(problem.parent[i]), problem.shape_size[i] * problem.scale[i]
     if j < 0 or len(problem.levels[i]) < 2:

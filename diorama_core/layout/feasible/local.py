@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from diorama_core.arrangement.surfaces import Surface, object_surfaces, outside_m, plane_surface
+from diorama_core.arrangement.surfaces import RestingSurface, object_surfaces, outside_m, plane_surface
 from diorama_core.layout.feasible.relocate import relocate
 from diorama_core.layout.feasible.separate import base, build_program, relaxed, separate
 from diorama_core.layout.feasible.structure import Structure, exact_structure
@@ -24,7 +24,7 @@ class DragSolver:
     problem: Problem
     index: int
     """Number of the dragged object in the problem."""
-    places: tuple[tuple[Surface, Support], ...]
+    places: tuple[tuple[RestingSurface, Support], ...]
     """Every surface it could be put down on, in the world, with the edge that would then hold it."""
     rounds: int = 4
     leaves_m: float = 0.02
@@ -139,7 +139,9 @@ def resolve_drag(scene: Scene, library: ShapeLibrary, object_id: str, pose: Pose
     return DragSolver.prepare(scene, library, object_id).solve(pose)
 
 
-def _places(scene: Scene, library: ShapeLibrary, problem: Problem, index: int) -> tuple[tuple[Surface, Support], ...]:
+def _places(
+    scene: Scene, library: ShapeLibrary, problem: Problem, index: int
+) -> tuple[tuple[RestingSurface, Support], ...]:
     own = {problem.ids[k] for k in problem.rides(index)}
     child = problem.ids[index]
     found = [(plane_surface(p), Support(child, p.id)) for p in scene.architecture.by_role("floor")]

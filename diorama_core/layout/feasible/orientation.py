@@ -7,7 +7,7 @@ from math import hypot, sqrt
 import numpy as np
 from jaxtyping import Float
 
-from diorama_core.arrangement.surfaces import Surface, is_wall_like
+from diorama_core.arrangement.surfaces import RestingSurface, is_wall_like
 from diorama_core.geometry.vectors import cross
 
 UPRIGHT_WITHIN = float(np.cos(np.deg2rad(35.0)))
@@ -17,7 +17,7 @@ _FRONT_FIRST = np.array([2.25, 1.0, 1.0])
 
 
 def aligned(
-    R: np.ndarray, contact: np.ndarray, surface: Surface, against: list[tuple[np.ndarray, np.ndarray]]
+    R: np.ndarray, contact: np.ndarray, surface: RestingSurface, against: list[tuple[np.ndarray, np.ndarray]]
 ) -> np.ndarray:
     """Swing the contact face onto the support, then twist about the normal to the observed front, or to a wall.
 

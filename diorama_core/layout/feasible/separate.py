@@ -13,7 +13,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 from jaxtyping import Bool, Float, Int
 
-from diorama_core.arrangement.surfaces import Surface, plane_surface
+from diorama_core.arrangement.surfaces import RestingSurface, plane_surface
 from diorama_core.geometry.planes import in_polygon
 from diorama_core.geometry.sat import PairAxes, PosedBodies, pair_axes, place_bodies
 from diorama_core.layout.escape import exits, ring
@@ -115,7 +115,7 @@ def build_program(
     )
 
 
-def _placed(structure: Structure, problem: Problem, i: int) -> Surface | None:
+def _placed(structure: Structure, problem: Problem, i: int) -> RestingSurface | None:
     """Where an object rests, in the world."""
     place, j = structure.surface[i], int(problem.parent[i])
     return place if place is None or j < 0 else place.at(structure.R[j], structure.p[j], structure.scale[j])

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from jaxtyping import Float
 
-from diorama_core.arrangement.surfaces import Surface, is_wall_like
+from diorama_core.arrangement.surfaces import RestingSurface, is_wall_like
 from diorama_core.geometry.planes import plane_axes
 from diorama_core.geometry.vectors import cross
 from diorama_core.layout.feasible.footprints import INSET_M, largest_share
@@ -26,7 +26,7 @@ class Walk:
     p: np.ndarray
     scale: np.ndarray
     basis: np.ndarray
-    surface: list[Surface | None]
+    surface: list[RestingSurface | None]
     owners: list[int] = field(default_factory=list)
     normals: list[np.ndarray] = field(default_factory=list)
     slacks: list[float] = field(default_factory=list)
@@ -37,7 +37,7 @@ def settle(
     problem: Problem,
     walk: Walk,
     i: int,
-    surface: Surface,
+    surface: RestingSurface,
     against: list[tuple[int, np.ndarray]],
     ray: np.ndarray | None,
     observations: PhotoObservations | None,
@@ -117,7 +117,7 @@ def _overhang(problem: Problem, i: int, outward: np.ndarray) -> float:
 
 
 def _within_support(
-    problem: Problem, walk: Walk, i: int, surface: Surface
+    problem: Problem, walk: Walk, i: int, surface: RestingSurface
 ) -> tuple[Float[np.ndarray, "k 3"], Float[np.ndarray, " k"]]:
     """Outward normals of the support's sides that the object's free coordinates can meet, and how far each is.
 
@@ -129,7 +129,10 @@ def _within_support(
 
 
 def sides(
-    surface: Surface, contact: Float[np.ndarray, "3"], reach: Float[np.ndarray, " s"], basis: Float[np.ndarray, "3 2"]
+    surface: RestingSurface,
+    contact: Float[np.ndarray, "3"],
+    reach: Float[np.ndarray, " s"],
+    basis: Float[np.ndarray, "3 2"],
 ) -> tuple[Float[np.ndarray, "k 3"], Float[np.ndarray, " k"]]:
     """Outward normals of a support's sides that an object's free coordinates can meet, and how far each is.
 
@@ -146,7 +149,9 @@ def sides(
     return m[mobile], slack[mobile]
 
 
-def _onto_support(problem: Problem, walk: Walk, i: int, surface: Surface, slack: np.ndarray, m: np.ndarray) -> None:
+def _onto_support(
+    problem: Problem, walk: Walk, i: int, surface: RestingSurface, slack: np.ndarray, m: np.ndarray
+) -> None:
     """The shortest way onto the surface: with the coordinates that a wall leaves where that is about as short."""
     plane = np.column_stack(plane_axes(surface.normal))
     shortest = plane @ _into(m @ plane, slack)
@@ -159,7 +164,7 @@ def _seen_from_the_edge(
     problem: Problem,
     walk: Walk,
     i: int,
-    surface: Surface,
+    surface: RestingSurface,
     observations: PhotoObservations,
     pinned: np.ndarray,
     eye: np.ndarray | None,
@@ -205,12 +210,12 @@ def _contact_centre(problem: Problem, walk: Walk, i: int) -> np.ndarray:
     return walk.p[i] + walk.R[i] @ (problem.contact[i] * _size(problem, walk, i) / 2)
 
 
-def _lift(problem: Problem, walk: Walk, i: int, surface: Surface) -> float:
+def _lift(problem: Problem, walk: Walk, i: int, surface: RestingSurface) -> float:
     """How far the contact face is below the surface."""
     return surface.level - float(surface.normal @ _contact_centre(problem, walk, i))
 
 
-def _reach_support(problem: Problem, walk: Walk, i: int, surface: Surface) -> None:
+def _reach_support(problem: Problem, walk: Walk, i: int, surface: RestingSurface) -> None:
     """Stretch the object so that its contact face is on its surface; its far face, which was measured, stays."""
     axis = int(np.abs(problem.contact[i]).argmax())
     extent = float(_size(problem, walk, i)[axis])
@@ -220,7 +225,7 @@ def _reach_support(problem: Problem, walk: Walk, i: int, surface: Surface) -> No
     walk.p[i] = walk.p[i] - 0.5 * (factor - 1.0) * extent * surface.normal
 
 
-def _on_support(problem: Problem, walk: Walk, i: int, surface: Surface, ray: np.ndarray | None) -> None:
+def _on_support(problem: Problem, walk: Walk, i: int, surface: RestingSurface, ray: np.ndarray | None) -> None:
     """Move the object onto its surface: along the normal, or along its viewing ray where that meets it decently."""
     lift = _lift(problem, walk, i, surface)
     shift = lift * surface.normal
@@ -235,7 +240,7 @@ def _on_support(problem: Problem, walk: Walk, i: int, surface: Surface, ray: np.
     walk.p[i] = walk.p[i] + shift
 
 
-def _from_the_eye(problem: Problem, walk: Walk, i: int, surface: Surface, eye: np.ndarray) -> float:
+def _from_the_eye(problem: Problem, walk: Walk, i: int, surface: RestingSurface, eye: np.ndarray) -> float:
     """Enlarge or reduce the object about the camera until its contact face is on the surface; returns by how much."""
     sight = _contact_centre(problem, walk, i) - eye
     meets = float(sight @ surface.normal)
@@ -267,7 +272,7 @@ def _against_walls(problem: Problem, walk: Walk, i: int, against: list[tuple[int
     walk.basis[i] = basis
 
 
-def _fit(problem: Problem, walk: Walk, i: int, surface: Surface, m: np.ndarray, h: np.ndarray) -> np.ndarray:
+def _fit(problem: Problem, walk: Walk, i: int, surface: RestingSurface, m: np.ndarray, h: np.ndarray) -> np.ndarray:
     """Shrink only what does not fit; returns the reach of the contact face along each outward normal."""
     label = problem.labels[i]
     normal_axis = int(np.abs(problem.contact[i]).argmax())

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 from jaxtyping import Float
 
-from diorama_core.arrangement.surfaces import Surface, box_misfit
+from diorama_core.arrangement.surfaces import RestingSurface, box_misfit
 from diorama_core.layout.feasible.photo_observations import PhotoObservations
 from diorama_core.layout.feasible.settle import Walk, settle
 from diorama_core.layout.problem.problem import Problem
@@ -33,7 +33,7 @@ class Structure:
     bound_normal: Float[np.ndarray, "b 3"]
     bound_slack: Float[np.ndarray, " b"]
     """Rows m . (basis_i @ r_i) <= slack: the contact face stays on its surface."""
-    surface: tuple[Surface | None, ...]
+    surface: tuple[RestingSurface | None, ...]
     """Where each object came to rest."""
     reasons: tuple[str, ...]
     reduced: tuple[int, ...] = ()
@@ -78,7 +78,7 @@ def exact_structure(
     )  # fmt: skip
 
 
-def _level(problem: Problem, walk: Walk, i: int) -> Surface | None:
+def _level(problem: Problem, walk: Walk, i: int) -> RestingSurface | None:
     """The place on a supporter as it stands now that agrees best with where the object was observed."""
     if len(problem.levels[i]) < 2:
         return problem.surface[i]
@@ -87,6 +87,6 @@ def _level(problem: Problem, walk: Walk, i: int) -> Surface | None:
     return min(problem.levels[i], key=lambda s: box_misfit(corners, size, _posed(walk, problem, i, s)))
 
 
-def _posed(walk: Walk, problem: Problem, i: int, surface: Surface) -> Surface:
+def _posed(walk: Walk, problem: Problem, i: int, surface: RestingSurface) -> RestingSurface:
     j = int(problem.parent[i])
     return surface if j < 0 else surface.at(walk.R[j], walk.p[j], walk.scale[j])

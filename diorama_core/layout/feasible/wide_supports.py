@@ -12,7 +12,7 @@ from dataclasses import replace
 import numpy as np
 from jaxtyping import Float
 
-from diorama_core.arrangement.surfaces import Surface
+from diorama_core.arrangement.surfaces import RestingSurface
 from diorama_core.layout.feasible.footprints import INSET_M
 from diorama_core.layout.feasible.structure import Structure
 from diorama_core.layout.problem.footing import reach_of
@@ -66,7 +66,7 @@ def _needed(
     j = int(problem.parent[i])
     own = structure.surface[i]
     assert own is not None, "it stands on something"
-    place: Surface = own.at(structure.R[j], structure.p[j], structure.scale[j])
+    place: RestingSurface = own.at(structure.R[j], structure.p[j], structure.scale[j])
     centre, grown = _seen(problem, i, place.level, eye)
     reach = float(reach_of(problem.footing[i], structure.R[i], grown * problem.scale[i], outward[None])[0])
     edge = float((place.polygon @ outward).max())
@@ -80,7 +80,7 @@ def _needed(
     return 1.0 + beyond / max(edge - back, 1e-6)
 
 
-def _is_near(place: Surface, outward: np.ndarray, centre: np.ndarray) -> bool:
+def _is_near(place: RestingSurface, outward: np.ndarray, centre: np.ndarray) -> bool:
     """Whether a point is beside a place only in one direction."""
     across = np.array([-outward[1], outward[0], 0.0])
     along = place.polygon @ across

@@ -13,12 +13,14 @@ from itertools import pairwise
 import numpy as np
 from jaxtyping import Bool
 
-from diorama_core.arrangement.surfaces import Surface
+from diorama_core.arrangement.surfaces import RestingSurface
 from diorama_core.geometry.sat import PosedBodies
 from diorama_core.layout.problem.problem import Problem
 
 
-def may_meet(problem: Problem, bodies: PosedBodies, surface: Sequence[Surface | None]) -> Bool[np.ndarray, "b b"]:
+def may_meet(
+    problem: Problem, bodies: PosedBodies, surface: Sequence[RestingSurface | None]
+) -> Bool[np.ndarray, "b b"]:
     """Which pairs of parts must not overlap: those of unrelated objects, and what encloses a place with what is there.
 
     Args:
@@ -43,7 +45,7 @@ def may_meet(problem: Problem, bodies: PosedBodies, surface: Sequence[Surface | 
     return allowed
 
 
-def _rises(bodies: PosedBodies, parts: np.ndarray, place: Surface, above_m: float) -> Bool[np.ndarray, " k"]:
+def _rises(bodies: PosedBodies, parts: np.ndarray, place: RestingSurface, above_m: float) -> Bool[np.ndarray, " k"]:
     """Which parts rise above a place (world) beside its middle.
 
     One that has the middle of the place inside it encloses nothing: it is the hull of a worktop and of what rises
@@ -58,7 +60,9 @@ def _rises(bodies: PosedBodies, parts: np.ndarray, place: Surface, above_m: floa
     return np.asarray(((vertices @ place.normal).max(axis=1) - place.level > above_m) & ~around)
 
 
-def _stands_beside(bodies: PosedBodies, parts: np.ndarray, place: Surface, beside_m: float) -> Bool[np.ndarray, " k"]:
+def _stands_beside(
+    bodies: PosedBodies, parts: np.ndarray, place: RestingSurface, beside_m: float
+) -> Bool[np.ndarray, " k"]:
     """Which parts lie outside of one of a place's sides (world)."""
     out = np.matmul(bodies.vertices[parts], place.outward.T) - place.offset
     return np.asarray(out.min(axis=1).max(axis=1) > -beside_m)

@@ -13,7 +13,7 @@ import numpy as np
 from jaxtyping import Bool, Float, Int
 
 from diorama_core.arrangement.surfaces import (
-    Surface,
+    RestingSurface,
     choose_contact,
     choose_surface,
     complete_edges,
@@ -59,9 +59,9 @@ class Problem:
     """Index of the supporting object, or -1."""
     on_plane: tuple[str | None, ...]
     """Id of the supporting plane, where one supports."""
-    surface: tuple[Surface | None, ...]
+    surface: tuple[RestingSurface | None, ...]
     """Support of each object; None without one."""
-    levels: tuple[tuple[Surface, ...], ...]
+    levels: tuple[tuple[RestingSurface, ...], ...]
     """Where each object may rest on its supporter; which of these it is depends on where the supporter ends."""
     contact: Float[np.ndarray, "n 3"]
     """Outward normal of the touching face, in the object frame."""
@@ -195,8 +195,8 @@ def build_problem(
     for k, edge in enumerate(edges):
         if edge is not None and edge.parent in index:
             parent[k] = index[edge.parent]
-    surfaces: list[Surface | None] = []
-    levels: list[tuple[Surface, ...]] = []
+    surfaces: list[RestingSurface | None] = []
+    levels: list[tuple[RestingSurface, ...]] = []
     contacts = np.zeros((len(objects), 3))
     for k, (item, edge) in enumerate(zip(objects, edges)):
         supported_by = shapes[parent[k]] if parent[k] >= 0 else None
@@ -267,7 +267,7 @@ def _adherences(
     p: np.ndarray,
     sizes: np.ndarray,
     edges: Sequence[Support | None],
-    surfaces: Sequence[Surface | None],
+    surfaces: Sequence[RestingSurface | None],
     walls: tuple[Plane, ...],
     within_m: float,
 ) -> tuple[tuple[int, int, np.ndarray], ...]:

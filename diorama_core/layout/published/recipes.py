@@ -107,6 +107,14 @@ def _reporter(scene: Scene, problem: Problem, progress: Progress, preview: Previ
     done = 0
 
     def report(stage: str, step: int, state: State, terms: Mapping[str, float]) -> None:
+        """Report a step of the optimiser, and every tenth one's scene to the preview.
+
+        Args:
+            stage: name of the stage, for the message.
+            step: number of the step within it, from 0.
+            state: poses of all objects.
+            terms: costs by name.
+        """
         nonlocal done
         done += 1
         progress.check()

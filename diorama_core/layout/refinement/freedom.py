@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from jaxtyping import Float
 
-from diorama_core.arrangement.surfaces import Surface, is_wall_like
+from diorama_core.arrangement.surfaces import RestingSurface, is_wall_like
 from diorama_core.geometry.planes import plane_axes
 from diorama_core.geometry.rotations import yaw_rotations
 from diorama_core.geometry.silhouette import PoseBatch
@@ -79,7 +79,7 @@ class Freedom:
 def freedom(
     problem: Problem,
     i: int,
-    surface: Surface,
+    surface: RestingSurface,
     *,
     sized: bool,
     is_round: bool,

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from diorama_core.arrangement.surfaces import Surface
+from diorama_core.arrangement.surfaces import RestingSurface
 from diorama_core.geometry.rotations import rotation_from_vector
 from diorama_core.layout.feasible.orientation import aligned, swing
 
@@ -19,9 +19,9 @@ def unit(v: tuple[float, ...]) -> np.ndarray:
     return np.asarray(v) / np.linalg.norm(v)
 
 
-def level() -> Surface:
+def level() -> RestingSurface:
     square = np.array([[-1.0, -1.0, 0.0], [1.0, -1.0, 0.0], [1.0, 1.0, 0.0], [-1.0, 1.0, 0.0]])
-    return Surface.of(square, np.array([0.0, 0.0, 1.0]), np.inf, of_plane=True)
+    return RestingSurface.of(square, np.array([0.0, 0.0, 1.0]), np.inf, of_plane=True)
 
 
 @given(directions, directions)

@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from diorama_core.arrangement.surfaces import Surface
+from diorama_core.arrangement.surfaces import RestingSurface
 from diorama_core.layout.feasible.structure import exact_structure
 from diorama_core.layout.feasible.wide_supports import reaching_loads
 from diorama_core.layout.problem.problem import Problem, build_problem
@@ -85,6 +85,6 @@ def test_no_side_comes_out_for_a_divider_that_is_far_from_it(room: Room, share: 
     structure = exact_structure(problem)
     place = structure.surface[1]
     assert place is not None
-    narrow = Surface.of(place.polygon * [share, 1.0, 1.0], place.normal, place.clearance_m, of_plane=False)
+    narrow = RestingSurface.of(place.polygon * [share, 1.0, 1.0], place.normal, place.clearance_m, of_plane=False)
     after = reaching_loads(problem, replace(structure, surface=(structure.surface[0], narrow)), None)
     assert (after.scale != problem.scale).any() == comes_out

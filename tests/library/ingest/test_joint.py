@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from diorama_core.library.ingest.convention import GLTF, OBJ
+from diorama_core.library.ingest.frames import GLTF, OBJ
 from diorama_core.library.ingest.given import UNITS, axis_name
 from diorama_core.library.ingest.joint import Evidence, joint_convention
 from diorama_core.library.ingest.relief import quarter_turns

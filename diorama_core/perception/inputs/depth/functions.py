@@ -19,7 +19,7 @@ class DepthFunction:
     """Depth is `exp(rate * number)`; None where it is a power."""
 
     def inverse_depth(self, numbers: Float[np.ndarray, "*n"]) -> Float[np.ndarray, "*n"]:
-        """Of positive numbers; affine in the picture on planes."""
+        """Reciprocal of positive numbers; affine in the picture on planes."""
         if self.rate is not None:
             return np.asarray(np.exp(-self.rate * numbers))
         return np.asarray((numbers + self.offset) ** -self.power)

@@ -54,7 +54,7 @@ class DepthReading:
     score: float
     fit: PlaneFit
     function: DepthFunction
-    """Of depth that the numbers are, rays apart."""
+    """Function of depth that the numbers are, distances along rays apart."""
     focal: float | None
     """Over the longer side: the one under which distances along rays form planes."""
     order: float

@@ -107,7 +107,13 @@ class _Scene:
 
     @classmethod
     def of(cls, photo: DecodedPhoto, boxes: tuple[LabelledBox, ...], intrinsics: Intrinsics | None) -> _Scene:
-        """In shares of the photo's longer side."""
+        """In shares of the photo's longer side.
+
+        Args:
+            photo: decoded, upright.
+            boxes: of named things, in pixels of the photo.
+            intrinsics: of the photo, where they were given; else its EXIF data tell.
+        """
         side = max(photo.photo.width, photo.photo.height)
         shares = tuple(replace(b, box=_shares(b.box, side)) for b in boxes)
         stated = photo.photo.exif_focal_px if intrinsics is None else intrinsics.fx

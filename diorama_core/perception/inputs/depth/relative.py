@@ -31,7 +31,7 @@ SCATTER_WEIGHT = 12.0
 BASES = (1.0, float(np.log(2.0)), float(np.log(10.0)))
 """Rates of the logarithms that are in use."""
 NEAR_BASE = 0.15
-"""Of the logarithm of a fitted rate and one of those: planes tell it to a tenth."""
+"""Tolerance of the logarithm of a fitted rate to one of those; planes tell it to a tenth."""
 
 
 def metric_depth(

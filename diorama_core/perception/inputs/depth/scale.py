@@ -25,9 +25,9 @@ HEIGHT_PRIOR = (1.5, 0.22)
 ROOM_HEIGHT_PRIOR = (2.6, 0.15)
 """Height of a room in metres, likewise: homes and offices, not halls."""
 HEIGHTS_AGREE = float(np.log(1.35))
-"""Of what the camera's and the room's heights say, within which both say it."""
+"""Log ratio of the scales by the camera's and the room's height, within which the two agree."""
 MIN_LEVEL_SHARE = 0.03
-"""Of the points, that a floor or ceiling has."""
+"""Share of the points on a floor or ceiling."""
 SIZE_SIGMA = 0.55
 """Standard deviation of log(seen size / size of the kind): occlusion, pose and variation within the kind."""
 MIN_SIZE_SIGMA = 0.15
@@ -53,7 +53,7 @@ class ScaleEvidence:
     floor_height: float | None
     """Height of the camera over the floor, in the map's unit; None where no floor is seen."""
     room_height: float | None = None
-    """Of the ceiling over the floor, likewise."""
+    """Height of the ceiling over the floor, in the map's unit; None where no ceiling is seen."""
 
     @property
     def heights_agree(self) -> bool:
@@ -143,7 +143,7 @@ def _cosine(one: np.ndarray, other: np.ndarray) -> Float[np.ndarray, "f"]:
 
 
 def _heights(fit: PlaneFit, focal: float) -> tuple[float | None, float | None]:
-    """Of the camera over the lowest large plane that faces up, and of the highest that faces down over that."""
+    """Heights of the camera over the lowest large upward plane, and of the highest downward plane over that."""
     normals = fit.planes * [focal, focal, 1.0]
     lengths = np.maximum(np.linalg.norm(normals, axis=1), 1e-12)
     away, downward = 1.0 / lengths, normals[:, 1] / lengths

@@ -27,7 +27,7 @@ TOLERANCE = 0.11
 """Deviation of the evidence's logarithm from the true one, beside its own sigma's half: measured on known rooms."""
 MIN_THINGS = 3
 USUAL_HEIGHTS_M = (0.9, 2.5)
-"""Of cameras over floors: of 26 photos whose depth a network guessed one was higher, none lower."""
+"""Usual heights of cameras over floors (m): of 26 photos with predicted depth one was higher, none lower."""
 
 
 @dataclass(frozen=True)

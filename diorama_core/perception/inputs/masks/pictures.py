@@ -26,11 +26,11 @@ THIN_SHARE = 0.012
 """Share of the longer side: half the width up to which a region is an outline."""
 LOSSY_FORMATS = ("JPEG", "MPO")
 BRIGHT = 100
-"""Of white after a lossy format; what is darker everywhere is an empty mask, or one of small numbers."""
+"""Level of white after a lossy format; a mask darker everywhere is empty, or holds small numbers."""
 GREY_OFF = 24
 """Differences of channels that a lossy format makes of grey."""
 MAX_BLURRED_SHARE = 0.08
-"""Of the pixels of white on black, that lie between both along outlines."""
+"""Share of pixels between white and black, along outlines of a white mask."""
 CUT_OUT_COLOURS = 256
 """Under transparency more colours than these are a photo's."""
 
