@@ -216,6 +216,7 @@ class PhotoPanel:
             "turn": lambda: self._read_again("turn the photo", {}, turn=True),
             "bend": lambda: self._read_again("undo straightening", {}, bend=True),
             "build": lambda: work.build(client.session),
+            "build at once": self._build_at_once,
             "join": lambda: join_photo(client),
             "named": lambda: boxes.name(action.pair[1]),
             "name": lambda: boxes.name(action.arg),
@@ -231,6 +232,13 @@ class PhotoPanel:
                 boxes.happened(Selected(None if client.selected_box == index else index))
 
         client.post(do)
+
+    def _build_at_once(self) -> None:
+        """Build with the proposals, of which nobody looked at one."""
+        session = self._client.session
+        if session.inputs is not None:
+            inputs = self._boxes.with_proposals(session.inputs)
+            work.start_build(session, inputs, "Building the scene", "build the scene")
 
     # -- words ------------------------------------------------------------------------------------------------
 

@@ -29,7 +29,10 @@ def photo_bar(client: Client, inputs: Inputs, proposals: int) -> str:
     if further is None and scene.objects and client.selected_box is not None:
         hint = "Reconstruct only the selected box; everything else stays"
         pieces.append(button("Add selected box to the scene", "add box", title=hint, disabled=busy))
-    if further is None:
+    if further is None and proposals and not ready_to_build(inputs):
+        hint = "Build with all proposals; what the build is not sure of is asked afterwards"
+        pieces.append(button("Build at once", "build at once", title=hint, disabled=busy))
+    elif further is None:
         pieces.append(build_button(inputs, busy=busy))
     if further is not None or awaits_photo(scene):
         hint = "Find where this photo was taken, match its objects with those of the scene and insert the others"

@@ -26,7 +26,7 @@ from diorama_core.editing.box_checks import merged_boxes, too_tall
 from diorama_core.editing.input_corrections import labelled_box, same_object, with_box_at, without_box
 from diorama_core.errors import InputError
 from diorama_core.io.text import number_of
-from diorama_core.library.taxonomy import CATEGORIES, column, is_furniture
+from diorama_core.library.taxonomy import CATEGORIES, UNKNOWN, column, is_furniture
 
 COMMON = tuple(sorted(filter(is_furniture, column("frequency")), key=lambda kind: -column("frequency")[kind])[:10])
 """Furniture that rooms have most of."""
@@ -90,6 +90,12 @@ class PhotoBoxes:
             self._annotate(f"mark {number_of(len(accepted))}", replace(inputs, boxes=boxes))
             self._client.refresh()
             self._client.notice(" ".join(_accepted_in_words(boxes, len(proposed) - len(accepted), doubtful)))
+
+    def with_proposals(self, inputs: Inputs) -> Inputs:
+        """The photo with boxes of all proposals; what they hold is left to the build, since their names are guesses."""
+        unnamed = {"category": UNKNOWN.name, "label": UNKNOWN.name, "guessed": True}
+        proposed = tuple(replace(b, **unnamed) for b in self._proposals(inputs))
+        return replace(inputs, boxes=(*inputs.boxes, *proposed))
 
     def open(self) -> None:
         """Put the photo on the canvas, to be marked; raises `InputError` where there is none."""

@@ -119,7 +119,9 @@ def _names() -> Mapping[Words, str]:
 
 
 def with_article(words: str) -> str:
-    """Words with "a" or "an" before them."""
+    """Words with "a" or "an" before them; those that are plural stay alone."""
+    if words.endswith("s") and not words.endswith("ss"):
+        return words
     return f"{'an' if words[:1] in 'aeiou' else 'a'} {words}"
 
 

@@ -75,9 +75,9 @@ def _about(scene: Scene, item: SceneObject, belief: Belief) -> Iterator[Question
         # Where it is no object, what is right afterwards is that nothing is there.
         gain = (1.0 - belief.present) * (1.0 + belief.right)
         choices = (Choice(YES, "Yes", belief.present), Choice(NO, "Not an object", 1.0 - belief.present))
-        yield Question(item.id, "presence", f"Is this {with_article(item.label)}?", choices, gain)
+        yield Question(item.id, "presence", _is_this(item.label), choices, gain)
     if belief.kinds and belief.kinds[0][0] == item.category and belief.kinds[0][1] < 1.0:
-        yield _question(item, "kind", f"Is this {with_article(item.category)}?", belief.kinds, belief, str)
+        yield _question(item, "kind", _is_this(item.category), belief.kinds, belief, str)
     if belief.fronts and belief.fronts[0] < 1.0 and not item.by_hand:
         turns = tuple(zip(TURNS, belief.fronts, strict=True))
         turns = tuple(turn for turn in turns if turn[1] > 0.0)
@@ -116,6 +116,11 @@ def _question(
     gain = (1.0 - decided) * belief.right / decided
     ordered = sorted(shares, key=lambda share: -share[1])
     return Question(item.id, subject, sentence, tuple(Choice(v, label(v), p) for v, p in ordered), gain)
+
+
+def _is_this(words: str) -> str:
+    named = with_article(words)
+    return f"Is this {named}?" if named != words else f"Are these {words}?"
 
 
 def _direction(scene: Scene, item: SceneObject, turn: str) -> str:

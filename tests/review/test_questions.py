@@ -73,6 +73,13 @@ def test_an_answer_is_worth_what_it_makes_right(present: float, kind: float, fro
         assert question.gain <= 1.0 + 1.0
 
 
+def test_plural_kinds_are_asked_after_in_the_plural() -> None:
+    scene = believed(furnished_scene(), {"chair_1": Belief(0.5)})
+    books = replace(scene.object("chair_1"), label="books")
+    scene = replace(scene, objects=tuple(books if o.id == "chair_1" else o for o in scene.objects))
+    assert [q.sentence for q in questions(scene)] == ["Are these books?"]
+
+
 def test_a_question_as_json_says_everything() -> None:
     first = questions(doubtful_scene())[0]
     assert first.to_json()["id"] == first.id

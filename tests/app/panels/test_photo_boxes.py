@@ -117,6 +117,14 @@ def test_all_proposals_are_accepted_as_one_undo_step(session, client: Client, ma
     assert labels(session) == []
 
 
+def test_at_once_all_proposals_are_built_and_their_names_stay_guesses(session, client, marking: PhotoBoxes) -> None:
+    marking.happened(Dismissed(1))
+    given = marking.with_proposals(session.inputs)
+    (box,) = given.boxes
+    assert (box.label, box.category, box.guessed) == ("object", "object", True)
+    assert session.inputs.boxes == (), "nothing is marked by it"
+
+
 def test_the_list_tells_how_to_make_the_first_box(session) -> None:
     assert "lick each piece of furniture" in box_list(Inputs(plain_photo()), None)
 
