@@ -77,6 +77,8 @@ def unit_of(evidence: ScaleEvidence | None, stated: float) -> DepthUnit:
     nats = {u: -0.5 * ((seen - np.log(u)) / sigma) ** 2 for u in USUAL_UNITS}
     likely = sorted(nats, key=lambda u: -nats[u])[:2]
     wrong = _words(stated, float(np.exp(seen)) / stated, evidence)
+    if nats[likely[0]] < -4.5 and evidence.things < MIN_THINGS:  # a hall, or depth that a network guessed
+        return DepthUnit(stated, f"{wrong}; if that is wrong, give its unit by --depth-scale")
     if nats[likely[0]] < -4.5:
         return DepthUnit(stated, question=f"{wrong}; its unit is unknown: give --depth-scale {np.exp(seen):.3g} or so")
     if nats[likely[0]] - nats[likely[1]] < CERTAIN_NATS:

@@ -82,7 +82,7 @@ def test_without_things_the_stated_unit_stays_and_an_odd_height_is_remarked() ->
     reading = best(DEPTH * 5.0)
     evidence = scale_evidence(DEPTH * 5.0, SEEN, reading.fit, FOCAL, ())
     assert evidence is not None
-    assert "13.0 m high and the camera 8.0 m above the floor" in unit_of(evidence, 1.0).question
+    assert "13.0 m high and the camera 8.0 m above the floor" in unit_of(evidence, 1.0).note
     unit = unit_of(replace(evidence, room_height=None), 1.0)
     assert (unit.per_metre, unit.question) == (1.0, "")
     assert "8.0 m above the floor" in unit.note
