@@ -139,6 +139,7 @@ def newton(folder: Path) -> tuple[Poses, Poses, int]:
 
     warp.config.quiet = True
     builder = newton.ModelBuilder(up_axis=newton.Axis.Z)
+    newton.solvers.SolverMuJoCo.register_custom_attributes(builder)  # the stage's own settings of the solver
     builder.add_usd(str(folder / "room.usdc"))
     model = builder.finalize(device="cpu")
     solver = newton.solvers.SolverMuJoCo(model, njmax=4000, nconmax=4000)

@@ -18,7 +18,7 @@ from scipy.spatial import ConvexHull, QhullError
 from diorama_core.export.bodies import MovingPart, PhysicalScene, Points, RigidBody, StaticSlab, is_soft
 from diorama_core.export.gathering import ExportObject, ExportOptions, ExportScene, gather, rigid_inverse
 from diorama_core.export.limbs import ExportLimb, limb_parts
-from diorama_core.export.overlaps import Cuts, cut
+from diorama_core.export.overlaps import Cuts, cut, seated
 from diorama_core.export.physics import GRAVITY, Inertia, friction_of, inertia_of, plausible_mass_kg
 from diorama_core.geometry.convex import ConvexPart
 from diorama_core.geometry.planes import plane_axes
@@ -70,7 +70,7 @@ def physical_scene(gathered: ExportScene) -> PhysicalScene:
             bodies[child] = _welded(bodies[child], carrier)
             notes.append(f"{child} is sunk into {carrier or 'the room'} and welded to it")
     apart = {i: replace(b, parts=cuts.parts(i), moving=cuts.moving(b)) for i, b in bodies.items()}
-    done = tuple(balanced(b, None if b.node.parent is None else apart[b.node.parent]) for b in apart.values())
+    done = tuple(_resting(b, None if b.node.parent is None else apart[b.node.parent]) for b in apart.values())
     return PhysicalScene(done, slabs, tuple(sorted(cuts.ignored)), tuple(notes))
 
 
@@ -86,18 +86,34 @@ def body_of(scene: Scene, library: ShapeLibrary, object_id: str) -> RigidBody:
     return _body(gathered, gathered.objects[0])
 
 
-def balanced(body: RigidBody, carrier: RigidBody | None = None) -> RigidBody:
-    """The body with its centre of mass above its foot, or above that part of it which its carrier holds up.
+def _resting(body: RigidBody, carrier: RigidBody | None) -> RigidBody:
+    """The body in balance; a soft one follows what carries it, too."""
+    if carrier is None or not is_soft(body.node):
+        return balanced(body, carrier)
+    lowest, T = float(body.node.item.corners_world[:, 2].min()), rigid_inverse(body.node.T_world)
+    lain = [seated(part, lowest, world_parts(carrier)) for part in world_parts(body)]
+    pieces, held = ([p for some in each for p in some] for each in zip(*lain, strict=True))
+    rests = replace(body, parts=(*body.parts, *(_placed(T, p) for p in pieces)))
+    return over(rests, np.concatenate(held)[:, :2]) if held else balanced(body, carrier)
 
-    What stands in a photo is in balance; where guessed masses say otherwise, as for lamps with weighted feet, they are
-    wrong. The centre moves to the nearest place well inside the foot's outline.
-    """
+
+def balanced(body: RigidBody, carrier: RigidBody | None = None) -> RigidBody:
+    """The body with its centre of mass above its foot, or above that part of it which its carrier holds up."""
     low = min((float(p[:, 2].min()) for p in world_parts(body)), default=0.0)
     foot = [p[p[:, 2] < low + FOOT_M][:, :2] for p in world_parts(body)]
     outline = np.concatenate(foot) if foot else np.zeros((0, 2))
     if carrier is not None:
         tops = [p[np.abs(p[:, 2] - low) < NEAR_TOP_M][:, :2] for p in world_parts(carrier)]
         outline = _shared_outline(outline, np.concatenate(tops))
+    return over(body, outline)
+
+
+def over(body: RigidBody, outline: Float[np.ndarray, "n 2"]) -> RigidBody:
+    """The body with its centre of mass above the outline that holds it up.
+
+    What stands in a photo is in balance; where guessed masses say otherwise, as for lamps with weighted feet, they are
+    wrong. The centre moves to the nearest place well inside the outline.
+    """
     total = body.mass_kg + sum(m.inertia.mass_kg for m in body.moving)
     weighed = [
         (body.inertia.mass_kg, body.inertia.centre),

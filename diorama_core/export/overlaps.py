@@ -21,6 +21,8 @@ MAX_SOFT_DIP = 0.25
 """Soft objects are cut level where they sink into their supporter by at most this share of their height."""
 MAX_RIGID_CUT_M = 0.02
 """Parts of objects that do not give way are cut by at most this."""
+SOFT_CELLS = 4
+"""Soft objects follow what they lie on in so many cells along each side."""
 SKIN_M = 1e-4
 """Bodies start this far apart where they were cut."""
 
@@ -162,6 +164,40 @@ class Cuts:
                 self.sunk[child] = carrier
         if a is not None and b is not None:
             self.ignored.add((min(a, b), max(a, b)))
+
+
+def seated(part: Points, lowest: float, below: Iterable[Points]) -> tuple[list[Points], list[Points]]:
+    """How a soft part lies: pieces that reach down where what carries it is lower than what it was cut off above, and
+    the points that it then lies on. Cut level it would lie on the highest place alone and tip; cloth follows.
+
+    Args:
+        part: corners in the world, cut level.
+        lowest: level that no piece goes below, metres: that of the object before it was cut.
+        below: parts of what carries it, in the world.
+    """
+    below, level, pieces, held = list(below), float(part[:, 2].min()), [], []
+    edges = np.linspace(part[:, :2].min(axis=0), part[:, :2].max(axis=0), SOFT_CELLS + 1)
+    for column, row in itertools.product(range(SOFT_CELLS), repeat=2):
+        bounds = np.array([edges[column, 0], edges[row, 1]]), np.array([edges[column + 1, 0], edges[row + 1, 1]])
+        cell = _within(part, *bounds)
+        foot = np.zeros((0, 3)) if cell is None else cell[cell[:, 2] < level + SKIN_M]
+        carriers = [p for q in below if (p := _within(q, *bounds)) is not None and p[:, 2].max() < level]
+        bottom = max((float(p[:, 2].max()) + SKIN_M for p in carriers), default=-np.inf)
+        if len(foot) < 3 or bottom < lowest:
+            continue
+        held += [p[p[:, 2] > bottom - 2 * SKIN_M] for p in carriers]
+        if bottom < level - SKIN_M:
+            pieces.append(np.concatenate([foot, np.column_stack([foot[:, :2], np.full(len(foot), bottom)])]))
+    return pieces, held
+
+
+def _within(points: Points, lower: Float[np.ndarray, "2"], upper: Float[np.ndarray, "2"]) -> Points | None:
+    """A convex body inside an upright column."""
+    rest: Points | None = points
+    for axis in (0, 1):
+        for sign, bound in ((1.0, lower[axis]), (-1.0, -upper[axis])):
+            rest = None if rest is None else cut(rest, sign * np.eye(3)[axis], bound, np.inf)
+    return rest
 
 
 def cut(points: Points, normal: Float[np.ndarray, "3"], level: float, depth: float) -> Points | None:

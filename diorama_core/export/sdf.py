@@ -23,6 +23,8 @@ from diorama_core.progress import Progress
 
 VERSION = "1.9"
 ROOM = "room"
+HYDROELASTIC_MODULUS = "1e8"
+"""Stiffness of surfaces in Drake, pascals: what stands sinks in by less than a millimetre."""
 
 
 def write_sdf(gathered: ExportScene, path: Path, progress: Progress | None = None) -> None:
@@ -46,7 +48,7 @@ def sdf_files(
         main: name of the world's file.
         folder: that files are in, relative to the document.
     """
-    root = Element("sdf", version=VERSION)
+    root = Element("sdf", {"version": VERSION, "xmlns:drake": "http://drake.mit.edu"})
     world = SubElement(root, "world", name=gathered.name)
     SubElement(world, "gravity").text = "0 0 -9.81"
     for light in gathered.lights:
@@ -142,6 +144,10 @@ def _colliders(element: Element, owner: str, count: int, friction: float, folder
         collision = SubElement(element, "collision", name=f"{owner}_part_{number}")
         shape = SubElement(SubElement(collision, "geometry"), "mesh")
         SubElement(shape, "uri").text = collider_file(folder, owner, number)
+        SubElement(shape, "drake:declare_convex")
+        drake = SubElement(collision, "drake:proximity_properties")  # else bodies touch at one point alone there
+        SubElement(drake, "drake:compliant_hydroelastic")
+        SubElement(drake, "drake:hydroelastic_modulus").text = HYDROELASTIC_MODULUS
         grip = SubElement(SubElement(SubElement(collision, "surface"), "friction"), "ode")
         SubElement(grip, "mu").text = f"{friction:.3g}"
         SubElement(grip, "mu2").text = f"{friction:.3g}"

@@ -23,6 +23,8 @@ def add_physics(stage: Usd.Stage, gathered: ExportScene, physical: PhysicalScene
     up = -1.0 if UsdGeom.GetStageUpAxis(stage) == UsdGeom.Tokens.z else 0.0
     scene.CreateGravityDirectionAttr(Gf.Vec3f(0.0, 0.0 if up else -1.0, up))
     scene.CreateGravityMagnitudeAttr(GRAVITY)
+    several = scene.GetPrim().CreateAttribute("mjc:flag:multiccd", Sdf.ValueTypeNames.Bool)
+    several.Set(True)  # newton: two bodies touch at up to four points; at one alone, what lies on another tips
     grips, colliders = _Grips(stage), _Colliders()
     paths = {b.node.id: f"{ROOT}/Objects/{b.node.slug}" for b in physical.bodies}
     for slab in physical.slabs:

@@ -142,6 +142,8 @@ def test_the_sdf_world_says_where_everything_is(tmp_path: Path) -> None:
     assert models["window_1"].findtext("static") == "1"
     assert models["desk_1"].findtext("static") == "0"
     assert {j.get("type") for j in models["dresser_1"].iter("joint")} == {"prismatic"}
+    soft = "{http://drake.mit.edu}compliant_hydroelastic"
+    assert all(c.find(f".//{soft}") is not None for c in world.iter("collision"))  # Drake: contact over a face
 
 
 def test_every_joint_moves_freely_through_its_range() -> None:

@@ -126,6 +126,7 @@ def test_bodies_masses_and_lights_are_those_of_the_scene(example: Usd.Stage) -> 
             assert UsdPhysics.MassAPI(prim).GetMassAttr().Get() == pytest.approx(body.mass_kg, rel=1e-5)
         colliders = [c for c in Usd.PrimRange(prim) if c.HasAPI(UsdPhysics.CollisionAPI)]
         assert len(colliders) == len(body.parts)
+    assert example.GetPrimAtPath("/Scene/Physics").GetAttribute("mjc:flag:multiccd").Get()
     lamps = [p for p in example.Traverse() if p.IsA(UsdLux.SphereLight) and "Objects" in str(p.GetPath())]
     assert len(lamps) == 3
 
