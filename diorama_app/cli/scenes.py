@@ -362,6 +362,12 @@ def add_export(commands: Any) -> None:
         help="of GLB and USD: as bright as pictures where a camera has no exposure, or in lumens and lux "
         "(default: %(default)s)",
     )
+    p.add_argument(
+        "--engine",
+        choices=("godot", "unreal", "none"),
+        default="godot",
+        help="of a game pack: whose names colliders have; none leaves them out (default: %(default)s)",
+    )
     p.add_argument("--photo", action="store_true", help="put the photo into the file, to come back with it (glb, usd)")
     p.add_argument("--welded", action="store_true", help="simulators: nothing moves, objects are welded in place")
     p.add_argument("--simulate", action="store_true", help="report what two seconds of gravity do to the scene")
@@ -386,6 +392,7 @@ def _export(a: argparse.Namespace) -> None:
         max_texture_px=a.texture_size,
         compression=a.compress,
         lights=a.lights,
+        engine=a.engine,
         photo=a.photo,
         bodies="welded" if a.welded else "free",
     )

@@ -45,6 +45,9 @@ GUIDES: Mapping[str, Guide] = {
         "Blender, Unity, Unreal, Godot, three.js",
         _TEXTURED | frozenset[Choice]({"compression", "lights", "photo"}),
     ),
+    "game": Guide(
+        MODELS, "Godot; Unreal by `--engine unreal`; Unity and three.js by `--engine none`", _TEXTURED | {"lights"}
+    ),
     "blend": Guide(MODELS, "Blender, with the photo behind the camera", _TEXTURED),
     "usdz": Guide(MODELS, "iPhone and iPad (AR Quick Look)", _USD),
     "usdc": Guide(MODELS, "Isaac Sim, Blender, Unreal, Maya", _USD),

@@ -35,6 +35,7 @@ from diorama_core.scene.types import Camera, Plane, Scene, SceneObject, Support
 Compression = Literal["none", "meshopt", "draco"]
 Bodies = Literal["free", "welded"]
 LightUnits = Literal["unit", "photometric", "none"]
+GameEngine = Literal["godot", "unreal", "none"]
 
 
 @dataclass(frozen=True)
@@ -58,6 +59,8 @@ class ExportOptions:
     lights: LightUnits = "unit"
     """Whether lights of GLB and USD have unit exposure (a luminance of 1 is white, as programs without a camera's
     exposure show it), are in lumens and lux, or are left out."""
+    engine: GameEngine = "godot"
+    """Whose names convex colliders of a game's file have; "none" leaves them out."""
     photo: bool = False
     """Whether files that can be opened again hold the photo, too (GLB, USD)."""
 

@@ -167,7 +167,7 @@ class _Builder:
 
     def _object(self, item: ExportObject) -> int:
         """The object's node: rigid with its mesh below where it carries others, which must not inherit its scale."""
-        node: dict[str, Any] = {"name": item.name, **_placement(self._gathered.T_parent(item))}
+        node: dict[str, Any] = {"name": item.name, **placement(self._gathered.T_parent(item))}
         mesh = {"mesh": self._mesh(item.mesh), "scale": [float(v) for v in item.scale]}
         below = [self._light(item, light) for light in self._lights.get(item.id, ())]
         below += [self._object(child) for child in self._gathered.children_of(item.id)]
@@ -222,7 +222,7 @@ class _Builder:
         index = self._document.add_light(entry)
         node = {
             "name": self._unique(f"{item.name} light"),
-            **_placement(rigid_inverse(item.T_world) @ light.T_world),
+            **placement(rigid_inverse(item.T_world) @ light.T_world),
             "extensions": {"KHR_lights_punctual": {"light": index}},
             "extras": {"diorama_light": item.id},
         }
@@ -233,7 +233,7 @@ class _Builder:
         if isinstance(light, MainLight):
             about = {"name": "main light", "type": "directional", "color": [float(c) for c in light.colour]}
             about |= {"intensity": light.lux * self._gathered.strength(light)}
-            place = _placement(light.T_world)
+            place = placement(light.T_world)
         else:
             about = {"name": "even light", "type": "point", "intensity": light.candela}
             place = {"translation": [float(v) for v in light.position]}
@@ -252,11 +252,11 @@ class _Builder:
         index = self._document.add("cameras", {"name": "photo", "type": "perspective", "perspective": lens})
         T = camera.T_world_camera.copy()
         T[:3, :3] = T[:3, :3] @ _CAMERA_AXES
-        node = {"name": self._unique("photo camera"), "camera": index, **_placement(T), "extras": extras}
+        node = {"name": self._unique("photo camera"), "camera": index, **placement(T), "extras": extras}
         return self._document.add("nodes", node)
 
 
-def _placement(T: Float[np.ndarray, "4 4"]) -> dict[str, list[float]]:
+def placement(T: Float[np.ndarray, "4 4"]) -> dict[str, list[float]]:
     """A node's rotation (glTF quaternions are x, y, z, w) and translation."""
     quaternion = Rotation.from_matrix(T[:3, :3]).as_quat(canonical=True)
     return {"rotation": [float(v) for v in quaternion], "translation": [float(v) for v in T[:3, 3]]}

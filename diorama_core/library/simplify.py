@@ -44,7 +44,7 @@ def simplified_glb(data: bytes, max_triangles: int) -> bytes:
     for part in parts:
         triangles = _array(document, binary, part["indices"]).ravel().astype(np.uint32)
         arrays = {name: _array(document, binary, k) for name, k in part["attributes"].items()}
-        fewer = _simplified(triangles, arrays["POSITION"], max_triangles / total)
+        fewer = simplified_triangles(triangles, arrays["POSITION"], max_triangles / total)
         fewer = _in_cache_order(fewer, len(arrays["POSITION"]))
         used, renumbered = np.unique(fewer, return_inverse=True)
         part["attributes"] = {name: written.vertices(name, array[used]) for name, array in arrays.items()}
@@ -55,34 +55,50 @@ def simplified_glb(data: bytes, max_triangles: int) -> bytes:
     return written.glb()
 
 
-def _simplified(triangles: np.ndarray, positions: np.ndarray, share: float) -> np.ndarray:
-    """Fewer triangles of a part, piece by piece: the thinnest rail among them stays as much as the largest board."""
+def simplified_triangles(
+    triangles: np.ndarray,
+    positions: np.ndarray,
+    share: float,
+    errors: tuple[float, ...] = LARGEST_ERRORS,
+    max_shorter: float = MAX_SHORTER,
+) -> np.ndarray:
+    """Fewer triangles of a part, piece by piece: the thinnest rail among them stays as much as the largest board.
+
+    Args:
+        triangles: rows of `positions`, three a triangle.
+        positions: corners, n x 3.
+        share: of the triangles that should be left.
+        errors: how far the surface may move, in each piece's size: the first that keeps the piece.
+        max_shorter: share of a piece's longest side by which its sides may become shorter.
+    """
     points = np.ascontiguousarray(positions, dtype=np.float32)
-    pieces = [_fewer(piece, points, share) for piece in _pieces(triangles, points)]
+    pieces = [_fewer(piece, points, share, errors, max_shorter) for piece in _pieces(triangles, points)]
     return np.concatenate(pieces) if pieces else triangles
 
 
-def _fewer(triangles: np.ndarray, points: np.ndarray, share: float) -> np.ndarray:
+def _fewer(
+    triangles: np.ndarray, points: np.ndarray, share: float, errors: tuple[float, ...], max_shorter: float
+) -> np.ndarray:
     target = 3 * max(round(share * len(triangles) / 3), MIN_TRIANGLES)
     if target >= len(triangles):
         return triangles
     used, own = np.unique(triangles, return_inverse=True)
     near, own = np.ascontiguousarray(points[used]), own.astype(np.uint32)
     area, extents = _area(own, near), np.ptp(near, axis=0)
-    for error in LARGEST_ERRORS:
+    for error in errors:
         retained = np.empty_like(own)
         count = meshoptimizer.simplify(retained, own, near, target_index_count=target, target_error=error)
         left = retained[:count]
         share_left = _area(left, near) / max(area, 1e-12)
-        if count and MIN_AREA_SHARE <= share_left <= MAX_AREA_SHARE and _spans(left, near, extents):
+        if count and MIN_AREA_SHARE <= share_left <= MAX_AREA_SHARE and _spans(left, near, extents, max_shorter):
             return used[left].astype(np.uint32)
     return triangles
 
 
-def _spans(triangles: np.ndarray, points: np.ndarray, extents: np.ndarray) -> bool:
+def _spans(triangles: np.ndarray, points: np.ndarray, extents: np.ndarray, max_shorter: float) -> bool:
     """Whether a simplified piece is about as long, wide and high as the piece."""
     left = np.ptp(points[triangles], axis=0)
-    return bool((left >= extents - MAX_SHORTER * extents.max()).all())
+    return bool((left >= extents - max_shorter * extents.max()).all())
 
 
 def _pieces(triangles: np.ndarray, points: np.ndarray) -> list[np.ndarray]:
