@@ -6,7 +6,7 @@ of what people would notice: 0.3 to 0.5 m, or a quarter of a turn.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Literal, get_args
 
@@ -131,102 +131,157 @@ def relation_cost(
     return cost / len(found)
 
 
+@dataclass(frozen=True, eq=False)
+class _Relative:
+    """Stances of one object seen from another: n of them, in the frame of the target."""
+
+    kind: RelationKind
+    stances: Stances
+    name: str
+    """Category of the object that stands there."""
+    target: SceneObject
+    aside_m: float
+    local: Float[np.ndarray, "n 2"]
+    half: Float[np.ndarray, "2"]
+    gap: Float[np.ndarray, "n"]
+    """Between the two footprints (m)."""
+
+    @property
+    def looking(self) -> Float[np.ndarray, "n"]:
+        """Angle between where the object looks and where the target is (rad)."""
+        toward = self.target.pose.position[:2] - self.stances.places
+        # Whoever sits at a desk looks over it, away from its front.
+        over = np.pi if broad(self.name) == "desk" else 0.0
+        return _angle(self.stances.yaws_rad + over, np.arctan2(toward[:, 1], toward[:, 0]))
+
+    @property
+    def too_far(self) -> Float[np.ndarray, "n"]:
+        """Cost of a distance at which the target is not used."""
+        apart = np.linalg.norm(self.target.pose.position[:2] - self.stances.places, axis=1)
+        return _too_far(apart, self.name, self.target)
+
+
 def _to_target(
     kind: RelationKind, stances: Stances, category_name: str, target: SceneObject, aside_m: float = 0.0
 ) -> Float[np.ndarray, "n"]:
-    quad = footprint_of(target)
     local = (stances.places - target.pose.position[:2]) @ target.pose.R_world_object[:2, :2]
-    half = target.size_m[:2] / 2
-    gap = gaps(stances.quads, quad)
-    toward = target.pose.position[:2] - stances.places
-    apart = np.linalg.norm(toward, axis=1)
-    # Whoever sits at a desk looks over it, away from its front.
-    over = np.pi if broad(category_name) == "desk" else 0.0
-    looking = _angle(stances.yaws_rad + over, np.arctan2(toward[:, 1], toward[:, 0]))
-    if kind in ("on", "under", "above"):
-        return np.maximum(np.abs(local) - half, 0.0).sum(axis=1) / 0.3 + 0.2 * np.abs(local).sum(axis=1) * (
-            kind != "on"
-        )
-    if kind in ("beside", "near") and category(target.category).mount == "wall":  # by the window, before or next to it
-        corners = (stances.quads - stances.places[:, None]) @ target.pose.R_world_object[:2, 1]
-        aside = np.maximum(np.abs(local[:, 1]) - half[1] - np.abs(corners).max(axis=1), 0.0)
-        return np.maximum(gap - 0.5, 0.0) / 0.3 + aside / 0.5 + 0.1 * gap
-    if kind == "beside" and broad(category_name) == broad(target.category) == "bed":
-        heading = _angle(stances.yaws_rad, np.full(len(local), target.pose.yaw_rad))
-        off_side = np.maximum(half[1] - np.abs(local[:, 1]), 0.0) / 0.3 + np.abs(local[:, 0]) / 0.6
-        return heading / FACING_RAD + off_side + np.abs(gap - BETWEEN_BEDS_M) / 0.6
-    if kind == "beside":
-        far = np.maximum(gap - SIDE_GAP_M, 0.0) / 0.3
-        if target.category in NO_FRONT:
-            return far + 0.15 * gap
-        off_side = np.maximum(np.abs(local[:, 0]) - half[0], 0.0) / max(half[0], 0.2)
-        ahead = np.maximum(np.abs(local[:, 0]) - 0.8 * half[0], 0.0)
-        not_side = np.maximum(half[1] - np.abs(local[:, 1]), 0.0)
-        return far + 0.4 * np.minimum(off_side, 2.0) + 0.4 * ahead + 0.6 * np.minimum(not_side, 1.0) + 0.2 * gap
-    if kind == "near":
-        return np.maximum(gap - NEAR_M, 0.0) / 0.4 + 0.1 * gap
-    if kind in ("in front of", "behind"):
-        sign = 1.0 if kind == "in front of" else -1.0
-        ahead = sign * local[:, 0] - half[0]
-        aside = np.maximum(np.abs(local[:, 1]) - half[1], 0.0)
-        off = np.abs(local[:, 1] - aside_m)
-        return (
-            np.maximum(-ahead, 0.0) / 0.2
-            + aside / 0.3
-            + np.maximum(gap - 1.0, 0.0) / 0.4
-            + (0.1 if aside_m == 0.0 else 0.5) * off
-            + _at_use(category_name, target, gap)
-            + 0.4 * _across(stances, target)
-        )
-    if kind in ("left of", "right of"):  # as seen by whoever stands before the target
-        sign = 1.0 if kind == "right of" else -1.0
-        aside = sign * local[:, 1] - half[1]
-        ahead = np.maximum(np.abs(local[:, 0]) - half[0], 0.0)
-        return np.maximum(-aside, 0.0) / 0.2 + ahead / 0.4 + np.maximum(gap - NEAR_M, 0.0) / 0.4 + 0.15 * gap
-    if kind == "around":
-        seat, at_front = np.zeros(len(local)), np.zeros(len(local))
-        if _is_seat(category_name):  # a long table is looked at across, not along to its middle
-            spine = half - half.min()
-            across = (np.clip(local, -spine, spine) - local) @ target.pose.R_world_object[:2, :2].T
-            seat = (
-                np.maximum(_angle(stances.yaws_rad, np.arctan2(across[:, 1], across[:, 0])) - FACING_RAD, 0.0)
-                / FACING_RAD
-            )
-        if broad(target.category) == "desk":
-            ahead = np.maximum(half[0] - local[:, 0], 0.0) / 0.3
-            at_front = ahead + np.maximum(np.abs(local[:, 1]) - 0.5 * half[1], 0.0) / 0.3
-        square = 0.5 * np.abs(np.sin(2.0 * (stances.yaws_rad - target.pose.yaw_rad))) if is_long(target.size_m) else 0.0
-        corner = np.maximum(np.abs(local) - half, 0.0).min(axis=1) / 0.3 if is_long(target.size_m) else 0.0
-        near = 1.0 if broad(target.category) in ("table", "desk") else 0.4
-        return np.maximum(gap - 0.5, 0.0) / 0.3 + seat + near * gap + at_front + square + corner
-    if kind == "facing":
-        return (
-            np.maximum(looking - FACING_RAD, 0.0) / FACING_RAD
-            + 0.5 * looking
-            + _too_far(apart, category_name, target)
-            + 0.08 * gap
-            + _too_near(category_name, target, gap)
-        )
-    if kind == "opposite":
-        heading = _angle(stances.yaws_rad, np.full(len(local), target.pose.yaw_rad + np.pi))
-        aside = np.maximum(np.abs(local[:, 1]) - 0.5 * half[1] - 0.2, 0.0)
-        before = np.maximum(half[0] - local[:, 0], 0.0) / 0.3
-        turned = np.minimum(np.maximum(looking - FACING_RAD, 0.0), np.maximum(heading - FACING_RAD, 0.0)) / FACING_RAD
-        return (
-            before
-            + aside / 0.5
-            + turned
-            + 0.3 * heading
-            + (0.3 if aside_m == 0.0 else 0.6) * np.abs(local[:, 1] - aside_m)
-            + _too_far(apart, category_name, target)
-            + _too_near(category_name, target, gap)
-        )
-    if kind == "aligned with":
-        square = np.abs(np.sin(2.0 * (stances.yaws_rad - target.pose.yaw_rad)))
-        own = np.abs(local)
-        edges = np.abs(own - np.abs(half - stances.size_m[:2] / 2))
-        return np.minimum(own, edges).min(axis=1) / 0.15 * 0.6 + square
-    return np.zeros(len(local))
+    gap = gaps(stances.quads, footprint_of(target))
+    cost = _COSTS.get(kind)
+    relative = _Relative(kind, stances, category_name, target, aside_m, local, target.size_m[:2] / 2, gap)
+    return np.zeros(len(local)) if cost is None else cost(relative)
+
+
+def _over(r: _Relative) -> Float[np.ndarray, "n"]:
+    outside = np.maximum(np.abs(r.local) - r.half, 0.0).sum(axis=1) / 0.3
+    return outside + 0.2 * np.abs(r.local).sum(axis=1) * (r.kind != "on")
+
+
+def _beside(r: _Relative) -> Float[np.ndarray, "n"]:
+    if category(r.target.category).mount == "wall":
+        return _by_window(r)
+    if broad(r.name) == broad(r.target.category) == "bed":
+        heading = _angle(r.stances.yaws_rad, np.full(len(r.local), r.target.pose.yaw_rad))
+        off_side = np.maximum(r.half[1] - np.abs(r.local[:, 1]), 0.0) / 0.3 + np.abs(r.local[:, 0]) / 0.6
+        return heading / FACING_RAD + off_side + np.abs(r.gap - BETWEEN_BEDS_M) / 0.6
+    far = np.maximum(r.gap - SIDE_GAP_M, 0.0) / 0.3
+    if r.target.category in NO_FRONT:
+        return far + 0.15 * r.gap
+    off_side = np.maximum(np.abs(r.local[:, 0]) - r.half[0], 0.0) / max(r.half[0], 0.2)
+    ahead = np.maximum(np.abs(r.local[:, 0]) - 0.8 * r.half[0], 0.0)
+    not_side = np.maximum(r.half[1] - np.abs(r.local[:, 1]), 0.0)
+    return far + 0.4 * np.minimum(off_side, 2.0) + 0.4 * ahead + 0.6 * np.minimum(not_side, 1.0) + 0.2 * r.gap
+
+
+def _near(r: _Relative) -> Float[np.ndarray, "n"]:
+    if category(r.target.category).mount == "wall":
+        return _by_window(r)
+    return np.maximum(r.gap - NEAR_M, 0.0) / 0.4 + 0.1 * r.gap
+
+
+def _by_window(r: _Relative) -> Float[np.ndarray, "n"]:
+    """Before what is on a wall, or next to it."""
+    corners = (r.stances.quads - r.stances.places[:, None]) @ r.target.pose.R_world_object[:2, 1]
+    aside = np.maximum(np.abs(r.local[:, 1]) - r.half[1] - np.abs(corners).max(axis=1), 0.0)
+    return np.maximum(r.gap - 0.5, 0.0) / 0.3 + aside / 0.5 + 0.1 * r.gap
+
+
+def _before_or_behind(r: _Relative) -> Float[np.ndarray, "n"]:
+    sign = 1.0 if r.kind == "in front of" else -1.0
+    ahead = sign * r.local[:, 0] - r.half[0]
+    aside = np.maximum(np.abs(r.local[:, 1]) - r.half[1], 0.0)
+    off = np.abs(r.local[:, 1] - r.aside_m)
+    return (
+        np.maximum(-ahead, 0.0) / 0.2
+        + aside / 0.3
+        + np.maximum(r.gap - 1.0, 0.0) / 0.4
+        + (0.1 if r.aside_m == 0.0 else 0.5) * off
+        + _at_use(r.name, r.target, r.gap)
+        + 0.4 * _across(r.stances, r.target)
+    )
+
+
+def _left_or_right(r: _Relative) -> Float[np.ndarray, "n"]:
+    """As seen by whoever stands before the target."""
+    sign = 1.0 if r.kind == "right of" else -1.0
+    aside = sign * r.local[:, 1] - r.half[1]
+    ahead = np.maximum(np.abs(r.local[:, 0]) - r.half[0], 0.0)
+    return np.maximum(-aside, 0.0) / 0.2 + ahead / 0.4 + np.maximum(r.gap - NEAR_M, 0.0) / 0.4 + 0.15 * r.gap
+
+
+def _around(r: _Relative) -> Float[np.ndarray, "n"]:
+    half, local, yaws = r.half, r.local, r.stances.yaws_rad
+    seat, at_front = np.zeros(len(local)), np.zeros(len(local))
+    if _is_seat(r.name):  # a long table is looked at across, not along to its middle
+        spine = half - half.min()
+        across = (np.clip(local, -spine, spine) - local) @ r.target.pose.R_world_object[:2, :2].T
+        seat = np.maximum(_angle(yaws, np.arctan2(across[:, 1], across[:, 0])) - FACING_RAD, 0.0) / FACING_RAD
+    if broad(r.target.category) == "desk":
+        ahead = np.maximum(half[0] - local[:, 0], 0.0) / 0.3
+        at_front = ahead + np.maximum(np.abs(local[:, 1]) - 0.5 * half[1], 0.0) / 0.3
+    square = 0.5 * np.abs(np.sin(2.0 * (yaws - r.target.pose.yaw_rad))) if is_long(r.target.size_m) else 0.0
+    corner = np.maximum(np.abs(local) - half, 0.0).min(axis=1) / 0.3 if is_long(r.target.size_m) else 0.0
+    near = 1.0 if broad(r.target.category) in ("table", "desk") else 0.4
+    return np.maximum(r.gap - 0.5, 0.0) / 0.3 + seat + near * r.gap + at_front + square + corner
+
+
+def _facing(r: _Relative) -> Float[np.ndarray, "n"]:
+    return (
+        np.maximum(r.looking - FACING_RAD, 0.0) / FACING_RAD
+        + 0.5 * r.looking
+        + r.too_far
+        + 0.08 * r.gap
+        + _too_near(r.name, r.target, r.gap)
+    )
+
+
+def _opposite(r: _Relative) -> Float[np.ndarray, "n"]:
+    heading = _angle(r.stances.yaws_rad, np.full(len(r.local), r.target.pose.yaw_rad + np.pi))
+    aside = np.maximum(np.abs(r.local[:, 1]) - 0.5 * r.half[1] - 0.2, 0.0)
+    before = np.maximum(r.half[0] - r.local[:, 0], 0.0) / 0.3
+    turned = np.minimum(np.maximum(r.looking - FACING_RAD, 0.0), np.maximum(heading - FACING_RAD, 0.0)) / FACING_RAD
+    return (
+        before
+        + aside / 0.5
+        + turned
+        + 0.3 * heading
+        + (0.3 if r.aside_m == 0.0 else 0.6) * np.abs(r.local[:, 1] - r.aside_m)
+        + r.too_far
+        + _too_near(r.name, r.target, r.gap)
+    )
+
+
+def _aligned(r: _Relative) -> Float[np.ndarray, "n"]:
+    square = np.abs(np.sin(2.0 * (r.stances.yaws_rad - r.target.pose.yaw_rad)))
+    own = np.abs(r.local)
+    edges = np.abs(own - np.abs(r.half - r.stances.size_m[:2] / 2))
+    return np.minimum(own, edges).min(axis=1) / 0.15 * 0.6 + square
+
+
+_COSTS: dict[RelationKind, Callable[[_Relative], Float[np.ndarray, "n"]]] = {
+    "on": _over, "under": _over, "above": _over, "beside": _beside, "near": _near, "around": _around,
+    "in front of": _before_or_behind, "behind": _before_or_behind, "left of": _left_or_right,
+    "right of": _left_or_right, "facing": _facing, "opposite": _opposite, "aligned with": _aligned,
+}  # fmt: skip
 
 
 def _at_use(name: str, target: SceneObject, gap_m: Float[np.ndarray, "n"]) -> Float[np.ndarray, "n"]:
