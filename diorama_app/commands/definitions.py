@@ -43,7 +43,21 @@ def build_commands(
         show_help: opens the list of commands.
         show_picture: opens the choices for a picture.
     """
+    rows = (
+        *_history(session),
+        *_selection(session),
+        *_objects(session),
+        *_several(session),
+        *_views(views),
+        *_overlays(views, outlines),
+        *_ways(),
+        *_general(session, show_help, show_picture),
+        _escape(views, cancel),
+    )
+    return CommandTable(rows)
 
+
+def _escape(views: Views, cancel: Callable[[Client], bool]) -> Command:
     def escape(client: Client) -> None:
         if client.dialog is not None:
             client.dialog()
@@ -59,6 +73,12 @@ def build_commands(
         else:
             client.select(())
 
+    return Command(
+        "escape", "Clear selection", escape, "escape", None, "Cancel the current action, or clear the selection"
+    )
+
+
+def _general(session: EditorSession, show_help: Do, show_picture: Do) -> tuple[Command, ...]:
     def save(client: Client) -> None:
         if session.project is None:
             raise EditRefused("no project is open")
@@ -69,14 +89,7 @@ def build_commands(
             return  # it says so itself
         client.notice(f"Saved in {session.project.name}.", "good")
 
-    rows = (
-        *_history(session),
-        *_selection(session),
-        *_objects(session),
-        *_several(session),
-        *_views(views),
-        *_overlays(views, outlines),
-        *_ways(),
+    return (
         Command("save", "Save", save, "S", "cmd/ctrl", "Save now (every change is saved anyway)"),
         Command(
             "measure",
@@ -103,11 +116,7 @@ def build_commands(
         ),
         Command("tour", "Show me around", lambda g: g.start_tour(), None, None, "Six steps through the page"),
         Command("help", "Help", show_help, "?", "shift", "Every command with its key"),
-        Command(
-            "escape", "Clear selection", escape, "escape", None, "Cancel the current action, or clear the selection"
-        ),
     )
-    return CommandTable(rows)
 
 
 def _history(session: EditorSession) -> tuple[Command, ...]:
