@@ -45,6 +45,7 @@ OTHER_FILES = (
     OtherFile("a 3ds Max scene", "export it as FBX or OBJ", _ends(".max")),
     OtherFile("a Cinema 4D scene", "export it as FBX or GLB", _ends(".c4d")),
     OtherFile("a Rhino model", "export it as OBJ or GLB", lambda h: h.head.startswith(b"3D Geometry File Format") or h.suffix == ".3dm"),
+    OtherFile("a Revit or ArchiCAD project", "export the room as GLB or FBX", _ends(".rvt", ".rfa", ".pln")),
     OtherFile("a STEP model", "export it as STL or OBJ from the CAD program", lambda h: h.suffix in (".step", ".stp") or (h.text.startswith("ISO-10303-21") and "IFC" not in h.text[:4000])),
     OtherFile("an IFC building model", "export the room as GLB", _says("FILE_SCHEMA(('IFC", "FILE_SCHEMA (('IFC")),
     OtherFile("an IGES model", "export it as STL or OBJ", _ends(".iges", ".igs")),
