@@ -120,6 +120,18 @@ def add_build(commands: Any) -> None:
         help="cameras of a folder's photos, which then become one room: COLMAP model, transforms.json, ARKit frames; "
         "'find' finds them by what the photos have in common",
     )
+    _add_inputs(p)
+    _add_networks(p)
+    _add_methods(p)
+    p.add_argument("--seed", type=int, default=0, help="seed of random stages (the built-in ones use none)")
+    p.add_argument(
+        "--explain", type=Path, metavar="FILE", help="file for the reasons of each place, kind and size, as JSON"
+    )
+    p.add_argument("--json", action="store_true", help="print the result as JSON")
+
+
+def _add_inputs(p: argparse.ArgumentParser) -> None:
+    """Declare what may be given with the photo."""
     p.add_argument("--depth", type=Path, metavar="FILE", help="measured depth: 16-bit PNG, .npy, .npz, EXR or a dump")
     p.add_argument(
         "--depth-scale",
@@ -157,6 +169,9 @@ def add_build(commands: Any) -> None:
     p.add_argument(
         "--masks", type=Path, metavar="PATH", help="PNG with one colour or id per object, or a folder of masks"
     )
+
+
+def _add_networks(p: argparse.ArgumentParser) -> None:
     p.add_argument("--profile", choices=PROFILES, default="auto", help="which networks to use (default: %(default)s)")
     p.add_argument(
         "--detector",
@@ -170,6 +185,10 @@ def add_build(commands: Any) -> None:
         help="network that reads depth, or your own: an ONNX file from RGB between 0 and 1 to metres "
         "(default: the best on this machine)",
     )
+
+
+def _add_methods(p: argparse.ArgumentParser) -> None:
+    """Declare shapes and layout, and the methods of the paper and of others to compare with."""
     p.add_argument(
         "--arrangements",
         type=int,
@@ -203,11 +222,6 @@ def add_build(commands: Any) -> None:
         default=SYSTEMS[0],
         help="acdc: room, retrieval, poses and layout as ACDC has them, to compare with (default: %(default)s)",
     )
-    p.add_argument("--seed", type=int, default=0, help="seed of random stages (the built-in ones use none)")
-    p.add_argument(
-        "--explain", type=Path, metavar="FILE", help="file for the reasons of each place, kind and size, as JSON"
-    )
-    p.add_argument("--json", action="store_true", help="print the result as JSON")
 
 
 def _build(a: argparse.Namespace) -> None:
