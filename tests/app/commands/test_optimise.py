@@ -28,7 +28,7 @@ class Curves:
 def test_curves_are_drawn_less_often_than_the_objects(session, client, monkeypatch) -> None:
     client.curves = curves = Curves()
     shown: list[float] = []
-    monkeypatch.setattr(session, "preview", lambda poses: shown.append(poses["chair_1"].position[0]))
+    monkeypatch.setattr(session.viewport, "preview", lambda poses: shown.append(poses["chair_1"].position[0]))
     run = LayoutRun("paper", time.monotonic(), session.scene)
     here = session.scene.object("chair_1").pose
     now = [100.0]
