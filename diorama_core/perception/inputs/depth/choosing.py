@@ -44,10 +44,8 @@ def chosen_reading(
     """
     best, of_kind = readings[0], {r.kind: r for r in readings}
     if kind != "auto":
-        given = of_kind[kind]
-        against = best.score - given.score > CONTRADICTION
         note = f"{name} was read as {WORDS[kind]} as asked, but its planes look like {WORDS[best.kind]}"
-        return given, (note,) if against else ()
+        return of_kind[kind], (note,) if best.score - of_kind[kind].score > CONTRADICTION else ()
     depth, inverse = of_kind["depth"], of_kind["inverse"]
     if stated_kind == "inverse":
         best = inverse

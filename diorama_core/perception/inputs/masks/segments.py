@@ -130,32 +130,32 @@ def _segments(value: Any, level: int = 0) -> Iterator[Any]:
         if isinstance(bitmap, dict) and "data" in bitmap and "origin" in bitmap:
             yield bitmap
             return
-        points, across, down = (value.get(k) for k in ("points", "all_points_x", "all_points_y"))
-        outline = value.get("segments")  # Ultralytics
-        if isinstance(outline, dict):
-            across, down = outline.get("x"), outline.get("y")
-        if isinstance(across, list) and isinstance(down, list):
-            yield [[[x, y] for x, y in zip(across, down, strict=False)]]
-            return
-        if isinstance(points, dict) and isinstance(points.get("exterior"), list) and len(points["exterior"]) > 2:
-            yield [points["exterior"]]
-            return
-        if (
-            isinstance(points, list)
-            and len(points) > 2
-            and all(isinstance(p, dict) and {"x", "y"} <= p.keys() for p in points)
-        ):
-            yield [[[p["x"], p["y"]] for p in points]]  # Roboflow
-            return
-        if value.get("shape_type") == "polygon" and isinstance(points, list) and len(points) > 2:
-            yield [points]
-            return
-        segmentation = value.get("segmentation")
-        if isinstance(segmentation, list) and segmentation and all(isinstance(p, list) for p in segmentation):
-            yield segmentation
+        rings = _outline(value)
+        if rings is not None:
+            yield rings
             return
         for inner in value.values():
             yield from _segments(inner, level + 1)
+
+
+def _outline(value: dict[str, Any]) -> list[Any] | None:
+    """The polygons of one annotation, whatever the program calls them; None where it has none."""
+    points, across, down = (value.get(k) for k in ("points", "all_points_x", "all_points_y"))
+    segments, segmentation = value.get("segments"), value.get("segmentation")
+    if isinstance(segments, dict):  # Ultralytics
+        across, down = segments.get("x"), segments.get("y")
+    if isinstance(across, list) and isinstance(down, list):
+        return [[[x, y] for x, y in zip(across, down, strict=False)]]
+    if isinstance(points, dict) and isinstance(points.get("exterior"), list) and len(points["exterior"]) > 2:
+        return [points["exterior"]]
+    if isinstance(points, list) and len(points) > 2:
+        if all(isinstance(p, dict) and {"x", "y"} <= p.keys() for p in points):
+            return [[[p["x"], p["y"]] for p in points]]  # Roboflow
+        if value.get("shape_type") == "polygon":
+            return [points]
+    if isinstance(segmentation, list) and segmentation and all(isinstance(p, list) for p in segmentation):
+        return segmentation
+    return None
 
 
 def filled_polygon(rings: list[Any], size: Size, name: str) -> Bool[np.ndarray, "h w"]:
