@@ -18,6 +18,7 @@ from diorama_core.artefacts import LabelledBox
 from diorama_core.errors import InputError
 from diorama_core.perception.inputs.form import form_of
 from diorama_core.perception.inputs.masks.files import read_arrays, read_folder_of_masks
+from diorama_core.perception.inputs.masks.markup import is_markup
 from diorama_core.perception.inputs.masks.pictures import VOC_VOID, read_picture, without_void
 from diorama_core.perception.inputs.masks.reading import read_masks
 from diorama_core.perception.inputs.masks.run_lengths import decoded_runs
@@ -208,6 +209,8 @@ def cvat(figures: str) -> Source:
 
 
 def test_cvat_s_polygons_and_masks() -> None:
+    assert is_markup(cvat(""))
+    assert not is_markup(Source(b"[]", "a.json"))
     polygons = [";".join(f"{x},{y}" for x, y in corners_of(m)) for m in (LARGE, SMALL)]
     np.testing.assert_array_equal(found(cvat("".join(f'<polygon label="a" points="{p}"/>' for p in polygons))), IDS)
     (left, top), _, (right, bottom), _ = corners_of(SMALL)
