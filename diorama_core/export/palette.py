@@ -48,7 +48,7 @@ class GameMaterials:
     def _painted(self, surface: Surface) -> Surface:
         material = _without_flat_picture(surface.material)
         if _is_plain(material):
-            uv = np.tile(np.float32(self._uv[_look(material)]), (len(surface.vertices), 1))
+            uv = np.tile(np.array(self._uv[_look(material)], dtype=np.float32), (len(surface.vertices), 1))
             return replace(surface, material=self._palettes[material.double_sided], uv=uv)
         maps = tuple(sorted((slot, id(picture)) for slot, picture in material.maps.items()))
         values = (*_look(material), round(material.alpha, 2), material.emissive, material.double_sided)
