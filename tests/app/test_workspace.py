@@ -50,8 +50,8 @@ def test_a_name_of_no_project_is_told_on_the_first_page(workspace: Workspace, na
 def test_a_copy_made_in_one_project_is_pasted_in_another(workspace: Workspace) -> None:
     workspace.server("second")
     first, second = (e.session for e in workspace.editors)
-    first.clip = copied(first.scene, ["chair_1"])
-    assert second.clip is first.clip
+    first.shared.clip = copied(first.scene, ["chair_1"])
+    assert second.shared.clip is first.shared.clip
 
 
 def test_only_who_asked_goes_to_another_project(workspace: Workspace, tmp_path: Path) -> None:
