@@ -82,31 +82,19 @@ def optimise(
     def work(progress: Progress) -> None:
         from diorama_core.layout.recipes import recipe
 
-        shown, pictures = 0.0, 0
-        samples: Samples = []
-
-        def preview(scene: Scene, costs: Costs) -> None:
-            nonlocal shown, pictures
-            now = time.monotonic()
-            samples.append((now - run.started_at, tuple(costs)))
-            if now - shown >= PREVIEW_EVERY_S:
-                shown, pictures = now, pictures + 1
-                session.ui_thread.post(lambda: _show_step(session, scene, run, samples), key="preview")
-            while not run.going.wait(PAUSE_POLL_S):
-                progress.check()
-
+        frames = _Frames(session, run, progress)
         try:
             everything = len(free) == len(start.objects)
             stage = recipe(recipe_name, session.library, None if everything else free, weights=weights)
-            final, report = stage.optimise(start, progress, preview)
+            final, report = stage.optimise(start, progress, frames.take)
             if recipe_name not in PUBLISHED:
                 final = with_believed_sizes(start, final)
         except BaseException:
             session.ui_thread.post(session.refresh)  # cancelled or failed: everything goes back to the document
             raise
-        session.ui_thread.post(lambda: run.read(samples))
+        session.ui_thread.post(lambda: run.read(frames.samples))
         run.worse = _worse(session, start, final)
-        if pictures < GLIDE_BELOW:
+        if frames.shown < GLIDE_BELOW:
             _glide(session, start, final, progress)
         asker = None if by is None else by.id
         session.post(asker, lambda: _arranged(session, final, report, run, by=by, author=author))
@@ -114,6 +102,28 @@ def optimise(
     session.jobs.start("optimise", "Arranging the layout", work)
     session.layout_run = run
     return run
+
+
+class _Frames:
+    """Scenes and costs of a run while it goes on: all costs are collected, a scene is shown from time to time."""
+
+    def __init__(self, session: EditorSession, run: LayoutRun, progress: Progress) -> None:
+        self.samples: Samples = []
+        self.shown = 0
+        """Number of scenes."""
+        self._session, self._run, self._progress = session, run, progress
+        self._last_shown = 0.0
+
+    def take(self, scene: Scene, costs: Costs) -> None:
+        """Receive a step of the optimiser; while the run is paused, this waits."""
+        now = time.monotonic()
+        self.samples.append((now - self._run.started_at, tuple(costs)))
+        if now - self._last_shown >= PREVIEW_EVERY_S:
+            self._last_shown, self.shown = now, self.shown + 1
+            show = partial(_show_step, self._session, scene, self._run, self.samples)
+            self._session.ui_thread.post(show, key="preview")
+        while not self._run.going.wait(PAUSE_POLL_S):
+            self._progress.check()
 
 
 def _worse(session: EditorSession, start: Scene, final: Scene) -> Problems:

@@ -6,6 +6,7 @@ import argparse
 import json
 import sys
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import torch
@@ -55,6 +56,13 @@ def main() -> int:
 def _parser() -> argparse.ArgumentParser:
     p = argparse.ArgumentParser(prog="python -m diorama_core.training", description=__doc__)
     steps = p.add_subparsers(required=True)
+    _add_rendering(steps)
+    _add_training(steps)
+    _add_photos(steps)
+    return p
+
+
+def _add_rendering(steps: Any) -> None:
     pictures = steps.add_parser("pictures", help="render rooms; goes on where it stopped")
     pictures.set_defaults(run=_pictures)
     pictures.add_argument("folder", type=Path)
@@ -68,6 +76,9 @@ def _parser() -> argparse.ArgumentParser:
     shapes = steps.add_parser("shapes", help="render single shapes for the namer; goes on where it stopped")
     shapes.set_defaults(run=_shapes)
     shapes.add_argument("folder", type=Path)
+
+
+def _add_training(steps: Any) -> None:
     train = steps.add_parser("train", help="train one network; goes on from its checkpoint")
     train.set_defaults(run=_train)
     train.add_argument("network", choices=NETWORKS)
@@ -96,6 +107,10 @@ def _parser() -> argparse.ArgumentParser:
     join.set_defaults(run=_join)
     join.add_argument("namers", type=Path, nargs="+")
     join.add_argument("-o", "--output", type=Path, required=True)
+
+
+def _add_photos(steps: Any) -> None:
+    """Declare what is measured or fitted on annotated photos."""
     scores = steps.add_parser("score", help="measure exported networks on annotated photos")
     scores.set_defaults(run=_score)
     scores.add_argument("annotations", type=Path)
@@ -115,7 +130,6 @@ def _parser() -> argparse.ArgumentParser:
         "--photos", type=Path, nargs=2, action="append", required=True, metavar=("ANNOTATIONS", "FOLDER")
     )
     evidence.add_argument("-o", "--output", type=Path, required=True)
-    return p
 
 
 def _evidence(a: argparse.Namespace) -> None:
