@@ -93,8 +93,8 @@ class PhotoBoxes:
 
     def with_proposals(self, inputs: Inputs) -> Inputs:
         """The photo with boxes of all proposals; what they hold is left to the build, since their names are guesses."""
-        unnamed = {"category": UNKNOWN.name, "label": UNKNOWN.name, "guessed": True}
-        proposed = tuple(replace(b, **unnamed) for b in self._proposals(inputs))
+        nothing = UNKNOWN.name
+        proposed = (replace(b, category=nothing, label=nothing, guessed=True) for b in self._proposals(inputs))
         return replace(inputs, boxes=(*inputs.boxes, *proposed))
 
     def open(self) -> None:

@@ -7,8 +7,8 @@ from pathlib import Path
 import pytest
 
 from diorama_app.cli import main
+from diorama_app.cli.build import add_build
 from diorama_app.cli.folder import REPORT
-from diorama_app.cli.scenes import add_build
 from tests.cli.room_photo import write_room
 
 
