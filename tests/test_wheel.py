@@ -9,6 +9,7 @@ from pathlib import Path
 
 import pytest
 
+pytestmark = pytest.mark.posix
 ROOT = Path(__file__).resolve().parents[1]
 PLACE_OF = {"diorama_core": "diorama_core", "diorama_app": "diorama_app", "assets": "diorama_core/assets"}
 """Where the folders of the checkout are within a wheel."""
@@ -18,7 +19,6 @@ from diorama_app.projects.example import EXAMPLE
 from diorama_core.layout.problem.parts import BUILT_IN_PARTS
 from diorama_core.models.own_weights import FOLDER, has_own_recogniser
 
-pytestmark = pytest.mark.posix
 assert has_own_recogniser() and EXAMPLE.is_dir() and PICTURES.is_dir() and BUILT_IN_PARTS.is_file()
 print(FOLDER)
 """

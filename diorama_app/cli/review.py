@@ -7,15 +7,16 @@ import json
 import sys
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import diorama_core as diorama
 from diorama_app.cli.arguments import command, print_note
 from diorama_core.errors import EditRefused, InputError
-from diorama_core.library.record import ShapeLibrary
-from diorama_core.review.answers import answered
-from diorama_core.review.questions import Question, questions
-from diorama_core.scene.types import Scene
+
+if TYPE_CHECKING:
+    from diorama_core.library.record import ShapeLibrary
+    from diorama_core.review.questions import Question
+    from diorama_core.scene.types import Scene
 
 LATER, STOP = "l", "q"
 
@@ -42,6 +43,7 @@ def add_review(commands: Any) -> None:
 
 def _review(a: argparse.Namespace) -> None:
     from diorama_core.project.lock import ProjectLock
+    from diorama_core.review.questions import questions
 
     room = diorama.load(a.project)
     with ProjectLock(a.project, "diorama review"):
@@ -60,6 +62,8 @@ def _review(a: argparse.Namespace) -> None:
 
 
 def _with_answers(scene: Scene, library: ShapeLibrary, given: list[str]) -> Scene:
+    from diorama_core.review.answers import answered
+
     for words in given:
         question, equals, value = words.partition("=")
         if not equals:
@@ -70,6 +74,9 @@ def _with_answers(scene: Scene, library: ShapeLibrary, given: list[str]) -> Scen
 
 def _asked(scene: Scene, library: ShapeLibrary) -> Scene:
     """The scene with everything that the person at the terminal answered."""
+    from diorama_core.review.answers import answered
+    from diorama_core.review.questions import questions
+
     put_off: set[str] = set()
     while (question := next((q for q in questions(scene) if q.id not in put_off), None)) is not None:
         print(f"\n{question.sentence}")

@@ -19,7 +19,7 @@ from diorama_app.session.client import Client
 from diorama_app.session.units import format_length, parse_length
 from diorama_app.web.html import Action, LiveHtml, button, text
 from diorama_core.errors import InputError
-from diorama_core.geometry.rotations import CameraAttitude
+from diorama_core.geometry.camera_attitude import CameraAttitude
 from diorama_core.scene.types import Camera
 
 FIELDS = {

@@ -19,7 +19,6 @@ from diorama_core.errors import EditRefused
 from diorama_core.io.text import number_of
 from diorama_core.library.labels import understand_label
 from diorama_core.library.taxonomy import UNKNOWN
-from diorama_core.render.views import StudioView, render_shape
 from diorama_core.review.answers import answered, candidate_of
 from diorama_core.review.questions import TURNS, Choice, Question, questions
 from diorama_core.scene.types import SceneObject
@@ -106,6 +105,8 @@ class Review:
         session, camera = self._client.session, self._client.session.scene.camera
         if camera is None:
             return ""
+        from diorama_core.render.views import StudioView, render_shape  # OpenCV: only once such a question is open
+
         x, y, z = camera.position - item.pose.position
         yaw = float(np.arctan2(y, x)) - item.pose.yaw_rad - TURNS.index(turn) * np.pi / 2
         view = StudioView(yaw, float(np.arctan2(z, np.hypot(x, y))))

@@ -76,7 +76,12 @@ class _Builder:
         limbs = []
         for moving in body.moving:
             limb, hinge = moving.limb, _shifted(moving.limb.origin)
-            about = {"joint": limb.kind, "axis": _turned(limb.axis), "lower": limb.lower, "upper": limb.upper}
+            about: dict[str, Any] = {
+                "joint": limb.kind,
+                "axis": _turned(limb.axis),
+                "lower": limb.lower,
+                "upper": limb.upper,
+            }
             surfaces = self._fitting(limb.mesh, item.scale)
             placed = np.linalg.inv(foot) @ limb.T_object_limb @ hinge
             label, extras = f"{name} {limb.name}", {**about, "open": limb.opened}
@@ -133,7 +138,8 @@ class _Builder:
 
     def _lights(self) -> list[int]:
         """Lamps, windows and the photo's main light, in the world."""
-        found, main = [], self._gathered.main_light
+        found: list[int] = []
+        main = self._gathered.main_light
         for light in (*self._gathered.lights, *(() if main is None else (main,))):
             about: dict[str, Any] = {"color": [float(c) for c in light.colour], "name": "light"}
             if isinstance(light, MainLight):
@@ -155,13 +161,14 @@ def _lighter(surface: Surface, share: float) -> Surface:
     triangles = np.ascontiguousarray(surface.faces.reshape(-1), dtype=np.uint32)
     fewer = simplified_triangles(triangles, surface.vertices, share, ERRORS, MAX_SHORTER)
     used, faces = np.unique(fewer, return_inverse=True)
-    rows = {"uv": surface.uv, "colours": surface.colours}
+    uv, colours = surface.uv, surface.colours
     return replace(
         surface,
         vertices=surface.vertices[used],
         normals=surface.normals[used],
         faces=faces.reshape(-1, 3).astype(np.int32),
-        **{name: None if values is None else values[used] for name, values in rows.items()},
+        uv=None if uv is None else uv[used],
+        colours=None if colours is None else colours[used],
     )
 
 

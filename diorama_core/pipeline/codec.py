@@ -18,7 +18,7 @@ import numpy as np
 
 from diorama_core import artefacts, provenance
 from diorama_core.errors import ProjectError
-from diorama_core.geometry import rotations
+from diorama_core.geometry import camera_attitude
 from diorama_core.io.arrays import array_of, entry
 from diorama_core.io.bounded import parse_json, shortened
 from diorama_core.io.text import clean_strings
@@ -51,7 +51,7 @@ _CLASSES: dict[str, type] = {
         artefacts.RankedShapes,
         artefacts.PosedCandidates,
         artefacts.LayoutReport,
-        rotations.CameraAttitude,
+        camera_attitude.CameraAttitude,
         provenance.CameraSource,
         provenance.RoomSource,
         provenance.GraphSource,

@@ -4,6 +4,7 @@ import json
 import shutil
 import subprocess
 import sys
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -11,11 +12,13 @@ import pytest
 import trimesh
 from PIL import Image
 
-from diorama_app.cli import main
+from diorama_app.cli import main, scenes
 from diorama_app.projects.options import POSES, pose_solver
 from diorama_core.library.catalogue import built_in_library
 from diorama_core.models import own_weights
 from diorama_core.pose.correspondence.solvers import CorrespondencePose
+from diorama_core.project.storage import Project
+from tests.app.small_room import furnished_scene
 from tests.cli.room_photo import write_room
 
 
@@ -131,6 +134,16 @@ def test_bad_usage_exits_2(arguments: list[str]) -> None:
     with pytest.raises(SystemExit) as stop:
         main(arguments)
     assert stop.value.code == 2
+
+
+def test_a_room_that_nobody_photographed_is_drawn_from_outside(tmp_path: Path) -> None:
+    project = Project.create(tmp_path / "room")
+    project.save_scene(replace(furnished_scene(), camera=None, objects=(), supports=()))
+    drawn = [tmp_path / "as_it_is.png", tmp_path / "from_outside.png"]
+    views = ([], ["--view", scenes.WITHOUT_PHOTO])
+    for path, view in zip(drawn, views, strict=True):
+        assert main(["picture", str(project.folder), "-o", str(path), "--size", "80x60", *view]) == 0
+    assert drawn[0].read_bytes() == drawn[1].read_bytes()
 
 
 @pytest.mark.parametrize("command", ["serve", "build", "optimise", "export", "picture", "doctor"])

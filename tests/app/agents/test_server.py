@@ -112,7 +112,7 @@ def test_an_agent_joins_the_page_that_a_person_has_open(home: Path, environment:
 
         anyio.run(work)
     finally:
-        served.send_signal(signal.SIGINT)
+        served.terminate()  # Ctrl+C is ignored by what a shell began in the background, as these tests may be
         assert served.wait(60) == 0
         served.stdout.close()
     assert not list(noted.glob(f"{served.pid}-*.json"))

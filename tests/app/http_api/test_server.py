@@ -229,6 +229,7 @@ def test_the_document_says_what_the_api_is(client: Client) -> None:
         *("create_job", "list_jobs", "get_job", "cancel_job", "delete_job"),
         *("get_scene", "get_picture", "export_scene", "list_formats"),
         *("list_projects", "begin_project", "get_project", "get_object", "get_free_floor", "check_project"),
+        *("get_questions", "answer_question"),
         *("edit_project", "undo_project", "redo_project", "optimise_project", "build_project"),
         *("get_project_job", "cancel_project_job", "watch_project", "describe_project"),
         *("get_project_scene", "get_project_picture", "export_project"),

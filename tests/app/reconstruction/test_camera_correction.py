@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from diorama_app.reconstruction.camera_correction import checked_angles
 from diorama_core.artefacts import CameraEstimate, CameraHypothesis, Inputs
 from diorama_core.errors import InputError
-from diorama_core.geometry.rotations import CameraAttitude
+from diorama_core.geometry.camera_attitude import CameraAttitude
 from diorama_core.perception.camera.estimate import GivenAttitudeCamera
 from diorama_core.progress import Progress
 from diorama_core.provenance import CameraSource
@@ -56,5 +56,5 @@ def test_what_is_said_of_the_tilt_leaves_heading_and_focal_length() -> None:
 
 @pytest.mark.parametrize(("tilt", "roll"), [(85.0, 0.0), (0.0, -50.0)])
 def test_nobody_holds_a_camera_so(tilt: float, roll: float) -> None:
-    with pytest.raises(InputError, match="no photo of a room"):
+    with pytest.raises(InputError, match="not possible for a photo of a room"):
         checked_angles(tilt, roll)

@@ -26,6 +26,7 @@ CHANGED = Preferences(
     planes=True,
     dark=True,
     gizmo="size",
+    physics=True,
     recipe="paper",
     size_mode="catalogue",
     keep_colour=False,
