@@ -40,6 +40,7 @@ class Toasts:
             do: called on the click.
         """
         self._offered = do
+        self._client.to_say = None  # the line of the step itself comes later, and would take the offer's place
         action = button(text(label), "offered")
         line = f'<div class="dio-toast long" role="alert"><span>{text(message)}</span>{action}</div>'
         self._show(line, OFFERED_S)

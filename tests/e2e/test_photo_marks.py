@@ -61,7 +61,8 @@ def name(editor: EditorPage, word: str, of: str) -> None:
 
 def test_what_is_drawn_is_selected_and_named(started: EditorPage) -> None:
     editor = started
-    expect(editor.build_button()).to_be_disabled()
+    expect(editor.button("Build at once")).to_be_visible()
+    expect(editor.build_button()).to_have_count(0)
     editor.draw_box(CHAIR)
     editor.until(lambda: len(boxes(editor)) == 1, "drawn")
     np.testing.assert_allclose(boxes(editor)[0][1], CHAIR, atol=4.0)

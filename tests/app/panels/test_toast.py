@@ -46,3 +46,11 @@ def test_a_message_ends_on_the_server_too(client, page, toasts, monkeypatch) -> 
     monkeypatch.setattr("diorama_app.panels.toast.SHOWN_S", 0.01)
     toasts.say("Reading huge.jpg…", False)
     until(lambda: "Reading huge.jpg" not in page.html, "a page that is drawn anew does not show it")
+
+
+def test_an_offer_is_not_replaced_by_the_line_of_its_own_step(client, page) -> None:
+    client.panels = [Toasts(page, client)]
+    client.to_say = ("delete table", True)
+    client.offer("what stood on it is lower now", "Delete it too", lambda: None)
+    client.refresh()
+    assert "what stood on it is lower now" in page.html
