@@ -218,14 +218,14 @@ def serve(
         library=library,
         frame_origins=frame_origins,
     )
+    asked = threading.Event()
+    signal.signal(signal.SIGTERM, lambda *_: asked.set())  # before anybody is told that it runs
     print(f"Diorama is at {running.url} (Ctrl+C stops it)", flush=True)
     if host in ANY_HOST:
         there = running.url.replace(urlsplit(running.url).netloc, f"{socket.gethostname()}:{running.port}")
         print(f"From other machines: {there} (who has this address can change the project)", flush=True)
     if open_browser:
         threading.Thread(target=webbrowser.open, args=(running.url,), daemon=True).start()
-    asked = threading.Event()
-    signal.signal(signal.SIGTERM, lambda *_: asked.set())
     try:
         with contextlib.nullcontext() if beside is None else beside(running, token):
             while not asked.wait(SIGNALS_S):  # a signal that another thread takes does not wake this one
