@@ -36,7 +36,7 @@ def is_array_cloud(head: FileHead) -> bool:
     try:
         return _cloud_in(head.path) is not None
     except (OSError, ValueError, SyntaxError, zipfile.BadZipFile, NotImplementedError):
-        return False
+        return False  # damaged: NumPy reads headers as Python, and zipfile cannot read all ways of packing
 
 
 def read_array_cloud(path: Path) -> Float[np.ndarray, "n 3"]:
