@@ -6,6 +6,7 @@ import gc
 import json
 import os
 import sys
+import time
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
@@ -40,6 +41,9 @@ FULL_PICTURES = ("architecture", "texture")
 """Whose tests ask about the pictures of planes themselves. In others those have a quarter of the texels a side: to make
 full ones takes four tenths of a build from a small photo."""
 FULL_PX = {name: getattr(plane_textures, name) for name in ("MAX_SIDE_PX", "MAX_CEILING_PX")}
+
+UNTIL = float(os.environ.get("DIORAMA_TEST_UNTIL", "inf"))
+"""When the last test may start, in seconds since 1970: `scripts/test --fast` promises an end."""
 
 SHARED = Path(__file__).resolve().parents[2] / "shared"
 
@@ -158,6 +162,8 @@ def pytest_runtest_setup(item: pytest.Item) -> None:
 
     Pictures of planes are small but where they are asked about.
     """
+    if time.time() > UNTIL:
+        pytest.skip("NOT RUN: the time of scripts/test --fast is over")
     if sys.platform == "win32" and item.get_closest_marker("posix") is not None:
         pytest.skip("sends signals or makes links")
     folders = item.path.relative_to(Path(__file__).parent).parts

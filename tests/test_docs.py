@@ -40,6 +40,7 @@ def test_the_page_s_files_and_values_are_there(executed: dict[str, Any]) -> None
     assert executed["picture"].shape == (240, 320, 3)
 
 
+@pytest.mark.slow
 def test_the_page_s_retrieval_stage_ran(executed: dict[str, Any]) -> None:
     mine, stage = executed["mine"], executed["NearestSize"](executed["library"])
     assert repr(stage) in {run.used for run in mine.built.runs if run.stage == "retrieval"}
@@ -50,6 +51,7 @@ def test_the_page_s_retrieval_stage_ran(executed: dict[str, Any]) -> None:
         assert {base_id(c.shape_id) for c in item.candidates} <= set(sorted(off, key=lambda i: off[i])[: stage.count])
 
 
+@pytest.mark.slow
 def test_the_page_s_wrapped_stage_ran(executed: dict[str, Any]) -> None:
     used = {run.stage: run.used for run in executed["bare"].built.runs}
     assert used["objects"].startswith("WithoutRugs(other=EmbeddedMasks(")
