@@ -162,6 +162,13 @@ def add_export(commands: Any) -> None:
         default="godot",
         help="of a game pack: whose names colliders have; none leaves them out (default: %(default)s)",
     )
+    p.add_argument(
+        "--robot-radius",
+        type=float,
+        default=0.25,
+        metavar="M",
+        help="of a robot pack: the disc that drives there (default: %(default)s)",
+    )
     p.add_argument("--photo", action="store_true", help="put the photo into the file, to come back with it (glb, usd)")
     p.add_argument("--welded", action="store_true", help="simulators: nothing moves, objects are welded in place")
     p.add_argument("--simulate", action="store_true", help="report what two seconds of gravity do to the scene")
@@ -187,6 +194,7 @@ def _export(a: argparse.Namespace) -> None:
         compression=a.compress,
         lights=a.lights,
         engine=a.engine,
+        robot_radius_m=a.robot_radius,
         photo=a.photo,
         bodies="welded" if a.welded else "free",
     )

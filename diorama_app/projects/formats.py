@@ -59,6 +59,7 @@ GUIDES: Mapping[str, Guide] = {
     "mjcf": Guide(SIMULATORS, "MuJoCo, dm_control", _BODIES),
     "urdf": Guide(SIMULATORS, "RViz, MoveIt, PyBullet", _BODIES),
     "sdf": Guide(SIMULATORS, "Gazebo, Drake", _BODIES),
+    "robot": Guide(SIMULATORS, "MuJoCo, ROS 2, Gazebo, Isaac Sim: one zip with maps and places", _BODIES),
     "svg": Guide(PLANS, "browsers, Inkscape, Illustrator", _FURNITURE),
     "pdf": Guide(PLANS, "any PDF viewer; prints to scale", _FURNITURE),
     "dxf": Guide(PLANS, "AutoCAD, LibreCAD, QCAD", _FURNITURE),

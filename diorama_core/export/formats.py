@@ -112,6 +112,16 @@ _TABLE = (
         "obj", "Wavefront OBJ with materials", (".zip", ".obj"), "named objects, materials, textures", "obj:write_obj"
     ),
     Format(
+        "robot",
+        "Robot pack",
+        (".zip",),
+        "MJCF, URDF, SDF and USD of the same bodies, regions to put things on, grasps, labels, a map for ROS nav2",
+        "robot:write_robot",
+        "usd",
+        "pxr",
+        joints=True,
+    ),
+    Format(
         "blend",
         "Blender file",
         (".blend",),

@@ -48,7 +48,8 @@ def write_mjcf(gathered: ExportScene, path: Path, progress: Progress | None = No
     content = mjcf_text(gathered, physical, folder).encode()
 
     def entries() -> Iterator[Entry]:
-        yield from _assets(gathered, folder, progress)
+        yield from texture_files(gathered, folder)
+        yield from _meshes(gathered, folder, progress)
         yield from collider_files(physical, folder)
         yield main, content
 
@@ -248,11 +249,15 @@ def _materials(assets: Element, gathered: ExportScene, folder: str) -> None:
         SubElement(assets, "material", attributes)
 
 
-def _assets(gathered: ExportScene, folder: str, progress: Progress) -> Iterator[Entry]:
+def texture_files(gathered: ExportScene, folder: str) -> Iterator[Entry]:
+    """Pictures of the materials, in a folder."""
     encoded = OncePerPicture(png_bytes)
     for number, material in enumerate(gathered.materials):
         if material.texture is not None:
             yield f"{folder}/textures/{number}.png", encoded(material.texture)
+
+
+def _meshes(gathered: ExportScene, folder: str, progress: Progress) -> Iterator[Entry]:
     for done, mesh in enumerate(gathered.meshes.values()):
         progress.report(0.3 + 0.7 * done / len(gathered.meshes), f"writing {mesh.name}")
         for number, surface in enumerate(mesh.surfaces):

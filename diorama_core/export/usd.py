@@ -15,7 +15,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
-from pxr import Gf, Kind, Sdf, Tf, Usd, UsdGeom
+from pxr import Gf, Kind, Sdf, Tf, Usd, UsdGeom, UsdSemantics
 
 from diorama_core.errors import ExportError
 from diorama_core.export.colliders import physical_scene
@@ -68,16 +68,26 @@ def write_usdz(gathered: ExportScene, path: Path, progress: Progress | None = No
 
 def _write_layer(gathered: ExportScene, path: Path, progress: Progress) -> None:
     path = Path(path)
-    stage, pictures = build_stage(gathered, f"{companion_folder(path, 'usd')}/textures", progress, up_axis="Z")
-    with _told_as_export_error(path), tempfile.TemporaryDirectory() as folder:
-        layer = Path(folder) / path.name
+    with _told_as_export_error(path):
+        files = layer_files(gathered, path.name, f"{companion_folder(path, 'usd')}/textures", progress)
+        write_package(path, path.name, files)
+
+
+def layer_files(gathered: ExportScene, name: str, textures: str, progress: Progress) -> Iterator[Entry]:
+    """Pictures, then the layer that refers to them.
+
+    Args:
+        gathered: The scene.
+        name: Of the layer's file; its ending says whether it is text.
+        textures: Folder of the pictures, relative to the layer.
+        progress: Where it is reported and cancelling is noticed.
+    """
+    stage, pictures = build_stage(gathered, textures, progress, up_axis="Z")
+    with tempfile.TemporaryDirectory() as folder:
+        layer = Path(folder) / name
         stage.GetRootLayer().Export(str(layer))
-
-        def entries() -> Iterator[Entry]:
-            yield from pictures
-            yield path.name, layer.read_bytes()
-
-        write_package(path, path.name, entries())
+        yield from pictures
+        yield name, layer.read_bytes()
 
 
 def _check_whole(package: Path, path: Path) -> None:
@@ -197,6 +207,7 @@ def _objects(stage: Usd.Stage, gathered: ExportScene) -> None:
         prim.SetDisplayName(item.name)
         note(prim, "entry", json.dumps(entries[item.id], ensure_ascii=False))
         note(prim, "category", item.item.category)
+        UsdSemantics.LabelsAPI.Apply(prim, "category").CreateLabelsAttr([item.item.category])
         if item.parent is not None:
             supporter = prim.CreateRelationship("diorama:supporter", custom=True)
             supporter.AddTarget(object_path(gathered.object(item.parent)))
