@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 def add_models(commands: Any) -> None:
     """Declare `diorama models`."""
     p: argparse.ArgumentParser = commands.add_parser("models", help="Networks that Diorama can use, all optional.")
-    actions = p.add_subparsers(dest="action", required=True, metavar="list|pull|verify|path")
+    actions = p.add_subparsers(dest="action", required=True, metavar="list|pull|verify|check|path")
     lists = command(actions, "list", _list, "List the networks and which are installed.", "diorama models list")
     lists.add_argument("--json", action="store_true")
     pulls = command(actions, "pull", _pull, "Download networks.", "diorama models pull tiny")
