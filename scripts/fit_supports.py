@@ -89,7 +89,7 @@ def posed_scene(inputs: Inputs, library: ShapeLibrary, cache: Path) -> tuple[Sce
 def photo_questions(
     annotated: Path, photos: Path, library: ShapeLibrary, cache: Path, columns: Sequence[str]
 ) -> Iterator[Question]:
-    """Of every annotated object whose supporter is annotated."""
+    """Questions about every annotated object whose supporter is annotated."""
     for task in plan([PhotoSource(annotated, photos)]).tasks:
         scene, evidence = posed_scene(annotated_inputs(task).inputs, library, cache / f"{photos.name}-{task.name}")
         right = _annotated(task.annotation, scene)
@@ -189,7 +189,7 @@ def _standings(group: str, view: TruthView, scene: Scene, noise: ObservationNois
 def room_questions(
     rooms: int, library: ShapeLibrary, cache: Path, columns: Sequence[str]
 ) -> tuple[list[Question], list[Standing]]:
-    """Of rooms of the series for development, from the picture alone and with depth."""
+    """Questions about rooms of the series for development, from the picture alone and with depth."""
     tested, searched = split_library(library, "test"), split_library(library, "train", "validation")
     questions: list[Question] = []
     standings: list[Standing] = []

@@ -151,7 +151,7 @@ def _calling(called: Callable[..., Any], code: CodeType) -> CodeType:
 
 
 def _copy(function: FunctionType, annotations: dict[str, Any] | None = None) -> FunctionType:
-    """The same function, with the annotations themselves in place of their text where they are given."""
+    """A copy of a function, with the annotations themselves in place of their text where they are given."""
     code, names = function.__code__, function.__globals__
     same = FunctionType(code, names, function.__name__, function.__defaults__, function.__closure__)
     same.__kwdefaults__, same.__doc__ = function.__kwdefaults__, function.__doc__

@@ -175,7 +175,7 @@ def _rigid(matrix: Matrix) -> Matrix:
 
 
 def _inverse(rigid: Matrix) -> Matrix:
-    """Of a matrix without scale."""
+    """Inverse of a matrix without scale."""
     columns = [[rigid[i][j] for i in range(3)] for j in range(3)]
     rows = [(*c, -sum(a * rigid[i][3] for i, a in enumerate(c))) for c in columns]
     return (*rows, (0.0, 0.0, 0.0, 1.0))

@@ -26,7 +26,7 @@ VIEW = Field(
 INSTRUCTIONS = """Rooms that are open in Diorama's editor. A person may have the same room in a browser, and sees every
 step. Begin with `rooms` and `open_room`, or with `build`. `look` shows pictures with the objects' ids; `ask` tells
 sizes, places, distances, free floor, supports and doubts; `questions` tells what to look at first, and `answer` settles
-it; `edit` changes things; `check` says whether people could use the room. Lengths are metres, +Z is up, headings are
+it; `edit` changes them; `check` says whether people could use the room. Lengths are metres, +Z is up, headings are
 degrees counter-clockwise from +X. An error says what to do. Where somebody has changed the room meanwhile, look or ask
 again first."""
 

@@ -72,7 +72,7 @@ class Alternatives:
             button(SIZE_NAMES[m], "size", m, title=SIZE_HINTS[m], on=preferences.size_mode == m) for m in SIZE_MODES
         )
         count = len(alike(self._client.session.scene, item))
-        same = button(f"All {count} alike", "alike", title="Swap all objects with this shape", on=preferences.all_alike)
+        same = button(f"All {count}", "alike", title="Swap all objects with this shape", on=preferences.all_alike)
         keep = button("Keep colour", "keep", title="Keep the colour of the replaced object", on=preferences.keep_colour)
         return (
             f'<h4>Size when swapped</h4><div class="bar tight">{sizes}</div>'

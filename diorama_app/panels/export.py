@@ -23,7 +23,7 @@ ChoiceName = TypeVar("ChoiceName", bound=str)
 SWITCHES: dict[Choice, tuple[str, str]] = {
     "ceiling": ("Without ceiling", "To look into the room from above"),
     "selection": ("Only selection", "The selected objects without the room around them"),
-    "photo": ("With photo", "Opening the file brings it back; whoever has the file can see it"),
+    "photo": ("With photo", "Opening the file brings it back; everyone who has the file can see it"),
     "welded": ("Welded", "Nothing moves: every object is fixed where it stands"),
 }
 """What is switched on and off: name and explanation."""

@@ -69,7 +69,7 @@ class LibraryPanel:
     def refresh(self) -> None:
         """Draw the filters and what was found."""
         selected, preferences = self._client.selected, self._client.preferences
-        where = "on the floor in view" + (f", small things on the selected {text(selected.label)}" if selected else "")
+        where = "on the floor in view" + (f", small objects on the selected {text(selected.label)}" if selected else "")
         words_where = f"Drag it into the view. <b>Insert</b> puts it {where}; <b>Place</b> waits for your click."
         if isinstance(self._client.doing, Placing):
             words_where = "<b>Click in the view</b> where it should be; Esc cancels."

@@ -161,7 +161,7 @@ class Review:
             return
         kind = understand_label(words).category
         if kind.name == UNKNOWN.name:
-            raise EditRefused(f"“{words}” is no kind of thing that the library has; try another word")
+            raise EditRefused(f"“{words}” is no kind of object that the library has; try another word")
         show_value(self._other, "")
         review.answer(self._client.session, question.id, kind.name, by=self._client)
         self._show_object()

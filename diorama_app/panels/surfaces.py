@@ -63,7 +63,7 @@ class Surfaces:
             parts.append(
                 '<div class="bar tight">'
                 + button("This wall", "one", title="Change only this wall", on=not self._all_walls)
-                + button("All walls", "all", title="Change all walls alike", on=self._all_walls)
+                + button("All walls", "all", title="Change all walls together", on=self._all_walls)
                 + "</div>"
             )
         if plane.role == "wall":

@@ -97,7 +97,7 @@ def build_posed_photos(
         )
         layout = recipe(options.recipe, library, depth_measured=True)
         room = build_room(placed, library, choose, layout, progress.part(0.15, 1.0))
-        scale = () if poses.metric else ("scale of the cameras: from the usual sizes of the named things",)
+        scale = () if poses.metric else ("scale of the cameras: from the usual sizes of the named objects",)
         all_notes = (*poses.notes, *notes, *scale, *room.notes)
         _save(project, room, read, placed, options.library, all_notes)
     return PosedBuild(room, project, tuple(row[0] for row in read), all_notes)

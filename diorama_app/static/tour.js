@@ -20,7 +20,7 @@
   const STEPS = [
     ["Look around", "Drag the background to turn the view, drag with the right button to shift it, and scroll to come " +
       "closer. Walls in the way fade by themselves.", view],
-    ["Move things", "Drag a piece of furniture to where it should be. Move, Free and Size choose the handles of what " +
+    ["Move furniture", "Drag a piece of furniture to where it should be. Move, Free and Size choose the handles of what " +
       "is selected; Snap and No overlaps help you to place it.", () => box(tool("gizmo_floor"), tool("slide"))],
     ["Change what is selected", "Object shows alternatives to swap with one click, and colours, sizes and numbers. " +
       "Click a wall or the floor to paint, paper, tile or board it.", () => box(tab("Object"))],

@@ -80,7 +80,7 @@ TERMS: tuple[SupportTerm, ...] = (
     SupportTerm("turned", "its back is parallel to it", lambda h: h.turned),
     SupportTerm("averted", "the wall faces the camera", lambda h: float(h.averted)),
     SupportTerm("company", "{kind} is often on {carrier}", company),
-    SupportTerm("carries nothing", "people put things on {carrier}", carries_nothing),
+    SupportTerm("carries nothing", "people put objects on {carrier}", carries_nothing),
     SupportTerm("hard on seat", "{carrier} is no seat", hard_on_seat),
     SupportTerm("portable", "{kind} is small enough to stand on furniture", portable),
     SupportTerm("seen below", "it is seen just below", lambda h: h.below),

@@ -79,13 +79,13 @@ def measured_cloud(cloud: PointCloud) -> MeasuredRoom:
     boxes, left_out = boxes_in(points, room)
     boxes = (*boxes, *rugs_in(points, room))
     boxes = tuple(b for b in boxes if not any(is_part_of(b, o) for o in openings))
-    notes = [*cloud.notes, "kinds of things are guessed; correct them where they are wrong"]
+    notes = [*cloud.notes, "kinds of objects are guessed; correct them where they are wrong"]
     if not levels.floored:
         notes.append("no floor was scanned; it is where points begin")
     if not levels.closed:
         notes.append("no ceiling was scanned; walls end where points end")
     if left_out:
-        notes.append(f"{left_out} smaller things were left out")
+        notes.append(f"{left_out} smaller objects were left out")
     photos = tuple(p.moved(T) for p in cloud.photos)
     return MeasuredRoom(walls, boxes, openings, floors=(MeasuredFloor(ring, 0.0),), notes=tuple(notes), photos=photos)
 

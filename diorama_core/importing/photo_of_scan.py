@@ -68,7 +68,7 @@ def with_photo_of_scan(
     if camera is None:
         raise InputError(
             f"{name} does not join the scan: the furniture in it is not where the scan has any; mark at least three "
-            "things that were scanned, such as chairs, tables, cabinets, doors and windows"
+            "objects that were scanned, such as chairs, tables, cabinets, doors and windows"
         )
     met = {box: scene.objects[thing] for thing, box in camera.met}
     marked = replace(found["inputs"], boxes=tuple(_told(o, met.get(k)) for k, o in enumerate(objects)))
@@ -91,7 +91,7 @@ def with_photo_of_scan(
         replace(_filling(o, measured[o.id]) if o.id in measured else o, box_px=boxes.get(o.id))
         for o in added.scene.objects
     )
-    note = f"{name}: {len(added.joined)} scanned things are seen in it, {len(added.new)} things came from it"
+    note = f"{name}: {len(added.joined)} scanned objects are seen in it, {len(added.new)} objects came from it"
     return Opened(
         replace(added.scene, camera=added.photo.camera, objects=after),
         {**opened.textures, **added.textures},

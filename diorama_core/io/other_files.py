@@ -58,7 +58,7 @@ OTHER_FILES = (
     OtherFile("a folder of Hypersim", "build from a picture of it: diorama build PHOTO --depth FILE, with depth_meters saved as .npy", lambda h: h.has(".depth_meters.hdf5")),
     OtherFile("a rosbag", "export its depth and poses as TUM RGB-D", _ends(".bag", ".mcap", ".db3")),
     OtherFile("poses of nerfstudio", "they go with photos: diorama build PHOTOS --poses FILE", _says('"transform_matrix"')),
-    OtherFile("boxes of things in a photo", "they go with the photo: diorama build PHOTO --boxes FILE", _says('"bbox"', '"annotations"')),
+    OtherFile("boxes of objects in a photo", "they go with the photo: diorama build PHOTO --boxes FILE", _says('"bbox"', '"annotations"')),
     OtherFile("Diorama's own scene file", "open its project folder instead", _says('"diorama-scene"')),
     OtherFile("a Diorama project already", "open it: diorama serve PROJECT", lambda h: h.is_folder and {"project.json", "scene.json"} <= set(h.names)),
     OtherFile("a COLMAP model", "it goes with photos: diorama build PHOTOS --poses FOLDER", lambda h: h.is_folder and h.has("/cameras.bin", "/cameras.txt")),

@@ -84,7 +84,7 @@ def _read(path: Path, written_ns: int, size: int, inode: int) -> OwnModels:
     try:
         return OwnModels(**dict(_File.model_validate_json(read_bytes(path, MAX_BYTES, LibraryError))))
     except ValidationError as error:
-        raise LibraryError(f"{path} cannot be read ({shortened(str(error))}); delete it to begin anew") from error
+        raise LibraryError(f"{path} cannot be read ({shortened(str(error))}); delete it to start again") from error
 
 
 def write_own_models(path: Path, models: OwnModels) -> None:

@@ -46,7 +46,7 @@ def geometry_sentence(geometry: ObjectGeometry, depth: DepthSource) -> str:
     height_m = float(geometry.camera.position[2])
     return {
         ScaleSource.GIVEN: "objects given",
-        ScaleSource.OBJECT_SIZES: "scale from the usual sizes of the named things and the camera's usual height",
+        ScaleSource.OBJECT_SIZES: "scale from the usual sizes of the named objects and the camera's usual height",
         ScaleSource.CAMERA_HEIGHT: "no objects: the camera is taken to be at the usual height",
         ScaleSource.DEPTH: f"{read}; camera height from the floor",
         ScaleSource.DEPTH_WITHOUT_FLOOR: f"{read}; no floor seen, camera assumed {height_m:g} m above it",

@@ -20,7 +20,7 @@ _WORKING_SIDE = 320
 _RIM = 0.02
 _PLAUSIBLE_SHARE = (0.08, 0.97)
 """Shares of the picture that an object fills, when the background was told from it."""
-_WHOLE = "{name}: the thing could not be told from its background; a cut-out on a transparent one finds better"
+_WHOLE = "{name}: the object could not be separated from its background; a cut-out on a transparent one finds better"
 
 
 @dataclass(frozen=True, eq=False)
@@ -53,12 +53,12 @@ def read_crop(path: Path) -> ShapeCrop:
             warnings.simplefilter("ignore", Image.DecompressionBombWarning)
             with Image.open(path, formats=CROP_FORMATS) as opened:
                 if opened.width * opened.height > _MAX_PIXELS:
-                    raise InputError(f"{path} has {opened.width} x {opened.height} pixels; give a crop of one thing")
+                    raise InputError(f"{path} has {opened.width} x {opened.height} pixels; give a crop of one object")
                 rgba = ImageOps.exif_transpose(opened).convert("RGBA")
     except InputError:
         raise
     except (OSError, ValueError, SyntaxError, Image.DecompressionBombError) as error:
-        raise InputError(f"{path} cannot be read as a picture ({error}); give a PNG or JPEG of one thing") from error
+        raise InputError(f"{path} cannot be read as a picture ({error}); give a PNG or JPEG of one object") from error
     rgba.thumbnail((_WORKING_SIDE, _WORKING_SIDE))
     pixels = np.asarray(rgba)
     rgb, alpha = np.ascontiguousarray(pixels[..., :3]), pixels[..., 3]
@@ -68,7 +68,7 @@ def read_crop(path: Path) -> ShapeCrop:
         mask = foreground(rgb)
         note = _WHOLE.format(name=path.name) if mask.all() else ""
     if not mask.any():
-        raise InputError(f"{path} is wholly transparent; give a picture of one thing")
+        raise InputError(f"{path} is wholly transparent; give a picture of one object")
     return ShapeCrop(rgb, mask, note)
 
 

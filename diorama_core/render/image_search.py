@@ -145,7 +145,7 @@ def _query(crop: ShapeCrop) -> Float32[np.ndarray, "width"]:
     colour = colour_feature(palette_of_crop(crop.rgb, crop.mask))
     feature = view_feature(crop.gray, crop.mask, colour)
     if feature is None:
-        raise InputError("the picture shows nothing to look for; give one of a thing")
+        raise InputError("the picture shows nothing to look for; give one of an object")
     return feature
 
 

@@ -51,7 +51,7 @@ def _of_presence(scene: Scene, library: ShapeLibrary, object_id: str, value: str
 
 
 def _of_kind(scene: Scene, library: ShapeLibrary, object_id: str, kind: str) -> Scene:
-    _need(kind, {c.name for c in CATEGORIES}, "a kind of thing, such as armchair")
+    _need(kind, {c.name for c in CATEGORIES}, "a kind of object, such as armchair")
     item = scene.object(object_id)
     if record_of(library, item.shape_id).category != kind:
         scene = edits.swap(scene, object_id, candidate_of(library, item, kind), keep_pose=True)

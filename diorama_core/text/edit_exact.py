@@ -93,4 +93,4 @@ def wall_moved(scene: Scene, edit: MoveWall) -> Done:
 
 def outlined(scene: Scene, edit: DrawRoom) -> Done:
     """The room over another outline."""
-    return Done(draw_room(scene, np.array(edit.corners)), (f"draw the room anew with {len(edit.corners)} corners",))
+    return Done(draw_room(scene, np.array(edit.corners)), (f"draw the room again with {len(edit.corners)} corners",))

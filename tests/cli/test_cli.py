@@ -56,7 +56,7 @@ def test_building_again_reads_finished_stages(project: Path, capsys: pytest.Capt
 def test_a_photo_alone_gives_a_room_and_an_invitation(
     tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Of 16 bits a pixel, one of the two oddest modes; `perception/inputs/photos` tests all."""
+    """A photo of 16 bits a pixel, one of the two oddest modes; `perception/inputs/photos` tests all."""
     without = tmp_path / "without recogniser"
     without.mkdir()
     shutil.copyfile(own_weights.FOLDER / own_weights.OUTLINER, without / own_weights.OUTLINER)

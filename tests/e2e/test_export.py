@@ -56,7 +56,7 @@ class GlbFile:
 
     @property
     def roles(self) -> set[str]:
-        """Of the planes."""
+        """Roles of the planes."""
         extras = [n.get("extras", {}) for n in self.nodes]
         return {e["role"] for e in extras if "diorama_plane" in e}
 

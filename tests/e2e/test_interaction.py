@@ -124,7 +124,7 @@ def test_a_swap_is_previewed_searched_and_goes_to_all_alike(editor: EditorPage) 
     swapped = scene(editor).object("chair_1")
     np.testing.assert_allclose(swapped.size_m, before.size_m)
     assert swapped.colour == (0.1, 0.5, 0.2), "the colour stays"
-    editor.page.get_by_role("button", name="All 2 alike").click()
+    editor.page.get_by_role("button", name="All 2").click()
     editor.until(lambda: editor.client.preferences.all_alike)
     editor.page.locator(".dio .tile", has_text="chair c").click()
     editor.until(lambda: {scene(editor).object(f"chair_{k}").shape_id for k in (1, 2)} == {"chair_c"}, "both")

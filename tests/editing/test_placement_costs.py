@@ -30,7 +30,7 @@ def cost(
     near: Float[np.ndarray, "3"] | None = None,
     room: Architecture = ROOM,
 ) -> list[float]:
-    """Of an object at places with headings, on the floor of a room."""
+    """Cost of an object at places with headings, on the floor of a room."""
     count = len(stances)
     places = Stances(what.size_m, np.array([xy for xy, _ in stances]), np.array([yaw for _, yaw in stances]))
     here = Candidates(places, np.zeros(count), [None] * count, np.zeros(count), np.ones(count, dtype=bool))

@@ -71,7 +71,7 @@ def test_the_room_opens_as_a_scene_whose_things_stand_with_their_backs_to_walls(
     tall = max(scene.objects, key=lambda o: o.size_m[2])
     back = tall.pose.position - tall.pose.R_world_object[:, 0] * tall.size_m[0] / 2
     assert min(abs(w.normal @ back - w.offset) for w in scene.architecture.by_role("wall")) < 0.1
-    assert any("kinds of things are guessed" in line for line in opened.changes)
+    assert any("kinds of objects are guessed" in line for line in opened.changes)
 
 
 def test_what_is_no_room_is_one_line() -> None:

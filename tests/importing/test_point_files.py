@@ -38,7 +38,7 @@ def test_a_ply_is_imported_as_a_room(tmp_path: Path, capsys: pytest.CaptureFixtu
     scene = Project.open(tmp_path / "room").load_scene()
     assert len(scene.architecture.by_role("wall")) == 4
     assert len(scene.objects) == len(FURNITURE)
-    assert "kinds of things are guessed" in capsys.readouterr().err
+    assert "kinds of objects are guessed" in capsys.readouterr().err
 
 
 @pytest.mark.parametrize("mesh", [False, True])

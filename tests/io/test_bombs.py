@@ -104,7 +104,7 @@ BOMBS: dict[str, tuple[Callable[[bytes], None], Callable[[], bytes]]] = {
 
 
 def lying(data: bytes) -> bytes:
-    """The same archive with small stated sizes."""
+    """An archive with small stated sizes."""
     honest = 450_000_000 + len(npy_of((9,), b""))
     return data.replace(struct.pack("<I", honest), struct.pack("<I", 500))
 

@@ -192,7 +192,7 @@ def _other_inputs(case: Case, path: Path) -> Path:
 
 
 def _few_dims(case: Case, path: Path) -> Path:
-    """The same names, but numbers alone go in."""
+    """Equal names, but numbers alone go in."""
     return small_graphs.constants(path, {n: (k, 1) for n, (k, _) in case.inputs.items()}, _numbers(case.outputs))
 
 

@@ -84,5 +84,5 @@ def test_what_hangs_beside_a_wall_does_not_hang_on_it() -> None:
 
 
 def longer(found: Architecture, stretch: float) -> Architecture:
-    """The same room, longer along x."""
+    """A room, longer along x."""
     return Architecture(tuple(replace(p, polygon=p.polygon * [stretch, 1.0, 1.0]) for p in found.planes))

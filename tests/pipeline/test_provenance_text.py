@@ -100,7 +100,7 @@ def test_what_is_given_is_said_to_be() -> None:
 
 
 def test_objects_say_where_their_scale_is_from() -> None:
-    sizes = "scale from the usual sizes of the named things and the camera's usual height"
+    sizes = "scale from the usual sizes of the named objects and the camera's usual height"
     assert objects(ScaleSource.OBJECT_SIZES) == sizes
     assert objects(ScaleSource.CAMERA_HEIGHT) == "no objects: the camera is taken to be at the usual height"
     assert objects(ScaleSource.DEPTH) == "measured depth; camera height from the floor"

@@ -19,7 +19,7 @@ PILLOW = np.array([0.24, 0.48, 0.44])
 def hypotheses(
     size_m: tuple[float, float, float], *, front_known: bool = False, sides_known: bool = False
 ) -> Hypotheses:
-    """Of a pillow in a cuboid that is turned by ten degrees."""
+    """Hypotheses of a pillow in a cuboid that is turned by ten degrees."""
     cuboid = Cuboid("pillow_1", yaw_rotation(np.deg2rad(10.0)), np.array([1.0, 2.0, 0.6]), np.array(size_m), 1.0)
     cuboid = replace(cuboid, front_known=front_known)
     limits = SizeLimits.of(tuple(PILLOW), "pillow", cuboid.size_m)

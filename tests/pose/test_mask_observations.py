@@ -22,7 +22,7 @@ def evidence() -> Evidence:
 
 
 def enlarged_cost(evidence: Evidence, shape_size_m: tuple[float, float, float], scale: tuple[float, ...]) -> float:
-    """Of a doubtful mask."""
+    """Cost of an enlarged doubtful mask."""
     evidence = replace(evidence, seen=replace(evidence.seen, mask_trust=0.6))
     limits = SizeLimits.of(shape_size_m, "blanket", np.array([0.6, 0.9, 0.15]))
     return evidence.enlarged_cost(np.array(scale), limits)

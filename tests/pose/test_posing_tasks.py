@@ -35,7 +35,7 @@ def thing(name: str, label: str, category: str) -> DetectedObject:
 
 
 def tasks(item: DetectedObject, kind: str, held_by: str = "floor") -> PosingTask:
-    """Of one object that stands beside a table at its right."""
+    """Tasks of one object that stands beside a table at its right."""
     table = thing("table", "table", "table")
     cuboids = (
         Cuboid(item.id, np.eye(3), np.array([0.0, 3.0, 0.45]), np.array([0.5, 0.5, 0.9]), 0.7),

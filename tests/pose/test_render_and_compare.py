@@ -63,7 +63,7 @@ def test_the_shape_that_fits_the_picture_comes_first() -> None:
 
 
 def test_retrieval_says_more_of_a_thing_without_a_name() -> None:
-    """Of shapes of all kinds some always has its outline."""
+    """Some shape of all kinds always has its outline."""
     room = Room(camera_at(), (standing("low chair", 0.0, 3.0, 200.0),), (1,))
     ranked = (RankedShapes("o0", (("chair", 0.9), ("low chair", 0.6))),)
     said = []

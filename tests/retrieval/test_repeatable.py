@@ -47,7 +47,7 @@ def answer(pickled: str) -> str:
 
 
 def elsewhere(pickled: Path, cache: Path, hash_seed: int, threads: int) -> Answer:
-    """The same from a process of its own."""
+    """A result from another process."""
     counts = dict.fromkeys(("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"), str(threads))
     settings = {"DIORAMA_CACHE": str(cache), "PYTHONHASHSEED": str(hash_seed), "PYTHONPATH": str(ROOT)}
     done = subprocess.run(

@@ -201,11 +201,11 @@ TERMS: tuple[Term, ...] = (
     Term("back_at_wall", "cupboards and beds turn their backs to a wall", back_at_wall(STORAGE | BEDS)),
     Term("back_at_wall_others", "backs are at walls", back_at_wall(None)),
     Term("out_of_wall", "what hangs on a wall looks out of it", out_of_wall),
-    Term("as_told", "the front was told", as_measured),
+    Term("as_told", "the front was given", as_measured),
     Term("leaning", "pillows lean on the back of what they lie on", leaning),
     Term("at_middle", "furniture faces the middle of the room", at_middle),
     Term("as_carrier", "what stands on furniture faces as that does", pair=as_carrier),
-    Term("side_by_side", "things of a kind side by side face alike", pair=side_by_side),
+    Term("side_by_side", "objects of a kind side by side face the same way", pair=side_by_side),
     Term("as_bed", "a night stand faces as its bed", pair=as_bed),
 )
 

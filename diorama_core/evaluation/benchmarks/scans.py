@@ -70,7 +70,7 @@ class ScansBench:
     def tables(self) -> tuple[Table, ...]:
         """One row for each way of telling kinds."""
         columns = (
-            Column("right kinds", better="↑"), Column("found", better="↑"), Column("things", "d"),
+            Column("right kinds", better="↑"), Column("found", better="↑"), Column("objects", "d"),
             Column("doors and windows found", better="↑"), Column("of", "d"), Column("false", "d", "↓"),
             Column("time s", ".1f", "↓"),
         )  # fmt: skip
@@ -87,7 +87,7 @@ class ScansBench:
             rows.append(Row(way, values, intervals=(span, *(None,) * 6)))
         rooms = len({r.case for r in self.results})
         note = (
-            f"{rooms} rooms. Right kinds: of the things that were found (a box shares 0.3 of its volume with them), "
+            f"{rooms} rooms. Right kinds: of the objects that were found (a box shares 0.3 of its volume with them), "
             "special kinds counting as their broad one. In brackets the 90 % interval (bootstrap over rooms). Doors "
             f"and windows within {MAX_OFF_M} m. Time: processor seconds a room, reading included."
         )

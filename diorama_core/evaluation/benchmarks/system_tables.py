@@ -71,8 +71,8 @@ def system_table(results: Results, *, offered: bool = False) -> Table:
     note = (
         f"{len(results[0][1]) if results else 0} rooms; their own shapes are {'' if offered else 'not '}in the library "
         "searched. Scenes that fail count as wrong in every share. Rotations count up to the true shape's symmetry "
-        "(round and square things, about half of all, are nearly always right), but for the row that ignores it. Sizes "
-        "of pairs are compared in both orders. CD: squared chamfer of normalised shapes, both ways added, x 1000, over "
+        "(round and square objects, half of all, are nearly always right), but for the row that ignores it. Sizes of "
+        "pairs are compared in both orders. CD: squared chamfer of normalised shapes, both ways added, x 1000, over "
         f"the objects found. Time: processor seconds a scene. {_INTERVALS} The paper's rows have a network's depth and "
         "boxes found by a detector; ours are given boxes and classes, and where a row says so true masks and depth."
     )
@@ -108,7 +108,7 @@ def scene_table(results: Results) -> Table:
         rows.append(_scene_row(name, [c.scores for c in cases]))
     note = (
         "own Acc: each object within 20 cm, 20 degrees and 20 % of its truth, which is the only share here that knows "
-        "where things should be. kind: share of objects whose shape is of the true kind. height off: median "
+        "where objects should be. kind: share of objects whose shape is of the true kind. height off: median "
         "error of the camera's height, as a share. structure and supported "
         "are measured against the scene's own graph and say that it is consistent, not that it is true; relation and "
         "truly supported are measured against the true graph. meshes: litres that meshes share although neither "

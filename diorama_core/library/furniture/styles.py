@@ -58,7 +58,7 @@ class Style:
     """What fills the panels of doors, where it is not wood."""
 
     def but(self, **changes: Any) -> Style:
-        """The same style with other materials or details."""
+        """A style with other materials or details."""
         return replace(self, **changes)
 
 

@@ -105,7 +105,7 @@ def _read_intrinsics(
     photo, (left, top, _, _) = decoded.photo, decoded.frame.margins
     width, height = decoded.frame.full_size
     if given is not None and fov_deg is not None:
-        raise InputError("--intrinsics and --fov say the same thing; give one of them")
+        raise InputError("--intrinsics and --fov mean the same; give one of them")
     if fov_deg is not None:
         low, high = FOV_RANGE_DEG
         if not low <= fov_deg <= high:

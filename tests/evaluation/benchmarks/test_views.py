@@ -39,7 +39,7 @@ SEED = 38
 
 @cache
 def pictures() -> tuple[RoomView, ...]:
-    """Of the first room of a series, from two places."""
+    """Pictures of the first room of a series, from two places."""
     return photographed(recipe(1, 1, SEED)[0], split_library(built_in_library(), "test"), 2, SMALL)
 
 

@@ -13,7 +13,7 @@ SIDES = np.array([[1.0, 0, 0], [0, 1.0, 0], [-1.0, 0, 0], [0, -1.0, 0]])
 
 
 def share(width: float, depth: float, own: tuple[float, float]) -> float:
-    """Of a footprint of half extents `own` on a table of the given half extents."""
+    """Share of a footprint of half extents `own` on a table of the given half extents."""
     return largest_share(SIDES, np.array([width, depth, width, depth]), np.array([*own, *own]))
 
 

@@ -30,7 +30,7 @@ def table() -> trimesh.Trimesh:
 
 
 def y_up(mesh: trimesh.Trimesh) -> trimesh.Trimesh:
-    """The same in the frame of glTF: +Y up, front along +Z."""
+    """A model in the frame of glTF: +Y up, front along +Z."""
     R = np.array([[0, 1, 0], [0, 0, 1], [1, 0, 0]], float)
     return trimesh.Trimesh(mesh.vertices @ R.T, mesh.faces, process=False)
 

@@ -57,7 +57,7 @@ def accessor_values(row: dict[str, Any], doc: dict[str, Any], binary: bytes) -> 
 
 
 def source(kind: str, folder: Path) -> bytes:
-    """The same triangle as a GLB, with a data address, or with a file beside it."""
+    """One triangle as a GLB, with a data address, or with a file beside it."""
     if kind == "glb":
         return write_glb(document(), POINTS.tobytes())
     if kind == "data":

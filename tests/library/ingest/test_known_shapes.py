@@ -15,7 +15,7 @@ from tests.primitives import PrimitiveLibrary
 
 
 class Renewed(PrimitiveLibrary):
-    """The same library after a change to one shape."""
+    """A library after a change to one shape."""
 
     def shapes(self) -> tuple[Shape, ...]:
         first, *others = super().shapes()

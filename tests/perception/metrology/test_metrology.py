@@ -77,7 +77,7 @@ def bounds_of(points_camera: np.ndarray) -> np.ndarray:
 
 
 def ious(objects: tuple[DetectedObject, ...], geometry: ObjectGeometry) -> np.ndarray:
-    """Of the given boxes with those of things that fill the cuboids as their kinds do."""
+    """IoU of the given boxes with those of things that fill the cuboids as their kinds do."""
     points = [
         outline_of(o.category) * c.size_m @ c.R_world_object.T + c.centre
         for o, c in zip(objects, geometry.cuboids, strict=True)

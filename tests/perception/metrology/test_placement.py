@@ -20,7 +20,7 @@ def placed(*items: RequestedObject, height_m: float = 1.5) -> tuple[Placement, .
 
 
 def outlined(*items: RequestedObject) -> tuple[Placement, ...]:
-    """The same where masks fill the boxes."""
+    """Objects whose masks fill the boxes."""
     objects = seen(items, R, 1.5)
     for item in objects:
         x1, y1, x2, y2 = (round(v) for v in item.box)

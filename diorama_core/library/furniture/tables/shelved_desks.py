@@ -83,7 +83,7 @@ def ladder_desk(
     reach = d - bar
 
     def front(z: float) -> float:
-        """Of the leaning uprights at a height."""
+        """Front edge of the leaning uprights at a height."""
         return x0 + bar + (reach - 0.11) * (1 - z / h) + 0.1
 
     parts = of(

@@ -22,7 +22,7 @@ WORDS = {
     "shifted": "depth less a constant, as programs normalise it",
 }
 _INVERSE_ANSWERS = (
-    DepthAnswer("inverse depth, fitted to the usual sizes of things", kind="inverse"),
+    DepthAnswer("inverse depth, fitted to the usual sizes of objects", kind="inverse"),
     DepthAnswer("depth along the optical axis after all", kind="depth"),
 )
 
@@ -63,7 +63,7 @@ def chosen_reading(
         return best, (said + "; they were converted (--depth-kind depth keeps them)",)
     raise AmbiguousDepthError(
         f"{name}: this is inverse depth or disparity (larger is nearer), which has no unit; give metric depth, or add "
-        "--depth-kind inverse to fit it to the things' usual sizes",
+        "--depth-kind inverse to fit it to the objects' usual sizes",
         _INVERSE_ANSWERS,
     )
 
@@ -83,7 +83,7 @@ def _bent(name: str, readings: tuple[DepthReading, ...]) -> tuple[str, ...]:
         raise AmbiguousDepthError(
             f"{name}: {looks}; give depth itself, or add --depth-kind {flattest.kind}, or --depth-kind depth if it is",
             (
-                DepthAnswer(f"{WORDS[flattest.kind]}, fitted to the usual sizes of things", kind=flattest.kind),
+                DepthAnswer(f"{WORDS[flattest.kind]}, fitted to the usual sizes of objects", kind=flattest.kind),
                 DepthAnswer("depth along the optical axis after all", kind="depth"),
             ),
         )

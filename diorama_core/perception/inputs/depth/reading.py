@@ -182,7 +182,9 @@ def _understood(
         answers = tuple(DepthAnswer(words, per_metre) for per_metre, words in unit.choices)
         raise AmbiguousDepthError(f"{name}: {unit.question}", answers)
     if evidence is None and not raw.is_float:
-        notes += ("the depth was taken for millimetres, which neither a floor nor named things confirm: --depth-scale",)
+        notes += (
+            "the depth was taken for millimetres, which neither a floor nor named objects confirm: --depth-scale",
+        )
     return _in_metres(along, unit.per_metre), (*notes, *([unit.note] if unit.note else []))
 
 

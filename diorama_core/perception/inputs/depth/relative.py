@@ -70,7 +70,7 @@ def metric_depth(
     depth = _inverted(values, valid, offset, smallest)
     moved = PlaneFit(fit.explained, fit.planes + np.array([0.0, 0.0, offset]), fit.shares)
     factor = _factor(name, scale_evidence(depth, valid, moved, used, boxes))
-    note = f"{name} is inverse depth; its size and offset were fitted to walls, floor and the usual sizes of things"
+    note = f"{name} is inverse depth; its size and offset were fitted to walls, floor and the usual sizes of objects"
     return depth * factor, (note,)
 
 
@@ -109,14 +109,14 @@ def metric_of_bent(
     evidence = scale_evidence(depth, valid, reading.fit, focal or focal_of_planes(reading.fit), boxes)
     if usual and (evidence is None or abs(evidence.log_scale) < CONTRADICTED_BY):
         return depth, (f"{name} was read as the {reading.kind} of metres",)
-    note = f"{name} was read as {reading.kind}; its size was fitted to the floor and the usual sizes of things"
+    note = f"{name} was read as {reading.kind}; its size was fitted to the floor and the usual sizes of objects"
     return depth * _factor(name, evidence), (note,)
 
 
 def _factor(name: str, evidence: ScaleEvidence | None) -> float:
     if evidence is None:
         raise InputError(
-            f"{name}: this depth has no unit, and no named thing or floor gives it one; add --boxes, or metric depth"
+            f"{name}: this depth has no unit, and no named object or floor gives it one; add --boxes, or metric depth"
         )
     return float(np.exp(evidence.log_scale))
 

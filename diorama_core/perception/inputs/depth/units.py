@@ -99,7 +99,7 @@ def _words(stated: float, factor: float, evidence: ScaleEvidence) -> str:
     times = f"{factor:.1f} times" if factor > 1 else f"1/{1 / factor:.1f} of"
     if evidence.things < MIN_THINGS and room is not None:
         return f"read in {unit}, the room is {room / stated:.1f} m high{camera}"
-    return f"read in {unit}, things have {times} their usual size{camera}"
+    return f"read in {unit}, objects have {times} their usual size{camera}"
 
 
 def _doubtful_height(evidence: ScaleEvidence | None, stated: float) -> str:

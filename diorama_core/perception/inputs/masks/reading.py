@@ -116,7 +116,7 @@ def split_by_boxes(
         several += 1
         for pieces in list(owners.values())[1:]:
             apart[np.isin(labels, pieces)] = apart.max() + 1
-    said = f"{number_of(several, 'mask')} of several things, split by the boxes"
+    said = f"{number_of(several, 'mask')} of several objects, split by the boxes"
     return apart, (said,) if several else ()
 
 

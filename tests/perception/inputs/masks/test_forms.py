@@ -315,7 +315,7 @@ def test_a_mask_of_a_kind_is_split_by_the_boxes() -> None:
     values, matched, notes = read_masks(picture(Image.fromarray(both)), boxes, decoded(WIDTH, HEIGHT))
     assert values.max() == 2
     assert [b.box for _, b in matched] == [b.box for b in boxes]
-    assert "1 mask of several things" in notes[0]
+    assert "1 mask of several objects" in notes[0]
     other = (boxes[0], LabelledBox(boxes[1].box, "sofa", "sofa"))
     assert read_masks(picture(Image.fromarray(both)), other, decoded(WIDTH, HEIGHT))[0].max() == 1
 

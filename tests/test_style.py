@@ -1,0 +1,90 @@
+"""What a program can check of `docs/style.md`: docstrings, what the program prints and shows, and the docs."""
+
+from __future__ import annotations
+
+import ast
+import re
+from collections.abc import Iterator
+from functools import cache
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[1]
+FOLDERS = ("diorama_core", "diorama_app", "addons", "scripts", "tests", "examples")
+ODD_STARTS = re.compile(r"(Of|And|Nor|But|Or|The same)\b")
+QUESTIONS = re.compile(r"(What|How|Where|When)\b")
+MAX_QUESTIONS = 0.12
+"""Share of docstrings that begin with a question word; it may only fall."""
+MANY_PARAMETERS = 4
+EXPLAINED_ELSEWHERE = ("diorama_core/library/furniture/", "diorama_app/agents/tools.py", "diorama_app/http_api/")
+"""Designs' parameters are the words of their tables; those of HTTP and MCP have descriptions in their annotations."""
+ODD_WORDS = re.compile(r"\b(things?|anew|alike|upon|whoever|hitherto|(is|are|was) (told|said))\b", re.IGNORECASE)
+VOCABULARIES = ("diorama_core/text/", "diorama_core/library/definitions.py", "diorama_core/evaluation/adapters/")
+"""Modules with words that people and data sets use."""
+PAGES = [
+    *sorted((ROOT / "docs").glob("*.md")),
+    *(ROOT / name for name in ("README.md", "CONTRIBUTING.md", "CHANGELOG.md")),
+]
+
+Documented = ast.Module | ast.ClassDef | ast.FunctionDef | ast.AsyncFunctionDef
+
+
+@cache
+def parsed(path: Path) -> ast.Module:
+    return ast.parse(path.read_text("utf-8"))
+
+
+def modules(*folders: str) -> list[Path]:
+    return [path for folder in folders for path in sorted((ROOT / folder).rglob("*.py"))]
+
+
+def documented(path: Path) -> Iterator[tuple[str, Documented, str]]:
+    """Place, node and docstring of everything in a module that has one."""
+    for node in ast.walk(parsed(path)):
+        if isinstance(node, Documented) and (docstring := ast.get_docstring(node)):
+            yield f"{path.relative_to(ROOT).as_posix()}:{getattr(node, 'lineno', 1)}", node, docstring
+
+
+def messages(path: Path) -> Iterator[tuple[str, str]]:
+    """Place and text of a module's strings of several words, without docstrings."""
+    tree = parsed(path)
+    docstrings = {id(node.value) for node in ast.walk(tree) if isinstance(node, ast.Expr)}
+    for node in ast.walk(tree):
+        text = node.value if isinstance(node, ast.Constant) and id(node) not in docstrings else None
+        if isinstance(text, str) and " " in text.strip():
+            yield f"{path.relative_to(ROOT).as_posix()}:{node.lineno}", text
+
+
+def test_docstrings_begin_with_their_subject() -> None:
+    docstrings = [(where, text) for path in modules(*FOLDERS) for where, _, text in documented(path)]
+    assert [where for where, text in docstrings if ODD_STARTS.match(text)] == []
+    questions = sum(QUESTIONS.match(text) is not None for _, text in docstrings)
+    assert questions <= MAX_QUESTIONS * len(docstrings), f"{questions} of {len(docstrings)} begin with a question word"
+
+
+def test_functions_of_many_parameters_explain_them() -> None:
+    missing = []
+    for path in modules("diorama_core", "diorama_app"):
+        for where, node, text in documented(path):
+            if (
+                isinstance(node, ast.FunctionDef)
+                and not node.name.startswith("_")
+                and not where.startswith(EXPLAINED_ELSEWHERE)
+            ):
+                names = {a.arg for a in (*node.args.posonlyargs, *node.args.args, *node.args.kwonlyargs)}
+                if len(names - {"self", "cls"}) >= MANY_PARAMETERS and "Args:" not in text:
+                    missing.append(where)
+    assert missing == []
+
+
+def test_messages_are_in_plain_words() -> None:
+    code = [path for path in modules("diorama_core", "diorama_app") if "/furniture/" not in path.as_posix()]
+    read = [row for path in code for row in messages(path) if not row[0].startswith(VOCABULARIES)]
+    assert [row for row in read if ODD_WORDS.search(row[1])] == []
+
+
+@pytest.mark.parametrize("page", PAGES, ids=[page.name for page in PAGES])
+def test_docs_are_in_plain_words(page: Path) -> None:
+    text = page.read_text("utf-8").split("| before | after |")[0]
+    assert [(n, line) for n, line in enumerate(text.splitlines(), 1) if ODD_WORDS.search(line)] == []
