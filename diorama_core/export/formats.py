@@ -115,7 +115,7 @@ _TABLE = (
         "robot",
         "Robot pack",
         (".zip",),
-        "MJCF, URDF, SDF and USD of the same bodies, regions to put things on, grasps, labels, a map for ROS nav2",
+        "MJCF, URDF, SDF and USD of the same bodies, regions to put objects on, grasps, labels, a map for ROS nav2",
         "robot:write_robot",
         "usd",
         "pxr",

@@ -51,13 +51,13 @@ HANDLE_M = 0.015
 
 README = """# {name}
 
-One room, written by Diorama. Metres, radians, +Z up; quaternions w, x, y, z. All files name bodies alike.
+One room, written by Diorama. Metres, radians, +Z up; quaternions w, x, y, z. All files use the same names of bodies.
 
 - `room.xml` MuJoCo, with a site for every region of `regions.json`
 - `room.urdf` the room, `files/poses.json` the objects that may move, each a URDF of its own beside it
 - `room.sdf` Gazebo, Drake; `room.usdc` Isaac Sim, newton, with semantic labels
 - `objects.json` what each body is: category, size, mass, whether it can be grasped, its joints and their handles
-- `regions.json` where things can be put: outline, height, what stands there, what is free, where a robot stands for it
+- `regions.json` where objects can be put: outline, height, what stands there, what is free, where a robot stands for it
 - `map.pgm`, `map.yaml` occupancy for ROS nav2: what stands between {low} m and {high} m above the floor
 - `navigation.json` where the middle of a disc of radius {radius} m may be, with holes
 
