@@ -32,6 +32,8 @@ SIDE_GAP_M = 0.45
 NEAR_M = 0.9
 AT_WALL_M = 0.15
 IN_CORNER_M = 0.45
+THAT_WAY = 0.7
+"""Cosine of the angle up to which a wall counts as being in a direction."""
 MIDDLE_SHARE = 0.2
 """The middle of a room is this share of its extents."""
 FACING_RAD = float(np.radians(30.0))
@@ -60,13 +62,20 @@ class Relation:
     """Distance by which this one's middle is to the target's left, where several are in a row before or opposite it."""
     seat_m: tuple[float, float] | None = None
     """This one's place, where several are around a table: from the table's middle along its own axes."""
+    toward: tuple[float, float] | None = None
+    """Level direction from the middle of the room: only walls and corners that way are meant."""
+    side: str = ""
+    """That direction in words."""
 
     def words(self, scene: Scene) -> str:
         """In words: "beside sofa 1"."""
         if self.kind in OF_ROOM:
-            return {"against wall": "against a wall", "in corner": "in a corner", "in middle": "in the middle"}[
-                self.kind
-            ]
+            which = f"the {self.side}" if self.side else "a"
+            return {
+                "against wall": f"against {which} wall",
+                "in corner": f"in {which} corner",
+                "in middle": "in the middle",
+            }[self.kind]
         names = [scene.object(t).label for t in self.targets if scene.has_object(t)]
         return f"{self.kind} {' and '.join(names) or 'each other'}"
 
@@ -111,9 +120,9 @@ def relation_cost(
         frame: the room's axes and outline.
     """
     if relation.kind == "against wall":
-        return _against_wall(stances, frame)
+        return _against_wall(stances, frame, relation.toward)
     if relation.kind == "in corner":
-        return _in_corner(stances, frame)
+        return _in_corner(stances, frame, relation.toward)
     if relation.kind == "in middle":
         extent = np.ptp(frame.outline, axis=0) * MIDDLE_SHARE
         return np.maximum(np.abs(stances.places - frame.middle) / np.maximum(extent, 0.1) - 1.0, 0.0).max(axis=1)
@@ -340,9 +349,11 @@ def _between(stances: Stances, found: list[SceneObject]) -> Float[np.ndarray, "n
     )
 
 
-def _against_wall(stances: Stances, frame: RoomFrame) -> Float[np.ndarray, "n"]:
+def _against_wall(stances: Stances, frame: RoomFrame, toward: tuple[float, float] | None) -> Float[np.ndarray, "n"]:
     best = np.full(len(stances.places), 3.0)
     for wall in frame.walls:
+        if toward is not None and -float(wall.inward @ toward) < THAT_WAY:
+            continue
         turned = _angle(stances.yaws_rad, np.full(len(stances.yaws_rad), wall.yaw_rad))
         back = wall.off_of(stances.places) - stances.size_m[0] / 2
         t = wall.t_of(stances.places)
@@ -352,11 +363,12 @@ def _against_wall(stances: Stances, frame: RoomFrame) -> Float[np.ndarray, "n"]:
     return best
 
 
-def _in_corner(stances: Stances, frame: RoomFrame) -> Float[np.ndarray, "n"]:
-    if not frame.corners:
+def _in_corner(stances: Stances, frame: RoomFrame, toward: tuple[float, float] | None) -> Float[np.ndarray, "n"]:
+    corners = [c for c in frame.corners if toward is None or float((c - frame.middle) @ toward) > 0.0]
+    if not corners:
         return np.full(len(stances.places), 3.0)
     quads = stances.quads
-    reach = np.min([np.linalg.norm(quads - corner, axis=-1).min(axis=1) for corner in frame.corners], axis=0)
+    reach = np.min([np.linalg.norm(quads - corner, axis=-1).min(axis=1) for corner in corners], axis=0)
     return np.maximum(reach - IN_CORNER_M, 0.0) / 0.3 + 0.2 * reach
 
 
@@ -382,7 +394,7 @@ def unmet_cost(scene: Scene, object_id: str, relation: Relation, frame: RoomFram
         over = all(item.corners_world[:, 2].min() >= t.corners_world[:, 2].max() - 0.05 for t in targets.values())
         beside = max(float(gaps(Stances.of(item).quads, footprint_of(t))[0]) for t in targets.values())
         return 0.0 if over and beside < 0.5 else 2.0
-    if relation.kind == "against wall" and category(item.category).mount == "wall":
+    if relation.kind == "against wall" and category(item.category).mount == "wall" and relation.toward is None:
         return 0.0
     return float(relation_cost(relation, Stances.of(item), item.category, targets, frame)[0])
 

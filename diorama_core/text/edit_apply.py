@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 from diorama_core.editing.placing import seated
 from diorama_core.editing.positioning import Positioner
 from diorama_core.editing.relations import OF_ROOM, Relation
+from diorama_core.editing.room_frame import RoomFrame
 from diorama_core.errors import EditRefused
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.library.taxonomy import broad
@@ -42,10 +43,11 @@ from diorama_core.text.edit_plan import (
     SetState,
     SetSupport,
     Shift,
+    Side,
     Swap,
     Turn,
 )
-from diorama_core.text.edit_room import covered, lengthened, lit, opened_wall
+from diorama_core.text.edit_room import covered, direction_of, lengthened, lit, opened_wall, wall_on
 from diorama_core.text.edit_states import aligned, copied, exchanged, measured, put_in_state, renamed
 
 
@@ -145,8 +147,22 @@ class EditApplier:
                 raise EditRefused(f"“{place.relation}” what? Name the object")
             if set(targets) & set(own):
                 raise EditRefused(f"{scene.object(targets[0]).label} cannot be {place.relation} itself")
-            found.append(Relation(place.relation, targets))
+            toward = _toward(scene, place.side, own)
+            if place.relation == "against wall" and place.side not in ("", "other"):
+                wall_on(scene, place.side)
+            found.append(Relation(place.relation, targets, toward=toward, side=place.side))
         return found
+
+
+def _toward(scene: Scene, side: Side, own: Sequence[str]) -> tuple[float, float] | None:
+    """The direction of a side of the room; "other" is away from where the first object is."""
+    if not side or (side == "other" and not own):
+        return None
+    if side == "other":
+        way = RoomFrame.of(scene).middle - scene.object(own[0]).pose.position[:2]
+    else:
+        way = direction_of(scene, side)
+    return float(way[0]), float(way[1])
 
 
 def _removed(library: ShapeLibrary, scene: Scene, ids: Sequence[str]) -> Done:

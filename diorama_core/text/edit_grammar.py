@@ -12,16 +12,17 @@ from typing import Literal
 
 from pydantic import ValidationError
 
-from diorama_core.editing.relations import RelationKind
+from diorama_core.editing.relations import SEATS, RelationKind
 from diorama_core.errors import EditRefused
 from diorama_core.geometry.openings import OPENING_CATEGORIES
 from diorama_core.io.bounded import shortened
 from diorama_core.library.record import ShapeLibrary
-from diorama_core.library.taxonomy import category
+from diorama_core.library.taxonomy import broad, category
 from diorama_core.scene.types import Scene
 from diorama_core.text.edit_counts import all_but, counted_edits
 from diorama_core.text.edit_lengths import lifted, nearer, shift_of
 from diorama_core.text.edit_plan import (
+    MAX_COPIES,
     Edit,
     Insert,
     Move,
@@ -33,71 +34,26 @@ from diorama_core.text.edit_plan import (
     Swap,
     Turn,
 )
+from diorama_core.text.edit_wording import EXAMPLES, VERBS, plain
 from diorama_core.text.edit_words_objects import object_edits, places_of_phrases
 from diorama_core.text.edit_words_room import room_edits
-from diorama_core.text.foreign_words import in_english
 from diorama_core.text.looks import look_of
 from diorama_core.text.phrases import NUMBERS, PlacePhrase, noun_phrase, split_places
 from diorama_core.text.selecting import Selector
 
-_VERBS = {
-    "remove": "remove|delete|take away|take out|get rid of|throw out|throw away|clear away|erase|drop",
-    "clear": "clear|empty|tidy",
-    "turn": "turn|rotate|face|point|orient|aim|spin",
-    "swap": "swap|replace|exchange|switch|substitute",
-    "change": "change",
-    "paint": "paint|colour|color|recolour|recolor|dye",
-    "make": "make",
-    "larger": "enlarge|scale up|grow",
-    "smaller": "shrink|scale down|reduce",
-    "lift": "raise|lift|lower",
-    "move": "move|shift|push|pull|drag|bring|slide|relocate|carry",
-    "put": "put|place|set|hang|stand|lay|position|arrange|line up|cent(?:er|re)",
-    "insert": "add|insert|give me|i want|i would like|i'd like|i need|there should be|create|get|bring in",
-}
 _VERB = re.compile(
     r"^(?:please |now |then |also |and |can you |could you )*(?:"
-    + "|".join(f"(?P<{name}>(?:{words})\\b)" for name, words in _VERBS.items())
+    + "|".join(f"(?P<{name}>(?:{words})\\b)" for name, words in VERBS.items())
     + ")"
 )
-_ANY_VERB = "|".join(words for words in _VERBS.values())
-_CLAUSES = re.compile(
-    rf"\s*(?:;|\.(?!\d)|,?\s*\b(?:and )?then\b|,?\s*\band\s+(?=(?:{_ANY_VERB})\b)|,\s*(?=(?:{_ANY_VERB})\b))\s*"
-)
-_SHOULD = re.compile(
-    r"^(?:please )?((?:the|all|every|each|my|these|those) .+?) (?:should|must|ought to|ha(?:s|ve) to)(?: be)? "
-)
-_POLITE = re.compile(
-    r"^(?:(?:please|now|then|also|and|hey|ok|okay|well|can you|could you|can we|could we|would you|will you|let's"
-    r"|i would like you to|i'd like you to|i want you to|i want to|i'd like to|i would like to|go ahead and),? )+"
-)
-_AT_END = re.compile(r",? (?:please|for me|thanks|thank you|now|instead|\?)$|\?$")
-_GIVEN = re.compile(r"^give ((?:the|my|all|each|every) .+?) (?:an?|some) (.+?)(?: colou?r| finish| look| covering)?$")
-"""“give the sofa a dark green colour”; the walls, too."""
 _HIGHER = re.compile(r"(?:\s+(?:a (?:bit|little)|slightly|much|somewhat))?\s+(higher|lower)(?: up| down)?$")
+_PARTS = frozenset({"drawer", "drawers", "shelf", "shelves", "legs", "arms", "back", "lid", "wheels", "shade"})
+"""What furniture has and what is no object beside it."""
 _AND_SO = frozenset({"of", "more", "new", "another", "please", "also", "and", "pair", "set", "few", "some", "with"})
 """Words that may stand beside what is named anew."""
 _SCALES = {"twice": 2.0, "double": 2.0, "half": 0.5}
-EXAMPLES = (
-    "make all chairs wooden; move the lamp beside the sofa; make the sofa 2 m wide; brick walls; a rug under the table"
-)
-MAX_COMMAND_CHARS = 1000
 MAX_LINE = 380
 """Characters of a refusal."""
-
-
-def clauses_of(command: str) -> tuple[str, ...]:
-    """The clauses of a command, each of which is one edit or several.
-
-    Raises:
-        EditRefused: there are no words, or too many.
-    """
-    text = " ".join(in_english(command).lower().replace("’", "'").split()).strip(" .!")
-    if not text:
-        raise EditRefused(f"there is no command; for example: {EXAMPLES}")
-    if len(text) > MAX_COMMAND_CHARS:
-        raise EditRefused(f"the command has {len(text)} characters; {MAX_COMMAND_CHARS} are enough")
-    return tuple(c for c in _CLAUSES.split(text) if c.strip())
 
 
 def edits_of(
@@ -130,7 +86,7 @@ def _edits_of(
     clause: str, scene: Scene, library: ShapeLibrary, last: Sequence[str], selected: Sequence[str]
 ) -> tuple[Edit, ...]:
     selector = Selector(scene, library, last, selected)
-    clause = _plain(clause)
+    clause = plain(clause)
     known = counted_edits(selector, clause) or room_edits(selector, clause) or object_edits(selector, clause, _subject)
     if known:
         return known
@@ -167,13 +123,6 @@ def _edits_of(
     if not verb and not _is_wish(rest):
         raise EditRefused(f"“{clause}” is not understood; for example: {EXAMPLES}")
     return _inserts(selector, clause, rest)
-
-
-def _plain(clause: str) -> str:
-    """A clause without what is only polite, in the form of a command."""
-    clause = _POLITE.sub("", _AT_END.sub("", clause)).strip()
-    clause = _GIVEN.sub(r"make \1 \2", clause)
-    return _SHOULD.sub(r"make \1 ", clause)
 
 
 def _each_alone(
@@ -264,8 +213,14 @@ def _usual_relation(selector: Selector, head: str, goal: str) -> RelationKind:
     """What "to" means: onto furniture for what lies on things, beside it for what stands on the floor."""
     scene = selector.scene
     item, target = scene.object(selector.objects(head)[0]), scene.object(selector.targets(goal)[0])
-    carries = category(target.category).supports_objects
-    return "on" if carries and category(item.category).mount == "surface" else "beside"
+    return _usual_kind(item.category, target.category)
+
+
+def _usual_kind(kind: str, target: str) -> RelationKind:
+    """How something of a category is usually at something of another one."""
+    if category(kind).mount == "surface" and category(target).supports_objects:
+        return "on"
+    return "around" if kind in SEATS and broad(target) in ("table", "desk") else "beside"
 
 
 def _split(selector: Selector, head: str, places: list[PlacePhrase]) -> tuple[list[PlacePhrase], list[PlacePhrase]]:
@@ -279,7 +234,19 @@ def _split(selector: Selector, head: str, places: list[PlacePhrase]) -> tuple[li
     return places[:1], places[1:]
 
 
+_ANGLES = tuple(
+    (re.compile(rf"\b(?:by )?(?:{words})\b"), f"by {angle} degrees")
+    for words, angle in (
+        (r"(?:a |one )?quarter(?: of a| of the way)?(?: turn| circle| round| around)?", 90),
+        (r"half(?: a| way|way)?(?: turn| circle| round| around)|(?:a )?half(?: turn| circle)", 180),
+        (r"a (?:bit|little)|slightly|a touch", 15),
+    )
+)
+
+
 def _turn(selector: Selector, clause: str, rest: str) -> Edit:
+    for pattern, said in _ANGLES:
+        rest = pattern.sub(said, rest, count=1)
     degrees = re.search(r"(?:by )?(-?\d+(?:\.\d+)?)\s*(?:degrees|degree|deg|°)", rest)
     fixed = re.search(r"\b(around|round|over|left|right|clockwise|anticlockwise|counter-?clockwise)\b\s*$", rest)
     if degrees is not None:
@@ -309,7 +276,9 @@ def _swap(selector: Selector, clause: str, rest: str) -> Edit:
     if surface is not None:
         return Paint(part=surface, colour=_colour(parts[1], clause))
     ids = list(_subject(selector, parts[0]))
-    what = re.sub(r"^(?:an?|some|the|another)\s+|\s+\b(?:ones?|instead)\b", " ", f"{parts[1]}").strip()
+    what = re.sub(
+        r"^(?:an?|some|the|another|something|anything)\s+|\s+\b(?:ones?|instead)\b", " ", f"{parts[1]}"
+    ).strip()
     phrase, unknown = noun_phrase(what)
     if phrase is None and look_of(what) is None and unknown and unknown not in ("one", "ones", "different", "other"):
         raise EditRefused(f"the library has nothing called “{unknown}”; try another word")
@@ -387,19 +356,43 @@ def _factor(text: str, larger: bool) -> float:
 def _inserts(selector: Selector, clause: str, rest: str) -> tuple[Edit, ...]:
     """Each of "a lamp, two plants and a rug", with the phrases of place that follow it."""
     parts = [rest] if re.search(r"\bbetween\b", rest) else re.split(r",\s*(?:and\s+)?|\band\b", rest)
-    return tuple(_insert(selector, clause, part.strip()) for part in parts if part.strip())
+    return tuple(edit for part in parts if part.strip() for edit in _with_its_own(selector, clause, part.strip()))
 
 
-def _insert(selector: Selector, clause: str, rest: str) -> Edit:
+def _with_its_own(selector: Selector, clause: str, rest: str) -> tuple[Edit, ...]:
+    """ "a desk with an office chair by the wall" are two things, "a cabinet with two doors" is one."""
+    head, _ = split_places(rest)
+    found = re.match(rf"(.+?) with (?=(?:{'|'.join(NUMBERS)}|its|\d+) )(.+)$", head)
+    own = None if found is None else noun_phrase(found[2])[0]
+    carrier = None if found is None else noun_phrase(found[1])[0]
+    if found is None or own is None or carrier is None or not own.label or not carrier.label:
+        return (_insert(selector, clause, rest),)
+    if own.category in (*OPENING_CATEGORIES, carrier.category) or own.label in _PARTS:
+        return (_insert(selector, clause, rest),)
+    first = _insert(selector, clause, f"{found[1]} {rest[len(head) :].strip()}")
+    name = f"new {carrier.category}"
+    relation = _usual_kind(own.category, carrier.category)
+    what = " ".join((*own.appearance, own.label))
+    second = Insert(what=what, count=own.count, places=[Place(relation=relation, targets=[name])])
+    return first.model_copy(update={"name": name}), second
+
+
+def _insert(selector: Selector, clause: str, rest: str) -> Insert:
     head, places = split_places(rest)
+    onto = None if places else re.match(r"(.+?) to ((?:the|my|this|all|each|every) .+)$", rest)
+    if onto is not None:
+        head = onto[1]
+        phrase, _ = noun_phrase(head)
+        if phrase is not None and not re.fullmatch(r"\w+ (?:\w+ )?room", onto[2]):
+            target = selector.scene.object(selector.targets(onto[2])[0])
+            places = [PlacePhrase(_usual_kind(phrase.category, target.category), onto[2])]
     phrase, unknown = noun_phrase(head)
     if phrase is None or not phrase.label:
         words = unknown or head or clause
         raise EditRefused(f"“{words}” is not understood; for example: {EXAMPLES}")
     if category(phrase.category).name in OPENING_CATEGORIES:
         raise EditRefused(f"a {phrase.category} is part of the room, which edits by words leave as it is")
-    return Insert(
-        what=" ".join((*phrase.appearance, phrase.label)),
-        count=phrase.count,
-        places=places_of_phrases(selector, places),
-    )
+    wanted = places_of_phrases(selector, places)
+    each = len(wanted[0].targets) if wanted and re.match(r"(?:each|every|all)\b", places[0].words) else 1
+    what = " ".join((*phrase.appearance, phrase.label))
+    return Insert(what=what, count=min(phrase.count * max(each, 1), MAX_COPIES), places=wanted)

@@ -12,7 +12,7 @@ from diorama_core.editing.relations import SEATS, Relation
 from diorama_core.errors import EditRefused
 from diorama_core.library.labels import with_article
 from diorama_core.library.record import Shape, ShapeLibrary, record_of
-from diorama_core.library.taxonomy import category, having, with_kin
+from diorama_core.library.taxonomy import CATEGORIES, broad, category, having, with_kin
 from diorama_core.scene import edits
 from diorama_core.scene.types import Pose, Scene, SceneObject
 from diorama_core.text.edit_looks import looking_like
@@ -57,20 +57,25 @@ def inserted(positioner: Positioner, scene: Scene, edit: Insert, relations: Sequ
         if not options:
             raise EditRefused(f"the library has no {phrase.label}")
         tried = (shape, *(s for s in options if s != shape)) if shape is not None else options
-        kin = () if relations else _standing_kin(positioner.library, phrase.category)
+        on = any(r.kind == "on" for r in relations)
+        kin = () if on else _standing_kin(positioner.library, phrase.category)
+        found, object_id, put = after, None, None
         for shapes in (tried[:SHAPES_TRIED], kin[:SHAPES_TRIED]):
-            kind = shapes[0].category if shapes else phrase.category
-            found, object_id, put = _with_one(positioner, after, kind, shapes, relations, targets, copy, edit.count)
-            if object_id is not None:
+            if object_id is not None and not _on_floor(found, object_id):
                 break
+            kind = shapes[0].category if shapes else phrase.category
+            other = _with_one(positioner, after, kind, shapes, relations, targets, copy, edit.count)
+            found, object_id, put = other if other[1] is not None else (found, object_id, put)
         after, shape = found, put
         if shape is not None and shape.category not in (phrase.category, *(s.category for s in options)):
-            missed.append(f"there is no free place for {with_article(phrase.category)}: {with_article(shape.category)}")
+            missed.append(f"nothing there carries {with_article(phrase.category)}: {with_article(shape.category)}")
         if object_id is None or shape is None:
             where = f" {relations[0].words(scene)}" if relations else ""
             done = f"; {copy} of {edit.count} would fit" if copy else ""
             raise EditRefused(f"there is no free place for {with_article(phrase.category)}{where}{done}")
         new.append(object_id)
+        if category(shape.category).mount == "surface" and not on and _on_floor(after, object_id):
+            missed.append(f"{after.object(object_id).label} stands on the floor; nothing there carries it")
         missed += missed_notes(after, object_id, relations)
     assert shape is not None
     after, note = looking_like(after, new, lacking)
@@ -79,11 +84,18 @@ def inserted(positioner: Positioner, scene: Scene, edit: Insert, relations: Sequ
     return Done(after, (f"add {what} ({shape.caption or shape.id}){where}",), tuple(new), (*note, *missed))
 
 
+def _on_floor(scene: Scene, object_id: str) -> bool:
+    """Whether an object stands on the floor or on a rug there."""
+    edge = scene.support_of(object_id)
+    return edge is None or scene.has_plane(edge.parent) or broad(scene.object(edge.parent).category) == "rug"
+
+
 def _standing_kin(library: ShapeLibrary, kind: str) -> tuple[Shape, ...]:
     """Shapes of kindred categories that stand on the floor, for what finds no place on furniture; the usual first."""
     if category(kind).mount != "surface":
         return ()
-    kin = sorted((k for k in with_kin(kind) if k != kind and category(k).mount == "floor"), key=lambda k: k)
+    names = with_kin(kind) | {c.name for c in CATEGORIES if c.name.split()[-1] == kind}  # a floor lamp is a lamp
+    kin = sorted(k for k in names if k != kind and category(k).mount == "floor")
     return tuple(s for k in kin for s in library.in_category(k))
 
 

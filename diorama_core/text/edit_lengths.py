@@ -15,10 +15,13 @@ _WAYS = {
     "left": (-1.0, 0.0), "right": (1.0, 0.0), "back": (0.0, 1.0), "backwards": (0.0, 1.0), "backward": (0.0, 1.0),
     "forward": (0.0, -1.0), "forwards": (0.0, -1.0), "closer": (0.0, -1.0), "away": (0.0, 1.0),
 }  # fmt: skip
+_WALLS = {"left": (-1.0, 0.0), "right": (1.0, 0.0), "back": (0.0, 1.0), "far": (0.0, 1.0), "front": (0.0, -1.0)}
 _NEARER = re.compile(
     r"^(.+?)\s+(?:a (?:bit|little) |much |further )*(closer|nearer|towards?|away|farther|further)(?: (?:to|from))? "
     r"((?:the|my|that|this) .+)$"
 )
+_A_LITTLE = re.compile(r"\b(?:a (?:bit|little)|slightly|a touch)\b")
+A_LITTLE_M = 0.2
 STEP_M, HUNG_STEP_M = 0.5, 0.1
 """Where no distance is said: along the floor, and up or down a wall."""
 MAX_SHIFT_M, MAX_LIFT_M = 20.0, 3.0
@@ -45,10 +48,22 @@ def nearer(selector: Selector, rest: str, subject: Subject) -> Shift | None:
     Without a distance "to" and "towards" mean beside, and walls are no objects to go nearer to.
     """
     way = _NEARER.match(" ".join(_DISTANCE.sub(" ", rest).split()))
-    if way is None or split_places(way[1])[1] or re.fullmatch(r"\w+ (?:\w+ )?walls?", way[3]):
+    if way is None or split_places(way[1])[1]:
         return None
     distance = _distance_m(rest, STEP_M, MAX_SHIFT_M)
     sign = -1.0 if way[2] in ("away", "farther", "further") else 1.0
+    wall = re.fullmatch(r"\w+ (?:(\w+) )?walls?", way[3])
+    if wall is not None and length_in(rest) is None:
+        return None
+    if wall is not None and wall[1] in _WALLS:
+        right, back = _WALLS[wall[1]]
+        ids = list(subject(selector, way[1]))
+        return Shift(objects=ids, right_m=sign * distance * right, away_m=sign * distance * back)
+    if wall is not None and wall[1] is None:
+        return Shift(objects=list(subject(selector, way[1])), off_wall_m=-sign * distance)
+    if wall is not None:  # the window wall is where the window is
+        toward = selector.targets(f"the {wall[1]}")[0]
+        return Shift(objects=list(subject(selector, way[1])), toward=toward, toward_m=sign * distance)
     toward = selector.targets(way[3])[0]
     return Shift(objects=list(subject(selector, way[1])), toward=toward, toward_m=sign * distance)
 
@@ -86,7 +101,7 @@ def _distance_m(text: str, otherwise_m: float, most_m: float) -> float:
     """The distance that a text says, or another where it says none."""
     distance = length_in(text)
     if distance is None:
-        return otherwise_m
+        return A_LITTLE_M if otherwise_m > A_LITTLE_M and _A_LITTLE.search(text) else otherwise_m
     if distance > most_m:
         raise EditRefused(f"{distance:g} m is farther than any room; give at most {most_m:g} m")
     return distance

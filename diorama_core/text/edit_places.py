@@ -16,11 +16,16 @@ from diorama_core.errors import EditRefused
 from diorama_core.geometry.planes import in_polygon
 from diorama_core.library.taxonomy import broad, category
 from diorama_core.scene import edits
-from diorama_core.scene.support import descendants
+from diorama_core.scene.support import ancestors, descendants
 from diorama_core.scene.types import Pose, Scene, Support, yaw_rotation
 from diorama_core.text.edit_outcome import Done, names_of
 from diorama_core.text.edit_plan import Shift, Turn
-from diorama_core.text.edit_room import off_wall
+from diorama_core.text.edit_room import direction_of, off_wall
+
+SHARES = (1.0, 0.8, 0.6, 0.4, 0.2)
+"""Of a way, tried in turn until it is free."""
+MIN_HUNG_SHARE = 0.3
+"""What hangs is not made shorter than this share of itself."""
 
 
 def moved(positioner: Positioner, scene: Scene, ids: Sequence[str], relations: Sequence[Relation]) -> Done:
@@ -46,6 +51,9 @@ def moved(positioner: Positioner, scene: Scene, ids: Sequence[str], relations: S
             raise EditRefused(f"there is no free place for {item.label} {own[0].words(after)}")
         after = positioner.put(after, item, spot)
         after = lifted_onto(after, item.id)
+        frame = RoomFrame.of(after)
+        if (of_room := next((r for r in own if r.side and not is_met(after, object_id, r, frame)), None)) is not None:
+            raise EditRefused(f"there is no free place for {item.label} {of_room.words(scene)}")
         missed += missed_notes(after, object_id, own)
     where = " and ".join(r.words(scene) for r in relations)
     return Done(after, (f"move {names_of(scene, ids)} {where}",), tuple(ids), tuple(missed))
@@ -61,27 +69,14 @@ def shifted(positioner: Positioner, scene: Scene, ids: Sequence[str], edit: Shif
         edit: what was asked for.
         toward: id of an object; empty for none.
     """
-    away = np.array([0.0, 1.0]) if scene.camera is None else np.array(scene.camera.T_world_camera[:2, 2])
-    away = away / max(float(np.linalg.norm(away)), 1e-6)
-    right = np.array([away[1], -away[0]])
-    step = edit.right_m * right + edit.away_m * away
-    if not (step.any() or edit.up_m or edit.off_wall_m or (toward and edit.toward_m)):
+    if not (edit.right_m or edit.away_m or edit.up_m or edit.off_wall_m or (toward and edit.toward_m)):
         raise EditRefused(f"which way should {names_of(scene, ids)} go?")
-    after, notes = scene, []
+    ids = [i for i in ids if not set(ids) & set(ancestors(scene, i))]  # what stands on these goes with them
+    after, notes = _as_far_as_free(positioner, scene, ids, edit, toward)
     for object_id in ids:
-        item, own = after.object(object_id), step
-        held = after.support_of(object_id)
-        if edit.up_m and (held is None or held.relation != "mounted on"):
-            raise EditRefused(f"{item.label} stands and does not hang; only what hangs can go up or down")
-        if toward:
-            ahead = after.object(toward).pose.position[:2] - item.pose.position[:2]
-            own = step + edit.toward_m * ahead / max(float(np.linalg.norm(ahead)), 1e-6)
-        if edit.off_wall_m:
-            own = own + edit.off_wall_m * off_wall(after, object_id)
-        pose = item.pose.moved((own[0], own[1], edit.up_m))
-        after, note = freed(positioner, edits.move(after, object_id, pose), object_id)
+        after, note = freed(positioner, after, object_id)
         if edit.up_m and not _within_heights(after, object_id):
-            raise EditRefused(f"{item.label} would leave its wall; move it by less")
+            raise EditRefused(f"{scene.object(object_id).label} would leave its wall; move it by less")
         if _off_its_support(after, object_id):
             raise EditRefused(f"{after.object(object_id).label} would fall off what it stands on; move it by less")
         notes += note
@@ -95,6 +90,55 @@ def shifted(positioner: Positioner, scene: Scene, ids: Sequence[str], edit: Shif
     )
     said = " and ".join(f"{abs(m):g} m {plus if m > 0 else minus}" for m, plus, minus in ways if m)
     return Done(after, (f"move {names_of(scene, ids)} {said}",), tuple(ids), tuple(notes))
+
+
+def _as_far_as_free(
+    positioner: Positioner, scene: Scene, ids: Sequence[str], edit: Shift, toward: str
+) -> tuple[Scene, list[str]]:
+    """Objects moved together: by less where the whole way is not free, all of it where none of it is."""
+    whole = _shifted_by(scene, ids, edit, toward, 1.0)
+    if edit.up_m:
+        return whole
+    own = [d for i in ids for d in (i, *descendants(scene, i))]
+    for share in SHARES:
+        after, notes = whole if share == 1.0 else _shifted_by(scene, ids, edit, toward, share)
+        if not positioner.collisions.of(after, own) and all(positioner.inside(after, i) for i in ids):
+            short = [] if share == 1.0 else [f"{names_of(scene, ids)}: only {share:.0%} of the way is free"]
+            return after, [*notes, *short]
+    return whole
+
+
+def _shifted_by(scene: Scene, ids: Sequence[str], edit: Shift, toward: str, share: float) -> tuple[Scene, list[str]]:
+    step = share * (edit.right_m * direction_of(scene, "right") + edit.away_m * direction_of(scene, "back"))
+    after, notes = scene, list[str]()
+    for object_id in ids:
+        item, own = scene.object(object_id), step
+        held = after.support_of(object_id)
+        if edit.up_m and (held is None or held.relation != "mounted on"):
+            raise EditRefused(f"{item.label} stands and does not hang; only what hangs can go up or down")
+        if toward:
+            ahead = after.object(toward).pose.position[:2] - item.pose.position[:2]
+            own = step + share * edit.toward_m * ahead / max(float(np.linalg.norm(ahead)), 1e-6)
+        if edit.off_wall_m:
+            own = own + share * edit.off_wall_m * off_wall(after, object_id)
+        under_ceiling = held is not None and any(p.id == held.parent for p in scene.architecture.by_role("ceiling"))
+        after = edits.move(after, object_id, item.pose.moved((own[0], own[1], 0.0 if under_ceiling else edit.up_m)))
+        if edit.up_m and under_ceiling:
+            after, note = _hung_longer(after, object_id, -edit.up_m)
+            notes += note
+    return after, notes
+
+
+def _hung_longer(scene: Scene, object_id: str, by_m: float) -> tuple[Scene, list[str]]:
+    """What hangs from the ceiling reaches lower or less low; it stays fixed to the ceiling."""
+    item = scene.object(object_id)
+    height = float(item.size_m[2]) + by_m
+    if height < MIN_HUNG_SHARE * float(item.size_m[2]):
+        raise EditRefused(f"{item.label} is {float(item.size_m[2]):.2f} m tall and hangs at the ceiling already")
+    after = edits.resize(scene, object_id, np.array([*item.size_m[:2], height]))
+    grown = after.object(object_id).pose  # on its foot; its top is to stay where it was
+    after = edits.move(after, object_id, grown.moved((0.0, 0.0, -by_m)))
+    return after, [f"{item.label} is {height:.2f} m tall now; it hangs at the ceiling as before"]
 
 
 def turned(positioner: Positioner, scene: Scene, ids: Sequence[str], edit: Turn, toward: str = "") -> Done:

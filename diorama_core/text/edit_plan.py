@@ -22,12 +22,18 @@ class _Strict(BaseModel):
     model_config = ConfigDict(extra="forbid", frozen=True)
 
 
+Side = Literal["", "left", "right", "back", "front", "other"]
+"""Of the room, as seen from where the photo was taken; "other" than where an object is."""
+
+
 class Place(_Strict):
     """Where an object goes."""
 
     relation: RelationKind
     targets: Ids = []
     """Ids of objects; two for "between", none for relations to the room."""
+    side: Side = ""
+    """Which wall or corner of the room is meant; any where empty."""
 
 
 class Remove(_Strict):
@@ -171,6 +177,8 @@ class Paint(_Strict):
     colour: Words
     behind: Id = ""
     """Id of an object: only the wall behind it; all walls where empty."""
+    wall: Side = ""
+    """Only the wall on this side of the room."""
 
 
 class RoomLength(_Strict):
@@ -196,8 +204,7 @@ class InsertOpening(_Strict):
 
     do: Literal["opening"] = "opening"
     what: Words
-    wall: Literal["", "left", "right", "back", "front"] = ""
-    """As seen from where the photo was taken."""
+    wall: Side = ""
     behind: Id = ""
     """Id of an object that stands or hangs at the wall."""
 

@@ -44,7 +44,7 @@ The edits, each with its "do":
 - remove: objects go, and with them what stands on them.
 - move: objects go to "places". A place is a relation to objects ("targets", by id): on, under, above, beside, near, \
 in front of, behind, left of, right of, around, between (two targets), facing, opposite, aligned with; or to the room, \
-without targets: against wall, in corner, in middle.
+without targets: against wall, in corner (of both also the "side": left, right, back, front, other), in middle.
 - shift: objects move "right_m" metres to the right and "away_m" away, as seen from where the photo was taken; \
 what hangs also "up_m"; "toward_m" metres toward the object "toward" (away from it where negative); or "off_wall_m" \
 metres away from the nearest wall.
@@ -60,8 +60,8 @@ by a "factor".
 - set: objects in a "state": locked, unlocked, hidden, shown, open, closed, on or off (lamps).
 - rename: one object, "to" a name.
 - align: objects "how": in line, or evenly.
-- paint: "part" (walls, floor or ceiling), or only the wall "behind" an object, in a colour or covering, "colour": \
-"light blue", "brick", "oak boards", "tiles", "darker".
+- paint: "part" (walls, floor or ceiling), or only the wall "behind" an object or on a "wall" side, in a colour or \
+covering, "colour": "light blue", "brick", "oak boards", "tiles", "darker".
 - room: the "side" (height, length or width) of the room "to_m" or "by_m".
 - light: the "hour" of the day, "brighter_ev" stops (darker where negative), or all "lamps" on or off.
 - opening: a new door or window ("what") in the "wall" left, right, back or front, or "behind" an object.

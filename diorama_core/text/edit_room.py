@@ -64,7 +64,10 @@ def covering_in_words(text: str, plane: Plane) -> SurfaceFinish | None:
     relative = next((w for w in words if w in _RELATIVE), None)
     rest = [w for w in words if w != relative and w not in ("a", "an", "the", "in", "of", "with", "colour", "color")]
     if relative is not None:
-        return None if rest else _shaded(plane, _RELATIVE[relative])
+        known = covering_in_words(" ".join(rest), plane) if rest else None
+        if rest and known is None:
+            return None
+        return _shaded(known or plane.finish or SurfaceFinish("paint", plane.colour), _RELATIVE[relative])
     pattern = next((p for p, names in _PATTERNS.items() if set(rest) & set(names.split())), None)
     others = [w for w in rest if w not in _NAMES]
     wood = next((w for w in others if w in _WOODS and w in COLOURS and w not in ("grey", "white")), None)
@@ -81,8 +84,7 @@ def covering_in_words(text: str, plane: Plane) -> SurfaceFinish | None:
     return usual if look is None or look.colour is None else replace(usual, colour=look.colour)
 
 
-def _shaded(plane: Plane, by: float) -> SurfaceFinish:
-    known = plane.finish or SurfaceFinish("paint", plane.colour)
+def _shaded(known: SurfaceFinish, by: float) -> SurfaceFinish:
     toward = 1.0 if by > 0 else 0.0
     r, g, b = (float(c + (toward - c) * abs(by)) for c in known.colour)
     return replace(known, colour=(r, g, b))
@@ -100,6 +102,8 @@ def covered(scene: Scene, edit: Paint) -> Done:
         raise EditRefused(f"this scene has no {edit.part} to paint")
     if edit.behind:
         planes = [_wall_at(scene, edit.behind)]
+    elif edit.wall:
+        planes = [wall_on(scene, edit.wall)]
     after = scene
     for plane in planes:
         finish = covering_in_words(edit.colour, plane)
@@ -107,6 +111,7 @@ def covered(scene: Scene, edit: Paint) -> Done:
             raise EditRefused(f"“{edit.colour}” is no colour or covering known here; try light blue, brick, oak boards")
         after = set_surface_finish(after, [plane.id], finish)
     where = f"the wall behind {scene.object(edit.behind).label}" if edit.behind else f"the {edit.part}"
+    where = f"the {edit.wall} wall" if edit.wall else where
     return Done(after, (f"make {where} {edit.colour}",))
 
 
@@ -203,15 +208,28 @@ def _far_wall(scene: Scene, axis: Float[np.ndarray, "2"]) -> Plane:
     return max(ends, key=lambda w: abs(float(eye @ w.normal) - w.offset))
 
 
-def _toward(scene: Scene, foot: WallFoot, side: str) -> float:
-    """How far a wall is to a side as somebody sees it who looks at the room from the camera."""
-    if not side:
-        return 0.0
+def direction_of(scene: Scene, side: str) -> Float[np.ndarray, "2"]:
+    """The level direction of a side of the room as somebody sees it who looks at the room from the camera."""
     away = np.array([0.0, 1.0]) if scene.camera is None else np.array(scene.camera.T_world_camera[:2, 2])
     away = away / max(float(np.linalg.norm(away)), 1e-6)
     right = np.array([away[1], -away[0]])
-    direction = {"right": right, "left": -right, "back": away, "front": -away}[side]
-    return round(float(foot.outward @ direction), 1)
+    return np.asarray({"right": right, "left": -right, "back": away, "front": -away}[side])
+
+
+def _toward(scene: Scene, foot: WallFoot, side: str) -> float:
+    """How far a wall is to a side."""
+    return round(float(foot.outward @ direction_of(scene, side)), 1) if side else 0.0
+
+
+def wall_on(scene: Scene, side: str) -> Plane:
+    """The wall on a side of the room."""
+    feet = wall_feet(scene)
+    foot = max(feet, key=lambda f: _toward(scene, f, side), default=None)
+    if foot is None or _toward(scene, foot, side) < ACROSS:
+        raise EditRefused(
+            f"this room has no {side} wall; the photo shows {len(feet) or 'no'} wall{'s' * (len(feet) != 1)}"
+        )
+    return scene.plane(foot.id)
 
 
 def _free_m(scene: Scene, foot: WallFoot) -> float:

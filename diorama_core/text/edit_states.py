@@ -106,11 +106,15 @@ def exchanged(positioner: Positioner, scene: Scene, edit: Exchange) -> Done:
     first, second = (scene.object(i) for i in edit.objects)
     after = scene
     for item, other in ((first, second), (second, first)):
-        low = float(other.corners_world[:, 2].min())
+        low, high = (float(f(other.corners_world[:, 2])) for f in (np.min, np.max))
         position = other.pose.position.copy()
         hung = scene.support_of(other.id)
         if hung is None or hung.relation != "mounted on":
             position[2] = low + item.size_m[2] / 2
+        elif any(p.id == hung.parent for p in scene.architecture.by_role("ceiling")):
+            position[2] = high - item.size_m[2] / 2
+        else:  # their backs are at the wall, whatever their depth
+            position = position + other.pose.R_world_object[:, 0] * float(item.size_m[0] - other.size_m[0]) / 2
         after = edits.move(after, item.id, replace(other.pose, position=position, scale=item.pose.scale))
         if hung is not None and hung.parent != item.id:
             after = edits.attach(after, replace(hung, child=item.id))

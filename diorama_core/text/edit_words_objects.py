@@ -11,7 +11,7 @@ from diorama_core.editing.room_frame import RoomFrame
 from diorama_core.errors import EditRefused
 from diorama_core.geometry.openings import OPENING_CATEGORIES
 from diorama_core.text.edit_lengths import Subject, length_in, without_lengths
-from diorama_core.text.edit_plan import Align, Copy, Edit, Exchange, Measure, Place, Rename, SetState, Shift
+from diorama_core.text.edit_plan import Align, Copy, Edit, Exchange, Measure, Place, Rename, SetState, Shift, Side
 from diorama_core.text.phrases import NUMBERS, PlacePhrase, split_places
 from diorama_core.text.selecting import Selector
 
@@ -21,17 +21,25 @@ def places_of_phrases(selector: Selector, places: Sequence[PlacePhrase]) -> list
     found = []
     for place in places:
         if place.words in ("", "each other", "one another"):
-            found.append(Place(relation=place.kind, targets=[]))
+            found.append(Place(relation=place.kind, targets=[], side=side_in(place.said)))
         elif re.fullmatch(r"(?:the |this )?(?:\w+ )?(?:room|bedroom|kitchen|office|scene|floor|ground)", place.words):
             continue
         elif re.fullmatch(r"(?:the |a )?(?:\w+ )?walls?", place.words):
-            found.append(Place(relation="against wall", targets=[]))
+            found.append(Place(relation="against wall", targets=[], side=side_in(place.words)))
         else:
             targets = list(selector.targets(place.words))
             openings = all(selector.scene.object(t).category in OPENING_CATEGORIES for t in targets)
             by = place.kind == "under" and openings  # under a window is at it, on the floor
             found.append(Place(relation="near" if by else place.kind, targets=targets))
     return found
+
+
+def side_in(words: str) -> Side:
+    """Which side of the room words about a wall or a corner say."""
+    found = re.search(r"\b(left|right|back|far|front|near|other|opposite|another)\b", words)
+    said = "" if found is None else found[1]
+    known = {"far": "back", "near": "front", "opposite": "other", "another": "other"}
+    return cast("Side", known.get(said, said))
 
 
 _SIDES: dict[str, tuple[Literal["width", "depth", "height"], float]] = {
@@ -68,6 +76,14 @@ _OTHER_SIDE = re.compile(r"\bon the (?:other|opposite) side of\b")
 _EXCHANGED = re.compile(
     r"^(?:swap|exchange|switch)(?: (?:the )?(?:places?|positions?) of)? ((?:the|my) .+?) (?:and|with) ((?:the|my) .+?)"
     r"(?: around| places| positions)?$"
+)
+_BOTH_EXCHANGED = re.compile(
+    r"^(?:swap|exchange|switch)(?: (?:the )?(?:places?|positions?) of)? ((?:the|my|these|those) (?:two|2) .+?|both .+?)"
+    r"(?: around| over| places| positions| with each other)?$"
+)
+_LEVELLED = re.compile(
+    r"^(?:put|hang|set|bring|get|make|have|place) (.+?)"
+    r" (?:at|to|on|in) (?:the same|one|equal|a) (?:height|level|line|row)$"
 )
 _NAMED = re.compile(r"^(?:rename|call|name|label) (.+)$")
 _LINED = re.compile(r"^(?:line up|align|straighten) (.+?)(?: (?:in|into) (?:a|one) (?:row|line))?$")
@@ -164,6 +180,15 @@ def _copied(selector: Selector, clause: str, subject: Subject) -> Copy | None:
 
 def _exchanged(selector: Selector, clause: str, subject: Subject) -> Exchange | None:
     found = _EXCHANGED.match(clause)
+    both = _BOTH_EXCHANGED.match(clause)
+    if found is None and both is None:
+        return None
+    if both is not None and not re.search(r" (?:for|with|and) ", both[1]):
+        pair = subject(selector, re.sub(r"\b(?:two|2|both)\b", "", f"all {both[1]}"))
+        pair = tuple(i for i in pair if i in selector.selected) or pair
+        if len(pair) != 2:
+            raise EditRefused(f"there are {len(pair)} of these; say which two change places, or select two")
+        return Exchange(objects=list(pair))
     if found is None:
         return None
     first, second = (subject(selector, words) for words in (found[1], found[2]))
@@ -195,7 +220,7 @@ def _named(selector: Selector, clause: str, subject: Subject) -> Rename | None:
 
 
 def _arranged(selector: Selector, clause: str, subject: Subject) -> Align | None:
-    for pattern, how in ((_LINED, "in line"), (_SPACED, "evenly")):
+    for pattern, how in ((_LINED, "in line"), (_LEVELLED, "in line"), (_SPACED, "evenly")):
         found = pattern.match(clause)
         if found is None or split_places(found[1])[1] or re.search(r"\bwith\b", found[1]):
             continue

@@ -10,6 +10,7 @@ from diorama_core.geometry.openings import OPENING_CATEGORIES
 from diorama_core.text.edit_lengths import length_in
 from diorama_core.text.edit_plan import Edit, InsertOpening, Light, Paint, RoomLength
 from diorama_core.text.edit_room import covering_in_words
+from diorama_core.text.edit_words_objects import side_in
 from diorama_core.text.selecting import Selector
 
 _ROLES: dict[str, tuple[Literal["walls", "floor", "ceiling"], str]] = {
@@ -18,7 +19,8 @@ _ROLES: dict[str, tuple[Literal["walls", "floor", "ceiling"], str]] = {
     "ceiling": ("ceiling", "ceiling"),
 }
 _PART = re.compile(
-    r"\b(?:all (?:of )?)?(?:the |my |our |its |this |that )?(?:room's )?(wall|floor|ceiling)s?\b(?:ing\b)?"
+    r"\b(?:all (?:of )?)?(?:the |my |our |its |this |that )?(?:room's )?"
+    r"(?:(?P<side>left|right|back|far|front)(?:[ -]hand)? )?(?P<part>wall|floor|ceiling)s?\b(?:ing\b)?"
     r"(?:\s+(?:behind|beside|next to|by|near) (?P<at>(?:the|my|this) [\w ]+?)(?=\s+(?:in|with|a|an|to|into)\b|$))?"
 )
 _ASKED = re.compile(
@@ -36,7 +38,7 @@ _SHRINKS = re.compile(r"\b(?:lower|shorter|narrower|smaller|reduce|shrink|shorte
 STEP_M = 0.5
 """Where no length is said."""
 _HOURS = {
-    "sunrise": 6.5, "dawn": 6.0, "early morning": 7.0, "morning": 9.0, "midday": 12.0, "noon": 12.0, "daytime": 12.0,
+    "sunrise": 6.5, "dawn": 6.0, "early morning": 7.0, "morning": 9.0, "midday": 12.0, "noon": 12.0,
     "day": 12.0, "afternoon": 15.0, "sunset": 19.0, "dusk": 19.5, "evening": 18.5, "midnight": 0.0, "night": 23.0,
 }  # fmt: skip
 _CLOCK = re.compile(r"\b(\d{1,2})(?::(\d\d))?\s*(am|pm|o'clock)?$")
@@ -79,10 +81,10 @@ def _surface(selector: Selector, text: str) -> Paint | None:
     part = _PART.search(text)
     if part is None:
         return None
-    planes = selector.scene.architecture.by_role(cast("Literal['wall', 'floor', 'ceiling']", _ROLES[part[1]][1]))
+    planes = selector.scene.architecture.by_role(cast("Literal['wall', 'floor', 'ceiling']", _ROLES[part["part"]][1]))
     left, right = text[: part.start()], text[part.end("at") if part["at"] else part.end() :]
     behind = part["at"]
-    if behind is None and part[1] == "wall" and (where := _BEHIND.match(text[part.end() :].strip())) is not None:
+    if behind is None and part["part"] == "wall" and (where := _BEHIND.match(text[part.end() :].strip())) is not None:
         behind, right = _cut(selector, where["at"])
     elif behind is not None:
         behind, more = _cut(selector, behind)
@@ -91,7 +93,8 @@ def _surface(selector: Selector, text: str) -> Paint | None:
     if not look or not planes or covering_in_words(look, planes[0]) is None:
         return None
     at = selector.targets(behind)[0] if behind else ""
-    return Paint(part=_ROLES[part[1]][0], colour=look, behind=at)
+    wall = side_in(part["side"] or "") if part["part"] == "wall" else ""
+    return Paint(part=_ROLES[part["part"]][0], colour=look, behind=at, wall=wall)
 
 
 def _cut(selector: Selector, words: str) -> tuple[str, str]:
@@ -114,7 +117,7 @@ def _is_label(selector: Selector, words: list[str]) -> bool:
 
 
 def _lengths(selector: Selector, clause: str) -> tuple[Edit, ...] | None:
-    lifted = re.match(r"^(?:raise|lift|lower|drop) the ceiling\b(.*)$", clause)
+    lifted = re.match(r"^(?:raise|lift|lower|drop) the ceiling\b((?: (?:by|to|a|slightly|much)\b.*)?)$", clause)
     if lifted is not None:
         return (_length("height", lifted[1], shrinks=clause.startswith(("lower", "drop"))),)
     made = re.match(r"^(?:make|extend|enlarge|widen|lengthen|shrink|shorten|set) the (room|ceiling)\b(.*)$", clause)
@@ -157,18 +160,21 @@ def _light(selector: Selector, clause: str) -> tuple[Edit, ...] | None:
     if dim is not None:
         return (Light(brighter_ev=STOPS if dim[1] == "brighten" else -STOPS),)
     timed = re.match(
-        r"^(?:make it|set the (?:time|hour|light)(?: of day)?(?: to)?|it should be|show it at) (.+)$", clause
+        r"^(?:make it|set the (?:time|hour|light)(?: of day)?(?: to)?|it should be"
+        r"|show (?:me )?(?:it|the room|this room)(?: in| at| by)?) (.+?)(?: with (?:the )?(?:lamps|lights) (on|off))?$",
+        clause,
     )
     if timed is None:
         return None
-    words = timed[1].removeprefix("the ").removeprefix("at ")
+    lamps_too = (Light(lamps=cast("Literal['on', 'off']", timed[2])),) if timed[2] else ()
+    words = re.sub(r"^(?:the |at |an? |sunny |bright |late )+|(?<=[a-z])[ -]?time$", "", timed[1])
     if words in _HOURS:
-        return (Light(hour=_HOURS[words]),)
+        return (Light(hour=_HOURS[words]), *lamps_too)
     at = _CLOCK.match(words)
     if at is None or int(at[1]) > 24:
         return None
     hour = int(at[1]) % 12 + (12 if at[3] == "pm" else 0) if at[3] in ("am", "pm") else int(at[1])
-    return (Light(hour=min(hour + int(at[2] or 0) / 60, 24.0)),)
+    return (Light(hour=min(hour + int(at[2] or 0) / 60, 24.0)), *lamps_too)
 
 
 def _openings(selector: Selector, clause: str) -> tuple[Edit, ...] | None:

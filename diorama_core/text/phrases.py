@@ -172,8 +172,8 @@ RELATION_WORDS: tuple[tuple[str, RelationKind | None], ...] = (
     (r"in line with|aligned with|lined up with", "aligned with"), (r"between|in between", "between"),
     (r"(?:all )?around|round about|surrounding", "around"),
     (r"(?:with (?:its|their) backs? to|up against|against|along|at|by|to|near|next to|onto|on) (?:the|a|one|any|opposite) "
-     r"(?:back |long |far |same |left |right |opposite |other )?walls?", "against wall"),
-    (r"(?:in|into|to|at) (?:the|a|one|each|opposite|another|any) (?:far |back |same |other |opposite |left |right |front )?corners?(?! table| sofa| desk)"
+     r"(?:back |long |far |same |left |right |opposite |other |front )?walls?", "against wall"),
+    (r"(?:in|into|to|at) (?:the|a|one|each|opposite|another|any) (?:far |back |same |other |opposite |left |right |front )*corners?(?! table| sofa| desk)"
      r"(?: of (?:the|this) room)?", "in corner"),
     (r"(?:in|into|to|at) the (?:middle|cent(?:re|er))(?: of (?:the|this) (?:\w+ )?(?:room|floor|bedroom|kitchen|office|space))?",
      "in middle"),
@@ -209,6 +209,8 @@ class PlacePhrase:
     kind: RelationKind
     words: str
     """What it refers to, in words; empty for relations to the room."""
+    said: str = ""
+    """The phrase itself: "against the left wall"."""
 
 
 @cache
@@ -228,7 +230,8 @@ def split_places(text: str) -> tuple[str, list[PlacePhrase]]:
     for match, after in zip(matches, [*matches[1:], None]):
         kind = RELATION_WORDS[int(str(match.lastgroup)[1:])][1]
         assert kind is not None
-        found.append(PlacePhrase(kind, text[match.end() : after.start() if after else len(text)].strip(" ,")))
+        words = text[match.end() : after.start() if after else len(text)].strip(" ,")
+        found.append(PlacePhrase(kind, words, match[0]))
     return text[: matches[0].start()].strip(), found
 
 

@@ -13,8 +13,9 @@ from diorama_core.library.catalogue import built_in_library
 from diorama_core.scene.types import Scene
 from diorama_core.synthesis.grammar import furnished_room
 from diorama_core.text.compose import composed_room
-from diorama_core.text.edit_grammar import clauses_of, edits_of
+from diorama_core.text.edit_grammar import edits_of
 from diorama_core.text.edit_plan import Insert, Move, Paint, Place, Remove, Resize, Restyle, Shift, Swap, Turn
+from diorama_core.text.edit_wording import clauses_of
 from diorama_core.text.looks import look_of
 from diorama_core.text.phrases import noun_phrase, split_places
 from diorama_core.text.selecting import Selector

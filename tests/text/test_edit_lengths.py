@@ -6,7 +6,7 @@ import pytest
 
 from diorama_core.errors import EditRefused
 from diorama_core.library.catalogue import built_in_library
-from diorama_core.text.edit_lengths import HUNG_STEP_M, MAX_SHIFT_M, STEP_M, lifted, nearer, shift_of
+from diorama_core.text.edit_lengths import A_LITTLE_M, HUNG_STEP_M, MAX_SHIFT_M, lifted, nearer, shift_of
 from diorama_core.text.selecting import Selector
 from tests.text.edited import dining_room
 
@@ -24,7 +24,7 @@ SELECTOR = Selector(dining_room(), built_in_library())
         ("the sofa 50 cm to the left", -0.5, 0.0),
         ("the sofa two metres back", 0.0, 2.0),
         ("the sofa half a metre to the right", 0.5, 0.0),
-        ("the sofa a bit forward", 0.0, -STEP_M),
+        ("the sofa a bit forward", 0.0, -A_LITTLE_M),
     ],
 )
 def test_a_length_and_a_way_are_a_shift(words, right_m, away_m):
