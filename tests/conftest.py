@@ -31,7 +31,7 @@ from tests import shared_solids
 
 gc.disable()  # until all tests are collected: what is imported stays
 
-settings.register_profile("deterministic", derandomize=True, deadline=None)
+settings.register_profile("deterministic", derandomize=True, deadline=None, max_examples=30)
 settings.load_profile("deterministic")
 
 UNCHECKED_FOLDERS = frozenset()

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import fields
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from diorama_core.io.typed import field_types
@@ -30,7 +30,6 @@ SOURCES = st.one_of(
 )
 
 
-@settings(deadline=None)
 @given(SOURCES)
 def test_sources_survive_a_project_file(source: object) -> None:
     again = codec.load(codec.dump(source), type(source))

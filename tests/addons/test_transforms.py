@@ -77,7 +77,7 @@ def test_blender_s_rounding_is_no_change() -> None:
     st.tuples(*[st.floats(0.5, 2.0)] * 3),
     st.sampled_from(["chair_1", "lamp_1", "picture_1"]),
 )
-@settings(max_examples=15, deadline=None)
+@settings(max_examples=15)
 def test_the_scene_has_an_object_where_blender_has_it(yaw: float, shift: Any, scale: Any, object_id: str) -> None:
     scene = furnished_scene()
     opened, now = opened_room(scene)

@@ -73,7 +73,7 @@ def test_a_room_that_contains_everything_is_left_alone() -> None:
     assert containing_room(Scene()) == Scene()
 
 
-@settings(max_examples=20, deadline=None)
+@settings(max_examples=20)
 @given(st.lists(st.tuples(st.floats(-3, 3), st.floats(-4, 2), st.floats(-3, 3)), min_size=1, max_size=6))
 def test_the_floor_reaches_under_everything(places: list[tuple[float, float, float]]) -> None:
     room = Room(LIBRARY)

@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 from scipy.spatial import ConvexHull
 
@@ -38,7 +38,6 @@ vector = st.tuples(coordinate, coordinate, coordinate).map(np.array)
 scales = st.tuples(*[st.floats(0.3, 3.0)] * 3).map(np.array)
 
 
-@settings(max_examples=60, deadline=None)
 @given(turn=vector, p=vector, scale=scales, point=vector)
 def test_a_surface_at_a_pose_holds_the_posed_points(turn, p, scale, point) -> None:
     pose = Pose(rotation_from_vector(turn), p, scale)
@@ -58,7 +57,6 @@ def test_planes_stay_where_they_are() -> None:
     assert TOP.in_world(None) is TOP
 
 
-@settings(max_examples=40, deadline=None)
 @given(points=st.lists(st.tuples(coordinate, coordinate), min_size=3, max_size=12, unique=True), normal=vector)
 def test_convex_outlines_are_hulls_about_their_normal(points, normal) -> None:
     points = np.array(points)
@@ -81,7 +79,6 @@ def test_rounding_along_a_side_takes_no_corner_away() -> None:
     assert {tuple(np.abs(p).round(9)) for p in found} == {(0, 0, 0), (3, 0, 0), (3, 2, 0), (0, 2, 0)}
 
 
-@settings(max_examples=40, deadline=None)
 @given(point=vector)
 def test_outside_is_zero_within_and_grows_outward(point) -> None:
     beyond = max(abs(point[0]) - 1.0, abs(point[1]) - 0.5, 0.0)
@@ -193,7 +190,6 @@ def test_wall_objects_touch_walls_with_their_back(room: Room) -> None:
     assert contact(scene, vase, edge, surface) == [1, 0, 0]
 
 
-@settings(max_examples=30, deadline=None)
 @given(yaw=st.floats(-3.1, 3.1), away=st.floats(0.0, 2.0), along=st.floats(-3.0, 3.0))
 def test_wall_faces_measure_gap_and_alignment(yaw, away, along) -> None:
     wall = Plane("w", "wall", np.array([[-2, 0, 0], [-2, 0, 2.5], [2, 0, 2.5], [2, 0, 0]], dtype=float)[::-1])

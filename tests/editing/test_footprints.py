@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from diorama_core.editing.footprints import footprints, gaps, overlapping, to_outline, within
@@ -15,7 +15,6 @@ boxes = st.tuples(numbers, numbers, st.floats(0.1, 2), st.floats(0.1, 2), st.flo
 
 
 @given(boxes, boxes)
-@settings(deadline=None, max_examples=200)
 def test_outlines_overlap_as_two_by_two(a: tuple, b: tuple) -> None:
     one, two = (footprints(np.array(x[2:4]), np.array([x[:2]]), np.array([x[4]])) for x in (a, b))
     assert bool(overlapping(one, two[0])[0]) == quads_overlap(one[0], two[0])

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from diorama_app.interaction.marquee import objects_in
@@ -32,7 +32,6 @@ def under_hand(scene: Scene, object_id: str, grabbed: np.ndarray, target: np.nda
     return slide.to(EYE, target - EYE, **{"snap": False, "slide": False} | options)[0]
 
 
-@settings(deadline=None, max_examples=40)
 @given(x=st.floats(-1.8, 1.8), y=st.floats(0.0, 3.0))
 def test_what_is_dragged_over_the_floor_stays_under_the_hand(x: float, y: float) -> None:
     scene = furnished_scene()

@@ -2,7 +2,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from diorama_core.editing.stretching import HANDLES, Handle, handle_place, pulled_m, stretched
@@ -13,7 +13,6 @@ from tests.app.small_room import furnished_scene
 BY_NAME = {h.name: h for h in HANDLES}
 
 
-@settings(deadline=None)
 @given(st.sampled_from([h for h in HANDLES if h.axis is not None]), st.floats(-0.3, 1.0))
 def test_the_opposite_face_stays(handle: Handle, by_m: float) -> None:
     scene = furnished_scene()

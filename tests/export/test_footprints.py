@@ -42,7 +42,7 @@ def test_a_tilted_object_is_seen_as_it_lies() -> None:
     np.testing.assert_allclose(np.ptp(points, axis=0), [0.72, 1.4], atol=0.005)
 
 
-@settings(max_examples=25, deadline=None)
+@settings(max_examples=25)
 @given(st.integers(0, 10_000), st.floats(0, 6.28))
 def test_turning_triangles_turns_the_outline(seed: int, angle: float) -> None:
     triangles = np.random.default_rng(seed).uniform(-1, 1, (6, 3, 2))
@@ -60,7 +60,7 @@ def covered(triangles: np.ndarray) -> float:
     return sum(signed_area(p) for p in outline(triangles))
 
 
-@settings(max_examples=25, deadline=None)
+@settings(max_examples=25)
 @given(st.integers(0, 10_000))
 def test_closed_bodies_cover_what_all_their_triangles_cover(seed: int) -> None:
     """Half the triangles are enough there; without one triangle the body is open, and all of them are needed."""

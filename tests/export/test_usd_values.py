@@ -2,7 +2,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 pytest.importorskip("pxr", reason="needs the extra 'usd'")
@@ -13,7 +13,6 @@ from diorama_core.export.usd_values import extent, integers, place, quaternion, 
 from diorama_core.geometry.rotations import rotation_from_vector
 
 
-@settings(max_examples=40, deadline=None)
 @given(st.tuples(*[st.floats(-3, 3)] * 3).map(np.array), st.tuples(*[st.floats(-9, 9)] * 3).map(np.array))
 def test_a_prim_is_placed_as_the_matrix_says(turn, position) -> None:
     T = np.eye(4)

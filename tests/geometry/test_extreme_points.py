@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
-from hypothesis import example, given, settings
+from hypothesis import example, given
 from hypothesis import strategies as st
 
 from diorama_core.geometry.extreme_points import extreme_points
@@ -18,7 +18,6 @@ def corners_at(x: float, y: float, z: float, yaw: float, sizes: tuple) -> np.nda
     return cuboid_corners(np.array([[x, y, z]]), np.array([yaw]), np.array([sizes])) @ FROM_WORLD.T
 
 
-@settings(max_examples=150, deadline=None)
 @given(
     x=st.floats(-3, 3), y=st.floats(0.8, 5), z=st.floats(-2, 2), yaw=st.floats(-3.2, 3.2),
     sizes=st.tuples(size, size, size),

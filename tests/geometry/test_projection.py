@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
-from hypothesis import example, given, settings
+from hypothesis import example, given
 from hypothesis import strategies as st
 
 from diorama_core.geometry.projection import NEAR_M, box_iou, cuboid_corners, visible_bounds
@@ -36,7 +36,6 @@ def surface_bounds(corners_camera: np.ndarray) -> np.ndarray | None:
 coordinate = st.floats(-2.5, 2.5)
 
 
-@settings(max_examples=60, deadline=None)
 @given(
     x=coordinate, y=st.floats(0.3, 5.0), z=st.floats(-1.5, 1.5), yaw=st.floats(-3.2, 3.2),
     size=st.tuples(*[st.floats(0.2, 2.5)] * 3),

@@ -77,7 +77,7 @@ def test_drawn_masks_tell_themselves_and_too_little_tells_nothing() -> None:
     assert SeeThrough.of(photo(RING), outlined(np.ones((480, 640), dtype=bool), box=everything)) is None
 
 
-@settings(max_examples=20, deadline=None)
+@settings(max_examples=20)
 @given(seed=st.integers(0, 10_000))
 def test_whatever_the_picture_agreement_is_a_share(seed: int) -> None:
     rng = np.random.default_rng(seed)

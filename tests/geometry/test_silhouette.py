@@ -24,7 +24,7 @@ def batch(pose: Pose) -> PoseBatch:
     return PoseBatch(pose.R_world_object[None], pose.position[None], pose.scale[None])
 
 
-@settings(max_examples=25, deadline=None)
+@settings(max_examples=25)
 @given(st.floats(-3, 3), st.floats(-0.5, 0.5), st.floats(2.0, 4.0), st.floats(0.6, 1.6), st.floats(0.6, 1.6))
 def test_rays_in_the_shape_s_frame_see_what_a_renderer_sees(yaw, x, y, sx, sz) -> None:
     pose = Pose.upright((x, y, 1.0), yaw, (sx, 1.0, sz))

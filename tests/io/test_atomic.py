@@ -21,7 +21,7 @@ def no_space(*_: Any, **__: Any) -> None:
     raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
 
 
-@settings(max_examples=30, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@settings(suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(contents=st.lists(st.binary(max_size=2000), min_size=1, max_size=4), name=st.sampled_from(["a", "ä b.json"]))
 def test_the_last_written_content_is_there_and_nothing_else(tmp_path: Path, contents: list[bytes], name: str) -> None:
     path = tmp_path / "new" / "folder" / name

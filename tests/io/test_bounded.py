@@ -9,7 +9,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 from PIL import Image
 
@@ -62,7 +62,6 @@ values = st.recursive(
 )  # fmt: skip
 
 
-@settings(max_examples=80, deadline=None)
 @given(values)
 def test_json_comes_back_as_it_was_written(value) -> None:
     assert parse_json(json.dumps(value), "x", InputError) == value

@@ -19,7 +19,7 @@ VALUES = st.recursive(
 
 
 @given(VALUES)
-@settings(max_examples=100, suppress_health_check=[HealthCheck.function_scoped_fixture], deadline=None)
+@settings(suppress_health_check=[HealthCheck.function_scoped_fixture])
 def test_whatever_is_written_can_be_read_or_the_older_file_stays(tmp_path: Path, value: object) -> None:
     path = tmp_path / "a.json"
     write_json(path, "older", ProjectError)

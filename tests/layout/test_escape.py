@@ -26,7 +26,7 @@ def overlap_m(scene: Scene, moved: str, offset: np.ndarray) -> float:
     return max(part_overlaps(problem, problem.R, p, problem.scale).values(), default=0.0)
 
 
-@settings(max_examples=25, deadline=None)
+@settings(max_examples=25)
 @given(st.floats(-0.6, 0.6), st.floats(-0.8, 0.8), st.floats(-3.0, 3.0))
 def test_the_way_out_is_free_and_no_shorter_one_is(x: float, y: float, yaw: float) -> None:
     room = Room(LIBRARY)

@@ -3,7 +3,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 import trimesh
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from diorama_core.errors import LibraryError
@@ -90,7 +90,6 @@ STEPS = st.lists(st.floats(0.1, 5.0), min_size=3, max_size=3)
 
 
 @given(STEPS, STEPS)
-@settings(deadline=None)
 def test_ends_stay_and_lengths_grow_by_the_slope(widths: list[float], grown: list[float]) -> None:
     knots = np.concatenate([[0.0], np.cumsum(widths)]) / sum(widths)
     values = np.concatenate([[0.0], np.cumsum(grown)]) / sum(grown)

@@ -2,7 +2,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from diorama_core.errors import LibraryError
@@ -38,7 +38,6 @@ shapes = st.builds(
 )
 
 
-@settings(deadline=None, max_examples=50)
 @given(shape=shapes)
 def test_a_record_survives_json(shape: Shape) -> None:
     text = shape_to_json(shape)

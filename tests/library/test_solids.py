@@ -3,7 +3,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 import trimesh
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from diorama_core.library.furniture import solids
@@ -52,7 +52,6 @@ def test_normals_agree_with_faces(name: str) -> None:
 
 
 @given(LENGTH, LENGTH, LENGTH, st.floats(0.001, 0.1), st.integers(1, 3))
-@settings(max_examples=40, deadline=None)
 def test_box_has_the_size_asked_for(x: float, y: float, z: float, radius: float, segments: int) -> None:
     solid = solids.box((x, y, z), radius, segments)
     assert np.allclose(np.ptp(solid.vertices, axis=0), (x, y, z), atol=1e-9)
@@ -60,7 +59,6 @@ def test_box_has_the_size_asked_for(x: float, y: float, z: float, radius: float,
 
 
 @given(LENGTH, LENGTH, st.floats(0.02, 0.5), st.floats(2, 9), st.floats(2, 5))
-@settings(max_examples=30, deadline=None)
 def test_cushion_stays_inside_its_box_and_fills_it(x: float, y: float, z: float, square: float, puff: float) -> None:
     solid = solids.cushion((x, y, z), square, puff)
     assert (np.abs(solid.vertices[:, :2]) <= np.array([x, y]) / 2 + 1e-9).all()
@@ -68,7 +66,6 @@ def test_cushion_stays_inside_its_box_and_fills_it(x: float, y: float, z: float,
 
 
 @given(st.sampled_from(sorted(SOLIDS)), st.sampled_from("xyz"), st.floats(-180, 180))
-@settings(max_examples=30, deadline=None)
 def test_turning_keeps_volume(name: str, axis: str, angle: float) -> None:
     before, after = SOLIDS[name], SOLIDS[name].turned(axis, angle)
     assert np.isclose(welded(after).volume, welded(before).volume, rtol=1e-6)

@@ -45,7 +45,7 @@ def test_a_longer_table_has_no_thicker_legs() -> None:
             np.testing.assert_allclose(thickness, [0.8, 1.4 * factor, 0.04], atol=1e-6)
 
 
-@settings(max_examples=15, deadline=None)
+@settings(max_examples=15)
 @given(
     factor=st.floats(0.7, 2.0).filter(lambda f: abs(np.log(f)) > MIN_UNEVEN),
     thick=st.floats(0.04, 0.12),
@@ -85,7 +85,7 @@ def test_handles_keep_their_form() -> None:
     assert np.ptp(stretched.geometry["handle"].bounds, axis=0)[1] * 1.5 == pytest.approx(0.1, abs=1e-6)
 
 
-@settings(max_examples=15, deadline=None)
+@settings(max_examples=15)
 @given(st.tuples(factors, factors, factors), st.sampled_from(["table", "chair", "bookshelf", "picture", "armchair"]))
 def test_the_bounding_box_stays_and_nothing_folds(scale: tuple[float, float, float], category: str) -> None:
     design = next(d for d in furniture.designs() if d.category == category)

@@ -66,7 +66,7 @@ def test_a_single_sheet_says_nothing() -> None:
     assert not thin(sheet, 2).any()
 
 
-@settings(max_examples=20, deadline=None)
+@settings(max_examples=20)
 @given(st.integers(0, 2), st.integers(0, 10_000))
 def test_it_is_a_share_whatever_the_mesh_and_blind_to_the_order_of_faces(axis: int, seed: int) -> None:
     rng = np.random.default_rng(seed)

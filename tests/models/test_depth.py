@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 import torch
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from diorama_core.errors import UnavailableError
@@ -36,7 +36,6 @@ def _room(focal: float) -> tuple[np.ndarray, np.ndarray]:
     unit=st.floats(0.2, 5.0),
     flip=st.booleans(),
 )
-@settings(deadline=None, max_examples=30)
 def test_camera_and_metres_come_back_from_affine_points(focal: float, shift: float, unit: float, flip: bool) -> None:
     points, normals = _room(focal)
     affine = points / unit

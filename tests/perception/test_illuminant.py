@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from diorama_core.perception.illuminant import Illuminant, estimate_illuminant
@@ -57,7 +57,6 @@ def test_a_picture_without_information_has_white_light(value):
     assert estimate_illuminant(np.full((50, 60, 3), value, np.uint8)) == Illuminant()
 
 
-@settings(max_examples=30, deadline=None)
 @given(st.lists(st.floats(0.05, 0.7), min_size=3, max_size=3), st.floats(0.8, 1.2), st.floats(0.8, 1.2))
 def test_albedo_undoes_light(colour, red, blue):
     light = Illuminant((red, 1.0, blue))

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from hypothesis import assume, given, settings
+from hypothesis import assume, given
 
 from diorama_core.artefacts import DetectedObject, Inputs, LabelledBox, Photo
 from diorama_core.errors import ProjectError
@@ -27,7 +27,6 @@ def example_inputs(seed: int = 0) -> Inputs:
     return Inputs(photo, (LabelledBox((1, 2, 3.5, 4), "chair", "chairs"),), depth_m=depth)
 
 
-@settings(max_examples=30, deadline=None)
 @given(scenes(max_objects=3))
 def test_artefacts_survive_the_file_exactly(scene: Scene) -> None:
     assume(all(clean_text(o.shape_id) == o.shape_id and clean_text(o.label) == o.label for o in scene.objects))

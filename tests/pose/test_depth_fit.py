@@ -47,7 +47,7 @@ def fit_of(room: Room, **settings) -> tuple[DepthFit, ShapeCaster]:
     return measured(room, **settings).fit(limits), ShapeCaster(LIBRARY.mesh(shape.id))
 
 
-@settings(max_examples=12, deadline=None)
+@settings(max_examples=12)
 @given(
     st.floats(-180, 180),
     st.tuples(st.floats(-0.12, 0.12), st.floats(-0.12, 0.12), st.floats(-0.05, 0.05)),
@@ -177,7 +177,7 @@ def test_poses_away_from_the_measured_box_cost_as_much_as_they_disagree() -> Non
     np.testing.assert_allclose(seen.elsewhere_cost(poses, limits, np.full(3, 0.3)), cost / 9)
 
 
-@settings(max_examples=25, deadline=None)
+@settings(max_examples=25)
 @given(st.floats(-180, 180), st.floats(-1, 1), st.floats(-1, 1), st.floats(0.5, 2.0))
 def test_no_box_is_nearer_to_the_measured_one_than_itself(yaw: float, x: float, y: float, scale: float) -> None:
     room = Room(camera_at(), (standing("desk", 0.2, 2.6, 30.0),), (0,))

@@ -90,7 +90,7 @@ def _project() -> Iterator[Project]:
 
 @pytest.mark.parametrize("writer", WRITERS)
 @given(text=ANY_TEXT, number=NUMBERS)
-@settings(max_examples=12, deadline=None)
+@settings(max_examples=12)
 def test_what_is_written_is_read_again_or_refused(writer: str, text: str, number: float) -> None:
     with _project() as project:
         with suppress(DioramaError, OverflowError):

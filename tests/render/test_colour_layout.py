@@ -37,7 +37,7 @@ def layout(frame: tuple[int, int, int], inside: tuple[int, int, int]) -> np.ndar
     return colour_layout(rgb, whole(rgb))
 
 
-@settings(deadline=None, max_examples=20)
+@settings(max_examples=20)
 @given(st.integers(0, 2**32 - 1))
 def test_a_picture_agrees_with_itself_and_no_other_more(seed: int) -> None:
     rng = np.random.default_rng(seed)

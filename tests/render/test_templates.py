@@ -66,7 +66,7 @@ def test_object_coordinates_reproject_to_their_pixels(chair: tuple[BuiltInLibrar
         assert np.isnan(templates.points_object(view)[~templates.mask[view]]).all()
 
 
-@settings(max_examples=15, deadline=None)
+@settings(max_examples=15)
 @given(
     st.tuples(*[st.floats(0.2, 1.6)] * 3),
     st.tuples(*[st.floats(-2.0, 2.0)] * 3),

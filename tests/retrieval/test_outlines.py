@@ -4,7 +4,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from diorama_core.retrieval.outlines import filled, open_share, outline_agreement
@@ -23,7 +23,6 @@ def test_narrow_gaps_are_closed_and_wide_ones_stay_open() -> None:
     assert not filled(slats(20))[30, 10:54].all()
 
 
-@settings(max_examples=30, deadline=None)
 @given(st.integers(0, 1000))
 def test_filling_adds_and_never_takes_away_and_not_twice(seed: int) -> None:
     rng = np.random.default_rng(seed)

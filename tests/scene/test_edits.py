@@ -4,7 +4,7 @@ from contextlib import suppress
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from diorama_core.errors import EditRefused
@@ -48,7 +48,6 @@ def edit_calls(draw: st.DrawFn):
     return lambda s: edits.recolour(s, a, (0.1, 2.0, -1.0))
 
 
-@settings(max_examples=150, deadline=None)
 @given(scenes(), st.lists(edit_calls(), max_size=10))
 def test_any_sequence_of_edits_keeps_the_scene_valid(scene: Scene, calls: list) -> None:
     for call in calls:
@@ -57,7 +56,6 @@ def test_any_sequence_of_edits_keeps_the_scene_valid(scene: Scene, calls: list) 
         check_scene(scene)
 
 
-@settings(deadline=None)
 @given(scenes().filter(lambda s: len(s.objects) > 1), poses(), st.data())
 def test_moving_carries_what_is_supported_up(scene: Scene, pose: Pose, data: st.DataObject) -> None:
     moved_id = data.draw(st.sampled_from([o.id for o in scene.objects]))

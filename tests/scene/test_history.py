@@ -1,6 +1,6 @@
 from __future__ import annotations
 
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from diorama_core.scene.history import Entry, History
@@ -10,7 +10,6 @@ from tests.scene.strategies import scenes
 steps = st.lists(st.sampled_from(["commit", "undo", "redo"]), max_size=30)
 
 
-@settings(deadline=None)
 @given(st.lists(scenes(max_objects=2), min_size=1, max_size=4), steps)
 def test_undo_then_redo_is_identity(pool: list[Scene], actions: list[str]) -> None:
     history = History.start(pool[0])

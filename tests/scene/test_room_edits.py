@@ -51,7 +51,7 @@ def closed(scene):
             assert np.linalg.norm(others - corner, axis=1).min() < 1e-9
 
 
-@settings(deadline=None, max_examples=25)
+@settings(max_examples=25)
 @given(
     plane=st.sampled_from(["back", "left", "right", "floor", "ceiling"]), distance=st.floats(-1.2, 3.0, allow_nan=False)
 )

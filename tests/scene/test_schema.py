@@ -11,13 +11,12 @@ from diorama_core.scene.types import Scene
 from tests.scene.strategies import scenes
 
 
-@settings(max_examples=100, deadline=None)
 @given(scenes())
 def test_a_scene_survives_the_file_exactly(scene: Scene) -> None:
     assert scene_from_json(scene_to_json(scene)) == scene
 
 
-@settings(max_examples=20, deadline=None)
+@settings(max_examples=20)
 @given(scenes())
 def test_the_file_is_deterministic_and_states_its_conventions(scene: Scene) -> None:
     text = scene_to_json(scene)
@@ -30,7 +29,7 @@ def test_the_file_is_deterministic_and_states_its_conventions(scene: Scene) -> N
     assert document["axes"]["world_up"] == "+Z"
 
 
-@settings(max_examples=20, deadline=None)
+@settings(max_examples=20)
 @given(scenes())
 def test_scenes_from_before_the_photos_look_still_load(scene: Scene) -> None:
     document = json.loads(scene_to_json(scene))

@@ -7,7 +7,7 @@ from collections import Counter
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 from PIL import Image
 
@@ -133,7 +133,6 @@ def test_arrangements_that_are_no_relation_are_named() -> None:
 
 
 @given(st.text(max_size=120))
-@settings(deadline=None, max_examples=80)
 def test_any_text_is_read_without_complaint(text: str) -> None:
     request = understood_prompt(text)
     assert all(1 <= t.count <= 12 for t in request.objects)

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import numpy as np
+import pytest
 import torch
 
 from diorama_core.arrangement.facing.evidence import HEADINGS, FacingRoom
 from diorama_core.arrangement.facing.solve import solve
 from diorama_core.arrangement.facing.weights import FacingWeights
+from diorama_core.training import facings
 from diorama_core.training.facings import AS_TOLD, NAMES, FacingCase, FacingModel, as_settings, beginning, certificate
 from tests.arrangement.facing.rooms import room, thing
 
@@ -44,12 +46,13 @@ def test_what_begins_at_nothing_stays_out() -> None:
     assert FacingModel(cases(2)).fitted(lacking, np.ones(4, bool))[NAMES.index("at_table")] == 0.0
 
 
-def test_folds_are_of_photos_and_a_certificate_tells_every_term() -> None:
+def test_folds_are_of_photos_and_a_certificate_tells_every_term(monkeypatch: pytest.MonkeyPatch) -> None:
     model = FacingModel(cases(4))
     assert [model.fold(k, 2).tolist() for k in (0, 1)] == [
         [True, True, False, False] * 2,
         [False, False, True, True] * 2,
     ]
+    monkeypatch.setattr(facings, "STEPS", 2)
     found = certificate(model, "command", 2)
     assert set(found["change of that without a term"]) == set(found["weights"]) == set(NAMES)
     assert found["fronts"] == 8

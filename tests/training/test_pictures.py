@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
@@ -22,12 +23,21 @@ from diorama_core.training.pictures import (
 )
 
 
-def test_a_room_is_rendered_once_with_kinds_and_forms(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(pictures, "VIEWS", 2)
+@pytest.fixture(scope="module")
+def made(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Path]:
+    """A folder with two small pictures of one room."""
+    folder = tmp_path_factory.mktemp("pictures")
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(pictures, "VIEWS", 2)
+        patch.setattr(pictures, "SIZE", (256, 192))
+        assert make_pictures(folder, built_in_library(), range(3, 4)) == 1
+        yield folder
+
+
+def test_a_room_is_rendered_once_with_kinds_and_forms(made: Path) -> None:
     library = built_in_library()
-    assert make_pictures(tmp_path, library, range(3, 4)) == 1
-    assert make_pictures(tmp_path, library, range(3, 4)) == 0
-    path, names = tmp_path / "room_000003.npz", category_names(library)
+    assert make_pictures(made, library, range(3, 4)) == 0
+    path, names = made / "room_000003.npz", category_names(library)
     assert count_pictures(path) == 2
     picture = read_picture(path, 0)
     assert picture.rgb.shape == (pictures.SIZE[1], pictures.SIZE[0], 3)
@@ -55,13 +65,11 @@ def test_what_is_hardly_seen_has_no_box(pixels: int, seen: bool) -> None:
         assert counted[0] == pixels**2
 
 
-def test_statistics_draw_boxes_of_the_asked_proportions(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(pictures, "VIEWS", 1)
-    make_pictures(tmp_path, built_in_library(), range(4, 5))
-    files = PictureFiles.of(tmp_path)
+def test_statistics_draw_boxes_of_the_asked_proportions(made: Path) -> None:
+    files = PictureFiles.of(made)
     statistics = BoxStatistics.of(files, 147)
-    assert statistics.counts.sum() == len(read_picture(*files.pictures[0]).boxes)
-    assert files.rooms == (tmp_path / "room_000004.npz",)
+    assert statistics.counts.sum() == sum(len(read_picture(*picture).boxes) for picture in files.pictures)
+    assert files.rooms == (made / "room_000003.npz",)
     drawn = statistics.draw(int(np.argmin(statistics.counts)), (2.0, 1.0), np.random.default_rng(0))
     assert drawn[5] == pytest.approx(np.log(2.0))
     assert drawn[3] - drawn[4] == pytest.approx(np.log(2.0))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -63,8 +64,8 @@ def window_files(folder: Path) -> WindowFiles:
     return WindowFiles.of(folder)
 
 
-def trainer(kind: str, files: PictureFiles, path: Path, steps: int) -> Trainer:
-    schedule = Schedule(steps, 2, save_every=2)
+def trainer(kind: str, files: PictureFiles, path: Path) -> Trainer:
+    schedule = Schedule(2, 2, save_every=1)
     if kind == "outliner":
         return outliner_trainer(window_files(path.parent), schedule, path)
     if kind == "detector":
@@ -72,28 +73,27 @@ def trainer(kind: str, files: PictureFiles, path: Path, steps: int) -> Trainer:
     return namer_trainer(files, shape_files(path.parent), KINDS, schedule, path)
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("kind", ["detector", "namer", "outliner"])
 def test_a_run_goes_on_where_it_stopped(
     kind: str, files: PictureFiles, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(train, "SIZE", SMALL)
-    whole = trainer(kind, files, tmp_path / "whole.pt", 4).run(Progress())
-    first = trainer(kind, files, tmp_path / "parts.pt", 4)
-    first.schedule = Schedule(4, 2, save_every=2)
-    stop = Progress()
+    for network in (Detector, Namer, OutlineNetwork):
+        monkeypatch.setattr(train, network.__name__, partial(network, width=8))
+    whole = trainer(kind, files, tmp_path / "whole.pt").run(Progress())
+    first = trainer(kind, files, tmp_path / "parts.pt")
     learn = first._learn
 
     def learn_and_stop(batch: tuple[torch.Tensor, ...]) -> str:
-        if first.step == 2:
+        if first.step == 1:
             raise Cancelled("stopped")
         return learn(batch)
 
     first._learn = learn_and_stop
     with pytest.raises(Cancelled):
-        first.run(stop)
-    second = trainer(kind, files, tmp_path / "parts.pt", 4)
-    assert second.step == 2
+        first.run(Progress())
+    second = trainer(kind, files, tmp_path / "parts.pt")
+    assert second.step == 1
     resumed = second.run(Progress())
     for name, value in whole.state_dict().items():
         torch.testing.assert_close(resumed.state_dict()[name], value, msg=name)

@@ -3,7 +3,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from diorama_app.interaction.marquee import objects_in
@@ -16,7 +16,6 @@ VIEW = (CAMERA.T_world_camera[:3, :3], CAMERA.position, CAMERA.intrinsics.vertic
 share = st.floats(0, 1)
 
 
-@settings(max_examples=60, deadline=None)
 @given(share, share, share, share)
 def test_a_frame_takes_in_what_has_its_middle_inside(x1, y1, x2, y2) -> None:
     low, high = (min(x1, x2), min(y1, y2)), (max(x1, x2), max(y1, y2))

@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from diorama_app.reconstruction.camera_correction import checked_angles
@@ -18,7 +18,6 @@ from diorama_core.scene.types import Intrinsics, yaw_rotation
 from tests.app.small_room import photo_camera, plain_photo
 
 
-@settings(deadline=None)
 @given(st.floats(-1.3, 1.3), st.floats(-0.7, 0.7), st.floats(-3.1, 3.1))
 def test_a_camera_attitude_is_read_back(tilt: float, roll: float, heading: float) -> None:
     R = CameraAttitude(tilt, roll).rotation(np.array([np.cos(heading), np.sin(heading), 0.3]))

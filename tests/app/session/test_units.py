@@ -1,14 +1,13 @@
 from __future__ import annotations
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from diorama_app.session.units import UNITS, format_length, in_unit, parse_length
 from diorama_core.errors import InputError
 
 
-@settings(deadline=None)
 @given(metres=st.floats(-50, 50), unit=st.sampled_from(UNITS))
 def test_what_is_written_reads_as_the_same_length(metres: float, unit: str) -> None:
     assert parse_length(format_length(metres, unit), unit) == pytest.approx(metres, abs=1.1e-3)

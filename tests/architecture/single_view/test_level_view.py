@@ -4,7 +4,7 @@ from functools import cache
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from diorama_core.architecture.single_view.level_view import LevelView, level_view, projected, response
@@ -25,7 +25,6 @@ def view() -> LevelView:
     return level_view(SHOT.inputs.photo.rgb, found, SHOT.objects)
 
 
-@settings(max_examples=40, deadline=None)
 @given(x=st.floats(-3, 3), y=st.floats(-3, 5), z=st.floats(-1, 3))
 def test_directions_project_as_points_far_along_them(x, y, z) -> None:
     direction = np.array([[x, y, z]])

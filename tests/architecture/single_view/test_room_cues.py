@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from diorama_core.architecture.single_view.room_cues import (
@@ -23,7 +23,6 @@ BOX = np.array([[-2.0, 2.0, 4.0, 2.6]])
 """Left, right and far wall, ceiling."""
 
 
-@settings(max_examples=40, deadline=None)
 @given(st.lists(st.tuples(*[st.floats(-1, 1)] * 3), min_size=1, max_size=8))
 def test_rays_meet_the_face_that_ray_casting_says(rays) -> None:
     rays = np.array([r for r in rays if r[1] > 0.05 and np.abs(r).min() > 1e-6]).reshape(-1, 3)
@@ -130,7 +129,6 @@ def test_impossible_boxes_score_minus_infinity() -> None:
     assert (scores[1:] == -np.inf).all()
 
 
-@settings(max_examples=30, deadline=None)
 @given(axis=st.integers(0, 2), x=st.floats(-1.2, 1.2), y=st.floats(2.5, 5.0), z=st.floats(0.2, 2.2))
 def test_segments_along_an_axis_are_told_by_its_vanishing_point(axis, x, y, z) -> None:
     camera = look(25.0, 12.0, 1.5)

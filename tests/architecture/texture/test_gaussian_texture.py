@@ -80,7 +80,7 @@ def test_gaps_between_boards_are_lines_and_grain_is_not() -> None:
     assert not has_lines(np.zeros((*SHAPE, 3), np.float32), everywhere)
 
 
-@settings(max_examples=15, deadline=None)
+@settings(max_examples=15)
 @given(top=st.integers(0, 140), left=st.integers(0, 210), height=st.integers(1, 150), width=st.integers(1, 220))
 def test_any_sample_gives_finite_colours(top: int, left: int, height: int, width: int) -> None:
     sample = np.zeros(SHAPE, dtype=bool)

@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from diorama_core.architecture.walls.wall_candidates import crossings, find_walls, fit_line, same_wall, tolerance_m
@@ -41,7 +41,6 @@ def test_nothing_upright_gives_no_walls() -> None:
     assert find_walls(surface_of(downward), TOP_M) == []
 
 
-@settings(max_examples=40, deadline=None)
 @given(angle=st.floats(-3.1, 3.1), offset=st.floats(-3, 3), noise=st.floats(0, 0.01))
 def test_a_line_is_fitted_despite_outliers(angle, offset, noise) -> None:
     rng = np.random.default_rng(0)

@@ -65,7 +65,7 @@ def test_true_distance_moves_along_the_ray_and_keeps_the_picture() -> None:
     assert after.supports == before.supports
 
 
-@settings(max_examples=20, deadline=None)
+@settings(max_examples=20)
 @given(st.floats(0.4, 2.5))
 def test_another_scale_keeps_the_picture(factor: float) -> None:
     before, after = estimate(), scaled(estimate(), factor)
@@ -93,7 +93,7 @@ def test_true_size_keeps_the_base() -> None:
     assert after.corners_world[:, 2].min() == pytest.approx(before.corners_world[:, 2].min())
 
 
-@settings(max_examples=20, deadline=None)
+@settings(max_examples=20)
 @given(st.floats(-3.0, 3.0))
 def test_truth_is_turned_into_the_estimated_heading(yaw: float) -> None:
     found = estimate(1.5, yaw)

@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from diorama_core.evaluation.metrics.colour import (
@@ -45,14 +45,12 @@ def test_the_published_pairs(first, second, expected) -> None:
     assert delta_e_2000(np.array(first), np.array(second)) == pytest.approx(expected, abs=1e-4)
 
 
-@settings(deadline=None)  # the first conversion loads OpenCV
 @given(colours, colours)
 def test_it_is_symmetric_and_nothing_for_equal_colours(a, b) -> None:
     assert perceived_difference(a, b) == pytest.approx(perceived_difference(b, a), abs=1e-6)
     assert perceived_difference(a, a) == pytest.approx(0.0, abs=1e-6)
 
 
-@settings(deadline=None)
 @given(unit, unit)
 def test_grays_differ_half_as_much_with_lightness_at_half_weight(a, b) -> None:
     first, second = lab_of(np.full(3, a)) * (1, 0, 0), lab_of(np.full(3, b)) * (1, 0, 0)

@@ -90,7 +90,7 @@ def test_scenes_are_pooled_by_their_objects() -> None:
     assert pooled([]).count == 0
 
 
-@settings(max_examples=20, deadline=None)
+@settings(max_examples=20)
 @given(st.floats(-3, 3), st.floats(-5, 5), st.floats(0.3, 3.0))
 def test_scene_alignment_ignores_one_common_turn_shift_and_scale(yaw: float, shift: float, scale: float) -> None:
     moved = [Placed(p.R, scale * p.centre + shift, scale * p.size_m, p.symmetry) for p in ROOM]
@@ -99,7 +99,6 @@ def test_scene_alignment_ignores_one_common_turn_shift_and_scale(yaw: float, shi
     assert scene_alignment(ROOM, together)[1].r_acc == 1.0
 
 
-@settings(max_examples=30, deadline=None)
 @given(st.floats(0.0, 3.1))
 def test_the_angle_between_rotations(angle: float) -> None:
     assert rotation_angle(np.eye(3), yaw_rotation(angle)) == pytest.approx(angle, abs=1e-6)

@@ -4,13 +4,12 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from diorama_core.evaluation.reports.intervals import bootstrap_interval
 
 
-@settings(max_examples=30, deadline=None)
 @given(st.lists(st.floats(0, 1), min_size=2, max_size=12), st.integers(1, 9))
 def test_an_interval_lies_within_the_values(values: list[float], weight: int) -> None:
     low, high = bootstrap_interval(values, [weight] * len(values))

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from diorama_core.layout.feasible.footprints import largest_share
@@ -21,7 +21,6 @@ def test_what_fits_is_whole():
     assert share(0.5, 0.3, (0.4, 0.2)) == 1.0
 
 
-@settings(max_examples=40, deadline=None)
 @given(st.floats(0.1, 1.0), st.floats(0.1, 1.0), st.floats(1.1, 4.0))
 def test_what_is_too_large_is_shrunk_to_the_tightest_side(width, depth, times):
     assert share(width, depth, (times * width, 0.5 * depth)) == pytest.approx(1 / times, abs=0.01)

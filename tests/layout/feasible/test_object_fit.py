@@ -11,7 +11,7 @@ from tests.layout.feasible.test_photo_observations import LIBRARY, looking_north
 from tests.layout.small_rooms import Room
 
 
-@settings(max_examples=20, deadline=None)
+@settings(max_examples=20)
 @given(
     st.floats(-1.0, 1.0),
     st.floats(0.5, 3.0),

@@ -2,7 +2,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from diorama_core.layout.feasible.quadratic import HARD, SOFT, least_distance
@@ -23,7 +23,6 @@ def test_conflict_yields_softly_and_hard_rows_hold() -> None:
     assert y[0] == pytest.approx(0.0, abs=1e-3)
 
 
-@settings(max_examples=80, deadline=None)
 @given(st.integers(0, 10_000))
 def test_optimality_conditions(seed: int) -> None:
     rng = np.random.default_rng(seed)

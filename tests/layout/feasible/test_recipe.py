@@ -58,7 +58,7 @@ def test_generated_rooms_become_exact_and_free_of_overlap(seed: int) -> None:
     assert scene.supports == room.observed.supports
 
 
-@settings(max_examples=8, deadline=None)
+@settings(max_examples=8)
 @given(st.integers(0, 500), st.integers(2, 24))
 def test_a_second_run_changes_nothing(seed: int, count: int) -> None:
     once, _ = solve(generate_room(seed, count).observed)
@@ -66,7 +66,7 @@ def test_a_second_run_changes_nothing(seed: int, count: int) -> None:
     same(once, twice)
 
 
-@settings(max_examples=8, deadline=None)
+@settings(max_examples=8)
 @given(st.integers(0, 500), st.randoms(use_true_random=False))
 def test_the_order_of_objects_does_not_matter(seed: int, shuffler) -> None:
     scene = generate_room(seed, 15).observed
@@ -77,7 +77,7 @@ def test_the_order_of_objects_does_not_matter(seed: int, shuffler) -> None:
     same(solve(scene)[0], solve(mixed)[0], atol=0.0)
 
 
-@settings(max_examples=8, deadline=None)
+@settings(max_examples=8)
 @given(st.integers(0, 500), st.floats(-3.0, 3.0), st.floats(-20.0, 20.0))
 def test_the_answer_moves_with_the_world(seed: int, yaw: float, shift: float) -> None:
     scene = generate_room(seed, 15).observed

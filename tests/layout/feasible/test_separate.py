@@ -50,7 +50,7 @@ def penetration_m(offset: np.ndarray, yaw: float) -> float:
     return float((reach - np.abs(sides @ offset)).min())
 
 
-@settings(max_examples=15, deadline=None)
+@settings(max_examples=15)
 @given(x=st.floats(-0.3, 0.3), y=st.floats(-0.4, 0.4), yaw=st.floats(-3.1, 3.1))
 def test_two_overlapping_boxes_part_by_the_least_move(x, y, yaw) -> None:
     room = Room(box_library())

@@ -35,7 +35,7 @@ def test_features_come_back_after_reopening(tmp_path: Path, rng: np.random.Gener
     assert again.missing(["shape1", "x", "x", "y"]) == ["x", "y"]
 
 
-@settings(max_examples=20, deadline=None)
+@settings(max_examples=20)
 @given(st.integers(1, 60), st.integers(1, 3), st.integers(1, 12), st.integers(0, 2**31))
 def test_the_top_are_those_of_a_plain_comparison(count: int, rows: int, k: int, seed: int) -> None:
     rng = np.random.default_rng(seed)

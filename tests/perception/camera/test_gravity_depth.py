@@ -23,7 +23,7 @@ def degrees_between(a: np.ndarray, b: np.ndarray) -> float:
     return float(np.rad2deg(np.arccos(np.clip(a @ b, -1, 1))))
 
 
-@settings(max_examples=12, deadline=None)
+@settings(max_examples=12)
 @given(st.floats(8, 35), st.floats(-6, 6), st.floats(-44, 44), st.floats(0.8, 2.0))
 def test_recovers_the_camera(pitch: float, roll: float, heading: float, height: float) -> None:
     v = view(pitch_deg=pitch, roll_deg=roll, heading_deg=heading, focal=0.7, height_m=height)

@@ -30,7 +30,7 @@ def best(v: View, segments: np.ndarray, focal: float | None) -> FrameFit:
     return search_frames(Lines.of(segments, v.intrinsics), focal)[0]
 
 
-@settings(max_examples=15, deadline=None)
+@settings(max_examples=15)
 @given(PITCHES, ROLLS, st.floats(-44, 44), st.floats(0.6, 1.1))
 def test_gravity_within_half_a_degree_where_the_focal_length_is_known(
     pitch: float, roll: float, heading: float, focal: float

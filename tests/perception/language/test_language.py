@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from diorama_core.artefacts import (
@@ -272,7 +272,6 @@ def test_words_in_the_photo_change_nothing_but_labels() -> None:
 
 
 @given(st.text(max_size=300))
-@settings(deadline=None, max_examples=60)
 def test_labels_are_one_short_harmless_line(text: str) -> None:
     label = tidy_label(text)
     assert len(label) <= 60
@@ -281,7 +280,6 @@ def test_labels_are_one_short_harmless_line(text: str) -> None:
 
 
 @given(st.text(max_size=200), st.dictionaries(st.text(max_size=5), st.integers(), max_size=3))
-@settings(deadline=None, max_examples=60)
 def test_json_is_found_amid_anything_without_braces(prose: str, value: dict[str, int]) -> None:
     quiet = prose.replace("{", "").replace("}", "").replace("`", "")
     found = json_in(quiet + json.dumps(value) + quiet)
@@ -307,7 +305,6 @@ _NAMES = st.sampled_from(["a", "b", "c", "d", "floor", "nothing"])
 
 
 @given(st.lists(st.tuples(st.sampled_from(["a", "b", "c", "d", "x"]), _NAMES, st.floats(0.0, 1.0)), max_size=10))
-@settings(deadline=None, max_examples=100)
 def test_repair_always_gives_one_acyclic_edge_each(proposed: list[tuple[str, str, float]]) -> None:
     fallback = SceneGraph(
         (Support("a", "floor"), Support("b", "a"), Support("c", "b"), Support("d", "wall", "mounted on")),

@@ -22,7 +22,7 @@ def cloud(size, centre, yaw_deg: float = 0.0, n: int = 12) -> np.ndarray:
     return (surface * size) @ yaw_rotation(np.deg2rad(yaw_deg)).T + np.array(centre)
 
 
-@settings(max_examples=20, deadline=None)
+@settings(max_examples=20)
 @given(yaw=st.floats(-44, 44), depth=st.floats(0.3, 0.5), x=st.floats(-2, 2))
 def test_turned_boxes_are_found_where_they_are(yaw, depth, x) -> None:
     found = observed_extent(cloud((depth, 1.5, 0.8), (x, 3.0, 0.4), yaw), category("chair"))
@@ -90,7 +90,6 @@ def test_the_usual_plan_is_turned_as_it_fits() -> None:
     assert usual_plan(np.array([1.8, 0.5, 0.8]), category("sofa")).tolist() == [prior.width_m, prior.depth_m]
 
 
-@settings(max_examples=30, deadline=None)
 @given(yaw=st.floats(-0.7, 0.7), x=st.floats(-2, 2), y=st.floats(1.5, 4))
 def test_a_cuboid_is_the_same_box_with_its_front_to_the_camera(yaw, x, y) -> None:
     centre = yaw_rotation(yaw).T @ np.array([x, y, 0.4])

@@ -36,7 +36,7 @@ def inset_px(distance_m: float, problems: Problems) -> np.ndarray:
     return values(unknowns(distance_m), problems, VIEW).inset_px
 
 
-@settings(max_examples=25, deadline=None)
+@settings(max_examples=25)
 @given(st.floats(2.0, 6.0), st.sampled_from(["table", "chair", "plant", "sofa", "object"]))
 def test_outlines_stay_within_their_cuboids(distance_m: float, category: str) -> None:
     inset = inset_px(distance_m, problem(category))
@@ -46,7 +46,7 @@ def test_outlines_stay_within_their_cuboids(distance_m: float, category: str) ->
     assert np.allclose(inset_px(distance_m, filled), 0, atol=1e-6)
 
 
-@settings(max_examples=25, deadline=None)
+@settings(max_examples=25)
 @given(st.floats(0.6, 1.6), st.floats(2.0, 4.0))
 def test_a_larger_world_projects_alike(scale: float, distance_m: float) -> None:
     """Only the priors tell scale: that is what carrying solutions from height to height rests on."""
@@ -60,7 +60,7 @@ def test_what_is_behind_the_camera_has_no_known_outline() -> None:
     assert np.allclose(inset_px(0.3, problem()), 0)
 
 
-@settings(max_examples=10, deadline=None)
+@settings(max_examples=10)
 @given(st.floats(1.0, 2.0))
 def test_solutions_keep_their_bounds_and_never_grow_worse(height_m: float) -> None:
     batch = problem(height_m=height_m)

@@ -2,7 +2,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from diorama_core.geometry.projection import cuboid_corners, visible_bounds
@@ -53,7 +53,6 @@ def problem(yaw: float = -np.pi / 2, box: np.ndarray | None = None, **more) -> P
     return row(observations, 0, mode, camera_height_m=HEIGHT, yaw_rad=yaw, **more)
 
 
-@settings(max_examples=40, deadline=None)
 @given(x=st.floats(-2, 2), y=st.floats(1, 6), yaw=st.floats(-3.1, 3.1), turn=st.floats(-40, 40))
 def test_unknowns_stand_for_their_cuboid_whatever_the_heading(x, y, yaw, turn) -> None:
     view = View(K, rotation(12.0, turn))
@@ -146,7 +145,6 @@ def test_reaching_beyond_the_picture_costs_against_the_box() -> None:
     assert out[CUT] == pytest.approx([np.log1p(beyond / width), 0.0])
 
 
-@settings(max_examples=30, deadline=None)
 @given(yaw=st.floats(-3.1, 3.1), off=st.floats(-1.5, 1.5))
 def test_a_base_beyond_its_supporter_costs_by_how_far(yaw, off) -> None:
     c, s = np.cos(yaw), np.sin(yaw)

@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from diorama_core.perception.metrology.problem import corners_camera, cuboids, stacked
@@ -19,7 +19,6 @@ def item(mask: np.ndarray, confidence: float = 1.0):
     return replace(detected("o", "cabinet", tuple(BOX)), mask=mask, mask_confidence=confidence)
 
 
-@settings(max_examples=30, deadline=None)
 @given(seed=st.integers(0, 1000))
 def test_reach_is_the_farthest_point_of_the_mask_along_each_diagonal(seed: int) -> None:
     rng = np.random.default_rng(seed)

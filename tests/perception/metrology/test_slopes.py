@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
-from hypothesis import example, given, settings
+from hypothesis import example, given
 from hypothesis import strategies as st
 
 from diorama_core.perception.metrology.problem import UNKNOWNS, values
@@ -13,7 +13,6 @@ from tests.perception.metrology.test_problem import CENTRE, SIZE, VIEW, problem,
 STEP = 1e-6
 
 
-@settings(max_examples=120, deadline=None)
 @given(
     aside=st.floats(-3, 3), ahead=st.floats(0.15, 2), grown=st.tuples(*[st.floats(-0.4, 0.6)] * 3),
     raised=st.floats(-1, 1), yaw=st.floats(-3.1, 3.1), base_sigma=st.sampled_from([0.0, 0.2]),

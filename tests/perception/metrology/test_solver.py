@@ -13,7 +13,7 @@ from diorama_core.perception.metrology.solver import solve
 from tests.perception.metrology.test_problem import CENTRE, SIZE, VIEW, problem, unknowns
 
 
-@settings(max_examples=20, deadline=None)
+@settings(max_examples=20)
 @given(dx=st.floats(-0.8, 0.8), ahead=st.floats(0.6, 1.6), grown=st.floats(-0.3, 0.3))
 def test_the_true_cuboid_is_found_from_afar(dx, ahead, grown) -> None:
     start = unknowns(CENTRE * [1, ahead, 1] + [dx, 0, 0], SIZE * np.exp(grown))

@@ -2,7 +2,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from diorama_core.geometry.projection import cuboid_corners
@@ -55,7 +55,6 @@ def test_a_door_tells_the_wall_that_it_is_in() -> None:
     assert extent_of(door, ("door",)).right_sigma == 0.3
 
 
-@settings(max_examples=40, deadline=None)
 @given(x=st.floats(0, 300), width=st.floats(20, 200), bottom=st.floats(50, 400))
 def test_supporters_hold_most_of_the_width_and_the_bottom(x, width, bottom) -> None:
     items = (detected("c", "lamp", (x, bottom - 40, x + width, bottom)), detected("p", "table", (100, 150, 300, 350)))

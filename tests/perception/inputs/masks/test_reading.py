@@ -53,7 +53,7 @@ def test_colours_and_transparency_are_ids_too() -> None:
     assert found[50, 20] == 0
 
 
-@settings(max_examples=25, deadline=None)
+@settings(max_examples=25)
 @given(st.integers(1, 3), st.integers(1, 3))
 def test_masks_of_another_size_are_sampled_by_pixel_centres(down: int, up: int) -> None:
     small = painted((3, 24, 16, 72, 48))
