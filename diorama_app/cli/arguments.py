@@ -11,6 +11,8 @@ from typing import Any
 from diorama_core.errors import UnavailableError
 
 RECIPES = ("feasible", "paper", "all-in-one")
+WITHOUT_PHOTO = "orbit:35"
+"""View of a scene that no photo was taken of."""
 PROFILES = ("auto", "embedded", "foundation")
 
 

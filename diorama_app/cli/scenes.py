@@ -1,4 +1,4 @@
-"""Commands that show and change scenes: serve, optimise, export, picture."""
+"""Commands that show and change scenes: serve, optimise, picture."""
 
 from __future__ import annotations
 
@@ -12,15 +12,14 @@ import diorama_core as diorama
 from diorama_app.cli.arguments import (
     PROJECTS_HELP,
     RECIPES,
+    WITHOUT_PHOTO,
     command,
     progress_bar,
     projects_folder,
     size,
     view,
 )
-from diorama_app.projects.formats import EXPORT_FORMATS
 from diorama_core.errors import InputError
-from diorama_core.io.text import number_of
 
 if TYPE_CHECKING:
     from contextlib import AbstractContextManager
@@ -28,10 +27,6 @@ if TYPE_CHECKING:
     import numpy as np
 
     from diorama_app.serve import Beside, Running
-
-
-WITHOUT_PHOTO = "orbit:35"
-"""View of a scene that no photo was taken of."""
 
 
 def add_serve(commands: Any) -> None:
@@ -123,99 +118,6 @@ def _optimise(a: argparse.Namespace) -> None:
         print(f"{name:<{width}}  {'' if before is None else f'{before:10.4f} ->'} {after:10.4f}")
     for reason in report.reasons:
         print(f"note: {reason}")
-
-
-def add_export(commands: Any) -> None:
-    """Declare `diorama export`."""
-
-    p = command(
-        commands,
-        "export",
-        _export,
-        "Write a project's scene for other tools.",
-        "diorama export my-room --format glb -o room.glb",
-    )
-    p.add_argument("project", type=Path, metavar="PROJECT")
-    p.add_argument("--format", choices=tuple(EXPORT_FORMATS), required=True, help="docs/export.md says what each keeps")
-    p.add_argument("-o", "--output", type=Path, metavar="FILE", help="(default: in the project's exports folder)")
-    p.add_argument("--no-ceiling", action="store_true", help="leave ceilings out, to look into the room from above")
-    p.add_argument("--only", metavar="ID,ID", help="write these objects only, without the room")
-    p.add_argument("--texture-size", type=int, metavar="PX", help="longest side of pictures; larger ones are reduced")
-    p.add_argument(
-        "--compress",
-        nargs="?",
-        const="meshopt",
-        default="none",
-        choices=("meshopt", "draco"),
-        help="compress geometry of a GLB (default: meshopt)",
-    )
-    p.add_argument(
-        "--lights",
-        choices=("unit", "photometric", "none"),
-        default="unit",
-        help="of GLB and USD: as bright as pictures where a camera has no exposure, or in lumens and lux "
-        "(default: %(default)s)",
-    )
-    p.add_argument(
-        "--engine",
-        choices=("godot", "unreal", "none"),
-        default="godot",
-        help="of a game pack: whose names colliders have; none leaves them out (default: %(default)s)",
-    )
-    p.add_argument(
-        "--robot-radius",
-        type=float,
-        default=0.25,
-        metavar="M",
-        help="of a robot pack: the disc that drives there (default: %(default)s)",
-    )
-    p.add_argument("--photo", action="store_true", help="put the photo into the file, to come back with it (glb, usd)")
-    p.add_argument("--welded", action="store_true", help="simulators: nothing moves, objects are welded in place")
-    p.add_argument("--simulate", action="store_true", help="report what two seconds of gravity do to the scene")
-    p.add_argument("--json", action="store_true", help="print the result as JSON")
-
-
-def _export(a: argparse.Namespace) -> None:
-    from dataclasses import asdict
-
-    from diorama_core.export.gathering import ExportOptions
-
-    room = diorama.load(a.project)
-    only = None if a.only is None else frozenset(name.strip() for name in a.only.split(","))
-    unknown = sorted(name for name in only or () if not room.scene.has_object(name))
-    if unknown:
-        raise InputError(f"--only {a.only}: there is no object {unknown[0]!r} in {a.project}; see its scene.json")
-    if a.texture_size is not None and a.texture_size < 1:
-        raise InputError(f"--texture-size {a.texture_size}: give a number of pixels, such as 1024")
-    options = ExportOptions(
-        ceiling=not a.no_ceiling,
-        only=only,
-        max_texture_px=a.texture_size,
-        compression=a.compress,
-        lights=a.lights,
-        engine=a.engine,
-        robot_radius_m=a.robot_radius,
-        photo=a.photo,
-        bodies="welded" if a.welded else "free",
-    )
-    assert room.project is not None
-    output = a.output or room.project.folder / "exports" / f"{room.project.name}{EXPORT_FORMATS[a.format].suffixes[0]}"
-    if a.output is None:
-        output.parent.mkdir(parents=True, exist_ok=True)
-    with progress_bar() as progress:
-        written = diorama.export(room, output, format=EXPORT_FORMATS[a.format], options=options, progress=progress)
-    result: dict[str, Any] = {"file": str(output), "objects": len(written.objects), "planes": len(written.planes)}
-    lines = [f"{output}: {number_of(len(written.objects))}, {number_of(len(written.planes), 'plane')}"]
-    if a.simulate:
-        from diorama_core.export.stability import stability
-
-        report = stability(written, urdf=output if a.format == "urdf" else None)
-        what = "the file" if a.format in ("mjcf", "urdf") else "MuJoCo's model of the same bodies, not this file"
-        result |= {"simulated": what, "stable_share": report.stable_share, **asdict(report)}
-        lines.append(f"gravity: {report.stable_share:.0%} of objects stay within 1 cm and 2 degrees in 2 s ({what})")
-        lines += [f"  {d.object_id} moves {100 * d.moved_m:.1f} cm" for d in report.unstable]
-        lines += [f"  {note}" for note in report.notes]
-    print(json.dumps(result) if a.json else "\n".join(lines))
 
 
 def add_picture(commands: Any) -> None:

@@ -14,7 +14,7 @@ from diorama_core.export.colliders import physical_scene
 from diorama_core.export.gathering import ExportOptions, gather
 from diorama_core.export.mjcf import mjcf_text, write_mjcf
 from diorama_core.export.overlaps import cut
-from diorama_core.export.stability import stability
+from diorama_core.export.stability import Shake, stability
 from diorama_core.layout.problem.parts import parts_of_shape
 from diorama_core.scene.types import box_corners
 from tests.export.scenes import desk_in_dresser, gathered, scene_of
@@ -57,6 +57,14 @@ def test_an_object_in_the_air_is_reported_as_falling() -> None:
     report = stability(gather(moved, library))
     assert report.unstable[0].object_id == lifted.id
     assert report.unstable[0].moved_m > 0.3
+
+
+def test_a_floor_that_shakes_hard_makes_things_fall_and_a_gentle_one_does_not() -> None:
+    scene = gathered("fittings")
+    assert not stability(scene, shake=Shake(0.05, 2.0, 1.0)).fallen
+    fallen = stability(scene, shake=Shake(1.5, 1.0, 2.0)).fallen
+    assert "lamp_1" in {d.object_id for d in fallen}
+    assert all(d.free for d in fallen)
 
 
 def test_welded_by_choice(tmp_path: Path) -> None:
