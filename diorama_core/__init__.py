@@ -1,5 +1,7 @@
 """Diorama: one photo of a room becomes an editable 3D scene.
 
+Example::
+
     import diorama_core as diorama
 
     room = diorama.build("room.jpg", boxes="boxes.json")

@@ -1,10 +1,8 @@
-"""One protocol per stage; each has one method and returns a frozen artefact of `diorama_core.artefacts`.
+"""One protocol per stage; each has one method and returns a frozen artefact of `diorama_core.artefacts`. Order::
 
-```
-(Photo -> recognition -> detection, depth prediction ->)
-Inputs -> camera -> objects (-> naming) -> geometry (-> graph) -> architecture -> depth -> retrieval -> pose
--> Scene -> layout (-> refinement)
-```
+    (Photo -> recognition -> detection, depth prediction ->)
+    Inputs -> camera -> objects (-> naming) -> geometry (-> graph) -> architecture -> depth -> retrieval -> pose
+    -> Scene -> layout (-> refinement)
 
 With measured depth, camera and geometry read it; from a photo alone they reason from vanishing points, contact
 with the floor and known sizes, and depth is rendered from what they found.

@@ -34,7 +34,16 @@ NO_TESTS = 5
 """pytest's status where every selected test is slow."""
 MAX_FILES = 40
 """Files of tests that two processes collect in some twenty seconds."""
-RULES = ("browser_tests", "docs_names", "kind_literals", "modules_have_tests", "module_numbers", "style")
+RULES = (
+    "browser_tests",
+    "constraints",
+    "docs_names",
+    "docs_site",
+    "kind_literals",
+    "modules_have_tests",
+    "module_numbers",
+    "style",
+)
 
 
 @dataclass(frozen=True)
