@@ -27,6 +27,9 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from typing import Protocol, runtime_checkable
 
+import numpy as np
+from jaxtyping import Bool, UInt8
+
 from diorama_core.artefacts import (
     ArchitectureEstimate,
     CameraEstimate,
@@ -226,6 +229,20 @@ class GeometryStage(Protocol):
 
         Raises:
             InputError: what the user gave does not suffice for this stage.
+        """
+        ...
+
+
+@runtime_checkable
+class EmptyRoomFiller(Protocol):
+    """Inpaints a region of a photo, as LaMa and MI-GAN do (PlainRecon's first step)."""
+
+    def fill(self, rgb: UInt8[np.ndarray, "h w 3"], hole: Bool[np.ndarray, "h w"]) -> UInt8[np.ndarray, "h w 3"]:
+        """The photo with the room's surfaces where `hole` is true, and unchanged elsewhere.
+
+        Args:
+            rgb: The photo, sRGB.
+            hole: Pixels of what stands in the room, with their margin.
         """
         ...
 

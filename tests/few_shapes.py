@@ -10,8 +10,7 @@ from dataclasses import replace
 from functools import cache
 
 from diorama_app.projects.example import EXAMPLE
-from diorama_core.library.boards import base_id
-from diorama_core.library.catalogue import built_in_library
+from diorama_core.library.catalogue import base_id, built_in_library
 from diorama_core.project.storage import Project
 from diorama_core.scene.types import Scene
 from diorama_core.synthesis.splits import Subset

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 import diorama_core as diorama
-from diorama_core.library.boards import base_id
+from diorama_core.library.catalogue import base_id
 from tests.cli.room_photo import write_room
 
 DOCS = Path(__file__).parents[1] / "docs"

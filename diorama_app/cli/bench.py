@@ -154,8 +154,7 @@ def _bench_rooms(a: argparse.Namespace) -> None:
 
 def _look_writer(folder: Path | None) -> Show | None:
     """Writes a room's photo, its flat colours and its own look side by side."""
-    from diorama_core.evaluation.benchmarks.photo_build import write_picture
-    from diorama_core.render.compare import side_by_side
+    from diorama_core.evaluation.benchmarks.photo_build import side_by_side, write_picture
 
     if folder is None:
         return None

@@ -25,8 +25,6 @@ from diorama_core.project.plan_picture import (
 )
 from diorama_core.project.storage import Project
 
-Bounds = list[list[float]]
-
 
 class PicturesBelow:
     """Tells the page about the picture of the open project's plan, and takes another one."""

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from typing import Literal, get_args
+from typing import Literal
 
 import numpy as np
 from jaxtyping import Float
@@ -23,7 +23,6 @@ RelationKind = Literal[
     "on", "under", "above", "beside", "near", "in front of", "behind", "left of", "right of", "around", "between",
     "facing", "opposite", "aligned with", "against wall", "in corner", "in middle",
 ]  # fmt: skip
-RELATION_KINDS: tuple[RelationKind, ...] = get_args(RelationKind)
 OF_ROOM = ("against wall", "in corner", "in middle")
 """Relations to the room: they name no object."""
 MET = 0.6

@@ -15,7 +15,7 @@ from diorama_core.importing.measured_room import opened_room
 from diorama_core.importing.measured_types import MeasuredRoom
 from diorama_core.importing.opening import Opened, open_marked
 from diorama_core.importing.point_cloud import PointCloud
-from diorama_core.library.boards import base_id
+from diorama_core.library.catalogue import base_id
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.library.store import StoredLibrary, open_library, stored_libraries
 from diorama_core.library.user_library import OWN

@@ -20,12 +20,11 @@ from diorama_core.io.cache import LruCache
 from diorama_core.io.derived import derived
 from diorama_core.io.glb import whole_glb
 from diorama_core.library import furniture, taxonomy
-from diorama_core.library.boards import Boards, base_id, without_boards
 from diorama_core.library.cached_pictures import scene_with_pictures
 from diorama_core.library.furniture.geometry_key import geometry_key
 from diorama_core.library.furniture.latest import built_once
 from diorama_core.library.furniture.materials import Material
-from diorama_core.library.furniture.measures import is_made, made_by_id
+from diorama_core.library.furniture.measures import MARK, is_made, made_by_id
 from diorama_core.library.furniture.model import Design, mesh_of
 from diorama_core.library.furniture.solids import Solid
 from diorama_core.library.record import Shape, SupportSurface, usual_contact_faces
@@ -49,6 +48,11 @@ def default_cache_dir() -> Path:
 @cache
 def _users_cache_dir() -> Path:
     return Path(platformdirs.user_cache_dir("diorama"))
+
+
+def base_id(shape_id: str) -> str:
+    """The listed shape that an id is derived from, made to measure or not; the id itself where it is not derived."""
+    return shape_id.split(MARK)[0]
 
 
 def built_in_library(cache_dir: Path | None = None) -> BuiltInLibrary:
@@ -92,7 +96,6 @@ class BuiltInLibrary:
         self._scenes: LruCache[str, trimesh.Scene] = LruCache(SCENE_BYTES, _bytes_of)
         self._meshes: LruCache[str, trimesh.Trimesh] = LruCache(256)
         self._glbs: LruCache[str, bytes] = LruCache(256)
-        self._boards: LruCache[str, tuple[Boards, Shape]] = LruCache(256)
         self._made: LruCache[str, Shape] = LruCache(4096)
         self._surfaces: LruCache[str, tuple[SupportSurface, ...]] = LruCache(4096)
 
@@ -116,22 +119,16 @@ class BuiltInLibrary:
     def shape(self, shape_id: str) -> Shape:
         """One record with its support surfaces; raises `LibraryError` when unknown."""
         record = self._known(shape_id)
-        if without_boards(shape_id) != shape_id:
-            return record
         return replace(record, surfaces=self._surfaces.get(shape_id, lambda: self._measured(record)))
 
     def mesh(self, shape_id: str) -> trimesh.Trimesh:
         """Geometry only, one mesh in the canonical frame. Shared: do not change it."""
         self._known(shape_id)
-        if (base := without_boards(shape_id)) != shape_id:
-            return self._meshes.get(shape_id, lambda: self._derived(shape_id)[0].mesh(self.mesh(base)))
         return self._meshes.get(shape_id, lambda: mesh_of(self._built(shape_id)))
 
     def parts(self, shape_id: str) -> trimesh.Scene:
         """Geometry with materials, in the canonical frame. Shared: do not change it."""
         self._known(shape_id)
-        if (base := without_boards(shape_id)) != shape_id:
-            return self._scenes.get(shape_id, lambda: self._derived(shape_id)[0].parts(self.parts(base)))
         return self._scenes.get(shape_id, lambda: scene_with_pictures(self._built(shape_id), self._pictures_folder))
 
     def glb(self, shape_id: str) -> bytes:
@@ -162,19 +159,7 @@ class BuiltInLibrary:
         base = self._designs[base_id(shape_id)]
         return made_by_id(shape_id, base) if is_made(shape_id) else base
 
-    def _derived(self, shape_id: str) -> tuple[Boards, Shape]:
-        """A shape whose boards are elsewhere (`boards`), and its record."""
-
-        def derive() -> tuple[Boards, Shape]:
-            base = self.shape(without_boards(shape_id))
-            boards = Boards.of(shape_id, base)
-            return boards, boards.record(base)
-
-        return self._boards.get(shape_id, derive)
-
     def _known(self, shape_id: str) -> Shape:
-        if without_boards(shape_id) != shape_id:
-            return self._derived(shape_id)[1]
         if is_made(shape_id) and base_id(shape_id) in self._designs:
             return self._made.get(shape_id, lambda: _record(self._design(shape_id)))
         if shape_id not in self._designs:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import trimesh
 
-from diorama_core.library.boards import base_id, without_boards
+from diorama_core.library.catalogue import base_id
 from diorama_core.library.furniture.measures import mirror_image
 from diorama_core.library.record import BUILT_IN, ShapeLibrary, record_of
 
@@ -25,6 +25,4 @@ def other_hand(library: ShapeLibrary, shape_id: str) -> str | None:
     """The shape with left and right changed; None where it has none, or is no built-in design."""
     if record_of(library, base_id(shape_id)).source != BUILT_IN or unevenness(library.mesh(shape_id)) < MIN_UNEVEN:
         return None
-    made = without_boards(shape_id)
-    image = mirror_image(made)
-    return None if image is None else image + shape_id[len(made) :]
+    return mirror_image(shape_id)

@@ -9,13 +9,14 @@ The result is a shape of the same bounding box, to be scaled as before: poses, c
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 import trimesh
 from jaxtyping import Float, Int
 from scipy.sparse import coo_matrix
 from scipy.sparse.csgraph import connected_components
 
-from diorama_core.library.boards import AxisMap
 from diorama_core.library.catalogue import default_cache_dir
 from diorama_core.library.slots import placed_vertices, transform_of
 from diorama_core.library.thin_matter import kept_thin_matter
@@ -33,6 +34,23 @@ MIN_SLOPE, MAX_SLOPE = 0.25, 4.0
 _ROUNDS = 60
 END = 0.02
 """Bodies that begin within this share of the height from the bottom are feet."""
+
+
+@dataclass(frozen=True, eq=False)
+class AxisMap:
+    """A piecewise linear map of one axis onto itself; both ends stay."""
+
+    knots: Float[np.ndarray, "k"]
+    values: Float[np.ndarray, "k"]
+
+    def __call__(self, x: Float[np.ndarray, "n"]) -> Float[np.ndarray, "n"]:
+        """Where coordinates go."""
+        return np.interp(x, self.knots, self.values)
+
+    def slope(self, x: Float[np.ndarray, "n"]) -> Float[np.ndarray, "n"]:
+        """How much lengths grow there."""
+        k = np.clip(np.searchsorted(self.knots, x, side="right") - 1, 0, len(self.knots) - 2)
+        return np.asarray(np.diff(self.values)[k] / np.maximum(np.diff(self.knots)[k], 1e-12))
 
 
 def relative_scale(scale: Float[np.ndarray, "3"]) -> Scale:

@@ -9,7 +9,7 @@ from pathlib import Path
 import trimesh
 
 from diorama_core.errors import LibraryError
-from diorama_core.library.boards import base_id
+from diorama_core.library.catalogue import base_id
 from diorama_core.library.own_models import OwnModels, read_own_models, write_own_models
 from diorama_core.library.record import Shape, ShapeLibrary
 from diorama_core.library.store import (

@@ -11,12 +11,12 @@ import numpy as np
 from jaxtyping import Bool, UInt8
 
 from diorama_core.architecture.texture.best_view import best_view_textures
-from diorama_core.architecture.texture.empty_room import EmptyRoomFiller
 from diorama_core.architecture.texture.plane_textures import RoomPicture
 from diorama_core.architecture.texture.refit import MARK
 from diorama_core.artefacts import DetectedObject, Inputs
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.pipeline.colours import room_illuminant
+from diorama_core.protocols import EmptyRoomFiller
 from diorama_core.render.raycast import PinholeView
 from diorama_core.render.world import World, scene_world
 from diorama_core.scene.types import Camera, Plane, Scene

@@ -10,7 +10,6 @@ from jaxtyping import UInt8
 
 from diorama_core.appearance.photo_appearance import PhotoAppearance, photo_appearance
 from diorama_core.architecture.room_extent import containing_room, without_floor_behind_walls
-from diorama_core.architecture.texture.empty_room import EmptyRoomFiller
 from diorama_core.architecture.texture.plane_textures import plane_textures
 from diorama_core.architecture.texture.refit import refitted_textures
 from diorama_core.arrangement.explain import SCALE, reasons_of_change
@@ -37,7 +36,7 @@ from diorama_core.pipeline.colours import photo_colours, room_illuminant, shared
 from diorama_core.pipeline.steps import Corrected, LaidOut
 from diorama_core.processes import there
 from diorama_core.progress import Progress
-from diorama_core.protocols import LayoutStage, Preview, RefinementStage
+from diorama_core.protocols import EmptyRoomFiller, LayoutStage, Preview, RefinementStage
 from diorama_core.scene.edits import set_metrics
 from diorama_core.scene.room_edits import floor_height, rescale_to_length
 from diorama_core.scene.types import Scene

@@ -6,7 +6,6 @@ from dataclasses import dataclass
 
 from diorama_core.architecture.from_depth import PlanarRoom
 from diorama_core.architecture.single_view.stage import PhotoRoom
-from diorama_core.architecture.texture.empty_room import EmptyRoomFiller
 from diorama_core.artefacts import Inputs
 from diorama_core.layout.recipes import recipe as layout_recipe
 from diorama_core.layout.refinement.stage import MaskRefinement
@@ -25,6 +24,7 @@ from diorama_core.protocols import (
     DepthPredictionStage,
     DepthStage,
     DetectionStage,
+    EmptyRoomFiller,
     GeometryStage,
     GraphStage,
     LayoutStage,

@@ -180,11 +180,6 @@ class Templates:
         )
         return np.where(codes[:, None] > 0, points, np.nan).astype(np.float32)
 
-    def object_coordinates(self, view: int) -> Float32[np.ndarray, "h w 3"]:
-        """Normalised object coordinates: -0.5 to 0.5 along each axis of the bounding box; NaN where nothing is seen."""
-        size = np.maximum(self.size_m, 1e-9).astype(np.float32)
-        return (self.points_object(view) - self.centre_object.astype(np.float32)) / size
-
     @cached_property
     def _positions(self) -> Float[np.ndarray, "v 3"]:
         return self.centre_object - self.grid.R_object_camera[..., 2] * self.grid.distance * self.unit_m

@@ -14,7 +14,7 @@ from typing import Literal
 import trimesh
 
 from diorama_core.errors import LibraryError
-from diorama_core.library.boards import base_id
+from diorama_core.library.catalogue import base_id
 from diorama_core.library.record import Shape, ShapeLibrary
 
 Split = Literal["train", "validation", "test"]

@@ -53,14 +53,6 @@ def best_viewpoint(scene: Scene, library: ShapeLibrary, size: tuple[int, int], w
     return best[1]
 
 
-def unseen(scene: Scene, library: ShapeLibrary, camera: Camera) -> frozenset[str]:
-    """Ids of the objects that a picture hardly shows."""
-    meshes = [(library.mesh(o.shape_id), o.pose.matrix) for o in scene.objects]
-    seen = MeshCaster(meshes).buffers(_probe(camera)).instance
-    pixels = np.bincount(seen[seen >= 0].ravel(), minlength=len(scene.objects))
-    return frozenset(o.id for o, n in zip(scene.objects, pixels, strict=True) if n < SEEN_PX)
-
-
 def _front(scene: Scene, index: int) -> trimesh.Trimesh:
     front, _ = plane_surfaces(scene.architecture.planes[index])
     return trimesh.Trimesh(front.vertices, front.faces, process=False)

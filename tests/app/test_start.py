@@ -12,7 +12,6 @@ import pytest
 
 from diorama_app.projects.example import EXAMPLE
 from diorama_app.session import preload
-from diorama_core.library.boards import without_boards
 from diorama_core.library.catalogue import built_in_library
 from diorama_core.library.ingest import known_shapes
 from diorama_core.project.storage import Project
@@ -56,7 +55,7 @@ main(["--help"])
 def test_the_port_opens_before_the_editor_loads_and_the_editor_without_the_pipeline(tmp_path: Path) -> None:
     library = built_in_library()
     for item in Project.open(EXAMPLE / "project").load_scene().objects:
-        library.shape(without_boards(item.shape_id))  # as an installation prepares all
+        library.shape(item.shape_id)  # as an installation prepares all
     code = f"""
 import os, socket, sys
 from pathlib import Path
@@ -135,7 +134,6 @@ import sys
 from pathlib import Path
 from diorama_app.projects.example import EXAMPLE
 from diorama_app.session import preload
-from diorama_core.library.boards import without_boards
 from diorama_core.library.catalogue import built_in_library
 from diorama_app.serve import start
 from diorama_core.project.storage import Project

@@ -39,7 +39,6 @@ from diorama_core.evaluation.metrics.scene import (
     scene_points,
     scene_scores,
     surface_agreement,
-    without_unasked,
 )
 from diorama_core.evaluation.metrics.shape import chamfer, shape_distance
 from diorama_core.evaluation.reports import paper
@@ -49,6 +48,7 @@ from diorama_core.render.raycast import MeshCaster
 from diorama_core.scene.types import Architecture, Camera, Intrinsics, Scene, yaw_rotation
 from diorama_core.synthesis.layout_rooms import box_library, generate_room, room_box
 from diorama_core.synthesis.truth import TruthView, in_photo_world, moved
+from tests.evaluation.truth import without_unasked
 
 SIZE = (80, 60)
 

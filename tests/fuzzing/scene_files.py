@@ -31,7 +31,7 @@ from diorama_core.importing.room import room_of
 from diorama_core.importing.roomplan import read_room_plan
 from diorama_core.importing.sweethome import parts_of_sweet_home
 from diorama_core.library.catalogue import built_in_library
-from diorama_core.multiview.posed_photos import PosedPhoto, read_poses, write_colmap
+from diorama_core.multiview.posed_photos import PosedPhoto, read_poses
 from diorama_core.multiview.rooms import photo_world
 from diorama_core.perception.language.json_text import json_in
 from diorama_core.scene.schema import scene_to_json
@@ -40,6 +40,7 @@ from diorama_core.text.edit_plan import EditPlan
 from tests.app.small_room import PlainLibrary, furnished_scene
 from tests.fuzzing.mutate import Random, damaged
 from tests.importing.roomplan_files import write_json, write_usdz
+from tests.multiview.colmap_files import write_colmap
 from tests.multiview.rooms import CAMERAS
 
 JOINT = b"\n----\n"

@@ -6,8 +6,7 @@ import numpy as np
 import pytest
 import trimesh
 
-from diorama_core.library.boards import base_id
-from diorama_core.library.catalogue import built_in_library
+from diorama_core.library.catalogue import base_id, built_in_library
 from diorama_core.library.furniture.measures import made_id
 from diorama_core.library.furniture.reshaping import MIRRORED
 from diorama_core.library.hands import MIN_UNEVEN, other_hand, unevenness

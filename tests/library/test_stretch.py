@@ -12,7 +12,7 @@ from scipy.spatial import cKDTree
 from diorama_core.library import furniture
 from diorama_core.library.catalogue import built_in_library
 from diorama_core.library.furniture.model import built, mesh_of, scene_of
-from diorama_core.library.stretch import EVEN, MIN_UNEVEN, local_growth, relative_scale, stretched_parts
+from diorama_core.library.stretch import EVEN, MIN_UNEVEN, AxisMap, local_growth, relative_scale, stretched_parts
 
 factors = st.floats(0.6, 1.7)
 
@@ -116,3 +116,18 @@ def test_nearly_even_scales_share_the_shape() -> None:
     assert relative_scale(np.array([1.0, 1.5, 1.0])) != EVEN
     parts = built_in_library().parts("picture-hills-oak")
     assert stretched_parts(parts, EVEN) is parts
+
+
+STEPS = st.lists(st.floats(0.1, 5.0), min_size=3, max_size=3)
+
+
+@given(STEPS, STEPS)
+def test_ends_stay_and_lengths_grow_by_the_slope(widths: list[float], grown: list[float]) -> None:
+    knots = np.concatenate([[0.0], np.cumsum(widths)]) / sum(widths)
+    values = np.concatenate([[0.0], np.cumsum(grown)]) / sum(grown)
+    axis = AxisMap(knots, values)
+    np.testing.assert_allclose(axis(np.array([0.0, 1.0])), [0.0, 1.0], atol=1e-12)
+    middle = (knots[:-1] + knots[1:]) / 2
+    short = np.diff(knots) / 10
+    np.testing.assert_allclose(axis(middle + short) - axis(middle), axis.slope(middle) * short, atol=1e-12)
+    assert (np.diff(axis(np.linspace(0, 1, 50))) > 0).all()

@@ -7,7 +7,8 @@ import numpy as np
 import pytest
 
 from diorama_core.errors import InputError
-from diorama_core.multiview.posed_photos import OPENCV_FROM_OPENGL, PosedPhoto, read_poses, write_colmap
+from diorama_core.multiview.posed_photos import OPENCV_FROM_OPENGL, PosedPhoto, read_poses
+from tests.multiview.colmap_files import write_colmap
 from tests.multiview.rooms import CAMERAS
 
 PHOTOS = tuple(PosedPhoto(f"views/{n}.jpg", camera) for n, camera in enumerate(CAMERAS))

@@ -16,8 +16,7 @@ from diorama_core.artefacts import (
     Photo,
     PosedCandidates,
 )
-from diorama_core.library.boards import base_id
-from diorama_core.library.catalogue import built_in_library
+from diorama_core.library.catalogue import base_id, built_in_library
 from diorama_core.library.furniture import designs
 from diorama_core.library.furniture.measures import made_by_id, values_of
 from diorama_core.pose import MadeToMeasure, RenderAndCompare

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from diorama_core.library.boards import base_id
+from diorama_core.library.catalogue import base_id
 from diorama_core.library.furniture.measures import made_by_id, parameters, values_of
 from diorama_core.pose import parameter_fit
 from diorama_core.pose.made_to_measure import MadeToMeasure

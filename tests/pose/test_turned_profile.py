@@ -8,8 +8,7 @@ import numpy as np
 import pytest
 
 from diorama_core.geometry.observed import observe
-from diorama_core.library.boards import base_id
-from diorama_core.library.catalogue import built_in_library
+from diorama_core.library.catalogue import base_id, built_in_library
 from diorama_core.library.furniture.measures import is_turned, made_id
 from diorama_core.pose.mask_observations import Evidence
 from diorama_core.pose.turned_profile import is_revolution, profile_m, turned

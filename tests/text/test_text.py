@@ -4,6 +4,7 @@ import base64
 import io
 import json
 from collections import Counter
+from typing import get_args
 
 import numpy as np
 import pytest
@@ -11,7 +12,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from PIL import Image
 
-from diorama_core.editing.relations import RELATION_KINDS, Relation, is_met
+from diorama_core.editing.relations import Relation, RelationKind, is_met
 from diorama_core.editing.room_frame import RoomFrame
 from diorama_core.errors import InputError, UnavailableError
 from diorama_core.library.catalogue import built_in_library
@@ -228,7 +229,7 @@ def test_what_has_no_place_is_named() -> None:
 
 def test_customs_name_known_categories() -> None:
     assert all(category(n).name == n for rows in ESSENTIALS.values() for n, _ in rows)
-    assert {kind for c in CATEGORIES for kind, _ in usual_relations_of(c.name)} < set(RELATION_KINDS)
+    assert {kind for c in CATEGORIES for kind, _ in usual_relations_of(c.name)} < set(get_args(RelationKind))
     assert usual_relations_of("recliner") == usual_relations_of("armchair")
     assert stands_in_for("office chair", frozenset({"stool"}))
     assert not stands_in_for("stove", frozenset({"table"}))

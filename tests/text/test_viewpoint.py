@@ -5,9 +5,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from diorama_core.scene.types import Scene
+from diorama_core.library.record import ShapeLibrary
+from diorama_core.render.raycast import MeshCaster
+from diorama_core.scene.types import Camera, Scene
 from diorama_core.text import viewpoint
-from diorama_core.text.viewpoint import EYE_M, OBJECT_CLEARANCE_M, best_viewpoint, unseen
+from diorama_core.text.viewpoint import EYE_M, OBJECT_CLEARANCE_M, best_viewpoint
 from tests.primitives import PrimitiveLibrary, box_room, place
 
 LIBRARY = PrimitiveLibrary()
@@ -21,6 +23,14 @@ def _few_places(monkeypatch: pytest.MonkeyPatch) -> None:
 
 def room(*objects) -> Scene:
     return Scene(architecture=box_room(), objects=objects)
+
+
+def unseen(scene: Scene, library: ShapeLibrary, camera: Camera) -> frozenset[str]:
+    """Ids of the objects that a picture hardly shows."""
+    meshes = [(library.mesh(o.shape_id), o.pose.matrix) for o in scene.objects]
+    seen = MeshCaster(meshes).buffers(viewpoint._probe(camera)).instance
+    pixels = np.bincount(seen[seen >= 0].ravel(), minlength=len(scene.objects))
+    return frozenset(o.id for o, n in zip(scene.objects, pixels, strict=True) if n < viewpoint.SEEN_PX)
 
 
 TABLE = place(LIBRARY, "table", "table", (0.5, 3.8, 0.36))

@@ -12,12 +12,12 @@ from jaxtyping import Bool, Float, Float32, UInt8
 from diorama_core.architecture.texture.colours import object_pixels
 from diorama_core.architecture.texture.continuation import completed
 from diorama_core.architecture.texture.continued_objects import continued_objects, cut_patches, object_colours
-from diorama_core.architecture.texture.empty_room import EmptyRoomFiller
 from diorama_core.architecture.texture.floor_material import contact_pixels, floor_texels, white_level
 from diorama_core.architecture.texture.level_light import levelled
 from diorama_core.artefacts import SURE_MASK, DetectedObject, Inputs
 from diorama_core.geometry.casting import cast_planes
 from diorama_core.geometry.planes import plane_rectangle
+from diorama_core.protocols import EmptyRoomFiller
 from diorama_core.scene.types import Architecture, Camera, Plane
 
 MAX_SIDE_PX = 1024

@@ -12,7 +12,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import asdict, dataclass
 from itertools import islice
 from pathlib import Path
-from typing import Literal, get_args
+from typing import Literal
 
 import numpy as np
 
@@ -43,7 +43,6 @@ from diorama_core.synthesis.truth import moved
 log = logging.getLogger(__name__)
 
 Dataset = Literal["ssdb", "scan2cad", "sunrgbd"]
-DATASETS: tuple[Dataset, ...] = get_args(Dataset)
 _SCAN2CAD_CLASSES: dict[str, frozenset[str]] = {
     "bed": with_kin("bed"),
     "bookshelf": with_kin("bookshelf", "shelves") - {"wine rack"},

@@ -30,7 +30,6 @@ from diorama_core.pipeline.run import Built, build_scene
 from diorama_core.pipeline.settings import with_settings
 from diorama_core.pipeline.stages import embedded_stages
 from diorama_core.progress import Progress
-from diorama_core.render.compare import side_by_side
 from diorama_core.render.picture import picture
 from diorama_core.synthesis.truth import TruthView
 
@@ -58,6 +57,16 @@ def case_picture(view: TruthView, results: Sequence[Built | None], library: Shap
                 seen = picture(built.scene, library, view=look, size=SIZE, textures=built.textures)
             strip = side_by_side(strip, seen, gap=4)
     return strip
+
+
+def side_by_side(
+    photo: UInt8[np.ndarray, "h w 3"], rendering: UInt8[np.ndarray, "k m 3"], gap: int = 8
+) -> UInt8[np.ndarray, "h n 3"]:
+    """The photo and a rendering of the same height next to one another."""
+    height = photo.shape[0]
+    width = max(1, round(rendering.shape[1] * height / rendering.shape[0]))
+    resized = cv2.resize(rendering, (width, height), interpolation=cv2.INTER_AREA)
+    return np.concatenate([photo, np.full((height, gap, 3), 255, np.uint8), resized], axis=1)
 
 
 def write_picture(path: Path, rgb: UInt8[np.ndarray, "h w 3"]) -> None:

@@ -7,7 +7,7 @@ of the estimated camera counts. Objects that are asked for and absent are wrong 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 from jaxtyping import Bool, Float
@@ -366,9 +366,3 @@ def structure_of(scene: Scene, library: ShapeLibrary) -> dict[str, float]:
         np.array([p.position for p in poses]),
         np.array([p.scale for p in poses]),
     )
-
-
-def without_unasked(view: TruthView) -> Scene:
-    """The true scene of the objects asked for only: what a perfect system would return."""
-    retained = tuple(view.scene.objects[k] for k in view.asked)
-    return replace(view.scene, objects=retained, supports=true_supports(view))

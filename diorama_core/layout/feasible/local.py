@@ -127,18 +127,6 @@ class DragSolver:
         return replace(changed, kin=kin | (problem.kin & problem.yielding)), edge
 
 
-def resolve_drag(scene: Scene, library: ShapeLibrary, object_id: str, pose: Pose) -> Scene:
-    """One step of a drag; keep a `DragSolver` for several.
-
-    Args:
-        scene: as it is.
-        library: where shapes come from.
-        object_id: of the object.
-        pose: where the hand wants it.
-    """
-    return DragSolver.prepare(scene, library, object_id).solve(pose)
-
-
 def _places(
     scene: Scene, library: ShapeLibrary, problem: Problem, index: int
 ) -> tuple[tuple[RestingSurface, Support], ...]:

@@ -8,7 +8,7 @@ from collections.abc import Sequence
 import trimesh
 
 from diorama_core.errors import LibraryError
-from diorama_core.library.boards import base_id
+from diorama_core.library.catalogue import base_id
 from diorama_core.library.record import Shape, ShapeLibrary
 
 log = logging.getLogger(__name__)

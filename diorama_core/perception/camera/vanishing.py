@@ -115,12 +115,6 @@ def signed_sines(
     return across / np.sqrt(to_x * to_x + to_y * to_y + 1e-12)
 
 
-def assignment(lines: Lines, fit: FrameFit) -> Int[np.ndarray, "n"]:
-    """For each segment the world axis (0 X, 1 Y, 2 up) that it runs along, -1 where none is near."""
-    sines = np.abs(signed_sines(lines, fit.R_world_camera, fit.focal))
-    return np.where(sines.min(axis=0) < 2.5 * SIGMA_RAD, sines.argmin(axis=0), -1)
-
-
 def _agreement(sines: Float[np.ndarray, "*n"], sigma: float = SIGMA_RAD) -> Float[np.ndarray, "*n"]:
     return np.exp(-0.5 * np.square(sines / sigma))
 

@@ -14,12 +14,13 @@ from diorama_app.projects.posed_build import build_posed_photos
 from diorama_core.errors import InputError
 from diorama_core.layout.recipes import recipe
 from diorama_core.library.catalogue import built_in_library
-from diorama_core.multiview.posed_photos import PosedPhoto, read_poses, write_colmap
+from diorama_core.multiview.posed_photos import PosedPhoto, read_poses
 from diorama_core.multiview.rooms import build_room, photo_world
 from diorama_core.pipeline.presets import stages_for
 from diorama_core.progress import Progress
 from diorama_core.project.storage import Project
 from tests.cli.room_photo import room_picture
+from tests.multiview.colmap_files import write_colmap
 from tests.multiview.rooms import CAMERAS, THINGS, photo
 
 POSED = CAMERAS[:2]

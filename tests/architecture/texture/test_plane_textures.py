@@ -7,8 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from diorama_core.architecture.texture.colours import coloured, object_pixels
-from diorama_core.architecture.texture.empty_room import empty_room
+from diorama_core.architecture.texture.colours import coloured
 from diorama_core.architecture.texture.plane_textures import (
     MAX_SIDE_PX,
     PhotoView,
@@ -127,18 +126,6 @@ def test_the_nearest_texels_are_sharp(shot):
     away = np.linalg.norm(points - CAMERA.position, axis=-1)
     assert 0.1 * found.own.sum() < found.sharp.sum() < found.own.sum()
     assert away[found.sharp].mean() < away[found.own & ~found.sharp].min() + 0.5
-
-
-def test_the_empty_room_has_no_furniture(shot, textures):
-    planes = coloured(shot.planes, shot.inputs.photo.rgb, CAMERA, shot.objects)
-    hidden = object_pixels(shot.inputs.photo.rgb.shape[:2], shot.objects)
-    empty = empty_room(shot.inputs.photo.rgb, hidden, planes, CAMERA, textures)
-    np.testing.assert_array_equal(empty[~hidden], shot.inputs.photo.rgb[~hidden])
-    assert len({p.id for p in planes}) == len(planes)
-    _, rays = camera_rays(CAMERA)
-    which = cast_planes(CAMERA.position, rays, planes)[1]
-    expected = PALETTE[which % len(PALETTE)]
-    assert np.quantile(np.abs(empty[hidden].astype(int) - expected[hidden]).max(axis=-1), 0.9) < 45
 
 
 def wall_with_an_object(rows, columns):

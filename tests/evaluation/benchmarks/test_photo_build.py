@@ -8,7 +8,7 @@ from PIL import Image
 
 from diorama_core.artefacts import Inputs, Photo
 from diorama_core.errors import InputError
-from diorama_core.evaluation.benchmarks.photo_build import SIZE, case_picture, case_writer, write_picture
+from diorama_core.evaluation.benchmarks.photo_build import SIZE, case_picture, case_writer, side_by_side, write_picture
 from diorama_core.pipeline.run import Built
 from diorama_core.scene.types import Scene
 from diorama_core.synthesis.truth import TruthView
@@ -70,3 +70,11 @@ def test_pictures_are_png_or_jpeg(tmp_path: Path) -> None:
     np.testing.assert_array_equal(np.asarray(Image.open(tmp_path / "a.PNG")), red)
     with pytest.raises(InputError, match=r"written as \.png or \.jpg"):
         write_picture(tmp_path / "a.gif", red)
+
+
+def test_side_by_side_keeps_the_photo_and_the_rendering_s_aspect() -> None:
+    photo = np.full((100, 150, 3), 7, np.uint8)
+    both = side_by_side(photo, np.full((50, 80, 3), 9, np.uint8), gap=4)
+    assert both.shape == (100, 150 + 4 + 160, 3)
+    assert (both[:, :150] == 7).all()
+    assert (both[:, 154:] == 9).all()

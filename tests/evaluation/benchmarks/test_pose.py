@@ -26,13 +26,13 @@ from diorama_core.evaluation.benchmarks.pose_comparison import (
     shapes_of,
 )
 from diorama_core.evaluation.benchmarks.pose_tables import comparison_table
-from diorama_core.evaluation.metrics.scene import without_unasked
 from diorama_core.pose import RenderAndCompare
 from diorama_core.pose.correspondence.solvers import HALF_GRID, CorrespondencePose
 from diorama_core.render.templates import TemplateGrid
 from diorama_core.synthesis import render_truth, sample_cameras
 from diorama_core.synthesis.layout_rooms import box_library, generate_room
 from diorama_core.synthesis.truth import TruthView
+from tests.evaluation.truth import without_unasked
 
 
 @pytest.fixture(scope="module")

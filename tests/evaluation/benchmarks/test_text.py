@@ -5,12 +5,13 @@ from __future__ import annotations
 import json
 from dataclasses import replace
 from pathlib import Path
+from typing import get_args
 
 import numpy as np
 import pytest
 
 from diorama_app.cli import main
-from diorama_core.editing.relations import RELATION_KINDS
+from diorama_core.editing.relations import RelationKind
 from diorama_core.evaluation.benchmarks.text import SERIES, prompts_of, run
 from diorama_core.evaluation.metrics.text_scene import Asked, measure
 from diorama_core.library.catalogue import built_in_library
@@ -39,7 +40,7 @@ def test_prompts_are_64_and_ask_for_what_there_is() -> None:
     for asked in prompts:
         names = {*asked.counts, *asked.looks, *asked.rows, *(n for s, _, t in asked.relations for n in (s, *t))}
         assert all(category(name).name == name for name in names)
-        assert all(kind in RELATION_KINDS for _, kind, _ in asked.relations)
+        assert all(kind in get_args(RelationKind) for _, kind, _ in asked.relations)
 
 
 def test_a_room_that_has_everything_is_full_marks(room: Scene) -> None:

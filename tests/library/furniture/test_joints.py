@@ -103,9 +103,3 @@ def test_a_drawer_comes_out_with_its_box() -> None:
 def test_shapes_without_moving_parts_have_no_articulation() -> None:
     assert articulation("rug-persian-red") is None
     assert articulation("not a shape") is None
-
-
-def test_a_shape_made_to_measure_whose_boards_are_elsewhere_is_one_piece() -> None:
-    moved = "bookshelf-cubes-oak+made-352x1129x1699+boards-16-306-1000"
-    assert built_in_library().shape(moved).category == "bookshelf"
-    assert articulation(moved) is None

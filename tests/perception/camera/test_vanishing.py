@@ -11,7 +11,6 @@ from diorama_core.perception.camera.frames import frame_difference_rad
 from diorama_core.perception.camera.vanishing import (
     FrameFit,
     Lines,
-    assignment,
     prior_frame,
     search_frames,
     signed_sines,
@@ -101,16 +100,6 @@ def test_frames_are_rotations_and_ranked() -> None:
         np.testing.assert_allclose(fit.R_world_camera @ fit.R_world_camera.T, np.eye(3), atol=1e-6)
         assert np.linalg.det(fit.R_world_camera) > 0
         assert 0 <= fit.support <= 1
-
-
-def test_segments_are_told_apart_by_their_axis() -> None:
-    v = view(pitch_deg=10, roll_deg=0, heading_deg=30)
-    segments = segments_px(v)
-    lines = Lines.of(segments, v.intrinsics)
-    labels = assignment(lines, FrameFit(room_frame(v), 0.8, 1.0, 1.0))
-    assert set(labels) == {0, 1, 2}
-    upright = np.abs(segments[:, 0] - segments[:, 2]) < 0.2 * np.abs(segments[:, 1] - segments[:, 3])
-    assert (labels[upright] == 2).all()
 
 
 @pytest.mark.parametrize("count", [0, 1, 2, 3])

@@ -11,11 +11,10 @@ import pytest
 
 from diorama_core.errors import SceneError, UnavailableError
 from diorama_core.export.blender import PYTHON_VARIABLE
-from diorama_core.export.cycles import LightPortal, Outdoors, cycles_radiance
+from diorama_core.export.cycles import LightPortal, Outdoors, cycles_picture, cycles_radiance
 from diorama_core.library.catalogue import built_in_library
 from diorama_core.scene.types import Architecture, Camera, Intrinsics, Plane, Scene
 from diorama_core.synthesis import furnished_room, in_photo_world, sample_cameras
-from diorama_core.synthesis.cycles import truth_picture
 
 
 @pytest.fixture(scope="module")
@@ -29,18 +28,18 @@ def scene():
 def test_says_what_to_install(scene, monkeypatch):
     monkeypatch.delenv(PYTHON_VARIABLE, raising=False)
     with pytest.raises(UnavailableError, match=PYTHON_VARIABLE):
-        truth_picture(scene, built_in_library())
+        cycles_picture(scene, built_in_library())
 
 
 def test_a_python_that_is_not_there_is_named(scene, monkeypatch):
     monkeypatch.setenv(PYTHON_VARIABLE, "/nowhere/python")
     with pytest.raises(UnavailableError, match="/nowhere/python"):
-        truth_picture(scene, built_in_library())
+        cycles_picture(scene, built_in_library())
 
 
 def test_needs_a_camera(scene):
     with pytest.raises(SceneError, match="no camera"):
-        truth_picture(replace(scene, camera=None), built_in_library())
+        cycles_picture(replace(scene, camera=None), built_in_library())
 
 
 @pytest.mark.skipif(
@@ -48,7 +47,7 @@ def test_needs_a_camera(scene):
     reason=f"needs Blender's module: name a Python that has it in {PYTHON_VARIABLE}",
 )
 def test_renders_a_tiny_picture(scene):
-    picture = truth_picture(scene, built_in_library(), samples=2)
+    picture = cycles_picture(scene, built_in_library(), samples=2)
     assert picture.shape == (36, 48, 3)
     assert 20 < picture.mean() < 240
     assert picture.std() > 5
