@@ -10,7 +10,7 @@ import sys
 from collections.abc import Sequence
 from typing import Any
 
-from diorama_app.cli.api import add_api
+from diorama_app.cli.api import add_api, add_mcp
 from diorama_app.cli.bench import add_bench
 from diorama_app.cli.build import add_build
 from diorama_app.cli.doctor import add_doctor
@@ -18,7 +18,6 @@ from diorama_app.cli.edit import add_edit
 from diorama_app.cli.export import add_export
 from diorama_app.cli.importing import add_import
 from diorama_app.cli.library import add_library
-from diorama_app.cli.mcp import add_mcp
 from diorama_app.cli.models import add_models
 from diorama_app.cli.project import add_project
 from diorama_app.cli.review import add_review
