@@ -51,6 +51,7 @@ NOT_RUN = {
     "library add": "needs models; tests/cli/test_library_add.py",
     "library build": "prepares all shapes; tests/cli/test_libraries.py",
     "library info": "needs a shape of one's own; tests/cli/test_library_add.py",
+    "library show": "--watch does not end; tests/cli/test_sheet.py",
     "mcp": "serves until it is stopped; tests/app/agents/test_server.py",
     "models check": "needs networks; tests/cli/test_models_and_text.py",
     "models pull": "downloads; tests/models",

@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import argparse
 import json
+import subprocess
 import sys
-from collections.abc import Sequence
+import time
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -15,13 +17,15 @@ from diorama_app.cli.library_add import add_adding
 from diorama_core.errors import InputError
 
 if TYPE_CHECKING:
+    from PIL import Image
+
     from diorama_core.library.record import Shape
 
 
 def add_library(commands: Any) -> None:
     """Declare `diorama library`."""
     p: argparse.ArgumentParser = commands.add_parser("library", help="Manage the shape libraries.")
-    actions = p.add_subparsers(dest="action", required=True, metavar="build|add|list|search|info|sheet")
+    actions = p.add_subparsers(dest="action", required=True, metavar="build|add|info|list|search|sheet|show")
     build = command(
         actions, "build", _library_build, "Prepare a library's shapes once.", "diorama library build --library mine"
     )
@@ -60,6 +64,13 @@ def add_library(commands: Any) -> None:
     _add_library_name(sheet)
     sheet.add_argument("--size", type=int, default=240, help="side of one picture in pixels (default: %(default)s)")
     sheet.add_argument("--columns", type=int, default=6, help="pictures side by side (default: %(default)s)")
+    show = command(
+        actions, "show", _library_show, "Draw one shape from four sides.", "diorama library show floor-lamp-arc --watch"
+    )
+    show.add_argument("id", metavar="ID")
+    show.add_argument("-o", "--output", type=Path, metavar="FILE", help="PNG (default: ID.png)")
+    show.add_argument("--watch", action="store_true", help="draw it again whenever its design or its library changes")
+    _add_library_name(show)
 
 
 def _add_library_name(parser: argparse.ArgumentParser) -> None:
@@ -125,10 +136,7 @@ def _library_sheet(a: argparse.Namespace) -> None:
 
     if not (16 <= a.size <= 1024 and 1 <= a.columns <= 40):
         raise InputError(f"--size {a.size} --columns {a.columns}: give a side of 16 to 1024 and 1 to 40 columns")
-    if a.output.suffix.lower() != ".png":
-        raise InputError(f"-o {a.output}: a sheet is a PNG; end the name with .png")
-    if not a.output.absolute().parent.is_dir():
-        raise InputError(f"-o {a.output}: there is no folder {a.output.parent}; make it first")
+    _check_picture(a.output)
     library = diorama.open_library(a.library)
     if a.category is None:
         shapes = tuple(sorted(library.shapes(), key=lambda s: s.category))  # stable: siblings side by side
@@ -139,11 +147,64 @@ def _library_sheet(a: argparse.Namespace) -> None:
         shapes = library.in_category(named.category.name)
     with progress_bar() as progress:
         page = shape_sheet(library, shapes, a.size, a.columns, progress)
-    try:
-        page.save(a.output)
-    except OSError as error:
-        raise InputError(f"{a.output}: cannot be written ({error.strerror or error}); choose another place") from None
+    _save(page, a.output)
     print(f"{len(shapes)} shapes on {a.output}")
+
+
+def _library_show(a: argparse.Namespace) -> None:
+    output = a.output or Path(f"{a.id}.png")
+    _check_picture(output)
+    if a.watch:
+        words = ["library", "show", a.id, "--library", a.library, "--output", str(output)]
+        for _ in changes(_watched(a.library)):  # by another process each time: it reads the design as it is now
+            subprocess.run([sys.executable, "-m", "diorama_app.cli", *words])
+    from diorama_core.render.views import four_views
+
+    library = diorama.open_library(a.library)
+    _save(four_views(library, a.id), output)
+    x, y, z = library.shape(a.id).size_m
+    print(f"{a.id} ({y:.2f} x {x:.2f} x {z:.2f} m) on {output}")
+
+
+def _watched(names: str) -> tuple[Path, ...]:
+    """Folders whose files change what a library's shapes look like."""
+    from diorama_core.library import furniture
+    from diorama_core.library.store import library_folder
+
+    built_in = Path(furniture.__file__).parent
+    return tuple(built_in if name == "built-in" else library_folder(name) for name in names.split("+"))
+
+
+def changes(folders: Sequence[Path], pause_s: float = 0.3) -> Iterator[None]:
+    """An endless iterator: one item at once, and one whenever a file of the folders is written, added or deleted.
+
+    Args:
+        folders: watched with all folders in them.
+        pause_s: between two looks.
+    """
+    before = None
+    while True:
+        files = (path for folder in folders for path in folder.rglob("*") if path.suffix != ".pyc" and path.is_file())
+        now = {path: path.stat().st_mtime_ns for path in files}
+        if now != before:
+            before = now
+            yield
+        time.sleep(pause_s)
+
+
+def _check_picture(output: Path) -> None:
+    """Refuse, before a picture is drawn, a file that it cannot be written to."""
+    if output.suffix.lower() != ".png":
+        raise InputError(f"-o {output}: the picture is a PNG; end the name with .png")
+    if not output.absolute().parent.is_dir():
+        raise InputError(f"-o {output}: there is no folder {output.parent}; make it first")
+
+
+def _save(picture: Image.Image, output: Path) -> None:
+    try:
+        picture.save(output)
+    except OSError as error:
+        raise InputError(f"{output}: cannot be written ({error.strerror or error}); choose another place") from None
 
 
 def _print_shapes(shapes: Sequence[Shape], as_json: bool) -> None:

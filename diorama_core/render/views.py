@@ -7,8 +7,11 @@ from dataclasses import dataclass
 import cv2
 import numpy as np
 from jaxtyping import Float, Float32, UInt8
+from PIL import Image
 
+from diorama_core.library.opening import OpenedShapes, can_open
 from diorama_core.library.record import Shape, ShapeLibrary, record_of
+from diorama_core.library.sheet import PAGE
 from diorama_core.library.taxonomy import category
 from diorama_core.render.appearance import Paint, shape_surfaces
 from diorama_core.render.filters import as_bytes, tone_mapped
@@ -67,6 +70,7 @@ def render_shape(
     view: StudioView | None = None,
     effort: Effort = STUDIO_EFFORT,
     paint: Paint = (None, None),
+    open_share: float = 0.0,
 ) -> UInt8[np.ndarray, "h w 4"]:
     """A shape in soft studio light on a transparent background, with the shadow it would cast where it stands.
 
@@ -77,13 +81,15 @@ def render_shape(
         view: Where the viewer stands; None takes the shape's usual view.
         effort: Rays per pixel.
         paint: Overrides of the main material: colour (sRGB) and finish.
+        open_share: How far doors, drawers and lids stand open, 0 to 1.
 
     Returns:
         Colours and opacity, not premultiplied, sRGB.
     """
     shape = record_of(library, shape_id)
     view = view or usual_view(shape)
-    alone = World([PlacedSurface(shape_surfaces(library, shape_id, *paint), np.eye(4), 0)])
+    as_it_stands = library if open_share == 0.0 else OpenedShapes(library, open_share)
+    alone = World([PlacedSurface(shape_surfaces(as_it_stands, shape_id, *paint), np.eye(4), 0)])
     camera = PinholeView(studio_camera(alone.vertices, view, *size))
     half = 0.5 * np.asarray(shape.size_m)
     light = studio(np.stack([-half, half]), -camera.camera.T_world_camera[:3, 2])
@@ -91,6 +97,25 @@ def render_shape(
     hung = category(shape.category).mount in ("wall", "ceiling")
     shadow = np.zeros(shot.coverage.shape, np.float32) if hung else _shadow(shape, alone, light, camera, effort)
     return _over(shot, shadow)
+
+
+def four_views(library: ShapeLibrary, shape_id: str, side_px: int = 360) -> Image.Image:
+    """A page with a shape in its usual view, from the front and from its left; opened, or from above.
+
+    Args:
+        library: Where the shape is.
+        shape_id: Which shape; `LibraryError` when unknown.
+        side_px: Side of one view.
+    """
+    opens = can_open(library, shape_id)
+    last = StudioView(THREE_QUARTER.yaw_rad, np.radians(35.0)) if opens else StudioView(0.0, np.radians(89.0))
+    views = (None, StudioView(0.0, 0.0), StudioView(np.pi / 2, 0.0), last)
+    page = Image.new("RGB", (2 * side_px, 2 * side_px), PAGE)
+    for number, view in enumerate(views):
+        share = 1.0 if opens and number == 3 else 0.0
+        picture = Image.fromarray(render_shape(library, shape_id, (side_px, side_px), view, open_share=share))
+        page.paste(picture, (number % 2 * side_px, number // 2 * side_px), picture)
+    return page
 
 
 def _shadow(
