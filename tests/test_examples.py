@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ast
 import json
+import re
 import runpy
 import sys
 from pathlib import Path
@@ -14,10 +15,12 @@ import trimesh
 from PIL import Image
 
 import diorama_core as diorama
+from diorama_core.project.storage import Project
 from tests.cli.room_photo import write_room
+from tests.export.scenes import scene_of
 
 EXAMPLES = Path(__file__).parents[1] / "examples"
-OTHERS = {"numpy", "PIL"}
+OTHERS = {"numpy", "PIL", "mujoco", "gymnasium"}
 
 
 def _run(name: str, *arguments: object) -> None:
@@ -55,6 +58,34 @@ def test_a_project_is_optimised_and_exported(project: Path, tmp_path: Path, caps
     assert "overlapping_pairs" in capsys.readouterr().out
     assert json.loads((project / "scene.json").read_text())["metrics"]["overlapping_pairs"] == 0
     assert trimesh.load_scene(tmp_path / "room.glb").geometry
+
+
+@pytest.fixture(scope="module")
+def fitted(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A room with a door, drawers and a laptop, for examples that drive there."""
+    pytest.importorskip("mujoco", reason="MuJoCo is not installed (optional extra 'sim')")
+    pytest.importorskip("pxr", reason="USD is not installed (optional extra 'usd')")
+    folder = tmp_path_factory.mktemp("fitted") / "room"
+    Project.create(folder).save_scene(scene_of("fittings")[0])
+    return folder
+
+
+@pytest.mark.slow
+def test_a_disc_drives_through_the_door(fitted: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    _run("04_drive_through_doors.py", fitted)
+    assert re.findall(r"^door: through in \d\.\d s, 0 touches$", capsys.readouterr().out, re.MULTILINE)
+
+
+@pytest.mark.slow
+def test_every_drawer_and_door_is_opened_and_closed(fitted: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    _run("05_open_everything.py", fitted)
+    assert capsys.readouterr().out.splitlines()[-1] == "11 of 11 open and close"
+
+
+def test_a_disc_in_gymnasium_comes_to_a_surface(fitted: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    pytest.importorskip("gymnasium", reason="gymnasium is not installed (optional extra 'gym')")
+    _run("06_gymnasium.py", fitted)
+    assert capsys.readouterr().out.startswith("at the goal after")
 
 
 @pytest.mark.parametrize("path", sorted(EXAMPLES.glob("*.py")), ids=lambda p: p.stem)
