@@ -11,19 +11,8 @@ import pytest
 
 from diorama_core.library.kind_rows import PATH
 
-AQUARIUM = """
-[aquarium]
-synonyms = ["fish tank", "terrarium", "vivarium"]
-meant_by = { tank = 0.9 }
-sizes = [[0.5, 0.8, 0.4, 0.3, 0.35, 0.25]]
-mount = "surface"
-density = 700
-frequency = 0.2
-related = ["television", "box", "microwave"]
-rooms = ["living", "bedroom"]
-traits = ["any_proportions", "solid", "along_the_back"]
-lies_on = { sideboard = 6, "tv stand" = 3, bookshelf = 2 }
-"""
+PAGE = Path(__file__).parents[2] / "docs" / "adding.md"
+AQUARIUM = PAGE.read_text("utf-8").split("```toml\n")[1].split("```")[0]
 ASKED = """
 import json, sys
 from pathlib import Path
