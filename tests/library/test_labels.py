@@ -86,14 +86,11 @@ VOCABULARY = {
 }
 
 
-@pytest.mark.parametrize(
-    ("label", "kind"), [(label.strip(), kind) for kind, row in VOCABULARY.items() for label in row.split(", ")]
-)
-def test_labels_of_people_and_detectors_are_understood(label, kind) -> None:
-    found = understand_label(label)
-    assert found.category.name == kind
-    assert is_named(label)
-    assert meanings(label, kind)[kind] > 0.1
+def test_labels_of_people_and_detectors_are_understood() -> None:
+    for label, kind in ((label.strip(), kind) for kind, row in VOCABULARY.items() for label in row.split(", ")):
+        assert understand_label(label).category.name == kind, label
+        assert is_named(label), label
+        assert meanings(label, kind)[kind] > 0.1, label
 
 
 @pytest.mark.parametrize("label", ["object", "thing", "otherprop", "", "???", "42"])
@@ -146,12 +143,12 @@ def test_every_row_speaks_of_known_kinds() -> None:
     assert set(FREQUENCIES) <= NAMES
 
 
-@pytest.mark.parametrize("name", [c.name for c in CATEGORIES if c is not UNKNOWN])
-def test_meanings_are_probabilities_that_include_the_word_itself(name) -> None:
-    shares = meanings(name, name)
-    assert sum(shares.values()) == pytest.approx(1.0)
-    assert shares[name] > 0
-    assert list(shares.values()) == sorted(shares.values(), reverse=True)
+def test_meanings_are_probabilities_that_include_the_word_itself() -> None:
+    for name in NAMES - {UNKNOWN.name}:
+        shares = meanings(name, name)
+        assert sum(shares.values()) == pytest.approx(1.0), name
+        assert shares[name] > 0, name
+        assert list(shares.values()) == sorted(shares.values(), reverse=True), name
 
 
 @pytest.mark.parametrize(

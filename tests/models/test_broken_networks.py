@@ -217,8 +217,14 @@ BROKEN: dict[str, Callable[[Case, Path], Path]] = {
 }
 
 
-@pytest.mark.parametrize("how", BROKEN)
-@pytest.mark.parametrize("name", CASES)
+ANSWERS = ("answers of other shapes", "empty answers", "answers that are no numbers")
+"""Every network reads these itself; the rest is found where all graphs are loaded and run: a few networks tell."""
+BROKEN_NETWORKS = [
+    (name, how) for k, name in enumerate(CASES) for j, how in enumerate(BROKEN) if how in ANSWERS or (j + k) % 4 == 0
+]
+
+
+@pytest.mark.parametrize(("name", "how"), BROKEN_NETWORKS)
 def test_a_broken_network_is_one_line_that_names_it(name: str, how: str, tmp_path: Path) -> None:
     case, graph = CASES[name], tmp_path / "model.onnx"
     BROKEN[how](case, graph)

@@ -14,6 +14,7 @@ from diorama_core.evaluation.benchmarks.cases import recipe as recipe_of_rooms
 from diorama_core.evaluation.benchmarks.views import RoomView, photographed
 from diorama_core.layout.recipes import recipe
 from diorama_core.library.catalogue import built_in_library
+from diorama_core.multiview import adding
 from diorama_core.multiview.adding import AddedPhoto, with_photo
 from diorama_core.multiview.finding import photos_of_scene
 from diorama_core.pipeline.stages import Stages, embedded_stages
@@ -24,6 +25,11 @@ from diorama_core.synthesis.artefacts import photo_only
 from diorama_core.synthesis.splits import split_library
 from tests.few_shapes import few_shapes
 from tests.multiview.two_photos import SMALL, AsItIs, two_photos, with_camera
+
+
+@pytest.fixture(autouse=True)
+def _few_distances(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(adding, "DISTANCES", (0.8, 1.0, 1.25))
 
 
 def choose(inputs: Inputs) -> Stages:

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from diorama_core.artefacts import FurtherPhoto, Inputs
+from diorama_core.multiview import adding
 from diorama_core.multiview.rebuilding import carried, with_photos_again
 from diorama_core.pipeline.stages import Stages, embedded_stages
 from diorama_core.scene.types import Camera, yaw_rotation
@@ -34,7 +35,8 @@ def test_a_camera_follows_turn_place_and_scale() -> None:
 
 
 @pytest.mark.slow
-def test_photos_join_the_new_scene_or_are_named() -> None:
+def test_photos_join_the_new_scene_or_are_named(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(adding, "DISTANCES", (0.8, 1.0, 1.25))
     photos = two_photos(SMALL)
     library = few_shapes(photos.scene)
     scene, beside = photos.scene, with_camera(photos)

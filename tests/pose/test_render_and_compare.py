@@ -28,7 +28,7 @@ def posed(room: Room, depth: DepthMap | None = None, ranked=None) -> tuple[Posed
 @pytest.mark.parametrize("measured", [False, True])
 def test_the_true_shape_is_turned_as_it_stands(measured: bool) -> None:
     right = total = 0
-    for seed in range(12):
+    for seed in range(6):
         room = random_room(seed)
         for found, index in zip(posed(room, room.depth(measured)), room.seen, strict=True):
             truth = room.placed[index]
@@ -39,7 +39,7 @@ def test_the_true_shape_is_turned_as_it_stands(measured: bool) -> None:
 
 
 def test_posed_shapes_land_on_their_boxes_and_keep_their_base() -> None:
-    for seed in (1, 2, 3):
+    for seed in (1, 2):
         room = random_room(seed)
         for found, item in zip(posed(room), room.objects, strict=True):
             best = found.candidates[0]

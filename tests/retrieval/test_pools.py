@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import numpy as np
-import pytest
 
 from diorama_core.library.catalogue import built_in_library
 from diorama_core.library.taxonomy import CATEGORIES, UNKNOWN, category
@@ -47,12 +46,12 @@ def test_many_kinds_are_looked_at_where_no_word_says_what_an_object_is() -> None
     assert {m.shape.category for m in named.members} == {"chair"}
 
 
-@pytest.mark.parametrize("name", [c.name for c in CATEGORIES])
-def test_every_category_finds_something_in_the_built_in_library(name: str) -> None:
-    prior = category(name).priors[0]
-    found = pool(name, (prior.depth_m, prior.width_m, prior.height_m))
-    assert 1 <= len(found.members) <= 60
-    assert all(0.0 < m.kind_factor <= 1.0 for m in found.members)
+def test_every_category_finds_something_in_the_built_in_library() -> None:
+    for one in CATEGORIES:
+        prior = one.priors[0]
+        found = pool(one.name, (prior.depth_m, prior.width_m, prior.height_m))
+        assert 1 <= len(found.members) <= 60, one.name
+        assert all(0.0 < m.kind_factor <= 1.0 for m in found.members), one.name
 
 
 def test_a_chair_is_looked_for_among_chairs_only() -> None:

@@ -33,11 +33,9 @@ def test_what_is_not_understood_is_named(prompt: str) -> None:
     assert any("zorkmid" in words for words in understood_prompt(prompt).ignored)
 
 
-@pytest.mark.parametrize("kind", [c.name for c in CATEGORIES])
-def test_every_kind_has_a_name_in_every_language(kind: str) -> None:
+def test_every_kind_has_a_name_in_every_language() -> None:
     for language in LANGUAGES:
-        names = [phrase for phrase, english in _phrases(language).items() if english == kind]
-        assert names, language
+        assert {c.name for c in CATEGORIES} <= set(_phrases(language).values()), language
 
 
 COMMANDS = {

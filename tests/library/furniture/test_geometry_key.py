@@ -105,6 +105,9 @@ def test_comments_and_docstrings_renew_nothing(before: dict[str, str], copy: Pat
     assert renewed(before, edited(copy, "lighting/floor_lamps.py", old, new)) == set()
 
 
+SOURCES = Sources(FOLDER, PACKAGE)
+
+
 def test_keys_are_the_same_in_another_process() -> None:
     code = (
         "from diorama_core.library.furniture import designs;"
@@ -115,11 +118,10 @@ def test_keys_are_the_same_in_another_process() -> None:
     assert out.stdout.split() == [geometry_key(d) for d in designs()]
 
 
-@pytest.mark.parametrize("design", designs()[::13], ids=lambda d: d.id)
+@pytest.mark.parametrize("design", designs()[::26], ids=lambda d: d.id)
 def test_all_that_runs_while_a_shape_is_made_is_in_its_key(design: Design) -> None:
     """Every function of the package that is called, and every name of the package that it reads."""
-    sources = Sources(FOLDER, PACKAGE)
-    known = set().union(*(sources.closure(place_of(f)) for f in (design.builder, built, mesh_of, scene_of)))
+    known = set().union(*(SOURCES.closure(place_of(f)) for f in (design.builder, built, mesh_of, scene_of)))
     names = {name for _, name in known}
     ran: set[Place] = set()
     read: set[str] = set()
