@@ -39,7 +39,7 @@ COMPRESSIONS: dict[Compression, tuple[str, str]] = {
 }
 """Name and explanation."""
 LIGHTS: dict[LightUnits, tuple[str, str]] = {
-    "unit": ("as bright as here", "For programs whose camera has no exposure"),
+    "unit": ("as here", "For programs whose camera has no exposure"),
     "photometric": ("in lumens and lux", "For cameras with an exposure"),
     "none": ("none", "The room is lit in the other program"),
 }

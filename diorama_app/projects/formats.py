@@ -26,7 +26,7 @@ HTML = Format(
     "html",
     "Viewer in one page",
     (".html",),
-    "what you see, lit as here, to look at from all sides in any browser",
+    "a web page to look at from all sides in any browser, lit as here",
     "diorama_app.viewport.html_viewer:write_html",
 )
 EXPORT_FORMATS: Mapping[str, Format] = {**FORMATS, HTML.name: HTML}
@@ -45,9 +45,7 @@ GUIDES: Mapping[str, Guide] = {
         "Blender, Unity, Unreal, Godot, three.js",
         _TEXTURED | frozenset[Choice]({"compression", "lights", "photo"}),
     ),
-    "game": Guide(
-        MODELS, "Godot; Unreal by `--engine unreal`; Unity and three.js by `--engine none`", _TEXTURED | {"lights"}
-    ),
+    "game": Guide(MODELS, "Godot; others by `diorama export --engine`", _TEXTURED | {"lights"}),
     "blend": Guide(MODELS, "Blender, with the photo behind the camera", _TEXTURED),
     "usdz": Guide(MODELS, "iPhone and iPad (AR Quick Look)", _USD),
     "usdc": Guide(MODELS, "Isaac Sim, Blender, Unreal, Maya", _USD),

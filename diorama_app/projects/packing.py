@@ -69,7 +69,9 @@ def unpack_project(file: Path, projects_dir: Path, *, folder: Path | None = None
     with unpacked(file, MAX_UNPACKED) as inside:
         found = content_of(inside)
         if not (found / "project.json").is_file():
-            raise InputError(f"{file.name} is no packed project (it has no project.json); make one with 'project zip'")
+            raise InputError(
+                f"{file.name} is not a packed project (it has no project.json); make one with 'project zip'"
+            )
         received = Project.open(found)
         if received.has_scene:
             received.load_scene()

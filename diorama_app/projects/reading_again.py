@@ -77,7 +77,7 @@ def with_depth(new: Mapping[Sort, Source], project: Project | None) -> dict[Sort
         return found
     depth = found.get("depth") or (None if project is None else _given_depth(project))
     if depth is None:
-        raise InputError(f"{confidence.name}: this is the confidence of a depth map; add that depth with it")
+        raise InputError(f"{confidence.name}: this is the confidence of a depth map; add the depth map, too")
     return {**found, "depth": replace(depth, companions=(confidence,))}
 
 

@@ -197,5 +197,5 @@ def show_built(
     session.view.show_whole_room()
     message = message or f"The scene has {number_of(len(made.scene.objects))}. Click one to change it."
     if made.again is not None and made.again.left_out:
-        message += f" To be added again: {', '.join(made.again.left_out)}."
+        message += f" Not in the new scene, to be added again: {', '.join(made.again.left_out)}."
     session.notice_all(message, "good")

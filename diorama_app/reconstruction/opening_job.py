@@ -69,7 +69,7 @@ def open_packed(client: Client, name: str, content: bytes) -> None:
             path = Path(folder) / file_name
             write_atomically(path, content, error=InputError)
             project = unpack_project(path, session.projects_dir)
-        client.post(lambda: session.visit(client, project, f"Opened {project.name}, which came as {file_name}."))
+        client.post(lambda: session.visit(client, project, f"Opened {project.name} from {file_name}."))
 
     session.jobs.start("import", f"Opening {file_name}", work)
 

@@ -42,7 +42,7 @@ def take_photo(client: Client, file_name: str, inputs: Inputs) -> None:
     need_joinable(session.scene, session.inputs)
     photos = session.further_photos
     if len(photos) >= MAX_PHOTOS:
-        raise EditRefused(f"a room takes {MAX_PHOTOS} further photos; take one out first")
+        raise EditRefused(f"a room can have {MAX_PHOTOS} further photos; remove one first")
     name = fresh_name(file_name, [p.name for p in photos])
     further = (*photos, FurtherPhoto(name, inputs))
     session.commit(f"add the photo {name}", session.scene, further=further, by=client)
@@ -200,5 +200,5 @@ def _show(client: Client, project: Project, before: Scene, photo: FurtherPhoto, 
     session.commit(f"add what {photo.name} shows", added.scene, by=client, selection=added.new, further=further)
     news = f"{len(added.new)} new" if added.new else "nothing new"
     session.notice_all(
-        f"{photo.name} joined: {news}, {len(added.joined)} seen again. Click it to look through it.", "good"
+        f"{photo.name} is added: {news}, {len(added.joined)} seen again. Click the photo to look through it.", "good"
     )

@@ -52,7 +52,7 @@ class Visitors:
         for origin in self.frame_origins:
             if ORIGIN.fullmatch(origin) is None:
                 raise InputError(
-                    f"{clean_text(origin)[:100]!r} is no origin of a page; give scheme, host and port alone, such as "
+                    f"{clean_text(origin)[:100]!r} is not the origin of a page; give scheme, host and port alone, such as "
                     "http://localhost:8888"
                 )
 

@@ -104,7 +104,7 @@ def in_words(report: LayoutReport, worse: Problems, labels: Mapping[str, str]) -
 def disagreement_in_words(found: PhotoDisagreement) -> str:
     """One sentence for an object that agrees less with the photo than before."""
     return (
-        f"agrees less with the photo: {found.label} moved {100 * found.moved_m:.0f} cm; its outline still covers "
+        f"agrees less with the photo: {found.label}, moved {100 * found.moved_m:.0f} cm; the outline still covers "
         f"{100 * found.outline_shared:.0f} % of where it was seen"
     )
 

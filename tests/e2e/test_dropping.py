@@ -40,7 +40,7 @@ def photo(path: Path, seed: int = 0) -> Path:
 def test_a_packed_project_opens(editor: EditorPage, tmp_path: Path) -> None:
     packed = pack_project(make_project(tmp_path / "elsewhere" / "attic"), tmp_path / "attic.diorama")
     drop(editor, packed)
-    editor.notice("Opened attic, which came as attic.diorama.")
+    editor.notice("Opened attic from attic.diorama.")
     editor.until(lambda: editor.session.project.folder.name == "attic", "the project", seconds=90)
 
 

@@ -58,3 +58,14 @@ def test_what_cannot_be_done_is_said_in_a_line(editor: EditorPage) -> None:
     _say(editor, "remove the chairs and paint the piano green")
     expect(editor.page.get_by_text("There is no piano in this scene; it has:")).to_be_visible()
     assert editor.session.scene is before
+
+
+@pytest.mark.parametrize(
+    "said", ["Mach alle Stühle rot", "Pinta todas las sillas de rojo", "Peins toutes les chaises en rouge"]
+)
+def test_other_languages_are_understood(editor: EditorPage, said: str) -> None:
+    _say(editor, said)
+    listed = editor.page.get_by_role("list", name="Proposed edits")
+    expect(listed.get_by_role("listitem")).to_have_count(1)
+    expect(listed).to_contain_text("red")
+    editor.button("Cancel").click()

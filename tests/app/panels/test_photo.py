@@ -225,7 +225,7 @@ def test_confidence_leaves_depth_out_and_is_kept_with_it(session, client, page, 
     confidence = Source(encoded(Image.fromarray(levels)), "confidence.png")
     client.post(lambda: empty.add({"confidence": confidence}))
     page.settle()
-    assert "add that depth with it" in client.viser_client.told[-1]
+    assert "add the depth map, too" in client.viser_client.told[-1]
     page.upload("Add depth", "depth.png", depth_png(depth))
     client.post(lambda: empty.add({"confidence": confidence}))
     page.settle()

@@ -45,5 +45,5 @@ def test_what_was_given_and_said_is_taken_again(project: Project) -> None:
 def test_confidence_needs_its_depth(project: Project) -> None:
     found = with_depth({"confidence": LEVELS}, project)
     assert (found["depth"].data, found["depth"].companions) == (DEPTH, (LEVELS,))
-    with pytest.raises(InputError, match="add that depth with it"):
+    with pytest.raises(InputError, match="add the depth map, too"):
         with_depth({"confidence": LEVELS}, None)

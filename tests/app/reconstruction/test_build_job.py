@@ -47,7 +47,7 @@ def test_photos_have_their_new_cameras_and_those_that_do_not_join_are_named(
     assert opened == [], "who corrects the camera goes on correcting it"
     assert session.scene is scene
     assert session.further_photos == (*photos, added)
-    assert any("To be added again: two." in line for line in said), said
+    assert any("to be added again: two." in line for line in said), said
     session.undo(client)
     assert session.further_photos == (joined, lost, added)
 
