@@ -1,8 +1,8 @@
 """The scene as one HTML file that opens without a server: viser's own viewer with the scene inside it.
 
-It is lit as in the editor, and has a title and buttons for its views (`static/viewer.html`) in place of viser's tree of
-nodes. The file needs nothing from the network. Viser's client is under the Apache licence 2.0, which allows handing it
-on; the notice is kept in the file.
+It is lit as in the editor, and has a title and buttons for its views and for a walk (`static/viewer.html`,
+`static/walk.js`) in place of viser's tree of nodes. The file needs nothing from the network. Viser's client is under
+the Apache licence 2.0, which allows handing it on; the notice is kept in the file.
 """
 
 from __future__ import annotations
@@ -27,6 +27,7 @@ from diorama_app.viewport.mesh_assets import ShapeBytes
 from diorama_app.viewport.room_light import RoomLightView
 from diorama_app.web.head import STATIC
 from diorama_app.web.viser_adapter import stop_server
+from diorama_core.editing.walking import walk_of
 from diorama_core.errors import UnavailableError
 from diorama_core.export.files import write_whole
 from diorama_core.export.gathering import ExportScene
@@ -88,9 +89,19 @@ def _page(glb: bytes, gathered: ExportScene) -> str:
     title = html.escape(gathered.name)
     # As functions: in a template, a backslash of the name would be an escape.
     page = re.sub(r"<title>.*?</title>", lambda _: f"<title>{title}</title>", page, count=1, flags=re.DOTALL)
-    told = {"VIEWS": json.dumps(views), "ASPECTS": json.dumps(ASPECTS)}
+    told = {"VIEWS": json.dumps(views), "ASPECTS": json.dumps(ASPECTS), "WALK_PLAN": walk_json(gathered.scene)}
+    told["WALKING"] = (STATIC / "walk.js").read_text(encoding="utf-8")
     over = re.sub("|".join(told), lambda found: told[found[0]], (STATIC / "viewer.html").read_text(encoding="utf-8"))
     return page.replace("<head>", f"<head>{NOTICE}", 1).replace("</head>", f"{over}</head>", 1)
+
+
+def walk_json(scene: Scene) -> str:
+    """A walk through a scene as `static/walk.js` takes it; null where there is none."""
+    walk = walk_of(scene)
+    if walk is None:
+        return "null"
+    heading = round(walk.heading_rad, 4)
+    return json.dumps({"rings": walk.rings, "start": walk.start, "heading": heading, "eye": round(walk.eye_m, 4)})
 
 
 def _light(server: viser.ViserServer, gathered: ExportScene) -> None:

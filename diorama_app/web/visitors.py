@@ -52,8 +52,8 @@ class Visitors:
         for origin in self.frame_origins:
             if ORIGIN.fullmatch(origin) is None:
                 raise InputError(
-                    f"{clean_text(origin)[:100]!r} is not the origin of a page; give scheme, host and port alone, such as "
-                    "http://localhost:8888"
+                    f"{clean_text(origin)[:100]!r} is not the origin of a page; give scheme, host and port alone, "
+                    "such as http://localhost:8888"
                 )
 
     def refusal(self, request: Request) -> str | None:

@@ -14,7 +14,11 @@ from diorama_core.geometry.planes import in_polygon
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.library.taxonomy import category
 from diorama_core.scene import edits
+from diorama_core.scene.room_edits import floor_height
 from diorama_core.scene.types import Scene, SceneObject, Support
+
+BELOW_M = 0.05
+"""What reaches deeper below the floor is not in the room."""
 
 if TYPE_CHECKING:
     from diorama_core.pipeline.reconstruct_object import Found  # the whole pipeline; editing does without it
@@ -23,7 +27,8 @@ if TYPE_CHECKING:
 def inserted(scene: Scene, found: Found, library: ShapeLibrary) -> Scene:
     """The scene with the found object as a new one, resting on its supporter.
 
-    One that would go through another object stands on that one where the photo allows it, else beside it.
+    One that would go through another object, below the floor or out of the room stands on what the photo shows it on,
+    else beside it or where there is room.
     """
     item = replace(found.item, id=edits.fresh_id(scene, found.item.category))
     edge = None if found.support is None else replace(found.support, child=item.id)
@@ -33,17 +38,32 @@ def inserted(scene: Scene, found: Found, library: ShapeLibrary) -> Scene:
 
 
 def _clear(scene: Scene, object_id: str, library: ShapeLibrary) -> Scene:
-    """The scene with an object that meets no other one."""
+    """The scene with an object that meets no other one and is in the room."""
     positioner = Positioner(library)
     met = [j for pair in positioner.collisions.of(scene, [object_id]) for j in pair if j != object_id]
-    if not met:
+    outside = not _in_room(positioner, scene, object_id)
+    if not met and not outside:
         return scene
-    for carrier in dict.fromkeys(met):
+    carriers = [o.id for o in scene.objects if o.id != object_id] if outside else []
+    for carrier in dict.fromkeys([*met, *carriers]):
         on_it = moved_onto(scene, object_id, carrier, library)
         if on_it is not None and not positioner.collisions.of(on_it, [object_id]):
             return on_it
-    spot = positioner.nearby(scene, object_id)
-    return scene if spot is None else edits.move(scene, object_id, spot.pose)
+    spot = None if outside else positioner.nearby(scene, object_id)
+    if spot is not None:
+        return edits.move(scene, object_id, spot.pose)
+    item = scene.object(object_id)
+    spot = positioner.best(scene, item, near=item.pose.position)
+    return scene if spot is None else positioner.put(scene, item, spot)
+
+
+def _in_room(positioner: Positioner, scene: Scene, object_id: str) -> bool:
+    """Whether an object is within the floor's outline and not below it; true in a scene without a floor."""
+    item = scene.object(object_id)
+    if scene.architecture.floor is None:
+        return True
+    above = float(item.corners_world[:, 2].min()) > floor_height(scene) - BELOW_M
+    return above and positioner.inside(scene, object_id)
 
 
 def moved_onto(scene: Scene, object_id: str, carrier_id: str, library: ShapeLibrary) -> Scene | None:

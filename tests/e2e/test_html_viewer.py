@@ -10,8 +10,11 @@ import numpy as np
 import pytest
 from PIL import Image
 from playwright.sync_api import expect
+from shapely.geometry import Point, Polygon
 
 from diorama_app.viewport.html_viewer import write_html
+from diorama_core.editing.footprints import footprint_of
+from diorama_core.editing.walking import RADIUS_M
 from diorama_core.export.gathering import gather
 from diorama_core.scene.types import RoomLight
 from tests.e2e.browser import FLAGS
@@ -80,3 +83,46 @@ EYE = """() => { const m = window.__viserMutable;
 def shows_the_ball(pixels: np.ndarray) -> bool:
     red, green, blue = pixels[..., 0], pixels[..., 1], pixels[..., 2]
     return bool(((red > 90) & (red > 2.2 * green) & (red > 2.2 * blue)).sum() > 30)
+
+
+def test_a_walk_through_the_room_crosses_no_wall(driver, program: str, tmp_path: Path) -> None:
+    """Keys into every direction, at a run; all the while a body's breadth from walls and furniture."""
+    room = furnished_room(LIBRARY)
+    write_html(gather(room, LIBRARY), tmp_path / "room.html")
+    with driver.chromium.launch(executable_path=program, args=list(FLAGS)) as browser:
+        page = browser.new_context(viewport={"width": 320, "height": 240}, offline=True).new_page()
+        page.goto((tmp_path / "room.html").as_uri())
+        page.wait_for_function("!!window.__viserMutable?.nodeRefFromName['/scene']")
+        page.get_by_role("button", name="Walk").click()
+        expect(page.get_by_role("button", name="Walk", exact=True)).to_have_attribute("aria-pressed", "true")
+        page.evaluate(f"({TRACED})()")
+        page.keyboard.down("Shift")
+        for keys in ("w", "wd", "d", "sd", "s", "sa", "a", "wa", "wd", "e", "w", "q", "w"):
+            for key in keys:
+                page.keyboard.down(key)
+            page.wait_for_timeout(900)
+            for key in keys:
+                page.keyboard.up(key)
+        page.keyboard.up("Shift")
+        trace = np.array(page.evaluate("window.__trace"))
+        eye = page.evaluate(EYE)
+        page.keyboard.press("Escape")
+        expect(page.get_by_role("button", name="Photo")).to_have_attribute("aria-pressed", "true")
+        assert page.evaluate("window.__dioWalk.place()") is None
+        assert room.camera is not None
+        page.wait_for_timeout(300)
+        np.testing.assert_allclose(page.evaluate(EYE), room.camera.position, atol=1e-3)
+    outline = Polygon(room.architecture.by_role("floor")[0].polygon[:, :2])
+    stands = [Polygon(footprint_of(o)) for o in room.objects if o.category in ("table", "chair")]
+    assert np.linalg.norm(np.diff(trace, axis=0), axis=1).sum() > 3.0, "some metres"
+    assert np.ptp(trace, axis=0).min() > 0.5
+    assert np.linalg.norm(np.diff(trace, axis=0), axis=1).max() < 0.5, "no leap"
+    np.testing.assert_allclose(eye[:2], trace[-1], atol=0.01)
+    for x, y in trace:
+        assert outline.contains(Point(x, y))
+        assert min(Point(x, y).distance(g) for g in (outline.exterior, *stands)) > RADIUS_M - 0.011
+
+
+TRACED = """() => { window.__trace = []; const note = () => {
+    const now = window.__dioWalk.place(); if (now) window.__trace.push(now.at);
+    requestAnimationFrame(note); }; note(); }"""

@@ -53,16 +53,11 @@ def _shared(editor: EditorPage) -> UserLibrary:
 
 
 def _open(editor: EditorPage, path: Path, there: int) -> Project:
-    before = editor.session.project
+    before = editor.page.url
     editor.tab("Project")
     editor.upload("Open a file", path)
-
-    def is_open() -> bool:
-        project = editor.session.project
-        fresh = project is not None and project is not before and project.name == path.stem
-        return fresh and len(editor.session.scene.objects) == there
-
-    editor.until(is_open, "opened", LEARN_MS / 1000)
+    editor.page.wait_for_url(lambda url: url != before, timeout=LEARN_MS)
+    editor.until(lambda: len(editor.session.scene.objects) == there, "opened")
     project = editor.session.project
     assert project is not None
     return project
@@ -125,12 +120,14 @@ def test_tidying_up_changes_no_side_by_more_than_a_quarter(editor: EditorPage) -
 def test_low_graphics_keep_the_rails_of_an_iron_bed(
     serve: Callable[..., Running], visit: Callable[[Running], EditorPage], tmp_path: Path
 ) -> None:
-    """Twelve beds: each gets the fewest triangles that a crowded room leaves one."""
+    """Many beds: each gets few triangles, as in a crowded room."""
     library, scene = built_in_library(), furnished_scene()
     shape = library.shape("bed-iron")
     beds = tuple(
-        SceneObject(f"bed_{k}", "bed", "bed", shape.id, shape.size_m, Pose.upright((1.5 * k, 4.0, shape.size_m[2] / 2)))
-        for k in range(12)
+        SceneObject(
+            f"bed_{k}", "bed", "bed", shape.id, shape.size_m, Pose.upright((0.02 * k, 1.5, shape.size_m[2] / 2))
+        )
+        for k in range(40)
     )
     crowded = Scene(scene.camera, scene.architecture, beds, tuple(Support(b.id, "floor") for b in beds))
     editor = visit(serve(make_project(tmp_path / "projects" / "beds", crowded).folder))
@@ -141,18 +138,19 @@ def test_low_graphics_keep_the_rails_of_an_iron_bed(
         [trimesh.Trimesh(np.reshape(c["at"], (-1, 3)), np.reshape(c["faces"], (-1, 3)), process=False) for c in corners]
     )
     whole = pieces(scene_of(library.glb(shape.id)))
-    triangles = sum(len(g.faces) for g in drawn.geometry.values())
-    assert triangles < sum(len(g.faces) for g in scene_of(library.glb(shape.id)).geometry.values()), "a lighter mesh"
+    full = sum(len(g.faces) for g in scene_of(library.glb(shape.id)).geometry.values())
+    assert sum(len(g.faces) for g in drawn.geometry.values()) < 0.75 * full, "a lighter mesh is drawn"
     assert len(whole) > 20
     assert len(pieces(drawn)) >= len(whole)
 
 
 DRAWN = """(id) => {
-    const root = Object.entries(window.__viserMutable.nodeRefFromName).filter(([n]) => n.startsWith(id));
+    const all = Object.entries(window.__viserMutable.nodeRefFromName);
+    const root = all.filter(([n]) => n === id || n.startsWith(id + '/'));
     const found = [];
     for (const [, node] of root) node && node.traverse((o) => {
-        if (!o.isMesh || !o.geometry.index || found.some((f) => f.key === o.uuid)) return;
-        found.push({key: o.uuid, at: Array.from(o.geometry.attributes.position.array),
+        if (!o.isMesh || !o.geometry.index || found.some((f) => f.key === o.geometry.uuid)) return;
+        found.push({key: o.geometry.uuid, at: Array.from(o.geometry.attributes.position.array),
                     faces: Array.from(o.geometry.index.array)});
     });
     return found;

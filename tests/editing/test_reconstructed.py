@@ -68,3 +68,19 @@ def test_what_meets_nothing_stays() -> None:
     lamp = _lamp(-1.6, 2.8, 0.5)
     after = inserted(_room(), Posed(lamp, Support("new", "floor")), PlainLibrary())
     np.testing.assert_allclose(after.objects[-1].pose.position, lamp.pose.position, atol=1e-6)
+
+
+@pytest.mark.unchecked
+def test_what_was_found_out_of_the_room_stands_on_what_the_photo_shows_it_on() -> None:
+    scene = _room()
+    camera = scene.camera
+    assert camera is not None
+    foot = camera.project(np.array([[0.1, 2.2, 0.74]]))[0]
+    lamp = replace(_lamp(-0.7, 7.3, 1.1), box_px=(foot[0] - 20.0, foot[1] - 70.0, foot[0] + 20.0, foot[1]))
+    below = replace(lamp, pose=lamp.pose.moved((0.0, 0.0, -0.9)))
+    after = inserted(scene, Posed(below, Support("new", "wall_4", "mounted on")), PlainLibrary())
+    new = after.objects[-1]
+    edge = after.support_of(new.id)
+    assert edge is not None
+    assert edge.parent == "table_1"
+    assert new.corners_world[:, 2].min() == pytest.approx(0.74, abs=1e-6)
