@@ -67,6 +67,16 @@ class Views:
         middle = (corners.min(axis=0) + corners.max(axis=0)) / 2
         client.view.camera.approach(middle, 1.5 * float(np.linalg.norm(np.ptp(corners, axis=0))) + 0.5)
 
+    def walk(self, client: Client) -> None:
+        """Walk through the room in the first person until Esc."""
+        from diorama_core.editing.walking import walk_of  # shapely; the page opens without it
+
+        found = walk_of(self._session.scene)
+        if found is None:
+            raise EditRefused("this scene has no free floor to walk on; draw a room in the plan or move furniture")
+        self._plain(client)
+        client.start_walk(found)
+
     def plan(self, client: Client) -> None:
         """Show the plan, or the 3D view again."""
         shown = client.plan

@@ -256,6 +256,7 @@ def _views(views: Views) -> tuple[Command, ...]:
         Command("view_front", "Front view", lambda g: views.along(g, (0.0, -1.0, 0.0)), "4", None, "From the front"),
         Command("view_left", "Left view", lambda g: views.along(g, (-1.0, 0.0, 0.0)), "5", None, "From the left"),
         Command("view_right", "Right view", lambda g: views.along(g, (1.0, 0.0, 0.0)), "6", None, "From the right"),
+        Command("walk", "Walk", views.walk, "W", None, "Walk through the room: W A S D, drag to look around"),
         Command("focus", "Focus", views.focus, "F", None, "Centre the view on the selection"),
     )
 

@@ -3,12 +3,16 @@
 from __future__ import annotations
 
 from functools import partial
+from typing import TYPE_CHECKING
 
 import viser
 
 from diorama_app.commands.registry import CommandTable
 from diorama_app.session.client import Client, Measuring
-from diorama_app.web.html import Action, LiveHtml, button, text
+from diorama_app.web.html import Action, LiveHtml, button, run_once, text
+
+if TYPE_CHECKING:
+    from diorama_core.editing.walking import Walk  # shapely; the page opens without it
 
 ICONS = {
     "undo": '<path d="M9 5 4 10l5 5M4 10h10a6 6 0 0 1 0 12h-3"/>',
@@ -22,7 +26,7 @@ SPARE = (("gizmo_floor", "gizmo_free", "gizmo_size", "snap"), ("measure", "help"
 """Tools that are in the menu instead where the view is narrow."""
 
 MENU: dict[str, tuple[str, ...]] = {
-    "View": ("view_top", "view_front", "view_left", "view_right", "focus"),
+    "View": ("view_top", "view_front", "view_left", "view_right", "walk", "focus"),
     "Show": ("names", "badges", "masks", "planes"),
     "While moving": ("slide",),
     "Page": ("theme",),
@@ -38,6 +42,8 @@ class Toolbar:
     def __init__(self, gui: viser.GuiApi, client: Client, commands: CommandTable) -> None:
         self._client, self._commands = client, commands
         self._html = LiveHtml(gui, self._act, floating="dio-toolbar")
+        self._walk, self._walks = gui.add_html(""), 0
+        client.start_walk = self._start_walk
 
     def refresh(self) -> None:
         """Draw the buttons as the history allows and the settings say."""
@@ -59,6 +65,10 @@ class Toolbar:
             + '<button type="button" data-menu="1" aria-haspopup="true" aria-expanded="false" aria-label="More tools" '
             f'title="More tools">{_icon("more")}</button></div></div>{self._menu()}'
         )
+
+    def _start_walk(self, walk: Walk) -> None:
+        self._walks += 1
+        self._walk.content = run_once(f"window.__dioWalk.begin({walk.json}); /* {self._walks} */")
 
     def _menu(self) -> str:
         moved = "".join(self._item(i) for ids in SPARE for i in ids)

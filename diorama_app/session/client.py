@@ -9,7 +9,7 @@ from __future__ import annotations
 import logging
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import viser
 
@@ -21,6 +21,9 @@ from diorama_app.viewport.decorations import Decorations
 from diorama_core.artefacts import FurtherPhoto, Inputs, Photo
 from diorama_core.errors import DioramaError, EditRefused
 from diorama_core.scene.types import Camera, Scene, SceneObject
+
+if TYPE_CHECKING:
+    from diorama_core.editing.walking import Walk  # shapely; the page opens without it
 
 log = logging.getLogger(__name__)
 
@@ -88,6 +91,8 @@ class Client:
         """Lays the grid of all projects over the page."""
         self.start_tour: Callable[[], None] = lambda: None
         """Shows a newcomer around."""
+        self.start_walk: Callable[[Walk], None] = lambda walk: None
+        """Begins a walk in the first person, which the page goes on with by itself."""
         self.open_tab: Callable[[str], None] = lambda name: None
         """Brings a tab of the panels to the front."""
         self.go_to: Callable[[str], None] = lambda name: None

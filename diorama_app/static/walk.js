@@ -79,20 +79,21 @@
   const keyOf = (event) => (event.key === "Shift" ? "Shift" : event.code);
   const onKey = (event) => {
     if (event.target.closest?.("input, textarea, select")) return;
-    const key = keyOf(event), known = key in WAYS || key in TURNS || key === "Shift" || key === "Escape";
-    if (!known || event.ctrlKey || event.metaKey || event.altKey) return;
+    const key = keyOf(event), pressed = event.target.closest?.("button, a") && [" ", "Enter"].includes(event.key);
+    if (event.ctrlKey || event.metaKey || event.altKey || event.key === "Tab" || pressed) return;
     event.preventDefault();
-    event.stopImmediatePropagation(); // nor does the letter mean a command, nor viser's own flight
+    event.stopImmediatePropagation(); // no key is a command meanwhile, nor viser's own flight
     if (event.type === "keyup") walk.keys.delete(key);
     else if (key === "Escape") end();
     else walk.keys.add(key);
   };
   const onDrag = (event) => {
     if (event.type === "pointerdown") {
-      if (event.target.tagName !== "CANVAS") return;
+      if (event.target.closest?.("#dio-toolbar, #dio-viewer")) end(); // another view is asked for
+      if (event.target.tagName !== "CANVAS" || walk === null) return;
       walk.drag = [event.pointerId, event.clientX, event.clientY];
     }
-    if (walk.drag?.[0] !== event.pointerId) return;
+    if (walk?.drag?.[0] !== event.pointerId) return;
     event.stopImmediatePropagation();
     walk.yaw += (event.clientX - walk.drag[1]) * DRAG_RAD;
     walk.pitch = Math.min(Math.max(walk.pitch + (event.clientY - walk.drag[2]) * DRAG_RAD, -PITCH_RAD), PITCH_RAD);

@@ -86,22 +86,17 @@ def _page(glb: bytes, gathered: ExportScene) -> str:
             page = server.get_scene_serializer().as_html()
         except FileNotFoundError as error:
             raise UnavailableError("viser's web client is missing; install viser again from its wheel") from error
-    title = html.escape(gathered.name)
+    title, walk = html.escape(gathered.name), walk_of(gathered.scene)
     # As functions: in a template, a backslash of the name would be an escape.
     page = re.sub(r"<title>.*?</title>", lambda _: f"<title>{title}</title>", page, count=1, flags=re.DOTALL)
-    told = {"VIEWS": json.dumps(views), "ASPECTS": json.dumps(ASPECTS), "WALK_PLAN": walk_json(gathered.scene)}
+    told = {
+        "VIEWS": json.dumps(views),
+        "ASPECTS": json.dumps(ASPECTS),
+        "WALK_PLAN": "null" if walk is None else walk.json,
+    }
     told["WALKING"] = (STATIC / "walk.js").read_text(encoding="utf-8")
     over = re.sub("|".join(told), lambda found: told[found[0]], (STATIC / "viewer.html").read_text(encoding="utf-8"))
     return page.replace("<head>", f"<head>{NOTICE}", 1).replace("</head>", f"{over}</head>", 1)
-
-
-def walk_json(scene: Scene) -> str:
-    """A walk through a scene as `static/walk.js` takes it; null where there is none."""
-    walk = walk_of(scene)
-    if walk is None:
-        return "null"
-    heading = round(walk.heading_rad, 4)
-    return json.dumps({"rings": walk.rings, "start": walk.start, "heading": heading, "eye": round(walk.eye_m, 4)})
 
 
 def _light(server: viser.ViserServer, gathered: ExportScene) -> None:

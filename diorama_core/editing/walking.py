@@ -5,6 +5,7 @@ Doors let pass: the wall is open over their width, and there is floor on both si
 
 from __future__ import annotations
 
+import json
 from collections.abc import Iterator
 from dataclasses import dataclass
 
@@ -45,6 +46,12 @@ class Walk:
     eye_m: float
     """Height of the eye in the world."""
 
+    @property
+    def json(self) -> str:
+        """As the page's script takes it."""
+        told = {"rings": self.rings, "start": self.start, "heading": self.heading_rad, "eye": self.eye_m}
+        return json.dumps(told, separators=(",", ":"))
+
 
 def walk_of(scene: Scene) -> Walk | None:
     """The walk through a scene; None where it has no floor that a person fits on."""
@@ -64,7 +71,7 @@ def walk_of(scene: Scene) -> Walk | None:
     eye = above if EYES_M[0] <= above <= EYES_M[1] else EYE_M
     rings = tuple(_ring(r) for p in parts for r in (p.exterior, *p.interiors))
     x, y = (float(v) for v in start[:2])
-    return Walk(rings, (x, y), float(np.arctan2(ahead[1], ahead[0])), level + eye)
+    return Walk(rings, (x, y), round(float(np.arctan2(ahead[1], ahead[0])), 4), round(level + eye, 4))
 
 
 def _free(scene: Scene) -> BaseGeometry:
