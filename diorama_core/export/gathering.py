@@ -243,7 +243,6 @@ def gather(
             meshes |= {mesh.key: mesh for mesh in made.values()}
         objects.append(_node(scene, library, item, painted[paint], shown, labels))
     lit = [] if options.lights == "none" else [o.item for o in objects]
-    lights = lights_of(scene, lit, {o.id: meshes[o.mesh].surfaces for o in objects})
     return ExportScene(
         name=clean_text(name),
         objects=tuple(objects),
@@ -251,7 +250,7 @@ def gather(
         meshes=meshes,
         materials=shared.materials,
         camera=scene.camera,
-        lights=lights,
+        lights=lights_of(scene, lit, {o.id: meshes[o.mesh].surfaces for o in objects}),
         scene=scene,
         library=library,
         options=options,

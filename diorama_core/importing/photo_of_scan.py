@@ -19,7 +19,7 @@ from diorama_core.importing.opening import Opened
 from diorama_core.importing.roomplan_parts import kinds_of_label
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.library.taxonomy import UNKNOWN, resolve
-from diorama_core.multiview.adding import with_photo
+from diorama_core.multiview.adding import AddedPhoto, with_photo
 from diorama_core.multiview.camera_in_room import FoundCamera, MeasuredThing, camera_in_room
 from diorama_core.multiview.one_scene import moved_to_room
 from diorama_core.perception.metrology.box_observations import gather
@@ -85,21 +85,25 @@ def with_photo_of_scan(
         progress.part(0.4, 1.0),
         measured_room=True,
     )
-    boxes = dict(added.photo.seen)
-    measured = {o.id: o for o in scene.objects}
-    after = tuple(
-        replace(_filling(o, measured[o.id]) if o.id in measured else o, box_px=boxes.get(o.id))
-        for o in added.scene.objects
-    )
     note = f"{name}: {len(added.joined)} scanned objects are seen in it, {len(added.new)} objects came from it"
     return Opened(
-        replace(added.scene, camera=added.photo.camera, objects=after),
+        _as_measured(added, scene),
         {**opened.textures, **added.textures},
         (*opened.changes, note),
         opened.provenance,
         inputs.photo,
         added.photo.inputs.boxes,
     )
+
+
+def _as_measured(added: AddedPhoto, scan: Scene) -> Scene:
+    """The scene with its scanned objects as large as they were measured; the photo is its own."""
+    boxes, measured = dict(added.photo.seen), {o.id: o for o in scan.objects}
+    objects = tuple(
+        replace(_filling(o, measured[o.id]) if o.id in measured else o, box_px=boxes.get(o.id))
+        for o in added.scene.objects
+    )
+    return replace(added.scene, camera=added.photo.camera, objects=objects)
 
 
 def _camera(scene: Scene, found: dict, inputs: Inputs, progress: Progress) -> FoundCamera | None:

@@ -113,40 +113,19 @@ def with_photo(
     read = read_photo(PosedInputs(new.inputs, new.camera), choose(new.inputs), progress.part(0.0, 0.15))
     if not read.objects:
         raise InputError(f"nothing is marked in {new.name} and nothing was found; draw a box around each object first")
-    own = said_alone(read)
-    others = [
-        (p, r, said_alone(r))
-        for number, p in enumerate(known)
-        for r in (_read_again(p, choose, progress.part(0.15 + 0.15 * number / len(known), 0.3)),)
-        if r is not None
-    ]
+    own, others = said_alone(read), _known_photos(known, choose, progress.part(0.15, 0.3))
     sightings = {o.id: _boxes_of(o.id, others) for o in scene.objects}
     objects = [o for o in scene.objects if not o.hidden]
-    told = {
-        box: item
-        for item in objects
-        for name, at in new.seen
-        if name == item.id and (box := _same(at, read)) is not None
-    }
-    rest = [o for o in objects if o not in told.values()]
-    claimed = told | _claimed(rest, sightings, [photo for _, _, photo in others], own, movable, set(told))
+    boxes = [(name, box) for name, at in new.seen if (box := _same(at, read)) is not None]
+    given = {box: o for o in objects for name, box in boxes if name == o.id}
+    rest = [o for o in objects if o not in given.values()]
+    claimed = given | _claimed(rest, sightings, [photo for _, _, photo in others], own, movable, set(given))
     progress.report(0.35, "joining objects")
     if len(others) == 1:
         pairs = [(sightings[item.id][0][1], box) for box, item in claimed.items() if sightings[item.id]]
         read, own = _at_likeliest_distance(read, own, others[0][2], pairs)
     photos = (*(photo for _, _, photo in others), own)
-    fitted: dict[str, JointCuboid] = {}
-    on_walls: list[JointCuboid] = []
-    for box, item in claimed.items():
-        if item.id in movable and sightings[item.id]:
-            rows = (*sightings[item.id], (len(others), box))
-            track = with_agreeing_boxes(fitted_track(tuple(rows), photos), photos)
-            fitted[item.id] = track.cuboid
-            if _hangs(item, scene) and seen_whole(track.sightings(photos)):
-                on_walls.append(track.cuboid)
-    scene = replace(scene, objects=tuple(filling(o, fitted[o.id]) if o.id in fitted else o for o in scene.objects))
-    if len(others) > 1:  # two photos alone do not tell how far they are apart
-        scene = replace(scene, architecture=walls_at_mounted(scene.architecture, on_walls, movable))
+    scene = _with_fitted(scene, {box: o for box, o in claimed.items() if o.id in movable}, sightings, photos, movable)
     shares = {
         box: share
         for box, item in claimed.items()
@@ -177,6 +156,50 @@ def with_photo(
 def _room_of(scene: Scene, read: ReadPhoto) -> GivenRoom:
     world = moved_to_room(Scene(architecture=scene.architecture), np.linalg.inv(read.T_room_photo))
     return GivenRoom(world.architecture)
+
+
+def _known_photos(
+    known: Sequence[FurtherPhoto], choose: Callable[[Inputs], Stages], progress: Progress
+) -> list[tuple[FurtherPhoto, ReadPhoto, RoomPhoto]]:
+    """The known photos in which objects of the scene are seen, each with what it says by itself."""
+    found = []
+    for number, photo in enumerate(known):
+        if photo.camera is not None and photo.seen:
+            part = progress.part(number / len(known), 1.0)
+            read = read_photo(PosedInputs(photo.inputs, photo.camera), choose(photo.inputs), part)
+            found.append((photo, read, said_alone(read)))
+    return found
+
+
+def _with_fitted(
+    scene: Scene,
+    claimed: Mapping[int, SceneObject],
+    sightings: Mapping[str, tuple[tuple[int, int], ...]],
+    photos: Sequence[RoomPhoto],
+    movable: frozenset[str],
+) -> Scene:
+    """The scene with its movable objects, and walls that these hang on, where all photos together show them.
+
+    Args:
+        scene: as it is.
+        claimed: the movable objects that the new photo shows, by box.
+        sightings: numbers of photo and box in which each object is seen in the known photos.
+        photos: the known ones and the new one, which is the last.
+        movable: ids of what may be put elsewhere.
+    """
+    fitted: dict[str, JointCuboid] = {}
+    on_walls: list[JointCuboid] = []
+    for box, item in claimed.items():
+        if sightings[item.id]:
+            rows = (*sightings[item.id], (len(photos) - 1, box))
+            track = with_agreeing_boxes(fitted_track(rows, photos), photos)
+            fitted[item.id] = track.cuboid
+            if _hangs(item, scene) and seen_whole(track.sightings(photos)):
+                on_walls.append(track.cuboid)
+    scene = replace(scene, objects=tuple(filling(o, fitted[o.id]) if o.id in fitted else o for o in scene.objects))
+    if len(photos) <= 2:  # they do not tell how far they are apart
+        return scene
+    return replace(scene, architecture=walls_at_mounted(scene.architecture, on_walls, movable))
 
 
 def _hangs(item: SceneObject, scene: Scene) -> bool:
@@ -227,13 +250,6 @@ def _at_likeliest_distance(
     return tried[int(np.argmin(costs))]
 
 
-def _read_again(photo: FurtherPhoto, choose: Callable[[Inputs], Stages], progress: Progress) -> ReadPhoto | None:
-    """A known photo with the boxes that objects of the scene are seen in; None without any."""
-    if photo.camera is None or not photo.seen:
-        return None
-    return read_photo(PosedInputs(photo.inputs, photo.camera), choose(photo.inputs), progress)
-
-
 def _boxes_of(
     object_id: str, others: Sequence[tuple[FurtherPhoto, ReadPhoto, RoomPhoto]]
 ) -> tuple[tuple[int, int], ...]:
@@ -282,16 +298,16 @@ def _claimed(
     others: Sequence[RoomPhoto],
     own: RoomPhoto,
     movable: frozenset[str],
-    told: Collection[int],
+    given: Collection[int],
 ) -> dict[int, SceneObject]:
-    """By box of the new photo, the object of the scene that it shows; not for boxes of which that was told."""
+    """By box of the new photo, the object of the scene that it shows; not for boxes of which that is given."""
     shared = np.zeros((len(objects), len(own.alone)))
     for k, item in enumerate(objects):
         seen = sightings[item.id]
         only = (others[seen[0][0]], seen[0][1]) if len(seen) == 1 and item.id in movable else None
         cuboid = JointCuboid(_middle(item), item.pose.yaw_rad, item.size_m, 0.0)
         for box, one in enumerate(own.alone):
-            if box not in told and broad(item.category) == broad(one.kind.name):
+            if box not in given and broad(item.category) == broad(one.kind.name):
                 shared[k, box] = overlap(cuboid, only, own, box)
     return {box: objects[k] for box, k in claims(shared).items()}
 

@@ -191,16 +191,18 @@ def build_room(
     progress.report(1.0, "done")
     several = sum(len(t.boxes) > 1 for t in tracks)
     notes = (f"{len(photos)} photos: {several} of {len(tracks)} objects are seen in more than one",)
-    seen = tuple(
-        tuple(
-            (track_name(number), r.objects[box].box)
-            for number, track in enumerate(tracks)
-            for photo, box in track.boxes
-            if photo == index and scene.has_object(track_name(number))
-        )
-        for index, r in enumerate(read)
-    )
+    seen = tuple(_seen_in(tracks, index, r, scene) for index, r in enumerate(read))
     return JoinedRoom(scene, tracks, built[0], textures, report, (*notes, *built[0].notes), seen)
+
+
+def _seen_in(tracks: Sequence[Track], index: int, read: ReadPhoto, scene: Scene) -> tuple[tuple[str, Box], ...]:
+    """Ids and boxes of the scene's objects that a photo shows."""
+    return tuple(
+        (track_name(number), read.objects[box].box)
+        for number, track in enumerate(tracks)
+        for photo, box in track.boxes
+        if photo == index and scene.has_object(track_name(number))
+    )
 
 
 def read_photo(photo: PosedInputs, stages: Stages, progress: Progress) -> ReadPhoto:

@@ -191,18 +191,11 @@ def build_problem(
     edges, reasons = complete_edges(scene, objects, shapes)
     index = {o.id: k for k, o in enumerate(objects)}
     free = _free(scene, objects, only)
-    parent = np.full(len(objects), -1)
-    for k, edge in enumerate(edges):
-        if edge is not None and edge.parent in index:
-            parent[k] = index[edge.parent]
-    surfaces: list[RestingSurface | None] = []
-    levels: list[tuple[RestingSurface, ...]] = []
-    contacts = np.zeros((len(objects), 3))
-    for k, (item, edge) in enumerate(zip(objects, edges)):
-        supported_by = shapes[parent[k]] if parent[k] >= 0 else None
-        surfaces.append(choose_surface(scene, item, edge, supported_by) if edge is not None else None)
-        levels.append(possible_surfaces(scene, item, edge, supported_by) if edge is not None else ())
-        contacts[k] = choose_contact(scene, item, edge, surfaces[-1])
+    parent = np.array([-1 if e is None else index.get(e.parent, -1) for e in edges], dtype=int)
+    supporters = [shapes[k] if k >= 0 else None for k in parent]
+    surfaces = [None if e is None else choose_surface(scene, o, e, s) for o, e, s in zip(objects, edges, supporters)]
+    levels = [() if e is None else possible_surfaces(scene, o, e, s) for o, e, s in zip(objects, edges, supporters)]
+    contacts = [choose_contact(scene, o, e, s) for o, e, s in zip(objects, edges, surfaces)]
     walls = tuple(sorted(scene.architecture.by_role("wall"), key=lambda w: w.id))
     floor = scene.architecture.floor
     yielding = _yielding_pairs(objects)
@@ -228,7 +221,7 @@ def build_problem(
         on_plane=on_plane,
         surface=tuple(surfaces),
         levels=tuple(levels),
-        contact=contacts,
+        contact=np.array(contacts, dtype=np.float64).reshape(-1, 3),
         footing=tuple(
             footing_of(own, face) if share == 1.0 else box_footing(share * np.asarray(o.shape_size_m), face)
             for o, own, share, face in zip(objects, parts, firm, contacts)

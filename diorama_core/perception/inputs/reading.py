@@ -75,10 +75,9 @@ def read_inputs(
     """
     decoded = read_photo(read_source(image, "photo", name), max_side)
     photo, warnings = decoded.photo, list(decoded.notes)
-    camera = _read_intrinsics(decoded, intrinsics, fov_deg)
-    unturned, decoded = decoded, half_turned(decoded) if half_turn else decoded
-    if camera is not None and half_turn:
-        camera = replace(camera, cx=camera.width - camera.cx, cy=camera.height - camera.cy)
+    unturned, camera = decoded, _read_intrinsics(decoded, intrinsics, fov_deg)
+    if half_turn:
+        decoded, camera = half_turned(decoded), camera and _half_turned_camera(camera)
     depth_m, instances = None, None
     options = DepthOptions(depth_scale, depth_encoding, depth_kind)
     labelled: tuple[LabelledBox, ...] = ()
@@ -96,6 +95,10 @@ def read_inputs(
         instances, matched, notes = read_masks(read_folder(masks, "masks"), labelled, decoded)
         warnings += notes
     return ReadInputs(Inputs(decoded.photo, labelled, instances, matched, depth_m, camera), tuple(warnings))
+
+
+def _half_turned_camera(camera: Intrinsics) -> Intrinsics:
+    return replace(camera, cx=camera.width - camera.cx, cy=camera.height - camera.cy)
 
 
 def _read_intrinsics(
