@@ -47,11 +47,6 @@ class PointForm:
     extra: str = ""
 
 
-def is_points(head: FileHead) -> bool:
-    """Whether a file or folder holds measured points."""
-    return _form_of(head) is not None
-
-
 def read_points(path: Path) -> PointCloud:
     """The points of a file or of a scanner app's folder.
 

@@ -136,7 +136,7 @@ class _Heard(logging.Filter):
 
 def _meter(heard: _Heard, size: int) -> type:
     """A progress-bar class for `huggingface_hub` that draws nothing and reports what was heard."""
-    from huggingface_hub.utils.tqdm import tqdm as hub_tqdm
+    from huggingface_hub.utils import tqdm as hub_tqdm
 
     class Meter(hub_tqdm):  # type: ignore[misc, unused-ignore]  # tqdm has no types where its stubs are absent
         """Reports the bytes of one file."""
@@ -176,7 +176,7 @@ def _address(network: Network, file: ModelFile, revision: str) -> tuple[str, dic
     if network.url:
         return f"{network.url}/{file.path}", {}
     from huggingface_hub import hf_hub_url
-    from huggingface_hub.utils._headers import build_hf_headers
+    from huggingface_hub.utils import build_hf_headers
 
     url = hf_hub_url(network.repo, file.path, revision=revision, endpoint=_endpoint())
     return url, build_hf_headers(library_name="diorama")

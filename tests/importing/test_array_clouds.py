@@ -9,8 +9,7 @@ import pytest
 
 from diorama_core.errors import InputError
 from diorama_core.importing.forms import told
-from diorama_core.importing.point_files import is_points, read_points
-from diorama_core.io.file_heads import head_of
+from diorama_core.importing.point_files import read_points
 from tests.importing.scans import room_points
 
 RANDOM = np.random.default_rng(0)
@@ -77,10 +76,12 @@ def test_other_numbers_are_no_points(tmp_path: Path) -> None:
     }
     for name, data in dumps.items():
         (tmp_path / name).write_bytes(data)
-        assert not is_points(head_of(tmp_path / name))
+        with pytest.raises(InputError, match="holds no points"):
+            read_points(tmp_path / name)
 
 
 def test_a_header_that_promises_too_much_is_no_cloud(tmp_path: Path) -> None:
     data = saved(tmp_path / "rows.npy", POINTS).read_bytes()
     (tmp_path / "short.npy").write_bytes(data[:5000])
-    assert not is_points(head_of(tmp_path / "short.npy"))
+    with pytest.raises(InputError, match="holds no points"):
+        read_points(tmp_path / "short.npy")
