@@ -8,6 +8,7 @@ from diorama_app.commands import edit as editing
 from diorama_app.commands import swap as swapping
 from diorama_app.commands.camera_presets import Views
 from diorama_app.commands.measure import start_measuring, stop_measuring
+from diorama_app.commands.play import play
 from diorama_app.commands.registry import Command, CommandTable
 from diorama_app.reconstruction.networks import find_furniture
 from diorama_app.reconstruction.photo_outlines import PhotoOutlines
@@ -257,6 +258,7 @@ def _views(views: Views) -> tuple[Command, ...]:
         Command("view_left", "Left view", lambda g: views.along(g, (-1.0, 0.0, 0.0)), "5", None, "From the left"),
         Command("view_right", "Right view", lambda g: views.along(g, (1.0, 0.0, 0.0)), "6", None, "From the right"),
         Command("walk", "Walk", views.walk, "W", None, "Walk through the room: W A S D, drag to look around"),
+        Command("play", "Play", play, None, None, "Gravity acts, clicks push; Play again keeps it as one undo step"),
         Command("focus", "Focus", views.focus, "F", None, "Centre the view on the selection"),
     )
 

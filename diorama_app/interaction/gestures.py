@@ -17,7 +17,7 @@ from diorama_app.commands.measure import measure_at
 from diorama_app.commands.surfaces import surface_under
 from diorama_app.interaction.marquee import objects_in
 from diorama_app.interaction.resize_handles import SizeHandles
-from diorama_app.session.client import Client, Measuring, Placing
+from diorama_app.session.client import Client, Measuring, Placing, Playing
 from diorama_app.session.preferences import GizmoMode
 from diorama_app.session.units import format_length
 from diorama_core.editing.clearances import clearances
@@ -82,9 +82,11 @@ class Gestures:
     def picked(self, object_id: str, event: viser.SceneNodePointerEvent[Any]) -> None:
         """An object was clicked. Called from viser's event loop."""
         self._last_pick = event.screen_pos
-        add = event.modifier is not None
+        add, direction = event.modifier is not None, np.array(event.ray_direction)
 
         def pick() -> None:
+            if isinstance(self._client.doing, Playing):
+                self._client.doing.push(object_id, direction)
             if self._client.doing is not None:
                 return  # the scene's own click says where
             if add:
@@ -301,6 +303,8 @@ class Gestures:
         if not self._handles.cancel() and self._drag is None and self._client.doing is None:
             return False
         self._drag = None
+        if isinstance(self._client.doing, Playing):
+            self._client.doing.end()
         self._client.doing = None
         self._end_collisions()
         self._session.refresh()

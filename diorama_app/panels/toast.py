@@ -7,7 +7,7 @@ from collections.abc import Callable
 
 import viser
 
-from diorama_app.session.client import Client, Measuring, Placing
+from diorama_app.session.client import Client, Measuring, Placing, Playing
 from diorama_app.web.html import Action, LiveHtml, button, text
 
 SHOWN_S, OFFERED_S = 6.0, 15.0
@@ -66,6 +66,8 @@ class Toasts:
             words = "Click where to place it: the floor, a table or a wall"
         elif isinstance(doing, Measuring) and len(doing.points) < 2:
             words = ("Click the first point", "Click the second point")[len(doing.points)]
+        elif isinstance(doing, Playing):
+            words = "Click an object to push it"
         stop = button("Esc", "stop", title="Stop")
         above = "bottom:calc(var(--dio-below, 0px) + 112px)"
         line = f'<div class="dio-toast stay" style="{above}"><span>{words}</span>{stop}</div>'
@@ -75,6 +77,8 @@ class Toasts:
         client = self._client
 
         def stop() -> None:
+            if isinstance(client.doing, Playing):
+                client.doing.end()
             client.doing = None
             client.view.show_measure((), "")
             client.refresh()

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import viser
 
 from diorama_app.commands.registry import CommandTable
-from diorama_app.session.client import Client, Measuring
+from diorama_app.session.client import Client, Measuring, Playing
 from diorama_app.web.html import Action, LiveHtml, button, run_once, text
 
 if TYPE_CHECKING:
@@ -26,7 +26,7 @@ SPARE = (("gizmo_floor", "gizmo_free", "gizmo_size", "snap"), ("measure", "help"
 """Tools that are in the menu instead where the view is narrow."""
 
 MENU: dict[str, tuple[str, ...]] = {
-    "View": ("view_top", "view_front", "view_left", "view_right", "walk", "focus"),
+    "View": ("view_top", "view_front", "view_left", "view_right", "walk", "play", "focus"),
     "Show": ("names", "badges", "masks", "planes"),
     "While moving": ("slide",),
     "Page": ("theme",),
@@ -113,6 +113,8 @@ class Toolbar:
             return preferences.gizmo == command_id.removeprefix("gizmo_")
         if command_id == "measure":
             return isinstance(self._client.doing, Measuring)
+        if command_id == "play":
+            return isinstance(self._client.doing, Playing)
         if command_id == "view_plan":
             return self._client.plan
         if command_id == "theme":

@@ -11,7 +11,9 @@ from collections.abc import Callable, Iterable
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
 import viser
+from jaxtyping import Float
 
 from diorama_app.session.connected_client import Panel
 from diorama_app.session.preferences import Preferences, remember
@@ -45,7 +47,16 @@ class Measuring:
     points: tuple[tuple[float, float, float], ...] = ()
 
 
-Doing = Placing | Measuring | None
+@dataclass(frozen=True)
+class Playing:
+    """Clicks in the view push objects, while gravity acts on all of them."""
+
+    push: Callable[[str, Float[np.ndarray, "3"]], None]
+    """Pushes an object along a direction of the world."""
+    end: Callable[[], None]
+
+
+Doing = Placing | Measuring | Playing | None
 """What the next click means; None: it selects."""
 
 

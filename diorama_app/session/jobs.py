@@ -16,7 +16,19 @@ from diorama_core.progress import CancelToken, Progress, ProgressEvent
 log = logging.getLogger(__name__)
 
 JobKind = Literal[
-    "build", "optimise", "export", "outline", "import", "text", "pull", "find", "join", "picture", "words", "example"
+    "build",
+    "optimise",
+    "export",
+    "outline",
+    "import",
+    "text",
+    "pull",
+    "find",
+    "join",
+    "picture",
+    "words",
+    "example",
+    "play",
 ]
 PERCEIVING: frozenset[JobKind] = frozenset({"build", "outline", "text"})
 """Kinds that run the pipeline, which needs Open3D."""
