@@ -14,6 +14,7 @@ from jaxtyping import Float
 
 from diorama_app.commands.optimise import untouched
 from diorama_app.session.client import Client, Playing
+from diorama_core.editing.fallen import held_again
 from diorama_core.errors import EditRefused
 from diorama_core.progress import Progress
 from diorama_core.scene import edits
@@ -98,8 +99,6 @@ def _stop(client: Client) -> None:
 
 
 def _keep(client: Client, start: Scene, final: Scene) -> None:
-    from diorama_core.export.playground import held_again
-
     session = client.session
     played = edits.place(session.scene, untouched(session.scene, start, final))
     session.commit("play", held_again(session.scene, played), by=client)

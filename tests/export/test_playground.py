@@ -1,4 +1,4 @@
-"""Gravity and pushes: what rests stays, what is pushed goes, what falls is held by what it lies on then."""
+"""Gravity and pushes: what rests stays, what is pushed goes."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from diorama_core.export.gathering import gather
-from diorama_core.export.playground import Playground, held_again
+from diorama_core.export.playground import Playground
 from diorama_core.export.stability import stability
 from diorama_core.scene import edits
 from diorama_core.scene.types import Scene
@@ -52,18 +52,3 @@ def test_a_push_moves_one_and_what_is_locked_stays(room: Scene) -> None:
     playground.step(1.0)
     assert _moved(locked, playground)[chair.id] > 0.1
     assert table.id not in playground.poses()
-
-
-def test_what_fell_off_is_held_by_the_floor(room: Scene) -> None:
-    ball = next(o for o in room.objects if o.shape_id == "ball")
-    table = room.support_of(ball.id)
-    assert table is not None
-    beside = room.object(table.parent).corners_world[:, :2].max(axis=0) + 0.3
-    low = ball.pose.moved(
-        (*(beside - ball.pose.position[:2]), float(ball.size_m[2]) / 2 - float(ball.pose.position[2]))
-    )
-    after = held_again(room, edits.place(room, {ball.id: low}))
-    edge = after.support_of(ball.id)
-    assert edge is not None
-    assert edge.parent == "floor"
-    assert held_again(room, room) == room
