@@ -8,6 +8,9 @@ from dataclasses import dataclass, field
 
 from diorama_core.errors import Cancelled
 
+Segments = tuple[tuple[float, float, float, float], ...]
+"""Lines over a photo: both ends, x1, y1, x2, y2 in its pixels."""
+
 
 @dataclass(frozen=True)
 class ProgressEvent:
@@ -19,6 +22,8 @@ class ProgressEvent:
     """What is happening now, in plain words."""
     found: str = ""
     """What a stage that just ended found, in a few words; empty otherwise."""
+    drawn: Segments = ()
+    """What it found, as lines over the photo."""
 
 
 class CancelToken:
@@ -60,10 +65,10 @@ class Progress:
         self.check()
         self.on_event(ProgressEvent(fraction=self._at(min(max(fraction, 0.0), 1.0)), message=message))
 
-    def found(self, words: str) -> None:
-        """Report what this part of the job, which is done, found; nothing when there are no words."""
-        if words:
-            self.on_event(ProgressEvent(fraction=self.end, message=words, found=words))
+    def found(self, words: str, drawn: Segments = ()) -> None:
+        """Report what this part of the job, which is done, found: words, and lines over the photo."""
+        if words or drawn:
+            self.on_event(ProgressEvent(fraction=self.end, message=words, found=words, drawn=drawn))
 
     def check(self) -> None:
         """Raise `Cancelled` when the job was asked to stop."""

@@ -33,6 +33,7 @@ class JobStrip:
         """Show the running job; nothing when none runs."""
         session = self._client.session
         status, run = session.jobs.status, session.layout_run
+        self._client.view.canvas.show_lines(() if status is None else status.drawn)
         if status is None:
             self._tell(None)
             return

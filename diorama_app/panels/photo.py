@@ -13,7 +13,7 @@ from jaxtyping import UInt8
 from PIL import Image
 
 from diorama_app.commands.registry import CommandTable
-from diorama_app.panels.fields import GO_COLOUR, enable, on_change, on_press, show_if
+from diorama_app.panels.fields import GO_COLOUR, enable, on_change, on_press, show_if, show_value
 from diorama_app.panels.input_questions import ask_depth
 from diorama_app.panels.photo_bar import no_scene_card, photo_bar
 from diorama_app.panels.photo_boxes import PhotoBoxes, box_list
@@ -47,6 +47,7 @@ from diorama_core.perception.inputs import ReadInputs
 from diorama_core.perception.inputs.depth.units import AmbiguousDepthError, DepthAnswer
 from diorama_core.perception.inputs.sorting import Sort
 from diorama_core.perception.inputs.source import Source
+from diorama_core.project.storage import Project
 
 SLOW_BYTES = 2_000_000
 """A file of more is announced while it is read."""
@@ -66,6 +67,8 @@ class PhotoPanel:
     def __init__(self, gui: viser.GuiApi, client: Client, commands: CommandTable) -> None:
         self._client, self._session = client, client.session
         self._boxes = PhotoBoxes(client, self.refresh)
+        self._seen_for: Project | None = None
+        """The project of which it is known whether its photo is built unasked."""
         self._picture_of: object = None
         self._picture = ""
         self._invitation = LiveHtml(gui, self._act)
@@ -79,6 +82,9 @@ class PhotoPanel:
             self._find = gui.add_button("Detect furniture", hint=commands["find_furniture"].tooltip)
             on_press(self._find, lambda: client.post(lambda: commands["find_furniture"].run(client)))
             self._no_detector = LiveHtml(gui, self._act)
+            hint = "Build a photo without boxes as soon as it is uploaded, from what is found in it"
+            self._at_once = gui.add_checkbox("Build uploads at once", client.preferences.build_at_once, hint=hint)
+            on_change(self._at_once, lambda on: client.post(lambda: client.change_preferences(build_at_once=bool(on))))
             self._files = gui.add_folder(None)
             with self._files:
                 self._upload(gui, "boxes", "Add boxes", ".json,.xml,.txt,.csv")
@@ -106,6 +112,8 @@ class PhotoPanel:
         def done(read: ReadInputs) -> None:
             project = begin_project(self._session.projects_dir, upload.name, read, upload.photo)
             keep_given(project, upload)
+            if client.preferences.build_at_once and not read.inputs.boxes and read.inputs.instances is None:
+                project.update_info(**{work.AWAITED: True})
             self._session.visit(client, project, sentences(read.warnings[:3]))
 
         def ask(unknown: AmbiguousDepthError) -> None:
@@ -138,8 +146,11 @@ class PhotoPanel:
         enable(self._describe, idle and bool(self._words.value.strip()))
         finds, about = self._session.glances.of("detection", _detection)
         enable(self._find, idle and finds)
+        show_value(self._at_once, client.preferences.build_at_once)
         self._no_detector.show(about if inputs is not None else "")
         proposed = 0 if inputs is None else self._boxes.proposed(inputs)
+        if inputs is not None and proposed and idle:
+            self._build_if_awaited(inputs)
         self._bar.show("" if inputs is None else photo_bar(client, inputs, proposed))
         self._no_scene.show(no_scene_card(client))
         self._naming.show("" if inputs is None else self._boxes.name_field(inputs))
@@ -175,6 +186,8 @@ class PhotoPanel:
         camera = _intrinsics(self._camera.value)
         upload = upload_again(session.project, before, new, answer, camera, turn=turn, bend=bend)
         project = session.project
+        if work.builds_unasked(session):
+            session.jobs.cancel()  # it would be built without what is added
 
         def done(read: ReadInputs) -> None:
             if session.inputs is not before:
@@ -216,7 +229,8 @@ class PhotoPanel:
             "turn": lambda: self._read_again("turn the photo", {}, turn=True),
             "bend": lambda: self._read_again("undo straightening", {}, bend=True),
             "build": lambda: work.build(client.session),
-            "build at once": self._build_at_once,
+            "build at once": self._build_found,
+            "by hand": self._mark_by_hand,
             "join": lambda: join_photo(client),
             "named": lambda: boxes.name(action.pair[1]),
             "name": lambda: boxes.name(action.arg),
@@ -233,12 +247,24 @@ class PhotoPanel:
 
         client.post(do)
 
-    def _build_at_once(self) -> None:
-        """Build with the proposals, of which nobody looked at one."""
-        session = self._client.session
-        if session.inputs is not None:
-            inputs = self._boxes.with_proposals(session.inputs)
-            work.start_build(session, inputs, "Building the scene", "build the scene")
+    def _build_found(self) -> None:
+        """Build with what was found, of which nobody looked at anything."""
+        inputs = self._session.inputs
+        if inputs is not None:
+            work.build_found(self._session, self._boxes.sure(inputs))
+
+    def _build_if_awaited(self, inputs: Inputs) -> None:
+        """Build what was found in a photo that was just uploaded; where nothing is sure, a person marks it."""
+        session, project = self._session, self._session.project
+        if project is None or project == self._seen_for or not session.unfinished:
+            return
+        self._seen_for = project
+        if work.is_awaited(project) and not inputs.boxes and self._boxes.sure(inputs):
+            self._build_found()
+
+    def _mark_by_hand(self) -> None:
+        self._session.jobs.cancel()
+        self._client.refresh()
 
     # -- words ------------------------------------------------------------------------------------------------
 

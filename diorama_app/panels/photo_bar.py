@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from diorama_app.reconstruction.build_job import ready_to_build
+from diorama_app.reconstruction.build_job import builds_unasked, ready_to_build
 from diorama_app.reconstruction.photo_joining import awaits_photo
 from diorama_app.session.client import Client
 from diorama_app.web.html import button
@@ -20,6 +20,9 @@ def photo_bar(client: Client, inputs: Inputs, proposals: int) -> str:
         proposals: how many proposals lie on it.
     """
     scene, further, busy = client.session.scene, client.further_photo, client.session.jobs.status is not None
+    if builds_unasked(client.session):
+        mine = button("Mark it myself", "by hand", title="Stop building, and draw boxes around the furniture yourself")
+        return f'<div class="bar"><span class="lead">Building what was found in the photo.</span>{mine}</div>'
     pieces = []
     if proposals:
         pieces.append(f'<span class="lead">{number_of(proposals, "proposal")}</span>')
@@ -30,7 +33,7 @@ def photo_bar(client: Client, inputs: Inputs, proposals: int) -> str:
         hint = "Reconstruct only the selected box; everything else stays"
         pieces.append(button("Add selected box to the scene", "add box", title=hint, disabled=busy))
     if further is None and proposals and not ready_to_build(inputs):
-        hint = "Build with all proposals; what the build is not sure of is asked afterwards"
+        hint = "Build with the surest proposals; what the build is not sure of is asked afterwards"
         pieces.append(button("Build at once", "build at once", title=hint, disabled=busy))
     elif further is None:
         pieces.append(build_button(inputs, busy=busy))

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 
+from diorama_app.reconstruction.build_job import builds_unasked
 from diorama_app.reconstruction.networks import can_find_furniture
 from diorama_app.reconstruction.suggestions import Suggestions
 from diorama_app.session.client import Client
@@ -26,7 +27,7 @@ from diorama_core.editing.box_checks import merged_boxes, too_tall
 from diorama_core.editing.input_corrections import labelled_box, same_object, with_box_at, without_box
 from diorama_core.errors import InputError
 from diorama_core.io.text import number_of
-from diorama_core.library.taxonomy import CATEGORIES, UNKNOWN, column, is_furniture
+from diorama_core.library.taxonomy import CATEGORIES, column, is_furniture
 
 COMMON = tuple(sorted(filter(is_furniture, column("frequency")), key=lambda kind: -column("frequency")[kind])[:10])
 """Furniture that rooms have most of."""
@@ -77,11 +78,11 @@ class PhotoBoxes:
         return len(self._proposals(inputs)) if self._client.view.canvas.is_open else 0
 
     def accept_all(self) -> None:
-        """Make boxes of all proposals."""
+        """Make boxes of all proposals; their names stay guesses until somebody names them."""
         inputs = self._client.marked
         if inputs is None:
             return
-        proposed = tuple(labelled_box(b.box, b.label) for b in self._proposals(inputs))
+        proposed = tuple(replace(labelled_box(b.box, b.label), guessed=True) for b in self._proposals(inputs))
         accepted = merged_boxes((*inputs.boxes, *proposed))[len(merged_boxes(inputs.boxes)) :]
         if accepted:
             boxes = (*inputs.boxes, *accepted)
@@ -91,11 +92,10 @@ class PhotoBoxes:
             self._client.refresh()
             self._client.notice(" ".join(_accepted_in_words(boxes, len(proposed) - len(accepted), doubtful)))
 
-    def with_proposals(self, inputs: Inputs) -> Inputs:
-        """The photo with boxes of all proposals; what they hold is left to the build, since their names are guesses."""
-        nothing = UNKNOWN.name
-        proposed = (replace(b, category=nothing, label=nothing, guessed=True) for b in self._proposals(inputs))
-        return replace(inputs, boxes=(*inputs.boxes, *proposed))
+    def sure(self, inputs: Inputs) -> tuple[LabelledBox, ...]:
+        """Those of the proposals that a build uses though nobody looked at them."""
+        sure = {b.box for b in self._suggested(inputs).sure()}
+        return tuple(replace(b, guessed=True) for b in self._proposals(inputs) if b.box in sure)
 
     def open(self) -> None:
         """Put the photo on the canvas, to be marked; raises `InputError` where there is none."""
@@ -180,6 +180,8 @@ class PhotoBoxes:
         self._client.refresh()
 
     def _annotate(self, label: str, inputs: Inputs) -> None:
+        if builds_unasked(self._client.session):
+            self._client.session.jobs.cancel()  # who marks something wants to build with it
         self._client.annotate(label, inputs)
 
     def _rename(self, index: int, label: str) -> None:

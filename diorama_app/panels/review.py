@@ -8,13 +8,15 @@ from dataclasses import dataclass
 
 import numpy as np
 import viser
-from PIL import Image
+from jaxtyping import UInt8
+from PIL import Image, ImageDraw
 
 from diorama_app.commands import review
 from diorama_app.panels.fields import on_change, show_if, show_value
 from diorama_app.session.client import Client
 from diorama_app.viewport.thumbnails import SIDE_PX, Paint
 from diorama_app.web.html import Action, LiveHtml, button, text
+from diorama_core.artefacts import Box
 from diorama_core.errors import EditRefused
 from diorama_core.io.text import number_of
 from diorama_core.library.labels import understand_label
@@ -125,14 +127,7 @@ class Review:
         inputs = self._client.session.inputs
         if inputs is None or item.box_px is None:
             return ""
-        x1, y1, x2, y2 = item.box_px
-        side = max(x2 - x1, y2 - y1) * (0.5 + MARGIN)
-        x, y = (x1 + x2) / 2, (y1 + y2) / 2
-        picture = Image.fromarray(inputs.photo.rgb).crop(
-            (max(0, round(x - side)), max(0, round(y - side)), min(inputs.photo.width, round(x + side)),
-             min(inputs.photo.height, round(y + side)))
-        )  # fmt: skip
-        picture.thumbnail((CROP_PX, CROP_PX))
+        picture = crop_around(inputs.photo.rgb, item.box_px)
         buffer = io.BytesIO()
         picture.save(buffer, "JPEG", quality=85)
         uri = base64.b64encode(buffer.getvalue()).decode()
@@ -203,3 +198,18 @@ def _summary(doubt: Doubt) -> str:
         f'<div class="job card"><span class="words"><b>{share} % sure</b> · {text(words)}</span>{start}'
         f'<meter min="0" max="100" value="{share}" aria-label="How sure the scene is"></meter></div>'
     )
+
+
+def crop_around(rgb: UInt8[np.ndarray, "h w 3"], box: Box) -> Image.Image:
+    """A part of a photo around a box, with a frame that tells the box from its surroundings."""
+    x1, y1, x2, y2 = box
+    side, (x, y) = max(x2 - x1, y2 - y1) * (0.5 + MARGIN), ((x1 + x2) / 2, (y1 + y2) / 2)
+    left, top = max(0, round(x - side)), max(0, round(y - side))
+    right, bottom = min(rgb.shape[1], round(x + side)), min(rgb.shape[0], round(y + side))
+    picture = Image.fromarray(rgb[top:bottom, left:right])
+    scale = CROP_PX / max(picture.size)
+    picture = picture.resize((max(1, round(picture.width * scale)), max(1, round(picture.height * scale))))
+    frame = [(x1 - left) * scale, (y1 - top) * scale, (x2 - left) * scale, (y2 - top) * scale]
+    for colour, width in (("#ffffff", 5), ("#2f6fd6", 3)):
+        ImageDraw.Draw(picture).rectangle(frame, outline=colour, width=width)
+    return picture

@@ -9,14 +9,14 @@ from __future__ import annotations
 import contextlib
 import time
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from diorama_app.reconstruction.networks import can_find_furniture
 from diorama_app.session.project_contents import shown_notes
 from diorama_app.session.session import BUILDING, EditorSession
 from diorama_app.session.textures import Textures
-from diorama_core.artefacts import FurtherPhoto, Inputs, Reason
+from diorama_core.artefacts import FurtherPhoto, Inputs, LabelledBox, Reason
 from diorama_core.errors import DioramaError, EditRefused, InputError
 from diorama_core.io.text import number_of
 from diorama_core.library.record import ShapeLibrary
@@ -27,6 +27,12 @@ from diorama_core.scene.types import Camera, Scene
 if TYPE_CHECKING:
     from diorama_core.multiview.rebuilding import Rebuilt  # the whole pipeline; opening a project does without it
     from diorama_core.pipeline.run import Built
+
+
+UNASKED = "Building what was found"
+"""Title of a build with what was found in a photo, of which nobody looked at anything."""
+AWAITED = "build_when_seen"
+"""What a project's file says of an uploaded photo that is to be built as soon as its objects are found."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -59,6 +65,36 @@ class NewScene:
 def ready_to_build(inputs: Inputs | None) -> bool:
     """Whether a scene with objects can be built."""
     return inputs is not None and (bool(inputs.boxes) or inputs.instances is not None or can_find_furniture())
+
+
+def builds_unasked(session: EditorSession) -> bool:
+    """Whether a build runs that whoever marks something in the photo puts an end to."""
+    status = session.jobs.status
+    return status is not None and status.title == UNASKED and not status.cancelling
+
+
+def build_found(session: EditorSession, found: Sequence[LabelledBox]) -> None:
+    """Build the scene of the open project's photo with what was found in it beside what is marked.
+
+    Args:
+        session: where.
+        found: boxes of which nobody looked at one.
+
+    Raises:
+        EditRefused: the project is read-only.
+    """
+    inputs = session.inputs
+    if inputs is not None:
+        given = replace(inputs, boxes=(*inputs.boxes, *found))
+        start_build(session, given, UNASKED, "build the scene")
+
+
+def is_awaited(project: Project) -> bool:
+    """Whether the project's photo is to be built as soon as its objects are found; says so only once."""
+    awaited = bool(project.info().get(AWAITED))
+    if awaited:
+        project.update_info(**{AWAITED: None})
+    return awaited
 
 
 def build(session: EditorSession) -> None:

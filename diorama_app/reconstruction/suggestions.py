@@ -17,6 +17,7 @@ from diorama_core.errors import UnavailableError
 from diorama_core.models.boxes import Detections, areas, overlaps
 from diorama_core.models.own_weights import has_own_recogniser
 from diorama_core.models.store import ModelStore
+from diorama_core.perception.foundation.proposals import CONFIDENT
 
 log = logging.getLogger(__name__)
 
@@ -66,6 +67,11 @@ class Suggestions:
         if self._boxes is None:
             self._ask(None, self._proposed)
         return self._boxes or ()
+
+    def sure(self) -> tuple[LabelledBox, ...]:
+        """Those of the likely objects that a build uses though nobody looked at them."""
+        known = {b.box for b in self._known or ()}
+        return tuple(b for b in self.boxes() if b.score >= CONFIDENT or b.box in known)
 
     def outline(self, box: Box) -> Bool[np.ndarray, "h w"] | None:
         """The pixels of the photo that are the object's in a box; None while they are worked out."""

@@ -11,7 +11,7 @@ from typing import Literal
 
 from diorama_core.errors import Cancelled, DioramaError, EditRefused
 from diorama_core.geometry.open3d_import import load_open3d
-from diorama_core.progress import CancelToken, Progress, ProgressEvent
+from diorama_core.progress import CancelToken, Progress, ProgressEvent, Segments
 
 log = logging.getLogger(__name__)
 
@@ -45,6 +45,8 @@ class JobStatus:
     cancelling: bool = False
     found: tuple[str, ...] = ()
     """What was found so far, in a few words each."""
+    drawn: Segments = ()
+    """What was found so far, as lines over the photo."""
     started_at: float = field(default_factory=time.monotonic)
     """On the monotonic clock (s)."""
 
@@ -112,8 +114,9 @@ class Jobs:
             if status.cancelling:
                 return status
             found = (*status.found, event.found) if event.found else status.found
-            message = status.message if event.found else event.message
-            return replace(status, fraction=event.fraction, message=message, found=found)
+            message = status.message if event.found else event.message or status.message
+            drawn = (*status.drawn, *event.drawn)
+            return replace(status, fraction=event.fraction, message=message, found=found, drawn=drawn)
 
         self._change(told)
 

@@ -56,6 +56,8 @@ class Preferences:
     """Whether the object's name, position and size are shown as fields."""
     physics: bool = False
     """Whether the object's mass, friction, joints and colliders are shown."""
+    build_at_once: bool = True
+    """Whether an uploaded photo without boxes is built as soon as its objects are found."""
     favourites: tuple[str, ...] = ()
     """Ids of the library's shapes that the person marked."""
     recent: tuple[str, ...] = ()

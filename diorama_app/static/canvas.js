@@ -5,7 +5,7 @@
   const COLOURS = ["#2f6fd6", "#d6542f", "#1f8a55", "#a050c8", "#b07a00", "#0f8a99"];
   const NEAR_PX = 4; // a press that moves less is a click
   const HANDLES = ["nw", "n", "ne", "e", "se", "s", "sw", "w"];
-  const state = { photo: null, boxes: [], selected: null, likely: [], proposals: [], mask: null, drawn: [] };
+  const state = { photo: null, boxes: [], selected: null, likely: [], proposals: [], mask: null, lines: [], drawn: [] };
   let root, figure, layer, drag;
   let at = null, next = 0; // the proposal that keys are for, and the one that Tab goes to after an accepted one
 
@@ -208,6 +208,16 @@
     node.append(element("div", `dio-canvas-name${nameSide(row.box)}`, { textContent: `${row.label}?` }));
     return node;
   };
+  // What a build found so far: the room and a box around each object, in space.
+  const linesElement = () => {
+    const svg = document.createElementNS("http://www.w3.org/2000/svg", "svg");
+    svg.setAttribute("class", "dio-canvas-lines");
+    svg.setAttribute("viewBox", `0 0 ${state.photo.size.join(" ")}`);
+    const path = document.createElementNS(svg.namespaceURI, "path");
+    path.setAttribute("d", state.lines.map(([x1, y1, x2, y2]) => `M${x1} ${y1}L${x2} ${y2}`).join(""));
+    svg.append(path, path.cloneNode());
+    return svg;
+  };
   const draw = () => {
     if (!root) return;
     const field = layer.contains(document.activeElement) && document.activeElement.matches(".on input") ? document.activeElement : null;
@@ -219,6 +229,7 @@
     const drawn = drag?.kind === "new" && drag.box ? [...state.drawn, { box: drag.box, label: "" }] : state.drawn;
     const nodes = [...proposals, ...[...state.boxes, ...drawn].map(boxElement)];
     if (state.mask) nodes.unshift(element("img", "dio-canvas-mask", { src: state.mask, alt: "Outline" }));
+    if (state.lines.length) nodes.unshift(linesElement());
     layer.replaceChildren(...nodes);
     const again = typed && layer.querySelector(".on input");
     if (!again) return;

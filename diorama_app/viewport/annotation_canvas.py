@@ -20,6 +20,7 @@ from PIL import Image
 from diorama_app.viewport.mesh_assets import reduced
 from diorama_app.web.html import Action, LiveHtml, run_once
 from diorama_core.artefacts import Box, LabelledBox
+from diorama_core.progress import Segments
 
 MAX_SIDE_PX, MAX_MASK_PX = 1600, 800
 JPEG_QUALITY = 85
@@ -125,7 +126,7 @@ class AnnotationCanvas:
         self._names: tuple[str, ...] = ()
         sender = LiveHtml(gui, self._received)
         sender.show('<button type="button" id="dio-canvas-send" style="display:none" tabindex="-1"></button>')
-        self._photo, self._boxes, self._proposals, self._mask = (_Told(gui) for _ in range(4))
+        self._photo, self._boxes, self._proposals, self._mask, self._lines = (_Told(gui) for _ in range(5))
         self._outline: Bool[np.ndarray, "h w"] | None = None
         """The one that is shown."""
         self._photo.tell({"photo": None})
@@ -184,6 +185,11 @@ class AnnotationCanvas:
         if self.is_open:
             self._proposals.tell({"proposals": _rows(boxes)})
 
+    def show_lines(self, lines: Segments) -> None:
+        """Draw what a build found so far over the photo."""
+        if self.is_open:
+            self._lines.tell({"lines": lines})
+
     def show_mask(self, mask: Bool[np.ndarray, "h w"] | None) -> None:
         """Lay an outline over the photo; none takes the last one away."""
         if not self.is_open or mask is self._outline:
@@ -206,6 +212,7 @@ class AnnotationCanvas:
         self._boxes.tell({"boxes": [], "selected": None, "likely": []})
         self._proposals.tell({"proposals": []})
         self._mask.tell({"mask": None})
+        self._lines.tell({"lines": []})
         self._outline = None
 
     def _received(self, action: Action) -> None:

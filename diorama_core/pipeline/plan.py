@@ -20,7 +20,7 @@ from diorama_core.layout.clear_shapes import clear_shapes
 from diorama_core.perception.graph.apply import with_graph
 from diorama_core.pipeline.assemble import assemble
 from diorama_core.pipeline.beliefs import with_beliefs
-from diorama_core.pipeline.findings import finding
+from diorama_core.pipeline.findings import drawing, finding
 from diorama_core.pipeline.look_ahead import looking_ahead
 from diorama_core.pipeline.reasons import reasons_of_build
 from diorama_core.pipeline.runner import Runner
@@ -200,7 +200,7 @@ def evaluate(
             if step.gives == LOOKS_AHEAD:
                 ahead.close()
             known[step.gives] = step.evaluate(stages, known, runner, part)
-            part.found(finding(step.gives, known[step.gives]))
+            part.found(finding(step.gives, known[step.gives]), drawing(step.gives, known))
         known |= {name: future.result() for name, future in begun.items()}
     return known
 

@@ -250,8 +250,8 @@ def with_network_inputs(
 
     A guessed word is left out: what a box looks like is asked again of its outline, and with it everything else.
     """
-    boxes = () if detected is None else tuple(_nameless(box) if box.guessed else box for box in detected)
-    inputs = given if detected is None else replace(given, boxes=boxes)
+    boxes = tuple(_nameless(box) if box.guessed else box for box in (given.boxes if detected is None else detected))
+    inputs = given if boxes == given.boxes else replace(given, boxes=boxes)
     return inputs if predicted is None else with_depth(inputs, predicted)
 
 

@@ -168,7 +168,7 @@ def editor(shared_page: EditorPage, tmp_path: Path, request: pytest.FixtureReque
         session.shared.clip = None
         client = shared_page.client
         client.view.canvas.close()
-        client.preferences = Preferences(numbers=True)
+        client.preferences = Preferences(numbers=True, build_at_once=False)
         session.open_project(project)
 
     go_home(shared_page)

@@ -13,6 +13,7 @@ from PIL import Image
 from playwright.sync_api import BrowserContext, expect
 
 from diorama_app.app import Editor
+from diorama_app.projects.example import EXAMPLE
 from diorama_app.serve import Running, start
 from diorama_core.geometry.planes import plane_rectangle
 from diorama_core.project.storage import Project
@@ -77,6 +78,25 @@ def test_what_is_no_picture_is_said_and_the_start_page_stays(newcomer: EditorPag
     newcomer.at_board()
     expect(begun).to_have_count(0)
     expect(page.locator("#dio-tour")).to_have_count(0)
+
+
+def test_an_uploaded_photo_is_built_without_a_click_unless_one_marks_it(newcomer: EditorPage) -> None:
+    page, session = newcomer.page, newcomer.session
+    with page.expect_file_chooser() as chosen:
+        page.locator("#dio-start label.main").click()
+    chosen.value.set_files(str(EXAMPLE / "photo.jpg"))
+    by_hand = page.get_by_role("button", name="Mark it myself")
+    expect(by_hand).to_be_visible(timeout=60_000)
+    expect(page.locator(".dio-canvas-lines")).to_be_visible(timeout=120_000)
+    by_hand.click()
+    newcomer.until(lambda: session.jobs.status is None, "stopped", seconds=60)
+    expect(page.locator(".dio-canvas")).to_be_visible()
+    expect(page.locator(".dio-canvas-lines")).to_have_count(0)
+    expect(page.locator(".dio-canvas-proposal").first).to_be_visible()
+    assert session.unfinished
+    page.get_by_role("button", name="Build at once").click()
+    newcomer.until(lambda: bool(session.scene.objects), "built", seconds=240)
+    expect(page.locator(".job.card", has_text="sure")).to_be_visible()
 
 
 def test_an_example_is_furnished_and_the_tour_is_skipped(newcomer: EditorPage) -> None:

@@ -2,6 +2,8 @@ from __future__ import annotations
 
 import io
 import json
+from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -11,10 +13,11 @@ from diorama_app.panels import photo as photo_panel
 from diorama_app.panels.photo import PhotoPanel
 from diorama_app.reconstruction import build_job
 from diorama_app.viewport.annotation_canvas import Deleted, Drawn, Finished, Named, Reshaped, Selected
+from diorama_core.artefacts import LabelledBox
 from diorama_core.perception.inputs.source import Source
 from diorama_core.project.storage import Project
 from tests.app.page import Page
-from tests.app.panels.test_photo_boxes import Known
+from tests.app.panels.test_photo_boxes import CHAIR, Known
 from tests.multiview.test_plumb_lines import bent, lines
 from tests.perception.inputs.files import depth_png, encoded
 
@@ -30,6 +33,7 @@ def panel(session, page: Page, client, commands, monkeypatch) -> PhotoPanel:
     monkeypatch.setattr(build_job, "can_find_furniture", lambda: False)
     monkeypatch.setattr(photo_panel, "can_find_furniture", lambda: False)
     monkeypatch.setattr("diorama_app.panels.photo_boxes.Suggestions", Known)
+    client.preferences = replace(client.preferences, build_at_once=False)
     made = PhotoPanel(page, client, commands)
     client.panels = [made]
     made.refresh()
@@ -51,6 +55,30 @@ def draw(panel: PhotoPanel, page: Page, box: tuple[float, float, float, float]) 
 
 def labels(session) -> list[str]:
     return [b.label for b in session.inputs.boxes]
+
+
+@pytest.fixture
+def built(monkeypatch: pytest.MonkeyPatch) -> list[Sequence[LabelledBox]]:
+    """Boxes of the builds that were begun unasked."""
+    begun: list[Sequence[LabelledBox]] = []
+    monkeypatch.setattr(build_job, "build_found", lambda session, found: begun.append(found))
+    return begun
+
+
+def test_an_uploaded_photo_is_built_of_what_is_sure_once(session, client, page, empty, built) -> None:
+    client.preferences = replace(client.preferences, build_at_once=True)
+    page.upload("Upload a photo", "room.png", picture(640, 480))
+    page.settle()
+    assert [[b.box for b in boxes] for boxes in built] == [[CHAIR.box]]
+    session.open_project(session.project)
+    empty.refresh()
+    assert len(built) == 1
+
+
+def test_who_wishes_to_mark_photos_is_not_built_for(client, page, empty, built) -> None:
+    page.upload("Upload a photo", "room.png", picture(640, 480))
+    page.settle()
+    assert built == []
 
 
 def test_the_page_asks_for_a_photo_first(client, page, empty) -> None:

@@ -2,19 +2,23 @@
 
 from __future__ import annotations
 
+import threading
+import time
 from collections.abc import Callable, Sequence
 
 import pytest
 
 from diorama_app.panels.photo_boxes import PhotoBoxes, box_list
 from diorama_app.reconstruction import suggestions
+from diorama_app.reconstruction.build_job import UNASKED
 from diorama_app.session.client import Client
 from diorama_app.viewport.annotation_canvas import Accepted, Clicked, Dismissed, Drawn, Named, Selected
 from diorama_core.artefacts import Box, Inputs, LabelledBox, Photo
+from diorama_core.progress import Progress
 from tests.app.small_room import plain_photo
 
 CHAIR = LabelledBox((40.0, 250.0, 160.0, 440.0), "chair", "chair")
-LAMP = LabelledBox((400.0, 50.0, 460.0, 200.0), "lamp", "lamp")
+LAMP = LabelledBox((400.0, 50.0, 460.0, 200.0), "lamp", "lamp", 0.55)
 
 
 class Known(suggestions.Suggestions):
@@ -25,6 +29,9 @@ class Known(suggestions.Suggestions):
 
     def boxes(self) -> tuple[LabelledBox, ...]:
         return CHAIR, LAMP
+
+    def sure(self) -> tuple[LabelledBox, ...]:
+        return (CHAIR,)
 
     def names(self, boxes: Sequence[Box], index: int) -> tuple[str, ...]:
         return ("chair", "stool", "bench", "sofa")
@@ -117,12 +124,39 @@ def test_all_proposals_are_accepted_as_one_undo_step(session, client: Client, ma
     assert labels(session) == []
 
 
-def test_at_once_all_proposals_are_built_and_their_names_stay_guesses(session, client, marking: PhotoBoxes) -> None:
-    marking.happened(Dismissed(1))
-    given = marking.with_proposals(session.inputs)
-    (box,) = given.boxes
-    assert (box.label, box.category, box.guessed) == ("object", "object", True)
+def test_only_sure_proposals_are_built_unseen_and_their_names_stay_guesses(session, marking: PhotoBoxes) -> None:
+    (box,) = marking.sure(session.inputs)
+    assert (box.box, box.label, box.guessed) == (CHAIR.box, "chair", True)
+    marking.happened(Dismissed(0))
+    assert marking.sure(session.inputs) == ()
     assert session.inputs.boxes == (), "nothing is marked by it"
+
+
+def test_a_name_stays_a_guess_until_somebody_gives_it(session, client: Client, marking: PhotoBoxes) -> None:
+    marking.accept_all()
+    assert [b.guessed for b in session.inputs.boxes] == [True, True]
+    marking.happened(Named(0, "stool"))
+    assert [b.guessed for b in session.inputs.boxes] == [False, True]
+
+
+def test_who_marks_something_ends_the_build_that_nobody_asked_for(
+    session, client: Client, marking: PhotoBoxes, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    begun = threading.Event()
+
+    def work(progress: Progress) -> None:
+        begun.set()
+        while True:
+            progress.check()
+            time.sleep(0.01)
+
+    session.jobs.start("find", UNASKED, work)
+    begun.wait()
+    marking.happened(Dismissed(1))
+    assert session.jobs.status is not None
+    marking.happened(Accepted(0, ""))
+    assert session.jobs.wait(10.0)
+    assert labels(session) == ["chair"]
 
 
 def test_the_list_tells_how_to_make_the_first_box(session) -> None:
