@@ -228,6 +228,8 @@ class ObjectGeometry(ArrayValue):
     """Parents are object ids, or "floor", "ceiling" or "wall", for which the architecture will say which plane."""
     source: ScaleSource
     confidence: float = 1.0
+    scale_sigma: float | None = field(default=None, metadata={"absent when none": True})
+    """Standard deviation of the logarithm of all lengths together; None where the stage does not tell."""
     reasons: tuple[Reason, ...] | None = field(default=None, metadata={"absent when none": True})
     """What decided places, sizes and supports; None where the stage does not tell."""
 

@@ -44,20 +44,28 @@ def add_photos(tables: Any) -> None:
 def add_review_bench(tables: Any) -> None:
     """Declare `diorama bench review`."""
     example = "diorama bench review annotations.json --photos pictures"
-    text = "What answers to a review are worth, by annotated photos, and how sure builds are."
-    _add_sources(command(tables, "review", _bench_review, text, example))
+    text = "What answers to a review are worth, by annotated photos or rendered rooms, and how sure builds are."
+    one = command(tables, "review", _bench_review, text, example)
+    _add_sources(one, needed=False)
+    one.add_argument("--rooms", type=int, default=0, metavar="N", help="review N rendered rooms in place of photos")
+    one.add_argument("--seed", type=int, default=0, metavar="N", help="of the series of rooms (default: %(default)s)")
 
 
-def _add_sources(one: argparse.ArgumentParser) -> None:
+def _add_sources(one: argparse.ArgumentParser, *, needed: bool = True) -> None:
     """Declare which photos are built, and where results go."""
     one.add_argument(
-        "annotations", type=Path, nargs="+", metavar="ANNOTATIONS", help="boxes, kinds, colours, fronts... (JSON)"
+        "annotations",
+        type=Path,
+        nargs="+" if needed else "*",
+        metavar="ANNOTATIONS",
+        help="boxes, kinds, colours, fronts... (JSON)",
     )
     one.add_argument(
         "--photos",
         type=Path,
         nargs="+",
-        required=True,
+        required=needed,
+        default=(),
         metavar="DIR",
         help="pictures named by the annotations' ids: one folder for each file of annotations",
     )
@@ -70,9 +78,16 @@ def _add_sources(one: argparse.ArgumentParser) -> None:
 
 def _bench_review(a: argparse.Namespace) -> None:
     from diorama_core.evaluation.benchmarks import photos as photos_bench
-    from diorama_core.evaluation.benchmarks import review
+    from diorama_core.evaluation.benchmarks import review, review_rooms
     from diorama_core.library.catalogue import built_in_library
 
+    if bool(a.rooms) == bool(a.annotations):
+        raise InputError("give annotations with --photos, or --rooms N")
+    if a.rooms:
+        with progress_bar() as progress:
+            rooms = review_rooms.run(built_in_library(), a.rooms, a.seed, progress, named=not a.unnamed)
+        show_bench(rooms, a)
+        return
     sources = _sources(a.annotations, a.photos)
     asked = photos_bench.plan(sources, named=not a.unnamed, only=tuple(a.only), cache=a.stages)
     with progress_bar() as progress:

@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+from diorama_app.reconstruction.camera_correction import rescaled_inputs
 from diorama_app.session.client import Client
 from diorama_app.session.session import EditorSession
-from diorama_core.review.answers import answered
+from diorama_app.viewport.glide import glide
+from diorama_core.artefacts import Inputs
+from diorama_core.review.answers import answered, lengths
 from diorama_core.scene.types import Scene
 
 
@@ -24,7 +27,17 @@ def answer(session: EditorSession, question_id: str, value: str, *, by: Client |
     subject, _, object_id = question_id.partition(":")
     label = f"{subject} of {session.scene.object(object_id).label}" if session.scene.has_object(object_id) else subject
 
+    said: Inputs | None = None
+    if subject == "scale" and session.scene.has_object(object_id):
+        now_m, true_m = lengths(session.scene, object_id, value)
+        label, said = (
+            f"{session.scene.object(object_id).label} {true_m:g} m high",
+            rescaled_inputs(session, true_m / now_m),
+        )
+
     def change(scene: Scene) -> Scene:
         return answered(scene, session.library, question_id, value)
 
-    session.edit(label, change, by=by, author=author, by_hand=subject in ("front", "supporter"))
+    before = session.scene
+    session.edit(label, change, by=by, author=author, by_hand=subject in ("front", "supporter"), inputs=said)
+    glide(session, before)

@@ -25,11 +25,14 @@ from diorama_core.errors import EditRefused, LibraryError
 from diorama_core.export.footprints import Outline, outline
 from diorama_core.export.plan import OVERHEAD_M, UNNAMED, RoomLines, drawing_order, room_lines
 from diorama_core.geometry.openings import OPENING_CATEGORIES, wall_of
+from diorama_core.io.text import number_of
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.scene.room_edits import floor_height, move_plane
 from diorama_core.scene.types import Scene, SceneObject
 
 SEND = '<button type="button" id="dio-plan-send" style="display:none" tabindex="-1"></button>'
+UNSURE_M = 0.1
+"""A place is shown as unsure from this deviation on."""
 HANDLED_M = 0.2
 """A door or window is taken hold of in at least this depth."""
 
@@ -129,6 +132,7 @@ class Plan:
             "walls": _walls(scene, client.surface, unit),
             "corners": [{"walls": [c.first, c.second], "at": _flat(c.at)} for c in corners(scene)],
             "pieces": pieces,
+            **_doubts(scene),
         }
 
     def _piece(self, scene: Scene, item: SceneObject) -> dict[str, Any]:
@@ -203,6 +207,24 @@ class Plan:
             client.toggle(object_id)
         else:
             client.select((object_id,))
+
+
+def _doubts(scene: Scene) -> dict[str, Any]:
+    """Where objects may be whose places are not sure, and from where another photo would tell."""
+    from diorama_core.review.viewpoint import next_photo, place_outline  # SciPy and shapely: only once a plan is shown
+
+    unsure = (o for o in scene.objects if o.belief is not None and o.belief.place_sigma_m > UNSURE_M and not o.hidden)
+    outlines = [outline for o in unsure if (outline := place_outline(scene, o)) is not None]
+    photo = next_photo(scene)
+    told = None
+    if photo is not None:
+        words = f"A photo from here would tell where {number_of(photo.objects, 'object')} {_is(photo.objects)}"
+        told = {"at": _flat(photo.position), "to": _flat(photo.look_at), "words": words}
+    return {"spreads": [_flat(o) for o in outlines], "photo": told}
+
+
+def _is(number: int) -> str:
+    return "is" if number == 1 else "are"
 
 
 def _rectangle(item: SceneObject, half: np.ndarray) -> Outline:

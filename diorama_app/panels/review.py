@@ -14,6 +14,7 @@ from PIL import Image, ImageDraw
 from diorama_app.commands import review
 from diorama_app.panels.fields import on_change, show_if, show_value
 from diorama_app.session.client import Client
+from diorama_app.session.units import format_length, parse_length
 from diorama_app.viewport.thumbnails import SIDE_PX, Paint
 from diorama_app.web.html import Action, LiveHtml, button, text
 from diorama_core.artefacts import Box
@@ -60,6 +61,10 @@ class Review:
         self._other = gui.add_text(
             "It is another kind", "", visible=False, hint="Type what it is: armchair, wardrobe, …"
         )
+        self._length = gui.add_text(
+            "Another height", "", visible=False, hint="Type what it measures: 2.03 m, 6 ft 8 in"
+        )
+        on_change(self._length, lambda words: client.post(lambda: self._measure(str(words)), key="length"))
         on_change(self._other, lambda words: client.post(lambda: self._name(str(words)), key="other kind"))
 
     def refresh(self) -> None:
@@ -69,6 +74,7 @@ class Review:
         left = tuple(q for q in asked if q.id not in self._later)
         self._open = self._open and bool(left)
         show_if(self._open and left[0].subject == "kind", self._other)
+        show_if(self._open and left[0].subject == "scale", self._length)
         if not asked:
             self._html.show("")
             return
@@ -95,7 +101,10 @@ class Review:
             picture = self._client.session.thumbnails.html(shape, (item.colour, item.finish))
         elif question.subject == "front":
             picture = self._turned(item, choice.value)
-        label, key = text(choice.label[:1].upper() + choice.label[1:]), text(f"{question.id}={choice.value}")
+        words = choice.label[:1].upper() + choice.label[1:]
+        if question.subject == "scale":
+            words = f"About {format_length(float(choice.value), self._client.preferences.unit)}"
+        label, key = text(words), text(f"{question.id}={choice.value}")
         return (
             f'<button type="button" class="tile" data-do="answer" data-arg="{key}" data-peek="{key}" '
             f'data-digit="{number}" title="Point at it to see it in the room; key {number}">'
@@ -161,6 +170,16 @@ class Review:
         review.answer(self._client.session, question.id, kind.name, by=self._client)
         self._show_object()
 
+    def _measure(self, words: str) -> None:
+        """Answer the open question with a length."""
+        question = self._question()
+        if question is None or question.subject != "scale" or not words.strip():
+            return
+        length_m = parse_length(words, self._client.preferences.unit)
+        show_value(self._length, "")
+        review.answer(self._client.session, question.id, str(length_m), by=self._client)
+        self._show_object()
+
     def _question(self) -> Question | None:
         """The question that is open now."""
         left = (q for q in questions(self._client.session.scene) if q.id not in self._later)
@@ -176,8 +195,8 @@ class Review:
     def _peek(self, question: str, value: str) -> None:
         """Show what an answer would do, without giving it; nothing for no answer."""
         session = self._client.session
-        object_id = question.partition(":")[2]
-        if not session.scene.has_object(object_id) or session.jobs.status is not None:
+        subject, _, object_id = question.partition(":")
+        if subject == "scale" or not session.scene.has_object(object_id) or session.jobs.status is not None:
             session.refresh()
             return
         shown = answered(session.scene, session.library, question, value)

@@ -76,10 +76,14 @@ def rescale_room(client: Client, label: str, now_m: float, true_m: float) -> Non
         now_m: its length in the scene.
         true_m: its true length.
     """
-    session = client.session
+    said = rescaled_inputs(client.session, true_m / now_m)
+    client.session.edit(label, lambda s: rescale_to_length(s, now_m, true_m), by=client, inputs=said)
+
+
+def rescaled_inputs(session: EditorSession, factor: float) -> Inputs | None:
+    """What is said of the photo once everything is larger by a factor, so that later builds are; None without one."""
     height, inputs = camera_height_m(session.scene), session.document.inputs
-    said = None if height is None or inputs is None else replace(inputs, camera_height_m=height * true_m / now_m)
-    session.edit(label, lambda s: rescale_to_length(s, now_m, true_m), by=client, inputs=said)
+    return None if height is None or inputs is None else replace(inputs, camera_height_m=height * factor)
 
 
 def camera_height_m(scene: Scene) -> float | None:

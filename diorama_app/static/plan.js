@@ -151,6 +151,16 @@
     }
   };
 
+  // A camera with its field of view, where another photo would help most.
+  const viewpoint = (group, { at, to, words }) => {
+    const [x, y] = toPage(at), turn = -Math.atan2(to[1] - at[1], to[0] - at[0]) * 180 / Math.PI;
+    const node = add(group, "g", { class: "viewpoint", transform: `translate(${x} ${y}) rotate(${turn})` });
+    add(node, "title", {}, words);
+    add(node, "path", { class: "view", d: "M0 0L54 -33L54 33Z" });
+    add(node, "path", { d: "M-9 -7h4l2 -3h6l2 3h4v14h-18Z", transform: `rotate(${-turn})` });
+    add(node, "circle", { r: 3.4 });
+  };
+
   const draw = () => {
     const old = document.getElementById("dio-plan");
     if (!about) return old?.remove();
@@ -174,6 +184,7 @@
       add(node, "path", { d: closed(p.outlines) });
       hold(node, piece(node, p));
     }
+    for (const outline of about.spreads) add(group, "path", { class: "spread", d: closed([outline]) });
     names(group);
     add(group, "path", { class: "wall", "fill-rule": "evenodd", d: closed(about.solid) });
     for (const line of about.swings) add(group, "path", { class: "line swing", d: path(line) });
@@ -185,6 +196,7 @@
       measure(layer, group, w);
     }
     group.append(...group.querySelectorAll(".piece.opening"));
+    if (about.photo) viewpoint(group, about.photo);
     for (const c of about.corners) {
       const node = add(group, "circle", { class: "corner", cx: toPage(c.at)[0], cy: toPage(c.at)[1], r: CORNER_PX });
       node.dataset.walls = c.walls.join(" ");

@@ -16,6 +16,7 @@ from diorama_core.library.taxonomy import CATEGORIES
 from diorama_core.review.questions import NO, SUBJECTS, TURNS, YES
 from diorama_core.scene import edits
 from diorama_core.scene.belief import Belief
+from diorama_core.scene.room_edits import rescale_to_length
 from diorama_core.scene.types import Candidate, Scene, SceneObject, Support, yaw_rotation
 
 
@@ -40,7 +41,22 @@ def answered(scene: Scene, library: ShapeLibrary, question_id: str, value: str) 
         return _of_kind(scene, library, object_id, value)
     if subject == "front":
         return _of_front(scene, object_id, value)
+    if subject == "scale":
+        return rescale_to_length(scene, *lengths(scene, object_id, value))
     return _of_supporter(scene, library, object_id, value)
+
+
+def lengths(scene: Scene, object_id: str, value: str) -> tuple[float, float]:
+    """An object's height in the scene and the true one, in metres.
+
+    Raises:
+        EditRefused: the answer is no length.
+    """
+    words = value.strip().lower().removesuffix("m")
+    try:
+        return float(scene.object(object_id).size_m[2]), float(words)
+    except ValueError:
+        raise EditRefused(f"{value!r} is no length; answer with a height in metres, such as 2.03") from None
 
 
 def _of_presence(scene: Scene, library: ShapeLibrary, object_id: str, value: str) -> Scene:

@@ -1,7 +1,8 @@
 """Questions about a scene: the one whose answer brings the scene nearest to right, by what is expected of it, first.
 
 An object is right when it is there, of its kind, turned the right way and on its supporter. An answer makes one of
-these certain; it is worth the probability that this was wrong times that of everything else about it being right.
+these certain; it is worth the probability that this was wrong times that of everything else about it being right. A
+length that is told brings objects to their places that are elsewhere only since everything is too large or too small.
 """
 
 from __future__ import annotations
@@ -13,11 +14,14 @@ from typing import Any, Literal
 import numpy as np
 
 from diorama_core.library.labels import with_article
+from diorama_core.library.taxonomy import category
+from diorama_core.review.scale import misplaced, ruler
 from diorama_core.scene.belief import Belief
+from diorama_core.scene.room_edits import KNOWN_LENGTH_SIGMA
 from diorama_core.scene.types import Scene, SceneObject
 
-Subject = Literal["presence", "kind", "front", "supporter"]
-SUBJECTS: tuple[Subject, ...] = ("presence", "kind", "front", "supporter")
+Subject = Literal["presence", "kind", "front", "supporter", "scale"]
+SUBJECTS: tuple[Subject, ...] = ("presence", "kind", "front", "supporter", "scale")
 YES, NO = "yes", "no"
 TURNS = ("as it is", "left", "backwards", "right")
 """Where an object faces, as seen from itself: quarter turns counter-clockwise."""
@@ -32,7 +36,7 @@ class Choice:
     """One answer that is offered."""
 
     value: str
-    """What the answer says: yes or no, a category, one of `TURNS`, an id."""
+    """What the answer says: yes or no, a category, one of `TURNS`, an id, a length in metres."""
     label: str
     """The answer in words for people."""
     probability: float
@@ -66,6 +70,8 @@ def questions(scene: Scene) -> tuple[Question, ...]:
     What a person has decided since the build, by an answer or by an edit, is not asked.
     """
     found = [q for item in scene.objects if item.belief is not None for q in _about(scene, item, item.belief)]
+    length = _known_length(scene)
+    found += [] if length is None else [length]
     return tuple(sorted((q for q in found if q.gain >= LEAST_GAIN), key=lambda q: (-q.gain, q.id)))
 
 
@@ -92,6 +98,22 @@ def _about(scene: Scene, item: SceneObject, belief: Belief) -> Iterator[Question
         verb = "hang on" if edge.relation == "mounted on" else "stand on"
         sentence = f"What does the {item.label} {verb}?"
         yield _question(item, "supporter", sentence, belief.supporters, belief, lambda i: name_of(scene, i))
+
+
+def _known_length(scene: Scene) -> Question | None:
+    """How high one thing is, by which all lengths are known; the thing is one that many know or can measure."""
+    item = ruler(scene)
+    if item is None or scene.scale_sigma is None or scene.scale_sigma <= KNOWN_LENGTH_SIGMA:
+        return None
+    now = float(item.size_m[2])
+    heights = (now, *(float(np.exp(mode.log_median_xyz[2])) for mode in category(item.category).priors))
+    lengths = tuple(dict.fromkeys(f"{height:.2f}" for height in heights))[: len(TURNS)]
+    off = np.log([float(length) / now for length in lengths]) / scene.scale_sigma
+    weights = np.exp(-0.5 * np.minimum(off**2, 50.0))
+    choices = sorted(zip(lengths, weights / weights.sum(), strict=True), key=lambda choice: -choice[1])
+    gain = misplaced(scene, scene.scale_sigma) - misplaced(scene, KNOWN_LENGTH_SIGMA)
+    labels = tuple(Choice(v, f"{v} m" + (", as it is" if v == lengths[0] else ""), float(p)) for v, p in choices)
+    return Question(item.id, "scale", f"How high is the {item.label}?", labels, gain)
 
 
 def _question(

@@ -22,6 +22,9 @@ JOINED_M = 0.01
 LARGEST_MOVE_M = 30.0
 LOWEST_CEILING_M, HIGHEST_CEILING_M = 1.0, 30.0
 SMALLEST_FACTOR, LARGEST_FACTOR = 0.02, 50.0
+KNOWN_LENGTH_SIGMA = 0.02
+"""Standard deviation of the logarithm of all lengths once one of them is known: so well are others known relative to
+it (median over 77 tall things on the floor of 24 rendered rooms)."""
 SMALLEST_PATTERN, LARGEST_PATTERN = 0.1, 10.0
 PARALLEL = 0.985
 """Planes turned by less than about ten degrees cannot be kept joined by sliding along one another."""
@@ -46,6 +49,7 @@ def move_plane(scene: Scene, plane_id: str, distance_m: float) -> Scene:
     if not np.isfinite(distance_m) or abs(distance_m) > LARGEST_MOVE_M:
         raise EditRefused(f"a plane cannot move by {distance_m:g} m; give at most {LARGEST_MOVE_M:g} m")
     planes = _with_plane_moved(scene.architecture.planes, plane, float(distance_m))
+    planes = tuple(replace(p, sigma_m=0.0) if p.id == plane_id and p.sigma_m else p for p in planes)
     shift = -plane.normal * distance_m
     return _carry(_with_planes(scene, planes), _fastened(scene, {plane_id}), shift)
 
@@ -114,7 +118,7 @@ def rescale_to_length(scene: Scene, length_now_m: float, length_true_m: float) -
     """
     if not (np.isfinite([length_now_m, length_true_m]).all() and min(length_now_m, length_true_m) > 1e-6):
         raise EditRefused("a known length must be a positive number of metres")
-    return rescale(scene, length_true_m / length_now_m)
+    return replace(rescale(scene, length_true_m / length_now_m), scale_sigma=KNOWN_LENGTH_SIGMA)
 
 
 def edge_length_m(scene: Scene, plane_id: str, edge: int) -> float:

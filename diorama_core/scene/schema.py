@@ -59,11 +59,10 @@ MIGRATIONS: Mapping[int, Migration] = {}
 MAX_ITEMS = 5000
 """Objects, planes, candidates of one object, corners of one polygon."""
 
-MAX_SIGMA = 1e4
-"""Standard deviations that a file may hold."""
-
 # Wide enough for any room and any photo, narrow enough that no arithmetic on them overflows.
 Number = Annotated[float, Field(ge=-1e9, le=1e9, allow_inf_nan=False)]
+Sigma = Annotated[float, Field(ge=0.0, le=1e4)]
+"""A standard deviation, in metres or of a logarithm."""
 Metres = Annotated[float, Field(ge=-1e5, le=1e5, allow_inf_nan=False)]
 Size = Annotated[float, Field(ge=1e-6, le=1e4, allow_inf_nan=False)]
 Unit = Annotated[float, Field(ge=0.0, le=1.0, allow_inf_nan=False)]
@@ -111,6 +110,7 @@ class _PlaneFile(_Model):
     finish: _SurfaceFinishFile | None = None
     photo_colour: Colour | None = None
     photo_texture: Id | None = None
+    sigma_m: Sigma | None = None
 
 
 class _ArchitectureFile(_Model):
@@ -149,8 +149,8 @@ class _BeliefFile(_Model):
     kinds: Annotated[list[tuple[Words, Unit]], Field(max_length=MAX_ITEMS)]
     fronts: Annotated[list[Unit], Field(max_length=4)]
     supporters: Annotated[list[tuple[Id, Unit]], Field(max_length=MAX_ITEMS)]
-    place_sigma_m: Annotated[float, Field(ge=0.0, le=MAX_SIGMA)]
-    size_sigma: Annotated[float, Field(ge=0.0, le=MAX_SIGMA)]
+    place_sigma_m: Sigma
+    size_sigma: Sigma
 
 
 class _ObjectFile(_Model):
@@ -202,6 +202,7 @@ class _SceneFile(_Model):
     metrics: Annotated[dict[Words, FiniteFloat], Field(max_length=200)]
     light: _LightFile | None = None
     light_settings: _LightSettingsFile | None = None
+    scale_sigma: Sigma | None = None
 
 
 def scene_file_schema() -> dict[str, Any]:
@@ -227,6 +228,7 @@ def scene_to_json(scene: Scene, *, indent: int | None = 1) -> str:
         "metrics": dict(scene.metrics),
         "light": None if scene.light is None else asdict(scene.light),
         "light_settings": asdict(scene.light_settings),
+        "scale_sigma": scene.scale_sigma,
     }
     return json.dumps(document, indent=indent, allow_nan=False)
 
@@ -326,6 +328,7 @@ def _plane_to_file(plane: Plane) -> dict[str, Any]:
         "finish": None if plane.finish is None else asdict(plane.finish),
         "photo_colour": None if plane.photo_colour is None else _numbers(plane.photo_colour),
         "photo_texture": plane.photo_texture,
+        "sigma_m": plane.sigma_m,
     }
 
 
@@ -386,6 +389,7 @@ def _scene_from_file(file: _SceneFile) -> Scene:
         supports=tuple(_support_from_file(o.id, o.support) for o in file.objects if o.support is not None),
         metrics=tuple(file.metrics.items()),
         light=None if file.light is None else RoomLight(**file.light.model_dump()),
+        scale_sigma=file.scale_sigma,
         light_settings=PHOTO_LIGHT if file.light_settings is None else _light_settings(file.light_settings),
     )
 
@@ -417,6 +421,7 @@ def _plane_from_file(file: _PlaneFile) -> Plane:
         finish=None if file.finish is None else SurfaceFinish(**file.finish.model_dump()),
         photo_colour=file.photo_colour,
         photo_texture=file.photo_texture,
+        sigma_m=file.sigma_m,
     )
 
 

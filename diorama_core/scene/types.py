@@ -227,6 +227,8 @@ class Plane(ArrayValue):
     """Its colour without the finish; None where there is no finish."""
     photo_texture: str | None = None
     """Name of its picture without the finish."""
+    sigma_m: float | None = None
+    """Standard deviation of its place along the normal; 0 where a person put it, None where nothing is known."""
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "polygon", frozen_array(self.polygon, (-1, 3)))
@@ -409,6 +411,8 @@ class Scene:
     """As the photo's shades tell it; None where nothing is known."""
     light_settings: LightSettings = PHOTO_LIGHT
     """As a person set it."""
+    scale_sigma: float | None = None
+    """Standard deviation of the logarithm of all lengths together; None where nothing is known."""
 
     def __post_init__(self) -> None:
         # One order for equal graphs, so that equality and the file do not depend on the order of edits.

@@ -145,6 +145,10 @@ def test_building_is_above_the_fold_on_every_screen(visit, serve, tmp_path) -> N
         editor.page.set_viewport_size({"width": width, "height": height})
         if width < height:
             editor.page.wait_for_selector("html.dio-phone")
+        if editor.session.jobs.status is not None:
+            expect(editor.button("Mark it myself")).to_be_in_viewport(ratio=1.0)
+            editor.button("Mark it myself").click()
+            editor.until(lambda: editor.session.jobs.status is None, "stopped", seconds=60)
         expect(editor.button("Build at once")).to_be_in_viewport(ratio=1.0)
         expect(editor.button("Accept all")).to_be_in_viewport(ratio=1.0)
     editor.page.locator(".dio-canvas").get_by_role("button", name="Done").click()

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time
 from collections.abc import Callable, Iterator
 from pathlib import Path
 
@@ -13,6 +14,7 @@ from playwright.sync_api import expect
 from diorama_app.projects.example import EXAMPLE
 from diorama_app.serve import Running
 from diorama_core.models.own_weights import has_own_recogniser
+from diorama_core.review.questions import NO, TURNS, YES, Question, questions
 from diorama_core.scene.types import Scene, SceneObject
 from tests.e2e.browser import EditorPage
 from tests.e2e.conftest import ARTEFACTS, keep_picture
@@ -24,6 +26,8 @@ pytestmark = [pytest.mark.browser, pytest.mark.slow]
 MAX_ACTIONS = 60
 OBJECTS, MAX_ACTIONS_OF_A_PHOTO = 12, 25
 """A photo becomes an exported scene of so many objects in so few actions, with one swapped and moved."""
+MAX_ANSWERS = 15
+"""A photo that nobody marked anything in is reviewed by at most so many answers."""
 BUILD_S = 300
 SOFA, RUG = (735.0, 465.0, 1055.0, 650.0), (640.0, 800.0, 1240.0, 940.0)
 """Boxes of the example's photo (px)."""
@@ -101,6 +105,8 @@ def test_from_a_photo_to_an_exported_room(hand: Hand, tmp_path: Path) -> None:
     page.locator(".dio-canvas-proposal").first.wait_for(timeout=60_000)
     page.screenshot(path=str(ARTEFACTS / "journey-board.png"))
     session = editor.session
+    hand.click(page.get_by_role("button", name="Mark it myself").first, "Mark it myself")
+    editor.until(lambda: session.jobs.status is None, "stopped", seconds=60)
     hand.click(page.get_by_role("button", name="Accept all").first, "Accept all")
     editor.until(lambda: bool(session.inputs.boxes), "accepted")
     number = len(session.inputs.boxes)
@@ -180,3 +186,72 @@ def test_from_a_description_to_an_exported_room(hand: Hand, tmp_path: Path) -> N
     editor.until(lambda: any(p.finish is not None for p in session.scene.architecture.planes), "painted")
     export(hand, tmp_path)
     assert hand.count < MAX_ACTIONS, "\n".join(hand.actions)
+
+
+@pytest.mark.skipif(not has_own_recogniser(), reason="no weights are shipped")
+def test_from_a_photo_to_a_reviewed_room_without_marking_anything(hand: Hand) -> None:
+    """Somebody who knows the room answers what the review asks, by keys; what it took is written down."""
+    editor, page = hand.editor, hand.editor.page
+    hand.choose_file(page.locator("#dio-start label.main"), EXAMPLE / "photo.jpg")
+    editor.until(lambda: editor.session.unfinished, "a project of its own")
+    session = editor.session
+    editor.until(lambda: bool(session.scene.objects), "built", seconds=BUILD_S)
+    card = page.locator(".job.card", has_text="sure")
+    expect(card).to_be_visible(timeout=60_000)
+    before, truth = _right(session.scene), example_scene()
+    hand.click(card.get_by_role("button", name="Review"), "Review")
+    waits, begun = [], time.monotonic()
+    while len(waits) < MAX_ANSWERS and (asked := questions(session.scene)):
+        question = asked[0]
+        expect(page.locator(".review")).to_contain_text(question.sentence)
+        known = [c.value for c in question.choices]
+        answer = _true_answer(session.scene, truth, question)
+        pressed, scene = time.monotonic(), session.scene
+        hand.key(str(known.index(answer) + 1 if answer in known else 1), f"{question.sentence} {answer}")
+        editor.until(lambda scene=scene: session.scene is not scene, "answered")
+        after = questions(session.scene)
+        if after:
+            expect(page.locator(".review")).to_contain_text(f"{len(after)} question")
+        waits.append(time.monotonic() - pressed)
+    spent = time.monotonic() - begun
+    hand.actions.append(
+        f"{len(waits)} answers in {spent:.0f} s, slowest {max(waits):.1f} s; right {before:.2f} > {_right(session.scene):.2f}"
+    )
+    page.screenshot(path=str(ARTEFACTS / "journey-reviewed.png"))
+    assert _right(session.scene) > before
+    assert not questions(session.scene) or len(waits) == MAX_ANSWERS
+
+
+def _right(scene: Scene) -> float:
+    known = [o.belief.right for o in scene.objects if o.belief is not None]
+    return sum(known) / len(known)
+
+
+def _true_answer(scene: Scene, truth: Scene, question: Question) -> str:
+    """What somebody who knows the room says of the object that is where the question's one is in the photo."""
+    item = scene.object(question.object_id)
+    assert item.box_px is not None
+    assert truth.camera is not None
+    assert scene.camera is not None
+    x1, y1, x2, y2 = item.box_px
+    seen = [(truth.camera.project(o.pose.position), o) for o in truth.objects]
+    inside = [
+        (abs(p[0] - (x1 + x2) / 2) + abs(p[1] - (y1 + y2) / 2), o) for p, o in seen if x1 < p[0] < x2 and y1 < p[1] < y2
+    ]
+    if not inside:
+        return NO if question.subject == "presence" else question.choices[0].value
+    true = min(inside, key=lambda pair: pair[0])[1]
+    if question.subject == "presence":
+        return YES
+    if question.subject == "kind":
+        return true.category
+    if question.subject == "scale":
+        return min((c.value for c in question.choices), key=lambda v: abs(float(v) - float(true.size_m[2])))
+    if question.subject == "supporter":
+        edge = truth.support_of(true.id)
+        role = truth.plane(edge.parent).role if edge is not None and truth.has_plane(edge.parent) else None
+        planes = (c.value for c in question.choices if scene.has_plane(c.value) and scene.plane(c.value).role == role)
+        return next(planes, question.choices[0].value)
+    views = [np.arctan2(*s.camera.T_world_camera[1::-1, 2]) for s in (truth, scene) if s.camera is not None]
+    turn = (true.pose.yaw_rad - views[0]) - (item.pose.yaw_rad - views[1])
+    return TURNS[round(turn / (np.pi / 2)) % len(TURNS)]

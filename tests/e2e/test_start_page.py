@@ -81,10 +81,12 @@ def test_what_is_no_picture_is_said_and_the_start_page_stays(newcomer: EditorPag
 
 
 def test_an_uploaded_photo_is_built_without_a_click_unless_one_marks_it(newcomer: EditorPage) -> None:
-    page, session = newcomer.page, newcomer.session
+    page = newcomer.page
     with page.expect_file_chooser() as chosen:
         page.locator("#dio-start label.main").click()
     chosen.value.set_files(str(EXAMPLE / "photo.jpg"))
+    newcomer.until(lambda: newcomer.session.unfinished, "a project of its own")
+    session = newcomer.session
     by_hand = page.get_by_role("button", name="Mark it myself")
     expect(by_hand).to_be_visible(timeout=60_000)
     expect(page.locator(".dio-canvas-lines")).to_be_visible(timeout=120_000)

@@ -1,4 +1,4 @@
-"""What answers are worth: scenes of annotated photos, reviewed by somebody who knows the truth.
+"""What answers are worth: scenes of annotated photos and rendered rooms, reviewed by somebody who knows the truth.
 
 The same scenes are reviewed in the order of the review, the most doubtful thing first, and at random; and how sure a
 build is of its decisions is compared with how often they are right.
@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
+from typing import Protocol, runtime_checkable
 
 import numpy as np
 
@@ -27,12 +28,35 @@ from diorama_core.scene.types import Scene
 COUNTS = (0, 1, 3, 5, 10)
 """Answers after which scenes are compared with the truth."""
 RIGHT_DEG = 45.0
+RIGHT_IN_ALL = "Objects right in kind, front and supporter"
 BINS = (0.0, 0.5, 0.7, 0.85, 0.95, 1.0)
 """Edges of the probabilities that are told apart."""
 ROUNDS = 5
 """How often questions are asked at random."""
 
 Order = Callable[[Sequence[Question]], Question]
+
+
+@runtime_checkable
+class KnownScene(Protocol):
+    """A built scene of which somebody knows the truth."""
+
+    @property
+    def scene(self) -> Scene:
+        """As it was built."""
+
+    @property
+    def library(self) -> ShapeLibrary:
+        """Where its shapes come from."""
+
+    def knows(self, object_id: str) -> bool:
+        """Whether the truth of an object is known."""
+
+    def answer(self, scene: Scene, question: Question) -> str | None:
+        """What somebody who knows the truth answers; None where the truth does not say."""
+
+    def score(self, scene: Scene) -> tuple[float, int]:
+        """How many objects of a reviewed scene are right, of how many."""
 
 
 @dataclass(frozen=True)
@@ -61,6 +85,15 @@ class Reviewed:
     """Places of the objects in the annotation, which supporters are named by."""
     library: ShapeLibrary
 
+    def knows(self, object_id: str) -> bool:
+        """Whether an object was annotated."""
+        return object_id in self.truth
+
+    def score(self, scene: Scene) -> tuple[float, int]:
+        """How many objects are right in everything annotated, of all annotated ones."""
+        right = [all(self.right(scene, name).values()) for name in self.truth if scene.has_object(name)]
+        return float(sum(right)), len(self.truth)
+
     def right(self, scene: Scene, object_id: str) -> dict[Subject, bool]:
         """What is right of an object, of all that was annotated."""
         item, truth, found = scene.object(object_id), self.truth[object_id], dict[Subject, bool]()
@@ -83,6 +116,8 @@ class Reviewed:
             return truth.kind if truth.nameable else None
         if question.subject == "supporter":
             return self._supporter(scene, question)
+        if question.subject == "scale":
+            return None
         turned = ((t, answered(scene, self.library, question.id, t)) for t in TURNS)
         return next((t for t, after in turned if self.right(after, question.object_id).get("front")), None)
 
@@ -121,8 +156,14 @@ def run(tasks: Sequence[PhotoTask], library: ShapeLibrary, progress: Progress | 
     return ReviewBench(tuple(scenes))
 
 
-def answers_table(scenes: Sequence[Reviewed], seed: int = 0) -> Table:
-    """What answers are worth in each order."""
+def answers_table(scenes: Sequence[KnownScene], what: str = RIGHT_IN_ALL, seed: int = 0) -> Table:
+    """What answers are worth in each order.
+
+    Args:
+        scenes: reviewed.
+        what: is counted.
+        seed: of the questions at random.
+    """
     rng = np.random.default_rng(seed)
     orders: dict[str, tuple[int, Order]] = {
         "the review": (1, lambda asked: asked[0]),
@@ -134,24 +175,23 @@ def answers_table(scenes: Sequence[Reviewed], seed: int = 0) -> Table:
         counted = np.array([shares_right(s, order) for _ in range(rounds) for s in scenes])
         rows.append(Row(name, tuple((counted[..., 0].sum(axis=0) / counted[..., 1].sum(axis=0)).tolist())))
     columns = tuple(Column(f"{count} answers", ".3f", "↑") for count in COUNTS)
-    return Table("Objects right in kind, front and supporter", columns, tuple(rows))
+    return Table(what, columns, tuple(rows))
 
 
-def shares_right(reviewed: Reviewed, order: Order) -> list[tuple[int, int]]:
-    """Objects that are right in everything annotated, and all of them, after each of `COUNTS` answers."""
+def shares_right(reviewed: KnownScene, order: Order) -> list[tuple[float, int]]:
+    """Objects that are right, and all that should be, after each of `COUNTS` answers."""
     scene, done, over = reviewed.scene, 0, set[str]()
     shares = []
     for count in COUNTS:
         while done < count and (
-            asked := [q for q in questions(scene) if q.id not in over and q.object_id in reviewed.truth]
+            asked := [q for q in questions(scene) if q.id not in over and reviewed.knows(q.object_id)]
         ):
             question = order(asked)
             over.add(question.id)
             value = reviewed.answer(scene, question)
             if value is not None:
                 scene, done = _after(scene, question, value, reviewed.library), done + 1
-        right = [all(reviewed.right(scene, name).values()) for name in reviewed.truth if scene.has_object(name)]
-        shares.append((sum(right), len(reviewed.truth)))
+        shares.append(reviewed.score(scene))
     return shares
 
 

@@ -57,6 +57,7 @@ class SingleViewMetrology:
             supports=supports_of(placements, objects),
             source=ScaleSource.OBJECT_SIZES if objects else ScaleSource.CAMERA_HEIGHT,
             confidence=_overall(camera, scan, len(objects)),
+            scale_sigma=scan.log_sigma,
             reasons=reasons_of(placements, view, objects, self.settings.fit),
         )
 
