@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
+from diorama_app.commands.glide import glide
 from diorama_app.reconstruction.camera_correction import rescaled_inputs
 from diorama_app.session.client import Client
 from diorama_app.session.session import EditorSession
-from diorama_app.viewport.glide import glide
 from diorama_core.artefacts import Inputs
 from diorama_core.review.answers import answered, lengths
 from diorama_core.scene.types import Scene

@@ -77,6 +77,7 @@ class PhotoPanel:
         self._list = LiveHtml(gui, self._act)
         self._no_scene = LiveHtml(gui, self._act, floating="dio-no-scene")
         client.open_board = self._boxes.open
+        client.proposals, client.dismiss = self._boxes.proposals, self._boxes.dismiss
         self._more = gui.add_folder("More", expand_by_default=False)
         with self._more:
             self._find = gui.add_button("Detect furniture", hint=commands["find_furniture"].tooltip)

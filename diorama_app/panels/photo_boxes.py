@@ -73,6 +73,16 @@ class PhotoBoxes:
         likely = (b for b in self._suggested(inputs).boxes() if b.box not in self._dismissed)
         return tuple(b for b in likely if same_object(inputs.boxes, b.box) is None)
 
+    def proposals(self) -> tuple[LabelledBox, ...]:
+        """Likely objects of the scene's own photo that nobody marked or turned down yet."""
+        inputs = self._client.session.inputs
+        return () if inputs is None or self._suggestions is None else self._proposals(inputs)
+
+    def dismiss(self, proposal: LabelledBox) -> None:
+        """Turn a proposal down."""
+        self._dismissed.add(proposal.box)
+        self._client.refresh()
+
     def proposed(self, inputs: Inputs) -> int:
         """Number of proposals that are shown."""
         return len(self._proposals(inputs)) if self._client.view.canvas.is_open else 0
@@ -144,8 +154,7 @@ class PhotoBoxes:
             case Accepted(i, label):
                 self._mark(inputs, labelled_box(rows[i].box, label or rows[i].label))
             case Dismissed(i):
-                self._dismissed.add(rows[i].box)
-                client.refresh()
+                self.dismiss(rows[i])
             case Selected(i):
                 client.selected_box = i
                 client.refresh()

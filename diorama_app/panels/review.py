@@ -13,6 +13,7 @@ from PIL import Image, ImageDraw
 
 from diorama_app.commands import review
 from diorama_app.panels.fields import on_change, show_if, show_value
+from diorama_app.reconstruction.object_correction import add_from_photo
 from diorama_app.session.client import Client
 from diorama_app.session.units import format_length, parse_length
 from diorama_app.viewport.thumbnails import SIDE_PX, Paint
@@ -23,7 +24,7 @@ from diorama_core.io.text import number_of
 from diorama_core.library.labels import understand_label
 from diorama_core.library.taxonomy import UNKNOWN
 from diorama_core.review.answers import answered, candidate_of
-from diorama_core.review.questions import TURNS, Choice, Question, questions
+from diorama_core.review.questions import LEAST_GAIN, TURNS, YES, Choice, Question, missing, questions
 from diorama_core.scene.types import SceneObject
 
 CROP_PX = 300
@@ -69,8 +70,7 @@ class Review:
 
     def refresh(self) -> None:
         """Draw the card for the scene as it is."""
-        scene = self._client.session.scene
-        asked = questions(scene)
+        scene, asked = self._client.session.scene, self._all()
         left = tuple(q for q in asked if q.id not in self._later)
         self._open = self._open and bool(left)
         show_if(self._open and left[0].subject == "kind", self._other)
@@ -81,8 +81,20 @@ class Review:
         doubt = Doubt.of(scene.objects, asked)
         self._html.show(self._asking(left[0], len(left)) if self._open else _summary(doubt))
 
+    def _all(self) -> tuple[Question, ...]:
+        """What is asked of the scene and of what it may lack, the most helpful question first."""
+        scene, proposals = self._client.session.scene, self._client.proposals()
+        if not scene.objects or not proposals or self._client.further_photo is not None:
+            return questions(scene)
+        from diorama_core.pipeline.beliefs import presence_of  # the pipeline; the page opens without it
+
+        more = (missing(scene, box, presence_of(box.score)) for box in proposals)
+        everything = (*questions(scene), *(q for q in more if q.gain >= LEAST_GAIN))
+        return tuple(sorted(everything, key=lambda question: -question.gain))
+
     def _asking(self, question: Question, left: int) -> str:
-        item = self._client.session.scene.object(question.object_id)
+        known = self._client.session.scene
+        item = known.object(question.object_id) if known.has_object(question.object_id) else None
         tiles = "".join(self._tile(item, question, choice, k) for k, choice in enumerate(question.choices, 1))
         after = button("Later", "later", question.id, title="Ask something else first") + button(
             "Close", "close", title="Go on another time: answers are kept"
@@ -90,16 +102,16 @@ class Review:
         count = text(number_of(left, "question"))
         return (
             f'<div class="card review" role="group" aria-label="Review"><h4>{count} left</h4>'
-            f"{self._crop(item)}<p><b>{text(question.sentence)}</b></p>"
+            f"{self._crop(item, question)}<p><b>{text(question.sentence)}</b></p>"
             f'<div class="grid two">{tiles}</div><div class="bar tight">{after}</div></div>'
         )
 
-    def _tile(self, item: SceneObject, question: Question, choice: Choice, number: int) -> str:
+    def _tile(self, item: SceneObject | None, question: Question, choice: Choice, number: int) -> str:
         picture = ""
-        if question.subject == "kind":
+        if item is not None and question.subject == "kind":
             shape = candidate_of(self._client.session.library, item, choice.value).shape_id
             picture = self._client.session.thumbnails.html(shape, (item.colour, item.finish))
-        elif question.subject == "front":
+        elif item is not None and question.subject == "front":
             picture = self._turned(item, choice.value)
         words = choice.label[:1].upper() + choice.label[1:]
         if question.subject == "scale":
@@ -131,16 +143,17 @@ class Review:
 
         return session.thumbnails.of(f"{item.shape_id} {view} {paint}", draw)
 
-    def _crop(self, item: SceneObject) -> str:
+    def _crop(self, item: SceneObject | None, question: Question) -> str:
         """The object in the photo, as an image of the page."""
         inputs = self._client.session.inputs
-        if inputs is None or item.box_px is None:
+        box = _box_of(question) if item is None else item.box_px
+        if inputs is None or box is None:
             return ""
-        picture = crop_around(inputs.photo.rgb, item.box_px)
+        picture = crop_around(inputs.photo.rgb, box)
         buffer = io.BytesIO()
         picture.save(buffer, "JPEG", quality=85)
         uri = base64.b64encode(buffer.getvalue()).decode()
-        return f'<img class="crop" alt="{text(item.label)} in the photo" src="data:image/jpeg;base64,{uri}">'
+        return f'<img class="crop" alt="{text(question.sentence)}" src="data:image/jpeg;base64,{uri}">'
 
     def _act(self, action: Action) -> None:
         client = self._client
@@ -155,8 +168,23 @@ class Review:
             if action.do == "peek":
                 self._peek(question, value)
                 return
-            review.answer(client.session, question, value, by=client)
+            if question.startswith("missing:"):
+                self._answer_missing(question, value)
+            else:
+                review.answer(client.session, question, value, by=client)
         self._show_object()
+
+    def _answer_missing(self, question_id: str, value: str) -> None:
+        """Add what the scene lacks, from the photo; or never ask again."""
+        scene = self._client.session.scene
+        box = next((b for b in self._client.proposals() if missing(scene, b, 0.5).id == question_id), None)
+        if box is None:
+            return
+        self._later |= {question_id}  # what is being added is not asked again meanwhile
+        if value == YES:
+            add_from_photo(self._client, box.box, box.label)
+        else:
+            self._client.dismiss(box)
 
     def _name(self, words: str) -> None:
         """Answer the open question with a kind in words."""
@@ -182,13 +210,13 @@ class Review:
 
     def _question(self) -> Question | None:
         """The question that is open now."""
-        left = (q for q in questions(self._client.session.scene) if q.id not in self._later)
+        left = (q for q in self._all() if q.id not in self._later)
         return next(left, None) if self._open else None
 
     def _show_object(self) -> None:
         """Select what is asked about, so that it is marked in the view and in the list."""
         question = self._question()
-        if question is not None:
+        if question is not None and question.subject != "missing":
             self._client.select((question.object_id,))
         self._client.refresh()
 
@@ -202,6 +230,13 @@ class Review:
         shown = answered(session.scene, session.library, question, value)
         if shown.has_object(object_id):
             session.viewport.preview_item(shown.object(object_id))
+
+
+def _box_of(question: Question) -> Box | None:
+    if question.subject != "missing":
+        return None
+    x1, y1, x2, y2 = (float(v) for v in question.object_id.split(","))
+    return x1, y1, x2, y2
 
 
 def _key(action: Action) -> str | None:

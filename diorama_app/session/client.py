@@ -20,7 +20,7 @@ from diorama_app.session.preferences import Preferences, remember
 from diorama_app.session.session import EditorSession
 from diorama_app.viewport.client_view import ClientView, NoticeKind
 from diorama_app.viewport.decorations import Decorations
-from diorama_core.artefacts import FurtherPhoto, Inputs, Photo
+from diorama_core.artefacts import FurtherPhoto, Inputs, LabelledBox, Photo
 from diorama_core.errors import DioramaError, EditRefused
 from diorama_core.scene.types import Camera, Scene, SceneObject
 
@@ -113,6 +113,10 @@ class Client:
         """The box that is selected on the photo."""
         self.open_board: Callable[[], None] = lambda: None
         """Shows the photo with its boxes, to draw on."""
+        self.proposals: Callable[[], tuple[LabelledBox, ...]] = lambda: ()
+        """Likely objects of the scene's own photo that nobody marked, built or turned down yet."""
+        self.dismiss: Callable[[LabelledBox], None] = lambda proposal: None
+        """Turns one of them down."""
 
     # -- photos -----------------------------------------------------------------------------------------------
 

@@ -83,7 +83,7 @@ def with_beliefs(
         holders = {} if choice is None or edge is None else choice.probabilities
         sigma = _distance_sigma(scene, item, noise, settings, foot_seen=item.id in feet)
         belief = Belief(
-            1.0 if item.box_px not in scores else _presence(scores[item.box_px], settings),
+            1.0 if item.box_px not in scores else presence_of(scores[item.box_px], settings),
             _decided_first(_kinds(item, library), record_of(library, item.shape_id).category, settings),
             _fronts(item, headings.get(item.id, ()), library, settings),
             () if edge is None or not holders else _decided_first(holders, edge.parent, settings),
@@ -112,7 +112,8 @@ def _plane_sigma(scene: Scene, plane: Plane, noise: ObservationNoise, settings: 
     return settings.ceiling_m if plane.role == "ceiling" and plane.seen else settings.wall_m[not plane.seen]
 
 
-def _presence(score: float, settings: BeliefSettings) -> float:
+def presence_of(score: float, settings: BeliefSettings = SETTINGS) -> float:
+    """Probability that there is an object in a box of the shipped detector with this score."""
     start, slope = settings.present
     odds = start + slope * float(np.log(max(score, settings.rare) / max(1.0 - score, settings.rare)))
     return round(float(1.0 / (1.0 + np.exp(-odds))), 3)

@@ -13,15 +13,17 @@ from typing import Any, Literal
 
 import numpy as np
 
+from diorama_core.artefacts import LabelledBox
 from diorama_core.library.labels import with_article
-from diorama_core.library.taxonomy import category
+from diorama_core.library.taxonomy import UNKNOWN, category
 from diorama_core.review.scale import misplaced, ruler
 from diorama_core.scene.belief import Belief
 from diorama_core.scene.room_edits import KNOWN_LENGTH_SIGMA
 from diorama_core.scene.types import Scene, SceneObject
 
-Subject = Literal["presence", "kind", "front", "supporter", "scale"]
+Subject = Literal["presence", "kind", "front", "supporter", "scale", "missing"]
 SUBJECTS: tuple[Subject, ...] = ("presence", "kind", "front", "supporter", "scale")
+"""Of what a scene holds; what it may lack is asked of the photo (`missing`)."""
 YES, NO = "yes", "no"
 TURNS = ("as it is", "left", "backwards", "right")
 """Where an object faces, as seen from itself: quarter turns counter-clockwise."""
@@ -47,6 +49,7 @@ class Question:
     """Something about one object that a person can tell."""
 
     object_id: str
+    """Of the object; of something that is missing its box in the photo, x1,y1,x2,y2."""
     subject: Subject
     sentence: str
     choices: tuple[Choice, ...]
@@ -98,6 +101,22 @@ def _about(scene: Scene, item: SceneObject, belief: Belief) -> Iterator[Question
         verb = "hang on" if edge.relation == "mounted on" else "stand on"
         sentence = f"What does the {item.label} {verb}?"
         yield _question(item, "supporter", sentence, belief.supporters, belief, lambda i: name_of(scene, i))
+
+
+def missing(scene: Scene, box: LabelledBox, present: float) -> Question:
+    """Whether something is in a box of the photo that was not built; worth what is right of an object on average.
+
+    Args:
+        scene: without the object.
+        box: with its likeliest name.
+        present: probability that there is an object.
+    """
+    known = [o.belief.right for o in scene.objects if o.belief is not None]
+    gain = present * (sum(known) / len(known) if known else 1.0)
+    name = f"Yes, {with_article(box.label)}" if box.category != UNKNOWN.name else "Yes"
+    choices = (Choice(YES, name, present), Choice(NO, "Nothing", 1.0 - present))
+    ordered = tuple(sorted(choices, key=lambda choice: -choice.probability))
+    return Question(",".join(f"{v:.0f}" for v in box.box), "missing", "Is something here?", ordered, gain)
 
 
 def _known_length(scene: Scene) -> Question | None:

@@ -214,9 +214,8 @@ def test_from_a_photo_to_a_reviewed_room_without_marking_anything(hand: Hand) ->
             expect(page.locator(".review")).to_contain_text(f"{len(after)} question")
         waits.append(time.monotonic() - pressed)
     spent = time.monotonic() - begun
-    hand.actions.append(
-        f"{len(waits)} answers in {spent:.0f} s, slowest {max(waits):.1f} s; right {before:.2f} > {_right(session.scene):.2f}"
-    )
+    said = f"right {before:.2f} > {_right(session.scene):.2f}"
+    hand.actions.append(f"{len(waits)} answers in {spent:.0f} s, slowest {max(waits):.1f} s; {said}")
     page.screenshot(path=str(ARTEFACTS / "journey-reviewed.png"))
     assert _right(session.scene) > before
     assert not questions(session.scene) or len(waits) == MAX_ANSWERS

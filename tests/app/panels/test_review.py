@@ -1,9 +1,13 @@
 from __future__ import annotations
 
+from dataclasses import replace
+
 import pytest
 
 from diorama_app.panels.review import Doubt, Review
+from diorama_core.artefacts import Inputs, LabelledBox
 from diorama_core.review.questions import questions
+from tests.app.small_room import furnished_scene, plain_photo
 from tests.review.doubtful_room import doubtful_scene
 
 
@@ -67,3 +71,43 @@ def test_another_kind_is_answered_in_words(session, page, panel) -> None:
     page.write("It is another kind", "table")
     session.ui_thread.wait()
     assert session.scene.object(asked.object_id).category == "table"
+
+
+def test_a_length_that_is_typed_rescales_the_room_and_later_builds(session, client, page, panel) -> None:
+    boxes = {"chair_1": (50.0, 100.0, 150.0, 400.0)}
+    scene = doubtful_scene()
+    seen = tuple(replace(o, box_px=boxes.get(o.id)) for o in scene.objects)
+    session.commit("unscaled", replace(scene, objects=seen, scale_sigma=0.3), inputs=Inputs(plain_photo()))
+    session.ui_thread.wait()
+    page.act("review")
+    assert "How high is the chair?" in page.html
+    panel._peek("scale:chair_1", "1.0")
+    page.write("Another height", "172 cm")
+    session.ui_thread.wait()
+    assert session.scene.object("chair_1").size_m[2] == pytest.approx(1.72)
+    factor = 1.72 / scene.object("chair_1").size_m[2]
+    assert session.inputs.camera_height_m == pytest.approx(factor * scene.camera.position[2])
+    session.undo(client)
+    assert session.inputs.camera_height_m is None
+
+
+def test_what_the_scene_may_lack_is_asked_and_added_from_the_photo_or_dismissed(
+    session, client, page, panel, monkeypatch
+) -> None:
+    added = []
+    monkeypatch.setattr("diorama_app.panels.review.add_from_photo", lambda by, box, label: added.append((box, label)))
+    proposals = [
+        LabelledBox((10.0, 20.0, 200.0, 220.0), "stool", "stool", 0.9),
+        LabelledBox((210.0, 20.0, 300.0, 220.0), "plant", "plant", 0.85),
+    ]
+    client.proposals = lambda: tuple(proposals)
+    client.dismiss = proposals.remove
+    session.commit("photo", furnished_scene(), inputs=Inputs(plain_photo()))
+    session.ui_thread.wait()
+    page.act("review")
+    assert "Is something here?" in page.html
+    assert "Yes, a stool" in page.html
+    page.act("answer", "missing:10,20,200,220=yes")
+    assert added == [((10.0, 20.0, 200.0, 220.0), "stool")]
+    page.act("answer", "missing:210,20,300,220=no")
+    assert [b.label for b in proposals] == ["stool"]

@@ -8,7 +8,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from diorama_app.viewport.glide import DURATION_S, STEPS, glide, pose_between
+from diorama_app.commands.glide import DURATION_S, STEPS, glide, pose_between
 from diorama_core.scene import edits
 from diorama_core.scene.types import Pose
 
