@@ -17,7 +17,6 @@ from diorama_core.errors import UnavailableError
 from diorama_core.models.boxes import Detections, areas, overlaps
 from diorama_core.models.own_weights import has_own_recogniser
 from diorama_core.models.store import ModelStore
-from diorama_core.perception.foundation.proposals import CONFIDENT
 
 log = logging.getLogger(__name__)
 
@@ -70,6 +69,8 @@ class Suggestions:
 
     def sure(self) -> tuple[LabelledBox, ...]:
         """Those of the likely objects that a build uses though nobody looked at them."""
+        from diorama_core.perception.foundation.proposals import CONFIDENT
+
         known = {b.box for b in self._known or ()}
         return tuple(b for b in self.boxes() if b.score >= CONFIDENT or b.box in known)
 
