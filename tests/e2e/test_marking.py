@@ -10,6 +10,7 @@ import pytest
 from playwright.sync_api import expect
 
 from diorama_app.projects.example import EXAMPLE
+from diorama_app.session.preferences import Preferences
 from diorama_core.artefacts import LabelledBox
 from diorama_core.models.boxes import overlaps
 from diorama_core.models.own_weights import has_own_recogniser
@@ -138,6 +139,7 @@ def test_a_click_where_nothing_is_says_so(proposed: EditorPage, monkeypatch: pyt
 
 def test_building_is_above_the_fold_on_every_screen(visit, serve, tmp_path) -> None:
     editor = visit(serve(make_project(tmp_path / "projects" / "demo").folder, library=PlainLibrary()))
+    editor.client.preferences = Preferences(build_at_once=False)
     editor.tab("Photo")
     editor.upload("Upload a photo", EXAMPLE / "photo.jpg")
     editor.page.wait_for_selector(".dio-canvas-proposal", timeout=60_000)
@@ -145,10 +147,6 @@ def test_building_is_above_the_fold_on_every_screen(visit, serve, tmp_path) -> N
         editor.page.set_viewport_size({"width": width, "height": height})
         if width < height:
             editor.page.wait_for_selector("html.dio-phone")
-        if editor.session.jobs.status is not None:
-            expect(editor.button("Mark it myself")).to_be_in_viewport(ratio=1.0)
-            editor.button("Mark it myself").click()
-            editor.until(lambda: editor.session.jobs.status is None, "stopped", seconds=60)
         expect(editor.button("Build at once")).to_be_in_viewport(ratio=1.0)
         expect(editor.button("Accept all")).to_be_in_viewport(ratio=1.0)
     editor.page.locator(".dio-canvas").get_by_role("button", name="Done").click()
