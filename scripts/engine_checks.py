@@ -3,11 +3,13 @@
     python scripts/engine_checks.py ENGINE FOLDER
 
 FOLDER holds `room.urdf`, `room.sdf`, `room.xml` and `room.usdc` with what they refer to. Prints one line of JSON: the
-engine's version, how many joints it has, and how far each object moved (metres) and turned (degrees).
+engine's version, the limits of its joints (null without), how many colliders it has, and how far each object moved
+(metres) and turned (degrees).
 """
 
 from __future__ import annotations
 
+import itertools
 import json
 import sys
 import xml.etree.ElementTree as ET
@@ -20,9 +22,12 @@ import numpy as np
 SECONDS = 2.0
 Poses = dict[str, tuple[np.ndarray, np.ndarray]]
 """Position and quaternion (any order that stays) of each object."""
+Limits = list[tuple[float, float] | None]
+Checked = tuple[Poses, Poses, Limits, int]
+"""Poses before and after, limits of the joints, number of colliders."""
 
 
-def mujoco(folder: Path) -> tuple[Poses, Poses, int]:
+def mujoco(folder: Path) -> Checked:
     """MJCF."""
     import mujoco
 
@@ -37,10 +42,12 @@ def mujoco(folder: Path) -> tuple[Poses, Poses, int]:
     before = poses()
     while data.time < SECONDS:
         mujoco.mj_step(model, data)
-    return before, poses(), model.njnt - len(free)
+    joints = [model.joint(k) for k in range(model.njnt)]
+    limits = [limited(*j.range) if model.jnt_limited[j.id] else None for j in joints if j.type[0] > 1]
+    return before, poses(), limits, int((model.geom_group == 3).sum())
 
 
-def pybullet(folder: Path) -> tuple[Poses, Poses, int]:
+def pybullet(folder: Path) -> Checked:
     """URDF: the room, and the objects at their poses."""
     import pybullet as p
 
@@ -65,10 +72,12 @@ def pybullet(folder: Path) -> tuple[Poses, Poses, int]:
     before = poses()
     for _ in range(int(240 * SECONDS)):
         p.stepSimulation()
-    return before, poses(), len(joints)
+    limits = [limited(*p.getJointInfo(b, k)[8:10]) for b, k in joints]
+    links = [(b, k) for b in bodies.values() for k in range(-1, p.getNumJoints(b))]
+    return before, poses(), limits, sum(len(p.getCollisionShapeData(b, k)) for b, k in links)
 
 
-def sapien(folder: Path) -> tuple[Poses, Poses, int]:
+def sapien(folder: Path) -> Checked:
     """URDF: the room, and the objects at their poses."""
     import sapien
 
@@ -76,7 +85,7 @@ def sapien(folder: Path) -> tuple[Poses, Poses, int]:
     scene.set_timestep(1 / 240)
     loader = scene.create_urdf_loader()
     loader.fix_root_link = True
-    joints = sum(moving(made) for made in loader.load_multiple(without_visuals(folder / "room.urdf"))[0])
+    everything = [made for some in loader.load_multiple(without_visuals(folder / "room.urdf"))[:2] for made in some]
     loader.fix_root_link = False
     bodies = {}
     for thing in things(folder):
@@ -84,7 +93,7 @@ def sapien(folder: Path) -> tuple[Poses, Poses, int]:
         made = [*articulations, *actors][0]
         made.set_pose(sapien.Pose(thing["position_m"], thing["quaternion_wxyz"]))
         bodies[thing["name"]] = made
-        joints += moving(made)
+        everything.append(made)
 
     def poses() -> Poses:
         return {name: (body.get_pose().p.copy(), body.get_pose().q.copy()) for name, body in bodies.items()}
@@ -92,7 +101,8 @@ def sapien(folder: Path) -> tuple[Poses, Poses, int]:
     before = poses()
     for _ in range(int(240 * SECONDS)):
         scene.step()
-    return before, poses(), joints
+    limits = [limit for made in everything for limit in sapien_limits(made)]
+    return before, poses(), limits, sum(sapien_colliders(made) for made in everything)
 
 
 def without_visuals(path: Path) -> str:
@@ -106,16 +116,24 @@ def without_visuals(path: Path) -> str:
     return str(bare)
 
 
-def moving(made: Any) -> int:
-    return sum(j.type != "fixed" for j in made.get_active_joints()) if hasattr(made, "get_active_joints") else 0
+def sapien_limits(made: Any) -> Limits:
+    joints = made.get_active_joints() if hasattr(made, "get_active_joints") else []
+    return [limited(*map(float, j.get_limits()[0])) for j in joints]
 
 
-def drake(folder: Path) -> tuple[Poses, Poses, int]:
+def sapien_colliders(made: Any) -> int:
+    from sapien import physx
+
+    bodies = made.links if hasattr(made, "links") else made.components
+    return sum(len(b.collision_shapes) for b in bodies if isinstance(b, physx.PhysxRigidBaseComponent))
+
+
+def drake(folder: Path) -> Checked:
     """SDF."""
-    from pydrake.all import AddMultibodyPlantSceneGraph, DiagramBuilder, Parser, Simulator
+    from pydrake.all import AddMultibodyPlantSceneGraph, DiagramBuilder, Parser, Role, Simulator
 
     builder = DiagramBuilder()
-    plant, _ = AddMultibodyPlantSceneGraph(builder, time_step=0.002)
+    plant, geometries = AddMultibodyPlantSceneGraph(builder, time_step=0.002)
     Parser(plant).AddModels(str(folder / "room.sdf"))
     plant.Finalize()
     simulator = Simulator(builder.Build())
@@ -129,10 +147,15 @@ def drake(folder: Path) -> tuple[Poses, Poses, int]:
     before = poses()
     simulator.AdvanceTo(SECONDS)
     joints = [plant.get_joint(k) for k in plant.GetJointIndices()]
-    return before, poses(), sum(j.num_velocities() == 1 for j in joints)
+    limits = [
+        limited(float(j.position_lower_limits()[0]), float(j.position_upper_limits()[0]))
+        for j in joints
+        if j.num_velocities() == 1
+    ]
+    return before, poses(), limits, geometries.model_inspector().NumGeometriesWithRole(Role.kProximity)
 
 
-def newton(folder: Path) -> tuple[Poses, Poses, int]:
+def newton(folder: Path) -> Checked:
     """USD, with the engine's MuJoCo solver."""
     import newton
     import warp
@@ -157,7 +180,16 @@ def newton(folder: Path) -> tuple[Poses, Poses, int]:
         here.clear_forces()
         solver.step(here, there, control, None, 0.002)
         here, there = there, here
-    return before, poses(here), sum("__" in n for n in names)
+    starts = model.joint_qd_start.numpy()
+    low, high = model.joint_limit_lower.numpy(), model.joint_limit_upper.numpy()
+    limits = [limited(float(low[a]), float(high[a])) for a, b in itertools.pairwise(starts) if b - a == 1]
+    solid = int(newton.ShapeFlags.COLLIDE_SHAPES)
+    return before, poses(here), limits, int(((model.shape_flags.numpy() & solid) != 0).sum())
+
+
+def limited(low: float, high: float) -> tuple[float, float] | None:
+    """The limits; None where there are none, whichever way the engine says so."""
+    return (low, high) if low < high and max(abs(low), abs(high)) < 1e3 else None
 
 
 def things(folder: Path) -> list[dict[str, Any]]:
@@ -174,6 +206,6 @@ ENGINES = {"mujoco": mujoco, "pybullet": pybullet, "sapien": sapien, "drake": dr
 
 if __name__ == "__main__":
     engine, where = sys.argv[1], Path(sys.argv[2])
-    before, after, joints = ENGINES[engine](where)
+    before, after, limits, colliders = ENGINES[engine](where)
     moved = {n: [float(np.linalg.norm(after[n][0] - p)), turned_deg(after[n][1], q)] for n, (p, q) in before.items()}
-    print(json.dumps({"version": version(engine), "joints": joints, "moved": moved}))
+    print(json.dumps({"version": version(engine), "limits": limits, "colliders": colliders, "moved": moved}))

@@ -1,30 +1,84 @@
-"""Exports rooms for simulators, lets each engine load them and two seconds of gravity run, and prints a table.
+"""Exports rooms, has engines load them and two seconds of gravity run there, and writes the table of the docs.
 
     DIORAMA_ENGINES_PYTHON=engines/bin/python PYTHONPATH=. python scripts/engines.py PROJECT... [--engines NAME...]
+        [--docs docs/export.md]
 
 The engines live in an environment of their own (`pip install mujoco pybullet drake sapien 'newton[sim,importers]'`).
-An object is stable when it moves by less than a centimetre and two degrees.
+An object is stable when it moves by less than a centimetre and two degrees; joints count that the engine has with the
+limits that were written, and colliders that it has.
 """
 
 from __future__ import annotations
 
 import argparse
+import datetime
 import json
 import os
+import re
 import subprocess
 import sys
 import tempfile
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 from diorama_core.export import FORMATS, export_scene
+from diorama_core.export.bodies import PhysicalScene
+from diorama_core.export.colliders import physical_scene
+from diorama_core.export.limbs import ExportLimb
 from diorama_core.export.stability import MAX_DRIFT_M
 from diorama_core.library.catalogue import built_in_library
 from diorama_core.project.storage import Project
 
 FILES = {"mujoco": "mjcf", "pybullet": "urdf", "sapien": "urdf", "drake": "sdf", "newton": "usdc"}
 """Which format each engine is given."""
+NAMES = {"mujoco": "MuJoCo", "pybullet": "PyBullet", "sapien": "SAPIEN", "drake": "Drake", "newton": "newton"}
 MAX_TURN_DEG, PATIENCE_S = 2.0, 900.0
+BEGIN, END = "<!-- engines -->", "<!-- /engines -->"
+"""What surrounds the table in the docs."""
+
+
+@dataclass
+class Row:
+    """One engine's line of the table."""
+
+    version: str = "–"
+    loads: int = 0
+    stable: int = 0
+    free: int = 0
+    joints: int = 0
+    all_joints: int = 0
+    colliders: int = 0
+    all_colliders: int = 0
+
+    def add(self, found: dict[str, Any], limits: list[tuple[float, float] | None], colliders: int) -> None:
+        """Count one room as the engine found it."""
+        self.version, self.loads = found["version"], self.loads + 1
+        self.stable += sum(m < MAX_DRIFT_M and deg < MAX_TURN_DEG for m, deg in found["moved"].values())
+        self.colliders += min(found["colliders"], colliders)
+        left = [None if each is None else tuple(each) for each in found["limits"]]
+        for expected in limits:
+            match = next((each for each in left if same(each, expected)), "none")
+            if match != "none":
+                left.remove(match)
+                self.joints += 1
+
+
+def same(a: tuple[float, float] | None, b: tuple[float, float] | None) -> bool:
+    return a == b if a is None or b is None else max(abs(a[0] - b[0]), abs(a[1] - b[1])) < 1e-3
+
+
+def limits_in(kind: str, limb: ExportLimb) -> tuple[float, float] | None:
+    """Limits of a joint as a format has them: those without a position at the start count from where it stands."""
+    if limb.kind == "swivel":
+        return None
+    shift = limb.opened if kind in ("urdf", "sdf") else 0.0
+    return limb.lower - shift, limb.upper - shift
+
+
+def colliders_in(physical: PhysicalScene) -> int:
+    bodies = sum(len(b.parts) + sum(len(m.parts) for m in b.moving) for b in physical.bodies)
+    return bodies + sum(len(slab.pieces) for slab in physical.slabs)
 
 
 def checked(engine: str, folder: Path) -> dict[str, Any] | None:
@@ -37,43 +91,61 @@ def checked(engine: str, folder: Path) -> dict[str, Any] | None:
         [*command, engine, str(folder)], capture_output=True, text=True, timeout=PATIENCE_S, check=False
     )
     if done.returncode:
-        print(f"{engine}: {done.stderr.strip().splitlines()[-1]}", file=sys.stderr)
+        print(f"{engine}: {(done.stderr.strip().splitlines() or ['died'])[-1]}", file=sys.stderr)
         return None
     found: dict[str, Any] = json.loads(done.stdout.strip().splitlines()[-1])
     return found
+
+
+def check_room(project: Project, rows: dict[str, Row]) -> None:
+    """Export one room in every format that is needed, and count what each engine makes of it."""
+    library, scene = built_in_library(), project.load_scene()
+    with tempfile.TemporaryDirectory() as name:
+        for kind in {FILES[engine] for engine in rows}:
+            suffix, textures = FORMATS[kind].suffixes[0], project.textures(scene)
+            gathered = export_scene(scene, library, Path(name) / f"room{suffix}", kind, textures=textures)
+        physical = physical_scene(gathered)
+        colliders = colliders_in(physical)
+        for engine, row in rows.items():
+            limits = [limits_in(FILES[engine], m.limb) for b in physical.bodies for m in b.moving]
+            row.free += sum(b.free for b in physical.bodies)
+            row.all_joints += len(limits)
+            row.all_colliders += colliders
+            found = checked(engine, Path(name))
+            if found is not None:
+                row.add(found, limits, colliders)
+                moved = {
+                    n: f"{100 * m:.1f} cm {deg:.0f}°"
+                    for n, (m, deg) in found["moved"].items()
+                    if m >= MAX_DRIFT_M or deg >= MAX_TURN_DEG
+                }
+                joints = "" if len(found["limits"]) == len(limits) else f", {len(found['limits'])} joints"
+                print(f"{project.name} {engine}: {moved or 'at rest'}{joints}", file=sys.stderr, flush=True)
 
 
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("projects", nargs="+", type=Path, metavar="PROJECT")
     parser.add_argument("--engines", nargs="*", default=list(FILES), choices=list(FILES))
+    parser.add_argument("--docs", type=Path, metavar="FILE.md", help="write the table there, between its marks")
     a = parser.parse_args()
-    library, rows = built_in_library(), {engine: [0, 0, 0, 0, 0] for engine in a.engines}
-    versions = dict.fromkeys(a.engines, "–")
+    rows = {engine: Row() for engine in a.engines}
     for project in map(Project.open, a.projects):
-        scene = project.load_scene()
-        with tempfile.TemporaryDirectory() as name:
-            for kind in {FILES[engine] for engine in a.engines}:
-                suffix, textures = FORMATS[kind].suffixes[0], project.textures(scene)
-                gathered = export_scene(scene, library, Path(name) / f"room{suffix}", kind, textures=textures)
-            joints = sum(len(o.limbs) for o in gathered.objects)
-            for engine in a.engines:
-                found = checked(engine, Path(name))
-                row = rows[engine]
-                row[4] += joints
-                if found is None:
-                    continue
-                still = {n for n, (m, deg) in found["moved"].items() if m < MAX_DRIFT_M and deg < MAX_TURN_DEG}
-                print(f"{project.name} {engine}: {set(found['moved']) - still} moved", file=sys.stderr)
-                versions[engine] = found["version"]
-                for column, value in enumerate((1, len(still), len(found["moved"]), found["joints"])):
-                    row[column] += value
-    print("| engine | version | file | loads | stable | joints |\n|---|---|---|---:|---:|---:|")
-    for engine, (loads, stable, count, joints, expected) in rows.items():
-        print(
-            f"| {engine} | {versions[engine]} | `{FILES[engine]}` | {loads} of {len(a.projects)} "
-            f"| {stable} of {count} | {joints} of {expected} |"
+        check_room(project, rows)
+    lines = ["| engine | version | file | loads | stable | joints | colliders |", "|---|---|---|---:|---:|---:|---:|"]
+    for engine, row in rows.items():
+        counts = (
+            f"{row.stable} of {row.free} | {row.joints} of {row.all_joints} | {row.colliders} of {row.all_colliders}"
         )
+        loads = f"{row.loads} of {len(a.projects)}"
+        lines.append(f"| {NAMES[engine]} | {row.version} | `{FILES[engine]}` | {loads} | {counts} |")
+    day = datetime.datetime.now(tz=datetime.UTC).strftime("%d %B %Y").lstrip("0")
+    lines += ["", f"Checked by `scripts/engines.py` on {day}: {len(a.projects)} rooms."]
+    print("\n".join(lines))
+    if a.docs is not None:
+        text = a.docs.read_text("utf-8")
+        inside = re.compile(f"{BEGIN}.*{END}", re.DOTALL)
+        a.docs.write_text(inside.sub(lambda _: "\n".join([BEGIN, *lines, END]), text), "utf-8")
 
 
 if __name__ == "__main__":

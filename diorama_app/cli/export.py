@@ -56,6 +56,11 @@ def add_export(commands: Any) -> None:
         help="of a game pack: whose names colliders have; none leaves them out (default: %(default)s)",
     )
     p.add_argument(
+        "--light-uv",
+        action="store_true",
+        help="of a game pack: second texture coordinates without overlaps, for baked light (needs xatlas)",
+    )
+    p.add_argument(
         "--robot-radius",
         type=float,
         default=0.25,
@@ -122,6 +127,7 @@ def _options(a: argparse.Namespace, room: diorama.Reconstruction) -> ExportOptio
         compression=a.compress,
         lights=a.lights,
         engine=a.engine,
+        light_uv=a.light_uv,
         robot_radius_m=a.robot_radius,
         photo=a.photo,
         bodies="welded" if a.welded else "free",

@@ -14,6 +14,7 @@ from typing import Any
 import numpy as np
 from jaxtyping import Float
 
+from diorama_core.errors import ExportError
 from diorama_core.export.bodies import PhysicalScene, Points, RigidBody, hull_faces
 from diorama_core.export.colliders import physical_scene
 from diorama_core.export.files import whole_file
@@ -22,6 +23,7 @@ from diorama_core.export.gltf import placement
 from diorama_core.export.gltf_document import GltfDocument
 from diorama_core.export.lights import MainLight
 from diorama_core.export.palette import GameMaterials
+from diorama_core.export.unwrapping import unwrapped
 from diorama_core.library.simplify import LARGEST_ERRORS, simplified_triangles
 from diorama_core.progress import Progress
 from diorama_core.render.appearance import Material, Surface
@@ -38,6 +40,10 @@ UNSEEN = Material("collider", (0.2, 0.6, 0.9), alpha=0.3)
 
 def write_game(gathered: ExportScene, path: Path, progress: Progress | None = None) -> None:
     """Write the GLB, whole or not at all; raises `ExportError`."""
+    if gathered.options.light_uv and gathered.options.compression == "draco":
+        raise ExportError(
+            f"{path}: Draco holds one set of texture coordinates; leave out its compression or --light-uv"
+        )
     document = _Builder(gathered, progress or Progress()).built()
     with whole_file(path) as temporary, temporary.open("wb") as file:
         document.write(file)
@@ -120,6 +126,8 @@ class _Builder:
         """
         to_pivot = Y_UP @ np.linalg.inv(T_pivot)
         drawn = self._materials.merged(_moved(s, to_pivot) for s in surfaces)
+        if drawn and self._gathered.options.light_uv:
+            drawn = tuple(unwrapped(drawn))
         children = [*below]
         for number, part in enumerate(parts if self._gathered.options.engine != "none" else ()):
             corners, faces = hull_faces(part @ to_pivot[:3, :3].T + to_pivot[:3, 3])

@@ -61,6 +61,8 @@ class ExportOptions:
     exposure show it), are in lumens and lux, or are left out."""
     engine: GameEngine = "godot"
     """Whose names convex colliders of a game's file have; "none" leaves them out."""
+    light_uv: bool = False
+    """Whether a game's meshes have a second set of texture coordinates without overlaps, for baked light."""
     robot_radius_m: float = 0.25
     """Of the disc for which a robot pack says where it can be: as large as usual bases of arms."""
     photo: bool = False

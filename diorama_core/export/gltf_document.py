@@ -115,6 +115,9 @@ class GltfDocument:
             arrays["TANGENT"] = tangents(surface)
         if textured and surface.uv is not None:
             arrays["TEXCOORD_0"] = surface.uv * [1, -1] + [0, 1]
+        if surface.light_uv is not None:
+            arrays["TEXCOORD_1"] = surface.light_uv * [1, -1] + [0, 1]
+            arrays.setdefault("TEXCOORD_0", arrays["TEXCOORD_1"])  # sets are numbered from 0 without gaps
         if surface.colours is not None:
             arrays["COLOR_0"] = surface.colours
         arrays = {name: np.ascontiguousarray(values, dtype="<f4") for name, values in arrays.items()}

@@ -11,7 +11,7 @@ import numpy as np
 from jaxtyping import Integer
 
 EXTENSION = "EXT_meshopt_compression"
-_STEPS = {"POSITION": 2.0**14, "TEXCOORD_0": 2.0**12, "COLOR_0": 2.0**8}
+_STEPS = {"POSITION": 2.0**14, "TEXCOORD_0": 2.0**12, "TEXCOORD_1": 2.0**12, "COLOR_0": 2.0**8}
 
 
 def prepared(

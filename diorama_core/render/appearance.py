@@ -63,6 +63,8 @@ class Surface:
     colours: Float32[np.ndarray, "n 3"] | None = None
     """Linear colours multiplied onto the material's."""
     name: str = "surface"
+    light_uv: Float32[np.ndarray, "n 2"] | None = None
+    """Second coordinates, without overlaps, v upward; None where nobody asked for them."""
 
     @property
     def area_m2(self) -> float:
