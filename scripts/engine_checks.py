@@ -156,7 +156,7 @@ def drake(folder: Path) -> Checked:
 
 
 def newton(folder: Path) -> Checked:
-    """USD, with the engine's MuJoCo solver."""
+    """USD, with the engine's MuJoCo solver on the CPU."""
     import newton
     import warp
 
@@ -165,7 +165,7 @@ def newton(folder: Path) -> Checked:
     newton.solvers.SolverMuJoCo.register_custom_attributes(builder)  # the stage's own settings of the solver
     builder.add_usd(str(folder / "room.usdc"))
     model = builder.finalize(device="cpu")
-    solver = newton.solvers.SolverMuJoCo(model, njmax=4000, nconmax=4000)
+    solver = newton.solvers.SolverMuJoCo(model, njmax=4000, nconmax=4000, use_mujoco_cpu=True)
     here, there, control = model.state(), model.state(), model.control()
     newton.eval_fk(model, model.joint_q, model.joint_qd, here)
     names = [path.rpartition("/")[2] for path in model.body_label]

@@ -14,7 +14,6 @@ import argparse
 import datetime
 import json
 import os
-import re
 import subprocess
 import sys
 import tempfile
@@ -123,6 +122,17 @@ def check_room(project: Project, rows: dict[str, Row]) -> None:
                 print(f"{project.name} {engine}: {moved or 'at rest'}{joints}", file=sys.stderr, flush=True)
 
 
+def table(rows: dict[str, Row], rooms: int) -> list[str]:
+    lines = ["| engine | version | file | loads | stable | joints | colliders |", "|---|---|---|---:|---:|---:|---:|"]
+    for engine, row in rows.items():
+        counts = (
+            f"{row.stable} of {row.free} | {row.joints} of {row.all_joints} | {row.colliders} of {row.all_colliders}"
+        )
+        lines.append(f"| {NAMES[engine]} | {row.version} | `{FILES[engine]}` | {row.loads} of {rooms} | {counts} |")
+    day = datetime.datetime.now(tz=datetime.UTC).strftime("%d %B %Y").lstrip("0")
+    return [*lines, "", f"Checked by `scripts/engines.py` on {day}; number of rooms: {rooms}."]
+
+
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("projects", nargs="+", type=Path, metavar="PROJECT")
@@ -130,22 +140,14 @@ def main() -> None:
     parser.add_argument("--docs", type=Path, metavar="FILE.md", help="write the table there, between its marks")
     a = parser.parse_args()
     rows = {engine: Row() for engine in a.engines}
-    for project in map(Project.open, a.projects):
+    for done, project in enumerate(map(Project.open, a.projects), 1):
         check_room(project, rows)
-    lines = ["| engine | version | file | loads | stable | joints | colliders |", "|---|---|---|---:|---:|---:|---:|"]
-    for engine, row in rows.items():
-        counts = (
-            f"{row.stable} of {row.free} | {row.joints} of {row.all_joints} | {row.colliders} of {row.all_colliders}"
-        )
-        loads = f"{row.loads} of {len(a.projects)}"
-        lines.append(f"| {NAMES[engine]} | {row.version} | `{FILES[engine]}` | {loads} | {counts} |")
-    day = datetime.datetime.now(tz=datetime.UTC).strftime("%d %B %Y").lstrip("0")
-    lines += ["", f"Checked by `scripts/engines.py` on {day}: {len(a.projects)} rooms."]
+        lines = table(rows, done)
+        if a.docs is not None:
+            before, _, rest = a.docs.read_text("utf-8").partition(BEGIN)
+            after = rest.partition(END)[2]
+            a.docs.write_text("\n".join([before + BEGIN, *lines, END + after]), "utf-8")
     print("\n".join(lines))
-    if a.docs is not None:
-        text = a.docs.read_text("utf-8")
-        inside = re.compile(f"{BEGIN}.*{END}", re.DOTALL)
-        a.docs.write_text(inside.sub(lambda _: "\n".join([BEGIN, *lines, END]), text), "utf-8")
 
 
 if __name__ == "__main__":

@@ -20,19 +20,14 @@ from diorama_core.export.gathering import ExportObject, ExportOptions, ExportSce
 from diorama_core.export.limbs import ExportLimb, limb_parts
 from diorama_core.export.overlaps import Cuts, cut, seated
 from diorama_core.export.physics import GRAVITY, Inertia, friction_of, inertia_of, plausible_mass_kg
+from diorama_core.export.slabs import ground_piece, slab_pieces
 from diorama_core.geometry.convex import ConvexPart
-from diorama_core.geometry.planes import plane_axes
 from diorama_core.layout.problem.parts import parts_of_shape
 from diorama_core.library.record import Shape, ShapeLibrary, record_of
-from diorama_core.scene.types import Plane, Scene, box_corners
+from diorama_core.scene.types import Scene, box_corners
 
 NEAR_FLOOR_M = 0.03
 """An object without support stands on the floor when its bottom is this near to it."""
-MIN_SLAB_M = 0.05
-GROUND_BEYOND_M, GROUND_DEPTH_M = 10.0, 0.5
-"""How far the floor reaches beyond the room, and down: what falls for two seconds is not stopped by less."""
-THIN_M = 1e-3
-"""Pieces of slabs that are thinner than this are left out."""
 MAX_SHEET_HEIGHT_M = 0.06
 FOOT_M = 0.006
 """What lies this near to the lowest point of an object is its foot."""
@@ -69,6 +64,11 @@ def physical_scene(gathered: ExportScene) -> PhysicalScene:
         if bodies[child].free:
             bodies[child] = _welded(bodies[child], carrier)
             notes.append(f"{child} is sunk into {carrier or 'the room'} and welded to it")
+    for child, body in bodies.items():
+        parent = body.node.parent
+        if body.free and parent is not None and _is_beside(body, bodies[parent]):
+            bodies[child] = _welded(body, parent)
+            notes.append(f"{child} stands beside {parent}, which is to carry it, and is welded to it")
     apart = {i: replace(b, parts=cuts.parts(i), moving=cuts.moving(b)) for i, b in bodies.items()}
     done = tuple(_resting(b, None if b.node.parent is None else apart[b.node.parent]) for b in apart.values())
     return PhysicalScene(done, slabs, tuple(sorted(cuts.ignored)), tuple(notes))
@@ -99,13 +99,18 @@ def _resting(body: RigidBody, carrier: RigidBody | None) -> RigidBody:
 
 def balanced(body: RigidBody, carrier: RigidBody | None = None) -> RigidBody:
     """The body with its centre of mass above its foot, or above that part of it which its carrier holds up."""
-    low = min((float(p[:, 2].min()) for p in world_parts(body)), default=0.0)
-    foot = [p[p[:, 2] < low + FOOT_M][:, :2] for p in world_parts(body)]
-    outline = np.concatenate(foot) if foot else np.zeros((0, 2))
+    outline, low = _foot(body)
     if carrier is not None:
         tops = [p[np.abs(p[:, 2] - low) < NEAR_TOP_M][:, :2] for p in world_parts(carrier)]
         outline = _shared_outline(outline, np.concatenate(tops))
     return over(body, outline)
+
+
+def _foot(body: RigidBody) -> tuple[Float[np.ndarray, "n 2"], float]:
+    """What of a body lies near its lowest point, seen from above, and the height of that point."""
+    parts = world_parts(body)
+    low = min((float(p[:, 2].min()) for p in parts), default=0.0)
+    return np.concatenate([np.zeros((0, 2)), *(p[p[:, 2] < low + FOOT_M][:, :2] for p in parts)]), low
 
 
 def over(body: RigidBody, outline: Float[np.ndarray, "n 2"]) -> RigidBody:
@@ -124,6 +129,15 @@ def over(body: RigidBody, outline: Float[np.ndarray, "n 2"]) -> RigidBody:
     shift = np.append(_into(outline, centre[:2]), 0.0)
     moved = body.inertia.centre + T[:3, :3].T @ shift * (total / body.mass_kg)
     return body if not body.free or not shift.any() else replace(body, inertia=replace(body.inertia, centre=moved))
+
+
+def _is_beside(body: RigidBody, carrier: RigidBody) -> bool:
+    """Whether nothing of a carrier, seen from above, is below the foot of what it is to carry: that would fall."""
+    foot, low = _foot(body)
+    under = np.concatenate([p[:, :2] for p in world_parts(carrier)])
+    stands_lower = low < min(float(p[:, 2].min()) for p in world_parts(carrier)) + NEAR_FLOOR_M
+    hulls = [manifold3d.CrossSection.hull_points(flat) for flat in (foot, under)]
+    return not stands_lower and len(foot) > 2 and (hulls[0] ^ hulls[1]).area() < MIN_HOLD_M2
 
 
 def is_sheet(node: ExportObject) -> bool:
@@ -181,42 +195,6 @@ def _into(outline: Float[np.ndarray, "n 2"], point: Float[np.ndarray, "2"]) -> F
     reach = hull.equations[:, :2] @ (point - middle)
     share = float(np.min(np.where(reach > 1e-12, -offsets / np.maximum(reach, 1e-12), np.inf)))
     return (middle + share * (point - middle)) - point
-
-
-def ground_piece(plane: Plane) -> tuple[Points, ...]:
-    """The floor as one thick box that reaches beyond the room, so that nothing falls beside or through it."""
-    axes = np.stack(plane_axes(plane.normal), axis=1)
-    flat = plane.polygon @ axes
-    low, high = flat.min(axis=0) - GROUND_BEYOND_M, flat.max(axis=0) + GROUND_BEYOND_M
-    top = np.array([[u, v] for u in (low[0], high[0]) for v in (low[1], high[1])]) @ axes.T
-    top = top + plane.normal * float(plane.polygon.mean(axis=0) @ plane.normal)
-    return (np.vstack([top, top - plane.normal * GROUND_DEPTH_M]),)
-
-
-def slab_pieces(plane: Plane) -> tuple[Points, ...]:
-    """A plane with its thickness as convex prisms: one where its outline is convex, one a triangle otherwise."""
-    depth = -plane.normal * max(plane.thickness, MIN_SLAB_M)
-    flat = plane.polygon @ np.stack(plane_axes(plane.normal), axis=1)
-    if _is_convex(flat):
-        return (np.vstack([plane.polygon, plane.polygon + depth]),)
-    triangles = np.asarray(manifold3d.triangulate([flat]), dtype=int)
-    return tuple(
-        np.vstack([plane.polygon[t], plane.polygon[t] + depth]) for t in triangles if _height(flat[t]) > THIN_M
-    )
-
-
-def _height(triangle: Float[np.ndarray, "3 2"]) -> float:
-    """Least height of a triangle: slivers are no bodies for a simulator."""
-    sides = np.roll(triangle, -1, axis=0) - triangle
-    doubled_area = abs(float(sides[0, 0] * sides[1, 1] - sides[0, 1] * sides[1, 0]))
-    return doubled_area / max(float(np.linalg.norm(sides, axis=1).max()), 1e-12)
-
-
-def _is_convex(outline: Float[np.ndarray, "n 2"]) -> bool:
-    edges = np.roll(outline, -1, axis=0) - outline
-    after = np.roll(edges, -1, axis=0)
-    turns = edges[:, 0] * after[:, 1] - edges[:, 1] * after[:, 0]
-    return bool((turns >= -1e-9).all() or (turns <= 1e-9).all())
 
 
 def _body(gathered: ExportScene, node: ExportObject) -> RigidBody:

@@ -16,6 +16,7 @@ from diorama_core.export.mjcf import mjcf_text, write_mjcf
 from diorama_core.export.overlaps import cut
 from diorama_core.export.stability import Shake, stability
 from diorama_core.layout.problem.parts import parts_of_shape
+from diorama_core.scene import edits
 from diorama_core.scene.types import box_corners
 from tests.export.scenes import desk_in_dresser, gathered, scene_of
 
@@ -57,6 +58,19 @@ def test_an_object_in_the_air_is_reported_as_falling() -> None:
     report = stability(gather(moved, library))
     assert report.unstable[0].object_id == lifted.id
     assert report.unstable[0].moved_m > 0.3
+
+
+def test_what_stands_beside_its_carrier_is_welded_to_it_and_noted() -> None:
+    """It would fall: nothing is below its foot. What hangs over an edge is held, and stays free."""
+    scene, library = scene_of("fittings")
+    lamp, dresser = scene.object("lamp_1"), scene.object("dresser_1")
+    depth = float(dresser.size_m[0] / 2)
+    for forward, free in ((depth + lamp.size_m[0], False), (depth - 0.05, True)):
+        away = dresser.pose.R_world_object[:, 0] * forward
+        physical = physical_scene(gather(edits.move(scene, "lamp_1", lamp.pose.moved(away)), library))
+        body = next(b for b in physical.bodies if b.node.id == "lamp_1")
+        assert body.free == free
+        assert any("lamp_1 stands beside dresser_1" in note for note in physical.notes) != free
 
 
 def test_a_floor_that_shakes_hard_makes_things_fall_and_a_gentle_one_does_not() -> None:
