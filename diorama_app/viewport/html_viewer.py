@@ -25,7 +25,7 @@ from diorama_app.viewport.camera import fitting_fov
 from diorama_app.viewport.framing import DEFAULT_FOV_RAD, NARROW_FOV_RAD, room_view, side_view
 from diorama_app.viewport.mesh_assets import ShapeBytes
 from diorama_app.viewport.room_light import RoomLightView
-from diorama_app.web.head import STATIC
+from diorama_app.web.responses import STATIC
 from diorama_app.web.viser_adapter import stop_server
 from diorama_core.editing.walking import walk_of
 from diorama_core.errors import UnavailableError

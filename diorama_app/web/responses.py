@@ -6,15 +6,15 @@ import asyncio
 import functools
 import gzip
 import http
+import re
 from collections.abc import Sequence
 from concurrent.futures import Future
 from http.cookies import SimpleCookie
+from pathlib import Path
 
 from websockets.asyncio.server import ServerConnection
 from websockets.datastructures import Headers
 from websockets.http11 import Response
-
-from diorama_app.web.head import with_head
 
 TOKEN_COOKIE = "diorama_token"
 SECURITY_HEADERS = {
@@ -85,3 +85,17 @@ def add_headers(response: Response, *, remember: str | None, frame_origins: Sequ
         cookie = SimpleCookie({TOKEN_COOKIE: remember})
         cookie[TOKEN_COOKIE].update({"path": "/", "httponly": "1", "samesite": "Strict"})
         response.headers["Set-Cookie"] = cookie[TOKEN_COOKIE].OutputString()
+
+
+STATIC = Path(__file__).parents[1] / "static"
+SCRIPTS = sorted(STATIC.glob("*.js"))
+STYLES = sorted(STATIC.glob("*.css"))
+TITLE = b"Diorama"
+
+
+def with_head(page: bytes) -> bytes:
+    """The page with our title, styles and scripts before everything that viser brings."""
+    styles = b"".join(b"\n<style>" + style.read_bytes() + b"</style>" for style in STYLES)
+    scripts = b"".join(b"\n<script>" + script.read_bytes() + b"</script>" for script in SCRIPTS)
+    page = re.sub(rb"<title>.*?</title>", lambda _: b"<title>" + TITLE + b"</title>", page, count=1, flags=re.DOTALL)
+    return page.replace(b"<head>", b"<head>" + styles + scripts, 1)

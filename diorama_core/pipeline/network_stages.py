@@ -6,8 +6,7 @@ from dataclasses import replace
 
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.models.clip import DuoduoClip, OpenClip
-from diorama_core.models.depth import GeometryNetwork, Metric3d, Moge2
-from diorama_core.models.depth_anything import DepthAnything3
+from diorama_core.models.depth import DepthAnything3, GeometryNetwork, Metric3d, Moge2
 from diorama_core.models.features import Dinov2
 from diorama_core.models.foreground import Foreground
 from diorama_core.models.gigapose import GigaPoseScale

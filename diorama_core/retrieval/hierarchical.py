@@ -27,11 +27,11 @@ from diorama_core.retrieval.appearance_similarity import (
     EmbeddedSimilarity,
     ObjectCrop,
 )
-from diorama_core.retrieval.measured_sizes import as_measured
 from diorama_core.retrieval.neighbours import with_neighbours
 from diorama_core.retrieval.outlines import outline_agreement, whole_outline
 from diorama_core.retrieval.pools import Pool, RetrievalQuery, pool_for, size_cost
 from diorama_core.retrieval.seen_forms import seen_form_factor, shape_form
+from diorama_core.retrieval.seen_kinds import as_measured
 from diorama_core.retrieval.settings import SETTINGS, RankingSettings, RetrievalSettings
 from diorama_core.retrieval.usual_forms import usual_form_factor
 from diorama_core.retrieval.word_senses import sense_probabilities

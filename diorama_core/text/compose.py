@@ -36,8 +36,7 @@ from diorama_core.text.requested_relations import (
     targets_of,
     usual_relations,
 )
-from diorama_core.text.requested_room import empty_room, with_essentials
-from diorama_core.text.requested_shapes import dressed, requested_shapes
+from diorama_core.text.requested_room import dressed, empty_room, requested_shapes, with_essentials
 
 TRIES = 4
 """Rooms begun anew, each a little larger, until every wish is met."""

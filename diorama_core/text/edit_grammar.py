@@ -19,8 +19,7 @@ from diorama_core.io.bounded import shortened
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.library.taxonomy import broad, category
 from diorama_core.scene.types import Scene
-from diorama_core.text.edit_counts import all_but, counted_edits
-from diorama_core.text.edit_lengths import lifted, nearer, shift_of
+from diorama_core.text.edit_lengths import all_but, counted_edits, lifted, nearer, shift_of
 from diorama_core.text.edit_plan import (
     MAX_COPIES,
     Edit,

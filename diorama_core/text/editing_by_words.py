@@ -20,8 +20,8 @@ from diorama_core.scene.types import Scene
 from diorama_core.text.edit_apply import EditApplier
 from diorama_core.text.edit_grammar import edits_of
 from diorama_core.text.edit_plan import Edit, EditPlan, Rename
-from diorama_core.text.edit_prompt import SYSTEM, edit_prompt
 from diorama_core.text.edit_wording import clauses_of
+from diorama_core.text.language import SYSTEM, edit_prompt
 
 MAX_OBJECTS_ASKED = 300
 """A language model is told of no more objects."""

@@ -6,9 +6,12 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
+from diorama_core.editing.relations import SEATS, is_long
 from diorama_core.library.company import carrier_in
+from diorama_core.library.language import size_request
 from diorama_core.library.record import Shape, ShapeLibrary
-from diorama_core.library.taxonomy import broad, category
+from diorama_core.library.taxonomy import broad, category, having
+from diorama_core.scene import edits
 from diorama_core.scene.types import Scene
 from diorama_core.synthesis import groups
 from diorama_core.synthesis.finishes import choose_finishes
@@ -16,9 +19,12 @@ from diorama_core.synthesis.furnisher import Furnisher
 from diorama_core.synthesis.grammar import RECIPES
 from diorama_core.synthesis.openings import add_door, add_window
 from diorama_core.synthesis.plan import room_plan
-from diorama_core.text.customs import ESSENTIALS, stands_in_for
+from diorama_core.text.customs import ESSENTIALS, stands_in_for, usual_relations_of
+from diorama_core.text.looks import fitting_shapes, has_look, look_of
+from diorama_core.text.phrases import MAX_OF_A_KIND
 from diorama_core.text.placed_rows import rows_of
 from diorama_core.text.prompt import RequestedObject, RoomRequest
+from diorama_core.text.requested_relations import SEAT_WIDTH_M, seats_at
 
 FREE_SHARE = 0.28
 """At most this share of a room's floor is under furniture."""
@@ -89,3 +95,92 @@ def empty_room(
             add_window(f, walls[(k + attempt) % len(walls)])
     finishes = choose_finishes(rng, request.room)
     return Scene(architecture=f.plan.architecture(finishes), objects=tuple(f.objects), supports=tuple(f.supports))
+
+
+TALL_PLANT_M = 0.6
+SOFA_WIDTHS_M = {"two-seater": (1.2, 1.9), "three-seater": (1.75, 2.4), "four-seater": (2.2, 4.0)}
+
+
+def requested_shapes(
+    library: ShapeLibrary, rng: np.random.Generator, request: RequestedObject, wanted: Sequence[RequestedObject]
+) -> tuple[Shape, ...]:
+    """Shapes that fit the words equally well, in an order left to chance; the others after them.
+
+    Args:
+        library: where shapes come from.
+        rng: chance, seeded.
+        request: what was asked for.
+        wanted: all that was asked for.
+    """
+    on = any(w.kind == "on" for w in request.wishes)
+    words = {*request.appearance, *request.label.split()}
+    double, single = (
+        request.category == "bed" and bool(words & set(said)) for said in (("double",), ("single", "twin"))
+    )
+    width_m = next((SOFA_WIDTHS_M[word] for word in SOFA_WIDTHS_M if word in words), None)
+
+    def usable(shape: Shape) -> bool:
+        if request.category == "plant" and request.label in ("plant", "plants", "potted plant") and not on:
+            return TALL_PLANT_M < shape.size_m[2] < 1.9
+        if double or single:
+            return (shape.size_m[1] > 1.3) == double
+        if width_m is not None and broad(request.category) == "sofa":
+            return width_m[0] <= shape.size_m[1] < width_m[1]
+        if request.category == "television":
+            return shape.size_m[0] > 0.12
+        if request.category == "kitchen counter":
+            return "island" not in shape.caption
+        if request.category == "sink":
+            return shape.size_m[2] > 0.7
+        return shape.size_m[2] < 2.35
+
+    shapes, _ = fitting_shapes(library, request.category, request.label, request.appearance, usable)
+    shapes = shapes or fitting_shapes(library, request.category, request.label, request.appearance)[0]
+    under = {t for w in request.wishes if w.kind == "under" for t in w.targets}
+    if request.category in having("rug"):
+        shapes = tuple(s for s in shapes if float(np.prod(s.size_m[:2])) > (2.4 if under else 1.6)) or shapes
+    if not shapes:
+        return ()
+    seats = sum(o.count for o in wanted if o.category in SEATS and _stand_around(o, request.category))
+    if broad(request.category) == "table" and seats > 2:
+        roomy = tuple(s for s in shapes if _seats(s) >= seats)
+        shapes = roomy or tuple(sorted(shapes, key=lambda s: -float(sum(s.size_m[:2])))[:3])
+    asked = [w for w in request.appearance if look_of(w) is not None]
+    said = [w for w in request.appearance if size_request(w) is None]
+    most = [sum(has_look(s, w) for w in said) for s in shapes]
+    named = [s for s, n in zip(shapes, most, strict=True) if n == max(most)]
+    sized = any(size_request(w) is not None for w in request.appearance)
+    if (request.label != request.category and not asked) or sized:
+        named = named[:4]  # "reading lamp": the search knows best which is one
+    order = rng.permutation(len(named))
+    return tuple(named[int(k)] for k in order)
+
+
+def dressed(scene: Scene, object_id: str, shape: Shape, appearance: Sequence[str]) -> Scene:
+    """Colours that no shape has are painted on.
+
+    Args:
+        scene: as it is.
+        object_id: of the object.
+        shape: that it has.
+        appearance: words of colour and material.
+    """
+    for word in appearance:
+        look = look_of(word)
+        if look is not None and look.colour is not None and not has_look(shape, word) and word not in ("light", "dark"):
+            scene = edits.refinish(edits.recolour(scene, object_id, look.colour), object_id, look.finish)
+    return scene
+
+
+def _seats(table: Shape) -> int:
+    """How many sit at a table: side by side at a long one, all around another."""
+    if is_long(np.asarray(table.size_m)):
+        return len(seats_at(tuple(table.size_m), MAX_OF_A_KIND))
+    return int(2.0 * float(sum(table.size_m[:2])) / SEAT_WIDTH_M)
+
+
+def _stand_around(seats: RequestedObject, name: str) -> bool:
+    """Whether seats are wished, or usually stand, around something."""
+    if seats.wishes:
+        return any(w.kind == "around" and name in w.targets for w in seats.wishes)
+    return any(kind == "around" and name in names for kind, names in usual_relations_of(seats.category))

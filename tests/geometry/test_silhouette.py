@@ -9,7 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from diorama_core.geometry.projection import edges_of_cuboid
-from diorama_core.geometry.silhouette import PoseBatch, ShapeCaster, clipped_bounds
+from diorama_core.geometry.silhouette import PoseBatch, ShapeCaster, clipped_bounds, is_circle
 from diorama_core.geometry.window import Window, soft_iou
 from diorama_core.render.raycast import render_buffers
 from diorama_core.scene.types import Camera, Intrinsics, Pose, box_corners
@@ -85,3 +85,32 @@ def test_overlap_is_one_for_the_same_and_zero_for_nothing() -> None:
     seen, weight = np.array([1.0, 0.5, 0.0]), np.ones(3)
     assert soft_iou(seen, seen[None], weight)[0] == 1.0
     assert soft_iou(np.zeros(3), np.zeros((1, 3)), weight)[0] == 0.0
+
+
+ANGLES = np.linspace(0.0, 2 * np.pi, 48, endpoint=False)
+CIRCLE = np.column_stack([np.cos(ANGLES), np.sin(ANGLES)])
+
+
+@given(st.floats(0.01, 5.0), st.floats(0.0, np.pi), st.floats(-3.0, 3.0))
+def test_a_circle_is_one_of_any_size_turn_and_place(radius: float, turn: float, x: float) -> None:
+    c, s = np.cos(turn), np.sin(turn)
+    assert is_circle(radius * CIRCLE @ np.array([[c, s], [-s, c]]) + [x, 1.0])
+
+
+@given(st.floats(1.06, 4.0))
+def test_an_ellipse_is_none(longer: float) -> None:
+    assert not is_circle(CIRCLE * [longer, 1.0])
+
+
+def test_squares_lines_and_few_points_are_none() -> None:
+    side = np.linspace(-1.0, 1.0, 9)
+    square = np.array([(x, y) for x in side for y in side])
+    assert not is_circle(square)
+    assert not is_circle(np.column_stack([side, side]))
+    assert not is_circle(CIRCLE[::12])
+
+
+@pytest.mark.parametrize("inside", [0, 40])
+def test_only_the_outline_counts(inside: int) -> None:
+    rng = np.random.default_rng(0)
+    assert is_circle(np.concatenate([CIRCLE, rng.uniform(-0.6, 0.6, (inside, 2))]))

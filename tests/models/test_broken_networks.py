@@ -13,8 +13,7 @@ from tokenizers import Tokenizer
 from tokenizers.models import WordLevel
 
 from diorama_core.models.clip import DuoduoClip, OpenClip
-from diorama_core.models.depth import Metric3d, Moge2
-from diorama_core.models.depth_anything import DepthAnything3
+from diorama_core.models.depth import DepthAnything3, Metric3d, Moge2
 from diorama_core.models.features import Dinov2
 from diorama_core.models.foreground import Foreground
 from diorama_core.models.gigapose import GigaPoseScale

@@ -14,8 +14,8 @@ from diorama_core.perception.language.client import LmmSettings, strict_schema
 from diorama_core.scene.types import Scene
 from diorama_core.synthesis.grammar import furnished_room
 from diorama_core.text.edit_plan import EditPlan
-from diorama_core.text.edit_prompt import edit_prompt
 from diorama_core.text.editing_by_words import ProposedEdits, propose_edits
+from diorama_core.text.language import edit_prompt
 from tests.perception.language.stub_lmm import Answer, StubLmm, answering
 
 

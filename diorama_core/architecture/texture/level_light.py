@@ -12,8 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 from jaxtyping import Bool, Float32
 
-from diorama_core.architecture.texture.quilting import broad_shading
-from diorama_core.architecture.texture.wide_blur import wide_blur
+from diorama_core.architecture.texture.quilting import broad_shading, wide_blur
 
 
 @dataclass(frozen=True)

@@ -1,6 +1,6 @@
 from __future__ import annotations
 
-from diorama_app.web.head import SCRIPTS, STYLES, with_head
+from diorama_app.web.responses import SCRIPTS, STYLES, with_head
 
 PAGE = b"<html><head><title>Viser</title><script>viser()</script></head><body></body></html>"
 

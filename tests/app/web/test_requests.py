@@ -13,8 +13,8 @@ import pytest
 import viser
 
 from diorama_app.web import viser_adapter
-from diorama_app.web.head import SCRIPTS
 from diorama_app.web.requests import MESSAGES_AT_ONCE, MESSAGES_PER_S, paced
+from diorama_app.web.responses import SCRIPTS
 from diorama_app.web.viser_adapter import create_server, stop_server
 from diorama_app.web.visitors import Visitors
 from tests.app.web.http_client import fetch, raw_status

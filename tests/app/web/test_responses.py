@@ -6,8 +6,7 @@ import http
 from websockets.datastructures import Headers
 from websockets.http11 import Response
 
-from diorama_app.web.head import SCRIPTS
-from diorama_app.web.responses import SECURITY_HEADERS, TOKEN_COOKIE, add_headers, prepend_scripts
+from diorama_app.web.responses import SCRIPTS, SECURITY_HEADERS, TOKEN_COOKIE, add_headers, prepend_scripts
 
 PAGE = b"<html><head><title>Diorama</title></head></html>"
 
