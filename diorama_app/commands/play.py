@@ -16,9 +16,10 @@ from diorama_app.commands.optimise import untouched
 from diorama_app.session.client import Client, Playing
 from diorama_core.editing.fallen import held_again
 from diorama_core.errors import EditRefused
+from diorama_core.geometry.rotations import rotation_vector
 from diorama_core.progress import Progress
 from diorama_core.scene import edits
-from diorama_core.scene.types import Scene
+from diorama_core.scene.types import Pose, Scene
 
 if TYPE_CHECKING:
     from diorama_core.export.playground import Playground  # the exports; the page opens without them
@@ -26,6 +27,8 @@ if TYPE_CHECKING:
 SHOWN_EVERY_S = 1 / 15
 LONGEST_S = 120.0
 """Of a game that nobody ends."""
+STAYED_M, STAYED_RAD = 0.003, 0.01
+"""Movements below these are none."""
 LAG_S = 0.2
 """A slow machine plays slower rather than by leaps: so much at once at most."""
 
@@ -58,8 +61,9 @@ def play(client: Client) -> None:
         from diorama_core.export.playground import Playground
 
         try:
-            progress.report(0.0, "preparing colliders")
-            playground = Playground(gather(game.start, session.library, progress=progress.part(0.0, 0.0)))
+            gathered = gather(game.start, session.library, progress=progress.part(0.0, 0.3))
+            progress.report(0.4, "preparing colliders")
+            playground = Playground(gathered)
             _run(playground, game, progress, lambda: _show(client, playground))
             final = edits.place(game.start, playground.poses())
         except BaseException:
@@ -98,7 +102,21 @@ def _stop(client: Client) -> None:
         client.refresh()
 
 
+def _stayed(before: Pose, after: Pose) -> bool:
+    """Whether an object is where it was, but for how a simulation settles."""
+    turn = rotation_vector(after.R_world_object @ before.R_world_object.T)
+    return float(np.linalg.norm(after.position - before.position)) < STAYED_M and (
+        float(np.linalg.norm(turn)) < STAYED_RAD
+    )
+
+
 def _keep(client: Client, start: Scene, final: Scene) -> None:
     session = client.session
-    played = edits.place(session.scene, untouched(session.scene, start, final))
+    there = untouched(session.scene, start, final)
+    moved = {i: p for i, p in there.items() if not _stayed(start.object(i).pose, p)}
+    if not moved:
+        client.notice("Nothing moved.", "good")
+        session.refresh()
+        return
+    played = edits.place(session.scene, moved)
     session.commit("play", held_again(session.scene, played), by=client)

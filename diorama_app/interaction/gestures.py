@@ -104,7 +104,7 @@ class Gestures:
             place_at(self._client, doing.shape_id, origin, direction)
         elif isinstance(doing, Measuring):
             measure_at(self._client, doing, origin, direction)
-        elif not on_object:
+        elif doing is None and not on_object:
             self._client.select_surface(surface_under(self._session.scene, origin, direction))
 
     def _framed(self, low: tuple[float, float], high: tuple[float, float]) -> None:

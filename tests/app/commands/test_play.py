@@ -63,3 +63,13 @@ def test_an_empty_room_is_no_playground(session, client) -> None:
     session.edit("clear", lambda s: edits.remove(s, ids), by=client)
     with pytest.raises(EditRefused, match="nothing to play with"):
         play(client)
+
+
+def test_where_nothing_moves_there_is_no_step(session, client) -> None:
+    play(client)
+    _until(lambda: session.jobs.status is not None and "push" in session.jobs.status.message)
+    before = session.scene
+    play(client)
+    assert session.jobs.wait(30.0)
+    assert session.ui_thread.wait()
+    assert session.scene is before
