@@ -19,6 +19,7 @@ class Guide:
 
     group: str
     opens_in: str
+    """Programs that were tried, then, after "made for", those that were not."""
     choices: frozenset[Choice]
 
 
@@ -42,27 +43,29 @@ _FURNITURE = frozenset[Choice]({"selection"})
 GUIDES: Mapping[str, Guide] = {
     "glb": Guide(
         MODELS,
-        "Blender, Unity, Unreal, Godot, three.js",
+        "Blender, three.js; made for Unity, Unreal and Godot",
         _TEXTURED | frozenset[Choice]({"compression", "lights", "photo"}),
     ),
-    "game": Guide(MODELS, "Godot; others by `diorama export --engine`", _TEXTURED | {"lights"}),
+    "game": Guide(MODELS, "Blender; made for Godot, others by `diorama export --engine`", _TEXTURED | {"lights"}),
     "blend": Guide(MODELS, "Blender, with the photo behind the camera", _TEXTURED),
-    "usdz": Guide(MODELS, "iPhone and iPad (AR Quick Look)", _USD),
-    "usdc": Guide(MODELS, "Isaac Sim, Blender, Unreal, Maya", _USD),
+    "usdz": Guide(MODELS, "made for iPhone and iPad (AR Quick Look)", _USD),
+    "usdc": Guide(MODELS, "Blender, newton; made for Isaac Sim, Unreal, Maya", _USD),
     "usda": Guide(MODELS, "the same programs, as readable text", _USD),
     "obj": Guide(MODELS, "nearly every 3D program", _TEXTURED),
-    "hdr": Guide(MODELS, "Unity, Blender, three.js, as light and reflections beside a GLB", frozenset()),
-    "ply": Guide(MODELS, "MeshLab, CloudCompare, Open3D", _SHAPES),
-    "stl": Guide(MODELS, "slicers for 3D printers", _SHAPES),
-    "mjcf": Guide(SIMULATORS, "MuJoCo, dm_control", _BODIES),
-    "urdf": Guide(SIMULATORS, "RViz, MoveIt, PyBullet", _BODIES),
-    "sdf": Guide(SIMULATORS, "Gazebo, Drake", _BODIES),
-    "robot": Guide(SIMULATORS, "MuJoCo, ROS 2, Gazebo, Isaac Sim: one zip with maps and places", _BODIES),
+    "hdr": Guide(MODELS, "made for Unity and Blender, as light and reflections beside a GLB", frozenset()),
+    "ply": Guide(MODELS, "Open3D; made for MeshLab and CloudCompare", _SHAPES),
+    "stl": Guide(MODELS, "made for slicers of 3D printers", _SHAPES),
+    "mjcf": Guide(SIMULATORS, "MuJoCo", _BODIES),
+    "urdf": Guide(SIMULATORS, "MuJoCo, PyBullet, SAPIEN; made for RViz and MoveIt", _BODIES),
+    "sdf": Guide(SIMULATORS, "Drake; made for Gazebo", _BODIES),
+    "robot": Guide(
+        SIMULATORS, "MuJoCo, Drake; made for ROS 2 (nav2) and Isaac Sim: one zip with maps and places", _BODIES
+    ),
     "svg": Guide(PLANS, "browsers, Inkscape, Illustrator", _FURNITURE),
     "pdf": Guide(PLANS, "any PDF viewer; prints to scale", _FURNITURE),
-    "dxf": Guide(PLANS, "AutoCAD, LibreCAD, QCAD", _FURNITURE),
-    "sh3d": Guide(PLANS, "version 5.3 and newer", _FURNITURE | frozenset[Choice]({"textures"})),
-    "ifc": Guide(PLANS, "Revit, Bonsai for Blender, IFC viewers", _SHAPES),
+    "dxf": Guide(PLANS, "made for AutoCAD, LibreCAD, QCAD", _FURNITURE),
+    "sh3d": Guide(PLANS, "version 7.0.2; made for 5.3 and newer", _FURNITURE | frozenset[Choice]({"textures"})),
+    "ifc": Guide(PLANS, "IfcOpenShell; made for Revit, Bonsai, IFC viewers", _SHAPES),
     "html": Guide(SHOW, "any browser, without a network", _TEXTURED),
     "scene-state": Guide(SHOW, "SceneEval, SmartScenes tools", _TEXTURED),
 }
