@@ -66,8 +66,8 @@ class Progress:
         self.on_event(ProgressEvent(fraction=self._at(min(max(fraction, 0.0), 1.0)), message=message))
 
     def found(self, words: str, drawn: Segments = ()) -> None:
-        """Report what this part of the job, which is done, found: words, and lines over the photo."""
-        if words or drawn:
+        """Report what this part of the job, which is done, found: words, lines over the photo; nothing without words."""
+        if words:
             self.on_event(ProgressEvent(fraction=self.end, message=words, found=words, drawn=drawn))
 
     def check(self) -> None:

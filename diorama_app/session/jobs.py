@@ -114,7 +114,7 @@ class Jobs:
             if status.cancelling:
                 return status
             found = (*status.found, event.found) if event.found else status.found
-            message = status.message if event.found else event.message or status.message
+            message = status.message if event.found else event.message
             drawn = (*status.drawn, *event.drawn)
             return replace(status, fraction=event.fraction, message=message, found=found, drawn=drawn)
 

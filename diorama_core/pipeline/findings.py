@@ -59,6 +59,7 @@ WORDS: dict[str, Callable[[Any], str]] = {
     "detected_boxes": lambda boxes: f"{_count(len(boxes), 'piece')} of furniture",
     "camera": _camera,
     "outlined_objects": _objects,
+    "measured_geometry": lambda geometry: f"places of {_count(len(geometry.cuboids), 'object')}",
     "architecture": _room,
     "shapes": _shapes,
 }
