@@ -66,7 +66,7 @@ class Progress:
         self.on_event(ProgressEvent(fraction=self._at(min(max(fraction, 0.0), 1.0)), message=message))
 
     def found(self, words: str, drawn: Segments = ()) -> None:
-        """Report what this part of the job, which is done, found: words, lines over the photo; nothing without words."""
+        """Report what this part of the job, which is done, found: words and lines; nothing without words."""
         if words:
             self.on_event(ProgressEvent(fraction=self.end, message=words, found=words, drawn=drawn))
 
