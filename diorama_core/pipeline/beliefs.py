@@ -11,7 +11,7 @@ from diorama_core.arrangement.noise import ObservationNoise
 from diorama_core.arrangement.supports import DecidedSupports
 from diorama_core.artefacts import Inputs, ObjectGeometry, PosedCandidates
 from diorama_core.library.record import ShapeLibrary, record_of
-from diorama_core.library.taxonomy import having
+from diorama_core.library.taxonomy import UNKNOWN, having
 from diorama_core.pipeline.scene_steps import FinishedScene
 from diorama_core.scene.belief import CERTAIN_FRONT, Belief, Shares
 from diorama_core.scene.room_edits import KNOWN_LENGTH_SIGMA
@@ -30,6 +30,8 @@ class BeliefSettings:
 
     present: tuple[float, float] = (-1.51, 1.59)
     """Log odds that a box of the shipped detector is right: at even odds of its score, and how they rise with these."""
+    kind: float = 1.2
+    """Power of the probabilities of kinds of what nobody named."""
     front: float = 0.34
     """Power of the probabilities of headings: the terms they are made of are not as independent as they are taken."""
     front_compared: float = 0.69
@@ -75,6 +77,7 @@ def with_beliefs(
         settings: how probabilities are made.
     """
     scene, headings = finished.scene, {p.object_id: p.headings for p in posed}
+    named = {b.box for b in inputs.boxes if b.category != UNKNOWN.name}
     scores = {b.box: b.score for b in inputs.boxes if b.guessed and b.score < 1.0}
     feet = {c.object_id for c in geometry.cuboids if c.foot_seen}
 
@@ -84,7 +87,11 @@ def with_beliefs(
         sigma = _distance_sigma(scene, item, noise, settings, foot_seen=item.id in feet)
         belief = Belief(
             1.0 if item.box_px not in scores else presence_of(scores[item.box_px], settings),
-            _decided_first(_kinds(item, library), record_of(library, item.shape_id).category, settings),
+            _decided_first(
+                _kinds(item, library, 1.0 if item.box_px in named else settings.kind),
+                record_of(library, item.shape_id).category,
+                settings,
+            ),
             _fronts(item, headings.get(item.id, ()), library, settings),
             () if edge is None or not holders else _decided_first(holders, edge.parent, settings),
             round(float(np.hypot(sigma * _distance_m(scene, item), noise.across_m)), 3),
@@ -119,14 +126,15 @@ def presence_of(score: float, settings: BeliefSettings = SETTINGS) -> float:
     return round(float(1.0 / (1.0 + np.exp(-odds))), 3)
 
 
-def _kinds(item: SceneObject, library: ShapeLibrary) -> dict[str, float]:
-    """By category the score of its best candidate, as a probability."""
+def _kinds(item: SceneObject, library: ShapeLibrary, power: float) -> dict[str, float]:
+    """By category the power of the score of its best candidate, as a probability."""
     best: dict[str, float] = {}
     for candidate in item.candidates:
         kind = record_of(library, candidate.shape_id).category
         best[kind] = max(best.get(kind, 0.0), candidate.score)
-    whole = sum(best.values())
-    return {kind: score / whole for kind, score in best.items()} if whole > 0.0 else {}
+    powers = {kind: max(score, 0.0) ** power for kind, score in best.items()}
+    whole = sum(powers.values())
+    return {kind: score / whole for kind, score in powers.items()} if whole > 0.0 else {}
 
 
 def _fronts(

@@ -18,9 +18,9 @@ class Belief:
     kinds: Shares = ()
     """Categories."""
     fronts: tuple[float, ...] = ()
-    """Probabilities that it faces where it was put, and a quarter, a half and three quarters of a turn left of it."""
+    """Probabilities that it faces where it was put, and one to three quarters of a turn left of it, given its kind."""
     supporters: Shares = ()
-    """Ids of objects and planes that hold it."""
+    """Ids of objects and planes that hold it, given its kind."""
     place_sigma_m: float = 0.0
     """Standard deviation of its place, nearly all of it along the line of sight."""
     size_sigma: float = 0.0

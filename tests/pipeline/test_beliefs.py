@@ -14,6 +14,7 @@ from diorama_core.pipeline.beliefs import BeliefSettings, with_beliefs
 from diorama_core.pipeline.scene_steps import FinishedScene
 from diorama_core.provenance import ScaleSource
 from diorama_core.scene.belief import Belief
+from diorama_core.scene.room_edits import KNOWN_LENGTH_SIGMA
 from diorama_core.scene.types import Scene, Support
 from tests.app.small_room import PlainLibrary, furnished_scene, plain_photo
 
@@ -51,8 +52,36 @@ def test_kinds_share_by_their_best_candidates() -> None:
     table = replace(chair.candidates[0], shape_id="table_a", score=0.45)
     both = replace(chair, candidates=(*chair.candidates, table))
     scene = replace(scene, objects=tuple(both if o.id == "chair_1" else o for o in scene.objects))
-    kinds = beliefs_of(scene)["chair_1"].kinds
+    kinds = beliefs_of(scene, settings=replace(PLAIN, kind=1.0))["chair_1"].kinds
     assert kinds == (("chair", pytest.approx(0.9 / 1.35, abs=1e-3)), ("table", pytest.approx(0.45 / 1.35, abs=1e-3)))
+    sharper = beliefs_of(scene, settings=replace(PLAIN, kind=2.0))["chair_1"].kinds
+    assert sharper[0] == ("chair", pytest.approx(0.8, abs=1e-3)), "nobody named it"
+    boxed = tuple(replace(o, box_px=BOX) if o.id == "chair_1" else o for o in scene.objects)
+    named = beliefs_of(
+        replace(scene, objects=boxed), boxes=(LabelledBox(BOX, "chair", "chair"),), settings=replace(PLAIN, kind=2.0)
+    )
+    assert named["chair_1"].kinds == kinds
+
+
+def test_planes_and_the_scale_have_deviations() -> None:
+    scene = furnished_scene()
+    cuboids = tuple(Cuboid(o.id, o.pose.R_world_object, o.pose.position, o.size_m, 1.0) for o in scene.objects)
+    geometry = ObjectGeometry(scene.camera, cuboids, (), next(iter(ScaleSource)), scale_sigma=0.07)
+    finished, decided = FinishedScene(scene, {}), DecidedSupports(scene, {}, ())
+
+    def believed(inputs: Inputs, noise: ObservationNoise) -> Scene:
+        return with_beliefs(finished, inputs, geometry, (), decided, noise, PlainLibrary(), PLAIN)
+
+    alone = believed(Inputs(plain_photo()), REASONED)
+    assert alone.scale_sigma == 0.07
+    assert {p.role: p.sigma_m for p in alone.architecture.planes if p.role != "wall"}["floor"] == 0.0
+    walls = {p.sigma_m for p in alone.architecture.by_role("wall")}
+    assert walls <= set(PLAIN.wall_m)
+    said = believed(replace(Inputs(plain_photo()), camera_height_m=1.5), REASONED)
+    assert said.scale_sigma == KNOWN_LENGTH_SIGMA
+    measured = believed(Inputs(plain_photo()), MEASURED)
+    assert measured.scale_sigma == MEASURED.along
+    assert max(p.sigma_m or 0.0 for p in measured.architecture.by_role("wall") if p.seen) < min(PLAIN.wall_m)
 
 
 def test_headings_become_quarter_turns_from_where_it_faces() -> None:

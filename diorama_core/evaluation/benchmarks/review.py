@@ -203,7 +203,7 @@ def _after(scene: Scene, question: Question, value: str, library: ShapeLibrary) 
 
 
 def calibration_table(scenes: Sequence[Reviewed]) -> Table:
-    """How often what a build decided is right, by how sure it was."""
+    """How often decisions are right, by how sure the build was; fronts and supporters of what is of the right kind."""
     pairs: dict[Subject, list[tuple[float, bool]]] = {"kind": [], "front": [], "supporter": []}
     for reviewed in scenes:
         for name in reviewed.truth:
@@ -213,13 +213,14 @@ def calibration_table(scenes: Sequence[Reviewed]) -> Table:
             said = {"kind": belief.kinds[:1], "supporter": belief.supporters[:1]}
             sure = {subject: of_one[0][1] for subject, of_one in said.items() if of_one}
             sure |= {"front": belief.fronts[0]} if belief.fronts else {}
-            for subject, right in reviewed.right(reviewed.scene, name).items():
-                if subject in sure:
+            found = reviewed.right(reviewed.scene, name)
+            for subject, right in found.items():
+                if subject in sure and (subject == "kind" or found.get("kind", True)):
                     pairs[subject].append((sure[subject], right))
     rows = []
-    for subject, found in pairs.items():
+    for subject, sure_and_right in pairs.items():
         for low, high in pairwise(BINS):
-            within = np.array([pair for pair in found if low < pair[0] <= high], dtype=float)
+            within = np.array([pair for pair in sure_and_right if low < pair[0] <= high], dtype=float)
             if len(within):
                 said_share, right_share = within.mean(axis=0).tolist()
                 rows.append(Row(f"{subject}, {low:.2f} to {high:.2f}", (len(within), said_share, right_share)))
