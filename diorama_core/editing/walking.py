@@ -18,6 +18,7 @@ from shapely.ops import nearest_points
 
 from diorama_core.editing.footprints import footprint_of
 from diorama_core.editing.plan_edits import wall_feet
+from diorama_core.geometry.openings import OPENING_CATEGORIES
 from diorama_core.scene.room_edits import floor_height
 from diorama_core.scene.types import Scene
 
@@ -88,7 +89,7 @@ def _furniture(scene: Scene) -> Iterator[Polygon]:
     level = floor_height(scene)
     for item in scene.objects:
         low, high = float(item.corners_world[:, 2].min()) - level, float(item.corners_world[:, 2].max()) - level
-        if item.category not in ("door", "window") and not item.hidden and high > STEP_M and low < HEAD_M:
+        if item.category not in OPENING_CATEGORIES and not item.hidden and high > STEP_M and low < HEAD_M:
             yield Polygon(footprint_of(item))
 
 

@@ -11,6 +11,8 @@ from jaxtyping import Float
 
 from diorama_core.importing.point_cloud import ScanPhoto
 
+OpeningKind = Literal["door", "window", "opening"]
+
 
 @dataclass(frozen=True, eq=False)
 class MeasuredWall:
@@ -26,7 +28,7 @@ class MeasuredWall:
 class MeasuredOpening:
     """A door, a window, or a hole in a wall."""
 
-    kind: Literal["door", "window", "opening"]
+    kind: OpeningKind
     centre: Float[np.ndarray, "3"]
     width_m: float
     height_m: float

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Any, Literal
+from typing import Any, get_args
 
 import numpy as np
 from jaxtyping import Float
@@ -20,6 +20,7 @@ from diorama_core.importing.measured_types import (
     MeasuredOpening,
     MeasuredRoom,
     MeasuredWall,
+    OpeningKind,
 )
 from diorama_core.importing.roomplan_parts import (
     MAX_PARTS,
@@ -37,11 +38,7 @@ from diorama_core.library.ingest.usd_stage import Z_UP
 MAX_JSON_BYTES = 64_000_000
 REACH_M = 10_000.0
 CONFIDENCE = {"high": 1.0, "medium": 0.7, "low": 0.4}
-_SURFACES: Mapping[str, Literal["door", "window", "opening"]] = {
-    "doors": "door",
-    "windows": "window",
-    "openings": "opening",
-}
+_SURFACES: Mapping[str, OpeningKind] = {f"{kind}s": kind for kind in get_args(OpeningKind)}
 
 
 def read_room_plan(path: Path) -> MeasuredRoom | None:
@@ -117,9 +114,7 @@ def _json_wall(row: Mapping[str, Any], number: int) -> MeasuredWall:
     return MeasuredWall(f"wall-{number}", _outline(row), float(_dimensions(row)[2]))
 
 
-def _json_opening(
-    row: Mapping[str, Any], kind: Literal["door", "window", "opening"], walls: Mapping[str, str]
-) -> MeasuredOpening:
+def _json_opening(row: Mapping[str, Any], kind: OpeningKind, walls: Mapping[str, str]) -> MeasuredOpening:
     size = _dimensions(row)
     wall = walls.get(str(row.get("parentIdentifier")))
     return MeasuredOpening(kind, _matrix(row)[:3, 3], float(size[0]), float(size[1]), wall)

@@ -6,7 +6,7 @@ import re
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Literal, cast
+from typing import Any, cast, get_args
 
 import numpy as np
 from jaxtyping import Float
@@ -19,6 +19,7 @@ from diorama_core.importing.measured_types import (
     MeasuredOpening,
     MeasuredRoom,
     MeasuredWall,
+    OpeningKind,
 )
 from diorama_core.importing.roomplan_parts import (
     KINDS,
@@ -60,8 +61,8 @@ def _from_stage(stage: Any, path: Path) -> MeasuredRoom | None:
         at[:3, 3] = moved(mesh.M_world, (mesh.low + mesh.high) / 2)
         if word == "wall":
             walls.append(_usd_wall(at, size, len(walls) + 1))
-        elif word in ("door", "window", "opening"):
-            kind = cast(Literal["door", "window", "opening"], word)
+        elif word in get_args(OpeningKind):
+            kind = cast(OpeningKind, word)
             openings.append(MeasuredOpening(kind, at[:3, 3], float(size[[0, 2]].max()), float(size[1])))
         elif word in known:
             boxes.append(box_of(known[word], KINDS[known[word]], at, size, 1.0))

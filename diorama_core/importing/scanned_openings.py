@@ -11,14 +11,13 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import chain
-from typing import Literal
 
 import cv2
 import numpy as np
 from jaxtyping import Bool, Float, UInt8
 from scipy import ndimage
 
-from diorama_core.importing.measured_types import MeasuredOpening, MeasuredWall
+from diorama_core.importing.measured_types import MeasuredOpening, MeasuredWall, OpeningKind
 
 CELL_M, MAX_CELL_M = 0.05, 0.12
 """Cell side of the grid on a wall, and its largest value where points are sparse."""
@@ -205,7 +204,7 @@ def _opening(
     centre = start + along * (left + right) / 2
     centre = np.array([centre[0], centre[1], (low + high) / 2])
     is_door = low == 0.0 and _is_door(r, grid)
-    kind: Literal["door", "window", "opening"] = "door" if is_door else "opening" if low == 0.0 else "window"
+    kind: OpeningKind = "door" if is_door else "opening" if low == 0.0 else "window"
     return MeasuredOpening(kind, centre, right - left, high - low, wall)
 
 
