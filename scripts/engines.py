@@ -50,10 +50,20 @@ class Row:
     colliders: int = 0
     all_colliders: int = 0
 
-    def add(self, found: dict[str, Any], limits: list[tuple[float, float] | None], colliders: int) -> None:
-        """Count one room as the engine found it."""
+    def add(
+        self, found: dict[str, Any], free: list[str], limits: list[tuple[float, float] | None], colliders: int
+    ) -> None:
+        """Count one room as the engine found it.
+
+        Args:
+            found: What the engine said.
+            free: Names of the objects that may move.
+            limits: Of the joints, as they were written.
+            colliders: How many were written.
+        """
         self.version, self.loads = found["version"], self.loads + 1
-        self.stable += sum(m < MAX_DRIFT_M and deg < MAX_TURN_DEG for m, deg in found["moved"].values())
+        moved = [found["moved"][name] for name in free if name in found["moved"]]
+        self.stable += sum(m < MAX_DRIFT_M and deg < MAX_TURN_DEG for m, deg in moved)
         self.colliders += min(found["colliders"], colliders)
         left = [None if each is None else tuple(each) for each in found["limits"]]
         for expected in limits:
@@ -104,15 +114,15 @@ def check_room(project: Project, rows: dict[str, Row]) -> None:
             suffix, textures = FORMATS[kind].suffixes[0], project.textures(scene)
             gathered = export_scene(scene, library, Path(name) / f"room{suffix}", kind, textures=textures)
         physical = physical_scene(gathered)
-        colliders = colliders_in(physical)
+        colliders, free = colliders_in(physical), [b.node.slug for b in physical.bodies if b.free]
         for engine, row in rows.items():
             limits = [limits_in(FILES[engine], m.limb) for b in physical.bodies for m in b.moving]
-            row.free += sum(b.free for b in physical.bodies)
+            row.free += len(free)
             row.all_joints += len(limits)
             row.all_colliders += colliders
             found = checked(engine, Path(name))
             if found is not None:
-                row.add(found, limits, colliders)
+                row.add(found, free, limits, colliders)
                 moved = {
                     n: f"{100 * m:.1f} cm {deg:.0f}°"
                     for n, (m, deg) in found["moved"].items()

@@ -49,9 +49,13 @@ def add_physics(stage: Usd.Stage, gathered: ExportScene, physical: PhysicalScene
     def path_of(body: RigidBody, limb: ExportLimb | None) -> str:
         return paths[body.node.id] if limb is None else limb_path(paths[body.node.id], limb)
 
+    for body in physical.bodies:
+        for moving in body.moving:  # a part and the case it sits in touch
+            colliders.let_overlap(path_of(body, moving.limb), path_of(body, None))
     for a, b in physical.loose_pairs(path_of):
         pairs = UsdPhysics.FilteredPairsAPI.Apply(stage.GetPrimAtPath(a))
         pairs.CreateFilteredPairsRel().AddTarget(b)
+        colliders.let_overlap(a, b)
     colliders.write(stage.GetRootLayer())
 
 
@@ -89,6 +93,7 @@ class _Colliders:
 
     def __init__(self) -> None:
         self._of: dict[str, tuple[tuple[Points, ...], Sdf.Path]] = {}
+        self._apart: dict[str, list[str]] = {}
 
     def add(self, path: str, parts: tuple[Points, ...], grip: UsdShade.Material) -> None:
         """Those of one prim.
@@ -100,6 +105,10 @@ class _Colliders:
         """
         self._of[path] = parts, grip.GetPath()
 
+    def let_overlap(self, path: str, other: str) -> None:
+        """Say of each collider of a prim that it does not meet those of another: newton reads this of no body."""
+        self._apart.setdefault(path, []).append(other)
+
     def write(self, layer: Sdf.Layer) -> None:
         """All of them."""
         with Sdf.ChangeBlock():
@@ -107,12 +116,23 @@ class _Colliders:
                 scope = Sdf.CreatePrimInLayer(layer, f"{path}/Colliders")
                 scope.specifier, scope.typeName = Sdf.SpecifierDef, "Scope"
                 Sdf.AttributeSpec(scope, "purpose", Sdf.ValueTypeNames.Token, _FIXED).default = UsdGeom.Tokens.guide
+                others = [
+                    f"{b}/Colliders/Part_{k}" for b in self._apart.get(path, ()) for k in range(len(self._of[b][0]))
+                ]
                 for number, points in enumerate(parts):
-                    _collider(scope, f"Part_{number}", points, grip)
+                    _collider(scope, f"Part_{number}", points, grip, [Sdf.Path(other) for other in others])
 
 
-def _collider(scope: Sdf.PrimSpec, name: str, points: Points, grip: Sdf.Path) -> None:
-    """One convex mesh with its collision and the material it grips with."""
+def _collider(scope: Sdf.PrimSpec, name: str, points: Points, grip: Sdf.Path, apart: list[Sdf.Path]) -> None:
+    """One convex mesh with its collision.
+
+    Args:
+        scope: of the colliders of its body.
+        name: of its prim.
+        points: its corners, in the body's frame (m).
+        grip: the material it grips with.
+        apart: colliders that it may overlap.
+    """
     vertices, faces = hull_faces(points)
     prim = Sdf.PrimSpec(scope, name, Sdf.SpecifierDef, "Mesh")
     prim.SetInfo("apiSchemas", Sdf.TokenListOp.Create(prependedItems=_COLLIDER_SCHEMAS))
@@ -128,6 +148,12 @@ def _collider(scope: Sdf.PrimSpec, name: str, points: Points, grip: Sdf.Path) ->
         Sdf.AttributeSpec(prim, attribute, kind, variability).default = value
     binding = Sdf.RelationshipSpec(prim, "material:binding:physics", custom=False)
     binding.targetPathList.explicitItems = [grip]
+    if apart:
+        prim.SetInfo(
+            "apiSchemas", Sdf.TokenListOp.Create(prependedItems=[*_COLLIDER_SCHEMAS, "PhysicsFilteredPairsAPI"])
+        )
+        pairs = Sdf.RelationshipSpec(prim, "physics:filteredPairs", custom=False)
+        pairs.targetPathList.explicitItems = apart
 
 
 def _mass(prim: Usd.Prim, inertia: Inertia) -> None:

@@ -184,6 +184,17 @@ def test_what_overlaps_deeply_does_not_collide_nor_do_its_moving_parts(tmp_path:
     assert usd_findings(tmp_path / "room.usdc") == []
 
 
+def test_a_moving_part_does_not_collide_with_its_case(tmp_path: Path) -> None:
+    """Engines know that of joined bodies, but not where the case cannot move and so is no body."""
+    write_usdc(gathered("fittings", joints=True), tmp_path / "room.usdc")
+    stage = Usd.Stage.Open(str(tmp_path / "room.usdc"))
+    leaf = stage.GetPrimAtPath("/Scene/Objects/door_1__door/Colliders/Part_0")
+    assert leaf.HasAPI(UsdPhysics.FilteredPairsAPI)
+    apart = {str(path) for path in UsdPhysics.FilteredPairsAPI(leaf).GetFilteredPairsRel().GetTargets()}
+    case = stage.GetPrimAtPath("/Scene/Objects/door_1/Colliders").GetChildren()
+    assert apart == {str(part.GetPath()) for part in case}
+
+
 def test_the_scene_comes_along(example: Usd.Stage) -> None:
     document = example.GetDefaultPrim().GetAttribute("diorama:scene").Get()
     assert scene_from_json(document) == gathered("example").scene
