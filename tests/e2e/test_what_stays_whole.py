@@ -14,11 +14,11 @@ from playwright.sync_api import expect
 from diorama_app.commands import optimise
 from diorama_app.serve import Running
 from diorama_app.session.layout_run import LayoutRun
+from diorama_app.session.session import EditorSession
 from diorama_core.artefacts import LabelledBox, LayoutReport
 from diorama_core.editing.collisions import Collisions
 from diorama_core.library.catalogue import built_in_library
 from diorama_core.library.user_library import ProjectShapes, UserLibrary
-from diorama_core.project.storage import Project
 from diorama_core.scene import edits
 from diorama_core.scene.types import Pose, Scene, SceneObject, Support
 from tests.app.small_room import furnished_scene, make_project
@@ -52,25 +52,30 @@ def _shared(editor: EditorPage) -> UserLibrary:
     return shared
 
 
-def _open(editor: EditorPage, path: Path, there: int) -> Project:
-    before = editor.page.url
+def _open(editor: EditorPage, path: Path, folder: str) -> EditorSession:
+    """Upload a file and wait for the project in a folder of this name."""
     editor.tab("Project")
     editor.upload("Open a file", path)
-    editor.page.wait_for_url(lambda url: url != before, timeout=LEARN_MS)
-    editor.until(lambda: len(editor.session.scene.objects) == there, "opened")
-    project = editor.session.project
-    assert project is not None
-    return project
+    sessions: list[EditorSession] = []
+
+    def is_open() -> bool:
+        there = [e.session for e in editor.running.workspace.editors]
+        sessions[:] = [s for s in there if s.project is not None and s.project.folder.name == folder and s.clients]
+        return bool(sessions)
+
+    editor.until(is_open, "opened", LEARN_MS / 1000)
+    return sessions[0]
 
 
 def test_a_file_of_flat_things_opens_again_and_leaves_the_library_alone(editor: EditorPage, flat_file: Path) -> None:
     before = {s.id for s in _shared(editor).uploads()}
-    first = _open(editor, flat_file, 3)
-    assert all(min(*o.size_m, *o.shape_size_m) > 0 for o in editor.session.scene.objects)
-    editor.session.autosave.flush()
-    assert len(first.load_scene().objects) == 3
-    second = _open(editor, flat_file, 3)
-    assert second.folder != first.folder
+    session = _open(editor, flat_file, "flat-things")
+    assert len(session.scene.objects) == 3
+    assert all(min(*o.size_m, *o.shape_size_m) > 0 for o in session.scene.objects)
+    session.autosave.flush()
+    assert session.project is not None
+    assert len(session.project.load_scene().objects) == 3, "it opens again"
+    editor.settle()
     assert {s.id for s in _shared(editor).uploads()} == before, "the shapes are their projects' own"
     editor.tab("Library")
     editor.page.get_by_role("button", name="Mine").click()
