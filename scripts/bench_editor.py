@@ -18,6 +18,7 @@ import sys
 import tempfile
 import time
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -32,6 +33,7 @@ from diorama_app.viewport.scene_view import MESH_NAMES
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.project.storage import Project
 from diorama_core.scene import edits
+from diorama_core.scene.belief import Belief
 from diorama_core.scene.types import Architecture, Candidate, Pose, Scene, SceneObject, Support
 from tests.app.small_room import PlainLibrary, photo_camera, room_planes
 from tests.e2e.browser import FLAGS, EditorPage, chromium
@@ -228,6 +230,34 @@ class Bench:
             used += time.process_time()
         line("swap to visible", taken, "< 300", used)
 
+    def answer(self) -> None:
+        """From the key that answers a question of the review to the next question."""
+        taken, used, page = [], 0.0, self.page.page
+        belief = Belief(kinds=(("chair", 0.6), ("armchair", 0.4)), fronts=(0.7, 0.1, 0.1, 0.1))
+        known = tuple(
+            replace(o, belief=replace(belief, kinds=((o.category, 0.6), *belief.kinds[1:])))
+            for o in self.session.scene.objects
+        )
+        self._do(lambda: self.session.commit("doubt", replace(self.session.scene, objects=known)))
+        page.locator(".job.card").get_by_role("button", name="Review").click()
+        page.wait_for_selector(".review")
+        for k in range(2 * ROUNDS):
+            self.page.settle()
+            used -= time.process_time()
+            press = """(digit) => new Promise((done) => {
+                const words = () => document.querySelector(".dio .review")?.innerText;
+                const before = words(), begun = Date.now();
+                const look = () => {
+                    if (words() !== before) done(Date.now() - begun);
+                    else requestAnimationFrame(look);
+                };
+                document.querySelector(`.dio .review [data-digit="${digit}"]`).click();
+                look();
+            })"""
+            taken.append(page.evaluate(press, str(1 + k % 2)))
+            used += time.process_time()
+        line("answer to the next question", taken, "< 1000", used)
+
     def undo(self) -> None:
         """From Ctrl+Z to the frame that shows it."""
         taken, used, page = [], 0.0, self.page.page
@@ -349,7 +379,7 @@ class Bench:
         self.session.ui_thread.wait(60.0)
 
 
-FIGURES = ("start", "load", "swap", "undo", "drag", "optimiser", "four")
+FIGURES = ("start", "load", "swap", "answer", "undo", "drag", "optimiser", "four")
 
 
 def main() -> None:

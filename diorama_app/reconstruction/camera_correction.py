@@ -8,6 +8,7 @@ import numpy as np
 
 from diorama_app.reconstruction.build_job import start_build
 from diorama_app.session.client import Client
+from diorama_app.session.session import EditorSession
 from diorama_core.artefacts import Inputs
 from diorama_core.errors import EditRefused, InputError
 from diorama_core.geometry.camera_attitude import CameraAttitude
