@@ -86,6 +86,9 @@ def sapien(folder: Path) -> Checked:
     loader = scene.create_urdf_loader()
     loader.fix_root_link = True
     everything = [made for some in loader.load_multiple(without_visuals(folder / "room.urdf"))[:2] for made in some]
+    for component in (c for made in everything for c in getattr(made, "components", ())):
+        if isinstance(component, sapien.physx.PhysxRigidDynamicComponent):
+            component.kinematic = True  # a room without joints is an actor, which the loader leaves free to fall
     loader.fix_root_link = False
     bodies = {}
     for thing in things(folder):
