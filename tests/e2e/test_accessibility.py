@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
 from playwright.sync_api import expect
 
+from diorama_core.review.questions import questions
 from tests.e2e.browser import EditorPage
+from tests.review.doubtful_room import doubtful_scene
 
 pytestmark = [pytest.mark.browser, pytest.mark.slow]
 
@@ -55,6 +58,19 @@ def test_axe_finds_nothing_serious_in_any_panel(editor: EditorPage, dark: bool) 
         found |= {f"{tab}: {line}" for line in findings(editor, rules)}
     for tab in ("Scene", "Object"):
         editor.tab(tab)
+    session = editor.session
+    known, boxes = doubtful_scene(), {"chair_1": (50.0, 100.0, 150.0, 400.0)}
+    seen = tuple(replace(o, box_px=boxes.get(o.id)) for o in known.objects)
+    session.ui_thread.ask(lambda: session.commit("doubt", replace(known, objects=seen, scale_sigma=0.3)))
+    card = editor.page.locator(".job.card", has_text="sure")
+    expect(card).to_be_visible()
+    found |= {f"how sure it is: {line}" for line in findings(editor, rules)}
+    card.get_by_role("button", name="Review").click()
+    for question in questions(session.scene)[:4]:
+        expect(editor.page.locator(".review")).to_contain_text(question.sentence)
+        found |= {f"review: {line}" for line in findings(editor, rules)}
+        editor.page.locator(".review").get_by_role("button", name="Later").click()
+    editor.page.locator(".review").get_by_role("button", name="Close").click()
     editor.page.locator(".dio .row:visible", has_text="Wall 3").first.click()
     editor.page.locator(".dio .tile:visible", has_text="Stripes").click()
     editor.until(lambda: editor.session.scene.plane("wall_3").finish is not None)
