@@ -79,6 +79,12 @@ def _add_inputs(p: argparse.ArgumentParser) -> None:
     inner.add_argument("--intrinsics", type=intrinsics, metavar="fx,fy,cx,cy", help="camera intrinsics in pixels")
     inner.add_argument("--fov", type=field_of_view, metavar="DEG", help="horizontal field of view in degrees")
     p.add_argument(
+        "--camera-height",
+        type=positive,
+        metavar="M",
+        help="height of the camera above the floor in metres: tells the scale",
+    )
+    p.add_argument(
         "--distortion",
         type=coefficients,
         default=(),
@@ -189,7 +195,9 @@ def _build_photo(a: argparse.Namespace, options: BuildOptions) -> None:
 
     if a.arrangements < 1:
         raise InputError(f"--arrangements {a.arrangements}: ask for at least one")
-    files = PhotoFiles(a.image, a.boxes, a.masks, a.depth, a.intrinsics, a.fov, a.distortion, a.half_turn)
+    files = PhotoFiles(
+        a.image, a.boxes, a.masks, a.depth, a.intrinsics, a.fov, a.distortion, a.half_turn, a.camera_height
+    )
     with progress_bar() as progress:
         room = build_files(files, options, a.output, progress, print_note)
         scenes = write_arrangements(room, a.arrangements, progress)

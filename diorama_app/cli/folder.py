@@ -63,6 +63,8 @@ def check_options_of_one_photo(a: argparse.Namespace) -> None:
         raise InputError(f"{named} is for one photo; of a folder, put a file NAME.{kind}... beside each photo NAME")
     if a.fov is not None:
         raise InputError("--fov is for one photo; of a folder, put a file NAME.camera.json beside each photo NAME")
+    if a.camera_height is not None:
+        raise InputError("--camera-height is for one photo; set the scale of others in the editor")
     if a.arrangements != 1:
         raise InputError("--arrangements is for one photo; leave it out for a folder")
 

@@ -12,6 +12,7 @@ from jaxtyping import UInt8
 from PIL import Image, ImageDraw
 
 from diorama_app.commands import review
+from diorama_app.commands.measure import start_measuring
 from diorama_app.panels.fields import on_change, show_if, show_value
 from diorama_app.reconstruction.object_correction import add_from_photo
 from diorama_app.session.client import Client
@@ -99,6 +100,10 @@ class Review:
         after = button("Later", "later", question.id, title="Ask something else first") + button(
             "Close", "close", title="Go on another time: answers are kept"
         )
+        if question.subject == "scale":
+            after = (
+                button("Measure something else", "measure", title="Click two points, then type their distance") + after
+            )
         count = text(number_of(left, "question"))
         return (
             f'<div class="card review" role="group" aria-label="Review"><h4>{count} left</h4>'
@@ -161,6 +166,9 @@ class Review:
             self._open, self._later = True, frozenset()
         elif action.do == "close":
             self._open = False
+        elif action.do == "measure":
+            start_measuring(client)
+            return
         elif action.do == "later":
             self._later |= {action.arg}
         elif action.do in ("answer", "peek"):

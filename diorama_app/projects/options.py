@@ -40,6 +40,8 @@ class PhotoFiles:
     """Lens coefficients in OpenCV's order: k1, k2, p1, p2, k3."""
     half_turn: bool = False
     """Whether all of them are upside down."""
+    camera_height_m: float | None = None
+    """Above the floor."""
 
 
 @dataclass(frozen=True)
@@ -99,6 +101,7 @@ def build_files(
         depth_kind=options.depth_kind,
         intrinsics=files.intrinsics,
         fov_deg=files.fov_deg,
+        camera_height_m=files.camera_height_m,
         distortion=files.distortion,
         half_turn=files.half_turn,
         profile=options.profile,

@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
 from diorama_core.api.reconstruction import Reconstruction, open_library
+from diorama_core.errors import InputError
 
 if TYPE_CHECKING:
     from diorama_core.artefacts import Inputs
@@ -25,6 +26,8 @@ if TYPE_CHECKING:
 
 log = logging.getLogger(__name__)
 
+CAMERA_HEIGHTS_M = (0.1, 20.0)
+"""From a camera on the floor to one on a gallery of a hall."""
 Recipe = Literal["feasible", "paper", "all-in-one"]
 
 
@@ -39,6 +42,7 @@ def build(
     depth_kind: DepthKind = "auto",
     intrinsics: tuple[float, float, float, float] | None = None,
     fov_deg: float | None = None,
+    camera_height_m: float | None = None,
     distortion: Sequence[float] = (),
     half_turn: bool = False,
     profile: Profile = "auto",
@@ -65,6 +69,7 @@ def build(
             "root" or "logarithm", or "shifted" by a constant; by default inferred.
         intrinsics: fx, fy, cx, cy in pixels of the upright original photo.
         fov_deg: horizontal field of view in degrees, instead of `intrinsics`.
+        camera_height_m: of the camera above the floor in metres, which makes the scale certain.
         distortion: of the lens, in OpenCV's order: k1, k2, p1, p2, k3; the photo is straightened before it is used.
             By default its own lines say whether the lens bends them; 0 leaves the photo as it is.
         half_turn: whether the photo and all that belongs to it are upside down, and are turned by 180 degrees.
@@ -100,13 +105,20 @@ def build(
         masks=input_arrays.masks_file(masks),
         half_turn=half_turn,
     )
-    inputs, straightened = _straight(read.inputs, distortion)
+    inputs, straightened = _straight(_at_height(read.inputs, camera_height_m), distortion)
     warnings = (*read.warnings, *straightened)
     for warning in warnings:
         warn(warning)
     opened, name = _opened(library)
     choose = _choice(inputs, opened, profile, recipe, stages, networks)
     return _built(inputs, warnings, opened, name, choose, output, progress)
+
+
+def _at_height(inputs: Inputs, height_m: float | None) -> Inputs:
+    low, high = CAMERA_HEIGHTS_M
+    if height_m is not None and not low <= height_m <= high:
+        raise InputError(f"a camera {height_m:g} m above the floor is not possible; give {low:g} to {high:g} m")
+    return inputs if height_m is None else replace(inputs, camera_height_m=height_m)
 
 
 def build_from_text(

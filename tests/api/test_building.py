@@ -10,9 +10,11 @@ from threadpoolctl import threadpool_info, threadpool_limits
 
 import diorama_core as diorama
 from diorama_core.artefacts import CameraEstimate, Inputs
+from diorama_core.errors import InputError
 from diorama_core.library.catalogue import built_in_library
 from diorama_core.perception.camera.estimate import EmbeddedCamera
 from diorama_core.progress import Progress, ProgressEvent
+from diorama_core.scene.room_edits import KNOWN_LENGTH_SIGMA, floor_height
 from tests.cli.room_photo import BOXES, room_picture, write_room
 
 
@@ -50,9 +52,17 @@ def test_one_stage_can_be_replaced_and_products_are_done_by_one_thread(room: dio
 def test_remarks_reach_the_caller_and_are_recorded() -> None:
     said: list[str] = []
     odd = [{"bbox": [250, 20, 400, 140], "class": "floor lamp"}]
-    built = diorama.build(room_picture(), boxes=odd, profile="embedded", warn=said.append)
+    built = diorama.build(room_picture(), boxes=odd, profile="embedded", warn=said.append, camera_height_m=2.0)
     assert said
     assert tuple(said) == built.warnings
+    assert built.scene.camera is not None
+    assert built.scene.camera.position[2] - floor_height(built.scene) == pytest.approx(2.0)
+    assert built.scene.scale_sigma == KNOWN_LENGTH_SIGMA
+
+
+def test_a_camera_stands_in_a_room() -> None:
+    with pytest.raises(InputError, match="200 m above the floor is not possible"):
+        diorama.build(room_picture(), boxes=BOXES, profile="embedded", camera_height_m=200.0)
 
 
 def test_progress_is_reported_and_a_library_can_be_given() -> None:
