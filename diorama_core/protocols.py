@@ -243,6 +243,12 @@ class EmptyRoomFiller(Protocol):
         Args:
             rgb: The photo, sRGB.
             hole: Pixels of what stands in the room, with their margin.
+
+        Returns:
+            A picture of the photo's size.
+
+        Raises:
+            UnavailableError: the network cannot run.
         """
         ...
 

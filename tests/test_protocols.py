@@ -17,8 +17,8 @@ METHODS = [
 ]
 
 
-def test_there_is_one_method_per_stage() -> None:
-    assert len(METHODS) == 14
+def test_there_is_one_method_per_stage_and_one_that_fills_what_objects_hide() -> None:
+    assert len(METHODS) == 15
 
 
 @pytest.mark.parametrize("method", METHODS, ids=lambda m: m.__qualname__)

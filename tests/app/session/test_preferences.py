@@ -27,6 +27,7 @@ CHANGED = Preferences(
     dark=True,
     gizmo="size",
     physics=True,
+    build_at_once=False,
     recipe="paper",
     size_mode="catalogue",
     keep_colour=False,
