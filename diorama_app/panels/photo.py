@@ -188,7 +188,7 @@ class PhotoPanel:
         upload = upload_again(session.project, before, new, answer, camera, turn=turn, bend=bend)
         project = session.project
         if work.builds_unasked(session):
-            session.jobs.cancel()  # it would be built without what is added
+            session.jobs.cancel(in_favour=True)  # it would be built without what is added
 
         def done(read: ReadInputs) -> None:
             if session.inputs is not before:
@@ -264,7 +264,7 @@ class PhotoPanel:
             self._build_found()
 
     def _mark_by_hand(self) -> None:
-        self._session.jobs.cancel()
+        self._session.jobs.cancel(in_favour=True)
         self._client.refresh()
 
     # -- words ------------------------------------------------------------------------------------------------

@@ -190,7 +190,7 @@ class PhotoBoxes:
 
     def _annotate(self, label: str, inputs: Inputs) -> None:
         if builds_unasked(self._client.session):
-            self._client.session.jobs.cancel()  # who marks something wants to build with it
+            self._client.session.jobs.cancel(in_favour=True)  # who marks something wants to build with it
         self._client.annotate(label, inputs)
 
     def _rename(self, index: int, label: str) -> None:

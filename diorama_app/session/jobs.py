@@ -58,6 +58,8 @@ class Outcome:
     kind: JobKind
     error: str | None = None
     cancelled: bool = False
+    in_favour: bool = False
+    """Whether it was cancelled for something else that the person does, which tells enough."""
 
 
 class Jobs:
@@ -72,6 +74,7 @@ class Jobs:
         self._lock = threading.Lock()
         self._status: JobStatus | None = None
         self._token = CancelToken()
+        self._in_favour = False
         self._thread: threading.Thread | None = None
 
     @property
@@ -97,8 +100,13 @@ class Jobs:
         self._on_change(self._status)
         self._thread.start()
 
-    def cancel(self) -> None:
-        """Ask the running job to stop; it does at its next check."""
+    def cancel(self, *, in_favour: bool = False) -> None:
+        """Ask the running job to stop; it does at its next check.
+
+        Args:
+            in_favour: whether it stops for something else that the person does: then nothing is said of it.
+        """
+        self._in_favour = in_favour
         self._token.cancel()
         self._change(lambda status: replace(status, cancelling=True, message="Stopping"))
 
@@ -139,7 +147,7 @@ class Jobs:
                 load_open3d()
             work(progress)
         except Cancelled:
-            outcome = Outcome(status.kind, cancelled=True)
+            outcome = Outcome(status.kind, cancelled=True, in_favour=self._in_favour)
         except DioramaError as error:
             outcome = Outcome(status.kind, error=str(error))
         except Exception:  # the thread ends here: the outcome is all that is heard of it

@@ -293,6 +293,7 @@ class EditorSession(SharedDocument):
         self.refresh()
         self._tell_watchers()
         if outcome.cancelled:
-            self.notice_all("Cancelled; nothing was changed.")
+            if not outcome.in_favour:
+                self.notice_all("Cancelled; nothing was changed.")
         elif outcome.error is not None:
             self.notice_all(outcome.error, "bad")

@@ -72,6 +72,7 @@ def test_confidence_is_dropped_onto_its_depth(editor: EditorPage, tmp_path: Path
     editor.notice("a photo (room.png) with a depth map")
     editor.until(lambda: editor.session.inputs.depth_m is not None, "photo and depth", seconds=90)
     editor.until(lambda: "depth" in editor.session.project.uploads(), "kept")
+    editor.at_board()  # the page of the new project is there: what is dropped on its way to it is lost
     drop(editor, levels)
     editor.notice("25% of the depth is unsure by confidence.png, and left out.")
     keep_picture(editor, "dropped-confidence")

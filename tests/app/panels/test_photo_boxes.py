@@ -157,6 +157,8 @@ def test_who_marks_something_ends_the_build_that_nobody_asked_for(
     marking.happened(Accepted(0, ""))
     assert session.jobs.wait(10.0)
     assert labels(session) == ["chair"]
+    session.ui_thread.wait()
+    assert session.outcome.in_favour, "the mark tells enough"
 
 
 def test_the_list_tells_how_to_make_the_first_box(session) -> None:
