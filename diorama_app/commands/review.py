@@ -8,7 +8,11 @@ from diorama_app.session.client import Client
 from diorama_app.session.session import EditorSession
 from diorama_core.artefacts import Inputs
 from diorama_core.review.answers import answered, lengths
+from diorama_core.review.questions import NO
 from diorama_core.scene.types import Scene
+
+STEPS = {"presence": "confirm", "kind": "name", "front": "turn", "supporter": "place"}
+"""What undo steps of answers are called."""
 
 
 def answer(session: EditorSession, question_id: str, value: str, *, by: Client | None = None, author: str = "") -> None:
@@ -25,7 +29,8 @@ def answer(session: EditorSession, question_id: str, value: str, *, by: Client |
         EditRefused: it is no answer, or the object is gone or locked.
     """
     subject, _, object_id = question_id.partition(":")
-    label = f"{subject} of {session.scene.object(object_id).label}" if session.scene.has_object(object_id) else subject
+    step = "delete" if value == NO else STEPS.get(subject, subject)
+    label = f"{step} {session.scene.object(object_id).label}" if session.scene.has_object(object_id) else step
 
     said: Inputs | None = None
     if subject == "scale" and session.scene.has_object(object_id):

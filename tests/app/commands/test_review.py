@@ -13,7 +13,7 @@ def test_an_answer_is_one_step_and_what_it_places_stays_where_the_person_wants_i
     assert session.scene.object("chair_1").by_hand
     review.answer(session, "kind:chair_2", "chair", by=client)
     assert not session.scene.object("chair_2").by_hand
-    assert session.document.next_undo().label.startswith("kind of chair")
+    assert session.document.next_undo().label.startswith("name chair")
     session.undo(client)
     session.undo(client)
     assert session.scene == doubtful_scene()
