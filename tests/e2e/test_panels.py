@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import threading
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -14,7 +16,9 @@ from diorama_app.commands.edit import rename
 from diorama_app.panels.in_place import InPlace
 from diorama_app.panels.outliner import Outliner
 from diorama_app.serve import Running
+from diorama_app.session.jobs import JobKind
 from diorama_app.web import upload_limits
+from diorama_core.progress import Progress, ProgressEvent
 from diorama_core.project.storage import Project
 from diorama_core.scene import edits
 from diorama_core.scene.types import Pose, Scene
@@ -121,14 +125,30 @@ def test_the_layout_is_optimised_before_your_eyes_and_undone(editor: EditorPage,
     editor.until(lambda: session.scene.object("chair_1").pose == lifted, "one undo takes it back")
 
 
-def test_cancelling_the_optimiser_restores_everything(editor: EditorPage) -> None:
-    session = editor.running.session
+def test_cancelling_the_optimiser_restores_everything(editor: EditorPage, monkeypatch: pytest.MonkeyPatch) -> None:
+    session, begin, pressed = editor.running.session, editor.running.session.jobs.start, threading.Event()
     before = session.scene
+
+    def held(kind: JobKind, title: str, work: Callable[[Progress], None]) -> None:
+        """The optimiser goes on from its first report when *Cancel* was pressed: it would have ended before."""
+
+        def slow(progress: Progress) -> None:
+            def told(event: ProgressEvent) -> None:
+                progress.on_event(event)
+                pressed.wait(60.0)
+
+            work(replace(progress, on_event=told))
+
+        begin(kind, title, slow)
+
+    monkeypatch.setattr(session.jobs, "start", held)
     editor.tab("Arrange")
     editor.page.get_by_label("Recipe").click()
     editor.page.get_by_role("option", name="All in one").click()
     editor.button("Optimise layout").click()
     editor.button("Cancel").click()
+    editor.until(lambda: session.jobs.status is not None and session.jobs.status.cancelling, "it is asked to stop")
+    pressed.set()
     editor.until(lambda: session.jobs.status is None, "stopped")
     editor.notice("nothing was changed")
     assert session.scene is before
