@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
 SHOWN_EVERY_S = 1 / 15
 LONGEST_S = 120.0
-"""Of a game that nobody ends."""
+"""Length of a game that nobody ends."""
 STAYED_M, STAYED_RAD = 0.003, 0.01
 """Movements below these are none."""
 LAG_S = 0.2

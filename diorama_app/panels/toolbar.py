@@ -12,7 +12,7 @@ from diorama_app.session.client import Client, Measuring, Playing
 from diorama_app.web.html import Action, LiveHtml, button, run_once, text
 
 if TYPE_CHECKING:
-    from diorama_core.editing.walking import Walk  # shapely; the page opens without it
+    from diorama_core.editing.walking import WalkableFloor  # shapely; the page opens without it
 
 ICONS = {
     "undo": '<path d="M9 5 4 10l5 5M4 10h10a6 6 0 0 1 0 12h-3"/>',
@@ -66,7 +66,7 @@ class Toolbar:
             f'title="More tools">{_icon("more")}</button></div></div>{self._menu()}'
         )
 
-    def _start_walk(self, walk: Walk) -> None:
+    def _start_walk(self, walk: WalkableFloor) -> None:
         self._walks += 1
         self._walk.content = run_once(f"window.__dioWalk.begin({walk.json}); /* {self._walks} */")
 

@@ -25,7 +25,7 @@ from diorama_core.errors import DioramaError, EditRefused
 from diorama_core.scene.types import Camera, Scene, SceneObject
 
 if TYPE_CHECKING:
-    from diorama_core.editing.walking import Walk  # shapely; the page opens without it
+    from diorama_core.editing.walking import WalkableFloor  # shapely; the page opens without it
 
 log = logging.getLogger(__name__)
 
@@ -102,7 +102,7 @@ class Client:
         """Lays the grid of all projects over the page."""
         self.start_tour: Callable[[], None] = lambda: None
         """Shows a newcomer around."""
-        self.start_walk: Callable[[Walk], None] = lambda walk: None
+        self.start_walk: Callable[[WalkableFloor], None] = lambda walk: None
         """Begins a walk in the first person, which the page goes on with by itself."""
         self.open_tab: Callable[[str], None] = lambda name: None
         """Brings a tab of the panels to the front."""

@@ -23,7 +23,7 @@ from diorama_core.scene.room_edits import floor_height
 from diorama_core.scene.types import Scene
 
 RADIUS_M = 0.25
-"""Of the upright capsule that a person is."""
+"""Radius of the upright capsule that a person is."""
 STEP_M, HEAD_M = 0.2, 1.8
 """What is lower is stepped over, what hangs higher is passed under; from the floor."""
 EYE_M = 1.6
@@ -37,7 +37,7 @@ SIMPLIFY_M = 0.005
 
 
 @dataclass(frozen=True)
-class Walk:
+class WalkableFloor:
     """A floor to walk on."""
 
     rings: tuple[tuple[tuple[float, float], ...], ...]
@@ -54,7 +54,7 @@ class Walk:
         return json.dumps(told, separators=(",", ":"))
 
 
-def walk_of(scene: Scene) -> Walk | None:
+def walk_of(scene: Scene) -> WalkableFloor | None:
     """The walk through a scene; None where it has no floor that a person fits on."""
     free = _free(scene)
     if free.is_empty:
@@ -72,7 +72,7 @@ def walk_of(scene: Scene) -> Walk | None:
     eye = above if EYES_M[0] <= above <= EYES_M[1] else EYE_M
     rings = tuple(_ring(r) for p in parts for r in (p.exterior, *p.interiors))
     x, y = (float(v) for v in start[:2])
-    return Walk(rings, (x, y), round(float(np.arctan2(ahead[1], ahead[0])), 4), round(level + eye, 4))
+    return WalkableFloor(rings, (x, y), round(float(np.arctan2(ahead[1], ahead[0])), 4), round(level + eye, 4))
 
 
 def _free(scene: Scene) -> BaseGeometry:

@@ -64,7 +64,7 @@ class ExportOptions:
     light_uv: bool = False
     """Whether a game's meshes have a second set of texture coordinates without overlaps, for baked light."""
     robot_radius_m: float = 0.25
-    """Of the disc for which a robot pack says where it can be: as large as usual bases of arms."""
+    """Radius of the disc for which a robot pack says where it can be: as large as usual bases of arms."""
     photo: bool = False
     """Whether files that can be opened again hold the photo, too (GLB, USD)."""
 

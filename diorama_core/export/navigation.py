@@ -32,7 +32,7 @@ OCCUPIED, FREE, UNKNOWN = 0, 254, 205
 
 
 @dataclass(frozen=True, eq=False)
-class Outlined:
+class BodyOutline:
     """A convex body seen from above."""
 
     owner: str | None
@@ -50,11 +50,11 @@ class Outlined:
         return Polygon() if part is None else MultiPoint(part[:, :2]).convex_hull
 
 
-def outlined(physical: PhysicalScene) -> tuple[Outlined, ...]:
+def outlined(physical: PhysicalScene) -> tuple[BodyOutline, ...]:
     """All convex bodies but the floor, those that joints move as they stand."""
     found = [(None, p) for s in physical.slabs if s.plane.role != "floor" for p in s.pieces]
     owned = [(b.node.id, p) for b in physical.bodies for p in world_parts(b)]
-    return tuple(Outlined(i, float(p[:, 2].min()), float(p[:, 2].max()), p) for i, p in (*found, *owned))
+    return tuple(BodyOutline(i, float(p[:, 2].min()), float(p[:, 2].max()), p) for i, p in (*found, *owned))
 
 
 def floor_level(gathered: ExportScene) -> float:
@@ -70,7 +70,7 @@ def floor_area(gathered: ExportScene) -> BaseGeometry:
     return wider.buffer(-DOORWAY_M / 2, join_style="mitre")
 
 
-def occupied_area(gathered: ExportScene, bodies: Iterable[Outlined]) -> BaseGeometry:
+def occupied_area(gathered: ExportScene, bodies: Iterable[BodyOutline]) -> BaseGeometry:
     """What stands in a robot's way, seen from above."""
     level = floor_level(gathered)
     return shapely.unary_union([b.between(level + LOW_M, level + HIGH_M) for b in bodies])

@@ -15,7 +15,7 @@ from diorama_core.arrangement.surfaces import RestingSurface, object_surfaces
 from diorama_core.export.bodies import PhysicalScene, Points, RigidBody
 from diorama_core.export.gathering import ExportScene
 from diorama_core.export.links import body_name
-from diorama_core.export.navigation import Outlined, floor_area, floor_level
+from diorama_core.export.navigation import BodyOutline, floor_area, floor_level
 
 MIN_SIDE_M = 0.05
 """Surfaces narrower than this hold nothing that a robot would put down: edges of books, rims."""
@@ -42,7 +42,7 @@ class Region:
     T_body: Float[np.ndarray, "4 4"]
     """Middle of its box along the body's axes, in the body's frame."""
     size_m: tuple[float, float]
-    """Of that box."""
+    """Sides of that box."""
     clearance_m: float
     """Height that is free above it; infinite where only the room ends it."""
     holds: tuple[str, ...]
@@ -51,7 +51,7 @@ class Region:
     """What nothing covers, in the world's x and y."""
 
 
-def regions_of(gathered: ExportScene, physical: PhysicalScene, bodies: Sequence[Outlined]) -> tuple[Region, ...]:
+def regions_of(gathered: ExportScene, physical: PhysicalScene, bodies: Sequence[BodyOutline]) -> tuple[Region, ...]:
     """The floor first, then every level surface of the objects."""
     found = [] if gathered.scene.architecture.floor is None else [_floor(gathered, bodies)]
     for body in physical.bodies:
@@ -60,7 +60,7 @@ def regions_of(gathered: ExportScene, physical: PhysicalScene, bodies: Sequence[
     return tuple(found)
 
 
-def _floor(gathered: ExportScene, bodies: Sequence[Outlined]) -> Region:
+def _floor(gathered: ExportScene, bodies: Sequence[BodyOutline]) -> Region:
     area, level = floor_area(gathered), floor_level(gathered)
     largest = max(getattr(area, "geoms", [area]), key=lambda part: part.area)
     flat = np.asarray(largest.exterior.coords)[:-1]
@@ -89,7 +89,7 @@ def _holds(part: Points, point: Float[np.ndarray, "3"]) -> bool:
 
 
 def _region(
-    body: RigidBody, part: str | None, surface: RestingSurface, number: int, bodies: Sequence[Outlined]
+    body: RigidBody, part: str | None, surface: RestingSurface, number: int, bodies: Sequence[BodyOutline]
 ) -> Region:
     """One surface of an object, in the world as its part stands.
 
@@ -114,7 +114,7 @@ def _region(
 
 
 def _left(
-    area: BaseGeometry, level: float, headroom_m: float, bodies: Sequence[Outlined], owner: str | None
+    area: BaseGeometry, level: float, headroom_m: float, bodies: Sequence[BodyOutline], owner: str | None
 ) -> tuple[BaseGeometry, tuple[str, ...]]:
     """What of a surface nothing covers, and the ids of what stands on it.
 

@@ -23,7 +23,7 @@ from diorama_core.scene.types import Scene, SceneObject
 
 Subject = Literal["presence", "kind", "front", "supporter", "scale", "missing"]
 SUBJECTS: tuple[Subject, ...] = ("presence", "kind", "front", "supporter", "scale")
-"""Of what a scene holds; what it may lack is asked of the photo (`missing`)."""
+"""Subjects of what a scene holds; what it may lack is asked of the photo (`missing`)."""
 YES, NO = "yes", "no"
 TURNS = ("as it is", "left", "backwards", "right")
 """Where an object faces, as seen from itself: quarter turns counter-clockwise."""
@@ -49,7 +49,7 @@ class Question:
     """Something about one object that a person can tell."""
 
     object_id: str
-    """Of the object; of something that is missing its box in the photo, x1,y1,x2,y2."""
+    """Id of the object; for something that is missing, its box in the photo, x1,y1,x2,y2."""
     subject: Subject
     sentence: str
     choices: tuple[Choice, ...]

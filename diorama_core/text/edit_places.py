@@ -23,7 +23,7 @@ from diorama_core.text.edit_plan import Shift, Turn
 from diorama_core.text.edit_room import direction_of, off_wall
 
 SHARES = (1.0, 0.8, 0.6, 0.4, 0.2)
-"""Of a way, tried in turn until it is free."""
+"""Shares of a way, tried in turn until it is free."""
 MIN_HUNG_SHARE = 0.3
 """What hangs is not made shorter than this share of itself."""
 

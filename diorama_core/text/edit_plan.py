@@ -23,7 +23,7 @@ class _Strict(BaseModel):
 
 
 Side = Literal["", "left", "right", "back", "front", "other"]
-"""Of the room, as seen from where the photo was taken; "other" than where an object is."""
+"""A side of the room, as seen from where the photo was taken; "other" than where an object is."""
 
 
 class Place(_Strict):

@@ -10,12 +10,12 @@ import shapely
 from shapely.geometry import LineString, Point, Polygon
 
 from diorama_core.editing.footprints import footprint_of
-from diorama_core.editing.walking import EYE_M, RADIUS_M, SIMPLIFY_M, Walk, walk_of
+from diorama_core.editing.walking import EYE_M, RADIUS_M, SIMPLIFY_M, WalkableFloor, walk_of
 from diorama_core.scene.types import Architecture, Plane, Pose, Scene, SceneObject, Support
 from tests.app.small_room import furnished_scene, room_planes
 
 
-def _area(walk: Walk) -> shapely.Geometry:
+def _area(walk: WalkableFloor) -> shapely.Geometry:
     return shapely.build_area(shapely.GeometryCollection([LineString(r) for r in walk.rings]))
 
 

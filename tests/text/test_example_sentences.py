@@ -124,7 +124,7 @@ MORE: dict[str, Check] = {
     ),
     "Duplicate the armchair and put the copy on the other side of the sofa.": lambda a, b: _new(a, b) == ["armchair"],
 }
-"""Of the same mended kinds, and what other sentences taught."""
+"""Sentences of the same mended kinds, and what other sentences taught."""
 
 
 @pytest.mark.parametrize("sentence", DONE | MORE)
