@@ -37,7 +37,7 @@ def module_of(block: str, name: str, monkeypatch: pytest.MonkeyPatch) -> ModuleT
 
 
 def test_every_example_is_short() -> None:
-    assert len(BLOCKS) == 5
+    assert len(BLOCKS) == 6
     assert [len(block.splitlines()) for block in BLOCKS if len(block.splitlines()) > MAX_LINES] == []
 
 
@@ -50,8 +50,8 @@ def test_a_shape(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def test_a_format(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    module_of(BLOCKS[1], "diorama_core.export.csv", monkeypatch)
-    row = eval(BLOCKS[2], vars(formats))
+    module_of(BLOCKS[2], "diorama_core.export.csv", monkeypatch)
+    row = eval(BLOCKS[3], vars(formats))
     scene, library = scene_of("primitives")
     formats.export_scene(scene, library, tmp_path / "room.csv", row)
     with (tmp_path / "room.csv").open(newline="") as stream:
@@ -62,7 +62,7 @@ def test_a_format(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
 
 def test_a_command(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
     parser = argparse.ArgumentParser()
-    module_of(BLOCKS[3], "diorama_app.cli.count", monkeypatch).add_count(parser.add_subparsers())
+    module_of(BLOCKS[4], "diorama_app.cli.count", monkeypatch).add_count(parser.add_subparsers())
     arguments = parser.parse_args(["count", str(EXAMPLE)])
     arguments.run(arguments)
     counts = [int(line.split()[0]) for line in capsys.readouterr().out.splitlines()]
@@ -79,7 +79,7 @@ class Fixed:
 
 def test_a_stage(monkeypatch: pytest.MonkeyPatch) -> None:
     library = built_in_library()
-    stage = module_of(BLOCKS[4], "styled", monkeypatch).InOneStyle(Fixed(), library, "rustic")
+    stage = module_of(BLOCKS[5], "styled", monkeypatch).InOneStyle(Fixed(), library, "rustic")
     assert isinstance(stage, RetrievalStage)
     (row,) = stage.retrieve(None, (), None, Progress())
     (before,) = Fixed().retrieve(None, (), None, Progress())

@@ -207,14 +207,14 @@ def _body(gathered: ExportScene, node: ExportObject) -> RigidBody:
     moving = tuple(
         MovingPart(
             limb,
-            _scaled(limb_parts(shape.id, limb.number), node),
+            _scaled(limb_parts(library, shape.id, limb.number), node),
             weights[limb.number],
             joint_friction(limb, weights[limb.number], node.T_world),
         )
         for limb in node.limbs
     )
     if node.limbs:
-        parts = tuple(_boxed(p, half) for p in _scaled(limb_parts(shape.id, None), node))
+        parts = tuple(_boxed(p, half) for p in _scaled(limb_parts(library, shape.id, None), node))
     elif is_soft(node):
         parts = (box_corners(item.size_m),)  # soft objects lie on a face, not on their rim
     else:

@@ -16,14 +16,14 @@ import numpy as np
 from jaxtyping import Float
 
 from diorama_core.export.lights import EvenLight, ExportLight, MainLight, even_light_of, lights_of, main_light_of
-from diorama_core.export.limbs import ExportLimb, OneShape, articulation_of, by_joint, limb_of
+from diorama_core.export.limbs import ExportLimb, OneShape, by_joint, limb_of
 from diorama_core.export.names import Labels
 from diorama_core.export.photo_textures import MAX_PHOTO_TEXTURES_PX, bounded_pictures
 from diorama_core.export.pictures import Picture, photo_text
 from diorama_core.export.sharing import SharedAppearance
 from diorama_core.geometry.openings import with_openings
 from diorama_core.io.text import clean_text
-from diorama_core.library.opening import OpenedShapes
+from diorama_core.library.opening import OpenedShapes, articulation_of
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.library.stretch import relative_scale
 from diorama_core.progress import Progress

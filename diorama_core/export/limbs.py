@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import dataclass
-from functools import lru_cache
 
 import numpy as np
 import trimesh
@@ -13,15 +12,13 @@ from scipy.spatial.transform import Rotation
 
 from diorama_core.geometry.convex import ConvexPart
 from diorama_core.layout.problem.parts import parts_of_solids
-from diorama_core.library.furniture.articulation import Articulation, articulation, joint_of
+from diorama_core.library.furniture.articulation import Articulation, joint_of
 from diorama_core.library.furniture.joints import Joint, JointKind
 from diorama_core.library.furniture.model import joined
-from diorama_core.library.opening import travel_at
-from diorama_core.library.record import ShapeLibrary, record_of
+from diorama_core.library.opening import articulation_of, travel_at
+from diorama_core.library.record import ShapeLibrary
 from diorama_core.render.appearance import Surface
 from diorama_core.scene.types import SceneObject
-
-BUILT_IN = "built in"
 
 
 @dataclass(frozen=True, eq=False)
@@ -60,11 +57,6 @@ class ExportLimb:
         return out
 
 
-def articulation_of(library: ShapeLibrary, shape_id: str) -> Articulation | None:
-    """The moving parts of a shape; None for shapes that are not built in, whose joints are unknown."""
-    return articulation(shape_id) if record_of(library, shape_id).source == BUILT_IN else None
-
-
 def by_joint(surfaces: Iterable[Surface]) -> dict[int | None, tuple[Surface, ...]]:
     """The surfaces of a jointed shape (`OneShape`) apart: what stays (None) and what each joint moves."""
     grouped: dict[int | None, tuple[Surface, ...]] = {}
@@ -100,10 +92,9 @@ def limb_of(item: SceneObject, joint: Joint, number: int, mesh: str) -> ExportLi
     )
 
 
-@lru_cache(maxsize=512)
-def limb_parts(shape_id: str, number: int | None) -> tuple[ConvexPart, ...]:
-    """Convex bodies of what one joint of a built-in shape moves, or of what stays; canonical frame, scale 1."""
-    pieces = articulation(shape_id)
+def limb_parts(library: ShapeLibrary, shape_id: str, number: int | None) -> tuple[ConvexPart, ...]:
+    """Convex bodies of what one joint of a shape moves, or of what stays; canonical frame, scale 1."""
+    pieces = articulation_of(library, shape_id)
     solids = () if pieces is None else pieces.of_joint(number)
     if not solids:
         return ()

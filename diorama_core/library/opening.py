@@ -1,29 +1,73 @@
-"""Doors, drawers and lids that stand open: built-in shapes whose moving parts are moved along their joints."""
+"""Doors, drawers and lids that stand open: shapes whose moving parts are moved along their joints."""
 
 from __future__ import annotations
 
-from functools import lru_cache
+from collections import Counter
+from dataclasses import replace
 
 import numpy as np
 import trimesh
 from jaxtyping import Float
 from scipy.spatial.transform import Rotation
 
-from diorama_core.library.furniture.articulation import articulation, joint_of
+from diorama_core.io.cache import LruCache
+from diorama_core.library.furniture.articulation import Articulation, articulation, joint_of
 from diorama_core.library.furniture.joints import Joint
-from diorama_core.library.record import ShapeLibrary, record_of
+from diorama_core.library.furniture.solids import Solid
+from diorama_core.library.part_notes import notes_of, transform
+from diorama_core.library.record import BUILT_IN, ShapeLibrary, record_of
+from diorama_core.library.slots import transform_of
 from diorama_core.library.stretch import EVEN, Scale
 
-BUILT_IN = "built in"
 STEPS = 20
 """Shapes are made for so many degrees of openness: each is meshes of its own."""
 
 
+def articulation_of(library: ShapeLibrary, shape_id: str) -> Articulation | None:
+    """The moving parts of a shape, built in or with notes of its author (`part_notes`); None where it has none.
+
+    Raises:
+        LibraryError: when the shape is unknown, or its notes are damaged.
+    """
+    record = record_of(library, shape_id)
+    if record.source == BUILT_IN:
+        return articulation(shape_id)
+    return _NOTED.get((record.content_hash, shape_id), lambda: _noted(library.parts(shape_id)))
+
+
+_NOTED: LruCache[tuple[str, str], Articulation | None] = LruCache(256)
+_OPENED: LruCache[tuple[str, str, int, Scale], trimesh.Scene] = LruCache(64)
+
+
+def _noted(parts: trimesh.Scene) -> Articulation | None:
+    if all((notes := notes_of(mesh)) is None or notes.joint is None for mesh in parts.geometry.values()):
+        return None
+    meshes = {str(name): transform(mesh, transform_of(parts, name)) for name, mesh in parts.geometry.items()}
+    moved_by = {name: None if (notes := notes_of(mesh)) is None else notes.joint for name, mesh in meshes.items()}
+    joints = list(dict.fromkeys(joint for joint in moved_by.values() if joint is not None))
+    scene, solids = trimesh.Scene(), list[tuple[int | None, Solid]]()
+    for name, mesh in meshes.items():
+        joint = moved_by[name]
+        number = None if joint is None else joints.index(joint)
+        label = f"{'fixed' if number is None else number}/{len(solids):02d} {name}"
+        scene.add_geometry(mesh, node_name=label, geom_name=label)
+        uv = np.zeros((len(mesh.vertices), 2))
+        solids.append((number, Solid(mesh.vertices, mesh.faces, mesh.vertex_normals, uv)))
+    return Articulation(_numbered(joints), scene, tuple(solids))
+
+
+def _numbered(joints: list[Joint]) -> tuple[Joint, ...]:
+    """Joints whose names are unique: "door 1", "door 2"."""
+    counts, met, out = Counter(joint.name for joint in joints), Counter[str](), []
+    for joint in joints:
+        met[joint.name] += 1
+        out.append(joint if counts[joint.name] == 1 else replace(joint, name=f"{joint.name} {met[joint.name]}"))
+    return tuple(out)
+
+
 def can_open(library: ShapeLibrary, shape_id: str) -> bool:
-    """Whether a shape has doors, drawers or lids; those that are not built in do not tell."""
-    if record_of(library, shape_id).source != BUILT_IN:
-        return False
-    pieces = articulation(shape_id)
+    """Whether a shape has doors, drawers or lids."""
+    pieces = articulation_of(library, shape_id)
     return pieces is not None and any(j.kind != "swivel" for j in pieces.joints)
 
 
@@ -40,9 +84,11 @@ def opened_parts(library: ShapeLibrary, shape_id: str, open_share: float, scale:
         LibraryError: when the shape is unknown.
     """
     step = round(open_share * STEPS)
-    if step == 0 or not can_open(library, shape_id):
+    pieces = articulation_of(library, shape_id) if step else None
+    if pieces is None or all(joint.kind == "swivel" for joint in pieces.joints):
         return library.parts(shape_id)
-    return _opened(shape_id, step, scale)
+    key = (record_of(library, shape_id).content_hash, shape_id, step, scale)
+    return _OPENED.get(key, lambda: _opened(pieces, step, scale))
 
 
 class OpenedShapes:
@@ -57,10 +103,7 @@ class OpenedShapes:
         return opened_parts(self._library, shape_id, self._open_share, self._scale)
 
 
-@lru_cache(maxsize=64)
-def _opened(shape_id: str, step: int, scale: Scale) -> trimesh.Scene:
-    pieces = articulation(shape_id)
-    assert pieces is not None
+def _opened(pieces: Articulation, step: int, scale: Scale) -> trimesh.Scene:
     scene = trimesh.Scene()
     for name, mesh in pieces.scene.geometry.items():
         number = joint_of(str(name))

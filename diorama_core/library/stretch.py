@@ -2,13 +2,15 @@
 
 Each axis is cut where matter is thin along it (`thin_matter`), whatever meshes and bodies the shape is made of. What is
 thin keeps its thickness, the rest takes up the change in proportion (as in non-homogeneous resizing, Kraevoy et al.
-2008). Bodies that are small every way, such as handles and knobs, keep their form and follow what they sit on.
+2008). Bodies that are small every way, such as handles and knobs, keep their form and follow what they sit on. Sides
+along which a part stretches according to the author of its model (`part_notes`) count instead of its thickness.
 
 The result is a shape of the same bounding box, to be scaled as before: poses, collisions and files know one scale.
 """
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -18,17 +20,22 @@ from scipy.sparse import coo_matrix
 from scipy.sparse.csgraph import connected_components
 
 from diorama_core.library.catalogue import default_cache_dir
+from diorama_core.library.part_notes import notes_of
 from diorama_core.library.slots import placed_vertices, transform_of
 from diorama_core.library.thin_matter import kept_thin_matter
 
 Scale = tuple[float, float, float]
 EVEN: Scale = (1.0, 1.0, 1.0)
+Span = tuple[float, float, bool]
+"""From where to where a part lies along an axis (m), and whether it stretches along it."""
 STEP, MIN_UNEVEN = 0.02, 0.15
 """Scales are told apart in such steps of their logarithm, from such a difference on: nearly equal ones share."""
 SMALL = 0.22
 """A body is small when it is below this share of the extent along every axis."""
 PLIABLE = 0.005
 """How much of a change thin matter takes up against the rest: legs give a little where nothing else is left."""
+RIGID = 100.0
+"""What keeps its size by its author's word, where thin matter is 1: it gives where everything else does so too."""
 MIN_SLOPE, MAX_SLOPE = 0.25, 4.0
 """Slopes of what lies between, against how large it was and against an even stretch."""
 _ROUNDS = 60
@@ -75,7 +82,7 @@ def stretched_parts(parts: trimesh.Scene, scale: Scale) -> trimesh.Scene:
     whole = trimesh.util.concatenate([_placed(parts, n) for n in names])
     bodies = _bodies(whole)
     vertices, faces = np.asarray(whole.vertices), np.asarray(whole.faces)
-    maps = [axis_map(vertices, faces, axis, scale[axis]) for axis in range(3)]
+    maps = [axis_map(vertices, faces, axis, scale[axis], _noted_spans(parts, names, axis)) for axis in range(3)]
     moved = _moved(vertices, bodies, maps, scale, np.ptp(whole.bounds, axis=0))
     scene, start = parts.copy(), 0
     for name in names:
@@ -97,7 +104,25 @@ def stretched_parts(parts: trimesh.Scene, scale: Scale) -> trimesh.Scene:
     return scene
 
 
-def axis_map(vertices: Float[np.ndarray, "n 3"], faces: Int[np.ndarray, "m 3"], axis: int, factor: float) -> AxisMap:
+def _noted_spans(parts: trimesh.Scene, names: Sequence[str], axis: int) -> list[Span]:
+    """Where bodies of parts with notes lie along an axis; those that keep their size last, since they prevail."""
+    spans: list[Span] = []
+    for name in names:
+        notes = notes_of(parts.geometry[name])
+        if notes is not None and notes.stretches is not None:
+            mesh = _placed(parts, name)
+            low, high = _bounds(np.asarray(mesh.vertices), _bodies(mesh))
+            spans += [(float(a), float(b), notes.stretches[axis]) for a, b in zip(low[:, axis], high[:, axis])]
+    return sorted(spans, key=lambda span: not span[2])
+
+
+def axis_map(
+    vertices: Float[np.ndarray, "n 3"],
+    faces: Int[np.ndarray, "m 3"],
+    axis: int,
+    factor: float,
+    noted: Sequence[Span] = (),
+) -> AxisMap:
     """The map of one axis that keeps what is thin as thick as it is once it is scaled by `factor`.
 
     Args:
@@ -105,11 +130,16 @@ def axis_map(vertices: Float[np.ndarray, "n 3"], faces: Int[np.ndarray, "m 3"], 
         faces: Of the shape.
         axis: 0, 1 or 2.
         factor: Scale of that axis.
+        noted: what the author says of parts; later ones prevail.
     """
     low, high = float(vertices[:, axis].min()), float(vertices[:, axis].max())
     if abs(factor - 1.0) < 1e-6 or high - low < 1e-6:
         return AxisMap(np.array([low, high]), np.array([low, high]))
-    grown = local_growth(kept_thin_matter(vertices, faces, axis, default_cache_dir() / "thin"), factor)
+    thin = kept_thin_matter(vertices, faces, axis, default_cache_dir() / "thin").copy()
+    for start, end, stretches in noted:
+        first, last = (np.array([start, end]) - low) / (high - low) * len(thin)
+        thin[int(first + 0.5) : max(int(last + 0.5), int(first + 0.5) + 1)] = 0.0 if stretches else RIGID
+    grown = local_growth(thin, factor)
     values = np.concatenate([[0.0], np.cumsum(grown)]) / float(grown.sum())
     changes = np.flatnonzero(np.abs(np.diff(grown)) > 1e-9) + 1
     knots = np.concatenate([[0], changes, [len(grown)]])
@@ -120,7 +150,7 @@ def local_growth(thin: Float[np.ndarray, " bins"], factor: float) -> Float[np.nd
     """By how much each slice grows when the whole grows by `factor`: hardly where matter is thin, the more elsewhere.
 
     Args:
-        thin: 0 to 1 by slice (`thin_matter`).
+        thin: 0 to 1 by slice (`thin_matter`), `RIGID` by an author's word.
         factor: Positive.
     """
     least, most = min(1.0, factor) * MIN_SLOPE, max(1.0, factor) * MAX_SLOPE

@@ -12,6 +12,7 @@ from scipy.spatial import cKDTree
 from diorama_core.library import furniture
 from diorama_core.library.catalogue import built_in_library
 from diorama_core.library.furniture.model import built, mesh_of, scene_of
+from diorama_core.library.part_notes import KEY, PartNotes
 from diorama_core.library.stretch import EVEN, MIN_UNEVEN, AxisMap, local_growth, relative_scale, stretched_parts
 
 factors = st.floats(0.6, 1.7)
@@ -43,6 +44,19 @@ def test_a_longer_table_has_no_thicker_legs() -> None:
             np.testing.assert_allclose(thickness[:2], [0.06, 0.06], rtol=0.02)
         else:
             np.testing.assert_allclose(thickness, [0.8, 1.4 * factor, 0.04], atol=1e-6)
+
+
+def test_a_part_stretches_along_the_sides_that_its_author_names() -> None:
+    parts = {}
+    for place, (name, stretches) in enumerate((("left", None), ("middle", (True, False, True)), ("right", None))):
+        parts[name] = trimesh.creation.box((0.5, 0.5, 0.5))
+        parts[name].apply_translation((0.0, 0.55 * (place - 1), 0.0))
+        parts[name].metadata = {KEY: PartNotes(name, None, stretches).as_json()}
+    stretched = stretched_parts(trimesh.Scene(parts), (1.0, 2.0, 1.0))
+    widths = {name: 2.0 * float(np.ptp(mesh.bounds[:, 1])) for name, mesh in stretched.geometry.items()}
+    assert widths["middle"] == pytest.approx(0.5, rel=0.05)
+    assert widths["left"] == pytest.approx(widths["right"], rel=0.01)
+    assert widths["left"] > 0.9
 
 
 @settings(max_examples=15)

@@ -15,6 +15,7 @@ from diorama_core.library.ingest.repair import Repaired
 from diorama_core.library.ingest.shaping import Painter, packed_shape
 from diorama_core.library.ingest.sink import Ingested
 from diorama_core.library.ingest.symmetry import symmetry_fold
+from diorama_core.library.part_notes import transform
 from diorama_core.library.record import Assumption, Guess, Shape, ShapeLibrary, usual_contact_faces
 
 
@@ -81,15 +82,14 @@ def _turned_parts(parts: trimesh.Scene, T: np.ndarray) -> list[trimesh.Trimesh]:
     meshes = []
     for node in sorted(parts.graph.nodes_geometry):
         T_shape_part, name = parts.graph[node]
-        mesh = parts.geometry[name].copy()
-        mesh.apply_transform(T @ T_shape_part)
+        mesh = transform(parts.geometry[name], T @ T_shape_part)
         mesh.metadata["name"] = str(name).partition(" ")[2]
         meshes.append(mesh)
     bounds = np.array([m.bounds for m in meshes])
     centre = (bounds[:, 0].min(axis=0) + bounds[:, 1].max(axis=0)) / 2
-    for mesh in meshes:
-        mesh.apply_translation(-centre)
-    return meshes
+    T_centred = np.eye(4)
+    T_centred[:3, 3] = -centre
+    return [transform(mesh, T_centred) for mesh in meshes]
 
 
 def _agreed(shape: Shape, R_to_from: np.ndarray, scale: float, category: str) -> Guess | None:

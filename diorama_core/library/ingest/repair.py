@@ -17,7 +17,10 @@ from trimesh.visual.texture import TextureVisuals
 
 from diorama_core.errors import DioramaError, LibraryError
 from diorama_core.io.bounded import shortened
+from diorama_core.library import part_notes
+from diorama_core.library.ingest.gltf_extras import notes_of_node
 from diorama_core.library.ingest.limits import Limits
+from diorama_core.library.part_notes import PartNotes
 
 FLAT = 1e-3
 """Share of the longest side below which a model is flat."""
@@ -104,7 +107,7 @@ def _repaired(scene: trimesh.Scene, limits: Limits) -> Repaired:
     retained = []
     total = 0
     materials: dict[int, PBRMaterial] = {}
-    for name, mesh, T in _placed(scene, notes):
+    for name, mesh, T, part in _placed(scene, notes):
         total += len(mesh.faces)
         if total > limits.triangles:
             raise LibraryError(f"more than {limits.triangles} triangles; simplify it first")
@@ -113,7 +116,9 @@ def _repaired(scene: trimesh.Scene, limits: Limits) -> Repaired:
         if np.linalg.det(T[:3, :3]) < 0:
             faces = faces[:, ::-1]
         if len(faces):
-            retained.append(_compact(vertices, faces, _visual(mesh, faces, materials, limits), name))
+            made = _compact(vertices, faces, _visual(mesh, faces, materials, limits), name)
+            made.metadata |= {} if part is None else {part_notes.KEY: part.as_json()}
+            retained.append(made)
     if not retained:
         raise LibraryError("no triangle with area is in it")
     whole = Repaired(tuple(retained), ())
@@ -125,7 +130,9 @@ def _repaired(scene: trimesh.Scene, limits: Limits) -> Repaired:
     return Repaired(thick, tuple(dict.fromkeys(notes)))
 
 
-def _placed(scene: trimesh.Scene, notes: list[str]) -> Iterator[tuple[str, trimesh.Trimesh, Float[np.ndarray, "4 4"]]]:
+def _placed(
+    scene: trimesh.Scene, notes: list[str]
+) -> Iterator[tuple[str, trimesh.Trimesh, Float[np.ndarray, "4 4"], PartNotes | None]]:
     for node in scene.graph.nodes_geometry:
         T, name = scene.graph[node]
         mesh = scene.geometry[name]
@@ -136,7 +143,7 @@ def _placed(scene: trimesh.Scene, notes: list[str]) -> Iterator[tuple[str, trime
         elif not np.isfinite(T).all():
             notes.append("a part with a broken transform was left out")
         else:
-            yield str(name), mesh, np.asarray(T, dtype=float)
+            yield str(name), mesh, np.asarray(T, dtype=float), notes_of_node(scene, node, notes)
 
 
 def _sound_faces(vertices: np.ndarray, faces: np.ndarray, notes: list[str]) -> np.ndarray:

@@ -13,7 +13,7 @@ from jaxtyping import Float
 from trimesh.visual.texture import TextureVisuals
 
 from diorama_core.errors import LibraryError
-from diorama_core.library import taxonomy
+from diorama_core.library import part_notes, taxonomy
 from diorama_core.library.catalogue import BULK_DENSITY
 from diorama_core.library.ingest.frames import Convention, squaring_turn
 from diorama_core.library.ingest.given import Given
@@ -27,6 +27,7 @@ from diorama_core.library.ingest.relief import relief, turned
 from diorama_core.library.ingest.repair import Repaired, repaired
 from diorama_core.library.ingest.sink import Ingested
 from diorama_core.library.ingest.symmetry import symmetry_fold
+from diorama_core.library.part_notes import PartNotes, notes_of, transform
 from diorama_core.library.record import Guess, Shape, ShapeLibrary, SymmetryFold, usual_contact_faces
 from diorama_core.library.surfaces import support_surfaces
 
@@ -185,7 +186,7 @@ def _squared(model: Repaired, convention: Convention, given: Given) -> tuple[Rep
 def _turned_model(model: Repaired, R: Float[np.ndarray, "3 3"]) -> Repaired:
     T = np.eye(4)
     T[:3, :3] = R
-    return Repaired(tuple(m.copy().apply_transform(T) for m in model.meshes), model.warnings)
+    return Repaired(tuple(transform(m, T) for m in model.meshes), model.warnings)
 
 
 def packed_shape(
@@ -230,28 +231,31 @@ def _folders(source: ModelSource) -> list[str]:
 
 
 def _canonical(model: Repaired, frame: Frame) -> list[trimesh.Trimesh]:
-    """The meshes turned, scaled and centred; one for each material."""
-    R = frame.R_shape_file.astype(float) * frame.unit_m
-    points = np.concatenate([m.vertices for m in model.meshes]) @ R.T
-    centre = (points.min(axis=0) + points.max(axis=0)) / 2
-    groups: dict[int, list[trimesh.Trimesh]] = {}
+    """The meshes turned, scaled and centred; one for each material of each part with notes of its own."""
+    T = np.eye(4)
+    T[:3, :3] = frame.R_shape_file.astype(float) * frame.unit_m
+    points = np.concatenate([m.vertices for m in model.meshes]) @ T[:3, :3].T
+    T[:3, 3] = -(points.min(axis=0) + points.max(axis=0)) / 2
+    groups: dict[tuple[int, PartNotes | None], list[trimesh.Trimesh]] = {}
     for mesh in model.meshes:
         textured = isinstance(mesh.visual, TextureVisuals)
-        groups.setdefault(id(mesh.visual.material) if textured else -1 - len(groups), []).append(mesh)
-    return [_joined(group, R, centre) for group in groups.values()]
+        key = id(mesh.visual.material) if textured else -1 - len(groups)
+        groups.setdefault((key, notes_of(mesh)), []).append(mesh)
+    return [_joined(group, T) for group in groups.values()]
 
 
-def _joined(group: Sequence[trimesh.Trimesh], R: Float[np.ndarray, "3 3"], centre: np.ndarray) -> trimesh.Trimesh:
+def _joined(group: Sequence[trimesh.Trimesh], T: Float[np.ndarray, "4 4"]) -> trimesh.Trimesh:
     counts = np.cumsum([0, *(len(m.vertices) for m in group)])
-    visual = group[0].visual
+    notes, visual = notes_of(group[0]), group[0].visual
+    noted = {} if notes is None else {part_notes.KEY: notes.transformed(T).as_json()}
     if isinstance(visual, TextureVisuals):
         visual = TextureVisuals(uv=np.concatenate([m.visual.uv for m in group]), material=visual.material)
     return trimesh.Trimesh(
-        np.concatenate([m.vertices for m in group]) @ R.T - centre,
+        np.concatenate([m.vertices for m in group]) @ T[:3, :3].T + T[:3, 3],
         np.concatenate([m.faces + c for m, c in zip(group, counts, strict=False)]),
         visual=visual,
         process=False,
-        metadata={"name": group[0].metadata.get("name", "")},
+        metadata={"name": group[0].metadata.get("name", "")} | noted,
     )
 
 
