@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import itertools
-from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from functools import lru_cache
 
@@ -78,21 +76,8 @@ class PhysicalScene:
 
     bodies: tuple[RigidBody, ...]
     slabs: tuple[StaticSlab, ...]
-    without_contact: tuple[tuple[str, str], ...]
-    """Pairs of object ids that overlap too deeply to collide."""
     notes: tuple[str, ...] = ()
     """What was decided that a reader of the file should know."""
-
-    def loose_pairs(self, name: Callable[[RigidBody, ExportLimb | None], str]) -> Iterator[tuple[str, str]]:
-        """Names of the bodies that may interpenetrate: every part of both objects against every part of the other.
-
-        Args:
-            name: What a file calls an object (None), or a moving part of it.
-        """
-        by_id = {b.node.id: b for b in self.bodies}
-        for pair in self.without_contact:
-            bodies = (by_id[i] for i in pair)
-            yield from itertools.product(*([name(b, k) for k in (None, *(m.limb for m in b.moving))] for b in bodies))
 
 
 def is_soft(node: ExportObject) -> bool:

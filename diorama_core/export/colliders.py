@@ -64,6 +64,10 @@ def physical_scene(gathered: ExportScene) -> PhysicalScene:
         if bodies[child].free:
             bodies[child] = _welded(bodies[child], carrier)
             notes.append(f"{child} is sunk into {carrier or 'the room'} and welded to it")
+    for filled in cuts.filled():
+        if bodies[filled].free:
+            bodies[filled] = _welded(bodies[filled], None)
+            notes.append(f"{filled} is inside other objects and stays where it is")
     for child, body in bodies.items():
         parent = body.node.parent
         if body.free and parent is not None and _is_beside(body, bodies[parent]):
@@ -71,7 +75,7 @@ def physical_scene(gathered: ExportScene) -> PhysicalScene:
             notes.append(f"{child} stands beside {parent}, which is to carry it, and is welded to it")
     apart = {i: replace(b, parts=cuts.parts(i), moving=cuts.moving(b)) for i, b in bodies.items()}
     done = tuple(_resting(b, None if b.node.parent is None else apart[b.node.parent]) for b in apart.values())
-    return PhysicalScene(done, slabs, tuple(sorted(cuts.ignored)), tuple(notes))
+    return PhysicalScene(done, slabs, tuple(notes))
 
 
 def body_of(scene: Scene, library: ShapeLibrary, object_id: str) -> RigidBody:
@@ -102,7 +106,7 @@ def balanced(body: RigidBody, carrier: RigidBody | None = None) -> RigidBody:
     outline, low = _foot(body)
     if carrier is not None:
         tops = [p[np.abs(p[:, 2] - low) < NEAR_TOP_M][:, :2] for p in world_parts(carrier)]
-        outline = _shared_outline(outline, np.concatenate(tops))
+        outline = _shared_outline(outline, np.concatenate([np.zeros((0, 2)), *tops]))
     return over(body, outline)
 
 

@@ -86,9 +86,8 @@ def mjcf_text(gathered: ExportScene, physical: PhysicalScene, folder: str | None
     writer = _BodyWriter(gathered, assets, below, lights, folder)
     for body in below.get(None, ()):
         writer.write(world, body, np.eye(4))
-    pairs = list(physical.loose_pairs(lambda body, limb: body_name(body.node.slug, limb)))
     # A part and the case it sits in touch; MuJoCo knows that by itself only where the case can move.
-    pairs += [(b.node.slug, body_name(b.node.slug, m.limb)) for b in physical.bodies for m in b.moving]
+    pairs = [(b.node.slug, body_name(b.node.slug, m.limb)) for b in physical.bodies for m in b.moving]
     contact = SubElement(root, "contact")
     for first, second in pairs:
         SubElement(contact, "exclude", body1=first, body2=second)

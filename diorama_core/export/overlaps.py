@@ -10,21 +10,28 @@ import numpy as np
 from jaxtyping import Float
 from scipy.spatial import ConvexHull, QhullError
 
-from diorama_core.export.bodies import MovingPart, Points, RigidBody, StaticSlab, is_soft
+from diorama_core.export.bodies import MovingPart, Points, RigidBody, StaticSlab, hull_volume, is_soft
 from diorama_core.geometry.convex import hull_part
 from diorama_core.geometry.sat import pack_parts, pair_axes, place_bodies
 from diorama_core.scene.frames import UP_WORLD
 
 MAX_CUT = 0.4
-"""A part is cut by at most this share of its extent; what overlaps more is left to interpenetrate without contact."""
+"""A part is cut level by at most this share of its extent; of what overlaps more it loses only what both fill."""
+MIN_LEFT = 0.2
+"""An object that others fill so that less than this share of its volume is left stays where it is."""
+MIN_PIECE_M, MAX_PIECES = 0.005, 12
+"""Pieces of a part that are thinner than this are left out, and of many the smallest: engines push thin ones about."""
 MAX_SOFT_DIP = 0.25
 """Soft objects are cut level where they sink into their supporter by at most this share of their height."""
 MAX_RIGID_CUT_M = 0.02
 """Parts of objects that do not give way are cut by at most this."""
 SOFT_CELLS = 4
 """Soft objects follow what they lie on in so many cells along each side."""
-SKIN_M = 1e-4
-"""Bodies start this far apart where they were cut."""
+SKIN_M, GAP_M = 1e-4, 0.0025
+"""How far apart bodies start that were cut: what lies on another, and what is beside it. Bullet rounds each convex body
+by a millimetre, and neighbours that it finds 2 mm inside each other slide apart by centimetres."""
+UPRIGHT = 0.7
+"""A face whose normal rises by more than this carries what is above it."""
 
 
 class Cuts:
@@ -53,20 +60,22 @@ class Cuts:
         self._rows: dict[tuple[str | None, int | None], list[int]] = {}
         for row, owner in enumerate(zip(self._owners, self._limbs, strict=True)):
             self._rows.setdefault(owner, []).append(row)
-        self.ignored: set[tuple[str, str]] = set()
+        self._deep: list[tuple[int, int]] = []
+        self._pieces: dict[int, list[Points]] = {}
         self.sunk: dict[str, str | None] = {}
 
     def parts(self, object_id: str, limb: int | None = None) -> tuple[Points, ...]:
         """The parts of an object, or of one of its limbs, that are left, in the frame of either."""
         T = self._frames[object_id, limb]
-        return tuple((self._world[row] - T[:3, 3]) @ T[:3, :3] for row in self._rows.get((object_id, limb), ()))
+        rows = self._rows.get((object_id, limb), ())
+        return tuple((piece - T[:3, 3]) @ T[:3, :3] for row in rows for piece in self._left(row))
 
     def moving(self, body: RigidBody) -> tuple[MovingPart, ...]:
         """The limbs of an object with the parts that are left."""
         return tuple(replace(m, parts=self.parts(body.node.id, m.limb.number)) for m in body.moving)
 
     def resolve(self) -> None:
-        """Cut every pair that overlaps."""
+        """Cut every pair that overlaps; what is too deep to be cut level loses what both fill."""
         first, second = self._near_pairs()
         if len(first) == 0:
             return
@@ -78,14 +87,17 @@ class Cuts:
             for k in np.flatnonzero(block.gaps.max(axis=1) < 0.0):
                 pair = int(near[block.a[k]]), int(near[block.b[k]])
                 self._part(*pair, block.normals[k][np.isfinite(block.gaps[k])])
+        for pair in self._deep:
+            self._hollow_out(*pair)
 
     def _near_pairs(self) -> tuple[np.ndarray, np.ndarray]:
-        """Parts of different owners whose boxes overlap and of which at least one can move against the other."""
+        """Parts whose boxes overlap and of which at least one can move against the other: those of different objects,
+        and those of an object that its joints move."""
         low = np.array([w.min(axis=0) for w in self._world]).reshape(-1, 3)
         high = np.array([w.max(axis=0) for w in self._world]).reshape(-1, 3)
-        numbers = {name: k for k, name in enumerate(dict.fromkeys(self._owners))}
-        owner = np.array([numbers[name] for name in self._owners])
-        rows_owners = zip(self._owners, self._limbs, strict=True)
+        rows_owners = list(zip(self._owners, self._limbs, strict=True))
+        numbers = {body: k for k, body in enumerate(dict.fromkeys(rows_owners))}
+        owner = np.array([numbers[body] for body in rows_owners])
         moves = np.array([limb is not None or self._free(name) for name, limb in rows_owners])
         pairs = []
         for i in range(len(low)):
@@ -103,18 +115,19 @@ class Cuts:
     def _part(self, i: int, j: int, normals: Float[np.ndarray, "k 3"]) -> None:
         """Part two bodies: a rider from what carries it upward, others along the direction of least overlap."""
         a, b = self._owners[i], self._owners[j]
-        if a is not None and b is not None and (min(a, b), max(a, b)) in self.ignored:
-            return
         along_i, along_j = self._world[i] @ normals.T, self._world[j] @ normals.T
         gaps = along_i.min(axis=0) - along_j.max(axis=0)
-        if gaps.max() >= 0 or self._lifted(i, j) or self._lifted(j, i):
+        own = a is not None and a == b
+        if gaps.max() >= 0 or (not own and (self._lifted(i, j) or self._lifted(j, i))):
             return
         for k in np.argsort(-gaps, kind="stable"):
             options = [(i, j, normals[k], float(along_j[:, k].max())), (j, i, -normals[k], float(-along_i[:, k].min()))]
             for part, other, normal, level in sorted(options, key=lambda option: self._firmness(option[0])):
-                if not self._rides(other, part) and self._cut(part, normal, level + SKIN_M):
+                gap = SKIN_M if normal[2] > UPRIGHT else GAP_M
+                if (own or not self._rides(other, part)) and self._cut(part, normal, level + gap):
                     return
-        self._give_up(a, b)
+        if own or not self._sink(a, b):
+            self._deep.append((i, j))
 
     def _lifted(self, rider: int, carrier: int) -> bool:
         """Cut a rider's part level above its carrier's, where it only dips into it; soft ones sink in deeper."""
@@ -157,13 +170,57 @@ class Cuts:
             return (2, 0.0)
         return (0 if is_soft(self._bodies[owner].node) else 1, float(np.prod(np.ptp(self._world[part], axis=0))))
 
-    def _give_up(self, a: str | None, b: str | None) -> None:
-        """Two parts overlap too deeply to be cut: their objects do not collide, or one is welded to the other."""
-        for child, carrier in itertools.permutations((a, b)):
-            if child is not None and (carrier is None or self._bodies[child].node.parent == carrier):
-                self.sunk[child] = carrier
-        if a is not None and b is not None:
-            self.ignored.add((min(a, b), max(a, b)))
+    def _sink(self, a: str | None, b: str | None) -> bool:
+        """Weld one of two objects that overlap too deeply to be cut to the other, where that carries it."""
+        pairs = [(c, d) for c, d in ((a, b), (b, a)) if c is not None]
+        sunk = [(c, d) for c, d in pairs if d is None or self._bodies[c].node.parent == d]
+        self.sunk.update(sunk)
+        return bool(sunk)
+
+    def _left(self, row: int) -> list[Points]:
+        return self._pieces.get(row, [self._world[row]])
+
+    def _hollow_out(self, i: int, j: int) -> None:
+        """Take away from the softer or smaller of two parts what both fill."""
+        part, other = sorted((i, j), key=self._firmness)
+        if self._owners[part] is None:
+            return
+        left = self._left(part)
+        for hole in self._left(other):
+            left = [rest for piece in left for rest in outside(piece, hole)]
+        self._pieces[part] = left
+
+    def filled(self) -> list[str]:
+        """Objects that share nearly all of their room with others: what is left of them would not stand."""
+        hollowed = dict.fromkeys(owner for row in self._pieces if (owner := self._owners[row]) is not None)
+        return [name for name in hollowed if self._share_left(name) < MIN_LEFT]
+
+    def _share_left(self, owner: str) -> float:
+        rows = self._rows.get((owner, None), ())
+        whole = sum(hull_volume(self._world[row]) for row in rows)
+        return sum(hull_volume(p) for row in rows for p in self._left(row)) / whole if whole else 1.0
+
+
+def outside(part: Points, hole: Points) -> list[Points]:
+    """What a convex body has outside another, as convex pieces without slivers.
+
+    Args:
+        part: corners of the body, metres.
+        hole: corners of the other; flat ones take nothing away.
+    """
+    try:
+        planes = np.unique(np.round(ConvexHull(hole).equations, 6), axis=0)
+    except (QhullError, ValueError):
+        return [part]
+    pieces: list[Points] = []
+    rest: Points | None = part
+    for normal, level in sorted(((p[:3], -p[3]) for p in planes), key=lambda p: float(p[1] - (part @ p[0]).max())):
+        if rest is None or (rest @ normal).max() <= level + GAP_M:
+            continue
+        beyond = cut(rest, normal, level + GAP_M, np.inf)
+        pieces += [] if beyond is None or np.ptp(beyond @ normal) < MIN_PIECE_M else [beyond]
+        rest = cut(rest, -normal, -level, np.inf)
+    return [part] if rest is None else sorted(pieces, key=lambda piece: -hull_volume(piece))[:MAX_PIECES]
 
 
 def seated(part: Points, lowest: float, below: Iterable[Points]) -> tuple[list[Points], list[Points]]:

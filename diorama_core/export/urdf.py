@@ -16,7 +16,7 @@ from scipy.spatial.transform import Rotation
 
 from diorama_core.export.bodies import PhysicalScene
 from diorama_core.export.gathering import ExportMesh, ExportScene
-from diorama_core.export.links import Link, body_name, collider_file, grouped, visual_file, write_linked
+from diorama_core.export.links import Link, collider_file, grouped, visual_file, write_linked
 from diorama_core.export.physics import Inertia
 from diorama_core.export.xml_values import inertia_terms, numbers, srgb_rgba
 from diorama_core.progress import Progress
@@ -62,8 +62,7 @@ def urdf_files(
         }
         for name, model in free.items()
     ]
-    loose = list(physical.loose_pairs(lambda body, limb: body_name(body.node.slug, limb)))
-    files[f"{folder}/{POSES}"] = json.dumps({"objects": poses, "without_contact": loose}, indent=1) + "\n"
+    files[f"{folder}/{POSES}"] = json.dumps({"objects": poses}, indent=1) + "\n"
     files[main] = _room(gathered, physical, fixed, folder)
     return files
 

@@ -45,17 +45,7 @@ def add_physics(stage: Usd.Stage, gathered: ExportScene, physical: PhysicalScene
             if not base.free:  # each joint that is bolted to what cannot move is the root of an articulation
                 UsdPhysics.ArticulationRootAPI.Apply(joint)
             colliders.add(limb_path(path, moving.limb), moving.parts, grip)
-
-    def path_of(body: RigidBody, limb: ExportLimb | None) -> str:
-        return paths[body.node.id] if limb is None else limb_path(paths[body.node.id], limb)
-
-    for body in physical.bodies:
-        for moving in body.moving:  # a part and the case it sits in touch
-            colliders.let_overlap(path_of(body, moving.limb), path_of(body, None))
-    for a, b in physical.loose_pairs(path_of):
-        pairs = UsdPhysics.FilteredPairsAPI.Apply(stage.GetPrimAtPath(a))
-        pairs.CreateFilteredPairsRel().AddTarget(b)
-        colliders.let_overlap(a, b)
+            colliders.let_overlap(limb_path(path, moving.limb), path)  # a part and the case it sits in touch
     colliders.write(stage.GetRootLayer())
 
 

@@ -19,7 +19,7 @@ from diorama_core.export.colliders import physical_scene
 from diorama_core.export.gathering import gather
 from diorama_core.export.usd import write_usda, write_usdc, write_usdz
 from diorama_core.scene.schema import scene_from_json
-from tests.export.scenes import SOURCES, desk_in_dresser, gathered, scene_of
+from tests.export.scenes import SOURCES, gathered, scene_of
 from tests.export.validators import usd_findings
 
 WRITERS = {"usda": write_usda, "usdc": write_usdc, "usdz": write_usdz}
@@ -169,19 +169,6 @@ def test_a_lens_is_in_tenths_of_a_metre(example: Usd.Stage) -> None:
     camera = UsdGeom.Camera(example.GetPrimAtPath("/Scene/PhotoCamera"))
     assert 100 * camera.GetHorizontalApertureAttr().Get() == pytest.approx(36.0)
     assert 15 < 100 * camera.GetFocalLengthAttr().Get() < 60
-
-
-def test_what_overlaps_deeply_does_not_collide_nor_do_its_moving_parts(tmp_path: Path) -> None:
-    write_usdc(desk_in_dresser(), tmp_path / "room.usdc")
-    stage = Usd.Stage.Open(str(tmp_path / "room.usdc"))
-    loose = {
-        (prim.GetName(), path.name)
-        for prim in stage.Traverse()
-        if prim.HasAPI(UsdPhysics.FilteredPairsAPI)
-        for path in UsdPhysics.FilteredPairsAPI(prim).GetFilteredPairsRel().GetTargets()
-    }
-    assert {("desk_1", "dresser_1"), ("desk_1", "dresser_1__drawer_1"), ("desk_1__drawer_1", "dresser_1")} <= loose
-    assert usd_findings(tmp_path / "room.usdc") == []
 
 
 def test_a_moving_part_does_not_collide_with_its_case(tmp_path: Path) -> None:
