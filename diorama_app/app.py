@@ -62,6 +62,7 @@ from diorama_app.session.client import Client
 from diorama_app.session.connected_client import Panel
 from diorama_app.session.preferences import Preferences, remembered
 from diorama_app.session.session import EditorSession
+from diorama_app.strings import N_, _
 from diorama_app.viewport.client_view import set_theme
 from diorama_core.editing.collisions import Collisions
 from diorama_core.errors import DioramaError
@@ -77,8 +78,8 @@ Place = Callable[[str, Callable[[], Panel]], Panel]
 
 LEFT_WIDTH_PX, RIGHT_WIDTH_PX = 246, 254
 """Together at most 40 % of a screen of 1280 pixels."""
-LEFT_TABS = ("Scene", "Photo", "Arrange", "Project")
-RIGHT_TABS = ("Object", "Library", "Export")
+LEFT_TABS = (N_("Scene"), N_("Photo"), N_("Arrange"), N_("Project"))
+RIGHT_TABS = (N_("Object"), N_("Library"), N_("Export"))
 
 
 class Editor:
@@ -199,20 +200,20 @@ class Editor:
             return placed.panel
 
         with scene:
-            place("Edits by words", lambda: EditByWords(gui, client))
-            place("The review", lambda: Review(gui, client))
-            place("The list of objects", lambda: Outliner(gui, client))
-            place("The size of the room", lambda: RoomSize(gui, client))
-            place("The light", lambda: LightPanel(gui, client))
+            place(_("Edits by words"), lambda: EditByWords(gui, client))
+            place(_("The review"), lambda: Review(gui, client))
+            place(_("The list of objects"), lambda: Outliner(gui, client))
+            place(_("The size of the room"), lambda: RoomSize(gui, client))
+            place(_("The light"), lambda: LightPanel(gui, client))
         with from_photo:
-            place("The photos of the room", lambda: PhotoStrip(gui, client, self.views))
-            photo = place("The photo", lambda: PhotoPanel(gui, client, self.commands))
-            place("The photo's camera", lambda: PhotoCameraPanel(gui, client, self.views))
+            place(_("The photos of the room"), lambda: PhotoStrip(gui, client, self.views))
+            photo = place(_("The photo"), lambda: PhotoPanel(gui, client, self.commands))
+            place(_("The photo's camera"), lambda: PhotoCameraPanel(gui, client, self.views))
         with arrange:
-            client.curves = place("The layout", lambda: Optimiser(gui, client))
+            client.curves = place(_("The layout"), lambda: Optimiser(gui, client))
         with projects:
-            place("The list of projects", lambda: Projects(gui, client, self.commands, photo.take))
-            place("The list of networks", lambda: Networks(gui, client))
+            place(_("The list of projects"), lambda: Projects(gui, client, self.commands, photo.take))
+            place(_("The list of networks"), lambda: Networks(gui, client))
         right = gui.add_panel()
         count = len(panels)
         self._right_side(client, place, right.add_tab)
@@ -237,18 +238,18 @@ class Editor:
         gui = client.viser_client.gui
         about, library, exporting = (add_tab(name) for name in RIGHT_TABS)
         with about:
-            place("The object", lambda: ObjectCard(gui, client, self.commands))
-            place("The surface", lambda: Surfaces(gui, client))
-            place("Your own model", lambda: OwnModel(gui, client))
-            place("The alternatives", lambda: Alternatives(gui, client))
-            place("The properties", lambda: Properties(gui, client))
-            place("What supports it", lambda: Supports(gui, client))
-            place("The physics", lambda: Physics(gui, client))
-            place("The correction by the photo", lambda: PhotoCorrection(gui, client))
+            place(_("The object"), lambda: ObjectCard(gui, client, self.commands))
+            place(_("The surface"), lambda: Surfaces(gui, client))
+            place(_("Your own model"), lambda: OwnModel(gui, client))
+            place(_("The alternatives"), lambda: Alternatives(gui, client))
+            place(_("The properties"), lambda: Properties(gui, client))
+            place(_("What supports it"), lambda: Supports(gui, client))
+            place(_("The physics"), lambda: Physics(gui, client))
+            place(_("The correction by the photo"), lambda: PhotoCorrection(gui, client))
         with library:
-            place("The library", lambda: LibraryPanel(gui, client))
+            place(_("The library"), lambda: LibraryPanel(gui, client))
         with exporting:
-            place("The export", lambda: ExportPanel(gui, client))
+            place(_("The export"), lambda: ExportPanel(gui, client))
 
     async def _joined(self, viser_client: viser.ClientHandle) -> None:
         self.session.ui_thread.post(lambda: self.session.joined(viser_client))

@@ -25,6 +25,7 @@ import viser
 
 import diorama_core as diorama
 from diorama_app.session.preload import warm_up
+from diorama_app.strings import SOURCE_LANGUAGE, use_language
 from diorama_app.web.viser_adapter import create_server, stop_server
 from diorama_app.web.visitors import ANY_HOST, Visitors, page_address, with_token
 from diorama_core.io.quick_imports import load_quickly
@@ -99,6 +100,7 @@ def start(
     token: str | None = None,
     library: str | ShapeLibrary = "built-in",
     frame_origins: Sequence[str] = (),
+    language: str = SOURCE_LANGUAGE,
 ) -> Running:
     """Start the editor in the background.
 
@@ -111,12 +113,14 @@ def start(
         token: access token of clients; generated when other machines can reach the server and none is given.
         library: where shapes come from, or its name.
         frame_origins: whose pages may show the editor in a frame; see `Visitors`.
+        language: of the page; see `use_language`.
 
     Raises:
-        InputError: the port is taken, or an origin is none.
+        InputError: the port is taken, an origin is none, or there is no such translation.
         LibraryError: there is no library of that name.
         ProjectError, SceneError: the project cannot be opened.
     """
+    use_language(language)
     opened = None if project is None else Project.open(project)
     made: list[Workspace] = []
 
@@ -191,6 +195,7 @@ def serve(
     token: str | None,
     library: str | ShapeLibrary = "built-in",
     frame_origins: Sequence[str] = (),
+    language: str = SOURCE_LANGUAGE,
     beside: Beside | None = None,
 ) -> None:
     """Run the editor until Ctrl+C.
@@ -205,6 +210,7 @@ def serve(
         token: that pages must bring; None for none.
         library: by name, or itself.
         frame_origins: whose pages may show the editor in a frame.
+        language: of the page.
         beside: what runs beside it, of its editor and token: the HTTP interface.
     """
     token = with_token(host or "0.0.0.0", token)
@@ -217,6 +223,7 @@ def serve(
         token=token,
         library=library,
         frame_origins=frame_origins,
+        language=language,
     )
     asked = threading.Event()
     signal.signal(signal.SIGTERM, lambda *_: asked.set())  # before anybody is told that it runs

@@ -17,6 +17,7 @@ import viser
 from diorama_app.app import Editor
 from diorama_app.projects.manage import address_of, find_project
 from diorama_app.session.connected_client import ConnectedClient
+from diorama_app.strings import _
 from diorama_app.web.viser_adapter import create_server_without_port, stop_server
 from diorama_core.errors import DioramaError
 from diorama_core.library.record import ShapeLibrary
@@ -79,7 +80,10 @@ class Workspace:
             return editor.server
         with self._lock:
             if self._editors:
-                self._editors[0].session.greeting = (f"There is no project called “{name[:60]}” to open here.", "bad")
+                self._editors[0].session.greeting = (
+                    _("There is no project called “{name}” to open here.").format(name=name[:60]),
+                    "bad",
+                )
         return None
 
     def editor(self, name: str) -> Editor | None:

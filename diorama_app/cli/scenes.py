@@ -41,6 +41,9 @@ def add_serve(commands: Any) -> None:
     p.add_argument("--token", metavar="T", help="browsers must give this token: needed for hosts other than this one")
     p.add_argument("--library", metavar="NAME", help="shape library (default: the project's own, or built-in)")
     p.add_argument(
+        "--language", default="en", metavar="CODE|FILE.mo", help="language of the page (default: %(default)s)"
+    )
+    p.add_argument(
         "--frame-origin",
         action="append",
         default=[],
@@ -67,6 +70,7 @@ def _serve(a: argparse.Namespace) -> None:
         low_graphics=a.low_graphics,
         token=a.token,
         frame_origins=a.frame_origin,
+        language=a.language,
         beside=_api_beside(),
     )
 

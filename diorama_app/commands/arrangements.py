@@ -8,6 +8,7 @@ from functools import cached_property
 
 from diorama_app.commands.edit import names_of
 from diorama_app.session.client import Client
+from diorama_app.strings import _
 from diorama_core.errors import EditRefused
 from diorama_core.pipeline.arrangements import plausible_shapes
 from diorama_core.scene import edits
@@ -57,7 +58,7 @@ class Arrangements:
             if item.candidates:
                 sets.setdefault((item.category, item.candidates[0].shape_id), []).append(item)
         offers = {}
-        for (_, best), members in sets.items():
+        for (_category, best), members in sets.items():
             known = {c.shape_id: c for m in reversed(members) for c in reversed(m.candidates)}
             shapes = plausible_shapes(members, own=best)
             for item in members:
@@ -75,5 +76,6 @@ def switch_arrangement(client: Client, rank: int, only: Collection[str] | None =
     session = client.session
     if Arrangements(session.scene).count < 2:
         raise EditRefused("no object has alternatives to arrange")
-    whose = "" if only is None else f" for {names_of(session.scene, only)}"
-    session.edit(f"arrangement {rank + 1}{whose}", lambda s: Arrangements(s).taken(rank, only), by=client)
+    label = _("arrangement {number}") if only is None else _("arrangement {number} for {names}")
+    label = label.format(number=rank + 1, names=names_of(session.scene, only or ()))
+    session.edit(label, lambda s: Arrangements(s).taken(rank, only), by=client)

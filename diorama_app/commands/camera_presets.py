@@ -8,6 +8,7 @@ import numpy as np
 
 from diorama_app.session.client import Client
 from diorama_app.session.session import EditorSession
+from diorama_app.strings import _
 from diorama_app.viewport.framing import NARROW_FOV_RAD, bounds, room_view, side_view
 from diorama_core.errors import EditRefused
 
@@ -32,7 +33,8 @@ class Views:
         """Look through the camera of the chosen photo, the photo behind the model."""
         camera, photo = client.looked_through
         if camera is None and client.further_photo is not None:
-            raise EditRefused(f"the camera of {client.photo_name} is not known yet; add the photo to the scene first")
+            said = _("the camera of {photo} is not known yet; add the photo to the scene first")
+            raise EditRefused(said.format(photo=client.photo_name))
         if camera is None:
             raise EditRefused("this scene has no photo; upload one in the Photo tab")
         self._plain(client)

@@ -14,6 +14,7 @@ from diorama_app.reconstruction.networks import find_furniture
 from diorama_app.reconstruction.photo_outlines import PhotoOutlines
 from diorama_app.session.client import Client
 from diorama_app.session.session import EditorSession
+from diorama_app.strings import _
 from diorama_core.editing import aligning as arranging
 from diorama_core.editing.clipboard import copied, free_offset, pasted, pasted_at
 from diorama_core.editing.placing import seated
@@ -88,17 +89,17 @@ def _general(session: EditorSession, show_help: Do, show_picture: Do) -> tuple[C
         session.autosave.flush()
         if session.autosave.trouble:
             return  # it says so itself
-        client.notice(f"Saved in {session.project.name}.", "good")
+        client.notice(_("Saved in {name}.").format(name=session.project.name), "good")
 
     return (
-        Command("save", "Save", save, "S", "cmd/ctrl", "Save now (every change is saved anyway)"),
+        Command("save", "Save", save, "S", "cmd/ctrl", "Save now; every change is saved automatically, too"),
         Command(
             "measure",
             "Measure",
             start_measuring,
             "M",
             None,
-            "Measure between two clicks, which snap to corners; rescale by it",
+            "Measure between two clicked points, which snap to corners; type the true length to rescale",
         ),
         Command("picture", "Picture", show_picture, "I", None, "Draw a picture or a film of the scene to download"),
         Command(
@@ -115,7 +116,7 @@ def _general(session: EditorSession, show_help: Do, show_picture: Do) -> tuple[C
         Command(
             "projects", "All projects", lambda g: g.open_projects(), None, None, "Search, rename, duplicate, delete"
         ),
-        Command("tour", "Show me around", lambda g: g.start_tour(), None, None, "Six steps through the page"),
+        Command("tour", "Show me around", lambda g: g.start_tour(), None, None, "A tour of the page in six steps"),
         Command("help", "Help", show_help, "?", "shift", "Every command with its key"),
     )
 
@@ -158,7 +159,7 @@ def _selection(session: EditorSession) -> tuple[Command, ...]:
 def _objects(session: EditorSession) -> tuple[Command, ...]:
     def copy(client: Client) -> None:
         session.shared.clip = copied(session.scene, client.need_selection())
-        client.notice(f"Copied {editing.names_of(session.scene, client.selection)}.")
+        client.notice(_("Copied {names}.").format(names=editing.names_of(session.scene, client.selection)))
 
     def cut(client: Client) -> None:
         copy(client)
@@ -174,7 +175,8 @@ def _objects(session: EditorSession) -> tuple[Command, ...]:
             if original
             else pasted_at(here, clip, client.view.camera.point_on_level(floor_height(here)))
         )
-        session.commit(f"paste {editing.names_of(scene, heads)}", scene, by=client, selection=heads)
+        label = _("paste {names}").format(names=editing.names_of(scene, heads))
+        session.commit(label, scene, by=client, selection=heads)
 
     def lock(client: Client) -> None:
         chosen = client.need_selection()
@@ -192,7 +194,8 @@ def _objects(session: EditorSession) -> tuple[Command, ...]:
                 scene = seated(scene, session.library, object_id)
             return scene
 
-        session.edit(f"drop {editing.names_of(session.scene, chosen)}", down, by=client, by_hand=True)
+        label = _("drop {names}").format(names=editing.names_of(session.scene, chosen))
+        session.edit(label, down, by=client, by_hand=True)
 
     return (
         Command("duplicate", "Duplicate", editing.duplicate_selected, "D", "cmd/ctrl", "Duplicate next to it"),
@@ -212,37 +215,34 @@ def _objects(session: EditorSession) -> tuple[Command, ...]:
 
 
 def _several(session: EditorSession) -> tuple[Command, ...]:
-    def align(label: str, side: str, anchor: arranging.Anchor) -> Do:
+    def align(side: str, anchor: arranging.Anchor) -> Do:
         def run(client: Client) -> None:
             chosen = client.need_selection()
             axis, flipped = client.view.camera.screen_axis(side)
             end = OPPOSITE[anchor] if flipped else anchor
-            session.edit(f"align {label}", lambda s: arranging.align(s, chosen, axis, end), by=client, by_hand=True)
+            label = _("align {names}").format(names=editing.names_of(session.scene, chosen))
+            session.edit(label, lambda s: arranging.align(s, chosen, axis, end), by=client, by_hand=True)
 
         return run
 
     def distribute(client: Client) -> None:
         chosen = client.need_selection()
         axis = arranging.widest_axis(session.scene, chosen)
-        session.edit("distribute evenly", lambda s: arranging.distribute(s, chosen, axis), by=client, by_hand=True)
+        session.edit(_("distribute evenly"), lambda s: arranging.distribute(s, chosen, axis), by=client, by_hand=True)
 
     def mirror(client: Client) -> None:
         chosen = client.need_selection()
-        axis, _ = client.view.camera.screen_axis("right")
-        names = editing.names_of(session.scene, chosen)
-        session.edit(
-            f"mirror {names}", lambda s: arranging.mirror(s, chosen, axis, session.library), by=client, by_hand=True
-        )
+        axis = client.view.camera.screen_axis("right")[0]
+        label = _("mirror {names}").format(names=editing.names_of(session.scene, chosen))
+        session.edit(label, lambda s: arranging.mirror(s, chosen, axis, session.library), by=client, by_hand=True)
 
     return (
-        Command("align_left", "Align left", align("left", "right", "low"), None, None, "Align left edges"),
-        Command("align_centre", "Align centres", align("centres", "right", "middle"), None, None, "Align centres"),
-        Command("align_right", "Align right", align("right", "right", "high"), None, None, "Align right edges"),
-        Command("align_back", "Align far", align("far edges", "away", "high"), None, None, "Align far edges"),
-        Command(
-            "align_depth", "Align in depth", align("in depth", "away", "middle"), None, None, "Align centres in depth"
-        ),
-        Command("align_front", "Align near", align("near edges", "away", "low"), None, None, "Align near edges"),
+        Command("align_left", "Align left", align("right", "low"), None, None, "Align left edges"),
+        Command("align_centre", "Align centres", align("right", "middle"), None, None, "Align centres"),
+        Command("align_right", "Align right", align("right", "high"), None, None, "Align right edges"),
+        Command("align_back", "Align far", align("away", "high"), None, None, "Align far edges"),
+        Command("align_depth", "Align in depth", align("away", "middle"), None, None, "Align centres in depth"),
+        Command("align_front", "Align near", align("away", "low"), None, None, "Align near edges"),
         Command("distribute", "Distribute evenly", distribute, None, None, "Equal gaps between three or more objects"),
         Command("mirror", "Mirror", mirror, "M", "shift", "Mirror the selection left to right"),
     )
@@ -258,7 +258,14 @@ def _views(views: Views) -> tuple[Command, ...]:
         Command("view_left", "Left view", lambda g: views.along(g, (-1.0, 0.0, 0.0)), "5", None, "From the left"),
         Command("view_right", "Right view", lambda g: views.along(g, (1.0, 0.0, 0.0)), "6", None, "From the right"),
         Command("walk", "Walk", views.walk, "W", None, "Walk through the room: W A S D, drag to look around"),
-        Command("play", "Play", play, None, None, "Gravity acts, clicks push; Play again keeps it as one undo step"),
+        Command(
+            "play",
+            "Play",
+            play,
+            None,
+            None,
+            "Switch on gravity; clicks push objects. Play again keeps the result as one undo step",
+        ),
         Command("focus", "Focus", views.focus, "F", None, "Centre the view on the selection"),
     )
 
@@ -276,7 +283,7 @@ def _overlays(views: Views, outlines: PhotoOutlines) -> tuple[Command, ...]:
 
     return (
         Command("masks", "Outlines", masks, "O", None, "Outline the detected objects over the photo"),
-        Command("planes", "Planes", planes, "Y", None, "Edges and names of floor, walls and ceiling"),
+        Command("planes", "Planes", planes, "Y", None, "Show edges and names of the floor, walls and ceiling"),
     )
 
 
@@ -304,7 +311,7 @@ def _ways() -> tuple[Command, ...]:
             switch("badges"),
             None,
             None,
-            "⚠ collides, floats or is outside; ? is uncertain",
+            "⚠ collides, floats or is outside the room; ? is uncertain",
         ),
         Command("theme", "Dark or light", theme, None, None, "Switch between dark and light panels"),
     )

@@ -10,6 +10,7 @@ import numpy as np
 from jaxtyping import Float
 
 from diorama_app.session.client import Client
+from diorama_app.strings import _, plural
 from diorama_core.editing.clearances import SIDES, moved_to_clearance
 from diorama_core.errors import EditRefused
 from diorama_core.scene import edits
@@ -23,7 +24,11 @@ BESIDE_M = 0.08
 def names_of(scene: Scene, ids: Iterable[str]) -> str:
     """Label of one or several objects: the name of one, or the number of several."""
     chosen = tuple(ids)
-    return scene.object(chosen[0]).label[:40] if len(chosen) == 1 else f"{len(chosen)} objects"
+    return (
+        scene.object(chosen[0]).label[:40]
+        if len(chosen) == 1
+        else plural("{count} object", "{count} objects", len(chosen))
+    )
 
 
 def delete_selected(client: Client) -> None:
@@ -32,14 +37,13 @@ def delete_selected(client: Client) -> None:
 
     session, chosen = client.session, client.need_selection()
     names = names_of(session.scene, chosen)
-    _, loads = without_objects(session.scene, session.library, chosen)
-    session.edit(
-        f"delete {names}", lambda scene: without_objects(scene, session.library, chosen)[0], by=client, selection=()
-    )
+    loads = without_objects(session.scene, session.library, chosen)[1]
+    step = _("delete {names}").format(names=names)
+    session.edit(step, lambda scene: without_objects(scene, session.library, chosen)[0], by=client, selection=())
     if loads:
         on_it = names_of(session.scene, loads)
-        label = "Delete it too" if len(loads) == 1 else "Delete them too"
-        said = f"Deleted {names}; what stood on {'it' if len(chosen) == 1 else 'them'} is lower now: {on_it}"
+        label = _("Delete it too") if len(loads) == 1 else _("Delete them too")
+        said = _("Deleted {names}; lowered what stood on top: {loads}").format(names=names, loads=on_it)
         client.offer(said, label, partial(_delete_loads, client, loads))
 
 
@@ -47,8 +51,8 @@ def _delete_loads(client: Client, loads: tuple[str, ...]) -> None:
     scene = client.session.scene
     gone = tuple(i for load in loads if scene.has_object(load) for i in (load, *descendants(scene, load)))
     if gone:
-        names = names_of(scene, loads)
-        client.session.edit(f"delete {names}", lambda s: edits.remove(s, gone), by=client, selection=())
+        label = _("delete {names}").format(names=names_of(scene, loads))
+        client.session.edit(label, lambda s: edits.remove(s, gone), by=client, selection=())
 
 
 def duplicate_selected(client: Client) -> None:
@@ -60,17 +64,20 @@ def duplicate_selected(client: Client) -> None:
         offset = scene.object(object_id).pose.R_world_object @ np.array([0.0, size[1] + BESIDE_M, 0.0])
         scene, copy = edits.duplicate(scene, object_id, offset_world=(offset[0], offset[1], 0.0))
         copies.append(copy)
-    client.session.commit(f"duplicate {names_of(client.session.scene, chosen)}", scene, by=client, selection=copies)
+    label = _("duplicate {names}").format(names=names_of(client.session.scene, chosen))
+    client.session.commit(label, scene, by=client, selection=copies)
 
 
 def set_locked(client: Client, ids: Iterable[str], locked: bool) -> None:
     """Lock or unlock objects."""
-    _each(client, "lock" if locked else "unlock", ids, lambda s, i: edits.set_locked(s, i, locked))
+    _each(
+        client, _("lock {names}") if locked else _("unlock {names}"), ids, lambda s, i: edits.set_locked(s, i, locked)
+    )
 
 
 def set_hidden(client: Client, ids: Iterable[str], hidden: bool) -> None:
     """Hide or show objects."""
-    _each(client, "hide" if hidden else "show", ids, lambda s, i: edits.set_hidden(s, i, hidden))
+    _each(client, _("hide {names}") if hidden else _("show {names}"), ids, lambda s, i: edits.set_hidden(s, i, hidden))
 
 
 def show_all(client: Client) -> None:
@@ -84,8 +91,9 @@ def show_all(client: Client) -> None:
 def set_colour(client: Client, ids: Iterable[str], colour: tuple[float, float, float] | None) -> None:
     """Paint objects; None restores the shape's own colours."""
     chosen = tuple(ids)
+    label = _("paint {names}") if colour is not None else _("reset the colour of {names}")
     client.session.edit(
-        f"{'paint' if colour is not None else 'reset the colour of'} {names_of(client.session.scene, chosen)}",
+        label.format(names=names_of(client.session.scene, chosen)),
         lambda s: _fold(s, chosen, lambda scene, i: edits.recolour(scene, i, colour)),
         by=client,
         merge_key=f"{NUDGE_MERGE} colour {' '.join(chosen)}",
@@ -96,8 +104,9 @@ def set_finish(client: Client, ids: Iterable[str], finish: Finish | None) -> Non
     """Set the finish of objects; None restores the shape's own."""
     chosen = tuple(ids)
     names = names_of(client.session.scene, chosen)
+    label = _("{finish} finish for {names}") if finish is not None else _("reset the finish of {names}")
     client.session.edit(
-        f"{finish} {names}" if finish is not None else f"reset the finish of {names}",
+        label.format(finish=_(finish or ""), names=names),
         lambda s: _fold(s, chosen, lambda scene, i: edits.refinish(scene, i, finish)),
         by=client,
     )
@@ -107,7 +116,8 @@ def set_open(client: Client, object_id: str, open_share: float) -> None:
     """Open the doors, drawers and lids of an object; quick changes are one step."""
     item = client.session.scene.object(object_id)
     session = client.session
-    label = f"close {item.label}" if open_share == 0.0 else f"open {item.label} by {100 * open_share:.0f} %"
+    label = _("close {label}") if open_share == 0.0 else _("open {label} by {percent} %")
+    label = label.format(label=item.label, percent=round(100 * open_share))
     session.edit(label, lambda s: edits.set_open(s, object_id, open_share), by=client, merge_key=f"open {object_id}")
 
 
@@ -116,9 +126,13 @@ def set_material_source(client: Client, ids: Iterable[str], source: MaterialSour
     chosen = tuple(i for i in ids if client.session.scene.object(i).photo_materials)
     names = names_of(client.session.scene, chosen or tuple(ids))
     if not chosen:
-        raise EditRefused(f"the photo shows no material of {names}; build it from the photo first")
+        said = _("the photo shows no material of {names}; build it from the photo first").format(names=names)
+        raise EditRefused(said)
+    label = (
+        _("materials of {names} from the photo") if source == "photo" else _("materials of {names} from the library")
+    )
     client.session.edit(
-        f"{names} as in the photo" if source == "photo" else f"library materials of {names}",
+        label.format(names=names),
         lambda s: _fold(s, chosen, lambda scene, i: edits.set_material_source(scene, i, source)),
         by=client,
     )
@@ -128,14 +142,14 @@ def rename(client: Client, object_id: str, label: str) -> None:
     """Rename an object."""
     if label.strip() and label != client.session.scene.object(object_id).label:
         client.session.edit(
-            f"rename to {label.strip()[:40]}",
+            _("rename to {label}").format(label=label.strip()[:40]),
             lambda s: edits.rename(s, object_id, label),
             by=client,
             merge_key=f"{NUDGE_MERGE} {object_id} name",
         )
 
 
-def set_base_position(client: Client, object_id: str, base: Float[np.ndarray, "3"]) -> None:
+def set_base_position(client: Client, object_id: str, base: Float[np.ndarray, 3]) -> None:
     """Move the centre of an object's base to a point in the world."""
     item = client.session.scene.object(object_id)
     offset = np.asarray(base, dtype=np.float64) - base_position(item)
@@ -167,11 +181,11 @@ def _turn(client: Client, ids: tuple[str, ...], turn_rad: float) -> None:
             )
         return scene
 
-    label = f"turn {names_of(client.session.scene, ids)}"
+    label = _("turn {names}").format(names=names_of(client.session.scene, ids))
     client.session.edit(label, turned, by=client, merge_key=f"{NUDGE_MERGE} {' '.join(ids)} yaw", by_hand=True)
 
 
-def set_size(client: Client, object_id: str, size_m: Float[np.ndarray, "3"]) -> None:
+def set_size(client: Client, object_id: str, size_m: Float[np.ndarray, 3]) -> None:
     """Resize an object to these extents along its own axes, with its base fixed."""
     session, item = client.session, client.session.scene.object(object_id)
     size = np.asarray(size_m, dtype=np.float64)
@@ -179,9 +193,9 @@ def set_size(client: Client, object_id: str, size_m: Float[np.ndarray, "3"]) -> 
         return
     if (size <= 0).any():
         client.refresh()
-        raise EditRefused(f"{item.label} needs sizes above 0")
+        raise EditRefused(_("{label} needs a size above 0").format(label=item.label))
     session.edit(
-        f"resize {item.label}",
+        _("resize {label}").format(label=item.label),
         lambda s: edits.resize(s, object_id, size),
         by=client,
         merge_key=f"{NUDGE_MERGE} {object_id} size",
@@ -189,7 +203,7 @@ def set_size(client: Client, object_id: str, size_m: Float[np.ndarray, "3"]) -> 
     )
 
 
-def base_position(item: SceneObject) -> Float[np.ndarray, "3"]:
+def base_position(item: SceneObject) -> Float[np.ndarray, 3]:
     """Middle of an object's underside in the world."""
     return item.pose.position - item.pose.R_world_object[:, 2] * item.size_m[2] / 2
 
@@ -216,8 +230,8 @@ def attach(client: Client, object_id: str, parent_id: str, *, anyway: bool = Fal
     why_not = "" if anyway or in_a_circle else why_not_on(scene, object_id, parent_id)
     if why_not:
         client.offer(
-            f"{why_not[:1].upper()}{why_not[1:]}",
-            "Put it there anyway",
+            f"{_(why_not)[:1].upper()}{_(why_not)[1:]}",
+            _("Put it there anyway"),
             partial(_attach_anyway, client, object_id, parent_id),
         )
         return
@@ -230,8 +244,9 @@ def attach(client: Client, object_id: str, parent_id: str, *, anyway: bool = Fal
         adheres_to=support.adheres_to if support is not None and not wall else (),
     )
     label = scene.object(object_id).label
+    step = _("put {label} onto {supporter}").format(label=label, supporter=supporter_name(scene, parent_id))
     session.edit(
-        f"{label} onto {supporter_name(scene, parent_id)}",
+        step,
         lambda s: seated(edits.attach(s, edge), session.library, object_id),
         by=client,
         by_hand=True,
@@ -245,7 +260,7 @@ def _attach_anyway(client: Client, object_id: str, parent_id: str) -> None:
 def detach(client: Client, object_id: str) -> None:
     """Remove the support of an object."""
     label = client.session.scene.object(object_id).label
-    client.session.edit(f"support of {label}", lambda s: edits.detach(s, object_id), by=client)
+    client.session.edit(_("detach {label}").format(label=label), lambda s: edits.detach(s, object_id), by=client)
 
 
 def set_relation(client: Client, object_id: str, mounted: bool) -> None:
@@ -255,7 +270,9 @@ def set_relation(client: Client, object_id: str, mounted: bool) -> None:
         raise EditRefused("it has no support; choose one first")
     changed = replace(edge, relation="mounted on" if mounted else "placed on", child_face=None, parent_surface=None)
     label = client.session.scene.object(object_id).label
-    client.session.edit(f"support of {label}", lambda s: edits.attach(s, changed), by=client)
+    client.session.edit(
+        _("change the support of {label}").format(label=label), lambda s: edits.attach(s, changed), by=client
+    )
 
 
 def set_adherence(client: Client, object_id: str, wall_id: str | None) -> None:
@@ -273,8 +290,8 @@ def set_adherence(client: Client, object_id: str, wall_id: str | None) -> None:
         attached = edits.attach(s, changed)
         return attached if wall_id is None else against_wall(attached, object_id, attached.plane(wall_id))
 
-    said = f"{label} against the wall" if wall_id else f"{label} off the wall"
-    client.session.edit(said, apply, by=client, by_hand=True)
+    said = _("move {label} against the wall") if wall_id else _("take {label} off the wall")
+    client.session.edit(said.format(label=label), apply, by=client, by_hand=True)
 
 
 def set_distance(client: Client, object_id: str, side: str, distance_m: float) -> None:
@@ -291,7 +308,7 @@ def set_distance(client: Client, object_id: str, side: str, distance_m: float) -
     if known is None:
         raise EditRefused("a distance is to the front, back, left or right")
     client.session.edit(
-        f"move {item.label}",
+        _("move {label}").format(label=item.label),
         lambda s: moved_to_clearance(s, object_id, known, distance_m),
         by=client,
         by_hand=True,
@@ -305,12 +322,12 @@ def supporter_name(scene: Scene, any_id: str) -> str:
     plane = scene.plane(any_id)
     same = scene.architecture.by_role(plane.role)
     number = f" {[p.id for p in same].index(plane.id) + 1}" if len(same) > 1 else ""
-    return plane.role + number
+    return _(plane.role) + number
 
 
 def _move(client: Client, item: SceneObject, pose: Pose, field: str) -> None:
     client.session.edit(
-        f"move {item.label}",
+        _("move {label}").format(label=item.label),
         lambda s: edits.move(s, item.id, pose),
         by=client,
         merge_key=f"{NUDGE_MERGE} {item.id} {field}",
@@ -318,10 +335,10 @@ def _move(client: Client, item: SceneObject, pose: Pose, field: str) -> None:
     )
 
 
-def _each(client: Client, verb: str, ids: Iterable[str], change: Callable[[Scene, str], Scene]) -> None:
+def _each(client: Client, label: str, ids: Iterable[str], change: Callable[[Scene, str], Scene]) -> None:
     chosen = tuple(ids)
-    names = names_of(client.session.scene, chosen)
-    client.session.edit(f"{verb} {names}", lambda s: _fold(s, chosen, change), by=client)
+    label = label.format(names=names_of(client.session.scene, chosen))
+    client.session.edit(label, lambda s: _fold(s, chosen, change), by=client)
 
 
 def _fold(scene: Scene, ids: Iterable[str], change: Callable[[Scene, str], Scene]) -> Scene:

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from diorama_app.session.client import Client
+from diorama_app.strings import _
 from diorama_core.errors import EditRefused
 from diorama_core.progress import Progress
 from diorama_core.scene.types import Scene
@@ -56,7 +57,7 @@ class WordEdits:
                 return
             client.post(lambda: self._show(proposed, "", scene))
 
-        session.jobs.start("words", "Understanding your words", work)
+        session.jobs.start("words", _("Understanding your words"), work)
 
     def apply(self) -> None:
         """Make the proposed edits, as one undo step."""
@@ -68,7 +69,7 @@ class WordEdits:
             raise EditRefused("the scene has changed since; look at the edits again")
         self.cancel()
         label = proposed.command if len(proposed.command) <= LABEL_CHARS else f"{proposed.command[:LABEL_CHARS]}…"
-        session.edit(label, lambda _: proposed.scene, by=self.client, selection=proposed.changed, by_hand=True)
+        session.edit(label, lambda scene: proposed.scene, by=self.client, selection=proposed.changed, by_hand=True)
 
     def cancel(self) -> None:
         """Drop the proposed edits."""

@@ -13,6 +13,7 @@ from diorama_app.commands.insert import start_placing
 from diorama_app.commands.swap import candidate_for, swapped
 from diorama_app.session.client import Client
 from diorama_app.session.session import EditorSession
+from diorama_app.strings import N_, _
 from diorama_core.errors import EditRefused, InputError
 from diorama_core.library.user_library import UserLibrary
 from diorama_core.progress import Progress
@@ -34,12 +35,12 @@ def import_model(client: Client, name: str, content: bytes) -> None:
         shape_id = _taken_in(user_library, file_name, content, progress)
 
         def show() -> None:
-            client.toast(f"{file_name} is in the library", False)
+            client.toast(_("{file} is in the library.").format(file=file_name), False)
             start_placing(client, shape_id)
 
         client.post(show)
 
-    session.jobs.start("import", f"Reading {file_name}", work)
+    session.jobs.start("import", _("Reading {file}…").format(file=file_name), work)
 
 
 def _taken_in(user_library: UserLibrary, name: str, content: bytes, progress: Progress) -> str:
@@ -52,10 +53,8 @@ def _taken_in(user_library: UserLibrary, name: str, content: bytes, progress: Pr
         (Path(folder) / name).write_bytes(content)
         paths, skipped = model_files(Path(folder))
         if not paths:
-            reason = (
-                skipped[0].reason if skipped else "this file is not a readable 3D model; upload a GLB, OBJ, PLY or STL"
-            )
-            raise InputError(f"{name}: {reason}")
+            reason = skipped[0].reason if skipped else N_("not a readable 3D model; upload a GLB, OBJ, PLY or STL")
+            raise InputError(f"{name}: {_(reason)}")
         # By its content: another file of the same name must not take the place of one that scenes hold.
         content_id = f"{slug(Path(name).stem)}-{hashlib.sha256(content).hexdigest()[:8]}"
         found = sources(Path(folder), paths, Given(), {}, {paths[0]: content_id})
@@ -63,7 +62,7 @@ def _taken_in(user_library: UserLibrary, name: str, content: bytes, progress: Pr
         new = [source for source in found if source.id not in have]
         report = add_models(new, user_library.own(), workers(None, 1), progress=progress)
         if report.failed:
-            raise InputError(f"{name}: {report.failed[0].reason}")
+            raise InputError(f"{name}: {_(report.failed[0].reason)}")
         _note_names(user_library, found, Path(name).stem)
         return found[0].id
 
@@ -92,14 +91,14 @@ class Fix:
 
 
 FIXES: dict[str, Fix] = {
-    "left": Fix("Front is left", "Make the left side the front", front="+y"),
-    "back": Fix("Front is back", "Make the back the front", front="-x"),
-    "tip": Fix("Rotate forward 90°", "Turns its back to the top", up="-x", front="+z"),
-    "roll": Fix("Rotate sideways 90°", "Turns its left side to the top", up="+y", front="+x"),
-    "flip": Fix("Upside down", "Turn the bottom to the top", up="-z", front="+x"),
-    "metres": Fix("x 100", "The file is in metres, not centimetres", scale=100.0),
-    "centimetres": Fix("/ 100", "The file is in centimetres, not metres", scale=0.01),
-    "inches": Fix("x 2.54", "The file is in inches, not centimetres", scale=2.54),
+    "left": Fix(N_("Front is left"), N_("Make the left side the front"), front="+y"),
+    "back": Fix(N_("Front is back"), N_("Make the back the front"), front="-x"),
+    "tip": Fix(N_("Rotate forward 90°"), N_("Turn the back to the top"), up="-x", front="+z"),
+    "roll": Fix(N_("Rotate sideways 90°"), N_("Turn the left side to the top"), up="+y", front="+x"),
+    "flip": Fix(N_("Upside down"), N_("Turn the bottom to the top"), up="-z", front="+x"),
+    "metres": Fix("× 100", N_("The file is in metres, not centimetres"), scale=100.0),
+    "centimetres": Fix("÷ 100", N_("The file is in centimetres, not metres"), scale=0.01),
+    "inches": Fix("× 2.54", N_("The file is in inches, not centimetres"), scale=2.54),
 }
 """The corrections that a person can choose from."""
 
@@ -138,13 +137,13 @@ def correct_model(client: Client, object_id: str, fix: Fix | None = None, *, cat
         found.record, id=f"{stem}~{found.record.content_hash[:6]}-{found.record.category.replace(' ', '-')}"
     )
     own.add(replace(found, record=record))
-    what = change.name.lower() if fix is not None else record.category
+    what = _(change.name).lower() if fix is not None else _(record.category)
 
     def take(scene: Scene) -> Scene:
         return swapped(scene, item, candidate_for(session.library, item, record.id, "catalogue"), keep_colour=True)
 
     try:
-        session.edit(f"correct the model ({what})", take, by=client)
+        session.edit(_("correct the model ({what})").format(what=what), take, by=client)
     except EditRefused:
         own.remove([record.id])
         raise

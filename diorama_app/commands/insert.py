@@ -8,6 +8,7 @@ import numpy as np
 from jaxtyping import Float
 
 from diorama_app.session.client import Client, Placing
+from diorama_app.strings import _
 from diorama_core.arrangement.surfaces import RestingSurface
 from diorama_core.editing.clearances import clear_of_walls
 from diorama_core.editing.opening_insertion import with_opening
@@ -62,7 +63,7 @@ def insert_shape(client: Client, shape_id: str) -> None:
     if parent is not None:
         on_it = _on(client, shape, new_id, parent)
         if on_it is not None:
-            session.edit(f"insert {shape.category}", lambda _: on_it, by=client, selection=(new_id,))
+            session.edit(_inserting(shape.category), lambda scene: on_it, by=client, selection=(new_id,))
             _used(client, shape_id)
             return
     floor = scene.architecture.floor
@@ -71,7 +72,7 @@ def insert_shape(client: Client, shape_id: str) -> None:
     pose = Pose.upright((x, y, height + shape.size_m[2] / 2), facing(scene, x, y))
     item = SceneObject(new_id, shape.category, shape.category, shape.id, shape.size_m, pose)
     edge = None if floor is None else Support(new_id, floor.id)
-    session.edit(f"insert {shape.category}", lambda s: edits.insert(s, item, edge), by=client, selection=(new_id,))
+    session.edit(_inserting(shape.category), lambda s: edits.insert(s, item, edge), by=client, selection=(new_id,))
     _used(client, shape_id)
 
 
@@ -103,12 +104,12 @@ def _hang_in_view(client: Client, shape_id: str) -> bool:
         return False
     new_id = edits.fresh_id(scene, shape.category)
     item, edge = insertion(scene, shape, new_id, hit, 0.0)
-    session.edit(f"insert {shape.category}", lambda s: edits.insert(s, item, edge), by=client, selection=(new_id,))
+    session.edit(_inserting(shape.category), lambda s: edits.insert(s, item, edge), by=client, selection=(new_id,))
     _used(client, shape_id)
     return True
 
 
-def put_opening(client: Client, category: str, wall_id: str, at: Float[np.ndarray, "2"]) -> None:
+def put_opening(client: Client, category: str, wall_id: str, at: Float[np.ndarray, 2]) -> None:
     """Put the most usual door or window into a wall, where it is nearest to a point of the floor (world x and y).
 
     Args:
@@ -122,7 +123,7 @@ def put_opening(client: Client, category: str, wall_id: str, at: Float[np.ndarra
     """
     session = client.session
     after, new_id = with_opening(session.scene, session.offered, category, wall_id, at)
-    session.edit(f"insert {category}", lambda _: after, by=client, selection=(new_id,))
+    session.edit(_inserting(category), lambda scene: after, by=client, selection=(new_id,))
 
 
 def start_placing(client: Client, shape_id: str) -> None:
@@ -139,7 +140,7 @@ def stop_placing(client: Client) -> None:
         client.refresh()
 
 
-def place_at(client: Client, shape_id: str, origin: Float[np.ndarray, "3"], direction: Float[np.ndarray, "3"]) -> None:
+def place_at(client: Client, shape_id: str, origin: Float[np.ndarray, 3], direction: Float[np.ndarray, 3]) -> None:
     """Put a shape where a ray from the eye meets a surface it can stand on or hang at.
 
     Args:
@@ -165,7 +166,7 @@ def place_at(client: Client, shape_id: str, origin: Float[np.ndarray, "3"], dire
     item = replace(item, pose=clear_of_walls(scene, item), by_hand=True)
     known = scene.has_object(edge.parent) or scene.has_plane(edge.parent)
     session.edit(
-        f"insert {shape.category}",
+        _inserting(shape.category),
         lambda s: edits.insert(s, item, edge if known else None),
         by=client,
         selection=(new_id,),
@@ -181,3 +182,7 @@ def _on_ground(origin: np.ndarray, direction: np.ndarray) -> Hit | None:
         RestingSurface.of(outline, np.array([0.0, 0.0, 1.0]), float("inf"), of_plane=True), "", of_object=False
     )
     return next(iter(hits_along(origin, direction, [ground])), None)
+
+
+def _inserting(category: str) -> str:
+    return _("insert {kind}").format(kind=_(category))

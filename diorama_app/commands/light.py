@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 from diorama_app.session.client import Client
+from diorama_app.strings import _
 from diorama_core.editing.sunlight import first_daylight, set_light, switch_lamp, with_sun_from
 from diorama_core.errors import EditRefused
 from diorama_core.render.lamps import lamps_of
@@ -19,7 +20,7 @@ def clock(hour: float) -> str:
 
 def light_as_photo(client: Client) -> None:
     """Take back everything that was set: the light of the photo."""
-    _set(client, "light as in the photo", PHOTO_LIGHT)
+    _set(client, _("light as in the photo"), PHOTO_LIGHT)
 
 
 def use_daylight(client: Client) -> None:
@@ -27,26 +28,26 @@ def use_daylight(client: Client) -> None:
     scene = client.session.scene
     if scene.light_settings.hour is None:
         settings = first_daylight(scene)
-        _set(client, f"daylight at {clock(settings.hour or 0.0)}", settings)
+        _set(client, _("daylight at {time}").format(time=clock(settings.hour or 0.0)), settings)
 
 
 def set_hour(client: Client, hour: float) -> None:
     """Set the time of day; quick changes are one step."""
     scene = client.session.scene
     settings = scene.light_settings if scene.light_settings.hour is not None else first_daylight(scene)
-    _set(client, f"time of day {clock(hour)}", replace(settings, hour=hour), merge="hour")
+    _set(client, _("time of day {time}").format(time=clock(hour)), replace(settings, hour=hour), merge="hour")
 
 
 def set_sun_from(client: Client, azimuth_rad: float) -> None:
     """Turn the compass so that the sun shines from a direction; quick changes are one step."""
     settings = with_sun_from(client.session.scene.light_settings, azimuth_rad)
-    _set(client, "direction of the sun", settings, merge="sun")
+    _set(client, _("direction of the sun"), settings, merge="sun")
 
 
 def set_exposure(client: Client, exposure_ev: float) -> None:
     """Make the view and pictures brighter or darker, in stops."""
     settings = replace(client.session.scene.light_settings, exposure_ev=exposure_ev)
-    _set(client, f"exposure {exposure_ev:+.1f}", settings, merge="exposure")
+    _set(client, _("exposure {ev:+.1f}").format(ev=exposure_ev), settings, merge="exposure")
 
 
 def switch(client: Client, lamp_id: str) -> None:
@@ -55,15 +56,16 @@ def switch(client: Client, lamp_id: str) -> None:
     if not scene.has_object(lamp_id):
         raise EditRefused("this lamp no longer exists")
     on = lamp_id not in (scene.light_settings.lamps_on or ())
-    label = f"{scene.object(lamp_id).label} {'on' if on else 'off'}"
-    _set(client, label, switch_lamp(scene, lamp_id, on=on))
+    label = _("switch {label} on") if on else _("switch {label} off")
+    _set(client, label.format(label=scene.object(lamp_id).label), switch_lamp(scene, lamp_id, on=on))
 
 
 def switch_all(client: Client, *, on: bool) -> None:
     """Switch all lamps on or off."""
     scene = client.session.scene
     lamps = tuple(o.id for o in lamps_of(scene)) if on else ()
-    _set(client, f"all lamps {'on' if on else 'off'}", replace(scene.light_settings, lamps_on=lamps))
+    label = _("switch all lamps on") if on else _("switch all lamps off")
+    _set(client, label, replace(scene.light_settings, lamps_on=lamps))
 
 
 def _set(client: Client, label: str, settings: LightSettings, merge: str = "") -> None:

@@ -8,6 +8,7 @@ from jaxtyping import Float
 from diorama_app.reconstruction.camera_correction import rescale_room
 from diorama_app.session.client import Client, Measuring
 from diorama_app.session.units import format_length
+from diorama_app.strings import _
 from diorama_core.errors import EditRefused
 from diorama_core.geometry.casting import cast_box, cast_planes
 from diorama_core.geometry.vectors import unit
@@ -20,8 +21,8 @@ HIDDEN_M = 0.1
 
 
 def point_under(
-    scene: Scene, origin: Float[np.ndarray, "3"], direction: Float[np.ndarray, "3"]
-) -> Float[np.ndarray, "3"] | None:
+    scene: Scene, origin: Float[np.ndarray, 3], direction: Float[np.ndarray, 3]
+) -> Float[np.ndarray, 3] | None:
     """The corner that a ray nearly meets, or else the nearest point of the room or of an object's box on it.
 
     Planes seen from behind are passed through.
@@ -33,7 +34,7 @@ def point_under(
     for item in scene.objects:
         if not item.hidden:
             pose = item.pose
-            distance, _ = cast_box(origin, ahead[None], pose.R_world_object, pose.position, item.size_m)
+            distance = cast_box(origin, ahead[None], pose.R_world_object, pose.position, item.size_m)[0]
             distances.append(float(distance[0]))
             corners.append(item.corners_world)
     nearest = min(distances, default=np.inf)
@@ -44,8 +45,8 @@ def point_under(
 
 
 def _corner_near(
-    origin: Float[np.ndarray, "3"], ahead: Float[np.ndarray, "3"], corners: Float[np.ndarray, "n 3"], nearest_m: float
-) -> Float[np.ndarray, "3"] | None:
+    origin: Float[np.ndarray, 3], ahead: Float[np.ndarray, 3], corners: Float[np.ndarray, "n 3"], nearest_m: float
+) -> Float[np.ndarray, 3] | None:
     """The corner that a ray (of unit length) passes closest by, unless what the ray meets hides it."""
     offsets = corners - origin
     away = np.linalg.norm(offsets, axis=1)
@@ -94,8 +95,8 @@ def rescale_measured(client: Client, length_true_m: float) -> None:
     now = measured_m(client.doing)
     if now is None:
         raise EditRefused("click two points in the view first, then type the distance between them")
-    shown = format_length(length_true_m, client.preferences.unit)
-    rescale_room(client, f"rescale: {format_length(now, client.preferences.unit)} is {shown}", now, length_true_m)
+    measured, shown = (format_length(length, client.preferences.unit) for length in (now, length_true_m))
+    rescale_room(client, _("rescale {old} to {new}").format(old=measured, new=shown), now, length_true_m)
     stop_measuring(client)
     client.session.view.show_whole_room()
     client.session.refresh()

@@ -13,6 +13,7 @@ from diorama_app.session.client import Client
 from diorama_app.session.layout_run import Costs, LayoutRun, Samples
 from diorama_app.session.problem_checker import problems
 from diorama_app.session.session import EditorSession
+from diorama_app.strings import _
 from diorama_core.artefacts import LayoutReport
 from diorama_core.editing.collisions import Collisions
 from diorama_core.editing.hand_placed import left_to_people
@@ -99,7 +100,7 @@ def optimise(
         asker = None if by is None else by.id
         session.post(asker, lambda: _arranged(session, final, report, run, by=by, author=author))
 
-    session.jobs.start("optimise", "Arranging the layout", work)
+    session.jobs.start("optimise", _("Arranging the layout"), work)
     session.layout_run = run
     return run
 
@@ -168,7 +169,7 @@ def put_back(client: Client) -> None:
         session.undo(client)
     else:
         there = {o.id: o.pose for o in run.start.objects if session.scene.has_object(o.id)}
-        session.edit("revert the layout", lambda s: edits.place(s, there), by=client)
+        session.edit(_("revert the layout"), lambda s: edits.place(s, there), by=client)
     session.layout_run = None
     session.refresh_panels()
 
@@ -183,7 +184,7 @@ def put_back_worse(client: Client) -> None:
         for one in (object_id, *descendants(run.start, object_id)):
             if session.scene.has_object(one) and run.start.has_object(one):
                 there[one] = run.start.object(one).pose
-    session.edit("put back what got worse", lambda s: edits.place(s, there), by=client)
+    session.edit(_("put back what got worse"), lambda s: edits.place(s, there), by=client)
     run.worse = {}
     if run.report is not None:
         run.report = replace(run.report, after=layout_figures(run.start, session.scene, session.library))
@@ -204,7 +205,7 @@ def _glide(session: EditorSession, start: Scene, final: Scene, progress: Progres
 def _between(a: Pose, b: Pose, share: float) -> Pose:
     turn = rotation_vector(b.R_world_object @ a.R_world_object.T)
     R = rotation_from_vector(share * turn) @ a.R_world_object
-    u, _, vt = np.linalg.svd(R)
+    u, _singular, vt = np.linalg.svd(R)
     return Pose(u @ vt, a.position + share * (b.position - a.position), a.scale + share * (b.scale - a.scale))
 
 
@@ -229,7 +230,7 @@ def _arranged(
     else:
         scene = edits.set_metrics(edits.place(current, untouched(current, run.start, final)), report.after)
     run.report, run.final = report, scene
-    label = "arrange the layout" if run.recipe in PUBLISHED else "tidy up"
+    label = _("arrange the layout") if run.recipe in PUBLISHED else _("tidy up")
     session.commit(label, scene, by=by, author=author)
 
 

@@ -14,6 +14,7 @@ from jaxtyping import Float
 
 from diorama_app.commands.optimise import untouched
 from diorama_app.session.client import Client, Playing
+from diorama_app.strings import _
 from diorama_core.editing.fallen import held_again
 from diorama_core.errors import EditRefused
 from diorama_core.geometry.rotations import rotation_vector
@@ -38,7 +39,7 @@ class Game:
     """What goes on between the page and the thread that simulates."""
 
     start: Scene
-    pushes: SimpleQueue[tuple[str, Float[np.ndarray, "3"]]] = field(default_factory=SimpleQueue)
+    pushes: SimpleQueue[tuple[str, Float[np.ndarray, 3]]] = field(default_factory=SimpleQueue)
     ended: threading.Event = field(default_factory=threading.Event)
 
 
@@ -73,7 +74,7 @@ def play(client: Client) -> None:
             client.post(lambda: _stop(client))
         client.post(lambda: _keep(client, game.start, final))
 
-    session.jobs.start("play", "Playing", work)
+    session.jobs.start("play", _("Playing"), work)
     client.doing = Playing(lambda object_id, direction: game.pushes.put((object_id, direction)), game.ended.set)
     client.refresh()
 
@@ -115,7 +116,7 @@ def _keep(client: Client, start: Scene, final: Scene) -> None:
     there = untouched(session.scene, start, final)
     moved = {i: p for i, p in there.items() if not _stayed(start.object(i).pose, p)}
     if not moved:
-        client.notice("Nothing moved.", "good")
+        client.notice(_("Nothing moved."), "good")
         session.refresh()
         return
     played = edits.place(session.scene, moved)

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import viser
 
 from diorama_app.session.client import Client
+from diorama_app.strings import _
 
 Run = Callable[[Client], object]
 
@@ -47,6 +48,7 @@ class CommandTable:
     """The commands by id, registered once with the page."""
 
     def __init__(self, commands: tuple[Command, ...]) -> None:
+        commands = tuple(replace(c, label=_(c.label), hint=_(c.hint)) for c in commands)
         self.all = commands
         self._by_id = {c.id: c for c in commands}
 

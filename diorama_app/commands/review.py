@@ -6,12 +6,19 @@ from diorama_app.commands.glide import glide
 from diorama_app.reconstruction.camera_correction import rescaled_inputs
 from diorama_app.session.client import Client
 from diorama_app.session.session import EditorSession
+from diorama_app.strings import N_, _
 from diorama_core.artefacts import Inputs
 from diorama_core.review.answers import answered, lengths
 from diorama_core.review.questions import NO
 from diorama_core.scene.types import Scene
 
-STEPS = {"presence": "confirm", "kind": "name", "front": "turn", "supporter": "place"}
+STEPS = {
+    "presence": N_("confirm {label}"),
+    "kind": N_("name {label}"),
+    "front": N_("turn {label}"),
+    "supporter": N_("place {label}"),
+    "missing": N_("insert what was missing"),
+}
 """What undo steps of answers are called."""
 
 
@@ -28,17 +35,15 @@ def answer(session: EditorSession, question_id: str, value: str, *, by: Client |
     Raises:
         EditRefused: it is no answer, or the object is gone or locked.
     """
-    subject, _, object_id = question_id.partition(":")
-    step = "delete" if value == NO else STEPS.get(subject, subject)
-    label = f"{step} {session.scene.object(object_id).label}" if session.scene.has_object(object_id) else step
+    subject, object_id = question_id.partition(":")[::2]
+    name = session.scene.object(object_id).label if session.scene.has_object(object_id) else ""
+    label = _(N_("delete {label}") if value == NO else STEPS.get(subject, subject)).format(label=name).strip()
 
     said: Inputs | None = None
     if subject == "scale" and session.scene.has_object(object_id):
         now_m, true_m = lengths(session.scene, object_id, value)
-        label, said = (
-            f"{session.scene.object(object_id).label} {true_m:g} m high",
-            rescaled_inputs(session, true_m / now_m),
-        )
+        label = _("{label} is {metres:g} m high").format(label=name, metres=true_m)
+        said = rescaled_inputs(session, true_m / now_m)
 
     def change(scene: Scene) -> Scene:
         return answered(scene, session.library, question_id, value)

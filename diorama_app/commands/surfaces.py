@@ -7,13 +7,14 @@ from jaxtyping import Float
 
 from diorama_app.commands.edit import supporter_name
 from diorama_app.session.client import Client
+from diorama_app.strings import _, plural
 from diorama_core.errors import EditRefused
 from diorama_core.geometry.casting import cast_planes
 from diorama_core.scene.room_edits import set_surface_finish
 from diorama_core.scene.types import Scene, SurfaceFinish
 
 
-def surface_under(scene: Scene, origin: Float[np.ndarray, "3"], direction: Float[np.ndarray, "3"]) -> str | None:
+def surface_under(scene: Scene, origin: Float[np.ndarray, 3], direction: Float[np.ndarray, 3]) -> str | None:
     """Id of the nearest plane on a ray that faces the eye; the others are seen through."""
     facing = tuple(p for p in scene.architecture.planes if float(p.normal @ direction) < 0)
     if not facing:
@@ -47,8 +48,13 @@ def finish_surfaces(client: Client, finish: SurfaceFinish | None, *, all_walls: 
     """
     session = client.session
     chosen = chosen_surfaces(client, all_walls=all_walls)
-    names = supporter_name(session.scene, chosen[0]) if len(chosen) == 1 else f"{len(chosen)} walls"
-    label = f"{names} as before" if finish is None else f"{names}: {finish.pattern}"
+    names = (
+        supporter_name(session.scene, chosen[0])
+        if len(chosen) == 1
+        else plural("{count} wall", "{count} walls", len(chosen))
+    )
+    label = _("remove the finish of {names}") if finish is None else _("{pattern} on {names}")
+    label = label.format(names=names, pattern="" if finish is None else _(finish.pattern))
     session.edit(
         label,
         lambda scene: set_surface_finish(scene, chosen, finish),

@@ -9,6 +9,7 @@ import numpy as np
 from diorama_app.commands.edit import names_of
 from diorama_app.session.client import Client
 from diorama_app.session.preferences import SizeMode
+from diorama_app.strings import _
 from diorama_core.errors import EditRefused
 from diorama_core.library.record import Shape, ShapeLibrary
 from diorama_core.scene import edits
@@ -76,7 +77,7 @@ def swap(client: Client, object_id: str, shape_id: str) -> None:
             scene = swapped(scene, one, candidate, keep_colour=preferences.keep_colour)
         return scene
 
-    session.edit(f"swap {names_of(session.scene, [t.id for t in targets])}", take, by=client)
+    session.edit(_("swap {names}").format(names=names_of(session.scene, [t.id for t in targets])), take, by=client)
 
 
 def preview_swap(client: Client, object_id: str, shape_id: str) -> None:
@@ -103,7 +104,7 @@ def next_alternative(client: Client, step: int) -> None:
     item = client.session.scene.object(client.need_selected())
     shapes = list(dict.fromkeys(c.shape_id for c in item.candidates))
     if len(shapes) < 2:
-        raise EditRefused(f"{item.label} has no alternatives; search the library for others")
+        raise EditRefused(_("{label} has no alternatives; search the library for others").format(label=item.label))
     at = shapes.index(item.shape_id) if item.shape_id in shapes else -1
     swap(client, item.id, shapes[(at + step) % len(shapes)])
 

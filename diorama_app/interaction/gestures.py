@@ -20,6 +20,7 @@ from diorama_app.interaction.resize_handles import SizeHandles
 from diorama_app.session.client import Client, Measuring, Placing, Playing
 from diorama_app.session.preferences import GizmoMode
 from diorama_app.session.units import format_length
+from diorama_app.strings import _
 from diorama_core.editing.clearances import clearances
 from diorama_core.editing.collisions import Collisions
 from diorama_core.editing.dragging import Slide, snapped_pose
@@ -173,7 +174,7 @@ class Gestures:
                 scene = edits.attach(scene, after)
             return scene
 
-        session.edit(f"move {label}", apply, by=client, by_hand=True)
+        session.edit(_("move {label}").format(label=label), apply, by=client, by_hand=True)
 
     def _show(self, start: Scene, poses: Mapping[str, Pose], scene: Scene) -> None:
         self._session.viewport.preview(poses)
@@ -295,7 +296,7 @@ class Gestures:
             self._session.refresh()
             return
         turned = np.allclose(pose.position, start.pose.position, atol=1e-4)
-        label = f"{'turn' if turned else 'move'} {start.label}"
+        label = (_("turn {names}") if turned else _("move {label}")).format(names=start.label, label=start.label)
         self._session.edit(label, lambda s: edits.move(s, drag.object_id, pose), by=self._client, by_hand=True)
 
     def cancel(self) -> bool:

@@ -13,7 +13,7 @@ def objects_in(
     low: tuple[float, float],
     high: tuple[float, float],
     R_world_camera: Float[np.ndarray, "3 3"],
-    position: Float[np.ndarray, "3"],
+    position: Float[np.ndarray, 3],
     fov_rad: float,
     aspect: float,
 ) -> tuple[str, ...]:

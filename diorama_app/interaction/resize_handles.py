@@ -11,6 +11,7 @@ import viser
 from jaxtyping import Float
 
 from diorama_app.session.client import Client
+from diorama_app.strings import _
 from diorama_core.editing.stretching import HANDLES, Handle, changed_poses, handle_place, pulled_m, stretched
 from diorama_core.geometry.rotations import quaternion_wxyz
 from diorama_core.scene import edits
@@ -30,7 +31,7 @@ class Pull:
 
     object_id: str
     handle: Handle
-    grabbed: Float[np.ndarray, "3"]
+    grabbed: Float[np.ndarray, 3]
     """The grabbed point, world."""
     start: Scene
     now: Scene
@@ -150,4 +151,4 @@ class SizeHandles:
             # Onto the scene as it is now: somebody else may have edited it meanwhile.
             return edits.place(scene, {i: p for i, p in poses.items() if scene.has_object(i)})
 
-        session.edit(f"resize {label}", apply, by=self._client, by_hand=True)
+        session.edit(_("resize {label}").format(label=label), apply, by=self._client, by_hand=True)

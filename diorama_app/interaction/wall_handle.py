@@ -11,6 +11,7 @@ import viser
 from diorama_app.commands.edit import supporter_name
 from diorama_app.session.client import Client
 from diorama_app.session.units import format_length
+from diorama_app.strings import _
 from diorama_core.editing.clearances import room_before
 from diorama_core.editing.dragging import GRID_M
 from diorama_core.errors import EditRefused
@@ -98,7 +99,8 @@ class WallHandle:
             return
         shown = format_length(outward, client.preferences.unit)
         name = supporter_name(session.scene, pull.plane.id)
-        session.edit(f"move {name} by {shown}", lambda s: move_plane(s, pull.plane.id, outward), by=client)
+        label = _("move {name} by {length}").format(name=name, length=shown)
+        session.edit(label, lambda s: move_plane(s, pull.plane.id, outward), by=client)
 
     def _preview(self, pull: _Pull, outward_m: float) -> None:
         """The outline where the plane would be, and the length across the room."""

@@ -10,12 +10,13 @@ import viser
 from diorama_app.projects import manage
 from diorama_app.projects.pictures import project_picture
 from diorama_app.session.client import Client
+from diorama_app.strings import N_, _
 from diorama_app.web.html import Action, LiveHtml, button, text
 from diorama_core.errors import EditRefused
 from diorama_core.project.lock import ProjectLock
 from diorama_core.project.storage import Project
 
-SORTS = {"changed": "Last changed first", "oldest": "Oldest first", "name": "By name"}
+SORTS = {"changed": N_("Last changed first"), "oldest": N_("Oldest first"), "name": N_("By name")}
 _FILTER = (
     "const w=this.value.trim().toLowerCase();"
     "this.closest('.page').querySelectorAll('[data-name]').forEach(t=>t.hidden=!t.dataset.name.includes(w))"
@@ -62,17 +63,18 @@ class AllProjects:
             folders.sort(key=lambda folder: names[folder].casefold())
         tiles = "".join(self._tile(folder, names[folder]) for folder in folders)
         options = "".join(
-            f'<option value="{key}" {"selected" if key == self._sort else ""}>{words}</option>'
+            f'<option value="{key}" {"selected" if key == self._sort else ""}>{text(_(words))}</option>'
             for key, words in SORTS.items()
         )
         bin_of = "".join(_binned(place) for place in manage.in_bin(self._client.session.projects_dir))
-        bin_of = f"<details><summary>Bin</summary>{bin_of}</details>" if bin_of else ""
+        bin_of = f"<details><summary>{text(_('Bin'))}</summary>{bin_of}</details>" if bin_of else ""
+        title = text(_("All projects"))
         return (
-            '<div class="page" role="dialog" aria-modal="true" aria-label="All projects"><header><h1>All projects</h1>'
-            + button("✕", "close", title="Close")
+            f'<div class="page" role="dialog" aria-modal="true" aria-label="{title}"><header><h1>{title}</h1>'
+            + button("✕", "close", title=_("Close"))
             + f'</header><div class="search"><input type="search" data-change="search" value="{text(self._words)}" '
-            f'placeholder="Search" aria-label="Search projects" oninput="{_FILTER}">'
-            f'<select data-change="sort" aria-label="Order">{options}</select></div>'
+            f'placeholder="{text(_("Search"))}" aria-label="{text(_("Search projects"))}" oninput="{_FILTER}">'
+            f'<select data-change="sort" aria-label="{text(_("Order"))}">{options}</select></div>'
             f'<div class="grid">{tiles}</div>{bin_of}</div>'
         )
 
@@ -80,16 +82,16 @@ class AllProjects:
         address, session = manage.address_of(folder), self._client.session
         current, written = _is_open(session.project, folder), manage.touched(folder)
         picture = session.thumbnails.of(f"{folder} {written}", lambda: project_picture(folder))
-        when = time.strftime("%d %b %Y, %H:%M", time.localtime(written))
+        when = time.strftime("%Y-%m-%d, %H:%M", time.localtime(written))
         hidden = "" if self._words.casefold() in name.casefold() else "hidden"
-        label = text(f"Open {name}")
+        label, named = text(_("Open {name}").format(name=name)), text(_("Name of {name}").format(name=name))
         return (
             f'<div class="tile {"on" if current else ""}" data-name="{text(name.lower())}" {hidden}>'
             f'<button type="button" data-do="open" data-arg="{text(address)}" title="{label}" aria-label="{label}">'
             f'{picture}</button><input data-change="rename" data-arg="{text(address)}" value="{text(name)}" '
-            f'aria-label="Name of {text(name)}" title="Type to rename"><small>{when}</small><div class="bar">'
-            + button("Duplicate", "copy", address)
-            + button("Delete", "bin", address, title="Move it to the bin", disabled=current)
+            f'aria-label="{named}" title="{text(_("Type to rename"))}"><small>{when}</small><div class="bar">'
+            + button(_("Duplicate"), "copy", address)
+            + button(_("Delete"), "bin", address, title=_("Move it to the bin"), disabled=current)
             + "</div></div>"
         )
 
@@ -120,7 +122,7 @@ class AllProjects:
         if place is None:
             raise EditRefused("that project no longer exists")
         folder = manage.out_of_bin(place, session.projects_dir)
-        self._client.toast(f"{manage.name_of(folder)} is restored", False)
+        self._client.toast(_("{name} is restored.").format(name=manage.name_of(folder)), False)
 
     def _rename(self, folder: Path, name: str) -> None:
         session = self._client.session
@@ -134,17 +136,19 @@ class AllProjects:
         client, session = self._client, self._client.session
         if do == "copy":
             session.autosave.flush()
-            client.toast(f"Copied as {manage.duplicate_project(folder, session.projects_dir).name}", False)
+            copy = manage.duplicate_project(folder, session.projects_dir)
+            client.toast(_("Copied as {name}.").format(name=copy.name), False)
         elif do == "bin":
             if _is_open(session.project, folder):
                 raise EditRefused("that project is open; open another one first")
             ProjectLock(folder).release()
             name, place = manage.name_of(folder), manage.to_bin(folder, session.projects_dir)
-            client.offer(f"{name} is in the bin.", "Restore", lambda: self._undelete(manage.address_of(place)))
+            said = _("{name} is in the bin.").format(name=name)
+            client.offer(said, _("Restore"), lambda: self._undelete(manage.address_of(place)))
         else:
             self.close()
             project = Project.open(folder)
-            session.visit(client, project, f"Opened {project.name}.")
+            session.visit(client, project, _("Opened {name}.").format(name=project.name))
 
     def _undelete(self, address: str) -> None:
         self._restore(address)
@@ -165,5 +169,5 @@ def _is_open(project: Project | None, folder: Path) -> bool:
 
 
 def _binned(place: Path) -> str:
-    restore = button("Restore", "unbin", manage.address_of(place))
+    restore = button(_("Restore"), "unbin", manage.address_of(place))
     return f'<div class="row"><span class="name">{text(manage.name_of(place))}</span>{restore}</div>'

@@ -13,6 +13,7 @@ from diorama_app.session.client import Client
 from diorama_app.session.preferences import SizeMode
 from diorama_app.session.session import EditorSession
 from diorama_app.session.units import format_size
+from diorama_app.strings import N_, _
 from diorama_app.viewport.thumbnails import Paint
 from diorama_app.web.html import Action, LiveHtml, button, text
 from diorama_core.errors import LibraryError
@@ -23,16 +24,16 @@ from diorama_core.scene.types import Candidate, SceneObject
 SHOWN, FIRST_SHOWN = 12, 4
 """What is found, and how many of it are shown before somebody asks for more: two rows."""
 SIZE_NAMES: dict[SizeMode, str] = {
-    "as found": "As in photo",
-    "same box": "Same box",
-    "in proportion": "In proportion",
-    "catalogue": "Original",
+    "as found": N_("As in photo"),
+    "same box": N_("Same box"),
+    "in proportion": N_("In proportion"),
+    "catalogue": N_("Original"),
 }
 SIZE_HINTS: dict[SizeMode, str] = {
-    "as found": "The size measured in the photo; scaled evenly where unknown",
-    "same box": "Stretched to the size of the replaced object",
-    "in proportion": "Scaled evenly to about the size of the replaced object",
-    "catalogue": "The original size in the library",
+    "as found": N_("The size measured in the photo; scaled evenly where unknown"),
+    "same box": N_("Stretched to the size of the replaced object"),
+    "in proportion": N_("Scaled evenly to about the size of the replaced object"),
+    "catalogue": N_("The original size in the library"),
 }
 
 
@@ -43,7 +44,7 @@ class Alternatives:
         self._client = client
         self._html = LiveHtml(gui, self._act)
         self._words = gui.add_text(
-            "Swap for", "", visible=False, hint="Words to search for; empty shows the ranked alternatives"
+            _("Swap for"), "", visible=False, hint=_("Words to search for; empty shows the ranked alternatives")
         )
         on_change(self._words, lambda v: client.post(self.refresh, key="swap search"))
         self._options = LiveHtml(gui, self._act)
@@ -69,13 +70,16 @@ class Alternatives:
     def _choices(self, item: SceneObject) -> str:
         preferences = self._client.preferences
         sizes = "".join(
-            button(SIZE_NAMES[m], "size", m, title=SIZE_HINTS[m], on=preferences.size_mode == m) for m in SIZE_MODES
+            button(_(SIZE_NAMES[m]), "size", m, title=_(SIZE_HINTS[m]), on=preferences.size_mode == m)
+            for m in SIZE_MODES
         )
         count = len(alike(self._client.session.scene, item))
-        same = button(f"All {count}", "alike", title="Swap all objects with this shape", on=preferences.all_alike)
-        keep = button("Keep colour", "keep", title="Keep the colour of the replaced object", on=preferences.keep_colour)
+        every, hint = _("All {count}").format(count=count), _("Swap all objects with this shape")
+        same = button(every, "alike", title=hint, on=preferences.all_alike)
+        hint = _("Keep the colour of the replaced object")
+        keep = button(_("Keep colour"), "keep", title=hint, on=preferences.keep_colour)
         return (
-            f'<h4>Size when swapped</h4><div class="bar tight">{sizes}</div>'
+            f'<h4>{text(_("Size when swapped"))}</h4><div class="bar tight">{sizes}</div>'
             f'<div class="bar tight">{keep}{same if count > 1 else ""}</div>'
         )
 
@@ -86,9 +90,11 @@ class Alternatives:
 
     def _grid(self, tiles: Sequence[str]) -> str:
         shown = tiles if self._all else tiles[:FIRST_SHOWN]
-        more = "" if len(shown) == len(tiles) else button(f"{len(tiles) - len(shown)} more", "all")
+        more = (
+            "" if len(shown) == len(tiles) else button(_("{count} more").format(count=len(tiles) - len(shown)), "all")
+        )
         unit = "" if self._client.preferences.unit == "ft-in" else f" ({self._client.preferences.unit})"
-        grid = f'<h4>Alternatives{unit}</h4><div class="grid two">{"".join(shown)}</div>'
+        grid = f'<h4>{text(_("Alternatives"))}{unit}</h4><div class="grid two">{"".join(shown)}</div>'
         return f'{grid}<div class="bar tight">{more}</div>'
 
     def _similar(self, item: SceneObject) -> str:
@@ -97,13 +103,14 @@ class Alternatives:
         size = np.sort(np.asarray(item.size_m))
         near = sorted(same, key=lambda s: float(np.abs(np.log(np.sort(np.asarray(s.size_m)) / size)).sum()))
         if len(near) < 2:
-            return "<p class='dim'>The library has no other shape of this category. Search it above.</p>"
+            return f"<p class='dim'>{text(_('The library has no other shape of this category. Search it above.'))}</p>"
         return self._grid([self._shape(item, s) for s in near[:SHOWN]])
 
     def _found(self, item: SceneObject, words: str) -> str:
         found = search(self._client.session.offered, words, k=SHOWN)
         if not found:
-            return f"<p class='dim'>Nothing in the library matches “{text(words)}”. Try another word.</p>"
+            none = _("Nothing in the library matches “{words}”. Try another word.").format(words=words)
+            return f'<p class="dim">{text(none)}</p>'
         return f'<div class="grid two">{"".join(self._shape(item, s) for s in found)}</div>'
 
     def _candidate(self, item: SceneObject, candidate: Candidate) -> str:
@@ -115,13 +122,15 @@ class Alternatives:
 
     def _tile(self, item: SceneObject, shape_id: str, size: list[float]) -> str:
         current = shape_id == item.shape_id
-        name, key = text(shape_caption(self._client.session, shape_id)), text(shape_id)
+        caption, key = shape_caption(self._client.session, shape_id), text(shape_id)
         shown = format_size(size[1], size[0], size[2], self._client.preferences.unit)
+        hint = _("Swap for {name}\n{size} (width, depth, height)").format(name=caption, size=shown)
+        used = f"<small>{text(_('in use'))}</small>" if current else ""
         return (
             f'<button type="button" class="tile {"on" if current else ""}" data-do="swap" data-arg="{key}" '
-            f'data-peek="{key}" title="Swap for {name}&#10;{text(shown)} (width, depth, height)">'
-            f"{self._client.session.thumbnails.html(shape_id, self._paint(item))}<b>{name}</b>"
-            f"<small>{text(shown)}</small>{'<small>in use</small>' if current else ''}</button>"
+            f'data-peek="{key}" title="{text(hint)}">'
+            f"{self._client.session.thumbnails.html(shape_id, self._paint(item))}<b>{text(caption)}</b>"
+            f"<small>{text(shown)}</small>{used}</button>"
         )
 
     def _paint(self, item: SceneObject) -> Paint:
@@ -158,5 +167,5 @@ def shape_caption(session: EditorSession, shape_id: str) -> str:
     try:
         shape = session.records.shape(shape_id)
     except LibraryError:
-        return "missing shape"
-    return shape.caption or shape.category
+        return _("missing shape")
+    return shape.caption or _(shape.category)

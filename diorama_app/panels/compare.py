@@ -6,7 +6,8 @@ import viser
 
 from diorama_app.commands.camera_presets import Views
 from diorama_app.session.client import Client
-from diorama_app.web.html import Action, LiveHtml
+from diorama_app.strings import _
+from diorama_app.web.html import Action, LiveHtml, text
 
 STEP = 5
 _LIVE = "this.dispatchEvent(new Event('change',{bubbles:true}))"
@@ -49,7 +50,8 @@ class Compare:
 
 def _slider(value: int) -> str:
     return (
-        '<label title="Fade between the model and the photo, in the photo view"><span>Model</span>'
+        f'<label title="{text(_("Fade between the model and the photo in the photo view"))}">'
+        f"<span>{text(_('Model'))}</span>"
         f'<input type="range" min="0" max="100" step="{STEP}" value="{value}" data-change="over" oninput="{_LIVE}" '
-        'aria-label="Photo over model"><span>Photo</span></label>'
+        f'aria-label="{text(_("Opacity of the photo over the model"))}"><span>{text(_("Photo"))}</span></label>'
     )

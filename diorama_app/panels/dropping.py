@@ -16,6 +16,7 @@ from diorama_app.projects.dropped_files import files_of, sources_of, upload_of
 from diorama_app.reconstruction.dropped_photos import begin_each, build_one_room
 from diorama_app.reconstruction.opening_job import open_file, open_packed
 from diorama_app.session.client import Client
+from diorama_app.strings import _
 from diorama_app.web.html import text
 
 
@@ -68,5 +69,5 @@ def listen_for_drops(gui: viser.GuiApi, client: Client, take: Take) -> None:
         client: the owner.
         take: takes name and content.
     """
-    uuid = hidden_upload(gui, client, "Dropped files", take)
+    uuid = hidden_upload(gui, client, _("Dropped files"), take)
     gui.add_html(f'<i id="dio-drop-to" data-upload="{text(uuid)}"></i>')

@@ -6,9 +6,14 @@ import viser
 
 from diorama_app.commands.edit_by_words import WordEdits
 from diorama_app.session.client import Client
-from diorama_app.web.html import Action, LiveHtml, button, text
+from diorama_app.strings import N_, _
+from diorama_app.web.html import Action, LiveHtml, button, library_text, text
 
-EXAMPLE = "make all chairs wooden"
+EXAMPLE = N_("make all chairs wooden")
+HINT = N_(
+    "Type what to change, then press Enter. For example: a rug under the table; move the lamp beside the sofa; "
+    "remove everything on the desk"
+)
 
 
 class EditByWords:
@@ -28,25 +33,24 @@ class EditByWords:
             self._list.show("")
             return
         self._field.show(
-            f'<input data-change="ask" style="width:100%;box-sizing:border-box" placeholder="{text(EXAMPLE)}" '
-            'aria-label="Edit by words" title="Say what to change, then press Enter: '
-            'a rug under the table; move the lamp beside the sofa; remove everything on the desk">'
+            f'<input data-change="ask" style="width:100%;box-sizing:border-box" placeholder="{text(_(EXAMPLE))}" '
+            f'aria-label="{text(_("Edit by words"))}" title="{text(_(HINT))}">'
         )
         self._list.show(self._proposal())
 
     def _proposal(self) -> str:
         edits = self._edits
         if edits.refused:
-            return f'<p class="dim" role="alert">{text(_sentence(edits.refused))}</p>'
+            return f'<p class="dim" role="alert">{library_text(edits.refused)}</p>'
         if edits.proposed is None:
             return ""
-        lines = "".join(f"<li>{text(_sentence(line))}</li>" for line in edits.proposed.lines)
-        notes = "".join(f'<p class="dim">{text(_sentence(note))}</p>' for note in edits.proposed.notes)
+        lines = "".join(f"<li>{library_text(line)}</li>" for line in edits.proposed.lines)
+        notes = "".join(f'<p class="dim">{library_text(note)}</p>' for note in edits.proposed.notes)
         return (
-            f'<ul style="margin:4px 0;padding-left:18px" aria-label="Proposed edits">{lines}</ul>{notes}'
+            f'<ul style="margin:4px 0;padding-left:18px" aria-label="{text(_("Proposed edits"))}">{lines}</ul>{notes}'
             '<div class="bar">'
-            + button("Apply", "apply", title="Make these edits; one undo takes them all back", on=True)
-            + button("Cancel", "cancel", title="Change nothing")
+            + button(_("Apply"), "apply", title=_("Make these edits; one undo reverts them all"), on=True)
+            + button(_("Cancel"), "cancel", title=_("Change nothing"))
             + "</div>"
         )
 
@@ -58,7 +62,3 @@ class EditByWords:
             self._client.post(self._edits.apply)
         elif action.do == "cancel":
             self._client.post(self._edits.cancel)
-
-
-def _sentence(words: str) -> str:
-    return f"{words[:1].upper()}{words[1:]}"

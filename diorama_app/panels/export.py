@@ -11,6 +11,7 @@ import viser
 from diorama_app.projects.formats import EXPORT_FORMATS, GUIDES, Choice
 from diorama_app.reconstruction.export_job import download_suffix, export
 from diorama_app.session.client import Client
+from diorama_app.strings import N_, _
 from diorama_app.web.html import Action, LiveHtml, button, switch, text
 from diorama_core.export import Format
 
@@ -21,27 +22,27 @@ TEXTURE_SIZES = (0, 2048, 1024, 512, 256)
 """Longest side in pixels; 0 leaves pictures as they are."""
 ChoiceName = TypeVar("ChoiceName", bound=str)
 SWITCHES: dict[Choice, tuple[str, str]] = {
-    "ceiling": ("Without ceiling", "To look into the room from above"),
-    "selection": ("Only selection", "The selected objects without the room around them"),
-    "photo": ("With photo", "Opening the file brings it back; everyone who has the file can see it"),
-    "welded": ("Welded", "Nothing moves: every object is fixed where it stands"),
+    "ceiling": (N_("Without ceiling"), N_("To look into the room from above")),
+    "selection": (N_("Only selection"), N_("The selected objects without the room around them")),
+    "photo": (N_("With photo"), N_("Opening the file brings it back; everyone who has the file can see it")),
+    "welded": (N_("Welded"), N_("Nothing moves: every object is fixed where it stands")),
 }
 """What is switched on and off: name and explanation."""
 IMPOSSIBLE: dict[Choice, str] = {
-    "selection": "Select objects first",
-    "photo": "There is no photo in this project",
+    "selection": N_("Select objects first"),
+    "photo": N_("There is no photo in this project"),
 }
 """What is said instead while a switch has no effect."""
 COMPRESSIONS: dict[Compression, tuple[str, str]] = {
-    "none": ("none", "Every program reads it"),
-    "meshopt": ("meshopt", "Smaller, for three.js and Babylon.js; Blender does not read it"),
-    "draco": ("Draco", "Smallest, for Blender, Unity, Unreal and three.js"),
+    "none": (N_("none"), N_("Every program reads it")),
+    "meshopt": ("Meshopt", N_("Smaller, for three.js and Babylon.js; Blender does not read it")),
+    "draco": ("Draco", N_("Smallest, for Blender, Unity, Unreal and three.js")),
 }
 """Name and explanation."""
 LIGHTS: dict[LightUnits, tuple[str, str]] = {
-    "unit": ("as here", "For programs whose camera has no exposure"),
-    "photometric": ("in lumens and lux", "For cameras with an exposure"),
-    "none": ("none", "The room is lit in the other program"),
+    "unit": (N_("as here"), N_("For programs whose camera has no exposure")),
+    "photometric": (N_("in lumens and lux"), N_("For cameras with an exposure")),
+    "none": (N_("none"), N_("The room is lit in the other program")),
 }
 """Name and explanation."""
 
@@ -62,16 +63,16 @@ class ExportPanel:
         """Draw the list."""
         body = ""
         for group, names in groupby(GUIDES, key=lambda name: GUIDES[name].group):
-            body += f"<h4>{text(group)}</h4>" + "".join(self._row(EXPORT_FORMATS[name]) for name in names)
+            body += f"<h4>{text(_(group))}</h4>" + "".join(self._row(EXPORT_FORMATS[name]) for name in names)
         self._html.show(body)
 
     def _row(self, one: Format) -> str:
         chosen = one.name == self._format
         row = (
             f'<div class="row {"on" if chosen else ""}" style="padding-left:9px" role="button" tabindex="0" '
-            f'data-do="choose" data-arg="{text(one.name)}" title="Keeps {text(one.keeps)}">'
-            f'<span class="name" style="white-space:normal">{text(one.title)}'
-            f'<br><span class="dim">{text(GUIDES[one.name].opens_in)}</span></span>'
+            f'data-do="choose" data-arg="{text(one.name)}" title="{text(_keeps(one))}">'
+            f'<span class="name" style="white-space:normal">{text(_(one.title))}'
+            f'<br><span class="dim">{text(_(GUIDES[one.name].opens_in))}</span></span>'
             f'<span class="dim">{text(download_suffix(one))}</span></div>'
         )
         return row + (self._details(one) if chosen else "")
@@ -81,31 +82,31 @@ class ExportPanel:
         choices = GUIDES[one.name].choices
         switches = "".join(self._switch(choice) for choice in SWITCHES if choice in choices)
         packing = (
-            _explained("Compression", "compression", COMPRESSIONS, self._compression)
+            _explained(_("Compression"), "compression", COMPRESSIONS, self._compression)
             if "compression" in choices
             else ""
         )
-        lights = _explained("Lights", "lights", LIGHTS, self._lights) if "lights" in choices else ""
+        lights = _explained(_("Lights"), "lights", LIGHTS, self._lights) if "lights" in choices else ""
         pictures = self._texture_field() if "textures" in choices else ""
         fields = pictures + packing + lights
-        missing = f'<p class="bad">{text(one.missing)}</p>' if one.missing else ""
+        missing = f'<p class="bad">{text(_(one.missing))}</p>' if one.missing else ""
         ready = not one.missing and self._client.session.jobs.status is None
-        go = button(f"Export {text(download_suffix(one))}", "export", one.name, on=ready, disabled=not ready)
+        label = _("Export {suffix}").format(suffix=text(download_suffix(one)))
+        go = button(label, "export", one.name, on=ready, disabled=not ready)
         return (
-            f'<div class="card" style="margin:2px 0 8px"><p><b>Keeps</b> {text(one.keeps)}.</p>'
+            f'<div class="card" style="margin:2px 0 8px"><p>{text(_keeps(one))}.</p>'
             f'{switches}{fields}{missing}<div class="bar wide" style="margin:8px 0 0">{go}</div></div>'
         )
 
     def _switch(self, choice: Choice) -> str:
         name, hint = SWITCHES[choice]
         possible = self._is_possible(choice)
-        return switch(
-            name, hint if possible else IMPOSSIBLE[choice], choice, on=self._is_on(choice), disabled=not possible
-        )
+        hint = hint if possible else IMPOSSIBLE[choice]
+        return switch(_(name), _(hint), choice, on=self._is_on(choice), disabled=not possible)
 
     def _texture_field(self) -> str:
-        names = {str(px): f"at most {px} pixels" if px else "as they are" for px in TEXTURE_SIZES}
-        return _field("Textures", "textures", names, str(self._texture_px))
+        names = {str(px): _("at most {px} pixels").format(px=px) if px else _("as they are") for px in TEXTURE_SIZES}
+        return _field(_("Textures"), "textures", names, str(self._texture_px))
 
     def _is_possible(self, choice: Choice) -> bool:
         if choice == "photo":
@@ -150,10 +151,14 @@ class ExportPanel:
         )
 
 
+def _keeps(one: Format) -> str:
+    return _("Keeps {content}").format(content=_(one.keeps))
+
+
 def _explained(label: str, change: str, choices: Mapping[ChoiceName, tuple[str, str]], chosen: ChoiceName) -> str:
     """A list to choose from, and below it what is chosen."""
-    hint = f'<p class="dim" style="margin:3px 0 0;font-size:11.5px">{text(choices[chosen][1])}</p>'
-    return _field(label, change, {one: name for one, (name, _) in choices.items()}, chosen) + hint
+    below = f'<p class="dim" style="margin:3px 0 0;font-size:11.5px">{text(_(choices[chosen][1]))}</p>'
+    return _field(label, change, {one: _(name) for one, (name, hint) in choices.items()}, chosen) + below
 
 
 def _field(label: str, change: str, names: Mapping[str, str], chosen: str) -> str:
@@ -164,6 +169,6 @@ def _field(label: str, change: str, names: Mapping[str, str], chosen: str) -> st
     )
     return (
         '<label style="display:flex;align-items:center;gap:8px;margin-top:6px">'
-        f'<span style="flex:0 0 82px">{label}</span>'
-        f'<select data-change="{change}" aria-label="{label}" style="flex:1">{options}</select></label>'
+        f'<span style="flex:0 0 82px">{text(label)}</span>'
+        f'<select data-change="{change}" aria-label="{text(label)}" style="flex:1">{options}</select></label>'
     )

@@ -9,6 +9,7 @@ from typing import Generic, TypeVar
 import viser
 
 from diorama_app.session.connected_client import Panel
+from diorama_app.strings import _
 from diorama_app.web.html import LiveHtml, text
 from diorama_core.errors import DioramaError
 from diorama_core.io.bounded import shortened
@@ -46,7 +47,7 @@ class InPlace(Generic[P]):
             self._show("")
 
     def _show(self, reason: str) -> None:
-        words = f"{self._title} cannot be shown ({reason}). Your work is saved."
+        words = _("{title} cannot be shown ({reason}). Your work is saved.").format(title=self._title, reason=_(reason))
         self._line.show(f'<div class="card warn">{text(words)}</div>' if reason else "")
         if self._folder.visible == bool(reason):
             self._folder.visible = not reason

@@ -10,6 +10,7 @@ from diorama_app.panels.dialog import dialog
 from diorama_app.panels.fields import on_press
 from diorama_app.projects.dropped import Dropped, Reading
 from diorama_app.session.client import Client
+from diorama_app.strings import _
 from diorama_app.web.html import text
 from diorama_core.perception.inputs.depth.units import AmbiguousDepthError, DepthAnswer
 
@@ -26,7 +27,7 @@ def ask_which(client: Client, name: str, dropped: Dropped, then: Callable[[Readi
         then: called with the answer.
     """
     choices = [(_capital(reading.words), reading) for reading in dropped.readings]
-    _ask(client, f"What is {name}?", dropped.unused(), choices, then)
+    _ask(client, _("What is {name}?").format(name=name), dropped.unused(), choices, then)
 
 
 def ask_depth(client: Client, unknown: AmbiguousDepthError, then: Callable[[DepthAnswer], None]) -> None:
@@ -34,11 +35,11 @@ def ask_depth(client: Client, unknown: AmbiguousDepthError, then: Callable[[Dept
     if not unknown.choices:
         raise unknown
     choices = [(_capital(answer.words), answer) for answer in unknown.choices]
-    _ask(client, "How is the depth to be read?", str(unknown).split(";", 1)[0], choices, then)
+    _ask(client, _("How is the depth to be read?"), str(unknown).split(";", 1)[0], choices, then)
 
 
 def _capital(words: str) -> str:
-    return words[:1].upper() + words[1:]
+    return _(words)[:1].upper() + _(words)[1:]
 
 
 def _ask(
@@ -47,7 +48,7 @@ def _ask(
     gui = client.viser_client.gui
     with dialog(client, title) as close:
         if words:
-            gui.add_html(f"<p>{text(words)}.</p>")
+            gui.add_html(f"<p>{text(_(words))}.</p>")
         for label, answer in choices:
             on_press(gui.add_button(label), partial(client.post, partial(_answered, close, then, answer)))
 

@@ -11,6 +11,7 @@ import viser
 from diorama_app.commands.optimise import pause
 from diorama_app.session.client import Client
 from diorama_app.session.jobs import JobStatus
+from diorama_app.strings import _
 from diorama_app.web.html import Action, LiveHtml, run_once
 
 MIN_SHARE, MIN_S = 0.08, 4.0
@@ -42,10 +43,10 @@ class JobStrip:
             {
                 "title": status.title,
                 "percent": round(100 * status.fraction),
-                "stage": status.message[:1].upper() + status.message[1:],
+                "stage": _(status.message)[:1].upper() + _(status.message)[1:],
                 "left": time_left(status, time.monotonic()),
                 "found": " · ".join(status.found[-FOUND_SHOWN:]),
-                "pause": ("Resume" if run is not None and run.paused else "Pause") if can_pause else "",
+                "pause": (_("Resume") if run is not None and run.paused else _("Pause")) if can_pause else "",
                 "cancelling": status.cancelling,
             }
         )
@@ -81,5 +82,5 @@ def time_left(status: JobStatus, now: float) -> str:
         return ""
     left = spent * (1.0 - status.fraction) / status.fraction
     if left < 60.0:
-        return f"about {max(5, round(left / 5) * 5)} s left"
-    return f"about {round(left / 60)} min left"
+        return _("about {seconds} s left").format(seconds=max(5, round(left / 5) * 5))
+    return _("about {minutes} min left").format(minutes=round(left / 60))

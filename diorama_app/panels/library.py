@@ -15,6 +15,7 @@ from diorama_app.panels.own_shelf import OwnShelf
 from diorama_app.panels.upload_field import UploadField
 from diorama_app.session.client import Client, Placing
 from diorama_app.session.units import format_size
+from diorama_app.strings import N_, _
 from diorama_app.web.html import Action, LiveHtml, button, text
 from diorama_core.library.browsing import Filters, Shelf, SizeClass, browsed, one_of_each
 from diorama_core.library.company import ROOMS
@@ -30,18 +31,28 @@ SHOWN = 24
 """Tiles at first, and more with every press of the button below them."""
 SEARCHED = 240
 SHELVES: dict[Shelf, tuple[str, str]] = {
-    "all": ("All", "The whole library"),
-    "favourites": ("★", "Your favourites"),
-    "recent": ("Recent", "What you inserted last"),
-    "own": ("Mine", "Models of your own"),
+    "all": (N_("All"), N_("The whole library")),
+    "favourites": ("★", N_("Your favourites")),
+    "recent": (N_("Recent"), N_("What you inserted last")),
+    "own": (N_("Mine"), N_("Models of your own")),
 }
 EMPTY: dict[Shelf, str] = {
-    "all": "Nothing in the library passes these filters.",
-    "favourites": "No favourites yet. Press ☆ on a tile.",
-    "recent": "Nothing yet. What you insert appears here.",
-    "own": "No models of your own yet. Add a file above.",
+    "all": N_("Nothing in the library passes these filters."),
+    "favourites": N_("No favourites yet. Press ☆ on a tile."),
+    "recent": N_("Nothing yet. What you insert appears here."),
+    "own": N_("No models of your own yet. Add a file above."),
 }
-SIZE_NAMES: dict[SizeClass, str] = {"small": "Up to 0.5 m", "medium": "0.5 to 1.5 m", "large": "Above 1.5 m"}
+SIZE_NAMES: dict[SizeClass, str] = {
+    "small": N_("Up to 0.5 m"),
+    "medium": N_("0.5 to 1.5 m"),
+    "large": N_("Above 1.5 m"),
+}
+
+WAYS = N_("Drag a shape into the view. <b>Insert</b> puts it on the floor in view; <b>Place</b> waits for your click.")
+WAYS_WITH_SUPPORT = N_(
+    "Drag a shape into the view. <b>Insert</b> puts it on the floor in view, or a small one on the selected {label}; "
+    "<b>Place</b> waits for your click."
+)
 
 
 class LibraryPanel:
@@ -52,10 +63,10 @@ class LibraryPanel:
         self._filters = Filters()
         self._mine = OwnShelf(client)
         self._most = SHOWN
-        self._words = gui.add_text("Search", "", hint="For example: armchair, round table, blue")
+        self._words = gui.add_text(_("Search"), "", hint=_("For example: armchair, round table, blue"))
         on_change(self._words, lambda v: client.post(self._searched, key="search"))
         self._choices = LiveHtml(gui, self._act)
-        UploadField(gui, client, "Add a model file", lambda name, content: import_model(client, name, content))
+        UploadField(gui, client, _("Add a model file"), lambda name, content: import_model(client, name, content))
         self._where = LiveHtml(gui)
         self._html = LiveHtml(gui, self._act)
         self._drawn: tuple[object, ...] = ()
@@ -69,11 +80,11 @@ class LibraryPanel:
     def refresh(self) -> None:
         """Draw the filters and what was found."""
         selected, preferences = self._client.selected, self._client.preferences
-        where = "on the floor in view" + (f", small objects on the selected {text(selected.label)}" if selected else "")
-        words_where = f"Drag it into the view. <b>Insert</b> puts it {where}; <b>Place</b> waits for your click."
+        where = _(WAYS if selected is None else WAYS_WITH_SUPPORT)
         if isinstance(self._client.doing, Placing):
-            words_where = "<b>Click in the view</b> where it should be; Esc cancels."
-        self._where.show(f'<p class="dim">{words_where}</p>')
+            where = _("<b>Click in the view</b> where it should be; Esc cancels.")
+        label = "" if selected is None else text(selected.label)
+        self._where.show(f'<p class="dim">{where.format(label=label)}</p>')
         words, shapes = self._words.value.strip(), self._client.session.library.shapes()
         scene = self._client.session.scene if self._filters.any or words else None
         recent = preferences.recent if self._filters.shelf == "recent" else ()
@@ -92,28 +103,33 @@ class LibraryPanel:
         shown = found[: self._most]
         tiles = self._mine.in_folders(shown, tile) if on_own_shelf else "".join(map(tile, shown))
         tiles = tiles if on_own_shelf or not tiles else f'<div class="grid two">{tiles}</div>'
-        more = button(f"{len(found) - self._most} more", "more") if len(found) > self._most else ""
-        unknown = f"Nothing in the library matches “{text(words)}”. Try another word."
-        nothing = unknown if words and not self._filters.any else EMPTY[self._filters.shelf]
+        more = (
+            button(_("{count} more").format(count=len(found) - self._most), "more") if len(found) > self._most else ""
+        )
+        unknown = _("Nothing in the library matches “{words}”. Try another word.").format(words=words)
+        nothing = unknown if words and not self._filters.any else _(EMPTY[self._filters.shelf])
         below = f'{tiles}<div class="bar" style="margin-top:6px">{more}</div>'
         head = self._mine.head() if on_own_shelf else ""
-        self._html.show(head + (below if tiles else f"<p class='dim'>{nothing}</p>"))
+        self._html.show(head + (below if tiles else f"<p class='dim'>{text(nothing)}</p>"))
 
     def _drawn_choices(self, shapes: tuple[Shape, ...]) -> str:
         chosen = self._filters
-        shelves = "".join(button(n, "shelf", s, title=t, on=chosen.shelf == s) for s, (n, t) in SHELVES.items())
+        shelves = "".join(button(_(n), "shelf", s, title=_(t), on=chosen.shelf == s) for s, (n, t) in SHELVES.items())
         count = Counter(s.category for s in shapes)
-        categories = [("", "Every category"), *((c, f"{c.capitalize()} ({n})") for c, n in sorted(count.items()))]
-        rooms = [("", "Every room"), *((r, r.capitalize()) for r in ROOMS)]
-        styles = [("", "Every style"), *((s, s.capitalize()) for s in sorted({s.style for s in shapes if s.style}))]
-        sizes = [("", "Every size"), *SIZE_NAMES.items()]
-        fitting = button("Fits here", "fitting", title="Only what fits into this room", on=chosen.fitting)
+        categories = [("", _("Every category")), *((c, f"{_(c).capitalize()} ({n})") for c, n in sorted(count.items()))]
+        rooms = [("", _("Every room")), *((r, _(r).capitalize()) for r in ROOMS)]
+        styles = [
+            ("", _("Every style")),
+            *((s, _(s).capitalize()) for s in sorted({s.style for s in shapes if s.style})),
+        ]
+        sizes = [("", _("Every size")), *((s, _(name)) for s, name in SIZE_NAMES.items())]
+        fitting = button(_("Fits here"), "fitting", title=_("Only what fits into this room"), on=chosen.fitting)
         return (
             f'<div class="bar tight">{shelves}{fitting}</div><div class="filters">'
-            + _select("category", "Category", categories, chosen.category)
-            + _select("room", "Room", rooms, chosen.room)
-            + _select("style", "Style", styles, chosen.style)
-            + _select("size", "Size", sizes, chosen.size or "")
+            + _select("category", _("Category"), categories, chosen.category)
+            + _select("room", _("Room"), rooms, chosen.room)
+            + _select("style", _("Style"), styles, chosen.style)
+            + _select("size", _("Size"), sizes, chosen.size or "")
             + "</div>"
         )
 
@@ -153,22 +169,25 @@ class LibraryPanel:
 
     def _tile(self, shape: Shape, *, told: bool, own: bool) -> str:
         size, preferences = shape.size_m, self._client.preferences
-        name = text(self._mine.models.names.get(shape.id) or shape.caption or shape.category)
+        name = self._mine.models.names.get(shape.id) or shape.caption or _(shape.category)
         about = text(format_size(size[1], size[0], size[2], preferences.unit))
         too_large = told and not self._has_place(shape)
         marked = shape.id in preferences.favourites
+        label = _("Favourite: {name}").format(name=name)
+        hint = _("Remove from favourites") if marked else _("Add to favourites")
         star = (
             f'<button type="button" class="star" data-do="favourite" data-arg="{text(shape.id)}" '
-            f'aria-pressed="{"true" if marked else "false"}" aria-label="Favourite: {name}" '
-            f'title="{"Remove from favourites" if marked else "Add to favourites"}">{"★" if marked else "☆"}</button>'
+            f'aria-pressed="{"true" if marked else "false"}" aria-label="{text(label)}" title="{text(hint)}">'
+            f"{'★' if marked else '☆'}</button>"
         )
-        fit = '<span class="chip" title="No free place is large enough">too large</span>' if too_large else ""
+        hint = _("No free place is large enough")
+        fit = f'<span class="chip" title="{text(hint)}">{text(_("too large"))}</span>' if too_large else ""
         return (
-            f'<div class="tile" draggable="true" data-grab="{text(shape.id)}" title="{name}&#10;{about}">{star}'
-            f"{self._client.session.thumbnails.html(shape.id)}<b>{name}</b><small>{about}</small>{fit}"
+            f'<div class="tile" draggable="true" data-grab="{text(shape.id)}" title="{text(name)}&#10;{about}">{star}'
+            f"{self._client.session.thumbnails.html(shape.id)}<b>{text(name)}</b><small>{about}</small>{fit}"
             '<div class="bar" style="margin:4px 0 0 0">'
-            + button("Insert", "insert", shape.id, title=f"Insert: {shape.caption}")
-            + button("Place", "place", shape.id, title="Then click where to place it")
+            + button(_("Insert"), "insert", shape.id, title=_("Insert {name}").format(name=name))
+            + button(_("Place"), "place", shape.id, title=_("Then click where to place it"))
             + "</div>"
             + (self._mine.fields(shape) if own else "")
             + "</div>"
@@ -219,4 +238,4 @@ def _select(do: str, name: str, options: list[tuple[str, str]], chosen: str) -> 
         f'<option value="{text(value)}" {"selected" if value == chosen else ""}>{text(label)}</option>'
         for value, label in options
     )
-    return f'<select data-change="{do}" aria-label="{name}">{rows}</select>'
+    return f'<select data-change="{do}" aria-label="{text(name)}">{rows}</select>'

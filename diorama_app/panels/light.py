@@ -14,6 +14,7 @@ import viser
 
 from diorama_app.commands import light as lighting
 from diorama_app.session.client import Client
+from diorama_app.strings import _
 from diorama_app.web.html import Action, LiveHtml, button, run_once, text
 from diorama_core.editing.sunlight import sun_azimuth
 from diorama_core.errors import InputError
@@ -28,17 +29,18 @@ SHOWN_EV = 2.0
 _SLIDERS = f"""
 <div class="dio-light">
  <div class="dio-daylight">
-  <label class="dio-slider"><span>Time of day <b data-clock></b></span>
-   <input type="range" data-change="hour" min="0" max="24" step="0.25" aria-label="Time of day"></label>
+  <label class="dio-slider"><span>{text(_("Time of day"))} <b data-clock></b></span>
+   <input type="range" data-change="hour" min="0" max="24" step="0.25" aria-label="{text(_("Time of day"))}"></label>
   <div class="dio-compass">
-   <svg data-dial role="slider" tabindex="0" aria-label="Direction of the sun (°)" aria-valuemin="0"
+   <svg data-dial role="slider" tabindex="0" aria-label="{text(_("Direction of the sun (°)"))}" aria-valuemin="0"
     aria-valuemax="359" viewBox="-50 -50 100 100"></svg>
    <p class="dim" data-about></p>
   </div>
   <input type="hidden" data-change="sun">
  </div>
- <label class="dio-slider"><span>Exposure <b data-exposure></b></span>
-  <input type="range" data-change="exposure" min="-{SHOWN_EV:g}" max="{SHOWN_EV:g}" step="0.1" aria-label="Exposure">
+ <label class="dio-slider"><span>{text(_("Exposure"))} <b data-exposure></b></span>
+  <input type="range" data-change="exposure" min="-{SHOWN_EV:g}" max="{SHOWN_EV:g}" step="0.1"
+   aria-label="{text(_("Exposure"))}">
  </label>
 </div>
 """
@@ -50,7 +52,7 @@ class LightPanel:
     def __init__(self, gui: viser.GuiApi, client: Client) -> None:
         self._client = client
         self._told = ""
-        self._folder = gui.add_folder("Light", expand_by_default=False)
+        self._folder = gui.add_folder(_("Light"), expand_by_default=False)
         with self._folder:
             self._modes = LiveHtml(gui, self._act)
             self._sliders = LiveHtml(gui, self._act)
@@ -65,11 +67,11 @@ class LightPanel:
         if not something:
             return
         settings = scene.light_settings
-        as_before = "As in the photo" if scene.camera is not None else "Even light"
+        as_before = _("As in the photo") if scene.camera is not None else _("Even light")
         self._modes.show(
             '<div class="bar">'
-            + button(as_before, "photo", title="Undo all settings of the light", on=settings.hour is None)
-            + button("Daylight", "day", title="Sun and sky at a time of day", on=settings.hour is not None)
+            + button(as_before, "photo", title=_("Reset all light settings"), on=settings.hour is None)
+            + button(_("Daylight"), "day", title=_("Sun and sky at a time of day"), on=settings.hour is not None)
             + "</div>"
         )
         self._sliders.show(_SLIDERS)
@@ -130,26 +132,26 @@ def told_light(scene: Scene) -> dict[str, Any]:
 
 
 def _lamps(scene: Scene) -> str:
-    lamps = lamps_of(scene)
+    lamps, title = lamps_of(scene), f"<h4>{text(_('Lamps'))}</h4>"
     if not lamps:
-        return '<h4>Lamps</h4><p class="dim">The room has no lamps. Insert one from the Library.</p>'
+        return title + f'<p class="dim">{text(_("The room has no lamps. Insert one from the library."))}</p>'
     on = scene.light_settings.lamps_on or ()
     rows = "".join(
         button(
             f'<span class="dio-bulb" aria-hidden="true"></span>{text(o.label)}',
             "lamp",
             o.id,
-            title=f"Switch {'off' if o.id in on else 'on'}",
+            title=_("Switch off") if o.id in on else _("Switch on"),
             on=o.id in on,
         )
         for o in lamps
     )
     every = (
-        '<div class="bar tight">' + button("All on", "lamps", "on") + button("All off", "lamps", "off") + "</div>"
+        '<div class="bar tight">' + button(_("All on"), "lamps", "on") + button(_("All off"), "lamps", "off") + "</div>"
         if len(lamps) > 1
         else ""
     )
-    return f'<h4>Lamps</h4><div class="bar tight">{rows}</div>{every}'
+    return f'{title}<div class="bar tight">{rows}</div>{every}'
 
 
 def _rounded(point: Any) -> list[float]:
@@ -160,7 +162,7 @@ def _number(words: str) -> float:
     try:
         number = float(words)
     except ValueError as error:
-        raise InputError(f"“{words[:20]}” is not a number; write for example 0.5") from error
+        raise InputError(_("“{words}” is not a number; write for example 0.5").format(words=words[:20])) from error
     if not np.isfinite(number):
         raise InputError("the number is not finite; write for example 0.5")
     return number

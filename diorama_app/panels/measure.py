@@ -7,6 +7,7 @@ import viser
 from diorama_app.commands.measure import measured_m, rescale_measured, stop_measuring
 from diorama_app.session.client import Client
 from diorama_app.session.units import format_length, parse_length
+from diorama_app.strings import _
 from diorama_app.web.html import Action, LiveHtml, button, text
 
 
@@ -25,10 +26,11 @@ class Tape:
             return
         shown = text(format_length(length, self._client.preferences.unit))
         self._html.show(
-            f'<div class="card"><b>{shown}</b> between the two points.'
+            f'<div class="card">{_("<b>{length}</b> between the two points.").format(length=shown)}'
             '<div style="display:flex;gap:4px;margin-top:6px;align-items:center">'
-            f'<input data-change="true" placeholder="true length, e.g. 2.4 m" aria-label="True length" '
-            f'title="Rescale the scene to this length">{button("Done", "done")}</div></div>'
+            f'<input data-change="true" placeholder="{text(_("true length, such as 2.4 m"))}" '
+            f'aria-label="{text(_("True length"))}" '
+            f'title="{text(_("Rescale the scene to this length"))}">{button(_("Done"), "done")}</div></div>'
         )
 
     def _act(self, action: Action) -> None:

@@ -9,7 +9,8 @@ import viser
 from diorama_app.panels.fields import enable, on_change, on_press, show_if, show_value
 from diorama_app.reconstruction.networks import get_networks, missing_networks
 from diorama_app.session.client import Client
-from diorama_app.web.html import LiveHtml, text
+from diorama_app.strings import N_, _
+from diorama_app.web.html import LiveHtml, library_text, text
 from diorama_core.errors import DioramaError
 from diorama_core.models.manifest import networks_of
 from diorama_core.models.network import Network
@@ -17,11 +18,11 @@ from diorama_core.models.store import ModelStore
 from diorama_core.pipeline.choices import StageStatus, profile_status
 
 SETS = {
-    "micro: everyday objects": "micro",
-    "tiny: a photo alone": "tiny",
-    "lite: fine on a laptop": "lite",
-    "default: better": "default",
-    "paper: as published": "paper",
+    N_("micro: everyday objects"): "micro",
+    N_("tiny: a photo alone"): "tiny",
+    N_("lite: fine on a laptop"): "lite",
+    N_("default: better"): "default",
+    N_("paper: as published"): "paper",
 }
 
 POLL_EVERY_S = 3.0
@@ -32,13 +33,15 @@ class Networks:
 
     def __init__(self, gui: viser.GuiApi, client: Client) -> None:
         self._client = client
-        with gui.add_folder("Networks", expand_by_default=False):
+        with gui.add_folder(_("Networks"), expand_by_default=False):
             self._stages = LiveHtml(gui)
-            self._choice = gui.add_dropdown("Set", tuple(SETS), hint="Networks to download; all are optional")
+            self._choice = gui.add_dropdown(
+                _("Set"), tuple(map(_, SETS)), hint=_("Networks to download; all are optional")
+            )
             self._offer = LiveHtml(gui)
-            self._accept = gui.add_checkbox("I accept these licences", False)
+            self._accept = gui.add_checkbox(_("I accept these licences"), False)
             self._get = gui.add_button(
-                "Download networks", color="blue", hint="Download the missing networks; this can be cancelled"
+                _("Download networks"), color="blue", hint=_("Download the missing networks; this can be cancelled")
             )
         self._state: tuple[object, ...] = ()
         self._polled_at = 0.0
@@ -61,7 +64,7 @@ class Networks:
         enable(self._get, self._client.session.jobs.status is None and (not unknown or self._accept.value))
 
     def _networks(self) -> tuple[Network, ...]:
-        return networks_of(SETS[self._choice.value])
+        return networks_of(next(name for label, name in SETS.items() if _(label) == self._choice.value))
 
     def _missing(self, store: ModelStore) -> tuple[Network, ...]:
         return missing_networks(store, self._networks())
@@ -83,28 +86,30 @@ def _stages_html() -> str:
     try:
         stages = profile_status()
     except DioramaError as error:
-        return f'<p class="bad">{text(error)}</p>'
-    return "<h4>What each stage uses now</h4>" + "".join(_stage_html(s) for s in stages)
+        return f'<p class="bad">{library_text(str(error))}</p>'
+    return f"<h4>{text(_('What each stage uses now'))}</h4>" + "".join(_stage_html(s) for s in stages)
 
 
 def _stage_html(stage: StageStatus) -> str:
-    name = text(stage.stage[:1].upper() + stage.stage[1:])
+    name = library_text(stage.stage)
     if stage.network_id is None:
         about = ""
     elif stage.present:
-        about = f"a network on this machine, {_size(stage.size_mb)}, {text(stage.licence)}"
+        about = _("a network on this machine, {size}, {licence}").format(
+            size=_size(stage.size_mb), licence=text(stage.licence)
+        )
     else:
-        about = "no network on this machine"
-    advice = text(stage.advice.split(": diorama models pull")[0])
-    better = f"better: {advice}" if stage.network_id is not None and advice else advice
+        about = _("no network on this machine")
+    advice = text(_(stage.advice.split(": diorama models pull")[0]))
+    better = _("better: {advice}").format(advice=advice) if stage.network_id is not None and advice else advice
     small = " · ".join(part for part in (about, better) if part)
     small = small[:1].upper() + small[1:]
-    return f'<p><b>{name}</b>: {text(stage.implementation)}<br><span class="dim">{small}</span></p>'
+    return f'<p><b>{name}</b>: {library_text(stage.implementation)}<br><span class="dim">{small}</span></p>'
 
 
 def _offer_html(missing: tuple[Network, ...], store: ModelStore) -> str:
     if not missing:
-        return '<p class="dim">All networks of this set are installed.</p>'
+        return f'<p class="dim">{text(_("All networks of this set are installed."))}</p>'
     total = sum(n.size_bytes for n in missing) / 1e6
     rows = "".join(
         f"<tr><td>{text(n.title)}</td><td style='white-space:nowrap'>{_size(n.size_bytes / 1e6)}<br>"
@@ -112,8 +117,9 @@ def _offer_html(missing: tuple[Network, ...], store: ModelStore) -> str:
         for n in missing
     )
     known = all(n.id in store.accepted_licences() for n in missing)
-    words = "Their licences were accepted on this machine." if known else "Their licences are accepted once."
-    return f'<div class="card"><b>{_size(total)} to download.</b> {words}<table>{rows}</table></div>'
+    words = _("Their licences were accepted on this machine.") if known else _("Their licences are accepted once.")
+    size = _("{size} to download.").format(size=_size(total))
+    return f'<div class="card"><b>{text(size)}</b> {text(words)}<table>{rows}</table></div>'
 
 
 def _size(megabytes: float) -> str:

@@ -7,26 +7,36 @@ import viser
 from diorama_app.commands.registry import CommandTable
 from diorama_app.panels.toolbar import run_command
 from diorama_app.session.client import Client
+from diorama_app.strings import N_, _
 from diorama_app.web.html import LiveHtml, button, text
 from diorama_core.scene.types import SceneObject
 
 ALIGN = {
-    "align_left": "Left",
-    "align_centre": "Middle",
-    "align_right": "Right",
-    "align_back": "Far",
-    "align_depth": "Centre",
-    "align_front": "Near",
+    "align_left": N_("Left"),
+    "align_centre": N_("Middle"),
+    "align_right": N_("Right"),
+    "align_back": N_("Far"),
+    "align_depth": N_("Centre"),
+    "align_front": N_("Near"),
 }
 
 DO_WITH_IT = {
-    "focus": "Focus",
-    "duplicate": "Duplicate",
-    "mirror": "Mirror",
-    "drop": "Drop",
-    "lock": "Lock",
-    "delete": "Delete",
+    "focus": N_("Focus"),
+    "duplicate": N_("Duplicate"),
+    "mirror": N_("Mirror"),
+    "drop": N_("Drop"),
+    "lock": N_("Lock"),
+    "delete": N_("Delete"),
 }
+
+UNFINISHED = N_(
+    "There is no room yet. Mark the furniture in the photo, then press <b>Build scene</b> in the <b>Photo</b> tab."
+)
+NONE_SELECTED = N_("<b>Click an object</b> in the view or in the list, or <b>drag it</b> to where it should be.")
+MORE_WAYS = N_(
+    "Shift-click selects several objects, Shift-drag selects in a rectangle, Esc clears the selection. "
+    "Click a wall, the floor or the ceiling to paint or cover it."
+)
 
 
 class ObjectCard:
@@ -44,28 +54,22 @@ class ObjectCard:
 
     def _advice(self) -> str:
         if self._client.session.unfinished:
-            return (
-                '<div class="card">There is no room yet. Mark the furniture in the photo, then <b>Build scene</b> in '
-                "the <b>Photo</b> tab.</div>"
-            )
+            return f'<div class="card">{_(UNFINISHED)}</div>'
         if not self._client.session.scene.objects:
-            return '<div class="card">The room is empty. Insert furniture from the <b>Library</b> tab.</div>'
-        return (
-            '<div class="card"><b>Click an object</b> in the view or in the list, or <b>drag it</b> to where it should '
-            "be.<br><span class='dim'>Shift-click selects several, Shift-drag selects by rectangle, Esc clears. "
-            "Click a wall, the floor or the ceiling to paint or cover it.</span>"
-            "</div>"
-        )
+            return f'<div class="card">{_("The room is empty. Insert furniture from the <b>Library</b> tab.")}</div>'
+        return f"<div class='card'>{_(NONE_SELECTED)}<br><span class='dim'>{_(MORE_WAYS)}</span></div>"
 
     def _card(self, item: SceneObject) -> str:
         several = len(self._client.selection)
-        more = f' <span class="dim">and {several - 1} more</span>' if several > 1 else ""
-        about = [item.category] if item.category != item.label else []
+        more = (
+            f' <span class="dim">{text(_("and {count} more").format(count=several - 1))}</span>' if several > 1 else ""
+        )
+        about = [_(item.category)] if item.category != item.label else []
         if item.box_px is not None:
-            about.append(f"{100 * item.confidence:.0f} % confidence")
-        about += ["locked"] * item.locked + ["hidden"] * item.hidden
+            about.append(_("{percent} % confidence").format(percent=round(100 * item.confidence)))
+        about += [_("locked")] * item.locked + [_("hidden")] * item.hidden
         problems = "".join(
-            f' <span class="chip bad">{text(w)}</span>' for w in self._client.session.badges.get(item.id, ())
+            f' <span class="chip bad">{text(_(w))}</span>' for w in self._client.session.badges.get(item.id, ())
         )
         return (
             f"<p><b>{text(item.label)}</b>{more}{problems}<br><span class='dim'>{text(' · '.join(about))}</span></p>"
@@ -77,10 +81,10 @@ class ObjectCard:
 
     def _together(self, item: SceneObject, several: int) -> str:
         align = "".join(self._command(c, label) for c, label in ALIGN.items())
-        spread = self._command("distribute", "Distribute evenly") if several > 2 else ""
-        return f'<h4>Align with {text(item.label)}</h4><div class="three">{align}</div>' + (
+        spread = self._command("distribute", N_("Distribute evenly")) if several > 2 else ""
+        return f'<h4>{text(_("Align with {label}").format(label=item.label))}</h4><div class="three">{align}</div>' + (
             f'<div class="bar tight">{spread}</div>' if spread else ""
         )
 
     def _command(self, command_id: str, label: str) -> str:
-        return button(label, "run", command_id, title=self._commands[command_id].tooltip)
+        return button(_(label), "run", command_id, title=self._commands[command_id].tooltip)

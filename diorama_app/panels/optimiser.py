@@ -14,26 +14,33 @@ from diorama_app.panels.layout_report import COSTS, WEIGHTS, report_html
 from diorama_app.session.client import Client
 from diorama_app.session.layout_run import LayoutRun
 from diorama_app.session.preferences import RecipeName
-from diorama_app.web.html import Action, LiveHtml, button, text
-from diorama_core.io.text import number_of
+from diorama_app.strings import N_, _, plural
+from diorama_app.web.html import Action, LiveHtml, button, library_text, text
 from diorama_core.layout.weights import Weights, weighted_costs
 from diorama_core.layout.what_got_worse import in_words, resized_in_words
 from diorama_core.scene.types import Scene
 
 RECIPES: dict[str, RecipeName] = {
-    "Tidy up": "feasible",
-    "As in the paper": "paper",
-    "All in one": "all-in-one",
+    N_("Tidy up"): "feasible",
+    N_("As in the paper"): "paper",
+    N_("All in one"): "all-in-one",
 }
 ABOUT: dict[RecipeName, str] = {
-    "feasible": "Moves objects as little as possible until nothing overlaps, floats or stands outside the room.",
-    "paper": "Minimises the published costs in turn; objects may move and change size more.",
-    "all-in-one": "Minimises all published costs at once; sizes may change strongly.",
+    "feasible": N_("Moves objects as little as possible until nothing overlaps, floats or stands outside the room."),
+    "paper": N_("Minimises the published costs in turn; objects may move and change size more."),
+    "all-in-one": N_("Minimises all published costs at once; sizes may change strongly."),
 }
 COLOURS = ("#2f6fd6", "#d6542f", "#269660", "#a050c8", "#c89614", "#149696", "#7a5a3a", "#808080")
 CURVE_POINTS = 240
-ORDINALS = ("best", "second-best", "third-best", "fourth-best", "fifth-best")
-SHORT_ORDINALS = ("1st", "2nd", "3rd", "4th", "5th")
+ABOUT_ARRANGEMENTS = N_(
+    "1 gives every object its best shape, 2 the second-best, and so on. Locked objects stay. "
+    "Select objects to change only those."
+)
+
+STAYED = (
+    "{count} object that people placed stayed in place.",
+    "{count} objects that people placed stayed in place.",
+)
 
 
 class Optimiser:
@@ -42,21 +49,22 @@ class Optimiser:
     def __init__(self, gui: viser.GuiApi, client: Client) -> None:
         self._client = client
         self._gui = gui
-        self._recipe = gui.add_dropdown("Recipe", list(RECIPES), hint="How the layout is optimised")
+        self._recipe = gui.add_dropdown(_("Recipe"), list(map(_, RECIPES)), hint=_("How the layout is optimised"))
         on_change(
-            self._recipe, lambda v: client.post(lambda: client.change_preferences(recipe=RECIPES[v]), key="recipe")
+            self._recipe, lambda v: client.post(lambda: client.change_preferences(recipe=_recipe(v)), key="recipe")
         )
         self._about = LiveHtml(gui)
         self._weights: dict[str, viser.GuiSliderHandle[float]] = {}
-        with gui.add_folder("Weights", expand_by_default=False):
+        with gui.add_folder(_("Weights"), expand_by_default=False):
             for name, (label, hint) in WEIGHTS.items():
-                self._weights[name] = gui.add_slider(label, 0.0, 3.0, 0.1, 1.0, hint=f"{hint}; 1 is the default")
+                hint = _("{hint}; 1 is the default").format(hint=_(hint))
+                self._weights[name] = gui.add_slider(_(label), 0.0, 3.0, 0.1, 1.0, hint=hint)
                 on_change(self._weights[name], lambda _: client.post(self.refresh, key="weights"))
-            self._even = gui.add_button("Reset weights", color=QUIET_COLOUR, hint="Set all weights to 1")
+            self._even = gui.add_button(_("Reset weights"), color=QUIET_COLOUR, hint=_("Set all weights to 1"))
         on_press(self._even, lambda: client.post(self._evened))
-        self._start = gui.add_button("Optimise layout", hint="One undo step; Cancel restores the layout")
+        self._start = gui.add_button(_("Optimise layout"), hint=_("One undo step; Cancel restores the layout"))
         self._start_some = gui.add_button(
-            "Optimise selection", color=QUIET_COLOUR, hint="Move only the selection and what stands on it"
+            _("Optimise selection"), color=QUIET_COLOUR, hint=_("Move only the selection and what stands on it")
         )
         on_press(self._start, lambda: self._started(some=False))
         on_press(self._start_some, lambda: self._started(some=True))
@@ -73,8 +81,8 @@ class Optimiser:
         session, run = self._client.session, self._client.session.layout_run
         idle = session.jobs.status is None and bool(session.scene.objects)
         recipe = self._client.preferences.recipe
-        show_value(self._recipe, next(label for label, name in RECIPES.items() if name == recipe))
-        self._about.show(f'<p class="dim">{ABOUT[recipe]} Locked objects stay.</p>')
+        show_value(self._recipe, next(_(label) for label, name in RECIPES.items() if name == recipe))
+        self._about.show(f'<p class="dim">{text(_(ABOUT[recipe]))} {text(_("Locked objects stay."))}</p>')
         used = weighted_costs(recipe)
         for name, slider in self._weights.items():
             show_if(name in used, slider)
@@ -107,18 +115,20 @@ class Optimiser:
         count = arrangements.count
         if count < 2:
             return ""
+        every = _("Give every unlocked object its alternative {number}")
+        chosen_ones = _("Give the selected objects their alternative {number}")
         whole = "".join(
-            button(str(k + 1), "arrangement", k, title=f"Give every unlocked object its {ORDINALS[k]} shape", on=on)
+            button(str(k + 1), "arrangement", k, title=every.format(number=k + 1), on=on)
             for k, on in enumerate(arrangements.is_taken(k) for k in range(count))
         )
         some = "".join(
-            button(SHORT_ORDINALS[k], "mix", k, title=f"Give selected objects their {ORDINALS[k]} shape", on=on)
+            button(str(k + 1), "mix", k, title=chosen_ones.format(number=k + 1), on=on)
             for k, on in enumerate(arrangements.is_taken(k, chosen) for k in range(count))
         )
-        mixed = f'<p class="dim">Selection only:</p><div class="bar tight">{some}</div>' if chosen else ""
+        mixed = f'<p class="dim">{text(_("Selection only:"))}</p><div class="bar tight">{some}</div>' if chosen else ""
         return (
-            '<h4>Arrangements</h4><p class="dim">1 gives every object its best shape, 2 the second-best, and so on. '
-            f'Locked objects stay. Select objects to change only those.</p><div class="bar tight">{whole}</div>{mixed}'
+            f'<h4>{text(_("Arrangements"))}</h4><p class="dim">{text(_(ABOUT_ARRANGEMENTS))}</p>'
+            f'<div class="bar tight">{whole}</div>{mixed}'
         )
 
     def _evened(self) -> None:
@@ -180,23 +190,31 @@ class Optimiser:
             self._plot = self._plots[names]
             self._plot.data = data
             return
-        series = [viser.uplot.Series(label="Seconds")]
+        series = [viser.uplot.Series(label=_("Seconds"))]
         for name, colour in zip(names, COLOURS, strict=False):
-            series.append(viser.uplot.Series(label=COSTS.get(name, name), stroke=colour, width=2))
+            series.append(viser.uplot.Series(label=_(COSTS.get(name, name)), stroke=colour, width=2))
         with self._folder:
             self._plot = self._gui.add_uplot(
-                data, tuple(series), title="Costs", height=170, scales={"x": viser.uplot.Scale(time=False, auto=True)}
+                data,
+                tuple(series),
+                title=_("Costs"),
+                height=170,
+                scales={"x": viser.uplot.Scale(time=False, auto=True)},
             )
         self._plots[names] = self._plot
+
+
+def _recipe(label: str) -> RecipeName:
+    return next(name for english, name in RECIPES.items() if _(english) == label)
 
 
 def _choice(run: LayoutRun) -> str:
     return (
         '<div class="bar tight">'
-        + button("Before", "before", on=run.showing_before, title="Show the layout before the run")
-        + button("After", "after", on=not run.showing_before, title="Show the layout after the run")
-        + button("Keep", "keep", title="Keep the result and close the comparison")
-        + button("Revert", "back", title="Undo the optimisation")
+        + button(_("Before"), "before", on=run.showing_before, title=_("Show the layout before the run"))
+        + button(_("After"), "after", on=not run.showing_before, title=_("Show the layout after the run"))
+        + button(_("Keep"), "keep", title=_("Keep the result and close the comparison"))
+        + button(_("Revert"), "back", title=_("Undo the optimisation"))
         + "</div>"
     )
 
@@ -206,23 +224,24 @@ def _worse(run: LayoutRun, labels: Mapping[str, str]) -> str:
     lines = () if run.report is None else in_words(run.report, run.worse, labels)
     if not lines:
         return ""
-    back = button("Put back what got worse", "back worse", title="One undo step") if run.worse else ""
+    back = button(_("Put back what got worse"), "back worse", title=_("One undo step")) if run.worse else ""
     tidy = (
-        button("Tidy up", "tidy", title="Move objects onto their supports and apart")
+        button(_("Tidy up"), "tidy", title=_("Move objects onto their supports and apart"))
         if run.recipe != "feasible"
         else ""
     )
     bar = f'<div class="bar tight" style="margin:6px 0 0 0">{back}{tidy}</div>' if back or tidy else ""
-    told = "".join(f"<p>{text(line)}</p>" for line in lines)
-    return f'<div class="card warn" role="status" style="margin-bottom:6px"><b>What got worse</b>{told}{bar}</div>'
+    told = "".join(f"<p>{library_text(line)}</p>" for line in lines)
+    told = f"<b>{text(_('What got worse'))}</b>{told}"
+    return f'<div class="card warn" role="status" style="margin-bottom:6px">{told}{bar}</div>'
 
 
 def _told(run: LayoutRun, scene: Scene) -> str:
     """Which sizes changed, and what stayed because people placed it."""
     lines = list(resized_in_words(run.start, scene))
     if run.left:
-        lines.append(f"{number_of(run.left)} that people placed stayed in place.")
-    bar = button("Tidy up all", "tidy all", title="Move what people placed, too") if run.left else ""
+        lines.append(plural(*STAYED, run.left))
+    bar = button(_("Tidy up all"), "tidy all", title=_("Also move objects that people placed")) if run.left else ""
     bar = f'<div class="bar tight" style="margin:6px 0 0 0">{bar}</div>' if bar else ""
-    told = "".join(f"<p>{text(line[:1].upper() + line[1:])}</p>" for line in lines)
+    told = "".join(f"<p>{library_text(line)}</p>" for line in lines)
     return f'<div class="card" role="status" style="margin-bottom:6px">{told}{bar}</div>' if lines else ""

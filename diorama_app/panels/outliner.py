@@ -13,11 +13,11 @@ import viser
 from diorama_app.commands import edit as editing
 from diorama_app.panels.toolbar import title_bar
 from diorama_app.session.client import Client
+from diorama_app.strings import _, plural
 from diorama_app.viewport.decorations import is_unsure
 from diorama_app.web.html import Action, LiveHtml, button, run_once, text
 from diorama_core.editing.sensible_support import why_not_on
 from diorama_core.errors import EditRefused
-from diorama_core.io.text import number_of
 from diorama_core.library.taxonomy import resolve
 from diorama_core.scene.support import descendants
 from diorama_core.scene.types import Plane, Scene, SceneObject
@@ -162,17 +162,18 @@ def tree_html(
         others: what other people have selected.
     """
     if not scene.objects and not scene.architecture.planes:
-        start = button("Start with a photo", "start", title="Upload one, or describe a room in words")
-        return f'<div class="card">Nothing here yet.<div class="bar" style="margin:6px 0 0 0">{start}</div></div>'
+        start = button(_("Start with a photo"), "start", title=_("Upload one, or describe a room in words"))
+        none = text(_("Nothing here yet."))
+        return f'<div class="card">{none}<div class="bar" style="margin:6px 0 0 0">{start}</div></div>'
     tree = _Tree(scene, selection, badges or {}, others)
     planes = sorted(scene.architecture.planes, key=lambda p: p.role != "floor" and not scene.children_of(p.id))
     parts = [_plane_row(scene, p) + _children(tree, scene.children_of(p.id)) for p in planes]
     loose = [o.id for o in scene.objects if scene.support_of(o.id) is None]
     if loose:
-        parts.append(_heading("Without support"))
+        parts.append(_heading(_("Without support")))
         parts.append(_children(tree, tuple(loose)))
-    rows = f'<div role="tree" aria-label="Objects of the scene">{"".join(parts)}</div>'
-    none = '<p class="dim">No furniture yet. Insert some from the <b>Library</b>.</p>'
+    rows = f'<div role="tree" aria-label="{text(_("Objects of the scene"))}">{"".join(parts)}</div>'
+    none = f'<p class="dim">{_("No furniture yet. Insert some from the <b>Library</b> tab.")}</p>'
     return _summary(tree) + rows + ("" if scene.objects else none)
 
 
@@ -183,15 +184,14 @@ def to_check(scene: Scene, badges: Mapping[str, tuple[str, ...]]) -> tuple[str, 
 
 def _summary(tree: _Tree) -> str:
     """The number of objects, and of those that a person should look at."""
-    count, found = number_of(len(tree.scene.objects)), len(to_check(tree.scene, tree.badges))
+    count = plural("{count} object", "{count} objects", len(tree.scene.objects))
+    found = len(to_check(tree.scene, tree.badges))
     if not found:
-        return f'<p class="dim">{count}</p>'
-    show = button("Show", "check", title="Select the objects that collide, float, are outside the room or are unsure")
-    style = "padding:5px 9px;margin-bottom:6px"
-    return (
-        f'<div class="job card warn" style="{style}"><span class="words"><b>{count}</b> · {found} to check</span>'
-        f"{show}</div>"
-    )
+        return f'<p class="dim">{text(count)}</p>'
+    hint = _("Select the objects that collide, float, are outside the room or are uncertain")
+    show = button(_("Show"), "check", title=hint)
+    style, check = "padding:5px 9px;margin-bottom:6px", text(_("{count} to check").format(count=found))
+    return f'<div class="job card warn" style="{style}"><span class="words"><b>{count}</b> · {check}</span>{show}</div>'
 
 
 def _children(tree: _Tree, ids: tuple[str, ...]) -> str:
@@ -206,7 +206,7 @@ def _plane_row(scene: Scene, plane: Plane) -> str:
     key = text(plane.id)
     return _heading(
         plane_name(scene, plane),
-        f'data-drop="{key}" data-do="surface" data-arg="{key}" title="Click to paint or cover it"',
+        f'data-drop="{key}" data-do="surface" data-arg="{key}" title="{text(_("Click to paint or cover it"))}"',
     )
 
 
@@ -225,24 +225,18 @@ def _row(tree: _Tree, item: SceneObject) -> str:
         for name, colour, theirs in tree.others
         if item.id in theirs
     )
+    lock = (_("Unlock {name}") if item.locked else _("Lock {name}")).format(name=name)
+    hide = (_("Show {name}") if item.hidden else _("Hide {name}")).format(name=name)
     return (
         f'<div class="row {"on" if selected else ""} {"off" if item.hidden else ""}" role="treeitem" '
         f'aria-selected="{"true" if selected else "false"}" tabindex="{0 if item.id == tree.entry else -1}" '
         f'data-do="select" data-arg="{key}" data-grab="{key}" data-drop="{key}" draggable="true" '
         f'data-rename="{text(item.label)}">'
         f'<span class="dot" style="background:hsl({hue} 45% 58%)"></span>'
-        f'<span class="name" title="{text(name)} (F2 renames)">{text(name)}</span>{cursors}{_chips(tree, item)}'
-        + _tool(
-            "lock",
-            key,
-            LOCK % (CLOSED if item.locked else OPEN),
-            ("Unlock" if item.locked else "Lock"),
-            name,
-            item.locked,
-        )
-        + _tool(
-            "hide", key, EYE % (STRUCK if item.hidden else ""), ("Show" if item.hidden else "Hide"), name, item.hidden
-        )
+        f'<span class="name" title="{text(_("{name} (F2 renames)").format(name=name))}">{text(name)}</span>'
+        f"{cursors}{_chips(tree, item)}"
+        + _tool("lock", key, LOCK % (CLOSED if item.locked else OPEN), lock, item.locked)
+        + _tool("hide", key, EYE % (STRUCK if item.hidden else ""), hide, item.hidden)
         + "</div>"
     )
 
@@ -252,16 +246,18 @@ def _chips(tree: _Tree, item: SceneObject) -> str:
     chips = ""
     if problems:  # names need the room that a second chip would take
         more = f" +{len(problems) - 1}" if len(problems) > 1 else ""
-        chips = f'<span class="chip bad" title="{text(", ".join(problems))}">{text(problems[0])}{more}</span>'
+        chips = (
+            f'<span class="chip bad" title="{text(", ".join(map(_, problems)))}">{text(_(problems[0]))}{more}</span>'
+        )
     elif is_unsure(item):
         share = item.confidence if item.belief is None else min(item.confidence, item.belief.right)
-        sure = f"{100 * share:.0f} % sure; review it, or compare it with the photo"
-        chips += f'<span class="chip" title="{sure}">unsure</span>'
+        hint = _("{percent} % sure; review it, or compare it with the photo").format(percent=round(100 * share))
+        chips += f'<span class="chip" title="{text(hint)}">{text(_("uncertain"))}</span>'
     return chips
 
 
-def _tool(do: str, key: str, icon: str, title: str, name: str, on: bool) -> str:
+def _tool(do: str, key: str, icon: str, title: str, on: bool) -> str:
     return (
         f'<button type="button" class="tool {"on" if on else ""}" data-do="{do}" data-arg="{key}" tabindex="-1" '
-        f'title="{title}" aria-label="{text(f"{title} {name}")}">{icon}</button>'
+        f'title="{text(title)}" aria-label="{text(title)}">{icon}</button>'
     )

@@ -6,6 +6,7 @@ import viser
 
 from diorama_app.commands.import_model import FIXES, correct_model, is_own_model
 from diorama_app.session.client import Client
+from diorama_app.strings import _
 from diorama_app.web.html import Action, LiveHtml, button, text
 from diorama_core.library.record import Shape
 
@@ -24,13 +25,13 @@ class OwnModel:
             self._html.show("")
             return
         shape = self._client.session.library.shape(item.shape_id)
-        fixes = "".join(button(fix.name, "fix", name, title=fix.hint) for name, fix in FIXES.items())
+        fixes = "".join(button(_(fix.name), "fix", name, title=_(fix.hint)) for name, fix in FIXES.items())
         self._html.show(
-            f'<h4>Your model</h4><div class="dim">{text(_guessed(shape))}</div>'
+            f'<h4>{text(_("Your model"))}</h4><div class="dim">{text(_guessed(shape))}</div>'
             f'<div class="bar tight">{fixes}</div>'
             '<div style="display:flex;gap:4px;margin-bottom:4px">'
-            f'<input data-change="is" aria-label="What the model is" value="{text(shape.category)}" '
-            'title="Type what the model is and press Enter"></div>'
+            f'<input data-change="is" aria-label="{text(_("What the model is"))}" value="{text(_(shape.category))}" '
+            f'title="{text(_("Type what the model is and press Enter"))}"></div>'
         )
 
     def _act(self, action: Action) -> None:
@@ -44,7 +45,9 @@ class OwnModel:
 def _guessed(shape: Shape) -> str:
     """The guesses as a sentence."""
     if shape.guess is None:
-        return f"Guessed: {shape.category}."
+        return _("Guessed: {category}.").format(category=_(shape.category))
     sure = round(100 * min(shape.guess.up.confidence, shape.guess.front.confidence))
     unit = shape.guess.unit.value
-    return f"Guessed: {shape.category}; one unit is {unit} m; {sure} % sure which side is up. Correct it here."
+    return _("Guessed: {category}; one unit is {unit} m; {sure} % sure which side is up. Correct it here.").format(
+        category=_(shape.category), unit=unit, sure=sure
+    )

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable
 
 from diorama_app.session.client import Client
+from diorama_app.strings import _
 from diorama_app.web.html import Action, button, switch, text
 from diorama_core.library.own_models import OwnModels
 from diorama_core.library.record import Shape
@@ -43,10 +44,11 @@ class OwnShelf:
         """What concerns all models."""
         models = self.models
         deleted = [i for i in models.deleted if self._is_there(i)]
-        hint = "Builds and rooms made from words may choose your models"
-        drawn = switch("Use in new rooms", hint, "in builds", on=models.in_builds)
+        hint = _("Builds and rooms from a description may choose your models")
+        drawn = switch(_("Use in new rooms"), hint, "in builds", on=models.in_builds)
         if deleted:
-            again = button(f"Restore the model deleted last ({len(deleted)})", "model-restore", deleted[-1])
+            label = _("Restore the last deleted model ({count})").format(count=len(deleted))
+            again = button(label, "model-restore", deleted[-1])
             drawn += f'<div class="bar tight">{again}</div>'
         return drawn
 
@@ -54,11 +56,14 @@ class OwnShelf:
         """The name and the folder of a model, to be typed, and its deletion."""
         models, key = self.models, text(shape.id)
         name, folder = models.names.get(shape.id, shape.caption), models.folders.get(shape.id, "")
-        gone = button("Delete", "model-delete", shape.id, title=f"Delete {name}; scenes that use it keep it")
+        hint = _("Delete {name}; scenes that use it keep it").format(name=name)
+        gone = button(_("Delete"), "model-delete", shape.id, title=hint)
+        its_name, its_folder = (text(m.format(name=name)) for m in (_("Name of {name}"), _("Folder of {name}")))
         return (
-            f'<input data-change="model-name" data-arg="{key}" value="{text(name)}" aria-label="Name of {text(name)}">'
-            f'<input data-change="model-folder" data-arg="{key}" value="{text(folder)}" placeholder="Folder" '
-            f'aria-label="Folder of {text(name)}"><div class="bar tight" style="margin:4px 0 0 0">{gone}</div>'
+            f'<input data-change="model-name" data-arg="{key}" value="{text(name)}" aria-label="{its_name}">'
+            f'<input data-change="model-folder" data-arg="{key}" value="{text(folder)}" '
+            f'placeholder="{text(_("Folder"))}" aria-label="{its_folder}">'
+            f'<div class="bar tight" style="margin:4px 0 0 0">{gone}</div>'
         )
 
     def do(self, action: Action) -> bool:
@@ -90,7 +95,7 @@ class OwnShelf:
             library.keep_order(library.own_models.restored(shape_id))
             client.refresh()
 
-        client.offer(f"{name} is deleted", "Undo", again)
+        client.offer(_("{name} is deleted.").format(name=name), _("Undo"), again)
 
     def _is_there(self, shape_id: str) -> bool:
         library = self._client.session.library

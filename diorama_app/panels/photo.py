@@ -35,6 +35,7 @@ from diorama_app.reconstruction.object_correction import add_from_photo
 from diorama_app.reconstruction.photo_joining import join_photo
 from diorama_app.reconstruction.text_to_scene import describe_room, how_pictures_come
 from diorama_app.session.client import Client
+from diorama_app.strings import N_, _
 from diorama_app.viewport.annotation_canvas import Deleted, Selected
 from diorama_app.viewport.mesh_assets import reduced
 from diorama_app.web.html import Action, LiveHtml, button, text
@@ -53,12 +54,15 @@ SLOW_BYTES = 2_000_000
 """A file of more is announced while it is read."""
 
 KINDS: dict[Sort, str] = {
-    "photo": "Photo",
-    "boxes": "Boxes",
-    "depth": "Depth",
-    "masks": "Masks",
-    "confidence": "Confidence",
+    "photo": N_("Photo"),
+    "boxes": N_("Boxes"),
+    "depth": N_("Depth"),
+    "masks": N_("Masks"),
+    "confidence": N_("Confidence"),
 }
+INVITATION = N_(
+    "Drop it here or upload it. Then draw a box around each piece of furniture, and build a scene that you can edit."
+)
 
 
 class PhotoPanel:
@@ -78,27 +82,28 @@ class PhotoPanel:
         self._no_scene = LiveHtml(gui, self._act, floating="dio-no-scene")
         client.open_board = self._boxes.open
         client.proposals, client.dismiss = self._boxes.proposals, self._boxes.dismiss
-        self._more = gui.add_folder("More", expand_by_default=False)
+        self._more = gui.add_folder(_("More"), expand_by_default=False)
         with self._more:
-            self._find = gui.add_button("Detect furniture", hint=commands["find_furniture"].tooltip)
+            self._find = gui.add_button(_("Detect furniture"), hint=commands["find_furniture"].tooltip)
             on_press(self._find, lambda: client.post(lambda: commands["find_furniture"].run(client)))
             self._no_detector = LiveHtml(gui, self._act)
-            hint = "Build a photo without boxes as soon as it is uploaded, from what is found in it"
-            self._at_once = gui.add_checkbox("Build uploads at once", client.preferences.build_at_once, hint=hint)
+            hint = _("Build a photo without boxes as soon as it is uploaded, from what is found in it")
+            self._at_once = gui.add_checkbox(_("Build uploads at once"), client.preferences.build_at_once, hint=hint)
             on_change(self._at_once, lambda on: client.post(lambda: client.change_preferences(build_at_once=bool(on))))
             self._files = gui.add_folder(None)
             with self._files:
-                self._upload(gui, "boxes", "Add boxes", ".json,.xml,.txt,.csv")
-                self._upload(gui, "depth", "Add depth", "*/*")
-                self._upload(gui, "masks", "Add masks", "image/png,.npy,.npz,.zip,.json,.tif,.tiff")
-                self._camera = gui.add_text("Camera", "", hint="fx,fy,cx,cy in pixels of the photo; empty: estimated")
+                self._upload(gui, "boxes", _("Add boxes"), ".json,.xml,.txt,.csv")
+                self._upload(gui, "depth", _("Add depth"), "*/*")
+                self._upload(gui, "masks", _("Add masks"), "image/png,.npy,.npz,.zip,.json,.tif,.tiff")
+                hint = _("fx,fy,cx,cy in pixels of the photo; estimated when empty")
+                self._camera = gui.add_text(_("Camera"), "", hint=hint)
                 on_change(self._camera, self._camera_given)
-        self._upload(gui, "photo", "Upload a photo", "image/*")
-        self._words = gui.add_text("Describe a room", "", hint="For example: a bedroom with a double bed and two lamps")
-        self._describe = gui.add_button(
-            "Create room", color=GO_COLOUR, hint="Create a new project from this description"
-        )
-        on_change(self._words, lambda _: client.post(self.refresh, key="words"))
+        self._upload(gui, "photo", _("Upload a photo"), "image/*")
+        hint = _("For example: a bedroom with a double bed and two lamps")
+        self._words = gui.add_text(_("Describe a room"), "", hint=hint)
+        hint = _("Create a new project from this description")
+        self._describe = gui.add_button(_("Create room"), color=GO_COLOUR, hint=hint)
+        on_change(self._words, lambda words: client.post(self.refresh, key="words"))
         on_press(self._describe, lambda: client.post(lambda: describe_room(client, self._words.value)))
         self._drawn_by = LiveHtml(gui)
 
@@ -125,13 +130,13 @@ class PhotoPanel:
 
     def add(self, new: Mapping[Sort, Source]) -> None:
         """Read the open photo together with further files of it, and keep what comes of it."""
-        self._read_again(f"add {' and '.join(KINDS[kind].lower() for kind in new)}", new)
+        self._read_again(_("add {kinds}").format(kinds=", ".join(_(KINDS[kind]).lower() for kind in new)), new)
         for source in new.values():
             self._announce(source.name, source.data)
 
     def _announce(self, name: str, content: bytes) -> None:
         if len(content) > SLOW_BYTES:
-            self._client.notice(f"Reading {name}…")
+            self._client.notice(_("Reading {name}…").format(name=name))
 
     def refresh(self) -> None:
         """Draw what is known of the photo."""
@@ -143,7 +148,7 @@ class PhotoPanel:
         show_if(inputs is not None, self._more)
         show_if(further is None, self._files)
         show_if(further is None, self._words, self._describe)
-        self._drawn_by.show(f'<p class="dim">{text(how_pictures_come())}</p>' if self._words.value.strip() else "")
+        self._drawn_by.show(f'<p class="dim">{text(_(how_pictures_come()))}</p>' if self._words.value.strip() else "")
         enable(self._describe, idle and bool(self._words.value.strip()))
         finds, about = self._session.glances.of("detection", _detection)
         enable(self._find, idle and finds)
@@ -209,7 +214,7 @@ class PhotoPanel:
     def _camera_given(self, value: str) -> None:
         def read() -> None:
             if self._session.inputs is not None and (not value.strip() or value.count(",") == 3):
-                self._read_again("set the camera", {})
+                self._read_again(_("set the camera"), {})
 
         self._client.post(read, key="camera")
 
@@ -227,8 +232,8 @@ class PhotoPanel:
             "accept all": boxes.accept_all,
             "board": boxes.open,
             "add box": self._add_selected,
-            "turn": lambda: self._read_again("turn the photo", {}, turn=True),
-            "bend": lambda: self._read_again("undo straightening", {}, bend=True),
+            "turn": lambda: self._read_again(_("turn the photo"), {}, turn=True),
+            "bend": lambda: self._read_again(_("undo straightening"), {}, bend=True),
             "build": lambda: work.build(client.session),
             "build at once": self._build_found,
             "by hand": self._mark_by_hand,
@@ -271,21 +276,20 @@ class PhotoPanel:
 
     def _introduction(self, inputs: Inputs | None) -> str:
         if inputs is None:
-            return (
-                '<div class="drop"><b>Start with a photo of a room.</b><br>'
-                '<span class="dim">Drop it here or upload it. Then draw a box around each piece of furniture, and '
-                "build a scene that you can edit.</span></div>"
-            )
-        extras = [name for name, there in _extras(inputs).items() if there]
-        extra = f'<br><span class="dim">with {", ".join(extras)}</span>' if extras else ""
+            title, more = text(_("Start with a photo of a room.")), text(_(INVITATION))
+            return f'<div class="drop"><b>{title}</b><br><span class="dim">{more}</span></div>'
+        extras = [_(name) for name, there in _extras(inputs).items() if there]
+        extra = (
+            f'<br><span class="dim">{text(_("with {kinds}").format(kinds=", ".join(extras)))}</span>' if extras else ""
+        )
         about = text(inputs.photo.name) + extra
         if self._client.view.canvas.is_open:
             return f"<p>{about}</p>"  # the photo itself is on the board
         if self._picture_of is not inputs.photo:
             self._picture_of, self._picture = inputs.photo, _jpeg_uri(inputs.photo.rgb)
         return (
-            f'<img class="photo" alt="The photo" src="{self._picture}"'
-            ' title="Drop another photo here to start another project">'
+            f'<img class="photo" alt="{text(_("The photo"))}" src="{self._picture}"'
+            f' title="{text(_("Drop another photo here to start another project"))}">'
             f'<p style="margin-top:6px">{about}</p>'
         )
 
@@ -298,18 +302,19 @@ def _detection() -> tuple[bool, str]:
         return finds, ""
     size = f"{sum(n.size_bytes for n in missing) / 1e6:.0f} MB"
     licences = ", ".join(sorted({n.licence for n in missing}))
-    fetch = button(f"Download {size} and detect", "download", title=f"Accept their licences: {licences}")
+    label = _("Download {size} and detect").format(size=size)
+    fetch = button(label, "download", title=_("Accept their licences: {licences}").format(licences=licences))
     return finds, (
-        f'<p class="dim">{text(PROPOSALS_ONLY if finds else NO_DETECTOR)}</p>{fetch}'
-        f'<p class="dim">Licences: {text(licences)}.</p>'
+        f'<p class="dim">{text(_(PROPOSALS_ONLY if finds else NO_DETECTOR))}</p>{fetch}'
+        f'<p class="dim">{text(_("Licences: {licences}.").format(licences=licences))}</p>'
     )
 
 
 def _extras(inputs: Inputs) -> dict[str, bool]:
     return {
-        "depth": inputs.depth_m is not None,
-        "masks": inputs.instances is not None,
-        "camera": inputs.intrinsics is not None,
+        N_("depth"): inputs.depth_m is not None,
+        N_("masks"): inputs.instances is not None,
+        N_("camera"): inputs.intrinsics is not None,
     }
 
 
@@ -319,7 +324,8 @@ def _intrinsics(given: str) -> tuple[float, float, float, float] | None:
     try:
         fx, fy, cx, cy = (float(part) for part in given.split(","))
     except ValueError as error:
-        raise InputError(f"the camera '{given[:40]}' is not four numbers; give fx,fy,cx,cy in pixels") from error
+        said = _("the camera “{words}” is not four numbers; give fx,fy,cx,cy in pixels").format(words=given[:40])
+        raise InputError(said) from error
     return fx, fy, cx, cy
 
 

@@ -5,9 +5,9 @@ from __future__ import annotations
 from diorama_app.reconstruction.build_job import builds_unasked, ready_to_build
 from diorama_app.reconstruction.photo_joining import awaits_photo
 from diorama_app.session.client import Client
-from diorama_app.web.html import button
+from diorama_app.strings import _, plural
+from diorama_app.web.html import button, text
 from diorama_core.artefacts import Inputs
-from diorama_core.io.text import number_of
 from diorama_core.perception.inputs.boxes.standing import is_upside_down
 
 
@@ -21,25 +21,26 @@ def photo_bar(client: Client, inputs: Inputs, proposals: int) -> str:
     """
     scene, further, busy = client.session.scene, client.further_photo, client.session.jobs.status is not None
     if builds_unasked(client.session):
-        mine = button("Mark it myself", "by hand", title="Stop building, and draw boxes around the furniture yourself")
-        return f'<div class="bar"><span class="lead">Building what was found in the photo.</span>{mine}</div>'
+        hint = _("Stop building, and draw boxes around the furniture yourself")
+        mine, said = button(_("Mark it myself"), "by hand", title=hint), _("Building what was found in the photo.")
+        return f'<div class="bar"><span class="lead">{text(said)}</span>{mine}</div>'
     pieces = []
     if proposals:
-        pieces.append(f'<span class="lead">{number_of(proposals, "proposal")}</span>')
-        pieces.append(button("Accept all", "accept all", title="Accept all proposals as boxes; one undo step"))
+        pieces.append(f'<span class="lead">{text(plural("{count} proposal", "{count} proposals", proposals))}</span>')
+        pieces.append(button(_("Accept all"), "accept all", title=_("Accept all proposals as boxes; one undo step")))
     if not client.view.canvas.is_open:
-        pieces.append(button(marking_label(inputs), "board", title="Show the photo and mark furniture on it"))
+        pieces.append(button(marking_label(inputs), "board", title=_("Show the photo and mark furniture on it")))
     if further is None and scene.objects and client.selected_box is not None:
-        hint = "Reconstruct only the selected box; everything else stays"
-        pieces.append(button("Add selected box to the scene", "add box", title=hint, disabled=busy))
+        hint = _("Reconstruct only the selected box; everything else stays")
+        pieces.append(button(_("Add selected box to the scene"), "add box", title=hint, disabled=busy))
     if further is None and proposals and not ready_to_build(inputs):
-        hint = "Build with the surest proposals; what the build is not sure of is asked afterwards"
-        pieces.append(button("Build at once", "build at once", title=hint, disabled=busy))
+        hint = _("Build with the surest proposals; you are asked about uncertain results afterwards")
+        pieces.append(button(_("Build at once"), "build at once", title=hint, disabled=busy))
     elif further is None:
         pieces.append(build_button(inputs, busy=busy))
     if further is not None or awaits_photo(scene):
-        hint = "Find where this photo was taken, match its objects with those of the scene and insert the others"
-        pieces.append(button("Add to the scene", "join", title=hint, disabled=busy))
+        hint = _("Find where this photo was taken, match its objects with those of the scene and insert the others")
+        pieces.append(button(_("Add to the scene"), "join", title=hint, disabled=busy))
     doubt = upside_down_note() if further is None and is_upside_down(inputs.boxes, inputs.photo.height) else ""
     doubt += straightened_note() if further is None and _may_be_bent_back(client, inputs) else ""
     return f'{doubt}<div class="bar">{"".join(pieces)}</div>'
@@ -47,15 +48,15 @@ def photo_bar(client: Client, inputs: Inputs, proposals: int) -> str:
 
 def upside_down_note() -> str:
     """What is said of a photo whose things lie as in one that was turned by 180 degrees, and the button to turn it."""
-    turn = button("Turn photo", "turn", title="Turn the photo by 180 degrees, with its boxes, depth and masks")
-    return f'<div class="bar"><span class="lead">The photo seems to be upside down.</span>{turn}</div>'
+    turn = button(_("Turn photo"), "turn", title=_("Turn the photo by 180 degrees, with its boxes, depth and masks"))
+    return f'<div class="bar"><span class="lead">{text(_("The photo seems to be upside down."))}</span>{turn}</div>'
 
 
 def straightened_note() -> str:
     """What is said of a photo that was straightened by its own lines, and the button that undoes it."""
-    back = button("Undo straightening", "bend", title="Use the photo as it is in its file")
-    said = "The lens bent straight lines, so the photo was straightened."
-    return f'<div class="bar"><span class="lead">{said}</span>{back}</div>'
+    back = button(_("Undo straightening"), "bend", title=_("Use the photo as it is in its file"))
+    said = _("The lens bent straight lines, so the photo was straightened.")
+    return f'<div class="bar"><span class="lead">{text(said)}</span>{back}</div>'
 
 
 def _may_be_bent_back(client: Client, inputs: Inputs) -> bool:
@@ -68,18 +69,23 @@ def no_scene_card(client: Client) -> str:
     inputs, session = client.session.inputs, client.session
     if inputs is None or not session.unfinished or client.view.canvas.is_open or session.jobs.status is not None:
         return ""
-    marked = f"{number_of(len(inputs.boxes), 'object')} marked" if inputs.boxes else "nothing is marked yet"
+    count = len(inputs.boxes)
+    said = plural(
+        "There is no scene yet: {count} object is marked.", "There is no scene yet: {count} objects are marked.", count
+    )
+    said = said if count else _("There is no scene yet: nothing is marked.")
     buttons = button(marking_label(inputs), "board") + build_button(inputs, busy=False)
-    return f'<div class="card"><p>There is no scene yet: {marked}.</p><div class="bar">{buttons}</div></div>'
+    return f'<div class="card"><p>{text(said)}</p><div class="bar">{buttons}</div></div>'
 
 
 def marking_label(inputs: Inputs) -> str:
     """Words of the button that shows the photo to be marked."""
-    return "Continue marking" if inputs.boxes else "Mark furniture"
+    return _("Continue marking") if inputs.boxes else _("Mark furniture")
 
 
 def build_button(inputs: Inputs, *, busy: bool) -> str:
     """The button that builds the scene, with the number of boxes."""
     count = f" ({len(inputs.boxes)})" if inputs.boxes else ""
-    hint = "Build a scene from the photo and its boxes"
-    return button(f"Build scene{count}", "build", title=hint, disabled=busy or not ready_to_build(inputs))
+    ready = ready_to_build(inputs)
+    hint = _("Build a scene from the photo and its boxes")
+    return button(_("Build scene") + count, "build", title=hint, disabled=busy or not ready)

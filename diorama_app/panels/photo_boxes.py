@@ -9,6 +9,7 @@ from diorama_app.reconstruction.build_job import builds_unasked
 from diorama_app.reconstruction.networks import can_find_furniture
 from diorama_app.reconstruction.suggestions import Suggestions
 from diorama_app.session.client import Client
+from diorama_app.strings import _, plural
 from diorama_app.viewport.annotation_canvas import (
     Accepted,
     Clicked,
@@ -26,7 +27,6 @@ from diorama_core.artefacts import Box, Inputs, LabelledBox, Photo
 from diorama_core.editing.box_checks import merged_boxes, too_tall
 from diorama_core.editing.input_corrections import labelled_box, same_object, with_box_at, without_box
 from diorama_core.errors import InputError
-from diorama_core.io.text import number_of
 from diorama_core.library.taxonomy import CATEGORIES, column, is_furniture
 
 COMMON = tuple(sorted(filter(is_furniture, column("frequency")), key=lambda kind: -column("frequency")[kind])[:10])
@@ -98,7 +98,8 @@ class PhotoBoxes:
             boxes = (*inputs.boxes, *accepted)
             doubtful = too_tall(boxes)
             self._client.selected_box = doubtful[0][0] if doubtful else None
-            self._annotate(f"mark {number_of(len(accepted))}", replace(inputs, boxes=boxes))
+            label = plural("mark {count} object", "mark {count} objects", len(accepted))
+            self._annotate(label, replace(inputs, boxes=boxes))
             self._client.refresh()
             self._client.notice(" ".join(_accepted_in_words(boxes, len(proposed) - len(accepted), doubtful)))
 
@@ -139,12 +140,14 @@ class PhotoBoxes:
                 self._suggested(inputs).name(box, marked, lambda row: client.post(lambda: self._drawn(photo, row)))
             case Reshaped(i, box):
                 now = replace(inputs.boxes[i], box=box)
-                self._annotate(f"change the box of {now.label}", with_box_at(inputs, i, now))
+                self._annotate(_("change the box of {label}").format(label=now.label), with_box_at(inputs, i, now))
             case Named(i, label):
                 self._rename(i, label)
             case Deleted(i):
                 client.selected_box = None
-                self._annotate(f"delete the box of {inputs.boxes[i].label}", without_box(inputs, i))
+                self._annotate(
+                    _("delete the box of {label}").format(label=inputs.boxes[i].label), without_box(inputs, i)
+                )
             case Clicked(x, y):
                 client.selected_box = None
                 client.refresh()
@@ -169,7 +172,7 @@ class PhotoBoxes:
             return  # another project was opened meanwhile
         known = None if box is None else same_object(inputs.boxes, box.box)
         if box is None:
-            self._client.notice("Nothing is recognised there; drag a box around the object.")
+            self._client.notice(_("Nothing was recognised there; drag a box around the object."))
         elif known is None:
             self._mark(inputs, labelled_box(box.box, box.label))
         else:
@@ -184,7 +187,7 @@ class PhotoBoxes:
 
     def _mark(self, inputs: Inputs, box: LabelledBox) -> None:
         """Add a box and select it, so that it can be named and changed at once."""
-        self._annotate(f"mark: {box.label}", replace(inputs, boxes=(*inputs.boxes, box)))
+        self._annotate(_("mark: {label}").format(label=box.label), replace(inputs, boxes=(*inputs.boxes, box)))
         self._client.selected_box = len(inputs.boxes)
         self._client.refresh()
 
@@ -193,12 +196,13 @@ class PhotoBoxes:
             self._client.session.jobs.cancel(in_favour=True)  # who marks something wants to build with it
         self._client.annotate(label, inputs)
 
-    def _rename(self, index: int, label: str) -> None:
-        inputs, words = self._client.marked, " ".join(label.split())
+    def _rename(self, index: int, name: str) -> None:
+        inputs, words = self._client.marked, " ".join(name.split())
         if inputs is None or not words or inputs.boxes[index].label == words:
             return
         now = labelled_box(inputs.boxes[index].box, words)
-        self._annotate(f"change {inputs.boxes[index].label} to {words}", with_box_at(inputs, index, now))
+        label = _("change {label} to {words}").format(label=inputs.boxes[index].label, words=words)
+        self._annotate(label, with_box_at(inputs, index, now))
 
     def name(self, word: str) -> None:
         """A name was chosen for the selected box."""
@@ -212,42 +216,53 @@ class PhotoBoxes:
             return ""
         value, likely = inputs.boxes[index].label, self._likely(inputs, index)
         names = (*likely, *(name for name in COMMON if name not in likely))[: len(COMMON)]
-        chips = "".join(button(text(name), "name", name, on=name == value) for name in names)
+        chips = "".join(button(text(_(name)), "name", name, on=name == value) for name in names)
         options = "".join(f'<option value="{text(name)}">' for name in NAMES)
         return (
-            '<h4><label for="dio-box-name">Name of the selected box</label></h4>'
+            f'<h4><label for="dio-box-name">{text(_("Name of the selected box"))}</label></h4>'
             f'<input id="dio-box-name" list="dio-box-names" data-change="named" value="{text(value)}">'
             f'<datalist id="dio-box-names">{options}</datalist>'
             f'<div class="bar tight" style="margin-top:6px">{chips}</div>'
         )
 
 
+MERGED = (
+    "{count} proposal was left out because another box shows the same object.",
+    "{count} proposals were left out because other boxes show the same objects.",
+)
+
+
 def box_list(inputs: Inputs, selected: int | None) -> str:
     """All boxes, to be selected and deleted; how to make the first one."""
     if not inputs.boxes:
-        found = "Build the scene: furniture is detected automatically. Or click" if can_find_furniture() else "Click"
-        return f'<p class="dim">{found} each piece of furniture in the photo, or drag a box around it.</p>'
+        said = _("Click each piece of furniture in the photo, or drag a box around it.")
+        if can_find_furniture():
+            said = _("Build the scene: furniture is detected automatically.") + " " + said
+        return f'<p class="dim">{text(said)}</p>'
     rows = []
     for index, box in enumerate(inputs.boxes):
-        unknown = ' <span class="dim">unknown kind</span>' if box.category == "object" else ""
+        unknown = f' <span class="dim">{text(_("unknown kind"))}</span>' if box.category == "object" else ""
         rows.append(
             f'<div class="row {"on" if index == selected else ""}" data-do="mark" data-arg="{index}" role="treeitem" '
             f'tabindex="0" aria-selected="{"true" if index == selected else "false"}">'
             f'<span class="name">{text(box.label)}{unknown}</span>'
-            + button("✕", "drop", index, title=f"Delete the box of {box.label}")
+            + button("✕", "drop", index, title=_("Delete the box of {label}").format(label=box.label))
             + "</div>"
         )
-    return f'<h4>Boxes</h4><div role="tree" aria-label="Boxes">{"".join(rows)}</div>'
+    return f'<h4>{text(_("Boxes"))}</h4><div role="tree" aria-label="{text(_("Boxes"))}">{"".join(rows)}</div>'
 
 
 def _accepted_in_words(
     boxes: Sequence[LabelledBox], merged: int, doubtful: Sequence[tuple[int, float]]
 ) -> Iterator[str]:
     """What became of all proposals, in sentences."""
-    yield "All proposals are accepted."
+    yield _("All proposals are accepted.")
     if merged:
-        yield f"Left out, since another box shows the same: {number_of(merged, 'proposal')}."
+        yield plural(*MERGED, merged)
     if doubtful:
         index, height_m = doubtful[0]
-        more = f" (and {len(doubtful) - 1} more)" if len(doubtful) > 1 else ""
-        yield f"The {boxes[index].label}{more} would be {height_m:.1f} m high or more: check its name and its box."
+        yield _("{label} would be at least {height_m:.1f} m high; check its name and its box.").format(
+            label=boxes[index].label.capitalize(), height_m=height_m
+        )
+        if len(doubtful) > 1:
+            yield plural("{count} more box is doubtful.", "{count} more boxes are doubtful.", len(doubtful) - 1)

@@ -17,15 +17,16 @@ from diorama_app.reconstruction.camera_correction import (
 )
 from diorama_app.session.client import Client
 from diorama_app.session.units import format_length, parse_length
+from diorama_app.strings import N_, _
 from diorama_app.web.html import Action, LiveHtml, button, text
 from diorama_core.errors import InputError
 from diorama_core.geometry.camera_attitude import CameraAttitude
 from diorama_core.scene.types import Camera
 
 FIELDS = {
-    "fov": ("Field of view (°)", "From the left to the right edge of the photo"),
-    "tilt": ("Tilt down (°)", "Angle of the camera below the horizon; sets where the floor is"),
-    "roll": ("Roll (°)", "Angle by which the camera leans to the right"),
+    "fov": (N_("Field of view (°)"), N_("From the left to the right edge of the photo")),
+    "tilt": (N_("Tilt down (°)"), N_("Angle of the camera below the horizon; sets where the floor is")),
+    "roll": (N_("Roll (°)"), N_("Angle by which the camera leans to the right")),
 }
 
 
@@ -55,27 +56,28 @@ class PhotoCameraPanel:
             self._client.trial_camera = None
         values = {**self._figures, **self._typed}
         shown_as = {name: f"{round(value, 1) + 0.0:.1f}" for name, value in values.items()}  # no minus before a zero
-        rows = "".join(_row(label, name, shown_as[name], hint) for name, (label, hint) in FIELDS.items())
+        rows = "".join(_row(_(label), name, shown_as[name], _(hint)) for name, (label, hint) in FIELDS.items())
         shown = format_length(camera_height_m(session.scene) or 0.0, self._client.preferences.unit)
-        rows += _row("Camera height", "height", shown, "The whole scene is rescaled to it")
+        rows += _row(_("Camera height"), "height", shown, _("The whole scene is rescaled to it"))
         again = button(
-            "Rebuild with this camera",
+            _("Rebuild with this camera"),
             "build",
-            title="Recompute poses, shapes and layout; outlines stay. One undo step",
+            title=_("Recompute poses, shapes and layout; outlines stay. One undo step"),
             disabled=not self._typed or session.jobs.status is not None,
         )
-        back = button("Cancel", "back", title="Reset") if self._typed else ""
+        back = button(_("Cancel"), "back", title=_("Reset")) if self._typed else ""
         inputs = session.document.inputs
         if inputs is not None and inputs.camera_attitude is not None and not self._typed:
             back = button(
-                "Estimate tilt",
+                _("Estimate tilt"),
                 "find",
-                title="Discard the tilt and roll set by hand, and rebuild",
+                title=_("Discard the tilt and roll set by hand, and rebuild"),
                 disabled=session.jobs.status is not None,
             )
-        explained = '<p class="dim">The grid should lie on the floor of the photo.</p>' if self._typed else ""
+        explained = f'<p class="dim">{text(_("The grid should lie on the floor of the photo."))}</p>'
+        explained = explained if self._typed else ""
         self._html.show(
-            f'<details {"open" if self._used else ""}><summary class="dim">Camera and floor</summary>'
+            f'<details {"open" if self._used else ""}><summary class="dim">{text(_("Camera and floor"))}</summary>'
             f'{explained}<table>{rows}</table><div class="bar tight">{again}{back}</div></details>'
         )
 
@@ -129,7 +131,7 @@ def _degrees(words: str) -> float:
     try:
         return float(words.replace("°", "").replace(",", ".").strip())
     except ValueError as error:
-        raise InputError(f"'{words[:20]}' is not an angle; write for example 62.5") from error
+        raise InputError(_("“{words}” is not an angle; write for example 62.5").format(words=words[:20])) from error
 
 
 def _row(name: str, do: str, value: str, hint: str) -> str:

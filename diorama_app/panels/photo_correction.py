@@ -9,6 +9,7 @@ import viser
 
 from diorama_app.reconstruction.object_correction import redraw_box, rename_class, start_outline, use_outline
 from diorama_app.session.client import Client
+from diorama_app.strings import _
 from diorama_app.viewport.annotation_canvas import Drawn, Event, Finished, Pointed
 from diorama_app.web.html import Action, LiveHtml, button, text
 from diorama_core.artefacts import LabelledBox
@@ -35,26 +36,27 @@ class PhotoCorrection:
             return
         if self._of is not None and not self._client.view.canvas.is_open:
             self._of = self._outline = None
+        title, cancel = f"<h4>{text(_('From the photo'))}</h4>", button(_("Cancel"), "stop")
         if self._outline is not None:
             self._html.show(
-                '<h4>From the photo</h4><div class="card">Click the object; Shift-click what does not belong to it.'
-                f'<div class="bar tight" style="margin:6px 0 0 0">{button("Use this outline", "use")}'
-                f"{button('Cancel', 'stop')}</div></div>"
+                f'{title}<div class="card">{text(_("Click the object; Shift-click what does not belong to it."))}'
+                f'<div class="bar tight" style="margin:6px 0 0 0">{button(_("Use this outline"), "use")}{cancel}</div>'
+                "</div>"
             )
         elif self._of is not None:
             self._html.show(
-                '<h4>From the photo</h4><div class="card">Draw a box around it in the photo.'
-                f'<div class="bar tight" style="margin:6px 0 0 0">{button("Cancel", "stop")}</div></div>'
+                f'{title}<div class="card">{text(_("Draw a box around it in the photo."))}'
+                f'<div class="bar tight" style="margin:6px 0 0 0">{cancel}</div></div>'
             )
         else:
             self._html.show(
-                '<h4>From the photo</h4><div style="display:flex;gap:8px;align-items:center;margin-bottom:6px">'
-                '<span class="dim" style="white-space:nowrap">This is a</span>'
-                f'<input data-change="is" aria-label="Object category" value="{text(item.category)}" '
-                'title="Type a category and press Enter to retrieve matching shapes"></div>'
+                f'{title}<div style="display:flex;gap:8px;align-items:center;margin-bottom:6px">'
+                f'<span class="dim" style="white-space:nowrap">{text(_("This is a"))}</span>'
+                f'<input data-change="is" aria-label="{text(_("Object category"))}" value="{text(_(item.category))}" '
+                f'title="{text(_("Type a category and press Enter to retrieve matching shapes"))}"></div>'
                 '<div class="bar tight">'
-                + button("Redraw box", "box", title="Draw a new box around it in the photo")
-                + button("Fix outline", "outline", title="Correct the outline by clicks in the photo")
+                + button(_("Redraw box"), "box", title=_("Draw a new box around it in the photo"))
+                + button(_("Fix outline"), "outline", title=_("Correct the outline by clicks in the photo"))
                 + "</div>"
             )
 

@@ -15,13 +15,14 @@ from diorama_app.panels.upload_field import UploadField
 from diorama_app.projects.uploads import Upload
 from diorama_app.reconstruction.photo_joining import awaits_photo, missing_for_joining, take_out, take_photo
 from diorama_app.session.client import Client
+from diorama_app.strings import N_, _, plural
 from diorama_app.viewport.mesh_assets import reduced
 from diorama_app.web.html import Action, LiveHtml, button, text
 from diorama_core.artefacts import FurtherPhoto
 
 TILE_PX = 200
 """Size of the pictures, which are shown at half of it."""
-ADVICE = (
+ADVICE = N_(
     "Take another photo from one or two steps to the side, with most of the same furniture in view. The scene stays."
 )
 KEPT = 128
@@ -35,7 +36,7 @@ class PhotoStrip:
         self._client, self._views = client, views
         self._pictures: dict[int, tuple[object, str]] = {}
         self._html = LiveHtml(gui, self._act)
-        self._upload = UploadField(gui, client, "Add a photo of this room", self._received, mime_type="image/*")
+        self._upload = UploadField(gui, client, _("Add a photo of this room"), self._received, mime_type="image/*")
         self._upload.show_if(False)
 
     def refresh(self) -> None:
@@ -46,20 +47,20 @@ class PhotoStrip:
         missing = session.glances.of("joining", lambda: missing_for_joining(session.scene)) if shown else ""
         self._upload.show_if(shown and not missing)
         if inputs is None or camera is None or not session.further_photos:
-            self._html.show(f'<p class="dim">{text(missing or ADVICE)}</p>' if shown else "")
+            self._html.show(f'<p class="dim">{text(_(missing or ADVICE))}</p>' if shown else "")
             return
-        own = self._tile("", "First photo", inputs.photo.rgb, on=client.further_photo is None, joined=True)
+        own = self._tile("", _("First photo"), inputs.photo.rgb, on=client.further_photo is None, joined=True)
         rest = "".join(
             self._tile(p.name, p.name, p.inputs.photo.rgb, on=p is client.further_photo, joined=p.camera is not None)
             for p in session.further_photos
         )
         further = client.further_photo
         about = "" if further is None else _about(further)
-        self._html.show(f'<h4>Photos of this room</h4><div class="grid">{own}{rest}</div>{about}')
+        self._html.show(f'<h4>{text(_("Photos of this room"))}</h4><div class="grid">{own}{rest}</div>{about}')
 
     def _tile(self, name: str, label: str, rgb: UInt8[np.ndarray, "h w 3"], *, on: bool, joined: bool) -> str:
-        state = "" if joined else "<small>not in the scene yet</small>"
-        title = f"Look through {label}" if joined else f"Mark what {label} shows"
+        state = "" if joined else f"<small>{text(_('not in the scene yet'))}</small>"
+        title = (_("Show the view of {label}") if joined else _("Mark the furniture in {label}")).format(label=label)
         return (
             f'<button type="button" class="tile {"on" if on else ""}" data-do="choose" data-arg="{text(name)}" '
             f'title="{text(title)}" aria-pressed="{"true" if on else "false"}">'
@@ -98,7 +99,7 @@ class PhotoStrip:
     def _choose(self, name: str | None) -> None:
         client = self._client
         client.choose_photo(name)
-        camera, _ = client.looked_through
+        camera = client.looked_through[0]
         if camera is not None:
             self._views.photo(client)
         else:
@@ -109,9 +110,12 @@ class PhotoStrip:
 def _about(photo: FurtherPhoto) -> str:
     """What is to do with the chosen photo."""
     if photo.camera is None:
-        said = "Mark the furniture that the first photo does not show, or shows less well. Then add it to the scene."
+        said = _("Mark the furniture that the first photo does not show, or shows less well. Then add it to the scene.")
     else:
-        count = len(photo.seen)
-        said = "1 object of the scene is seen in it." if count == 1 else f"{count} objects of the scene are seen in it."
-    out = button("Remove photo", "out", title="Remove the photo; its objects stay. One undo step")
+        said = plural(
+            "{count} object of the scene is visible in it.",
+            "{count} objects of the scene are visible in it.",
+            len(photo.seen),
+        )
+    out = button(_("Remove photo"), "out", title=_("Remove the photo; its objects stay. One undo step"))
     return f'<p class="dim" style="margin-top:6px">{text(said)}</p><div class="bar tight">{out}</div>'

@@ -10,8 +10,8 @@ import viser
 from diorama_app.commands.edit import supporter_name
 from diorama_app.session.client import Client
 from diorama_app.session.units import format_length
+from diorama_app.strings import _, plural
 from diorama_app.web.html import Action, LiveHtml, fold_button, text
-from diorama_core.io.text import number_of
 from diorama_core.scene.types import Scene, SceneObject
 
 if TYPE_CHECKING:
@@ -36,8 +36,9 @@ class Physics:
             self._of, self._table = wanted, "" if wanted is None else self._measured(*wanted)
             if wanted is None:
                 self._client.view.show_colliders(None, np.zeros((0, 3), dtype=int))
-        what = "mass, friction, joints and colliders, as they are exported to simulators"
-        self._html.show("" if item is None else fold_button("Physics", "fold", what, unfolded=unfolded) + self._table)
+        what = _("mass, friction, joints and colliders, as they are exported to simulators")
+        fold = fold_button(_("Physics"), "fold", what, unfolded=unfolded)
+        self._html.show("" if item is None else fold + self._table)
 
     def _measured(self, item: SceneObject, scene: Scene) -> str:
         """The table of one object; draws its colliders."""
@@ -46,26 +47,27 @@ class Physics:
 
         body = body_of(scene, self._client.session.library, item.id)
         hulls = [hull_faces(part) for part in world_parts(body)]
-        starts = np.cumsum([0, *(len(vertices) for vertices, _ in hulls)])
+        starts = np.cumsum([0, *(len(hull[0]) for hull in hulls)])
         vertices, faces = (np.concatenate([hull[k] for hull in hulls]) for k in (0, 1))
-        faces = faces + np.repeat(starts[:-1], [len(f) for _, f in hulls])[:, None]
+        faces = faces + np.repeat(starts[:-1], [len(hull[1]) for hull in hulls])[:, None]
         self._client.view.show_colliders(vertices, faces)
         rows = [
-            ("Mass", f"{body.mass_kg + sum(m.inertia.mass_kg for m in body.moving):.3g} kg"),
-            ("Friction", f"{body.friction:g}"),
-            ("Moves", _freedom(body, scene)),
-            *((m.limb.name.capitalize(), self._joint(m)) for m in body.moving),
-            ("Colliders", number_of(len(hulls), "convex part")),
+            (_("Mass"), f"{body.mass_kg + sum(m.inertia.mass_kg for m in body.moving):.3g} kg"),
+            (_("Friction"), f"{body.friction:g}"),
+            (_("Moves"), _freedom(body, scene)),
+            *((_(m.limb.name).capitalize(), self._joint(m)) for m in body.moving),
+            (_("Colliders"), plural("{count} convex part", "{count} convex parts", len(hulls))),
         ]
         cells = "".join(f"<tr><td>{text(name)}</td><td>{text(value)}</td></tr>" for name, value in rows)
-        return f'<table>{cells}</table><p class="dim">The colliders are drawn in the view.</p>'
+        return f'<table>{cells}</table><p class="dim">{text(_("The colliders are drawn in the view."))}</p>'
 
     def _joint(self, moving: MovingPart) -> str:
         """What a joint does, and how far."""
         limb = moving.limb
         if limb.kind == "slide":
-            return f"slides {format_length(limb.upper - limb.lower, self._client.preferences.unit)}"
-        return f"turns {np.degrees(limb.upper - limb.lower):.0f}°"
+            length = format_length(limb.upper - limb.lower, self._client.preferences.unit)
+            return _("slides {length}").format(length=length)
+        return _("turns {degrees:.0f}°").format(degrees=np.degrees(limb.upper - limb.lower))
 
     def _act(self, action: Action) -> None:
         client = self._client
@@ -76,8 +78,10 @@ class Physics:
 def _freedom(body: RigidBody, scene: Scene) -> str:
     """Whether a simulator may move an object, or what holds it."""
     if body.free:
-        return "freely"
+        return _("freely")
     if body.node.item.locked:
-        return "no: it is locked"
+        return _("no: it is locked")
     edge = body.node.support
-    return "no: nothing supports it" if edge is None else f"no: fixed to {supporter_name(scene, edge.parent)}"
+    if edge is None:
+        return _("no: nothing supports it")
+    return _("no: fixed to {supporter}").format(supporter=supporter_name(scene, edge.parent))

@@ -9,14 +9,15 @@ import viser
 from diorama_app.panels.dialog import dialog
 from diorama_app.reconstruction.picture_job import PictureView, film_suffix, picture_size, take_picture
 from diorama_app.session.client import Client
+from diorama_app.strings import N_, _
 from diorama_app.web.html import Action, LiveHtml, button, text
 
 WIDTHS = (640, 1280, 1920, 2560, 3840)
 FILM_WIDTHS = (480, 640, 960, 1280)
 VIEWS: dict[PictureView, tuple[str, str]] = {
-    "here": ("This view", "What you see now"),
-    "photo": ("Photo's camera", "From where the photo was taken"),
-    "turntable": ("Turntable", "A film that goes once around the scene"),
+    "here": (N_("This view"), N_("What you see now")),
+    "photo": (N_("Photo's camera"), N_("From where the photo was taken")),
+    "turntable": (N_("Turntable"), N_("A film that goes once around the scene")),
 }
 """Name and explanation."""
 
@@ -24,7 +25,7 @@ VIEWS: dict[PictureView, tuple[str, str]] = {
 def show_picture(client: Client) -> None:
     """Open the choices over the page; the picture itself is a job."""
     gui: viser.GuiApi = client.viser_client.gui
-    with dialog(client, "Picture") as close:
+    with dialog(client, _("Picture")) as close:
         _Choices(gui, client, close).show()
 
 
@@ -41,13 +42,18 @@ class _Choices:
         """Draw the choices."""
         has_photo = self._client.session.scene.camera is not None
         views = "".join(
-            button(name, "view", view, title=hint, on=view == self._view, disabled=view == "photo" and not has_photo)
+            button(
+                _(name), "view", view, title=_(hint), on=view == self._view, disabled=view == "photo" and not has_photo
+            )
             for view, (name, hint) in VIEWS.items()
         )
-        widths = "".join(button(str(w), "width", w, title="pixels wide", on=w == self._width) for w in self._widths())
-        buttons = button("Make picture", "make", on=True) + button("Close", "close")
+        widths = "".join(
+            button(str(w), "width", w, title=_("pixels wide"), on=w == self._width) for w in self._widths()
+        )
+        buttons = button(_("Make picture"), "make", on=True) + button(_("Close"), "close")
         self._html.show(
-            f'<h4>From</h4><div class="bar">{views}</div><h4>Pixels across</h4><div class="bar">{widths}</div>'
+            f'<h4>{text(_("View"))}</h4><div class="bar">{views}</div>'
+            f'<h4>{text(_("Width in pixels"))}</h4><div class="bar">{widths}</div>'
             f'<p class="dim">{text(self._in_words())}</p><div class="bar" style="margin:10px 0 0">{buttons}</div>'
         )
 
@@ -57,8 +63,12 @@ class _Choices:
     def _in_words(self) -> str:
         across, down = picture_size(self._client, self._view, self._width)
         if self._view == "turntable":
-            return f"Four seconds of {across} × {down} pixels, as {film_suffix()[1:].upper()}; takes some minutes."
-        return f"{across} × {down} pixels, as PNG, with soft shadows; takes some seconds."
+            return _("Four seconds of {across} × {down} pixels, as {format}; takes some minutes.").format(
+                across=across, down=down, format=film_suffix()[1:].upper()
+            )
+        return _("{across} × {down} pixels, as PNG, with soft shadows; takes some seconds.").format(
+            across=across, down=down
+        )
 
     def _do(self, action: Action) -> None:
         if action.do == "close":

@@ -18,6 +18,7 @@ from diorama_app.commands.insert import put_opening
 from diorama_app.panels.plan_picture import PicturesBelow
 from diorama_app.session.client import Client
 from diorama_app.session.units import Unit, format_length, parse_length
+from diorama_app.strings import _, plural
 from diorama_app.web.html import Action, LiveHtml, run_once
 from diorama_core.editing.plan_edits import corners, move_corner, set_wall_length, wall_feet
 from diorama_core.editing.wall_edits import draw_room, split_wall
@@ -25,7 +26,6 @@ from diorama_core.errors import EditRefused, LibraryError
 from diorama_core.export.footprints import Outline, outline
 from diorama_core.export.plan import OVERHEAD_M, UNNAMED, RoomLines, drawing_order, room_lines
 from diorama_core.geometry.openings import OPENING_CATEGORIES, wall_of
-from diorama_core.io.text import number_of
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.scene.room_edits import floor_height, move_plane
 from diorama_core.scene.types import Scene, SceneObject
@@ -174,25 +174,26 @@ class Plan:
                 case "wall":
                     wall, outward = str(arg[0]), float(arg[1])
                     name = editing.supporter_name(session.scene, wall)
-                    session.edit(f"move {name}", lambda s: move_plane(s, wall, outward), by=client)
+                    session.edit(_("move {name}").format(name=name), lambda s: move_plane(s, wall, outward), by=client)
                 case "corner":
                     first, second, shift = str(arg[0]), str(arg[1]), np.array([float(arg[2]), float(arg[3])])
-                    session.edit("move a corner", lambda s: move_corner(s, first, second, shift), by=client)
+                    session.edit(_("move a corner"), lambda s: move_corner(s, first, second, shift), by=client)
                 case "length":
                     wall, metres = str(arg[0]), parse_length(str(arg[1]), client.preferences.unit)
                     name = editing.supporter_name(session.scene, wall)
-                    session.edit(f"set the length of {name}", lambda s: set_wall_length(s, wall, metres), by=client)
+                    label = _("set the length of {name}").format(name=name)
+                    session.edit(label, lambda s: set_wall_length(s, wall, metres), by=client)
                 case "split":
                     wall, at = str(arg[0]), np.array([float(arg[1]), float(arg[2])])
                     name = editing.supporter_name(session.scene, wall)
-                    session.edit(f"split {name}", lambda s: split_wall(s, wall, at), by=client)
+                    session.edit(_("split {name}").format(name=name), lambda s: split_wall(s, wall, at), by=client)
                 case "door" | "window":
                     put_opening(client, action.do, str(arg[0]), np.array([float(arg[1]), float(arg[2])]))
                 case "picture":
                     self._picture.placed(arg)
                 case "room":
                     outline = np.array(arg, dtype=np.float64).reshape(-1, 2)
-                    session.edit("draw the room", lambda s: draw_room(s, outline), by=client)
+                    session.edit(_("draw the room"), lambda s: draw_room(s, outline), by=client)
         except (KeyError, TypeError, IndexError, json.JSONDecodeError) as error:
             raise EditRefused("that is no longer in the plan") from error
         finally:
@@ -209,6 +210,12 @@ class Plan:
             client.select((object_id,))
 
 
+PHOTO_HERE = (
+    "A photo from here would show where {count} object is",
+    "A photo from here would show where {count} objects are",
+)
+
+
 def _doubts(scene: Scene) -> dict[str, Any]:
     """Where objects may be whose places are not sure, and from where another photo would tell."""
     from diorama_core.review.viewpoint import next_photo, place_outline  # SciPy and shapely: only once a plan is shown
@@ -218,13 +225,9 @@ def _doubts(scene: Scene) -> dict[str, Any]:
     photo = next_photo(scene)
     told = None
     if photo is not None:
-        words = f"A photo from here would tell where {number_of(photo.objects, 'object')} {_is(photo.objects)}"
+        words = plural(*PHOTO_HERE, photo.objects)
         told = {"at": _flat(photo.position), "to": _flat(photo.look_at), "words": words}
     return {"spreads": [_flat(o) for o in outlines], "photo": told}
-
-
-def _is(number: int) -> str:
-    return "is" if number == 1 else "are"
 
 
 def _rectangle(item: SceneObject, half: np.ndarray) -> Outline:

@@ -13,6 +13,7 @@ from jaxtyping import UInt8
 
 from diorama_app.panels.upload_field import hidden_upload
 from diorama_app.session.client import Client
+from diorama_app.strings import _
 from diorama_app.web.html import run_once
 from diorama_core.errors import EditRefused
 from diorama_core.importing.plan_pages import plan_page
@@ -40,7 +41,7 @@ class PicturesBelow:
         self._client, self._bounds = client, bounds
         self._told: tuple[object, ...] = ()
         self._uuid = hidden_upload(
-            gui, client, "Picture of a plan", self._received, mime_type="image/*,application/pdf"
+            gui, client, _("Picture of a plan"), self._received, mime_type="image/*,application/pdf"
         )
         self._teller = gui.add_html("")
 

@@ -20,7 +20,8 @@ from diorama_app.projects.packing import SUFFIX
 from diorama_app.reconstruction.opening_job import open_file
 from diorama_app.session.client import Client
 from diorama_app.session.session import EditorSession
-from diorama_app.web.html import Action, LiveHtml, button, text
+from diorama_app.strings import _
+from diorama_app.web.html import Action, LiveHtml, button, library_text, text
 from diorama_core.errors import EditRefused, ProjectError
 from diorama_core.importing.forms import SUFFIXES
 from diorama_core.io.bounded import read_picture
@@ -40,17 +41,17 @@ class Projects:
     ) -> None:
         self._client = client
         self._status = LiveHtml(gui, self._act)
-        save = gui.add_button("Save now", color=QUIET_COLOUR, hint=commands["save"].tooltip)
+        save = gui.add_button(_("Save now"), color=QUIET_COLOUR, hint=commands["save"].tooltip)
         on_press(save, lambda: client.post(lambda: commands["save"].run(client)))
-        start = gui.add_button("Start page", color=QUIET_COLOUR, hint=commands["start_page"].tooltip)
+        start = gui.add_button(_("Start page"), color=QUIET_COLOUR, hint=commands["start_page"].tooltip)
         on_press(start, lambda: client.post(client.open_start))
-        everything = gui.add_button("All projects", color=QUIET_COLOUR, hint=commands["projects"].tooltip)
+        everything = gui.add_button(_("All projects"), color=QUIET_COLOUR, hint=commands["projects"].tooltip)
         on_press(everything, lambda: client.post(client.open_projects))
-        UploadField(gui, client, "New from a photo", take_photo, color=GO_COLOUR, mime_type="image/*")
+        UploadField(gui, client, _("New from a photo"), take_photo, color=GO_COLOUR, mime_type="image/*")
         self._open = UploadField(
             gui,
             client,
-            "Open a file",
+            _("Open a file"),
             lambda name, content: open_file(client, name, content),
             color=QUIET_COLOUR,
             mime_type=",".join((*SUFFIXES, SUFFIX)),
@@ -63,33 +64,34 @@ class Projects:
         session = self._client.session
         enable(self._open.handle, session.jobs.status is None)
         if session.project is None:
-            self._status.show('<div class="card">No project is open.</div>')
+            self._status.show(f'<div class="card">{text(_("No project is open."))}</div>')
         else:
             named, versions = session.glances.of("versions", partial(_name_and_versions, session.project))
             self._status.show(
                 f"{named}<p class='dim' style='margin-top:4px'>{text(_what_becomes_of_changes(session))}</p>{versions}"
             )
-        notes = "".join(f"<p>{text(note[:1].upper() + note[1:])}.</p>" for note in session.notes[:6])
-        self._notes.show(f'<h4>How this scene was made</h4><div class="card">{notes}</div>' if notes else "")
+        notes = "".join(f"<p>{library_text(note)}.</p>" for note in session.notes[:6])
+        title = f"<h4>{text(_('How this scene was made'))}</h4>"
+        self._notes.show(f'{title}<div class="card">{notes}</div>' if notes else "")
         self._list.show(session.glances.of("projects", self._listed))
 
     def _listed(self) -> str:
         """The projects that were changed last."""
         session = self._client.session
         rows = "".join(self._row(folder) for folder in project_care.recent_projects(session.projects_dir)[:RECENT])
-        return f"<h4>Recent projects</h4>{rows}" if rows else ""
+        return f"<h4>{text(_('Recent projects'))}</h4>{rows}" if rows else ""
 
     def _row(self, folder: Path) -> str:
         session = self._client.session
         current = session.project is not None and session.project.folder.resolve() == folder.resolve()
-        when = time.strftime("%d %b %H:%M", time.localtime(project_care.touched(folder)))
+        when = time.strftime("%Y-%m-%d, %H:%M", time.localtime(project_care.touched(folder)))
         name = text(project_care.name_of(folder))
         on = "on" if current else ""
         return (
             f'<div class="row tall {on}" data-do="open" data-arg="{text(project_care.address_of(folder))}">'
             f'{self._picture(folder)}<span class="name" title="{name}"><b>{name}</b>'
             f'<span class="dim">{when}</span></span>'
-            + ("" if current else button("Open", "open", project_care.address_of(folder)))
+            + ("" if current else button(_("Open"), "open", project_care.address_of(folder)))
             + "</div>"
         )
 
@@ -107,11 +109,11 @@ class Projects:
         if action.do == "rename" and session.project is not None:
             session.need_writable()
             project_care.rename_project(session.project, action.pair[1])
-            client.toast(f"This project is now called {session.project.name}", False)
+            client.toast(_("This project is now called {name}.").format(name=session.project.name), False)
         elif action.do == "version" and session.project is not None:
             scene = project_care.earlier_scene(session.project, action.arg)
             session.textures = {**session.textures, **session.project.textures(scene)}
-            session.commit("restore an earlier version", scene, by=client, selection=())
+            session.commit(_("restore an earlier version"), scene, by=client, selection=())
         elif action.do == "open":
             self._visit(action.arg)
         session.glances.forget()
@@ -124,31 +126,30 @@ class Projects:
         if folder is None:
             raise EditRefused("that project no longer exists")
         project = Project.open(folder)
-        session.visit(self._client, project, f"Opened {project.name}.")
+        session.visit(self._client, project, _("Opened {name}.").format(name=project.name))
 
 
 def _name_and_versions(project: Project) -> tuple[str, str]:
     """The field with the project's name, and its earlier versions."""
     earlier = "".join(
         f'<div class="row"><span class="name">{text(when)}</span>'
-        + button("Restore this version", "version", file)
+        + button(_("Restore this version"), "version", file)
         + "</div>"
         for file, when in project_care.earlier_versions(project)
     )
     return (
-        f'<input data-change="rename" value="{text(project.name)}" aria-label="Project name" title="Type to rename">',
-        f"<details><summary class='dim'>Earlier versions</summary>{earlier}</details>" if earlier else "",
+        f'<input data-change="rename" value="{text(project.name)}" aria-label="{text(_("Project name"))}" '
+        f'title="{text(_("Type to rename"))}">',
+        f"<details><summary class='dim'>{text(_('Earlier versions'))}</summary>{earlier}</details>" if earlier else "",
     )
 
 
 def _what_becomes_of_changes(session: EditorSession) -> str:
     if session.read_only:
-        return "This project is read-only here."
-    return (
-        "Changes cannot be saved at the moment."
-        if session.autosave.trouble
-        else "Every change is saved as you make it."
-    )
+        return _("This project is read-only here.")
+    if session.autosave.trouble:
+        return _("Changes cannot be saved at the moment.")
+    return _("Every change is saved as you make it.")
 
 
 @lru_cache(maxsize=MAX_PICTURES)

@@ -11,7 +11,8 @@ from diorama_app.commands import edit as editing
 from diorama_app.panels.fields import on_change, show_if, show_value
 from diorama_app.session.client import Client
 from diorama_app.session.units import UNITS, Unit, format_length, in_unit, parse_length
-from diorama_app.web.html import Action, LiveHtml, button, fold_button, text
+from diorama_app.strings import N_, _
+from diorama_app.web.html import Action, LiveHtml, button, fold_button, library_text, text
 from diorama_core.arrangement.explain import in_words, strongest
 from diorama_core.artefacts import Reason
 from diorama_core.editing.clearances import Clearance, clearances
@@ -22,17 +23,17 @@ SIZE_ORDER = [1, 0, 2]
 """Fields show width, depth, height; the object's axes are depth, width, height."""
 
 FINISHES: dict[Finish | None, tuple[str, str]] = {
-    None: ("Original", "The original finish of the shape"),
-    "matt": ("Matt", "No highlights: chalk, felt"),
-    "satin": ("Satin", "Soft highlights: lacquered wood, leather"),
-    "gloss": ("Gloss", "Sharp highlights: porcelain, varnish"),
-    "metal": ("Metal", "Brushed metal in its colour"),
+    None: (N_("Original"), N_("The original finish of the shape")),
+    "matt": (N_("Matt"), N_("No highlights: chalk, felt")),
+    "satin": (N_("Satin"), N_("Soft highlights: lacquered wood, leather")),
+    "gloss": (N_("Gloss"), N_("Sharp highlights: porcelain, varnish")),
+    "metal": (N_("Metal"), N_("Brushed metal in its colour")),
 }
 """Label and hint of every finish."""
 
 MATERIAL_SOURCES: dict[MaterialSource, tuple[str, str]] = {
-    "photo": ("As in the photo", "Pictures and materials taken from the photo"),
-    "library": ("Shape's own", "The shape's own materials, in the colour chosen above"),
+    "photo": (N_("As in the photo"), N_("Pictures and materials taken from the photo")),
+    "library": (N_("Of the shape"), N_("The shape's own materials, in the colour chosen above")),
 }
 """Label and hint of every source of materials."""
 
@@ -40,9 +41,10 @@ MADE_OPEN = frozenset(("laptop",))
 """Kinds whose shapes stand open and are closed by their joint."""
 
 FIELDS: dict[str, tuple[str, str, tuple[str, str, str]]] = {
-    "Position": ("place", "Centre of its base", ("x", "y", "Height")),
-    "Size": ("size", "Width, depth and height of the object", ("Width", "Depth", "Height")),
+    N_("Position"): ("place", N_("Centre of the object's base"), ("x", "y", N_("Height"))),
+    N_("Size"): ("size", N_("Width, depth and height of the object"), (N_("Width"), N_("Depth"), N_("Height"))),
 }
+SIDE_NAMES = {"front": N_("Front"), "back": N_("Back"), "left": N_("Left"), "right": N_("Right")}
 """What the fields are called: the action, a hint, and the name of every axis."""
 
 SHOWN_OVERLAP_M = 0.001
@@ -54,10 +56,10 @@ class Properties:
 
     def __init__(self, gui: viser.GuiApi, client: Client) -> None:
         self._client = client
-        self._colour = gui.add_rgb("Colour", (200, 200, 200), visible=False, hint="Paint its main material")
+        self._colour = gui.add_rgb(_("Colour"), (200, 200, 200), visible=False, hint=_("Paint its main material"))
         self._own = LiveHtml(gui, self._act)
         self._fold = LiveHtml(gui, self._act)
-        self._name = gui.add_text("Name", "", visible=False)
+        self._name = gui.add_text(_("Name"), "", visible=False)
         self._fields = LiveHtml(gui, self._act)
         self._why = LiveHtml(gui)
         on_change(self._name, lambda v: self._with(lambda i: editing.rename(client, i, v), "name"))
@@ -74,7 +76,7 @@ class Properties:
         item, numbers = self._client.selected, self._client.preferences.numbers
         show_if(item is not None, self._colour)
         show_if(item is not None and numbers, self._name)
-        fold = fold_button("Name, position and size", "numbers", "the fields for exact numbers", unfolded=numbers)
+        fold = fold_button(_("Name, position and size"), "numbers", _("the fields for exact numbers"), unfolded=numbers)
         self._fold.show("" if item is None else fold)
         self._fields.show(self._lengths(item) if item is not None and numbers else "")
         if item is None:
@@ -102,19 +104,21 @@ class Properties:
         rows = []
         for name, (do, hint, axes) in FIELDS.items():
             values = editing.base_position(item) if do == "place" else item.size_m[SIZE_ORDER]
+            named = text(_(name))
             cells = "".join(
                 f'<label>{axis}<input data-change="{do}" data-arg="{k}" inputmode="decimal" '
-                f'aria-label="{name}: {axis}" value="{text(_length(float(values[k]), unit))}"></label>'
-                for k, axis in enumerate(axes)
+                f'aria-label="{named}: {axis}" value="{text(_length(float(values[k]), unit))}"></label>'
+                for k, axis in enumerate(text(_(axis)) for axis in axes)
             )
-            rows.append(f'<h4 title="{hint}">{name}{"" if unit == "ft-in" else f" ({unit})"}</h4>{_grid(cells)}')
+            rows.append(_heading(_(name), _(hint), unit) + _grid(cells))
         rows.append(self._distances(item, unit))
         turn = round(float(np.degrees(item.pose.yaw_rad)), 1) + 0.0  # no minus before a zero
         units = "".join(f"<option {'selected' if u == unit else ''}>{u}</option>" for u in UNITS)
+        direction, named = text(_("Direction (°)")), text(_("Unit"))
         cells = (
-            f'<label>Direction (°)<input data-change="turn" value="{turn:g}" aria-label="Direction (°)" '
-            'inputmode="decimal" title="Where its front points, around the vertical axis"></label>'
-            f'<label>Unit<select data-change="unit" aria-label="Unit">{units}</select></label>'
+            f'<label>{direction}<input data-change="turn" value="{turn:g}" aria-label="{direction}" '
+            f'inputmode="decimal" title="{text(_("Where its front points, around the vertical axis"))}"></label>'
+            f'<label>{named}<select data-change="unit" aria-label="{named}">{units}</select></label>'
         )
         return "".join(rows) + _grid(cells)
 
@@ -124,17 +128,23 @@ class Properties:
 
         def cell(c: Clearance) -> str:
             other, overlaps = editing.supporter_name(scene, c.other), c.distance_m < -SHOWN_OVERLAP_M
-            title = f"Overlaps {other} by {_length(-c.distance_m, unit)}" if overlaps else f"To {other}"
+            title = (_("Overlaps {other} by {length}") if overlaps else _("Distance to {other}")).format(
+                other=other, length=_length(abs(c.distance_m), unit)
+            )
+            side = text(_(SIDE_NAMES[c.side]))
             return (
-                f'<label class="{"bad" if overlaps else ""}">{c.side.capitalize()}<input data-change="gap" '
-                f'data-arg="{c.side}" inputmode="decimal" aria-label="Distance: {c.side}" title="{text(title)}" '
+                f'<label class="{"bad" if overlaps else ""}">{side}<input data-change="gap" data-arg="{c.side}" '
+                f'inputmode="decimal" aria-label="{text(_("Distance"))}: {side}" title="{text(title)}" '
                 f'value="{text(_length(max(c.distance_m, 0.0), unit))}"></label>'
             )
 
         cells = "".join(map(cell, clearances(scene, item.id)))
-        hint = "Free length on each side, to the nearest wall or neighbour; type one to move the object"
-        heading = f'<h4 title="{hint}">Distances{"" if unit == "ft-in" else f" ({unit})"}</h4>'
-        return heading + _grid(cells).replace('class="fields"', 'class="fields four"') if cells else ""
+        hint = _("Free length on each side, to the nearest wall or neighbour; type one to move the object")
+        return (
+            _heading(_("Distances"), hint, unit) + _grid(cells).replace('class="fields"', 'class="fields four"')
+            if cells
+            else ""
+        )
 
     def _typed(self, do: str, axis: str, words: str) -> None:
         """Something was written into one of the fields; what cannot be used goes back to what it was."""
@@ -189,35 +199,34 @@ class Properties:
 def _surface(item: SceneObject) -> str:
     """Buttons for the source of its materials, for the finish of the main one, and one that takes the paint off."""
     finishes = "".join(
-        button(label, "finish", finish or "", title=hint, on=item.finish == finish)
+        button(_(label), "finish", finish or "", title=_(hint), on=item.finish == finish)
         for finish, (label, hint) in FINISHES.items()
     )
-    own = button("Original colours", "own", title="Remove the paint") if item.colour is not None else ""
+    own = button(_("Original colours"), "own", title=_("Remove the paint")) if item.colour is not None else ""
     paint = f'<div class="bar tight wide">{own}</div>' if own else ""
     sources = "".join(
-        button(label, "materials", source, title=hint, on=item.material_source == source)
+        button(_(label), "materials", source, title=_(hint), on=item.material_source == source)
         for source, (label, hint) in MATERIAL_SOURCES.items()
     )
-    taken = f'<h4>Materials</h4><div class="bar tight">{sources}</div>'
-    return (
-        f'{taken if item.photo_materials else ""}{paint}<h4>Finish</h4><div class="bar tight one-row">{finishes}</div>'
-    )
+    taken = f'<h4>{text(_("Materials"))}</h4><div class="bar tight">{sources}</div>'
+    below = f'{paint}<h4>{text(_("Finish"))}</h4><div class="bar tight one-row">{finishes}</div>'
+    return (taken if item.photo_materials else "") + below
 
 
 def _why(reasons: Sequence[Reason]) -> str:
     """What decided most about an object when it was built, in plain words; empty where that is not known."""
-    lines = "".join(f"<li>{text(in_words(reason))}</li>" for reason in reasons)
-    hint = "What decided most when the scene was built from the photo, and how much it counts"
-    return f'<h4 title="{hint}">Why</h4><ul class="why">{lines}</ul>' if lines else ""
+    lines = "".join(f"<li>{library_text(in_words(reason))}</li>" for reason in reasons)
+    hint = _("What influenced this object most when the scene was built from the photo, and by how much")
+    return f'<h4 title="{text(hint)}">{text(_("Why"))}</h4><ul class="why">{lines}</ul>' if lines else ""
 
 
 def _opening(item: SceneObject) -> str:
     """How far doors, drawers and lids stand open; how far those are closed that are made open."""
     percent = round(100 * item.open_share)
-    word = "Close" if item.category in MADE_OPEN else "Open"
+    word = _("Close") if item.category in MADE_OPEN else _("Open")
     return (
-        f'<label class="dio-slider"><span>{word} <b>{percent} %</b></span><input type="range" data-change="open" '
-        f'min="0" max="100" step="5" value="{percent}" data-unit=" %" aria-label="{word}"></label>'
+        f'<label class="dio-slider"><span>{text(word)} <b>{percent} %</b></span><input type="range" data-change="open" '
+        f'min="0" max="100" step="5" value="{percent}" data-unit=" %" aria-label="{text(word)}"></label>'
     )
 
 
@@ -225,7 +234,11 @@ def _share(words: str) -> float:
     try:
         return float(np.clip(float(words), 0.0, 100.0)) / 100.0
     except ValueError as error:
-        raise InputError(f"'{words[:20]}' is not a percentage; write for example 50") from error
+        raise InputError(_("“{words}” is not a percentage; write for example 50").format(words=words[:20])) from error
+
+
+def _heading(name: str, hint: str, unit: Unit) -> str:
+    return f'<h4 title="{text(hint)}">{text(name)}{"" if unit == "ft-in" else f" ({unit})"}</h4>'
 
 
 def _grid(cells: str) -> str:
@@ -240,4 +253,4 @@ def _degrees(words: str) -> float:
     try:
         return float(words.replace("°", "").replace(",", ".").strip())
     except ValueError as error:
-        raise InputError(f"'{words[:20]}' is not an angle; write for example 90") from error
+        raise InputError(_("“{words}” is not an angle; write for example 90").format(words=words[:20])) from error

@@ -17,11 +17,11 @@ from diorama_app.panels.fields import on_change, show_if, show_value
 from diorama_app.reconstruction.object_correction import add_from_photo
 from diorama_app.session.client import Client
 from diorama_app.session.units import format_length, parse_length
+from diorama_app.strings import _, plural
 from diorama_app.viewport.thumbnails import SIDE_PX, Paint
-from diorama_app.web.html import Action, LiveHtml, button, text
+from diorama_app.web.html import Action, LiveHtml, button, library_text, text
 from diorama_core.artefacts import Box
 from diorama_core.errors import EditRefused
-from diorama_core.io.text import number_of
 from diorama_core.library.labels import understand_label
 from diorama_core.library.taxonomy import UNKNOWN
 from diorama_core.review.answers import answered, candidate_of
@@ -61,10 +61,10 @@ class Review:
         """Questions that were put off; all are asked again when the review is opened anew."""
         self._html = LiveHtml(gui, lambda action: client.post(lambda: self._act(action), key=_key(action)))
         self._other = gui.add_text(
-            "It is another kind", "", visible=False, hint="Type what it is: armchair, wardrobe, …"
+            _("It is another kind"), "", visible=False, hint=_("Type what it is: armchair, wardrobe, …")
         )
         self._length = gui.add_text(
-            "Another height", "", visible=False, hint="Type what it measures: 2.03 m, 6 ft 8 in"
+            _("Another height"), "", visible=False, hint=_("Type what it measures: 2.03 m, 6 ft 8 in")
         )
         on_change(self._length, lambda words: client.post(lambda: self._measure(str(words)), key="length"))
         on_change(self._other, lambda words: client.post(lambda: self._name(str(words)), key="other kind"))
@@ -97,17 +97,15 @@ class Review:
         known = self._client.session.scene
         item = known.object(question.object_id) if known.has_object(question.object_id) else None
         tiles = "".join(self._tile(item, question, choice, k) for k, choice in enumerate(question.choices, 1))
-        after = button("Later", "later", question.id, title="Ask something else first") + button(
-            "Close", "close", title="Go on another time: answers are kept"
-        )
+        after = button(_("Later"), "later", question.id, title=_("Show the next question"))
+        after += button(_("Close"), "close", title=_("Continue another time; answers are kept"))
         if question.subject == "scale":
-            after = (
-                button("Measure something else", "measure", title="Click two points, then type their distance") + after
-            )
-        count = text(number_of(left, "question"))
+            hint = _("Click two points, then type their distance")
+            after = button(_("Measure something else"), "measure", title=hint) + after
+        count = text(plural("{count} question left", "{count} questions left", left))
         return (
-            f'<div class="card review" role="group" aria-label="Review"><h4>{count} left</h4>'
-            f"{self._crop(item, question)}<p><b>{text(question.sentence)}</b></p>"
+            f'<div class="card review" role="group" aria-label="{text(_("Review"))}"><h4>{count}</h4>'
+            f"{self._crop(item, question)}<p><b>{library_text(question.sentence)}</b></p>"
             f'<div class="grid two">{tiles}</div><div class="bar tight">{after}</div></div>'
         )
 
@@ -118,13 +116,15 @@ class Review:
             picture = self._client.session.thumbnails.html(shape, (item.colour, item.finish))
         elif item is not None and question.subject == "front":
             picture = self._turned(item, choice.value)
-        words = choice.label[:1].upper() + choice.label[1:]
+        label = library_text(choice.label)
         if question.subject == "scale":
-            words = f"About {format_length(float(choice.value), self._client.preferences.unit)}"
-        label, key = text(words), text(f"{question.id}={choice.value}")
+            length = format_length(float(choice.value), self._client.preferences.unit)
+            label = text(_("About {length}").format(length=length))
+        key = text(f"{question.id}={choice.value}")
+        hint = _("Point at it to see it in the room (key {number})").format(number=number)
         return (
             f'<button type="button" class="tile" data-do="answer" data-arg="{key}" data-peek="{key}" '
-            f'data-digit="{number}" title="Point at it to see it in the room; key {number}">'
+            f'data-digit="{number}" title="{text(hint)}">'
             f"{picture}<b>{number} · {label}</b><small>{100 * choice.probability:.0f} %</small></button>"
         )
 
@@ -158,7 +158,7 @@ class Review:
         buffer = io.BytesIO()
         picture.save(buffer, "JPEG", quality=85)
         uri = base64.b64encode(buffer.getvalue()).decode()
-        return f'<img class="crop" alt="{text(question.sentence)}" src="data:image/jpeg;base64,{uri}">'
+        return f'<img class="crop" alt="{text(_(question.sentence))}" src="data:image/jpeg;base64,{uri}">'
 
     def _act(self, action: Action) -> None:
         client = self._client
@@ -172,7 +172,7 @@ class Review:
         elif action.do == "later":
             self._later |= {action.arg}
         elif action.do in ("answer", "peek"):
-            question, _, value = action.arg.partition("=")
+            question, value = action.arg.partition("=")[::2]
             if action.do == "peek":
                 self._peek(question, value)
                 return
@@ -201,7 +201,8 @@ class Review:
             return
         kind = understand_label(words).category
         if kind.name == UNKNOWN.name:
-            raise EditRefused(f"“{words}” is no kind of object that the library has; try another word")
+            said = _("the library has no kind of object called “{words}”; try another word").format(words=words)
+            raise EditRefused(said)
         show_value(self._other, "")
         review.answer(self._client.session, question.id, kind.name, by=self._client)
         self._show_object()
@@ -231,7 +232,7 @@ class Review:
     def _peek(self, question: str, value: str) -> None:
         """Show what an answer would do, without giving it; nothing for no answer."""
         session = self._client.session
-        subject, _, object_id = question.partition(":")
+        subject, object_id = question.partition(":")[::2]
         if subject == "scale" or not session.scene.has_object(object_id) or session.jobs.status is not None:
             session.refresh()
             return
@@ -254,11 +255,15 @@ def _key(action: Action) -> str | None:
 def _summary(doubt: Doubt) -> str:
     """How sure the scene is, and what a few answers would do."""
     share = round(100 * doubt.right)
-    words = f"{number_of(doubt.answers, 'answer')} would settle most of the rest"
-    start = button("Review", "review", title="Answer what the build is not sure of, the most helpful question first")
+    words = plural(
+        "{count} answer would resolve most doubts", "{count} answers would resolve most doubts", doubt.answers
+    )
+    hint = _("Answer questions about uncertain results, the most helpful one first")
+    start = button(_("Review"), "review", title=hint)
+    sure = text(_("{percent} % sure").format(percent=share))
     return (
-        f'<div class="job card"><span class="words"><b>{share} % sure</b> · {text(words)}</span>{start}'
-        f'<meter min="0" max="100" value="{share}" aria-label="How sure the scene is"></meter></div>'
+        f'<div class="job card"><span class="words"><b>{sure}</b> · {text(words)}</span>{start}'
+        f'<meter min="0" max="100" value="{share}" aria-label="{text(_("Confidence in the scene"))}"></meter></div>'
     )
 
 

@@ -7,6 +7,7 @@ import viser
 from diorama_app.commands.edit import supporter_name
 from diorama_app.session.client import Client
 from diorama_app.session.units import format_length, parse_length
+from diorama_app.strings import _
 from diorama_app.web.html import Action, LiveHtml, button, text
 from diorama_core.scene.room_edits import ceiling_height, move_plane, set_ceiling_height
 
@@ -16,7 +17,7 @@ class RoomSize:
 
     def __init__(self, gui: viser.GuiApi, client: Client) -> None:
         self._client = client
-        self._folder = gui.add_folder("Room", expand_by_default=False)
+        self._folder = gui.add_folder(_("Room"), expand_by_default=False)
         with self._folder:
             self._html = LiveHtml(gui, self._act)
 
@@ -28,28 +29,18 @@ class RoomSize:
         self._folder.visible = height is not None
         if height is None:
             return
-        rows = _row("Height", "height", "", format_length(height, unit), "Height of the room")
-        rows += "".join(
-            _row(
-                supporter_name(scene, w.id).capitalize(),
-                "wall",
-                w.id,
-                "",
-                "Distance to move it outward; negative moves it inward",
-            )
-            for w in walls
-        )
+        rows = _row(_("Height"), "height", "", format_length(height, unit), _("Height of the room"))
+        hint = _("Distance to move it outward; a negative one moves it inward")
+        rows += "".join(_row(supporter_name(scene, w.id).capitalize(), "wall", w.id, "", hint) for w in walls)
+        names = {p.id: text(supporter_name(scene, p.id).capitalize()) for p in scene.architecture.planes}
+        hint = _("Paint, paper, tiles or boards")
         surfaces = "".join(
-            button(
-                text(supporter_name(scene, p.id).capitalize()),
-                "surface",
-                p.id,
-                title="Paint, paper, tiles or boards",
-                on=p.id == self._client.surface,
-            )
-            for p in scene.architecture.planes
+            button(name, "surface", i, title=hint, on=i == self._client.surface) for i, name in names.items()
         )
-        self._html.show(f'<h4>Surfaces</h4><div class="bar tight">{surfaces}</div><h4>Size</h4><table>{rows}</table>')
+        self._html.show(
+            f'<h4>{text(_("Surfaces"))}</h4><div class="bar tight">{surfaces}</div>'
+            f"<h4>{text(_('Size'))}</h4><table>{rows}</table>"
+        )
 
     def _act(self, action: Action) -> None:
         if action.do == "surface":
@@ -68,14 +59,16 @@ class RoomSize:
         length = parse_length(words, client.preferences.unit)
         shown = format_length(length, client.preferences.unit)
         if what == "height":
-            client.session.edit(f"room {shown} high", lambda s: set_ceiling_height(s, length), by=client)
+            label = _("room height {length}").format(length=shown)
+            client.session.edit(label, lambda s: set_ceiling_height(s, length), by=client)
         elif client.session.scene.has_plane(plane_id):
             name = supporter_name(client.session.scene, plane_id)
-            client.session.edit(f"move {name} by {shown}", lambda s: move_plane(s, plane_id, length), by=client)
+            label = _("move {name} by {length}").format(name=name, length=shown)
+            client.session.edit(label, lambda s: move_plane(s, plane_id, length), by=client)
 
 
 def _row(name: str, do: str, arg: str, value: str, hint: str) -> str:
-    empty = "" if value else 'placeholder="move by…"'
+    empty = "" if value else f'placeholder="{text(_("move by…"))}"'
     return (
         f"<tr><td>{text(name)}</td><td><input data-change={do} data-arg='{text(arg)}' value='{text(value)}' {empty} "
         f"aria-label='{text(name)}' title='{text(hint)}' style='width:110px'></td></tr>"

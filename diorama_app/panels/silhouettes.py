@@ -7,6 +7,7 @@ import json
 import viser
 
 from diorama_app.session.client import Client
+from diorama_app.strings import _
 from diorama_app.viewport.decorations import Outline
 from diorama_app.web.html import run_once
 
@@ -20,7 +21,7 @@ class Silhouettes:
         self._client = client
         self._told = ""
         self._html = gui.add_html("")
-        client.marks.on_outlines = lambda _: self.refresh()
+        client.marks.on_outlines = lambda outlines: self.refresh()
 
     def refresh(self) -> None:
         """Tell the page what differs from what it knows."""
@@ -38,8 +39,8 @@ class Silhouettes:
         for item in session.scene.objects:
             node = session.viewport.node_name(item.id)
             if node is not None and not item.hidden:
-                problems = "".join(f" ⚠ {badge}" for badge in session.badges.get(item.id, ()))
-                names[node] = item.label[:60] + (" (locked)" if item.locked else "") + problems
+                problems = "".join(f" ⚠ {_(badge)}" for badge in session.badges.get(item.id, ()))
+                names[node] = item.label[:60] + (_(" (locked)") if item.locked else "") + problems
         return names
 
 

@@ -19,18 +19,25 @@ from diorama_app.reconstruction.starting_rooms import LIVING_ROOM, open_example,
 from diorama_app.reconstruction.text_to_scene import describe_room
 from diorama_app.session.client import Client
 from diorama_app.session.units import format_length, parse_length
+from diorama_app.strings import N_, _
 from diorama_app.web.html import Action, LiveHtml, button, run_once, text
 from diorama_core.errors import EditRefused, InputError
 from diorama_core.io.assets import asset
 from diorama_core.project.storage import Project
 
 PICTURES = asset("start")
-EXAMPLES = {LIVING_ROOM: "Living room", "bedroom": "Bedroom", "study": "Study", "kitchen": "Kitchen"}
+EXAMPLES = {LIVING_ROOM: N_("Living room"), "bedroom": N_("Bedroom"), "study": N_("Study"), "kitchen": N_("Kitchen")}
 USUAL_ROOM_M = (4.0, 5.0, 2.5)
-LENGTHS = ("Width", "Depth", "Height")
+LENGTHS = {
+    N_("Width"): N_("Width of the room"),
+    N_("Depth"): N_("Depth of the room"),
+    N_("Height"): N_("Height of the room"),
+}
 RECENT = 4
 REMOVE = "document.getElementById('dio-start')?.remove()"
 """What an earlier connection of the page left."""
+
+ABOUT_PHOTO = N_("Drop one here, or choose a file. You mark the furniture; Diorama builds the room.")
 
 
 class StartPage:
@@ -50,8 +57,8 @@ class StartPage:
         self._lengths_m = USUAL_ROOM_M
         gui.add_html(run_once(REMOVE))
         self._opened_over: Project | None = None
-        self._photo_field = hidden_upload(gui, client, "Start with a photo", take_photo)
-        self._file_field = hidden_upload(gui, client, "Start with a file", self._take_file)
+        self._photo_field = hidden_upload(gui, client, _("Start with a photo"), take_photo)
+        self._file_field = hidden_upload(gui, client, _("Start with a file"), self._take_file)
         self._opener = LiveHtml(gui, self._act)
         self._tour = gui.add_html("")
         self._tours = 0
@@ -145,48 +152,52 @@ class StartPage:
             raise EditRefused("that project no longer exists")
         self.close()
         project = Project.open(folder)
-        session.visit(self._client, project, f"Opened {project.name}.")
+        session.visit(self._client, project, _("Opened {name}.").format(name=project.name))
 
     def _drawn(self) -> str:
         unit = self._client.preferences.unit
         fields = "".join(
-            f'<label>{name}<input data-change="length" data-arg="{name}" value="{text(format_length(length, unit))}" '
-            f'aria-label="{name} of the room"></label>'
-            for name, length in zip(LENGTHS, self._lengths_m, strict=True)
+            f'<label>{text(_(name))}<input data-change="length" data-arg="{name}" '
+            f'value="{text(format_length(length, unit))}" aria-label="{text(_(whole))}"></label>'
+            for (name, whole), length in zip(LENGTHS.items(), self._lengths_m, strict=True)
         )
         photo, file = self._photo_field, self._file_field
         examples = "".join(
             f'<button type="button" class="tile" data-do="example" data-arg="{kind}">'
-            f'<img alt="" src="{_picture(kind)}"><b>{name}</b></button>'
+            f'<img alt="" src="{_picture(kind)}"><b>{text(_(name))}</b></button>'
             for kind, name in EXAMPLES.items()
         )
         earlier = self._client.session.glances.of("start", self._earlier)
         return (
-            '<div class="page" role="dialog" aria-modal="true" aria-label="Start"><header><h1>Diorama</h1>'
-            "<p>One photo of a room becomes a 3D scene you can edit.</p>"
-            + button("✕", "close", title="Close")
+            f'<div class="page" role="dialog" aria-modal="true" aria-label="{text(_("Start"))}"><header>'
+            f"<h1>Diorama</h1><p>{text(_('One photo of a room becomes a 3D scene you can edit.'))}</p>"
+            + button("✕", "close", title=_("Close"))
             + '</header><div class="ways">'
-            f'<section class="first drop"><h2>A photo</h2><p>Drop one here, or choose a file. You '
-            "mark the furniture; Diorama builds the room.</p>"
-            f'<label class="choose main" for="file_upload_{photo}" tabindex="0">Choose a photo</label></section>'
-            "<section><h2>A description</h2><p>Describe the room in a sentence.</p>"
-            f'<textarea data-change="words" rows="3" aria-label="Description of the room" '
-            f'placeholder="a bedroom with a double bed and two lamps">{text(self._words)}</textarea>'
-            + button("Create room", "describe")
-            + "</section><section><h2>An empty room</h2><p>Type the size of the room, then add furniture.</p>"
-            f'<div class="fields">{fields}</div>' + button("Create empty room", "empty") + "</section>"
-            f"<section><h2>Continue</h2>{earlier}"
-            f'<label class="choose" for="file_upload_{file}" tabindex="0">Open a file</label>'
-            '<p class="dim">GLB, USD, USDZ or Sweet Home 3D</p></section></div>'
-            f'<h2>Or try an example</h2><div class="examples">{examples}</div>'
-            f"<footer>{button('Show me around', 'tour', title='Six steps')}</footer></div>"
+            f'<section class="first drop"><h2>{text(_("A photo"))}</h2><p>{text(_(ABOUT_PHOTO))}</p>'
+            f'<label class="choose main" for="file_upload_{photo}" tabindex="0">{text(_("Choose a photo"))}</label>'
+            "</section>"
+            f"<section><h2>{text(_('A description'))}</h2><p>{text(_('Describe the room in a sentence.'))}</p>"
+            f'<textarea data-change="words" rows="3" aria-label="{text(_("Description of the room"))}" '
+            f'placeholder="{text(_("a bedroom with a double bed and two lamps"))}">{text(self._words)}</textarea>'
+            + button(_("Create room"), "describe")
+            + f"</section><section><h2>{text(_('An empty room'))}</h2>"
+            f"<p>{text(_('Type the size of the room, then add furniture.'))}</p>"
+            f'<div class="fields">{fields}</div>' + button(_("Create empty room"), "empty") + "</section>"
+            f"<section><h2>{text(_('Continue'))}</h2>{earlier}"
+            f'<label class="choose" for="file_upload_{file}" tabindex="0">{text(_("Open a file"))}</label>'
+            f'<p class="dim">{text(_("GLB, USD, USDZ or Sweet Home 3D"))}</p></section></div>'
+            f'<h2>{text(_("Or try an example"))}</h2><div class="examples">{examples}</div>'
+            f"<footer>{button(_('Show me around'), 'tour', title=_('A tour of the page in six steps'))}</footer></div>"
         )
 
     def _earlier(self) -> str:
         folders = recent_projects(self._client.session.projects_dir)[:RECENT]
-        rows = "".join(button(text(name_of(f)), "project", address_of(f), title="Open this project") for f in folders)
-        more = button("All projects", "projects", title="Search, rename, duplicate, delete")
-        return f'<div class="earlier">{rows}{more}</div>' if rows else '<p class="dim">No projects yet.</p>'
+        rows = "".join(
+            button(text(name_of(f)), "project", address_of(f), title=_("Open this project")) for f in folders
+        )
+        more = button(_("All projects"), "projects", title=_("Search, rename, duplicate, delete"))
+        none = f'<p class="dim">{text(_("No projects yet."))}</p>'
+        return f'<div class="earlier">{rows}{more}</div>' if rows else none
 
 
 @cache

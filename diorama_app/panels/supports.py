@@ -8,11 +8,12 @@ from diorama_app.commands import edit as editing
 from diorama_app.panels.fields import on_change, show_if, show_options, unique_names
 from diorama_app.panels.outliner import plane_name
 from diorama_app.session.client import Client
+from diorama_app.strings import N_, _
 from diorama_core.scene.types import Scene
 
-NOTHING = "nothing"
-NO_WALL = "no wall"
-LIES, HANGS = "stands or lies", "is fastened"
+NOTHING = N_("nothing")
+NO_WALL = N_("no wall")
+LIES, HANGS = N_("stands or lies"), N_("is fastened")
 
 
 class Supports:
@@ -22,11 +23,11 @@ class Supports:
         self._client = client
         self._ids: dict[str, str] = {}
         self._walls: dict[str, str] = {}
-        self._parent = gui.add_dropdown(
-            "Stands on", [NOTHING], visible=False, hint="The object or surface that supports it; it moves along"
-        )
-        self._relation = gui.add_dropdown("How", [LIES, HANGS], visible=False, hint="Kind of support")
-        self._wall = gui.add_dropdown("Against", [NO_WALL], visible=False, hint="The wall it stands against")
+        hint = _("The object or surface that supports it, and with which it moves")
+        self._parent = gui.add_dropdown(_("Stands on"), [_(NOTHING)], visible=False, hint=hint)
+        ways = [_(LIES), _(HANGS)]
+        self._relation = gui.add_dropdown(_("How"), ways, visible=False, hint=_("Kind of support"))
+        self._wall = gui.add_dropdown(_("Against"), [_(NO_WALL)], visible=False, hint=_("The wall it stands against"))
         on_change(self._parent, lambda name: client.post(lambda: self._chosen(name)))
         on_change(self._relation, lambda name: client.post(lambda: self._related(name)))
         on_change(self._wall, lambda name: client.post(lambda: self._adhered(name)))
@@ -43,18 +44,19 @@ class Supports:
             return
         self._ids = supporters(scene, item.id)
         names = {parent: name for name, parent in self._ids.items()}
-        show_options(self._parent, (NOTHING, *self._ids), names.get(edge.parent, NOTHING) if edge else NOTHING)
-        show_options(self._relation, (LIES, HANGS), LIES if edge is None or standing else HANGS)
+        nothing, lies, hangs, no_wall = map(_, (NOTHING, LIES, HANGS, NO_WALL))
+        show_options(self._parent, (nothing, *self._ids), names.get(edge.parent, nothing) if edge else nothing)
+        show_options(self._relation, (lies, hangs), lies if edge is None or standing else hangs)
         self._walls = {plane_name(scene, p): p.id for p in scene.architecture.by_role("wall")}
         against = edge.adheres_to[0] if edge is not None and edge.adheres_to else None
-        here = next((name for name, wall in self._walls.items() if wall == against), NO_WALL)
-        show_options(self._wall, (NO_WALL, *self._walls), here)
+        here = next((name for name, wall in self._walls.items() if wall == against), no_wall)
+        show_options(self._wall, (no_wall, *self._walls), here)
 
     def _chosen(self, name: str) -> None:
         client = self._client
         object_id = client.need_selected()
         try:
-            if name == NOTHING:
+            if name == _(NOTHING):
                 editing.detach(client, object_id)
             elif name in self._ids:
                 editing.attach(client, object_id, self._ids[name])
@@ -63,7 +65,7 @@ class Supports:
 
     def _related(self, name: str) -> None:
         try:
-            editing.set_relation(self._client, self._client.need_selected(), name == HANGS)
+            editing.set_relation(self._client, self._client.need_selected(), name == _(HANGS))
         finally:
             self.refresh()
 

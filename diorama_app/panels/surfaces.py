@@ -16,6 +16,7 @@ from diorama_app.commands.insert import put_opening
 from diorama_app.commands.surfaces import finish_surfaces
 from diorama_app.session.client import Client
 from diorama_app.session.units import format_length
+from diorama_app.strings import _
 from diorama_app.web.html import Action, LiveHtml, button, text
 from diorama_core.errors import EditRefused, InputError
 from diorama_core.geometry.openings import OPENING_CATEGORIES
@@ -62,18 +63,19 @@ class Surfaces:
         if plane.role == "wall" and len(scene.architecture.by_role("wall")) > 1:
             parts.append(
                 '<div class="bar tight">'
-                + button("This wall", "one", title="Change only this wall", on=not self._all_walls)
-                + button("All walls", "all", title="Change all walls together", on=self._all_walls)
+                + button(_("This wall"), "one", title=_("Change only this wall"), on=not self._all_walls)
+                + button(_("All walls"), "all", title=_("Change all walls together"), on=self._all_walls)
                 + "</div>"
             )
         if plane.role == "wall":
+            label, hint = _("Add {kind}"), _("Add {kind} to this wall")
             openings = (
-                button(f"Add a {c}", "opening", c, title=f"Put a {c} into this wall") for c in OPENING_CATEGORIES
+                button(label.format(kind=_(c)), "opening", c, title=hint.format(kind=_(c))) for c in OPENING_CATEGORIES
             )
             parts.append(f'<div class="bar">{"".join(openings)}</div>')
         finish = plane.finish
-        before = "As in the photo" if scene.camera is not None else "Plain"
-        parts.append('<div class="bar">' + button(before, "before", title="No finish", on=finish is None) + "</div>")
+        before = _("As in the photo") if scene.camera is not None else _("Plain")
+        parts.append('<div class="bar">' + button(before, "before", title=_("No finish"), on=finish is None) + "</div>")
         offered = dict.fromkeys((*USUAL[plane.role], *([finish.pattern] if finish is not None else [])))
         parts.append('<div class="grid">' + "".join(_tile(p, KINDS[p].name, finish) for p in offered) + "</div>")
         if finish is not None:
@@ -133,7 +135,7 @@ def _tile(pattern: SurfacePattern, name: str, finish: SurfaceFinish | None) -> s
     return (
         f'<button type="button" class="tile {"on" if on else ""}" data-do="pattern" data-arg="{pattern}" '
         f'aria-pressed="{"true" if on else "false"}"><span class="sample {pattern}"></span>'
-        f'<b style="height:auto">{text(name)}</b></button>'
+        f'<b style="height:auto">{text(_(name))}</b></button>'
     )
 
 
@@ -148,26 +150,34 @@ def _details(finish: SurfaceFinish) -> str:
             f'<span class="swatch" style="background:{_hex(COLOURS[name])}"></span>',
             "colour",
             name,
-            title=name.capitalize(),
+            title=_(name).capitalize(),
             on=COLOURS[name] == finish.colour,
         )
         for name in kind.colours
     )
-    own = f'<label>Any colour<input type="color" data-change="own" value="{_hex(finish.colour)}"></label>'
+    own = f'<label>{text(_("Any colour"))}<input type="color" data-change="own" value="{_hex(finish.colour)}"></label>'
+    percent, angle, hint = (
+        text(_("Size (%)")),
+        text(_("Direction (°)")),
+        _("Rotation of the pattern, counter-clockwise"),
+    )
     size = (
-        f'<label>Size (%)<input data-change="scale" value="{100 * finish.scale:g}" inputmode="decimal" '
-        'aria-label="Size (%)" title="Of the pattern, relative to its usual size"></label>'
+        f'<label>{percent}<input data-change="scale" value="{100 * finish.scale:g}" inputmode="decimal" '
+        f'aria-label="{percent}" title="{text(_("Of the pattern, relative to its usual size"))}"></label>'
     )
     degrees = round(float(np.degrees(finish.direction_rad)), 1) + 0.0
     turn = (
-        f'<label>Direction (°)<input data-change="direction" value="{degrees:g}" inputmode="decimal" '
-        'aria-label="Direction (°)" title="Rotation of the pattern, counter-clockwise"></label>'
+        f'<label>{angle}<input data-change="direction" value="{degrees:g}" inputmode="decimal" '
+        f'aria-label="{angle}" title="{text(hint)}"></label>'
         if kind.directed
         else ""
     )
-    quick = "".join(button(f"{d}°", "turn", d, title=f"Turn to {d}°", on=degrees == d) for d in DIRECTIONS_DEG)
+    quick = "".join(
+        button(f"{d}°", "turn", d, title=_("Turn to {angle}°").format(angle=d), on=degrees == d) for d in DIRECTIONS_DEG
+    )
     bar = f'<div class="bar tight">{quick}</div>' if kind.directed else ""
-    return f'<h4>Colour</h4><div class="swatches">{swatches}</div><div class="fields">{own}{size}{turn}</div>{bar}'
+    fields = f'<div class="fields">{own}{size}{turn}</div>'
+    return f'<h4>{text(_("Colour"))}</h4><div class="swatches">{swatches}</div>{fields}{bar}'
 
 
 @cache
@@ -198,7 +208,7 @@ def _colour(words: str) -> tuple[float, float, float]:
             raise ValueError(words)
         red, green, blue = (int(digits[i : i + 2], 16) / 255 for i in (0, 2, 4))
     except ValueError as error:
-        raise InputError(f"“{words[:20]}” is not a colour; write for example #c08040") from error
+        raise InputError(_("“{words}” is not a colour; write for example #c08040").format(words=words[:20])) from error
     return red, green, blue
 
 
@@ -206,7 +216,7 @@ def _number(words: str) -> float:
     try:
         number = float(words.replace(",", ".").strip().rstrip("%°"))
     except ValueError as error:
-        raise InputError(f"“{words[:20]}” is not a number; write for example 100") from error
+        raise InputError(_("“{words}” is not a number; write for example 100").format(words=words[:20])) from error
     if not np.isfinite(number):
         raise InputError("the number is not finite; write for example 100")
     return number

@@ -7,6 +7,7 @@ from collections.abc import Sequence
 
 import viser
 
+from diorama_app.strings import _
 from diorama_app.web.html import run_once
 
 STORED_AS = "diorama-tabs"
@@ -70,7 +71,7 @@ class Tabs:
             gui: the page.
             groups: names of the tabs that stand side by side.
         """
-        names = json.dumps([list(group) for group in groups])
+        names = json.dumps([list(map(_, group)) for group in groups])
         gui.add_html(run_once(_KEEPER % (names, json.dumps(STORED_AS), TRIES)))
         self._opener = gui.add_html("")
         self._asked = 0
@@ -78,5 +79,5 @@ class Tabs:
     def open(self, name: str) -> None:
         """Bring a tab to the front."""
         self._asked += 1
-        opening = f"window.__dioOpenTab && window.__dioOpenTab({json.dumps(name)}); /* {self._asked} */"
+        opening = f"window.__dioOpenTab && window.__dioOpenTab({json.dumps(_(name))}); /* {self._asked} */"
         self._opener.content = run_once(opening)

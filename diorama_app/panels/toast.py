@@ -8,6 +8,7 @@ from collections.abc import Callable
 import viser
 
 from diorama_app.session.client import Client, Measuring, Placing, Playing
+from diorama_app.strings import _
 from diorama_app.web.html import Action, LiveHtml, button, text
 
 SHOWN_S, OFFERED_S = 6.0, 15.0
@@ -28,8 +29,8 @@ class Toasts:
 
     def say(self, message: str, undo: bool) -> None:
         """Show a message, in place of the one before."""
-        again = button("Undo", "undo") if undo else ""
-        self._show(f'<div class="dio-toast"><span>{text(message)}</span>{again}</div>', SHOWN_S)
+        again = button(_("Undo"), "undo") if undo else ""
+        self._show(f'<div class="dio-toast"><span>{text(_(message))}</span>{again}</div>', SHOWN_S)
 
     def offer(self, message: str, label: str, do: Callable[[], None]) -> None:
         """Show a message with a button that does something; it stays longer than others.
@@ -42,7 +43,7 @@ class Toasts:
         self._offered = do
         self._client.to_say = None  # the line of the step itself comes later, and would take the offer's place
         action = button(text(label), "offered")
-        line = f'<div class="dio-toast long" role="alert"><span>{text(message)}</span>{action}</div>'
+        line = f'<div class="dio-toast long" role="alert"><span>{text(_(message))}</span>{action}</div>'
         self._show(line, OFFERED_S)
 
     def _show(self, line: str, seconds: float) -> None:
@@ -63,14 +64,14 @@ class Toasts:
         doing = self._client.doing
         words = ""
         if isinstance(doing, Placing):
-            words = "Click where to place it: the floor, a table or a wall"
+            words = _("Click where to place it: the floor, a table or a wall")
         elif isinstance(doing, Measuring) and len(doing.points) < 2:
-            words = ("Click the first point", "Click the second point")[len(doing.points)]
+            words = (_("Click the first point"), _("Click the second point"))[len(doing.points)]
         elif isinstance(doing, Playing):
-            words = "Click an object to push it"
-        stop = button("Esc", "stop", title="Stop")
+            words = _("Click an object to push it")
+        stop = button("Esc", "stop", title=_("Stop"))
         above = "bottom:calc(var(--dio-below, 0px) + 112px)"
-        line = f'<div class="dio-toast stay" style="{above}"><span>{words}</span>{stop}</div>'
+        line = f'<div class="dio-toast stay" style="{above}"><span>{text(words)}</span>{stop}</div>'
         self._doing.show(line if words else "")
 
     def _act(self, action: Action) -> None:

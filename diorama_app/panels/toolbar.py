@@ -9,6 +9,7 @@ import viser
 
 from diorama_app.commands.registry import CommandTable
 from diorama_app.session.client import Client, Measuring, Playing
+from diorama_app.strings import N_, _
 from diorama_app.web.html import Action, LiveHtml, button, run_once, text
 
 if TYPE_CHECKING:
@@ -26,10 +27,10 @@ SPARE = (("gizmo_floor", "gizmo_free", "gizmo_size", "snap"), ("measure", "help"
 """Tools that are in the menu instead where the view is narrow."""
 
 MENU: dict[str, tuple[str, ...]] = {
-    "View": ("view_top", "view_front", "view_left", "view_right", "walk", "play", "focus"),
-    "Show": ("names", "badges", "masks", "planes"),
-    "While moving": ("slide",),
-    "Page": ("theme",),
+    N_("View"): ("view_top", "view_front", "view_left", "view_right", "walk", "play", "focus"),
+    N_("Show"): ("names", "badges", "masks", "planes"),
+    N_("While moving"): ("slide",),
+    N_("Page"): ("theme",),
 }
 
 SWITCHES = ("snap", "slide", "names", "badges", "masks", "planes")
@@ -49,21 +50,22 @@ class Toolbar:
         """Draw the buttons as the history allows and the settings say."""
         session = self._client.session
         undone = session.document.next_undo(partial(session.is_of, self._client))
-        undo = "Nothing to undo" if undone is None else f"Undo: {undone.label}"
+        undo = _("Nothing to undo") if undone is None else _("Undo: {label}").format(label=undone.label)
         spare_handles, spare_tools = (
             "".join(self._tool(i, "?" if i == "help" else "", kind="spare ") for i in ids) for ids in SPARE
         )
+        more = text(_("More tools"))
         self._html.show(
-            '<div class="bars" role="toolbar" aria-label="Tools"><div class="bar">'
+            f'<div class="bars" role="toolbar" aria-label="{text(_("Tools"))}"><div class="bar">'
             + self._tool("undo", title=undo)
             + self._tool("redo")
             + f'</div><div class="bar spare">{spare_handles}</div><div class="bar">'
-            + self._tool("view_photo", "Photo")
-            + self._tool("view_room", "Room")
+            + self._tool("view_photo", _("Photo"))
+            + self._tool("view_room", _("Room"))
             + self._tool("view_plan")
             + f'</div><div class="bar">{self._tool("picture")}{spare_tools}'
-            + '<button type="button" data-menu="1" aria-haspopup="true" aria-expanded="false" aria-label="More tools" '
-            f'title="More tools">{_icon("more")}</button></div></div>{self._menu()}'
+            + f'<button type="button" data-menu="1" aria-haspopup="true" aria-expanded="false" aria-label="{more}" '
+            f'title="{more}">{_icon("more")}</button></div></div>{self._menu()}'
         )
 
     def _start_walk(self, walk: WalkableFloor) -> None:
@@ -72,8 +74,8 @@ class Toolbar:
 
     def _menu(self) -> str:
         moved = "".join(self._item(i) for ids in SPARE for i in ids)
-        groups = "".join(f"<h4>{name}</h4>{''.join(self._item(i) for i in ids)}" for name, ids in MENU.items())
-        return f'<div class="menu"><div class="elsewhere"><h4>Tools</h4>{moved}</div>{groups}</div>'
+        groups = "".join(f"<h4>{text(_(name))}</h4>{''.join(self._item(i) for i in ids)}" for name, ids in MENU.items())
+        return f'<div class="menu"><div class="elsewhere"><h4>{text(_("Tools"))}</h4>{moved}</div>{groups}</div>'
 
     def _tool(self, command_id: str, label: str = "", *, title: str = "", kind: str = "") -> str:
         """A button of the row: an icon with a name for readers, or words."""
@@ -157,10 +159,11 @@ def title_bar(client: Client) -> str:
     """Name of the project and the other connected clients."""
     session = client.session
     project = session.project
-    name = "No project" if project is None else text(session.glances.of("name", lambda: project.name))
+    name = text(_("No project")) if project is None else text(session.glances.of("name", lambda: project.name))
     others = [g for g in session.clients.values() if g is not client]
     here = "".join(
-        f' <span class="chip" style="border-color:rgb{g.colour}" title="also has this open">{text(g.name)}</span>'
+        f' <span class="chip" style="border-color:rgb{g.colour}" '
+        f'title="{text(_("also has this project open"))}">{text(g.name)}</span>'
         for g in others[:4]
     )
     return f"<b>{name}</b>{here}"

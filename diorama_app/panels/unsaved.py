@@ -8,6 +8,7 @@ from diorama_app.projects.manage import duplicate_project
 from diorama_app.reconstruction.build_job import build, forget_build
 from diorama_app.session.client import Client
 from diorama_app.session.recovery import Unsaved
+from diorama_app.strings import _
 from diorama_app.web.html import Action, LiveHtml, button, text
 from diorama_core.project.storage import Project
 
@@ -33,22 +34,23 @@ class UnsavedChanges:
         session = self._client.session
         if session.read_only:
             return (
-                f'<div class="card warn">{text(session.read_only)}<div class="bar tight" style="margin:6px 0 0 0">'
-                + button("Work on a copy", "copy", title="Create a new project from the current state")
-                + button("Try again", "again", title="Close it there first")
+                f'<div class="card warn">{text(_(session.read_only))}<div class="bar tight" style="margin:6px 0 0 0">'
+                + button(_("Work on a copy"), "copy", title=_("Create a new project from the current state"))
+                + button(_("Try again"), "again", title=_("Close the project elsewhere first"))
                 + "</div></div>"
             )
-        return f'<div class="card warn">{text(session.autosave.trouble)}</div>' if session.autosave.trouble else ""
+        return f'<div class="card warn">{text(_(session.autosave.trouble))}</div>' if session.autosave.trouble else ""
 
     def _offer(self) -> str:
         found = self._found
         if found is None or not found.path.exists():
             return ""
+        said = _("Changes of {time} were not saved when Diorama ended.").format(time=found.when)
         return (
-            f'<div class="card warn">Changes of {text(found.when)} were not saved when Diorama ended.'
+            f'<div class="card warn">{text(said)}'
             f'<div class="bar tight" style="margin:6px 0 0 0">'
-            + button("Restore unsaved changes", "restore", title="One undo step")
-            + button("Discard", "discard", title="Delete them permanently")
+            + button(_("Restore unsaved changes"), "restore", title=_("One undo step"))
+            + button(_("Discard"), "discard", title=_("Delete these changes permanently"))
             + "</div></div>"
         )
 
@@ -57,10 +59,10 @@ class UnsavedChanges:
         if not session.interrupted or session.jobs.status is not None:
             return ""
         return (
-            '<div class="card warn">Diorama ended while this scene was being built.'
+            f'<div class="card warn">{text(_("Diorama ended while this scene was being built."))}'
             '<div class="bar tight" style="margin:6px 0 0 0">'
-            + button("Continue building", "build", title="Continue where the build stopped")
-            + button("Not now", "no build", title="Build it later with “Build scene”")
+            + button(_("Continue building"), "build", title=_("Continue where the build stopped"))
+            + button(_("Not now"), "no build", title=_("Build it later with “Build scene”"))
             + "</div></div>"
         )
 

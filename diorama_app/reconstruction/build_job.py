@@ -16,9 +16,9 @@ from diorama_app.reconstruction.networks import can_find_furniture
 from diorama_app.session.project_contents import shown_notes
 from diorama_app.session.session import BUILDING, EditorSession
 from diorama_app.session.textures import Textures
+from diorama_app.strings import N_, _, plural
 from diorama_core.artefacts import FurtherPhoto, Inputs, LabelledBox, Reason
 from diorama_core.errors import DioramaError, EditRefused, InputError
-from diorama_core.io.text import number_of
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.progress import Progress
 from diorama_core.project.storage import Project
@@ -29,7 +29,11 @@ if TYPE_CHECKING:
     from diorama_core.pipeline.run import Built
 
 
-UNASKED = "Building what was found"
+UNASKED = N_("Building what was found")
+BUILT = (
+    "The scene has {count} object. Click it to change it.",
+    "The scene has {count} objects. Click one to change it.",
+)
 """Title of a build with what was found in a photo, of which nobody looked at anything."""
 AWAITED = "build_when_seen"
 """What a project's file says of an uploaded photo that is to be built as soon as its objects are found."""
@@ -86,7 +90,7 @@ def build_found(session: EditorSession, found: Sequence[LabelledBox]) -> None:
     inputs = session.inputs
     if inputs is not None:
         given = replace(inputs, boxes=(*inputs.boxes, *found))
-        start_build(session, given, UNASKED, "build the scene")
+        start_build(session, given, _(UNASKED), _("build the scene"))
 
 
 def is_awaited(project: Project) -> bool:
@@ -111,7 +115,7 @@ def build(session: EditorSession) -> None:
             if inputs is None
             else "nothing is marked in the photo yet; draw a box around each piece of furniture first"
         )
-    start_build(session, inputs, "Building the scene", "build the scene")
+    start_build(session, inputs, _("Building the scene"), _("build the scene"))
 
 
 def start_build(session: EditorSession, inputs: Inputs, title: str, label: str, message: str = "") -> None:
@@ -231,7 +235,8 @@ def show_built(
     session.saving.inputs_are_saved(inputs)
     session.commit(label, made.scene, inputs=inputs, further=further if made.again is not None else None)
     session.view.show_whole_room()
-    message = message or f"The scene has {number_of(len(made.scene.objects))}. Click one to change it."
+    message = message or plural(*BUILT, len(made.scene.objects))
     if made.again is not None and made.again.left_out:
-        message += f" Not in the new scene, to be added again: {', '.join(made.again.left_out)}."
+        names = ", ".join(made.again.left_out)
+        message += " " + _("Not in the new scene, to be added again: {names}.").format(names=names)
     session.notice_all(message, "good")

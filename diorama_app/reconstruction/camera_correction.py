@@ -9,6 +9,7 @@ import numpy as np
 from diorama_app.reconstruction.build_job import start_build
 from diorama_app.session.client import Client
 from diorama_app.session.session import EditorSession
+from diorama_app.strings import N_, _
 from diorama_core.artefacts import Inputs
 from diorama_core.errors import EditRefused, InputError
 from diorama_core.geometry.camera_attitude import CameraAttitude
@@ -17,6 +18,11 @@ from diorama_core.scene.types import Camera, Intrinsics, Scene
 
 MIN_FOV_DEG, MAX_FOV_DEG = 15.0, 130.0
 MAX_TILT_DEG, MAX_ROLL_DEG = 80.0, 45.0
+
+IMPOSSIBLE_ANGLES = N_(
+    "a tilt of {tilt:g}° and a roll of {roll:g}° are not possible for a photo of a room; "
+    "give up to {max_tilt:g}° and {max_roll:g}°"
+)
 
 
 def rebuild_with_camera(client: Client, fov_deg: float | None, camera_attitude: CameraAttitude | None) -> None:
@@ -49,8 +55,8 @@ def rebuild_as_found(client: Client) -> None:
 
 
 def _rebuild(client: Client, inputs: Inputs) -> None:
-    message = "Rebuilt with this camera. Undo restores the previous scene."
-    start_build(client.session, inputs, "Building with this camera", "set the camera", message)
+    message = _("Rebuilt with this camera. Undo restores the previous scene.")
+    start_build(client.session, inputs, _("Building with this camera"), _("set the camera"), message)
 
 
 def trial_camera(camera: Camera, fov_deg: float, camera_attitude: CameraAttitude) -> Camera:
@@ -65,7 +71,7 @@ def set_camera_height(client: Client, height_m: float) -> None:
     now = camera_height_m(client.session.scene)
     if now is None:
         raise EditRefused("this scene has no photo camera; build it from a photo first")
-    rescale_room(client, f"camera {height_m:.2f} m above the floor", now, height_m)
+    rescale_room(client, _("camera {metres:.2f} m above the floor").format(metres=height_m), now, height_m)
 
 
 def rescale_room(client: Client, label: str, now_m: float, true_m: float) -> None:
@@ -95,14 +101,13 @@ def camera_height_m(scene: Scene) -> float | None:
 def check_fov(fov_deg: float) -> None:
     """Raises `InputError` when the field of view is not plausible."""
     if not MIN_FOV_DEG <= fov_deg <= MAX_FOV_DEG:
-        raise InputError(f"a field of view of {fov_deg:g}° is not possible; give {MIN_FOV_DEG:g} to {MAX_FOV_DEG:g}°")
+        said = _("a field of view of {fov:g}° is not possible; give {least:g} to {most:g}°")
+        raise InputError(said.format(fov=fov_deg, least=MIN_FOV_DEG, most=MAX_FOV_DEG))
 
 
 def checked_angles(tilt_deg: float, roll_deg: float) -> CameraAttitude:
     """Camera attitude; raises `InputError` when it is not plausible."""
     if abs(tilt_deg) > MAX_TILT_DEG or abs(roll_deg) > MAX_ROLL_DEG:
-        raise InputError(
-            f"a tilt of {tilt_deg:g}° and a roll of {roll_deg:g}° are not possible for a photo of a room; "
-            f"give up to {MAX_TILT_DEG:g}° and {MAX_ROLL_DEG:g}°"
-        )
+        said = _(IMPOSSIBLE_ANGLES).format(tilt=tilt_deg, roll=roll_deg, max_tilt=MAX_TILT_DEG, max_roll=MAX_ROLL_DEG)
+        raise InputError(said)
     return CameraAttitude(float(np.radians(tilt_deg)), float(np.radians(roll_deg)))

@@ -14,6 +14,7 @@ from diorama_app.projects.dropped_files import files_of, upload_of
 from diorama_app.projects.photo_folder import FolderPhoto
 from diorama_app.projects.uploads import decoded
 from diorama_app.session.client import Client
+from diorama_app.strings import _
 from diorama_core.errors import DioramaError, InputError
 from diorama_core.io.archives import unpacked
 from diorama_core.io.limited import LimitedProcess
@@ -41,7 +42,7 @@ def begin_each(client: Client, name: str, content: bytes, reading: Reading) -> N
         failed: list[str] = []
         try:
             for number, photo in enumerate(reading.photos):
-                progress.report(number / len(reading.photos), f"Reading {Path(photo.file).name}")
+                progress.report(number / len(reading.photos), _("Reading {name}").format(name=Path(photo.file).name))
                 try:
                     made.append(_begun(session.projects_dir, photo, files, process))
                 except DioramaError as error:
@@ -50,10 +51,10 @@ def begin_each(client: Client, name: str, content: bytes, reading: Reading) -> N
             process.close()
         if not made:
             raise InputError(failed[0])
-        said = f"{len(made)} photos are projects of their own; this is the first. " + ". ".join(failed[:3])
-        client.post(lambda: session.visit(client, made[0], said.strip()))
+        said = _("Each of the {count} photos has its own project; this is the first.").format(count=len(made))
+        client.post(lambda: session.visit(client, made[0], " ".join((said, *failed[:3]))))
 
-    session.jobs.start("import", f"Reading {len(reading.photos)} photos", work)
+    session.jobs.start("import", _("Reading {count} photos").format(count=len(reading.photos)), work)
 
 
 def _begun(projects_dir: Path, photo: DroppedPhoto, files: Mapping[str, bytes], process: LimitedProcess) -> Project:
@@ -85,10 +86,12 @@ def build_one_room(client: Client, name: str, content: bytes, reading: Reading) 
             except BaseException:
                 shutil.rmtree(output, ignore_errors=True)
                 raise
-        said = f"One room of {len(built.photos)} photos, with {len(built.room.scene.objects)} objects."
+        said = _("One room from {photos} photos; objects: {objects}.").format(
+            photos=len(built.photos), objects=len(built.room.scene.objects)
+        )
         client.post(lambda: session.visit(client, built.project, said))
 
-    session.jobs.start("build", f"Building a room from {len(reading.photos)} photos", work)
+    session.jobs.start("build", _("Building a room from {count} photos").format(count=len(reading.photos)), work)
 
 
 def _check_photos(reading: Reading, files: Mapping[str, bytes]) -> None:

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 
 from diorama_app.projects.formats import EXPORT_FORMATS
 from diorama_app.session.client import Client
+from diorama_app.strings import _
 from diorama_core.errors import EditRefused, ExportError
 from diorama_core.export import Format, export_scene
 from diorama_core.export.files import FAST_DEFLATE
@@ -32,7 +33,8 @@ def export(client: Client, format_name: str, options: ExportOptions) -> None:
     if not scene.objects and not scene.architecture.planes:
         raise EditRefused("there is nothing to export yet; build or open a scene first")
     if format_name not in EXPORT_FORMATS:
-        raise ExportError(f"cannot export as {format_name!r}; choose a format from the list")
+        said = _("cannot export as {format!r}; choose a format from the list").format(format=format_name)
+        raise ExportError(said)
     chosen = EXPORT_FORMATS[format_name]
     chosen.writer()  # says at once what is missing
     name = project.name if project is not None else "scene"
@@ -56,7 +58,7 @@ def export(client: Client, format_name: str, options: ExportOptions) -> None:
             file_name, content = packed(Path(folder), f"{stem}-{chosen.name}.zip")
         hand_over(client, file_name, content, progress)
 
-    session.jobs.start("export", f"Exporting {chosen.title}", work)
+    session.jobs.start("export", _("Exporting {title}").format(title=_(chosen.title)), work)
 
 
 def hand_over(client: Client, name: str, content: bytes, progress: Progress) -> None:
@@ -68,11 +70,12 @@ def hand_over(client: Client, name: str, content: bytes, progress: Progress) -> 
         content: of the file.
         progress: reports and cancellation.
     """
-    progress.report(0.98, f"handing over {name}")
+    progress.report(0.98, _("downloading {name}").format(name=name))
 
     def download() -> None:
         client.view.download(name, content)
-        client.notice(f"{name} ({size_in_words(len(content))}) is in your downloads.", "good")
+        said = _("{name} ({size}) is in your downloads.").format(name=name, size=size_in_words(len(content)))
+        client.notice(said, "good")
 
     client.post(download)
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from diorama_app.session.client import Client
+from diorama_app.strings import N_, _, plural
 from diorama_core.artefacts import LabelledBox, Photo
 from diorama_core.editing.input_corrections import with_boxes_added
 from diorama_core.errors import EditRefused, InputError, UnavailableError
@@ -15,8 +16,10 @@ from diorama_core.models.pull import pull
 from diorama_core.models.store import ModelStore
 from diorama_core.progress import Progress
 
-NO_DETECTOR = "Detecting furniture needs a network: download “micro” under Project, Networks."
-PROPOSALS_ONLY = (
+READY = ("The network is ready; the next build uses it.", "{count} networks are ready; the next build uses them.")
+MORE_BOXES = ("{count} more box: check it, then build.", "{count} more boxes: check them, then build.")
+NO_DETECTOR = N_("Detecting furniture needs a network: download “micro” under Project, Networks.")
+PROPOSALS_ONLY = N_(
     "The proposals come from the small built-in detector, and some are wrong. A downloaded network finds more."
 )
 SMALLEST = "micro"
@@ -59,7 +62,7 @@ def get_networks(client: Client, networks: Sequence[Network], accepted: frozense
     def work(progress: Progress) -> None:
         _pull(client, missing, accepted, progress)
 
-    session.jobs.start("pull", "Downloading networks", work)
+    session.jobs.start("pull", _("Downloading networks"), work)
 
 
 def detect_with_networks(client: Client) -> None:
@@ -75,7 +78,7 @@ def detect_with_networks(client: Client) -> None:
         _pull(client, missing, frozenset(n.id for n in missing), progress.part(0.0, PULL_SHARE))
         _find(client, photo, progress.part(PULL_SHARE, 1.0))
 
-    session.jobs.start("pull", "Downloading networks to detect furniture", work)
+    session.jobs.start("pull", _("Downloading networks to detect furniture"), work)
 
 
 def _pull(client: Client, missing: Sequence[Network], accepted: frozenset[str], progress: Progress) -> None:
@@ -83,8 +86,8 @@ def _pull(client: Client, missing: Sequence[Network], accepted: frozenset[str], 
         ModelStore.default(), missing, accept=lambda asked: {n.id for n in asked} <= accepted, progress=progress
     )
     _try([n for n in missing if n.id in fetched], progress)
-    names = f"{len(fetched)} networks are" if len(fetched) != 1 else "The network is"
-    client.post(lambda: client.session.notice_all(f"{names} ready and used from the next build on.", "good"))
+    said = plural(*READY, len(fetched))
+    client.post(lambda: client.session.notice_all(said, "good"))
 
 
 def _try(fetched: Sequence[Network], progress: Progress) -> None:
@@ -97,14 +100,14 @@ def _try(fetched: Sequence[Network], progress: Progress) -> None:
     failed = rejected(ModelStore.default(), [n.id for n in fetched], example_inputs().inputs, progress)
     if failed:
         told = "; ".join(f"{c.network.title}: {c.words}" for c in failed)
-        raise UnavailableError(f"these files were damaged or changed, so they were deleted: {told}")
+        raise UnavailableError(_("damaged or changed files were deleted: {files}").format(files=told))
 
 
 def find_furniture(client: Client) -> None:
     """Put a box around every piece of furniture that a detector finds in the photo, to be corrected by hand."""
     session, photo = client.session, _photo(client)
     session.need_writable()
-    session.jobs.start("find", "Detecting furniture", lambda progress: _find(client, photo, progress))
+    session.jobs.start("find", _("Detecting furniture"), lambda progress: _find(client, photo, progress))
 
 
 def _photo(client: Client) -> Photo:
@@ -130,10 +133,10 @@ def _put_boxes(client: Client, photo: Photo, found: Sequence[LabelledBox]) -> No
     marked = with_boxes_added(inputs, found)
     more = len(marked.boxes) - len(inputs.boxes)
     if not more:
-        client.notice("No more furniture was detected in this photo.", "good")
+        client.notice(_("No more furniture was detected in this photo."), "good")
         return
     client.selected_box = None
-    client.annotate("detect furniture", marked)
+    client.annotate(_("detect furniture"), marked)
     client.open_board()
     client.refresh()
-    client.notice(f"{'1 more box' if more == 1 else f'{more} more boxes'}: check the boxes, then build.", "good")
+    client.notice(plural(*MORE_BOXES, more), "good")

@@ -9,6 +9,7 @@ import numpy as np
 from jaxtyping import Bool
 
 from diorama_app.session.client import Client
+from diorama_app.strings import _
 from diorama_core.artefacts import Box, Inputs, LabelledBox
 from diorama_core.editing.input_corrections import given_outline, with_correction
 from diorama_core.editing.reconstructed import inserted, renamed, replaced
@@ -31,7 +32,8 @@ def add_from_photo(client: Client, box: Box, label: str) -> None:
     def put(scene: Scene, found: Found) -> Scene:
         return inserted(scene, found, session.library)
 
-    _reconstruct(client, None, _labelled(box, label), new_id, f"insert {label} from the photo", put, select_new=True)
+    step = _("insert {label} from the photo").format(label=label)
+    _reconstruct(client, None, _labelled(box, label), new_id, step, put, select_new=True)
 
 
 def rename_class(client: Client, object_id: str, label: str) -> None:
@@ -45,13 +47,14 @@ def rename_class(client: Client, object_id: str, label: str) -> None:
         return renamed(scene, object_id, found)
 
     assert item.box_px is not None
-    _reconstruct(client, item.box_px, _labelled(item.box_px, words), object_id, f"change {item.label} to {words}", put)
+    step = _("change {label} to {words}").format(label=item.label, words=words)
+    _reconstruct(client, item.box_px, _labelled(item.box_px, words), object_id, step, put)
 
 
 def redraw_box(client: Client, object_id: str, box: Box) -> None:
     """Change an object's box in the photo: segments, retrieves and poses it again."""
     item = client.session.scene.object(object_id)
-    now, label = _labelled(box, item.label), f"reconstruct {item.label}"
+    now, label = _labelled(box, item.label), _("reconstruct {label}").format(label=item.label)
     _reconstruct(client, item.box_px, now, object_id, label, _replaced(client, object_id))
 
 
@@ -61,7 +64,7 @@ def use_outline(client: Client, object_id: str, outline: MaskDraft) -> None:
     if not outline.mask.any():
         raise EditRefused("the outline is empty; click the object first")
     box = _labelled(outline.bounds, item.label)
-    label = f"outline of {item.label}"
+    label = _("change the outline of {label}").format(label=item.label)
     _reconstruct(client, item.box_px, box, object_id, label, _replaced(client, object_id), drawn=outline.mask)
 
 
@@ -74,7 +77,7 @@ def start_outline(client: Client, object_id: str) -> MaskDraft:
     assert item.box_px is not None
     mask = given_outline(inputs, item.box_px)
     if mask is None:
-        mask, _ = EmbeddedMasks().inside_box(inputs.photo.rgb, item.box_px)
+        mask = EmbeddedMasks().inside_box(inputs.photo.rgb, item.box_px)[0]
     return MaskDraft(inputs.photo.rgb, item.box_px, mask)
 
 
@@ -119,7 +122,7 @@ def _reconstruct(
 
         client.post(show)
 
-    session.jobs.start("outline", f"Reconstructing the {box.label}", work)
+    session.jobs.start("outline", _("Reconstructing {label}").format(label=box.label), work)
 
 
 def _replaced(client: Client, object_id: str) -> Callable[[Scene, Found], Scene]:
@@ -140,7 +143,8 @@ def _inputs(client: Client) -> Inputs:
 def _seen(client: Client, object_id: str) -> SceneObject:
     item = client.session.scene.object(object_id)
     if item.box_px is None:
-        raise EditRefused(f"{item.label} was not found in the photo; draw a box around it in the Photo tab instead")
+        said = _("{label} was not found in the photo; draw a box around it in the Photo tab instead")
+        raise EditRefused(said.format(label=item.label))
     if item.locked:
-        raise EditRefused(f"{item.label} is locked; unlock it first")
+        raise EditRefused(_("{label} is locked; unlock it first").format(label=item.label))
     return item

@@ -10,12 +10,12 @@ from diorama_app.projects.begin import new_project
 from diorama_app.projects.packing import SUFFIX, unpack_project
 from diorama_app.session.client import Client
 from diorama_app.session.session import EditorSession
+from diorama_app.strings import _, plural
 from diorama_core.errors import InputError
 from diorama_core.importing.apart import read_apart
 from diorama_core.importing.forms import SUFFIXES
 from diorama_core.importing.opening import Opened
 from diorama_core.io.atomic import write_atomically
-from diorama_core.io.text import number_of
 from diorama_core.library.library_names import BUILT_IN
 from diorama_core.library.user_library import ProjectShapes
 from diorama_core.progress import Progress
@@ -41,7 +41,8 @@ def open_file(client: Client, name: str, content: bytes) -> None:
         open_packed(client, file_name, content)
         return
     if Path(file_name).suffix.lower() not in SUFFIXES:
-        raise InputError(f"{file_name} cannot be opened as a scene; choose a {', '.join(SUFFIXES)} file")
+        said = _("{file} cannot be opened as a scene; choose a file of one of these kinds: {kinds}")
+        raise InputError(said.format(file=file_name, kinds=", ".join(SUFFIXES)))
 
     def work(progress: Progress) -> None:
         with tempfile.TemporaryDirectory(prefix="upload-") as folder:
@@ -51,7 +52,7 @@ def open_file(client: Client, name: str, content: bytes) -> None:
             project = _saved(session, file_name, opened, shapes)
         client.post(lambda: _show(client, project, file_name))
 
-    session.jobs.start("import", f"Opening {file_name}", work)
+    session.jobs.start("import", _("Opening {file}").format(file=file_name), work)
 
 
 def open_packed(client: Client, name: str, content: bytes) -> None:
@@ -69,9 +70,10 @@ def open_packed(client: Client, name: str, content: bytes) -> None:
             path = Path(folder) / file_name
             write_atomically(path, content, error=InputError)
             project = unpack_project(path, session.projects_dir)
-        client.post(lambda: session.visit(client, project, f"Opened {project.name} from {file_name}."))
+        said = _("Opened {name} from {file}.").format(name=project.name, file=file_name)
+        client.post(lambda: session.visit(client, project, said))
 
-    session.jobs.start("import", f"Opening {file_name}", work)
+    session.jobs.start("import", _("Opening {file}").format(file=file_name), work)
 
 
 def _read(session: EditorSession, path: Path, shapes: Path, content: bytes, progress: Progress) -> Opened:
@@ -101,5 +103,6 @@ def _saved(session: EditorSession, file_name: str, opened: Opened, shapes: Path)
 
 def _show(client: Client, project: Project, file_name: str) -> None:
     count = len(project.load_scene().objects)
-    message = f"Opened {file_name} as a new project with {number_of(count)}."
+    objects = plural("{count} object", "{count} objects", count)
+    message = _("Opened {file} as a new project with {objects}.").format(file=file_name, objects=objects)
     client.session.visit(client, project, message)

@@ -13,6 +13,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from diorama_app.session.client import Client
+from diorama_app.strings import _
 from diorama_core.artefacts import FurtherPhoto, Inputs
 from diorama_core.errors import EditRefused, InputError
 from diorama_core.progress import Progress
@@ -36,16 +37,18 @@ def take_photo(client: Client, file_name: str, inputs: Inputs) -> None:
     """
     session = client.session
     if awaits_photo(session.scene):
-        session.commit(f"add the photo {inputs.photo.name}", session.scene, inputs=inputs, by=client)
+        label = _("add the photo {name}").format(name=inputs.photo.name)
+        session.commit(label, session.scene, inputs=inputs, by=client)
         _to_be_marked(client, None)
         return
     need_joinable(session.scene, session.inputs)
     photos = session.further_photos
     if len(photos) >= MAX_PHOTOS:
-        raise EditRefused(f"a room can have {MAX_PHOTOS} further photos; remove one first")
+        said = _("a room can have at most {count} more photos; remove one first").format(count=MAX_PHOTOS)
+        raise EditRefused(said)
     name = fresh_name(file_name, [p.name for p in photos])
     further = (*photos, FurtherPhoto(name, inputs))
-    session.commit(f"add the photo {name}", session.scene, further=further, by=client)
+    session.commit(_("add the photo {name}").format(name=name), session.scene, further=further, by=client)
     _to_be_marked(client, name)
 
 
@@ -65,7 +68,7 @@ def missing_for_joining(scene: Scene) -> str:
     """What must be installed before another photo can join the scene; empty where nothing is missing."""
     if awaits_photo(scene) or find_spec("pycolmap") is not None:
         return ""
-    return (
+    return _(
         "Adding a photo needs pycolmap, which is not installed. Run pip install 'diorama[photos]' and restart Diorama."
     )
 
@@ -86,7 +89,8 @@ def take_out(client: Client, name: str) -> None:
     """Take a further photo away; the objects that it brought stay."""
     photos = client.session.further_photos
     further = tuple(p for p in photos if p.name != name)
-    client.session.commit(f"take out the photo {name}", client.session.scene, further=further, by=client)
+    label = _("remove the photo {name}").format(name=name)
+    client.session.commit(label, client.session.scene, further=further, by=client)
     client.choose_photo(None)
     client.refresh()
 
@@ -112,7 +116,7 @@ def join_photo(client: Client) -> None:
         note_placed(project, added.scene)
         client.post(lambda: _show(client, project, scene, photo, added))
 
-    session.jobs.start("join", f"Adding {photo.name} to the scene", work)
+    session.jobs.start("join", _("Adding {name} to the scene").format(name=photo.name), work)
 
 
 def _join_first(client: Client, inputs: Inputs) -> None:
@@ -141,7 +145,7 @@ def _join_first(client: Client, inputs: Inputs) -> None:
         )
         client.post(lambda: _show_first(client, project, scene, inputs, found))
 
-    session.jobs.start("join", f"Adding {inputs.photo.name} to the scene", work)
+    session.jobs.start("join", _("Adding {name} to the scene").format(name=inputs.photo.name), work)
 
 
 def _show_first(client: Client, project: Project, before: Scene, inputs: Inputs, found: Opened) -> None:
@@ -151,7 +155,8 @@ def _show_first(client: Client, project: Project, before: Scene, inputs: Inputs,
     if session.scene is not before or session.inputs is not inputs:
         raise EditRefused("the scene was changed while the photo was added, so it stays as it is; add the photo again")
     session.add_textures(dict(found.textures))
-    session.commit(f"add what {inputs.photo.name} shows", found.scene, by=client, selection=(), inputs=found.inputs)
+    label = _("add the objects of {name}").format(name=inputs.photo.name)
+    session.commit(label, found.scene, by=client, selection=(), inputs=found.inputs)
     session.view.show_whole_room()
     session.notice_all(f"{found.changes[-1]}.", "good")
 
@@ -197,8 +202,7 @@ def _show(client: Client, project: Project, before: Scene, photo: FurtherPhoto, 
         raise EditRefused("the scene was changed while the photo was added, so it stays as it is; add the photo again")
     session.add_textures(dict(added.textures))
     further = tuple(added.photo if p is photo else p for p in now)
-    session.commit(f"add what {photo.name} shows", added.scene, by=client, selection=added.new, further=further)
-    news = f"{len(added.new)} new" if added.new else "nothing new"
-    session.notice_all(
-        f"{photo.name} is added: {news}, {len(added.joined)} seen again. Click the photo to look through it.", "good"
-    )
+    label = _("add the objects of {name}").format(name=photo.name)
+    session.commit(label, added.scene, by=client, selection=added.new, further=further)
+    said = _("{name} is added: {new} new objects, {known} already known. Click the photo to show its view.")
+    session.notice_all(said.format(name=photo.name, new=len(added.new), known=len(added.joined)), "good")

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from diorama_app.session.client import Client
 from diorama_app.session.session import EditorSession
+from diorama_app.strings import _
 from diorama_core.artefacts import DetectedObject, Inputs
 from diorama_core.errors import EditRefused
 from diorama_core.progress import Progress
@@ -38,7 +39,7 @@ class PhotoOutlines:
             from diorama_core.pipeline.runner import Runner
 
             runner = Runner(project.stages_folder)
-            found, _ = with_usable_networks(
+            found, _unused = with_usable_networks(
                 lambda store: stages_for("auto", inputs, session.offered, store=store),
                 lambda stages: evaluate(stages, {"given": inputs}, ("objects",), runner, progress)["objects"],
             )
@@ -49,4 +50,4 @@ class PhotoOutlines:
 
             client.post(keep)
 
-        session.jobs.start("outline", "Segmenting the photo", work)
+        session.jobs.start("outline", _("Segmenting the photo"), work)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import io
 import tempfile
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 from typing import Literal
 
@@ -12,6 +13,7 @@ from PIL import Image
 
 from diorama_app.reconstruction.export_job import file_stem, hand_over
 from diorama_app.session.client import Client
+from diorama_app.strings import _
 from diorama_core.errors import EditRefused, InputError
 from diorama_core.progress import Progress
 from diorama_core.scene.types import Scene
@@ -41,15 +43,13 @@ def take_picture(client: Client, view: PictureView, width: int) -> None:
     stem = file_stem(session.project.name if session.project is not None else "scene")
     if view == "turntable":
         suffix = film_suffix()
-        session.jobs.start(
-            "picture", "Filming a turntable", lambda p: _film(client, scene, size, f"{stem}-turntable{suffix}", p)
-        )
+        film = partial(_film, client, scene, size, f"{stem}-turntable{suffix}")
+        session.jobs.start("picture", _("Rendering a turntable film"), film)
         return
     if view == "here":
         scene = replace(scene, camera=client.view.camera.for_picture(*size))
-    session.jobs.start(
-        "picture", "Drawing a picture", lambda p: _still(client, scene, size, f"{stem}-{size[0]}x{size[1]}.png", p)
-    )
+    still = partial(_still, client, scene, size, f"{stem}-{size[0]}x{size[1]}.png")
+    session.jobs.start("picture", _("Rendering a picture"), still)
 
 
 def picture_size(client: Client, view: PictureView, width: int) -> tuple[int, int]:
@@ -61,7 +61,8 @@ def picture_size(client: Client, view: PictureView, width: int) -> tuple[int, in
     """
     most = MAX_FILM_WIDTH if view == "turntable" else MAX_WIDTH
     if not 16 <= width <= most:
-        raise InputError(f"a picture {width} pixels wide cannot be made here; choose 16 to {most}")
+        said = _("a picture {width} pixels wide cannot be made here; choose 16 to {most}")
+        raise InputError(said.format(width=width, most=most))
     if view == "turntable":
         return width // 2 * 2, round(width / FILM_ASPECT / 2) * 2  # H.264 asks for even numbers
     if view == "here":

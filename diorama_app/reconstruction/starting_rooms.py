@@ -5,6 +5,7 @@ from __future__ import annotations
 from diorama_app.projects.begin import begin_with_scene
 from diorama_app.projects.example import example_project
 from diorama_app.session.client import Client
+from diorama_app.strings import _
 from diorama_core.errors import InputError, ProjectError
 from diorama_core.progress import Progress
 
@@ -32,9 +33,10 @@ def start_empty_room(client: Client, width_m: float, depth_m: float, height_m: f
     scene, made = with_finish_pictures(empty_room(width_m, depth_m, height_m), {})
     session.autosave.flush()
     project = begin_with_scene(
-        session.projects_dir, "Empty room", scene, made, ("started as an empty room",), session.library
+        session.projects_dir, _("Empty room"), scene, made, ("started as an empty room",), session.library
     )
-    session.visit(client, project, "Insert furniture from the Library; click a wall or the floor to paint or cover it.")
+    said = _("Insert furniture from the Library tab; click a wall or the floor to paint or cover it.")
+    session.visit(client, project, said)
 
 
 def open_example(client: Client, kind: str) -> None:
@@ -65,7 +67,7 @@ def open_example(client: Client, kind: str) -> None:
         scene, made = with_finish_pictures(example_room(room, session.offered), {})
         progress.report(0.8, "saving the project")
         notes = ("an example, furnished by rules",)
-        project = begin_with_scene(session.projects_dir, room.name, scene, made, notes, session.library)
+        project = begin_with_scene(session.projects_dir, _(room.name), scene, made, notes, session.library)
         client.post(lambda: session.visit(client, project, ""))
 
-    session.jobs.start("example", f"Furnishing the {room.name.lower()}", work)
+    session.jobs.start("example", _("Furnishing: {room}").format(room=_(room.name).lower()), work)

@@ -41,7 +41,7 @@ class Suggestions:
     def __init__(self, photo: Photo, on_ready: Callable[[], None]) -> None:
         self.photo = photo
         self._on_ready = on_ready
-        self._seen: dict[Box, Float[np.ndarray, "k"]] = {}
+        self._seen: dict[Box, Float[np.ndarray, k]] = {}
         """Probabilities of the namer's categories."""
         self._boxes: tuple[LabelledBox, ...] | None = None
         self._known: tuple[LabelledBox, ...] | None = None

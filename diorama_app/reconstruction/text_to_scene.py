@@ -9,8 +9,9 @@ from typing import TYPE_CHECKING
 from diorama_app.projects.begin import new_project
 from diorama_app.session.client import Client
 from diorama_app.session.session import EditorSession
+from diorama_app.strings import N_, _, plural
 from diorama_core.errors import DioramaError, InputError
-from diorama_core.io.text import number_of
+from diorama_core.io.text import sentences
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.progress import Progress
 from diorama_core.project.storage import Project
@@ -19,7 +20,11 @@ if TYPE_CHECKING:
     from diorama_core.perception.language.client import LmmSettings
     from diorama_core.text.pictures import ImageSettings
 
-COMPOSED = "No image endpoint is set up: the room is composed from the library."
+COMPOSED = (
+    "The scene has {count} object, composed from the library.",
+    "The scene has {count} objects, composed from the library.",
+)
+NO_ENDPOINT = N_("No image endpoint is set up: the room is composed from the library.")
 
 
 def how_pictures_come() -> str:
@@ -30,7 +35,7 @@ def how_pictures_come() -> str:
         endpoint = ImageSettings.from_environment()
     except DioramaError as error:
         return str(error)
-    return COMPOSED if endpoint is None else f"{endpoint.model} draws the picture."
+    return NO_ENDPOINT if endpoint is None else _("{model} generates the picture.").format(model=endpoint.model)
 
 
 def describe_room(client: Client, words: str) -> None:
@@ -42,7 +47,7 @@ def describe_room(client: Client, words: str) -> None:
         project, what = create(progress)
         client.post(lambda: session.visit(client, project, what))
 
-    session.jobs.start("text", "Creating the room you described", work)
+    session.jobs.start("text", _("Creating the room you described"), work)
 
 
 def creation(session: EditorSession, words: str) -> Callable[[Progress], tuple[Project, str]]:
@@ -78,25 +83,26 @@ def _compose(said: str, project: Project, library: ShapeLibrary, model: LmmSetti
     project.save_scene(made.scene)
     project.update_info(notes=list(made.notes))
     unmet = [note for note in made.notes[1:] if not note.startswith(("added", "mended"))]
-    what = f"The scene has {number_of(len(made.scene.objects))}, composed from the library"
-    return f"{what}; {'; '.join(unmet)}." if unmet else f"{what}; everything that you asked for is there."
+    said = plural(*COMPOSED, len(made.scene.objects))
+    return f"{said} {sentences(map(_, unmet))}" if unmet else f"{said} {_('It has everything that you asked for.')}"
 
 
 def _draw_and_build(
-    said: str, endpoint: ImageSettings, project: Project, library: ShapeLibrary, progress: Progress
+    asked: str, endpoint: ImageSettings, project: Project, library: ShapeLibrary, progress: Progress
 ) -> str:
     """Build the endpoint's picture in a new project; what to tell the user."""
     from diorama_core.project.build import build_project
     from diorama_core.text.pictures import picture_of
     from diorama_core.text.scene_from_text import unmet
 
-    made = picture_of(said, endpoint, progress.part(0.0, 0.2))
+    made = picture_of(asked, endpoint, progress.part(0.0, 0.2))
     built = build_project(project, made.inputs, library, warnings=made.notes, progress=progress.part(0.2, 1.0))
     count = len(built.scene.objects)
-    what = f"The scene has {number_of(count)}" if count else "No furniture was found; draw boxes"
-    lacking = unmet(said, built.scene)
+    said = plural("The scene has {count} object.", "The scene has {count} objects.", count)
+    said = said if count else _("No furniture was found; draw boxes.")
+    lacking = unmet(asked, built.scene)
     if lacking:
-        missing = f"missing from the scene: {', '.join(lacking)}"
-        project.update_info(notes=[missing, *project.info().get("notes", ())])
-        what += f"; {missing}"
-    return f"{what}; drawn by {endpoint.model}."
+        names = ", ".join(lacking)
+        project.update_info(notes=[f"missing from the scene: {names}", *project.info().get("notes", ())])
+        said += " " + _("Missing from the scene: {names}.").format(names=names)
+    return f"{said} {_('The picture is by {model}.').format(model=endpoint.model)}"

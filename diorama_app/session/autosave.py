@@ -9,6 +9,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from diorama_app.session.recovery import Recovery
+from diorama_app.strings import N_, _
 from diorama_core.artefacts import FurtherPhoto, Inputs
 from diorama_core.errors import DioramaError
 from diorama_core.project.further_photos import save_photos
@@ -40,6 +41,14 @@ class Unwritten:
             self.inputs if newer.inputs is None else newer.inputs,
             self.further if newer.further is None else newer.further,
         )
+
+
+KEPT_BESIDE = N_(
+    "Not saved: {reason}. The changes are stored beside the project and will be saved as soon as that is possible."
+)
+IN_MEMORY = N_(
+    "Not saved: {reason}. The changes are only in memory: keep Diorama running, and free space or export the scene."
+)
 
 
 class Autosave:
@@ -166,16 +175,11 @@ class Autosave:
             self._on_version()
         if self.trouble:
             self.trouble = ""
-            self._on_saved("All changes are saved now.")
+            self._on_saved(_("All changes are saved now."))
         return True
 
     def _not_saved(self, reason: str, *, retained: bool) -> None:
-        fate = (
-            "the changes are kept beside it and saved as soon as that is possible"
-            if retained
-            else "they are only in memory: leave Diorama running, and free space or export the scene"
-        )
-        message = f"not saved: {reason}; {fate}"
+        message = _(KEPT_BESIDE if retained else IN_MEMORY).format(reason=_(reason))
         if message != self.trouble:
             self.trouble = message
             self._on_error(message)

@@ -18,6 +18,7 @@ from jaxtyping import Float
 from diorama_app.session.connected_client import Panel
 from diorama_app.session.preferences import Preferences, remember
 from diorama_app.session.session import EditorSession
+from diorama_app.strings import _
 from diorama_app.viewport.client_view import ClientView, NoticeKind
 from diorama_app.viewport.decorations import Decorations
 from diorama_core.artefacts import FurtherPhoto, Inputs, LabelledBox, Photo
@@ -51,7 +52,7 @@ class Measuring:
 class Playing:
     """Clicks in the view push objects, while gravity acts on all of them."""
 
-    push: Callable[[str, Float[np.ndarray, "3"]], None]
+    push: Callable[[str, Float[np.ndarray, 3]], None]
     """Pushes an object along a direction of the world."""
     end: Callable[[], None]
 
@@ -67,7 +68,7 @@ class Client:
         self.session = session
         self.viser_client = viser_client
         self.id: int = viser_client.client_id
-        self.name: str = f"User {number}"
+        self.name: str = _("User {number}").format(number=number)
         self.colour: tuple[int, int, int] = COLOURS[(number - 1) % len(COLOURS)]
         self.view: ClientView = ClientView(viser_client)
         self.marks = Decorations(viser_client)
@@ -239,7 +240,8 @@ class Client:
             log.log(logging.DEBUG if name in self.failing else logging.ERROR, "panel %s", name, exc_info=True)
             if name not in self.failing:
                 self.failing[name] = str(error) if isinstance(error, DioramaError) else type(error).__name__
-                self.notice(f"the panel {name} could not be drawn ({self.failing[name]}); your work is saved", "bad")
+                said = _("the panel {name} could not be drawn ({reason}); your work is saved")
+                self.notice(said.format(name=name, reason=_(self.failing[name])), "bad")
         else:
             self.failing.pop(name, None)
 

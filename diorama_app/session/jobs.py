@@ -9,6 +9,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 from typing import Literal
 
+from diorama_app.strings import N_, _
 from diorama_core.errors import Cancelled, DioramaError, EditRefused
 from diorama_core.geometry.open3d_import import load_open3d
 from diorama_core.progress import CancelToken, Progress, ProgressEvent, Segments
@@ -41,7 +42,7 @@ class JobStatus:
     kind: JobKind
     title: str
     fraction: float = 0.0
-    message: str = "Starting"
+    message: str = N_("Starting")
     cancelling: bool = False
     found: tuple[str, ...] = ()
     """What was found so far, in a few words each."""
@@ -92,7 +93,7 @@ class Jobs:
         """
         with self._lock:
             if self._status is not None:
-                raise EditRefused(f"{self._status.title} is still running; cancel it or wait")
+                raise EditRefused(_("{title} is still running; cancel it or wait").format(title=self._status.title))
             self._status = JobStatus(kind, title)
             self._token = CancelToken()
         progress = Progress(on_event=self._report, token=self._token)
@@ -108,7 +109,7 @@ class Jobs:
         """
         self._in_favour = in_favour
         self._token.cancel()
-        self._change(lambda status: replace(status, cancelling=True, message="Stopping"))
+        self._change(lambda status: replace(status, cancelling=True, message=_("Stopping")))
 
     def wait(self, timeout_s: float) -> bool:
         """Block until no job runs; False when that took too long."""
@@ -153,7 +154,10 @@ class Jobs:
         except Exception:  # the thread ends here: the outcome is all that is heard of it
             log.exception("%s failed", status.title)
             outcome = Outcome(
-                status.kind, error=f"{status.title} failed unexpectedly; nothing was changed (see the log)"
+                status.kind,
+                error=_("{title} failed unexpectedly; nothing was changed. See the server's log.").format(
+                    title=status.title
+                ),
             )
         finally:
             with self._lock:

@@ -73,7 +73,7 @@ def floats(scene: Scene, library: ShapeLibrary, item: SceneObject) -> bool:
     return low - max(below) > FLOATING_M
 
 
-def _is_beside(foot: Float[np.ndarray, "3"], parent: SceneObject) -> bool:
+def _is_beside(foot: Float[np.ndarray, 3], parent: SceneObject) -> bool:
     """Whether a foot is outside the box of what should carry it."""
     local = np.abs((foot - parent.pose.position) @ parent.pose.R_world_object)
     return bool((local[:2] > parent.size_m[:2] / 2 + BESIDE_M).any())

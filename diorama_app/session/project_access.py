@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from diorama_app.strings import _
 from diorama_core.errors import EditRefused, ProjectError
 from diorama_core.project.lock import ProjectLock, ProjectLockedError
 from diorama_core.project.storage import Project
@@ -31,9 +32,9 @@ class ProjectAccess:
         try:
             self._lock = ProjectLock(project.folder, "the editor")
         except ProjectLockedError as error:
-            self.read_only = f"nothing can be changed here: {error}"
+            self.read_only = _("nothing can be changed here: {reason}").format(reason=_(str(error)))
         except (ProjectError, OSError) as error:
-            self.unwritable = f"changes will not be saved: {error}"
+            self.unwritable = _("changes will not be saved: {reason}").format(reason=_(str(error)))
         return self._lock is not None
 
     def need_writable(self) -> None:

@@ -27,6 +27,7 @@ from diorama_app.session.shape_preparation import Preparer
 from diorama_app.session.shared_document import SharedDocument
 from diorama_app.session.shared_view import SharedView
 from diorama_app.session.ui_thread import UiThread
+from diorama_app.strings import _
 from diorama_app.viewport.client_view import NoticeKind
 from diorama_app.viewport.framing import room_view
 from diorama_app.viewport.mesh_assets import ShapeBytes
@@ -294,6 +295,6 @@ class EditorSession(SharedDocument):
         self._tell_watchers()
         if outcome.cancelled:
             if not outcome.in_favour:
-                self.notice_all("Cancelled; nothing was changed.")
+                self.notice_all(_("Cancelled; nothing was changed."))
         elif outcome.error is not None:
             self.notice_all(outcome.error, "bad")

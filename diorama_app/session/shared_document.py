@@ -10,6 +10,7 @@ from diorama_app.session.connected_client import ConnectedClient
 from diorama_app.session.document import Document, IsMine
 from diorama_app.session.project_saving import ProjectSaving
 from diorama_app.session.textures import Textures, refitted
+from diorama_app.strings import _
 from diorama_core.artefacts import FurtherPhoto, Inputs
 from diorama_core.editing.hand_placed import noted_by_hand
 from diorama_core.errors import DioramaError, EditRefused
@@ -89,7 +90,8 @@ class SharedDocument(ABC):
             raise
         except ValueError as error:  # the scene's own values refuse what is no number
             self.refresh(by)
-            raise EditRefused(f"this is not possible: {shortened(str(error))}; give another value") from error
+            said = _("this is not possible: {reason}; give another value").format(reason=shortened(str(error)))
+            raise EditRefused(said) from error
         if scene == self.scene and inputs is None:
             self.refresh(by)
             return
@@ -156,7 +158,8 @@ class SharedDocument(ABC):
         """
         self.need_writable()
         undone = self.document.undo(self._own(by))
-        self._time_travelled(by, f"Undone: {undone.label}", self.document.history.current.selection)
+        said = _("Undone: {label}").format(label=undone.label)
+        self._time_travelled(by, said, self.document.history.current.selection)
         return undone
 
     def _own(self, by: ConnectedClient | str) -> IsMine:
@@ -172,7 +175,7 @@ class SharedDocument(ABC):
         """Do again what a person, or a program by its name, undid."""
         self.need_writable()
         done = self.document.redo(self._own(by))
-        self._time_travelled(by, f"Redone: {done.label}", done.selection)
+        self._time_travelled(by, _("Redone: {label}").format(label=done.label), done.selection)
         return done
 
     def _time_travelled(self, by: ConnectedClient | str, message: str, selection: tuple[str, ...]) -> None:

@@ -18,6 +18,7 @@ from diorama_app.session.redraws import Redraws
 from diorama_app.session.shape_preparation import Preparer
 from diorama_app.session.textures import Textures
 from diorama_app.session.ui_thread import UiThread
+from diorama_app.strings import N_, _
 from diorama_app.viewport.client_view import NoticeKind
 from diorama_app.viewport.framing import DEFAULT_FOV_RAD, room_view
 from diorama_app.viewport.mesh_assets import ShapeBytes
@@ -85,11 +86,11 @@ class SharedView:
             by: who caused it; sees the panels follow before the others do.
         """
         scene, clients = self._shown.scene, list(self._shown.clients.values())
-        self._draw("the view", lambda: self.viewport.show(scene, self._shown.textures))
+        self._draw(N_("the view"), lambda: self.viewport.show(scene, self._shown.textures))
         self._preparer.want(o.shape_id for o in scene.objects)
         for client in clients:
             client.drop_missing()
-            self._draw("the photo's camera", partial(self.show_photo_camera, client))
+            self._draw(N_("the photo's camera"), partial(self.show_photo_camera, client))
         self.refresh_panels(by)
 
     def refresh_panels(self, by: ConnectedClient | None = None) -> None:
@@ -138,7 +139,8 @@ class SharedView:
             self._shown.notice_all(str(error), "bad")
         except Exception:  # whatever a part of the page does wrong, the work is saved and the other parts are drawn
             log.exception("%s cannot be drawn", what)
-            self._shown.notice_all(f"{what} could not be drawn; your work is saved. See the server's log.", "bad")
+            said = _("{what} could not be drawn; your work is saved. See the server's log.")
+            self._shown.notice_all(said.format(what=_(what)[:1].upper() + _(what)[1:]), "bad")
 
     def _picked(self, object_id: str, event: viser.SceneNodePointerEvent) -> None:
         """Called from viser's event loop, as `_dragged` is."""

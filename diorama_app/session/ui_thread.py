@@ -17,6 +17,7 @@ from concurrent.futures import Future
 from dataclasses import dataclass, field
 from typing import TypeVar
 
+from diorama_app.strings import _
 from diorama_core.errors import DioramaError, UnavailableError
 
 log = logging.getLogger(__name__)
@@ -194,4 +195,4 @@ class UiThread:
                 posted.on_error(str(error))
             except Exception:  # one task must not end the thread that serves everybody
                 log.exception("an unexpected error in the editor")
-                posted.on_error("Something went wrong; earlier changes are safe. See the server's log.")
+                posted.on_error(_("Something went wrong; earlier changes are safe. See the server's log."))

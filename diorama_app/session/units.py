@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from typing import Literal
 
+from diorama_app.strings import N_, _
 from diorama_core.errors import InputError
 
 Unit = Literal["m", "cm", "ft-in"]
@@ -14,6 +15,8 @@ METRES_PER = {"m": 1.0, "cm": 0.01, "mm": 0.001, "ft": 0.3048, "'": 0.3048, "in"
 _NUMBER = r"\d+(?:[.,]\d+)?(?:\s+\d+/\d+)?|\d+/\d+"
 _TERM = r"\s*([+-]?)([^+-]+)"
 _PART = re.compile(rf"\s*({_NUMBER})\s*(mm|cm|m|ft|in|'|\")?", re.IGNORECASE)
+
+NOT_A_LENGTH = N_("“{words}” is not a length; write for example 1.2 m, 85 cm, 5' 3\" or 0.5+0.25")
 
 
 def parse_length(words: str, unit: Unit) -> float:
@@ -29,9 +32,9 @@ def parse_length(words: str, unit: Unit) -> float:
     rest = words.strip().replace("′", "'").replace("″", '"').replace("’", "'").replace("”", '"').replace("−", "-")
     rest = re.sub(r"'\s*-\s*(?=\d)", "' ", rest)  # 5'-3" is one length
     if not rest.strip("+- "):
-        raise InputError("the length is missing; write for example 1.2 m, 85 cm or 5' 3\"")
+        raise InputError("the length is missing; write for example 1.2 m, 85 cm, 5' 3\" or 0.5+0.25")
     if not re.fullmatch(f"(?:{_TERM})+", rest):
-        raise InputError(f"'{words[:30]}' is not a length; write for example 1.2 m, 85 cm or 0.5+0.25")
+        raise InputError(_(NOT_A_LENGTH).format(words=words[:30]))
     return sum(-_metres(term, unit) if sign == "-" else _metres(term, unit) for sign, term in re.findall(_TERM, rest))
 
 
@@ -42,7 +45,7 @@ def _metres(words: str, unit: Unit) -> float:
     while rest:
         found = _PART.match(rest)
         if found is None:
-            raise InputError(f"'{words[:30].strip()}' is not a length; write for example 1.2 m, 85 cm or 5' 3\"")
+            raise InputError(_(NOT_A_LENGTH).format(words=words[:30].strip()))
         name = (found.group(2) or "").lower() or _implied(unit, previous)
         total += _number(found.group(1)) * METRES_PER[name]
         previous, rest = name, rest[found.end() :].strip()
@@ -92,9 +95,9 @@ def _implied(unit: Unit, previous: str) -> str:
 def _number(words: str) -> float:
     total = 0.0
     for part in words.replace(",", ".").split():
-        top, _, below = part.partition("/")
+        top, below = part.partition("/")[::2]
         if below and float(below) == 0:
-            raise InputError(f"'{words}' divides by zero; write a length")
+            raise InputError(_("“{words}” divides by zero; write a length").format(words=words))
         total += float(top) / float(below) if below else float(top)
     return total
 

@@ -22,12 +22,12 @@
     root = element("div", "dio-canvas");
     const bar = element("div", "dio-canvas-bar");
     bar.append(element("span", ""));
-    bar.append(element("button", "", { type: "button", textContent: "Done", onclick: () => send("done", null) }));
+    bar.append(element("button", "", { type: "button", textContent: _("Done"), onclick: () => send("done", null) }));
     figure = element("div", "dio-canvas-figure");
     layer = element("div", "dio-canvas-layer", { tabIndex: -1 });
     const names = element("datalist", "", { id: "dio-canvas-names" });
     names.append(...state.photo.names.map((value) => element("option", "", { value })));
-    figure.append(element("img", "", { src: state.photo.url, alt: "The photo", draggable: false }), layer);
+    figure.append(element("img", "", { src: state.photo.url, alt: _("The photo"), draggable: false }), layer);
     root.append(bar, figure, names);
     layer.addEventListener("pointerdown", press);
     layer.addEventListener("pointermove", move);
@@ -161,7 +161,7 @@
       `--box:${COLOURS[i % COLOURS.length]}`;
     const name = element("div", `dio-canvas-name${nameSide(row.box)}`);
     if (on && state.photo.mode === "boxes") {
-      const field = element("input", "", { value: row.label, ariaLabel: "Name of the selected box" });
+      const field = element("input", "", { value: row.label, ariaLabel: _("Name of the selected box") });
       field.setAttribute("list", "dio-canvas-names");
       field.size = Math.max(8, row.label.length + 1);
       field.dataset.box = i;
@@ -172,11 +172,11 @@
         if (event.key === "Escape") field.value = row.label;
         if (event.key === "Enter" || event.key === "Escape") field.blur();
       };
-      const remove = element("button", "", { type: "button", textContent: "✕", title: "Delete this box (Delete)" });
-      remove.setAttribute("aria-label", `Delete the box ${row.label}`);
+      const remove = element("button", "", { type: "button", textContent: "✕", title: _("Delete this box (Delete)") });
+      remove.setAttribute("aria-label", _("Delete the box of {label}").replace("{label}", row.label));
       remove.onclick = () => send("delete", i);
       const likely = state.likely.map((word, k) => {
-        const choice = element("button", `likely${word === row.label ? " chosen" : ""}`, { type: "button", title: `Key ${k + 1}` });
+        const choice = element("button", `likely${word === row.label ? " chosen" : ""}`, { type: "button", title: _("Key {number}").replace("{number}", k + 1) });
         choice.append(element("kbd", "", { textContent: k + 1 }), ` ${word}`);
         choice.onclick = () => send("name", [i, word]);
         return choice;
@@ -202,7 +202,7 @@
   const proposalElement = (row, i) => {
     const [width, height] = state.photo.size, [x1, y1, x2, y2] = row.box;
     const node = element("div", `dio-canvas-proposal${i === at ? " at" : ""}`);
-    Object.assign(node, { role: "button", ariaLabel: `Proposal: ${row.label}`, title: "Click to accept" });
+    Object.assign(node, { role: "button", ariaLabel: _("Proposal: {label}").replace("{label}", row.label), title: _("Click to accept") });
     node.style.cssText = `left:${100 * x1 / width}%;top:${100 * y1 / height}%;` +
       `width:${100 * (x2 - x1) / width}%;height:${100 * (y2 - y1) / height}%`;
     node.append(element("div", `dio-canvas-name${nameSide(row.box)}`, { textContent: `${row.label}?` }));
@@ -228,7 +228,7 @@
     const proposals = state.photo.mode === "boxes" ? state.proposals.map(proposalElement) : [];
     const drawn = drag?.kind === "new" && drag.box ? [...state.drawn, { box: drag.box, label: "" }] : state.drawn;
     const nodes = [...proposals, ...[...state.boxes, ...drawn].map(boxElement)];
-    if (state.mask) nodes.unshift(element("img", "dio-canvas-mask", { src: state.mask, alt: "Outline" }));
+    if (state.mask) nodes.unshift(element("img", "dio-canvas-mask", { src: state.mask, alt: _("Outline") }));
     if (state.lines.length) nodes.unshift(linesElement());
     layer.replaceChildren(...nodes);
     const again = typed && layer.querySelector(".on input");

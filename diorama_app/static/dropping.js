@@ -79,7 +79,7 @@
   const show = (on) => {
     veil ??= document.body.appendChild(Object.assign(document.createElement("div"), {
       id: "dio-drop",
-      textContent: "Drop photos, boxes, masks, depth, models, a scan or a scene: files or a folder",
+      textContent: _("Drop photos, boxes, masks, depth, models, a scan or a scene: files or a folder"),
     }));
     veil.style.display = on ? "flex" : "none";
     if (!on) depth = 0;

@@ -11,14 +11,14 @@
   const make = (tag, more = {}) => Object.assign(document.createElement(tag), more);
   const build = () => {
     strip = make("section", { id: "dio-job", role: "status" });
-    strip.setAttribute("aria-label", "Running job");
+    strip.setAttribute("aria-label", _("Running job"));
     const header = make("header");
     header.append(make("b"), make("button", { type: "button", className: "pause", onclick: () => send("pause") }),
-      make("button", { type: "button", className: "cancel", textContent: "Cancel", onclick: () => send("cancel") }));
+      make("button", { type: "button", className: "cancel", textContent: _("Cancel"), onclick: () => send("cancel") }));
     const now = make("div", { className: "now" });
     now.append(make("span", { className: "stage" }), make("span", { className: "left" }));
     const meter = make("progress", { max: 100 });
-    meter.setAttribute("aria-label", "Progress");
+    meter.setAttribute("aria-label", _("Progress"));
     strip.append(header, meter, now, make("div", { className: "found" }));
     document.body.append(strip);
   };

@@ -2,7 +2,8 @@
 // set, several times a second while a hand is on them; what is told from there is drawn unless a hand is on it.
 (() => {
   const L = window.__dioLight = { set: null };
-  const TELL_MS = 120, NAMES = ["east", "north-east", "north", "north-west", "west", "south-west", "south", "south-east"];
+  const TELL_MS = 120;
+  const NAMES = [_("east"), _("north-east"), _("north"), _("north-west"), _("west"), _("south-west"), _("south"), _("south-east")];
   let held = null, waiting = 0, last = 0;
   const root = () => document.querySelector(".dio-light");
   const clock = (h) => {
@@ -43,7 +44,7 @@
       (set.outline.length ? line(set.outline.map((p) => at(...p)), 'class="room"') : "") +
       set.windows.map((w) => { const a = at(w[0], w[1]), b = at(w[2], w[3]);
         return `<line x1="${a[0]}" y1="${a[1]}" x2="${b[0]}" y2="${b[1]}" class="window"/>`; }).join("") +
-      `<text x="${nx}" y="${Number(ny) + 3}" class="north">N</text>` +
+      `<text x="${nx}" y="${Number(ny) + 3}" class="north">${_("N")}</text>` +
       (up ? `<line x1="${sx}" y1="${sy}" x2="0" y2="0" class="ray"/>` : "") +
       `<circle cx="${sx}" cy="${sy}" r="7" class="sun ${up ? "" : "down"}"/>`;
     const degrees = ((Math.round(set.azimuth * 180 / Math.PI) % 360) + 360) % 360;
@@ -51,10 +52,11 @@
     const turn = ((set.azimuth - set.north) * 180 / Math.PI + 90 + 720) % 360;
     const side = NAMES[Math.round(turn / 45) % 8];
     const high = Math.round(Math.asin(Math.max(-1, Math.min(1, set.up))) * 180 / Math.PI);
-    dial.setAttribute("aria-valuetext", `from the ${side}`);
+    dial.setAttribute("aria-valuetext", _("from the {side}").replace("{side}", side));
     box.querySelector("[data-about]").textContent = up
-      ? `The sun stands ${high}° high in the ${side}. Drag it around the room (seen from above).`
-      : "The sun is down. Lamps can be switched on below.";
+      ? _("The sun is {angle}° above the horizon in the {side}. Drag it around the room (seen from above).")
+        .replace("{angle}", high).replace("{side}", side)
+      : _("The sun is below the horizon. Switch on lamps below.");
   };
   const turned = (azimuth) => {
     if (L.set?.azimuth == null) return;

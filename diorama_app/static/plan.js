@@ -111,7 +111,7 @@
 
   const typed = (layer, w, at) => {
     const field = Object.assign(document.createElement("input"), { value: w.length });
-    field.setAttribute("aria-label", `Length of ${w.name}`);
+    field.setAttribute("aria-label", _("Length of {name}").replace("{name}", w.name));
     [field.style.left, field.style.top] = toPage(at).map((v) => `${v}px`);
     const end = () => { field.onblur = null; field.remove(); };
     field.onkeydown = (event) => {
@@ -167,7 +167,7 @@
     const layer = old ?? Object.assign(document.createElement("div"), { id: "dio-plan" });
     if (!old) {
       layer.setAttribute("role", "region");
-      layer.setAttribute("aria-label", "Plan");
+      layer.setAttribute("aria-label", _("Plan"));
       document.body.append(layer);
     }
     view = fit(layer.getBoundingClientRect());

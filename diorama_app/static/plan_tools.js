@@ -3,12 +3,12 @@
 (() => {
   const P = window.__dioPlan, NEAR_PX = 26, CLOSE_PX = 12, ALONG_PX = 7;
   const TOOLS = {
-    split: ["Split wall", "Click a wall where it should be split."],
-    door: ["Door", "Click a wall where the door should be."],
-    window: ["Window", "Click a wall where the window should be."],
-    room: ["Draw room", "Click the corners; Enter or the first corner closes the room, Backspace takes one back."],
-    scale: ["Scale picture", "Click both ends of a length that you know."],
-    shift: ["Move picture", "Drag the picture."],
+    split: [_("Split wall"), _("Click a wall where it should be split.")],
+    door: [_("Door"), _("Click a wall where the door should be.")],
+    window: [_("Window"), _("Click a wall where the window should be.")],
+    room: [_("Draw room"), _("Click the corners; Enter or the first corner closes the room, Backspace removes the last one.")],
+    scale: [_("Scale picture"), _("Click both ends of a known length.")],
+    shift: [_("Move picture"), _("Drag the picture.")],
   };
   let tool = null, points = [], hover = null, dragged = null, hinted = null; // a hint stays until something is done
 
@@ -27,7 +27,7 @@
     field.files = one.files;
     field.dispatchEvent(new Event("change", { bubbles: true }));
     awaited = true;
-    hint(`Reading ${file.name}…`);
+    hint(_("Reading {file}…").replace("{file}", file.name));
   };
   const known = (words) => {
     const found = /^\s*(\d+(?:[.,]\d+)?)\s*(mm|cm|m|ft|')?\s*$/.exec(words);
@@ -36,7 +36,7 @@
   const askLength = ([a, b]) => {
     const layer = document.getElementById("dio-plan"), [x, y] = P.inPlan([(a[0] + b[0]) / 2, (a[1] + b[1]) / 2]);
     const field = Object.assign(document.createElement("input"), { placeholder: "3.20 m" });
-    field.setAttribute("aria-label", "True length between the two points");
+    field.setAttribute("aria-label", _("True length between the two points"));
     [field.style.left, field.style.top] = [`${x}px`, `${y}px`];
     const end = () => { field.onblur = null; field.remove(); choose(null); };
     field.onkeydown = (event) => {
@@ -44,7 +44,7 @@
       if (event.key === "Escape") return end();
       if (event.key !== "Enter") return;
       const metres = known(field.value), now = Math.hypot(b[0] - a[0], b[1] - a[1]);
-      if (!(metres > 0.05)) return hint("Give a length such as 3.20 m.");
+      if (!(metres > 0.05)) return hint(_("Give a length such as 3.20 m."));
       const factor = metres / now; // about the first point, which stays where it is
       picture.metres *= factor;
       picture.at = picture.at.map((v, k) => a[k] + (v - a[k]) * factor);
@@ -73,7 +73,7 @@
   const pixels = (a, b) => { const [p, q] = [P.inPlan(a), P.inPlan(b)]; return Math.hypot(p[0] - q[0], p[1] - q[1]); };
   const onWall = (at) => {
     const near = P.about().walls.map((w) => [away(at, w.start, w.end), w]).sort((a, b) => a[0] - b[0])[0];
-    if (!near || pixels(at, [at[0] + near[0], at[1]]) > NEAR_PX) return hint(`No wall there. ${TOOLS[tool][1]}`);
+    if (!near || pixels(at, [at[0] + near[0], at[1]]) > NEAR_PX) return hint(`${_("No wall there.")} ${TOOLS[tool][1]}`);
     P.send(tool, [near[1].id, ...at]);
     choose(null);
   };
@@ -87,7 +87,7 @@
     return aligned;
   };
   const close = () => {
-    if (points.length < 3) return hint("A room has at least three corners.");
+    if (points.length < 3) return hint(_("A room has at least three corners."));
     P.send("room", points);
     choose(null);
   };
@@ -147,8 +147,8 @@
     file.onchange = () => { if (file.files[0]) take(file.files[0]); };
     if (picture) {
       for (const name of ["scale", "shift"]) press(TOOLS[name][0], tool === name, () => choose(name));
-      press("Remove picture", false, () => { picture = null; remember(); choose(null); });
-    } else press("Picture below", false, () => file.click());
+      press(_("Remove picture"), false, () => { picture = null; remember(); choose(null); });
+    } else press(_("Add picture"), false, () => file.click());
     bar.append(row, file, Object.assign(document.createElement("p"), { textContent: hinted ?? (tool ? TOOLS[tool][1] : "") }));
     bar.querySelector("p").setAttribute("role", "status");
     return bar;

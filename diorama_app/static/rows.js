@@ -7,7 +7,7 @@
     const field = Object.assign(document.createElement("input"), { value: row.dataset.rename });
     field.dataset.change = "rename";
     field.dataset.arg = row.dataset.arg;
-    field.setAttribute("aria-label", `New name of ${row.dataset.rename}`);
+    field.setAttribute("aria-label", _("New name of {label}").replace("{label}", row.dataset.rename));
     field.onclick = (event) => event.stopPropagation();
     const before = name.textContent;
     const back = () => { name.textContent = before; };

@@ -51,9 +51,9 @@
     }
   };
   const BUTTONS = {
-    ".mantine-ColorInput-eyeDropperButton": "Pick a colour from the screen",
-    '[data-testid="floating-panel-handle"] button': "Find a command (Ctrl+K)",
-    "html.dio-phone #root button.mantine-ActionIcon-root": "Find a command",
+    ".mantine-ColorInput-eyeDropperButton": _("Pick a colour from the screen"),
+    '[data-testid="floating-panel-handle"] button': _("Find a command (Ctrl+K)"),
+    "html.dio-phone #root button.mantine-ActionIcon-root": _("Find a command"),
   };
   const nameButtons = () => {
     for (const [which, words] of Object.entries(BUTTONS)) {
@@ -77,11 +77,11 @@
   };
   addEventListener("DOMContentLoaded", () => {
     document.body.append(
-      Object.assign(document.createElement("div"), { id: "dio-loading", textContent: "Opening Diorama…" }),
+      Object.assign(document.createElement("div"), { id: "dio-loading", textContent: _("Opening Diorama…") }),
       Object.assign(document.createElement("div"), {
         id: "dio-lost", role: "alert",
-        textContent: "The server does not answer. Your work is saved up to the last change; this page continues " +
-          "when the server is back.",
+        textContent: _("The server does not respond. Your work is saved up to the last change; this page continues " +
+          "when the server is back."),
       }),
     );
     document.getElementById("dio-loading").setAttribute("role", "status");

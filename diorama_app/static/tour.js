@@ -18,18 +18,18 @@
       Math.max(...rects.map((r) => r.bottom)) - top);
   };
   const STEPS = [
-    ["Look around", "Drag the background to turn the view, drag with the right button to shift it, and scroll to come " +
-      "closer. Walls in the way fade by themselves.", view],
-    ["Move furniture", "Drag a piece of furniture to where it should be. Move, Free and Size choose the handles of what " +
-      "is selected; Snap and No overlaps help you to place it.", () => box(tool("gizmo_floor"), tool("slide"))],
-    ["Change what is selected", "Object shows alternatives to swap with one click, and colours, sizes and numbers. " +
-      "Click a wall or the floor to paint, paper, tile or board it.", () => box(tab("Object"))],
-    ["Add furniture", "Library finds furniture by words and puts it into the room. You can add models of your own.",
-      () => box(tab("Library"))],
-    ["Use your own photo", "Photo takes a picture of a room: mark the furniture with one click each, and build the " +
-      "scene.", () => box(tab("Photo"))],
-    ["Nothing is lost", "Every change is saved as you make it, and every change can be undone. Export writes the room " +
-      "for Blender, Unity, simulators and floor plans. Press ? for all keys.", () => box(tool("undo"), tool("redo"), tool("help"))],
+    [_("Look around"), _("Drag the background to turn the view, drag with the right button to shift it, and scroll to come " +
+      "closer. Walls in the way fade by themselves."), view],
+    [_("Move furniture"), _("Drag a piece of furniture to where it should be. Move, Free and Size choose the handles of what " +
+      "is selected; Snap and No overlaps help you to place it."), () => box(tool("gizmo_floor"), tool("slide"))],
+    [_("Change what is selected"), _("Object shows alternatives to swap with one click, and colours, sizes and numbers. " +
+      "Click a wall or the floor to paint, paper, tile or board it."), () => box(tab(_("Object")))],
+    [_("Add furniture"), _("Library finds furniture by words and puts it into the room. You can add models of your own."),
+      () => box(tab(_("Library")))],
+    [_("Use your own photo"), _("Photo takes a picture of a room: mark the furniture with one click each, and build the " +
+      "scene."), () => box(tab(_("Photo")))],
+    [_("Nothing is lost"), _("Every change is saved as you make it, and every change can be undone. Export writes the room " +
+      "for Blender, Unity, simulators and floor plans. Press ? for all keys."), () => box(tool("undo"), tool("redo"), tool("help"))],
   ];
   let tour = null, at = 0;
   const store = (storage, key, value) => {
@@ -60,9 +60,9 @@
     const [title, words] = STEPS[at];
     tour.querySelector("h2").textContent = title;
     tour.querySelector("p").textContent = words;
-    tour.querySelector("nav .step").textContent = `${at + 1} of ${STEPS.length}`;
+    tour.querySelector("nav .step").textContent = _("{step} of {count}").replace("{step}", at + 1).replace("{count}", STEPS.length);
     tour.querySelector(".back").hidden = at === 0;
-    tour.querySelector(".main").textContent = at + 1 === STEPS.length ? "Done" : "Next";
+    tour.querySelector(".main").textContent = at + 1 === STEPS.length ? _("Done") : _("Next");
     place();
     tour.querySelector(".main").focus();
   };
@@ -70,9 +70,12 @@
     tour?.remove();
     tour = document.createElement("div");
     tour.id = "dio-tour";
-    tour.innerHTML = '<div class="hole"></div><div class="card" role="dialog" aria-modal="true" aria-label="Tour">' +
-      '<h2></h2><p></p><nav><span class="step"></span><button type="button" class="skip">Skip</button>' +
-      '<button type="button" class="back">Back</button><button type="button" class="main">Next</button></nav></div>';
+    tour.innerHTML = '<div class="hole"></div><div class="card" role="dialog" aria-modal="true">' +
+      '<h2></h2><p></p><nav><span class="step"></span><button type="button" class="skip"></button>' +
+      '<button type="button" class="back"></button><button type="button" class="main"></button></nav></div>';
+    tour.querySelector(".card").ariaLabel = _("Tour");
+    tour.querySelector(".skip").textContent = _("Skip");
+    tour.querySelector(".back").textContent = _("Back");
     tour.querySelector(".skip").onclick = end;
     tour.querySelector(".back").onclick = () => go(at - 1);
     tour.querySelector(".main").onclick = () => go(at + 1);

@@ -115,8 +115,8 @@
   };
   const bar = () => {
     const made = Object.assign(document.createElement("div"), { id: "dio-walk" });
-    made.innerHTML = `<style>${STYLE}</style><p>Walk with W A S D or the arrow keys, drag to look around, Shift runs</p>
-      <button type="button">End walk (Esc)</button><div class="stick" aria-label="Walk" role="application"><i></i></div>`;
+    made.innerHTML = `<style>${STYLE}</style><p>${_("Walk with W A S D or the arrow keys; drag to look around; hold Shift to run")}</p>
+      <button type="button">${_("End walk (Esc)")}</button><div class="stick" aria-label="${_("Walk")}" role="application"><i></i></div>`;
     made.querySelector("button").onclick = () => end();
     const stick = made.querySelector(".stick");
     for (const type of ["pointerdown", "pointermove", "pointerup", "pointercancel"]) stick.addEventListener(type, onStick);

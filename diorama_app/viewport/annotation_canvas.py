@@ -17,6 +17,7 @@ import viser
 from jaxtyping import Bool, UInt8
 from PIL import Image
 
+from diorama_app.strings import N_, _
 from diorama_app.viewport.mesh_assets import reduced
 from diorama_app.web.html import Action, LiveHtml, run_once
 from diorama_core.artefacts import Box, LabelledBox
@@ -30,10 +31,12 @@ MAX_LABEL = 40
 
 Mode = Literal["boxes", "one box", "points"]
 HINTS: dict[Mode, str] = {
-    "boxes": "Click each piece of furniture, or drag a box around it. Shift-click marks what lies on a marked object. "
-    "Keys 1 to 4 choose a name; Delete deletes.",
-    "one box": "Drag a new box around the object.",
-    "points": "Click the object. Shift-click what does not belong to it.",
+    "boxes": N_(
+        "Click each piece of furniture, or drag a box around it. Shift-click marks what lies on a marked object. "
+        "Keys 1 to 4 choose a name; Delete deletes."
+    ),
+    "one box": N_("Drag a new box around the object."),
+    "points": N_("Click the object. Shift-click what does not belong to it."),
 }
 
 
@@ -164,7 +167,7 @@ class AnnotationCanvas:
             "url": _uri(Image.fromarray(reduced(photo, MAX_SIDE_PX)), "JPEG", quality=JPEG_QUALITY),
             "size": [width, height],
             "mode": mode,
-            "hint": HINTS[mode],
+            "hint": _(HINTS[mode]),
             "names": list(names),
         }
         self._photo.tell({"photo": told})

@@ -45,7 +45,7 @@ class _Framed:
 
     place: Callable[[float], Place]
     fov_rad: float
-    position: Float[np.ndarray, "3"]
+    position: Float[np.ndarray, 3]
     aspect: float
 
 
@@ -77,7 +77,7 @@ class ViewCamera:
         return float(self._viser_client.camera.aspect)
 
     @property
-    def position(self) -> Float[np.ndarray, "3"]:
+    def position(self) -> Float[np.ndarray, 3]:
         """The eye, in the world (m)."""
         return np.asarray(self._viser_client.camera.position, dtype=np.float64)
 
@@ -87,11 +87,11 @@ class ViewCamera:
         return rotation_from_quaternion(np.asarray(self._viser_client.camera.wxyz))
 
     @property
-    def target_point(self) -> Float[np.ndarray, "3"]:
+    def target_point(self) -> Float[np.ndarray, 3]:
         """The point in the middle of the view."""
         return np.asarray(self._viser_client.camera.look_at, dtype=np.float64)
 
-    def point_on_level(self, height_m: float) -> Float[np.ndarray, "3"]:
+    def point_on_level(self, height_m: float) -> Float[np.ndarray, 3]:
         """Where the middle of the view meets a level plane; the target's place where it does not."""
         position, ahead = self.position, self.target_point - self.position
         along = (height_m - position[2]) / ahead[2] if abs(ahead[2]) > 1e-6 else -1.0
@@ -107,7 +107,7 @@ class ViewCamera:
         return Camera(Intrinsics(width, height, focal, focal, width / 2, height / 2), T_world_camera)
 
     def move(
-        self, position: Float[np.ndarray, "3"], target: Float[np.ndarray, "3"], fov_rad: float = float(DEFAULT_FOV_RAD)
+        self, position: Float[np.ndarray, 3], target: Float[np.ndarray, 3], fov_rad: float = float(DEFAULT_FOV_RAD)
     ) -> None:
         """Look from a place at a point, upright.
 
@@ -153,14 +153,14 @@ class ViewCamera:
             handle.wxyz = quaternion_wxyz(R)
         self._viser_client.flush()
 
-    def approach(self, target: Float[np.ndarray, "3"], distance_m: float) -> None:
+    def approach(self, target: Float[np.ndarray, 3], distance_m: float) -> None:
         """Look at a point from `distance_m`, keeping the direction of view."""
         back = self.position - self.target_point
         length = float(np.linalg.norm(back))
         back = back / length if length > 1e-6 else np.array([-0.5, -0.7, 0.5])
         self.move(target + back * distance_m, target, self.fov_rad)
 
-    def screen_axis(self, side: str) -> tuple[Float[np.ndarray, "3"], bool]:
+    def screen_axis(self, side: str) -> tuple[Float[np.ndarray, 3], bool]:
         """The level world axis nearest to the screen's "right" (or to "away" from the eye), and if it runs backward."""
         right = self.R_world_camera[:, 0]
         # Straight from above, "away" is the screen's up.

@@ -9,6 +9,7 @@ import numpy as np
 import viser
 from jaxtyping import Float, Int
 
+from diorama_app.strings import _
 from diorama_app.viewport.annotation_canvas import AnnotationCanvas
 from diorama_app.viewport.camera import ViewCamera
 from diorama_app.viewport.decorations import SELECTED_COLOUR
@@ -49,9 +50,9 @@ class ClientView:
             seconds: that it stays; None for as long as its kind does.
         """
         seconds = seconds or (9.0 if kind == "bad" else 4.0)
-        title = {"info": "Diorama", "good": "Done", "bad": "Could not do that"}[kind]
+        title = {"info": "Diorama", "good": _("Done"), "bad": _("Could not do that")}[kind]
         colour = {"info": (47, 111, 214), "good": (38, 150, 96), "bad": (210, 62, 50)}[kind]
-        self._viser_client.add_notification(title, message, color=colour, auto_close_seconds=seconds)
+        self._viser_client.add_notification(title, _(message), color=colour, auto_close_seconds=seconds)
 
     def download(self, name: str, content: bytes) -> None:
         """Hand a file to the person."""

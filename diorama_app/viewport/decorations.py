@@ -12,6 +12,7 @@ from typing import Any
 
 import viser
 
+from diorama_app.strings import _
 from diorama_core.scene.types import Scene, SceneObject
 
 SELECTED_COLOUR = (255, 122, 26)
@@ -118,8 +119,8 @@ class Decorations:
     ) -> _Mark | None:
         x, y, z = item.size_m.round(5).tolist()
         size = (x, y, z)
-        name = item.label[:40] + (" (locked)" if item.locked else "")
-        problems = "".join(f" ⚠ {badge}" for badge in badges) + doubt
+        name = item.label[:40] + (_(" (locked)") if item.locked else "")
+        problems = "".join(f" ⚠ {_(badge)}" for badge in badges) + doubt
         short = ("⚠" if badges else "") + doubt
         if item.id in self._colliding:
             return _Mark(node, size, COLLIDING_COLOUR, 3.5, name if names else "")

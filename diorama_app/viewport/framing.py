@@ -18,7 +18,7 @@ COVERED = 0.2
 """Share of half the view's height that the tools cover at the top."""
 
 
-def room_view(scene: Scene, aspect: float = USUAL_ASPECT) -> tuple[Float[np.ndarray, "3"], Float[np.ndarray, "3"]]:
+def room_view(scene: Scene, aspect: float = USUAL_ASPECT) -> tuple[Float[np.ndarray, 3], Float[np.ndarray, 3]]:
     """A place above and behind the photo's camera, and the point to look at, that show the whole room."""
     points = _points(scene)
     centre = (points.min(axis=0) + points.max(axis=0)) / 2
@@ -32,8 +32,8 @@ def room_view(scene: Scene, aspect: float = USUAL_ASPECT) -> tuple[Float[np.ndar
 
 
 def side_view(
-    scene: Scene, back: Float[np.ndarray, "3"], aspect: float = USUAL_ASPECT
-) -> tuple[Float[np.ndarray, "3"], Float[np.ndarray, "3"]]:
+    scene: Scene, back: Float[np.ndarray, 3], aspect: float = USUAL_ASPECT
+) -> tuple[Float[np.ndarray, 3], Float[np.ndarray, 3]]:
     """A far place in the direction `back` of the room from which all of it is in a narrow view, and its middle."""
     points = _points(scene)
     centre = (points.min(axis=0) + points.max(axis=0)) / 2
@@ -42,11 +42,11 @@ def side_view(
 
 def _far_enough(
     points: Float[np.ndarray, "n 3"],
-    centre: Float[np.ndarray, "3"],
-    back: Float[np.ndarray, "3"],
+    centre: Float[np.ndarray, 3],
+    back: Float[np.ndarray, 3],
     aspect: float,
     fov_rad: float = float(DEFAULT_FOV_RAD),
-) -> tuple[Float[np.ndarray, "3"], Float[np.ndarray, "3"]]:
+) -> tuple[Float[np.ndarray, 3], Float[np.ndarray, 3]]:
     """The nearest place in the direction `back` from which all points are in view, and the point to look at.
 
     The point is moved across the view until as much is left free on either side; the tools cover a strip at the top.
@@ -74,7 +74,7 @@ def _points(scene: Scene) -> Float[np.ndarray, "n 3"]:
     return np.concatenate(points) if points else np.array([[-1.0, -1.0, 0.0], [1.0, 1.0, 1.0]])
 
 
-def bounds(scene: Scene) -> tuple[Float[np.ndarray, "3"], Float[np.ndarray, "3"]]:
+def bounds(scene: Scene) -> tuple[Float[np.ndarray, 3], Float[np.ndarray, 3]]:
     """Corners of the box around everything in the room; two metres on the floor when there is nothing."""
     points = _points(scene)
     return points.min(axis=0), points.max(axis=0)

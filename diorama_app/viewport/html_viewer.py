@@ -21,6 +21,7 @@ import numpy as np
 import viser
 from jaxtyping import Float
 
+from diorama_app.strings import _, translated_script
 from diorama_app.viewport.camera import fitting_fov
 from diorama_app.viewport.framing import DEFAULT_FOV_RAD, NARROW_FOV_RAD, room_view, side_view
 from diorama_app.viewport.mesh_assets import ShapeBytes
@@ -76,7 +77,7 @@ def _seen_from_outside(scene: ExportScene) -> ExportScene:
 
 
 def _page(glb: bytes, gathered: ExportScene) -> str:
-    views = {name: [_told(gathered, name, aspect) for aspect in ASPECTS] for name in _names(gathered.scene)}
+    views = {_(name): [_told(gathered, name, aspect) for aspect in ASPECTS] for name in _names(gathered.scene)}
     with _quiet_server() as server:
         server.scene.set_up_direction("+z")
         server.scene.world_axes.visible = False
@@ -88,14 +89,15 @@ def _page(glb: bytes, gathered: ExportScene) -> str:
             raise UnavailableError("viser's web client is missing; install viser again from its wheel") from error
     title, walk = html.escape(gathered.name), walk_of(gathered.scene)
     # As functions: in a template, a backslash of the name would be an escape.
-    page = re.sub(r"<title>.*?</title>", lambda _: f"<title>{title}</title>", page, count=1, flags=re.DOTALL)
+    page = re.sub(r"<title>.*?</title>", lambda found: f"<title>{title}</title>", page, count=1, flags=re.DOTALL)
     told = {
         "VIEWS": json.dumps(views),
         "ASPECTS": json.dumps(ASPECTS),
         "WALK_PLAN": "null" if walk is None else walk.json,
     }
-    told["WALKING"] = (STATIC / "walk.js").read_text(encoding="utf-8")
-    over = re.sub("|".join(told), lambda found: told[found[0]], (STATIC / "viewer.html").read_text(encoding="utf-8"))
+    scripts = [translated_script((STATIC / name).read_text(encoding="utf-8")) for name in ("walk.js", "viewer.html")]
+    told["WALKING"] = scripts[0]
+    over = re.sub("|".join(told), lambda found: told[found[0]], scripts[1])
     return page.replace("<head>", f"<head>{NOTICE}", 1).replace("</head>", f"{over}</head>", 1)
 
 

@@ -92,7 +92,7 @@ class ShapeBytes:
         except LibraryError:
             return False
 
-    def lamp_place(self, item: SceneObject) -> Float[np.ndarray, "3"]:
+    def lamp_place(self, item: SceneObject) -> Float[np.ndarray, 3]:
         """Where the light of a lamp comes from, in the world; its middle where its shape is missing."""
         from diorama_core.render.appearance import shape_surfaces  # the ray-caster; opening a project does without it
         from diorama_core.render.lamps import lamp_place

@@ -171,7 +171,7 @@ class RoomLightView:
         self._casters(planes if strength > 0.0 else None)
 
     def _window_light(
-        self, scene: Scene, settings: LightSettings, outside: Daylight, middle: Float[np.ndarray, "3"]
+        self, scene: Scene, settings: LightSettings, outside: Daylight, middle: Float[np.ndarray, 3]
     ) -> None:
         """Soft light from where the largest window is, so that the room is not lit evenly."""
         windows = [o for o in scene.objects if o.category == "window" and not o.hidden]
@@ -258,7 +258,7 @@ class RoomLightView:
         red, green, blue = (round(255 * c) for c in WARM)
         return _Lamp(node, (x, y, z), (red, green, blue), LAMP_INTENSITY * lamp_strength(item) * exposure)
 
-    def _sky(self, above: float, around: float, environment: float, tint: Float[np.ndarray, "3"] | None = None) -> None:
+    def _sky(self, above: float, around: float, environment: float, tint: Float[np.ndarray, 3] | None = None) -> None:
         """Light from above and from everywhere; 1 is the usual light of a room."""
         scene = self._server.scene
         colour = None if tint is None else _split(tint)[0]
@@ -313,7 +313,7 @@ class RoomLightView:
             handle.remove()
 
 
-def _split(light: Float[np.ndarray, "3"]) -> tuple[Colour, float]:
+def _split(light: Float[np.ndarray, 3]) -> tuple[Colour, float]:
     """A colour whose largest component is full, and how strong it is."""
     strength = float(light.max())
     red, green, blue = (round(255 * float(c) / strength) if strength > 0.0 else 255 for c in light)

@@ -15,6 +15,7 @@ from typing import Any
 
 import viser
 
+from diorama_app.strings import SOURCE_LANGUAGE, _, language
 from diorama_app.web.viser_adapter import component_uuid
 from diorama_core.io.text import clean_strings
 
@@ -178,6 +179,13 @@ def text(value: object) -> str:
     return html.escape(str(value), quote=True)
 
 
+def library_text(english: str) -> str:
+    """A line of the library as HTML: translated where it is constant, else marked as English for who reads it aloud."""
+    said = _(english)
+    line = text(said[:1].upper() + said[1:])
+    return line if said != english or language() == SOURCE_LANGUAGE else f'<span lang="en">{line}</span>'
+
+
 def button(label: str, do: str, arg: object = "", *, title: str = "", on: bool = False, disabled: bool = False) -> str:
     """A button whose click is the action `do` with `arg`; the label is HTML already (icons), the rest is escaped.
 
@@ -202,8 +210,8 @@ def fold_button(label: str, do: str, what: str, *, unfolded: bool) -> str:
         what: it shows and hides.
         unfolded: whether it is shown now.
     """
-    sign, verb = ("▾", "Hides") if unfolded else ("▸", "Shows")
-    made = button(f"{sign} {text(label)}", do, title=f"{verb} {what}")
+    sign, title = ("▾", _("Hide {content}")) if unfolded else ("▸", _("Show {content}"))
+    made = button(f"{sign} {text(label)}", do, title=title.format(content=what))
     return f'<div class="bar wide">{made.replace("<button", f"<button aria-expanded={str(unfolded).lower()}")}</div>'
 
 

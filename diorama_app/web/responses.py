@@ -16,6 +16,8 @@ from websockets.asyncio.server import ServerConnection
 from websockets.datastructures import Headers
 from websockets.http11 import Response
 
+from diorama_app.strings import language, translated_script
+
 TOKEN_COOKIE = "diorama_token"
 SECURITY_HEADERS = {
     # viser's page is one file of inline scripts, starts workers from blobs and compiles WebAssembly and templates.
@@ -96,6 +98,11 @@ TITLE = b"Diorama"
 def with_head(page: bytes) -> bytes:
     """The page with our title, styles and scripts before everything that viser brings."""
     styles = b"".join(b"\n<style>" + style.read_bytes() + b"</style>" for style in STYLES)
-    scripts = b"".join(b"\n<script>" + script.read_bytes() + b"</script>" for script in SCRIPTS)
-    page = re.sub(rb"<title>.*?</title>", lambda _: b"<title>" + TITLE + b"</title>", page, count=1, flags=re.DOTALL)
+    scripts = b"".join(
+        b"\n<script>" + translated_script(script.read_text("utf-8")).encode() + b"</script>" for script in SCRIPTS
+    )
+    page = re.sub(
+        rb"<title>.*?</title>", lambda found: b"<title>" + TITLE + b"</title>", page, count=1, flags=re.DOTALL
+    )
+    page = re.sub(rb'<html lang="[^"]*"', f'<html lang="{language()}"'.encode(), page, count=1)
     return page.replace(b"<head>", b"<head>" + styles + scripts, 1)

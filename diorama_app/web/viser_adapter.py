@@ -30,6 +30,7 @@ from viser.infra import _infra
 from websockets.asyncio.server import ServerConnection
 from websockets.exceptions import InvalidMessage
 
+from diorama_app.strings import _
 from diorama_app.web.bridge import Bridge, ConnectionHandler
 from diorama_app.web.requests import HttpHandler, Pictures, ProjectServers, paced, project_of, request_check
 from diorama_app.web.upload_limits import RunningUpload, why_refused
@@ -306,7 +307,7 @@ class _Uploads:
             """
             _end_transfer(gui, message)
             if refused is not None:
-                refused(int(client_id), f"{name[:100]} was refused: {reason}")
+                refused(int(client_id), _("{file} was refused: {reason}").format(file=name[:100], reason=_(reason)))
 
         def capped_start(client_id: Any, message: _messages.FileTransferStartUpload) -> None:
             with self._lock:

@@ -348,7 +348,7 @@ def test_what_was_missed_is_added_from_the_photo_and_renamed(editor: EditorPage)
     editor.page.mouse.click(*editor.on_photo(340.0, 300.0))
     editor.settle()
     editor.button("Use this outline").click()
-    label = f"outline of {session.scene.object(new.id).label}"
+    label = f"change the outline of {session.scene.object(new.id).label}"
     editor.until(lambda: session.document.history.current.label == label, "looked at again", seconds=90)
     assert not editor.client.view.canvas.is_open
     assert session.ui_thread.wait()

@@ -133,7 +133,7 @@ def test_a_click_where_nothing_is_says_so(proposed: EditorPage, monkeypatch: pyt
         if not editor.page.evaluate(HELD, list(editor.on_photo(*spot)))
     )
     editor.page.mouse.click(*editor.on_photo(*free))
-    editor.notice("Nothing is recognised there")
+    editor.notice("Nothing was recognised there")
     assert not boxes(editor)
 
 

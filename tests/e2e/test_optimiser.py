@@ -127,7 +127,7 @@ def test_arrangements_are_mixed_by_what_is_selected(editor: EditorPage) -> None:
     editor.tab("Scene")
     editor.row("dining table").click()
     editor.tab("Arrange")
-    editor.page.locator('.dio button[data-do="mix"]', has_text="1st").click()
+    editor.page.locator('.dio button[data-do="mix"]', has_text="1").click()
     editor.until(lambda: session.scene.object("table_1").shape_id == "table_a", "only the table")
     assert session.scene.object("chair_1").shape_id == "chair_b"
     assert session.document.history.current.label == "arrangement 1 for dining table"

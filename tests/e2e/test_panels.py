@@ -194,7 +194,7 @@ def test_the_photo_view_stands_where_the_photo_was_taken(editor: EditorPage) -> 
         scale = (box[3] / 2) / np.tan(view.camera.fov_rad / 2) / camera.intrinsics.fy
         assert x - (box[0] + box[2] / 2) == pytest.approx(u * scale, abs=2.5)
         assert y - (box[1] + box[3] / 2) == pytest.approx(v * scale, abs=2.5)
-    editor.page.get_by_role("slider", name="Photo over model").fill("100")
+    editor.page.get_by_role("slider", name="Opacity of the photo over the model").fill("100")
     editor.until(lambda: view.photo.opacity > 0.0, "the photo lies over the model")
     brown = camera.position + camera.rays(np.array([340.0, 310.0]))
     editor.until(lambda: np.allclose(editor.mean_colour(brown), (120, 80, 50), atol=25), "its picture is drawn")

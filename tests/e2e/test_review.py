@@ -17,7 +17,7 @@ def test_a_doubtful_scene_is_reviewed_by_clicks_and_keys(editor: EditorPage) -> 
     session.ui_thread.ask(lambda: session.commit("doubt", doubtful_scene()))
     editor.settle()
     card = page.locator(".job.card", has_text="sure")
-    expect(card).to_contain_text("would settle most of the rest")
+    expect(card).to_contain_text("would resolve most doubts")
     card.get_by_role("button", name="Review").click()
     asked = page.locator(".review")
     left = len(questions(session.scene))

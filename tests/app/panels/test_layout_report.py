@@ -11,7 +11,7 @@ def test_the_result_is_said_in_sentences_and_figures_are_folded(session) -> None
     run.report.before.update(overlapping_pairs=7.0)
     run.report.after.update(overlapping_pairs=0.0, moved_m=0.03, moved_most_m=0.12, structure=1.0)
     words, _, figures = report_html(run).partition("<details>")
-    assert "0 pairs of objects overlap; 7 did before." in words
+    assert "0 pairs of objects overlap; 7 before." in words
     assert "100 % of the objects stand upright and touch their support." in words
     assert "Objects moved 3.0 cm on average, 12.0 cm at most." in words
     assert "Before → after" in figures

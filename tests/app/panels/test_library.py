@@ -43,7 +43,7 @@ def test_insert_puts_it_in_the_room_and_place_waits_for_a_click(session, client,
 
 def test_the_selected_object_is_offered_as_a_place(client, page, panel) -> None:
     client.select(["table_1"])
-    assert "small objects on the selected dining table" in page.html
+    assert "or a small one on the selected dining table" in page.html
 
 
 def test_filters_and_shelves_narrow_what_is_shown(client, page, panel) -> None:

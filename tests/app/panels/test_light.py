@@ -45,7 +45,7 @@ def test_daylight_is_set_changed_in_one_step_each_and_taken_back(session, client
 def test_lamps_one_by_one_and_all(session, client, page, panel) -> None:
     page.act("lamp", "lamp_1")
     assert light(session).lamps_on == ("lamp_1",)
-    assert session.document.history.current.label == "lamp on"
+    assert session.document.history.current.label == "switch lamp on"
     page.act("lamp", "lamp_1")
     assert light(session).lamps_on == ()
 

@@ -75,7 +75,7 @@ def test_curves_and_report_are_drawn(session, client, page, panel) -> None:
     assert plot.visible
     assert [s["label"] for s in plot.series] == ["Seconds", "Touching", "Upright"]
     assert plot.data[0].tolist() == [0.0, 0.5]
-    assert "no &lt;room&gt;" in page.html
+    assert "No &lt;room&gt;" in page.html
     assert "25% → 100%" in page.html
     assert "– → 3.4 cm" in page.html
     session.layout_run = None

@@ -54,7 +54,7 @@ def test_a_model_deleted_is_restored_by_the_toast(client, library: UserLibrary, 
     client.offer = lambda message, label, do: offered.append((message, label, do))
     page.act("model-delete", "my-case")
     message, label, do = offered[0]
-    assert (message, label) == ("case is deleted", "Undo")
+    assert (message, label) == ("case is deleted.", "Undo")
     do()
     assert library.own_models.deleted == ()
 

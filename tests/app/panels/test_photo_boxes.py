@@ -86,7 +86,7 @@ def test_a_click_beside_everything_says_so(session, client: Client, marking: Pho
     marking.happened(Clicked(600.0, 470.0))
     session.ui_thread.wait()
     assert session.inputs.boxes == ()
-    assert said == ["Nothing is recognised there; drag a box around the object."]
+    assert said == ["Nothing was recognised there; drag a box around the object."]
 
 
 def test_a_click_on_a_marked_object_selects_its_box(session, client: Client, marking: PhotoBoxes) -> None:
@@ -176,6 +176,6 @@ def test_accepting_all_merges_doubles_and_tells_what_is_absurd(
     client.toast = lambda message, undo: said.append(message)
     marking.accept_all()
     assert labels(session) == ["sofa", "chair"]
-    assert "Left out, since another box shows the same: 1 proposal." in said[-1]
-    assert "The chair would be 3.3 m high or more" in said[-1]
+    assert "1 proposal was left out because another box shows the same object." in said[-1]
+    assert "Chair would be at least 3.3 m high" in said[-1]
     assert client.selected_box == 1

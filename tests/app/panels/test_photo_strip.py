@@ -25,7 +25,7 @@ def test_photos_are_chosen_looked_through_and_taken_out(client: Client, page: Pa
     strip._choose("beside")
     assert client.further_photo is joined
     assert client.view.camera.through_photo
-    assert "1 object of the scene is seen in it" in page.html
+    assert "1 object of the scene is visible in it" in page.html
     strip._choose("new")
     assert opened == [True]
     strip._choose(None)

@@ -61,7 +61,7 @@ def test_a_command_that_does_not_exist_is_ignored(session, page, toolbar) -> Non
 
 def test_the_title_says_what_is_open_and_who_is_here(session, client) -> None:
     assert "<b>demo</b>" in title_bar(client)
-    assert "also has this open" not in title_bar(client)
+    assert "also has this project open" not in title_bar(client)
     other = join(session, 1)
     assert other.name in title_bar(client)
 

@@ -28,7 +28,7 @@ def test_each_photo_is_a_project_with_what_belongs_to_it(
     begin_each(client, "drop.zip", content, reading)
     until(lambda: bool(visited), seconds=60)
     ((first, said),) = visited
-    assert "2 photos are projects of their own" in said
+    assert "Each of the 2 photos has its own project" in said
     inputs = first.load_inputs()
     assert inputs is not None
     assert len(inputs.boxes) == 1

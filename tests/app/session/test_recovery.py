@@ -106,7 +106,7 @@ def test_what_could_not_be_saved_is_saved_as_soon_as_there_is_space(
     full[0] = False
     until(lambda: not autosave.trouble)
     assert project.load_scene() == renamed()
-    assert [line.partition(":")[0] for line in told] == ["not saved", "All changes are saved now."], "once each"
+    assert [line.partition(":")[0] for line in told] == ["Not saved", "All changes are saved now."], "once each"
     assert list((tmp_path / "unsaved").glob("*.json")) == []
     autosave.stop()
 

@@ -157,7 +157,7 @@ class ProjectMachine(RuleBasedStateMachine):
     @invariant()
     def trouble_is_told_once_and_its_end_too(self) -> None:
         if hasattr(self, "told"):
-            assert [m.startswith("not saved") for m in self.told] == [i % 2 == 0 for i in range(len(self.told))]
+            assert [m.startswith("Not saved") for m in self.told] == [i % 2 == 0 for i in range(len(self.told))]
             assert bool(self.saver.trouble) == (len(self.told) % 2 == 1)
 
     @invariant()
