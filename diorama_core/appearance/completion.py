@@ -47,20 +47,20 @@ SETTINGS = CompletionSettings()
 
 
 def completed_picture(
-    found: Rectified, pixel_m: float, settings: CompletionSettings = SETTINGS
+    rectified: Rectified, pixel_m: float, settings: CompletionSettings = SETTINGS
 ) -> UInt8[np.ndarray, "h w 3"]:
     """The whole picture.
 
     Args:
-        found: At least something of it is seen.
+        rectified: At least something of it is seen.
         pixel_m: Size of a texel.
         settings: Numbers to work with.
     """
-    rim = round(settings.rim_share * max(found.seen.shape))
-    seen = cv2.erode(found.seen.astype(np.uint8), np.ones((2 * rim + 1,) * 2, np.uint8), borderValue=1).astype(bool)
+    rim = round(settings.rim_share * max(rectified.seen.shape))
+    seen = cv2.erode(rectified.seen.astype(np.uint8), np.ones((2 * rim + 1,) * 2, np.uint8), borderValue=1).astype(bool)
     if not seen.any():
-        seen = found.seen
-    colours, seen = mirrored(found.colours, seen, settings)
+        seen = rectified.seen
+    colours, seen = mirrored(rectified.colours, seen, settings)
     if seen.all():
         return colours.clip(0, 255).astype(np.uint8)
     behind = _continued(colours, seen, pixel_m, settings)

@@ -85,7 +85,7 @@ def faces_of(
     parts: trimesh.Scene,
     rgb: UInt8[np.ndarray, "h w 3"],
     hidden: Bool[np.ndarray, "h w"],
-    found: DetectedObject,
+    detected: DetectedObject,
     camera: Camera,
     settings: FlatFaceSettings = SETTINGS,
 ) -> tuple[FlatFace, ...]:
@@ -96,7 +96,7 @@ def faces_of(
         parts: Its shape.
         rgb: The photo.
         hidden: Where something else stands before it.
-        found: The object in the photo.
+        detected: The object in the photo.
         camera: The photo's.
         settings: Numbers to work with.
     """
@@ -108,9 +108,9 @@ def faces_of(
     chosen = [s for s in slots if s.role in roles or (s.main and MAIN in roles)]
     if not chosen and not SEEN_THROUGH & set(roles):
         chosen = [s for s in slots if s.main]
-    by_mask = found.mask_confidence >= settings.sure_mask or item.category in NOT_RECTANGULAR
-    unseen = (hidden | ~found.mask if by_mask else hidden) | pale_frame(rgb, settings) | _outside(found)
-    made = [_face(item, parts, slot, layout, rgb, (hidden, unseen), found, camera, settings) for slot in chosen]
+    by_mask = detected.mask_confidence >= settings.sure_mask or item.category in NOT_RECTANGULAR
+    unseen = (hidden | ~detected.mask if by_mask else hidden) | pale_frame(rgb, settings) | _outside(detected)
+    made = [_face(item, parts, slot, layout, rgb, (hidden, unseen), detected, camera, settings) for slot in chosen]
     return tuple(face for face in made if face is not None)
 
 
@@ -135,7 +135,7 @@ def _face(
     layout: TextureLayout,
     rgb: UInt8[np.ndarray, "h w 3"],
     hidden: tuple[Bool[np.ndarray, "h w"], Bool[np.ndarray, "h w"]],
-    found: DetectedObject,
+    detected: DetectedObject,
     camera: Camera,
     settings: FlatFaceSettings = SETTINGS,
 ) -> FlatFace | None:
@@ -148,11 +148,11 @@ def _face(
     if not is_cut(H):  # or the box in the photo does not end where the object does
         H = (
             box_alignment(
-                _outline_box(item, parts, camera), found.box, sides_told(found.box, others, settings), settings
+                _outline_box(item, parts, camera), detected.box, sides_told(detected.box, others, settings), settings
             )
             @ H
         )
-    if _share_in_mask(outline_px(H), others, found, settings) < settings.min_in_mask:
+    if _share_in_mask(outline_px(H), others, detected, settings) < settings.min_in_mask:
         return None
     picture = rectified(rgb, unseen, H)
     if picture is None or picture.seen.mean() < settings.min_seen:
@@ -167,10 +167,10 @@ def _face(
     return FlatFace(slot, layout, completed_picture(picture, pixel_m), roughness)
 
 
-def _outside(found: DetectedObject) -> Bool[np.ndarray, "h w"]:
+def _outside(detected: DetectedObject) -> Bool[np.ndarray, "h w"]:
     """Pixels that are not in the object's box: whatever its pose says, they show something else."""
-    outside = np.ones(found.mask.shape, dtype=bool)
-    x1, y1, x2, y2 = found.box
+    outside = np.ones(detected.mask.shape, dtype=bool)
+    x1, y1, x2, y2 = detected.box
     outside[max(math.floor(y1), 0) : math.ceil(y2), max(math.floor(x1), 0) : math.ceil(x2)] = False
     return outside
 
@@ -178,14 +178,14 @@ def _outside(found: DetectedObject) -> Bool[np.ndarray, "h w"]:
 def _share_in_mask(
     outline: Float[np.ndarray, "n 2"],
     hidden: Bool[np.ndarray, "h w"],
-    found: DetectedObject,
+    detected: DetectedObject,
     settings: FlatFaceSettings = SETTINGS,
 ) -> float:
     """Share of a convex outline, as far as it is in the photo and not hidden, that is within the object's mask."""
-    region = np.zeros(found.mask.shape, np.uint8)
+    region = np.zeros(detected.mask.shape, np.uint8)
     cv2.fillConvexPoly(region, np.rint(np.clip(outline, -settings.far_px, settings.far_px)).astype(np.int32), 1)
     free = region.astype(bool) & ~hidden
-    return float((free & found.mask).sum() / max(int(free.sum()), 1))
+    return float((free & detected.mask).sum() / max(int(free.sum()), 1))
 
 
 def box_alignment(

@@ -80,7 +80,7 @@ def estimated_light(
             out.append(factor * np.sqrt(shade.weight) * off / settings.robust)
         return np.concatenate(out)
 
-    found = least_squares(residuals, usual, loss="soft_l1").x
-    length = float(np.linalg.norm(found))
-    x, y, z = (float(v) for v in found / max(length, 1e-9))
+    solution = least_squares(residuals, usual, loss="soft_l1").x
+    length = float(np.linalg.norm(solution))
+    x, y, z = (float(v) for v in solution / max(length, 1e-9))
     return RoomLight((x, y, z), min(length, settings.max_length)) if length > 1e-3 else RoomLight()

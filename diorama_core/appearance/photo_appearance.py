@@ -87,11 +87,11 @@ def photo_appearance(
     """
     if scene.camera is None:
         return PhotoAppearance({}, {})
-    found = {o.id: o for o in objects}
+    detected_by_id = {o.id: o for o in objects}
     camera = scene.camera
     seen = each(
-        lambda item: _seen(item, _parts(library, item), rgb, found[item.id], objects, camera, settings),
-        [item for item in scene.objects if item.id in found],
+        lambda item: _seen(item, _parts(library, item), rgb, detected_by_id[item.id], objects, camera, settings),
+        [item for item in scene.objects if item.id in detected_by_id],
     )
     shades = [shade_of(s.view, p, rgb) for s in seen if s.view is not None for p in s.pixels]
     walls, window = wall_shade(rgb, objects, scene, settings), toward_window(rgb, objects, scene, settings)
@@ -119,7 +119,7 @@ def photo_appearance(
     used = {m.texture for of_one in materials.values() for m in of_one}
     pictures = {name: picture for name, picture in pictures.items() if name in used}
     read = PhotoAppearance({key: value for key, value in materials.items() if value}, pictures, light)
-    read_from = {s.item.id: _read_from(s, found[s.item.id], objects, settings) for s in seen}
+    read_from = {s.item.id: _read_from(s, detected_by_id[s.item.id], objects, settings) for s in seen}
     return _as_bright(read, rgb, read_from, scene, library, settings)
 
 
@@ -150,21 +150,21 @@ def _as_bright(
 
 
 def _read_from(
-    seen: _Seen, found: DetectedObject, objects: tuple[DetectedObject, ...], settings: AppearanceSettings = SETTINGS
+    seen: _Seen, detected: DetectedObject, objects: tuple[DetectedObject, ...], settings: AppearanceSettings = SETTINGS
 ) -> Bool[np.ndarray, "h w"]:
     """The pixels that show an object's materials: those of its slots' main colours, or all of a thing with faces."""
     if seen.faces or seen.view is None or not seen.pixels:
-        return _inner(found, settings) & ~hiding(found, objects, settings=settings)
-    view, pixels = seen.view, np.zeros(found.mask.shape, dtype=bool)
+        return _inner(detected, settings) & ~hiding(detected, objects, settings=settings)
+    view, pixels = seen.view, np.zeros(detected.mask.shape, dtype=bool)
     near = np.kron(np.logical_or.reduce([p.near for p in seen.pixels]), np.ones((view.step, view.step), dtype=bool))
     own = pixels[view.top : view.top + len(near), view.left : view.left + near.shape[1]]
     own[:] = near[: own.shape[0], : own.shape[1]]
     return pixels
 
 
-def _inner(found: DetectedObject, settings: AppearanceSettings = SETTINGS) -> Bool[np.ndarray, "h w"]:
+def _inner(detected: DetectedObject, settings: AppearanceSettings = SETTINGS) -> Bool[np.ndarray, "h w"]:
     """The object's pixels without the outermost ones; of thin and small things fewer are left out."""
-    mask, inner = found.mask.astype(np.uint8), found.mask
+    mask, inner = detected.mask.astype(np.uint8), detected.mask
     for side in settings.edges_px:
         inner = np.asarray(cv2.erode(mask, np.ones((side, side), np.uint8)).astype(bool))
         if np.count_nonzero(inner) >= settings.min_inner * np.count_nonzero(mask):
@@ -189,19 +189,19 @@ def _seen(
     item: SceneObject,
     parts: trimesh.Scene,
     rgb: UInt8[np.ndarray, "h w 3"],
-    found: DetectedObject,
+    detected: DetectedObject,
     objects: tuple[DetectedObject, ...],
     camera: Camera,
     settings: AppearanceSettings = SETTINGS,
 ) -> _Seen:
-    hidden = hiding(found, objects, settings=settings)
-    faces = faces_of(item, parts, rgb, hidden, found, camera)
-    visible = _inner(found, settings) & ~hidden
+    hidden = hiding(detected, objects, settings=settings)
+    faces = faces_of(item, parts, rgb, hidden, detected, camera)
+    visible = _inner(detected, settings) & ~hidden
     slots = slots_of(parts)
-    unhidden = visible if found.mask_confidence >= 1.0 else _in_box(found) & ~hidden
+    unhidden = visible if detected.mask_confidence >= 1.0 else _in_box(detected) & ~hidden
     view = surface_view(parts, slots, item.pose, camera, visible | unhidden)
     taken = {face.slot.name for face in faces}
-    behind = _in_box(found) & ~found.mask & ~hiding(found, objects, smaller_only=True, settings=settings)
+    behind = _in_box(detected) & ~detected.mask & ~hiding(detected, objects, smaller_only=True, settings=settings)
     pixels = () if view is None else slot_pixels(view, slots, rgb, visible, unhidden, behind, taken)
     read = (p for p in pixels if p.slot.name not in taken)
     own = tuple(p for p in read if view is not None and not _shines(item, p, view, rgb))
@@ -224,9 +224,9 @@ def _shines(item: SceneObject, pixels: SlotPixels, view: SurfaceView, rgb: UInt8
     return bool(np.median(view.of(rgb)[pixels.near].max(axis=1)) >= SHINING)
 
 
-def _in_box(found: DetectedObject) -> Bool[np.ndarray, "h w"]:
-    inside = np.zeros(found.mask.shape, dtype=bool)
-    x1, y1, x2, y2 = (max(round(v), 0) for v in found.box)
+def _in_box(detected: DetectedObject) -> Bool[np.ndarray, "h w"]:
+    inside = np.zeros(detected.mask.shape, dtype=bool)
+    x1, y1, x2, y2 = (max(round(v), 0) for v in detected.box)
     inside[y1:y2, x1:x2] = True
     return inside
 
@@ -238,24 +238,26 @@ def _surfaces(
     if seen.view is None:
         return made
     for pixels in seen.pixels:
-        found = appearance_of(seen.view, pixels, rgb, light, seen.weaves.get(pixels.slot.name))
-        _, metallic = ROUGHNESS[found.slot.role]
-        name = None if found.texture is None else texture_name(seen.item.id, found.slot.name, found.texture)
-        material = PhotoMaterial(
-            slot=found.slot.name,
-            colour=found.colour,
-            texture=name,
-            tile_m=found.tile_m,
-            roughness=found.roughness,
-            metallic=metallic,
-            main=found.slot.main,
+        appearance = appearance_of(seen.view, pixels, rgb, light, seen.weaves.get(pixels.slot.name))
+        _, metallic = ROUGHNESS[appearance.slot.role]
+        name = (
+            None if appearance.texture is None else texture_name(seen.item.id, appearance.slot.name, appearance.texture)
         )
-        made.append((material, found.texture))
+        material = PhotoMaterial(
+            slot=appearance.slot.name,
+            colour=appearance.colour,
+            texture=name,
+            tile_m=appearance.tile_m,
+            roughness=appearance.roughness,
+            metallic=metallic,
+            main=appearance.slot.main,
+        )
+        made.append((material, appearance.texture))
     return made
 
 
 def hiding(
-    found: DetectedObject,
+    detected: DetectedObject,
     objects: tuple[DetectedObject, ...],
     *,
     smaller_only: bool = False,
@@ -266,16 +268,16 @@ def hiding(
     Without the larger ones, which may as well lie below or stand behind it, it is where something surely does.
 
     Args:
-        found: The object.
+        detected: The object.
         objects: What was found in the photo, with masks.
         smaller_only: Whether larger ones are left out.
         settings: Numbers to work with.
     """
-    hidden, area = np.zeros(found.mask.shape, dtype=bool), found.pixels
+    hidden, area = np.zeros(detected.mask.shape, dtype=bool), detected.pixels
     for other in objects:
         smaller = other.pixels < area
-        if other.id != found.id and (smaller or not smaller_only):
-            hidden |= other.mask if smaller else other.mask & ~found.mask
+        if other.id != detected.id and (smaller or not smaller_only):
+            hidden |= other.mask if smaller else other.mask & ~detected.mask
     radius = max(1, round(settings.mask_margin * max(hidden.shape)))
     return cv2.dilate(hidden.astype(np.uint8), np.ones((2 * radius + 1,) * 2, np.uint8)).astype(bool)
 

@@ -62,8 +62,8 @@ def outline_px(H: Float[np.ndarray, "3 3"]) -> Float[np.ndarray, "n 2"]:
             kept.append(here)
         if (here[2] >= NEAR_M) != (after[2] >= NEAR_M):
             kept.append(here + (NEAR_M - here[2]) / (after[2] - here[2]) * (after - here))
-    found = np.array(kept).reshape(-1, 3)
-    return np.asarray(found[:, :2] / found[:, 2:])
+    vertices = np.array(kept).reshape(-1, 3)
+    return np.asarray(vertices[:, :2] / vertices[:, 2:])
 
 
 def is_cut(H: Float[np.ndarray, "3 3"]) -> bool:

@@ -149,7 +149,7 @@ def slot_pixels(
             of_slots[index] = mine
     beside = view.of(background) & (view.slot < 0)
     seeds = _own_colours(lab, of_slots, beside, settings)
-    found = []
+    pixels_of_slots = []
     like = {index: _alike(lab, seeds[index], settings) for index in of_slots}
     near = {index: mine & like[index] for index, mine in of_slots.items()}
     for index, mine in of_slots.items():
@@ -163,8 +163,8 @@ def slot_pixels(
         # A colour of the background is on other slots where one looks past them.
         before = covered < settings.behind and _is_before_all(like[index], mine, others, settings)
         if near[index].sum() >= settings.min_share * mine.sum() and not crossed and not behind and not before:
-            found.append(SlotPixels(slots[index], index, near[index], mine))
-    return tuple(found)
+            pixels_of_slots.append(SlotPixels(slots[index], index, near[index], mine))
+    return tuple(pixels_of_slots)
 
 
 def whole_pixels(
@@ -279,16 +279,16 @@ def _colours_of(
     label, counts = cells_of(cells)
     order = [k for k in np.argsort(-counts, kind="stable") if counts[k] >= settings.min_of_bin * len(pixels)]
     medians = {k: np.median(pixels[label == k], axis=0) for k in order}
-    found: list[Float32[np.ndarray, "3"]] = []
+    colours: list[Float32[np.ndarray, "3"]] = []
     while order:
         alike = {k: [j for j in order if _is_near(medians[j] - medians[k], settings)] for k in order}
         covers = {k: sum(int(counts[j]) for j in alike[k]) for k in order}
         group = alike[max(order, key=covers.__getitem__)]
-        if found and sum(int(counts[j]) for j in group) < settings.min_share * len(pixels):
+        if colours and sum(int(counts[j]) for j in group) < settings.min_share * len(pixels):
             break
-        found += [medians[j] for j in group if j == group[0] or counts[j] >= settings.min_share * len(pixels)]
+        colours += [medians[j] for j in group if j == group[0] or counts[j] >= settings.min_share * len(pixels)]
         order = [k for k in order if k not in group]
-    return found
+    return colours
 
 
 def _share(alike: Bool[np.ndarray, "gh gw"], where: Bool[np.ndarray, "gh gw"]) -> float:

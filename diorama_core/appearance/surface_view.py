@@ -61,14 +61,14 @@ def surface_view(
     world = pose.apply(vertices).astype(np.float32)
     rays = PinholeView(camera).rays(np.stack([x, y], axis=-1))
     hits = Caster(world, faces).first_hits(rays)
-    found, triangle = hits.found, hits.triangle[hits.found]
-    weights = np.concatenate([1 - hits.barycentric.sum(axis=-1, keepdims=True), hits.barycentric], axis=-1)[found]
-    slot = np.full(found.shape, -1, np.int8)
-    slot[found] = owner[triangle]
-    uv_m = np.zeros((*found.shape, 2), np.float32)
-    uv_m[found] = np.einsum("nk,nkc->nc", weights, uv[faces[triangle]])
-    normals = np.zeros((*found.shape, 3), np.float32)
-    normals[found] = facing(face_normals(world, faces)[triangle], rays[found][:, 3:])
+    is_hit, triangle = hits.found, hits.triangle[hits.found]
+    weights = np.concatenate([1 - hits.barycentric.sum(axis=-1, keepdims=True), hits.barycentric], axis=-1)[is_hit]
+    slot = np.full(is_hit.shape, -1, np.int8)
+    slot[is_hit] = owner[triangle]
+    uv_m = np.zeros((*is_hit.shape, 2), np.float32)
+    uv_m[is_hit] = np.einsum("nk,nkc->nc", weights, uv[faces[triangle]])
+    normals = np.zeros((*is_hit.shape, 3), np.float32)
+    normals[is_hit] = facing(face_normals(world, faces)[triangle], rays[is_hit][:, 3:])
     cosine = np.clip(-dot(normals, unit(rays[..., 3:])), 0.0, 1.0).astype(np.float32)
     return SurfaceView(left, top, step, slot, uv_m, normals, cosine)
 

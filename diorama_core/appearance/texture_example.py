@@ -81,23 +81,23 @@ def best_example(
     for row, column in _centres(inside, settings):
         radius = min(float(inside[row, column]) * 0.7, settings.max_radius_px / view.step)
         for share in settings.radii:
-            found = _piece(view, near, rgb, row, column, int(share * radius), settings)
-            size = 0.0 if found is None else len(found.colours) * pattern_strength(found.colours, settings)
-            best, score = (found, size) if size > score else (best, score)
+            piece = _piece(view, near, rgb, row, column, int(share * radius), settings)
+            size = 0.0 if piece is None else len(piece.colours) * pattern_strength(piece.colours, settings)
+            best, score = (piece, size) if size > score else (best, score)
     return best
 
 
 def _centres(inside: Float32[np.ndarray, "h w"], settings: TextureExampleSettings = SETTINGS) -> list[tuple[int, int]]:
     """Places far inside, the farthest first, none within another's piece."""
-    left, found = inside.copy(), []
+    left, centres = inside.copy(), []
     for _ in range(settings.candidates):
         row, column = np.unravel_index(int(np.argmax(left)), left.shape)
         radius = float(left[row, column])
         if radius < 6:
             break
-        found.append((int(row), int(column)))
+        centres.append((int(row), int(column)))
         cv2.circle(left, (int(column), int(row)), max(2, int(0.6 * radius)), 0.0, -1)
-    return found
+    return centres
 
 
 def _piece(

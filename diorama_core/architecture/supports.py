@@ -65,7 +65,7 @@ def adhering_walls(cuboid: Cuboid, walls: tuple[Plane, ...]) -> tuple[str, ...]:
     """Walls that a face of the object nearly touches, nearest first; the back face only, where it is known."""
     axes = cuboid.R_world_object
     faces = [-axes[:, 0]] if cuboid.front_known else [sign * axes[:, i] for i in (0, 1) for sign in (1.0, -1.0)]
-    found: list[tuple[float, str]] = []
+    walls_by_gap: list[tuple[float, str]] = []
     for wall in walls:
         if min(float(face @ wall.normal) for face in faces) > -PARALLEL_COSINE:
             continue
@@ -74,5 +74,5 @@ def adhering_walls(cuboid: Cuboid, walls: tuple[Plane, ...]) -> tuple[str, ...]:
         spread = wall.polygon @ along
         beside = not spread.min() <= cuboid.centre @ along <= spread.max()
         if abs(gap) <= ADHERENCE_M and not beside:
-            found.append((abs(gap), wall.id))
-    return tuple(wall_id for _, wall_id in sorted(found))
+            walls_by_gap.append((abs(gap), wall.id))
+    return tuple(wall_id for _, wall_id in sorted(walls_by_gap))

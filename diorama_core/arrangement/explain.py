@@ -74,11 +74,11 @@ def reasons_of_change(before: Scene, after: Scene, term: str, sentence: str) -> 
         sentence: why, in plain words.
     """
     old = {item.id: item for item in before.objects}
-    found = []
+    reasons = []
     for item in after.objects:
         if item.id in old:
-            found += _changes(old[item.id], item, _parent(before, item.id), _parent(after, item.id))
-    return tuple(Reason(object_id, decision, term, cm, "cm", sentence) for object_id, decision, cm in found)
+            reasons += _changes(old[item.id], item, _parent(before, item.id), _parent(after, item.id))
+    return tuple(Reason(object_id, decision, term, cm, "cm", sentence) for object_id, decision, cm in reasons)
 
 
 def _changes(

@@ -89,11 +89,11 @@ def standing_walls(
         relation = wall_relation(scene, item, wall, noise)
         if relation is not None:
             odds.append((sum(fitted[name] * term(relation) for name, term in STANDING_TERMS.items()), wall.id))
-    found: list[str] = []
+    walls: list[str] = []
     for value, name in sorted(odds, key=lambda pair: (-pair[0], pair[1])):
         normal = scene.plane(name).normal
         if value > LEAST_ODDS and all(
-            abs(float(normal @ scene.plane(other).normal)) < ASLANT_COSINE for other in found
+            abs(float(normal @ scene.plane(other).normal)) < ASLANT_COSINE for other in walls
         ):
-            found.append(name)
-    return tuple(found)
+            walls.append(name)
+    return tuple(walls)

@@ -87,10 +87,10 @@ def support_hypotheses(
         item.id: (
             *(_on_plane(scene, item, plane, noise, evidence) for plane in scene.architecture.planes),
             *(
-                found
+                hypothesis
                 for other in scene.objects
                 if other.id != item.id
-                and (found := _on_object(scene, item, other, surfaces[other.id], noise, evidence)) is not None
+                and (hypothesis := _on_object(scene, item, other, surfaces[other.id], noise, evidence)) is not None
             ),
         )
         for item in scene.objects
@@ -135,17 +135,17 @@ def _on_object(
     corners = item.corners_world
     foot, height = float(corners[:, 2].min()), max(float(np.ptp(corners[:, 2])), 1e-3)
     tolerance = noise.tolerance_m(scene.camera, item.pose.position, UP_WORLD)
-    found: list[tuple[float, int, float, float]] = []
+    candidates: list[tuple[float, int, float, float]] = []
     for index, place in enumerate(places):
         gap = abs(foot - place.level) / tolerance
         outside = outside_m(place, item.pose.position) / _width_m(item)
         over = max(height - place.clearance_m, 0.0) / height
-        found.append((min(gap, 6.0) + outside + over, index, gap, outside))
+        candidates.append((min(gap, 6.0) + outside + over, index, gap, outside))
     edge = Support(item.id, other.id)
     seen_on = (held := evidence.believed.get(item.id)) is not None and held.parent == other.id
-    if not found or (min(found)[3] >= FARTHEST_WIDTHS and not seen_on):
+    if not candidates or (min(candidates)[3] >= FARTHEST_WIDTHS and not seen_on):
         return None
-    _, _, gap, outside = min(found)
+    _, _, gap, outside = min(candidates)
     return SupportHypothesis(
         edge,
         "object",

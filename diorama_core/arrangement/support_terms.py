@@ -120,8 +120,8 @@ class SupportWeights:
 
     def shares(self, h: SupportHypothesis) -> dict[str, float]:
         """What each term says against a supporter, nats."""
-        found = {term.name: self.terms.get(term.name, 0.0) * term.value(h) for term in TERMS}
-        return {USUAL_PLACE: self.places.get(place_name(h), 0.0), **found}
+        shares = {term.name: self.terms.get(term.name, 0.0) * term.value(h) for term in TERMS}
+        return {USUAL_PLACE: self.places.get(place_name(h), 0.0), **shares}
 
     def cost(self, h: SupportHypothesis) -> float:
         """Everything that speaks against a supporter, nats."""

@@ -353,8 +353,12 @@ def complete_edges(
     for k, item in enumerate(objects):
         if edges[item.id] is None:
             edges[item.id] = _most_plausible(scene, item, objects, shapes, edges)
-            found = edges[item.id]
-            on = f"taken to rest on {label_of(scene, found.parent)}" if found is not None else "left at its height"
+            known_edge = edges[item.id]
+            on = (
+                f"taken to rest on {label_of(scene, known_edge.parent)}"
+                if known_edge is not None
+                else "left at its height"
+            )
             reasons.append(f"no support edge: {objects[k].label} was {on}")
     return [edges[o.id] for o in objects], tuple(reasons)
 
@@ -419,10 +423,12 @@ def surfaces_below(item: SceneObject, other: SceneObject, shape: Shape, *, under
     """
     if other.id == item.id:
         return []
-    found = (surface.in_world(other.pose) for surface in object_surfaces(shape, other))
+    candidates = (surface.in_world(other.pose) for surface in object_surfaces(shape, other))
     centre = item.pose.position
     half = 0.5 * under * float(np.ptp(item.corners_world[:, 2]))
-    return [w for w in found if w.level < float(w.normal @ centre) + half and outside_m(w, centre) < NEAR_SURFACE_M]
+    return [
+        w for w in candidates if w.level < float(w.normal @ centre) + half and outside_m(w, centre) < NEAR_SURFACE_M
+    ]
 
 
 def resting_cost(scene: Scene, item: SceneObject, edge: Support, surface: RestingSurface) -> float:

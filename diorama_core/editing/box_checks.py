@@ -37,7 +37,7 @@ def too_tall(boxes: Sequence[LabelledBox]) -> tuple[tuple[int, float], ...]:
     stands on the floor can be measured by everything that stands nearer, in its least usual height.
     """
     on_floor = [k for k, b in enumerate(boxes) if category(b.category).mount == "floor" or b.category == DOOR]
-    found = []
+    excesses = []
     for k in on_floor:
         nearer = [j for j in on_floor if j != k and boxes[j].box[3] >= boxes[k].box[3] - 1.0]
         least = [_height_px(boxes[k].box) / _height_px(boxes[j].box) * _heights_m(boxes[j].category)[0] for j in nearer]
@@ -45,8 +45,8 @@ def too_tall(boxes: Sequence[LabelledBox]) -> tuple[tuple[int, float], ...]:
         # One box that is cut off or misnamed would accuse all others: two must say so, or the only other one.
         agreed = sorted(least, reverse=True)[min(1, len(least) - 1)] if least else 0.0
         if agreed > tallest:
-            found.append((k, agreed))
-    return tuple(found)
+            excesses.append((k, agreed))
+    return tuple(excesses)
 
 
 def _heights_m(kind: str) -> tuple[float, float]:

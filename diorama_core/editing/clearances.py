@@ -58,8 +58,8 @@ def clearances(scene: Scene, object_id: str) -> tuple[Clearance, ...]:
     family = {object_id, *descendants(scene, object_id), *ancestors(scene, object_id)}
     others = [_Neighbour(o, o.corners_world[:, 2]) for o in scene.objects if o.id not in family and not o.hidden]
     walls = scene.architecture.by_role("wall")
-    found = (_nearest(item, side, walls, others) for side in SIDES)
-    return tuple(c for c in found if c is not None)
+    nearest = (_nearest(item, side, walls, others) for side in SIDES)
+    return tuple(c for c in nearest if c is not None)
 
 
 def moved_to_clearance(scene: Scene, object_id: str, side: Side, distance_m: float) -> Scene:

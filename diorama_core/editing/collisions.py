@@ -44,7 +44,7 @@ class Collisions:
         if not items:
             return frozenset()
         low, high = _boxes(items, here)
-        found: set[Pair] = set()
+        pairs: set[Pair] = set()
         for k in [k for k, o in enumerate(items) if o.id in chosen]:
             near = ((low <= high[k] - TOUCHING_M) & (high >= low[k] + TOUCHING_M)).all(axis=1)
             for j in np.flatnonzero(near):
@@ -52,8 +52,8 @@ class Collisions:
                 if a.id == b.id or (b.id in chosen and int(j) < k) or _belongs(scene, a.id, b.id):
                     continue
                 if self._hit(a, here[a.id], b, here[b.id]):
-                    found.add((a.id, b.id))
-        return frozenset(found)
+                    pairs.add((a.id, b.id))
+        return frozenset(pairs)
 
     def _hit(self, a: SceneObject, a_pose: Pose, b: SceneObject, b_pose: Pose) -> bool:
         first = fcl.CollisionObject(self._tree(a), _transform(a_pose))

@@ -47,7 +47,7 @@ class FreeSpace:
             depth_m: along the other.
             most: how many are given.
         """
-        found: list[tuple[float, float]] = []
+        spots: list[tuple[float, float]] = []
         apart_m = max(width_m, depth_m)
         for across_m, down_m in dict.fromkeys(((width_m, depth_m), (depth_m, width_m))):
             fits = self._free_rectangles(across_m, down_m)
@@ -55,9 +55,9 @@ class FreeSpace:
                 continue
             rows, columns = np.nonzero(fits)
             for x, y in zip(columns * self.cell_m + across_m / 2, rows * self.cell_m + down_m / 2, strict=True):
-                if len(found) < most and all(max(abs(x - a), abs(y - b)) >= apart_m for a, b in found):
-                    found.append((float(x), float(y)))
-        return tuple((float(x), float(y)) for x, y in (self.T_world_grid @ (*middle, 1.0) for middle in found))
+                if len(spots) < most and all(max(abs(x - a), abs(y - b)) >= apart_m for a, b in spots):
+                    spots.append((float(x), float(y)))
+        return tuple((float(x), float(y)) for x, y in (self.T_world_grid @ (*middle, 1.0) for middle in spots))
 
     def has_place_for(self, shape: Shape) -> bool:
         """Whether a shape finds a place as it is, in one of four headings; what lies on furniture always does."""

@@ -70,9 +70,9 @@ class MaskDraft:
             models = np.zeros((2, 1, 65))
             cv2.setRNGSeed(_SEED)
             cv2.grabCut(small, labels, None, models[0], models[1], ROUNDS, cv2.GC_INIT_WITH_MASK)
-        found = ((labels == cv2.GC_FGD) | (labels == cv2.GC_PR_FGD)).astype(np.float32)
+        foreground = ((labels == cv2.GC_FGD) | (labels == cv2.GC_PR_FGD)).astype(np.float32)
         mask = np.zeros((height, width), dtype=bool)
-        mask[top:bottom, left:right] = cv2.resize(found, (right - left, bottom - top)) >= 0.5
+        mask[top:bottom, left:right] = cv2.resize(foreground, (right - left, bottom - top)) >= 0.5
         return mask
 
     @property
@@ -87,8 +87,8 @@ class MaskDraft:
 def _like(picture: UInt8[np.ndarray, "h w 3"], seed: tuple[int, int]) -> Bool[np.ndarray, "h w"]:
     """The connected surface of a click's colour."""
     height, width = picture.shape[:2]
-    found = np.zeros((height + 2, width + 2), dtype=np.uint8)
+    filled = np.zeros((height + 2, width + 2), dtype=np.uint8)
     reach = (LIKE, LIKE, LIKE)
     flags = 4 | cv2.FLOODFILL_MASK_ONLY | cv2.FLOODFILL_FIXED_RANGE | (1 << 8)
-    cv2.floodFill(cv2.GaussianBlur(picture, (3, 3), 0), found, seed, (0, 0, 0), reach, reach, flags)
-    return found[1:-1, 1:-1] > 0
+    cv2.floodFill(cv2.GaussianBlur(picture, (3, 3), 0), filled, seed, (0, 0, 0), reach, reach, flags)
+    return filled[1:-1, 1:-1] > 0

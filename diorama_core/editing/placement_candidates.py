@@ -139,7 +139,7 @@ def _floor_stances(scene: Scene, item: SceneObject, relations: Sequence[Relation
 
 def _about(target: SceneObject, item: SceneObject) -> list[tuple[Float[np.ndarray, "n 2"], float]]:
     """Places on the four sides of a target, at several distances and shifts, with headings in quarter turns to it."""
-    found = []
+    candidates = []
     half, yaw0 = target.size_m[:2] / 2, target.pose.yaw_rad
     R = yaw_rotation(yaw0)[:2, :2]
     for quarter in range(4):
@@ -153,15 +153,15 @@ def _about(target: SceneObject, item: SceneObject) -> list[tuple[Float[np.ndarra
             slides = sorted({0.0, 0.33 * free, -0.33 * free, 0.6 * free, -0.6 * free, flush, -flush})
             distances = (-0.3, -0.22, -0.15, -0.08, 0.03, 0.08, 0.2, 0.35, 0.5, 0.8, 1.2, 1.8, 2.4)
             local = np.array([out * (reach + g) + across * s for g in distances for s in slides])
-            found.append((local @ R.T + target.pose.position[:2], yaw0 + quarter * np.pi / 2))
+            candidates.append((local @ R.T + target.pose.position[:2], yaw0 + quarter * np.pi / 2))
     turns = np.arange(12) * np.pi / 6
     for reach in (0.25, 0.4, 0.6):
         radius = float(half.max() + item.size_m[0] / 2 + reach) - 0.3
         ring = target.pose.position[:2] + radius * np.stack([np.cos(turns + yaw0), np.sin(turns + yaw0)], axis=1)
-        found += [(ring[k : k + 1], float(turns[k] + yaw0 + np.pi)) for k in range(len(turns))]
-    found.append((target.pose.position[None, :2], yaw0))
-    found.append((target.pose.position[None, :2], yaw0 + np.pi / 2))
-    return found
+        candidates += [(ring[k : k + 1], float(turns[k] + yaw0 + np.pi)) for k in range(len(turns))]
+    candidates.append((target.pose.position[None, :2], yaw0))
+    candidates.append((target.pose.position[None, :2], yaw0 + np.pi / 2))
+    return candidates
 
 
 def _blocked(
@@ -184,7 +184,7 @@ def _blocked(
 
 
 def _on_objects(scene: Scene, item: SceneObject, hosts: Sequence[str], library: ShapeLibrary) -> list[Candidates]:
-    found: list[Candidates] = []
+    candidates: list[Candidates] = []
     usual = category(item.category).mount
     for place in places_of(scene, library):
         if place.parent not in hosts or not place.upward:
@@ -221,8 +221,8 @@ def _on_objects(scene: Scene, item: SceneObject, hosts: Sequence[str], library: 
         extra = extra + 0.5 * inner + host_cost(item, host) * (usual == "surface")
         edge = Support(item.id, place.parent, parent_surface=place.index)
         base = np.full(len(places), place.surface.level)
-        found.append(Candidates(stances, base, [edge] * len(places), extra, usable))
-    return found
+        candidates.append(Candidates(stances, base, [edge] * len(places), extra, usable))
+    return candidates
 
 
 def _on_walls(scene: Scene, item: SceneObject, above: Sequence[str], frame: RoomFrame) -> Candidates:

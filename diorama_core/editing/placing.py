@@ -93,7 +93,7 @@ def hits_along(
         lift_m: by which each is raised along its normal.
         slack_m: by which its edge may be missed.
     """
-    found = []
+    hits = []
     for place in places:
         surface = place.surface
         slope = float(surface.normal @ direction)
@@ -104,8 +104,8 @@ def hits_along(
             continue
         point = origin + distance * direction - lift_m * surface.normal
         if outside_m(surface, point) <= slack_m:
-            found.append(Hit(place, point, distance))
-    return sorted(found, key=lambda hit: hit.distance)
+            hits.append(Hit(place, point, distance))
+    return sorted(hits, key=lambda hit: hit.distance)
 
 
 def fits(place: SupportTarget, size_m: Float[np.ndarray, "3"], base: Float[np.ndarray, "3"], R: np.ndarray) -> bool:
@@ -164,14 +164,14 @@ def _box_top(item: SceneObject) -> SupportTarget:
 
 def inside(surface: RestingSurface, point: Float[np.ndarray, "3"]) -> Float[np.ndarray, "3"]:
     """The point of a surface nearest to a point above or beside it (a few projections: outlines are convex)."""
-    found = np.array(point, dtype=np.float64)
+    place = np.array(point, dtype=np.float64)
     for _ in range(12):
-        over = surface.outward @ found - surface.offset
+        over = surface.outward @ place - surface.offset
         worst = int(np.argmax(over))
         if over[worst] <= 0:
             break
-        found = found - (over[worst] + 1e-6) * surface.outward[worst]
-    return found
+        place = place - (over[worst] + 1e-6) * surface.outward[worst]
+    return place
 
 
 def _hung(item: SceneObject, surface: RestingSurface) -> Pose:

@@ -70,13 +70,13 @@ class Positioner:
         """
         frame = RoomFrame.of(scene)
         rest = _without(scene, item)
-        found: Spot | None = None
+        best: Spot | None = None
         for candidates in candidates_for(rest, item, (*relations, *usual), frame, self.library):
             cost = placement_costs(rest, item, candidates, relations, usual, others or {}, frame, near)
             spot = self._first_free(rest, item, candidates, cost)
-            if spot is not None and (found is None or spot.cost < found.cost):
-                found = spot
-        return found
+            if spot is not None and (best is None or spot.cost < best.cost):
+                best = spot
+        return best
 
     def put(self, scene: Scene, item: SceneObject, spot: Spot) -> Scene:
         """The scene with the object at a place, inserted where it is not there yet.

@@ -24,14 +24,14 @@ if TYPE_CHECKING:
     from diorama_core.pipeline.reconstruct_object import Found  # the whole pipeline; editing does without it
 
 
-def inserted(scene: Scene, found: Found, library: ShapeLibrary) -> Scene:
+def inserted(scene: Scene, reconstruction: Found, library: ShapeLibrary) -> Scene:
     """The scene with the found object as a new one, resting on its supporter.
 
     One that would go through another object, below the floor or out of the room stands on what the photo shows it on,
     else beside it or where there is room.
     """
-    item = replace(found.item, id=edits.fresh_id(scene, found.item.category))
-    edge = None if found.support is None else replace(found.support, child=item.id)
+    item = replace(reconstruction.item, id=edits.fresh_id(scene, reconstruction.item.category))
+    edge = None if reconstruction.support is None else replace(reconstruction.support, child=item.id)
     if edge is not None and not (scene.has_object(edge.parent) or scene.has_plane(edge.parent)):
         edge = None
     return _clear(seated(edits.insert(scene, item, edge), library, item.id), item.id, library)
@@ -96,31 +96,33 @@ def moved_onto(scene: Scene, object_id: str, carrier_id: str, library: ShapeLibr
     return seated(moved, library, object_id)
 
 
-def replaced(scene: Scene, object_id: str, found: Found, library: ShapeLibrary) -> Scene:
+def replaced(scene: Scene, object_id: str, reconstruction: Found, library: ShapeLibrary) -> Scene:
     """The scene with a reconstructed object; unchanged where the correction changes nothing.
 
     Args:
         scene: as it is.
         object_id: of the object.
-        found: the object as it was reconstructed.
+        reconstruction: the object as it was reconstructed.
         library: where shapes come from.
     """
-    if found.as_built:
+    if reconstruction.as_built:
         return scene
-    changed = edits.swap(scene, object_id, found.item.candidates[0])
-    return seated(_described(changed, object_id, found, colour=found.item.colour), library, object_id)
+    changed = edits.swap(scene, object_id, reconstruction.item.candidates[0])
+    return seated(_described(changed, object_id, reconstruction, colour=reconstruction.item.colour), library, object_id)
 
 
-def renamed(scene: Scene, object_id: str, found: Found) -> Scene:
+def renamed(scene: Scene, object_id: str, reconstruction: Found) -> Scene:
     """The scene with an object of the found kind, where and in the colour that it was."""
     colour = scene.object(object_id).colour
-    swapped = edits.swap(scene, object_id, found.item.candidates[0], keep_pose=True)
-    return _described(swapped, object_id, found, colour=colour)
+    swapped = edits.swap(scene, object_id, reconstruction.item.candidates[0], keep_pose=True)
+    return _described(swapped, object_id, reconstruction, colour=colour)
 
 
-def _described(scene: Scene, object_id: str, found: Found, *, colour: tuple[float, float, float] | None) -> Scene:
+def _described(
+    scene: Scene, object_id: str, reconstruction: Found, *, colour: tuple[float, float, float] | None
+) -> Scene:
     def described(item: SceneObject) -> SceneObject:
-        new = found.item
+        new = reconstruction.item
         return replace(
             item,
             label=new.label,

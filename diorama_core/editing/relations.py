@@ -125,18 +125,18 @@ def relation_cost(
     if relation.kind == "in middle":
         extent = np.ptp(frame.outline, axis=0) * MIDDLE_SHARE
         return np.maximum(np.abs(stances.places - frame.middle) / np.maximum(extent, 0.1) - 1.0, 0.0).max(axis=1)
-    found = [targets[t] for t in relation.targets if t in targets]
-    if not found:
+    present = [targets[t] for t in relation.targets if t in targets]
+    if not present:
         return np.full(len(stances.places), 2.0)
     if relation.kind == "between":
-        return _between(stances, found) if len(found) > 1 else np.full(len(stances.places), 2.0)
+        return _between(stances, present) if len(present) > 1 else np.full(len(stances.places), 2.0)
     cost = np.zeros(len(stances.places))
-    for target in found:
+    for target in present:
         cost = cost + _to_target(relation.kind, stances, kind, target, relation.aside_m)
         if relation.seat_m is not None:
             local = (stances.places - target.pose.position[:2]) @ target.pose.R_world_object[:2, :2]
             cost = cost + SEAT_COST * np.minimum(np.linalg.norm(local - np.array(relation.seat_m), axis=1), 1.0)
-    return cost / len(found)
+    return cost / len(present)
 
 
 @dataclass(frozen=True, eq=False)
@@ -333,14 +333,14 @@ def _angle(a: Float[np.ndarray, "n"], b: Float[np.ndarray, "n"]) -> Float[np.nda
     return np.abs(np.arctan2(np.sin(a - b), np.cos(a - b)))
 
 
-def _between(stances: Stances, found: list[SceneObject]) -> Float[np.ndarray, "n"]:
-    a, b = found[0].pose.position[:2], found[1].pose.position[:2]
+def _between(stances: Stances, objects: list[SceneObject]) -> Float[np.ndarray, "n"]:
+    a, b = objects[0].pose.position[:2], objects[1].pose.position[:2]
     along = (b - a) / max(float(np.linalg.norm(b - a)), 1e-6)
     t = (stances.places - a) @ along / max(float(np.linalg.norm(b - a)), 1e-6)
     across = np.array([-along[1], along[0]])
     aside = np.abs((stances.places - a) @ across)
     # Between two beds is also at their heads.
-    beside_both = min(float(np.ptp(footprint_of(o) @ across)) for o in found[:2]) / 2 - 0.1
+    beside_both = min(float(np.ptp(footprint_of(o) @ across)) for o in objects[:2]) / 2 - 0.1
     return (
         np.maximum(np.abs(t - 0.5) - 0.2, 0.0) / 0.2
         + np.maximum(aside - max(beside_both, 0.3), 0.0) / 0.3

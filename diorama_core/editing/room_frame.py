@@ -62,13 +62,13 @@ class RoomFrame:
     @cached_property
     def corners(self) -> tuple[Float[np.ndarray, "2"], ...]:
         """Where two walls meet inward."""
-        found = []
+        corners = []
         for a in self.walls:
             for b in self.walls:
                 turn = a.along[0] * b.along[1] - a.along[1] * b.along[0]
                 if np.linalg.norm(a.end - b.start) < JOINED_M and turn < -0.5:
-                    found.append(0.5 * (a.end + b.start))
-        return tuple(found)
+                    corners.append(0.5 * (a.end + b.start))
+        return tuple(corners)
 
     @property
     def middle(self) -> Float[np.ndarray, "2"]:
@@ -123,11 +123,11 @@ def front_floor(item: SceneObject, free_m: float | None = None) -> Quad | None:
 
 def door_floors(objects: Iterable[SceneObject]) -> list[Quad]:
     """The floor before every door."""
-    found = []
+    floors = []
     for item in objects:
         if item.category == "door":
             yaw = item.pose.yaw_rad
             ahead = np.array([np.cos(yaw), np.sin(yaw)]) * SWING_M / 2
             size = np.array([SWING_M, item.size_m[1]])
-            found.append(footprints(size, (item.pose.position[:2] + ahead)[None], np.array([yaw]))[0])
-    return found
+            floors.append(footprints(size, (item.pose.position[:2] + ahead)[None], np.array([yaw]))[0])
+    return floors

@@ -215,12 +215,12 @@ def without_loads(mask: Bool[np.ndarray, "h w"], loads: Sequence[Bool[np.ndarray
 
 def loads_of(parents: Sequence[int | None], index: int) -> tuple[int, ...]:
     """Which objects lie on object `index`, or on something that does."""
-    found: list[int] = []
+    loads: list[int] = []
     level = {index}
     while level:
-        level = {i for i, parent in enumerate(parents) if parent in level and i not in found and i != index}
-        found += sorted(level)
-    return tuple(found)
+        level = {i for i, parent in enumerate(parents) if parent in level and i not in loads and i != index}
+        loads += sorted(level)
+    return tuple(loads)
 
 
 def cut_sides(box: Box, width: int, height: int) -> Bool[np.ndarray, "4"]:

@@ -118,15 +118,15 @@ def _with_slits(outer: Contour, holes: Sequence[Contour]) -> Contour:
 
 def _below(ring: Contour, start: Float[np.ndarray, "2"]) -> tuple[int, Float[np.ndarray, "2"]]:
     """The edge of a ring straight below a point, nearest to it, and where it is met."""
-    found: list[tuple[float, int]] = []
+    hits: list[tuple[float, int]] = []
     for number, (a, b) in enumerate(zip(ring, np.roll(ring, -1, axis=0), strict=True)):
         low, high = min(a[0], b[0]), max(a[0], b[0])
         if high - low < 1e-9 or not low <= start[0] <= high:
             continue
         height = float(a[1] + (start[0] - a[0]) / (b[0] - a[0]) * (b[1] - a[1]))
         if height <= start[1] + 1e-9:
-            found.append((height, number))
-    height, edge = max(found)
+            hits.append((height, number))
+    height, edge = max(hits)
     return edge, np.array([start[0], height])
 
 

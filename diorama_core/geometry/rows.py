@@ -49,8 +49,8 @@ def cells_of(whole: np.ndarray) -> tuple[Int[np.ndarray, " n"], Int[np.ndarray, 
 
 
 def _hashes(rows: np.ndarray) -> np.ndarray:
-    found = np.zeros(len(rows), dtype=np.uint64)
+    hashes = np.zeros(len(rows), dtype=np.uint64)
     for column in rows.T:
-        found = (found ^ np.ascontiguousarray(column).view(np.uint64)) * _FACTOR
-        found ^= found >> np.uint64(29)
-    return found
+        hashes = (hashes ^ np.ascontiguousarray(column).view(np.uint64)) * _FACTOR
+        hashes ^= hashes >> np.uint64(29)
+    return hashes

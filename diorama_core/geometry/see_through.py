@@ -94,10 +94,10 @@ class SeeThrough:
         shown = np.zeros(len(x))
         shown[inside] = _posterior(lab[inside], seen.covered[inside], of_background, settings)
         telling = settings.min_telling + (1 - settings.min_telling) * np.abs(2 * shown - 1)
-        found = cls(seen.window, shown, np.where(boxed, seen.weight * telling, 0.0), 0.0, settings)
-        of_mask = float(found.agreement((seen.covered > 0.5)[None])[0])
-        clear = min(float(found.weight[found.weight > 0].mean()) / settings.clearly, 1.0)
-        return replace(found, share=clear * (1.0 - (1.0 - settings.of_sure_mask) * of_mask**2))
+        see_through = cls(seen.window, shown, np.where(boxed, seen.weight * telling, 0.0), 0.0, settings)
+        of_mask = float(see_through.agreement((seen.covered > 0.5)[None])[0])
+        clear = min(float(see_through.weight[see_through.weight > 0].mean()) / settings.clearly, 1.0)
+        return replace(see_through, share=clear * (1.0 - (1.0 - settings.of_sure_mask) * of_mask**2))
 
     def agreement(self, silhouettes: Bool[np.ndarray, "p n"]) -> Float[np.ndarray, "p"]:
         """How well shapes fill the same places, 0 to 1; cells as in the window."""

@@ -30,13 +30,13 @@ def line_segments_px(
         grey = cv2.resize(grey, (round(width * scale), round(height * scale)), interpolation=cv2.INTER_AREA)
     if min(grey.shape) < 8:
         return np.zeros((0, 4))
-    found = cv2.createLineSegmentDetector(cv2.LSD_REFINE_STD).detect(grey)[0]
-    if found is None:
+    detected = cv2.createLineSegmentDetector(cv2.LSD_REFINE_STD).detect(grey)[0]
+    if detected is None:
         return np.zeros((0, 4))
     rows, columns = grey.shape
     stretch = np.array([width / columns, height / rows])
     # The detector counts from pixel centres; pixels here are squares whose centre is at one half.
-    segments = (found.reshape(-1, 2, 2).astype(np.float64) + 0.5) * stretch
+    segments = (detected.reshape(-1, 2, 2).astype(np.float64) + 0.5) * stretch
     lengths = np.linalg.norm(segments[:, 1] - segments[:, 0], axis=1)
     keep = (lengths >= min_length * np.hypot(width, height)) & ~_on_border(segments, width, height)
     order = np.argsort(-lengths[keep], kind="stable")[:max_count]

@@ -37,13 +37,13 @@ def sun_patches(scene: Scene, direction: Float[np.ndarray, "3"]) -> list[Float[n
     openings = (*_windows(scene), *unseen_parts(scene).openings)
     lit = [o for o in openings if float(o.normal @ direction) < 0.0]  # the sun is behind the wall
     planes = [p for p in scene.architecture.planes if p.role != "ceiling"]
-    found = []
+    patches = []
     for plane in planes:
         through = [o for o in lit if float(o.normal @ plane.normal) < 0.99]
         shade = _shade(scene, direction, plane) if through else None
         for opening in through:
-            found += list(_on_plane(opening.corners, direction, plane, shade))
-    return found
+            patches += list(_on_plane(opening.corners, direction, plane, shade))
+    return patches
 
 
 def _windows(scene: Scene) -> Iterable[LightOpening]:

@@ -46,8 +46,8 @@ def read_array_cloud(path: Path) -> Float[np.ndarray, "n 3"]:
         InputError: there is none.
     """
     name = _cloud_in(path)
-    for found, stream, size in _arrays(path):
-        if found != name:
+    for array_name, stream, size in _arrays(path):
+        if array_name != name:
             continue
         _checked(stream, min(size, MAX_ARRAY_BYTES))
         rows = np.load(stream, allow_pickle=False)

@@ -70,22 +70,22 @@ class FrameForm:
 def polycam_frames(folder: Path) -> Frames:
     """`keyframes/depth`, `confidence` (0, 127, 255), cameras by name; the folder above or the keyframes themselves."""
     keyframes = folder / "keyframes" if (folder / "keyframes").is_dir() else folder
-    files, found = ContainedFiles(folder, InputError), {}
+    files, frames = ContainedFiles(folder, InputError), {}
     for path in filter(files.holds, sorted((keyframes / "depth").glob("*.png"))):
         sure = keyframes / "confidence" / path.name
         pictures = [keyframes / name / f"{path.stem}.jpg" for name in ("corrected_images", "images")]
-        found[path.stem] = (path, sure, next(filter(files.holds, pictures), None))
-    return _with_poses(keyframes, found)
+        frames[path.stem] = (path, sure, next(filter(files.holds, pictures), None))
+    return _with_poses(keyframes, frames)
 
 
 def scanner_app_frames(folder: Path) -> Frames:
     """`depth_00000.png`, `conf_00000.png` (0 to 2), `frame_00000.json` and `.jpg`."""
-    files, found = ContainedFiles(folder, InputError), {}
+    files, frames = ContainedFiles(folder, InputError), {}
     for path in filter(files.holds, sorted(folder.glob("depth_*.png"))):
         number = path.stem.removeprefix("depth_")
         picture = folder / f"frame_{number}.jpg"
-        found[f"frame_{number}"] = (path, folder / f"conf_{number}.png", picture if files.holds(picture) else None)
-    return _with_poses(folder, found)
+        frames[f"frame_{number}"] = (path, folder / f"conf_{number}.png", picture if files.holds(picture) else None)
+    return _with_poses(folder, frames)
 
 
 def stray_frames(folder: Path) -> Frames:
@@ -172,14 +172,14 @@ def cloud_of_frames(folder: Path, form: FrameForm) -> PointCloud:
     Raises:
         InputError: no depth has a camera, or a picture makes no sense.
     """
-    found = form.read(folder)
-    if not found.frames:
+    frames = form.read(folder)
+    if not frames.frames:
         raise InputError(f"{folder}: no depth has a camera of its name; export the scan again")
-    used = found.frames[:: -(-len(found.frames) // MAX_FRAMES)]
+    used = frames.frames[:: -(-len(frames.frames) // MAX_FRAMES)]
     step = max(1, round(np.sqrt(len(used) * 256 * 192 / MAX_POINTS)))
     points = np.vstack([_points(frame, step) for frame in used])
     photos = tuple(ScanPhoto(f.picture, f.depth, f.camera, f.unit_m) for f in used if f.picture is not None)
-    return PointCloud(points, found.up, (f"{form.name}: {len(used)} frames with depth", *found.notes), photos)
+    return PointCloud(points, frames.up, (f"{form.name}: {len(used)} frames with depth", *frames.notes), photos)
 
 
 def read_depth(path: Path, unit_m: float = MILLIMETRE) -> Float[np.ndarray, "h w"]:
@@ -206,13 +206,13 @@ def _points(frame: DepthFrame, step: int) -> Float[np.ndarray, "n 3"]:
     return local @ frame.camera.T_world_camera[:3, :3].T + frame.camera.position
 
 
-def _with_poses(folder: Path, found: dict[str, tuple[Path, Path, Path | None]]) -> Frames:
+def _with_poses(folder: Path, frame_files: dict[str, tuple[Path, Path, Path | None]]) -> Frames:
     poses, files = read_poses(folder), ContainedFiles(folder, InputError)
     frames = [
         DepthFrame(depth, p.camera, sure if files.holds(sure) else None, picture)
         for p in poses.photos
-        if Path(p.name).stem in found
-        for depth, sure, picture in (found[Path(p.name).stem],)
+        if Path(p.name).stem in frame_files
+        for depth, sure, picture in (frame_files[Path(p.name).stem],)
     ]
     return Frames(tuple(frames), poses.up, poses.notes)
 

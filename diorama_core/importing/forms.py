@@ -72,8 +72,8 @@ def told(path: Path) -> Iterator[tuple[SceneForm, Path]]:
         yield form, path
         return
     if head.is_zip and what_else(head) is None:
-        with unpacked(path) as folder, told(content_of(folder)) as found:
-            yield found
+        with unpacked(path) as folder, told(content_of(folder)) as recognised:
+            yield recognised
         return
     other = what_else(head)
     if other is not None:

@@ -43,8 +43,8 @@ class _Node:
 
     @property
     def extras(self) -> Mapping[str, Any]:
-        found = self.row.get("extras")
-        return found if isinstance(found, Mapping) else {}
+        extras = self.row.get("extras")
+        return extras if isinstance(extras, Mapping) else {}
 
 
 def read_marked_gltf(path: Path) -> MarkedFile | None:
@@ -120,7 +120,7 @@ def _object_nodes(nodes: tuple[_Node, ...], document: Json) -> tuple[ObjectNode,
         if "diorama_mesh" in node.extras and node.parent is not None:
             shapes.setdefault(node.parent, node)
     numbers: dict[int, int] = {}
-    found: list[ObjectNode] = []
+    object_nodes: list[ObjectNode] = []
     for number, node in enumerate(nodes):
         entry = as_mapping(node.extras.get(MARK))
         if entry is None or "id" not in entry:
@@ -128,12 +128,12 @@ def _object_nodes(nodes: tuple[_Node, ...], document: Json) -> tuple[ObjectNode,
         above = node.parent
         while above is not None and above not in numbers:
             above = nodes[above].parent
-        numbers[number] = len(found)
+        numbers[number] = len(object_nodes)
         parent = None if above is None else numbers[above]
         shown = shapes.get(number, node)
         M = Z_UP @ shown.M_world @ _to_stored(document, shown.row, node.extras.get("bounds"))
-        found.append(ObjectNode(str(entry["id"]), str(node.row.get("name", "")), M, entry, parent))
-    return tuple(found)
+        object_nodes.append(ObjectNode(str(entry["id"]), str(node.row.get("name", "")), M, entry, parent))
+    return tuple(object_nodes)
 
 
 def _to_stored(document: Json, row: Json, bounds: Any) -> Float[np.ndarray, "4 4"]:
@@ -184,7 +184,7 @@ class _Pictures:
 
     def from_photo(self) -> dict[str, UInt8[np.ndarray, "_ _ 3"]]:
         """Pictures of the objects' materials from the photo, by the texture names that the materials carry."""
-        found = {}
+        pictures = {}
         for material in self._document.get("materials", []):
             name = FROM_PHOTO.search(str(material.get("name", "")))
             texture = material.get("pbrMetallicRoughness", {}).get("baseColorTexture")
@@ -192,8 +192,8 @@ class _Pictures:
                 None if name is None or texture is None else self._image(self._document["textures"][texture["index"]])
             )
             if name is not None and picture is not None:
-                found[name.group(1)] = picture
-        return found
+                pictures[name.group(1)] = picture
+        return pictures
 
     def _image(self, texture: Json) -> UInt8[np.ndarray, "h w 3"] | None:
         if "source" not in texture:

@@ -215,15 +215,15 @@ def _lines(points: Float[np.ndarray, "n 3"], top_m: float, axis: int) -> list[fl
     filled[column, along, level] = True
     filled[1:] |= filled[:-1]  # a wall may lie on the border of two columns
     length = (filled.mean(axis=2) >= REACH_SHARE).sum(axis=1) * SPAN_M
-    found: list[tuple[float, float]] = []
+    weighted: list[tuple[float, float]] = []
     for index in np.argsort(-length, kind="stable"):
         if length[index] < MIN_WALL_M:
             break
         near = float(low - APART_M + index * LINE_M)
         at = _at(band[:, axis], near, LINE_M) if (np.abs(band[:, axis] - near) <= LINE_M).any() else near
-        if all(abs(at - other_at) > APART_M for other_at, _ in found):
-            found.append((at, float(length[index])))
-    lines = [at for at, _ in found]
+        if all(abs(at - other_at) > APART_M for other_at, _ in weighted):
+            weighted.append((at, float(length[index])))
+    lines = [at for at, _ in weighted]
     for end in (low, high):
         if all(abs(end - at) > 2 * APART_M for at in lines) and (not lines or not min(lines) < end < max(lines)):
             lines.append(end)

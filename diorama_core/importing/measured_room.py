@@ -80,14 +80,14 @@ def opened_room(room: MeasuredRoom, library: ShapeLibrary) -> Opened:
 def likeliest_kind(kinds: Mapping[str, float], size_m: Float[np.ndarray, "3"]) -> dict[str, float]:
     """How likely each kind is for a thing of this size; sums to 1."""
     log_size = np.log(np.maximum(size_m, 1e-3))
-    found = {}
+    likelihoods = {}
     for kind, share in kinds.items():
         modes = category(kind).priors
         off = [(log_size - p.log_median_xyz) / p.log_sigma_xyz for p in modes]
         fits = [float(np.exp(-0.5 * (o**2).sum()) / p.log_sigma_xyz.prod()) for o, p in zip(off, modes, strict=True)]
-        found[kind] = share * max(max(fits), 1e-12)
-    total = sum(found.values())
-    return {kind: value / total for kind, value in found.items()}
+        likelihoods[kind] = share * max(max(fits), 1e-12)
+    total = sum(likelihoods.values())
+    return {kind: value / total for kind, value in likelihoods.items()}
 
 
 def possible_kinds(kinds: Mapping[str, float], size_m: Float[np.ndarray, "3"]) -> dict[str, float]:

@@ -48,17 +48,17 @@ class Opened:
 
 def open_marked(file: MarkedFile) -> Opened:
     """The scene that Diorama wrote, as the file has it now; see `restore`."""
-    found = restored(file)
+    restored_scene = restored(file)
     planes, textures = [], dict(file.material_pictures)
-    for plane in found.scene.architecture.planes:
+    for plane in restored_scene.scene.architecture.planes:
         picture = file.pictures.get(plane.id)
         if picture is not None:
             plane = replace(plane, texture=plane.texture or f"plane-{plane.id}")
             textures[str(plane.texture)] = picture
         planes.append(plane)
-    scene = replace(found.scene, architecture=Architecture(tuple(planes)))
+    scene = replace(restored_scene.scene, architecture=Architecture(tuple(planes)))
     photo, remarks = _photo(file, scene)
-    return Opened(scene, textures, (*found.changes, *remarks), file.provenance, photo)
+    return Opened(scene, textures, (*restored_scene.changes, *remarks), file.provenance, photo)
 
 
 def _photo(file: MarkedFile, scene: Scene) -> tuple[Photo | None, tuple[str, ...]]:

@@ -200,7 +200,7 @@ def _owner(index: int, bounds: Sequence[Float[np.ndarray, "2 3"]]) -> int | None
     if (high - low)[axis] > FLAT_M:
         return None
     across = [k for k in range(3) if k != axis]
-    found = []
+    owners = []
     for other, (below, above) in enumerate(bounds):
         if other == index or (above - below)[axis] <= FLAT_M:
             continue
@@ -209,8 +209,8 @@ def _owner(index: int, bounds: Sequence[Float[np.ndarray, "2 3"]]) -> int | None
         inside = (low[across] > below[across] - FLUSH_M).all() and (high[across] < above[across] + FLUSH_M).all()
         share = float(np.prod((high - low)[across]) / max(np.prod((above - below)[across]), 1e-12))
         if flush and inside and share > MIN_SHARE:
-            found.append((share, other))
-    return max(found)[1] if found else None
+            owners.append((share, other))
+    return max(owners)[1] if owners else None
 
 
 def _with_pieces(part: Part, pieces: Sequence[Part]) -> Part:

@@ -60,18 +60,18 @@ def with_photo_of_scan(
     progress = progress or Progress()
     name = inputs.photo.name
     scene = moved_to_room(opened.scene, _to_axes(opened.scene))
-    found = evaluate(
+    artefacts = evaluate(
         choose(inputs), {"given": inputs}, ("inputs", "camera", "objects"), Runner(None), progress.part(0.0, 0.3)
     )
-    objects: Sequence[DetectedObject] = found["objects"]
-    camera = _camera(scene, found, inputs, progress.part(0.3, 0.4))
+    objects: Sequence[DetectedObject] = artefacts["objects"]
+    camera = _camera(scene, artefacts, inputs, progress.part(0.3, 0.4))
     if camera is None:
         raise InputError(
             f"{name} does not join the scan: the furniture in it is not where the scan has any; mark at least three "
             "objects that were scanned, such as chairs, tables, cabinets, doors and windows"
         )
     met = {box: scene.objects[thing] for thing, box in camera.met}
-    marked = replace(found["inputs"], boxes=tuple(_told(o, met.get(k)) for k, o in enumerate(objects)))
+    marked = replace(artefacts["inputs"], boxes=tuple(_told(o, met.get(k)) for k, o in enumerate(objects)))
     seen = tuple((item.id, objects[box].box) for box, item in met.items())
     added = with_photo(
         scene,
@@ -106,10 +106,10 @@ def _as_measured(added: AddedPhoto, scan: Scene) -> Scene:
     return replace(added.scene, camera=added.photo.camera, objects=objects)
 
 
-def _camera(scene: Scene, found: dict, inputs: Inputs, progress: Progress) -> FoundCamera | None:
-    estimate = found["camera"]
+def _camera(scene: Scene, artefacts: dict, inputs: Inputs, progress: Progress) -> FoundCamera | None:
+    estimate = artefacts["camera"]
     k = estimate.best.intrinsics
-    boxes = gather(found["objects"], k.width, k.height)
+    boxes = gather(artefacts["objects"], k.width, k.height)
     given = inputs.intrinsics is not None or inputs.photo.exif_focal_px is not None
     return camera_in_room(
         [_thing(o) for o in scene.objects], _floor(scene), estimate, boxes, progress, focal_known=given

@@ -120,7 +120,7 @@ def _faces(mesh: trimesh.Trimesh) -> list[Face]:
     """Level and upright planes of a mesh that are large enough, as rectangles."""
     normals, centres, areas = mesh.face_normals, mesh.triangles_center, mesh.area_faces
     left = np.ones(len(normals), bool)
-    found: list[Face] = []
+    faces: list[Face] = []
     for index in np.argsort(-areas, kind="stable"):
         normal = normals[index]
         level = bool(abs(normal[2]) > DIRECTION_COS)
@@ -131,10 +131,10 @@ def _faces(mesh: trimesh.Trimesh) -> list[Face]:
         same &= np.abs((centres - centres[index]) @ direction) < SAME_M
         left &= ~same
         if areas[same].sum() > FACE_M2:
-            found.append(_face(mesh, same, direction, level, float(areas[same].sum())))
+            faces.append(_face(mesh, same, direction, level, float(areas[same].sum())))
         if areas[left].sum() < FACE_M2:
             break
-    return [f for f in found if f.role == "floor" or np.ptp(f.corners[:, 2]) > MIN_WALL_HEIGHT_M]
+    return [f for f in faces if f.role == "floor" or np.ptp(f.corners[:, 2]) > MIN_WALL_HEIGHT_M]
 
 
 def _face(mesh: trimesh.Trimesh, chosen: np.ndarray, direction: np.ndarray, level: bool, area: float) -> Face:

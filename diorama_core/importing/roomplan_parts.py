@@ -64,8 +64,10 @@ def spoken(word: str) -> str:
 
 def kinds_of(word: str, attributes: tuple[str, ...] = ()) -> Mapping[str, float]:
     """What a thing of RoomPlan's category, with its attributes, may be, and how often it is."""
-    found = resolve(spoken(word))
-    kinds = KINDS.get(word) or (meanings(spoken(word), found.category.name) if found.exact else {UNKNOWN.name: 1.0})
+    resolution = resolve(spoken(word))
+    kinds = KINDS.get(word) or (
+        meanings(spoken(word), resolution.category.name) if resolution.exact else {UNKNOWN.name: 1.0}
+    )
     named = [kind for a in attributes for end, kind in ATTRIBUTES.items() if kind and a.lower().endswith(end.lower())]
     return {named[0]: 1.0} if named else kinds
 
@@ -100,7 +102,7 @@ def moved(M: Float[np.ndarray, "4 4"], points: Float[np.ndarray, "*n 3"]) -> Flo
 
 def joined_floors(floors: Sequence[Polygon], heights_m: Sequence[float]) -> tuple[MeasuredFloor, ...]:
     """Floors that touch at about one height are one; others are rooms and storeys of their own, the lowest first."""
-    found: list[MeasuredFloor] = []
+    joined: list[MeasuredFloor] = []
     left = sorted(zip(heights_m, floors, strict=True), key=lambda row: row[0])
     if not np.isfinite(heights_m).all():
         raise InputError("a floor's height is no number; export the scan again")
@@ -112,8 +114,8 @@ def joined_floors(floors: Sequence[Polygon], heights_m: Sequence[float]) -> tupl
         height = float(np.median([h for h, _ in level]))
         for piece in sorted(pieces, key=lambda p: -p.area):
             if isinstance(piece, Polygon) and not piece.is_empty:
-                found.append(MeasuredFloor(np.asarray(piece.exterior.coords)[:-1, :2], height))
-    return tuple(found)
+                joined.append(MeasuredFloor(np.asarray(piece.exterior.coords)[:-1, :2], height))
+    return tuple(joined)
 
 
 def storey_notes(floors: Sequence[MeasuredFloor]) -> tuple[str, ...]:

@@ -79,7 +79,7 @@ def boxes_in(points: Float[np.ndarray, "n 3"], room: ScannedRoom) -> tuple[tuple
     labels, count = ndimage.label(grid, np.ones((3, 3, 3)))
     which = labels[tuple(cells.T)]
     sizes = ndimage.sum_labels(grid, labels, np.arange(1, count + 1))
-    found = []
+    boxes = []
     for number in np.argsort(-sizes, kind="stable"):
         own = left[which == number + 1]
         if sizes[number] < MIN_CELLS or _middle_extent(own) < MIN_SIZE_M:
@@ -88,9 +88,9 @@ def boxes_in(points: Float[np.ndarray, "n 3"], room: ScannedRoom) -> tuple[tuple
         around = _box(thing, room)
         if _is_wall(around, room):
             continue
-        found.append(around)
-        found += [replace(_box(top, room), kinds=_kinds("surface")) for top in on_it if _is_thing(top)]
-    return tuple(found[:MAX_BOXES]), max(0, len(found) - MAX_BOXES)
+        boxes.append(around)
+        boxes += [replace(_box(top, room), kinds=_kinds("surface")) for top in on_it if _is_thing(top)]
+    return tuple(boxes[:MAX_BOXES]), max(0, len(boxes) - MAX_BOXES)
 
 
 def rugs_in(points: Float[np.ndarray, "n 3"], room: ScannedRoom) -> tuple[MeasuredBox, ...]:

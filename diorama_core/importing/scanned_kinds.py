@@ -93,7 +93,7 @@ def _with_shapes(box: MeasuredBox, kinds: Mapping[str, float], library: ShapeLib
     surface = ScannedSurface.of(box)
     order = sorted(kinds, key=lambda kind: (-kinds[kind], kind))
     compared = [kind for kind in order[:MAX_KINDS] if kinds[kind] >= LIKELY * kinds[order[0]]]
-    misfit = {kind: found for kind in compared if (found := surface.misfit_of_kind(kind, library)) is not None}
+    misfit = {kind: misfit_m for kind in compared if (misfit_m := surface.misfit_of_kind(kind, library)) is not None}
     if not misfit:
         return dict(kinds)
     worst = max(misfit.values())

@@ -92,12 +92,12 @@ def _of_wall(points: Float[np.ndarray, "n 3"], wall: MeasuredWall, turn: float) 
     grid = _grid(local, length, height)
     if grid is None:
         return []
-    found: list[_Rectangle] = []
+    rectangles: list[_Rectangle] = []
     for rectangle in (*_doors(grid), *_holes(grid)):
-        if any(_overlap(rectangle, other) for other in found):
+        if any(_overlap(rectangle, other) for other in rectangles):
             continue
-        found.append(rectangle)
-    return [_opening(r, grid, start, along, wall.id) for r in found]
+        rectangles.append(rectangle)
+    return [_opening(r, grid, start, along, wall.id) for r in rectangles]
 
 
 def _grid(local: Float[np.ndarray, "n 3"], length_m: float, height_m: float) -> _Grid | None:
@@ -131,34 +131,34 @@ def _holes(grid: _Grid) -> list[_Rectangle]:
     bars = 2 * round(BARS_M / grid.cell_m / 2) + 1
     joined = cv2.morphologyEx(empty, cv2.MORPH_CLOSE, np.ones((bars, bars), np.uint8))
     joined = cv2.morphologyEx(joined, cv2.MORPH_OPEN, np.ones((SQUARE_CELLS, SQUARE_CELLS), np.uint8))
-    found = []
+    holes = []
     for rectangle in _rectangles(joined, grid):
         if _rim(rectangle, grid) >= MIN_RIM and not _is_low(rectangle, grid):
-            found.append(_with_frame(rectangle, grid))
-    return found
+            holes.append(_with_frame(rectangle, grid))
+    return holes
 
 
 def _doors(grid: _Grid) -> list[_Rectangle]:
     """Leaves as high as doors, down to the floor, that stand out of the wall or are set into it."""
-    found = []
+    doors = []
     for side in (1.0, -1.0):
         leaf = grid.points & ~grid.hidden & (side * grid.relief_m > RELIEF_M)
         off = cv2.morphologyEx(leaf.astype(np.uint8), cv2.MORPH_CLOSE, np.ones((SQUARE_CELLS, SQUARE_CELLS), np.uint8))
         off = ndimage.binary_fill_holes(off).astype(np.uint8)  # panes of a glazed door
         off = cv2.morphologyEx(off, cv2.MORPH_OPEN, np.ones((SQUARE_CELLS, SQUARE_CELLS), np.uint8))
-        found += [r for r in _rectangles(off, grid) if _is_door(r, grid)]
-    return found
+        doors += [r for r in _rectangles(off, grid) if _is_door(r, grid)]
+    return doors
 
 
 def _rectangles(cells: UInt8[np.ndarray, "h w"], grid: _Grid) -> list[_Rectangle]:
     """Connected cells that fill the rectangle around them, the largest first."""
     count, _, stats, _ = cv2.connectedComponentsWithStats(cells, connectivity=4)
     least = MIN_SIDE_M / grid.cell_m
-    found = []
+    rectangles = []
     for left, low, width, height, area in sorted((tuple(s) for s in stats[1:count]), key=lambda s: (-s[4], s[:4])):
         if min(width, height) >= least and area >= MIN_FILL * width * height:
-            found.append(_Rectangle(int(left), int(low), int(left + width), int(low + height)))
-    return found
+            rectangles.append(_Rectangle(int(left), int(low), int(left + width), int(low + height)))
+    return rectangles
 
 
 def _is_door(r: _Rectangle, grid: _Grid) -> bool:

@@ -55,8 +55,8 @@ def scanned_rugs(points: Float[np.ndarray, "n 3"], settings: RugSettings = SETTI
         return []
     noise_m = MAX_DEVIATION * float(np.median(-below))  # half of the floor's noise is below it
     raised = low[:, 2] > max(settings.min_height_m, settings.sigmas * noise_m)
-    found = [p for p in _pieces(low, raised, settings) if _is_rug(p, low[~raised], noise_m, settings)]
-    return sorted(found, key=len, reverse=True)
+    rugs = [p for p in _pieces(low, raised, settings) if _is_rug(p, low[~raised], noise_m, settings)]
+    return sorted(rugs, key=len, reverse=True)
 
 
 def _free(points: Float[np.ndarray, "n 3"], settings: RugSettings) -> Float[np.ndarray, "m 3"]:

@@ -59,12 +59,12 @@ class ScannedSurface:
         A front that was guessed stays where another one is hardly better.
         """
         shapes = sorted(library.in_category(kind), key=lambda s: (_unlike(s, self.size_m), s.id))[:SHAPES_COMPARED]
-        found = {s.id: np.asarray(self.misfits(s, library)) + TURN_COST_M * (np.arange(4) > 0) for s in shapes}
-        if not found:
+        costs_m = {s.id: np.asarray(self.misfits(s, library)) + TURN_COST_M * (np.arange(4) > 0) for s in shapes}
+        if not costs_m:
             return {}, 0
-        best = min(found, key=lambda name: (float(found[name].min()), name))
-        fits = {name: float(np.exp(-misfits.min() / FIT_SIGMA_M)) for name, misfits in found.items()}
-        return fits, int(np.argmin(found[best])) % 4
+        best = min(costs_m, key=lambda name: (float(costs_m[name].min()), name))
+        fits = {name: float(np.exp(-misfits.min() / FIT_SIGMA_M)) for name, misfits in costs_m.items()}
+        return fits, int(np.argmin(costs_m[best])) % 4
 
     def misfits(self, shape: Shape, library: ShapeLibrary) -> Sequence[float]:
         """For each quarter turn of a shape that is stretched into the box, the mean distance of the two surfaces.

@@ -95,12 +95,12 @@ def inner_face(wall: MeasuredWall, storeys: Sequence[Storey]) -> Plane:
 def floor_below(centre: Float[np.ndarray, "3"], height_m: float, storeys: Sequence[Storey]) -> int | None:
     """Number of the floor that a thing is over: the highest one at or below its foot, under it before beside it."""
     foot = float(centre[2]) - height_m / 2
-    found = [
+    candidates = [
         (s.outline is not None and s.outline.buffer(BORDER_M).contains(Point(centre[:2])), s.height_m, -k)
         for k, s in enumerate(storeys)
         if s.height_m < foot + SINKS_M
     ]
-    return -max(found)[2] if found else None
+    return -max(candidates)[2] if candidates else None
 
 
 def _numbered(word: str, index: int) -> str:

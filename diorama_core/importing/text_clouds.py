@@ -52,7 +52,7 @@ def read_text_cloud(path: Path) -> Float[np.ndarray, "n 3"]:
 
 def _columns(heading: str, delimiter: str | None) -> tuple[int, ...]:
     words = [w.strip(" \t\r\n\"'/#").lower() for w in (heading.split(delimiter) if delimiter else heading.split())]
-    names = [found[1] if (found := _AXIS.fullmatch(word)) else "" for word in words]
+    names = [match[1] if (match := _AXIS.fullmatch(word)) else "" for word in words]
     return tuple(names.index(axis) for axis in "xyz") if {"x", "y", "z"} <= set(names) else (0, 1, 2)
 
 

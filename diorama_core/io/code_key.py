@@ -57,13 +57,13 @@ class Sources:
 
     def closure(self, *modules: str) -> frozenset[str]:
         """The modules and all modules that they import, directly or not; those elsewhere are left out."""
-        found, waiting = set[str](), list(modules)
+        modules_met, waiting = set[str](), list(modules)
         while waiting:
             name = waiting.pop()
-            if name not in found and not name.startswith(SHAPES) and self._file(name) is not None:
-                found.add(name)
+            if name not in modules_met and not name.startswith(SHAPES) and self._file(name) is not None:
+                modules_met.add(name)
                 waiting += self.imports(name)
-        return frozenset(found)
+        return frozenset(modules_met)
 
     def digest(self, module: str) -> str:
         """A hash of a module's own source."""

@@ -66,8 +66,8 @@ def head_of(path: Path) -> FileHead:
             return FileHead(path, names=_names_in(path))
         with path.open("rb") as stream:
             head = stream.read(HEAD_BYTES)
-        found = FileHead(path, head, size=path.stat().st_size)
-        return FileHead(path, head, _members(path), found.size) if found.is_zip else found
+        file_head = FileHead(path, head, size=path.stat().st_size)
+        return FileHead(path, head, _members(path), file_head.size) if file_head.is_zip else file_head
     except OSError as error:
         if not path.exists():
             raise InputError(f"{path} does not exist; check the path") from error
@@ -90,7 +90,7 @@ def _names_in(folder: Path) -> tuple[str, ...]:
 def _members(path: Path) -> tuple[str, ...]:
     try:
         with zipfile.ZipFile(path) as archive:
-            found = [i.filename for i in archive.infolist()[:MAX_NAMES] if not i.is_dir()]
+            names = [i.filename for i in archive.infolist()[:MAX_NAMES] if not i.is_dir()]
     except (zipfile.BadZipFile, OSError, NotImplementedError, ValueError):
         return ()
-    return tuple(n for n in found if not n.startswith("__MACOSX/") and not n.rsplit("/", 1)[-1].startswith("."))
+    return tuple(n for n in names if not n.startswith("__MACOSX/") and not n.rsplit("/", 1)[-1].startswith("."))

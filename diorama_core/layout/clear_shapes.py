@@ -68,8 +68,8 @@ def _deepest_first(scene: Scene, library: ShapeLibrary) -> list[tuple[str, str]]
 def _overlaps(scene: Scene, library: ShapeLibrary) -> dict[tuple[str, str], float]:
     """Depth in metres by which parts of two objects overlap, by their ids, where that is more than nothing."""
     problem = build_problem(scene, library)
-    found = part_overlaps(problem, problem.R, problem.p, problem.scale)
-    return {(problem.ids[a], problem.ids[b]): depth for (a, b), depth in found.items() if depth > CLEAR_M}
+    overlaps = part_overlaps(problem, problem.R, problem.p, problem.scale)
+    return {(problem.ids[a], problem.ids[b]): depth for (a, b), depth in overlaps.items() if depth > CLEAR_M}
 
 
 def _better(scene: Scene, library: ShapeLibrary, noise: ObservationNoise, name: str) -> tuple[float, Scene]:

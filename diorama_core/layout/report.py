@@ -153,9 +153,9 @@ def support_errors(
     top = (p[supported] * here.normal).sum(axis=1) - here.level + half
     # Squares, so that what hangs over on all sides is best in the middle.
     outside = np.linalg.norm(np.maximum(np.column_stack([past, top - here.clearance]), 0.0), axis=1)
-    found = np.zeros((problem.count, 3))
-    found[supported] = np.column_stack([tilted, off, outside])
-    return found
+    errors = np.zeros((problem.count, 3))
+    errors[supported] = np.column_stack([tilted, off, outside])
+    return errors
 
 
 def _box_overlap(problem: Problem, R: np.ndarray, p: np.ndarray, scale: np.ndarray) -> float:

@@ -101,11 +101,11 @@ def in_words(report: LayoutReport, worse: Problems, labels: Mapping[str, str]) -
     return tuple(lines)
 
 
-def disagreement_in_words(found: PhotoDisagreement) -> str:
+def disagreement_in_words(disagreement: PhotoDisagreement) -> str:
     """One sentence for an object that agrees less with the photo than before."""
     return (
-        f"agrees less with the photo: {found.label}, moved {100 * found.moved_m:.0f} cm; the outline still covers "
-        f"{100 * found.outline_shared:.0f} % of where it was seen"
+        f"agrees less with the photo: {disagreement.label}, moved {100 * disagreement.moved_m:.0f} cm; "
+        f"the outline still covers {100 * disagreement.outline_shared:.0f} % of where it was seen"
     )
 
 

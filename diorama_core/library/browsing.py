@@ -55,7 +55,7 @@ def browsed(
     """
     marked: Collection[str] = frozenset(favourites)
     low, high = SIZES_M[filters.size] if filters.size is not None else (0.0, float("inf"))
-    found = [
+    matches = [
         s
         for s in shapes
         if (filters.shelf != "favourites" or s.id in marked)
@@ -69,8 +69,8 @@ def browsed(
     ]
     if filters.shelf == "recent":
         rank = {shape_id: number for number, shape_id in enumerate(recent)}
-        found.sort(key=lambda s: rank[s.id])
-    return tuple(found)
+        matches.sort(key=lambda s: rank[s.id])
+    return tuple(matches)
 
 
 def one_of_each(shapes: Sequence[Shape]) -> tuple[Shape, ...]:

@@ -41,9 +41,11 @@ ROOMS: Mapping[str, frozenset[str]] = {
 @cache
 def usual_carriers(kind: str) -> tuple[str, ...]:
     """What things of a kind are put on, the likeliest first: where they lie more often than they are met at all."""
-    found = {carrier: often_carried(kind, carrier) for carrier in CARRIES_AS if kind != UNKNOWN.name}
-    likely = sorted(found, key=lambda carrier: (-found[carrier], CARRIES_AS[carrier] != carrier, category(carrier).kin))
-    return tuple(carrier for carrier in likely if found[carrier] > 1.0)
+    weights = {carrier: often_carried(kind, carrier) for carrier in CARRIES_AS if kind != UNKNOWN.name}
+    likely = sorted(
+        weights, key=lambda carrier: (-weights[carrier], CARRIES_AS[carrier] != carrier, category(carrier).kin)
+    )
+    return tuple(carrier for carrier in likely if weights[carrier] > 1.0)
 
 
 def carrier_in(kind: str, room: str) -> str | None:

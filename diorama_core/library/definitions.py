@@ -51,12 +51,12 @@ def kinds_described(text: str) -> Mapping[str, float]:
     most = log(len(CATEGORIES))
     weight = {stem: rare.get(stem, most) for stem in asked}
     whole = sum(weight.values())
-    found = {}
+    scores = {}
     for kind, defined in _definitions().items():
         share = sum(weight[stem] * _met(stem, defined) for stem in asked)
         if share > 0:
-            found[kind] = share / whole
-    return found
+            scores[kind] = share / whole
+    return scores
 
 
 def _met(stem: str, defined: Mapping[str, float]) -> float:
@@ -86,13 +86,13 @@ def _lines() -> Mapping[str, str]:
 @cache
 def _definitions() -> Mapping[str, Mapping[str, float]]:
     """For every kind the stems of its definition and names, with what each is worth."""
-    found: dict[str, Mapping[str, float]] = {}
+    definitions: dict[str, Mapping[str, float]] = {}
     for category in CATEGORIES:
         if category is not UNKNOWN:
             names = {_stem(w): _NAME_WORTH for text in (category.name, *category.synonyms) for w in tokens(text)}
             words = {_stem(w): 1.0 for w in tokens(_lines()[category.name]) if w not in _SILENT}
-            found[category.name] = names | words
-    return found
+            definitions[category.name] = names | words
+    return definitions
 
 
 @cache

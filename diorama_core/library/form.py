@@ -75,24 +75,24 @@ def form_of(
         size_m: at which it stands.
         slots: its materials (`library.slots.slots_of`).
     """
-    found: dict[str, str | int] = {}
+    form: dict[str, str | int] = {}
     points = _surface_points(mesh) * (np.asarray(size_m) / np.maximum(mesh.extents, 1e-6))
     if broad(category) in _TABLES or category in _TABLES:
-        found["top"] = _top(points, size_m)
+        form["top"] = _top(points, size_m)
     if category in _TABLES | _SEATS:
-        found["base"] = _base(points, size_m, seat=category in _SEATS)
+        form["base"] = _base(points, size_m, seat=category in _SEATS)
     if category in _SEATS:
-        found["arms"] = _arms(points, size_m)
+        form["arms"] = _arms(points, size_m)
     if category in _BACKED and (back := _filled_back(mesh)) is not None:
-        found["open back"] = "yes" if back < _OPEN_BACK else "no"
+        form["open back"] = "yes" if back < _OPEN_BACK else "no"
     if category in _HARD_OR_SOFT and (soft := _soft_share(slots)) is not None:
-        found["upholstered"] = "yes" if soft >= _SOFT else "no"
+        form["upholstered"] = "yes" if soft >= _SOFT else "no"
     moving = articulation(shape_id)
     if category not in _SEATS:
         names = [] if moving is None else [joint.name for joint in moving.joints]
-        found["doors"] = sum(name.startswith("door") for name in names)
-        found["drawers"] = sum(name.startswith("drawer") for name in names)
-    return found
+        form["doors"] = sum(name.startswith("door") for name in names)
+        form["drawers"] = sum(name.startswith("drawer") for name in names)
+    return form
 
 
 def form_at(library: ShapeLibrary, shape: Shape, size_m: Float[np.ndarray, "3"]) -> dict[str, str | int]:
@@ -103,14 +103,14 @@ def form_at(library: ShapeLibrary, shape: Shape, size_m: Float[np.ndarray, "3"])
 
 def value_indices(form: Mapping[str, str | int]) -> Int8[np.ndarray, "7"]:
     """Place of each attribute's value in `VALUES`, in the order of `MEASURED`; -1 where it has none."""
-    found = np.full(len(MEASURED), -1, np.int8)
+    indices = np.full(len(MEASURED), -1, np.int8)
     for k, name in enumerate(MEASURED):
         value, values = form.get(name), VALUES[name]
         if isinstance(value, int):
             value = min(value, len(values) - 1)
         if value in values:
-            found[k] = values.index(value)
-    return found
+            indices[k] = values.index(value)
+    return indices
 
 
 def agrees(stated: str | int, design: str | int) -> bool:

@@ -30,10 +30,10 @@ def understand_label(label: str) -> Resolution:
     Args:
         label: as a person or a detector called one thing: a noun, a phrase, a data set's label.
     """
-    found = _found(label)
-    if found is None:
+    resolution = _found(label)
+    if resolution is None:
         return resolve(label)
-    word, exact = found
+    word, exact = resolution
     kind = _category_of(word)
     if kind is UNKNOWN:
         unsaid = resolve(label)
@@ -45,9 +45,9 @@ def understand_label(label: str) -> Resolution:
 @cache
 def plain_word(label: str) -> str | None:
     """The name, synonym or loose word (a key of `MEANINGS`) that a label comes down to; None where it names nothing."""
-    found = _found(label)
-    if found is not None:
-        return found[0]
+    resolution = _found(label)
+    if resolution is not None:
+        return resolution[0]
     slip = resolve(label).category
     return None if slip is UNKNOWN else slip.name
 

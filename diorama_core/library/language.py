@@ -145,8 +145,8 @@ def narrower(word: str) -> tuple[str, ...]:
 
 def size_request(word: str) -> SizeRequest | None:
     """What a word asks of the size, if it does."""
-    found = _SIZES.get(word)
-    return None if found is None else SizeRequest(*found)
+    request = _SIZES.get(word)
+    return None if request is None else SizeRequest(*request)
 
 
 def size_in(text: str) -> tuple[str, tuple[float, float, float] | None]:
@@ -156,23 +156,23 @@ def size_in(text: str) -> tuple[str, tuple[float, float, float] | None]:
         The text without it, and the extents in metres in object order: x (depth), y (width), z (height). Without a unit
         numbers above 10 are centimetres. None when no size is given.
     """
-    found = _DIMENSIONS.search(text.lower())
-    if found is None:
+    match = _DIMENSIONS.search(text.lower())
+    if match is None:
         return text, None
-    width, depth, height = (float(found.group(i)) for i in (1, 2, 3))
-    unit = _METRES[found.group(4) or ""] or (0.01 if max(width, depth, height) > 10 else 1.0)
-    rest = f"{text[: found.start()]} {text[found.end() :]}"
+    width, depth, height = (float(match.group(i)) for i in (1, 2, 3))
+    unit = _METRES[match.group(4) or ""] or (0.01 if max(width, depth, height) > 10 else 1.0)
+    rest = f"{text[: match.start()]} {text[match.end() :]}"
     return rest, (depth * unit, width * unit, height * unit)
 
 
 def size_limits(text: str) -> tuple[str, tuple[SizeLimit, ...]]:
     """Limits such as `under 50 cm` or `at least 2 m high` in a text: the text without them, and the limits."""
-    found = []
+    limits = []
     for match in _LIMIT.finditer(text.lower()):
         metres = float(match.group(2)) * _METRES[match.group("unit")]
         of = _MEASURES.get(match.group("of") or "", "width")
-        found.append(SizeLimit(of, metres, match.group("word") not in _LOWER_LIMITS))
-    return (_LIMIT.sub(" ", text.lower()) if found else text), tuple(found)
+        limits.append(SizeLimit(of, metres, match.group("word") not in _LOWER_LIMITS))
+    return (_LIMIT.sub(" ", text.lower()) if limits else text), tuple(limits)
 
 
 def _singular(word: str) -> str:

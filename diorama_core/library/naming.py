@@ -73,15 +73,15 @@ def understand(text: str, size_m: Size | None = None) -> TextQuery:
     exact = True
     for phrase in _phrases(rest):
         words = tokens(phrase)
-        found = _named_in(words)
-        if found is None:
+        near_kind = _named_in(words)
+        if near_kind is None:
             near = _nearest(words, size)
             exact = exact and near is None
             notes += [near.note] if near else []
-            found = None if near is None or not near.category else (near.category, near.words)
-        if found is not None:
-            named[found[0]] = None
-            naming.append(found[1][-1])
+            near_kind = None if near is None or not near.category else (near.category, near.words)
+        if near_kind is not None:
+            named[near_kind[0]] = None
+            naming.append(near_kind[1][-1])
     silent = IGNORED | JOINTS | _CONJUNCTIONS
     described = dict.fromkeys(w for w in tokens(rest) if w not in silent and w not in naming)
     return TextQuery(tuple(named), exact, tuple(described), tuple(dict.fromkeys(naming)), size, "; ".join(notes))
@@ -159,8 +159,8 @@ def _nearest(words: Sequence[str], size: Size | None) -> _Near | None:
 def _closest(word: str, cutoff: float) -> tuple[str, ...] | None:
     """The name of a category or a part of the near names that is spelt most like a word."""
     joined = {"".join(name): name for name in _names()}
-    found = difflib.get_close_matches(word, list(joined), n=1, cutoff=cutoff)
-    return joined[found[0]] if found else None
+    close = difflib.get_close_matches(word, list(joined), n=1, cutoff=cutoff)
+    return joined[close[0]] if close else None
 
 
 def _known_ending(word: str) -> tuple[str, ...] | None:

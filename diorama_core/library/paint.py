@@ -51,8 +51,10 @@ def main_rgb(parts: trimesh.Scene) -> tuple[int, int, int]:
     # Its module loads Open3D, which a page without painted shapes does without.
     from diorama_core.geometry.shape_appearance import material_rgb
 
-    found = next((rgb for m in meshes if (rgb := material_rgb(m.visual)) is not None), None)
-    return (200, 200, 200) if found is None else (int(found[0]), int(found[1]), int(found[2]))
+    rgb_of_first = next((rgb for m in meshes if (rgb := material_rgb(m.visual)) is not None), None)
+    return (
+        (200, 200, 200) if rgb_of_first is None else (int(rgb_of_first[0]), int(rgb_of_first[1]), int(rgb_of_first[2]))
+    )
 
 
 _PLAIN = "vertex or face colours"

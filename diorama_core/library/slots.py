@@ -90,15 +90,15 @@ def slots_of(parts: trimesh.Scene) -> tuple[Slot, ...]:
         if isinstance(mesh, trimesh.Trimesh) and len(mesh.faces):
             grouped.setdefault(_material_key(mesh), []).append(str(name))
     areas = {key: sum(float(parts.geometry[n].area) for n in names) for key, names in grouped.items()}
-    found: list[Slot] = []
+    slots: list[Slot] = []
     ranks: dict[str, int] = {}
     for key in sorted(grouped, key=lambda k: (-areas[k], k)):
         mesh = parts.geometry[grouped[key][0]]
         role = role_of(mesh)
         ranks[role] = ranks.get(role, 0) + 1
         name = role if ranks[role] == 1 else f"{role} {ranks[role]}"
-        found.append(Slot(name, role, tuple(grouped[key]), areas[key], not found, mesh.metadata.get(TILE_M)))
-    return tuple(found)
+        slots.append(Slot(name, role, tuple(grouped[key]), areas[key], not slots, mesh.metadata.get(TILE_M)))
+    return tuple(slots)
 
 
 def role_of(mesh: trimesh.Trimesh) -> Role:
@@ -121,15 +121,15 @@ def matched(slots: Sequence[Slot], materials: Sequence[PhotoMaterial]) -> dict[s
     """The material for every slot that has one: of its own name, main for main, else the first of its role."""
     by_name = {m.slot: m for m in materials}
     main = next((m for m in materials if m.main and _role(m.slot) in SURFACE_ROLES), None)
-    found: dict[str, PhotoMaterial] = {}
+    matches: dict[str, PhotoMaterial] = {}
     for slot in slots:
         material = by_name.get(slot.name)
         if slot.main and slot.role in SURFACE_ROLES and main is not None and (material is None or not material.main):
             material = main
         material = material or by_name.get(slot.role)
         if material is not None:
-            found[slot.name] = replace(material, slot=slot.name)
-    return found
+            matches[slot.name] = replace(material, slot=slot.name)
+    return matches
 
 
 def rectangle_of(parts: trimesh.Scene, slot: Slot, layout: TextureLayout) -> SlotRectangle:

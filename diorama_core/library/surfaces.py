@@ -78,7 +78,7 @@ def support_surfaces(mesh: trimesh.Trimesh, lattice: int = 72) -> tuple[SupportS
     foot = float(low[2]) + (0.04 if extent[2] > 0.3 else 0.0)
     half_footprint = 0.5 * extent[0] * extent[1]
     low_area = float((spots.z < foot).sum()) * cell_m**2
-    found = []
+    surfaces = []
     for region in _regions(spots, caster):
         if np.median(spots.z[region]) < foot and low_area < half_footprint:
             continue  # a base plate, not a surface
@@ -88,9 +88,9 @@ def support_surfaces(mesh: trimesh.Trimesh, lattice: int = 72) -> tuple[SupportS
         outline = _outline(spots, region)
         if len(region) * cell_m**2 < MINIMUM_FILL * _area(outline) or _breadth(outline) < narrowest:
             continue
-        found.append(_surface(spots, region, outline))
-    found = _joined(found)
-    return tuple(sorted(found, key=lambda s: (-round(s.height_m, 3), *np.round(s.polygon.mean(axis=0)[:2], 3))))
+        surfaces.append(_surface(spots, region, outline))
+    surfaces = _joined(surfaces)
+    return tuple(sorted(surfaces, key=lambda s: (-round(s.height_m, 3), *np.round(s.polygon.mean(axis=0)[:2], 3))))
 
 
 def _caster(mesh: trimesh.Trimesh) -> RaycastingScene:
@@ -160,8 +160,8 @@ def _regions(spots: _Spots, caster: RaycastingScene) -> list[Int[np.ndarray, "_"
     for (di, dj), dz in ((step, dz) for step in steps for dz in (-1, 0, 1)):
         wanted = in_order + _cell_key(di, dj, dz)  # in order, too, which takes a fraction of the time
         at = np.minimum(np.searchsorted(in_order, wanted), n - 1)
-        found = np.flatnonzero(in_order[at] == wanted)
-        pairs.append((order[found], order[at[found]]))
+        rows = np.flatnonzero(in_order[at] == wanted)
+        pairs.append((order[rows], order[at[rows]]))
     a, b = (np.concatenate(side) for side in zip(*pairs, strict=True))
     passable = ~_walled_off(spots, caster, a, b)
     a, b = a[passable], b[passable]

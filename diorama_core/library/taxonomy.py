@@ -68,10 +68,10 @@ def _words() -> dict[str, Category]:
 
 def category(name: str) -> Category:
     """The category with this canonical name; raises `KeyError` when there is none."""
-    found = _words().get(_key(name))
-    if found is None or found.name != name:
+    known = _words().get(_key(name))
+    if known is None or known.name != name:
         raise KeyError(name)
-    return found
+    return known
 
 
 @cache
@@ -156,6 +156,6 @@ def resolve(word: str) -> Resolution:
                 return Resolution(table[form], exact=True)
     near = _misspelt(key, tuple(table))
     if near is not None:
-        found = table[near]
-        return Resolution(found, exact=False, note=f"'{word}' is not a known class; read as '{found.name}'")
+        entry = table[near]
+        return Resolution(entry, exact=False, note=f"'{word}' is not a known class; read as '{entry.name}'")
     return Resolution(UNKNOWN, exact=False, note=f"'{word}' is not a known class; treated as an unnamed object")

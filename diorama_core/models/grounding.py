@@ -75,7 +75,7 @@ class GroundingDino:
         session = self.pool.get(self.graph)
         side = session.side_px("pixel_values", SIDE)
         pixels, shown = self.pixels(rgb, side)
-        found = []
+        detections = []
         prompts = self.prompts(phrases)
         for done, prompt in enumerate(prompts):
             progress.report(done / len(prompts), f"Looking for {len(phrases)} kinds of objects")
@@ -86,10 +86,10 @@ class GroundingDino:
             # Tokens beyond the prompt have the logit of minus infinity.
             out = session.run(feeds, {"logits": (1, None, TOKENS)}, gaps=True, progress=progress)
             session.check("pred_boxes", out.get("pred_boxes"), (1, out["logits"].shape[1], 4))
-            found.append(_above(out["logits"][0], out["pred_boxes"][0], prompt, threshold, rgb.shape[:2]))
-        if not found:
+            detections.append(_above(out["logits"][0], out["pred_boxes"][0], prompt, threshold, rgb.shape[:2]))
+        if not detections:
             return Detections(np.zeros((0, 4)), np.zeros(0), np.zeros(0, dtype=int))
-        every = joined(found)
+        every = joined(detections)
         return every.rows(np.argsort(-every.scores, kind="stable"))
 
     def pixels(

@@ -140,7 +140,7 @@ def read_class_table(path: Path, kinds: tuple[str, ...]) -> Float[np.ndarray, "k
     Raises:
         UnavailableError: when the file cannot be read, or a line is not laid out so or names no kind.
     """
-    found = np.zeros((len(kinds), CLASSES))
+    table = np.zeros((len(kinds), CLASSES))
     row = {kind: k for k, kind in enumerate(kinds)}
     try:
         lines = path.read_text(encoding="utf-8").splitlines()
@@ -153,10 +153,10 @@ def read_class_table(path: Path, kinds: tuple[str, ...]) -> Float[np.ndarray, "k
             raise UnavailableError(f"{path}, line {number}: not 'kind: NUMBER class SHARE, ...'")
         for entry in parsed:
             if entry is not None:
-                found[row[kind], int(entry[1])] = float(entry[3])
-    unlisted = ~found.any(axis=1)
-    found[unlisted] = 1.0
-    return found / found.sum(axis=1, keepdims=True)
+                table[row[kind], int(entry[1])] = float(entry[3])
+    unlisted = ~table.any(axis=1)
+    table[unlisted] = 1.0
+    return table / table.sum(axis=1, keepdims=True)
 
 
 def _crops(rgb: UInt8[np.ndarray, "h w 3"], boxes: Float[np.ndarray, "n 4"]) -> Float32[np.ndarray, "n 3 s s"]:

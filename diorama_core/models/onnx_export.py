@@ -107,16 +107,16 @@ def _store_again(path: Path, half_weights: bool, data_beside: bool) -> None:
 
 def with_half_weights(model: onnx.ModelProto) -> onnx.ModelProto:
     """The model with its large weights in half precision, each cast to single where the graph begins."""
-    found = onnx.ModelProto()
-    found.CopyFrom(model)
+    half = onnx.ModelProto()
+    half.CopyFrom(model)
     casts = []
-    for weight in found.graph.initializer:
+    for weight in half.graph.initializer:
         values = onnx.numpy_helper.to_array(weight)
         if values.dtype == np.float32 and values.size >= _LARGE:
             name = f"{weight.name}.half"
             casts.append(onnx.helper.make_node("Cast", [name], [weight.name], to=onnx.TensorProto.FLOAT))
             weight.CopyFrom(onnx.numpy_helper.from_array(values.astype(np.float16), name))
-    nodes = [*casts, *found.graph.node]
-    del found.graph.node[:]
-    found.graph.node.extend(nodes)
-    return found
+    nodes = [*casts, *half.graph.node]
+    del half.graph.node[:]
+    half.graph.node.extend(nodes)
+    return half

@@ -67,14 +67,14 @@ class BoxOutliner:
 
         Every window is looked at as it is and mirrored.
         """
-        found: list[Float32[np.ndarray, "h2 w2"]] = []
+        outlines: list[Float32[np.ndarray, "h2 w2"]] = []
         for first in range(0, len(boxes), _BATCH):
             some = boxes[first : first + _BATCH]
             windows = np.stack([window(rgb, box) for box in some])
             both = self._logits(windows) + self._logits(np.ascontiguousarray(windows[..., ::-1]))[..., ::-1]
             shares = expit(both / 2).astype(np.float32)
-            found += [in_photo(share, box, rgb.shape[:2]) for share, box in zip(shares, some, strict=True)]
-        return found
+            outlines += [in_photo(share, box, rgb.shape[:2]) for share, box in zip(shares, some, strict=True)]
+        return outlines
 
     def _logits(self, windows: Float32[np.ndarray, "b 4 s s"]) -> Float32[np.ndarray, "b s s"]:
         session = self.pool.get(self.graph)

@@ -76,8 +76,8 @@ class FileDetector:
             boxes, scores = self._yolo(rgb, name, session.side_px(name, SIDE_PX))
         best, labels = scores.max(axis=1), scores.argmax(axis=1)
         keep = np.flatnonzero(best >= threshold)
-        found = Detections(clipped(boxes[keep], rgb.shape[1], rgb.shape[0]), best[keep], labels[keep])
-        return without_doubles(found, iou, across_classes=True)
+        detections = Detections(clipped(boxes[keep], rgb.shape[1], rgb.shape[0]), best[keep], labels[keep])
+        return without_doubles(detections, iou, across_classes=True)
 
     def _yolo(
         self, rgb: UInt8[np.ndarray, "h w 3"], name: str, side: int
@@ -105,8 +105,8 @@ class FileDetector:
         for other in session.inputs:
             if other != name:  # DETR's pixel mask: everything is picture
                 feeds[other] = np.ones((1, side, side), np.int64)
-        found = session.run(feeds, dict.fromkeys(session.outputs[:2], _ANY))
-        rows = [_rows(found[o]) for o in session.outputs[:2]]
+        outputs = session.run(feeds, dict.fromkeys(session.outputs[:2], _ANY))
+        rows = [_rows(outputs[o]) for o in session.outputs[:2]]
         boxes = next((r for r in rows if r.shape[1] == 4 and r.min() >= 0 and r.max() <= 1), None)
         logits = next((r for r in rows if r is not boxes and r.shape[1] in (count, count + 1)), None)
         if boxes is None or logits is None:

@@ -167,8 +167,8 @@ def _revision(store: ModelStore, network: Network) -> str:
         return recorded
     from huggingface_hub import HfApi
 
-    found = HfApi(endpoint=_endpoint()).model_info(network.repo, revision=network.revision, timeout=20.0).sha
-    return found or pinned or "main"
+    info = HfApi(endpoint=_endpoint()).model_info(network.repo, revision=network.revision, timeout=20.0).sha
+    return info or pinned or "main"
 
 
 def _address(network: Network, file: ModelFile, revision: str) -> tuple[str, dict[str, str]]:

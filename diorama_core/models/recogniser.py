@@ -110,8 +110,8 @@ class Recogniser:
 
     def _best(self, rgb: UInt8[np.ndarray, "h w 3"], threshold: float, most: int, iou: float) -> Detections:
         every = joined([look for area in self.areas_px for look in self._proposed(rgb, area)])
-        found = without_doubles(every.rows(every.scores >= threshold), iou, across_classes=True)
-        return found.rows(np.arange(min(most, len(found))))
+        detections = without_doubles(every.rows(every.scores >= threshold), iou, across_classes=True)
+        return detections.rows(np.arange(min(most, len(detections))))
 
     def _proposed(self, rgb: UInt8[np.ndarray, "h w 3"], area_px: int) -> list[Detections]:
         """What is seen in the picture at a size, as it is and mirrored."""

@@ -168,25 +168,25 @@ class ModelStore:
             UnavailableError: when its content is not what the manifest (or an earlier pull) names; it is deleted then.
         """
         record = self.installed(network)
-        found = digest or sha256_of(arrived)
+        digest_of_file = digest or sha256_of(arrived)
         key = f"{network.id}@{revision}/{file.path}"
         first = self._first_seen()
         published = (file.sha256, *file.also_sha256) if file.sha256 else ()
         expected = published or ((first[key],) if key in first and not network.conversion else ())
-        if expected and found not in expected:
+        if expected and digest_of_file not in expected:
             arrived.unlink(missing_ok=True)
             source = "expected" if published else "the first download had"
             raise UnavailableError(
-                f"{network.title}: {file.path} arrived with the wrong content (sha256 {found[:12]}…, "
+                f"{network.title}: {file.path} arrived with the wrong content (sha256 {digest_of_file[:12]}…, "
                 f"{source} {expected[0][:12]}…); it was deleted: pull again, or from another mirror (HF_ENDPOINT)"
             )
         if not published:
-            write_json(self.folder / FIRST_SEEN, {**first, key: found})
+            write_json(self.folder / FIRST_SEEN, {**first, key: digest_of_file})
         target = self.folder_of(network) / file.path
         target.parent.mkdir(parents=True, exist_ok=True)
         size = arrived.stat().st_size
         os.replace(arrived, target)
-        files = {**record.files, file.path: FileRecord(bytes=size, sha256=found)}
+        files = {**record.files, file.path: FileRecord(bytes=size, sha256=digest_of_file)}
         self._write(network, Installed(revision=revision, files=files))
 
     def _first_seen(self) -> dict[str, str]:
@@ -219,14 +219,14 @@ class ModelStore:
         return tuple(n.id for n in NETWORKS if n.id not in before and self.has(n))
 
     def _taken_up(self, source: Path, network: Network, file: ModelFile) -> bool:
-        for found in _candidates(source, network, file):
-            about = found.stat()
-            digest = _digest(found, about.st_mtime_ns, about.st_size)
+        for candidate in _candidates(source, network, file):
+            about = candidate.stat()
+            digest = _digest(candidate, about.st_mtime_ns, about.st_size)
             if file.sha256 and digest not in (file.sha256, *file.also_sha256):
                 continue
             part = self.folder / ".part" / network.id / file.path
             part.parent.mkdir(parents=True, exist_ok=True)
-            shutil.copyfile(found, part)
+            shutil.copyfile(candidate, part)
             self.adopt(network, file, part, network.revision or "local", digest)
             return True
         return False

@@ -38,11 +38,11 @@ def clip_tokens(
     ids = np.zeros((len(texts), length), np.int64)
     mask = np.zeros((len(texts), length), np.int64)
     for row, text in enumerate(texts):
-        found = tokenizer.encode(tidy(text)).ids
-        if len(found) > length:
-            found = [*found[: length - 1], found[-1]]
-        ids[row, : len(found)] = found
-        mask[row, : len(found)] = 1
+        tokens = tokenizer.encode(tidy(text)).ids
+        if len(tokens) > length:
+            tokens = [*tokens[: length - 1], tokens[-1]]
+        ids[row, : len(tokens)] = tokens
+        mask[row, : len(tokens)] = 1
     return ids, mask
 
 

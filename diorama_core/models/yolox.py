@@ -58,8 +58,8 @@ class Yolox:
         labels = scores.argmax(axis=1)
         best = scores[np.arange(len(scores)), labels]
         keep = np.flatnonzero(best >= threshold)
-        found = Detections(clipped(boxes[keep], rgb.shape[1], rgb.shape[0]), best[keep], labels[keep])
-        return without_doubles(found, iou, across_classes=across_classes)
+        detections = Detections(clipped(boxes[keep], rgb.shape[1], rgb.shape[0]), best[keep], labels[keep])
+        return without_doubles(detections, iou, across_classes=across_classes)
 
 
 def letterboxed(rgb: UInt8[np.ndarray, "h w 3"], side: int) -> tuple[Float32[np.ndarray, "1 3 side side"], float]:

@@ -162,13 +162,13 @@ def _known_photos(
     known: Sequence[FurtherPhoto], choose: Callable[[Inputs], Stages], progress: Progress
 ) -> list[tuple[FurtherPhoto, ReadPhoto, RoomPhoto]]:
     """The known photos in which objects of the scene are seen, each with what it says by itself."""
-    found = []
+    photos = []
     for number, photo in enumerate(known):
         if photo.camera is not None and photo.seen:
             part = progress.part(number / len(known), 1.0)
             read = read_photo(PosedInputs(photo.inputs, photo.camera), choose(photo.inputs), part)
-            found.append((photo, read, said_alone(read)))
-    return found
+            photos.append((photo, read, said_alone(read)))
+    return photos
 
 
 def _with_fitted(
@@ -254,13 +254,13 @@ def _boxes_of(
     object_id: str, others: Sequence[tuple[FurtherPhoto, ReadPhoto, RoomPhoto]]
 ) -> tuple[tuple[int, int], ...]:
     """The boxes of an object in the known photos: numbers of photo and box."""
-    found = []
+    pairs = []
     for number, (photo, read, _) in enumerate(others):
         for name, box in photo.seen:
             index = _same(box, read) if name == object_id else None
             if index is not None:
-                found.append((number, index))
-    return tuple(found)
+                pairs.append((number, index))
+    return tuple(pairs)
 
 
 def _same(box: Box, read: ReadPhoto, settings: JoiningSettings = SETTINGS) -> int | None:

@@ -126,7 +126,7 @@ def _votes(
 ) -> list[tuple[float, float]]:
     """(logarithm of metres a unit, weight) of pairs of boxes of a kind whose rays meet."""
     rays_a, rays_b = _rays(a, reading_a.observations), _rays(b, reading_b.observations)
-    found = []
+    votes = []
     for i, kind_a in enumerate(reading_a.observations.categories):
         for j, kind_b in enumerate(reading_b.observations.categories):
             cosine = float(rays_a[i] @ rays_b[j])
@@ -140,8 +140,8 @@ def _votes(
             if miss < settings.miss:
                 both = (np.log(distances_a[i] / along[0]), np.log(distances_b[j] / along[1]))
                 agree = float(np.exp(-0.5 * ((both[0] - both[1]) / 0.3) ** 2))
-                found.append((float(np.mean(both)), agree))
-    return found
+                votes.append((float(np.mean(both)), agree))
+    return votes
 
 
 def _pair(ray_a: Float[np.ndarray, "3"], ray_b: Float[np.ndarray, "3"], b: Camera, a: Camera) -> Float[np.ndarray, "2"]:

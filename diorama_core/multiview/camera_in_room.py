@@ -119,11 +119,11 @@ def camera_in_room(
         return None
     search = _Search(things, boxes, estimate.best, focal_known, settings)
     finalists = search.finalists(floor, progress)
-    found = []
+    cameras = []
     for number, camera in enumerate(finalists):
         progress.report(0.4 + 0.6 * number / len(finalists), "finding where the photo was taken")
-        found.append(search.fitted(camera, floor.buffer(settings.outside_m)))
-    best = min(found, key=lambda fit: fit.cost)
+        cameras.append(search.fitted(camera, floor.buffer(settings.outside_m)))
+    best = min(cameras, key=lambda fit: fit.cost)
     return best if len(best.met) >= settings.min_same and best.cost <= settings.max_cost * len(best.met) else None
 
 

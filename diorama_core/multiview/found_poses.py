@@ -115,7 +115,7 @@ def common_points(
     """
     progress = progress or Progress()
     colmap = _pycolmap()
-    found = {p.name: np.zeros((0, 4)) for p in photos}
+    points_of_photos = {p.name: np.zeros((0, 4)) for p in photos}
     with tempfile.TemporaryDirectory(prefix="diorama-photos-") as temporary:
         database = Path(temporary) / "database.db"
         names = _matched(colmap, (*photos, new), database, Path(temporary) / "pictures", progress)
@@ -129,8 +129,10 @@ def common_points(
                 if a == new.name:
                     a, b, matches = b, a, matches[:, ::-1]
                 if b == new.name:
-                    found[a] = np.hstack([points[a][matches[:, 0]], points[b][matches[:, 1]]]).astype(np.float64)
-    return tuple(found[p.name] for p in photos)
+                    points_of_photos[a] = np.hstack([points[a][matches[:, 0]], points[b][matches[:, 1]]]).astype(
+                        np.float64
+                    )
+    return tuple(points_of_photos[p.name] for p in photos)
 
 
 def _matched(

@@ -108,14 +108,14 @@ class _Joining:
                 if broad(track.kind.name) == broad(photo.alone[box].kind.name):
                     shared[k, box] = self._overlap(track, number, box)
         claimed = claims(shared, self._settings)
-        found = list(tracks)
+        joined = list(tracks)
         for box in range(count):
             if box in claimed:
                 boxes = tracks[claimed[box]].boxes
-                found[claimed[box]] = self._fitted(tuple(sorted((*boxes, (number, box)))))
+                joined[claimed[box]] = self._fitted(tuple(sorted((*boxes, (number, box)))))
             else:
-                found.append(self._fitted(((number, box),)))
-        return found
+                joined.append(self._fitted(((number, box),)))
+        return joined
 
     def without_photo(self, tracks: list[Track], number: int) -> list[Track]:
         """The tracks as the other photos have them."""
@@ -200,11 +200,11 @@ def fitted_track(boxes: Boxes, photos: Sequence[RoomPhoto], settings: JoiningSet
     )
     middle = np.median([a.centre for a in alone], axis=0)
     starts = [middle, meeting_point(sightings)]
-    found = fit_jointly(sightings, kind, starts, on_floor=standing, upright_m=float(middle[2]), settings=settings)
-    if standing and kind.name in PORTABLE and found.cost > settings.raised_cost:
+    fitted = fit_jointly(sightings, kind, starts, on_floor=standing, upright_m=float(middle[2]), settings=settings)
+    if standing and kind.name in PORTABLE and fitted.cost > settings.raised_cost:
         raised = fit_jointly(sightings, kind, starts[1:], on_floor=False, settings=settings)
-        found = raised if raised.cost + settings.raised_cost < found.cost else found
-    return Track(boxes, kind, found)
+        fitted = raised if raised.cost + settings.raised_cost < fitted.cost else fitted
+    return Track(boxes, kind, fitted)
 
 
 def shown(photo: RoomPhoto, box: int, settings: JoiningSettings = SETTINGS) -> float:
@@ -247,7 +247,7 @@ def edges_cut_short(
         distances_m: how far their middles are from the camera.
         settings: numbers to work with.
     """
-    found = np.zeros((len(objects), 4), dtype=bool)
+    cut_short = np.zeros((len(objects), 4), dtype=bool)
     for i, box in enumerate(boxes_px):
         near = [o.mask for j, o in enumerate(objects) if j != i and distances_m[j] < settings.nearer * distances_m[i]]
         if not near:
@@ -255,8 +255,8 @@ def edges_cut_short(
         before = np.any(near, axis=0) & ~objects[i].mask
         for edge, rows, columns in _strips(box, before.shape, settings):
             strip = before[rows, columns]
-            found[i, edge] = bool(strip.size) and strip.mean() >= settings.min_covered
-    return found
+            cut_short[i, edge] = bool(strip.size) and strip.mean() >= settings.min_covered
+    return cut_short
 
 
 def _strips(

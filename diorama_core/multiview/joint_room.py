@@ -144,14 +144,14 @@ def _top(photos: Sequence[SeenRoom], settings: JointRoomSettings = SETTINGS) -> 
 
 def _lines(photos: Sequence[SeenRoom], settings: JointRoomSettings = SETTINGS) -> tuple[_Line, ...]:
     """The seen walls of all photos, those that agree as one line, the surest first."""
-    found: list[tuple[Plane, float, float]] = []
+    weighted: list[tuple[Plane, float, float]] = []
     for photo in photos:
         for wall in photo.architecture.by_role("wall"):
             if wall.seen:
                 away = abs(float(photo.camera.position @ wall.normal) - wall.offset)
                 weight = wall.confidence * _length(wall) / max(away, 0.5)
-                found.append((wall, weight, away))
-    left = sorted(found, key=lambda row: -row[1])
+                weighted.append((wall, weight, away))
+    left = sorted(weighted, key=lambda row: -row[1])
     lines = []
     while left:
         wall, _, away = left[0]

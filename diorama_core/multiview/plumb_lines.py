@@ -115,9 +115,9 @@ def _edges(grey: UInt8[np.ndarray, "h w"], settings: PlumbLineSettings) -> Itera
         for label in 1 + np.flatnonzero(spans >= least):
             x, y, w, h = stats[label, :4]
             rows, columns = np.nonzero(labels[y : y + h, x : x + w] == label)
-            found = _parabola(np.column_stack([columns + x + 0.5, rows + y + 0.5]), least, settings)
-            if found is not None:
-                yield found
+            edge = _parabola(np.column_stack([columns + x + 0.5, rows + y + 0.5]), least, settings)
+            if edge is not None:
+                yield edge
 
 
 def _parabola(

@@ -149,7 +149,7 @@ def placed_camera(
     for factor in factors:
         tried = replace(k, fx=k.fx * float(factor), fy=k.fy * float(factor))
         cv2.setRNGSeed(settings.seed)
-        found, turn, shift, inliers = cv2.solvePnPRansac(
+        is_solved, turn, shift, inliers = cv2.solvePnPRansac(
             points,
             pixels,
             _matrix(tried),
@@ -158,7 +158,7 @@ def placed_camera(
             reprojectionError=settings.near_share * k.width,
             flags=cv2.SOLVEPNP_EPNP,
         )
-        if found and inliers is not None and (best is None or len(inliers) > best[0]):
+        if is_solved and inliers is not None and (best is None or len(inliers) > best[0]):
             best = (len(inliers), tried, turn.ravel(), shift.ravel(), inliers.ravel())
     if best is None or best[0] < max(settings.min_points, settings.min_share * len(points)):
         return None

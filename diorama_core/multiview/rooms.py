@@ -93,9 +93,11 @@ def in_room(
     for number, photo in enumerate(photos):
         given = replace(photo.inputs, intrinsics=photo.camera.intrinsics)
         part = progress.part(number / len(photos), (number + 1) / len(photos))
-        found = evaluate(choose(given), {"given": given}, ("camera", "objects"), Runner(None), part)
+        artefacts = evaluate(choose(given), {"given": given}, ("camera", "objects"), Runner(None), part)
         k = photo.camera.intrinsics
-        readings.append(PhotoReading(photo.camera, found["camera"], gather(found["objects"], k.width, k.height)))
+        readings.append(
+            PhotoReading(photo.camera, artefacts["camera"], gather(artefacts["objects"], k.width, k.height))
+        )
     found_alignment = align(readings, metric=metric, up=up)
     return tuple(replace(p, camera=found_alignment.camera(p.camera)) for p in photos), found_alignment
 
@@ -211,8 +213,8 @@ def read_photo(photo: PosedInputs, stages: Stages, progress: Progress) -> ReadPh
     T = photo_world(photo.camera)
     camera = Camera(photo.camera.intrinsics, np.linalg.inv(T) @ photo.camera.T_world_camera)
     known = {"given": given, "camera": given_camera(camera)}
-    found = evaluate(stages, known, ("inputs", "objects"), Runner(None), progress)
-    return ReadPhoto(photo, stages, found["inputs"], found["objects"], T)
+    artefacts = evaluate(stages, known, ("inputs", "objects"), Runner(None), progress)
+    return ReadPhoto(photo, stages, artefacts["inputs"], artefacts["objects"], T)
 
 
 def photo_world(camera: Camera) -> Float[np.ndarray, "4 4"]:
@@ -301,8 +303,8 @@ def room_alone(read: ReadPhoto, index: int, tracks: Sequence[Track], progress: P
         progress: reports and cancellation.
     """
     stages = _with_joint_cuboids(read, index, tracks)
-    found = evaluate(stages, {"given": read.inputs}, ("architecture",), Runner(None), progress)
-    architecture: Architecture = found["architecture"].architecture
+    artefacts = evaluate(stages, {"given": read.inputs}, ("architecture",), Runner(None), progress)
+    architecture: Architecture = artefacts["architecture"].architecture
     return moved_to_room(Scene(architecture=architecture), read.T_room_photo).architecture
 
 
@@ -320,8 +322,8 @@ def _room_of_all(
     mounted = [t.cuboid for t in hanging if seen_whole(t.sightings(alone))]
     # A wall that another photo looks past stays where something hangs on it.
     own = (room_alone(r, index, _tracks_alone(index, alone[index])) for index, r in enumerate(read))
-    found = room_holding(joint_room(seen, standing), own, [t.cuboid for t in hanging])
-    room, passages = with_open_doorways(walls_at_mounted(found, mounted), seen)
+    whole_room = room_holding(joint_room(seen, standing), own, [t.cuboid for t in hanging])
+    room, passages = with_open_doorways(walls_at_mounted(whole_room, mounted), seen)
     worlds = [moved_to_room(Scene(architecture=room), np.linalg.inv(r.T_room_photo)).architecture for r in read]
     return tuple(GivenRoom(world, marks) for world, marks in zip(worlds, passages, strict=True))
 

@@ -113,11 +113,11 @@ def render_geometry(
     depth = np.where(np.isfinite(depth), depth, 0.0)
     nearest = np.full(depth.shape, np.inf)
     cuboids = {c.object_id: c for c in geometry.cuboids}
-    for found in objects:
-        if found.id not in cuboids or not found.mask.any():
+    for detected in objects:
+        if detected.id not in cuboids or not detected.mask.any():
             continue
-        rows, columns = np.nonzero(found.mask)
-        t, n = _cuboid_surface(origin, rays[rows, columns], cuboids[found.id], geometry.camera)
+        rows, columns = np.nonzero(detected.mask)
+        t, n = _cuboid_surface(origin, rays[rows, columns], cuboids[detected.id], geometry.camera)
         closer = t < nearest[rows, columns]
         rows, columns = rows[closer], columns[closer]
         nearest[rows, columns] = depth[rows, columns] = t[closer]

@@ -82,7 +82,7 @@ def decoded(data: bytes) -> Float32[np.ndarray, "h w *c"]:
 
 def _checked(headers: list[dict]) -> tuple[int, str]:
     """Part and channel of the depth, after all that will be decoded was found to fit into memory."""
-    total, found = 0, None
+    total, match = 0, None
     if len(headers) > MAX_PARTS:
         raise ExrError(f"{len(headers)} parts are more than a depth map has; save it alone")
     for index, header in enumerate(headers):
@@ -97,8 +97,8 @@ def _checked(headers: list[dict]) -> tuple[int, str]:
         if total > MAX_BYTES:
             raise ExrError(f"{len(names)} channels of {width} x {height} pixels are too many; save depth alone")
         wanted = next((n for n in DEPTH_CHANNELS if n in names), names[0] if len(names) == 1 else None)
-        found = (index, wanted) if found is None and wanted is not None else found
-    if found is None:
+        match = (index, wanted) if match is None and wanted is not None else match
+    if match is None:
         names = [str(channel.name) for header in headers for channel in header["channels"]]
         raise ExrError(f"none of its channels ({', '.join(names[:8])[:100]}) is called Z; save depth under that name")
-    return found
+    return match

@@ -88,12 +88,12 @@ def estimate_illuminant(
     usable = ((light > settings.dark).all(axis=-1)) & ((light < settings.clipped).all(axis=-1))
     if usable.sum() < settings.min_pixels:
         return Illuminant()
-    found = [(_chromaticity(_minkowski(light[usable], settings)), _STATISTICS_SIGMA)]
+    votes = [(_chromaticity(_minkowski(light[usable], settings)), _STATISTICS_SIGMA)]
     edges = np.abs(cv2.Laplacian(cv2.GaussianBlur(light, (0, 0), 1.0), cv2.CV_64F))
-    found.append((_chromaticity(_minkowski(edges[usable], settings)), _STATISTICS_SIGMA))
+    votes.append((_chromaticity(_minkowski(edges[usable], settings)), _STATISTICS_SIGMA))
     if (usable & of_walls).sum() >= settings.min_pixels:
-        found.append((_chromaticity(_bright_median(light[usable & of_walls], settings)), _WALLS_SIGMA))
-    return _of_chromaticity(_combined(found, settings))
+        votes.append((_chromaticity(_bright_median(light[usable & of_walls], settings)), _WALLS_SIGMA))
+    return _of_chromaticity(_combined(votes, settings))
 
 
 def _reduced(
@@ -131,10 +131,10 @@ def _of_chromaticity(chromaticity: Float[np.ndarray, "2"]) -> Illuminant:
 
 
 def _combined(
-    found: list[tuple[Float[np.ndarray, "2"], Float[np.ndarray, "2"]]], settings: IlluminantSettings = SETTINGS
+    votes: list[tuple[Float[np.ndarray, "2"], Float[np.ndarray, "2"]]], settings: IlluminantSettings = SETTINGS
 ) -> Float[np.ndarray, "2"]:
     """The posterior mean; estimates far from it are trusted less, step by step."""
-    values, sigmas = (np.array(column) for column in zip(*found, strict=True))
+    values, sigmas = (np.array(column) for column in zip(*votes, strict=True))
     mean = np.zeros(2)
     for _ in range(4):
         off = (values - mean) / np.hypot(sigmas, _EXPECTED_SIGMA)

@@ -96,8 +96,8 @@ def refined(
         cv2.grabCut(small, labels, None, models[0], models[1], 1, cv2.GC_INIT_WITH_MASK)
     except cv2.error:  # too few different colours to tell object and background apart
         return np.asarray(probability > 0.5)
-    found = ((labels == cv2.GC_FGD) | (labels == cv2.GC_PR_FGD)).astype(np.float32)
-    return np.asarray(cv2.resize(found, (width, height), interpolation=cv2.INTER_LINEAR) >= 0.5)
+    foreground = ((labels == cv2.GC_FGD) | (labels == cv2.GC_PR_FGD)).astype(np.float32)
+    return np.asarray(cv2.resize(foreground, (width, height), interpolation=cv2.INTER_LINEAR) >= 0.5)
 
 
 Outlined = list[tuple[Bool[np.ndarray, "h w"], float]]
@@ -115,16 +115,16 @@ def outlined(
     boxed = [box for box in inputs.boxes if box not in taken]
     segmented = segment_boxes(inputs.photo.rgb, boxed, progress)
     first_free = max((mask_id for mask_id, _, _ in given), default=0) + 1
-    found = [(i, box, mask, 1.0) for i, box, mask in given]
-    found += [
+    detected = [(i, box, mask, 1.0) for i, box, mask in given]
+    detected += [
         (first_free + n, box, mask, confidence)
         for n, (box, (mask, confidence)) in enumerate(zip(boxed, segmented, strict=True))
     ]
-    ids = _ids([box.category for _, box, _, _ in found])
+    ids = _ids([box.category for _, box, _, _ in detected])
     progress.report(1.0, "Objects outlined")
     return tuple(
         DetectedObject(name, box.category, box.label, box.box, mask, mask_id, confidence)
-        for name, (mask_id, box, mask, confidence) in zip(ids, found, strict=True)
+        for name, (mask_id, box, mask, confidence) in zip(ids, detected, strict=True)
     )
 
 

@@ -26,10 +26,10 @@ class OwnNaming:
         """
         progress.report(0.0, f"Looking at {len(objects)} objects")
         boxes = np.array([item.box for item in objects], dtype=float).reshape(-1, 4)
-        found, names = self.recogniser.look(photo.rgb, boxes), self.recogniser.categories
+        looks, names = self.recogniser.look(photo.rgb, boxes), self.recogniser.categories
         return tuple(
             SeenKinds(item.id, names, kinds, tuple(map(float, form)))
-            for item, kinds, form in zip(objects, found.kinds, found.forms, strict=True)
+            for item, kinds, form in zip(objects, looks.kinds, looks.forms, strict=True)
         )
 
 

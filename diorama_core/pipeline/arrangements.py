@@ -80,11 +80,11 @@ def plausible_shapes(
 
 def _sets(scene: Scene) -> list[list[SceneObject]]:
     """Unlocked objects grouped by category and shape."""
-    found: dict[tuple[str, str], list[SceneObject]] = {}
+    sets: dict[tuple[str, str], list[SceneObject]] = {}
     for item in scene.objects:
         if not item.locked and item.candidates:
-            found.setdefault((item.category, item.shape_id), []).append(item)
-    return list(found.values())
+            sets.setdefault((item.category, item.shape_id), []).append(item)
+    return list(sets.values())
 
 
 def _swapped(scene: Scene, item: SceneObject, shape_id: str, members: Sequence[SceneObject]) -> Scene:

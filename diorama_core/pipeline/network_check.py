@@ -104,7 +104,7 @@ def rejected(
 def _check(store: ModelStore, network: Network, known: Inputs, progress: Progress) -> NetworkCheck:
     begun = time.perf_counter()
     try:
-        found = _TRIALS[network.role](store, network, known, progress)
+        measurements = _TRIALS[network.role](store, network, known, progress)
     except UnavailableError as error:
         return NetworkCheck(network, False, str(error), seconds=time.perf_counter() - begun)
     except (ValueError, IndexError, KeyError, TypeError) as error:  # outputs of another form than the network's
@@ -114,9 +114,9 @@ def _check(store: ModelStore, network: Network, known: Inputs, progress: Progres
         )
     folder = store.folder_of(network).resolve()
     loaded = [n for n in SHARED_SESSIONS.report() if folder in n.path.parents]
-    words = "; ".join([*map(str, found), *(n.note for n in loaded if n.note)])
+    words = "; ".join([*map(str, measurements), *(n.note for n in loaded if n.note)])
     device = ", ".join(sorted({n.device for n in loaded}))
-    return NetworkCheck(network, all(m.ok for m in found), words, device, time.perf_counter() - begun)
+    return NetworkCheck(network, all(m.ok for m in measurements), words, device, time.perf_counter() - begun)
 
 
 Trial = Callable[[ModelStore, Network, Inputs, Progress], tuple[Measurement, ...]]
@@ -124,8 +124,8 @@ Trial = Callable[[ModelStore, Network, Inputs, Progress], tuple[Measurement, ...
 
 def _detection(store: ModelStore, network: Network, known: Inputs, progress: Progress) -> tuple[Measurement, ...]:
     boxes = network_stages.detector(store, network).detect(known.photo, (), progress)
-    found, true = (np.array([b.box for b in some], dtype=float).reshape(-1, 4) for some in (boxes, known.boxes))
-    hits = int((overlaps(found, true).max(axis=0, initial=0.0) >= 0.5).sum())
+    predicted, true = (np.array([b.box for b in some], dtype=float).reshape(-1, 4) for some in (boxes, known.boxes))
+    hits = int((overlaps(predicted, true).max(axis=0, initial=0.0) >= 0.5).sum())
     return Measurement("boxes", len(boxes), (2, 40)), Measurement("known objects found", hits, (1, np.inf))
 
 
@@ -133,9 +133,9 @@ def _segmentation(store: ModelStore, network: Network, known: Inputs, progress: 
     boxes = np.array([b.box for b in known.boxes[:4]], dtype=float)
     masks = network_stages.segmenter(store, network).masks(known.photo.rgb, boxes)
     shares = []
-    for (x1, y1, x2, y2), found in zip(boxes.astype(int), masks, strict=True):
+    for (x1, y1, x2, y2), mask in zip(boxes.astype(int), masks, strict=True):
         progress.check()
-        shares.append(float(found.mask[y1:y2, x1:x2].mean()))
+        shares.append(float(mask.mask[y1:y2, x1:x2].mean()))
     # All of a box is the answer of a network that sees no outline.
     return (Measurement("share of a box within its mask", float(np.median(shares)), (0.2, 0.97)),)
 
@@ -198,10 +198,10 @@ def _pose_scale(store: ModelStore, network: Network, known: Inputs, progress: Pr
     scale = network_stages.scale_network(store, network)
     template, photo = scale.maps([crop, crop])
     cells = np.array([[4, 4], [8, 8], [10, 6]])
-    found = scale.turns(template, photo, cells, cells)
+    turns = scale.turns(template, photo, cells, cells)
     return (
-        Measurement("scale of a crop against itself", float(np.median(found.scale)), (0.5, 2.0)),
-        Measurement("turn of a crop against itself, radians", float(np.median(np.abs(found.angle_rad))), (0.0, 0.8)),
+        Measurement("scale of a crop against itself", float(np.median(turns.scale)), (0.5, 2.0)),
+        Measurement("turn of a crop against itself, radians", float(np.median(np.abs(turns.angle_rad))), (0.0, 0.8)),
     )
 
 

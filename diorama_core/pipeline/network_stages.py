@@ -128,14 +128,16 @@ def with_joint_retrieval(base: Stages, library: ShapeLibrary, store: ModelStore)
 
 def published_embeddings(store: ModelStore) -> dict[str, JointEmbedding]:
     """The embeddings of the publication's retrieval table whose networks are here, by their names there."""
-    found: dict[str, JointEmbedding] = {}
+    embeddings: dict[str, JointEmbedding] = {}
     large, points = network("openclip-bigg14"), network("openshape")
     small, tower = network("openclip-b32"), network("duoduoclip")
     if store.has(large):
         clip = network_stages.open_clip(store, large)
-        found["CLIP"] = ClipEmbedding(clip)
+        embeddings["CLIP"] = ClipEmbedding(clip)
         if store.has(points):
-            found["OS"] = PointEmbedding(clip, network_stages.point_tower(store, points))
+            embeddings["OS"] = PointEmbedding(clip, network_stages.point_tower(store, points))
     if store.has(small) and store.has(tower):
-        found["DD"] = ClipEmbedding(network_stages.open_clip(store, small), network_stages.shape_tower(store, tower))
-    return found
+        embeddings["DD"] = ClipEmbedding(
+            network_stages.open_clip(store, small), network_stages.shape_tower(store, tower)
+        )
+    return embeddings

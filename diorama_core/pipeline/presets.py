@@ -164,11 +164,11 @@ def detection_stage(store: ModelStore, choice: NetworkChoice | None = None) -> D
     if choice is not None and choice.detector_file is not None:
         return FileDetection(FileDetector.of(choice.detector_file))
     detectors = (choice or NetworkChoice()).detectors()
-    found = None if detectors == (OWN_DETECTOR,) else _best(store, detectors, network_stages.detector)
+    detector = None if detectors == (OWN_DETECTOR,) else _best(store, detectors, network_stages.detector)
     own = own_detection()
-    if isinstance(found, EverydayDetection) and own is not None and (choice is None or choice.detector is None):
-        return JoinedDetection(found, own)
-    return found or own
+    if isinstance(detector, EverydayDetection) and own is not None and (choice is None or choice.detector is None):
+        return JoinedDetection(detector, own)
+    return detector or own
 
 
 def own_detection(threshold: float = CONFIDENT, most: int = MOST) -> OwnDetection | None:
@@ -216,8 +216,8 @@ def _named(finder: DetectionStage | None, photo: Photo, boxes: Float[np.ndarray,
 
 def _clicked(finder: DetectionStage | None, photo: Photo, pixels: Float[np.ndarray, "n 2"]) -> Sequence[Box | None]:
     known = () if finder is None else finder.detect(photo, (), Progress())
-    found = clickable(own_recogniser(), photo, known)
-    return [clicked_box(found, float(x), float(y)) for x, y in pixels]
+    boxes = clickable(own_recogniser(), photo, known)
+    return [clicked_box(boxes, float(x), float(y)) for x, y in pixels]
 
 
 def propose_boxes(
@@ -243,8 +243,8 @@ def propose_boxes(
     lmm = LmmSettings.from_environment()
     recognition = LanguageRecognition(lmm) if lmm is not None and isinstance(stage, OpenVocabularyDetection) else None
     stages = ProposalStages(stage, recognition)
-    found = evaluate(stages, {"given": Inputs(photo)}, ("detected_boxes",), Runner(None), progress)
-    boxes: tuple[LabelledBox, ...] = found["detected_boxes"]
+    artefacts = evaluate(stages, {"given": Inputs(photo)}, ("detected_boxes",), Runner(None), progress)
+    boxes: tuple[LabelledBox, ...] = artefacts["detected_boxes"]
     return boxes
 
 
@@ -284,8 +284,8 @@ def _posed_as_published(base: Stages, library: ShapeLibrary, store: ModelStore) 
 
 
 def _foregrounds(store: ModelStore) -> tuple[Foreground, ...]:
-    found = (_best(store, kinds, network_stages.foreground) for kinds in FOREGROUNDS)
-    return tuple(f for f in found if f is not None)
+    stages = (_best(store, kinds, network_stages.foreground) for kinds in FOREGROUNDS)
+    return tuple(f for f in stages if f is not None)
 
 
 def _best(store: ModelStore, choices: tuple[str, ...], make: Callable[[ModelStore, Network], T]) -> T | None:

@@ -45,15 +45,15 @@ def reasons_of_build(
     """
     named_by = "you" if given.boxes or given.instances is not None else "the detector"
     scene, kinds = refined.scene, {item.id: item.category for item in refined.scene.objects}
-    found = [r for o in objects if o.id in kinds for r in _of_kind(o, kinds[o.id], named_by)]
-    found += [r for p in posed for r in p.reasons or ()]
-    found += geometry.reasons or ()
-    found += _of_depth(inputs, geometry, noise) + _of_supports(graph, scene)
-    found += corrected.reasons
-    found += reasons_of_change(corrected.scene, settled.scene, "layout", "it rests on something, clear of the others")
-    found += reasons_of_change(settled.scene, scene, "refinement", "its outline fits the photo better there")
+    reasons = [r for o in objects if o.id in kinds for r in _of_kind(o, kinds[o.id], named_by)]
+    reasons += [r for p in posed for r in p.reasons or ()]
+    reasons += geometry.reasons or ()
+    reasons += _of_depth(inputs, geometry, noise) + _of_supports(graph, scene)
+    reasons += corrected.reasons
+    reasons += reasons_of_change(corrected.scene, settled.scene, "layout", "it rests on something, clear of the others")
+    reasons += reasons_of_change(settled.scene, scene, "refinement", "its outline fits the photo better there")
     order = {item.id: k for k, item in enumerate(scene.objects)}
-    return tuple(sorted((r for r in found if r.object_id in order), key=lambda r: order[r.object_id]))
+    return tuple(sorted((r for r in reasons if r.object_id in order), key=lambda r: order[r.object_id]))
 
 
 def _of_kind(item: DetectedObject, kind: str, named_by: str) -> list[Reason]:

@@ -113,11 +113,11 @@ def reconstruct_object(
     if scene.camera is None:
         raise InputError("this scene has no photo camera; build it from the photo first")
     progress = progress or Progress()
-    found, _ = with_usable_networks(
+    reconstruction, _ = with_usable_networks(
         lambda store: stages_for("auto", inputs, library, store=store),
         lambda stages: _reconstructed(stages, scene, inputs, library, box, object_id, mask, Runner(cache), progress),
     )
-    return found
+    return reconstruction
 
 
 def _reconstructed(
@@ -140,10 +140,10 @@ def _reconstructed(
         if candidates is not None:
             return _found(stages, scene, library, known, built, candidates, as_built=True)
     detected = _segmented(stages.objects, photo["inputs"], box, mask, object_id, progress.part(0.5, 0.6))
-    found, posed = _posed_alone(stages, photo, detected, progress.part(0.6, 1.0))
+    artefacts, posed = _posed_alone(stages, photo, detected, progress.part(0.6, 1.0))
     if posed is None:
         raise InputError(f"the library has no shape for “{box.label}”; choose a more common name")
-    return _found(stages, scene, library, detected, found, posed, as_built=False)
+    return _found(stages, scene, library, detected, artefacts, posed, as_built=False)
 
 
 def _says(known: DetectedObject, box: LabelledBox, mask: Bool[np.ndarray, "h w"] | None) -> bool:

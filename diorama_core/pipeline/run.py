@@ -97,38 +97,38 @@ def build_scene(
     given: Artefacts = {"given": inputs, "library": library, "preview": preview}
     if not plane_pictures:
         given = {**given, "plane_pictures": {}}
-    found = evaluate(stages, given, ("scene", "textures", "dressed_observed", "reasons"), runner, progress)
+    artefacts = evaluate(stages, given, ("scene", "textures", "dressed_observed", "reasons"), runner, progress)
     progress.report(1.0, "done")
     return Built(
-        scene=found["scene"],
-        camera=found["camera"],
-        objects=found["furniture_objects"],
-        geometry=found["geometry"],
-        graph=found["graph"],
-        architecture=found["white_room"],
-        depth=found["depth"],
-        observed=found["dressed_observed"],
-        layout=found["refined"].report,
-        textures=found["textures"],
-        illuminant=found["illuminant"],
-        inputs=found["inputs"],
+        scene=artefacts["scene"],
+        camera=artefacts["camera"],
+        objects=artefacts["furniture_objects"],
+        geometry=artefacts["geometry"],
+        graph=artefacts["graph"],
+        architecture=artefacts["white_room"],
+        depth=artefacts["depth"],
+        observed=artefacts["dressed_observed"],
+        layout=artefacts["refined"].report,
+        textures=artefacts["textures"],
+        illuminant=artefacts["illuminant"],
+        inputs=artefacts["inputs"],
         runs=tuple(runner.runs),
         stages=stages,
-        notes=(*_notes(found), *runner.lost),
-        reasons=found["reasons"],
+        notes=(*_notes(artefacts), *runner.lost),
+        reasons=artefacts["reasons"],
     )
 
 
-def _notes(found: Artefacts) -> tuple[str, ...]:
+def _notes(artefacts: Artefacts) -> tuple[str, ...]:
     """Where the scene's parts come from, what was changed and what could not be achieved, in plain words."""
-    depth, graph = found["inputs"].depth_source, found["graph"]
-    report: LayoutReport | None = found["refined"].report
+    depth, graph = artefacts["inputs"].depth_source, artefacts["graph"]
+    report: LayoutReport | None = artefacts["refined"].report
     sources = [
-        f"camera: {camera_sentence(found['camera'], depth)}",
-        f"objects: {geometry_sentence(found['geometry'], depth)}",
-        f"room: {room_sentence(found['architecture'], depth)}",
+        f"camera: {camera_sentence(artefacts['camera'], depth)}",
+        f"objects: {geometry_sentence(artefacts['geometry'], depth)}",
+        f"room: {room_sentence(artefacts['architecture'], depth)}",
     ]
     if graph is not None:
         sources.append(f"what stands on what: {graph_sentence(graph)}")
-    notes = (*(s.note for s in found["shapes"] if s.note), *found["corrected"].notes)
+    notes = (*(s.note for s in artefacts["shapes"] if s.note), *artefacts["corrected"].notes)
     return (*sources, *notes, *(report.reasons if report else ()))

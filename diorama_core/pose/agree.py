@@ -62,13 +62,13 @@ def _groups(categories: Sequence[str], ranks: Sequence[Mapping[str, float]], set
     leaders: list[int] = []
     groups = []
     for i, name in enumerate(categories):
-        found = [
+        members = [
             g
             for g, j in enumerate(leaders)
             if name == categories[j] and _overlap(ranks[i], ranks[j]) >= settings.overlap
         ]
-        alone = name == UNKNOWN.name or not found
-        groups.append(len(leaders) if alone else found[0])
+        alone = name == UNKNOWN.name or not members
+        groups.append(len(leaders) if alone else members[0])
         if alone:
             leaders.append(i)
     return groups

@@ -51,7 +51,7 @@ class DiscreteTurns:
         ranked = {r.object_id: r.ranked for r in shapes if r.ranked}
         records = {s.id: s for s in self.views.library.shapes()}
         wanted = [o for o in objects if o.id in ranked]
-        found = []
+        results = []
         for index, item in enumerate(wanted):
             progress.report(index / len(wanted), f"Turning: {item.label}")
             points = object_points(item, depth, geometry.camera)
@@ -71,8 +71,8 @@ class DiscreteTurns:
             posed = [self._candidate(s, c, geometry.camera, points) for s, c in zip(candidates, compared, strict=False)]
             if posed:
                 best = sorted(posed, key=lambda c: (-c.score, c.shape_id))
-                found.append(PosedCandidates(item.id, tuple(best), best[0].score * item.mask_confidence))
-        return tuple(found)
+                results.append(PosedCandidates(item.id, tuple(best), best[0].score * item.mask_confidence))
+        return tuple(results)
 
     def _candidate(
         self, shape: Shape, compared: Compared, camera: Camera, points: Float[np.ndarray, "n 3"]

@@ -58,8 +58,8 @@ class FittedChoice:
 
     def _uneven(self, candidates: Sequence[Candidate]) -> list[int]:
         """The next candidates whose mirror image is another shape: none of them was compared as that."""
-        found = (k for k, c in enumerate(candidates) if k and other_hand(self.library, c.shape_id) is not None)
-        return list(islice(found, self.settings.shapes.uneven))
+        places = (k for k, c in enumerate(candidates) if k and other_hand(self.library, c.shape_id) is not None)
+        return list(islice(places, self.settings.shapes.uneven))
 
     def _fitted(self, candidate: Candidate, seen: SeenObject) -> tuple[float, float]:
         """Disagreement with the picture, 0 to 1, in the fitted pose and with the profile that is seen; and the score.
@@ -75,13 +75,13 @@ class FittedChoice:
         errors = [evidence.error(c, p) for c, p in zip(casters, poses, strict=True)]
         best = int(np.argmin(errors))
         error, caster, pose = errors[best], casters[best], poses[best]
-        found = (
+        fits = (
             turned(self.library, candidate.shape_id, [evidence], [pose], error, self.settings)
             if seen.is_surely_outlined
             else None
         )
-        if found is not None:
-            error = found.error
+        if fits is not None:
+            error = fits.error
         edges = (1.0 - evidence.seen.hidden_share) * seen.edges_in(caster, pose)
         weights = self.settings.shapes
         of_rank = weights.of_rank * float(np.log(max(candidate.score, weights.no_score)))

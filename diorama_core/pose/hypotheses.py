@@ -127,34 +127,34 @@ def hypotheses_for(
     position = anchor.placed(np.tile(cuboid.centre, (len(total), 1)), R, sizes)
     thick = np.maximum(cuboid.size_m.min(), settings.thin_m)
     misfit = np.sqrt((np.log(np.maximum(sizes, thick) / np.maximum(wanted, thick)) ** 2).mean(axis=1))
-    found = Hypotheses(
+    hypotheses = Hypotheses(
         PoseBatch(R, position, scale), np.abs(off_axis), np.hypot(misfit, settings.turned_misfit * turned)
     )
     if sides_known or symmetry == ROUND:
-        return found
-    return found.and_also(_as_made(found[~turned], cuboid, limits, anchor, settings))
+        return hypotheses
+    return hypotheses.and_also(_as_made(hypotheses[~turned], cuboid, limits, anchor, settings))
 
 
 def _as_made(
-    found: Hypotheses, cuboid: Cuboid, limits: SizeLimits, anchor: Anchor, settings: PoseSearchSettings
+    hypotheses: Hypotheses, cuboid: Cuboid, limits: SizeLimits, anchor: Anchor, settings: PoseSearchSettings
 ) -> Hypotheses:
     """The shape in its own proportions, as high as the cuboid, and turned a little too.
 
     From a picture alone the cuboid has the proportions that its kind usually has where the outline was seen to end.
     """
     growth = float(cuboid.size_m[2]) / max(float(limits.shape_size_m[2]), 1e-6)
-    scale = np.tile(limits.scale_for(growth * limits.shape_size_m), (len(_TURNS) * len(found.poses), 1))
-    turns = np.repeat(_TURNS, len(found.poses))
-    R = np.tile(found.poses.R, (len(_TURNS), 1, 1)) @ np.array([yaw_rotation(angle) for angle in turns])
+    scale = np.tile(limits.scale_for(growth * limits.shape_size_m), (len(_TURNS) * len(hypotheses.poses), 1))
+    turns = np.repeat(_TURNS, len(hypotheses.poses))
+    R = np.tile(hypotheses.poses.R, (len(_TURNS), 1, 1)) @ np.array([yaw_rotation(angle) for angle in turns])
     sizes = scale * limits.shape_size_m
     position = anchor.placed(np.tile(cuboid.centre, (len(R), 1)), R, sizes)
-    wanted = np.tile(found.poses.scale * limits.shape_size_m, (len(_TURNS), 1))
+    wanted = np.tile(hypotheses.poses.scale * limits.shape_size_m, (len(_TURNS), 1))
     thick = np.maximum(cuboid.size_m.min(), settings.thin_m)
     misfit = np.sqrt((np.log(np.maximum(sizes, thick) / np.maximum(wanted, thick)) ** 2).mean(axis=1))
     return Hypotheses(
         PoseBatch(R, position, scale),
-        np.tile(found.off_axis_rad, len(_TURNS)) + np.abs(turns),
-        np.hypot(misfit, np.tile(found.misfit, len(_TURNS))),
+        np.tile(hypotheses.off_axis_rad, len(_TURNS)) + np.abs(turns),
+        np.hypot(misfit, np.tile(hypotheses.misfit, len(_TURNS))),
     )
 
 

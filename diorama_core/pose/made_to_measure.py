@@ -82,8 +82,8 @@ class MadeToMeasure:
         shown = [{m.object_id: seen[m.object_id] for m in members if m.object_id in seen} for members in longest_first]
         tasks = list(zip(longest_first, shown, strict=True))
         made = each_there(self._of_set, tasks, progress, "Making shapes to measure")
-        found = {object_id: candidate for of_set in made for object_id, candidate in of_set.items()}
-        return tuple(_with_first(p, found[p.object_id]) if p.object_id in found else p for p in posed)
+        fitted_by_id = {object_id: candidate for of_set in made for object_id, candidate in of_set.items()}
+        return tuple(_with_first(p, fitted_by_id[p.object_id]) if p.object_id in fitted_by_id else p for p in posed)
 
     def _best_fitting(
         self, posed: tuple[PosedCandidates, ...], seen: Mapping[str, SeenObject]
@@ -112,12 +112,12 @@ class MadeToMeasure:
         clear = {i: one for i, one in shown.items() if one.pixels >= self.settings.shapes.min_pixels}
         best, alone = members[0].candidates[0], len(members) == 1
         parameters = ParameterFit(self.library, list(clear.values()), resize=alone, settings=self.settings)
-        found = parameters.fitted(best, [one.pose for one in clear.values()]) if clear else None
-        starts = dict(zip(clear, found.poses, strict=True)) if found else {}
+        fit = parameters.fitted(best, [one.pose for one in clear.values()]) if clear else None
+        starts = dict(zip(clear, fit.poses, strict=True)) if fit else {}
         placed = {
             m.object_id: self._placed(
                 m.candidates[0],
-                None if found is None else found.changes,
+                None if fit is None else fit.changes,
                 shown.get(m.object_id),
                 starts.get(m.object_id, m.candidates[0].pose),
                 resize=alone,
@@ -140,13 +140,13 @@ class MadeToMeasure:
         poses = [
             fitted_pose(e, caster, own[i], size, resize=alone, settings=self.settings.shapes) for i, e in sure.items()
         ]
-        found = turned(self.library, best.shape_id, list(sure.values()), poses, float(np.mean(before)), self.settings)
-        if found is None:
+        profile = turned(self.library, best.shape_id, list(sure.values()), poses, float(np.mean(before)), self.settings)
+        if profile is None:
             return None
-        x, y, z = (float(v) for v in found.size_m)
-        seen_at = dict(zip(sure, found.poses, strict=True))
+        x, y, z = (float(v) for v in profile.size_m)
+        seen_at = dict(zip(sure, profile.poses, strict=True))
         return {
-            i: replace(c, shape_id=found.shape_id, shape_size_m=(x, y, z), pose=seen_at.get(i) or _standing(c, z))
+            i: replace(c, shape_id=profile.shape_id, shape_size_m=(x, y, z), pose=seen_at.get(i) or _standing(c, z))
             for i, c in placed.items()
         }
 
@@ -203,12 +203,12 @@ def _standing(candidate: Candidate, height_m: float) -> Pose:
 
 def _sets(posed: Sequence[PosedCandidates]) -> list[list[PosedCandidates]]:
     """Objects whose first candidates have one shape and one size, together."""
-    found: dict[tuple[str, bytes], list[PosedCandidates]] = {}
+    sets: dict[tuple[str, bytes], list[PosedCandidates]] = {}
     for one in posed:
         if one.candidates:
             best = one.candidates[0]
-            found.setdefault((best.shape_id, np.round(best.pose.scale, 3).tobytes()), []).append(one)
-    return list(found.values())
+            sets.setdefault((best.shape_id, np.round(best.pose.scale, 3).tobytes()), []).append(one)
+    return list(sets.values())
 
 
 def _variants(members: Sequence[PosedCandidates]) -> int:

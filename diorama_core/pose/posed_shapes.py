@@ -28,9 +28,9 @@ class PosedShape:
     """How nearly as well it fits when turned otherwise: 0 to 1."""
 
 
-def ordered_shapes(found: Sequence[PosedShape], ranks: Mapping[str, float]) -> tuple[PosedShape, ...]:
+def ordered_shapes(shapes: Sequence[PosedShape], ranks: Mapping[str, float]) -> tuple[PosedShape, ...]:
     """The shapes of one object by rank, the best first."""
-    return tuple(sorted(found, key=lambda posed: (-ranks[posed.shape.id], posed.shape.id)))
+    return tuple(sorted(shapes, key=lambda posed: (-ranks[posed.shape.id], posed.shape.id)))
 
 
 def candidates_of(

@@ -83,15 +83,15 @@ class RenderAndCompare:
         facings = solve(trials.room, self.facing)
         tasks = [task.with_facing(facings.costs_of(task.item.id)) for task in trials.tasks]
         pieces = list(zip(tasks, trials.tried, strict=True))
-        found = each_there(self._pose_object, pieces, progress.part(0.5, 1.0), "Posing objects")
+        tried = each_there(self._pose_object, pieces, progress.part(0.5, 1.0), "Posing objects")
         ranks = agreed_ranks(
             [task.item.category for task in tasks],
-            [{posed.shape.id: posed.rank for posed in of_one} for of_one in found],
+            [{posed.shape.id: posed.rank for posed in of_one} for of_one in tried],
             [task.fine.confidence(0.0, 1.0) for task in tasks],
             [task.max_loss for task in tasks],
             self.settings.search,
         )
-        ordered = [ordered_shapes(of_one, order) for of_one, order in zip(found, ranks, strict=True)]
+        ordered = [ordered_shapes(of_one, order) for of_one, order in zip(tried, ranks, strict=True)]
         firsts = self._evened(tasks, [of_one[0] for of_one in ordered])
         ordered = [(first, *of_one[1:]) for first, of_one in zip(firsts, ordered, strict=True)]
         return tuple(candidates_of(*one, facings) for one in zip(tasks, ordered, ranks, strict=True))
@@ -283,8 +283,8 @@ class RenderAndCompare:
         both, _, scores = self._finely(task, tried, start)
         refined = Hypotheses(both, np.tile(start.off_axis_rad, 2), np.tile(start.misfit, 2))
         others = tried.scores - tried.scores.max() + scores.max() - self.settings.search.left_unrefined
-        found = tried.hypotheses.and_also(refined)
-        return replace(tried, hypotheses=found, scores=np.concatenate([others, scores]))
+        hypotheses = tried.hypotheses.and_also(refined)
+        return replace(tried, hypotheses=hypotheses, scores=np.concatenate([others, scores]))
 
     def _refined(self, task: PosingTask, caster: ShapeCaster, limits: SizeLimits, start: PoseBatch) -> PoseBatch:
         if task.measured is not None:

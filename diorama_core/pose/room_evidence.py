@@ -59,11 +59,11 @@ class Trials:
 
     def folds(self) -> dict[str, int]:
         """By posed object how many headings of its likeliest shape look the same."""
-        found: dict[str, int] = {}
+        folds: dict[str, int] = {}
         for task, of_one in zip(self.tasks, self.tried, strict=True):
             best = int(np.argmax([likelihood(task.item.label, t, self.settings) for t in of_one]))
-            found[task.item.id] = of_one[best].shape.symmetry
-        return found
+            folds[task.item.id] = of_one[best].shape.symmetry
+        return folds
 
 
 def powers(label: str, settings: PoseSearchSettings) -> tuple[float, float]:

@@ -159,11 +159,11 @@ def turned(
     mesh = library.mesh(shape_id)
     if len(mesh.faces) > settings.shapes.max_faces or not is_revolution(mesh, settings.shapes):
         return None
-    found = [
+    profiles = [
         measured_girth(OutlineMap(e.camera, e.seen, settings.shapes), mesh, p, settings.shapes)
         for e, p in zip(evidence, poses, strict=True)
     ]
-    told = [g for g in found if g is not None]
+    told = [g for g in profiles if g is not None]
     if not told:
         return None
     girth = tuple(int(v) for v in np.rint(np.median(told, axis=0)))

@@ -29,8 +29,8 @@ class Backups:
 
     def paths(self) -> tuple[Path, ...]:
         """Earlier scene files, newest first; no links, and nothing that the program did not write."""
-        found = [(order, p) for p in self.folder.glob("scene-*.json") if (order := _order(p)) is not None]
-        return tuple(p for _, p in sorted(found, reverse=True) if p.is_file() and not p.is_symlink())
+        dated = [(order, p) for p in self.folder.glob("scene-*.json") if (order := _order(p)) is not None]
+        return tuple(p for _, p in sorted(dated, reverse=True) if p.is_file() and not p.is_symlink())
 
     def keep(self, scene: Path, *, at_once: bool) -> bool:
         """Keep a scene file that is about to be replaced: at most one a minute, and none twice in a row.

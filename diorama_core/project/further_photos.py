@@ -57,15 +57,15 @@ def save_photos(project: Project, photos: Sequence[FurtherPhoto], saved: Sequenc
 def load_photos(project: Project) -> tuple[tuple[FurtherPhoto, ...], tuple[str, ...]]:
     """The further photos, and a line for each that cannot be read."""
     names = project.info().get("photos", [])
-    found: list[FurtherPhoto] = []
+    photos: list[FurtherPhoto] = []
     damage: list[str] = []
     for name in names[:MAX_PHOTOS] if isinstance(names, list) else []:
         path = project.folder / "photos" / f"{Path(str(name)).name}.zip"
         try:
-            found.append(_photo_of(read_bytes(path, codec.MAX_BYTES, ProjectError), path.stem))
+            photos.append(_photo_of(read_bytes(path, codec.MAX_BYTES, ProjectError), path.stem))
         except ProjectError as error:
             damage.append(f"{path}: this photo cannot be read back ({error}); add it again")
-    return tuple(found), tuple(damage)
+    return tuple(photos), tuple(damage)
 
 
 def _photo_of(data: bytes, name: str) -> FurtherPhoto:

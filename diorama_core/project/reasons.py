@@ -54,9 +54,9 @@ def load_reasons(project: Project) -> tuple[tuple[Reason, ...], str]:
             return (), f"{path} is no list of reasons of version {VERSION}; build the scene again"
         rows = document.get("objects", {})
         named = {k: [{**row, "object_id": k} for row in of_one] for k, of_one in rows.items()}
-        found = _REASONS.validate_python(named)
+        reasons = _REASONS.validate_python(named)
     except ProjectError as error:
         return (), str(error)
     except (ValidationError, TypeError, AttributeError):
         return (), f"{path} is damaged: reasons are not told; build the scene again"
-    return tuple(reason for of_one in found.values() for reason in of_one), ""
+    return tuple(reason for of_one in reasons.values() for reason in of_one), ""

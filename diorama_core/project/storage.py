@@ -257,7 +257,7 @@ class Project:
         names = {p.texture for p in scene.architecture.planes if p.texture is not None}
         names |= {p.photo_texture for p in scene.architecture.planes if p.photo_texture is not None}
         names |= {m.texture for o in scene.objects for m in o.photo_materials if m.texture is not None}
-        found: dict[str, UInt8[np.ndarray, "h w 3"]] = {}
+        textures: dict[str, UInt8[np.ndarray, "h w 3"]] = {}
         pixels = 0
         for name in sorted(names):
             try:
@@ -267,8 +267,8 @@ class Project:
                 continue
             pixels += 0 if picture is None else picture.shape[0] * picture.shape[1]
             if picture is not None and pixels <= MAX_TEXTURE_PIXELS:
-                found[name] = picture
-        return found
+                textures[name] = picture
+        return textures
 
     def _texture_path(self, name: str) -> Path:
         # A scene file from elsewhere must not reach outside the project.

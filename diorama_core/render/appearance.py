@@ -300,10 +300,10 @@ def _within_crease(
 
 def _sums(labels: Int[np.ndarray, " n"], vectors: Float[np.ndarray, "n 3"], count: int) -> Float[np.ndarray, "k 3"]:
     """Sum of the vectors of each label below `count`."""
-    found = np.empty((count, 3))
+    sums = np.empty((count, 3))
     for k in range(3):
-        found[:, k] = np.bincount(labels, vectors[:, k], minlength=count)
-    return found
+        sums[:, k] = np.bincount(labels, vectors[:, k], minlength=count)
+    return sums
 
 
 def _pairs_of_equal(labels: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

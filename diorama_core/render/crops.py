@@ -88,7 +88,7 @@ def foreground(rgb: UInt8[np.ndarray, "h w 3"]) -> Bool[np.ndarray, "h w"]:
         )
     except cv2.error:  # too few colours to model
         return everywhere
-    found = (labels & 1).astype(np.uint8)
-    found = cv2.morphologyEx(found, cv2.MORPH_OPEN, np.ones((3, 3), np.uint8)) > 0
+    mask = (labels & 1).astype(np.uint8)
+    mask = cv2.morphologyEx(mask, cv2.MORPH_OPEN, np.ones((3, 3), np.uint8)) > 0
     least, most = _PLAUSIBLE_SHARE
-    return found if least <= found.mean() <= most else everywhere
+    return mask if least <= mask.mean() <= most else everywhere

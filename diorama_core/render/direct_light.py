@@ -117,6 +117,6 @@ def _where_lit(
     """Strength of light, 0 where something stands between a place and the light, up to `far` times the ray."""
     lit = np.flatnonzero(strength > 0)
     rays = np.concatenate([origins, toward], axis=1).take(lit, axis=0).astype(np.float32)
-    found = strength.copy()
-    found[lit[blockers.occluded(rays, far=far)]] = 0
-    return found
+    light = strength.copy()
+    light[lit[blockers.occluded(rays, far=far)]] = 0
+    return light

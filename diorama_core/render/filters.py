@@ -25,7 +25,7 @@ class Neighbours:
         cls,
         points: Float32[np.ndarray, "h w 3"],
         normals: Float32[np.ndarray, "h w 3"],
-        found: Bool[np.ndarray, "h w"],
+        is_hit: Bool[np.ndarray, "h w"],
         tolerance_m: Float32[np.ndarray, "h w"],
     ) -> Neighbours:
         """The outer rows and columns count half, so that exactly the samples of one 4 x 4 block are gathered.
@@ -33,19 +33,19 @@ class Neighbours:
         Args:
             points: Where each pixel's place is in the world.
             normals: Its normal.
-            found: Whether the pixel sees anything.
+            is_hit: Whether the pixel sees anything.
             tolerance_m: How far a neighbour may leave the pixel's tangent plane.
         """
         half, weights = TILE // 2, []
-        total = np.zeros(found.shape, np.float32)
+        total = np.zeros(is_hit.shape, np.float32)
         for dy in range(-half, half + 1):
             for dx in range(-half, half + 1):
                 share = (0.5 if abs(dy) == half else 1.0) * (0.5 if abs(dx) == half else 1.0)
-                here, there = _shifted(found.shape, dy, dx)
+                here, there = _shifted(is_hit.shape, dy, dx)
                 leave = np.abs(dot(points[there] - points[here], normals[here]))
                 turn = dot(normals[here], normals[there])
-                same = found[there] & (leave < tolerance_m[here]) & (turn > 0.85)
-                weight = np.zeros(found.shape, np.float32)
+                same = is_hit[there] & (leave < tolerance_m[here]) & (turn > 0.85)
+                weight = np.zeros(is_hit.shape, np.float32)
                 weight[here] = same * np.float32(share)
                 total += weight
                 weights.append((dy, dx, weight))

@@ -66,11 +66,11 @@ def fallen_light(
 
 def _noisy(world: World, blockers: Caster, grid: Grid, rows: slice, light: Lighting, effort: Effort) -> Light:
     """Light of some rows, every pixel with its own share of the samples."""
-    found = grid.found
-    spots = Spots(grid.points[found], grid.normals[found], grid.flat_normals[found], grid.photographed[found])
-    pixels = np.argwhere(found) + np.array([rows.start, 0])
+    is_hit = grid.found
+    spots = Spots(grid.points[is_hit], grid.normals[is_hit], grid.flat_normals[is_hit], grid.photographed[is_hit])
+    pixels = np.argwhere(is_hit) + np.array([rows.start, 0])
     noisy = np.zeros(grid.points.shape, np.float32)
-    noisy[found] = np.add(*irradiance(world, blockers, spots, pixels, light, effort))
+    noisy[is_hit] = np.add(*irradiance(world, blockers, spots, pixels, light, effort))
     return noisy
 
 

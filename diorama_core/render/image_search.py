@@ -72,8 +72,8 @@ class ImageSearch:
             worded = find(self.library, text, _WORDS_FIRST)
             if worded.shapes:
                 return self._among(worded, crop, k, progress)
-            found = self._all(crop, k, progress)
-            return FoundShapes(found.shapes, found.scores, worded.query, worded.note)
+            matches = self._all(crop, k, progress)
+            return FoundShapes(matches.shapes, matches.scores, worded.query, worded.note)
         return self._all(crop, k, progress)
 
     def _among(self, worded: FoundShapes, crop: ShapeCrop, k: int, progress: Progress | None) -> FoundShapes:
@@ -97,8 +97,8 @@ class ImageSearch:
         matrix = self.prepared(self.library.shapes(), progress)
         stale = len(matrix.missing_from(by_key))
         near = vector_index(matrix).top(_query(crop), k + stale)
-        found = [(shape, n.score) for n in near for shape in by_key.get(n.key, ())][:k]
-        return FoundShapes(tuple(shape for shape, _ in found), tuple(score for _, score in found), understand(""))
+        matches = [(shape, n.score) for n in near for shape in by_key.get(n.key, ())][:k]
+        return FoundShapes(tuple(shape for shape, _ in matches), tuple(score for _, score in matches), understand(""))
 
     def prepared(
         self,

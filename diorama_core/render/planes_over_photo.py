@@ -44,14 +44,14 @@ def planes_over_photo(
 
 def plane_colours(planes: tuple[Plane, ...]) -> list[tuple[int, int, int]]:
     """Green for floors, blue for ceilings, and a hue of its own for each wall."""
-    found, wall = [], 0
+    colours, wall = [], 0
     for plane in planes:
         if plane.role == "wall":
-            found.append(_WALLS[wall % len(_WALLS)])
+            colours.append(_WALLS[wall % len(_WALLS)])
             wall += 1
         else:
-            found.append(_FLOOR if plane.role == "floor" else _CEILING)
-    return found
+            colours.append(_FLOOR if plane.role == "floor" else _CEILING)
+    return colours
 
 
 def _labels(planes: tuple[Plane, ...], camera: Camera) -> Int[np.ndarray, "h w"]:

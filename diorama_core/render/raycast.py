@@ -181,10 +181,10 @@ class MeshCaster:
         view = PinholeView(view) if isinstance(view, Camera) else view
         rays = view.rays(pixel_centres(view.width, view.height))
         hits = self._caster.first_hits(rays)
-        found = hits.found
-        depth = np.where(found, hits.distance, 0).astype(np.float32)
-        normals = np.zeros((*found.shape, 3), dtype=np.float32)
-        normals[found] = facing(self._normals[hits.triangle[found]], rays[found][:, 3:])
+        is_hit = hits.found
+        depth = np.where(is_hit, hits.distance, 0).astype(np.float32)
+        normals = np.zeros((*is_hit.shape, 3), dtype=np.float32)
+        normals[is_hit] = facing(self._normals[hits.triangle[is_hit]], rays[is_hit][:, 3:])
         return Buffers(depth, normals, self._instances(hits))
 
 

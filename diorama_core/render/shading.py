@@ -99,10 +99,10 @@ class _Band:
 def _first_sight(world: World, view: View, rows: slice) -> _Band:
     rays = view.rays(pixel_centres(view.width, rows.stop, rows.start))
     hits = world.caster.first_hits(rays)
-    found = hits.found
-    footprint_m = pixel_footprint(view, np.where(found, hits.distance, 0).astype(np.float32))[found]
-    places = world.places(rays[found], hits.chosen(found), footprint_m)
-    return _Band(found, rays[found], places, np.where(found, hits.distance, 0).astype(np.float32))
+    is_hit = hits.found
+    footprint_m = pixel_footprint(view, np.where(is_hit, hits.distance, 0).astype(np.float32))[is_hit]
+    places = world.places(rays[is_hit], hits.chosen(is_hit), footprint_m)
+    return _Band(is_hit, rays[is_hit], places, np.where(is_hit, hits.distance, 0).astype(np.float32))
 
 
 def _seen(
@@ -162,10 +162,10 @@ def _environment(world: World, rays: RayArray, light: Lighting) -> Float32[np.nd
     """What a mirror sees along rays: surfaces in unshadowed light, the window, or the surroundings."""
     hits = world.caster.first_hits(rays)
     seen = ambient(rays[:, 3:], light).astype(np.float32) + _window_glare(rays, light)
-    found = np.flatnonzero(hits.found)
-    if len(found):
-        places = world.places(rays[found], hits.chosen(found))
-        seen[found] = 0.85 * places.albedo * unshadowed(places.points, places.normals, light) + places.emissive
+    hit_rows = np.flatnonzero(hits.found)
+    if len(hit_rows):
+        places = world.places(rays[hit_rows], hits.chosen(hit_rows))
+        seen[hit_rows] = 0.85 * places.albedo * unshadowed(places.points, places.normals, light) + places.emissive
     return seen
 
 
@@ -189,11 +189,11 @@ def _beyond(
     onward = np.concatenate([places.points[clear] + 2e-3 * direction, direction], axis=1).astype(np.float32)
     hits = world.caster.first_hits(onward)
     seen = np.broadcast_to(ambient(direction, light), direction.shape).astype(np.float32)
-    found = np.flatnonzero(hits.found)
-    if len(found):
-        behind = world.places(onward[found], hits.chosen(found))
+    hit_rows = np.flatnonzero(hits.found)
+    if len(hit_rows):
+        behind = world.places(onward[hit_rows], hits.chosen(hit_rows))
         fallen = unshadowed(behind.points, behind.normals, light)
-        seen[found] = _seen(world, behind, onward[found], fallen, light, depth + 1)
+        seen[hit_rows] = _seen(world, behind, onward[hit_rows], fallen, light, depth + 1)
     return seen
 
 
@@ -228,12 +228,12 @@ def _seen_again(
     count = len(_SUBPIXELS)
     rays = view.rays((pixels[:, None, ::-1] + 0.5 + _SUBPIXELS).reshape(-1, 2))
     hits = world.caster.first_hits(rays)
-    found = np.flatnonzero(hits.found)
-    chosen = hits.chosen(found)
-    places = world.places(rays[found], chosen, pixel_footprint(view, chosen.distance[:, None])[:, 0])
-    borrowed = _borrowed(places, np.repeat(pixels, count, axis=0)[found], grid, fallen)
+    hit_rows = np.flatnonzero(hits.found)
+    chosen = hits.chosen(hit_rows)
+    places = world.places(rays[hit_rows], chosen, pixel_footprint(view, chosen.distance[:, None])[:, 0])
+    borrowed = _borrowed(places, np.repeat(pixels, count, axis=0)[hit_rows], grid, fallen)
     seen = np.zeros((len(rays), 3), np.float32)
-    seen[found] = np.minimum(_seen(world, places, rays[found], borrowed, light), BRIGHTEST)
+    seen[hit_rows] = np.minimum(_seen(world, places, rays[hit_rows], borrowed, light), BRIGHTEST)
     share = hits.found.reshape(-1, count).mean(axis=1)
     return seen.reshape(-1, count, 3).mean(axis=1), share.astype(np.float32)
 
@@ -283,17 +283,17 @@ def _borrowed(
 
 
 def _grid(parts: list[_Band], view: View) -> Grid:
-    found = np.concatenate([p.found for p in parts])
+    is_hit = np.concatenate([p.found for p in parts])
     depth = np.concatenate([p.depth for p in parts])
 
     def image(name: str) -> np.ndarray:
         values = [getattr(p.places, name) for p in parts]
         empty = -1 if name == "instance" else 0
-        whole = np.full((*found.shape, *values[0].shape[1:]), empty, values[0].dtype)
-        whole[found] = np.concatenate(values)
+        whole = np.full((*is_hit.shape, *values[0].shape[1:]), empty, values[0].dtype)
+        whole[is_hit] = np.concatenate(values)
         return whole
 
     points, normals, flat_normals, instance, photographed = each(
         image, ("points", "normals", "flat_normals", "instance", "photographed")
     )
-    return Grid(found, points, normals, flat_normals, instance, depth, pixel_footprint(view, depth), photographed)
+    return Grid(is_hit, points, normals, flat_normals, instance, depth, pixel_footprint(view, depth), photographed)

@@ -61,11 +61,11 @@ class TemplateCache:
         name = f"{shape.content_hash}-{grid.key}.{_FORMAT}.npz"
 
         def read_or_rendered() -> Templates:
-            found = self._read(name, grid)
-            if found is None:
-                found = render_templates(library.mesh(shape.id), grid, progress)
-                self._write(name, found)
-            return found
+            templates = self._read(name, grid)
+            if templates is None:
+                templates = render_templates(library.mesh(shape.id), grid, progress)
+                self._write(name, templates)
+            return templates
 
         return self._cached.get(name, read_or_rendered)
 

@@ -62,10 +62,14 @@ def view_feature(
     Returns:
         `WIDTH` numbers of unit length (shorter where colours are not known); None for an empty mask.
     """
-    found = outline_and_edges(gray, mask)
-    if found is None:
+    feature = outline_and_edges(gray, mask)
+    if feature is None:
         return None
-    parts = (np.sqrt(weights.outline) * found[0], np.sqrt(weights.edges) * found[1], np.sqrt(weights.colour) * colour)
+    parts = (
+        np.sqrt(weights.outline) * feature[0],
+        np.sqrt(weights.edges) * feature[1],
+        np.sqrt(weights.colour) * colour,
+    )
     return np.concatenate(parts).astype(np.float32)
 
 

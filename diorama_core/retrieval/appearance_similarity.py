@@ -144,9 +144,9 @@ def _features_of_views(appearance: ShapeAppearance) -> Float[np.ndarray, "v widt
         trimesh.Trimesh(appearance.vertices, appearance.faces, process=False), _GRID
     )
     for k, rgb in enumerate(painted_views(templates, face_ids, appearance)):
-        found = _feature(rgb, templates.mask[k])
-        if found is not None:
-            rows[k] = found
+        feature = _feature(rgb, templates.mask[k])
+        if feature is not None:
+            rows[k] = feature
     return rows
 
 

@@ -37,8 +37,8 @@ def cached_features(
     path = _path(kind, shape, folder)
 
     def found_or_made() -> np.ndarray:
-        found = _read(path)
-        return _written(path, make().astype(np.float16)) if found is None else found
+        features = _read(path)
+        return _written(path, make().astype(np.float16)) if features is None else features
 
     return _CACHE.get(str(path), found_or_made)
 

@@ -243,14 +243,14 @@ def _senses(
     camera = geometry.camera
     by_box = sense_probabilities(objects, camera.intrinsics, camera.T_world_camera[:3, :3], float(camera.position[2]))
     parent_of = {s.child: s.parent for s in geometry.supports}
-    found: list[Mapping[str, float]] = []
+    weights: list[Mapping[str, float]] = []
     for item, cuboid, senses in zip(objects, cuboids, by_box, strict=True):
         named = is_named(item.label)
         mounts = _mounts_at(parent_of.get(item.id), named=named)
         other = settings.ranking.other_mount if named else settings.ranking.other_mount_of_unnamed
         sized = as_measured(senses, cuboid.size_m, settings.sizes) if named else senses
-        found.append({kind: p * (1.0 if category(kind).mount in mounts else other) for kind, p in sized.items()})
-    return with_neighbours(found, objects, cuboids, geometry.supports, settings.ranking)
+        weights.append({kind: p * (1.0 if category(kind).mount in mounts else other) for kind, p in sized.items()})
+    return with_neighbours(weights, objects, cuboids, geometry.supports, settings.ranking)
 
 
 def _mounts_at(parent: str | None, *, named: bool) -> tuple[Mount, ...]:

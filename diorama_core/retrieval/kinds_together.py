@@ -192,8 +192,8 @@ def _carriers() -> Bool[np.ndarray, "k"]:
 @cache
 def _rooms(settings: KindsTogetherSettings = SETTINGS) -> tuple[Float[np.ndarray, "k"], ...]:
     """For every type of room how many times more often each kind is met there."""
-    found = []
+    rooms = []
     for kinds in ROOMS.values():
         ratio = np.array([settings.at_home if name in kinds else 1.0 for name in _names()])
-        found.append(ratio / float(_frequency() @ ratio))
-    return tuple(found)
+        rooms.append(ratio / float(_frequency() @ ratio))
+    return tuple(rooms)

@@ -44,8 +44,8 @@ def lying_likelihoods(
         carrier_kinds: that this may be of.
         height: how likely every camera height of `box_views.HEIGHTS_M` is, adding up to 1.
     """
-    found = np.stack([_distances(view, carrier, category(kind), height) for kind in carrier_kinds], axis=1)
-    return _sizes(view, kinds) @ found + SETTINGS.certain
+    distances = np.stack([_distances(view, carrier, category(kind), height) for kind in carrier_kinds], axis=1)
+    return _sizes(view, kinds) @ distances + SETTINGS.certain
 
 
 def _sizes(view: BoxView, kinds: Sequence[str]) -> Float[np.ndarray, "k d"]:

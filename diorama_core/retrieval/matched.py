@@ -41,7 +41,7 @@ class MatchedByLooks:
         """
         similarity = self.similarity or EmbeddedSimilarity(self.library)
         placed = {c.object_id for c in geometry.cuboids}
-        found = []
+        rankings = []
         for index, item in enumerate(objects):
             if item.id not in placed:
                 continue
@@ -50,8 +50,8 @@ class MatchedByLooks:
             crop = ObjectCrop(inputs.photo.rgb, item.mask, item.label, 1.0, 1.0)
             alike = similarity.of(crop, shapes)
             order = sorted(range(len(shapes)), key=lambda k: (-alike[k], shapes[k].id))[: self.shapes]
-            found.append(RankedShapes(item.id, tuple((shapes[k].id, float(alike[k])) for k in order)))
-        return tuple(found)
+            rankings.append(RankedShapes(item.id, tuple((shapes[k].id, float(alike[k])) for k in order)))
+        return tuple(rankings)
 
     def _of_kind(self, name: str) -> list[Shape]:
         """Shapes of the category; of its nearest kinds where the library has none of itself."""

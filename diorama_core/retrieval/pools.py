@@ -95,7 +95,7 @@ def pool_for(library: ShapeLibrary, query: RetrievalQuery, settings: PoolSetting
             most = settings.named_pool if own else settings.other_pool if query.named else settings.unnamed_each
             near_shapes = _nearest(_usable(library, library.in_category(kind), query), query.size_m, most, settings)
             members += [Pooled(shape, sense_factor(share / best, settings)) for shape in near_shapes]
-    found = bool(members)
+    is_known = bool(members)
     factor = settings.related_factor
     for near in near_kinds(query.category, settings):
         if len(members) >= settings.enough:
@@ -105,7 +105,7 @@ def pool_for(library: ShapeLibrary, query: RetrievalQuery, settings: PoolSetting
         )
         members += [Pooled(shape, factor) for shape in near_shapes]
         factor *= settings.related_factor
-    if found:
+    if is_known:
         return Pool(tuple(members))
     note = f"no {query.category} among the shapes; the nearest kinds were taken"
     return Pool(tuple(members) or _plausible(library, query, settings), note)

@@ -50,12 +50,12 @@ class TextThenPicture:
         if not shapes or not placed:
             return ()
         known = shape_vectors(self.library, self.embedding, shapes, self.folder)
-        found = []
+        rankings = []
         for index, item in enumerate(objects):
             if item.id in placed:
                 progress.report(index / len(objects), f"Looking for shapes: {item.label}")
-                found.append(RankedShapes(item.id, self._ranked(inputs, item, shapes, known)))
-        return tuple(found)
+                rankings.append(RankedShapes(item.id, self._ranked(inputs, item, shapes, known)))
+        return tuple(rankings)
 
     def _ranked(
         self, inputs: Inputs, item: DetectedObject, shapes: tuple[Shape, ...], known: Float32[np.ndarray, "n d"]

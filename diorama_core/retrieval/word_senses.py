@@ -110,13 +110,13 @@ def sense_probabilities(
     log_height = np.sort(np.stack(said), axis=0).sum(axis=0)  # the order of the objects must not show in a bit
     height = np.exp(log_height - log_height.max())
     height /= height.sum()
-    found: list[Mapping[str, float]] = []
+    probabilities: list[Mapping[str, float]] = []
     for of_word, of_view in zip(senses, likely, strict=True):
         mixed = sum(share * of_view[kind] for kind, share in of_word.items())  # the others' say on the height
         posterior = {kind: share * float((height * of_view[kind] / mixed).sum()) for kind, share in of_word.items()}
         whole = sum(posterior.values())
-        found.append({kind: value / whole for kind, value in posterior.items()})
-    return kinds_together(found, below, _as_lying(views, likely, below, height))
+        probabilities.append({kind: value / whole for kind, value in posterior.items()})
+    return kinds_together(probabilities, below, _as_lying(views, likely, below, height))
 
 
 def _as_lying(
@@ -126,16 +126,16 @@ def _as_lying(
     height: Float[np.ndarray, "h"],
 ) -> list[Lying | None]:
     """For every thing with a carrier how many times likelier its box is if it lies there."""
-    found: list[Lying | None] = []
+    lying: list[Lying | None] = []
     for view, of_view, on in zip(views, likely, below, strict=True):
         on_kinds = () if on is None else tuple(kind for kind in likely[on] if carries(kind))
         if on is None or not on_kinds:
-            found.append(None)
+            lying.append(None)
             continue
         alone = np.array([float(height @ of_kind) for of_kind in of_view.values()])
         there = lying_likelihoods(view, tuple(of_view), views[on], on_kinds, height)
-        found.append(Lying(tuple(of_view), on_kinds, there / alone[:, None]))
-    return found
+        lying.append(Lying(tuple(of_view), on_kinds, there / alone[:, None]))
+    return lying
 
 
 def _chosen(item: DetectedObject, senses: Mapping[str, float], settings: WordSenseSettings = SETTINGS) -> str:

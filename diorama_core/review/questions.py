@@ -72,10 +72,10 @@ def questions(scene: Scene) -> tuple[Question, ...]:
 
     What a person has decided since the build, by an answer or by an edit, is not asked.
     """
-    found = [q for item in scene.objects if item.belief is not None for q in _about(scene, item, item.belief)]
+    candidates = [q for item in scene.objects if item.belief is not None for q in _about(scene, item, item.belief)]
     length = _known_length(scene)
-    found += [] if length is None else [length]
-    return tuple(sorted((q for q in found if q.gain >= LEAST_GAIN), key=lambda q: (-q.gain, q.id)))
+    candidates += [] if length is None else [length]
+    return tuple(sorted((q for q in candidates if q.gain >= LEAST_GAIN), key=lambda q: (-q.gain, q.id)))
 
 
 def _about(scene: Scene, item: SceneObject, belief: Belief) -> Iterator[Question]:

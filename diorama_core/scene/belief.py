@@ -30,10 +30,10 @@ class Belief:
     def right(self) -> float:
         """Probability that all that was decided is right, its exact place and size apart."""
         shares = (*self.kinds[:1], *self.supporters[:1])
-        found = self.present * (self.fronts[0] if self.fronts else 1.0)
+        probability = self.present * (self.fronts[0] if self.fronts else 1.0)
         for _, share in shares:
-            found *= share
-        return found
+            probability *= share
+        return probability
 
     def with_kind(self, kind: str) -> Belief:
         """This belief once a person said what the object is: so there is one."""

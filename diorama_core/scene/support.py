@@ -10,13 +10,13 @@ from diorama_core.scene.types import Scene, Support
 
 def descendants(scene: Scene, object_id: str) -> tuple[str, ...]:
     """Ids of everything held up by an object, directly or not, nearest first; without the object itself."""
-    found: list[str] = []
+    names: list[str] = []
     frontier = [object_id]
     while frontier:
         frontier = [child for parent in frontier for child in scene.children_of(parent)]
-        frontier = [child for child in frontier if child not in found and child != object_id]
-        found.extend(frontier)
-    return tuple(found)
+        frontier = [child for child in frontier if child not in names and child != object_id]
+        names.extend(frontier)
+    return tuple(names)
 
 
 def top_down(scene: Scene) -> tuple[str, ...]:

@@ -24,14 +24,14 @@ def photo_only(view: TruthView) -> Inputs:
 
 def true_objects(view: TruthView) -> tuple[DetectedObject, ...]:
     """Every object asked for, with its visible mask; the id is the truth's."""
-    found = []
+    detected = []
     for index in view.asked:
         item = view.scene.objects[index]
         mask = view.object_ids == index
         assert item.box_px is not None
         assert item.mask_id is not None
-        found.append(DetectedObject(item.id, item.category, item.label, item.box_px, mask, item.mask_id, 1.0))
-    return tuple(found)
+        detected.append(DetectedObject(item.id, item.category, item.label, item.box_px, mask, item.mask_id, 1.0))
+    return tuple(detected)
 
 
 def true_supports(view: TruthView) -> tuple[Support, ...]:

@@ -319,9 +319,9 @@ class Furnisher:
         spots = quad[0] + a.reshape(-1, 1) * (quad[1] - quad[0]) + b.reshape(-1, 1) * (quad[3] - quad[0])
         above = min(0.04, 0.5 * face.clearance_m)
         probes = np.column_stack([spots / scale[:2], np.full(len(spots), face.height_m + above)])
-        found = heights_below(self.library, parent.shape_id, probes, above + 0.03) * scale[2]
-        top = found.max()
-        carried = found > top - 0.004
+        heights = heights_below(self.library, parent.shape_id, probes, above + 0.03) * scale[2]
+        top = heights.max()
+        carried = heights > top - 0.004
         wide = (
             len({k % 3 for k in np.flatnonzero(carried)}) == 3 and len({k // 3 for k in np.flatnonzero(carried)}) == 3
         )

@@ -57,13 +57,13 @@ class ViewSurvey:
         """Why it is not a picture that people would take; empty when it is."""
         return tuple(
             fault
-            for fault, found in (
+            for fault, cases in (
                 ("few objects", self.asked < min_asked),
                 ("no floor", self.floor < MIN_FLOOR),
                 ("one object fills it", self.largest > LARGEST_SHARE),
                 ("too near", self.near > NEAR_SHARE),
             )
-            if found
+            if cases
         )
 
 

@@ -307,10 +307,10 @@ def _bounds(points_camera: np.ndarray, camera: Camera, corners_world: np.ndarray
         uv = points_camera[:, :2] / points_camera[:, 2:] * [k.fx, k.fy] + [k.cx, k.cy]
         low, high = np.clip(uv.min(axis=0), 0, [k.width, k.height]), np.clip(uv.max(axis=0), 0, [k.width, k.height])
     else:
-        found, visible = visible_bounds(camera.to_camera(corners_world)[None], k)
+        bounds, visible = visible_bounds(camera.to_camera(corners_world)[None], k)
         if not visible[0]:
             return None
-        low, high = found[0][:2], found[0][2:]
+        low, high = bounds[0][:2], bounds[0][2:]
     if (high - low <= 0).any():
         return None
     return float(low[0]), float(low[1]), float(high[0]), float(high[1])

@@ -239,10 +239,10 @@ def locked_where_restless(scene: Scene, library: ShapeLibrary) -> tuple[Scene, t
 
 def differences(room: Scene, variant: Scene) -> dict[str, tuple[str, ...]]:
     """What differs, by id, in a few words."""
-    found: dict[str, tuple[str, ...]] = {o.id: ("removed",) for o in room.objects if not variant.has_object(o.id)}
+    changes: dict[str, tuple[str, ...]] = {o.id: ("removed",) for o in room.objects if not variant.has_object(o.id)}
     for new in variant.objects:
         if not room.has_object(new.id):
-            found[new.id] = (f"added {new.shape_id}",)
+            changes[new.id] = (f"added {new.shape_id}",)
             continue
         old = room.object(new.id)
         moved = not np.allclose(old.pose.T_world_object, new.pose.T_world_object, atol=1e-6)
@@ -252,13 +252,13 @@ def differences(room: Scene, variant: Scene) -> dict[str, tuple[str, ...]]:
             f"colour {new.colour}": new.colour != old.colour,
         }
         if said := tuple(text for text, is_so in about.items() if is_so):
-            found[new.id] = said
+            changes[new.id] = said
     for plane in variant.architecture.planes:
         if plane.finish is not None and plane.finish != room.plane(plane.id).finish:
-            found[plane.id] = (f"{plane.finish.pattern} {plane.finish.colour}",)
+            changes[plane.id] = (f"{plane.finish.pattern} {plane.finish.colour}",)
     if variant.light_settings != room.light_settings and variant.light_settings.hour is not None:
-        found["light"] = (
+        changes["light"] = (
             f"{variant.light_settings.hour:.1f} h",
             *(f"{i} on" for i in variant.light_settings.lamps_on or ()),
         )
-    return found
+    return changes

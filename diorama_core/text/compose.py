@@ -189,18 +189,18 @@ class _Composer:
 
     def _resolved(self, k: int, request: RequestedObject, copy: int, object_id: str) -> list[tuple[Wish, Relation]]:
         """The wishes of one copy with ids in the place of categories."""
-        found: list[tuple[Wish, Relation]] = []
+        resolved: list[tuple[Wish, Relation]] = []
         for wish in request.wishes:
             if wish.kind in OF_ROOM:
-                found.append((wish, Relation(wish.kind)))
+                resolved.append((wish, Relation(wish.kind)))
             elif wish.each_other:
                 if copy:
-                    found.append((wish, Relation(wish.kind, (self.ids[k][copy - 1],))))
+                    resolved.append((wish, Relation(wish.kind, (self.ids[k][copy - 1],))))
             elif targets := targets_of(self.scene, wish, copy):
-                found.append((wish, Relation(wish.kind, targets)))
+                resolved.append((wish, Relation(wish.kind, targets)))
             elif wish.targets:
-                found.append((wish, Relation(wish.kind, ("?",))))
-        return found
+                resolved.append((wish, Relation(wish.kind, ("?",))))
+        return resolved
 
     def _resolve_late(self, wanted: Sequence[RequestedObject]) -> None:
         """Wishes for what was placed only later."""

@@ -140,7 +140,7 @@ class EditApplier:
         return ids
 
     def _relations(self, scene: Scene, places: Sequence[Place], own: Sequence[str] = ()) -> list[Relation]:
-        found = []
+        relations = []
         for place in places:
             targets = tuple(self._ids(scene, place.targets)) if place.targets else ()
             if not targets and place.relation not in OF_ROOM and not own:
@@ -150,8 +150,8 @@ class EditApplier:
             toward = _toward(scene, place.side, own)
             if place.relation == "against wall" and place.side not in ("", "other"):
                 wall_on(scene, place.side)
-            found.append(Relation(place.relation, targets, toward=toward, side=place.side))
-        return found
+            relations.append(Relation(place.relation, targets, toward=toward, side=place.side))
+        return relations
 
 
 def _toward(scene: Scene, side: Side, own: Sequence[str]) -> tuple[float, float] | None:

@@ -89,9 +89,9 @@ def _edits_of(
     known = counted_edits(selector, clause) or room_edits(selector, clause) or object_edits(selector, clause, _subject)
     if known:
         return known
-    found = _VERB.match(clause)
-    verb = "" if found is None else str(found.lastgroup)
-    rest = clause if found is None else clause[found.end() :].strip()
+    match = _VERB.match(clause)
+    verb = "" if match is None else str(match.lastgroup)
+    rest = clause if match is None else clause[match.end() :].strip()
     if not rest and verb:
         raise EditRefused(f"“{clause}”: {verb} what? For example: {EXAMPLES}")
     if verb == "remove":
@@ -168,12 +168,12 @@ def _subject(selector: Selector, text: str) -> tuple[str, ...]:
         left_out = _subject(selector, left)
         return tuple(i for i in _subject(selector, kept) if i not in left_out)
     parts = re.split(r",\s*|\band\b", text) if not re.search(r"\bbetween\b", text) else [text]
-    found: list[str] = []
+    objects: list[str] = []
     for part in parts:
         if part.strip():
             head, places = split_places(part)
-            found += [i for i in selector.objects(head, places) if i not in found]
-    return tuple(found)
+            objects += [i for i in selector.objects(head, places) if i not in objects]
+    return tuple(objects)
 
 
 def _is_known(selector: Selector, text: str) -> bool:
@@ -289,10 +289,10 @@ def _swap(selector: Selector, clause: str, rest: str) -> Edit:
 
 def _room_part(text: str) -> Literal["walls", "floor", "ceiling"] | None:
     """The part of the room that a phrase names, if it names one."""
-    found = re.fullmatch(r"(?:all |of |the |my |this |room's )*(walls?|floor|ceiling)", text.strip())
-    if found is None:
+    match = re.fullmatch(r"(?:all |of |the |my |this |room's )*(walls?|floor|ceiling)", text.strip())
+    if match is None:
         return None
-    return "floor" if found[1] == "floor" else "ceiling" if found[1] == "ceiling" else "walls"
+    return "floor" if match[1] == "floor" else "ceiling" if match[1] == "ceiling" else "walls"
 
 
 def _colour(text: str, clause: str) -> str:
@@ -361,14 +361,14 @@ def _inserts(selector: Selector, clause: str, rest: str) -> tuple[Edit, ...]:
 def _with_its_own(selector: Selector, clause: str, rest: str) -> tuple[Edit, ...]:
     """ "a desk with an office chair by the wall" are two things, "a cabinet with two doors" is one."""
     head, _ = split_places(rest)
-    found = re.match(rf"(.+?) with (?=(?:{'|'.join(NUMBERS)}|its|\d+) )(.+)$", head)
-    own = None if found is None else noun_phrase(found[2])[0]
-    carrier = None if found is None else noun_phrase(found[1])[0]
-    if found is None or own is None or carrier is None or not own.label or not carrier.label:
+    match = re.match(rf"(.+?) with (?=(?:{'|'.join(NUMBERS)}|its|\d+) )(.+)$", head)
+    own = None if match is None else noun_phrase(match[2])[0]
+    carrier = None if match is None else noun_phrase(match[1])[0]
+    if match is None or own is None or carrier is None or not own.label or not carrier.label:
         return (_insert(selector, clause, rest),)
     if own.category in (*OPENING_CATEGORIES, carrier.category) or own.label in _PARTS:
         return (_insert(selector, clause, rest),)
-    first = _insert(selector, clause, f"{found[1]} {rest[len(head) :].strip()}")
+    first = _insert(selector, clause, f"{match[1]} {rest[len(head) :].strip()}")
     name = f"new {carrier.category}"
     relation = _usual_kind(own.category, carrier.category)
     what = " ".join((*own.appearance, own.label))

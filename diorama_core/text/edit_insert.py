@@ -59,14 +59,14 @@ def inserted(positioner: Positioner, scene: Scene, edit: Insert, relations: Sequ
         tried = (shape, *(s for s in options if s != shape)) if shape is not None else options
         on = any(r.kind == "on" for r in relations)
         kin = () if on else _standing_kin(positioner.library, phrase.category)
-        found, object_id, put = after, None, None
+        choice, object_id, put = after, None, None
         for shapes in (tried[:SHAPES_TRIED], kin[:SHAPES_TRIED]):
-            if object_id is not None and not _on_floor(found, object_id):
+            if object_id is not None and not _on_floor(choice, object_id):
                 break
             kind = shapes[0].category if shapes else phrase.category
             other = _with_one(positioner, after, kind, shapes, relations, targets, copy, edit.count)
-            found, object_id, put = other if other[1] is not None else (found, object_id, put)
-        after, shape = found, put
+            choice, object_id, put = other if other[1] is not None else (choice, object_id, put)
+        after, shape = choice, put
         if shape is not None and shape.category not in (phrase.category, *(s.category for s in options)):
             missed.append(f"nothing there carries {with_article(phrase.category)}: {with_article(shape.category)}")
         if object_id is None or shape is None:

@@ -87,11 +87,11 @@ def lifted(selector: Selector, clause: str, rest: str, subject: Subject) -> Shif
 
 def length_in(text: str) -> float | None:
     """The first length that a text says, metres."""
-    found = _DISTANCE.search(text)
-    if found is None:
+    match = _DISTANCE.search(text)
+    if match is None:
         return None
-    number = {"a": 1.0, "half a": 0.5, "one": 1.0, "two": 2.0}.get(found[1]) or float(found[1])
-    return number * (0.01 if found[2].startswith("c") else 1.0)
+    number = {"a": 1.0, "half a": 0.5, "one": 1.0, "two": 2.0}.get(match[1]) or float(match[1])
+    return number * (0.01 if match[2].startswith("c") else 1.0)
 
 
 def without_lengths(text: str) -> str:
@@ -124,11 +124,11 @@ def counted_edits(selector: Selector, clause: str) -> tuple[Edit, ...] | None:
     Raises:
         EditRefused: there is none of the kind, or there would be too many.
     """
-    found = _CHANGED.match(clause)
-    if found is None:
+    match = _CHANGED.match(clause)
+    if match is None:
         return None
-    factor, noun = _TIMES[found["verb"] or found["many"]], found["noun"]
-    if found["what"] == "size":
+    factor, noun = _TIMES[match["verb"] or match["many"]], match["noun"]
+    if match["what"] == "size":
         return (Resize(objects=list(selector.objects(noun)), factor=factor),)
     ids = selector.objects(f"all {noun}")
     wanted = round(factor * len(ids))
@@ -147,10 +147,10 @@ def counted_edits(selector: Selector, clause: str) -> tuple[Edit, ...] | None:
 
 def all_but(text: str) -> tuple[int, str] | None:
     """How many of what are spared: "all but one of the pillows"; None where a phrase says something else."""
-    found = _ALL_BUT.match(text.strip())
-    if found is None or not (found[1].isdigit() or NUMBERS.get(found[1], 0)) or found[1] in ("the", "a", "an"):
+    match = _ALL_BUT.match(text.strip())
+    if match is None or not (match[1].isdigit() or NUMBERS.get(match[1], 0)) or match[1] in ("the", "a", "an"):
         return None
-    return (int(found[1]) if found[1].isdigit() else NUMBERS[found[1]]), found[2]
+    return (int(match[1]) if match[1].isdigit() else NUMBERS[match[1]]), match[2]
 
 
 def _carrier(selector: Selector, object_id: str) -> str:

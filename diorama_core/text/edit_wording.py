@@ -125,7 +125,7 @@ def plain(clause: str) -> str:
 def _without_remarks(clauses: list[str]) -> tuple[str, ...]:
     """Clauses of which those that only say what they are about are said by the next one: "I don't like the rug, remove
     it" is "remove the rug"; "the room is too dark" alone is "make the room brighter"."""
-    found, about = list[str](), ""
+    remarks, about = list[str](), ""
     for index, clause in enumerate(clauses):
         last = index + 1 == len(clauses)
         if about:
@@ -141,8 +141,8 @@ def _without_remarks(clauses: list[str]) -> tuple[str, ...]:
                 about = said[1]
                 continue
             clause = cure or clause
-        found.append(clause)
-    return tuple(found)
+        remarks.append(clause)
+    return tuple(remarks)
 
 
 def _on(taken: re.Match[str]) -> str:

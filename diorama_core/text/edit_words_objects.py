@@ -18,26 +18,26 @@ from diorama_core.text.selecting import Selector
 
 def places_of_phrases(selector: Selector, places: Sequence[PlacePhrase]) -> list[Place]:
     """Where phrases of place say that something goes; raises `EditRefused` where they name what is not there."""
-    found = []
+    resolved = []
     for place in places:
         if place.words in ("", "each other", "one another"):
-            found.append(Place(relation=place.kind, targets=[], side=side_in(place.said)))
+            resolved.append(Place(relation=place.kind, targets=[], side=side_in(place.said)))
         elif re.fullmatch(r"(?:the |this )?(?:\w+ )?(?:room|bedroom|kitchen|office|scene|floor|ground)", place.words):
             continue
         elif re.fullmatch(r"(?:the |a )?(?:\w+ )?walls?", place.words):
-            found.append(Place(relation="against wall", targets=[], side=side_in(place.words)))
+            resolved.append(Place(relation="against wall", targets=[], side=side_in(place.words)))
         else:
             targets = list(selector.targets(place.words))
             openings = all(selector.scene.object(t).category in OPENING_CATEGORIES for t in targets)
             by = place.kind == "under" and openings  # under a window is at it, on the floor
-            found.append(Place(relation="near" if by else place.kind, targets=targets))
-    return found
+            resolved.append(Place(relation="near" if by else place.kind, targets=targets))
+    return resolved
 
 
 def side_in(words: str) -> Side:
     """Which side of the room words about a wall or a corner say."""
-    found = re.search(r"\b(left|right|back|far|front|near|other|opposite|another)\b", words)
-    said = "" if found is None else found[1]
+    match = re.search(r"\b(left|right|back|far|front|near|other|opposite|another)\b", words)
+    said = "" if match is None else match[1]
     known = {"far": "back", "near": "front", "opposite": "other", "another": "other"}
     return cast("Side", known.get(said, said))
 
@@ -109,9 +109,9 @@ def object_edits(selector: Selector, clause: str, subject: Subject) -> tuple[Edi
         EditRefused: the clause is one of these, and names what is not there.
     """
     for read in (_sized, _off_wall, _state, _copied, _exchanged, _named, _arranged):
-        found = read(selector, clause, subject)
-        if found is not None:
-            return (found,)
+        edits = read(selector, clause, subject)
+        if edits is not None:
+            return (edits,)
     return None
 
 
@@ -119,13 +119,13 @@ def _sized(selector: Selector, clause: str, subject: Subject) -> Measure | None:
     """ "make the sofa 2 m wide", "make the plant half as tall", "set the width of the desk to 1.4 m"."""
     length = length_in(clause)
     plain = " ".join(without_lengths(clause).split())
-    found = _SIZED.match(plain) or _SET_SIDE.match(plain)
-    if found is None:
+    match = _SIZED.match(plain) or _SET_SIDE.match(plain)
+    if match is None:
         return None
-    said = found["side"]
+    said = match["side"]
     side, sign = _SIDES.get(said, ("width", 1.0))
-    groups = found.groupdict()
-    ids = list(subject(selector, found["who"]))
+    groups = match.groupdict()
+    ids = list(subject(selector, match["who"]))
     if times := groups.get("times"):
         return Measure(objects=ids, side=side, factor=_TIMES.get(times) or float(times.split()[0]))
     verb = groups.get("verb")
@@ -142,35 +142,35 @@ def _sized(selector: Selector, clause: str, subject: Subject) -> Measure | None:
 
 
 def _off_wall(selector: Selector, clause: str, subject: Subject) -> Shift | None:
-    found = _OFF_WALL.match(" ".join(without_lengths(clause).split()))
-    if found is None:
+    match = _OFF_WALL.match(" ".join(without_lengths(clause).split()))
+    if match is None:
         return None
-    return Shift(objects=list(subject(selector, found[1])), off_wall_m=length_in(clause) or OFF_WALL_M)
+    return Shift(objects=list(subject(selector, match[1])), off_wall_m=length_in(clause) or OFF_WALL_M)
 
 
 def _state(selector: Selector, clause: str, subject: Subject) -> SetState | None:
     clause = re.sub(r"^(turn|switch) ((?:the|all|my) .+) (on|off)$", r"\1 \3 \2", clause)
-    found = _STATE.match(clause)
-    if found is None:
+    match = _STATE.match(clause)
+    if match is None:
         return None
-    return SetState(objects=list(subject(selector, found[2])), state=_STATES[found[1]])
+    return SetState(objects=list(subject(selector, match[2])), state=_STATES[match[1]])
 
 
 def _copied(selector: Selector, clause: str, subject: Subject) -> Copy | None:
-    found = _COPIED.match(clause)
-    if found is None:
+    match = _COPIED.match(clause)
+    if match is None:
         return None
-    many = found["many"] or "one"
+    many = match["many"] or "one"
     count = int(many) if many.isdigit() else NUMBERS.get(many, 1)
-    head, places = split_places(found["rest"])
+    head, places = split_places(match["rest"])
     try:
         ids = subject(selector, head)
     except EditRefused:  # the place may be what tells it from others: "the lamp on the desk"
         if not places:
             raise
-        return Copy(objects=list(subject(selector, found["rest"])), count=count)
+        return Copy(objects=list(subject(selector, match["rest"])), count=count)
     wanted = places_of_phrases(selector, places)
-    if _OTHER_SIDE.search(found["rest"]) and len(wanted) == 1:
+    if _OTHER_SIDE.search(match["rest"]) and len(wanted) == 1:
         on_left = is_met(
             selector.scene, ids[0], Relation("left of", tuple(wanted[0].targets)), RoomFrame.of(selector.scene)
         )
@@ -179,9 +179,9 @@ def _copied(selector: Selector, clause: str, subject: Subject) -> Copy | None:
 
 
 def _exchanged(selector: Selector, clause: str, subject: Subject) -> Exchange | None:
-    found = _EXCHANGED.match(clause)
+    match = _EXCHANGED.match(clause)
     both = _BOTH_EXCHANGED.match(clause)
-    if found is None and both is None:
+    if match is None and both is None:
         return None
     if both is not None and not re.search(r" (?:for|with|and) ", both[1]):
         pair = subject(selector, re.sub(r"\b(?:two|2|both)\b", "", f"all {both[1]}"))
@@ -189,19 +189,19 @@ def _exchanged(selector: Selector, clause: str, subject: Subject) -> Exchange | 
         if len(pair) != 2:
             raise EditRefused(f"there are {len(pair)} of these; say which two change places, or select two")
         return Exchange(objects=list(pair))
-    if found is None:
+    if match is None:
         return None
-    first, second = (subject(selector, words) for words in (found[1], found[2]))
+    first, second = (subject(selector, words) for words in (match[1], match[2]))
     if len(first) != 1 or len(second) != 1:
         raise EditRefused("two objects can change places; name one of each")
     return Exchange(objects=[first[0], second[0]])
 
 
 def _named(selector: Selector, clause: str, subject: Subject) -> Rename | None:
-    found = _NAMED.match(clause)
-    if found is None:
+    match = _NAMED.match(clause)
+    if match is None:
         return None
-    words = found[1].split()
+    words = match[1].split()
     joint = next((w for w in ("to", "as", "into") if w in words[1:-1]), None)
     if joint is not None:
         at = words.index(joint)
@@ -221,8 +221,8 @@ def _named(selector: Selector, clause: str, subject: Subject) -> Rename | None:
 
 def _arranged(selector: Selector, clause: str, subject: Subject) -> Align | None:
     for pattern, how in ((_LINED, "in line"), (_LEVELLED, "in line"), (_SPACED, "evenly")):
-        found = pattern.match(clause)
-        if found is None or split_places(found[1])[1] or re.search(r"\bwith\b", found[1]):
+        match = pattern.match(clause)
+        if match is None or split_places(match[1])[1] or re.search(r"\bwith\b", match[1]):
             continue
-        return Align(objects=list(subject(selector, found[1])), how=cast("Literal['in line', 'evenly']", how))
+        return Align(objects=list(subject(selector, match[1])), how=cast("Literal['in line', 'evenly']", how))
     return None

@@ -59,9 +59,9 @@ def room_edits(selector: Selector, clause: str) -> tuple[Edit, ...] | None:
         EditRefused: it is about the room, and cannot be done.
     """
     for read in (_lengths, _light, _openings, _surfaces):
-        found = read(selector, clause)
-        if found is not None:
-            return found
+        edits = read(selector, clause)
+        if edits is not None:
+            return edits
     return None
 
 
@@ -70,8 +70,8 @@ def _surfaces(selector: Selector, clause: str) -> tuple[Edit, ...] | None:
     rest = clause[asked.end() :] if asked is not None else clause
     parts = [p for p in re.split(r",\s*(?:and\s+)?|\band\b", rest) if p.strip()]
     if len(parts) > 1 and all(_PART.search(p) for p in parts):
-        found = [_surface(selector, p) for p in parts]
-        return tuple(e for e in found if e is not None) if None not in found else None
+        surfaces = [_surface(selector, p) for p in parts]
+        return tuple(e for e in surfaces if e is not None) if None not in surfaces else None
     one = _surface(selector, rest)
     return None if one is None else (one,)
 
@@ -179,17 +179,17 @@ def _light(selector: Selector, clause: str) -> tuple[Edit, ...] | None:
 
 def _openings(selector: Selector, clause: str) -> tuple[Edit, ...] | None:
     kinds = "|".join(OPENING_CATEGORIES)
-    found = re.match(
+    match = re.match(
         r"^(?:add|put|insert|create|make|cut|place|i want|i need|give me) (?:an?|another|a second|one more) "
         rf"(?:new )?({kinds})"
         r"(?: (?:in|into|to|on|at) (?:the|a|an|another) (?:(left|right|back|front|far|opposite) )?wall)?"
         r"(?: (?:behind|next to|beside|by|near|opposite) (.+))?(?: (?:in|into|to) the room)?$",
         clause,
     )
-    if found is None:
+    if match is None:
         return None
-    side = {"far": "back", "opposite": "back"}.get(found[2] or "", found[2] or "")
-    behind = selector.targets(found[3])[0] if found[3] else ""
+    side = {"far": "back", "opposite": "back"}.get(match[2] or "", match[2] or "")
+    behind = selector.targets(match[3])[0] if match[3] else ""
     return (
-        InsertOpening(what=found[1], wall=cast("Literal['', 'left', 'right', 'back', 'front']", side), behind=behind),
+        InsertOpening(what=match[1], wall=cast("Literal['', 'left', 'right', 'back', 'front']", side), behind=behind),
     )

@@ -67,16 +67,16 @@ def _phrases(language: str) -> Mapping[Phrase, str]:
     """What every phrase of a language is in English."""
     table = tomllib.loads((Path(__file__).parent / "foreign_words.toml").read_text(encoding="utf-8"))
     column = LANGUAGES.index(language)
-    found: dict[Phrase, str] = {}
+    phrases: dict[Phrase, str] = {}
     for name, columns in table["kinds"].items():
         for words in columns[column].split(","):
             single, _, plural = words.strip().partition("/")
             singles, plurals = _forms(single, plural, language)
-            found |= dict.fromkeys(map(_words, plurals), _plural(name))
-            found |= dict.fromkeys(map(_words, singles), name)
+            phrases |= dict.fromkeys(map(_words, plurals), _plural(name))
+            phrases |= dict.fromkeys(map(_words, singles), name)
     for english, words in table[language].items():
-        found |= {_words(w): english for w in words.split(",") if w.strip()}
-    return found
+        phrases |= {_words(w): english for w in words.split(",") if w.strip()}
+    return phrases
 
 
 def _forms(single: str, plural: str, language: str) -> tuple[set[str], set[str]]:

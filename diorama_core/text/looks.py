@@ -144,10 +144,10 @@ def fitting_shapes(
     """
     kinds = frozenset({category}) if library.in_category(category) else with_kin(category)
     words = " ".join((*appearance, label or category))
-    found = [s for s in find(library, words, k=400).shapes if s.category in kinds]
-    known = {s.id for s in found}
-    found += [s for s in library.in_category(category) if s.id not in known]
-    found = [s for s in found if usable is None or usable(s)]
+    shapes = [s for s in find(library, words, k=400).shapes if s.category in kinds]
+    known = {s.id for s in shapes}
+    shapes += [s for s in library.in_category(category) if s.id not in known]
+    shapes = [s for s in shapes if usable is None or usable(s)]
     asked = [normal(w) for w in appearance if size_request(w) is None]
 
     def misses(shape: Shape) -> tuple[int, int]:
@@ -155,7 +155,7 @@ def fitting_shapes(
         said = set(tokens(f"{shape.caption} {shape.style}"))
         return sum(not has_look(shape, w) for w in asked), sum(w not in said for w in asked)
 
-    ordered = sorted(found, key=misses)
+    ordered = sorted(shapes, key=misses)
     if not ordered:
         return (), ()
     lacking = tuple(w for w in appearance if size_request(w) is None and not has_look(ordered[0], w))

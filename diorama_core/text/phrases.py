@@ -226,13 +226,13 @@ def split_places(text: str) -> tuple[str, list[PlacePhrase]]:
     matches = list(relation_pattern().finditer(text))
     if not matches:
         return text.strip(), []
-    found = []
+    phrases = []
     for match, after in zip(matches, [*matches[1:], None]):
         kind = RELATION_WORDS[int(str(match.lastgroup)[1:])][1]
         assert kind is not None
         words = text[match.end() : after.start() if after else len(text)].strip(" ,")
-        found.append(PlacePhrase(kind, words, match[0]))
-    return text[: matches[0].start()].strip(), found
+        phrases.append(PlacePhrase(kind, words, match[0]))
+    return text[: matches[0].start()].strip(), phrases
 
 
 def noun_phrase(text: str) -> tuple[NounPhrase | None, str]:
@@ -297,9 +297,9 @@ def _noun(words: list[str]) -> tuple[int, int, str] | None:
             noun = " ".join(words[start:end])
             if noun in ARCHITECTURE_WORDS:
                 return None
-            found = resolve(noun)
-            if found.exact and found.category is not UNKNOWN and _is_name(noun, found.category):
-                return start, end, found.category.name
+            resolution = resolve(noun)
+            if resolution.exact and resolution.category is not UNKNOWN and _is_name(noun, resolution.category):
+                return start, end, resolution.category.name
     return None
 
 

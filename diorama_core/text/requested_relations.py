@@ -158,21 +158,21 @@ def _of_kind(scene: Scene, name: str) -> list[str]:
 def usual_relations(scene: Scene, request: RequestedObject, copy: int) -> list[Relation]:
     """How such an object stands where the prompt does not say."""
     said = {w.kind for w in request.wishes}
-    found: list[Relation] = []
+    relations: list[Relation] = []
     for wish in request.wishes:
         if wish.kind == "in front of" and request.category in SEATS and "bed" not in wish.targets:
-            found += [Relation("facing", targets)] if (targets := targets_of(scene, wish, copy)) else []
+            relations += [Relation("facing", targets)] if (targets := targets_of(scene, wish, copy)) else []
     if copy and broad(request.category) == "bed" and not said & _APART:
-        found += [Relation("beside", (there[0],)) for there in (_of_kind(scene, request.category),) if there]
+        relations += [Relation("beside", (there[0],)) for there in (_of_kind(scene, request.category),) if there]
     for kind, names in usual_relations_of(request.category):
         if kind in said or (said and kind in ("in corner", "above", "on") and request.category != "television"):
             continue
         if said & {"in corner", "against wall"} and kind in ("beside", "near", "under", "in front of"):
             continue
         if not names:
-            found.append(Relation(kind))
+            relations.append(Relation(kind))
             continue
         there = next((ids for n in names if (ids := _of_kind(scene, n))), None)
         if there:
-            found.append(Relation(kind, (there[copy % len(there)],)))
-    return found
+            relations.append(Relation(kind, (there[copy % len(there)],)))
+    return relations

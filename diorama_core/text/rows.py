@@ -44,11 +44,11 @@ def with_marks(text: str) -> tuple[str, tuple[str, ...]]:
     """A description in which marks stand for its rows, and the phrases of rows that hold too many."""
     too_many: list[str] = []
 
-    def mark(found: re.Match[str], before: str, after: str) -> str:
-        rows, each = _count(found[1]), _count(found[2] or "0")
+    def mark(match: re.Match[str], before: str, after: str) -> str:
+        rows, each = _count(match[1]), _count(match[2] or "0")
         if rows * max(each, 1) > MAX_IN_ROWS:
-            too_many.append(found[0])
-            return found[0]
+            too_many.append(match[0])
+            return match[0]
         return f"{before}rowed-{rows}x{each}{after}"
 
     text = _IN_ROWS.sub(lambda m: mark(m, "", ""), text)
@@ -61,8 +61,8 @@ def _count(word: str) -> int:
 
 def without_marks(words: Sequence[str]) -> tuple[list[str], tuple[int, int] | None]:
     """Words without a mark, and what it says: how many rows of how many, 0 where that is open."""
-    found = next((m for word in words if (m := _MARK.fullmatch(word))), None)
-    said = (int(found[1]), int(found[2])) if found else None
+    match = next((m for word in words if (m := _MARK.fullmatch(word))), None)
+    said = (int(match[1]), int(match[2])) if match else None
     return [word for word in words if not _MARK.fullmatch(word)], said
 
 
@@ -96,16 +96,16 @@ class Rows:
     def places(self) -> Float[np.ndarray, "n 3"]:
         """Metres forward and left of the block's middle and radians turned, of each, from the hindmost row on."""
         pitch = np.array([float(self.size_m[0]) + self._way_m, float(self.size_m[1]) + self._gap_m])
-        found = np.zeros((self.count, 3))
+        places = np.zeros((self.count, 3))
         aside = (self._ahead_m if self._sat_at else -self._ahead_m) - self._open * self._way_m
         for k in range(self.count):
             row, column = divmod(k, self.each)
             members = min(self.each, self.count - row * self.each)
-            found[k, 0] = (row - (self.rows - 1) / 2) * pitch[0] + aside / 2
-            found[k, 1] = (column - (members - 1) / 2) * pitch[1]
+            places[k, 0] = (row - (self.rows - 1) / 2) * pitch[0] + aside / 2
+            places[k, 1] = (column - (members - 1) / 2) * pitch[1]
             backward = self.face_to_face and (row == 0) == self._sat_at
-            found[k, 2] = np.pi if backward else 0.0
-        return found
+            places[k, 2] = np.pi if backward else 0.0
+        return places
 
     @property
     def _sat_at(self) -> bool:

@@ -117,24 +117,24 @@ def unmet(prompt: str, scene: Scene) -> tuple[str, ...]:
     there = Counter(o.category for o in scene.objects)
     lines = []
     for asked in request.objects:
-        found = _take(there, asked)
-        if found < asked.count:
-            lines.append(_line(asked, found))
+        number = _take(there, asked)
+        if number < asked.count:
+            lines.append(_line(asked, number))
     return (*lines, *(f"the library has nothing called “{words}”" for words in request.ignored))
 
 
 def _take(there: Counter[str], asked: RequestedObject) -> int:
     """How many of what is asked for are there, taken out so that they count once."""
-    found = 0
+    number = 0
     for name in (asked.category, *sorted(with_kin(asked.category) - {asked.category})):
-        here = min(there[name], asked.count - found)
+        here = min(there[name], asked.count - number)
         there[name] -= here
-        found += here
-    return found
+        number += here
+    return number
 
 
-def _line(asked: RequestedObject, found: int) -> str:
+def _line(asked: RequestedObject, number: int) -> str:
     name = asked.label or category(asked.category).name
-    if not found:
+    if not number:
         return f"no {name}" if asked.count == 1 else f"none of {asked.count} {name}"
-    return f"{found} of {asked.count} {name}"
+    return f"{number} of {asked.count} {name}"

@@ -62,18 +62,18 @@ class Selector:
         exact = [o.id for o in self.scene.objects if o.label.lower() == _plain(words)]
         if len(exact) == 1:
             return (exact[0],)
-        found = self._named(phrase, words)
-        found = self._in_place(found, places, words)
+        objects = self._named(phrase, words)
+        objects = self._in_place(objects, places, words)
         if movable and not phrase.label:  # "everything" that is moved is what stands on the floor, with what it carries
-            found = [o for o in found if self._stands_free(o)] or found
+            objects = [o for o in objects if self._stands_free(o)] or objects
         elif movable and not phrase.every:
-            found = [o for o in found if category(o.category).mount != "ceiling"] or found
+            objects = [o for o in objects if category(o.category).mount != "ceiling"] or objects
         number = next((k for w, k in _ORDINALS.items() if w in words.lower().split()), None)
         if number is not None and not phrase.plural:
-            if number > len(found):
-                raise EditRefused(f"there are only {len(found)} of these: {_names(found)}")
-            return (found[number - 1 if number else -1].id,)
-        return self._counted(found, phrase, words)
+            if number > len(objects):
+                raise EditRefused(f"there are only {len(objects)} of these: {_names(objects)}")
+            return (objects[number - 1 if number else -1].id,)
+        return self._counted(objects, phrase, words)
 
     def targets(self, words: str) -> tuple[str, ...]:
         """Ids of what a phrase of place refers to; one object, or two joined by "and"."""
@@ -101,16 +101,18 @@ class Selector:
             return self._looking(furniture, phrase.appearance, words)
         objects = self.scene.objects
         kin = with_kin(phrase.category)
-        found = [o for o in objects if o.category == phrase.category] or [o for o in objects if o.category in kin]
+        matches = [o for o in objects if o.category == phrase.category] or [o for o in objects if o.category in kin]
         noun = phrase.label.split()[-1].removesuffix("s")
         labelled = [o for o in objects if noun in (w.removesuffix("s") for w in o.label.lower().split())]
         of_all_sorts = [o for o in objects if o.category.split()[-1] == noun == phrase.category]
-        if phrase.every or (phrase.plural and len(found) < 2):
-            found = of_all_sorts or found  # "every lamp" is also those that stand on the floor and hang
-        found = found or [o for o in objects if o.category.endswith(noun)] or labelled  # an armchair is a chair, too
-        if not found:
+        if phrase.every or (phrase.plural and len(matches) < 2):
+            matches = of_all_sorts or matches  # "every lamp" is also those that stand on the floor and hang
+        matches = (
+            matches or [o for o in objects if o.category.endswith(noun)] or labelled
+        )  # an armchair is a chair, too
+        if not matches:
             raise EditRefused(f"there is no {phrase.category} in this scene; it has: {self.inventory()}")
-        return self._looking(found, phrase.appearance, words)
+        return self._looking(matches, phrase.appearance, words)
 
     def _stands_free(self, item: SceneObject) -> bool:
         edge = self.scene.support_of(item.id)
@@ -120,38 +122,40 @@ class Selector:
         on_floor = edge is not None and self.scene.has_plane(edge.parent) and edge.relation == "placed on"
         return (on_floor or on_rug) and category(item.category).mount == "floor" and broad(item.category) != "rug"
 
-    def _looking(self, found: list[SceneObject], appearance: Sequence[str], words: str) -> list[SceneObject]:
+    def _looking(self, objects: list[SceneObject], appearance: Sequence[str], words: str) -> list[SceneObject]:
         for word in appearance:
-            if word in _LARGER | _SMALLER and len(found) > 1:
-                order = sorted(found, key=lambda o: float(np.prod(o.size_m)), reverse=word in _LARGER)
-                found = order[:1]
+            if word in _LARGER | _SMALLER and len(objects) > 1:
+                order = sorted(objects, key=lambda o: float(np.prod(o.size_m)), reverse=word in _LARGER)
+                objects = order[:1]
                 continue
-            like = [o for o in found if has_look(record_of(self.library, o.shape_id), word) or word in o.label.lower()]
+            like = [
+                o for o in objects if has_look(record_of(self.library, o.shape_id), word) or word in o.label.lower()
+            ]
             if like:
-                found = like
-            elif len(found) > 1:
-                kind = found[0].category if len({o.category for o in found}) == 1 else "object"
-                raise EditRefused(f"no {kind} here is {word}; there are {len(found)}: {_names(found)}")
-        return found
+                objects = like
+            elif len(objects) > 1:
+                kind = objects[0].category if len({o.category for o in objects}) == 1 else "object"
+                raise EditRefused(f"no {kind} here is {word}; there are {len(objects)}: {_names(objects)}")
+        return objects
 
-    def _in_place(self, found: list[SceneObject], places: Sequence[PlacePhrase], words: str) -> list[SceneObject]:
+    def _in_place(self, objects: list[SceneObject], places: Sequence[PlacePhrase], words: str) -> list[SceneObject]:
         for place in places:
             targets = self.targets(place.words) if place.words else ()
             if place.kind == "on" and targets:
                 carried = {d for t in targets for d in descendants(self.scene, t)}
-                here = [o for o in found if o.id in carried]
+                here = [o for o in objects if o.id in carried]
             else:
                 relation = Relation(place.kind, targets)
-                here = [o for o in found if o.id not in targets and is_met(self.scene, o.id, relation, self._frame)]
+                here = [o for o in objects if o.id not in targets and is_met(self.scene, o.id, relation, self._frame)]
             if not here:
                 where = Relation(place.kind, targets).words(self.scene)
-                what = "nothing" if len({o.category for o in found}) > 1 else f"no {found[0].category}"
+                what = "nothing" if len({o.category for o in objects}) > 1 else f"no {objects[0].category}"
                 raise EditRefused(f"{what} is {where} in this scene")
-            found = here
-        return found
+            objects = here
+        return objects
 
-    def _counted(self, found: list[SceneObject], phrase: NounPhrase, words: str) -> tuple[str, ...]:
-        ids = tuple(o.id for o in found)
+    def _counted(self, objects: list[SceneObject], phrase: NounPhrase, words: str) -> tuple[str, ...]:
+        ids = tuple(o.id for o in objects)
         if phrase.every or not phrase.label or len(ids) == 1:
             return ids
         chosen = tuple(i for i in ids if i in self.selected)
@@ -162,20 +166,20 @@ class Selector:
                 else 0
             )
             if exact > len(ids):
-                raise EditRefused(f"there are only {len(ids)} of {phrase.count} {phrase.label}: {_names(found)}")
+                raise EditRefused(f"there are only {len(ids)} of {phrase.count} {phrase.label}: {_names(objects)}")
             return (chosen or ids)[:exact] if exact else ids
         if len(chosen) == 1:
             return chosen
         if not phrase.definite:
             return ids[:1]
-        alike = len({o.label for o in found}) < len(found)
-        which = f"the second {phrase.label}" if alike else found[0].label
-        raise EditRefused(f"there are {len(ids)} of these: {_names(found)}; say which (“{which}”), or “all”")
+        alike = len({o.label for o in objects}) < len(objects)
+        which = f"the second {phrase.label}" if alike else objects[0].label
+        raise EditRefused(f"there are {len(ids)} of these: {_names(objects)}; say which (“{which}”), or “all”")
 
 
 def _plain(words: str) -> str:
     return " ".join(w for w in words.lower().split() if w not in ("the", "a", "my"))
 
 
-def _names(found: Sequence[SceneObject]) -> str:
-    return ", ".join(o.label for o in found[:6]) + (", ..." if len(found) > 6 else "")
+def _names(objects: Sequence[SceneObject]) -> str:
+    return ", ".join(o.label for o in objects[:6]) + (", ..." if len(objects) > 6 else "")

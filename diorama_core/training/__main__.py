@@ -229,8 +229,8 @@ def _facings(a: argparse.Namespace) -> None:
     sources = [PhotoSource(*source) for source in zip(a.annotations, a.photos, strict=True)]
     model = FacingModel(gathered(plan(sources, cache=a.stages), built_in_library(), _told()))
     given = " ".join(path.name for path in a.annotations)
-    found = certificate(model, f"python -m diorama_core.training facings {given}", a.folds)
-    write_atomically(a.output, json.dumps(found, indent=1).encode())
+    certified = certificate(model, f"python -m diorama_core.training facings {given}", a.folds)
+    write_atomically(a.output, json.dumps(certified, indent=1).encode())
     for k in range(a.folds if a.settings else 0):
         weights = as_settings(model.fitted(beginning(), ~model.fold(k, a.folds)))
         settings = {f"pose.stage.facing.{name}": weight for name, weight in weights.items()}

@@ -68,7 +68,7 @@ class MixedPictures:
 def labelled_photos(annotations: Path, folder: Path, categories: Sequence[str]) -> dict[str, LabelledPicture]:
     """By id the annotated photos that a folder has; the category after the last stands for what has none."""
     index = {name: k for k, name in enumerate(categories)}
-    found = {}
+    photos = {}
     for name, about in read_annotations(annotations).items():
         path = picture_of(folder, name)
         if path is None:
@@ -80,8 +80,8 @@ def labelled_photos(annotations: Path, folder: Path, categories: Sequence[str]) 
             rgb = cv2.resize(rgb, None, fx=scale, fy=scale, interpolation=cv2.INTER_AREA)
         kinds = np.array([index.get(o.kind, len(categories)) for o in about.objects], dtype=np.int64)
         unknown = np.full((len(kinds), len(MEASURED)), -1, np.int8)
-        found[name] = LabelledPicture(rgb, (boxes * scale).astype(np.float32), kinds, np.ones_like(kinds), unknown)
-    return found
+        photos[name] = LabelledPicture(rgb, (boxes * scale).astype(np.float32), kinds, np.ones_like(kinds), unknown)
+    return photos
 
 
 def adapted_detector(

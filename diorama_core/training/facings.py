@@ -58,7 +58,7 @@ class FacingCase:
 
 def gathered(asked: PhotoPlan, library: ShapeLibrary, progress: Progress) -> list[FacingCase]:
     """The photos of a plan; caches of stages are those of `bench photos`."""
-    found, wanted = [], ("inputs", "furniture_objects", "geometry", "depth", "shapes")
+    cases, wanted = [], ("inputs", "furniture_objects", "geometry", "depth", "shapes")
     for k, task in enumerate(asked.tasks):
         step = progress.part(k / len(asked.tasks), (k + 1) / len(asked.tasks))
         step.report(0.0, task.title)
@@ -69,8 +69,8 @@ def gathered(asked: PhotoPlan, library: ShapeLibrary, progress: Progress) -> lis
         trials = stage.trials(inputs, objects, geometry, depth, shapes, step)
         trials = trials.with_shapes([_finely(stage, *one) for one in zip(trials.tasks, trials.tried, strict=True)])
         mask_ids = {o.id: o.mask_id for o in objects}
-        found.append(_case(task.title, trials.room, trials.folds(), mask_ids, case.annotation, geometry.camera))
-    return found
+        cases.append(_case(task.title, trials.room, trials.folds(), mask_ids, case.annotation, geometry.camera))
+    return cases
 
 
 def _finely(stage: RenderAndCompare, task: PosingTask, tried: Sequence[TriedShape]) -> list[TriedShape]:
@@ -177,11 +177,11 @@ class FacingModel:
 
     def cross_validated(self, start: Tensor, folds: int) -> Bool[np.ndarray, "n"]:
         """As `is_right`, each photo with weights fitted to the photos of the other folds."""
-        found = np.zeros(len(self.photos), bool)
+        is_right = np.zeros(len(self.photos), bool)
         for k in range(folds):
             test = self.fold(k, folds)
-            found[test] = self.is_right(self.fitted(start, ~test))[test]
-        return found
+            is_right[test] = self.is_right(self.fitted(start, ~test))[test]
+        return is_right
 
 
 def beginning() -> Tensor:

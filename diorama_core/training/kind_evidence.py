@@ -65,7 +65,7 @@ def looks_of(sources: Sequence[tuple[Path, Path]], alone: Recogniser, evidence: 
         alone: the namer, without evidence.
         evidence: looks at boxes; its readings are not used.
     """
-    found, column = [], {kind: k for k, kind in enumerate(alone.categories)}
+    looks, column = [], {kind: k for k, kind in enumerate(alone.categories)}
     for marked, photos in sources:
         for name, about in read_annotations(marked).items():
             path = picture_of(photos, name)
@@ -75,8 +75,8 @@ def looks_of(sources: Sequence[tuple[Path, Path]], alone: Recogniser, evidence: 
             inputs, boxes = in_photo(path, about)
             rgb, boxes = inputs.photo.rgb, boxes[asked]
             kinds = np.array([column[about.objects[k].kind] for k in asked])
-            found.append(AnnotatedLooks(alone.name(rgb, boxes), *evidence.look(rgb, boxes), kinds, boxes))
-    return found
+            looks.append(AnnotatedLooks(alone.name(rgb, boxes), *evidence.look(rgb, boxes), kinds, boxes))
+    return looks
 
 
 @dataclass(frozen=True)
@@ -173,8 +173,8 @@ def _regression(
         gradient = along.T @ wrong + RIDGE * weights
         return float(-logs[rows, truth].sum() + RIDGE / 2 * (weights**2).sum()), gradient.ravel()
 
-    found = minimize(loss, np.zeros(shape[0] * shape[1]), jac=True, method="L-BFGS-B", options={"maxiter": STEPS})
-    return found.x.reshape(shape)
+    solution = minimize(loss, np.zeros(shape[0] * shape[1]), jac=True, method="L-BFGS-B", options={"maxiter": STEPS})
+    return solution.x.reshape(shape)
 
 
 def _score(

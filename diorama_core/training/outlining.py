@@ -36,11 +36,11 @@ class OutlineNetwork(nn.Module):
         fine = self.fine(windows - 0.5)
         middle = self.middle(fine)
         coarse = self.coarse(middle)
-        found = self.whole(coarse)
+        features = self.whole(coarse)
         for skip, join in ((coarse, self.to_coarse), (middle, self.to_middle), (fine, self.to_fine)):
-            enlarged = functional.interpolate(found, scale_factor=2.0, mode="nearest")
-            found = join(torch.cat([enlarged, skip], dim=1))
-        logits: Tensor = self.out(found)[:, 0]
+            enlarged = functional.interpolate(features, scale_factor=2.0, mode="nearest")
+            features = join(torch.cat([enlarged, skip], dim=1))
+        logits: Tensor = self.out(features)[:, 0]
         return logits
 
 

@@ -77,7 +77,7 @@ class BoxStatistics:
         rows = self.geometry[category]
         if not len(rows):
             rows = self.geometry[int(np.argmax(self.counts))]
-        found = rows[int(rng.integers(len(rows)))].copy()
-        middle, shape = (found[3] + found[4]) / 2, float(np.log(sides[0] / sides[1]))
-        found[3:] = middle + shape / 2, middle - shape / 2, shape
-        return found
+        row = rows[int(rng.integers(len(rows)))].copy()
+        middle, shape = (row[3] + row[4]) / 2, float(np.log(sides[0] / sides[1]))
+        row[3:] = middle + shape / 2, middle - shape / 2, shape
+        return row

@@ -195,8 +195,8 @@ def detector_trainer(
         return detector_batch(files, schedule.batch, rng)
 
     def loss(network: nn.Module, batch: tuple[Tensor, ...]) -> tuple[Tensor, str]:
-        found = detector_loss(network(batch[0]), batch[1], batch[2], centres, strides)
-        return found.total, f"score {found.score:.3f}, box {found.box:.3f}, kind {found.kind:.3f}"
+        losses = detector_loss(network(batch[0]), batch[1], batch[2], centres, strides)
+        return losses.total, f"score {losses.score:.3f}, box {losses.box:.3f}, kind {losses.kind:.3f}"
 
     return Trainer(Detector(kinds), loss, batch_of, schedule, checkpoint, device, workers)
 
@@ -244,8 +244,8 @@ def namer_trainer(
         return crops, geometry, right, torch.where(asked[right], forms, -1)
 
     def loss(network: nn.Module, batch: tuple[Tensor, ...]) -> tuple[Tensor, str]:
-        found = naming_loss(network(batch[0], batch[1]), batch[2], batch[3], weights)
-        return found.total, f"loss {found.total.detach():.3f}, kind right {found.kind:.2f}, form {found.form:.2f}"
+        losses = naming_loss(network(batch[0], batch[1]), batch[2], batch[3], weights)
+        return losses.total, f"loss {losses.total.detach():.3f}, kind right {losses.kind:.2f}, form {losses.form:.2f}"
 
     return Trainer(Namer(kinds), loss, batch_of, schedule, checkpoint, device, workers)
 

@@ -189,8 +189,9 @@ def test_a_refused_length_is_told_over_the_start_page_and_beside_the_tools(newco
     page = newcomer.page
     page.get_by_label("Width of the room").fill("-3")
     newcomer.button("Create empty room").click()
-    newcomer.notice("give 1 to 30 m")
-    seen = page.locator(".mantine-Notification-root").first.bounding_box()
+    notice = page.locator(".mantine-Notification-root").filter(has_text="give 1 to 30 m")
+    notice.scroll_into_view_if_needed()  # which waits until it has come to rest: it slides in from above
+    seen = notice.bounding_box()
     tools = page.locator("#dio-toolbar .bars").bounding_box()
     assert seen is not None
     assert tools is not None

@@ -59,14 +59,14 @@ class Arrangement:
     def neighbours(self) -> tuple[tuple[int, int, int], ...]:
         """(cell, cell, line) for cells that touch along a line."""
         known = {cell.sides: k for k, cell in enumerate(self.cells)}
-        found = []
+        neighbours = []
         for k, cell in enumerate(self.cells):
             for line in range(len(self.lines)):
                 if cell.sides[line]:
                     other = (*cell.sides[:line], False, *cell.sides[line + 1 :])
                     if other in known:
-                        found.append((k, known[other], line))
-        return tuple(found)
+                        neighbours.append((k, known[other], line))
+        return tuple(neighbours)
 
     def holds(self, pixels: Float[np.ndarray, "n 2"]) -> Int[np.ndarray, "n"]:
         """The cell of every pixel; -1 for one in a piece too small to be a cell."""

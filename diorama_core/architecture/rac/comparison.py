@@ -46,7 +46,7 @@ class RoomLayout:
 
 
 def best_layout(
-    surface: MeasuredSurface, found: Proposals, camera: Camera, hidden_ends: Sequence[PlaneLine] = ()
+    surface: MeasuredSurface, proposals: Proposals, camera: Camera, hidden_ends: Sequence[PlaneLine] = ()
 ) -> RoomLayout | None:
     """The cheapest feasible layout of the proposed planes, with lines at which some of them may end besides.
 
@@ -54,26 +54,26 @@ def best_layout(
 
     Args:
         surface: measured points in the world, and which of them belong to objects.
-        found: the proposed planes.
+        proposals: the proposed planes.
         camera: of the photo, in the world.
         hidden_ends: further lines at which planes may end, in the picture.
     """
     k = camera.intrinsics
-    inverse = inverse_depths(found.normals, found.offsets, camera)
+    inverse = inverse_depths(proposals.normals, proposals.offsets, camera)
     cells = arrangement(inverse, (k.width, k.height), hidden_ends)
-    chosen = labelled(cell_costs(cells, surface, found, camera), borders_of(cells))
+    chosen = labelled(cell_costs(cells, surface, proposals, camera), borders_of(cells))
     return None if chosen is None else RoomLayout(cells, chosen)
 
 
 def cell_costs(
-    cells: Arrangement, surface: MeasuredSurface, found: Proposals, camera: Camera
+    cells: Arrangement, surface: MeasuredSurface, proposals: Proposals, camera: Camera
 ) -> Float[np.ndarray, "c p"]:
     """Disagreement of each plane in each cell, in shares of the picture; infinite behind the camera.
 
     Args:
         cells: the c cells into which the planes' lines divide the picture.
         surface: measured points in the world, and which of them belong to objects.
-        found: the p proposed planes.
+        proposals: the p proposed planes.
         camera: of the photo, in the world.
     """
     pixels = camera.project(surface.points)
@@ -86,7 +86,7 @@ def cell_costs(
         # What hides the layout bounds it from one side only.
         wrong = np.where(surface.is_object, np.maximum(off, 0.0), np.abs(off))
         each = np.minimum(wrong / FULL_DISAGREEMENT, 1.0)
-        each = each + SEGMENT_WEIGHT * ((found.segment >= 0) & (found.segment != p))
+        each = each + SEGMENT_WEIGHT * ((proposals.segment >= 0) & (proposals.segment != p))
         inside = cell >= 0
         costs[:, p] = np.bincount(cell[inside], each[inside], minlength=len(cells.cells))
         behind = [float(cells.inverse_at(p, c.corners.mean(axis=0, keepdims=True))[0]) <= 0.0 for c in cells.cells]

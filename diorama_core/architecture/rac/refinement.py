@@ -48,7 +48,7 @@ SETTINGS = LayoutRefinementSettings()
 def refined_layout(
     layout: RoomLayout,
     surface: MeasuredSurface,
-    found: Proposals,
+    proposals: Proposals,
     camera: Camera,
     settings: LayoutRefinementSettings = SETTINGS,
 ) -> RoomLayout:
@@ -57,7 +57,7 @@ def refined_layout(
     Args:
         layout: the cheapest layout of the proposed planes.
         surface: measured points in the world, and which of them belong to objects.
-        found: the proposed planes.
+        proposals: the proposed planes.
         camera: of the photo, in the world.
         settings: rounds, and the errors in metres that are worth one.
     """
@@ -65,8 +65,8 @@ def refined_layout(
     ends: tuple[PlaneLine, ...] = ()
     for _ in range(settings.max_rounds):
         error = depth_error_m(layout, surface, pixels)
-        new = hidden_ends(layout, surface, found, camera, settings) if error > settings.min_error_m else ()
-        tried = best_layout(surface, found, camera, (*ends, *new)) if new else None
+        new = hidden_ends(layout, surface, proposals, camera, settings) if error > settings.min_error_m else ()
+        tried = best_layout(surface, proposals, camera, (*ends, *new)) if new else None
         if tried is None or depth_error_m(tried, surface, pixels) >= error:
             break
         layout, ends = tried, (*ends, *new)
@@ -84,7 +84,7 @@ def depth_error_m(layout: RoomLayout, surface: MeasuredSurface, pixels: Float[np
 def hidden_ends(
     layout: RoomLayout,
     surface: MeasuredSurface,
-    found: Proposals,
+    proposals: Proposals,
     camera: Camera,
     settings: LayoutRefinementSettings = SETTINGS,
 ) -> tuple[PlaneLine, ...]:
@@ -93,7 +93,7 @@ def hidden_ends(
     Args:
         layout: the layout that may be wrong.
         surface: measured points in the world, and which of them belong to objects.
-        found: the proposed planes.
+        proposals: the proposed planes.
         camera: of the photo, in the world.
         settings: by how many metres, and over what share of the picture, a wall must be wrong.
     """
@@ -102,13 +102,13 @@ def hidden_ends(
     size = surface.grid_rows, surface.grid_columns
     scale = np.array([size[1] / camera.intrinsics.width, size[0] / camera.intrinsics.height])
     lines = []
-    for wall in range(len(found.normals)):
-        if found.role(wall) != "wall":
+    for wall in range(len(proposals.normals)):
+        if proposals.role(wall) != "wall":
             continue
         inverse = layout.cells.inverse_at(wall, pixels)
         behind = np.where(inverse > 0, surface.depth_m - 1.0 / np.maximum(inverse, 1e-9), -np.inf)
         drawn_too_far = (shown == wall) & (behind > settings.wrong_m)
-        left_out = (found.segment == wall) & (rendered - surface.depth_m > settings.wrong_m)
+        left_out = (proposals.segment == wall) & (rendered - surface.depth_m > settings.wrong_m)
         if (drawn_too_far | left_out).sum() < settings.min_share * size[0] * size[1]:
             continue
         # Where two walls meet the depth does not jump, and their own line is there already.

@@ -37,7 +37,7 @@ class Border:
 
 def borders_of(cells: Arrangement) -> tuple[tuple[Border, ...], ...]:
     """For every cell, its neighbours and which planes may meet at each."""
-    found: list[list[Border]] = [[] for _ in cells.cells]
+    borders: list[list[Border]] = [[] for _ in cells.cells]
     planes = range(len(cells.inverse))
     for a, b, line in cells.neighbours():
         middle, length = _shared(cells, a, b)
@@ -47,9 +47,9 @@ def borders_of(cells: Arrangement) -> tuple[tuple[Border, ...], ...]:
         for i, j in permutations(planes, 2):
             nearer = i if depth[i] > depth[j] else j
             allowed[i, j] = {i, j} == ending or nearer in ending
-        found[a].append(Border(b, allowed, EDGE_COST * length))
-        found[b].append(Border(a, allowed.T, EDGE_COST * length))
-    return tuple(tuple(of_cell) for of_cell in found)
+        borders[a].append(Border(b, allowed, EDGE_COST * length))
+        borders[b].append(Border(a, allowed.T, EDGE_COST * length))
+    return tuple(tuple(of_cell) for of_cell in borders)
 
 
 def _shared(cells: Arrangement, a: int, b: int) -> tuple[Float[np.ndarray, "2"], float]:

@@ -56,15 +56,15 @@ class RenderAndCompareRoom:
         camera = geometry.camera
         hidden = object_pixels((inputs.photo.height, inputs.photo.width), objects)
         surface = measured_surface(inputs.depth_m, camera, hidden)
-        found = proposals(surface, self.seed)
+        proposed = proposals(surface, self.seed)
         progress.report(0.3, "Comparing rendered layouts with the picture")
-        layout = best_layout(surface, found, camera)
+        layout = best_layout(surface, proposed, camera)
         if layout is None:
             raise InputError("render and compare found no layout that fills the picture; use --room closed")
         if self.refine:
             progress.report(0.6, "Ending walls where the picture looks past them")
-            layout = refined_layout(layout, surface, found, camera)
-        planes = polygons(layout, found, camera)
+            layout = refined_layout(layout, surface, proposed, camera)
+        planes = polygons(layout, proposed, camera)
         if not any(p.role == "floor" for p in planes):
             raise InputError("render and compare found no floor in the picture; use --room closed")
         architecture = Architecture(coloured(planes, inputs.photo.rgb, camera, objects))
@@ -78,7 +78,7 @@ class RenderAndCompareRoom:
         )
 
 
-def polygons(layout: RoomLayout, found: Proposals, camera: Camera) -> tuple[Plane, ...]:
+def polygons(layout: RoomLayout, proposals: Proposals, camera: Camera) -> tuple[Plane, ...]:
     """The cells of every plane as one polygon in space; of pieces that do not touch, the largest."""
     planes: list[Plane] = []
     cells = layout.cells
@@ -95,13 +95,13 @@ def polygons(layout: RoomLayout, found: Proposals, camera: Camera) -> tuple[Plan
         if region.area < MIN_REGION_PX:
             continue
         outline = np.array(shapely.simplify(region, 0.05).exterior.coords)[:-1]
-        role = found.role(p)
+        role = proposals.role(p)
         number = sum(q.role == role for q in planes)
         if role != "wall" and number:
             continue
         name = f"wall_{number + 1}" if role == "wall" else role
         corners = _in_space(outline, cells.inverse_at(p, outline), camera)
-        planes.append(Plane(name, role, _inward(corners, found.normals[p]), confidence=CONFIDENCE))
+        planes.append(Plane(name, role, _inward(corners, proposals.normals[p]), confidence=CONFIDENCE))
     return tuple(sorted(planes, key=lambda plane: ("floor", "wall", "ceiling").index(plane.role)))
 
 

@@ -15,10 +15,10 @@ _CEILINGS_M = np.geomspace(2.1, MAX_CEILING_M, 24)
 
 def find_box(cues: RoomCues, settings: RoomSearchSettings = SETTINGS.search) -> tuple[Float[np.ndarray, "4"], float]:
     """The best box (x0, x1, y1, ceiling) and its score; deterministic."""
-    found = [_swept(cues, start, float(cues.score(start[None])[0]), settings) for start in _starts(cues, settings)]
-    found.sort(key=lambda pair: -pair[1])
+    candidates = [_swept(cues, start, float(cues.score(start[None])[0]), settings) for start in _starts(cues, settings)]
+    candidates.sort(key=lambda pair: -pair[1])
     return max(
-        (_ascend(cues, *pair, settings=settings) for pair in found[: settings.finalists]), key=lambda pair: pair[1]
+        (_ascend(cues, *pair, settings=settings) for pair in candidates[: settings.finalists]), key=lambda pair: pair[1]
     )
 
 
@@ -123,8 +123,8 @@ def _line_values(
         """
         with np.errstate(divide="ignore", invalid="ignore"):
             t = (value - origin[known]) / rays[:, known]
-        found = origin[wanted] + t * rays[:, wanted]
-        return found[np.isfinite(found) & (t > 0)]
+        points = origin[wanted] + t * rays[:, wanted]
+        return points[np.isfinite(points) & (t > 0)]
 
     sides = d[axes == 1]
     fronts, uprights = d[axes == 0], d[axes == 2]
@@ -134,6 +134,6 @@ def _line_values(
     elif coordinate == 3:
         parts = [crossing(fronts, 1, y1, 2), crossing(sides, 0, x0, 2), crossing(sides, 0, x1, 2)]
     else:
-        found = np.concatenate([crossing(sides, 2, 0.0, 0), crossing(sides, 2, top, 0), crossing(uprights, 1, y1, 0)])
-        parts = [found[found < origin[0]] if coordinate == 0 else found[found > origin[0]]]
+        values = np.concatenate([crossing(sides, 2, 0.0, 0), crossing(sides, 2, top, 0), crossing(uprights, 1, y1, 0)])
+        parts = [values[values < origin[0]] if coordinate == 0 else values[values > origin[0]]]
     return np.concatenate(parts)

@@ -230,8 +230,8 @@ def _upright(
     lengths = np.linalg.norm(corners[:, 1:] - corners[:, :-1], axis=-1)
     pixels, inside = projected(cues.camera, _directions(edges, 0.5 * (slopes[1:] + slopes[:-1])))
     k = cues.camera.intrinsics
-    found = response(cues.edge_maps[2], pixels, inside, cues.map_scale) - EDGE_THRESHOLD
-    return np.asarray(np.where(inside, found * lengths / np.hypot(k.width, k.height), 0.0))
+    responses = response(cues.edge_maps[2], pixels, inside, cues.map_scale) - EDGE_THRESHOLD
+    return np.asarray(np.where(inside, responses * lengths / np.hypot(k.width, k.height), 0.0))
 
 
 def response(

@@ -285,12 +285,12 @@ def _slants(
     k = camera.intrinsics
     from_axis = np.abs((angles + np.pi / 4) % (np.pi / 2) - np.pi / 4)
     usable = (level > settings.min_level) & (from_axis > SLANT_FROM_AXIS_RAD)
-    found: list[tuple[float, Bool[np.ndarray, "n"]]] = []
+    slants: list[tuple[float, Bool[np.ndarray, "n"]]] = []
     for angle in np.deg2rad(np.arange(0.0, 180.0, 1.0)):
         along = np.array([np.cos(angle), np.sin(angle), 0.0])
         own = usable & (np.abs(normals @ along) < np.sin(AXIS_TOLERANCE_RAD / 2))
-        found.append((float(angle), own))
-    best = max(found, key=lambda pair: float(lengths[pair[1]].sum()))
+        slants.append((float(angle), own))
+    best = max(slants, key=lambda pair: float(lengths[pair[1]].sum()))
     total = float(lengths[best[1]].sum())
     enough = total > max(
         settings.slant_share * everything, settings.slant_diagonals * float(np.hypot(k.width, k.height))
@@ -374,23 +374,23 @@ def _edge_map(
     canvas = np.full((rows, columns), 255, np.uint8)
     for x1, y1, x2, y2 in np.round(segments * scale - 0.5).astype(int):
         cv2.line(canvas, (x1, y1), (x2, y2), 0, 1)
-    found = np.zeros((rows, columns), np.float32)
+    edge_map = np.zeros((rows, columns), np.float32)
     if (canvas == 0).any():
-        found = np.exp(-0.5 * (cv2.distanceTransform(canvas, cv2.DIST_L2, 3) / sigma) ** 2)
+        edge_map = np.exp(-0.5 * (cv2.distanceTransform(canvas, cv2.DIST_L2, 3) / sigma) ** 2)
         side = round(settings.crowd_share * float(np.hypot(rows, columns))) | 1
-        crowd = cv2.blur((found > 0.6).astype(np.float32), (side, side)) if level else 0.0
-        found *= np.clip(1.0 - settings.crowd_loss * (crowd - settings.crowd_free), settings.crowd_min, 1.0)
+        crowd = cv2.blur((edge_map > 0.6).astype(np.float32), (side, side)) if level else 0.0
+        edge_map *= np.clip(1.0 - settings.crowd_loss * (crowd - settings.crowd_free), settings.crowd_min, 1.0)
     for item in objects:
-        found[_neutral(item, (rows, columns), scale)] = EDGE_THRESHOLD
-    return np.asarray(found, np.float32)
+        edge_map[_neutral(item, (rows, columns), scale)] = EDGE_THRESHOLD
+    return np.asarray(edge_map, np.float32)
 
 
-def _neutral(found: DetectedObject, shape: tuple[int, int], scale: float) -> Bool[np.ndarray, "hm wm"]:
+def _neutral(detected: DetectedObject, shape: tuple[int, int], scale: float) -> Bool[np.ndarray, "hm wm"]:
     """Region in which an object's own edges are ignored: its dilated mask when reliable, else its box."""
     covered = np.zeros(shape, np.uint8)
-    if found.mask_confidence >= SURE_MASK:
-        covered = cv2.resize(found.mask.astype(np.uint8), shape[::-1], interpolation=cv2.INTER_AREA)
+    if detected.mask_confidence >= SURE_MASK:
+        covered = cv2.resize(detected.mask.astype(np.uint8), shape[::-1], interpolation=cv2.INTER_AREA)
         return cv2.dilate(covered, np.ones((9, 9), np.uint8)).astype(bool)
-    x1, y1, x2, y2 = (round(v * scale) for v in found.box)
+    x1, y1, x2, y2 = (round(v * scale) for v in detected.box)
     covered[y1:y2, x1:x2] = 1
     return covered.astype(bool)

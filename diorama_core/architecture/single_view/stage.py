@@ -120,8 +120,8 @@ def _distances_of_lines(
     rays = cues.segment_rays[cues.segment_axes == axis]
     rays = rays[rays[:, 2] < -1e-3][: settings.lines]
     reach = cues.camera.position[2] / -rays[:, 2]
-    found = -reach * (rays[:, :2] @ normal)
-    return np.asarray(found[(found > settings.nearest_m) & (found < settings.farthest_m)])
+    distances = -reach * (rays[:, :2] @ normal)
+    return np.asarray(distances[(distances > settings.nearest_m) & (distances < settings.farthest_m)])
 
 
 def _pieces(

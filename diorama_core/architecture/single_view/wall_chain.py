@@ -122,7 +122,7 @@ class ChainScorer:
         sides.append((skirting, np.where(skirting > 0.0, sides[0][1], 0.0)))
         eye = float(self.cues.camera.position[2])
         colour, known = (_summed(x) for x in (self.view.floor_ratio * self.view.share, self._coloured()))
-        found = []
+        supports = []
         for run, (first, last) in enumerate(pairwise(chain.borders)):
             columns = slice(first, last)
             over, length = (sum(float(side[k][run, columns].sum()) for side in sides) for k in (0, 1))
@@ -133,13 +133,13 @@ class ChainScorer:
             both = (
                 min(float(every.sum()), float((known[columns, -1] - every).sum())) > self.settings.search.enough_colour
             )
-            found.append(
+            supports.append(
                 min(
                     1.0,
                     self.settings.search.edge_trust * edge + self.settings.search.colour_trust * max(apart, 0.0) * both,
                 )
             )
-        return np.array(found)
+        return np.array(supports)
 
     def _coloured(self) -> Float[np.ndarray, "m k"]:
         return np.where(self.view.floor_ratio != 0, self.view.share, 0.0)
@@ -161,14 +161,14 @@ class ChainScorer:
         step[:, -1] = step[:, -2] if step.shape[1] > 1 else 0.0
         k = e.camera.intrinsics
         step = np.minimum(step / np.hypot(k.width, k.height), 0.08)
-        found = np.zeros(near.shape)
+        values = np.zeros(near.shape)
         for direction in np.unique(walls.directions):
             mine = walls.directions == direction
             # A wall across x runs along y.
             edge_map = e.edge_maps[1 - direction] if direction < 2 else e.slant_maps[direction - 2]
-            found[mine] = response(edge_map, pixels[mine], inside[mine], e.map_scale) - EDGE_THRESHOLD
-        free = inside & (np.abs(found) > 1e-6)
-        return np.where(free, found * step, 0.0), np.where(free, step, 0.0)
+            values[mine] = response(edge_map, pixels[mine], inside[mine], e.map_scale) - EDGE_THRESHOLD
+        free = inside & (np.abs(values) > 1e-6)
+        return np.where(free, values * step, 0.0), np.where(free, step, 0.0)
 
     def _skirting(self, walls: PhotoWalls, near: Float[np.ndarray, "w m"]) -> Float[np.ndarray, "w m"]:
         """How much of the upper edge of a skirting board is an edge, over the threshold; 0 for walls without one.

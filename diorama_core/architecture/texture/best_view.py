@@ -66,8 +66,8 @@ def best_view_textures(
     seen: dict[str, dict[int, PlaneView]] = {}
     for plane in planes:
         points, pixel_m = texel_points(plane)
-        found = {k: v.of_plane(plane, architecture.planes, points, pixel_m) for k, v in enumerate(photos)}
-        seen[plane.id] = {k: v for k, v in found.items() if v is not None}
+        views_of_photos = {k: v.of_plane(plane, architecture.planes, points, pixel_m) for k, v in enumerate(photos)}
+        seen[plane.id] = {k: v for k, v in views_of_photos.items() if v is not None}
     sizes = {p.id: texel_points(p)[1] for p in planes}
     gains = exposure_gains([(views, sizes[name]) for name, views in seen.items()], len(photos), settings)
     sharpness = [p.camera.intrinsics.fx * p.camera.intrinsics.fy for p in pictures]

@@ -33,8 +33,8 @@ def visible_planes(planes: tuple[Plane, ...], camera: Camera, step: int) -> Int[
 def object_pixels(shape: tuple[int, int], objects: tuple[DetectedObject, ...]) -> Bool[np.ndarray, "h w"]:
     """Where objects are, with a margin for their shadows and for masks that are a little small."""
     union = np.zeros(shape, np.uint8)
-    for found in objects:
-        union |= found.mask.astype(np.uint8)
+    for detected in objects:
+        union |= detected.mask.astype(np.uint8)
     radius = max(2, round(0.008 * max(shape)))
     return cv2.dilate(union, np.ones((2 * radius + 1, 2 * radius + 1), np.uint8)).astype(bool)
 
@@ -42,9 +42,9 @@ def object_pixels(shape: tuple[int, int], objects: tuple[DetectedObject, ...]) -
 def _doubtful(shape: tuple[int, int], objects: tuple[DetectedObject, ...]) -> Bool[np.ndarray, "h w"]:
     """The boxes of objects whose outlines are only a guess: a door's frame may be taken for the wall beside it."""
     within = np.zeros(shape, dtype=bool)
-    for found in objects:
-        if found.mask_confidence < 1.0:
-            x1, y1, x2, y2 = (max(round(v), 0) for v in found.box)
+    for detected in objects:
+        if detected.mask_confidence < 1.0:
+            x1, y1, x2, y2 = (max(round(v), 0) for v in detected.box)
             within[y1:y2, x1:x2] = True
     return within
 
@@ -74,15 +74,15 @@ def coloured(
         own, surely = (seen == index) & free, (seen == index) & sure
         return surely if role != "floor" and surely.sum() >= MIN_PIXELS else own
 
-    found = [_colour_of(plane.role, small, where(i, plane.role), white) for i, plane in enumerate(planes)]
+    colours = [_colour_of(plane.role, small, where(i, plane.role), white) for i, plane in enumerate(planes)]
     shown = [int((seen == i).sum()) for i in range(len(planes))]
     unhidden = [int(((seen == i) & free).sum()) for i in range(len(planes))]
     by_role: dict[PlaneRole, tuple[float, float, float]] = {}
     for i in sorted(range(len(planes)), key=lambda k: -unhidden[k]):
-        if (colour := found[i]) is not None:
+        if (colour := colours[i]) is not None:
             by_role.setdefault(planes[i].role, colour)
     hidden = [p.role == "wall" and n < MIN_FREE * m for p, n, m in zip(planes, unhidden, shown, strict=True)]
-    own = [None if lost else colour for colour, lost in zip(found, hidden, strict=True)]
+    own = [None if lost else colour for colour, lost in zip(colours, hidden, strict=True)]
     return tuple(replace(p, colour=c or by_role.get(p.role, _PLAIN[p.role])) for p, c in zip(planes, own, strict=True))
 
 

@@ -71,7 +71,7 @@ def cut_patches(
     rgb: UInt8[np.ndarray, "h w 3"], objects: Sequence[DetectedObject], settings: ContinuedObjectSettings = SETTINGS
 ) -> Bool[np.ndarray, "h w"]:
     """Pixels in the boxes of objects that belong to even patches of which the masks hold a part."""
-    found = np.zeros(rgb.shape[:2], dtype=bool)
+    patches = np.zeros(rgb.shape[:2], dtype=bool)
     for item in objects:
         x1, y1, x2, y2 = (max(round(v), 0) for v in item.box)
         mask = item.mask[y1:y2, x1:x2]
@@ -85,20 +85,20 @@ def cut_patches(
                 np.bincount(label.ravel(), minlength=count), 1
             )
             held[0] = 0.0
-            found[y1:y2, x1:x2] |= (held > settings.cut_share)[label] & ~mask
-    return cv2.morphologyEx(found.astype(np.uint8), cv2.MORPH_OPEN, np.ones((3, 3), np.uint8)).astype(bool)
+            patches[y1:y2, x1:x2] |= (held > settings.cut_share)[label] & ~mask
+    return cv2.morphologyEx(patches.astype(np.uint8), cv2.MORPH_OPEN, np.ones((3, 3), np.uint8)).astype(bool)
 
 
 def object_colours(
     rgb: UInt8[np.ndarray, "h w 3"], objects: Sequence[DetectedObject], settings: ContinuedObjectSettings = SETTINGS
 ) -> tuple[ObjectColours, ...]:
     """Common colours of all objects that enough is seen of."""
-    found = []
+    colours = []
     for item in objects:
         pixels = rgb[item.mask]
         if len(pixels) >= settings.min_pixels:
-            found.append(ObjectColours(item.box, _common_colours(_lab(pixels), settings.min_cell_share)))
-    return tuple(found)
+            colours.append(ObjectColours(item.box, _common_colours(_lab(pixels), settings.min_cell_share)))
+    return tuple(colours)
 
 
 def continued_objects(
@@ -123,9 +123,9 @@ def continued_objects(
         longest_px: the photo's longer side.
     """
     rows, columns = np.nonzero(foreign)
-    found = np.zeros(foreign.shape, np.uint8)
+    continued = np.zeros(foreign.shape, np.uint8)
     if not len(rows) or not own.any():
-        return found.astype(bool)
+        return continued.astype(bool)
     lab = _lab(colours[rows, columns])
     lit = _is_shade(lab, _lab(np.median(colours[own], axis=0)[None])[0], settings)
     reach = settings.reach * longest_px
@@ -143,8 +143,8 @@ def continued_objects(
         for piece in np.unique(label[beside[alike]]):
             of_piece = alike[label == piece]
             if _continues(pixels[of_piece], beside[of_piece], item.box, settings):
-                found[rows[of_piece], columns[of_piece]] = 1
-    return cv2.dilate(found, _square(settings.rim_m, pixel_m)).astype(bool)
+                continued[rows[of_piece], columns[of_piece]] = 1
+    return cv2.dilate(continued, _square(settings.rim_m, pixel_m)).astype(bool)
 
 
 def _continues(

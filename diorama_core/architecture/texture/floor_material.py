@@ -95,20 +95,20 @@ def contact_pixels(
     Within the box of a rug whose outline is only a guess, it is rather the rug.
     """
     near, far = (round(share * shape[0]) for share in settings.contact_band)
-    found = np.zeros(shape, dtype=bool)
+    contacts = np.zeros(shape, dtype=bool)
     for item in objects:
         columns = np.flatnonzero(item.mask.any(axis=0))
         feet = shape[0] - 1 - np.argmax(item.mask[::-1, columns], axis=0)
         for below in range(near, far + 1):
             rows = feet + below
             inside = rows < shape[0]
-            found[rows[inside], columns[inside]] = True
+            contacts[rows[inside], columns[inside]] = True
     for item in objects:
-        found &= ~item.mask
+        contacts &= ~item.mask
         if item.category in _RUGS and item.mask_confidence < 1.0:
             x1, y1, x2, y2 = (max(round(v), 0) for v in item.box)
-            found[y1:y2, x1:x2] = False
-    return found
+            contacts[y1:y2, x1:x2] = False
+    return contacts
 
 
 def white_level(rgb: UInt8[np.ndarray, "h w 3"], settings: FloorMaterialSettings = SETTINGS) -> float:
@@ -180,12 +180,12 @@ def floor_texels(
         if left.mean() < settings.min_of_pattern:
             break
         fullest = _fullest(lab[left][:: max(1, int(left.sum()) // settings.samples)], settings)
-        found = _of_material(lab, fullest, settings) & left
-        if found.mean() < settings.min_of_pattern:
+        texels = _of_material(lab, fullest, settings) & left
+        if texels.mean() < settings.min_of_pattern:
             break
-        looked_at |= found
+        looked_at |= texels
         other = np.zeros(seen.shape, dtype=bool)
-        other[rows, columns] = found
+        other[rows, columns] = texels
         if _intermingled(own, other, pixel_m, settings):
             own |= other
         else:
@@ -260,7 +260,7 @@ def _main_colour(
 ) -> Float[np.ndarray, "3"]:
     """The colour that covers much of the photo, lies far apart, is at the feet of things, and is usual for floors."""
     at_feet = max(float(weight[contact].sum()), 1e-12)
-    found, covers, scores = [], [], []
+    colours, covers, scores = [], [], []
     for cell in _cells(lab, weight, settings):
         cell = _mode(cell, lab, weight, settings)
         alike = (np.abs(lab - cell) < _CELL_LAB).all(axis=1)
@@ -269,10 +269,10 @@ def _main_colour(
         shaded = settings.of_shade * float(weight[contact & ~alike & _shades_of(middle, lab, settings)].sum())
         touched = (float(weight[contact & alike].sum()) + shaded) / at_feet
         off = _USUAL_AXES @ (middle * np.array([100.0 / white, 1.0, 1.0]) - _USUAL_LAB)
-        found.append(middle)
+        colours.append(middle)
         covers.append(float(weight[alike].sum()) * spread * (settings.without_contact + touched))
         scores.append(covers[-1] * float(np.exp(-0.5 * (off**2).sum())))
-    return _lit(int(np.argmax(scores)), np.array(found), np.array(covers), settings)
+    return _lit(int(np.argmax(scores)), np.array(colours), np.array(covers), settings)
 
 
 def _mode(
@@ -310,14 +310,14 @@ def _spread(
 
 def _lit(
     best: int,
-    found: Float[np.ndarray, "k 3"],
+    colours: Float[np.ndarray, "k 3"],
     covers: Float[np.ndarray, "k"],
     settings: FloorMaterialSettings = SETTINGS,
 ) -> Float[np.ndarray, "3"]:
     """A colour, or the lighter one that it is a shade of and that covers clearly more."""
-    shade = np.array([bool(_shades_of(lighter, found[best : best + 1], settings)[0]) for lighter in found])
+    shade = np.array([bool(_shades_of(lighter, colours[best : best + 1], settings)[0]) for lighter in colours])
     lighter = shade & (covers > settings.shade_cover * covers[best])
-    return np.asarray(found[int(np.argmax(np.where(lighter, covers, 0.0))) if lighter.any() else best])
+    return np.asarray(colours[int(np.argmax(np.where(lighter, covers, 0.0))) if lighter.any() else best])
 
 
 def _shades_of(

@@ -133,17 +133,17 @@ def plane_textures(
     if not planes:
         return {}  # the room need not be painted empty for that
     view = PhotoView(RoomPicture(inputs.photo.rgb, objects, camera, standing, filler))
-    found: dict[str, np.ndarray] = {}
+    textures: dict[str, np.ndarray] = {}
     for plane in planes:
         points, pixel_m = texel_points(plane)
         seen = view.of_plane(plane, architecture.planes, points, pixel_m)
         if seen is not None and is_enough(seen.shown, pixel_m, plane):
             ground = plane.role == "floor"
             colours = levelled(seen.colours, seen.own, pixel_m) if ground else seen.colours
-            found[plane.id] = completed(
+            textures[plane.id] = completed(
                 colours, seen.seen, plane.colour, pixel_m, seen.own, ground=ground, sharp=seen.sharp
             )
-    return found
+    return textures
 
 
 class PhotoView:
@@ -242,8 +242,8 @@ def _boxes(shape: tuple[int, int], objects: list[DetectedObject]) -> Bool[np.nda
     """Whole boxes of objects whose masks may have missed legs and arms, with a margin."""
     covered = np.zeros(shape, dtype=bool)
     margin = 0.012 * max(shape)
-    for found in objects:
-        x1, y1, x2, y2 = found.box
+    for detected in objects:
+        x1, y1, x2, y2 = detected.box
         rows = slice(max(0, int(y1 - margin)), int(y2 + margin) + 1)
         covered[rows, max(0, int(x1 - margin)) : int(x2 + margin) + 1] = True
     return covered

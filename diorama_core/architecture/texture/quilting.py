@@ -122,13 +122,13 @@ def _outward(seen: Bool[np.ndarray, "h w"], size: int) -> list[tuple[int, int]]:
     step = max(1, round(size * (1.0 - OVERLAP)))
     rows, columns = ([*range(0, n - size, step), n - size] for n in (height, width))
     distance = cv2.distanceTransform((~seen).astype(np.uint8), cv2.DIST_L2, 5)
-    found = [
+    patches = [
         (float(distance[r : r + size, c : c + size].min()), float(distance[r : r + size, c : c + size].mean()), r, c)
         for r in rows
         for c in columns
         if not seen[r : r + size, c : c + size].all()
     ]
-    return [(r, c) for _, _, r, c in sorted(found)]
+    return [(r, c) for _, _, r, c in sorted(patches)]
 
 
 def _blended(
@@ -156,9 +156,9 @@ class _Finder:
         bottom, right = max(int(rows[-1]) + 1, self._top + size), max(int(columns[-1]) + 1, self._left + size)
         everywhere = _places(source[self._top : bottom, self._left : right], size)
         starts = [(row, column) for row in range(SEARCH_STEP) for column in range(SEARCH_STEP)]
-        found = [everywhere[row::SEARCH_STEP, column::SEARCH_STEP] for row, column in starts]
-        most = int(np.argmax([places.sum() for places in found]))
-        self._places = found[most]
+        windows = [everywhere[row::SEARCH_STEP, column::SEARCH_STEP] for row, column in starts]
+        most = int(np.argmax([places.sum() for places in windows]))
+        self._places = windows[most]
         self._top, self._left = self._top + starts[most][0], self._left + starts[most][1]
         part = (slice(self._top, bottom), slice(self._left, right))
         grey = cv2.cvtColor(np.where(source[part][..., None], detail[part], 0.0).astype(np.float32), cv2.COLOR_RGB2GRAY)

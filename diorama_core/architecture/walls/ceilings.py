@@ -84,16 +84,16 @@ def _slopes(surface: MeasuredSurface, settings: CeilingsSettings = SETTINGS) -> 
     """Tilted planes overhead: the commonest direction first, its points removed, and again."""
     nz = surface.normals[:, 2]
     free = (nz < -STEEP_COSINE) & (nz > -FLAT_COSINE) & ~surface.is_object & (surface.points[:, 2] > 0.8)
-    found: list[CeilingPiece] = []
+    slopes: list[CeilingPiece] = []
     for _ in range(2 * settings.max_slopes):
-        if free.sum() < settings.min_slope_points or len(found) == settings.max_slopes:
+        if free.sum() < settings.min_slope_points or len(slopes) == settings.max_slopes:
             break
         member = free & (surface.normals @ _commonest(surface, free) > GROWTH_COSINE)
         piece, taken = _fitted(surface, member, settings)
         free &= ~(taken | member)
-        if piece is not None and not any(_alike(piece, other, settings) for other in found):
-            found.append(piece)
-    return tuple(sorted(found, key=lambda p: -p.area_m2))
+        if piece is not None and not any(_alike(piece, other, settings) for other in slopes):
+            slopes.append(piece)
+    return tuple(sorted(slopes, key=lambda p: -p.area_m2))
 
 
 def _alike(a: CeilingPiece, b: CeilingPiece, settings: CeilingsSettings = SETTINGS) -> bool:

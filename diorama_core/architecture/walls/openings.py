@@ -50,8 +50,8 @@ def find_openings(
     through = cv2.morphologyEx(through, cv2.MORPH_CLOSE, np.ones((5, 5), np.uint8))
     through = cv2.morphologyEx(through, cv2.MORPH_OPEN, np.ones((3, 3), np.uint8))
     count, _, stats, _ = cv2.connectedComponentsWithStats(through, connectivity=4)
-    found = [_opening(stats[i], piece, top_m, settings) for i in range(1, count)]
-    return tuple(sorted((o for o in found if o is not None), key=lambda o: o.left))
+    openings = [_opening(stats[i], piece, top_m, settings) for i in range(1, count)]
+    return tuple(sorted((o for o in openings if o is not None), key=lambda o: o.left))
 
 
 def is_shut(

@@ -24,9 +24,9 @@ from diorama_core.scene.types import Camera
 NAMES = frozenset({"doorway", "archway", "passageway", "door opening"})
 
 
-def is_passage(found: DetectedObject) -> bool:
+def is_passage(detected: DetectedObject) -> bool:
     """Whether an object was called by a name of something that one walks through."""
-    words = re.findall(r"[a-z]+", found.label.lower().removesuffix("s"))
+    words = re.findall(r"[a-z]+", detected.label.lower().removesuffix("s"))
     return bool(NAMES & {words[-1] if words else "", " ".join(words[-2:])})
 
 
@@ -60,8 +60,8 @@ def with_passages(
     """
     of_wall = [list(openings) for openings in measured]
     ids = []
-    for found in objects:
-        place = _opening(found, pieces, camera, top_m, settings) if is_passage(found) else None
+    for detected in objects:
+        place = _opening(detected, pieces, camera, top_m, settings) if is_passage(detected) else None
         if place is None:
             continue
         wall, opening = place
@@ -69,15 +69,15 @@ def with_passages(
             if is_shut is not None and is_shut(wall, opening):
                 continue
             of_wall[wall].append(opening)
-        ids.append(found.id)
+        ids.append(detected.id)
     return tuple(tuple(sorted(o, key=lambda opening: opening.left)) for o in of_wall), tuple(ids)
 
 
 def _opening(
-    found: DetectedObject, pieces: tuple[WallPiece, ...], camera: Camera, top_m: float, settings: WallSettings
+    detected: DetectedObject, pieces: tuple[WallPiece, ...], camera: Camera, top_m: float, settings: WallSettings
 ) -> tuple[int, WallOpening] | None:
     """The wall that a box lies in, and the rectangle of it that the box surrounds."""
-    x1, y1, x2, y2 = found.box
+    x1, y1, x2, y2 = detected.box
     columns, rows = np.array([x1, x2, (x1 + x2) / 2, (x1 + x2) / 2]), np.array([(y1 + y2) / 2] * 2 + [y1, y2])
     rays = camera.rays(np.stack([columns, rows], axis=-1))
     middle = camera.rays(np.array([[(x1 + x2) / 2, (y1 + y2) / 2]]))
@@ -94,7 +94,7 @@ def _opening(
     if (reach <= 0).any():
         return None
     start = np.array([u[0], u[1], v[3], v[2]])
-    left, right, bottom, top = _fitted(start, found, piece, camera, settings)
+    left, right, bottom, top = _fitted(start, detected, piece, camera, settings)
     left, right = max(left, settings.frame_m), min(right, piece.length_m - settings.frame_m)
     bottom, top = (0.0 if bottom < settings.sill_m else bottom), min(top, top_m - settings.frame_m)
     if min(right - left, top - bottom) < settings.min_side_m or (right - left) * (top - bottom) < settings.min_area_m2:
@@ -115,7 +115,7 @@ def _met(
 
 
 def _fitted(
-    start: Float[np.ndarray, "4"], found: DetectedObject, piece: WallPiece, camera: Camera, settings: WallSettings
+    start: Float[np.ndarray, "4"], detected: DetectedObject, piece: WallPiece, camera: Camera, settings: WallSettings
 ) -> tuple[float, float, float, float]:
     """Left, right, bottom and top of the rectangle whose picture the box surrounds.
 
@@ -127,7 +127,7 @@ def _fitted(
     def misfit(edges: Float[np.ndarray, "4"]) -> Float[np.ndarray, "4"]:
         corners = np.array([foot + u * along + [0, 0, v] for u in edges[:2] for v in edges[2:]])
         pixels = camera.project(corners)
-        return np.concatenate([pixels.min(axis=0), pixels.max(axis=0)]) - np.array(found.box)
+        return np.concatenate([pixels.min(axis=0), pixels.max(axis=0)]) - np.array(detected.box)
 
     found_edges = least_squares(misfit, start, max_nfev=30).x
     # A box that no upright rectangle of this wall fills is read along its middle lines.

@@ -77,11 +77,11 @@ def find_walls(
     upright = (np.abs(surface.normals[:, 2]) < 0.35) & (surface.normals != 0).any(axis=1) & ~surface.is_object
     if upright.sum() < settings.min_points:
         return []
-    found: list[WallCandidate] = []
+    candidates: list[WallCandidate] = []
     for normal in _directions(surface, upright, settings):
-        found += _parallel_walls(surface, upright, normal, top_m, settings)
+        candidates += _parallel_walls(surface, upright, normal, top_m, settings)
     retained: list[WallCandidate] = []
-    for wall in sorted(found, key=lambda w: -w.area_m2):
+    for wall in sorted(candidates, key=lambda w: -w.area_m2):
         if not any(same_wall(surface, wall, other, settings) for other in retained):
             retained.append(wall)
     return retained
@@ -113,16 +113,16 @@ def _directions(
     index = np.floor((heading + np.pi) / BIN_RAD).astype(int) % bins
     histogram = np.bincount(index, weights=weight, minlength=bins)
     smooth = histogram + 0.6 * (np.roll(histogram, 1) + np.roll(histogram, -1))
-    found: list[float] = []
+    angles: list[float] = []
     for peak in np.argsort(-smooth, kind="stable"):
         if smooth[peak] < max(settings.min_area_m2, 0.01 * weight.sum()):
             break
         centre = -np.pi + (peak + 0.5) * BIN_RAD
-        if any(abs(_turn(centre - other)) < APART_RAD for other in found):
+        if any(abs(_turn(centre - other)) < APART_RAD for other in angles):
             continue
         near = np.abs(_turn(heading - centre)) < GROWTH_RAD
-        found.append(centre + float(np.average(_turn(heading[near] - centre), weights=weight[near])))
-    return [np.array([np.cos(a), np.sin(a)]) for a in found]
+        angles.append(centre + float(np.average(_turn(heading[near] - centre), weights=weight[near])))
+    return [np.array([np.cos(a), np.sin(a)]) for a in angles]
 
 
 def _turn(angle_rad: np.ndarray | float) -> np.ndarray:

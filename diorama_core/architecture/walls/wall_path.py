@@ -94,9 +94,9 @@ def wall_runs(
     if not walls:
         return []
     headings = _divided(surface, view, settings)
-    found = _cheapest(surface, walls, headings, top_m, settings)
-    returns = _returns(surface, found, headings, top_m, settings)
-    return _cheapest(surface, walls + returns, headings, top_m, settings) if returns else found
+    runs = _cheapest(surface, walls, headings, top_m, settings)
+    returns = _returns(surface, runs, headings, top_m, settings)
+    return _cheapest(surface, walls + returns, headings, top_m, settings) if returns else runs
 
 
 def _divided(surface: MeasuredSurface, view: tuple[float, float], settings: WallPathSettings = SETTINGS) -> _Headings:
@@ -238,8 +238,8 @@ def _corner_headings(walls: list[WallCandidate], origin: Float[np.ndarray, "2"])
     safe = np.where(np.abs(determinant) < 0.17, np.nan, determinant)
     x = (offsets[:, None] * b[..., 1] - offsets[None, :] * a[..., 1]) / safe
     y = (a[..., 0] * offsets[None, :] - b[..., 0] * offsets[:, None]) / safe
-    found: Float[np.ndarray, "w w"] = np.arctan2(x, y)
-    return found
+    headings: Float[np.ndarray, "w w"] = np.arctan2(x, y)
+    return headings
 
 
 def _returns(
@@ -248,7 +248,7 @@ def _returns(
     """Walls between a nearer and a farther one, seen too aslant or too narrowly to be found by themselves."""
     origin = surface.camera_position[:2]
     width = float(headings.edges[1] - headings.edges[0])
-    found: list[WallCandidate] = []
+    returns: list[WallCandidate] = []
     for left, right in pairwise(runs):
         at = np.array([0.5 * (left.last + right.first)])
         a, b = (float(distance_along(r.wall, at, origin)[0]) for r in (left, right))
@@ -263,10 +263,10 @@ def _returns(
         between = close & behind & before
         for wall in (near.wall, far.wall):
             candidate = _square_to(surface, wall, between, settings)
-            known = [*(run.wall for run in runs), *found]
+            known = [*(run.wall for run in runs), *returns]
             if candidate is not None and not any(same_wall(surface, candidate, w) for w in known):
-                found.append(candidate)
-    return found
+                returns.append(candidate)
+    return returns
 
 
 def _square_to(

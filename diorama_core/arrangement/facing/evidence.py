@@ -87,12 +87,12 @@ class FacingRoom(ArrayValue):
             kinds: categories that count.
             reach_m: largest gap between the two, in the plan (m).
         """
-        found = [
+        candidates = [
             (self.gap_m(i, j), float(np.linalg.norm(o.centre - self.objects[i].centre)), j)
             for j, o in enumerate(self.objects)
             if j != i and o.kind in kinds
         ]
-        best = min(found, default=None)
+        best = min(candidates, default=None)
         return best[2] if best is not None and best[0] < reach_m else None
 
     def loads(self, i: int, kinds: frozenset[str]) -> list[int]:
@@ -148,12 +148,12 @@ def picture_of(
         scores: By shape their log-likelihoods, comparable between shapes.
         folds: By shape how many headings look the same.
     """
-    found = np.full(HEADINGS, -np.inf)
+    log_likelihood = np.full(HEADINGS, -np.inf)
     for R, score, fold in zip(poses, scores, folds, strict=True):
         turns = np.arange(min(fold, HEADINGS)) * 2 * np.pi / min(fold, HEADINGS)
         off = (yaws_of(R) - yaws_of(R_world_object))[:, None] + turns
         index = np.rint(off / STEP_RAD).astype(int) % HEADINGS
-        np.maximum.at(found, index, np.broadcast_to(score[:, None], index.shape))
-    if not np.isfinite(found).any():
+        np.maximum.at(log_likelihood, index, np.broadcast_to(score[:, None], index.shape))
+    if not np.isfinite(log_likelihood).any():
         return np.zeros(HEADINGS)
-    return np.maximum(found - found.max(), UNSEEN)
+    return np.maximum(log_likelihood - log_likelihood.max(), UNSEEN)

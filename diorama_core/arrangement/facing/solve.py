@@ -35,9 +35,9 @@ class Factors:
         """All terms of a room."""
         count = range(len(room.objects))
         single = [(t.name, i, t.one(room, i)) for t in terms if t.one is not None for i in count]
-        ones = [(name, i, found) for name, i, found in single if found is not None]
+        ones = [(name, i, pair) for name, i, pair in single if pair is not None]
         ones += [(PICTURE, i, item.picture) for i, item in enumerate(room.objects)]
-        return cls(room, tuple(ones), tuple((t.name, *found) for t in terms for found in pairs_of(room, t)))
+        return cls(room, tuple(ones), tuple((t.name, *pair) for t in terms for pair in pairs_of(room, t)))
 
 
 @dataclass(frozen=True, eq=False)
@@ -95,8 +95,8 @@ def beliefs(factors: Factors, weights: FacingWeights) -> tuple[Float[np.ndarray,
         total = picture + single + incoming
         new = {}
         for (a, b), table in tables.items():
-            found = (table + (total[b] - messages[b, a])[None]).max(axis=1)
-            new[a, b] = DAMPING * messages[a, b] + (1 - DAMPING) * (found - found.max())
+            best = (table + (total[b] - messages[b, a])[None]).max(axis=1)
+            new[a, b] = DAMPING * messages[a, b] + (1 - DAMPING) * (best - best.max())
         messages, incoming = new, np.zeros((count, HEADINGS))
         for (a, _), message in messages.items():
             incoming[a] += message
@@ -110,14 +110,14 @@ def _shares(
     sentences = {t.name: t.sentence for t in TERMS} | {PICTURE: "the picture shows it so"}
     off = np.abs((np.arange(HEADINGS) - headings[:, None] + HEADINGS // 2) % HEADINGS - HEADINGS // 2)
     rivals = np.where(off > CLEARLY_OTHER, total, -np.inf).argmax(axis=1)
-    found: dict[tuple[int, str], float] = {}
+    shares: dict[tuple[int, str], float] = {}
     said = [(i, name, values) for name, i, values in factors.ones]
     for name, i, j, table in factors.pairs:
         said += [(i, name, table[:, headings[j]]), (j, name, table[headings[i]])]
     for i, name, values in said:
         nats = weights.of(name) * float(values[headings[i]] - values[rivals[i]])
-        found[i, name] = found.get((i, name), 0.0) + nats
+        shares[i, name] = shares.get((i, name), 0.0) + nats
     ids = [item.object_id for item in factors.room.objects]
     return tuple(
-        Reason(ids[i], "front", name, nats, "nats", sentences[name]) for (i, name), nats in found.items() if nats
+        Reason(ids[i], "front", name, nats, "nats", sentences[name]) for (i, name), nats in shares.items() if nats
     )

@@ -114,8 +114,10 @@ def back_at_wall(kinds: frozenset[str] | None) -> Callable[[FacingRoom, int], Ag
         item = room.objects[i]
         if item.kind in NO_FRONT | SCREENS | SEATS or (item.kind in STORAGE | BEDS) != (kinds is not None):
             return None
-        found = sum((_wall_behind(room, i, axis) * (item.directions @ axis) for axis in item.axes), np.zeros(HEADINGS))
-        return found / max(1.0, float(np.abs(found).max()))
+        agreement = sum(
+            (_wall_behind(room, i, axis) * (item.directions @ axis) for axis in item.axes), np.zeros(HEADINGS)
+        )
+        return agreement / max(1.0, float(np.abs(agreement).max()))
 
     return one
 
@@ -217,6 +219,6 @@ def pairs_of(room: FacingRoom, term: Term) -> Iterator[tuple[int, int, PairAgree
     count = len(room.objects)
     for i in range(count):
         for j in range(count):
-            found = term.pair(room, i, j) if i != j else None
-            if found is not None:
-                yield i, j, found
+            agreement = term.pair(room, i, j) if i != j else None
+            if agreement is not None:
+                yield i, j, agreement

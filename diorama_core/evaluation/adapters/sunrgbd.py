@@ -48,10 +48,10 @@ def read_sunrgbd(folder: Path) -> SunScene:
 
 
 def _only(folder: Path, pattern: str) -> Path:
-    found = sorted(folder.glob(pattern))
-    if not found:
+    paths = sorted(folder.glob(pattern))
+    if not paths:
         raise InputError(f"{folder}: no {pattern} is there; give a folder laid out as SUN RGB-D publishes it")
-    return found[0]
+    return paths[0]
 
 
 def _polygons(

@@ -82,15 +82,15 @@ def built(
 
 def changes(before: Figures, after: Figures) -> dict[str, Change]:
     """What each figure changes by, of photos and of rooms that were built both ways."""
-    found: dict[str, Change] = {}
+    changes_by_name: dict[str, Change] = {}
     of = {r.title: r for r in after.photos}
     pairs = [(r, of[r.title]) for r in before.photos if r.title in of]
     old, new = [a for a, _ in pairs], [b for _, b in pairs]
     for figure in OF_OBJECTS:
-        found |= _change(figure.column.name, old, new, figure.of)
+        changes_by_name |= _change(figure.column.name, old, new, figure.of)
     if before.rooms and after.rooms:
-        found |= _change("rooms, own Acc", before.rooms, after.rooms, _own_acc)
-    return found
+        changes_by_name |= _change("rooms, own Acc", before.rooms, after.rooms, _own_acc)
+    return changes_by_name
 
 
 def certificate(value: float, before: Figures, after: Mapping[str, Figures], command: str) -> dict[str, object]:

@@ -107,8 +107,8 @@ def run(
             ("picture and boxes", photo_only(view), None),
         )
         for name, inputs, stage in rows:
-            found = _room(case.name, view, inputs, library, stage)
-            results.setdefault(name, []).append(replace(found, seed=series[case.name]))
+            result = _room(case.name, view, inputs, library, stage)
+            results.setdefault(name, []).append(replace(result, seed=series[case.name]))
     by_name = tuple((name, tuple(rooms)) for name, rooms in results.items())
     return ArchitectureBench(tuple(seeds), by_name, tuple(left_out))
 
@@ -135,10 +135,10 @@ def _room(
     stage = stage or stages.architecture
     begun = time.process_time()
     try:
-        found = evaluate(stages, {"given": inputs}, ("objects", "supported_geometry"), Runner(None))
-        geometry = found["supported_geometry"]
+        artefacts = evaluate(stages, {"given": inputs}, ("objects", "supported_geometry"), Runner(None))
+        geometry = artefacts["supported_geometry"]
         begun = time.process_time()
-        room = stage.reconstruct(found["inputs"], found["objects"], geometry, Progress())
+        room = stage.reconstruct(artefacts["inputs"], artefacts["objects"], geometry, Progress())
         spent = time.process_time() - begun
         scores = architecture_scores(
             room.architecture.planes, view.scene.architecture.planes, view.camera, found_camera=geometry.camera

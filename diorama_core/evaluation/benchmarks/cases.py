@@ -109,14 +109,14 @@ def made(cases: tuple[Case, ...], make: Callable[[Case], Made], left_out: list[L
     """
     for case in cases:
         try:
-            found = make(case)
+            result = make(case)
         except Cancelled:
             raise
         except Exception as error:  # whatever goes wrong, the other rooms' results are worth keeping
             log.warning("%s is left out: %s", case.name, error)
             left_out.append(LeftOut(case.name, f"{type(error).__name__}: {error}"))
             continue
-        yield case, found
+        yield case, result
 
 
 def views_of(cases: tuple[Case, ...], library: ShapeLibrary) -> Iterator[tuple[Case, TruthView]]:

@@ -217,7 +217,7 @@ def aligned(models: Sequence[AlignedModel], scene: Scene, frame: ScanFrame) -> t
     if scene.camera is not None:
         scene = moved(scene, frame.camera.T_world_camera @ scene.camera.T_camera_world)
     left = list(scene.objects)
-    found = []
+    rows = []
     for model in models:
         true = Placed(model.R_world_object, model.centre, model.size_m, model.symmetry)
         near = sorted(left, key=lambda o: float(np.linalg.norm(o.pose.position - model.centre)))
@@ -225,8 +225,8 @@ def aligned(models: Sequence[AlignedModel], scene: Scene, frame: ScanFrame) -> t
         hit = next((o for o in alike if object_alignment([true], [as_placed(o)]).acc == 1.0), None)
         if hit is not None:
             left.remove(hit)
-        found.append((model.category, hit is not None))
-    return tuple(found)
+        rows.append((model.category, hit is not None))
+    return tuple(rows)
 
 
 def _in_picture(model: AlignedModel, frame: ScanFrame) -> bool:

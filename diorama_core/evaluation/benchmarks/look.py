@@ -159,13 +159,13 @@ def run(
         for turn, given in enumerate(GIVEN):
             progress.report((number + turn / len(GIVEN)) / len(cases), f"{case.name}: {given}")
             try:
-                found, times, off_deg = _one_room(case.name, view, given, library, show)
+                looks, times, off_deg = _one_room(case.name, view, given, library, show)
             except Cancelled:
                 raise
             except Exception as error:  # whatever goes wrong, the other rooms' results are worth keeping
                 log.warning("%s with %s is left out: %s", case.name, given, error)
                 continue
-            objects += found
+            objects += looks
             spent[given].append(times)
             lights += [] if off_deg is None else [(given, off_deg)]
     progress.report(1.0, "done")
@@ -201,17 +201,17 @@ def _one_room(
     differences = [_difference(balanced, shown) for shown in (flat, dressed)]
     shown = [(scene, instances_seen(scene, library, size=SIZE)) for scene in (before, after)]
     of_mask = {str(view.scene.objects[k].mask_id): k for k in view.asked}
-    found = []
+    looks = []
     for item in seen.objects:
         index = of_mask.get(str(item.mask_id))
         if index is not None and before.has_object(item.id):
             pair = before.object(item.id), after.object(item.id)
             own = [pixels == _index(scene, item.id) for scene, pixels in shown]
             colours = _colours(view, index, own, differences)
-            found.append(_measured(name, given, view, index, pair, seen.geometry.camera, colours, library))
+            looks.append(_measured(name, given, view, index, pair, seen.geometry.camera, colours, library))
     true_light = main_light(room_light(view.scene), np.array([view.scene.objects[k].pose.position for k in view.asked]))
     off_deg = light_error_deg(true_light, view.camera, look.light, seen.geometry.camera)
-    return found, (made_s, materials_s, len(seen.objects)), off_deg
+    return looks, (made_s, materials_s, len(seen.objects)), off_deg
 
 
 def _measured(

@@ -184,8 +184,8 @@ def annotated_inputs(task: PhotoTask) -> AnnotatedInputs:
     boxes = [{"bbox": o.bbox, "class": o.word if task.named else _UNNAMED} for o in stated.objects]
     inputs = read_inputs(task.path, intrinsics=task.intrinsics, boxes=json.dumps(boxes).encode()).inputs
     if inputs.photo.original_size != stated.size:
-        expected, found = ("{} x {}".format(*size) for size in (stated.size, inputs.photo.original_size))
-        raise InputError(f"{task.path}: the annotations are of a picture of {expected} pixels, this one has {found}")
+        expected, actual = ("{} x {}".format(*size) for size in (stated.size, inputs.photo.original_size))
+        raise InputError(f"{task.path}: the annotations are of a picture of {expected} pixels, this one has {actual}")
     size = (inputs.photo.width, inputs.photo.height)
     case = AnnotatedInputs(inputs, stated.scaled(size), tuple(range(len(stated.objects))))
     return perturbed(case, task.perturbation) if task.perturbation else case

@@ -134,7 +134,7 @@ def plan(
     """
     if len(settings) > 1 and len(settings) != folds:
         raise InputError(f"{len(settings)} files of settings for {folds} folds: give one for all, or one for each fold")
-    found: dict[str, PhotoTask] = {}
+    tasks_by_id: dict[str, PhotoTask] = {}
     missing: list[str] = []
     for source in sources:
         intrinsics = read_intrinsics(source.photos)
@@ -142,21 +142,21 @@ def plan(
             path = picture_of(source.photos, name)
             if only and name not in only:
                 continue
-            if name in found:
+            if name in tasks_by_id:
                 raise InputError(f"{source.annotations}: {name} is in an earlier file too; give ids that differ")
             if path is None:
                 missing.append(name)
             else:
-                found[name] = PhotoTask(name, path, photo, intrinsics.get(name), named)
-    if not found:
+                tasks_by_id[name] = PhotoTask(name, path, photo, intrinsics.get(name), named)
+    if not tasks_by_id:
         folders = ", ".join(str(source.photos) for source in sources)
         raise InputError(f"{folders}: none of the {len(missing)} annotated photos is there; name pictures by their ids")
-    fold_of = {name: k % folds for k, name in enumerate(sorted(found))} if folds else {}
-    own = {name: settings[fold_of[name] if len(settings) > 1 else 0] for name in found} if settings else {}
+    fold_of = {name: k % folds for k, name in enumerate(sorted(tasks_by_id))} if folds else {}
+    own = {name: settings[fold_of[name] if len(settings) > 1 else 0] for name in tasks_by_id} if settings else {}
     tasks = [
         _changed(replace(task, settings=own.get(name, {})), change, cache, tiles)
         for change in ("", *perturbations)
-        for name, task in found.items()
+        for name, task in tasks_by_id.items()
     ]
     return PhotoPlan(tuple(tasks), tuple(missing), named, fold_of, len(settings) > 1)
 

@@ -247,14 +247,14 @@ def _arrange(
         rows += [
             (f"{name}true {what}", feasible, None) for name in ("", "feasible, ") for what in ("graph", "architecture")
         ]
-    found: dict[str, Scene] = {}
+    scenes: dict[str, Scene] = {}
     for name, stage, scene in rows:
         progress.report(0.3, f"layout: {name}")
         arranged = None if scene is None else _tried(stage.optimise, scene, Progress())
         ablation.setdefault(name, []).append(pose_scores(view, None if arranged is None else arranged[0], library))
         if arranged is not None:
-            found[name] = arranged[0]
-    return found
+            scenes[name] = arranged[0]
+    return scenes
 
 
 def with_true_graph(view: TruthView, scene: Scene) -> Scene:

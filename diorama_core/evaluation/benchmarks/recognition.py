@@ -156,7 +156,7 @@ def run(
     present = {name: path for name in known if (path := picture_of(photos, name)) is not None}
     if not present:
         raise InputError(f"{photos}: none of the {len(known)} annotated photos is there; name pictures by their ids")
-    found: dict[str, dict[str, FoundBoxes]] = {name: {} for name in routes}
+    boxes_by_route: dict[str, dict[str, FoundBoxes]] = {name: {} for name in routes}
     named: dict[str, dict[str, NamedBoxes]] = {name: {} for name in namers}
     clicked: dict[str, dict[str, ClickedBoxes]] = {name: {} for name in clickers}
     rng = np.random.default_rng(CLICKS_SEED)
@@ -164,13 +164,13 @@ def run(
         progress.report(k / len(present), name)
         inputs, boxes = in_photo(path, known[name])
         for route, stage in routes.items():
-            found[route][name] = _look(stage, inputs.photo, boxes, known[name])
+            boxes_by_route[route][name] = _look(stage, inputs.photo, boxes, known[name])
         for way, namer in namers.items():
             named[way][name] = _name(namer, inputs.photo, boxes, known[name])
         spots = boxes[:, :2] + (boxes[:, 2:] - boxes[:, :2]) * rng.normal(0.5, CLICK_SPREAD, (len(boxes), 2))
         for way, clicker in clickers.items():
             clicked[way][name] = _click(clicker, inputs.photo, spots, boxes)
-    return RecognitionBench(found, named, clicked)
+    return RecognitionBench(boxes_by_route, named, clicked)
 
 
 def in_photo(path: Path, photo: AnnotatedPhoto) -> tuple[Inputs, Float[np.ndarray, "n 4"]]:

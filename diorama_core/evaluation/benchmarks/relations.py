@@ -129,8 +129,8 @@ def run(
         if settings is not None:
             asked.append(_recognised(view.inputs.photo, settings))
             metered = MeteredGraph(LanguageGraph(settings), asked)
-            found = relations_of(view, with_depth=True, graph=metered)
-            counts[BY_MODEL] = counts.get(BY_MODEL, RelationCount()) + found
+            result = relations_of(view, with_depth=True, graph=metered)
+            counts[BY_MODEL] = counts.get(BY_MODEL, RelationCount()) + result
     model = "" if settings is None else settings.model
     return RelationsBench(seed, scenes - len(left_out), tuple(counts.items()), model, tuple(asked))
 

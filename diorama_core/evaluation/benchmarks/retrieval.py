@@ -118,13 +118,13 @@ def run(
         same, unseen = _ranked(everything, view), _ranked(others, view)
         alone = [(name, whole(view), others_only(view)) for name, (whole, others_only) in rows.items()]
         for index in view.asked:
-            found = _result(case.name, view, index, same, unseen, library)
+            result = _result(case.name, view, index, same, unseen, library)
             object_id = view.scene.objects[index].id
             shapes = [(name, a.get(object_id, ()), b.get(object_id, ())) for name, a, b in alone]
             best = tuple(
                 (name, _nearest(view, index, a, library), _nearest(view, index, b, library)) for name, a, b in shapes
             )
-            results.append(replace(found, alone=best))
+            results.append(replace(result, alone=best))
     return RetrievalBench(seed, tuple(results))
 
 
@@ -145,11 +145,11 @@ def published_stages(embeddings: Mapping[str, JointEmbedding]) -> dict[str, Call
 
 def _ranked(stage: RetrievalStage, view: TruthView) -> dict[str, tuple[str, ...]]:
     try:
-        found = stage.retrieve(view.inputs, true_objects(view), true_geometry(view), Progress())
+        ranked = stage.retrieve(view.inputs, true_objects(view), true_geometry(view), Progress())
     except DioramaError as error:
         log.warning("retrieval failed: %s", error)
         return {}
-    return {r.object_id: tuple(shape for shape, _ in r.ranked) for r in found}
+    return {r.object_id: tuple(shape for shape, _ in r.ranked) for r in ranked}
 
 
 def _alone(name: str, library: ShapeLibrary, view: TruthView) -> dict[str, tuple[str, ...]]:

@@ -96,16 +96,16 @@ class Reviewed:
 
     def right(self, scene: Scene, object_id: str) -> dict[Subject, bool]:
         """What is right of an object, of all that was annotated."""
-        item, truth, found = scene.object(object_id), self.truth[object_id], dict[Subject, bool]()
+        item, truth, answers = scene.object(object_id), self.truth[object_id], dict[Subject, bool]()
         shape = record_of(self.library, item.shape_id)
         if truth.nameable:
-            found["kind"] = shape.category == truth.kind
+            answers["kind"] = shape.category == truth.kind
         error = front_error_of(truth, item, scene.camera, shape.symmetry)
         if error is not None:
-            found["front"] = error <= RIGHT_DEG
+            answers["front"] = error <= RIGHT_DEG
         if truth.on is not None:
-            found["supporter"] = carrier_of(scene, object_id, self.index_of) == truth.on
-        return found
+            answers["supporter"] = carrier_of(scene, object_id, self.index_of) == truth.on
+        return answers
 
     def answer(self, scene: Scene, question: Question) -> str | None:
         """What somebody who knows the truth answers; None where the annotation does not say."""
@@ -213,9 +213,9 @@ def calibration_table(scenes: Sequence[Reviewed]) -> Table:
             said = {"kind": belief.kinds[:1], "supporter": belief.supporters[:1]}
             sure = {subject: of_one[0][1] for subject, of_one in said.items() if of_one}
             sure |= {"front": belief.fronts[0]} if belief.fronts else {}
-            found = reviewed.right(reviewed.scene, name)
-            for subject, right in found.items():
-                if subject in sure and (subject == "kind" or found.get("kind", True)):
+            answers = reviewed.right(reviewed.scene, name)
+            for subject, right in answers.items():
+                if subject in sure and (subject == "kind" or answers.get("kind", True)):
                     pairs[subject].append((sure[subject], right))
     rows = []
     for subject, sure_and_right in pairs.items():

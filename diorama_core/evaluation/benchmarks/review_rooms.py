@@ -72,8 +72,8 @@ class KnownRoom:
         """How many of the objects that the photo shows are where, as large and turned as in the room."""
         items = [self.view.scene.objects[k] for k in self.view.asked]
         true = [as_placed(t, self.all_shapes.shape(t.shape_id).symmetry) for t in items]
-        found = [None if m is None else as_placed(m) for m in matched(items, in_true_world(scene, self.view))]
-        alignment = object_alignment(true, found)
+        placed = [None if m is None else as_placed(m) for m in matched(items, in_true_world(scene, self.view))]
+        alignment = object_alignment(true, placed)
         return alignment.acc * alignment.count, alignment.count
 
     def answer(self, scene: Scene, question: Question) -> str | None:
@@ -142,7 +142,7 @@ def run(
         scene = build_scene(given, searched, stages=embedded_stages(given, searched)).scene
         items = [view.scene.objects[k] for k in view.asked]
         pairs = zip(items, matched(items, in_true_world(scene, view)), strict=True)
-        truth = {found.id: true for true, found in pairs if found is not None}
+        truth = {match.id: true for true, match in pairs if match is not None}
         rooms.append(KnownRoom(scene, view, truth, searched, library))
     progress.report(1.0, "done")
     return RoomReview(named, tuple(rooms), tuple(left_out))

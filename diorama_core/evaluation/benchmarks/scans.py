@@ -77,13 +77,13 @@ class ScansBench:
         rows = []
         for way in dict.fromkeys(r.way for r in self.results):
             of_way = [r for r in self.results if r.way == way]
-            found, things, openings = (sum(getattr(r, n) for r in of_way) for n in ("found", "things", "openings"))
+            hits, things, openings = (sum(getattr(r, n) for r in of_way) for n in ("found", "things", "openings"))
             shares = [r.right / max(r.found, 1) for r in of_way]
             span = bootstrap_interval(shares, [r.found for r in of_way])
-            right = sum(r.right for r in of_way) / max(found, 1)
+            right = sum(r.right for r in of_way) / max(hits, 1)
             seen = sum(r.openings_found for r in of_way) / max(openings, 1)
             wrong, seconds = sum(r.openings_false for r in of_way), sum(r.seconds for r in of_way) / len(of_way)
-            values = (right, found / max(things, 1), things, seen, openings, wrong, seconds)
+            values = (right, hits / max(things, 1), things, seen, openings, wrong, seconds)
             rows.append(Row(way, values, intervals=(span, *(None,) * 6)))
         rooms = len({r.case for r in self.results})
         note = (
@@ -126,8 +126,8 @@ def run(library: ShapeLibrary, scenes: int = 6, seed: int = 0, progress: Progres
             write_scan(Path(folder), scanned(truth, tested, case.seed))
             return opened_in_all_ways(case.name, truth, Path(folder), searched)
 
-    for _, found in made(cases, results_of, left_out):
-        results += found
+    for _, result in made(cases, results_of, left_out):
+        results += result
     progress.report(1.0, "done")
     return ScansBench(tuple(results), tuple(left_out))
 
@@ -191,15 +191,15 @@ def _moved(item: SceneObject, R: Float[np.ndarray, "3 3"]) -> SceneObject:
     return replace(item, pose=pose)
 
 
-def _pairs(things: Sequence[SceneObject], found: Sequence[SceneObject]) -> list[tuple[SceneObject, SceneObject]]:
+def _pairs(things: Sequence[SceneObject], objects: Sequence[SceneObject]) -> list[tuple[SceneObject, SceneObject]]:
     """Things with what was found in their place, each once, the best first."""
-    rows = [(_shared(a, b), i, j) for i, a in enumerate(things) for j, b in enumerate(found)]
+    rows = [(_shared(a, b), i, j) for i, a in enumerate(things) for j, b in enumerate(objects)]
     pairs, used_things, used_found = [], set[int](), set[int]()
     for share, i, j in sorted(rows, key=lambda row: (-row[0], row[1:])):
         if share >= MIN_SHARED and i not in used_things and j not in used_found:
             used_things.add(i)
             used_found.add(j)
-            pairs.append((things[i], found[j]))
+            pairs.append((things[i], objects[j]))
     return pairs
 
 

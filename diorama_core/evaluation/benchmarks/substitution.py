@@ -149,22 +149,22 @@ class _TrueShape:
             inputs, objects, geometry, progress: as documented in `protocols.RetrievalStage`.
         """
         truth = true_objects_of(objects, self.view)
-        found = self.stage.retrieve(inputs, objects, geometry, progress)
+        rankings = self.stage.retrieve(inputs, objects, geometry, progress)
         return tuple(
-            replace(r, ranked=((truth[r.object_id].shape_id, 1.0),)) if r.object_id in truth else r for r in found
+            replace(r, ranked=((truth[r.object_id].shape_id, 1.0),)) if r.object_id in truth else r for r in rankings
         )
 
 
 def true_objects_of(objects: tuple[DetectedObject, ...], view: TruthView) -> dict[str, SceneObject]:
     """For the id of every detected object the true one whose box is most alike, each used once."""
     left = {k: view.scene.objects[k] for k in view.asked}
-    found: dict[str, SceneObject] = {}
+    objects_by_id: dict[str, SceneObject] = {}
     for item in objects:
         scored = [(float(box_iou(np.array(item.box), np.array(o.box_px))), -k) for k, o in left.items()]
         best, index = max(scored, default=(0.0, 0))
         if best >= SAME_BOX:
-            found[item.id] = left.pop(-index)
-    return found
+            objects_by_id[item.id] = left.pop(-index)
+    return objects_by_id
 
 
 def heading_change(geometry: ObjectGeometry, view: TruthView) -> Float[np.ndarray, "3 3"]:
@@ -216,8 +216,8 @@ def scaled(geometry: ObjectGeometry, factor: float) -> ObjectGeometry:
 
 def _farther(cuboid: Cuboid, geometry: ObjectGeometry, true: SceneObject, view: TruthView) -> float:
     """How many times as far from the camera the true object is."""
-    found = np.linalg.norm(cuboid.centre - geometry.camera.position)
-    return float(np.linalg.norm(true.pose.position - view.camera.position) / max(float(found), 1e-6))
+    distance_m = np.linalg.norm(cuboid.centre - geometry.camera.position)
+    return float(np.linalg.norm(true.pose.position - view.camera.position) / max(float(distance_m), 1e-6))
 
 
 def _with_true(

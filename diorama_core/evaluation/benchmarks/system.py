@@ -210,7 +210,7 @@ def run(
     left_out: list[LeftOut] = []
 
     def so_far() -> SystemBench:
-        rows = tuple((name, tuple(found)) for name, found in results.items())
+        rows = tuple((name, tuple(cases)) for name, cases in results.items())
         return SystemBench(tuple(seeds), offered, rows, tuple(left_out), tuple(w.name for w in ways if w.truth))
 
     for k, (seed, case) in enumerate(cases):

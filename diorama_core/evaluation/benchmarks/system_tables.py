@@ -58,9 +58,9 @@ def system_table(results: Results, *, offered: bool = False) -> Table:
             _mean([c.seconds for c in cases]),
         )
         for reading, key in _ALIGNED:
-            found: list[Alignment] = [getattr(c.scores, key) for c in cases]
-            p = pooled(found)
-            span = bootstrap_interval([a.acc for a in found], [a.count for a in found])
+            alignments: list[Alignment] = [getattr(c.scores, key) for c in cases]
+            p = pooled(alignments)
+            span = bootstrap_interval([a.acc for a in alignments], [a.count for a in alignments])
             rows.append(
                 Row(
                     f"{name}, {reading}",

@@ -108,17 +108,17 @@ def run(
     series = {name: prompts_of(name) for name in SERIES}
     first = (scenes + 1) // 2 if scenes < sum(map(len, series.values())) else scenes
     wanted = [(name, asked) for name in SERIES for asked in series[name][:first]][:scenes]
-    found: list[Measured] = []
+    measured: list[Measured] = []
     tiles: list[np.ndarray] = []
     for k, (name, asked) in enumerate(wanted):
         progress.report(k / len(wanted), f"Composing: {asked.prompt[:50]}")
         begun = time.perf_counter()
         scene, notes = compose(asked.prompt, library, seed)
         seconds = time.perf_counter() - begun
-        found.append(Measured(name, asked.prompt, measure(asked, scene, library), tuple(notes), seconds))
+        measured.append(Measured(name, asked.prompt, measure(asked, scene, library), tuple(notes), seconds))
         if pictures:
             tiles.append(tile(scene, library, asked.prompt))
-    return TextBench(seed, tuple(found)), sheet(tiles) if pictures else None
+    return TextBench(seed, tuple(measured)), sheet(tiles) if pictures else None
 
 
 def _composed(prompt: str, library: ShapeLibrary, seed: int) -> tuple[Scene, Sequence[str]]:

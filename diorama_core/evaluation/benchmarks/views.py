@@ -67,10 +67,10 @@ class ViewsBench:
         )  # fmt: skip
         rows = []
         for way in dict.fromkeys(r.way for r in self.results):
-            found = [r for r in self.results if r.way == way]
-            p = pooled([r.own for r in found])
-            span = bootstrap_interval([r.own.acc for r in found], [r.own.count for r in found])
-            seconds = sum(r.seconds for r in found) / len(found)
+            results = [r for r in self.results if r.way == way]
+            p = pooled([r.own for r in results])
+            span = bootstrap_interval([r.own.acc for r in results], [r.own.count for r in results])
+            seconds = sum(r.seconds for r in results) / len(results)
             values = (p.acc, p.r_acc, p.t_acc, p.s_acc, p.count, seconds)
             rows.append(Row(way, values, intervals=(span, None, None, None, None, None)))
         rooms = len({r.case for r in self.results})
@@ -213,5 +213,5 @@ class _Room:
             return ViewsResult(self.case.name, way, failed, time.process_time() - begun, reason)
         seconds = time.process_time() - begun
         true = [as_placed(t, self.library.shape(t.shape_id).symmetry) for t in items]
-        found = [None if m is None else as_placed(m) for m in matched(items, scene)]
-        return ViewsResult(self.case.name, way, object_alignment(true, found), seconds)
+        placed = [None if m is None else as_placed(m) for m in matched(items, scene)]
+        return ViewsResult(self.case.name, way, object_alignment(true, placed), seconds)

@@ -70,7 +70,7 @@ class ArchitectureScores:
 
 
 def architecture_scores(
-    found: tuple[Plane, ...],
+    estimated: tuple[Plane, ...],
     true: tuple[Plane, ...],
     camera: Camera,
     *,
@@ -81,15 +81,15 @@ def architecture_scores(
     """Every metric of one room.
 
     Args:
-        found: The reconstructed planes.
+        estimated: The reconstructed planes.
         true: The true planes.
         camera: The true camera, in the world of `true`.
-        found_camera: The camera of the reconstruction, in the world of `found`; the true one by default.
+        found_camera: The camera of the reconstruction, in the world of `estimated`; the true one by default.
         angle_deg: Tolerance within which a plane counts as found.
         offset_m: Likewise, of its distance.
     """
-    aligned = tuple(_in_world_of(p, found_camera, camera) for p in found) if found_camera is not None else found
-    a = layout_view(found, found_camera or camera)
+    aligned = tuple(_in_world_of(p, found_camera, camera) for p in estimated) if found_camera is not None else estimated
+    a = layout_view(estimated, found_camera or camera)
     b = layout_view(true, camera)
     if a.labels.shape != b.labels.shape:
         raise ValueError("the two cameras must have pictures of one size")
@@ -101,7 +101,7 @@ def architecture_scores(
         depth_rmse_m=depth_rmse(a.depth_m, b.depth_m),
         cdb_m=centred_chamfer(plane_points(aligned), plane_points(true)),
         cdb_seen_m=centred_chamfer(
-            _moved(seen_points(found, found_camera or camera), found_camera or camera, camera),
+            _moved(seen_points(estimated, found_camera or camera), found_camera or camera, camera),
             seen_points(true, camera),
         ),
         recall=planes.recall,
@@ -119,19 +119,19 @@ def layout_view(planes: tuple[Plane, ...], camera: Camera, step: int = VIEW_STEP
 
 
 def segment_pairs(
-    found: Int[np.ndarray, "h w"], true: Int[np.ndarray, "h w"]
+    estimated: Int[np.ndarray, "h w"], true: Int[np.ndarray, "h w"]
 ) -> tuple[tuple[tuple[int, int, float], ...], int, int]:
     """Segments matched one to one, the pair of largest overlap first (Stekovic et al. 2020).
 
     Returns:
         (found label, true label, intersection over union) of each pair, and the number of segments on each side.
     """
-    ours, theirs = (sorted(set(np.unique(labels).tolist()) - {-1}) for labels in (found, true))
+    ours, theirs = (sorted(set(np.unique(labels).tolist()) - {-1}) for labels in (estimated, true))
     overlap = np.zeros((len(ours), len(theirs)))
     for i, a in enumerate(ours):
         for j, b in enumerate(theirs):
-            either = ((found == a) | (true == b)).sum()
-            overlap[i, j] = ((found == a) & (true == b)).sum() / max(int(either), 1)
+            either = ((estimated == a) | (true == b)).sum()
+            overlap[i, j] = ((estimated == a) & (true == b)).sum() / max(int(either), 1)
     pairs: list[tuple[int, int, float]] = []
     rest = overlap.copy()
     while rest.size and rest.max() > 0:
@@ -141,18 +141,18 @@ def segment_pairs(
     return tuple(pairs), len(ours), len(theirs)
 
 
-def segment_iou(found: Int[np.ndarray, "h w"], true: Int[np.ndarray, "h w"]) -> float:
+def segment_iou(labels: Int[np.ndarray, "h w"], true: Int[np.ndarray, "h w"]) -> float:
     """2 / (M + N) times the sum of the matched segments' overlaps; 1 when both are empty."""
-    pairs, ours, theirs = segment_pairs(found, true)
+    pairs, ours, theirs = segment_pairs(labels, true)
     return 2.0 * sum(p[2] for p in pairs) / (ours + theirs) if ours + theirs else 1.0
 
 
-def pixel_error(found: Int[np.ndarray, "h w"], true: Int[np.ndarray, "h w"]) -> float:
+def pixel_error(labels: Int[np.ndarray, "h w"], true: Int[np.ndarray, "h w"]) -> float:
     """Share of the pixels with a true plane whose found plane is not the one matched to it."""
     counted = true >= 0
     right = np.zeros(true.shape, dtype=bool)
-    for ours, theirs, _ in segment_pairs(found, true)[0]:
-        right |= (found == ours) & (true == theirs)
+    for ours, theirs, _ in segment_pairs(labels, true)[0]:
+        right |= (labels == ours) & (true == theirs)
     return float((counted & ~right).sum() / max(int(counted.sum()), 1))
 
 
@@ -164,16 +164,16 @@ def layout_edges(labels: Int[np.ndarray, "h w"]) -> Bool[np.ndarray, "h w"]:
     return edges
 
 
-def edge_error(found: Int[np.ndarray, "h w"], true: Int[np.ndarray, "h w"]) -> float:
+def edge_error(labels: Int[np.ndarray, "h w"], true: Int[np.ndarray, "h w"]) -> float:
     """Mean distance from the edges of either layout to the nearest of the other, both ways averaged, in samples.
 
     Without any edge on one side only, the picture's diagonal; without any at all, 0.
     """
-    a, b = layout_edges(found), layout_edges(true)
+    a, b = layout_edges(labels), layout_edges(true)
     if not (a.any() or b.any()):
         return 0.0
     if not (a.any() and b.any()):
-        return float(np.hypot(*found.shape))
+        return float(np.hypot(*labels.shape))
     to_a, to_b = (cv2.distanceTransform((~e).astype(np.uint8), cv2.DIST_L2, cv2.DIST_MASK_PRECISE) for e in (a, b))
     return float(0.5 * (to_b[a].mean() + to_a[b].mean()))
 
@@ -215,14 +215,14 @@ def _moved(points: Float[np.ndarray, "n 3"], from_camera: Camera, to_camera: Cam
     return points @ T[:3, :3].T + T[:3, 3]
 
 
-def centred_chamfer(found: Float[np.ndarray, "n 3"], true: Float[np.ndarray, "m 3"]) -> float:
+def centred_chamfer(points: Float[np.ndarray, "n 3"], true: Float[np.ndarray, "m 3"]) -> float:
     """Sum of both mean nearest distances after each set is moved to the centre of its bounding box (CDb).
 
     `nan` when either set is empty.
     """
-    if not (len(found) and len(true)):
+    if not (len(points) and len(true)):
         return float("nan")
-    a, b = (p - 0.5 * (p.min(axis=0) + p.max(axis=0)) for p in (found, true))
+    a, b = (p - 0.5 * (p.min(axis=0) + p.max(axis=0)) for p in (points, true))
     return float(np.mean(cKDTree(b).query(a)[0]) + np.mean(cKDTree(a).query(b)[0]))
 
 
@@ -258,20 +258,20 @@ class PlaneMatches:
 
 
 def match_planes(
-    found: tuple[Plane, ...], true: tuple[Plane, ...], camera: Camera, *, angle_deg: float, offset_m: float
+    planes: tuple[Plane, ...], true: tuple[Plane, ...], camera: Camera, *, angle_deg: float, offset_m: float
 ) -> PlaneMatches:
     """Pairs of planes of one role that agree within both tolerances, as many as possible, each used once.
 
     The offset is measured at the middle of what is seen of the true plane, where it matters.
 
     Args:
-        found: Planes of the estimate.
+        planes: Planes of the estimate.
         true: Planes of the truth.
         camera: The photo's.
         angle_deg: Tolerance of normals.
         offset_m: Tolerance of offsets.
     """
-    ours, theirs = _visible(found, camera), _visible(true, camera)
+    ours, theirs = _visible(planes, camera), _visible(true, camera)
     angles = np.zeros((len(ours), len(theirs)))
     offsets = np.zeros_like(angles)
     for i, (a, _) in enumerate(ours):

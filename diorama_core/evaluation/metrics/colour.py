@@ -92,19 +92,19 @@ def main_light(light: Lighting, points: Float[np.ndarray, "n 3"]) -> Float[np.nd
 
 
 def light_error_deg(
-    true: Float[np.ndarray, "3"], true_camera: Camera, found: RoomLight | None, camera: Camera
+    true: Float[np.ndarray, "3"], true_camera: Camera, light: RoomLight | None, camera: Camera
 ) -> float | None:
     """Angle between both directions as the photo sees them; None where no light was found.
 
     Args:
         true: Direction to the light, world.
         true_camera: Of the true scene.
-        found: The estimate; None without.
+        light: The estimate; None without.
         camera: Of the estimate.
     """
-    if found is None:
+    if light is None:
         return None
-    seen = camera.T_world_camera[:3, :3].T @ np.array(found.direction)
+    seen = camera.T_world_camera[:3, :3].T @ np.array(light.direction)
     wanted = true_camera.T_world_camera[:3, :3].T @ true
     cosine = float(seen @ wanted) / max(float(np.linalg.norm(seen) * np.linalg.norm(wanted)), 1e-9)
     return float(np.degrees(np.arccos(np.clip(cosine, -1.0, 1.0))))
@@ -131,14 +131,14 @@ def visible_colours(
     places = world.places(rays, hits)
     _, light = world.rough_appearance(hits)
     shown = _with_gloss(light, places, rays)
-    found = {}
+    colours = {}
     for index, item in enumerate(scene.objects):
         mine = np.flatnonzero(places.instance == index)
         if len(mine):
             _, material, counts = np.unique(np.round(light[mine], 4), axis=0, return_inverse=True, return_counts=True)
             main = mine[material.ravel() == np.argmax(counts)]
-            found[item.id] = np.asarray(linear_to_srgb(shown[main].mean(axis=0)))
-    return found
+            colours[item.id] = np.asarray(linear_to_srgb(shown[main].mean(axis=0)))
+    return colours
 
 
 def _with_gloss(base: Float[np.ndarray, "n 3"], places: Places, rays: Float[np.ndarray, "n 6"]) -> np.ndarray:

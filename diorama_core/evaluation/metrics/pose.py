@@ -119,10 +119,10 @@ def scene_alignment(
 def object_alignment(truth: Sequence[Placed], predicted: Sequence[Placed | None]) -> Alignment:
     """Scan2CAD's alignment of each object with its own truth: 20 cm, 20 degrees, 20 %."""
     right = np.zeros((len(truth), 3), dtype=bool)
-    for k, (true, found) in enumerate(zip(truth, predicted, strict=True)):
-        if found is not None:
-            angle, ratio = _own_errors(true, found)
-            distance = float(np.linalg.norm(found.centre - true.centre))
+    for k, (true, placed) in enumerate(zip(truth, predicted, strict=True)):
+        if placed is not None:
+            angle, ratio = _own_errors(true, placed)
+            distance = float(np.linalg.norm(placed.centre - true.centre))
             right[k] = angle <= MAX_ANGLE_RAD, distance <= MAX_DISTANCE_M, ratio <= MAX_RATIO
     shares = [float(column.mean()) if len(truth) else 0.0 for column in (*right.T, right.all(axis=1))]
     return Alignment("object-focus", len(truth), *shares)
@@ -177,18 +177,18 @@ def _angle_between(a: np.ndarray, b: np.ndarray) -> float:
     return float(np.arccos(np.clip(a @ b / lengths, -1.0, 1.0)))
 
 
-def _own_errors(true: Placed, found: Placed) -> tuple[float, float]:
+def _own_errors(true: Placed, placed: Placed) -> tuple[float, float]:
     """Angle up to symmetry, and mean relative error of the extents."""
-    turned = found.R @ symmetry_turns(true.symmetry)
+    turned = placed.R @ symmetry_turns(true.symmetry)
     angle = float(rotation_angle(turned, true.R).min())
-    return angle, float(np.abs(_matched_size(true, found) / true.size_m - 1.0).mean())
+    return angle, float(np.abs(_matched_size(true, placed) / true.size_m - 1.0).mean())
 
 
-def _matched_size(true: Placed, found: Placed) -> Float[np.ndarray, "3"]:
+def _matched_size(true: Placed, placed: Placed) -> Float[np.ndarray, "3"]:
     """The found extents along the true object's axes: where symmetry allows a quarter turn, width may be depth."""
     if true.symmetry % 4:
-        return found.size_m
+        return placed.size_m
     turns = symmetry_turns(true.symmetry)
-    best = turns[int(rotation_angle(found.R @ turns, true.R).argmin())]
+    best = turns[int(rotation_angle(placed.R @ turns, true.R).argmin())]
     swapped = abs(best[0, 1]) > abs(best[0, 0])
-    return found.size_m[[1, 0, 2]] if swapped else found.size_m
+    return placed.size_m[[1, 0, 2]] if swapped else placed.size_m

@@ -72,9 +72,9 @@ def relations_of(view: TruthView, *, with_depth: bool, graph: GraphStage | None 
     objects = EmbeddedMasks().segment(inputs, quiet)
     stage = MeasuredGeometry() if with_depth else SingleViewMetrology()
     geometry = stage.measure(inputs, estimate, objects, quiet)
-    found: SceneGraph = (graph or GeometricGraph()).relate(inputs, objects, geometry, quiet)
+    predicted: SceneGraph = (graph or GeometricGraph()).relate(inputs, objects, geometry, quiet)
     by_mask = {o.mask_id: o.id for o in view.scene.objects if o.mask_id is not None}
-    return judged(found.supports, {o.id: by_mask[o.mask_id] for o in objects}, view.scene)
+    return judged(predicted.supports, {o.id: by_mask[o.mask_id] for o in objects}, view.scene)
 
 
 def _without_depth(inputs: Inputs) -> Inputs:

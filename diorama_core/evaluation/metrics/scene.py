@@ -185,12 +185,12 @@ def in_true_world(scene: Scene, view: TruthView) -> Scene:
 def matched(truth: list[SceneObject], scene: Scene) -> list[SceneObject | None]:
     """For every true object the predicted one with the same box in the photo; each is used once."""
     left = {o.id: o for o in scene.objects if o.box_px is not None}
-    found: list[SceneObject | None] = []
+    matches: list[SceneObject | None] = []
     for item in truth:
         scored = [(float(box_iou(np.array(o.box_px), np.array(item.box_px))), o.id) for o in left.values()]
         best = max(scored, default=(0.0, ""))
-        found.append(left.pop(best[1]) if best[0] >= SAME_BOX else None)
-    return found
+        matches.append(left.pop(best[1]) if best[0] >= SAME_BOX else None)
+    return matches
 
 
 def as_placed(item: SceneObject, symmetry: int = 1) -> Placed:
@@ -204,14 +204,14 @@ def relation_accuracy(view: TruthView, scene: Scene, match: list[SceneObject | N
     edges = true_supports(view)
     right = 0
     for edge in edges:
-        found = scene.support_of(names[edge.child]) if edge.child in names else None
-        if found is None or found.relation != edge.relation:
+        support = scene.support_of(names[edge.child]) if edge.child in names else None
+        if support is None or support.relation != edge.relation:
             continue
         if view.scene.has_plane(edge.parent):
             role = view.scene.plane(edge.parent).role
-            right += scene.has_plane(found.parent) and scene.plane(found.parent).role == role
+            right += scene.has_plane(support.parent) and scene.plane(support.parent).role == role
         else:
-            right += found.parent == names.get(edge.parent)
+            right += support.parent == names.get(edge.parent)
     return right / len(edges) if edges else 1.0
 
 
@@ -238,15 +238,15 @@ def truly_supported_share(
         match: what stands for each true object; None without.
         library: where shapes come from.
     """
-    found = {view.scene.objects[k].id: m for k, m in zip(view.asked, match) if m is not None}
+    matches = {view.scene.objects[k].id: m for k, m in zip(view.asked, match) if m is not None}
     edges, good = true_supports(view), 0
     for edge in edges:
         if view.scene.has_plane(edge.parent):
             parents = [p.id for p in scene.architecture.by_role(view.scene.plane(edge.parent).role)]
         else:
-            parents = [found[edge.parent].id] if edge.parent in found else []
-        if edge.child in found:
-            good += any(_gap(found[edge.child], p, scene, library) <= SUPPORT_M for p in parents)
+            parents = [matches[edge.parent].id] if edge.parent in matches else []
+        if edge.child in matches:
+            good += any(_gap(matches[edge.child], p, scene, library) <= SUPPORT_M for p in parents)
     return good / len(edges) if edges else 1.0
 
 
@@ -293,7 +293,8 @@ def image_iou(view: TruthView, scene: Scene, match: list[SceneObject | None], li
         library: where shapes come from.
     """
     pairs = [
-        (view.object_ids == k, None if found is None else found.id) for k, found in zip(view.asked, match, strict=True)
+        (view.object_ids == k, None if placed is None else placed.id)
+        for k, placed in zip(view.asked, match, strict=True)
     ]
     return mean_mask_iou(pairs, scene, library, view.camera.intrinsics)
 
@@ -343,12 +344,12 @@ def scene_points(
 
 
 def surface_agreement(
-    found: Float[np.ndarray, "n 3"], true: Float[np.ndarray, "m 3"], near_m: float = NEAR_M
+    points: Float[np.ndarray, "n 3"], true: Float[np.ndarray, "m 3"], near_m: float = NEAR_M
 ) -> tuple[float, float]:
     """Mean distance to the other points, both ways averaged, and the F-score: the harmonic mean of the shares of
     either side's points that have one of the other side within `near_m`.
     """
-    there, back = np.asarray(cKDTree(true).query(found)[0]), np.asarray(cKDTree(found).query(true)[0])
+    there, back = np.asarray(cKDTree(true).query(points)[0]), np.asarray(cKDTree(points).query(true)[0])
     precision, recall = float((there <= near_m).mean()), float((back <= near_m).mean())
     both = precision + recall
     return 0.5 * float(there.mean() + back.mean()), 2 * precision * recall / both if both else 0.0

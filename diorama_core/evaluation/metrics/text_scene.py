@@ -116,11 +116,11 @@ def _looks(asked: Asked, scene: Scene, library: ShapeLibrary, failures: list[str
     for name, words in asked.looks.items():
         for word in words:
             total += 1
-            found = _named(scene, name)
+            named = _named(scene, name)
             look = look_of(word)
-            good = bool(found) and all(
+            good = bool(named) and all(
                 has_look(record_of(library, o.shape_id), word) or (look is not None and o.colour == look.colour)
-                for o in found
+                for o in named
             )
             met += good
             if not good:

@@ -84,12 +84,12 @@ def yardstick_s() -> float:
 
 def _fixed_work() -> float:
     points = np.linspace(0.0, 1.0, 300_000).reshape(-1, 3)
-    found = 0.0
+    total = 0.0
     for k in range(4):
         order = np.argsort(np.sin(1000.0 * (k + 1) * points[:, 0]))
-        found += float(np.sqrt((points[order] * points).sum(axis=1)).sum())
+        total += float(np.sqrt((points[order] * points).sum(axis=1)).sum())
     words = {str(k): k for k in range(60_000)}
-    return found + sum(words[str(k)] for k in range(0, 60_000, 7))
+    return total + sum(words[str(k)] for k in range(0, 60_000, 7))
 
 
 def growth_exponent(points: list[tuple[float, float]]) -> float:

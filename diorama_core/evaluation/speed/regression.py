@@ -78,8 +78,8 @@ def worse_by(name: str, before: float, now: float, tolerance: float = TOLERANCE)
 
 def slower(now: Mapping[str, float], before: Mapping[str, float], tolerance: float = TOLERANCE) -> dict[str, float]:
     """The figures measured both times that have become worse, with how many times."""
-    found = {name: worse_by(name, before[name], now[name], tolerance) for name in sorted(before) if name in now}
-    return {name: times for name, times in found.items() if times is not None}
+    factors = {name: worse_by(name, before[name], now[name], tolerance) for name in sorted(before) if name in now}
+    return {name: times for name, times in factors.items() if times is not None}
 
 
 def regression_table(now: Mapping[str, float], before: Mapping[str, float], tolerance: float = TOLERANCE) -> Table:

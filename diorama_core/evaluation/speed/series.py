@@ -121,8 +121,8 @@ class Collected:
     def series(self) -> list[Series]:
         """All of them, in the order in which they came first."""
         return [
-            Series(what, self._against, tuple((q, c.seconds) for q, c in found), tuple(c.peak_mb for _, c in found))
-            for what, found in self._costs.items()
+            Series(what, self._against, tuple((q, c.seconds) for q, c in costs), tuple(c.peak_mb for _, c in costs))
+            for what, costs in self._costs.items()
         ]
 
 
@@ -137,7 +137,7 @@ def stages_by_size(
         sizes: width and height in pixels.
         progress: reports and cancellation.
     """
-    found = Collected(MEGAPIXELS)
+    collected = Collected(MEGAPIXELS)
     scene = furnished(Case(seed, "living"), library)
     camera = sample_cameras(scene, library, seed, 1)[0]
     studio = Studio(scene, library)
@@ -145,9 +145,9 @@ def stages_by_size(
     for k, size in enumerate(sizes):
         progress.report(k / len(sizes), f"{size[0]} x {size[1]} pixels")
         pixels = size[0] * size[1] / 1e6
-        found.add("render with truth", pixels, cost_of(partial(studio.view, camera, size)))
-        _build(studio.view(camera, size, with_empty_room=False).inputs, library, pixels, found, progress)
-    return found.series()
+        collected.add("render with truth", pixels, cost_of(partial(studio.view, camera, size)))
+        _build(studio.view(camera, size, with_empty_room=False).inputs, library, pixels, collected, progress)
+    return collected.series()
 
 
 def stages_by_objects(library: ShapeLibrary, seed: int, counts: Sequence[int], progress: Progress) -> list[Series]:
@@ -159,7 +159,7 @@ def stages_by_objects(library: ShapeLibrary, seed: int, counts: Sequence[int], p
         counts: of objects.
         progress: reports and cancellation.
     """
-    found = Collected(OBJECTS)
+    collected = Collected(OBJECTS)
     weights = np.cumsum([5.0, *(float(c) for c in counts)]) / (5.0 + sum(counts))
     _build(_large_scene_inputs(library, 12, seed), library, 0.0, Collected(OBJECTS), progress)  # makes ready the shapes
     for count, done in zip(counts, weights, strict=False):
@@ -167,10 +167,10 @@ def stages_by_objects(library: ShapeLibrary, seed: int, counts: Sequence[int], p
         scene, camera = large_scene(library, count, seed)
         studio = Studio(scene, library)
         render = partial(studio.view, camera, PICTURE, with_empty_room=False)
-        found.add("render with truth", count, cost_of(render))
-        built = _build(render().inputs, library, count, found, progress)
-        found.add("export GLB", count, cost_of(partial(glb_bytes, built, library)))
-    return found.series()
+        collected.add("render with truth", count, cost_of(render))
+        built = _build(render().inputs, library, count, collected, progress)
+        collected.add("export GLB", count, cost_of(partial(glb_bytes, built, library)))
+    return collected.series()
 
 
 def _large_scene_inputs(library: ShapeLibrary, count: int, seed: int) -> Inputs:
@@ -178,34 +178,34 @@ def _large_scene_inputs(library: ShapeLibrary, count: int, seed: int) -> Inputs:
     return Studio(scene, library).view(camera, PICTURE, with_empty_room=False).inputs
 
 
-def _build(inputs: Inputs, library: ShapeLibrary, quantity: float, found: Collected, progress: Progress) -> Scene:
+def _build(inputs: Inputs, library: ShapeLibrary, quantity: float, collected: Collected, progress: Progress) -> Scene:
     """Build once and note what each stage took, and the whole."""
     clock = StageClock(STAGES)
     scenes: list[Scene] = []
     whole = cost_of(lambda: scenes.append(build_scene(inputs, library, progress=clock.watched(progress)).scene))
     for stage in STAGES:
         if stage in clock.costs:
-            found.add(stage, quantity, clock.costs[stage])
-    found.add("whole build", quantity, replace(whole, peak_mb=max(c.peak_mb or 0 for c in clock.costs.values())))
+            collected.add(stage, quantity, clock.costs[stage])
+    collected.add("whole build", quantity, replace(whole, peak_mb=max(c.peak_mb or 0 for c in clock.costs.values())))
     return scenes[0]
 
 
 def layout_by_objects(seed: int, counts: Sequence[int], progress: Progress) -> list[Series]:
     """The default and the paper's recipe on generated rooms."""
-    found = Collected(OBJECTS)
+    collected = Collected(OBJECTS)
     library = box_library()
     for name in ("feasible", "paper"):
         stage = layout_recipe(name, library)
         for k, count in enumerate(counts):
             progress.report(k / len(counts), f"layout '{name}', {count} objects")
             observed = generate_room(seed + 500, count).observed
-            found.add(f"layout '{name}'", count, cost_of(partial(stage.optimise, observed, Progress()), 2))
-    return found.series()
+            collected.add(f"layout '{name}'", count, cost_of(partial(stage.optimise, observed, Progress()), 2))
+    return collected.series()
 
 
 def steps_by_objects(seed: int, counts: Sequence[int], progress: Progress) -> list[Series]:
     """One step of the optimiser's last stage, ours and others (`speed_eager`)."""
-    found = []
+    rows = []
     for n, way in enumerate(WAYS):
         points = []
         for k, count in enumerate(counts):
@@ -213,13 +213,13 @@ def steps_by_objects(seed: int, counts: Sequence[int], progress: Progress) -> li
             seconds = step_seconds(way, count, seed)
             if seconds is not None:
                 points.append((float(count), seconds))
-        found.append(Series(way, OBJECTS, tuple(points), missing="" if points else "no GPU here"))
-    return found
+        rows.append(Series(way, OBJECTS, tuple(points), missing="" if points else "no GPU here"))
+    return rows
 
 
 def features_by_library(seed: int, counts: Sequence[int], progress: Progress) -> list[Series]:
     """Opening a feature store on disk, and the nearest 50 of all its rows; features are synthetic."""
-    found = Collected(SHAPES)
+    collected = Collected(SHAPES)
     block, signs = _block_of_features(seed), np.random.default_rng(seed + 1)
     with tempfile.TemporaryDirectory(prefix="diorama-speed-") as folder:
         store = FeatureMatrix(Path(folder), FEATURES)
@@ -230,9 +230,9 @@ def features_by_library(seed: int, counts: Sequence[int], progress: Progress) ->
                 flipped = block[:rows] * signs.choice(np.array([-1, 1], np.float32), FEATURES)
                 store.append([f"shape_{len(store) + r:07d}" for r in range(rows)], flipped[:, None])
                 progress.check()
-            found.add("open the features", count, cost_of(partial(FeatureMatrix, Path(folder), FEATURES), 2))
-            found.add(f"nearest {NEAREST} by features", count, cost_of(partial(store.top, block[0], NEAREST), 5))
-    return found.series()
+            collected.add("open the features", count, cost_of(partial(FeatureMatrix, Path(folder), FEATURES), 2))
+            collected.add(f"nearest {NEAREST} by features", count, cost_of(partial(store.top, block[0], NEAREST), 5))
+    return collected.series()
 
 
 def _block_of_features(seed: int) -> Float32[np.ndarray, "n d"]:
@@ -243,14 +243,14 @@ def _block_of_features(seed: int) -> Float32[np.ndarray, "n d"]:
 
 def words_by_library(library: ShapeLibrary, counts: Sequence[int], progress: Progress) -> list[Series]:
     """Indexing the words of a library, and a search in them; records are those of the library under more names."""
-    found = Collected(SHAPES)
+    collected = Collected(SHAPES)
     records = library.shapes()
     for k, count in enumerate(counts):
         progress.report(k / len(counts), f"words of {count:,} shapes")
         renamed = (replace(records[i % len(records)], id=f"shape_{i:07d}") for i in range(count))
         shapes = tuple(renamed)
-        found.add("index the words", count, cost_of(partial(TextIndex, shapes)))
+        collected.add("index the words", count, cost_of(partial(TextIndex, shapes)))
         search = partial(find_in, TextIndex(shapes), "a small oak bookcase", NEAREST)
         search()
-        found.add("find by words", count, cost_of(search, 3))
-    return found.series()
+        collected.add("find by words", count, cost_of(search, 3))
+    return collected.series()

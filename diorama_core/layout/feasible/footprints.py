@@ -26,8 +26,8 @@ def largest_share(m: np.ndarray, h: np.ndarray, reach: np.ndarray) -> float:
 
 
 def _highest(A: np.ndarray, h: np.ndarray) -> float:
-    found = linprog([0.0, 0.0, -1.0], A_ub=A, b_ub=h, bounds=[(None, None), (None, None), (0.0, 1.0)])
-    return float(np.asarray(found.x)[2]) if found.status == 0 else 0.0
+    solution = linprog([0.0, 0.0, -1.0], A_ub=A, b_ub=h, bounds=[(None, None), (None, None), (0.0, 1.0)])
+    return float(np.asarray(solution.x)[2]) if solution.status == 0 else 0.0
 
 
 def _highest_vertex(A: np.ndarray, h: np.ndarray) -> float:

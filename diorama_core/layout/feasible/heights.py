@@ -47,14 +47,14 @@ def joint_heights(problem: Problem, observations: PhotoObservations) -> tuple[Pr
     foot = problem.p[:, 2] - height / 2
     x = _solved(problem, observations, chains, height, foot)
     members = np.array(chains.members)
-    found = x[: len(members)]
+    heights = x[: len(members)]
     feet = chains.constant[members] + chains.rows[members] @ x
-    moved = np.maximum(np.abs(found - height[members]), np.abs(feet - foot[members]))
+    moved = np.maximum(np.abs(heights - height[members]), np.abs(feet - foot[members]))
     changed = moved > problem.settings.height_rounding_m
     scale, p = problem.scale.copy(), problem.p.copy()
     chosen = members[changed]
-    scale[chosen, 2] *= found[changed] / height[chosen]
-    p[chosen, 2] = (feet + found / 2)[changed]
+    scale[chosen, 2] *= heights[changed] / height[chosen]
+    p[chosen, 2] = (feet + heights / 2)[changed]
     holds = np.isin(members, problem.parent)
     fixed = members[holds | ~observations.contradicted[members]]
     return replace(problem, scale=scale, p=p), observations.at_heights(fixed, scale[:, 2])

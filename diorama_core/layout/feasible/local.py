@@ -56,10 +56,10 @@ class DragSolver:
         structure = self._settled(problem)
         weight = np.tile(np.eye(2), (problem.count, 1, 1))
         program = build_program(problem, structure, weight)
-        found = separate(program, rounds=self.rounds, check=lambda y, depth: None)
-        if found.stuck:
-            found = relaxed(program, relocate(program, base(program)))
-        p = structure.p + program.moves(found.y)
+        separation = separate(program, rounds=self.rounds, check=lambda y, depth: None)
+        if separation.stuck:
+            separation = relaxed(program, relocate(program, base(program)))
+        p = structure.p + program.moves(separation.y)
         moved = edits.place(self.scene, problem.poses(structure.R, p, structure.scale))
         return moved if edge is None else edits.attach(moved, edge)
 
@@ -132,12 +132,12 @@ def _places(
 ) -> tuple[tuple[RestingSurface, Support], ...]:
     own = {problem.ids[k] for k in problem.rides(index)}
     child = problem.ids[index]
-    found = [(plane_surface(p), Support(child, p.id)) for p in scene.architecture.by_role("floor")]
+    places = [(plane_surface(p), Support(child, p.id)) for p in scene.architecture.by_role("floor")]
     for item in scene.objects:
         if item.id in own:
             continue
         for number, surface in enumerate(object_surfaces(library.shape(item.shape_id), item)):
             world = surface.in_world(item.pose)
             if world.normal[2] > 0.98:
-                found.append((world, Support(child, item.id, parent_surface=number)))
-    return tuple(found)
+                places.append((world, Support(child, item.id, parent_surface=number)))
+    return tuple(places)

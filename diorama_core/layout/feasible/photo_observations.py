@@ -238,7 +238,7 @@ def photo_observations(
 
 def _loads(problem: Problem, i: int) -> Float[np.ndarray, "m 2"]:
     """Height of the place (at scale 1) and of the foot of everything that was observed on a place of an object."""
-    found = []
+    loads = []
     for k in np.flatnonzero(problem.parent == i):
         size = problem.shape_size[k] * problem.scale[k]
         corners = problem.p[k] + box_corners(size) @ problem.R[k].T
@@ -248,8 +248,8 @@ def _loads(problem: Problem, i: int) -> Float[np.ndarray, "m 2"]:
             nearest = int(np.argmin([box_misfit(corners, size, s) for s in posed]))
             foot = float(corners[:, 2].min())
             if abs(foot - posed[nearest].level) <= problem.settings.load_m:
-                found.append((flat[nearest].level, foot))
-    return np.array(found).reshape(-1, 2)
+                loads.append((flat[nearest].level, foot))
+    return np.array(loads).reshape(-1, 2)
 
 
 def _outline_points(problem: Problem) -> tuple[Float[np.ndarray, "_ 3"], ...]:
@@ -263,8 +263,8 @@ def _outline_points_of(problem: Problem, i: int) -> Float[np.ndarray, "_ 3"]:
 
 def _posed_bounds_px(problem: Problem, camera: Camera) -> Float[np.ndarray, "n 4"]:
     """Bounds of each posed shape in the picture, not cut at its border; NaN for those behind the camera."""
-    found = [posed_bounds_px(problem, camera, i, problem.p[i], problem.scale[i]) for i in range(problem.count)]
-    return np.array(found).reshape(-1, 4)
+    bounds_px = [posed_bounds_px(problem, camera, i, problem.p[i], problem.scale[i]) for i in range(problem.count)]
+    return np.array(bounds_px).reshape(-1, 4)
 
 
 def _bounds_in_picture_px(problem: Problem, camera: Camera) -> Float[np.ndarray, "n 4"]:
@@ -361,10 +361,10 @@ def disagreements(
     """
     seen = _posed_bounds_px(problem, camera)
     now = _posed_bounds_px(replace(problem, R=R, p=p, scale=scale), camera)
-    found = []
+    rows = []
     for i in np.flatnonzero(problem.free):
         moved = float(np.linalg.norm(p[i] - problem.p[i]))
         shared = float(box_iou(seen[i], now[i])) if np.isfinite([seen[i], now[i]]).all() else 1.0
         if moved > problem.settings.named_move_m or shared < problem.settings.named_outline:
-            found.append(PhotoDisagreement(problem.ids[i], problem.labels[i], moved, shared))
-    return tuple(found)
+            rows.append(PhotoDisagreement(problem.ids[i], problem.labels[i], moved, shared))
+    return tuple(rows)

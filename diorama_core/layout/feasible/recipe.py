@@ -93,23 +93,23 @@ class FeasibleRecipe:
                 structure = fitted_sizes(program, self._outline_cost(wanted))
                 program = build_program(wanted, structure, *self._costs(wanted, scene.camera))
             check = self._watcher(scene, program, progress, preview)
-            found = _apart(program, self.rounds, check, seen_before, self._farther(program, scene.camera))
-            if best is not None and len(found.stuck) >= len(best[2].stuck):
+            separation = _apart(program, self.rounds, check, seen_before, self._farther(program, scene.camera))
+            if best is not None and len(separation.stuck) >= len(best[2].stuck):
                 break  # smaller objects that overlap as much as before have become smaller in vain
-            best = (wanted, program, found)
-            if not found.stuck:
+            best = (wanted, program, separation)
+            if not separation.stuck:
                 break
-            wanted = _smaller(wanted, structure, found)
+            wanted = _smaller(wanted, structure, separation)
         assert best is not None, "there is at least one attempt"
-        wanted, program, found = best
+        wanted, program, separation = best
         structure = program.structure
-        p = structure.p + program.moves(found.y)
+        p = structure.p + program.moves(separation.y)
         after = measure(replace(problem, surface=structure.surface), structure.R, p, structure.scale)
         reasons = (
             problem.reasons
             + structure.reasons
             + _shrunk_reasons(problem, wanted, structure)
-            + _stuck_reasons(problem, found)
+            + _stuck_reasons(problem, separation)
         )
         apart: tuple[PhotoDisagreement, ...] = ()
         if scene.camera is not None:
@@ -236,12 +236,14 @@ def _apart(
     together = separate(program, rounds=rounds, check=check)
     if not program.tried:
         return together
-    found = [relaxed(program, f) for f in (together, relocate(program, base(program)))]
+    separations = [relaxed(program, f) for f in (together, relocate(program, base(program)))]
     for other in others:
-        found.append(relaxed(other, separate(other, rounds=rounds, check=check)))
-        found.append(relaxed(other, relocate(other, base(other))))
-    fewest, left = min(len(f.stuck) for f in found), dict[bytes, Separation]()
-    for way in found:  # looking at one takes most of its time: only at those that are not ruled out, and once at each
+        separations.append(relaxed(other, separate(other, rounds=rounds, check=check)))
+        separations.append(relaxed(other, relocate(other, base(other))))
+    fewest, left = min(len(f.stuck) for f in separations), dict[bytes, Separation]()
+    for (
+        way
+    ) in separations:  # looking at one takes most of its time: only at those that are not ruled out, and once at each
         if len(way.stuck) == fewest:
             left.setdefault(way.y.tobytes(), way)
     first, *more = left.values()
@@ -250,21 +252,21 @@ def _apart(
     return best
 
 
-def _disagreement(program: Program, found: Separation, view: ObservedView | None) -> tuple[float, float]:
+def _disagreement(program: Program, separation: Separation, view: ObservedView | None) -> tuple[float, float]:
     """What of the picture is lost, and what the moves cost."""
-    cost = float(program.cost(found.y))
+    cost = float(program.cost(separation.y))
     if view is None:
         return 0.0, cost
     structure = program.structure
-    poses = program.problem.poses(structure.R, structure.p + program.moves(found.y), structure.scale)
+    poses = program.problem.poses(structure.R, structure.p + program.moves(separation.y), structure.scale)
     return 1.0 - view.agreement(poses), cost
 
 
-def _smaller(problem: Problem, structure: Structure, found: Separation) -> Problem:
+def _smaller(problem: Problem, structure: Structure, separation: Separation) -> Problem:
     """The lighter object of each stuck pair a little smaller across, and both free to leave their walls."""
-    stuck = {k for pair in found.stuck for k in pair}
+    stuck = {k for pair in separation.stuck for k in pair}
     scale = problem.scale.copy()
-    for pair in found.stuck:
+    for pair in separation.stuck:
         free = [k for k in pair if problem.free[k]]
         volume = {k: float(np.prod(problem.shape_size[k] * structure.scale[k])) for k in free}
         if free:
@@ -283,5 +285,5 @@ def _shrunk_reasons(problem: Problem, wanted: Problem, structure: Structure) -> 
     return tuple(f"{problem.labels[i]} was made smaller to fit between its neighbours" for i in smaller)
 
 
-def _stuck_reasons(problem: Problem, found: Separation) -> tuple[str, ...]:
-    return tuple(f"no room: {problem.labels[i]} and {problem.labels[j]} still overlap" for i, j in found.stuck)
+def _stuck_reasons(problem: Problem, separation: Separation) -> tuple[str, ...]:
+    return tuple(f"no room: {problem.labels[i]} and {problem.labels[j]} still overlap" for i, j in separation.stuck)

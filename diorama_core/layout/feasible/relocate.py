@@ -24,11 +24,11 @@ def relocate(program: Program, y: Float[np.ndarray, " v"]) -> Separation:
     refused: set[tuple[int, int]] = set()
     while left := [pair for pair in pairs if pair not in refused]:
         spots = (cheapest_spot(program, y, k, program.problem.settings.reaches_m) for k in _movable(program, left[0]))
-        found = [spot for spot in spots if spot is not None]
-        if not found:
+        placed = [spot for spot in spots if spot is not None]
+        if not placed:
             refused.add(left[0])
             continue
-        best = min(found, key=lambda spot: spot.cost)
+        best = min(placed, key=lambda spot: spot.cost)
         y = best.y
         pairs = tuple(pair for pair in pairs if not (best.moving[pair[0]] or best.moving[pair[1]]))
     return Separation(y, *overlaps(program, y)) if depth > 0 else Separation(y, 0.0, ())

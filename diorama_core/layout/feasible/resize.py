@@ -57,18 +57,18 @@ def _options(
     """What each size of one object costs, with the move that it still needs."""
     problem, structure = program.problem, program.structure
     extents = problem.shape_size[k] * structure.scale[k]
-    found: list[tuple[float, Float[np.ndarray, "3"]]] = []
+    options: list[tuple[float, Float[np.ndarray, "3"]]] = []
     steps = (*problem.settings.shrinks, problem.settings.smallest_shrink)
     for factor in np.vstack([np.ones(3), *(np.where(_AXES, step, 1.0) for step in steps)]):
         shrunk = 0.5 * float(np.linalg.norm((1.0 - factor) * extents)) * outline_cost
-        if found and shrunk >= min(cost for cost, _ in found):
+        if options and shrunk >= min(cost for cost, _ in options):
             continue
         # A smaller size that still has to go far away is no help, and looking far takes long.
         reaches_m = problem.settings.reaches_m if (factor == 1.0).all() else problem.settings.reaches_m[:1]
         spot = cheapest_spot(_resized(program, k, factors, factor), y, k, reaches_m)
         if spot is not None:
-            found.append((float(np.hypot(spot.cost, shrunk)), factor))
-    return found
+            options.append((float(np.hypot(spot.cost, shrunk)), factor))
+    return options
 
 
 def _resized(program: Program, k: int, factors: Float[np.ndarray, "n 3"], factor: Float[np.ndarray, "3"]) -> Program:

@@ -184,25 +184,25 @@ def base(program: Program) -> Float[np.ndarray, " v"]:
     )
 
 
-def relaxed(program: Program, found: Separation) -> Separation:
+def relaxed(program: Program, separation: Separation) -> Separation:
     """The least move in the neighbourhood of one that is free of overlap: as free of it, and never farther.
 
     Each pair of parts keeps the axis that parts it best where it was found; rows enter when they are violated.
     """
     for _ in range(program.problem.settings.relaxations):
         program.chosen.clear()
-        y = found.y
+        y = separation.y
         while True:
             y = base(program) if not program.chosen else _solve(program, HARD)
             fresh = [pair for pair in _touching(program, y)[1] if pair not in program.chosen]
             if not fresh:
                 break
-            _keep_apart(program, fresh, found.y)
+            _keep_apart(program, fresh, separation.y)
         least = 1.0 - program.problem.settings.min_saving
-        if _touching(program, y)[1] or program.cost(y) > least * program.cost(found.y):
+        if _touching(program, y)[1] or program.cost(y) > least * program.cost(separation.y):
             break
-        found = Separation(y, found.depth_m, found.stuck)
-    return found
+        separation = Separation(y, separation.depth_m, separation.stuck)
+    return separation
 
 
 def overlaps(program: Program, y: Float[np.ndarray, " v"]) -> tuple[float, tuple[tuple[int, int], ...]]:
@@ -262,13 +262,13 @@ def _near_parts(program: Program, w: Float[np.ndarray, "n 3"]) -> list[tuple[int
     near &= problem.free[:, None] | problem.free[None]
     np.fill_diagonal(near, val=False)
     ends = np.append(starts[1:], len(bodies.owner))
-    found = []
+    pairs = []
     for i, j in zip(*np.nonzero(np.triu(near, 1))):
         a, b = slice(starts[i], ends[i]), slice(starts[j], ends[j])
         meet = ((low[a, None] <= high[None, b]) & (low[None, b] <= high[a, None])).all(axis=2)
         meet &= program.may_meet[a, b]
-        found += [(int(starts[i] + k), int(starts[j] + m)) for k, m in zip(*np.nonzero(meet))]
-    return found
+        pairs += [(int(starts[i] + k), int(starts[j] + m)) for k, m in zip(*np.nonzero(meet))]
+    return pairs
 
 
 def _between(
@@ -278,7 +278,7 @@ def _between(
     those by which they part soonest in some of the directions.
     """
     owner, settings = program.bodies.owner, program.problem.settings
-    found = []
+    axes = []
     for block in program.blocks:
         rows = np.flatnonzero((owner[block.a] == i) & (owner[block.b] == j))
         if len(rows):
@@ -290,8 +290,8 @@ def _between(
                 best = np.hstack([best, _soonest(apart, normals, some, settings.apart_m)])
                 normals = np.take_along_axis(normals, best[..., None], axis=1)
                 gaps = np.take_along_axis(gaps, best, axis=1)
-            found.append(PairAxes(block.a[rows], block.b[rows], normals, gaps))
-    return found
+            axes.append(PairAxes(block.a[rows], block.b[rows], normals, gaps))
+    return axes
 
 
 def _soonest(

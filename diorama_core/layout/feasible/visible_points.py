@@ -80,15 +80,15 @@ class ObservedView:
     @cached_property
     def points(self) -> VisiblePoints:
         """Points that the camera sees of each object; empty for what is hidden or outside the picture."""
-        found = {}
+        points = {}
         for number, (name, pose) in enumerate(zip(self.ids, self.poses, strict=True)):
             rows, columns = np.nonzero(self.view.instance == number)
             step = max(len(rows) // self.settings.max_points, 1)
             rows, columns = rows[::step], columns[::step]
             rays = self.camera.rays(np.column_stack([columns + 0.5, rows + 0.5]))
             world = self.camera.position + self.view.depth_m[rows, columns, None].astype(np.float64) * rays
-            found[name] = ((world - pose.position) @ pose.R_world_object) / pose.scale
-        return found
+            points[name] = ((world - pose.position) @ pose.R_world_object) / pose.scale
+        return points
 
     def agreement(self, poses: Mapping[str, Pose]) -> float:
         """How far objects in other poses still cover what they covered, hiding included: mean over those seen."""
@@ -135,7 +135,7 @@ def tracked_points(
         bounds_px: bounds of the objects there.
         visible: points that are seen.
     """
-    found = []
+    tracked = []
     for i, name in enumerate(problem.ids):
         points = visible.get(name, np.zeros((0, 3)))
         before = float(camera.to_camera(problem.p[i : i + 1])[0, 2]) >= problem.settings.nearest_m
@@ -144,14 +144,14 @@ def tracked_points(
         world = problem.p[i] + (points * problem.scale[i]) @ problem.R[i].T
         depth = camera.to_camera(world)[:, 2]
         if depth.min() < problem.settings.nearest_m or not (seen or np.isfinite(posed_px[i]).all()):
-            found.append(TrackedPoints(np.zeros((0, 3)), np.zeros((0, 2)), np.zeros(0), seen=False))
+            tracked.append(TrackedPoints(np.zeros((0, 3)), np.zeros((0, 2)), np.zeros(0), seen=False))
             continue
         pixels = camera.project(world)
         if not seen:
             stretch = (bounds_px[i, 2:] - bounds_px[i, :2]) / np.maximum(posed_px[i, 2:] - posed_px[i, :2], 1.0)
             pixels = bounds_px[i, :2] + (pixels - posed_px[i, :2]) * stretch
-        found.append(TrackedPoints(points, pixels, depth, seen))
-    return tuple(found)
+        tracked.append(TrackedPoints(points, pixels, depth, seen))
+    return tuple(tracked)
 
 
 def turned_points(

@@ -100,9 +100,9 @@ class Problem:
     @cached_property
     def reach(self) -> Float[np.ndarray, "n 3"]:
         """Half extents of a box around each object's centre that contains its parts, at scale 1, its own axes."""
-        found = np.zeros((self.count, 3))
-        np.maximum.at(found, self.packed.owner, np.abs(self.packed.vertices).max(axis=1))
-        return found
+        reach = np.zeros((self.count, 3))
+        np.maximum.at(reach, self.packed.owner, np.abs(self.packed.vertices).max(axis=1))
+        return reach
 
     @cached_property
     def top_down(self) -> tuple[int, ...]:
@@ -112,10 +112,10 @@ class Problem:
 
     def chain(self, index: int) -> list[int]:
         """The object and its supporting objects, nearest first."""
-        found = [index]
-        while self.parent[found[-1]] >= 0:
-            found.append(int(self.parent[found[-1]]))
-        return found
+        chain = [index]
+        while self.parent[chain[-1]] >= 0:
+            chain.append(int(self.parent[chain[-1]]))
+        return chain
 
     @cached_property
     def _riders(self) -> tuple[tuple[int, ...], ...]:
@@ -134,7 +134,7 @@ class Problem:
 
         The one it is on is left out, and those whose ends it passes.
         """
-        found = []
+        walls = []
         radius = 0.5 * float(np.linalg.norm(self.shape_size[index] * self.scale[index]))
         for wall in self.walls:
             surface = plane_surface(wall)
@@ -142,8 +142,8 @@ class Problem:
             ahead = float(wall.normal @ self.p[index]) - wall.offset
             near = beside <= radius and 0.0 <= ahead <= radius
             if wall.seen and self.on_plane[index] != wall.id and near and not self.passes(wall, index):
-                found.append(wall)
-        return tuple(found)
+                walls.append(wall)
+        return tuple(walls)
 
     def passes(self, wall: Plane, index: int) -> bool:
         """Whether an object is beside the end of a wall that stands into the room.
@@ -265,7 +265,7 @@ def _adherences(
     within_m: float,
 ) -> tuple[tuple[int, int, np.ndarray], ...]:
     """Stated adherences, and faces that already are parallel to a wall and near it."""
-    found = []
+    adherences = []
     for w, wall in enumerate(walls):
         faces, gap, facing = wall_faces(R, p, sizes, wall)
         for k, edge in enumerate(edges):
@@ -274,8 +274,8 @@ def _adherences(
                 continue
             near = gap[k] < within_m and facing[k] > 0.97 and surface.of_plane
             if near or wall.id in edge.adheres_to:
-                found.append((k, w, faces[k]))
-    return tuple(sorted(found, key=lambda a: a[:2]))
+                adherences.append((k, w, faces[k]))
+    return tuple(sorted(adherences, key=lambda a: a[:2]))
 
 
 def _relations(

@@ -59,12 +59,12 @@ class PixelGrid:
 
     def labels(self, masks: Sequence[Bool[np.ndarray, "H W"] | None]) -> Int[np.ndarray, "h w"]:
         """Index of the mask at every pixel, -1 where there is none; of masks that overlap, the smaller one's."""
-        found = np.full((len(self.rows), len(self.columns)), -1)
+        labels = np.full((len(self.rows), len(self.columns)), -1)
         sampled = [None if mask is None else self.sampled(mask) for mask in masks]
         largest_first = sorted((-int(m.sum()), i) for i, m in enumerate(sampled) if m is not None)
         for _, i in largest_first:
-            found[sampled[i]] = i
-        return found
+            labels[sampled[i]] = i
+        return labels
 
     def window(self, bounds_px: Float[np.ndarray, "p 4"], margin: int = 2) -> Window | None:
         """What contains boxes of the photo (x1, y1, x2, y2; NaN for none), with a margin; None outside the photo."""

@@ -63,15 +63,15 @@ class MaskRefinement:
         begun = time.perf_counter()
         detected = {o.id: o for o in objects}
         problem = build_problem(scene, self.library, adherence_m=self.settings.touching_m)
-        found = [detected.get(name) for name in problem.ids]
-        if scene.camera is None or all(item is None for item in found):
+        detected_objects = [detected.get(name) for name in problem.ids]
+        if scene.camera is None or all(item is None for item in detected_objects):
             return scene, report
         seen = [observed.object(name).pose for name in problem.ids]
         priors = [PosePrior(scene.camera.position, pose, self.precision, self.settings) for pose in seen]
-        picture = self._picture(scene, scene.camera, problem, found)
+        picture = self._picture(scene, scene.camera, problem, detected_objects)
         none = np.zeros(4)
-        boxes = np.array([none if o is None else o.box for o in found], dtype=np.float64)
-        trust = np.array([0.0 if o is None else _trust(o, self.settings.outlined) for o in found])
+        boxes = np.array([none if o is None else o.box for o in detected_objects], dtype=np.float64)
+        trust = np.array([0.0 if o is None else _trust(o, self.settings.outlined) for o in detected_objects])
         sized = _in_sets(observed, problem.ids)
         poses = Search(problem, picture, priors, boxes, trust, sized, self.settings).poses(progress)
         as_observed = replace(
@@ -85,9 +85,9 @@ class MaskRefinement:
         return refined, _updated(replace(report, seconds=seconds), as_observed, scene.camera, poses)
 
     def _picture(
-        self, scene: Scene, camera: Camera, problem: Problem, found: Sequence[DetectedObject | None]
+        self, scene: Scene, camera: Camera, problem: Problem, detected_objects: Sequence[DetectedObject | None]
     ) -> PosedPicture:
-        masks = [None if item is None else item.mask for item in found]
+        masks = [None if item is None else item.mask for item in detected_objects]
         height, width = next(mask.shape for mask in masks if mask is not None)
         grid = PixelGrid.of(camera, width, height, self.settings.long_side_px)
         shapes = [scene.object(name).shape_id for name in problem.ids]
@@ -96,9 +96,9 @@ class MaskRefinement:
         return PosedPicture.of(grid, grid.labels(masks), [casters[name] for name in shapes], poses, self.settings)
 
 
-def _trust(found: DetectedObject, outlined: float) -> float:
+def _trust(detected: DetectedObject, outlined: float) -> float:
     """What a mask counts against the object's box; all where a person gave it, and the box was drawn round it."""
-    return 1.0 if found.mask_confidence == 1.0 else outlined * found.mask_confidence
+    return 1.0 if detected.mask_confidence == 1.0 else outlined * detected.mask_confidence
 
 
 def _in_sets(observed: Scene, ids: Sequence[str]) -> list[bool]:

@@ -52,12 +52,12 @@ def as_sources(dataset: Dataset, folder: Path, given: Given) -> tuple[ModelSourc
     Raises:
         InputError: when no model is found, or its metadata cannot be read.
     """
-    found = list(dataset.entries(folder))
-    if not found:
+    entries = list(dataset.entries(folder))
+    if not entries:
         raise InputError(f"{folder}: no model of {dataset.name} lies there; name the folder that it was unpacked to")
-    known = {e.path.relative_to(folder).as_posix(): given.over(_named(e, dataset)) for e in found}
-    ids = {e.path: e.id for e in found}
-    return sources(folder, [e.path for e in found], Given(), known, ids)
+    known = {e.path.relative_to(folder).as_posix(): given.over(_named(e, dataset)) for e in entries}
+    ids = {e.path: e.id for e in entries}
+    return sources(folder, [e.path for e in entries], Given(), known, ids)
 
 
 def _named(entry: DatasetEntry, dataset: Dataset) -> Given:

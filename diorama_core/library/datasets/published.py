@@ -165,10 +165,10 @@ DATASETS: tuple[Dataset, ...] = (
 
 def dataset_named(name: str) -> Dataset:
     """The data set of that name; raises `InputError` when there is none."""
-    found = next((d for d in DATASETS if d.name == name.lower()), None)
-    if found is None:
+    dataset = next((d for d in DATASETS if d.name == name.lower()), None)
+    if dataset is None:
         raise InputError(f"data set {name!r} is not known; choose one of {', '.join(d.name for d in DATASETS)}")
-    return found
+    return dataset
 
 
 def recognised(folder: Path) -> Dataset | None:

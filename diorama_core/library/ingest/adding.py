@@ -52,7 +52,7 @@ class Added:
 
 
 def add_models(
-    found: Sequence[ModelSource],
+    models: Sequence[ModelSource],
     sink: ShapeSink,
     workers: Workers,
     *,
@@ -64,7 +64,7 @@ def add_models(
     """Take models in; a file that fails never stops the others.
 
     Args:
-        found: From `sources` or a data set.
+        models: From `sources` or a data set.
         sink: Keeps each shape as it is ready, so that a stopped run resumes there.
         workers: Where the work is done.
         painter: Makes thumbnails; must be importable by name (or a partial of such).
@@ -78,9 +78,9 @@ def add_models(
     """
     progress = progress or Progress()
     have = sink.source_keys()
-    waiting = [s for s in found if s.key not in have]
+    waiting = [s for s in models if s.key not in have]
     learnt = _learn(progress) if waiting else 0.0
-    waiting = with_conventions(waiting, found, workers, limits, progress)
+    waiting = with_conventions(waiting, models, workers, limits, progress)
     added: list[Ingested] = []
     failed: list[Trouble] = []
     done = workers.map(partial(_work, painter=painter, limits=limits), waiting)
@@ -95,7 +95,7 @@ def add_models(
     added.sort(key=lambda i: i.record.id)
     return Added(
         added=tuple(i.record.id for i in added),
-        retained=len(found) - len(waiting),
+        retained=len(models) - len(waiting),
         failed=tuple(sorted(failed, key=lambda t: t.path)),
         skipped=tuple(skipped),
         repaired=tuple((i.record.id, i.warnings) for i in added if i.warnings),
@@ -105,20 +105,20 @@ def add_models(
 
 
 def with_conventions(
-    waiting: Sequence[ModelSource], found: Sequence[ModelSource], workers: Workers, limits: Limits, progress: Progress
+    waiting: Sequence[ModelSource], models: Sequence[ModelSource], workers: Workers, limits: Limits, progress: Progress
 ) -> list[ModelSource]:
     """The sources with what their whole packs say of frame and unit; some files of each pack are asked.
 
     Args:
         waiting: What is to be taken in.
-        found: All files, those included that are there already.
+        models: All files, those included that are there already.
         workers: Where files are asked.
         limits: What is refused.
         progress: Cancellation.
     """
-    plain = {s.path: s for s in found if not s.member and s.given.unit_m is None and s.given.up is None}
+    plain = {s.path: s for s in models if not s.member and s.given.unit_m is None and s.given.up is None}
     groups: dict[str, list[Path]] = {}
-    for path, group in groups_of(tuple(plain), found[0].root if found else Path()).items():
+    for path, group in groups_of(tuple(plain), models[0].root if models else Path()).items():
         groups.setdefault(group, []).append(path)
     new = {s.path for s in waiting}
     groups = {g: paths for g, paths in groups.items() if len(paths) > 1 and new.intersection(paths)}

@@ -45,23 +45,23 @@ def read_fbx(path: Path, data: bytes, references: References) -> FbxModel:
     except ImportError as error:
         raise UnavailableError('FBX needs a converter; run: pip install "diorama[fbx]", or convert to GLB') from error
     try:
-        found = assimp_py.import_file(
+        imported = assimp_py.import_file(
             str(path), assimp_py.Process_Triangulate | assimp_py.Process_JoinIdenticalVertices
         )
     except (RuntimeError, ValueError) as error:
         raise LibraryError(f"malformed FBX ({str(error)[:100]})") from error
-    materials = [_material(row, references) for row in found.materials]
+    materials = [_material(row, references) for row in imported.materials]
     scene = trimesh.Scene()
     names: list[str] = []
-    waiting = [(found.root_node, np.eye(4))]
+    waiting = [(imported.root_node, np.eye(4))]
     while waiting:
         node, above = waiting.pop()
         names.append(str(node.name))
         T_file_node = above @ np.asarray(node.transformation, dtype=float).reshape(4, 4)
         for index in node.mesh_indices:
-            scene.add_geometry(_mesh(found.meshes[index], materials), transform=T_file_node)
+            scene.add_geometry(_mesh(imported.meshes[index], materials), transform=T_file_node)
         waiting += [(child, T_file_node) for child in reversed(node.children)]
-    names += [str(row.get("NAME", "")) for row in found.materials]
+    names += [str(row.get("NAME", "")) for row in imported.materials]
     return FbxModel(scene, tuple(n for n in names if n and n != "RootNode"), unit_scale_m(data))
 
 
@@ -81,14 +81,14 @@ def unit_scale_m(data: bytes) -> float:
     return centimetres / 100.0 if 1e-4 < centimetres < 1e5 else 0.01
 
 
-def _mesh(found: Any, materials: list[PBRMaterial]) -> trimesh.Trimesh:
-    vertices = np.asarray(found.vertices, dtype=float).reshape(-1, 3)
-    faces = np.asarray(found.indices, dtype=np.int64).reshape(-1, 3)
+def _mesh(imported: Any, materials: list[PBRMaterial]) -> trimesh.Trimesh:
+    vertices = np.asarray(imported.vertices, dtype=float).reshape(-1, 3)
+    faces = np.asarray(imported.indices, dtype=np.int64).reshape(-1, 3)
     uv = np.zeros((len(vertices), 2))
-    if found.texcoords:
-        uv = np.asarray(found.texcoords[0], dtype=float).reshape(len(vertices), -1)[:, :2]
-    visual = trimesh.visual.TextureVisuals(uv=uv, material=materials[found.material_index])
-    return trimesh.Trimesh(vertices, faces, visual=visual, process=False, metadata={"name": str(found.name)})
+    if imported.texcoords:
+        uv = np.asarray(imported.texcoords[0], dtype=float).reshape(len(vertices), -1)[:, :2]
+    visual = trimesh.visual.TextureVisuals(uv=uv, material=materials[imported.material_index])
+    return trimesh.Trimesh(vertices, faces, visual=visual, process=False, metadata={"name": str(imported.name)})
 
 
 def _material(row: dict[str, Any], references: References) -> PBRMaterial:

@@ -70,7 +70,7 @@ def model_files(folder: Path) -> tuple[tuple[Path, ...], tuple[Trouble, ...]]:
     """
     if not folder.is_dir():
         raise InputError(f"{folder} is no folder; name the folder that holds the models")
-    found: list[Path] = []
+    paths: list[Path] = []
     skipped: list[Trouble] = []
     for here, folders, names in os.walk(folder):
         folders[:] = sorted(f for f in folders if not f.startswith("."))
@@ -79,11 +79,11 @@ def model_files(folder: Path) -> tuple[tuple[Path, ...], tuple[Trouble, ...]]:
             if name.startswith(".") or path.is_symlink():
                 continue
             if path.suffix.lower() in (*SUFFIXES, ".zip"):
-                found.append(path)
+                paths.append(path)
             else:
                 other = _other(path)
                 skipped += [Trouble(path, f"{other.name}: {other.advice}")] if other is not None else []
-    return tuple(found), tuple(skipped)
+    return tuple(paths), tuple(skipped)
 
 
 def _other(path: Path) -> OtherFile | None:

@@ -43,13 +43,13 @@ def own_frame(document: Mapping[str, Any]) -> OwnFrame | None:
 
 def _entry(node: Mapping[str, Any]) -> Mapping[str, Any] | None:
     extras = node.get("extras")
-    found = extras.get(MARK) if isinstance(extras, Mapping) else None
-    if isinstance(found, str):
+    entry = extras.get(MARK) if isinstance(extras, Mapping) else None
+    if isinstance(entry, str):
         try:
-            found = json.loads(found)
+            entry = json.loads(entry)
         except ValueError:
             return None
-    return found if isinstance(found, Mapping) and "id" in found and "category" in found else None
+    return entry if isinstance(entry, Mapping) and "id" in entry and "category" in entry else None
 
 
 def _rotation(node: Mapping[str, Any]) -> Float[np.ndarray, "3 3"]:

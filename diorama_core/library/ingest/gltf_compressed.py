@@ -81,12 +81,12 @@ def _quaternions(raw: np.ndarray) -> np.ndarray:
     one, largest = (raw[:, 3].astype(int) | 3).astype(float), raw[:, 3].astype(int) & 3
     xyz = raw[:, :3] / one[:, None] * scale
     w = np.sqrt(np.maximum(1.0 - (xyz**2).sum(axis=1), 0.0))
-    found = np.empty((len(raw), 4))
+    quaternions = np.empty((len(raw), 4))
     rows = np.arange(len(raw))
     for k in range(3):
-        found[rows, (largest + 1 + k) % 4] = xyz[:, k]
-    found[rows, largest] = w
-    return np.round(found * 32767.0)
+        quaternions[rows, (largest + 1 + k) % 4] = xyz[:, k]
+    quaternions[rows, largest] = w
+    return np.round(quaternions * 32767.0)
 
 
 def undo_draco(document: Json, views: list[bytes], limits: Limits) -> None:

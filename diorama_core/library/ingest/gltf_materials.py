@@ -16,24 +16,24 @@ METAL_SPECULAR, METAL_DIFFUSE = 0.5, 0.2
 def use_specular_glossiness(material: Json) -> None:
     """Diffuse colour and picture as base colour, glossiness as 1 - roughness, where the material has nothing else."""
     # The loader converts what it still finds, and makes dull colours white.
-    found = material.get("extensions", {}).pop(SPECULAR_GLOSSINESS, None)
+    extension = material.get("extensions", {}).pop(SPECULAR_GLOSSINESS, None)
     plain = material.setdefault("pbrMetallicRoughness", {})
-    if found is None or "baseColorTexture" in plain or "baseColorFactor" in plain:
+    if extension is None or "baseColorTexture" in plain or "baseColorFactor" in plain:
         return
-    diffuse = [float(v) for v in found.get("diffuseFactor", [1.0, 1.0, 1.0, 1.0])]
-    specular = [float(v) for v in found.get("specularFactor", [1.0, 1.0, 1.0])]
+    diffuse = [float(v) for v in extension.get("diffuseFactor", [1.0, 1.0, 1.0, 1.0])]
+    specular = [float(v) for v in extension.get("specularFactor", [1.0, 1.0, 1.0])]
     metal = (
-        "diffuseTexture" not in found
-        and "specularGlossinessTexture" not in found
+        "diffuseTexture" not in extension
+        and "specularGlossinessTexture" not in extension
         and max(specular) > METAL_SPECULAR
         and max(diffuse[:3]) < METAL_DIFFUSE
     )
     plain["baseColorFactor"] = [*specular, diffuse[3]] if metal else diffuse
-    if "diffuseTexture" in found:
-        plain["baseColorTexture"] = found["diffuseTexture"]
+    if "diffuseTexture" in extension:
+        plain["baseColorTexture"] = extension["diffuseTexture"]
     plain["metallicFactor"] = 1.0 if metal else 0.0
-    plain["roughnessFactor"] = 1.0 - float(found.get("glossinessFactor", 1.0)) * (
-        0.5 if "specularGlossinessTexture" in found else 1.0
+    plain["roughnessFactor"] = 1.0 - float(extension.get("glossinessFactor", 1.0)) * (
+        0.5 if "specularGlossinessTexture" in extension else 1.0
     )
 
 

@@ -148,11 +148,11 @@ def _table(
 
 def _possible(name: str, log_sizes: Float[np.ndarray, "n 3"], *, said: bool) -> Bool[np.ndarray, " n"]:
     """For each size, whether a thing of the kind can be so large; only which axis is up matters."""
-    found: dict[float, bool] = {}
+    possible: dict[float, bool] = {}
     for size in log_sizes:
-        if size[2] not in found:
-            found[size[2]] = is_possible(name, np.exp(size), said=said)
-    return np.array([found[size[2]] for size in log_sizes])
+        if size[2] not in possible:
+            possible[size[2]] = is_possible(name, np.exp(size), said=said)
+    return np.array([possible[size[2]] for size in log_sizes])
 
 
 def _chosen(

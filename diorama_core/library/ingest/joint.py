@@ -59,12 +59,12 @@ def exporter_of(path: Path) -> str:
     except OSError:
         return ""
     if path.suffix.lower() in (".glb", ".gltf"):
-        found = re.search(r'"generator"\s*:\s*"([^"]*)"', head)
+        match = re.search(r'"generator"\s*:\s*"([^"]*)"', head)
     else:
-        found = re.search(
+        match = re.search(
             r"(?:^|\n)(?:#|comment|solid)\s*(.*(?:export|creat|generat|blender|by ).*)", head, re.IGNORECASE
         )
-    return re.sub(r"[\d.:/-]+", "", found[1]).strip().lower()[:60] if found else ""
+    return re.sub(r"[\d.:/-]+", "", match[1]).strip().lower()[:60] if match else ""
 
 
 def asked_of(paths: Sequence[Path]) -> list[Path]:

@@ -92,11 +92,11 @@ def _spread(shapes: Sequence[Shape]) -> list[Shape]:
 def _taken(
     library: ShapeLibrary, shapes: Sequence[Shape], on_step: Callable[[float], None]
 ) -> dict[str, UInt8[np.ndarray, "3 2 side side"]]:
-    found = {}
+    reliefs = {}
     for count, shape in enumerate(shapes, start=1):
-        found[_key(shape)] = np.round(relief(library.mesh(shape.id)) * 255).astype(np.uint8)
+        reliefs[_key(shape)] = np.round(relief(library.mesh(shape.id)) * 255).astype(np.uint8)
         on_step(count / len(shapes))
-    return found
+    return reliefs
 
 
 def _read(path: Path) -> dict[str, UInt8[np.ndarray, "3 2 side side"]]:
@@ -107,5 +107,5 @@ def _read(path: Path) -> dict[str, UInt8[np.ndarray, "3 2 side side"]]:
     return dict(zip(stored[0].tolist(), stored[1], strict=True))
 
 
-def _write(path: Path, found: dict[str, UInt8[np.ndarray, "3 2 side side"]]) -> None:
-    write_arrays(path, {"keys": np.array(list(found)), "reliefs": np.stack(list(found.values()))})
+def _write(path: Path, reliefs: dict[str, UInt8[np.ndarray, "3 2 side side"]]) -> None:
+    write_arrays(path, {"keys": np.array(list(reliefs)), "reliefs": np.stack(list(reliefs.values()))})

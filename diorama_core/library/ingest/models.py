@@ -121,9 +121,9 @@ def _read_plain(convention: Convention, kind: str) -> Callable[[Path, References
 
 
 def _read_fbx(path: Path, references: References, limits: Limits) -> RawModel:
-    found = fbx.read_fbx(path, _content(path, limits), references)
-    convention = Convention("FBX", {found.up: 0.9}, {found.front: 0.5}, {found.unit_m: 0.8})
-    return RawModel(found.scene, found.names, convention, tuple(references.warnings))
+    model = fbx.read_fbx(path, _content(path, limits), references)
+    convention = Convention("FBX", {model.up: 0.9}, {model.front: 0.5}, {model.unit_m: 0.8})
+    return RawModel(model.scene, model.names, convention, tuple(references.warnings))
 
 
 def _read_dae(path: Path, references: References, limits: Limits) -> RawModel:
@@ -168,8 +168,8 @@ def _read_usd(path: Path, references: References, limits: Limits) -> RawModel:
 
 def _written_names(obj: bytes) -> tuple[str, ...]:
     """Names of objects, groups and materials of an OBJ, each once, in its order."""
-    found = re.findall(rb"^(?:o|g|usemtl)[ \t]+([^\r\n]+)", obj, re.MULTILINE)
-    return tuple(dict.fromkeys(name.decode(errors="replace").strip() for name in found))
+    names = re.findall(rb"^(?:o|g|usemtl)[ \t]+([^\r\n]+)", obj, re.MULTILINE)
+    return tuple(dict.fromkeys(name.decode(errors="replace").strip() for name in names))
 
 
 def _content(path: Path, limits: Limits) -> bytes:

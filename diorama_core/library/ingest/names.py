@@ -174,9 +174,9 @@ def named_categories(stem: str, folders: Iterable[str] = (), parts: Iterable[str
                 weights = {category: weight + less for category, weight in (exact or near).items()}
                 return NameEvidence(weights, certainty if exact else NEARLY)
     for name in parts:
-        found = _spoken_of(words_of(name))
-        if found:
-            weights = {category: weight + ELSEWHERE for category, weight in found.items()}
+        spoken = _spoken_of(words_of(name))
+        if spoken:
+            weights = {category: weight + ELSEWHERE for category, weight in spoken.items()}
             return NameEvidence({UNKNOWN.name: ONE_WORD + ELSEWHERE, **weights}, OF_A_PART)
     return NameEvidence({} if words_of(stem) else None)
 
@@ -184,8 +184,8 @@ def named_categories(stem: str, folders: Iterable[str] = (), parts: Iterable[str
 def named_kind(name: str) -> str | None:
     """The one kind that a name speaks of, read as a file's name is; None where it says nothing."""
     words = words_of(name)
-    found = _spoken_of(words) or _label_of(words)
-    return max(found, key=lambda kind: found[kind]) if found else None
+    kinds = _spoken_of(words) or _label_of(words)
+    return max(kinds, key=lambda kind: kinds[kind]) if kinds else None
 
 
 def _label_of(words: tuple[str, ...]) -> dict[str, float]:
@@ -203,12 +203,12 @@ def _spoken_of(words: tuple[str, ...]) -> dict[str, float]:
         return {UNKNOWN.name: MANY_WORDS}
     known = {p: _known()[p] for p in _phrases(words) if p in _known()}
     used = {word for phrase in known if " " in phrase for word in phrase.split()}
-    found: dict[str, float] = {}
+    kinds: dict[str, float] = {}
     for phrase, category in known.items():
         if " " in phrase or not used.intersection(_singulars(phrase)):
             weight = MANY_WORDS if " " in phrase else ONE_WORD
-            found[category] = max(found.get(category, weight), weight)
-    return found
+            kinds[category] = max(kinds.get(category, weight), weight)
+    return kinds
 
 
 def _phrases(words: tuple[str, ...]) -> Iterator[str]:

@@ -38,7 +38,7 @@ def absolute_indices(obj: bytes) -> bytes:
 
 
 def _absolute(corner: bytes, counts: list[int]) -> bytes:
-    found = []
+    lines = []
     for index, count in zip(corner.split(b"/"), counts, strict=False):
         if index.startswith(b"-"):
             try:
@@ -48,21 +48,21 @@ def _absolute(corner: bytes, counts: list[int]) -> bytes:
             if number < 1:
                 raise LibraryError("a face of the OBJ counts back before the first vertex; export it again")
             index = str(number).encode()
-        found.append(index)
-    return b"/".join(found)
+        lines.append(index)
+    return b"/".join(lines)
 
 
 def plain_mtl(mtl: bytes) -> bytes:
     """An MTL whose maps are plain names; how often a picture of colour repeats becomes an entry `uv_scale`."""
     lines = []
     for line in mtl.decode("utf-8", "replace").splitlines():
-        found = _MAPS.match(line)
-        if found is None:
+        match = _MAPS.match(line)
+        if match is None:
             lines.append(line)
             continue
-        name, scale = _without_options(found[2])
-        lines.append(f"{found[1]} {name}")
-        if found[1].lower() == "map_kd" and scale is not None:
+        name, scale = _without_options(match[2])
+        lines.append(f"{match[1]} {name}")
+        if match[1].lower() == "map_kd" and scale is not None:
             lines.append("uv_scale " + " ".join(f"{v:g}" for v in scale))
     return "\n".join(lines).encode()
 

@@ -86,8 +86,8 @@ class References:
             parts = unquote(name).replace("\\", "/").strip().split("/")
             ends = (parts[start:] for start in range(len(parts)))
             folders = dict.fromkeys((self.folder, self.root))
-            found = (_matching(folder, end) for end in ends if "://" not in name for folder in folders)
-            alike = next((path for path in found if path is not None and files.holds(path)), None)
+            matches = (_matching(folder, end) for end in ends if "://" not in name for folder in folders)
+            alike = next((path for path in matches if path is not None and files.holds(path)), None)
             if alike is None:
                 raise
             return alike

@@ -62,11 +62,11 @@ def turned(pictures: Relief, R_to_from: Int[np.ndarray, "3 3"]) -> Relief:
 @cache
 def quarter_turns() -> Int[np.ndarray, "24 3 3"]:
     """All rotations that map axes to axes; the identity first."""
-    found = []
+    turns = []
     for order in itertools.permutations(range(3)):
         for signs in itertools.product((1, -1), repeat=3):
             R = np.zeros((3, 3), int)
             R[np.arange(3), order] = signs
             if np.linalg.det(R) > 0:
-                found.append(R)
-    return np.array(sorted(found, key=lambda R: -int(np.trace(R))))
+                turns.append(R)
+    return np.array(sorted(turns, key=lambda R: -int(np.trace(R))))

@@ -196,8 +196,8 @@ def _visual(mesh: trimesh.Trimesh, faces: np.ndarray, materials: dict[int, PBRMa
     return TextureVisuals(uv=np.zeros((len(mesh.vertices), 2)), material=plain)
 
 
-def _material(found: Any, limits: Limits) -> PBRMaterial:
-    made = found if isinstance(found, PBRMaterial) else _physical(found)
+def _material(material: Any, limits: Limits) -> PBRMaterial:
+    made = material if isinstance(material, PBRMaterial) else _physical(material)
     for name in (
         "baseColorTexture",
         "normalTexture",
@@ -211,27 +211,27 @@ def _material(found: Any, limits: Limits) -> PBRMaterial:
     return made
 
 
-def _physical(found: Any) -> PBRMaterial:
+def _physical(material: Any) -> PBRMaterial:
     """A material of an OBJ file as a physically based one. Without `Pm` it is no metal: glTF's default is all metal."""
-    made = found.to_pbr()
-    made.metallicFactor = _share(found, "pm", 0.0)
-    made.roughnessFactor = _share(found, "pr", made.roughnessFactor)
+    made = material.to_pbr()
+    made.metallicFactor = _share(material, "pm", 0.0)
+    made.roughnessFactor = _share(material, "pr", made.roughnessFactor)
     return made
 
 
-def _uv_scale(found: Any) -> Float[np.ndarray, "2"]:
+def _uv_scale(material: Any) -> Float[np.ndarray, "2"]:
     """How often a picture repeats, where an MTL says so (`-s`)."""
     try:
-        scale = np.array(found.kwargs["uv_scale"], dtype=float).ravel()[:2]
+        scale = np.array(material.kwargs["uv_scale"], dtype=float).ravel()[:2]
     except (AttributeError, KeyError, TypeError, ValueError):
         return np.ones(2)
     return scale if scale.shape == (2,) and np.isfinite(scale).all() and (scale != 0).all() else np.ones(2)
 
 
-def _share(found: Any, name: str, default: float) -> float:
+def _share(material: Any, name: str, default: float) -> float:
     """A number from 0 to 1 among a material's further entries."""
     try:
-        value = float(np.ravel(found.kwargs[name])[0])
+        value = float(np.ravel(material.kwargs[name])[0])
     except (AttributeError, KeyError, IndexError, TypeError, ValueError):
         return default
     return min(max(value, 0.0), 1.0) if np.isfinite(value) else default

@@ -75,17 +75,17 @@ def _material(data: bytes) -> tuple[str, tuple[float, ...]]:
 
 
 def _mesh(data: bytes, colours: dict[str, tuple[float, ...]]) -> trimesh.Trimesh | None:
-    found = dict(_chunks(data))
-    if VERTICES not in found or FACES not in found:
+    chunks = dict(_chunks(data))
+    if VERTICES not in chunks or FACES not in chunks:
         return None
-    (count,) = struct.unpack_from("<H", found[VERTICES])
-    vertices = np.frombuffer(found[VERTICES], "<f4", 3 * count, 2).reshape(-1, 3)
-    (triangles,) = struct.unpack_from("<H", found[FACES])
-    faces = np.frombuffer(found[FACES], "<u2", 4 * triangles, 2).reshape(-1, 4)[:, :3]
+    (count,) = struct.unpack_from("<H", chunks[VERTICES])
+    vertices = np.frombuffer(chunks[VERTICES], "<f4", 3 * count, 2).reshape(-1, 3)
+    (triangles,) = struct.unpack_from("<H", chunks[FACES])
+    faces = np.frombuffer(chunks[FACES], "<u2", 4 * triangles, 2).reshape(-1, 4)[:, :3]
     uv = np.zeros((count, 2))
-    if UV in found and struct.unpack_from("<H", found[UV])[0] == count:
-        uv = np.frombuffer(found[UV], "<f4", 2 * count, 2).reshape(-1, 2)
-    used = [_string(b)[0] for k, b in _chunks(found[FACES][2 + 8 * triangles :]) if k == FACE_MATERIAL]
+    if UV in chunks and struct.unpack_from("<H", chunks[UV])[0] == count:
+        uv = np.frombuffer(chunks[UV], "<f4", 2 * count, 2).reshape(-1, 2)
+    used = [_string(b)[0] for k, b in _chunks(chunks[FACES][2 + 8 * triangles :]) if k == FACE_MATERIAL]
     colour = colours.get(used[0], GREY) if used else GREY
     material = PBRMaterial(name=used[0] if used else "", baseColorFactor=[*colour, 1.0], metallicFactor=0.0)
     visual = TextureVisuals(uv=np.array(uv), material=material)

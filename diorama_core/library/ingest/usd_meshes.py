@@ -145,9 +145,9 @@ def _usd_colour(mesh: Any) -> tuple[float, float, float]:
 
     bound = UsdShade.MaterialBindingAPI(mesh.GetPrim()).ComputeBoundMaterial()[0]
     shader = bound.ComputeSurfaceSource()[0] if bound else None
-    found = shader.GetInput("diffuseColor").Get() if shader and shader.GetInput("diffuseColor") else None
-    if found is None:
+    colour = shader.GetInput("diffuseColor").Get() if shader and shader.GetInput("diffuseColor") else None
+    if colour is None:
         shown = mesh.GetDisplayColorAttr().Get()
-        found = shown[0] if shown else (0.7, 0.7, 0.7)
-    red, green, blue = (float(min(max(c, 0.0), 1.0)) for c in found)
+        colour = shown[0] if shown else (0.7, 0.7, 0.7)
+    red, green, blue = (float(min(max(c, 0.0), 1.0)) for c in colour)
     return red, green, blue

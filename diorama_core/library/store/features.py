@@ -163,11 +163,11 @@ class FeatureMatrix:
                 self._values_path.touch()
                 self._keys_path.touch()
                 write_atomically(about, json.dumps(wanted).encode())
-            found = read_json(about, LibraryError, most=10_000, advice="delete that folder")
+            description = read_json(about, LibraryError, most=10_000, advice="delete that folder")
         except (OSError, ValueError) as error:
             raise LibraryError(f"features in {self.folder} cannot be used ({error}); delete that folder") from error
-        if found != wanted:
-            raise LibraryError(f"{self.folder} holds other features ({found}, not {wanted}); delete that folder")
+        if description != wanted:
+            raise LibraryError(f"{self.folder} holds other features ({description}, not {wanted}); delete that folder")
 
     def _load(self) -> None:
         """Map the values, and take the keys whose rows are complete."""

@@ -189,8 +189,8 @@ class Records:
 
 
 def _warnings(text: str) -> tuple[str, ...]:
-    found = parse_json(text, "the warnings of a shape", LibraryError, advice="add the shape to its library again")
-    return tuple(map(str, found)) if isinstance(found, list) else ()
+    warnings = parse_json(text, "the warnings of a shape", LibraryError, advice="add the shape to its library again")
+    return tuple(map(str, warnings)) if isinstance(warnings, list) else ()
 
 
 @contextmanager

@@ -174,12 +174,12 @@ class GivenAttitudeCamera:
 
     def estimate(self, inputs: Inputs, progress: Progress) -> CameraEstimate:
         """One reading: the other stage's best, tilted and rolled as given; its heading stays."""
-        found = self.stage.estimate(inputs, progress)
+        estimate = self.stage.estimate(inputs, progress)
         best = replace(
-            found.best, R_world_camera=self.camera_attitude.rotation(found.best.R_world_camera[:, 2]), score=1.0
+            estimate.best, R_world_camera=self.camera_attitude.rotation(estimate.best.R_world_camera[:, 2]), score=1.0
         )
-        source = replace(found.source, attitude_corrected=True)
-        return replace(found, hypotheses=(best,), confidence=1.0, source=source)
+        source = replace(estimate.source, attitude_corrected=True)
+        return replace(estimate, hypotheses=(best,), confidence=1.0, source=source)
 
 
 def with_given_attitude(stage: CameraStage, camera_attitude: CameraAttitude | None) -> CameraStage:

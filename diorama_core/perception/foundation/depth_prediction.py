@@ -58,10 +58,10 @@ class NetworkCamera:
 
     def estimate(self, inputs: Inputs, progress: Progress) -> CameraEstimate:
         """The readings of one photo, best first."""
-        found = self.reader.estimate(inputs, progress)
-        if found.source.focal is not FocalSource.GIVEN:
-            return found
-        return replace(found, source=replace(found.source, focal=FocalSource.NETWORK))
+        estimate = self.reader.estimate(inputs, progress)
+        if estimate.source.focal is not FocalSource.GIVEN:
+            return estimate
+        return replace(estimate, source=replace(estimate.source, focal=FocalSource.NETWORK))
 
 
 @dataclass(frozen=True)

@@ -63,10 +63,10 @@ class OpenVocabularyDetection:
         """
         asked = tuple(dict.fromkeys(w for w in words or INDOOR_WORDS if w.lower() not in ARCHITECTURE_WORDS))
         phrases = [self.template.format(w) for w in asked]
-        found = self.detector.detect(photo.rgb, phrases, self.threshold, progress.part(0.0, 0.9))
+        detections = self.detector.detect(photo.rgb, phrases, self.threshold, progress.part(0.0, 0.9))
         progress.report(0.9, "Sorting out double boxes")
-        found = without_doubles(found, self.double_iou, across_classes=True)
-        return _labelled(found, asked, self.part_share)
+        detections = without_doubles(detections, self.double_iou, across_classes=True)
+        return _labelled(detections, asked, self.part_share)
 
 
 @dataclass(frozen=True)
@@ -84,10 +84,10 @@ class EverydayDetection:
             photo, words, progress: as documented in `protocols.DetectionStage`.
         """
         progress.report(0.0, "Looking for furniture")
-        found = self.detector.detect(photo.rgb, self.threshold)
-        inside = np.array([COCO_CLASSES[k] in _IN_ROOMS for k in found.labels], dtype=bool)
+        detections = self.detector.detect(photo.rgb, self.threshold)
+        inside = np.array([COCO_CLASSES[k] in _IN_ROOMS for k in detections.labels], dtype=bool)
         names = tuple(_WORDS.get(name, name) for name in COCO_CLASSES)
-        return _labelled(found.rows(np.flatnonzero(inside)), names, self.part_share)
+        return _labelled(detections.rows(np.flatnonzero(inside)), names, self.part_share)
 
 
 @dataclass(frozen=True)
@@ -105,28 +105,28 @@ class FileDetection:
             photo, words, progress: as documented in `protocols.DetectionStage`.
         """
         progress.report(0.0, "Looking for furniture")
-        found = self.detector.detect(photo.rgb, self.threshold)
+        detections = self.detector.detect(photo.rgb, self.threshold)
         names = tuple(_WORDS.get(name, name) for name in self.detector.labels)
-        known = np.array([resolve(names[k]).exact for k in found.labels], dtype=bool)
-        return _labelled(found.rows(np.flatnonzero(known)), names, self.part_share)
+        known = np.array([resolve(names[k]).exact for k in detections.labels], dtype=bool)
+        return _labelled(detections.rows(np.flatnonzero(known)), names, self.part_share)
 
 
-def _labelled(found: Detections, names: tuple[str, ...], part_share: float) -> tuple[LabelledBox, ...]:
+def _labelled(detections: Detections, names: tuple[str, ...], part_share: float) -> tuple[LabelledBox, ...]:
     """One box per object, in the project's categories."""
     categories = [resolve(name) for name in names]
     # A sofa found within a sectional sofa is its half: special kinds count as their broader one.
     families = [broad(r.category.name) for r in categories]
     order = {name: i for i, name in enumerate(dict.fromkeys(families))}
-    kinds = np.array([order[families[k]] for k in found.labels], dtype=int)
-    alike = Detections(found.boxes, found.scores, kinds)
+    kinds = np.array([order[families[k]] for k in detections.labels], dtype=int)
+    alike = Detections(detections.boxes, detections.scores, kinds)
     whole = without_parts_of_same(alike, part_share)
-    retained = [i for i in range(len(found)) if any((whole.boxes == found.boxes[i]).all(axis=1))]
+    retained = [i for i in range(len(detections)) if any((whole.boxes == detections.boxes[i]).all(axis=1))]
     boxes = []
     for i in retained:
-        name, resolution = names[found.labels[i]], categories[found.labels[i]]
-        x1, y1, x2, y2 = (float(v) for v in found.boxes[i])
+        name, resolution = names[detections.labels[i]], categories[detections.labels[i]]
+        x1, y1, x2, y2 = (float(v) for v in detections.boxes[i])
         if min(x2 - x1, y2 - y1) < MIN_SIDE_PX:
             continue
         category = resolution.category.name if resolution.exact else UNKNOWN.name
-        boxes.append(LabelledBox((x1, y1, x2, y2), category, name, float(found.scores[i])))
+        boxes.append(LabelledBox((x1, y1, x2, y2), category, name, float(detections.scores[i])))
     return tuple(boxes[:MAX_OBJECTS])

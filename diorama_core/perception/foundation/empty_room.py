@@ -69,14 +69,14 @@ class EmptyRoomArchitecture:
             depth_m=depth,
             normals_camera=normals,
         )
-        found = self.room.reconstruct(cleared, (), geometry, progress.part(0.7, 1.0))
-        return replace(found, source=replace(found.source, furniture_inpainted=True))
+        estimate = self.room.reconstruct(cleared, (), geometry, progress.part(0.7, 1.0))
+        return replace(estimate, source=replace(estimate.source, furniture_inpainted=True))
 
     def hole(self, rgb: UInt8[np.ndarray, "h w 3"], objects: tuple[DetectedObject, ...]) -> Bool[np.ndarray, "h w"]:
         """Pixels of objects and their margin: masks, and what the foreground networks see beyond them."""
         items = np.zeros(rgb.shape[:2], dtype=bool)
-        for found in objects:
-            items |= found.mask
+        for detected in objects:
+            items |= detected.mask
         for network in self.foregrounds:
             more = network.mask(rgb)
             if more.mean() <= MAX_FOREGROUND:

@@ -33,8 +33,8 @@ class PromptedMasks:
             return []
         progress.report(0.0, "Outlining objects")
         results: Outlined = []
-        found = self.segmenter.masks(rgb, np.array([b.box for b in boxes]))
-        for done, (box, prompted) in enumerate(zip(boxes, found, strict=True)):
+        masks = self.segmenter.masks(rgb, np.array([b.box for b in boxes]))
+        for done, (box, prompted) in enumerate(zip(boxes, masks, strict=True)):
             progress.report(done / len(boxes), f"Outlining objects ({done + 1} of {len(boxes)})")
             mask = prompted.mask & filled_box(rgb.shape[:2], _widened(box, rgb.shape[1], rgb.shape[0]))
             whole = filled_box(rgb.shape[:2], box.box)

@@ -50,13 +50,15 @@ class OwnDetection:
             photo, words, progress: as documented in `protocols.DetectionStage`.
         """
         progress.report(0.0, "Looking for furniture")
-        found = self.recogniser.propose(photo.rgb, self.threshold, self.most)
-        large = np.flatnonzero((found.boxes[:, 2:] - found.boxes[:, :2]).min(axis=1, initial=np.inf) >= MIN_SIDE_PX)
-        found = found.rows(large)
-        progress.report(0.6, f"Naming {len(found)} boxes")
-        names = names_of(self.recogniser, photo, found.boxes)
+        detections = self.recogniser.propose(photo.rgb, self.threshold, self.most)
+        large = np.flatnonzero(
+            (detections.boxes[:, 2:] - detections.boxes[:, :2]).min(axis=1, initial=np.inf) >= MIN_SIDE_PX
+        )
+        detections = detections.rows(large)
+        progress.report(0.6, f"Naming {len(detections)} boxes")
+        names = names_of(self.recogniser, photo, detections.boxes)
         boxes = []
-        for box, score, ranked in zip(found.boxes, found.scores, names, strict=True):
+        for box, score, ranked in zip(detections.boxes, detections.scores, names, strict=True):
             name = next((n for n in ranked if n not in ARCHITECTURE_WORDS), "object")
             x1, y1, x2, y2 = (float(v) for v in box)
             boxes.append(LabelledBox((x1, y1, x2, y2), name, name, float(score), guessed=True))
@@ -112,16 +114,16 @@ def clickable(recogniser: Recogniser, photo: Photo, known: Sequence[LabelledBox]
     return joined((faint, Detections(corners, np.ones(len(known)), np.zeros(len(known), dtype=int))))
 
 
-def clicked_box(found: Detections, x: float, y: float) -> Box | None:
+def clicked_box(detections: Detections, x: float, y: float) -> Box | None:
     """The box that somebody means who clicks at (x, y), in photo pixels; None where no box holds the pixel."""
-    low, high = found.boxes[:, :2], found.boxes[:, 2:]
+    low, high = detections.boxes[:, :2], detections.boxes[:, 2:]
     offset = (np.array([x, y]) - (low + high) / 2) / np.maximum(high - low, 1.0)
-    meant = found.scores * np.exp(-np.sum(offset**2, axis=1) / (2 * CLICK_SPREAD**2))
-    meant = meant / np.maximum(areas(found.boxes), 1.0) ** SMALLER_FIRST
+    meant = detections.scores * np.exp(-np.sum(offset**2, axis=1) / (2 * CLICK_SPREAD**2))
+    meant = meant / np.maximum(areas(detections.boxes), 1.0) ** SMALLER_FIRST
     holds = np.all(np.abs(offset) <= 0.5, axis=1)
     if not holds.any():
         return None
-    x1, y1, x2, y2 = (float(v) for v in found.boxes[np.argmax(np.where(holds, meant, -1.0))])
+    x1, y1, x2, y2 = (float(v) for v in detections.boxes[np.argmax(np.where(holds, meant, -1.0))])
     return x1, y1, x2, y2
 
 

@@ -92,18 +92,18 @@ def observed(
     world = None
     if depth is not None:
         world = points_camera(depth, camera.intrinsics) @ camera.T_world_camera[:3, :3].T + camera.position
-    found = []
+    surroundings = []
     for index, item in enumerate(present):
         below, hidden = _below(index, item, present, owners, depth, world, settings)
         low, high = _extent(item, cuboids[item.id], world, depth)
         behind = _behind(index, item, owners, depth)
         category = resolve(item.category).category
-        found.append(
+        surroundings.append(
             ObjectSurroundings(
                 item.id, category, float(low[2]), float(high[2]), np.stack([low[:2], high[:2]]), below, hidden, behind
             )
         )
-    return tuple(found)
+    return tuple(surroundings)
 
 
 def owner_map(objects: list[DetectedObject], shape: tuple[int, int]) -> Int32[np.ndarray, "h w"]:

@@ -77,6 +77,6 @@ def _encoded(pixels: np.ndarray, kind: str, what: str, shape: str) -> bytes:
     try:
         Image.fromarray(pixels).save(buffer, kind)
     except (TypeError, ValueError, OSError, AttributeError) as error:
-        found = f"{getattr(pixels, 'dtype', type(pixels).__name__)} {getattr(pixels, 'shape', '')}".strip()
-        raise InputError(f"{what}: {found} is not a picture; give an array of {shape}, or a file") from error
+        text = f"{getattr(pixels, 'dtype', type(pixels).__name__)} {getattr(pixels, 'shape', '')}".strip()
+        raise InputError(f"{what}: {text} is not a picture; give an array of {shape}, or a file") from error
     return buffer.getvalue()

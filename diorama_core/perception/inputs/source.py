@@ -35,11 +35,11 @@ class Source:
 
     def beside(self, *patterns: str) -> tuple[Source, ...]:
         """Small files that lie beside it and whose names match one of the patterns, in the order of the patterns."""
-        found = [c for pattern in patterns for c in self.companions if Path(c.name).match(pattern)]
+        files = [c for pattern in patterns for c in self.companions if Path(c.name).match(pattern)]
         if self.path is not None:
             for pattern in patterns:
-                found += [s for p in sorted(self.path.parent.glob(pattern)) if (s := _small(p, self.path)) is not None]
-        return tuple(found)
+                files += [s for p in sorted(self.path.parent.glob(pattern)) if (s := _small(p, self.path)) is not None]
+        return tuple(files)
 
 
 @dataclass(frozen=True)

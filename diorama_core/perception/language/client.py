@@ -349,11 +349,11 @@ class LmmClient:
 
 def _validated(text: str, schema: type[T]) -> tuple[T | None, str]:
     """The value in a reply, or what is wrong with it, in words the model can act on."""
-    found = json_in(text)
-    if found is None:
+    document = json_in(text)
+    if document is None:
         return None, "it holds no JSON object"
     try:
-        return schema.model_validate(found), ""
+        return schema.model_validate(document), ""
     except ValidationError as error:
         first = error.errors(include_url=False)[0]
         return None, shortened(f"{'.'.join(map(str, first['loc'])) or 'the object'}: {first['msg'].lower()}")

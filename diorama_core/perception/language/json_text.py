@@ -15,11 +15,11 @@ def json_in(text: str) -> dict[str, Any] | None:
     """The object that a text is, holds between fences, or holds amid prose; None without any."""
     for candidate in (text, *_fenced(text)):
         try:
-            found = json.loads(candidate)
+            document = json.loads(candidate)
         except (ValueError, RecursionError):
             continue
-        if isinstance(found, dict):
-            return found
+        if isinstance(document, dict):
+            return document
     return _amid_prose(text)
 
 
@@ -39,9 +39,9 @@ def _amid_prose(text: str) -> dict[str, Any] | None:
         if position < 0:
             break
         try:
-            found, end = decoder.raw_decode(text, position)
+            document, end = decoder.raw_decode(text, position)
         except (ValueError, RecursionError):
             continue
-        if isinstance(found, dict) and (best is None or end - position > best[0]):
-            best = (end - position, found)
+        if isinstance(document, dict) and (best is None or end - position > best[0]):
+            best = (end - position, document)
     return None if best is None else best[1]

@@ -64,9 +64,9 @@ def _facing(replies: Sequence[GraphReply], objects: Mapping[int, str]) -> tuple[
 
 
 def _captions(replies: Sequence[GraphReply], objects: Mapping[int, str]) -> tuple[tuple[str, str], ...]:
-    found: dict[str, str] = {}
+    captions: dict[str, str] = {}
     for reply in replies:
         for entry in reply.objects:
             if entry.id in objects and entry.caption:
-                found.setdefault(objects[entry.id], entry.caption)
-    return tuple(found.items())
+                captions.setdefault(objects[entry.id], entry.caption)
+    return tuple(captions.items())

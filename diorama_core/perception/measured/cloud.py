@@ -48,7 +48,7 @@ def eroded(mask: Bool[np.ndarray, "h w"]) -> Bool[np.ndarray, "h w"]:
 
 
 def object_points(
-    found: DetectedObject,
+    detected: DetectedObject,
     points_world: Float[np.ndarray, "h w 3"],
     depth_m: Float[np.ndarray, "h w"],
     settings: MeasuredSettings = SETTINGS,
@@ -56,23 +56,23 @@ def object_points(
     """World points of an object, at least `MIN_POINTS` or none at all.
 
     Args:
-        found: Its mask; a mask from a box alone may hold background.
+        detected: Its mask; a mask from a box alone may hold background.
         points_world: Of every pixel.
         depth_m: Of every pixel, 0 where missing.
     """
-    rows, columns = np.nonzero(eroded(found.mask) & (depth_m > 0))
+    rows, columns = np.nonzero(eroded(detected.mask) & (depth_m > 0))
     if len(rows) < MIN_POINTS:
         return np.zeros((0, 3))
-    layer = main_layer(depth_m[rows, columns], _centrality(found, rows, columns), settings)
+    layer = main_layer(depth_m[rows, columns], _centrality(detected, rows, columns), settings)
     return largest_piece(points_world[rows[layer], columns[layer]], settings)
 
 
-def _centrality(found: DetectedObject, rows: np.ndarray, columns: np.ndarray) -> Float[np.ndarray, "n"]:
+def _centrality(detected: DetectedObject, rows: np.ndarray, columns: np.ndarray) -> Float[np.ndarray, "n"]:
     """Weights that trust a mask's middle more than its border; even for a mask known to be right."""
-    x1, y1, x2, y2 = found.box
+    x1, y1, x2, y2 = detected.box
     across = np.abs((columns + 0.5 - 0.5 * (x1 + x2)) / max(x2 - x1, 1.0))
     down = np.abs((rows + 0.5 - 0.5 * (y1 + y2)) / max(y2 - y1, 1.0))
-    return 1.0 - (1.0 - found.mask_confidence) * np.clip(2.0 * np.maximum(across, down), 0.0, 1.0)
+    return 1.0 - (1.0 - detected.mask_confidence) * np.clip(2.0 * np.maximum(across, down), 0.0, 1.0)
 
 
 def main_layer(

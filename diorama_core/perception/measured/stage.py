@@ -45,10 +45,10 @@ class MeasuredGeometry:
         extents: dict[str, TurnedExtent] = {}
         sureness: dict[str, float] = {}
         categories = {o.id: resolve(o.category).category for o in objects}
-        for index, found in enumerate(objects):
-            progress.report(0.1 + 0.8 * index / len(objects), f"Measuring the {found.label}")
-            extents[found.id], sureness[found.id] = measured_extent(
-                found, categories[found.id], world, depth, posed, self.settings
+        for index, detected in enumerate(objects):
+            progress.report(0.1 + 0.8 * index / len(objects), f"Measuring the {detected.label}")
+            extents[detected.id], sureness[detected.id] = measured_extent(
+                detected, categories[detected.id], world, depth, posed, self.settings
             )
         edges = supporters(extents, categories, self.settings)
         standing = grounded(extents, categories, edges, self.settings)
@@ -90,7 +90,7 @@ def floor_distance(depth_m: Float[np.ndarray, "h w"], camera: CameraEstimate) ->
 
 
 def measured_extent(
-    found: DetectedObject,
+    detected: DetectedObject,
     category: Category,
     points_world: Float[np.ndarray, "h w 3"],
     depth_m: Float[np.ndarray, "h w"],
@@ -100,23 +100,25 @@ def measured_extent(
     """The box of one object and how far it can be trusted.
 
     Args:
-        found: the object, with a mask of shape (h, w).
+        detected: the object, with a mask of shape (h, w).
         category: of the object.
         points_world: measured points of every pixel (m).
         depth_m: z in camera in metres; 0 where missing.
         camera: in the world.
         settings: how points are chosen, and what a guess is worth.
     """
-    points = object_points(found, points_world, depth_m, settings)
+    points = object_points(detected, points_world, depth_m, settings)
     flat = category.priors[0].height_m < 0.1
     above = points[points[:, 2] > 0.03] if not flat else points
     points = above if len(above) >= MIN_POINTS else points
     if len(points) < MIN_POINTS:
-        return _usual_extent(found, category, depth_m, camera), settings.guess_confidence
+        return _usual_extent(detected, category, depth_m, camera), settings.guess_confidence
     seen = observed_extent(points, category)
-    width = found.mask.shape[1]
-    cut_off = np.array([found.box[0] < 2, found.box[2] > width - 2, found.box[1] < 2])
-    behind = _ring_points(found.mask, points_world, depth_m, float(np.median(camera.to_camera(points)[:, 2])), settings)
+    width = detected.mask.shape[1]
+    cut_off = np.array([detected.box[0] < 2, detected.box[2] > width - 2, detected.box[1] < 2])
+    behind = _ring_points(
+        detected.mask, points_world, depth_m, float(np.median(camera.to_camera(points)[:, 2])), settings
+    )
     whole = completed(seen, category, camera.position, cut_off, behind, points)
     share_seen = float(np.prod(seen.size[:2]) / np.prod(whole.size[:2]))
     confidence = (0.4 + 0.5 * min(1.0, len(points) / settings.full_points)) * (0.6 + 0.4 * share_seen)
@@ -138,10 +140,10 @@ def _ring_points(
 
 
 def _usual_extent(
-    found: DetectedObject, category: Category, depth_m: Float[np.ndarray, "h w"], camera: Camera
+    detected: DetectedObject, category: Category, depth_m: Float[np.ndarray, "h w"], camera: Camera
 ) -> TurnedExtent:
     """A box of usual size where the depth has a hole: at the depth around the mask, else as far as its height tells."""
-    x1, y1, x2, y2 = found.box
+    x1, y1, x2, y2 = detected.box
     prior = category.priors[0]
     rows, columns = slice(int(y1), int(np.ceil(y2))), slice(int(x1), int(np.ceil(x2)))
     near = depth_m[rows, columns]

@@ -156,7 +156,7 @@ def _before(
     objects: tuple[DetectedObject, ...], boxes: Float[np.ndarray, "n 4"], settings: BoxObservationSettings
 ) -> Float[np.ndarray, "n n"]:
     """For objects i and j the share of j's mask in the strips left and right of i's lower end, the emptier side's."""
-    n, found = len(boxes), np.zeros((len(boxes), len(boxes)))
+    n, before = len(boxes), np.zeros((len(boxes), len(boxes)))
     for i in range(n):
         x1, y1, x2, y2 = boxes[i]
         wide = max(settings.strip * (x2 - x1), settings.min_box_px)
@@ -166,17 +166,17 @@ def _before(
         sides = [slice(max(round(x1 - wide), 0), round(x1)), slice(round(x2), round(x2 + wide))]
         for j in range(n):
             shares = [float(objects[j].mask[rows, side].mean()) for side in sides if objects[j].mask[rows, side].size]
-            found[i, j] = min(shares) if i != j and len(shares) == 2 else 0.0
-    return found
+            before[i, j] = min(shares) if i != j and len(shares) == 2 else 0.0
+    return before
 
 
 def _beside(
     objects: tuple[DetectedObject, ...], boxes: Float[np.ndarray, "n 4"], settings: BoxObservationSettings
 ) -> Float[np.ndarray, "n n 4"]:
     """For objects i and j and edges of i: the share of points just outside the edge that j's mask has."""
-    n, found = len(boxes), np.zeros((len(boxes), len(boxes), 4))
+    n, beside = len(boxes), np.zeros((len(boxes), len(boxes), 4))
     if not n:
-        return found
+        return beside
     height, width = objects[0].mask.shape
     steps = (np.arange(settings.along) + 0.5) / settings.along
     away = settings.outside_px * max(height, width) / 640
@@ -193,13 +193,13 @@ def _beside(
             columns, rows = u.astype(int).clip(0, width - 1), v.astype(int).clip(0, height - 1)
             for j in range(n):
                 if j != i:
-                    found[i, j, edge] = float(objects[j].mask[rows, columns].mean())
-    return found
+                    beside[i, j, edge] = float(objects[j].mask[rows, columns].mean())
+    return beside
 
 
 def _ends_seen(objects: tuple[DetectedObject, ...], settings: BoxObservationSettings) -> Float[np.ndarray, "n"]:
     """For every object the share of its mask's columns below which no other mask and no border is; 0 without a mask."""
-    found = np.zeros(len(objects))
+    ends = np.zeros(len(objects))
     for i, item in enumerate(objects):
         columns = np.flatnonzero(item.mask.any(axis=0))
         if not len(columns):
@@ -210,8 +210,8 @@ def _ends_seen(objects: tuple[DetectedObject, ...], settings: BoxObservationSett
         within = below < height
         rows = np.minimum(below, height - 1)
         others = [other.mask[rows, columns] for j, other in enumerate(objects) if j != i]
-        found[i] = float((within & ~np.any(others, axis=0)).mean()) if others else float(within.mean())
-    return found
+        ends[i] = float((within & ~np.any(others, axis=0)).mean()) if others else float(within.mean())
+    return ends
 
 
 def _proper(

@@ -129,14 +129,14 @@ def _votes(
 ) -> Float[np.ndarray, "13"]:
     """Sum over objects of how badly all their readings together fit at every height."""
     total = np.zeros(len(HEIGHTS_M))
-    found = _costs_at_heights(rows, observations, view, settings)
-    for index, cost in found.items():
+    costs = _costs_at_heights(rows, observations, view, settings)
+    for index, cost in costs.items():
         most = (
             settings.heights.max_doubtful_vote
             if observations.categories[index].name in _MAYBE_ELSEWHERE
             else settings.heights.max_vote
         )
-        total += np.minimum(cost, most) * _share_of_vote(index, found, observations, settings.heights)
+        total += np.minimum(cost, most) * _share_of_vote(index, costs, observations, settings.heights)
     return total
 
 
@@ -171,14 +171,14 @@ def _costs_at_heights(
         better = again_solved.cost < cost
         cost = np.where(better, again_solved.cost, cost)
         unknowns = np.where(better[:, None], again_solved.unknowns, unknowns)
-    found = {}
+    costs = {}
     slots = np.searchsorted(HEIGHTS_M, rows.camera_height_m - 1e-9)
     for index in np.unique(rows.item).astype(int):
         mine = rows.item == index
         best = np.full(len(HEIGHTS_M), -np.inf)
         np.logaddexp.at(best, slots[mine], -0.5 * cost[mine])
-        found[int(index)] = -2.0 * best
-    return found
+        costs[int(index)] = -2.0 * best
+    return costs
 
 
 def _from_neighbours(unknowns: Float[np.ndarray, "n 6"], step: int) -> Float[np.ndarray, "n 6"]:

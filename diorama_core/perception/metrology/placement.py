@@ -138,7 +138,7 @@ def _not_through_tops(
     settings: MetrologySettings,
 ) -> dict[int, Placement]:
     """Places on the floor, dearer where what may stand on others would be seen on the floor through their tops."""
-    found = dict(floor)
+    placements = dict(floor)
     for index, placement in floor.items():
         category = observations.categories[index]
         if category is not UNKNOWN and category.name not in PORTABLE:
@@ -152,10 +152,10 @@ def _not_through_tops(
         shares = [
             seen_through_top(box, placement.cuboid, c.cuboid, height_m, view, settings.observed) for c in carriers
         ]
-        found[index] = replace(
+        placements[index] = replace(
             placement, cost=placement.cost + settings.placement.through_top_cost * max(shares, default=0.0)
         )
-    return found
+    return placements
 
 
 def _has_top(observations: BoxObservations, index: int) -> bool:
@@ -220,7 +220,7 @@ def set_sizes(
     Of a member that is cut or hidden above or below nothing is taken of its height, nor of its sides' extents of one
     that is cut or hidden at a side; an extent that no member shows stays as open as it is.
     """
-    found: dict[int, SizeMode] = {}
+    modes: dict[int, SizeMode] = {}
     for name in sorted({observations.categories[i].name for i in placed} & SETS):
         members = [i for i in placed if observations.categories[i].name == name]
         whole = np.array([~(observations.hidden(i) | observations.truncated[i]) for i in members])
@@ -233,8 +233,8 @@ def set_sizes(
         for axes, seen in (([0, 1], across), ([2], upright)):
             if seen.any():
                 size[axes], sigma[axes] = np.median(sizes[seen][:, axes], axis=0), settings.set_sigma
-        found |= dict.fromkeys(members, plain_mode(size, sigma, 0.0, name))
-    return found
+        modes |= dict.fromkeys(members, plain_mode(size, sigma, 0.0, name))
+    return modes
 
 
 def _supported(
@@ -275,18 +275,18 @@ def _stacked(
     settings: MetrologySettings,
 ) -> dict[int, Placement]:
     """Places with small things on small things that lie on others, where that is cheaper: a cup on books."""
-    found, holding = dict(placed), {p.supporter for p in placed.values()}
+    placements, holding = dict(placed), {p.supporter for p in placed.values()}
     for index in np.argsort(-observations.box_px[:, 3], kind="stable").tolist():  # what is below first
         below = _small_carrier(observations, index, settings.placement)
-        if below is None or found[below].supporter < 0 or index in holding:
+        if below is None or placements[below].supporter < 0 or index in holding:
             continue
         rows = place_on(
-            observations, index, below, found[below].cuboid, height_m, settings.placement.stacked_cost, settings
+            observations, index, below, placements[below].cuboid, height_m, settings.placement.stacked_cost, settings
         )
         on_it = readings_of(solve_all(rows, view, settings), observations, view, settings)[index].placement(0, below)
-        if on_it.cost < found[index].cost:
-            found[index] = on_it
-    return found
+        if on_it.cost < placements[index].cost:
+            placements[index] = on_it
+    return placements
 
 
 def _small_carrier(observations: BoxObservations, index: int, settings: PlacementSettings) -> int | None:
@@ -355,14 +355,14 @@ def readings_of(
     masks = (observations.mask_reach, observations.corner_weight, observations.mask_exact)
     corners = corner_costs(solved.problems, boxes, view, *masks, names, settings=settings.observed)
     costs = solved.cost + corners + _averted_costs(solved.problems, boxes, observations, settings.placement)
-    found = {}
+    readings = {}
     for index in np.unique(solved.problems.item).astype(int):
         mine = np.flatnonzero(solved.problems.item == index)
         own = Cuboids(boxes.centre[mine], boxes.yaw_rad[mine], boxes.size_m[mine])
         retained = mine[distinct(own, costs[mine], settings.placement)]
         remaining_boxes = Cuboids(boxes.centre[retained], boxes.yaw_rad[retained], boxes.size_m[retained])
-        found[int(index)] = Readings(solved.problems.rows(retained), remaining_boxes, costs[retained])
-    return found
+        readings[int(index)] = Readings(solved.problems.rows(retained), remaining_boxes, costs[retained])
+    return readings
 
 
 def _averted_costs(

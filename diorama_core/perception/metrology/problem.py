@@ -207,7 +207,7 @@ def values(
     if inset_px is None:
         inset_px = _unfilled(boxes, corners, problems, view, settings)
     bounds, visible = visible_bounds(corners, view.intrinsics)
-    found = np.concatenate(
+    residuals = np.concatenate(
         [
             edge_residuals(bounds, visible, inset_px, problems, view, settings),
             _cut_off(corners, problems, view, settings),
@@ -220,7 +220,7 @@ def values(
         ],
         axis=1,
     )
-    return Values(found, inset_px, bounds, visible)
+    return Values(residuals, inset_px, bounds, visible)
 
 
 def _cut_off(

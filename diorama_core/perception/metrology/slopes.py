@@ -56,21 +56,21 @@ def jacobian(
     corners = corners_camera(boxes, problems.camera_height_m, view)
     frame = _Frame.of(boxes, problems, view)
     edges, told = _edges(corners, frame, here, problems, view, settings)
-    found = np.zeros((len(problems), here.residuals.shape[1], UNKNOWNS))
+    slopes = np.zeros((len(problems), here.residuals.shape[1], UNKNOWNS))
     plan = _on_the_plan(boxes, view)
-    found[:, EDGES] = edges
-    found[:, CUT] = _cut_off(corners, frame, problems, view, settings)
-    found[:, SIZES, 2:5] = problems.whitening
-    found[:, BASE, 5] = 1.0
-    found[:, TOP, 4] = boxes.size_m[:, 2] / problems.top_sigma_m
-    found[:, TOP, 5] = problems.base_sigma_m / problems.top_sigma_m
-    found[:, FOOTPRINT, :4] = _outside_footprint(boxes, plan, here.residuals[:, FOOTPRINT], problems, settings)
-    found[:, WALL, :3] = _off_wall(boxes, plan, here.residuals[:, WALL], problems, settings)
-    found[:, FAR, :2] = _too_far(boxes, plan, here.residuals[:, FAR], settings)
+    slopes[:, EDGES] = edges
+    slopes[:, CUT] = _cut_off(corners, frame, problems, view, settings)
+    slopes[:, SIZES, 2:5] = problems.whitening
+    slopes[:, BASE, 5] = 1.0
+    slopes[:, TOP, 4] = boxes.size_m[:, 2] / problems.top_sigma_m
+    slopes[:, TOP, 5] = problems.base_sigma_m / problems.top_sigma_m
+    slopes[:, FOOTPRINT, :4] = _outside_footprint(boxes, plan, here.residuals[:, FOOTPRINT], problems, settings)
+    slopes[:, WALL, :3] = _off_wall(boxes, plan, here.residuals[:, WALL], problems, settings)
+    slopes[:, FAR, :2] = _too_far(boxes, plan, here.residuals[:, FAR], settings)
     rest = np.flatnonzero(~told)
     if len(rest):
-        found[rest] = _by_differences(problems.rows(rest), unknowns[rest], here.rows(rest), view, settings)
-    return found
+        slopes[rest] = _by_differences(problems.rows(rest), unknowns[rest], here.rows(rest), view, settings)
+    return slopes
 
 
 @dataclass(frozen=True, eq=False)
@@ -111,11 +111,11 @@ class _Frame:
 
     def moved(self, unit: Float[np.ndarray, "3 p n"]) -> Float[np.ndarray, "6 3 p n"]:
         """Derivatives by every unknown of points of a unit box; the heights of boxes do not move their bases."""
-        found = np.empty((UNKNOWNS, 3, *unit.shape[1:]))
-        found[0], found[1], found[5] = self.aside[:, None], self.away[:, None], self.up[:, None]
-        found[2], found[3] = unit[0] * self.axes[0, :, None], unit[1] * self.axes[1, :, None]
-        found[4] = (unit[2] + 0.5) * self.axes[2, :, None]
-        return found
+        slopes = np.empty((UNKNOWNS, 3, *unit.shape[1:]))
+        slopes[0], slopes[1], slopes[5] = self.aside[:, None], self.away[:, None], self.up[:, None]
+        slopes[2], slopes[3] = unit[0] * self.axes[0, :, None], unit[1] * self.axes[1, :, None]
+        slopes[4] = (unit[2] + 0.5) * self.axes[2, :, None]
+        return slopes
 
 
 def _edges(
@@ -143,7 +143,7 @@ def _cut_off(
     x, y, z = np.ascontiguousarray(corners.transpose(2, 1, 0))
     near = z <= settings.cut_near_m
     depth = np.maximum(z, settings.cut_near_m)
-    found = np.zeros((len(corners), 2, UNKNOWNS))
+    slopes = np.zeros((len(corners), 2, UNKNOWNS))
     unit = box_corners((1.0, 1.0, 1.0)).T
     for axis, (across, f, c, size) in enumerate(((x, k.fx, k.cx, k.width), (y, k.fy, k.cy, k.height))):
         pixel = across / depth * f + c
@@ -157,8 +157,8 @@ def _cut_off(
         dx, dz = frame.rows(over).moved(unit[:, chosen])[:, [axis, 2], 0].transpose(1, 0, 2)
         at = [np.take_along_axis(v[:, over], chosen, axis=0)[0] for v in (across, depth, pixel, near)]
         slope = f * (dx - np.where(at[3], 0.0, at[0] / at[1] * dz)) / at[1] * np.where(at[2] < 0, -1.0, 1.0)
-        found[over, axis] = (slope / (extent[over, axis] + out[over]) / problems.cut_sigma[over]).T
-    return found
+        slopes[over, axis] = (slope / (extent[over, axis] + out[over]) / problems.cut_sigma[over]).T
+    return slopes
 
 
 def _on_the_plan(boxes: Cuboids, view: View) -> Float[np.ndarray, "n 2 2"]:
@@ -181,15 +181,15 @@ def _outside_footprint(
     turn = boxes.yaw_rad - yaw
     along, across = np.abs(np.cos(turn)), np.abs(np.sin(turn))
     off = boxes.centre[:, :2] - np.stack([x, y], axis=-1)
-    found = np.zeros((len(depth), 2, 4))
+    slopes = np.zeros((len(depth), 2, 4))
     for axis, (u, v, half, by_depth, by_width) in enumerate(
         ((c, s, half_depth, along * depth, across * width), (-s, c, half_width, across * depth, along * width))
     ):
         fits = half - 0.5 * (by_depth + by_width) > settings.min_room_m
         outward = np.sign(u * off[:, 0] + v * off[:, 1])
-        found[:, axis, :2] = outward[:, None] * (u[:, None] * plan[:, 0] + v[:, None] * plan[:, 1])
-        found[:, axis, 2:] = np.where(fits[:, None], 0.5 * np.stack([by_depth, by_width], axis=-1), 0.0)
-    return found * ((here > 0.0) / problems.footprint_sigma_m[:, None])[..., None]
+        slopes[:, axis, :2] = outward[:, None] * (u[:, None] * plan[:, 0] + v[:, None] * plan[:, 1])
+        slopes[:, axis, 2:] = np.where(fits[:, None], 0.5 * np.stack([by_depth, by_width], axis=-1), 0.0)
+    return slopes * ((here > 0.0) / problems.footprint_sigma_m[:, None])[..., None]
 
 
 def _off_wall(

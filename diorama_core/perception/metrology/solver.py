@@ -124,9 +124,9 @@ def _slopes(
     settings: CuboidFitSettings = SETTINGS.fit,
 ) -> _Slopes:
     """Gradients and normal matrices."""
-    found = jacobian(problems, unknowns, here, view, settings)
-    turned = found.transpose(0, 2, 1)
-    return _Slopes((turned @ here.residuals[..., None])[..., 0], turned @ found)
+    derivatives = jacobian(problems, unknowns, here, view, settings)
+    turned = derivatives.transpose(0, 2, 1)
+    return _Slopes((turned @ here.residuals[..., None])[..., 0], turned @ derivatives)
 
 
 def _step(

@@ -83,7 +83,7 @@ def supporters_of(
         settings: of placement.
     """
     box = observations.box_px[index]
-    found = []
+    supporters = []
     for other in candidates:
         theirs = observations.box_px[other]
         shared = min(box[2], theirs[2]) - max(box[0], theirs[0])
@@ -93,8 +93,8 @@ def supporters_of(
         reach = max(settings.above_share * (theirs[3] - theirs[1]), drawn)
         within = theirs[1] - reach < box[3] <= theirs[3] + 0.1 * settings.above_share * (theirs[3] - theirs[1])
         if other != index and shared >= settings.above_parent * (box[2] - box[0]) and within:
-            found.append(other)
-    return found
+            supporters.append(other)
+    return supporters
 
 
 def place_on(

@@ -59,8 +59,8 @@ def similarities(
     """
     inside = query[query_inside]
     flat = views.reshape(-1, views.shape[-1])
-    found = (inside @ flat.T).reshape(len(inside), *views.shape[:2]).transpose(1, 0, 2)
-    return np.where(view_inside[:, None], found, -1.0)
+    scores = (inside @ flat.T).reshape(len(inside), *views.shape[:2]).transpose(1, 0, 2)
+    return np.where(view_inside[:, None], scores, -1.0)
 
 
 def cyclic_matches(

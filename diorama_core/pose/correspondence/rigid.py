@@ -75,9 +75,9 @@ def from_matches(
     extent = float(np.linalg.norm(np.ptp(target, axis=0)))
     fitted = None
     for share in _THRESHOLDS:
-        found = ransac_umeyama(source, target, share * extent, seed=best)
-        if found is not None and (found.inliers.mean() >= _ENOUGH_INLIERS or share == _THRESHOLDS[-1]):
-            fitted = Rigid(found.R, found.t, found.scale, similarity)
+        fit = ransac_umeyama(source, target, share * extent, seed=best)
+        if fit is not None and (fit.inliers.mean() >= _ENOUGH_INLIERS or share == _THRESHOLDS[-1]):
+            fitted = Rigid(fit.R, fit.t, fit.scale, similarity)
             break
     predicted = None if scale_network is None else from_one_match(compared, best, scale_network)
     options = [pose for pose in (fitted, predicted) if pose is not None]

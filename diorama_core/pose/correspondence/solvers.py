@@ -107,7 +107,7 @@ class CorrespondencePose:
         ranked = {r.object_id: r.ranked for r in shapes if r.ranked}
         records = {s.id: s for s in self.library.shapes()}
         wanted = [o for o in objects if o.id in ranked]
-        found: dict[Kind, list[PosedCandidates]] = {kind: [] for kind in kinds}
+        posed: dict[Kind, list[PosedCandidates]] = {kind: [] for kind in kinds}
         for index, obj in enumerate(wanted):
             progress.report(index / len(wanted), f"Matching: {obj.label}")
             crop = crop_object(
@@ -117,8 +117,8 @@ class CorrespondencePose:
             compared = self.compare(crop, candidates)
             for kind in kinds:
                 poses = [(s, self._solve(kind, c)) for s, c in zip(candidates, compared, strict=False)]
-                found[kind].append(_candidates(obj, geometry.camera, [(s, p) for s, p in poses if p is not None]))
-        return {kind: tuple(f for f in of_kind if f.candidates) for kind, of_kind in found.items()}
+                posed[kind].append(_candidates(obj, geometry.camera, [(s, p) for s, p in poses if p is not None]))
+        return {kind: tuple(f for f in of_kind if f.candidates) for kind, of_kind in posed.items()}
 
     def compare(self, crop: PatchCrop, shapes: Sequence[Shape]) -> list[Compared]:
         """The picture against all views of all shapes, in their order; nothing where picture or depth are empty."""
@@ -128,7 +128,7 @@ class CorrespondencePose:
         query = self.features.encode(crop.view)[0]
         width = max(len(inside), query.shape[-1]) * query.shape[0] * len(self.grid)
         at_once = max(_MAX_NUMBERS // width, 1)
-        found: list[Compared] = []
+        compared: list[Compared] = []
         for start in range(0, len(shapes), at_once):
             encoded = [self._views(s) for s in shapes[start : start + at_once]]
             alike = similarities(
@@ -140,8 +140,8 @@ class CorrespondencePose:
             matches, similarity = cyclic_matches(alike, inside), template_scores(alike)
             for k, e in enumerate(encoded):
                 views = slice(k * len(self.grid), (k + 1) * len(self.grid))
-                found.append(Compared(crop, e.templates, matches.of_views(views), similarity[views]))
-        return found
+                compared.append(Compared(crop, e.templates, matches.of_views(views), similarity[views]))
+        return compared
 
     def _solve(self, kind: Kind, compared: Compared) -> Rigid | None:
         if kind == "correspondence":
@@ -169,10 +169,10 @@ def _candidates(obj: DetectedObject, camera: Camera, posed: list[tuple[Shape, Ri
         Candidate(
             shape.id,
             shape.size_m,
-            float(np.clip(found.similarity, 0.0, 1.0)),
-            Pose(R_world @ found.R, R_world @ found.t + position, np.full(3, found.scale)),
+            float(np.clip(fits.similarity, 0.0, 1.0)),
+            Pose(R_world @ fits.R, R_world @ fits.t + position, np.full(3, fits.scale)),
         )
-        for shape, found in ordered
+        for shape, fits in ordered
     )
     confidence = float(np.clip(ordered[0][1].similarity, 0.0, 1.0)) * obj.mask_confidence if ordered else 0.0
     return PosedCandidates(obj.id, candidates, confidence)

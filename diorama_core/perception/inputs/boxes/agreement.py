@@ -37,9 +37,9 @@ class EdgeMap:
 
     def _sides(self, box: Corners) -> list[float]:
         x1, y1, x2, y2 = np.array(box) * np.tile(self._scale, 2)
-        found = [self._strength(self._across, at, (y1, y2)) for at in (x1, x2)]
-        found += [self._strength(self._along, at, (x1, x2)) for at in (y1, y2)]
-        return [s for s in found if s is not None]
+        strengths = [self._strength(self._across, at, (y1, y2)) for at in (x1, x2)]
+        strengths += [self._strength(self._along, at, (x1, x2)) for at in (y1, y2)]
+        return [s for s in strengths if s is not None]
 
     def _strength(self, summed: Float[np.ndarray, "h w"], at: float, between: tuple[float, float]) -> float | None:
         """The strongest line near a side, over what such a line is anywhere; None at the picture's own side."""

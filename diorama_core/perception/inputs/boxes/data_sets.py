@@ -92,13 +92,13 @@ def rows_of_results(rows: Sequence[Mapping[str, Any]], text: BoxText) -> list[Ma
         return list(rows)
     digits = re.findall(r"\d+", Path(text.photo_name).stem)
     wanted = {Path(text.photo_name).stem, *digits, *(d.lstrip("0") for d in digits)}
-    found = [r for r in rows if str(r.get("image_id")) in wanted]
-    if not found:
+    matches = [r for r in rows if str(r.get("image_id")) in wanted]
+    if not matches:
         raise InputError(
             f"{text.source.name}: these COCO results are of {len(pictures)} pictures, and no image_id is that of "
             f"{shortened(text.photo_name, 60)}; keep the results of this photo"
         )
-    return found
+    return matches
 
 
 def _categories(document: Mapping[str, Any]) -> dict[int, str]:

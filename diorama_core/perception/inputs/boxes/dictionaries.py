@@ -80,8 +80,8 @@ def box_numbers(entry: Mapping[str, Any], where: str) -> tuple[Corners, Layout, 
             return extent, "corners", False
     for name in _NESTED:
         inner = keys.get(name)
-        if isinstance(inner, Mapping) and (found := box_numbers(inner, where)) is not None:
-            return found
+        if isinstance(inner, Mapping) and (inner_box := box_numbers(inner, where)) is not None:
+            return inner_box
         if isinstance(inner, list) and (extent := _extent(inner, where)) is not None:
             return extent, "corners", False
     return None
@@ -89,8 +89,8 @@ def box_numbers(entry: Mapping[str, Any], where: str) -> tuple[Corners, Layout, 
 
 def box_of(entry: Mapping[str, Any], where: str, layout: Layout | None = None) -> Corners | None:
     """The corners of an annotation's box, its four numbers read as `layout` says; None where there is none."""
-    found = box_numbers(entry, where)
-    return None if found is None else from_layout(found[0], layout or found[1])
+    numbers = box_numbers(entry, where)
+    return None if numbers is None else from_layout(numbers[0], layout or numbers[1])
 
 
 def word_of(entry: Mapping[str, Any], names: Mapping[int, str] | None = None) -> str:
@@ -108,10 +108,10 @@ def word_of(entry: Mapping[str, Any], names: Mapping[int, str] | None = None) ->
     for key in ("regionattributes", "attributes", "value"):
         inner = keys.get(key)
         if isinstance(inner, Mapping):
-            found = word_of(inner, names)
+            inner_word = word_of(inner, names)
             words = [w for v in inner.values() if (w := _word(v)) is not None]
-            if found != UNNAMED or (key == "regionattributes" and words):
-                return found if found != UNNAMED else words[0]
+            if inner_word != UNNAMED or (key == "regionattributes" and words):
+                return inner_word if inner_word != UNNAMED else words[0]
     number = next((keys[k] for k in ("categoryid", "classid", "class", "label", "labelid") if k in keys), None)
     return (names or {}).get(number, UNNAMED) if isinstance(number, int) else UNNAMED
 

@@ -78,13 +78,13 @@ def picture_of(pictures: Sequence[T], names: Sequence[object], text: BoxText, wh
     Raises:
         InputError: none of several is called like the photo, or more than one.
     """
-    found = [p for p, name in zip(pictures, names, strict=True) if len(pictures) == 1 or is_of(name, text.photo_name)]
-    if len(found) != 1:
+    matches = [p for p, name in zip(pictures, names, strict=True) if len(pictures) == 1 or is_of(name, text.photo_name)]
+    if len(matches) != 1:
         raise InputError(
             f"{text.source.name}: this {what} is of {len(pictures)} pictures, none of them called "
             f"{shortened(text.photo_name, 60)}; keep the annotations of this photo"
         )
-    return found[0]
+    return matches[0]
 
 
 def _plain(name: str) -> str:

@@ -156,10 +156,10 @@ def _table(text: BoxText) -> list[dict[str, str]]:
 def _table_box(row: dict[str, str]) -> tuple[list[float], Layout] | None:
     values = _values_in(row)
     try:
-        found = box_numbers(values, "")
+        box = box_numbers(values, "")
     except Exception:  # a cell holds no number; the reader says which
         return None
-    return None if found is None else (list(found[0]), found[1])
+    return None if box is None else (list(box[0]), box[1])
 
 
 def _values_in(row: dict[str, str]) -> dict[str, Any]:
@@ -194,12 +194,12 @@ def _class_names(source: Source) -> dict[int, str]:
 
 
 def _yaml_names(content: str) -> dict[int, str]:
-    found = _YAML_NAMES.search(content)
-    if found is None:
+    match = _YAML_NAMES.search(content)
+    if match is None:
         return {}
-    if found["flow"] is not None:
-        return dict(enumerate(v.strip(" \n\"'") for v in found["flow"].split(",")))
-    rows = found["map"].split(",") if found["map"] is not None else found["block"].splitlines()
+    if match["flow"] is not None:
+        return dict(enumerate(v.strip(" \n\"'") for v in match["flow"].split(",")))
+    rows = match["map"].split(",") if match["map"] is not None else match["block"].splitlines()
     names = {}
     for index, row in enumerate(rows):
         numbered = re.match(r"\s*(\d+)\s*:\s*(.*)", row)

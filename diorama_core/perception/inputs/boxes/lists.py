@@ -90,7 +90,7 @@ def read_entries(
     Raises:
         InputError: an entry has no box, or none of four finite numbers.
     """
-    found, ambiguous = [], True
+    boxes, ambiguous = [], True
     rows = [r for r in rows if has_box(r) or word_of(r).lower() != "background"]  # Grounded-SAM lists it as well
     for index, row in enumerate(rows):
         box = box_numbers(row, f"{name}: entry {index}")
@@ -103,10 +103,10 @@ def read_entries(
         ambiguous = ambiguous and open_ and layout is None
         turned = isinstance(keys_of(row).get("box2d"), list)
         values = (values[1], values[0], values[3], values[2]) if turned else values
-        found.append(BoxEntry(from_layout(values, layout or own), word_of(row, names), score_of(row)))
+        boxes.append(BoxEntry(from_layout(values, layout or own), word_of(row, names), score_of(row)))
         unit = "thousandths" if turned else unit
-    words, notes = _words(rows, found)
-    entries = tuple(BoxEntry(e.corners, w, e.score) for e, w in zip(found, words, strict=True))
+    words, notes = _words(rows, boxes)
+    entries = tuple(BoxEntry(e.corners, w, e.score) for e, w in zip(boxes, words, strict=True))
     return BoxFile(entries, size, unit or "pixels", ambiguous, notes)
 
 
@@ -185,10 +185,10 @@ def read_wrapped(text: BoxText) -> BoxFile:
     pictures = pictures_in(document)
     if pictures:
         document = picture_of(pictures, [picture_name(p) for p in pictures], text, "file")
-    found = list(lists_in(document))
-    if not found:
+    lists = list(lists_in(document))
+    if not lists:
         return BoxFile(())
-    rows, holder = max(found, key=lambda pair: len(pair[0]))
+    rows, holder = max(lists, key=lambda pair: len(pair[0]))
     layout = _layout(keys_of(holder)) or _layout(keys_of(document))
     first = keys_of(rows[0])
     if layout is None and {"x", "y", "width", "height", "class", "confidence"} <= first.keys():
@@ -229,9 +229,9 @@ def _keyed(document: object) -> list[dict[str, Any]]:
     return rows
 
 
-def _words(rows: Sequence[Mapping[str, Any]], found: Sequence[BoxEntry]) -> tuple[list[str], tuple[str, ...]]:
+def _words(rows: Sequence[Mapping[str, Any]], entries: Sequence[BoxEntry]) -> tuple[list[str], tuple[str, ...]]:
     """The names of the boxes, and a note where they have none."""
-    words = [e.word for e in found]
+    words = [e.word for e in entries]
     if any(w != UNNAMED for w in words) or not rows or any("class" in r for r in rows):
         return words, ()
     unused = unused_words(rows)
@@ -249,8 +249,8 @@ def _words(rows: Sequence[Mapping[str, Any]], found: Sequence[BoxEntry]) -> tupl
 def _layout(keys: Mapping[str, Any]) -> Layout | None:
     for key in ("format", "bboxformat", "boxformat", "bboxmode", "bboxtype", "mode"):
         value = keys.get(key)
-        if isinstance(value, str) and (found := _FORMATS.get(value.lower().replace("_", "").replace(" ", ""))):
-            return found
+        if isinstance(value, str) and (layout := _FORMATS.get(value.lower().replace("_", "").replace(" ", ""))):
+            return layout
     return None
 
 

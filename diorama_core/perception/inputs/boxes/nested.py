@@ -74,7 +74,7 @@ def pictures_in(value: object, level: int = 0) -> list[dict[str, Any]]:
         named = inside and all(word_of(b) != UNNAMED or has_class_number(b) for boxes in inside for b in boxes)
         return rows if named else []
     inner = value.values() if isinstance(value, dict) else rows
-    return next((found for v in inner if (found := pictures_in(v, level + 1))), [])
+    return next((pictures for v in inner if (pictures := pictures_in(v, level + 1))), [])
 
 
 def rows_of_photo(rows: Sequence[Mapping[str, Any]], text: BoxText) -> list[Mapping[str, Any]]:
@@ -144,11 +144,11 @@ def lists_in(value: Any, level: int = 0) -> Iterator[tuple[list[dict[str, Any]],
 
 def _instances(kinds: Sequence[Mapping[str, Any]]) -> list[dict[str, Any]]:
     """Boxes that have no name of their own, in lists under the kind that each of them is of."""
-    found = []
+    instances = []
     for kind in kinds:
         lists = [objects_of(v) for v in kind.values()]
         rows = next((rows for rows in lists if rows and all(has_box(r) for r in rows)), [])
         if any(word_of(r) != UNNAMED or has_class_number(r) for r in rows):
             return []
-        found += [{**row, "class": word_of(kind)} for row in rows]
-    return found
+        instances += [{**row, "class": word_of(kind)} for row in rows]
+    return instances

@@ -57,9 +57,9 @@ def read_boxes(source: Source, photo: DecodedPhoto) -> tuple[tuple[LabelledBox, 
 
 def understood(word: str) -> tuple[str, str, str]:
     """Category, label and a note for the user, of a word that was given as a class."""
-    found = understand_label(word)
-    label = UNKNOWN.name if found.exact and found.category is UNKNOWN else word
-    return found.category.name, label, found.note
+    resolution = understand_label(word)
+    label = UNKNOWN.name if resolution.exact and resolution.category is UNKNOWN else word
+    return resolution.category.name, label, resolution.note
 
 
 def _file(source: Source, photo: DecodedPhoto) -> BoxFile:

@@ -133,9 +133,9 @@ def _studio_results(value: object, level: int = 0) -> Iterator[dict[str, Any]]:
             return
         # Corrected annotations come before the predictions that they were made from.
         for key in ("annotations", "completions", "result", "label", "bbox", "predictions"):
-            found = list(_studio_results(value.get(key), level + 1))
-            yield from found
-            if found:
+            results = list(_studio_results(value.get(key), level + 1))
+            yield from results
+            if results:
                 return
 
 
@@ -143,9 +143,11 @@ def _via_pictures(document: object) -> list[dict[str, Any]]:
     if not isinstance(document, dict):
         return []
     pictures = document.get("_via_img_metadata", document)
-    found = list(pictures.values()) if isinstance(pictures, dict) else []
-    is_via_file = found and all(isinstance(p, dict) and isinstance(p.get("regions"), list | dict) for p in found)
-    return found if is_via_file else []
+    pictures_listed = list(pictures.values()) if isinstance(pictures, dict) else []
+    is_via_file = pictures_listed and all(
+        isinstance(p, dict) and isinstance(p.get("regions"), list | dict) for p in pictures_listed
+    )
+    return pictures_listed if is_via_file else []
 
 
 def _of_others(text: BoxText, count: int) -> str:

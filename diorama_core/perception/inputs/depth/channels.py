@@ -27,9 +27,9 @@ def one_channel(array: Shaped[np.ndarray, "..."], name: str) -> tuple[Shaped[np.
     if squeezed.ndim == 3 and squeezed.shape[0] in (3, 4) and squeezed.shape[2] > 4:
         squeezed = np.moveaxis(squeezed, 0, -1)
     if squeezed.ndim == 3 and squeezed.shape[2] in (3, 4) and min(squeezed.shape[:2]) > 4:
-        found = _depth_of_points(squeezed[..., :3].astype(np.float64))
-        if found is not None:
-            values, words = found
+        depth = _depth_of_points(squeezed[..., :3].astype(np.float64))
+        if depth is not None:
+            values, words = depth
             return values.astype(np.float32), (f"the depth is a point map; its {words} is used",)
         if (squeezed[..., :3] == squeezed[..., :1]).all():
             return squeezed[..., 0], ()

@@ -56,10 +56,10 @@ def _beside(source: Source) -> tuple[Source, ...]:
     named = [f"{stem}{joint}conf*.*" for joint in "_.-"]
     if "depth" in stem.lower():
         named += [f"{part}.*" for word in ("confidence", "conf") if (part := _replaced(stem, word)) != stem]
-    found = source.beside(*named)
-    if not found and source.path is not None and source.path.parent.name.lower().startswith("depth"):
-        found = Source(b"", "", source.path.parent).beside(f"confidence/{name}", f"confidence_map/{name}")
-    return found
+    files = source.beside(*named)
+    if not files and source.path is not None and source.path.parent.name.lower().startswith("depth"):
+        files = Source(b"", "", source.path.parent).beside(f"confidence/{name}", f"confidence_map/{name}")
+    return files
 
 
 def _replaced(stem: str, word: str) -> str:

@@ -95,13 +95,13 @@ def read_picture(content: DepthContent) -> RawDepth:
         raise InputError(f"{source.name}: JPEG blurs depth; save it as 16-bit PNG in millimetres or .npy in metres")
     array, packed = np.asarray(picture), tuple[str, ...]()
     if picture.mode in ("RGB", "RGBA"):
-        found = depth_of_colours(_sixteen_bits(source.data) if _has_sixteen_bits(source.data) else array[..., :3])
-        if found is None:
+        depth = depth_of_colours(_sixteen_bits(source.data) if _has_sixteen_bits(source.data) else array[..., :3])
+        if depth is None:
             raise InputError(
                 f"{source.name}: depth needs one channel of 16 bits, this has colours for the eye; "
                 "save it as 16-bit PNG in millimetres or .npy in metres"
             )
-        array, packed = found
+        array, packed = depth
     elif picture.mode == "LA":
         array = array[..., 0]
     elif picture.mode not in ("I;16", "I;16B", "I;16L", "I", "F", "L"):
@@ -132,14 +132,14 @@ def is_dump(content: DepthContent) -> bool:
 
 def read_dump(content: DepthContent) -> RawDepth:
     """Numbers without a header: of the readings that fit the length, the most usual whose neighbours are alike."""
-    found = []
+    arrays = []
     for kind, size in _DUMPS:
         shape = _shape_of(len(content.source.data), size, content.photo_size)
         if shape is not None:
             values = np.frombuffer(content.source.data, np.dtype(kind)).reshape(shape)
-            found.append((_roughness(values), kind, values))
-    smoothest = min(f[0] for f in found)
-    _, kind, values = next(f for f in found if f[0] <= 2.0 * smoothest)
+            arrays.append((_roughness(values), kind, values))
+    smoothest = min(f[0] for f in arrays)
+    _, kind, values = next(f for f in arrays if f[0] <= 2.0 * smoothest)
     native = values.astype(np.dtype(kind).newbyteorder("="))
     words = {"<u2": "16-bit numbers", ">u2": "16-bit numbers", "<f4": "32-bit floats", "<f2": "16-bit floats"}[kind]
     note = f"the depth is a bare dump, read as {values.shape[1]} x {values.shape[0]} {words}"

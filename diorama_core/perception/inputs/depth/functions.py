@@ -28,10 +28,10 @@ class DepthFunction:
         """The numbers of inverse depth; infinite where no number stands for it."""
         positive = np.where(inverse > 0, inverse, 1.0)
         if self.rate is not None:
-            found = -np.log(positive) / self.rate
+            numbers = -np.log(positive) / self.rate
         else:
-            found = positive ** (-1.0 / self.power) - self.offset
-        return np.where(inverse > 0, found, np.inf)
+            numbers = positive ** (-1.0 / self.power) - self.offset
+        return np.where(inverse > 0, numbers, np.inf)
 
     def of_larger(self, factor: float) -> DepthFunction:
         """The function of numbers that are so many times as large."""

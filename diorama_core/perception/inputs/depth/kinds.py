@@ -104,13 +104,13 @@ def near_and_far(
     lower, middle = (
         _median(values, valid, np.s_[int(a * height) : int(b * height)]) for a, b in ((0.85, 1.0), (0.4, 0.6))
     )
-    found = []
+    medians = []
     if lower is not None and middle is not None:
-        found.append(float(np.clip(2.0 * (middle - lower) / spread, -1.0, 1.0)))
+        medians.append(float(np.clip(2.0 * (middle - lower) / spread, -1.0, 1.0)))
     votes = [v for box in boxes if (v := _before_background(values, valid, box, spread)) is not None]
     if votes:
-        found.append(float(np.mean(votes)))
-    return float(np.mean(found)) if found else 0.0
+        medians.append(float(np.mean(votes)))
+    return float(np.mean(medians)) if medians else 0.0
 
 
 def on_axis(sample: SampledDepth, focal: float) -> SampledDepth:
@@ -198,5 +198,5 @@ def _before_background(values: np.ndarray, valid: np.ndarray, box: LabelledBox, 
 
 
 def _median(values: np.ndarray, valid: np.ndarray, part: tuple[slice, ...] | slice) -> float | None:
-    found = values[part][valid[part]]
-    return float(np.median(found)) if found.size >= 9 else None
+    values_of_part = values[part][valid[part]]
+    return float(np.median(values_of_part)) if values_of_part.size >= 9 else None

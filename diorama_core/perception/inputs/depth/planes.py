@@ -95,7 +95,7 @@ def planes_of(sample: SampledDepth, function: DepthFunction = DEPTH, trials: int
     basis = np.stack([sample.x, sample.y, np.ones_like(sample.x)], axis=1)
     numbers = _Numbers(basis, sample.values, sample.spread, function)
     left = np.ones(len(basis), bool)
-    found, shares, explained = [], [], np.zeros(len(TOLERANCES))
+    fits, shares, explained = [], [], np.zeros(len(TOLERANCES))
     for _ in range(MAX_PLANES):
         if left.sum() < max(30, MIN_NEW_SHARE * len(left)):
             break
@@ -107,10 +107,10 @@ def planes_of(sample: SampledDepth, function: DepthFunction = DEPTH, trials: int
         if hits.mean() < MIN_NEW_SHARE:
             break
         explained += hits
-        found.append(plane)
+        fits.append(plane)
         shares.append(float((off[left] < TOLERANCES[-1]).sum() / len(left)))
         left &= off >= TOLERANCES[-1]
-    planes = np.array(found).reshape(-1, 3)
+    planes = np.array(fits).reshape(-1, 3)
     return PlaneFit(float(explained.mean()), planes, np.array(shares))
 
 
@@ -130,8 +130,8 @@ class _Numbers:
 
     def off(self, planes: Float[np.ndarray, "*k 3"], some: np.ndarray | slice = _ALL) -> Float[np.ndarray, "*k m"]:
         """Residuals of some numbers under planes, in shares of the spread: of all readings in the numbers' own unit."""
-        found = self.function.numbers(planes @ self.basis[some].T)
-        return np.abs(found - self.values[some]) / self.spread
+        numbers = self.function.numbers(planes @ self.basis[some].T)
+        return np.abs(numbers - self.values[some]) / self.spread
 
 
 def _best_plane(

@@ -43,8 +43,8 @@ def read_folder_of_masks(folder: Folder) -> MaskMap:
         raise InputError(f"{folder.name}: {shown} is not white on black; give one PNG for each object, white on black")
     if len(masks) > 1 and all(_is_around(mask) for mask in masks):
         masks, notes = [~mask for mask in masks], (*notes, f"{folder.name}: the masks are black on white")
-    found = painted(masks, folder.name, "masks")
-    return MaskMap(found.values, (*found.notes, *notes))
+    painted_map = painted(masks, folder.name, "masks")
+    return MaskMap(painted_map.values, (*painted_map.notes, *notes))
 
 
 def _is_around(mask: Bool[np.ndarray, "h w"]) -> bool:

@@ -43,8 +43,8 @@ def read_masks(
     content = MaskContent(source, photo.photo.name, photo.frame.full_size)
     form = form_of(MASK_FORMS, content)
     assert form is not None  # the last form takes any file
-    found = form.read(content)
-    values, laid = photo.frame.laid_over(source.name, "mask", found.values)
+    mask_map = form.read(content)
+    values, laid = photo.frame.laid_over(source.name, "mask", mask_map.values)
     size = (photo.photo.width, photo.photo.height)
     if (values.shape[1], values.shape[0]) != size:
         values = _resized(values, size)
@@ -53,7 +53,7 @@ def read_masks(
     instances, split = split_by_boxes(instances, boxes)
     notes = (*around, *([f"{dropped} specks of the masks were dropped"] if dropped else []), *split)
     instances.setflags(write=False)
-    return instances, match_instances(instances, boxes), (*found.notes, *laid, *notes)
+    return instances, match_instances(instances, boxes), (*mask_map.notes, *laid, *notes)
 
 
 def with_hard_edges(values: Int32[np.ndarray, "h w"]) -> Int32[np.ndarray, "h w"]:

@@ -57,8 +57,8 @@ def check_perspective(name: str, picture: Image.Image, exif: Mapping[int, Any], 
 def _stated_projection(picture: Image.Image) -> str | None:
     """The projection that the header names (GPano), in lower case."""
     xmp = picture.info.get("xmp", b"")
-    found = _PROJECTION.search(xmp.encode() if isinstance(xmp, str) else bytes(xmp))
-    return found.group(1).decode().lower() if found else None
+    match = _PROJECTION.search(xmp.encode() if isinstance(xmp, str) else bytes(xmp))
+    return match.group(1).decode().lower() if match else None
 
 
 def _is_sphere(picture: Image.Image) -> bool:

@@ -70,17 +70,17 @@ def largest_picture(source: Source, kind: str) -> tuple[Source, int, tuple[str, 
     Raises:
         InputError: when it holds none that can be read.
     """
-    found = max(_pictures(source.data), key=lambda p: p[0][0] * p[0][1], default=None)
-    if found is None or max(found[0]) < SMALL_SIDE_PX:
+    largest = max(_pictures(source.data), key=lambda p: p[0][0] * p[0][1], default=None)
+    if largest is None or max(largest[0]) < SMALL_SIDE_PX:
         developed = _developed(source)
         if developed is not None:
             return developed, 1, (f"{source.name} is a camera's raw file ({kind}); it was developed",)
-    if found is None:
+    if largest is None:
         raise InputError(
             f"{source.name}: this is a camera's raw file ({kind}) without a readable picture; "
             "export it as JPEG, or install rawpy"
         )
-    (width, height), content = found
+    (width, height), content = largest
     note = f"{source.name} is a camera's raw file ({kind}); its largest picture ({width} x {height}) is used"
     orientation = next((d.get(_ORIENTATION, (1,))[0] for _, d in _directories(source.data)), 1)
     return Source(content, source.name, source.path, source.companions), int(orientation), (note,)
