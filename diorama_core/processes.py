@@ -127,15 +127,15 @@ def each_there(
     results: list[Any] = [None] * len(arguments)
     waiting = deque(range(len(arguments)))
 
-    def draw(call: Callable[..., Result], told: Progress | None) -> None:
+    def draw(call: Callable[..., Result], progress: Progress | None) -> None:
         while waiting:
             try:
                 k = waiting.popleft()
             except IndexError:  # another thread drew the last one
                 return
             results[k] = call(function, *arguments[k])
-            if told is not None:
-                told.report(1.0 - len(waiting) / len(arguments), message)
+            if progress is not None:
+                progress.report(1.0 - len(waiting) / len(arguments), message)
 
     others = max(min(_KEPT.count, len(arguments) - 1), 0)
     with ThreadPoolExecutor(max(others, 1)) as threads:

@@ -60,7 +60,7 @@ class Arrangements:
         offers = {}
         for (_category, best), members in sets.items():
             known = {c.shape_id: c for m in reversed(members) for c in reversed(m.candidates)}
-            shapes = plausible_shapes(members, own=best)
+            shapes = plausible_shapes(members, chosen_id=best)
             for item in members:
                 own = {c.shape_id: c for c in reversed(item.candidates)}
                 if not item.locked:

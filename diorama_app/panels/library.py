@@ -149,7 +149,7 @@ class LibraryPanel:
             self._filters,
             favourites=preferences.favourites,
             recent=preferences.recent,
-            own=frozenset(s.id for s in library.uploads()).__contains__
+            is_own=frozenset(s.id for s in library.uploads()).__contains__
             if isinstance(library, UserLibrary)
             else lambda shape_id: False,
             has_place=self._has_place,

@@ -168,13 +168,13 @@ def save(reconstruction: Reconstruction, folder: Path | str) -> None:
     from diorama_core.project.build import save_built
     from diorama_core.project.storage import Project
 
-    project, own = Project.create(Path(folder)), reconstruction.project
-    if own is not None and own.folder.resolve() == project.folder.resolve():
+    project, source = Project.create(Path(folder)), reconstruction.project
+    if source is not None and source.folder.resolve() == project.folder.resolve():
         project.save_scene(reconstruction.scene)
         return
     inputs, built = reconstruction.inputs, reconstruction.built
-    if own is not None:
-        project.take_shapes(own)
+    if source is not None:
+        project.take_shapes(source)
     elif reconstruction.library_name is not None:
         project.update_info(library=reconstruction.library_name)
     if inputs is not None:

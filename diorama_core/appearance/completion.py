@@ -102,14 +102,14 @@ def mirrored(
     """What is hidden filled in from mirror images of the picture that it is alike."""
     smooth = None
     for mirror in MIRRORS:
-        other, there = mirror(colours), mirror(seen)
-        both = seen & there
-        if not (there & ~seen).any() or both.mean() < settings.min_overlap:
+        other, is_seen = mirror(colours), mirror(seen)
+        both = seen & is_seen
+        if not (is_seen & ~seen).any() or both.mean() < settings.min_overlap:
             continue
         smooth = _smoothed(colours) if smooth is None else smooth
         if not _alike(smooth[both], mirror(smooth)[both], settings):
             continue
-        gained = there & ~seen
+        gained = is_seen & ~seen
         share = cv2.GaussianBlur(cv2.erode(seen.astype(np.float32), np.ones((3, 3))), (0, 0), 1.5)[..., None]
         blended = np.where(seen[..., None], colours, other)
         colours = np.where(both[..., None], share * colours + (1 - share) * other, blended).astype(np.float32)

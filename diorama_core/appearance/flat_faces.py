@@ -191,7 +191,7 @@ def _share_in_mask(
 def box_alignment(
     projected: Float[np.ndarray, "4"],
     detected: tuple[float, float, float, float],
-    told: tuple[bool, bool, bool, bool] = (True, True, True, True),
+    cut_sides: tuple[bool, bool, bool, bool] = (True, True, True, True),
     settings: FlatFaceSettings = SETTINGS,
 ) -> Float[np.ndarray, "3 3"]:
     """How pixels move and scale as an object's projected box is to become its box in the photo, as a homography.
@@ -201,10 +201,10 @@ def box_alignment(
     Args:
         projected: The whole object's box as it is posed.
         detected: Its box in the photo.
-        told: Which of its left, upper, right and lower side end the object itself (`sides_told`).
+        cut_sides: Which of its left, upper, right and lower side end the object itself (`sides_told`).
         settings: Numbers to work with.
     """
-    box = np.where(told, detected, projected)
+    box = np.where(cut_sides, detected, projected)
     A = np.eye(3)
     if float(box_iou(projected, box)) < settings.min_box_iou:
         return A

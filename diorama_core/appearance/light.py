@@ -66,14 +66,16 @@ def estimated_light(
         to_window: Unit vector from what stands in the room to where daylight comes in.
         settings: Numbers to work with.
     """
-    told = [(s, 1.0) for s in shades if len(s.luminance) >= 2] + ([] if walls is None else [(walls, settings.of_walls)])
+    observations = [(s, 1.0) for s in shades if len(s.luminance) >= 2] + (
+        [] if walls is None else [(walls, settings.of_walls)]
+    )
     usual = USUAL if to_window is None else USUAL + settings.from_window * np.array([*to_window[:2], 0.0])
-    if sum(len(s.luminance) for s, _ in told) < settings.min_samples and walls is None and to_window is None:
+    if sum(len(s.luminance) for s, _ in observations) < settings.min_samples and walls is None and to_window is None:
         return RoomLight()
 
     def residuals(b: Float[np.ndarray, "3"]) -> Float[np.ndarray, "m"]:
         out = [(b - usual) / (settings.level_sigma, settings.level_sigma, settings.upright_sigma)]
-        for shade, factor in told:
+        for shade, factor in observations:
             light = np.maximum(1.0 + shade.normals_world @ b, 1.0 - settings.max_length)
             albedo = np.log(shade.luminance / light)
             off = albedo - np.average(albedo, weights=shade.weight)

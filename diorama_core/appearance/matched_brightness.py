@@ -76,22 +76,23 @@ def brightened(
     shared = _shared_gains(materials, gains, sets)
     made: dict[str, tuple[PhotoMaterial, ...]] = {}
     textures: dict[str, UInt8[np.ndarray, "_ _ 3"]] = {}
-    for object_id, own in materials.items():
+    for object_id, object_materials in materials.items():
         gain = shared[object_id]
         names: dict[str | None, str] = {}
-        for name in sorted({m.texture for m in own if m.texture is not None and m.texture in pictures}):
+        for name in sorted({m.texture for m in object_materials if m.texture is not None and m.texture in pictures}):
             lit = _lit(pictures[name], gain)
             names[name] = _name_of(name, lit)
             textures[names[name]] = lit
         made[object_id] = tuple(
-            replace(m, colour=_brighter(m.colour, gain), texture=names.get(m.texture, m.texture)) for m in own
+            replace(m, colour=_brighter(m.colour, gain), texture=names.get(m.texture, m.texture))
+            for m in object_materials
         )
     return made, textures
 
 
 def _shared_gains(materials: Materials, gains: Mapping[str, float], sets: Sequence[Sequence[str]]) -> dict[str, float]:
     """One gain for every object that no material of it makes brighter than surfaces are, the same for a set."""
-    room = {i: min((_headroom(m) for m in own), default=1.0) for i, own in materials.items()}
+    room = {i: min((_headroom(m) for m in object_materials), default=1.0) for i, object_materials in materials.items()}
     shared = {i: min(gains.get(i, 1.0), room[i]) for i in materials}
     for members in sets:
         logs = [np.log(gains[i]) for i in members if i in gains]

@@ -157,8 +157,8 @@ def _read_from(
         return _inner(detected, settings) & ~hiding(detected, objects, settings=settings)
     view, pixels = seen.view, np.zeros(detected.mask.shape, dtype=bool)
     near = np.kron(np.logical_or.reduce([p.near for p in seen.pixels]), np.ones((view.step, view.step), dtype=bool))
-    own = pixels[view.top : view.top + len(near), view.left : view.left + near.shape[1]]
-    own[:] = near[: own.shape[0], : own.shape[1]]
+    labels_near = pixels[view.top : view.top + len(near), view.left : view.left + near.shape[1]]
+    labels_near[:] = near[: labels_near.shape[0], : labels_near.shape[1]]
     return pixels
 
 
@@ -204,11 +204,11 @@ def _seen(
     behind = _in_box(detected) & ~detected.mask & ~hiding(detected, objects, smaller_only=True, settings=settings)
     pixels = () if view is None else slot_pixels(view, slots, rgb, visible, unhidden, behind, taken)
     read = (p for p in pixels if p.slot.name not in taken)
-    own = tuple(p for p in read if view is not None and not _shines(item, p, view, rgb))
+    whole = tuple(p for p in read if view is not None and not _shines(item, p, view, rgb))
     if view is not None and not pixels and not faces and item.category not in LAMPS:
-        own = whole_pixels(view, slots, visible)
-    weaves = {p.slot.name: _weave(parts, p.slot) for p in own}
-    return _Seen(item, faces, view, own, {name: weave for name, weave in weaves.items() if weave is not None})
+        whole = whole_pixels(view, slots, visible)
+    weaves = {p.slot.name: _weave(parts, p.slot) for p in whole}
+    return _Seen(item, faces, view, whole, {name: weave for name, weave in weaves.items() if weave is not None})
 
 
 def _weave(parts: trimesh.Scene, slot: Slot) -> Picture | None:

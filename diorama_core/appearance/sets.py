@@ -61,7 +61,9 @@ def shared_materials(
     shared = dict(materials)
     for members in sets:
         mains = {i: m.colour for i in members for m in materials.get(i, ()) if m.main}
-        sure = {i: (max((v for (own, _), v in seen.items() if own == i), default=0.0) ** 0.5, i) for i in members}
+        sure = {
+            i: (max((v for (unshared, _), v in seen.items() if unshared == i), default=0.0) ** 0.5, i) for i in members
+        }
         speaks_for = leaders(members, mains, sure)
         for leader in sorted(set(speaks_for.values())):
             group = [i for i in members if speaks_for[i] == leader]
@@ -72,8 +74,8 @@ def shared_materials(
             }
             common = tuple(next(m for m in materials[i] if m.slot == slot) for slot, i in sorted(slots.items()))
             for i in group:
-                own = tuple(m for m in materials.get(i, ()) if m.slot not in slots)
-                shared[i] = (*own, *common)
+                unshared = tuple(m for m in materials.get(i, ()) if m.slot not in slots)
+                shared[i] = (*unshared, *common)
     return shared
 
 

@@ -198,10 +198,10 @@ def _own_colours(
     small one that crosses it is all of it.
     """
     options = {index: _colours_of(lab, mine, settings) for index, mine in of_slots.items()}
-    seeds = {index: own[0] for index, own in options.items()}
+    seeds = {index: colours[0] for index, colours in options.items()}
     for index, mine in of_slots.items():
         others = [(of_slots[k], seeds[k]) for k in of_slots if k != index]
-        own = []
+        colours = []
         shares = []
         for seed in options[index]:
             near = _alike(lab, seed, settings)
@@ -211,11 +211,11 @@ def _own_colours(
             alike += [(near | _alike(lab, main, settings), where) for where, main in others if is_shade(main, seed)]
             elsewhere = [_share(of, where) for of, where in alike if np.count_nonzero(of & where) >= pixels]
             elsewhere.append(_covers(near, beside, settings) / settings.beside)
-            own.append(share / max([share, *elsewhere, 1e-9]))
+            colours.append(share / max([share, *elsewhere, 1e-9]))
             shares.append(share)
-        chosen = int(np.argmax(own))
+        chosen = int(np.argmax(colours))
         main = options[index][chosen]
-        as_good = [k for k, score in enumerate(own) if score >= settings.as_good * own[chosen]]
+        as_good = [k for k, score in enumerate(colours) if score >= settings.as_good * colours[chosen]]
         much = [options[index][k] for k in as_good if shares[k] >= settings.min_outlined]
         seeds[index] = unveiled(
             main, [s for s in much if s[0] <= main[0] or _is_not_behind(lab, mine, beside, s, settings)]

@@ -51,9 +51,11 @@ def strength(reason: Reason) -> float:
 
 def strongest(reasons: Sequence[Reason], object_id: str, count: int = 2) -> tuple[Reason, ...]:
     """The strongest reasons of one object, strongest first, each for another decision."""
-    own = sorted((r for r in reasons if r.object_id == object_id), key=lambda r: (-strength(r), r.decision, r.term))
+    of_object = sorted(
+        (r for r in reasons if r.object_id == object_id), key=lambda r: (-strength(r), r.decision, r.term)
+    )
     first: dict[Decision, Reason] = {}
-    for reason in own:
+    for reason in of_object:
         first.setdefault(reason.decision, reason)
     return tuple(first.values())[:count]
 

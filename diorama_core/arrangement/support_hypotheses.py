@@ -142,7 +142,7 @@ def _on_object(
         over = max(height - place.clearance_m, 0.0) / height
         candidates.append((min(gap, 6.0) + outside + over, index, gap, outside))
     edge = Support(item.id, other.id)
-    seen_on = (held := evidence.believed.get(item.id)) is not None and held.parent == other.id
+    seen_on = (believed := evidence.believed.get(item.id)) is not None and believed.parent == other.id
     if not candidates or (min(candidates)[3] >= FARTHEST_WIDTHS and not seen_on):
         return None
     _, _, gap, outside = min(candidates)

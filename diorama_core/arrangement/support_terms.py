@@ -131,5 +131,5 @@ class SupportWeights:
 @cache
 def fitted_weights() -> SupportWeights:
     """The weights that come with the program."""
-    held = json.loads(PATH.read_text(encoding="utf-8"))
-    return SupportWeights(held["terms"], held["places"], held["walls"])
+    weights = json.loads(PATH.read_text(encoding="utf-8"))
+    return SupportWeights(weights["terms"], weights["places"], weights["walls"])

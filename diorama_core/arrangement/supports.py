@@ -90,8 +90,8 @@ def _choice(
 ) -> SupportChoice:
     likely = np.exp(costs.min() - costs)
     others = [k for k in np.argsort(costs, kind="stable").tolist() if k != chosen]
-    own = weights.shares(of_one[chosen])
-    shares = {} if not others else {n: v - own[n] for n, v in weights.shares(of_one[others[0]]).items()}
+    weights_of_terms = weights.shares(of_one[chosen])
+    shares = {} if not others else {n: v - weights_of_terms[n] for n, v in weights.shares(of_one[others[0]]).items()}
     second = of_one[others[0]] if others else None
     probabilities: dict[str, float] = {}
     for hypothesis, share in zip(of_one, (likely / likely.sum()).tolist(), strict=True):

@@ -66,13 +66,13 @@ def _height_px(box: Box) -> float:
 def _is_same(box: LabelledBox, other: LabelledBox) -> bool:
     x1, y1, x2, y2 = (f(a, b) for f, a, b in zip((max, max, min, min), box.box, other.box, strict=True))
     shared = max(x2 - x1, 0.0) * max(y2 - y1, 0.0)
-    own, others = _area(box.box), _area(other.box)
-    if shared >= SAME_SHARE * (own + others - shared):
+    area, others = _area(box.box), _area(other.box)
+    if shared >= SAME_SHARE * (area + others - shared):
         return True
     kindred = box.category in with_kin(other.category) or other.category in with_kin(box.category)
     related = kindred or bool({box.category, other.category} & set(category(box.category).related or ()))
-    alike = min(own, others) >= PIECE_SHARE * max(own, others)  # what is much smaller stands before it
-    return related and alike and shared >= WITHIN_SHARE * min(own, others)
+    alike = min(area, others) >= PIECE_SHARE * max(area, others)  # what is much smaller stands before it
+    return related and alike and shared >= WITHIN_SHARE * min(area, others)
 
 
 def _area(box: Box) -> float:

@@ -88,11 +88,11 @@ def free_offset(scene: Scene, clip: Clip) -> Float[np.ndarray, "3"]:
     Returns:
         World offset (m); `BESIDE_M` where all places are taken.
     """
-    own = {o.id for o in clip.objects}
+    pasted = {o.id for o in clip.objects}
     boxes = [(o.corners_world.min(axis=0), o.corners_world.max(axis=0)) for o in scene.objects if not o.hidden]
     copies = [(o.corners_world.min(axis=0), o.corners_world.max(axis=0)) for o in clip.objects]
     carried = {s.child: s.parent for s in clip.supports}
-    heads = [o for o in clip.objects if carried.get(o.id) not in own]
+    heads = [o for o in clip.objects if carried.get(o.id) not in pasted]
     low = np.min([o.corners_world.min(axis=0) for o in heads], axis=0)
     high = np.max([o.corners_world.max(axis=0) for o in heads], axis=0)
     allowed = _extent_below(scene, heads, carried)

@@ -70,8 +70,8 @@ class Slide:
     @cached_property
     def places(self) -> tuple[SupportTarget, ...]:
         """Where it may go: what hangs stays on walls or ceiling, what stands on the floor leaves tables alone."""
-        own = {self.item.id, *descendants(self.scene, self.item.id), *self.along}
-        places = places_of(self.scene, self.library, own)
+        moved_ids = {self.item.id, *descendants(self.scene, self.item.id), *self.along}
+        places = places_of(self.scene, self.library, moved_ids)
         edge = self.scene.support_of(self.item.id)
         parent = None if edge is None else edge.parent
         if edge is not None and parent is not None and self.scene.has_plane(parent):

@@ -29,8 +29,8 @@ def held_again(start: Scene, final: Scene) -> Scene:
             continue
         if _lies_on(item, final.object(edge.parent)):
             continue
-        own = descendants(final, item.id)
-        below = [o for o in final.objects if o.id != item.id and o.id not in own and _lies_on(item, o)]
+        loads = descendants(final, item.id)
+        below = [o for o in final.objects if o.id != item.id and o.id not in loads and _lies_on(item, o)]
         parent = max(below, key=lambda o: _top(o)).id if below else None if floor is None else floor.id
         final = edits.detach(final, item.id) if parent is None else edits.attach(final, Support(item.id, parent))
     return final

@@ -40,9 +40,9 @@ def overlapping(quads: Quads, other: Outline, slack_m: float = 1e-4) -> Bool[np.
         (ours.max(axis=1) <= theirs.min(axis=0) + slack_m) | (theirs.max(axis=0) <= ours.min(axis=1) + slack_m)
     ).any(axis=1)
     edges = quads[:, 1:3] - quads[:, 0:2]
-    own = np.stack([edges[..., 1], -edges[..., 0]], axis=-1)
-    own /= np.maximum(np.linalg.norm(own, axis=-1, keepdims=True), 1e-12)
-    ours, theirs = np.einsum("nkd,nad->nak", quads, own), np.einsum("kd,nad->nak", other, own)
+    normals = np.stack([edges[..., 1], -edges[..., 0]], axis=-1)
+    normals /= np.maximum(np.linalg.norm(normals, axis=-1, keepdims=True), 1e-12)
+    ours, theirs = np.einsum("nkd,nad->nak", quads, normals), np.einsum("kd,nad->nak", other, normals)
     apart |= (
         (ours.max(axis=2) <= theirs.min(axis=2) + slack_m) | (theirs.max(axis=2) <= ours.min(axis=2) + slack_m)
     ).any(axis=1)

@@ -73,12 +73,12 @@ def candidates_for(
     if mount == "surface":
         named = [t for r in relations for t in r.targets if scene.has_object(t)]
         carriers = [o.id for o in scene.objects if carries(o) and o.id not in named]
-        own = [t for t in named if carries(scene.object(t))]
+        targets = [t for t in named if carries(scene.object(t))]
         beside_named = [
             c for c in carriers
             if any(_apart(scene.object(c), scene.object(t)) < WITHIN_REACH_M for t in named)
         ]  # fmt: skip
-        on_objects = _on_objects(scene, item, beside_named if named else carriers + own, library)
+        on_objects = _on_objects(scene, item, beside_named if named else carriers + targets, library)
         return [*on_objects, *_less_likely(floor)] if named else on_objects or floor
     return floor
 
@@ -143,13 +143,13 @@ def _about(target: SceneObject, item: SceneObject) -> list[tuple[Float[np.ndarra
     half, yaw0 = target.size_m[:2] / 2, target.pose.yaw_rad
     R = yaw_rotation(yaw0)[:2, :2]
     for quarter in range(4):
-        own = item.size_m[:2] / 2 if quarter % 2 == 0 else item.size_m[1::-1] / 2
+        half_size = item.size_m[:2] / 2 if quarter % 2 == 0 else item.size_m[1::-1] / 2
         for side in range(4):
             out = np.array([[1, 0], [0, 1], [-1, 0], [0, -1]][side], dtype=float)
             across = np.array([-out[1], out[0]])
-            reach = float(np.abs(out) @ (half + own))
+            reach = float(np.abs(out) @ (half + half_size))
             free = float(np.abs(across) @ half)
-            flush = max(float(np.abs(across) @ (half - own)), 0.0)
+            flush = max(float(np.abs(across) @ (half - half_size)), 0.0)
             slides = sorted({0.0, 0.33 * free, -0.33 * free, 0.6 * free, -0.6 * free, flush, -flush})
             distances = (-0.3, -0.22, -0.15, -0.08, 0.03, 0.08, 0.2, 0.35, 0.5, 0.8, 1.2, 1.8, 2.4)
             local = np.array([out * (reach + g) + across * s for g in distances for s in slides])

@@ -132,8 +132,8 @@ def seated(scene: Scene, library: ShapeLibrary, object_id: str) -> Scene:
     if edge is None:
         return scene
     item = scene.object(object_id)
-    own = {object_id, *descendants(scene, object_id)}
-    options = [p for p in places_of(scene, library, own) if p.parent == edge.parent]
+    moved_ids = {object_id, *descendants(scene, object_id)}
+    options = [p for p in places_of(scene, library, moved_ids) if p.parent == edge.parent]
     if scene.has_object(edge.parent):
         options = [p for p in options if p.upward] or [_box_top(scene.object(edge.parent))]
     if not options:

@@ -99,7 +99,7 @@ class Positioner:
     def nearby(self, scene: Scene, object_id: str) -> Spot | None:
         """The nearest free place on the same level, with the same heading."""
         item, frame = scene.object(object_id), RoomFrame.of(scene)
-        own = (object_id, *descendants(scene, object_id))
+        moved_ids = (object_id, *descendants(scene, object_id))
         edge = scene.support_of(object_id)
         if edge is not None and edge.relation == "mounted on":
             return None
@@ -108,7 +108,7 @@ class Positioner:
                 shift = reach * np.array([np.cos(angle), np.sin(angle), 0.0])
                 trial = edits.move(scene, object_id, item.pose.moved(shift))
                 quad = footprint_of(trial.object(object_id))
-                if bool(within(quad[None], frame.outline)[0]) and not self.collisions.of(trial, own):
+                if bool(within(quad[None], frame.outline)[0]) and not self.collisions.of(trial, moved_ids):
                     return Spot(trial.object(object_id).pose, edge, float(reach))
         return None
 
@@ -127,9 +127,9 @@ class Positioner:
 
 
 def _without(scene: Scene, item: SceneObject) -> Scene:
-    own = {item.id, *(descendants(scene, item.id) if scene.has_object(item.id) else ())}
+    removed_ids = {item.id, *(descendants(scene, item.id) if scene.has_object(item.id) else ())}
     return replace(
         scene,
-        objects=tuple(o for o in scene.objects if o.id not in own),
-        supports=tuple(s for s in scene.supports if s.child not in own),
+        objects=tuple(o for o in scene.objects if o.id not in removed_ids),
+        supports=tuple(s for s in scene.supports if s.child not in removed_ids),
     )

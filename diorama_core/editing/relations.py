@@ -280,9 +280,9 @@ def _opposite(r: _Relative) -> Float[np.ndarray, "n"]:
 
 def _aligned(r: _Relative) -> Float[np.ndarray, "n"]:
     square = np.abs(np.sin(2.0 * (r.stances.yaws_rad - r.target.pose.yaw_rad)))
-    own = np.abs(r.local)
-    edges = np.abs(own - np.abs(r.half - r.stances.size_m[:2] / 2))
-    return np.minimum(own, edges).min(axis=1) / 0.15 * 0.6 + square
+    offsets = np.abs(r.local)
+    edges = np.abs(offsets - np.abs(r.half - r.stances.size_m[:2] / 2))
+    return np.minimum(offsets, edges).min(axis=1) / 0.15 * 0.6 + square
 
 
 _COSTS: dict[RelationKind, Callable[[_Relative], Float[np.ndarray, "n"]]] = {

@@ -28,7 +28,7 @@ def without_objects(scene: Scene, library: ShapeLibrary, object_ids: Iterable[st
     positioner = Positioner(library)
     for load in loads:
         after = seated(after, library, load)
-        own = (load, *after.children_of(load))
-        spot = positioner.nearby(after, load) if positioner.collisions.of(after, own) else None
+        removed = (load, *after.children_of(load))
+        spot = positioner.nearby(after, load) if positioner.collisions.of(after, removed) else None
         after = after if spot is None else edits.move(after, load, spot.pose)
     return after, loads

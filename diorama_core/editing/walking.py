@@ -50,8 +50,8 @@ class WalkableFloor:
     @property
     def json(self) -> str:
         """As the page's script takes it."""
-        told = {"rings": self.rings, "start": self.start, "heading": self.heading_rad, "eye": self.eye_m}
-        return json.dumps(told, separators=(",", ":"))
+        document = {"rings": self.rings, "start": self.start, "heading": self.heading_rad, "eye": self.eye_m}
+        return json.dumps(document, separators=(",", ":"))
 
 
 def walk_of(scene: Scene) -> WalkableFloor | None:

@@ -71,18 +71,18 @@ def extreme_points(
     slack = frustum_slack(points, k)
     outside = slack < 0
     cut = np.flatnonzero(outside.any(axis=(0, 1)))
-    told, fixed = np.ones(count, dtype=bool), np.zeros((4, count), dtype=bool)
+    is_free, fixed = np.ones(count, dtype=bool), np.zeros((4, count), dtype=bool)
     edge, side = np.zeros((3, 4, count)), np.zeros((3, 4, count))
     corner = _extremes(_pixels(points, k), np.ones((8, count), dtype=bool))
     unit = box_corners((1.0, 1.0, 1.0)).T[:, corner]
     camera = np.take_along_axis(points, corner[None], axis=1)
     if len(cut):
-        told[cut] = visible[cut] & ~outside[0][:, cut].any(axis=0)
+        is_free[cut] = visible[cut] & ~outside[0][:, cut].any(axis=0)
         fixed[:, cut] = (np.abs(bounds_px[cut] - [0.0, 0.0, k.width, k.height]) < _AT_BORDER_PX).T
         parts = _cut_points(points[:, :, cut], slack[:, :, cut], k)
         for of_all, of_cut in zip((unit, camera, edge, side), parts, strict=True):
             of_all[:, :, cut] = of_cut
-    return ExtremePoints(unit, camera, edge, side, told, fixed)
+    return ExtremePoints(unit, camera, edge, side, is_free, fixed)
 
 
 def _cut_points(

@@ -209,8 +209,8 @@ def without_loads(mask: Bool[np.ndarray, "h w"], loads: Sequence[Bool[np.ndarray
 
     Where next to nothing would be left, the masks of what lies on it are too large, and it stays as it is.
     """
-    own = mask & ~np.logical_or.reduce([np.zeros_like(mask), *loads])
-    return own if own.sum() >= MIN_OWN_SHARE * mask.sum() else mask
+    unloaded = mask & ~np.logical_or.reduce([np.zeros_like(mask), *loads])
+    return unloaded if unloaded.sum() >= MIN_OWN_SHARE * mask.sum() else mask
 
 
 def loads_of(parents: Sequence[int | None], index: int) -> tuple[int, ...]:

@@ -75,13 +75,13 @@ class PaddedParts:
 
 def pack_parts(parts: Sequence[Sequence[ConvexPart]]) -> PaddedParts:
     """Pad the parts of objects (one sequence each, none empty) once, for many placements."""
-    flat = [part for own in parts for part in own]
+    flat = [part for bodies_of_object in parts for part in bodies_of_object]
     return PaddedParts(
         vertices=_padded([part.vertices for part in flat], repeat=True),
         normals=_padded([part.normals for part in flat]),
         edges=_padded([part.edges for part in flat]),
         counts=np.array([(len(q.vertices), len(q.normals), len(q.edges)) for q in flat], dtype=int).reshape(-1, 3),
-        owner=np.array([i for i, own in enumerate(parts) for _ in own], dtype=int),
+        owner=np.array([i for i, bodies_of_object in enumerate(parts) for _ in bodies_of_object], dtype=int),
     )
 
 
@@ -125,7 +125,9 @@ def pair_axes(
     most = np.maximum(bodies.counts[a], bodies.counts[b])
     order = np.lexsort((most[:, 0], most[:, 2], most[:, 1]))
     rows = np.split(order, range(_AT_ONCE, len(order), _AT_ONCE)) if len(order) else []
-    return [_block(bodies, a[own], b[own], most[own].max(axis=0), faces_only=faces_only) for own in rows]
+    return [
+        _block(bodies, a[of_pair], b[of_pair], most[of_pair].max(axis=0), faces_only=faces_only) for of_pair in rows
+    ]
 
 
 def _block(

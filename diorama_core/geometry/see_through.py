@@ -167,12 +167,12 @@ def _posterior(
     alike = _kernel(lab, lab[samples])
     alike[samples, np.arange(len(samples))] = 0.0
     usual = max(float(np.quantile(of_background, 0.9)), _NOTHING)
-    own = covered * (1 - np.minimum(of_background / usual, 1.0)) ** 2
+    likelihood = covered * (1 - np.minimum(of_background / usual, 1.0)) ** 2
     prior = settings.of_rest + (settings.of_mask - settings.of_rest) * covered
     shown = prior
     for _ in range(settings.rounds):
-        of_object = (alike @ own[samples].astype(np.float32)) / max(float(own[samples].sum()), _NOTHING)
+        of_object = (alike @ likelihood[samples].astype(np.float32)) / max(float(likelihood[samples].sum()), _NOTHING)
         theirs = (1 - prior) * (of_background + settings.unlike / 2)
         shown = 1 - theirs / (theirs + prior * (of_object + settings.unlike))
-        own = shown * covered
+        likelihood = shown * covered
     return shown

@@ -72,8 +72,8 @@ def replica_frames(folder: Path) -> Frames:
     for depth, row in zip(_found(folder, files, "results/depth*.png"), rows, strict=False):
         picture = next(filter(files.holds, depth.parent.glob(depth.stem.replace("depth", "frame") + ".*")), None)
         frames.append(DepthFrame(depth, Camera(k.scaled(*_size(depth)), row.reshape(4, 4)), None, picture, 1 / steps))
-    said = () if text else ("the camera is that of NICE-SLAM's Replica (600 of 1200 pixels)",)
-    return Frames(tuple(frames), None, said)
+    notes = () if text else ("the camera is that of NICE-SLAM's Replica (600 of 1200 pixels)",)
+    return Frames(tuple(frames), None, notes)
 
 
 def matterport_frames(folder: Path) -> Frames:

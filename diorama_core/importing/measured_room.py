@@ -57,9 +57,9 @@ def opened_room(room: MeasuredRoom, library: ShapeLibrary) -> Opened:
     holders = [
         _held(index, boxes, planes, floors[k] if k is not None and floors else None) for index, k in enumerate(below)
     ]
-    objects = [_object(names, box, held, library) for box, held in zip(boxes, holders, strict=True)]
+    objects = [_object(names, box, known_supports, library) for box, known_supports in zip(boxes, holders, strict=True)]
     ids = [o.id for o in objects]
-    supports = [_support(ids, index, held) for index, held in enumerate(holders)]
+    supports = [_support(ids, index, known_supports) for index, known_supports in enumerate(holders)]
     notes = [*room.notes, *remarks]
     for opening in room.openings:
         wall = _wall_of(opening, walls)
@@ -71,8 +71,8 @@ def opened_room(room: MeasuredRoom, library: ShapeLibrary) -> Opened:
         item = _hung(names, opening, wall, library)
         objects.append(item)
         supports.append(Support(item.id, wall.id, "mounted on", child_face="back"))
-    held = tuple(s for s in supports if s is not None)
-    scene = Scene(None, Architecture(planes), tuple(objects), held)
+    known_supports = tuple(s for s in supports if s is not None)
+    scene = Scene(None, Architecture(planes), tuple(objects), known_supports)
     check_scene(scene)
     return Opened(scene, changes=tuple(notes))
 
@@ -166,28 +166,28 @@ def _held(index: int, boxes: Sequence[MeasuredBox], planes: Sequence[Plane], flo
     return min(near)[1] if near and min(near)[0] < AT_WALL_M else "nothing"
 
 
-def _support(ids: Sequence[str], index: int, held: str) -> Support | None:
-    if held == "nothing":
+def _support(ids: Sequence[str], index: int, object_id: str) -> Support | None:
+    if object_id == "nothing":
         return None
-    if held.startswith("floor"):
-        return Support(ids[index], held)
-    if held.isdecimal():
-        return Support(ids[index], ids[int(held)])
-    return Support(ids[index], held, "mounted on", child_face="top" if held.startswith("ceiling") else "back")
+    if object_id.startswith("floor"):
+        return Support(ids[index], object_id)
+    if object_id.isdecimal():
+        return Support(ids[index], ids[int(object_id)])
+    return Support(ids[index], object_id, "mounted on", child_face="top" if object_id.startswith("ceiling") else "back")
 
 
-def _mount(held: str) -> str:
+def _mount(object_id: str) -> str:
     """Where kinds are found that are held so: a wall, the ceiling, or else the floor."""
-    stands = held.startswith("floor") or held == "nothing" or held.isdecimal()
-    return "floor" if stands else "ceiling" if held.startswith("ceiling") else "wall"
+    stands = object_id.startswith("floor") or object_id == "nothing" or object_id.isdecimal()
+    return "floor" if stands else "ceiling" if object_id.startswith("ceiling") else "wall"
 
 
 def _covers(plane: Plane, box: MeasuredBox) -> bool:
     return bool(Polygon(plane.polygon[:, :2]).buffer(RESTS_M).contains(Point(box.centre[:2])))
 
 
-def _object(names: _Names, box: MeasuredBox, held: str, library: ShapeLibrary) -> SceneObject:
-    mount = _mount(held)
+def _object(names: _Names, box: MeasuredBox, object_id: str, library: ShapeLibrary) -> SceneObject:
+    mount = _mount(object_id)
     held_so = ("floor", "surface") if mount == "floor" else (mount,)
     mounted = {k: v for k, v in box.kinds.items() if category(k).mount in held_so}
     possible = possible_kinds(mounted, box.size_m) or possible_kinds(box.kinds, box.size_m) or {UNKNOWN.name: 1.0}
@@ -245,10 +245,10 @@ def _with_passages(
         side = np.cross([0.0, 0.0, 1.0], wall.normal) * opening.width_m / 2
         up = np.array([0.0, 0.0, opening.height_m / 2])
         corners = opening.centre + np.array([a * side + b * up for a in (-1, 1) for b in (-1, 1)])
-        there = with_hole(cut[wall.id], corners)
-        if there is cut[wall.id]:
+        cut_polygon = with_hole(cut[wall.id], corners)
+        if cut_polygon is cut[wall.id]:
             unused.append(opening)
-        cut[wall.id] = there
+        cut[wall.id] = cut_polygon
     return tuple(cut.values()), unused
 
 

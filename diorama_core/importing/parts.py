@@ -72,8 +72,8 @@ def _in_metres(scene: trimesh.Scene, to_world: Float[np.ndarray, "4 4"]) -> tupl
     largest = 1.0 if scene.extents is None else float(np.max(scene.extents)) * float(np.linalg.norm(to_world[:3, 0]))
     factor = next((f for f in SUBUNITS if largest * f <= (HUGE_M if f == 1.0 else USUAL_M)), 0.001)
     parts = split_scene(scene, np.diag([factor, factor, factor, 1.0]) @ to_world)
-    said = f"it would be {largest:.0f} m large: its lengths were taken for {SUBUNITS[factor]}"
-    return parts, () if factor == 1.0 else (said,)
+    note = f"it would be {largest:.0f} m large: its lengths were taken for {SUBUNITS[factor]}"
+    return parts, () if factor == 1.0 else (note,)
 
 
 def split_scene(scene: trimesh.Scene, to_world: Float[np.ndarray, "4 4"]) -> tuple[Part, ...]:
@@ -87,22 +87,22 @@ def split_scene(scene: trimesh.Scene, to_world: Float[np.ndarray, "4 4"]) -> tup
     waiting = [str(scene.graph.base_frame)]
     while waiting:
         node = waiting.pop()
-        own = _own(children, node, boxes)
-        loose = [str(c) for c in children.get(node, ()) if c not in own]
-        if own:
-            top = max(boxes[n][1, 2] for n in own)
+        nodes = _own(children, node, boxes)
+        loose = [str(c) for c in children.get(node, ()) if c not in nodes]
+        if nodes:
+            top = max(boxes[n][1, 2] for n in nodes)
             stands = [c for c in loose if _bottom(children, c, boxes) > top - TOUCH_M]
         else:
             stands = []
         below = [n for n in _below(children, node, set(stands)) if n in boxes]
         if not below:
             waiting += reversed(loose)
-        elif len(below) == len(own) or (node != scene.graph.base_frame and _is_object([boxes[n] for n in below])):
+        elif len(below) == len(nodes) or (node != scene.graph.base_frame and _is_object([boxes[n] for n in below])):
             parts.append(_part(scene, node, below, node, to_world))
             waiting += reversed(stands)
         else:
-            if own:
-                parts.append(_part(scene, node, own, node, to_world))
+            if nodes:
+                parts.append(_part(scene, node, nodes, node, to_world))
             waiting += reversed(loose)
     return joined_flat_parts(parts)
 

@@ -88,8 +88,8 @@ def without_floaters(points: Float[np.ndarray, "n 3"]) -> tuple[Float[np.ndarray
     share = float(alone.mean())
     if not 0 < share < MAX_ALONE:
         return points, ()
-    said = f"{int(alone.sum())} points that float alone were left out"
-    return points[~alone], (said,) if share > NOTED_ALONE else ()
+    note = f"{int(alone.sum())} points that float alone were left out"
+    return points[~alone], (note,) if share > NOTED_ALONE else ()
 
 
 def unit_note(unit: Unit) -> tuple[str, ...]:

@@ -80,9 +80,9 @@ def _form_of(head: FileHead) -> PointForm | None:
 
 def _from_ply(path: Path) -> PointCloud:
     with path.open("rb") as stream:
-        own = OWN_PLY in stream.read(4096)
+        is_diorama = OWN_PLY in stream.read(4096)
     loaded = _loaded(path)
-    if own:
+    if is_diorama:
         return PointCloud(points_of_mesh(loaded), UP_Z)
     if isinstance(loaded, trimesh.Trimesh) and len(loaded.vertices):
         return _from_mesh(loaded, None)

@@ -49,16 +49,16 @@ def restored(file: MarkedFile) -> Restored:
     changes += copies
     for node, object_id in zip(file.nodes, ids, strict=True):
         if object_id is not None:
-            scene, said = _moved(scene, object_id, node)
-            changes += said
-    scene, said = _without_deleted(scene, file)
-    changes += said
+            scene, remarks = _moved(scene, object_id, node)
+            changes += remarks
+    scene, remarks = _without_deleted(scene, file)
+    changes += remarks
     for index, object_id in enumerate(ids):
         if object_id is not None:
-            scene, said = _hung(scene, original, object_id, _carrier(file.nodes, ids, index))
-            changes += said
-    scene, said = _room_and_camera(scene, file)
-    return Restored(scene, (*changes, *said))
+            scene, remarks = _hung(scene, original, object_id, _carrier(file.nodes, ids, index))
+            changes += remarks
+    scene, remarks = _room_and_camera(scene, file)
+    return Restored(scene, (*changes, *remarks))
 
 
 def pose_of(matrix: Float[np.ndarray, "4 4"]) -> tuple[Pose, bool]:
@@ -94,7 +94,7 @@ def _with_copies(scene: Scene, nodes: Sequence[ObjectNode]) -> tuple[Scene, list
             if _distance(scene, node) < _distance(scene, nodes[known]):
                 nearest[node.id] = index
     ids: list[str | None] = []
-    said: list[str] = []
+    remarks: list[str] = []
     for index, node in enumerate(nodes):
         if not scene.has_object(node.id):
             ids.append(None)
@@ -102,9 +102,9 @@ def _with_copies(scene: Scene, nodes: Sequence[ObjectNode]) -> tuple[Scene, list
             ids.append(node.id)
         else:
             scene, copy_id = edits.duplicate(scene, node.id, offset_world=(0.0, 0.0, 0.0))
-            said.append(f"{scene.object(node.id).label} ({node.id}) was copied: {copy_id}")
+            remarks.append(f"{scene.object(node.id).label} ({node.id}) was copied: {copy_id}")
             ids.append(copy_id)
-    return scene, ids, said
+    return scene, ids, remarks
 
 
 def _distance(scene: Scene, node: ObjectNode) -> float:
@@ -116,11 +116,11 @@ def _moved(scene: Scene, object_id: str, node: ObjectNode) -> tuple[Scene, list[
     pose, forced = pose_of(node.M_world_shape)
     if np.abs(replace(item, pose=pose).corners_world - item.corners_world).max() < STILL_M:
         return scene, []
-    said = [f"{item.label} ({object_id}) was moved"]
+    remarks = [f"{item.label} ({object_id}) was moved"]
     if forced:
-        said.append(f"{item.label} ({object_id}) is sheared or mirrored in the file: the nearest pose was taken")
+        remarks.append(f"{item.label} ({object_id}) is sheared or mirrored in the file: the nearest pose was taken")
     T_new_old = pose.T_world_object @ np.linalg.inv(item.pose.T_world_object)
-    return _replaced(scene, replace(_with_candidates_moved(item, T_new_old), pose=pose)), said
+    return _replaced(scene, replace(_with_candidates_moved(item, T_new_old), pose=pose)), remarks
 
 
 def _with_candidates_moved(item: SceneObject, T_new_old: Float[np.ndarray, "4 4"]) -> SceneObject:
@@ -167,12 +167,12 @@ def _hung(scene: Scene, original: Scene, object_id: str, carrier: str | None) ->
 
 
 def _room_and_camera(scene: Scene, file: MarkedFile) -> tuple[Scene, list[str]]:
-    said, planes = [], []
+    remarks, planes = [], []
     for plane in scene.architecture.planes:
         T = file.planes.get(plane.id)
         moved = plane.polygon if T is None else plane.polygon @ T[:3, :3].T + T[:3, 3]
         if np.abs(moved - plane.polygon).max() >= STILL_M:
-            said.append(f"the {plane.role} ({plane.id}) was moved")
+            remarks.append(f"the {plane.role} ({plane.id}) was moved")
             plane = replace(plane, polygon=moved)
         planes.append(plane)
     scene = replace(scene, architecture=Architecture(tuple(planes)))
@@ -180,8 +180,8 @@ def _room_and_camera(scene: Scene, file: MarkedFile) -> tuple[Scene, list[str]]:
     if camera is not None and T is not None and np.abs(T - camera.T_world_camera).max() >= STILL_M:
         pose, _ = pose_of(T)
         scene = replace(scene, camera=Camera(camera.intrinsics, pose.T_world_object))
-        said.append("the photo's camera was moved")
-    return scene, said
+        remarks.append("the photo's camera was moved")
+    return scene, remarks
 
 
 def _replaced(scene: Scene, item: SceneObject) -> Scene:

@@ -97,8 +97,8 @@ class _Mesh:
     @property
     def word(self) -> str:
         """Its name without the number."""
-        own = _NAMED.match(self.path.rpartition("/")[2])
-        return own[1] if own else ""
+        match = _NAMED.match(self.path.rpartition("/")[2])
+        return match[1] if match else ""
 
 
 def _meshes(stage: Any) -> Iterator[_Mesh]:

@@ -81,10 +81,10 @@ def boxes_in(points: Float[np.ndarray, "n 3"], room: ScannedRoom) -> tuple[tuple
     sizes = ndimage.sum_labels(grid, labels, np.arange(1, count + 1))
     boxes = []
     for number in np.argsort(-sizes, kind="stable"):
-        own = left[which == number + 1]
-        if sizes[number] < MIN_CELLS or _middle_extent(own) < MIN_SIZE_M:
+        points_of_box = left[which == number + 1]
+        if sizes[number] < MIN_CELLS or _middle_extent(points_of_box) < MIN_SIZE_M:
             continue
-        thing, *on_it = apart_from_tops(own)
+        thing, *on_it = apart_from_tops(points_of_box)
         around = _box(thing, room)
         if _is_wall(around, room):
             continue

@@ -103,10 +103,10 @@ def _of_wall(points: Float[np.ndarray, "n 3"], wall: MeasuredWall, turn: float) 
 def _grid(local: Float[np.ndarray, "n 3"], length_m: float, height_m: float) -> _Grid | None:
     """The wall's cells; None where it was hardly scanned. Points have columns along, up, and into the room."""
     inside = (local[:, 0] > 0) & (local[:, 0] < length_m) & (local[:, 1] > 0) & (local[:, 1] < height_m)
-    own = local[inside & (np.abs(local[:, 2]) < ON_WALL_M)]
-    if not len(own):
+    on_wall = local[inside & (np.abs(local[:, 2]) < ON_WALL_M)]
+    if not len(on_wall):
         return None
-    cell = max(CELL_M, float(np.sqrt(POINTS_A_CELL * length_m * height_m / len(own))))
+    cell = max(CELL_M, float(np.sqrt(POINTS_A_CELL * length_m * height_m / len(on_wall))))
     if cell > MAX_CELL_M:
         return None
     shape = (max(1, round(height_m / cell)), max(1, round(length_m / cell)))
@@ -116,8 +116,8 @@ def _grid(local: Float[np.ndarray, "n 3"], length_m: float, height_m: float) -> 
         columns = np.minimum((chosen[:, 0] / cell).astype(int), shape[1] - 1)
         return np.bincount(rows * shape[1] + columns, weights, shape[0] * shape[1]).astype(np.float64).reshape(shape)
 
-    count = counted(own, np.ones(len(own)))
-    relief = counted(own, own[:, 2]) / np.maximum(count, 1.0)
+    count = counted(on_wall, np.ones(len(on_wall)))
+    relief = counted(on_wall, on_wall[:, 2]) / np.maximum(count, 1.0)
     # Not the floor, the ceiling and the walls beside it, which are before every wall.
     amid = ((local[:, :2] > ON_WALL_M) & (local[:, :2] < np.array([length_m, height_m]) - ON_WALL_M)).all(axis=1)
     before = local[amid & (local[:, 2] >= ON_WALL_M) & (local[:, 2] < BEFORE_M)]

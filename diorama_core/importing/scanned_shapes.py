@@ -79,9 +79,9 @@ class ScannedSurface:
         return [self._misfit(_turned(unit, q) * self.size_m) + farther[q % 2] for q in range(4)]
 
     def _misfit(self, surface: Float[np.ndarray, "m 3"]) -> float:
-        there = np.minimum(cKDTree(surface).query(self.points)[0], FAR_M).mean()
+        distance_m = np.minimum(cKDTree(surface).query(self.points)[0], FAR_M).mean()
         back = np.minimum(self.tree.query(surface)[0], FAR_M).mean()
-        return float(there + UNSEEN_WEIGHT * back)
+        return float(distance_m + UNSEEN_WEIGHT * back)
 
 
 def unit_surface(shape: Shape, library: ShapeLibrary) -> Float[np.ndarray, "m 3"]:

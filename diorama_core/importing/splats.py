@@ -51,9 +51,9 @@ def read_splats(path: Path) -> Float[np.ndarray, "n 3"]:
 
 def _plain(opacity: Float[np.ndarray, "n"], scales: Float[np.ndarray, "n 3"]) -> Bool[np.ndarray, "n"]:
     largest = scales.max(axis=1)
-    there = (opacity >= MIN_OPACITY) & np.isfinite(largest)
-    usual = float(np.median(largest[there])) if there.any() else 0.0
-    return there & (largest <= MAX_SCALE * usual)
+    is_visible = (opacity >= MIN_OPACITY) & np.isfinite(largest)
+    usual = float(np.median(largest[is_visible])) if is_visible.any() else 0.0
+    return is_visible & (largest <= MAX_SCALE * usual)
 
 
 def _vertices(path: Path) -> np.ndarray:

@@ -60,12 +60,12 @@ def ceiling_planes(storeys: Sequence[Storey], walls: Sequence[Plane]) -> tuple[t
     """A level ceiling over each floor whose walls are equally high but for half walls; and what was left out."""
     planes, notes = [], []
     for number, storey in enumerate(storeys):
-        own = [w for w in walls if _is_of(w, storey)] if len(storeys) > 1 else walls
-        tops = np.array([float(w.polygon[:, 2].max()) for w in own])
+        walls_of_storey = [w for w in walls if _is_of(w, storey)] if len(storeys) > 1 else walls
+        tops = np.array([float(w.polygon[:, 2].max()) for w in walls_of_storey])
         full = tops[tops > tops.max() - HALF_WALL_M] if len(tops) else tops
         if storey.outline is None or len(tops) < 3:
             continue
-        if any(_has_slope(w) for w in own) or np.ptp(full) > LEVEL_M:
+        if any(_has_slope(w) for w in walls_of_storey) or np.ptp(full) > LEVEL_M:
             notes.append("the ceiling slopes: its walls are read as they are, and it was left out")
             continue
         if len(full) < 3:

@@ -72,21 +72,21 @@ class ContainedFiles:
         Raises:
             error: as `path`.
         """
-        said = shown(str(path) if name is None else name)
+        shown_name = shown(str(path) if name is None else name)
         inside = self._inside(path)
         if inside is None:
-            raise self.error(f"{said} points outside the folder that was added")
+            raise self.error(f"{shown_name} points outside the folder that was added")
         try:
             here = self.root
             for part in inside.parts:
                 here = here / part
                 mode = os.lstat(here).st_mode
                 if stat.S_ISLNK(mode):
-                    raise self.error(f"{said} is behind a link, which is not followed; copy the file there")
+                    raise self.error(f"{shown_name} is behind a link, which is not followed; copy the file there")
         except (OSError, ValueError) as reason:
-            raise self.error(f"{said} is missing") from reason
+            raise self.error(f"{shown_name} is missing") from reason
         if not stat.S_ISREG(mode):
-            raise self.error(f"{said} is no regular file")
+            raise self.error(f"{shown_name} is no regular file")
         return here
 
     def read(self, name: str, most: int, folder: Path | None = None) -> bytes:

@@ -67,10 +67,10 @@ def layout_figures(start: Scene, now: Scene, library: ShapeLibrary) -> dict[str,
         now: the scene, perhaps with objects that are new or lack.
         library: where shapes come from.
     """
-    there = tuple(o for o in start.objects if now.has_object(o.id))
-    gone = {o.id for o in start.objects} - {o.id for o in there}
+    remaining = tuple(o for o in start.objects if now.has_object(o.id))
+    gone = {o.id for o in start.objects} - {o.id for o in remaining}
     supports = tuple(s for s in start.supports if gone.isdisjoint((s.child, s.parent)))
-    problem = build_problem(replace(start, objects=there, supports=supports), library)
+    problem = build_problem(replace(start, objects=remaining, supports=supports), library)
     poses = [now.object(i).pose for i in problem.ids]
     return measure(
         problem,
@@ -141,15 +141,15 @@ def support_errors(
     volumes = Volumes.of(problem)
     here, supported = volumes.at(R, p, scale), volumes.supported
     size, contact = problem.shape_size[supported] * scale[supported], problem.contact[supported]
-    own = R[supported]
-    outward = np.matmul(own, contact[..., None])[..., 0]
-    centre = p[supported] + np.matmul(own, (contact * size / 2)[..., None])[..., 0]
+    R_supported = R[supported]
+    outward = np.matmul(R_supported, contact[..., None])[..., 0]
+    centre = p[supported] + np.matmul(R_supported, (contact * size / 2)[..., None])[..., 0]
     tilted = np.arccos(np.clip(-(outward * here.normal).sum(axis=1), -1.0, 1.0))
     off = np.abs((centre * here.normal).sum(axis=1) - here.level)
     reach = np.array([reach_of(problem.footing[i], R[i], scale[i], m) for i, m in zip(supported, here.outward)])
     reach = reach.reshape(here.offset.shape)
     past = np.matmul(here.outward, centre[..., None])[..., 0] + reach - here.offset
-    half = 0.5 * (np.abs(np.matmul(here.normal[:, None, :], own)[:, 0]) * size).sum(axis=1)
+    half = 0.5 * (np.abs(np.matmul(here.normal[:, None, :], R_supported)[:, 0]) * size).sum(axis=1)
     top = (p[supported] * here.normal).sum(axis=1) - here.level + half
     # Squares, so that what hangs over on all sides is best in the middle.
     outside = np.linalg.norm(np.maximum(np.column_stack([past, top - here.clearance]), 0.0), axis=1)

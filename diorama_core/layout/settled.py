@@ -59,17 +59,17 @@ class Settled:
 def _lowered(scene: Scene, item: SceneObject, poses: Mapping[str, Pose]) -> Pose:
     """Its pose with its bottom on the top of its supporter; unchanged for what hangs."""
     edge = scene.support_of(item.id)
-    own = poses[item.id]
+    pose = poses[item.id]
     if edge is None or edge.relation != "placed on":
-        return own
+        return pose
     if scene.has_object(edge.parent):
         top = _span(scene.object(edge.parent), poses[edge.parent])[1]
     else:
         plane = next(p for p in scene.architecture.planes if p.id == edge.parent)
         if plane.role != "floor":
-            return own
+            return pose
         top = float(plane.polygon[:, 2].mean())
-    return own.moved((0.0, 0.0, top - _span(item, own)[0]))
+    return pose.moved((0.0, 0.0, top - _span(item, pose)[0]))
 
 
 def _pushed(scene: Scene, poses: dict[str, Pose]) -> bool:

@@ -40,7 +40,7 @@ def browsed(
     *,
     favourites: Sequence[str] = (),
     recent: Sequence[str] = (),
-    own: Callable[[str], bool] = lambda shape_id: False,
+    is_own: Callable[[str], bool] = lambda shape_id: False,
     has_place: Callable[[Shape], bool] = lambda shape: True,
 ) -> tuple[Shape, ...]:
     """The shapes that pass the filters, in their order; on the shelf of recent ones the last used first.
@@ -50,7 +50,7 @@ def browsed(
         filters: what is asked for.
         favourites: ids that the person has marked.
         recent: ids used lately, the last first.
-        own: whether a shape is the person's own model.
+        is_own: whether a shape is the person's own model.
         has_place: whether a shape finds a place in the room; asked last, of what passes everything else.
     """
     marked: Collection[str] = frozenset(favourites)
@@ -60,7 +60,7 @@ def browsed(
         for s in shapes
         if (filters.shelf != "favourites" or s.id in marked)
         and (filters.shelf != "recent" or s.id in recent)
-        and (filters.shelf != "own" or own(s.id))
+        and (filters.shelf != "own" or is_own(s.id))
         and filters.category in ("", s.category)
         and (not filters.room or s.category in ROOMS[filters.room])
         and filters.style in ("", s.style)

@@ -42,7 +42,7 @@ SCENE_BYTES = 256e6
 
 def default_cache_dir() -> Path:
     """Where derived files live: `DIORAMA_CACHE` when set, else the user's cache folder."""
-    return Path(own) if (own := os.environ.get("DIORAMA_CACHE")) else _users_cache_dir()
+    return Path(folder) if (folder := os.environ.get("DIORAMA_CACHE")) else _users_cache_dir()
 
 
 @cache

@@ -50,7 +50,7 @@ def size_density(name: str, size_m: Float[np.ndarray, "3"], sigma: float) -> flo
     return total
 
 
-def is_possible(name: str, size_m: Float[np.ndarray, "3"], *, said: bool = False) -> bool:
+def is_possible(name: str, size_m: Float[np.ndarray, "3"], *, is_given: bool = False) -> bool:
     """Whether a thing of this kind can be so large, along every side, the better way round.
 
     One gate for everything that is named by its shape or by a word: models of a library, meshes of a scene, boxes of a
@@ -59,9 +59,9 @@ def is_possible(name: str, size_m: Float[np.ndarray, "3"], *, said: bool = False
     Args:
         name: of the canonical category.
         size_m: depth, width and height, metres; width and depth may have changed places.
-        said: whether somebody called it so, who is believed a little longer.
+        is_given: whether somebody called it so, who is believed a little longer.
     """
-    most = SAID_SIGMAS if said else MAX_SIGMAS
+    most = SAID_SIGMAS if is_given else MAX_SIGMAS
     if name == UNKNOWN.name:
         return True
     log_size = np.log(np.maximum(size_m, 1e-6))

@@ -94,6 +94,6 @@ def write_own_models(path: Path, models: OwnModels) -> None:
 
 def _with(known: dict[str, str], shape_id: str, words: str) -> dict[str, str]:
     """The words of one model replaced, or taken away where there are none."""
-    said = " ".join(clean_text(words).split())[:MAX_NAME].strip()
+    text = " ".join(clean_text(words).split())[:MAX_NAME].strip()
     rest = {key: value for key, value in known.items() if key != shape_id}
-    return {**rest, shape_id: said} if said else rest
+    return {**rest, shape_id: text} if text else rest

@@ -68,12 +68,12 @@ def _recolour(scene: trimesh.Scene, slot: Slot, material: PhotoMaterial) -> None
     Painted wood has no grain, and stripes, checks or speckles of the library that the photo does not show are left out.
     """
     meshes = [scene.geometry[name] for name in slot.geometry]
-    own = physically_based(meshes[0])
-    made = in_colour(own, material.colour)
-    made.name = f"{material.slot} from the photo {zlib.crc32(repr((material, own.name)).encode()):08x}"
+    base = physically_based(meshes[0])
+    made = in_colour(base, material.colour)
+    made.name = f"{material.slot} from the photo {zlib.crc32(repr((material, base.name)).encode()):08x}"
     made.metallicFactor, made.roughnessFactor = material.metallic, material.roughness
     painted = slot.role == "wood" and not shows_wood(material.colour)
-    if painted or (slot.tile_m is not None and _is_patterned(own)):
+    if painted or (slot.tile_m is not None and _is_patterned(base)):
         made.baseColorTexture = None
         made.baseColorFactor = [*(round(255 * float(c)) for c in srgb_to_linear(np.array(material.colour))), 255]
     for mesh in meshes:

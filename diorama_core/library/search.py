@@ -104,8 +104,8 @@ class TextIndex:
         for position, shape in enumerate(self.shapes):
             categories.setdefault(shape.category, []).append(position)
             # What all of a category may be called has named the category already and tells none of its shapes apart.
-            own = (name for name in shape.synonyms if name not in taxonomy.category(shape.category).synonyms)
-            named = (shape.style, shape.category, *own)
+            synonyms = (name for name in shape.synonyms if name not in taxonomy.category(shape.category).synonyms)
+            named = (shape.style, shape.category, *synonyms)
             shared = phrases.get(named)
             if shared is None:
                 shared = phrases[named] = tuple(w for text in named for w in tokens(text))

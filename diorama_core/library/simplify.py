@@ -82,12 +82,12 @@ def _fewer(
     target = 3 * max(round(share * len(triangles) / 3), MIN_TRIANGLES)
     if target >= len(triangles):
         return triangles
-    used, own = np.unique(triangles, return_inverse=True)
-    near, own = np.ascontiguousarray(points[used]), own.astype(np.uint32)
-    area, extents = _area(own, near), np.ptp(near, axis=0)
+    used, faces_used = np.unique(triangles, return_inverse=True)
+    near, faces_used = np.ascontiguousarray(points[used]), faces_used.astype(np.uint32)
+    area, extents = _area(faces_used, near), np.ptp(near, axis=0)
     for error in errors:
-        retained = np.empty_like(own)
-        count = meshoptimizer.simplify(retained, own, near, target_index_count=target, target_error=error)
+        retained = np.empty_like(faces_used)
+        count = meshoptimizer.simplify(retained, faces_used, near, target_index_count=target, target_error=error)
         left = retained[:count]
         share_left = _area(left, near) / max(area, 1e-12)
         if count and MIN_AREA_SHARE <= share_left <= MAX_AREA_SHARE and _spans(left, near, extents, max_shorter):

@@ -118,8 +118,11 @@ class ProjectShapes(UserLibrary):
 
     def show(self, folder: Path) -> None:
         """Offer the shapes in a project's folder, where it has any, instead of those of the project before."""
-        own = StoredLibrary(folder) if (folder / "library.sqlite").exists() else None
-        self._of_project, self._library = own, self.shared if own is None else CombinedLibrary([own, self.shared])
+        project_library = StoredLibrary(folder) if (folder / "library.sqlite").exists() else None
+        self._of_project, self._library = (
+            project_library,
+            self.shared if project_library is None else CombinedLibrary([project_library, self.shared]),
+        )
 
     def own(self) -> StoredLibrary:
         """Where uploads are kept; see `UserLibrary.own`."""

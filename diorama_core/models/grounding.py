@@ -116,15 +116,15 @@ class GroundingDino:
         begin, stop, end = marks
         rows = [tuple(self._tokenizer.encode(p.lower(), add_special_tokens=False).ids)[: TOKENS - 3] for p in phrases]
         made: list[Prompt] = []
-        ids, held, spans = [begin], list[int](), list[slice]()
+        ids, prompts, spans = [begin], list[int](), list[slice]()
         for index, row in enumerate(rows):
             if len(ids) + len(row) + 2 > TOKENS:
-                made.append(Prompt((*ids, end), tuple(held), tuple(spans)))
-                ids, held, spans = [begin], [], []
+                made.append(Prompt((*ids, end), tuple(prompts), tuple(spans)))
+                ids, prompts, spans = [begin], [], []
             spans.append(slice(len(ids), len(ids) + len(row)))
-            held.append(index)
+            prompts.append(index)
             ids = [*ids, *row, stop]
-        return (*made, Prompt((*ids, end), tuple(held), tuple(spans))) if held else tuple(made)
+        return (*made, Prompt((*ids, end), tuple(prompts), tuple(spans))) if prompts else tuple(made)
 
 
 def _above(

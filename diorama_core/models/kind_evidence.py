@@ -87,9 +87,9 @@ class KindEvidence:
         for start in range(0, len(boxes), _BATCH):
             crops = _crops(rgb, boxes[start : start + _BATCH])
             shapes = {"features": (len(crops), FEATURES), "logits": (len(crops), CLASSES)}
-            said = self.pool.get(self.graph).run({"crops": crops}, shapes)
-            logits.append(said["logits"].astype(np.float64))
-            features.append(said["features"].astype(np.float64))
+            outputs = self.pool.get(self.graph).run({"crops": crops}, shapes)
+            logits.append(outputs["logits"].astype(np.float64))
+            features.append(outputs["features"].astype(np.float64))
         return np.concatenate(logits), np.concatenate(features)
 
 

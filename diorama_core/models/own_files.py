@@ -116,10 +116,10 @@ class FileDetector:
         return _corners(boxes) * np.array([rgb.shape[1], rgb.shape[0]] * 2), scores
 
     def _unknown(self, shapes: list[tuple[int, ...]]) -> NetworkError:
-        told = " and ".join(" x ".join(map(str, shape)) for shape in shapes)
+        sizes = " and ".join(" x ".join(map(str, shape)) for shape in shapes)
         return NetworkError(
             self.graph,
-            f"answers {told}, which is no YOLO or DETR detector of {len(self.labels)} labels; "
+            f"answers {sizes}, which is no YOLO or DETR detector of {len(self.labels)} labels; "
             f"put its labels, one a line, in {self.graph.with_suffix('.txt').name} beside it",
         )
 

@@ -164,8 +164,8 @@ class Recogniser:
             crops, where = crops[..., ::-1], where * np.array([-1, 1, 1, 1, 1, 1], np.float32)
         inputs = {"crops": np.ascontiguousarray(crops), "geometry": where}
         shapes = {"kinds": (len(boxes), None), "forms": (len(boxes), None)}
-        said = {k: v.astype(np.float64) for k, v in self.pool.get(self.namer).run(inputs, shapes).items()}
-        return Looks(softmax(said["kinds"], axis=1), _form_probabilities(said["forms"], self.form_values))
+        outputs = {k: v.astype(np.float64) for k, v in self.pool.get(self.namer).run(inputs, shapes).items()}
+        return Looks(softmax(outputs["kinds"], axis=1), _form_probabilities(outputs["forms"], self.form_values))
 
 
 def _form_probabilities(logits: Float[np.ndarray, "n f"], form_values: tuple[int, ...]) -> Float[np.ndarray, "n f"]:

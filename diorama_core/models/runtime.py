@@ -230,8 +230,8 @@ class SessionPool:
             if session is None:
                 self._make_room(_file_bytes(path))
                 session = _load(path)
-                told = session.info
-                _LOG.info("%s: loaded on %s, %.0f MB", path.name, told.device, told.memory_bytes / 1e6)
+                info = session.info
+                _LOG.info("%s: loaded on %s, %.0f MB", path.name, info.device, info.memory_bytes / 1e6)
             self._loaded[path] = session  # the last is the one used last
             return session
 
@@ -320,8 +320,8 @@ def _load(path: Path) -> Session:
 
 def _reason(error: Exception, path: Path) -> str:
     """What onnxruntime says, without its codes and the path, which every message begins with."""
-    said = _CODES.sub("", str(error)).replace(str(path), path.name)
-    return shortened(said) or type(error).__name__
+    message = _CODES.sub("", str(error)).replace(str(path), path.name)
+    return shortened(message) or type(error).__name__
 
 
 def _session(path: Path) -> tuple[Any, str]:

@@ -67,8 +67,8 @@ class Check:
 
 def default_folder() -> Path:
     """DIORAMA_MODELS; else below HF_HOME where that is set; else in Diorama's own cache."""
-    if own := os.environ.get("DIORAMA_MODELS"):
-        return Path(own).expanduser()
+    if folder := os.environ.get("DIORAMA_MODELS"):
+        return Path(folder).expanduser()
     if hub := os.environ.get("HF_HOME"):
         return Path(hub).expanduser() / "diorama"
     if cache := os.environ.get("DIORAMA_CACHE"):
@@ -290,8 +290,8 @@ def _is_about(size: int, expected: int | None) -> bool:
 
 def _why_nothing(source: Path, missing: Sequence[Network]) -> str:
     """What is wrong with a folder that gave nothing."""
-    there = {p.name for p in _files(source)}
-    named = [(n, f) for n in missing for f in n.files if Path(f.path).name in there]
+    names = {p.name for p in _files(source)}
+    named = [(n, f) for n in missing for f in n.files if Path(f.path).name in names]
     unsure = [(n, Path(f.path).name) for n, f in named if not f.sha256]
     if unsure:
         listed = ", ".join(dict.fromkeys(n.id for n, _ in unsure))

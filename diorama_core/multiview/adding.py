@@ -113,26 +113,26 @@ def with_photo(
     read = read_photo(PosedInputs(new.inputs, new.camera), choose(new.inputs), progress.part(0.0, 0.15))
     if not read.objects:
         raise InputError(f"nothing is marked in {new.name} and nothing was found; draw a box around each object first")
-    own, others = said_alone(read), _known_photos(known, choose, progress.part(0.15, 0.3))
+    new_photo, others = said_alone(read), _known_photos(known, choose, progress.part(0.15, 0.3))
     sightings = {o.id: _boxes_of(o.id, others) for o in scene.objects}
     objects = [o for o in scene.objects if not o.hidden]
     boxes = [(name, box) for name, at in new.seen if (box := _same(at, read)) is not None]
     given = {box: o for o in objects for name, box in boxes if name == o.id}
     rest = [o for o in objects if o not in given.values()]
-    claimed = given | _claimed(rest, sightings, [photo for _, _, photo in others], own, movable, set(given))
+    claimed = given | _claimed(rest, sightings, [photo for _, _, photo in others], new_photo, movable, set(given))
     progress.report(0.35, "joining objects")
     if len(others) == 1:
         pairs = [(sightings[item.id][0][1], box) for box, item in claimed.items() if sightings[item.id]]
-        read, own = _at_likeliest_distance(read, own, others[0][2], pairs)
-    photos = (*(photo for _, _, photo in others), own)
+        read, new_photo = _at_likeliest_distance(read, new_photo, others[0][2], pairs)
+    photos = (*(photo for _, _, photo in others), new_photo)
     scene = _with_fitted(scene, {box: o for box, o in claimed.items() if o.id in movable}, sightings, photos, movable)
     shares = {
         box: share
         for box, item in claimed.items()
-        if item.id in changeable and (share := _share_of_new(sightings[item.id], others, own, box)) is not None
+        if item.id in changeable and (share := _share_of_new(sightings[item.id], others, new_photo, box)) is not None
     }
     room = _room_of(scene, read) if measured_room else None
-    scene, names, textures = _with_new(scene, read, own, claimed, shares, library, progress.part(0.4, 0.8), room)
+    scene, names, textures = _with_new(scene, read, new_photo, claimed, shares, library, progress.part(0.4, 0.8), room)
     ids = {**{box: item.id for box, item in claimed.items()}, **names}
     if names and not measured_room:
         scene = containing_room(scene)
@@ -211,7 +211,7 @@ def _hangs(item: SceneObject, scene: Scene) -> bool:
 
 def _at_likeliest_distance(
     read: ReadPhoto,
-    own: RoomPhoto,
+    new_photo: RoomPhoto,
     known: RoomPhoto,
     pairs: Sequence[tuple[int, int]],
     settings: JoiningSettings = SETTINGS,
@@ -222,13 +222,13 @@ def _at_likeliest_distance(
 
     Args:
         read: the new photo.
-        own: what it says by itself.
+        new_photo: what it says by itself.
         known: the known photo.
         pairs: boxes of the known and of the new photo that are of one object.
         settings: numbers to work with.
     """
     if len(pairs) < settings.min_pairs:
-        return read, own
+        return read, new_photo
     eye = known.boxes.camera.position
 
     def at(factor: float) -> tuple[ReadPhoto, RoomPhoto]:
@@ -277,7 +277,7 @@ def _ids_of(photo: FurtherPhoto, read: ReadPhoto) -> dict[int, str]:
 def _share_of_new(
     sightings: Sequence[tuple[int, int]],
     others: Sequence[tuple[FurtherPhoto, ReadPhoto, RoomPhoto]],
-    own: RoomPhoto,
+    new_photo: RoomPhoto,
     box: int,
     settings: JoiningSettings = SETTINGS,
 ) -> float | None:
@@ -288,7 +288,7 @@ def _share_of_new(
     if not sightings:
         return 1.0
     known = max((shown(others[number][2], index) for number, index in sightings), default=0.0)
-    new = shown(own, box)
+    new = shown(new_photo, box)
     return new / (new + known) if known > 0.0 and new > settings.clearly_better * known else None
 
 
@@ -296,19 +296,19 @@ def _claimed(
     objects: Sequence[SceneObject],
     sightings: Mapping[str, tuple[tuple[int, int], ...]],
     others: Sequence[RoomPhoto],
-    own: RoomPhoto,
+    new_photo: RoomPhoto,
     movable: frozenset[str],
     given: Collection[int],
 ) -> dict[int, SceneObject]:
     """By box of the new photo, the object of the scene that it shows; not for boxes of which that is given."""
-    shared = np.zeros((len(objects), len(own.alone)))
+    shared = np.zeros((len(objects), len(new_photo.alone)))
     for k, item in enumerate(objects):
         seen = sightings[item.id]
         only = (others[seen[0][0]], seen[0][1]) if len(seen) == 1 and item.id in movable else None
         cuboid = JointCuboid(_middle(item), item.pose.yaw_rad, item.size_m, 0.0)
-        for box, one in enumerate(own.alone):
+        for box, one in enumerate(new_photo.alone):
             if box not in given and broad(item.category) == broad(one.kind.name):
-                shared[k, box] = overlap(cuboid, only, own, box)
+                shared[k, box] = overlap(cuboid, only, new_photo, box)
     return {box: objects[k] for box, k in claims(shared).items()}
 
 
@@ -320,7 +320,7 @@ def _middle(item: SceneObject) -> np.ndarray:
 def _with_new(
     scene: Scene,
     read: ReadPhoto,
-    own: RoomPhoto,
+    new_photo: RoomPhoto,
     claimed: Mapping[int, SceneObject],
     shares: Mapping[int, float],
     library: ShapeLibrary,
@@ -332,7 +332,7 @@ def _with_new(
     Args:
         scene: as it is.
         read: the new photo.
-        own: what it says by itself.
+        new_photo: what it says by itself.
         claimed: objects of the scene by box.
         shares: how much the photo counts for those that it shows better, by box.
         library: where shapes come from.
@@ -346,31 +346,31 @@ def _with_new(
     if not left and not shares:
         return scene, {}, {}
     there_now = {box: scene.object(item.id) for box, item in claimed.items()}
-    tracks = [_track(k, one, there_now.get(k)) for k, one in enumerate(own.alone)]
+    tracks = [_track(k, one, there_now.get(k)) for k, one in enumerate(new_photo.alone)]
     built = built_alone(read, 0, tracks, library, progress, room=room)
-    there = moved_to_room(built.scene, read.T_room_photo)
+    scene_in_room = moved_to_room(built.scene, read.T_room_photo)
     ids: dict[str, str] = {track_name(k): item.id for k, item in claimed.items()}
     names: dict[int, str] = {}
     textures: dict[str, UInt8[np.ndarray, "_ _ 3"]] = {}
     for k in left:
-        if not there.has_object(track_name(k)):
+        if not scene_in_room.has_object(track_name(k)):
             continue  # nothing of the library is like it, or it is an open doorway
-        item = there.object(track_name(k))
+        item = scene_in_room.object(track_name(k))
         names[k] = ids[track_name(k)] = fresh_id(scene, item.category)
         # The boxes and masks of objects are those of the scene's own photo.
         scene = replace(scene, objects=(*scene.objects, replace(item, id=names[k], box_px=None, mask_id=None)))
         used = [m.texture for m in item.photo_materials if m.texture is not None and m.texture in built.textures]
         textures |= {name: built.textures[name] for name in used}
     for k, share in shares.items():
-        if there.has_object(track_name(k)):
-            item = better_seen(there_now[k], there.object(track_name(k)), share)
+        if scene_in_room.has_object(track_name(k)):
+            item = better_seen(there_now[k], scene_in_room.object(track_name(k)), share)
             scene = replace(scene, objects=tuple(item if o.id == item.id else o for o in scene.objects))
             used = [m.texture for m in item.photo_materials if m.texture is not None and m.texture in built.textures]
             textures |= {name: built.textures[name] for name in used}
-    edges = [there.support_of(track_name(k)) for k in names]
-    held = [_held(edge, ids, there, scene) for edge in edges if edge is not None]
+    edges = [scene_in_room.support_of(track_name(k)) for k in names]
+    new_edges = [_held(edge, ids, scene_in_room, scene) for edge in edges if edge is not None]
     known = {o.id for o in scene.objects} | {p.id for p in scene.architecture.planes}
-    supports = (*scene.supports, *(e for e in held if e.parent in known))
+    supports = (*scene.supports, *(e for e in new_edges if e.parent in known))
     return replace(scene, supports=acyclic(supports)), names, textures
 
 
@@ -382,6 +382,6 @@ def _track(number: int, one: Sighted, item: SceneObject | None) -> Track:
     return Track(((0, number),), category(item.category), cuboid)
 
 
-def _held(edge: Support, ids: Mapping[str, str], there: Scene, scene: Scene) -> Support:
-    edge = edge_in_room(edge, there, scene.architecture)
+def _held(edge: Support, ids: Mapping[str, str], scene_in_room: Scene, scene: Scene) -> Support:
+    edge = edge_in_room(edge, scene_in_room, scene.architecture)
     return replace(edge, child=ids[edge.child], parent=ids.get(edge.parent, edge.parent))

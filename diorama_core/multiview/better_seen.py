@@ -10,30 +10,30 @@ from diorama_core.scene.types import Candidate, SceneObject
 
 
 def better_seen(
-    item: SceneObject, there: SceneObject, share: float, settings: JoiningSettings = SETTINGS
+    item: SceneObject, present: SceneObject, share: float, settings: JoiningSettings = SETTINGS
 ) -> SceneObject:
     """The object with its shape by all photos, and the colours that go with it.
 
     Args:
         item: as the photos so far have it.
-        there: as the new photo alone has it, in the same place.
+        present: as the new photo alone has it, in the same place.
         share: how much the new photo counts, 0 to 1; those so far count for the rest.
         settings: numbers to work with.
     """
-    candidates = joint_candidates(item.candidates, there.candidates, share, settings)
+    candidates = joint_candidates(item.candidates, present.candidates, share, settings)
     if not candidates:
         return item
     best = candidates[0]
-    alike = replace(item, candidates=candidates, confidence=max(item.confidence, there.confidence))
-    if best.shape_id == there.shape_id:
+    alike = replace(item, candidates=candidates, confidence=max(item.confidence, present.confidence))
+    if best.shape_id == present.shape_id:
         return replace(
             alike,
-            category=there.category,
+            category=present.category,
             shape_id=best.shape_id,
             shape_size_m=best.shape_size_m,
-            pose=there.pose,
-            colour=there.colour,
-            photo_materials=there.photo_materials,
+            pose=present.pose,
+            colour=present.colour,
+            photo_materials=present.photo_materials,
         )
     if best.shape_id == item.shape_id:
         return alike
@@ -43,7 +43,7 @@ def better_seen(
         shape_id=best.shape_id,
         shape_size_m=best.shape_size_m,
         pose=best.pose,
-        colour=there.colour if there.colour is not None else item.colour,
+        colour=present.colour if present.colour is not None else item.colour,
         photo_materials=(),
     )
 

@@ -94,7 +94,7 @@ class FoundCamera:
 
 
 def camera_in_room(
-    things: Sequence[MeasuredThing],
+    measured: Sequence[MeasuredThing],
     floor: Polygon,
     estimate: CameraEstimate,
     boxes: BoxObservations,
@@ -106,7 +106,7 @@ def camera_in_room(
     """The camera from which the things of a room cover the boxes of a photo; None where none does.
 
     Args:
-        things: with their places.
+        measured: with their places.
         floor: seen from above.
         estimate: gravity and intrinsics, as the photo tells them.
         boxes: marked in the photo.
@@ -115,9 +115,9 @@ def camera_in_room(
         settings: numbers to work with.
     """
     progress = progress or Progress()
-    if min(len(things), len(boxes)) < settings.min_same:
+    if min(len(measured), len(boxes)) < settings.min_same:
         return None
-    search = _Search(things, boxes, estimate.best, focal_known, settings)
+    search = _Search(measured, boxes, estimate.best, focal_known, settings)
     finalists = search.finalists(floor, progress)
     cameras = []
     for number, camera in enumerate(finalists):
@@ -132,7 +132,7 @@ class _Search:
 
     def __init__(
         self,
-        things: Sequence[MeasuredThing],
+        measured: Sequence[MeasuredThing],
         boxes: BoxObservations,
         reading: CameraHypothesis,
         focal_known: bool,
@@ -143,16 +143,16 @@ class _Search:
         self._focal_sigma = settings.given_focal_log_sigma if focal_known else settings.focal_log_sigma
         self._R_level = reading.R_world_camera
         self._corners = cuboid_corners(
-            np.array([t.centre for t in things]),
-            np.array([t.yaw_rad for t in things]),
-            np.array([t.size_m for t in things]),
+            np.array([t.centre for t in measured]),
+            np.array([t.yaw_rad for t in measured]),
+            np.array([t.size_m for t in measured]),
         )
-        kinds = [frozenset(broad(kind) for kind in t.kinds) for t in things]
+        kinds = [frozenset(broad(kind) for kind in t.kinds) for t in measured]
         same = np.array([[broad(c.name) in of_thing for c in boxes.categories] for of_thing in kinds])
         nameless = np.array([c is UNKNOWN for c in boxes.categories])
         self._could_be_met = int(same.any(axis=0).sum())
         self._weight = np.where(same, 1.0, np.where(nameless, settings.nameless, 0.0))
-        self._things = things
+        self._things = measured
         extent = np.tile(boxes.box_px[:, 2:] - boxes.box_px[:, :2], 2)
         self._sigma = np.hypot(boxes.edge_sigma_px, settings.cuboid_sigma * extent)
         self._short = np.array([boxes.hidden(i) for i in range(len(boxes))]).reshape(-1, 4) | boxes.truncated
@@ -260,7 +260,7 @@ class _Search:
 
     def _refined(self, camera: Camera, pairs: Sequence[tuple[int, int]]) -> tuple[Camera, float]:
         """Least squares over turn, place and focal length, robust against boxes that are of something else."""
-        things, boxes = (np.array(side) for side in zip(*pairs, strict=True))
+        cuboids, boxes = (np.array(side) for side in zip(*pairs, strict=True))
         seen, sigma, short = self._boxes.box_px[boxes], self._sigma[boxes], self._short[boxes]
         outward = np.array([-1.0, -1.0, 1.0, 1.0])
 
@@ -272,15 +272,15 @@ class _Search:
             return Camera(replace(k, fx=k.fx * factor, fy=k.fy * factor), T)
 
         def off(unknowns: Float[np.ndarray, "7"]) -> Float[np.ndarray, "r"]:
-            there = moved(unknowns)
-            bounds, _ = self._bounds(there, things)
+            moved_camera = moved(unknowns)
+            bounds, _ = self._bounds(moved_camera, cuboids)
             beyond = (bounds - seen) * outward / sigma
             edges = np.where(short, np.minimum(beyond, 0.0), beyond)
-            tilt = (there.T_world_camera[2, :3] - self._R_level[2]) / self._settings.up_sigma
-            turn = there.T_world_camera[:3, :3] @ self._R_level.T
+            tilt = (moved_camera.T_world_camera[2, :3] - self._R_level[2]) / self._settings.up_sigma
+            turn = moved_camera.T_world_camera[:3, :3] @ self._R_level.T
             # 0 at every quarter turn.
             heading = np.sin(2 * np.arctan2(turn[1, 0], turn[0, 0])) / 2 / self._settings.heading_sigma
-            height = (there.position[2] - self._settings.height_m) / self._settings.height_sigma_m
+            height = (moved_camera.position[2] - self._settings.height_m) / self._settings.height_sigma_m
             return np.concatenate([edges.ravel(), tilt, [heading, height, unknowns[6] / self._focal_sigma]])
 
         start = np.zeros(7)

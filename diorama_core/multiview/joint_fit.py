@@ -222,11 +222,11 @@ def _minimised(
         normal = normal + np.eye(UNKNOWNS) * (damping[:, None] * (diagonal + 1e-2) + fixed)[:, None]
         step = -np.linalg.solve(normal, gradient[..., None])[..., 0]
         step *= np.minimum(1.0, 1.0 / np.maximum(np.abs(step / LONGEST).max(axis=1, keepdims=True), 1e-12))
-        there = problem.bounded(unknowns + step)
-        reached = (problem(there) ** 2).sum(axis=1)
+        trial = problem.bounded(unknowns + step)
+        reached = (problem(trial) ** 2).sum(axis=1)
         better = reached < cost
         settled = (np.abs(cost - reached) < 1e-3).all()
-        unknowns = np.where(better[:, None], there, unknowns)
+        unknowns = np.where(better[:, None], trial, unknowns)
         cost = np.where(better, reached, cost)
         damping = np.clip(np.where(better, damping * 0.3, damping * 5.0), 1e-6, 1e6)
         if settled:

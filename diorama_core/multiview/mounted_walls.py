@@ -115,8 +115,8 @@ def _gap(
 ) -> float | None:
     """From a wall into the room to the back of a thing that hangs on it; None where it hangs elsewhere."""
     gaps = {w.id: gap for w in room.by_role("wall") if (gap := _distance(w, thing, settings)) is not None}
-    own = gaps.get(wall.id)
-    return own if own is not None and abs(own) == min(map(abs, gaps.values())) else None
+    gap_m = gaps.get(wall.id)
+    return gap_m if gap_m is not None and abs(gap_m) == min(map(abs, gaps.values())) else None
 
 
 def _distance(wall: Plane, thing: JointCuboid, settings: MountedWallsSettings = SETTINGS) -> float | None:

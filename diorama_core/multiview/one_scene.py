@@ -33,9 +33,10 @@ def edge_in_room(edge: Support, scene: Scene, room: Architecture) -> Support:
     """An edge whose plane is the first photo's plane of the same role that is nearest."""
     if not scene.has_plane(edge.parent):
         return replace(edge, adheres_to=())
-    own = scene.plane(edge.parent)
+    plane = scene.plane(edge.parent)
     alike = [
-        (abs(p.offset - own.offset) + 10 * (1 - float(p.normal @ own.normal)), p.id) for p in room.by_role(own.role)
+        (abs(p.offset - plane.offset) + 10 * (1 - float(p.normal @ plane.normal)), p.id)
+        for p in room.by_role(plane.role)
     ]
     return replace(edge, parent=min(alike)[1] if alike else "", adheres_to=())
 
@@ -108,6 +109,6 @@ def in_proportion(
     known = 1.0 / np.maximum(log_sigma, 1e-3) ** 2
     weight = 1.0 / (np.maximum(log_sigma, 1e-3) ** 2 + settings.proportion_sigma**2)
     scale = float(weight @ (measured - shape) / weight.sum())
-    own = 1.0 / settings.proportion_sigma**2
-    extents: Float[np.ndarray, "3"] = np.exp((known * measured + own * (shape + scale)) / (known + own))
+    precision = 1.0 / settings.proportion_sigma**2
+    extents: Float[np.ndarray, "3"] = np.exp((known * measured + precision * (shape + scale)) / (known + precision))
     return extents

@@ -65,9 +65,9 @@ def straightened_by_lines(inputs: Inputs, k1: float | None = None) -> tuple[Inpu
         return inputs, ()
     camera = inputs.intrinsics
     focal = camera.fx if camera is not None else inputs.photo.exif_focal_px
-    said = "" if focal is None else f" (k1 {lens.k[0] * (focal / k.fx) ** 2:.3f})"
+    distortion = "" if focal is None else f" (k1 {lens.k[0] * (focal / k.fx) ** 2:.3f})"
     marked = replace(straight, photo=replace(straight.photo, straightened=lens.k[0]))
-    return marked, (f"the lens bends straight lines{said}; the photo was straightened by them",)
+    return marked, (f"the lens bends straight lines{distortion}; the photo was straightened by them",)
 
 
 def box_before_straightening(box: LabelledBox, photo: Photo) -> LabelledBox:
@@ -109,8 +109,8 @@ def _edges(grey: UInt8[np.ndarray, "h w"], settings: PlumbLineSettings) -> Itera
     least = settings.min_length * float(np.hypot(*grey.shape))
     for number in range(_BINS):
         off = (across - number * np.pi / _BINS + np.pi / 2) % np.pi - np.pi / 2
-        own = (edges & (np.abs(off) < _HALF_BIN_RAD)).astype(np.uint8)
-        _, labels, stats, _ = cv2.connectedComponentsWithStats(own, connectivity=8)
+        along = (edges & (np.abs(off) < _HALF_BIN_RAD)).astype(np.uint8)
+        _, labels, stats, _ = cv2.connectedComponentsWithStats(along, connectivity=8)
         spans = np.hypot(stats[1:, cv2.CC_STAT_WIDTH], stats[1:, cv2.CC_STAT_HEIGHT])
         for label in 1 + np.flatnonzero(spans >= least):
             x, y, w, h = stats[label, :4]

@@ -70,10 +70,10 @@ def with_photos_again(
         try:
             if before is None or scene.camera is None:
                 raise InputError("the scene has no camera")
-            there = replace(photo, camera=carried(photo.camera, before, scene.camera), seen=())
+            carried_photo = replace(photo, camera=carried(photo.camera, before, scene.camera), seen=())
             known = photos_of_scene(scene, inputs, done)
             ids = frozenset(o.id for o in scene.objects) | {p.id for p in scene.architecture.planes}
-            added = with_photo(scene, known, there, ids, ids, library, choose, layout, part)
+            added = with_photo(scene, known, carried_photo, ids, ids, library, choose, layout, part)
         except InputError:
             left_out.append(photo.name)
             done.append(replace(photo, camera=None, seen=()))

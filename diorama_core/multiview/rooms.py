@@ -321,8 +321,8 @@ def _room_of_all(
     hanging = [t for t in tracks if _hangs(t, alone)]
     mounted = [t.cuboid for t in hanging if seen_whole(t.sightings(alone))]
     # A wall that another photo looks past stays where something hangs on it.
-    own = (room_alone(r, index, _tracks_alone(index, alone[index])) for index, r in enumerate(read))
-    whole_room = room_holding(joint_room(seen, standing), own, [t.cuboid for t in hanging])
+    rooms_alone = (room_alone(r, index, _tracks_alone(index, alone[index])) for index, r in enumerate(read))
+    whole_room = room_holding(joint_room(seen, standing), rooms_alone, [t.cuboid for t in hanging])
     room, passages = with_open_doorways(walls_at_mounted(whole_room, mounted), seen)
     worlds = [moved_to_room(Scene(architecture=room), np.linalg.inv(r.T_room_photo)).architecture for r in read]
     return tuple(GivenRoom(world, marks) for world, marks in zip(worlds, passages, strict=True))
@@ -407,7 +407,7 @@ def _merged(
         if edge is not None:
             supports.append(edge_in_room(edge, scenes[source], main.architecture))
     known = {o.id for o in objects} | {p.id for p in main.architecture.planes}
-    held = tuple(s for s in supports if s.parent in known)
-    scene = containing_room(replace(main, objects=tuple(objects), supports=acyclic(held)))
+    edges = tuple(s for s in supports if s.parent in known)
+    scene = containing_room(replace(main, objects=tuple(objects), supports=acyclic(edges)))
     check_scene(scene)
     return scene, textures

@@ -49,7 +49,7 @@ def arrangement_count(observed: Scene, alike: Alike | None = None) -> int:
 
 
 def plausible_shapes(
-    members: Sequence[SceneObject], alike: Alike | None = None, *, own: str | None = None
+    members: Sequence[SceneObject], alike: Alike | None = None, *, chosen_id: str | None = None
 ) -> tuple[str, ...]:
     """The shape that a set has, then those that its members together find likely, best first, each of another form.
 
@@ -58,20 +58,20 @@ def plausible_shapes(
     Args:
         members: The objects of the set.
         alike: Tells shapes of one form; None takes all shapes for different.
-        own: What comes first; the first member's shape by default.
+        chosen_id: What comes first; the first member's shape by default.
     """
-    own = members[0].shape_id if own is None else own
+    chosen_id = members[0].shape_id if chosen_id is None else chosen_id
     totals: dict[str, float] = {}
     for item in members:
         best = max((c.score for c in item.candidates), default=0.0)
         for candidate in {c.shape_id: c for c in item.candidates}.values():
             share = candidate.score / best if best > 0 else 0.0
             totals[candidate.shape_id] = totals.get(candidate.shape_id, 0.0) + share / len(members)
-    others = sorted((s for s in totals if s != own), key=lambda s: (-totals[s], s))
+    others = sorted((s for s in totals if s != chosen_id), key=lambda s: (-totals[s], s))
     likely = [s for s in others if totals[s] >= MIN_PLAUSIBLE]
     if alike is None or any(item.colour is None for item in members):
-        return (own, *likely)
-    retained = [own]
+        return (chosen_id, *likely)
+    retained = [chosen_id]
     for shape_id in likely:
         if all(alike(shape_id, k) < SAME_FORM for k in retained):
             retained.append(shape_id)
@@ -89,9 +89,9 @@ def _sets(scene: Scene) -> list[list[SceneObject]]:
 
 def _swapped(scene: Scene, item: SceneObject, shape_id: str, members: Sequence[SceneObject]) -> Scene:
     """The object with another shape: in that candidate's fitted pose, or at its own place without one."""
-    own = _candidate(item, shape_id)
-    if own is not None:
-        return edits.swap(scene, item.id, own)
+    candidate = _candidate(item, shape_id)
+    if candidate is not None:
+        return edits.swap(scene, item.id, candidate)
     lent = next(c for c in (_candidate(m, shape_id) for m in members) if c is not None)
     return edits.swap(scene, item.id, lent, keep_pose=True)
 

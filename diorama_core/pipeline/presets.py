@@ -165,10 +165,10 @@ def detection_stage(store: ModelStore, choice: NetworkChoice | None = None) -> D
         return FileDetection(FileDetector.of(choice.detector_file))
     detectors = (choice or NetworkChoice()).detectors()
     detector = None if detectors == (OWN_DETECTOR,) else _best(store, detectors, network_stages.detector)
-    own = own_detection()
-    if isinstance(detector, EverydayDetection) and own is not None and (choice is None or choice.detector is None):
-        return JoinedDetection(detector, own)
-    return detector or own
+    embedded = own_detection()
+    if isinstance(detector, EverydayDetection) and embedded is not None and (choice is None or choice.detector is None):
+        return JoinedDetection(detector, embedded)
+    return detector or embedded
 
 
 def own_detection(threshold: float = CONFIDENT, most: int = MOST) -> OwnDetection | None:
@@ -180,9 +180,9 @@ def detection_routes(store: ModelStore | None = None) -> Mapping[str, DetectionS
     """Every way to boxes on this machine, by name, to be compared: each detector, and the one that is used."""
     store = store or ModelStore.default()
     routes = {i: network_stages.detector(store, network(i)) for i in DETECTORS if store.has(network(i))}
-    own = own_detection(LIKELY, MOST_SHOWN)
-    if own is not None:
-        routes["own, likely"], routes["own, confident"] = own, replace(own, threshold=CONFIDENT)
+    embedded = own_detection(LIKELY, MOST_SHOWN)
+    if embedded is not None:
+        routes["own, likely"], routes["own, confident"] = embedded, replace(embedded, threshold=CONFIDENT)
     used = detection_stage(store)
     return routes if used is None else {**routes, "used": used}
 

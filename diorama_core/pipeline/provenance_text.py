@@ -56,8 +56,8 @@ def geometry_sentence(geometry: ObjectGeometry, depth: DepthSource) -> str:
 def room_sentence(estimate: ArchitectureEstimate, depth: DepthSource) -> str:
     """How the room was reconstructed, what of it was found and what was assumed."""
     source = estimate.source
-    said = f"{_room(source, _Words(depth))}{_openings(source)}"
-    return f"{said}; the furniture painted out" if source.furniture_inpainted else said
+    sentence = f"{_room(source, _Words(depth))}{_openings(source)}"
+    return f"{sentence}; the furniture painted out" if source.furniture_inpainted else sentence
 
 
 def graph_sentence(graph: SceneGraph) -> str:
@@ -69,11 +69,11 @@ def graph_sentence(graph: SceneGraph) -> str:
         return "geometry: contact, containment and usual places"
     if source.method is GraphMethod.GEOMETRY:
         return f"geometry ({asked.trouble or _no_answer(asked)})"
-    said = f"{asked.model}, {asked.replies} {'reply' if asked.replies == 1 else 'replies'}"
+    sentence = f"{asked.model}, {asked.replies} {'reply' if asked.replies == 1 else 'replies'}"
     if asked.calls:
-        said += f" ({_spent(asked)})"
+        sentence += f" ({_spent(asked)})"
     mended = f"; {source.repaired} of {len(graph.supports)} relations from geometry"
-    return said + mended if source.repaired else said
+    return sentence + mended if source.repaired else sentence
 
 
 class _Words:
@@ -148,5 +148,5 @@ def _no_answer(asked: LanguageModelUse) -> str:
 
 def _spent(asked: LanguageModelUse) -> str:
     """For example "3 calls, 4120 tokens, 0.021 at your prices"."""
-    said = f"{asked.calls} call{'s' if asked.calls != 1 else ''}, {asked.tokens} tokens"
-    return said if asked.cost is None else f"{said}, {asked.cost:.3f} at your prices"
+    sentence = f"{asked.calls} call{'s' if asked.calls != 1 else ''}, {asked.tokens} tokens"
+    return sentence if asked.cost is None else f"{sentence}, {asked.cost:.3f} at your prices"

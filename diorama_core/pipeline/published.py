@@ -45,8 +45,11 @@ def acdc_stages(base: Stages, has_depth: bool, library: ShapeLibrary) -> Stages:
 
 def with_room(stages: Stages, room: ArchitectureStage) -> Stages:
     """`stages` with another room solver; where furniture is painted out first, it still is."""
-    own = stages.architecture
-    return replace(stages, architecture=replace(own, room=room) if isinstance(own, EmptyRoomArchitecture) else room)
+    architecture = stages.architecture
+    return replace(
+        stages,
+        architecture=replace(architecture, room=room) if isinstance(architecture, EmptyRoomArchitecture) else room,
+    )
 
 
 def published_stages(inputs: Inputs, library: ShapeLibrary, store: ModelStore | None = None) -> Stages:

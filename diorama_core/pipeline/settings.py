@@ -43,18 +43,18 @@ def with_settings(stages: Stages, values: Mapping[str, float]) -> Stages:
 
 def _numbers(value: Any, prefix: str) -> Iterator[tuple[str, float]]:
     for f in fields(value):
-        held, name = getattr(value, f.name), f"{prefix}{f.name}"
-        if isinstance(held, (int, float)) and not isinstance(held, bool):
-            yield name, held
-        elif is_dataclass(held) and not isinstance(held, type):
-            yield from _numbers(held, f"{name}.")
+        value_of_field, name = getattr(value, f.name), f"{prefix}{f.name}"
+        if isinstance(value_of_field, (int, float)) and not isinstance(value_of_field, bool):
+            yield name, value_of_field
+        elif is_dataclass(value_of_field) and not isinstance(value_of_field, type):
+            yield from _numbers(value_of_field, f"{name}.")
 
 
 def _replaced(value: Any, names: list[str], number: float) -> Any:
     """The dataclass with another number in the field, or the field within a field, of these names."""
-    held = getattr(value, names[0])
+    current = getattr(value, names[0])
     if len(names) > 1:
-        new = _replaced(held, names[1:], number)
+        new = _replaced(current, names[1:], number)
     else:
-        new = round(number) if isinstance(held, int) else float(number)
+        new = round(number) if isinstance(current, int) else float(number)
     return replace(value, **{names[0]: new})

@@ -30,20 +30,27 @@ def agreed_ranks(
     Returns:
         For every object the same shapes with ranks relative to its best.
     """
-    relative = [{key: value - max(own.values()) for key, value in own.items()} for own in ranks]
+    relative = [
+        {key: value - max(object_ranks.values()) for key, value in object_ranks.items()} for object_ranks in ranks
+    ]
     groups = _groups(categories, relative, settings)
     agreed = []
-    for group, own, name, most in zip(groups, relative, categories, max_loss, strict=True):
+    for group, object_ranks, name, most in zip(groups, relative, categories, max_loss, strict=True):
         alike = [i for i, other in enumerate(groups) if other == group]
         weight = sum(trust[i] + 1e-3 for i in alike)
         mean = {
-            key: sum((trust[i] + 1e-3) * relative[i].get(key, settings.absent) for i in alike) / weight for key in own
+            key: sum((trust[i] + 1e-3) * relative[i].get(key, settings.absent) for i in alike) / weight
+            for key in object_ranks
         }
-        mixed = {key: settings.own_share * own[key] + (1 - settings.own_share) * mean[key] for key in own}
+        mixed = {
+            key: settings.own_share * object_ranks[key] + (1 - settings.own_share) * mean[key] for key in object_ranks
+        }
         if name in SETS:
             mixed = _with_the_set(mixed, mean, settings)
         in_sets = most == float("inf") or name in SETS
-        agreed.append(mixed if in_sets and own[max(mixed, key=lambda key: mixed[key])] >= -most else dict(own))
+        agreed.append(
+            mixed if in_sets and object_ranks[max(mixed, key=lambda key: mixed[key])] >= -most else dict(object_ranks)
+        )
     return agreed
 
 
@@ -51,10 +58,10 @@ def _with_the_set(
     mixed: Mapping[str, float], mean: Mapping[str, float], settings: PoseSearchSettings
 ) -> dict[str, float]:
     """The ranks with the set's favourite first, where it is nearly that already; the two change places."""
-    own, favourite = (max(sorted(ranks), key=ranks.__getitem__) for ranks in (mixed, mean))
-    if mixed[own] - mixed[favourite] >= settings.tie:
+    best_alone, favourite = (max(sorted(ranks), key=ranks.__getitem__) for ranks in (mixed, mean))
+    if mixed[best_alone] - mixed[favourite] >= settings.tie:
         return dict(mixed)
-    return {**mixed, favourite: mixed[own], own: mixed[favourite]}
+    return {**mixed, favourite: mixed[best_alone], best_alone: mixed[favourite]}
 
 
 def _groups(categories: Sequence[str], ranks: Sequence[Mapping[str, float]], settings: PoseSearchSettings) -> list[int]:

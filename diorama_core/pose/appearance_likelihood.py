@@ -114,19 +114,21 @@ class AppearanceLikelihood:
     def _of_colours(self, appearance: ShapeAppearance, hits: ShapeHits, exact: bool) -> Float[np.ndarray, "p"]:
         """How many cells have another colour than the light explains; 0 for shapes of one colour."""
         light, variance = _light_of(appearance, self.settings)
-        own = np.flatnonzero(self._own)
-        if not len(light) or not len(own) or (light.std(axis=0) < self.settings.one_colour).all():
+        indices = np.flatnonzero(self._own)
+        if not len(light) or not len(indices) or (light.std(axis=0) < self.settings.one_colour).all():
             return np.zeros(len(hits.poses))
         if appearance.opaque_caster is appearance.caster:
-            hits = hits.of_rays(own)
+            hits = hits.of_rays(indices)
         else:
-            hits = appearance.opaque_caster.cast(self.seen.origin_world, self.seen.directions_world[own], hits.poses)
+            hits = appearance.opaque_caster.cast(
+                self.seen.origin_world, self.seen.directions_world[indices], hits.poses
+            )
         face = np.where(hits.covered, hits.triangles, 0)
         fit = _LightFit(hits.normals_world.astype(np.float32), light[face], variance[face], self.settings)
-        strength, tint = fit.fitted(self.log_rgb[own], hits.covered)
+        strength, tint = fit.fitted(self.log_rgb[indices], hits.covered)
         lit = fit.lit(strength, tint)
         off = np.full(face.shape, np.inf, np.float32)
-        for beside in self._neighbours[: None if exact else 1, own]:
+        for beside in self._neighbours[: None if exact else 1, indices]:
             cost = fit.disagreement(self.log_rgb[beside] - lit)
             off = np.minimum(off, np.where(self._own[beside], cost, np.inf))
         cost = np.where(hits.covered, _softly(off / self.settings.half_colour, 2), 0.0).sum(axis=1)
@@ -136,7 +138,7 @@ class AppearanceLikelihood:
         unlikely = (tint**2).sum(axis=1) / self.settings.tint_sigma**2 + (strength[:, 1:] ** 2).sum(
             axis=1
         ) / self.settings.slope_sigma**2
-        return share * len(own) + unlikely / (2 * self.settings.robust)
+        return share * len(indices) + unlikely / (2 * self.settings.robust)
 
 
 def cells_for(box: tuple[float, float, float, float], settings: PoseEvidenceSettings = SETTINGS.evidence) -> int:

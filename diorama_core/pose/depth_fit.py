@@ -179,16 +179,16 @@ class DepthFit:
         low, high = self.points.span(rotations)
         eye = np.einsum("pji,j->pi", rotations, self.camera.position)
         spans = np.maximum(high - low, 1e-3)
-        own = self.limits.shape_size_m
+        shape_size_m = self.limits.shape_size_m
         stands = self.contact.anchor.axis_world[2] > 0.5
         sure = self.contact.sigma_m <= self.settings.sure_contact_m
         whole = (self.outline is not None and self.outline.height_seen) or (stands and sure and self._top_seen)
         bottom = self.contact.anchor.point_world[2]
         height = np.maximum(high[:, 2] - bottom, spans[:, 2]) if stands and sure else spans[:, 2]
-        growth = np.clip(height / max(float(own[2]), 1e-3), 0.5, 2.0) if whole else np.ones(len(rotations))
-        wanted = np.where(self.limits.thin, own, np.maximum(own * growth[:, None], spans))
+        growth = np.clip(height / max(float(shape_size_m[2]), 1e-3), 0.5, 2.0) if whole else np.ones(len(rotations))
+        wanted = np.where(self.limits.thin, shape_size_m, np.maximum(shape_size_m * growth[:, None], spans))
         scale = self.limits.scale_for(wanted)
-        size = scale * own
+        size = scale * shape_size_m
         from_high = (eye > 0.5 * (low + high)) ^ np.array([*far, False])
         centre = np.where(from_high, high - size / 2, low + size / 2)
         position = np.einsum("pij,pj->pi", rotations, centre)
@@ -290,9 +290,9 @@ class DepthFit:
         """Contact with what holds the object, the shape's own proportions and size, and the starting yaw."""
         count = len(poses)
         axis, sigma = self.contact.anchor.axis_world, self.contact.sigma_m
-        own = self.limits.shape_size_m
-        lever = 0.5 * np.abs(np.einsum("pij,i->pj", poses.R, axis)) * poses.scale * own
-        gap = self.contact.gap_m(poses, own)
+        shape_size_m = self.limits.shape_size_m
+        lever = 0.5 * np.abs(np.einsum("pij,i->pj", poses.R, axis)) * poses.scale * shape_size_m
+        gap = self.contact.gap_m(poses, shape_size_m)
         J, r = np.zeros((count, 6, PARAMETERS)), np.zeros((count, 6))
         J[:, 0, :3], J[:, 0, 4:] = axis, -lever
         J[:, 0], r[:, 0] = J[:, 0] / sigma, gap / sigma

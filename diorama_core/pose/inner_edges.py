@@ -85,9 +85,9 @@ def _told(
 ) -> Float[np.ndarray, "m"]:
     """The edges inside, both directions one after the other, of zero mean and unit length."""
     blurred = cv2.GaussianBlur(np.sqrt(edges), (0, 0), settings.blur)
-    told = blurred[inside].astype(np.float64)
-    if not len(told):
+    residuals = blurred[inside].astype(np.float64)
+    if not len(residuals):
         return np.zeros(0)
-    told = (told - told.mean(axis=0)).T.reshape(-1)
-    length = float(np.linalg.norm(told))
-    return told / length if length > settings.nothing else np.zeros_like(told)
+    residuals = (residuals - residuals.mean(axis=0)).T.reshape(-1)
+    length = float(np.linalg.norm(residuals))
+    return residuals / length if length > settings.nothing else np.zeros_like(residuals)

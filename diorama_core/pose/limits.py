@@ -64,15 +64,15 @@ class SizeLimits:
             sides_log: largest deviation of the logarithm of a side's scale from the mean of both sides'.
             settings: of the search.
         """
-        own = np.asarray(shape_size_m, dtype=np.float64)
-        least, most = _category_range(category_name, observed_m, own, settings)
+        size_m = np.asarray(shape_size_m, dtype=np.float64)
+        least, most = _category_range(category_name, observed_m, size_m, settings)
         if measured:
             most[2] = max(most[2], observed_m[2])
         elif category_name in OPENING_CATEGORIES:  # its frame is in the wall: only what stands out is seen
             least[0] = most[0] = STANDS_OUT_M
         flat = category_name in FLAT and not measured  # measured proportions tell which frame it is
         stretch = _STRETCH_FLAT if flat else _STRETCH_BOXY if category_name in BOXY else _STRETCH_SHAPED
-        return cls(own, least, most, stretch, sides_log, flat, settings)
+        return cls(size_m, least, most, stretch, sides_log, flat, settings)
 
     @cached_property
     def thin(self) -> Bool[np.ndarray, "3"]:

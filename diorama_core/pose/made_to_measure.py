@@ -136,9 +136,10 @@ class MadeToMeasure:
             return None
         before = [e.error(ShapeCaster(self.library.mesh(placed[i].shape_id)), placed[i].pose) for i, e in sure.items()]
         caster, alone = ShapeCaster(self.library.mesh(best.shape_id)), len(members) == 1
-        own, size = {m.object_id: m.candidates[0].pose for m in members}, np.asarray(best.shape_size_m)
+        poses_of_members, size = {m.object_id: m.candidates[0].pose for m in members}, np.asarray(best.shape_size_m)
         poses = [
-            fitted_pose(e, caster, own[i], size, resize=alone, settings=self.settings.shapes) for i, e in sure.items()
+            fitted_pose(e, caster, poses_of_members[i], size, resize=alone, settings=self.settings.shapes)
+            for i, e in sure.items()
         ]
         profile = turned(self.library, best.shape_id, list(sure.values()), poses, float(np.mean(before)), self.settings)
         if profile is None:
@@ -162,12 +163,12 @@ class MadeToMeasure:
             start: Where the fit begins; its scale is the retrieved shape's.
             resize: Whether its size may change.
         """
-        shape_id, own, pose = best.shape_id, np.asarray(best.shape_size_m), start
-        size, before = own, best.pose.scale
+        shape_id, size_m, pose = best.shape_id, np.asarray(best.shape_size_m), start
+        size, before = size_m, best.pose.scale
         if changes:
-            size = np.round(own * start.scale, 3)
+            size = np.round(size_m * start.scale, 3)
             shape_id, pose = made_id(shape_id, size, changes), Pose(start.R_world_object, start.position, np.ones(3))
-            before = best.pose.scale * own / size
+            before = best.pose.scale * size_m / size
         if seen is not None:
             caster = ShapeCaster(self.library.mesh(shape_id))
             near = replace(COARSE if seen.has_given_mask else WIDE, scale=before)
@@ -185,7 +186,7 @@ class MadeToMeasure:
                     settings=self.settings.shapes,
                 )
         whole = size * pose.scale
-        uneven = relative_scale(whole / own) != EVEN
+        uneven = relative_scale(whole / size_m) != EVEN
         if changes is None or not (changes or uneven) or not can_be_made(best.shape_id, whole):
             return replace(best, pose=pose)
         x, y, z = (float(v) for v in np.round(whole, 3))

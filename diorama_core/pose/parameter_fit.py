@@ -98,19 +98,19 @@ class ParameterFit:
             best: The retrieved shape.
             poses: Where it stands for every object.
         """
-        own = np.asarray(best.shape_size_m)
+        size_m = np.asarray(best.shape_size_m)
         if not self._may_be_built(best.shape_id):
             return None
         retrieved = self._variant(best.shape_id)
-        as_is = self._fit(retrieved, own, self._at(retrieved, poses, best.pose.scale), best.pose.scale)
-        size = np.round(own * as_is.poses[0].scale, 3)
+        as_is = self._fit(retrieved, size_m, self._at(retrieved, poses, best.pose.scale), best.pose.scale)
+        size = np.round(size_m * as_is.poses[0].scale, 3)
         if not can_be_made(best.shape_id, size):
             return None
-        poses = [Pose(p.R_world_object, p.position, p.scale * own / size) for p in as_is.poses]
-        changes, fit = self._searched(best.shape_id, size, poses, best.pose.scale * own / size, as_is.score)
+        poses = [Pose(p.R_world_object, p.position, p.scale * size_m / size) for p in as_is.poses]
+        changes, fit = self._searched(best.shape_id, size, poses, best.pose.scale * size_m / size, as_is.score)
         if fit.score < as_is.score - self.settings.shapes.size_loss:
             return None
-        at = tuple(Pose(p.R_world_object, p.position, p.scale * size / own) for p in fit.poses)
+        at = tuple(Pose(p.R_world_object, p.position, p.scale * size / size_m) for p in fit.poses)
         return FittedParameters(changes, at)
 
     def _searched(

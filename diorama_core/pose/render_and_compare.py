@@ -308,11 +308,11 @@ class RenderAndCompare:
         """What retrieval, the picture and what holds the object say of a posed shape, where depth was measured."""
         similarity = task.fine.log_likelihood(error, poses.scale[0], tried.limits)
         stands = max(float(measured.log_likelihood(poses, tried.limits)[0]), self.settings.search.min_standing)
-        told = 0.0
+        log_likelihood = 0.0
         if task.details is not None:
             appearance = self._appearance(tried.shape)
-            told = task.details.log_likelihood(appearance, task.fine.hits(appearance.caster, poses))
-        return self.settings.search.retrieval_with_depth * tried.liked + similarity + stands + told
+            log_likelihood = task.details.log_likelihood(appearance, task.fine.hits(appearance.caster, poses))
+        return self.settings.search.retrieval_with_depth * tried.liked + similarity + stands + log_likelihood
 
 
 def _batch(pose: Pose) -> PoseBatch:

@@ -53,12 +53,12 @@ class ObjectSurface:
 
     def agreement(self, hits: ShapeHits) -> Float[np.ndarray, "p"]:
         """0 to 1: nearness of depth and of normals over the object's measured cells."""
-        told, weight = self._told, self.weight[self._told]
-        depth, covered = hits.depth_m[:, told], hits.covered[:, told]
-        off = (np.where(covered, depth, 0.0) - self.depth_m[told]) / self.tolerance_m[told]
+        is_informative, weight = self._told, self.weight[self._told]
+        depth, covered = hits.depth_m[:, is_informative], hits.covered[:, is_informative]
+        off = (np.where(covered, depth, 0.0) - self.depth_m[is_informative]) / self.tolerance_m[is_informative]
         score = np.where(covered, np.exp(-(off**2)), 0.0)
         if self.normals_share >= self.settings.min_normals_share:
-            aligned = hits.of_rays(told).normals_along(self.normals_world[told])
+            aligned = hits.of_rays(is_informative).normals_along(self.normals_world[is_informative])
             score = (1 - self.normals_share) * score + self.normals_share * np.clip(aligned, 0.0, 1.0)
         return (score @ weight) / max(float(weight.sum()), 1e-9)
 

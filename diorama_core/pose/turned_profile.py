@@ -101,8 +101,8 @@ def measured_girth(
     shares = np.clip(np.linspace(0.0, 1.0, KNOTS), settings.inset, 1.0 - settings.inset)
     heights = low + shares * (high - low)
     width = float(pose.scale[:2].mean())
-    own = np.maximum(width * profile_m(mesh, heights), 1e-4)
-    tried = RADII * float(own.max())
+    widths = np.maximum(width * profile_m(mesh, heights), 1e-4)
+    tried = RADII * float(widths.max())
     circle = np.stack([np.cos(ANGLES), np.sin(ANGLES)], axis=1)
     points = np.empty((KNOTS, len(tried), len(ANGLES), 3))
     points[..., :2] = pose.position[:2] + tried[None, :, None, None] * circle
@@ -118,7 +118,7 @@ def measured_girth(
     if not limited.any():
         return None
     knots = np.arange(KNOTS)
-    factors = np.interp(knots, knots[limited], (tried[last] / own)[limited])
+    factors = np.interp(knots, knots[limited], (tried[last] / widths)[limited])
     if np.count_nonzero(factors < MIN_PERCENT / 100.0) > settings.max_narrow:
         return None
     return tuple(int(v) for v in np.clip(np.rint(100.0 * factors), MIN_PERCENT, MAX_PERCENT))
@@ -163,10 +163,10 @@ def turned(
         measured_girth(OutlineMap(e.camera, e.seen, settings.shapes), mesh, p, settings.shapes)
         for e, p in zip(evidence, poses, strict=True)
     ]
-    told = [g for g in profiles if g is not None]
-    if not told:
+    known_profiles = [g for g in profiles if g is not None]
+    if not known_profiles:
         return None
-    girth = tuple(int(v) for v in np.rint(np.median(told, axis=0)))
+    girth = tuple(int(v) for v in np.rint(np.median(known_profiles, axis=0)))
     size = _widened(mesh, np.ptp(mesh.bounds, axis=0) * poses[0].scale, girth, settings.shapes)
     if not can_be_made(shape_id, size):
         return None
@@ -199,10 +199,10 @@ def _widened(
 ) -> Float[np.ndarray, "3"]:
     """The size with this girth of a shape that has a size without it, whole millimetres."""
     low, high = mesh.bounds[:, 2]
-    own = profile_m(
+    radii = profile_m(
         mesh, low + np.clip(np.linspace(0.0, 1.0, KNOTS), settings.inset, 1.0 - settings.inset) * (high - low)
     )
-    growth = float((own * girth).max() / (100.0 * max(float(own.max()), 1e-6)))
+    growth = float((radii * girth).max() / (100.0 * max(float(radii.max()), 1e-6)))
     width = float(size_m[:2].mean()) * growth
     return np.maximum(np.round([width, width, size_m[2]], 3), 1e-3)
 

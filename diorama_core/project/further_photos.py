@@ -121,8 +121,8 @@ def _noted(project: Project, name: str) -> dict[str, list[list[Any]]]:
 def _look(item: SceneObject) -> list[str]:
     """What a person may have chosen of an object, as text."""
     materials = [f"{m.slot}={m.texture or _colour(m.colour)}" for m in item.photo_materials]
-    own = (item.label, item.category, item.shape_id, _colour(item.colour), str(item.finish), item.material_source)
-    return [*own, *materials]
+    look = (item.label, item.category, item.shape_id, _colour(item.colour), str(item.finish), item.material_source)
+    return [*look, *materials]
 
 
 def _colour(colour: tuple[float, float, float] | None) -> str:

@@ -99,8 +99,8 @@ class Project:
     @property
     def library_name(self) -> str:
         """The library that it was built with, its own shapes included; the built-in one where none is noted."""
-        own = str(self.shapes_folder.resolve()).replace("+", ESCAPED_PLUS)
-        return "+".join(own if part == OWN_SHAPES else part for part in self._library_parts())
+        path = str(self.shapes_folder.resolve()).replace("+", ESCAPED_PLUS)
+        return "+".join(path if part == OWN_SHAPES else part for part in self._library_parts())
 
     @property
     def shared_library_name(self) -> str:

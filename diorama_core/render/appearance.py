@@ -140,8 +140,8 @@ def _cached_surfaces(
         # Caching the scene, too, keeps its id from being given to another.
         return parts, tuple(s for s in _read_parts(shown) if len(s.faces))
 
-    there = frozenset(m.texture for m in materials if m.texture in pictures)
-    return _CACHE.get((id(parts), paint, materials, there, scale), read)[1]
+    present = frozenset(m.texture for m in materials if m.texture in pictures)
+    return _CACHE.get((id(parts), paint, materials, present, scale), read)[1]
 
 
 def _read_parts(parts: trimesh.Scene) -> list[Surface]:

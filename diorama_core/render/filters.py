@@ -41,10 +41,10 @@ class Neighbours:
         for dy in range(-half, half + 1):
             for dx in range(-half, half + 1):
                 share = (0.5 if abs(dy) == half else 1.0) * (0.5 if abs(dx) == half else 1.0)
-                here, there = _shifted(is_hit.shape, dy, dx)
-                leave = np.abs(dot(points[there] - points[here], normals[here]))
-                turn = dot(normals[here], normals[there])
-                same = is_hit[there] & (leave < tolerance_m[here]) & (turn > 0.85)
+                here, shifted = _shifted(is_hit.shape, dy, dx)
+                leave = np.abs(dot(points[shifted] - points[here], normals[here]))
+                turn = dot(normals[here], normals[shifted])
+                same = is_hit[shifted] & (leave < tolerance_m[here]) & (turn > 0.85)
                 weight = np.zeros(is_hit.shape, np.float32)
                 weight[here] = same * np.float32(share)
                 total += weight
@@ -56,8 +56,8 @@ class Neighbours:
         channels = np.ascontiguousarray(np.moveaxis(light, -1, 0))
         gathered = np.zeros_like(channels)
         for dy, dx, weight in self.weights:
-            here, there = _shifted(weight.shape, dy, dx)
-            gathered[:, here[0], here[1]] += weight[here] * channels[:, there[0], there[1]]
+            here, shifted = _shifted(weight.shape, dy, dx)
+            gathered[:, here[0], here[1]] += weight[here] * channels[:, shifted[0], shifted[1]]
         return np.ascontiguousarray(np.moveaxis(gathered / self.total, 0, -1))
 
 

@@ -86,8 +86,8 @@ def _gathered(
     near = grid.part(halo)
     neighbours = Neighbours.of(near.points, near.normals, near.found, 4 * near.pixel_m)
     smooth = neighbours.mean(neighbours.mean(noisy[halo]))
-    own = slice(rows.start - halo.start, rows.stop - halo.start)
-    return smooth[own], neighbours.total[own] >= ENOUGH
+    inner = slice(rows.start - halo.start, rows.stop - halo.start)
+    return smooth[inner], neighbours.total[inner] >= ENOUGH
 
 
 def _spread(
@@ -99,13 +99,13 @@ def _spread(
     for below, right in ((0, 0), (0, 1), (1, 0), (1, 1)):
         for dy in range(1 + below):
             for dx in range(1 + right):
-                there = (slice(rows.start + dy, rows.stop + dy), slice(dx, None))
-                h, w = (min(a, b) for a, b in zip(coarse.found[there].shape, fine.found[below::2, right::2].shape))
+                target = (slice(rows.start + dy, rows.stop + dy), slice(dx, None))
+                h, w = (min(a, b) for a, b in zip(coarse.found[target].shape, fine.found[below::2, right::2].shape))
                 here = (slice(below, below + 2 * h, 2), slice(right, right + 2 * w, 2))
-                there = (slice(there[0].start, there[0].start + h), slice(dx, dx + w))
-                fits = (sure[there] & _on_one_surface(fine.part(*here), coarse.part(*there))).astype(np.float32)
+                target = (slice(target[0].start, target[0].start + h), slice(dx, dx + w))
+                fits = (sure[target] & _on_one_surface(fine.part(*here), coarse.part(*target))).astype(np.float32)
                 total[here] += fits
-                mixed[here] += fits[..., None] * smooth[there]
+                mixed[here] += fits[..., None] * smooth[target]
     return mixed / np.maximum(total, 1)[..., None], total > 0
 
 

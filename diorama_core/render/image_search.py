@@ -137,8 +137,8 @@ class ImageSearch:
     def _folder(self) -> Path:
         if self.folder is not None:
             return self.folder
-        own = self.library.folder if isinstance(self.library, StoredLibrary) else default_cache_dir()
-        return own / "features" / f"views-{_VERSION}"
+        folder = self.library.folder if isinstance(self.library, StoredLibrary) else default_cache_dir()
+        return folder / "features" / f"views-{_VERSION}"
 
 
 def _query(crop: ShapeCrop) -> Float32[np.ndarray, "width"]:

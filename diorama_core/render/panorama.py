@@ -69,10 +69,10 @@ def panorama(
         beyond = ambient(view.all_rays()[..., 3:].reshape(-1, 3), light).reshape(side, side, 3)
         radiance = shot.radiance + beyond * (1.0 - shot.coverage[..., None])
         p = away @ view.camera.T_world_camera[:3, :3]
-        own = face_of == number
-        at = 0.5 * side * (p[..., :2] / (OVERLAP * np.where(own, p[..., 2], 1.0)[..., None]) + 1.0) - 0.5
+        is_of_face = face_of == number
+        at = 0.5 * side * (p[..., :2] / (OVERLAP * np.where(is_of_face, p[..., 2], 1.0)[..., None]) + 1.0) - 0.5
         picture = cv2.remap(radiance, at.astype(np.float32), None, cv2.INTER_LINEAR, borderMode=cv2.BORDER_REPLICATE)
-        seen = np.where(own[..., None], picture, seen)
+        seen = np.where(is_of_face[..., None], picture, seen)
     colour = scene.light.colour if scene.light is not None and scene.light_settings.hour is None else (1.0, 1.0, 1.0)
     return np.asarray(np.maximum(seen, 0.0) * np.asarray(colour, np.float32))
 

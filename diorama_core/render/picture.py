@@ -74,8 +74,8 @@ def picture(
     without = _behind(scene, source)
     opened = with_openings(scene)
     world = scene_world(opened, library, textures=textures, photographed=photographed, without=without)
-    own, blockers = lit(scene, opened, library, world, source)
-    light = light or own
+    lit_world, blockers = lit(scene, opened, library, world, source)
+    light = light or lit_world
     shot = shoot(world, blockers, source, light, effort, progress.part(0.1, 1.0))
     exposure = np.float32(scene.light_settings.exposure)
     return np.concatenate(each(lambda band: _developed(shot, band, exposure), bands(source.height)))

@@ -244,19 +244,19 @@ def _edges(shot: Shot, rows: slice) -> Bool[np.ndarray, "rows w"]:
     grid = shot.grid.part(near)
     edge = np.zeros(grid.found.shape, bool)
     bright = tone_mapped(shot.radiance[near]).mean(axis=-1)
-    for here, there in (
+    for here, neighbour in (
         ((slice(None), slice(0, -1)), (slice(None), slice(1, None))),
         ((slice(0, -1), slice(None)), (slice(1, None), slice(None))),
     ):
-        leap = np.abs(dot(grid.points[there] - grid.points[here], grid.flat_normals[here]))
+        leap = np.abs(dot(grid.points[neighbour] - grid.points[here], grid.flat_normals[here]))
         differs = (
-            (grid.instance[here] != grid.instance[there])
-            | (dot(grid.normals[here], grid.normals[there]) < 0.9)
+            (grid.instance[here] != grid.instance[neighbour])
+            | (dot(grid.normals[here], grid.normals[neighbour]) < 0.9)
             | (leap > 4 * grid.pixel_m[here])
-            | (np.abs(bright[here] - bright[there]) > 0.07)
+            | (np.abs(bright[here] - bright[neighbour]) > 0.07)
         )
         edge[here] |= differs
-        edge[there] |= differs
+        edge[neighbour] |= differs
     return edge[rows.start - near.start : rows.stop - near.start]
 
 

@@ -108,8 +108,10 @@ class HierarchicalRetrieval:
             observed = _Observation(cuboids[item.id], seen, whole_outline(seen), visible, named[index], colours)
             object_crop = ObjectCrop(inputs.photo.rgb, item.mask, item.label, visible, seen.mask_trust)
             alike = similarity.of(object_crop, [m.shape for m in members])
-            words, said = words_factor(self.library, item.label, item.category, [m.shape for m in members], ranking)
-            described = (said == 1) & (said < 1).any()
+            words, word_note = words_factor(
+                self.library, item.label, item.category, [m.shape for m in members], ranking
+            )
+            described = (word_note == 1) & (word_note < 1).any()
             factors = [
                 m.kind_factor * float(w) * self._of_form(m.shape, item, described=d)
                 for m, w, d in zip(members, words, described.tolist(), strict=True)
@@ -124,8 +126,10 @@ class HierarchicalRetrieval:
         means = _means(groups, scores, sight, ranking)
         kind_of = {m.shape.id: m.shape.category for pool in pools for m in pool.members}
         return tuple(
-            RankedShapes(item.id, _best(own, mean, self.keep, kind_of, ranking, named=n), pools[group].note)
-            for item, own, mean, group, n in zip(measured, scores, means, groups, named, strict=True)
+            RankedShapes(
+                item.id, _best(scores_of_object, mean, self.keep, kind_of, ranking, named=n), pools[group].note
+            )
+            for item, scores_of_object, mean, group, n in zip(measured, scores, means, groups, named, strict=True)
         )
 
     def ahead(self, boxes: Sequence[LabelledBox]) -> Iterator[None]:
@@ -317,10 +321,10 @@ def _means(
 ) -> list[dict[str, float]]:
     """For each object the mean scores of its group, in which those that are seen best say most."""
     means = []
-    for group, own in zip(groups, scores, strict=True):
+    for group, object_scores in zip(groups, scores, strict=True):
         alike = [(v + settings.min_voice, s) for g, s, v in zip(groups, scores, visible, strict=True) if g == group]
         voices = fsum(voice for voice, _ in alike)  # exact sums: the order of the objects must not show in a bit
-        means.append({key: fsum(voice * s[key] for voice, s in alike) / voices for key in own})
+        means.append({key: fsum(voice * s[key] for voice, s in alike) / voices for key in object_scores})
     return means
 
 
@@ -331,7 +335,7 @@ def _log_difference(a_m: np.ndarray, b_m: np.ndarray) -> float:
 
 
 def _best(
-    own: dict[str, float],
+    scores: dict[str, float],
     of_group: dict[str, float],
     keep: int,
     kind_of: Mapping[str, str],
@@ -344,7 +348,7 @@ def _best(
     Some are the best of other kinds that the word may mean, so that posing can tell and a person can choose.
 
     Args:
-        own: scores of one object.
+        scores: scores of one object.
         of_group: mean scores of its group.
         keep: how many shapes are kept.
         kind_of: categories by shape id.
@@ -352,7 +356,7 @@ def _best(
         named: whether a word says what the object is.
     """
     share, kinds = settings.own_evidence, settings.kinds if named else settings.kinds_of_unnamed
-    mixed = {key: share * own[key] + (1 - share) * of_group[key] for key in own}
+    mixed = {key: share * scores[key] + (1 - share) * of_group[key] for key in scores}
     shared = _in_order(of_group)[: 3 * keep // 4]
     retained = [*shared, *(key for key in _in_order(mixed) if key not in shared)][:keep]
     of_kinds = {kind_of[key]: key for key in reversed(_in_order(mixed))}

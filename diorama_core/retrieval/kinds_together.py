@@ -93,12 +93,12 @@ def kinds_together(
     if not alone:
         return []
     index = _index()
-    own = np.zeros((len(alone), len(index)))
-    for row, of_one in zip(own, alone, strict=True):
+    unary = np.zeros((len(alone), len(index)))
+    for row, of_one in zip(unary, alone, strict=True):
         for kind, share in of_one.items():
             row[index[kind]] = share
     edges = [_edge(of_one, settings) for of_one in lying or [None] * len(alone)]
-    explained = [_in_room(own * usual, carrier_of, edges) for usual in _rooms(settings)]
+    explained = [_in_room(unary * usual, carrier_of, edges) for usual in _rooms(settings)]
     says = settings.room_trust * np.array([log for _, log in explained])
     weight = np.exp(says - says.max())
     mixed = np.einsum("t,tnk->nk", weight / weight.sum(), np.stack([beliefs for beliefs, _ in explained]))
@@ -107,33 +107,33 @@ def kinds_together(
 
 def _edge(lying: Lying | None, settings: KindsTogetherSettings = SETTINGS) -> Float[np.ndarray, "k k"]:
     """How well every kind of a thing (row) goes with every kind of its carrier (column)."""
-    there = _together(settings)
+    other_shares = _together(settings)
     if lying is not None:
         index = _index()
         rows, columns = ([index[kind] for kind in kinds] for kinds in (lying.kinds, lying.carrier_kinds))
-        there = there.copy()
-        there[np.ix_(rows, columns)] *= lying.ratio
-    return (1.0 - settings.lies_on_it) + settings.lies_on_it * there
+        other_shares = other_shares.copy()
+        other_shares[np.ix_(rows, columns)] *= lying.ratio
+    return (1.0 - settings.lies_on_it) + settings.lies_on_it * other_shares
 
 
 def _in_room(
-    own: Float[np.ndarray, "n k"], carrier_of: Sequence[int | None], edges: Sequence[Float[np.ndarray, "k k"]]
+    unary: Float[np.ndarray, "n k"], carrier_of: Sequence[int | None], edges: Sequence[Float[np.ndarray, "k k"]]
 ) -> tuple[Float[np.ndarray, "n k"], float]:
     """Marginals in one type of room, and the logarithm of how well it explains everything."""
-    upward, inward = np.ones_like(own), own.copy()
+    upward, inward = np.ones_like(unary), unary.copy()
     order = _children_first(carrier_of)
     logs: list[float] = []
-    said: list[list[np.ndarray]] = [[] for _ in own]
+    messages: list[list[np.ndarray]] = [[] for _ in unary]
     for i in order:  # what everything on a thing says of it, up to the things that nothing carries
-        if said[i]:  # sorted: the order of the objects must not show in a bit
-            inward[i] *= np.sort(np.stack(said[i]), axis=0).prod(axis=0)
+        if messages[i]:  # sorted: the order of the objects must not show in a bit
+            inward[i] *= np.sort(np.stack(messages[i]), axis=0).prod(axis=0)
         total = inward[i].sum()
         inward[i] /= total
         logs.append(float(np.log(total)))
         parent = carrier_of[i]
         if parent is not None:
             upward[i] = inward[i] @ edges[i]
-            said[parent].append(upward[i])
+            messages[parent].append(upward[i])
     beliefs = inward.copy()
     for i in reversed(order):  # and back down again
         parent = carrier_of[i]

@@ -55,5 +55,5 @@ class MatchedByLooks:
 
     def _of_kind(self, name: str) -> list[Shape]:
         """Shapes of the category; of its nearest kinds where the library has none of itself."""
-        own = list(self.library.in_category(name))
-        return own or [s for kind in near_kinds(name)[: self.kinds] for s in self.library.in_category(kind)]
+        shapes = list(self.library.in_category(name))
+        return shapes or [s for kind in near_kinds(name)[: self.kinds] for s in self.library.in_category(kind)]

@@ -45,7 +45,7 @@ def with_neighbours(
     indices = range(len(objects))
     near = [[j for j in indices if j != i and gap_m(cuboids[i], cuboids[j]) < settings.near_m] for i in indices]
     across = [[j for j in near[i] if is_before(cuboids[i], cuboids[j])] for i in indices]
-    there: list[Mapping[Relation, list[int]]] = [
+    neighbours_of: list[Mapping[Relation, list[int]]] = [
         {
             "on it": carried[i],
             "near": near[i],
@@ -57,20 +57,20 @@ def with_neighbours(
     beliefs = [_normalised(kinds) for kinds in alone]
     for _ in range(settings.neighbour_rounds):
         beliefs = [
-            _updated(alone[i], {where: [beliefs[j] for j in of_one] for where, of_one in there[i].items()})
+            _updated(alone[i], {where: [beliefs[j] for j in of_one] for where, of_one in neighbours_of[i].items()})
             for i in indices
         ]
     return beliefs
 
 
 def _updated(
-    alone: Mapping[str, float], there: Mapping[Relation, Sequence[Mapping[str, float]]]
+    alone: Mapping[str, float], neighbours: Mapping[Relation, Sequence[Mapping[str, float]]]
 ) -> Mapping[str, float]:
     """One object's belief, by itself and by what is on it and near it."""
     likely = dict(alone)
     for kind in likely:
         for row in category(kind).seldom_without or ():
-            present = _any(with_kin(*row.others), there[row.where])
+            present = _any(with_kin(*row.others), neighbours[row.where])
             factor = present * row.often / row.usual + (1.0 - present) * (1.0 - row.often) / (1.0 - row.usual)
             likely[kind] *= factor
     return _normalised(likely)

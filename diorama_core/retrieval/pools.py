@@ -36,9 +36,9 @@ def near_kinds(name: str, settings: PoolSettings = SETTINGS.pools) -> tuple[str,
 
 @cache
 def _alike_in_size(name: str, settings: PoolSettings = SETTINGS.pools) -> tuple[str, ...]:
-    own = category(name)
-    others = [c for c in CATEGORIES if c.mount == own.mount and c.name not in (name, UNKNOWN.name) and not c.kin]
-    unlike = [float(np.abs(c.priors[0].log_median_xyz - own.priors[0].log_median_xyz).sum()) for c in others]
+    kind = category(name)
+    others = [c for c in CATEGORIES if c.mount == kind.mount and c.name not in (name, UNKNOWN.name) and not c.kin]
+    unlike = [float(np.abs(c.priors[0].log_median_xyz - kind.priors[0].log_median_xyz).sum()) for c in others]
     return tuple(others[i].name for i in np.argsort(unlike, kind="stable")[: settings.substitutes])
 
 
@@ -91,8 +91,8 @@ def pool_for(library: ShapeLibrary, query: RetrievalQuery, settings: PoolSetting
     least = 1 if query.named else settings.min_unnamed
     for rank, (kind, share) in enumerate(sorted(senses.items(), key=lambda row: (-row[1], row[0]))):
         if rank < least or (share >= settings.min_sense * best and len(members) < settings.max_pool):
-            own = len(senses) == 1 or kind == query.category
-            most = settings.named_pool if own else settings.other_pool if query.named else settings.unnamed_each
+            is_certain = len(senses) == 1 or kind == query.category
+            most = settings.named_pool if is_certain else settings.other_pool if query.named else settings.unnamed_each
             near_shapes = _nearest(_usable(library, library.in_category(kind), query), query.size_m, most, settings)
             members += [Pooled(shape, sense_factor(share / best, settings)) for shape in near_shapes]
     is_known = bool(members)

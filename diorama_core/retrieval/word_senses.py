@@ -104,10 +104,12 @@ def sense_probabilities(
         if height_m is None
         else (height_m, settings.measured_sigma_m)
     )
-    said = [-0.5 * ((HEIGHTS_M - np.clip(usual, HEIGHTS_M[0], HEIGHTS_M[-1])) / sigma) ** 2]
+    log_likelihoods = [-0.5 * ((HEIGHTS_M - np.clip(usual, HEIGHTS_M[0], HEIGHTS_M[-1])) / sigma) ** 2]
     for of_word, of_view in zip(senses, likely, strict=True):
-        said.append(np.log(sum(share * of_view[kind] for kind, share in of_word.items())))
-    log_height = np.sort(np.stack(said), axis=0).sum(axis=0)  # the order of the objects must not show in a bit
+        log_likelihoods.append(np.log(sum(share * of_view[kind] for kind, share in of_word.items())))
+    log_height = np.sort(np.stack(log_likelihoods), axis=0).sum(
+        axis=0
+    )  # the order of the objects must not show in a bit
     height = np.exp(log_height - log_height.max())
     height /= height.sum()
     probabilities: list[Mapping[str, float]] = []
@@ -133,25 +135,25 @@ def _as_lying(
             lying.append(None)
             continue
         alone = np.array([float(height @ of_kind) for of_kind in of_view.values()])
-        there = lying_likelihoods(view, tuple(of_view), views[on], on_kinds, height)
-        lying.append(Lying(tuple(of_view), on_kinds, there / alone[:, None]))
+        likelihoods = lying_likelihoods(view, tuple(of_view), views[on], on_kinds, height)
+        lying.append(Lying(tuple(of_view), on_kinds, likelihoods / alone[:, None]))
     return lying
 
 
 def _chosen(item: DetectedObject, senses: Mapping[str, float], settings: WordSenseSettings = SETTINGS) -> str:
-    own, named = item.category, is_named(item.label)
-    if own == UNKNOWN.name or (named and not names_a_kind(item.label)):
+    detected_kind, named = item.category, is_named(item.label)
+    if detected_kind == UNKNOWN.name or (named and not names_a_kind(item.label)):
         best = max(senses, key=lambda kind: senses[kind])
-        return best if named or senses[best] > settings.sure else own
+        return best if named or senses[best] > settings.sure else detected_kind
     mounts: dict[Mount, float] = {}
     for kind, share in senses.items():
         mount = category(kind).mount
         mounts[mount] = mounts.get(mount, 0.0) + share
     mount = max(mounts, key=mounts.__getitem__)
-    if mounts[mount] <= settings.switch * mounts.get(category(own).mount, 0.0):
-        mount = category(own).mount
+    if mounts[mount] <= settings.switch * mounts.get(category(detected_kind).mount, 0.0):
+        mount = category(detected_kind).mount
     best = max((kind for kind in senses if category(kind).mount == mount), key=lambda kind: senses[kind])
-    return best if mount != category(own).mount or senses[best] > settings.majority else own
+    return best if mount != category(detected_kind).mount or senses[best] > settings.majority else detected_kind
 
 
 def _carried(

@@ -85,11 +85,11 @@ def described_share(
     """
     query = understand(label)
     words = (*query.words, *nouns_of_few(library, label, category, settings))
-    said = tuple(w for w in words if w not in category and not w.isdigit())  # an "arm chair" has no more arms
-    if not said or not len(shapes):
+    adjectives = tuple(w for w in words if w not in category and not w.isdigit())  # an "arm chair" has no more arms
+    if not adjectives or not len(shapes):
         return np.ones(len(shapes))
     index = text_index(library)
-    points = index.scores(replace(query, categories=(), words=said, naming=(), size_m=None))
+    points = index.scores(replace(query, categories=(), words=adjectives, naming=(), size_m=None))
     of_shape = dict(zip((s.id for s in index.shapes), points, strict=True))
-    share = np.array([min(of_shape.get(s.id, 0.0) / len(said), 1.0) for s in shapes])
+    share = np.array([min(of_shape.get(s.id, 0.0) / len(adjectives), 1.0) for s in shapes])
     return share if share.any() else np.ones(len(shapes))

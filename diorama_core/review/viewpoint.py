@@ -80,9 +80,9 @@ def next_photo(scene: Scene) -> NextPhoto | None:
     place, turn = np.unravel_index(int(total.argmax()), total.shape)
     if total[place, turn] < MIN_GAIN_M:
         return None
-    told = (gain[place] > 0.5 * sigma) & inside[place, :, turn]
+    is_decided = (gain[place] > 0.5 * sigma) & inside[place, :, turn]
     x, y = stands[place].tolist()
-    return NextPhoto((x, y), (x + float(np.cos(ROUND[turn])), y + float(np.sin(ROUND[turn]))), int(told.sum()))
+    return NextPhoto((x, y), (x + float(np.cos(ROUND[turn])), y + float(np.sin(ROUND[turn]))), int(is_decided.sum()))
 
 
 def _standing_places(scene: Scene, floor: Float[np.ndarray, "n 2"]) -> Float[np.ndarray, "m 2"]:

@@ -156,8 +156,8 @@ class VariantMaker:
             if edge is None or edge.relation != "placed on" or edge.adheres_to:
                 continue
             on_floor = scene.has_plane(edge.parent)
-            own = (item.id, *descendants(scene, item.id))
-            before = self.collisions.of(scene, own)
+            moved_ids = (item.id, *descendants(scene, item.id))
+            before = self.collisions.of(scene, moved_ids)
             for _ in range(self.settings.tries):
                 shift = rng.normal(0.0, self.settings.shift_m / (1 if on_floor else 3), 2)
                 R = rotation_from_vector(np.array([0.0, 0.0, rng.normal(0.0, self.settings.turn_rad)]))
@@ -166,7 +166,7 @@ class VariantMaker:
                 if not on_floor:
                     trial = seated(trial, self.library, item.id)
                 outside = on_floor and not within(footprint_of(trial.object(item.id))[None], frame.outline, 0.0)[0]
-                if not outside and self.collisions.of(trial, own) <= before:
+                if not outside and self.collisions.of(trial, moved_ids) <= before:
                     scene = trial
                     break
         return scene
@@ -251,8 +251,8 @@ def differences(room: Scene, variant: Scene) -> dict[str, tuple[str, ...]]:
             "moved": moved,
             f"colour {new.colour}": new.colour != old.colour,
         }
-        if said := tuple(text for text, is_so in about.items() if is_so):
-            changes[new.id] = said
+        if changed := tuple(text for text, is_so in about.items() if is_so):
+            changes[new.id] = changed
     for plane in variant.architecture.planes:
         if plane.finish is not None and plane.finish != room.plane(plane.id).finish:
             changes[plane.id] = (f"{plane.finish.pattern} {plane.finish.colour}",)

@@ -138,9 +138,9 @@ class _Composer:
         self, k: int, request: RequestedObject, shapes: Sequence[Shape], wanted: Sequence[RequestedObject]
     ) -> None:
         if request.category in OPENING_CATEGORIES:
-            there = [o.id for o in self.scene.objects if o.category == request.category][: request.count]
-            self.ids[k] = there
-            self.missing[k] = request.count - len(there)
+            present = [o.id for o in self.scene.objects if o.category == request.category][: request.count]
+            self.ids[k] = present
+            self.missing[k] = request.count - len(present)
             return
         if request.rows:
             rows = placed_rows(self.scene, request, shapes[:SHAPES_TRIED], self.positioner, self.relations)

@@ -139,27 +139,27 @@ class EditApplier:
             raise EditRefused("no object was named")
         return ids
 
-    def _relations(self, scene: Scene, places: Sequence[Place], own: Sequence[str] = ()) -> list[Relation]:
+    def _relations(self, scene: Scene, places: Sequence[Place], moved_ids: Sequence[str] = ()) -> list[Relation]:
         relations = []
         for place in places:
             targets = tuple(self._ids(scene, place.targets)) if place.targets else ()
-            if not targets and place.relation not in OF_ROOM and not own:
+            if not targets and place.relation not in OF_ROOM and not moved_ids:
                 raise EditRefused(f"“{place.relation}” what? Name the object")
-            if set(targets) & set(own):
+            if set(targets) & set(moved_ids):
                 raise EditRefused(f"{scene.object(targets[0]).label} cannot be {place.relation} itself")
-            toward = _toward(scene, place.side, own)
+            toward = _toward(scene, place.side, moved_ids)
             if place.relation == "against wall" and place.side not in ("", "other"):
                 wall_on(scene, place.side)
             relations.append(Relation(place.relation, targets, toward=toward, side=place.side))
         return relations
 
 
-def _toward(scene: Scene, side: Side, own: Sequence[str]) -> tuple[float, float] | None:
+def _toward(scene: Scene, side: Side, moved_ids: Sequence[str]) -> tuple[float, float] | None:
     """The direction of a side of the room; "other" is away from where the first object is."""
-    if not side or (side == "other" and not own):
+    if not side or (side == "other" and not moved_ids):
         return None
     if side == "other":
-        way = RoomFrame.of(scene).middle - scene.object(own[0]).pose.position[:2]
+        way = RoomFrame.of(scene).middle - scene.object(moved_ids[0]).pose.position[:2]
     else:
         way = direction_of(scene, side)
     return float(way[0]), float(way[1])

@@ -41,14 +41,14 @@ def placed(positioner: Positioner, scene: Scene, object_id: str, edit: SetPlace)
     if edit.base_m is not None:
         pose = replace(pose, position=np.array(edit.base_m) + pose.R_world_object[:, 2] * size[2] / 2)
     after = edits.move(after, object_id, pose)
-    own = [object_id, *descendants(after, object_id)]
-    met = {b if a in own else a for a, b in positioner.collisions.of(after, own)} - set(own)
+    moved_ids = [object_id, *descendants(after, object_id)]
+    met = {b if a in moved_ids else a for a, b in positioner.collisions.of(after, moved_ids)} - set(moved_ids)
     notes = [f"{item.label} meets {names_of(after, sorted(met))}"] if met else []
     if not positioner.inside(after, object_id):
         notes.append(f"{item.label} is not wholly inside the room")
     x, y, z = after.object(object_id).pose.position - pose.R_world_object[:, 2] * size[2] / 2
-    said = f"place {item.label} at ({x:.2f}, {y:.2f}, {z:.2f}) m, heading {np.degrees(pose.yaw_rad):.0f} degrees"
-    return Done(after, (said,), (object_id,), tuple(notes))
+    sentence = f"place {item.label} at ({x:.2f}, {y:.2f}, {z:.2f}) m, heading {np.degrees(pose.yaw_rad):.0f} degrees"
+    return Done(after, (sentence,), (object_id,), tuple(notes))
 
 
 def supported(positioner: Positioner, scene: Scene, ids: Sequence[str], parent: str, against: str) -> Done:
@@ -64,11 +64,11 @@ def supported(positioner: Positioner, scene: Scene, ids: Sequence[str], parent: 
     for plane_or_object in filter(None, (parent, against)):
         if not (scene.has_object(plane_or_object) or scene.has_plane(plane_or_object)):
             raise EditRefused(f"there is no object, wall, floor or ceiling “{plane_or_object}” in this scene")
-    after, own = scene, names_of(scene, ids)
+    after, names = scene, names_of(scene, ids)
     if not parent:
         for object_id in ids:
             after = edits.detach(after, object_id)
-        return Done(after, (f"let nothing hold {own}",), tuple(ids))
+        return Done(after, (f"let nothing hold {names}",), tuple(ids))
     hangs = scene.has_plane(parent) and scene.plane(parent).role != "floor"
     for object_id in ids:
         why_not = why_not_on(scene, object_id, parent)
@@ -78,7 +78,7 @@ def supported(positioner: Positioner, scene: Scene, ids: Sequence[str], parent: 
         edge = Support(object_id, parent, "mounted on" if hangs else "placed on", adheres_to=walls)
         after = seated(edits.attach(after, edge), positioner.library, object_id)
     name = scene.object(parent).label if scene.has_object(parent) else parent
-    return Done(after, (f"{'hang' if hangs else 'put'} {own} on {name}",), tuple(ids))
+    return Done(after, (f"{'hang' if hangs else 'put'} {names} on {name}",), tuple(ids))
 
 
 def wall_moved(scene: Scene, edit: MoveWall) -> Done:

@@ -75,8 +75,8 @@ def edits_of(
     except ValidationError as error:  # the limits of an edit: lengths of words, numbers of copies
         first = error.errors(include_url=False, include_input=False)[0]
         where = shortened(" ".join(str(part) for part in first["loc"]), 40)
-        said = shortened(clause, 60)
-        raise EditRefused(f"“{said}”: {where}: {shortened(first['msg'].lower())}; say it in fewer words") from error
+        quoted = shortened(clause, 60)
+        raise EditRefused(f"“{quoted}”: {where}: {shortened(first['msg'].lower())}; say it in fewer words") from error
     except EditRefused as refused:  # which quotes words that may be very long
         raise EditRefused(shortened(str(refused), MAX_LINE)) from refused
 
@@ -244,8 +244,8 @@ _ANGLES = tuple(
 
 
 def _turn(selector: Selector, clause: str, rest: str) -> Edit:
-    for pattern, said in _ANGLES:
-        rest = pattern.sub(said, rest, count=1)
+    for pattern, pattern_words in _ANGLES:
+        rest = pattern.sub(pattern_words, rest, count=1)
     degrees = re.search(r"(?:by )?(-?\d+(?:\.\d+)?)\s*(?:degrees|degree|deg|°)", rest)
     fixed = re.search(r"\b(around|round|over|left|right|clockwise|anticlockwise|counter-?clockwise)\b\s*$", rest)
     if degrees is not None:
@@ -362,17 +362,17 @@ def _with_its_own(selector: Selector, clause: str, rest: str) -> tuple[Edit, ...
     """ "a desk with an office chair by the wall" are two things, "a cabinet with two doors" is one."""
     head, _ = split_places(rest)
     match = re.match(rf"(.+?) with (?=(?:{'|'.join(NUMBERS)}|its|\d+) )(.+)$", head)
-    own = None if match is None else noun_phrase(match[2])[0]
+    belongings = None if match is None else noun_phrase(match[2])[0]
     carrier = None if match is None else noun_phrase(match[1])[0]
-    if match is None or own is None or carrier is None or not own.label or not carrier.label:
+    if match is None or belongings is None or carrier is None or not belongings.label or not carrier.label:
         return (_insert(selector, clause, rest),)
-    if own.category in (*OPENING_CATEGORIES, carrier.category) or own.label in _PARTS:
+    if belongings.category in (*OPENING_CATEGORIES, carrier.category) or belongings.label in _PARTS:
         return (_insert(selector, clause, rest),)
     first = _insert(selector, clause, f"{match[1]} {rest[len(head) :].strip()}")
     name = f"new {carrier.category}"
-    relation = _usual_kind(own.category, carrier.category)
-    what = " ".join((*own.appearance, own.label))
-    second = Insert(what=what, count=own.count, places=[Place(relation=relation, targets=[name])])
+    relation = _usual_kind(belongings.category, carrier.category)
+    what = " ".join((*belongings.appearance, belongings.label))
+    second = Insert(what=what, count=belongings.count, places=[Place(relation=relation, targets=[name])])
     return first.model_copy(update={"name": name}), second
 
 

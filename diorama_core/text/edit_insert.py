@@ -52,8 +52,8 @@ def inserted(positioner: Positioner, scene: Scene, edit: Insert, relations: Sequ
     for copy in range(edit.count):
         options, lacking = _options(positioner.library, phrase, relations, targets)
         if phrase.category in SEATS and not phrase.appearance:
-            there = dict.fromkeys(o.shape_id for o in scene.objects if o.category == phrase.category)
-            options = (*(record_of(positioner.library, i) for i in there), *options)  # seats are of a set
+            present = dict.fromkeys(o.shape_id for o in scene.objects if o.category == phrase.category)
+            options = (*(record_of(positioner.library, i) for i in present), *options)  # seats are of a set
         if not options:
             raise EditRefused(f"the library has no {phrase.label}")
         tried = (shape, *(s for s in options if s != shape)) if shape is not None else options
@@ -137,13 +137,13 @@ def _with_one(
 ) -> tuple[Scene, str | None, Shape | None]:
     """The first shape that finds a free place; of several targets "beside", each gets its share."""
     object_id = edits.fresh_id(scene, kind)
-    own = list(relations)
+    candidates = list(relations)
     if count > 1 or len(targets) > 1:
-        own = [
+        candidates = [
             replace(r, targets=(r.targets[copy % len(r.targets)],))
             if r.kind in ("beside", "on", "near", "above", "in front of") and len(r.targets) > 1
             else r
-            for r in own
+            for r in candidates
         ]
     for shape in shapes:
         number = sum(o.category == shape.category for o in scene.objects) + 1
@@ -156,8 +156,8 @@ def _with_one(
             Pose.upright(np.zeros(3)),
         )
         # Where nothing is said, it stands as such things do: a chair at the table.
-        usual = [] if own else usual_relations(scene, RequestedObject(kind, kind), copy)
-        spot = positioner.best(scene, item, own, usual=usual)
+        usual = [] if candidates else usual_relations(scene, RequestedObject(kind, kind), copy)
+        spot = positioner.best(scene, item, candidates, usual=usual)
         if spot is not None:
             after = positioner.put(scene, item, spot)
             return lifted_onto(after, object_id), object_id, shape

@@ -44,17 +44,19 @@ def moved(positioner: Positioner, scene: Scene, ids: Sequence[str], relations: S
         item = after.object(object_id)
         if item.locked:
             raise EditRefused(f"{item.label} is locked; unlock it first")
-        own = [replace(r, targets=r.targets or tuple(i for i in ids if i != object_id)) if r.kind not in OF_ROOM
-               else r for r in relations]  # fmt: skip
-        spot = positioner.best(after, item, own, near=item.pose.position)
+        others = tuple(i for i in ids if i != object_id)
+        placing = [r if r.kind in OF_ROOM else replace(r, targets=r.targets or others) for r in relations]
+        spot = positioner.best(after, item, placing, near=item.pose.position)
         if spot is None:
-            raise EditRefused(f"there is no free place for {item.label} {own[0].words(after)}")
+            raise EditRefused(f"there is no free place for {item.label} {placing[0].words(after)}")
         after = positioner.put(after, item, spot)
         after = lifted_onto(after, item.id)
         frame = RoomFrame.of(after)
-        if (of_room := next((r for r in own if r.side and not is_met(after, object_id, r, frame)), None)) is not None:
+        if (
+            of_room := next((r for r in placing if r.side and not is_met(after, object_id, r, frame)), None)
+        ) is not None:
             raise EditRefused(f"there is no free place for {item.label} {of_room.words(scene)}")
-        missed += missed_notes(after, object_id, own)
+        missed += missed_notes(after, object_id, placing)
     where = " and ".join(r.words(scene) for r in relations)
     return Done(after, (f"move {names_of(scene, ids)} {where}",), tuple(ids), tuple(missed))
 
@@ -88,8 +90,8 @@ def shifted(positioner: Positioner, scene: Scene, ids: Sequence[str], edit: Shif
         (edit.off_wall_m, "away from the wall", "toward the wall"),
         (edit.toward_m if toward else 0.0, f"toward {goal}", f"away from {goal}"),
     )
-    said = " and ".join(f"{abs(m):g} m {plus if m > 0 else minus}" for m, plus, minus in ways if m)
-    return Done(after, (f"move {names_of(scene, ids)} {said}",), tuple(ids), tuple(notes))
+    distances = " and ".join(f"{abs(m):g} m {plus if m > 0 else minus}" for m, plus, minus in ways if m)
+    return Done(after, (f"move {names_of(scene, ids)} {distances}",), tuple(ids), tuple(notes))
 
 
 def _as_far_as_free(
@@ -99,10 +101,10 @@ def _as_far_as_free(
     whole = _shifted_by(scene, ids, edit, toward, 1.0)
     if edit.up_m:
         return whole
-    own = [d for i in ids for d in (i, *descendants(scene, i))]
+    moved_ids = [d for i in ids for d in (i, *descendants(scene, i))]
     for share in SHARES:
         after, notes = whole if share == 1.0 else _shifted_by(scene, ids, edit, toward, share)
-        if not positioner.collisions.of(after, own) and all(positioner.inside(after, i) for i in ids):
+        if not positioner.collisions.of(after, moved_ids) and all(positioner.inside(after, i) for i in ids):
             short = [] if share == 1.0 else [f"{names_of(scene, ids)}: only {share:.0%} of the way is free"]
             return after, [*notes, *short]
     return whole
@@ -112,17 +114,19 @@ def _shifted_by(scene: Scene, ids: Sequence[str], edit: Shift, toward: str, shar
     step = share * (edit.right_m * direction_of(scene, "right") + edit.away_m * direction_of(scene, "back"))
     after, notes = scene, list[str]()
     for object_id in ids:
-        item, own = scene.object(object_id), step
-        held = after.support_of(object_id)
-        if edit.up_m and (held is None or held.relation != "mounted on"):
+        item, shift_m = scene.object(object_id), step
+        edge = after.support_of(object_id)
+        if edit.up_m and (edge is None or edge.relation != "mounted on"):
             raise EditRefused(f"{item.label} stands and does not hang; only what hangs can go up or down")
         if toward:
             ahead = after.object(toward).pose.position[:2] - item.pose.position[:2]
-            own = step + share * edit.toward_m * ahead / max(float(np.linalg.norm(ahead)), 1e-6)
+            shift_m = step + share * edit.toward_m * ahead / max(float(np.linalg.norm(ahead)), 1e-6)
         if edit.off_wall_m:
-            own = own + share * edit.off_wall_m * off_wall(after, object_id)
-        under_ceiling = held is not None and any(p.id == held.parent for p in scene.architecture.by_role("ceiling"))
-        after = edits.move(after, object_id, item.pose.moved((own[0], own[1], 0.0 if under_ceiling else edit.up_m)))
+            shift_m = shift_m + share * edit.off_wall_m * off_wall(after, object_id)
+        under_ceiling = edge is not None and any(p.id == edge.parent for p in scene.architecture.by_role("ceiling"))
+        after = edits.move(
+            after, object_id, item.pose.moved((shift_m[0], shift_m[1], 0.0 if under_ceiling else edit.up_m))
+        )
         if edit.up_m and under_ceiling:
             after, note = _hung_longer(after, object_id, -edit.up_m)
             notes += note
@@ -204,8 +208,8 @@ def resized(positioner: Positioner, scene: Scene, ids: Sequence[str], factor: fl
 def freed(positioner: Positioner, scene: Scene, object_id: str) -> tuple[Scene, list[str]]:
     """An object that turned or grew into another steps aside, with the same heading."""
     after, item = scene, scene.object(object_id)
-    own = [object_id, *descendants(scene, object_id)]
-    if not positioner.collisions.of(scene, own) and positioner.inside(scene, object_id):
+    moved_ids = [object_id, *descendants(scene, object_id)]
+    if not positioner.collisions.of(scene, moved_ids) and positioner.inside(scene, object_id):
         return after, []
     spot = positioner.nearby(scene, object_id)
     if spot is None:

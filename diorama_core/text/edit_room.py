@@ -234,5 +234,5 @@ def wall_on(scene: Scene, side: str) -> Plane:
 
 def _free_m(scene: Scene, foot: WallFoot) -> float:
     """Length of a wall that no opening or picture takes."""
-    held = [o for o in scene.objects if (s := scene.support_of(o.id)) is not None and s.parent == foot.id]
-    return foot.length_m - sum(float(o.size_m[1]) for o in held)
+    standing = [o for o in scene.objects if (s := scene.support_of(o.id)) is not None and s.parent == foot.id]
+    return foot.length_m - sum(float(o.size_m[1]) for o in standing)

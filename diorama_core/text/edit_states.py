@@ -47,8 +47,8 @@ def measured(positioner: Positioner, scene: Scene, ids: Sequence[str], edit: Mea
                 f"{item.label} cannot be {target:.2f} m in {edit.side}; it is {float(size[axis]):.2f} m now"
             )
         size[axis] = target
-        held = after.support_of(object_id)
-        hangs = held is not None and held.relation == "mounted on"
+        edge = after.support_of(object_id)
+        hangs = edge is not None and edge.relation == "mounted on"
         after = edits.resize(after, object_id, size)
         if hangs:  # it grows to all sides of where it hangs
             pose = replace(after.object(object_id).pose, position=item.pose.position)
@@ -87,12 +87,12 @@ def copied(positioner: Positioner, scene: Scene, ids: Sequence[str], count: int,
                 mask_id=None,
                 box_px=None,
             )
-            own = list(relations) or [Relation("beside", (object_id,))]
-            spot = positioner.best(after, copy, own, near=None if relations else item.pose.position)
+            placing = list(relations) or [Relation("beside", (object_id,))]
+            spot = positioner.best(after, copy, placing, near=None if relations else item.pose.position)
             if spot is None and not relations:
                 spot = positioner.best(after, copy, near=item.pose.position)
             if spot is None:
-                raise EditRefused(f"there is no free place for another {item.category} {own[0].words(scene)}")
+                raise EditRefused(f"there is no free place for another {item.category} {placing[0].words(scene)}")
             after = positioner.put(after, copy, spot)
             new.append(new_id)
             missed += missed_notes(after, new_id, relations)

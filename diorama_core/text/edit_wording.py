@@ -135,10 +135,10 @@ def _without_remarks(clauses: list[str]) -> tuple[str, ...]:
             about = _on(taken)
             continue
         if re.match(rf"^{_BEGINS}", clause) is None:
-            said = _REMARK.match(clause) or _LIKED.match(clause)
-            cure = _cured(said)
-            if said is not None and not last:
-                about = said[1]
+            remark = _REMARK.match(clause) or _LIKED.match(clause)
+            cure = _cured(remark)
+            if remark is not None and not last:
+                about = remark[1]
                 continue
             clause = cure or clause
         remarks.append(clause)
@@ -150,10 +150,10 @@ def _on(taken: re.Match[str]) -> str:
     return taken[1] if taken[2] is None else f"{taken[1]} on {taken[2]}"
 
 
-def _cured(said: re.Match[str] | None) -> str | None:
+def _cured(match: re.Match[str] | None) -> str | None:
     too = (
         None
-        if said is None or said.re is not _REMARK
-        else re.fullmatch(r"(?:far |much |a bit |way )*too (\w+)", said[2])
+        if match is None or match.re is not _REMARK
+        else re.fullmatch(r"(?:far |much |a bit |way )*too (\w+)", match[2])
     )
-    return None if said is None or too is None or too[1] not in _CURES else f"make {said[1]} {_CURES[too[1]]}"
+    return None if match is None or too is None or too[1] not in _CURES else f"make {match[1]} {_CURES[too[1]]}"

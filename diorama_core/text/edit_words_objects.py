@@ -37,9 +37,9 @@ def places_of_phrases(selector: Selector, places: Sequence[PlacePhrase]) -> list
 def side_in(words: str) -> Side:
     """Which side of the room words about a wall or a corner say."""
     match = re.search(r"\b(left|right|back|far|front|near|other|opposite|another)\b", words)
-    said = "" if match is None else match[1]
+    word = "" if match is None else match[1]
     known = {"far": "back", "near": "front", "opposite": "other", "another": "other"}
-    return cast("Side", known.get(said, said))
+    return cast("Side", known.get(word, word))
 
 
 _SIDES: dict[str, tuple[Literal["width", "depth", "height"], float]] = {
@@ -122,8 +122,8 @@ def _sized(selector: Selector, clause: str, subject: Subject) -> Measure | None:
     match = _SIZED.match(plain) or _SET_SIDE.match(plain)
     if match is None:
         return None
-    said = match["side"]
-    side, sign = _SIDES.get(said, ("width", 1.0))
+    side_word = match["side"]
+    side, sign = _SIDES.get(side_word, ("width", 1.0))
     groups = match.groupdict()
     ids = list(subject(selector, match["who"]))
     if times := groups.get("times"):
@@ -131,9 +131,9 @@ def _sized(selector: Selector, clause: str, subject: Subject) -> Measure | None:
     verb = groups.get("verb")
     if verb in ("reduce", "decrease", "lower"):
         sign = -1.0
-    relative = said.endswith("er") or groups.get("to") == "by" or verb in ("increase", "reduce", "decrease")
+    relative = side_word.endswith("er") or groups.get("to") == "by" or verb in ("increase", "reduce", "decrease")
     if length is None:
-        if not (relative or said.endswith("er")):
+        if not (relative or side_word.endswith("er")):
             return None  # "make the shelf wide" is a look of it
         return Measure(objects=ids, side=side, factor=STEP_FACTOR if sign > 0 else 1.0 / STEP_FACTOR)
     if relative and groups.get("to") != "to":

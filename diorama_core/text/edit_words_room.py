@@ -99,14 +99,16 @@ def _surface(selector: Selector, text: str) -> Paint | None:
 
 def _cut(selector: Selector, words: str) -> tuple[str, str]:
     """What names an object at the beginning of some words, and the rest: "the sofa terracotta"."""
-    said = words.split()
-    for end in range(2, len(said) + 1):
+    words_of_clause = words.split()
+    for end in range(2, len(words_of_clause) + 1):
         try:
-            selector.targets(" ".join(said[:end]))
+            selector.targets(" ".join(words_of_clause[:end]))
         except EditRefused:
             continue
-        longer = next((k for k in range(len(said), end, -1) if _is_label(selector, said[:k])), end)
-        return " ".join(said[:longer]), " ".join(said[longer:])
+        longer = next(
+            (k for k in range(len(words_of_clause), end, -1) if _is_label(selector, words_of_clause[:k])), end
+        )
+        return " ".join(words_of_clause[:longer]), " ".join(words_of_clause[longer:])
     return words, ""
 
 
@@ -123,16 +125,18 @@ def _lengths(selector: Selector, clause: str) -> tuple[Edit, ...] | None:
     made = re.match(r"^(?:make|extend|enlarge|widen|lengthen|shrink|shorten|set) the (room|ceiling)\b(.*)$", clause)
     if made is None:
         return None
-    said = f"{clause.split()[0]} {made[2]}"
-    side = next((s for s, words in _GROWS.items() if re.search(rf"\b(?:{words})\b", said)), None)
+    command = f"{clause.split()[0]} {made[2]}"
+    side = next((s for s, words in _GROWS.items() if re.search(rf"\b(?:{words})\b", command)), None)
     side = "height" if made[1] == "ceiling" else side
-    if side is None and length_in(said) is not None:
-        side = "width" if "widen" in said else "length"
-    if side is None or (made[1] == "ceiling" and length_in(said) is None and "er" not in made[2]):
+    if side is None and length_in(command) is not None:
+        side = "width" if "widen" in command else "length"
+    if side is None or (made[1] == "ceiling" and length_in(command) is None and "er" not in made[2]):
         return None
-    if made[1] == "ceiling" and re.search(r"\b(?:darker|lighter|brighter|paler)\b", said):
+    if made[1] == "ceiling" and re.search(r"\b(?:darker|lighter|brighter|paler)\b", command):
         return None
-    return (_length(cast("Literal['height', 'length', 'width']", side), said, shrinks=bool(_SHRINKS.search(said))),)
+    return (
+        _length(cast("Literal['height', 'length', 'width']", side), command, shrinks=bool(_SHRINKS.search(command))),
+    )
 
 
 def _length(side: Literal["height", "length", "width"], words: str, *, shrinks: bool) -> RoomLength:

@@ -127,8 +127,8 @@ def _by_grammar(command: str, scene: Scene, library: ShapeLibrary, selected: Seq
     lines: list[str] = []
     notes: list[str] = []
     for clause in clauses_of(command):
-        for said in edits_of(clause, after, library, last, selected):
-            edit = _in_case(said, command)
+        for proposal in edits_of(clause, after, library, last, selected):
+            edit = _in_case(proposal, command)
             done = applier.apply(after, edit)
             after, last = done.scene, done.touched or last
             edits.append(edit)
@@ -159,8 +159,8 @@ def _by_model(
     client = LmmClient(settings, system=SYSTEM)
     plan = client.ask(edit_prompt(command, scene, selected), [], EditPlan, progress).value
     if plan.not_understood or not plan.edits:
-        said = "; ".join(plan.not_understood) or command
-        raise EditRefused(f"not understood: “{said[:120]}”; nothing was done")
+        remainder = "; ".join(plan.not_understood) or command
+        raise EditRefused(f"not understood: “{remainder[:120]}”; nothing was done")
     return apply_edits(plan.edits, scene, library, command=command, translator=settings.model, progress=progress)
 
 

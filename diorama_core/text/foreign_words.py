@@ -34,32 +34,32 @@ Phrase = tuple[str, ...]
 
 def in_english(text: str) -> str:
     """A text in English where it is German, French or Spanish; any other as it is."""
-    said = _TOKEN.findall(_plain(text))
-    scores = {name: _own_words(said, name) for name in LANGUAGES}
+    tokens = _TOKEN.findall(_plain(text))
+    scores = {name: _own_words(tokens, name) for name in LANGUAGES}
     best = max(LANGUAGES, key=lambda name: scores[name])
-    english = sum(word in _ENGLISH for word in said)
+    english = sum(word in _ENGLISH for word in tokens)
     if scores[best] < MIN_WORDS or scores[best] <= english:
         return text
-    return re.sub(r"\s+([,.;:!?])", r"\1", " ".join(word for word in _translated(said, _phrases(best)) if word))
+    return re.sub(r"\s+([,.;:!?])", r"\1", " ".join(word for word in _translated(tokens, _phrases(best)) if word))
 
 
-def _translated(said: list[str], phrases: Mapping[Phrase, str]) -> Iterator[str]:
+def _translated(tokens: list[str], phrases: Mapping[Phrase, str]) -> Iterator[str]:
     at = 0
-    while at < len(said):
-        for length in range(min(MAX_PHRASE, len(said) - at), 0, -1):
-            known = phrases.get(tuple(said[at : at + length]))
+    while at < len(tokens):
+        for length in range(min(MAX_PHRASE, len(tokens) - at), 0, -1):
+            known = phrases.get(tuple(tokens[at : at + length]))
             if known is not None:
                 yield known
                 at += length
                 break
         else:
-            yield said[at]
+            yield tokens[at]
             at += 1
 
 
-def _own_words(said: list[str], language: str) -> int:
+def _own_words(tokens: list[str], language: str) -> int:
     """How many words of a text are of a language and not English."""
-    return sum((word,) in _phrases(language) and word not in _ENGLISH for word in said)
+    return sum((word,) in _phrases(language) and word not in _ENGLISH for word in tokens)
 
 
 @cache

@@ -115,10 +115,10 @@ def has_look(shape: Shape, word: str) -> bool:
     if asked in EVEN_SIDED and max(shape.size_m[:2]) > EVEN_RATIO * min(shape.size_m[:2]):
         return False
     kinds = {asked, *narrower(asked)}
-    said = main_words(shape) | set(tokens(shape.style))
+    words_of_shape = main_words(shape) | set(tokens(shape.style))
     if look_of(word) is None:
-        said |= set(tokens(shape.caption))
-    return bool(kinds & said)
+        words_of_shape |= set(tokens(shape.caption))
+    return bool(kinds & words_of_shape)
 
 
 def is_made_of(shape: Shape, material: str) -> bool:
@@ -152,8 +152,8 @@ def fitting_shapes(
 
     def misses(shape: Shape) -> tuple[int, int]:
         """Words that do not fit, and words that only a special kind of them fits."""
-        said = set(tokens(f"{shape.caption} {shape.style}"))
-        return sum(not has_look(shape, w) for w in asked), sum(w not in said for w in asked)
+        words_of_shape = set(tokens(f"{shape.caption} {shape.style}"))
+        return sum(not has_look(shape, w) for w in asked), sum(w not in words_of_shape for w in asked)
 
     ordered = sorted(shapes, key=misses)
     if not ordered:

@@ -83,10 +83,10 @@ def _generated(words: str, endpoint: ImageSettings) -> bytes:
             except openai.BadRequestError:
                 made = client.images.generate(model=endpoint.model, prompt=words, n=1)
     except openai.OpenAIError as error:
-        said = " ".join(str(getattr(error, "message", error)).split())[:140]
+        message = " ".join(str(getattr(error, "message", error)).split())[:140]
         raise UnavailableError(
-            f"no picture came from {endpoint.base_url} ({said}); try again, or unset DIORAMA_IMAGE_BASE_URL to compose "
-            "the room from the library"
+            f"no picture came from {endpoint.base_url} ({message}); try again, or unset DIORAMA_IMAGE_BASE_URL "
+            "to compose the room from the library"
         ) from error
     data = made.data[0].b64_json if made.data else None
     try:

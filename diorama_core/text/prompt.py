@@ -194,8 +194,8 @@ def _read(reading: _Reading, clause: str) -> None:
         return
     if index is not None:
         waiting, reading.waiting = reading.waiting, []
-        for place, said in waiting:
-            _place(reading, index, place, said)
+        for place, text in waiting:
+            _place(reading, index, place, text)
     asked = index is None or (phrase is None and _ASKED.match(head) is not None)
     if (
         asked
@@ -249,12 +249,12 @@ def _times(reading: _Reading, category: str) -> int:
 
 def _add_seats(reading: _Reading, room: RoomKind, text: str) -> None:
     """Chairs for as many as a table or a dining room is for, where none are asked for."""
-    said = _SEATS_FOR.search(text)
+    match = _SEATS_FOR.search(text)
     table = next((o.category for o in reading.objects if broad(o.category) == "table"), None)
     seated = any(o.category in having("drawn_up") for o in reading.objects)
-    if said is None or seated or (table is None and room != "dining"):
+    if match is None or seated or (table is None and room != "dining"):
         return
-    count = int(said[1]) if said[1].isdigit() else NUMBERS[said[1]]
+    count = int(match[1]) if match[1].isdigit() else NUMBERS[match[1]]
     around = Wish("around", (table or "table",))
     reading.objects.append(RequestedObject("chair", "chair", max(1, min(count, MAX_OF_A_KIND)), wishes=(around,)))
 
@@ -299,13 +299,13 @@ def _each_other(reading: _Reading, index: int | None, kind: RelationKind) -> Non
     """Several of one kind stand so to one another; "a washer and a dryer side by side" are one of two kinds each."""
     if index is None:
         return
-    own, before = reading.objects[index], reading.objects[index - 1] if index else None
-    if own.count > 1 or before is None or before.category == own.category:
+    current, before = reading.objects[index], reading.objects[index - 1] if index else None
+    if current.count > 1 or before is None or before.category == current.category:
         _wish(reading, index, Wish(kind, each_other=True))
         return
     _wish(reading, index, Wish(kind, (before.category,)))
     if kind in ("facing", "opposite"):
-        _wish(reading, index - 1, Wish(kind, (own.category,)))
+        _wish(reading, index - 1, Wish(kind, (current.category,)))
 
 
 _SAT_AT = frozenset(name for seat in having("drawn_up") for name in category(seat).tucked_under or ())
@@ -321,7 +321,7 @@ def _wish(reading: _Reading, index: int | None, wish: Wish) -> None:
         reading.objects[index] = replace(request, wishes=(*request.wishes, wish))
 
 
-def _meant(reading: _Reading, own: int | None, kind: RelationKind, several: bool) -> str | None:
+def _meant(reading: _Reading, index: int | None, kind: RelationKind, several: bool) -> str | None:
     """Category of what "it" means: the last before that can be what the relation says, else the last at all.
 
     Things are on what carries things, and stand near furniture rather than near its lamps and plants: in "an armchair,
@@ -329,28 +329,30 @@ def _meant(reading: _Reading, own: int | None, kind: RelationKind, several: bool
     """
     if not reading.objects or reading.last < 0:
         return None
-    newest = own is not None and own == len(reading.objects) - 1 and reading.last != own
-    last = own - 1 if newest and own else reading.last
+    newest = index is not None and index == len(reading.objects) - 1 and reading.last != index
+    last = index - 1 if newest and index else reading.last
     named = reading.objects[: last + 1]
     named = [o for o in named if o.count > 1 or not several] or named
     before = [o.category for o in named][::-1] or [reading.objects[reading.last].category]
     if kind != "on":
         return next((name for name in before if is_furniture(name)), before[0])
     carriers = [name for name in before if category(name).supports_objects]
-    what = reading.objects[own].category if own is not None else ""
-    usual = {name for said, names in (usual_relations_of(what) if what else ()) if said == "on" for name in names}
+    what = reading.objects[index].category if index is not None else ""
+    usual = {
+        name for relation, names in (usual_relations_of(what) if what else ()) if relation == "on" for name in names
+    }
     # A lamp is on the table rather than on one of its chairs, a cushion on a chair.
     unsat = [name for name in carriers if name not in SEATS or broad(name) in usual]
     return next(iter([*unsat, *carriers]), before[0])
 
 
-def _target(reading: _Reading, words: str, own: int | None, kind: RelationKind) -> str | None:
+def _target(reading: _Reading, words: str, index: int | None, kind: RelationKind) -> str | None:
     """Category of what a place refers to; asked for as well where it is new, but for windows and doors."""
     phrase, _ = noun_phrase(words)
     if phrase is None:
         return None
     if phrase.pronoun:
-        return _meant(reading, own, kind, phrase.count > 1)
+        return _meant(reading, index, kind, phrase.count > 1)
     if not phrase.label:
         return None
     kin = next((o.category for o in reading.objects if o.category == phrase.category), None)

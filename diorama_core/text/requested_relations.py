@@ -118,11 +118,11 @@ def _depth(k: int, wanted: Sequence[RequestedObject], seen: tuple[int, ...]) -> 
     """How many requests in a row have to be placed before one."""
     if k in seen:
         return 0
-    own = stands_between(wanted[k], wanted)
-    named = {t for w in wanted[k].wishes for t in w.targets} - {own}
+    rank = stands_between(wanted[k], wanted)
+    named = {t for w in wanted[k].wishes for t in w.targets} - {rank}
     named |= {o.category for o in wanted if wanted[k].category == stands_between(o, wanted)}
     for _, targets in usual_relations_of(wanted[k].category):
-        named |= {t for t in targets if t != own and not _asks_for(t, wanted[k].category, wanted, ())}
+        named |= {t for t in targets if t != rank and not _asks_for(t, wanted[k].category, wanted, ())}
     named -= {wanted[k].category, broad(wanted[k].category)}
     below = [
         _depth(j, wanted, (*seen, k))
@@ -142,12 +142,12 @@ def _asks_for(name: str, other: str, wanted: Sequence[RequestedObject], seen: tu
 
 def targets_of(scene: Scene, wish: Wish, copy: int) -> tuple[str, ...]:
     """Ids of the objects that a wish of one of several copies names; none where they are not there."""
-    there = [[o.id for o in scene.objects if o.category == name] for name in wish.targets]
+    present = [[o.id for o in scene.objects if o.category == name] for name in wish.targets]
     if wish.kind == "between":
-        if len(there) == 1 and len(there[0]) > 1:
-            return tuple(there[0][:2])  # "between the beds"
-        return tuple(g[0] for g in there if g)
-    return tuple(g[copy % len(g)] for g in there if g)[:1]
+        if len(present) == 1 and len(present[0]) > 1:
+            return tuple(present[0][:2])  # "between the beds"
+        return tuple(g[0] for g in present if g)
+    return tuple(g[copy % len(g)] for g in present if g)[:1]
 
 
 def _of_kind(scene: Scene, name: str) -> list[str]:
@@ -157,22 +157,24 @@ def _of_kind(scene: Scene, name: str) -> list[str]:
 
 def usual_relations(scene: Scene, request: RequestedObject, copy: int) -> list[Relation]:
     """How such an object stands where the prompt does not say."""
-    said = {w.kind for w in request.wishes}
+    requested = {w.kind for w in request.wishes}
     relations: list[Relation] = []
     for wish in request.wishes:
         if wish.kind == "in front of" and request.category in SEATS and "bed" not in wish.targets:
             relations += [Relation("facing", targets)] if (targets := targets_of(scene, wish, copy)) else []
-    if copy and broad(request.category) == "bed" and not said & _APART:
-        relations += [Relation("beside", (there[0],)) for there in (_of_kind(scene, request.category),) if there]
+    if copy and broad(request.category) == "bed" and not requested & _APART:
+        relations += [Relation("beside", (present[0],)) for present in (_of_kind(scene, request.category),) if present]
     for kind, names in usual_relations_of(request.category):
-        if kind in said or (said and kind in ("in corner", "above", "on") and request.category != "television"):
+        if kind in requested or (
+            requested and kind in ("in corner", "above", "on") and request.category != "television"
+        ):
             continue
-        if said & {"in corner", "against wall"} and kind in ("beside", "near", "under", "in front of"):
+        if requested & {"in corner", "against wall"} and kind in ("beside", "near", "under", "in front of"):
             continue
         if not names:
             relations.append(Relation(kind))
             continue
-        there = next((ids for n in names if (ids := _of_kind(scene, n))), None)
-        if there:
-            relations.append(Relation(kind, (there[copy % len(there)],)))
+        present = next((ids for n in names if (ids := _of_kind(scene, n))), None)
+        if present:
+            relations.append(Relation(kind, (present[copy % len(present)],)))
     return relations

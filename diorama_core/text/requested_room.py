@@ -115,7 +115,7 @@ def requested_shapes(
     on = any(w.kind == "on" for w in request.wishes)
     words = {*request.appearance, *request.label.split()}
     double, single = (
-        request.category == "bed" and bool(words & set(said)) for said in (("double",), ("single", "twin"))
+        request.category == "bed" and bool(words & set(looks)) for looks in (("double",), ("single", "twin"))
     )
     width_m = next((SOFA_WIDTHS_M[word] for word in SOFA_WIDTHS_M if word in words), None)
 
@@ -146,8 +146,8 @@ def requested_shapes(
         roomy = tuple(s for s in shapes if _seats(s) >= seats)
         shapes = roomy or tuple(sorted(shapes, key=lambda s: -float(sum(s.size_m[:2])))[:3])
     asked = [w for w in request.appearance if look_of(w) is not None]
-    said = [w for w in request.appearance if size_request(w) is None]
-    most = [sum(has_look(s, w) for w in said) for s in shapes]
+    looks = [w for w in request.appearance if size_request(w) is None]
+    most = [sum(has_look(s, w) for w in looks) for s in shapes]
     named = [s for s, n in zip(shapes, most, strict=True) if n == max(most)]
     sized = any(size_request(w) is not None for w in request.appearance)
     if (request.label != request.category and not asked) or sized:

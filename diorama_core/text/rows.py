@@ -62,8 +62,8 @@ def _count(word: str) -> int:
 def without_marks(words: Sequence[str]) -> tuple[list[str], tuple[int, int] | None]:
     """Words without a mark, and what it says: how many rows of how many, 0 where that is open."""
     match = next((m for word in words if (m := _MARK.fullmatch(word))), None)
-    said = (int(match[1]), int(match[2])) if match else None
-    return [word for word in words if not _MARK.fullmatch(word)], said
+    mark = (int(match[1]), int(match[2])) if match else None
+    return [word for word in words if not _MARK.fullmatch(word)], mark
 
 
 @dataclass(frozen=True, eq=False)

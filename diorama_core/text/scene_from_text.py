@@ -89,18 +89,18 @@ def scene_from_text(
         Cancelled: on request.
     """
     words, progress = words_of(prompt), progress or Progress()
-    request, said = None, ["the room was composed from the library by rules"]
+    request, remarks = None, ["the room was composed from the library by rules"]
     if language_model is not None:
         try:
             request = listed_request(words, language_model, progress.part(0.0, 0.3))
-            said = [f"{language_model.model} listed what the room holds; it was composed from the library by rules"]
+            remarks = [f"{language_model.model} listed what the room holds; it was composed from the library by rules"]
         except UnavailableError as error:
-            said.append(f"the language model was not used ({error})")
+            remarks.append(f"the language model was not used ({error})")
     room = composed_room(words, library, seed, request=request, progress=progress.part(0.3, 0.6))
     added = [f"added, as such rooms have it: {', '.join(room.added)}"] if room.added else []
     progress.report(0.6, "Looking for the best view")
     scene, textures = finished(room.scene, library)
-    notes: tuple[str, ...] = (*said, *room.notes, *added)
+    notes: tuple[str, ...] = (*remarks, *room.notes, *added)
     if language_model is not None and request is not None:
         better = mended(words, scene, library, textures, language_model, progress.part(0.65, 1.0))
         scene, notes = better.scene, (*notes, *better.notes)
@@ -114,21 +114,21 @@ def unmet(prompt: str, scene: Scene) -> tuple[str, ...]:
     An object counts for the first request that names its category, else for one of a kindred category.
     """
     request = understood_prompt(prompt)
-    there = Counter(o.category for o in scene.objects)
+    present_counts = Counter(o.category for o in scene.objects)
     lines = []
     for asked in request.objects:
-        number = _take(there, asked)
+        number = _take(present_counts, asked)
         if number < asked.count:
             lines.append(_line(asked, number))
     return (*lines, *(f"the library has nothing called “{words}”" for words in request.ignored))
 
 
-def _take(there: Counter[str], asked: RequestedObject) -> int:
+def _take(present_counts: Counter[str], asked: RequestedObject) -> int:
     """How many of what is asked for are there, taken out so that they count once."""
     number = 0
     for name in (asked.category, *sorted(with_kin(asked.category) - {asked.category})):
-        here = min(there[name], asked.count - number)
-        there[name] -= here
+        here = min(present_counts[name], asked.count - number)
+        present_counts[name] -= here
         number += here
     return number
 

@@ -205,9 +205,9 @@ def _adapt(a: argparse.Namespace) -> None:
     photos = {k: v for marked, folder in a.photos for k, v in labelled_photos(marked, folder, kinds).items()}
     if a.fold:
         order = np.random.default_rng(0).permutation(len(photos))
-        held = {list(photos)[k] for k in order[a.fold[0] :: a.fold[1]]}
-        print("held back: " + " ".join(sorted(held)))
-        photos = {name: photo for name, photo in photos.items() if name not in held}
+        held_out = {list(photos)[k] for k in order[a.fold[0] :: a.fold[1]]}
+        print("held back: " + " ".join(sorted(held_out)))
+        photos = {name: photo for name, photo in photos.items() if name not in held_out}
     torch.set_num_threads(1)
     rendered = PictureFiles.of(a.pictures)
     adapted_detector(a.detector, tuple(photos.values()), rendered, len(kinds), a.output, progress=_told())

@@ -130,8 +130,8 @@ def adapted_detector(
 @torch.no_grad()
 def _approach(network: nn.Module, other: nn.Module, share: float) -> None:
     """Move weights a share of the way to another network's."""
-    for own, target in zip(network.parameters(), other.parameters(), strict=True):
-        own.lerp_(target, share)
+    for parameter, target in zip(network.parameters(), other.parameters(), strict=True):
+        parameter.lerp_(target, share)
 
 
 def trained_detector(graph: Path, kinds: int) -> nn.Module:

@@ -136,16 +136,16 @@ class FacingModel:
 
     def log_probabilities(self, weights: Tensor, largest: bool = False) -> Tensor:
         """Log-probabilities of the asked objects' headings; up to a constant their max-marginals where `largest`."""
-        own = (self.ones * weights[None, :, None]).sum(dim=1)
-        said = self.tables * weights[self.term][:, None, None]
-        table = torch.zeros(len(self.first), HEADINGS, HEADINGS, dtype=torch.float64).index_add(0, self.edge, said)
-        messages, incoming = torch.zeros(len(self.first), HEADINGS, dtype=torch.float64), torch.zeros_like(own)
+        unary = (self.ones * weights[None, :, None]).sum(dim=1)
+        terms = self.tables * weights[self.term][:, None, None]
+        table = torch.zeros(len(self.first), HEADINGS, HEADINGS, dtype=torch.float64).index_add(0, self.edge, terms)
+        messages, incoming = torch.zeros(len(self.first), HEADINGS, dtype=torch.float64), torch.zeros_like(unary)
         for _ in range(ROUNDS):
-            joint = table + ((own + incoming)[self.second] - messages[self.back])[:, None]
+            joint = table + ((unary + incoming)[self.second] - messages[self.back])[:, None]
             new = joint.amax(dim=2) if largest else torch.logsumexp(joint, dim=2)
             messages = DAMPING * messages + (1 - DAMPING) * (new - new.amax(dim=1, keepdim=True))
-            incoming = torch.zeros_like(own).index_add(0, self.first, messages)
-        return torch.log_softmax((own + incoming)[self.objects], dim=1)
+            incoming = torch.zeros_like(unary).index_add(0, self.first, messages)
+        return torch.log_softmax((unary + incoming)[self.objects], dim=1)
 
     def fitted(self, start: Tensor, seen: Bool[np.ndarray, "n"]) -> Tensor:
         """Weights for the asked objects that are seen; those that begin at 0, and those of `AS_TOLD`, stay."""
@@ -157,8 +157,8 @@ class FacingModel:
         def loss() -> Tensor:
             optimiser.zero_grad()
             weights = torch.where(free, torch.exp(logs), start)
-            said = self.log_probabilities(weights).masked_fill(~self.right, _IMPOSSIBLE)
-            value = -torch.logsumexp(said[rows], dim=1).mean() + STIFFNESS * ((logs - begin) ** 2).sum()
+            log_probabilities = self.log_probabilities(weights).masked_fill(~self.right, _IMPOSSIBLE)
+            value = -torch.logsumexp(log_probabilities[rows], dim=1).mean() + STIFFNESS * ((logs - begin) ** 2).sum()
             value.backward()  # type: ignore[no-untyped-call]
             return value
 

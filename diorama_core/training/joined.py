@@ -32,19 +32,24 @@ def join_namers(paths: Sequence[Path], output: Path) -> None:
         InputError: for a graph whose numbers are not those of attributes of form.
     """
     graphs = [onnx.load(path) for path in paths]
-    told = [_attributes(graph, path) for graph, path in zip(graphs, paths, strict=True)]
-    if told[0] != MEASURED:
-        raise InputError(f"{paths[0]}: tells {', '.join(told[0])} only; begin with a namer that tells every attribute")
+    attributes = [_attributes(graph, path) for graph, path in zip(graphs, paths, strict=True)]
+    if attributes[0] != MEASURED:
+        raise InputError(
+            f"{paths[0]}: tells {', '.join(attributes[0])} only; begin with a namer that tells every attribute"
+        )
     nodes: list[NodeProto] = []
     values = [_array(np.array(_TINY, np.float32), "tiny")]
     for k, graph in enumerate(graphs):
-        own = compose.add_prefix(graph, f"{k}_").graph
-        for node in own.node:
+        prefixed = compose.add_prefix(graph, f"{k}_").graph
+        for node in prefixed.node:
             node.input[:] = [name.removeprefix(f"{k}_") if name in _prefixed(k) else name for name in node.input]
-        nodes += [*own.node, *_probabilities(k, told[k])]
-        values += [*own.initializer, _array(np.array([len(VALUES[name]) for name in told[k]], np.int64), f"{k}_sizes")]
+        nodes += [*prefixed.node, *_probabilities(k, attributes[k])]
+        values += [
+            *prefixed.initializer,
+            _array(np.array([len(VALUES[name]) for name in attributes[k]], np.int64), f"{k}_sizes"),
+        ]
     for name in ("kinds", *MEASURED):
-        parts = [f"{k}_{name}_probability" for k in range(len(graphs)) if name == "kinds" or name in told[k]]
+        parts = [f"{k}_{name}_probability" for k in range(len(graphs)) if name == "kinds" or name in attributes[k]]
         nodes.append(helper.make_node("Mean", parts, [f"{name}_mean"]))
     nodes.append(helper.make_node("Concat", [f"{name}_mean" for name in MEASURED], ["forms_mean"], axis=1))
     for name in _OUTPUTS:

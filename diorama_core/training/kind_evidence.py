@@ -101,12 +101,16 @@ def scores(looks: Sequence[AnnotatedLooks], kinds: tuple[str, ...], table: Path)
     order = np.random.default_rng(SEED).permutation(len(looks))
     learnt = np.zeros_like(fitted.known)
     for k in range(FOLDS):
-        held = np.isin(photo, order[k::FOLDS])
-        if held.any():
-            readings = fitted.readings(~held)
-            learnt[held] = readings.log_likelihoods(fitted.logits[held], fitted.features[held])
-    own, of_table = np.concatenate([p.own for p in looks]), fitted.of_table
-    ways = {"own": own, "own, table": with_evidence(own, of_table), "own, table, layer": with_evidence(own, learnt)}
+        is_held_out = np.isin(photo, order[k::FOLDS])
+        if is_held_out.any():
+            readings = fitted.readings(~is_held_out)
+            learnt[is_held_out] = readings.log_likelihoods(fitted.logits[is_held_out], fitted.features[is_held_out])
+    probabilities, of_table = np.concatenate([p.own for p in looks]), fitted.of_table
+    ways = {
+        "own": probabilities,
+        "own, table": with_evidence(probabilities, of_table),
+        "own, table, layer": with_evidence(probabilities, learnt),
+    }
     return tuple(_score(way, looks, seen, kinds, fitted.log_frequency) for way, seen in ways.items())
 
 
@@ -138,11 +142,13 @@ class _Fit(ArrayValue):
             kinds: names of the categories.
             table: file of the class table.
         """
-        own, logits, features = (np.concatenate([getattr(p, n) for p in looks]) for n in ("own", "logits", "features"))
+        probabilities, logits, features = (
+            np.concatenate([getattr(p, n) for p in looks]) for n in ("own", "logits", "features")
+        )
         classes, shares = read_class_table(table, kinds), meanings(UNKNOWN.name, UNKNOWN.name)
         frequency = np.log([max(shares.get(kind, 0.0), _NEVER) for kind in kinds])
         of_table = table_likelihoods(classes, logits)
-        known = TRUST * (np.log(own + OWN_FLOOR) + of_table) + frequency
+        known = TRUST * (np.log(probabilities + OWN_FLOOR) + of_table) + frequency
         truth = np.concatenate([p.kinds for p in looks])
         return cls(classes, of_table, known, logits, features, truth, frequency)
 

@@ -250,13 +250,13 @@ def _hide(canvas: UInt8[np.ndarray, "s s 3"], files: ShapeViewFiles, rng: np.ran
     rgba = _cropped_to_solid(views.rgba[int(rng.integers(len(views.rgba)))], rng)
     size, share, side = box[2:] - box[:2], float(rng.uniform(0.08, MAX_HIDDEN)), int(rng.integers(3))
     scale = float(rng.uniform(0.4, 1.1) * max(size) / max(rgba.shape[:2]))
-    own = np.array([rgba.shape[1], rgba.shape[0]]) * scale
+    size_px = np.array([rgba.shape[1], rgba.shape[0]]) * scale
     middle = (box[:2] + box[2:]) / 2 + rng.uniform(-0.3, 0.3, 2) * size
     if side == 2:
-        middle[1] = box[3] - share * size[1] + own[1] / 2
+        middle[1] = box[3] - share * size[1] + size_px[1] / 2
     else:
-        inner = box[0] + share * size[0] - own[0] / 2 if side == 0 else box[2] - share * size[0] + own[0] / 2
-        middle = np.array([inner, max(middle[1], box[3] - own[1] / 2)])
+        inner = box[0] + share * size[0] - size_px[0] / 2 if side == 0 else box[2] - share * size[0] + size_px[0] / 2
+        middle = np.array([inner, max(middle[1], box[3] - size_px[1] / 2)])
     _lay(canvas, rgba, scale, middle)
 
 

@@ -156,12 +156,12 @@ class Trainer:
     @torch.no_grad()
     def _average(self) -> None:
         share = min(0.998, (self.step + 1) / (self.step + 10))
-        own = self.network.state_dict()
+        state = self.network.state_dict()
         for name, value in self.averaged.state_dict().items():
             if value.dtype.is_floating_point:
-                value.lerp_(own[name], 1 - share)
+                value.lerp_(state[name], 1 - share)
             else:
-                value.copy_(own[name])
+                value.copy_(state[name])
 
     def _save(self) -> None:
         part = self.checkpoint.with_suffix(".part")

@@ -22,7 +22,7 @@ SHAPES = (
 class Known(TypedDict, total=False):
     favourites: Sequence[str]
     recent: Sequence[str]
-    own: Callable[[str], bool]
+    is_own: Callable[[str], bool]
     has_place: Callable[[Shape], bool]
 
 
@@ -43,7 +43,7 @@ def test_filters_are_taken_together() -> None:
 def test_shelves_hold_what_is_marked_used_and_owned() -> None:
     assert ids(Filters(shelf="favourites"), favourites=("stool", "gone")) == ["stool"]
     assert ids(Filters(shelf="recent"), recent=("mine", "sofa")) == ["mine", "sofa"], "the last first"
-    assert ids(Filters(shelf="own"), own=lambda i: i == "mine") == ["mine"]
+    assert ids(Filters(shelf="own"), is_own=lambda i: i == "mine") == ["mine"]
     assert ids(Filters(shelf="own")) == []
 
 

@@ -99,14 +99,14 @@ def _neighbouring(pairs: Sequence[tuple[int, Border]], cells: int, planes: int) 
     First own plane less those of the other cell that may meet it; then own plane less the other's less the edge.
     """
     here = np.array([cell for cell, _ in pairs])[:, None]
-    there = np.array([border.other for _, border in pairs])[:, None]
+    neighbours = np.array([border.other for _, border in pairs])[:, None]
     number, plane = np.arange(len(pairs))[:, None], np.arange(planes)
     may_meet, of_edge = 2 * planes * number + plane, 2 * planes * number + planes + plane
-    own, other = here * planes + plane, there * planes + plane
-    edge = np.broadcast_to(cells * planes + number, own.shape)
+    nodes, other = here * planes + plane, neighbours * planes + plane
+    edge = np.broadcast_to(cells * planes + number, nodes.shape)
     at, mine, theirs = np.nonzero([border.allowed for _, border in pairs])
     rows = [may_meet, may_meet[at, mine], of_edge, of_edge, of_edge]
-    columns = [own, other[at, theirs], own, other, edge]
+    columns = [nodes, other[at, theirs], nodes, other, edge]
     values = [np.full(c.shape, sign) for c, sign in zip(columns, (1.0, -1.0, 1.0, -1.0, -1.0), strict=True)]
     row, column, value = (np.concatenate([x.ravel() for x in part]) for part in (rows, columns, values))
     return sparse.csr_array((value, (row, column)), shape=(2 * planes * len(pairs), cells * planes + len(pairs)))

@@ -83,14 +83,14 @@ def polygons(layout: RoomLayout, proposals: Proposals, camera: Camera) -> tuple[
     planes: list[Plane] = []
     cells = layout.cells
     for p in range(len(cells.inverse)):
-        own = [
+        lines = [
             Polygon(c.corners).buffer(0.01, join_style="mitre")
             for c, k in zip(cells.cells, layout.chosen, strict=True)
             if k == p
         ]
-        if not own:
+        if not lines:
             continue
-        union = shapely.unary_union(own)
+        union = shapely.unary_union(lines)
         region = max(union.geoms, key=lambda g: g.area) if isinstance(union, MultiPolygon) else union
         if region.area < MIN_REGION_PX:
             continue

@@ -263,7 +263,8 @@ def gather_room_cues(
         hung_top_m=max((float(c.corners_world[:, 2].max()) for c in cuboids if c.object_id in hung), default=0.0),
         slants_rad=tuple(angle for angle, _ in slants),
         slant_maps=tuple(
-            _edge_map(oblique[own], objects, rgb.shape[:2], map_scale, settings=settings) for _, own in slants
+            _edge_map(oblique[rows_of_direction], objects, rgb.shape[:2], map_scale, settings=settings)
+            for _, rows_of_direction in slants
         ),
         settings=settings,
     )
@@ -288,8 +289,8 @@ def _slants(
     slants: list[tuple[float, Bool[np.ndarray, "n"]]] = []
     for angle in np.deg2rad(np.arange(0.0, 180.0, 1.0)):
         along = np.array([np.cos(angle), np.sin(angle), 0.0])
-        own = usable & (np.abs(normals @ along) < np.sin(AXIS_TOLERANCE_RAD / 2))
-        slants.append((float(angle), own))
+        is_along = usable & (np.abs(normals @ along) < np.sin(AXIS_TOLERANCE_RAD / 2))
+        slants.append((float(angle), is_along))
     best = max(slants, key=lambda pair: float(lengths[pair[1]].sum()))
     total = float(lengths[best[1]].sum())
     enough = total > max(

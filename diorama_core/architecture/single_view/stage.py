@@ -104,9 +104,9 @@ def candidate_walls(cues: RoomCues, box: Float[np.ndarray, "4"], settings: RoomS
         square = np.array([-np.sin(angle), np.cos(angle)])
         facing += [(sign * square, 2 + number, settings.nearest_m) for sign in (1.0, -1.0)]
     normals, offsets, directions = [], [], []
-    for normal, direction, own in facing:
+    for normal, direction, box_indices in facing:
         seen = _distances_of_lines(cues, normal, 1 - direction, settings) if direction < 2 else np.zeros(0)
-        distances = np.unique(np.concatenate([away, [own], seen]))
+        distances = np.unique(np.concatenate([away, [box_indices], seen]))
         normals.append(np.repeat(normal[None], len(distances), axis=0))
         offsets.append(float(normal @ eye) - distances)
         directions.append(np.full(len(distances), direction))

@@ -77,12 +77,14 @@ def best_view_textures(
         if not views or not is_enough(np.any([v.shown for v in views.values()], axis=0), pixel_m, plane):
             continue
         chosen = [(views[k], gains[k], sharpness[k]) for k in sorted(views)]
-        colours, owned, there = _blended(chosen, pixel_m, settings)
-        if there.any() and owned.any():
+        colours, owned, is_covered = _blended(chosen, pixel_m, settings)
+        if is_covered.any() and owned.any():
             ground = plane.role == "floor"
             colours = levelled(colours, owned, pixel_m) if ground else colours
             sharp = np.any([v.sharp for v in views.values()], axis=0)
-            textures[plane.id] = completed(colours, there, plane.colour, pixel_m, owned, ground=ground, sharp=sharp)
+            textures[plane.id] = completed(
+                colours, is_covered, plane.colour, pixel_m, owned, ground=ground, sharp=sharp
+            )
     return textures
 
 
@@ -144,8 +146,8 @@ def _blended(
         settings: Numbers to work with.
     """
     scores = np.stack([_score(view, pixel_m, settings) * sharp for view, _, sharp in views])
-    best, there = scores.argmax(axis=0), scores.max(axis=0) > 0
-    shape = there.shape
+    best, is_covered = scores.argmax(axis=0), scores.max(axis=0) > 0
+    shape = is_covered.shape
     total = {m: np.zeros(shape, np.float32) for m in (settings.detail_m, settings.shade_m)}
     summed = {m: np.zeros((*shape, 3), np.float32) for m in (settings.detail_m, settings.shade_m)}
     owned = np.zeros(shape, dtype=bool)
@@ -163,7 +165,7 @@ def _blended(
             total[length_m] += weight
             summed[length_m] += weight[..., None] * band
     colours = sum((summed[m] / np.maximum(total[m], 1e-12)[..., None] for m in summed), np.zeros(1, np.float32))
-    return np.asarray(colours, dtype=np.float32).clip(0.0, 255.0), owned, there
+    return np.asarray(colours, dtype=np.float32).clip(0.0, 255.0), owned, is_covered
 
 
 def _score(view: PlaneView, pixel_m: float, settings: BestViewSettings = SETTINGS) -> Float[np.ndarray, "h w"]:

@@ -71,8 +71,8 @@ def coloured(
     sure = free & ~_doubtful((rgb.shape[0], rgb.shape[1]), objects)[grid]
 
     def where(index: int, role: PlaneRole) -> Bool[np.ndarray, "hs ws"]:
-        own, surely = (seen == index) & free, (seen == index) & sure
-        return surely if role != "floor" and surely.sum() >= MIN_PIXELS else own
+        is_plane, surely = (seen == index) & free, (seen == index) & sure
+        return surely if role != "floor" and surely.sum() >= MIN_PIXELS else is_plane
 
     colours = [_colour_of(plane.role, small, where(i, plane.role), white) for i, plane in enumerate(planes)]
     shown = [int((seen == i).sum()) for i in range(len(planes))]
@@ -82,8 +82,10 @@ def coloured(
         if (colour := colours[i]) is not None:
             by_role.setdefault(planes[i].role, colour)
     hidden = [p.role == "wall" and n < MIN_FREE * m for p, n, m in zip(planes, unhidden, shown, strict=True)]
-    own = [None if lost else colour for colour, lost in zip(colours, hidden, strict=True)]
-    return tuple(replace(p, colour=c or by_role.get(p.role, _PLAIN[p.role])) for p, c in zip(planes, own, strict=True))
+    known_colours = [None if lost else colour for colour, lost in zip(colours, hidden, strict=True)]
+    return tuple(
+        replace(p, colour=c or by_role.get(p.role, _PLAIN[p.role])) for p, c in zip(planes, known_colours, strict=True)
+    )
 
 
 def _colour_of(

@@ -52,7 +52,7 @@ def completed(
     seen: Bool[np.ndarray, "h w"],
     plain: tuple[float, float, float],
     pixel_m: float,
-    own: Bool[np.ndarray, "h w"],
+    is_plane: Bool[np.ndarray, "h w"],
     *,
     ground: bool = False,
     sharp: Bool[np.ndarray, "h w"] | None = None,
@@ -69,7 +69,7 @@ def completed(
         seen: Which texels are.
         plain: The plane's colour, 0 to 1.
         pixel_m: Size of a texel.
-        own: Which of the seen texels show the plane's material: what may be continued.
+        is_plane: Which of the seen texels show the plane's material: what may be continued.
         ground: Whether it is a floor: boards and rugs vary more, and more broadly, than walls.
         sharp: Which of the plane's own texels are seen from near enough to copy detail from; all by default.
         settings: Numbers to work with.
@@ -78,14 +78,14 @@ def completed(
         (settings.floor_shading_m, settings.floor_detail) if ground else (settings.wall_shading_m, settings.wall_detail)
     )
     if ground:
-        red, green, blue = (float(c) / 255.0 for c in np.median(colours[own], axis=0))
+        red, green, blue = (float(c) / 255.0 for c in np.median(colours[is_plane], axis=0))
         plain = (red, green, blue)
-    shading = broad_shading(colours, own, breadth_m / pixel_m)
-    even = own
+    shading = broad_shading(colours, is_plane, breadth_m / pixel_m)
+    even = is_plane
     if ground:
         # Shadows and glow at the feet of things are not carried on over the floor.
-        calm = own & (np.abs(shading - np.array(plain, np.float32) * 255.0).max(axis=-1) < settings.calm_levels)
-        even = calm if calm.any() else own
+        calm = is_plane & (np.abs(shading - np.array(plain, np.float32) * 255.0).max(axis=-1) < settings.calm_levels)
+        even = calm if calm.any() else is_plane
     smooth = _pull_push(shading * even[..., None], even.astype(np.float32))
     distance = cv2.distanceTransform((~seen).astype(np.uint8), cv2.DIST_L2, 5)
     keep = np.exp(-distance * pixel_m / settings.fade_m)[..., None]
@@ -94,7 +94,7 @@ def completed(
     beside = broad_shading(colours, seen, breadth_m / pixel_m)
     alike = seen & (np.abs(beside - smooth).max(axis=-1) < (settings.calm_levels if ground else settings.seam_levels))
     filled = near * _pull_push(beside * alike[..., None], alike.astype(np.float32)) + (1.0 - near) * filled
-    detail = _detail(colours - shading, own, strongest, sharp, settings)
+    detail = _detail(colours - shading, is_plane, strongest, sharp, settings)
     if detail is not None:
         filled = filled + detail
     # The first texels inside a mask's border still carry its rim; a soft seam hides the step.
@@ -105,22 +105,22 @@ def completed(
 
 def _detail(
     detail: Float32[np.ndarray, "h w 3"],
-    own: Bool[np.ndarray, "h w"],
+    is_plane: Bool[np.ndarray, "h w"],
     strongest: float,
     sharp: Bool[np.ndarray, "h w"] | None,
     settings: ContinuationSettings = SETTINGS,
 ) -> Float32[np.ndarray, "h w 3"] | None:
     """Detail everywhere: copied in blocks where large ones were seen or it has lines and figures, else made anew."""
-    sample = plain_texels(detail, own, strongest, sharp)
+    sample = plain_texels(detail, is_plane, strongest, sharp)
     size = block_size(sample)
     copied = size is None or size == LARGEST_BLOCK_PX or not is_gaussian(detail, sample)
     if copied or (size is not None and size >= settings.lined_block_px and has_lines(detail, sample)):
-        return detail_continued(detail, own, strongest, source=sharp)
+        return detail_continued(detail, is_plane, strongest, source=sharp)
     # What is nearly as broad as the sample is rather light and shade.
     width = 2.0 * float(cv2.distanceTransform(np.pad(sample, 1).astype(np.uint8), cv2.DIST_L2, 5).max())
     finer = detail - broad_shading(detail, sample, min(settings.sample_broadest * width, settings.broadest_px))
     made = gaussian_texture(finer, sample)
-    return np.asarray(np.where(own[..., None], detail, made), dtype=np.float32)
+    return np.asarray(np.where(is_plane[..., None], detail, made), dtype=np.float32)
 
 
 def _pull_push(

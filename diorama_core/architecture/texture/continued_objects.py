@@ -81,11 +81,11 @@ def cut_patches(
         for colour in _common_colours(lab[mask], settings.main_share):
             even = (np.abs(lab - colour) < _EVEN_LAB).all(axis=-1).astype(np.uint8)
             count, label = cv2.connectedComponents(even)
-            held = np.bincount(label[mask], minlength=count) / np.maximum(
+            mask_share = np.bincount(label[mask], minlength=count) / np.maximum(
                 np.bincount(label.ravel(), minlength=count), 1
             )
-            held[0] = 0.0
-            patches[y1:y2, x1:x2] |= (held > settings.cut_share)[label] & ~mask
+            mask_share[0] = 0.0
+            patches[y1:y2, x1:x2] |= (mask_share > settings.cut_share)[label] & ~mask
     return cv2.morphologyEx(patches.astype(np.uint8), cv2.MORPH_OPEN, np.ones((3, 3), np.uint8)).astype(bool)
 
 
@@ -103,7 +103,7 @@ def object_colours(
 
 def continued_objects(
     colours: Float32[np.ndarray, "h w 3"],
-    own: Bool[np.ndarray, "h w"],
+    is_plane: Bool[np.ndarray, "h w"],
     foreign: Bool[np.ndarray, "h w"],
     pixels: Float[np.ndarray, "n 2"],
     objects: Sequence[ObjectColours],
@@ -115,7 +115,7 @@ def continued_objects(
 
     Args:
         colours: of the wall's texels, 0 to 255.
-        own: those seen that are of the wall's own colour.
+        is_plane: those seen that are of the wall's own colour.
         foreign: those seen that are not.
         pixels: where the photo shows the foreign ones, in the order of `np.nonzero`.
         objects: what hides the wall.
@@ -124,10 +124,10 @@ def continued_objects(
     """
     rows, columns = np.nonzero(foreign)
     continued = np.zeros(foreign.shape, np.uint8)
-    if not len(rows) or not own.any():
+    if not len(rows) or not is_plane.any():
         return continued.astype(bool)
     lab = _lab(colours[rows, columns])
-    lit = _is_shade(lab, _lab(np.median(colours[own], axis=0)[None])[0], settings)
+    lit = _is_shade(lab, _lab(np.median(colours[is_plane], axis=0)[None])[0], settings)
     reach = settings.reach * longest_px
     for item in objects:
         x1, y1, x2, y2 = item.box

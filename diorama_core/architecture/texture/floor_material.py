@@ -169,12 +169,12 @@ def floor_texels(
         white,
         settings,
     )
-    own = np.zeros(seen.shape, dtype=bool)
-    own[rows, columns] = _of_material(lab, main, settings)
+    is_floor = np.zeros(seen.shape, dtype=bool)
+    is_floor[rows, columns] = _of_material(lab, main, settings)
     picture = np.zeros((*seen.shape, 3), np.float32)
     picture[rows, columns] = lab
     others: list[np.ndarray] = []
-    looked_at = own[rows, columns]
+    looked_at = is_floor[rows, columns]
     for _ in range(settings.other_colours):
         left = ~looked_at
         if left.mean() < settings.min_of_pattern:
@@ -186,16 +186,20 @@ def floor_texels(
         looked_at |= texels
         other = np.zeros(seen.shape, dtype=bool)
         other[rows, columns] = texels
-        if _intermingled(own, other, pixel_m, settings):
-            own |= other
+        if _intermingled(is_floor, other, pixel_m, settings):
+            is_floor |= other
         else:
             others.append(
                 other
                 & (np.abs(picture - main) < _LIT_LAB).all(axis=-1)
                 & (picture[..., 0] >= main[0] - settings.shadow_l)
             )
-    own |= _turning_into(own, others, _change(picture, seen, pixel_m, settings), pixel_m, settings) if others else False
-    return own & ~_grown_pieces(seen & ~own, pixel_m, settings)
+    is_floor |= (
+        _turning_into(is_floor, others, _change(picture, seen, pixel_m, settings), pixel_m, settings)
+        if others
+        else False
+    )
+    return is_floor & ~_grown_pieces(seen & ~is_floor, pixel_m, settings)
 
 
 def _change(
@@ -212,7 +216,7 @@ def _change(
 
 
 def _turning_into(
-    own: Bool[np.ndarray, "h w"],
+    is_floor: Bool[np.ndarray, "h w"],
     others: list[Bool[np.ndarray, "h w"]],
     change: Float32[np.ndarray, "h w 3"],
     pixel_m: float,
@@ -222,12 +226,12 @@ def _turning_into(
     reach = _disc(settings.rim_m, pixel_m)
     pieces = [piece for other in others for piece in _pieces(other, settings.piece_m2 / pixel_m**2)]
     while True:
-        beside = cv2.dilate(own.astype(np.uint8), reach).astype(bool) & ~np.isnan(change[..., 0])
+        beside = cv2.dilate(is_floor.astype(np.uint8), reach).astype(bool) & ~np.isnan(change[..., 0])
         turning = [piece for piece in pieces if _gradual(piece, beside, change, reach, pixel_m, settings)]
         if not turning:
-            return own
-        own = np.logical_or.reduce([own, *turning])
-        pieces = [piece for piece in pieces if not own[piece].all()]
+            return is_floor
+        is_floor = np.logical_or.reduce([is_floor, *turning])
+        pieces = [piece for piece in pieces if not is_floor[piece].all()]
 
 
 def _pieces(mask: Bool[np.ndarray, "h w"], least_px: float) -> list[Bool[np.ndarray, "h w"]]:

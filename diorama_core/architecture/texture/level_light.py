@@ -38,7 +38,7 @@ SETTINGS = LevelLightSettings()
 
 def levelled(
     colours: Float32[np.ndarray, "h w 3"],
-    own: Bool[np.ndarray, "h w"],
+    is_plane: Bool[np.ndarray, "h w"],
     pixel_m: float,
     settings: LevelLightSettings = SETTINGS,
 ) -> Float32[np.ndarray, "h w 3"]:
@@ -46,31 +46,31 @@ def levelled(
 
     Args:
         colours: 0 to 255.
-        own: which texels show the floor's material.
+        is_plane: which texels show the floor's material.
         pixel_m: size of a texel.
     """
-    if not own.any():
+    if not is_plane.any():
         return colours
-    finer = broad_shading(colours, own, settings.fine_m / pixel_m)
-    broad = broad_shading(colours, own, settings.pattern_m / pixel_m)
-    main = np.median(colours[own], axis=0).astype(np.float32)
+    finer = broad_shading(colours, is_plane, settings.fine_m / pixel_m)
+    broad = broad_shading(colours, is_plane, settings.pattern_m / pixel_m)
+    main = np.median(colours[is_plane], axis=0).astype(np.float32)
     fine, pattern = colours - finer, finer - broad
-    light = broad_shading(colours, own, settings.light_m / pixel_m) - main
+    light = broad_shading(colours, is_plane, settings.light_m / pixel_m) - main
     light = settings.most_levels * np.tanh(light / settings.most_levels)
-    kept = _share_of_material(fine, pattern, own, settings.around_m / pixel_m, settings)
+    kept = _share_of_material(fine, pattern, is_plane, settings.around_m / pixel_m, settings)
     return np.asarray(main + light + fine + kept[..., None] * pattern, dtype=np.float32)
 
 
 def _share_of_material(
     fine: Float32[np.ndarray, "h w 3"],
     pattern: Float32[np.ndarray, "h w 3"],
-    own: Bool[np.ndarray, "h w"],
+    is_plane: Bool[np.ndarray, "h w"],
     width_px: float,
     settings: LevelLightSettings = SETTINGS,
 ) -> Float32[np.ndarray, "h w"]:
     """How much of what varies as broadly as a pattern is one, 0 to 1, by the fine detail around."""
     around = np.stack([(fine**2).mean(axis=-1), (pattern**2).mean(axis=-1)], axis=-1)
-    weight = np.maximum(wide_blur(own.astype(np.float32), width_px), 1e-4)
-    energy = wide_blur(np.asarray(around * own[..., None], dtype=np.float32), width_px) / weight[..., None]
+    weight = np.maximum(wide_blur(is_plane.astype(np.float32), width_px), 1e-4)
+    energy = wide_blur(np.asarray(around * is_plane[..., None], dtype=np.float32), width_px) / weight[..., None]
     expected = settings.with_edges**2 * energy[..., 1] + settings.min_levels**2
     return np.asarray(np.minimum((energy[..., 0] + settings.min_levels**2) / expected, 1.0), dtype=np.float32)

@@ -191,20 +191,20 @@ class PhotoView:
             seen = _without_islands(seen, ISLAND_M / pixel_m)
         if seen.sum() < MIN_SEEN_PX:
             return None
-        own = shown = seen
+        is_plane = shown = seen
         if not ground:
-            own = _own(colours, seen, share, plane.colour)
+            is_plane = _own(colours, seen, share, plane.colour)
             wall = plane.role == "wall"
-            stray = strays(seen, own, pixel_m, wall=wall)
+            stray = strays(seen, is_plane, pixel_m, wall=wall)
             if wall:
-                foreign = seen & ~own
+                foreign = seen & ~is_plane
                 where = self._camera.project(points[foreign])
                 longest = max(self._rgb.shape[:2])
-                stray |= continued_objects(colours, own, foreign, where, self._of_objects, pixel_m, longest)
+                stray |= continued_objects(colours, is_plane, foreign, where, self._of_objects, pixel_m, longest)
             seen = _without_islands(seen & ~stray, ISLAND_M / pixel_m)
         if self._painted.any():
             share = np.where(_of_texels(self._painted, self._camera, points), PAINTED * share, share)
-        return PlaneView(colours, seen, own & seen, shown, share)
+        return PlaneView(colours, seen, is_plane & seen, shown, share)
 
 
 def is_enough(seen: Bool[np.ndarray, "h w"], pixel_m: float, plane: Plane) -> bool:
@@ -275,14 +275,14 @@ def _foreign(
     share = weight[rows[::every], columns[::every]]
     cells, index = np.unique(np.round(sample / COLOUR_CELL_LAB), axis=0, return_inverse=True)
     covered = np.bincount(index.ravel(), weights=share)
-    best, own = -1.0, np.median(sample, axis=0)
+    best, median = -1.0, np.median(sample, axis=0)
     for cell in cells[np.argsort(-covered, kind="stable")][:8]:
         alike = (np.abs(sample - cell * COLOUR_CELL_LAB) < COLOUR_CELL_LAB).all(axis=1)
         likely = float(np.exp(-np.linalg.norm(cell * COLOUR_CELL_LAB - hoped) / EXPECTED_LAB))
         score = float(share[alike].sum()) * likely
         if score > best:
-            best, own = score, np.median(sample[alike], axis=0)
-    deviation = np.abs(lab - own)
+            best, median = score, np.median(sample[alike], axis=0)
+    deviation = np.abs(lab - median)
     alike = (deviation < 2.0 * COLOUR_CELL_LAB).all(axis=-1)
     typical = np.median(deviation[alike] if alike.any() else deviation, axis=0)
     far = np.zeros(seen.shape, np.uint8)
@@ -354,12 +354,12 @@ def _own(
     expected: tuple[float, float, float],
 ) -> Bool[np.ndarray, "h w"]:
     """What is seen of the plane's own material; all of it where hardly anything has one colour."""
-    own = seen & ~_foreign(colours, seen, weight, expected)
-    return own if own.sum() >= MIN_TYPICAL * seen.sum() else seen
+    is_plane = seen & ~_foreign(colours, seen, weight, expected)
+    return is_plane if is_plane.sum() >= MIN_TYPICAL * seen.sum() else seen
 
 
 def strays(
-    seen: Bool[np.ndarray, "h w"], own: Bool[np.ndarray, "h w"], pixel_m: float, *, wall: bool
+    seen: Bool[np.ndarray, "h w"], is_plane: Bool[np.ndarray, "h w"], pixel_m: float, *, wall: bool
 ) -> Bool[np.ndarray, "h w"]:
     """Foreign pieces that are cut off by what was not seen: objects before the plane, their rims, shadows and glow.
 
@@ -368,11 +368,11 @@ def strays(
 
     Args:
         seen: texels of the plane that the photo shows.
-        own: of those, the ones that show the plane's own material.
+        is_plane: of those, the ones that show the plane's own material.
         pixel_m: side of a texel (m).
         wall: whether the plane is a wall.
     """
-    pieces = (seen & ~own).astype(np.uint8)
+    pieces = (seen & ~is_plane).astype(np.uint8)
     count, labels, stats, _ = cv2.connectedComponentsWithStats(pieces, connectivity=8)
     _, top, width, height, area = (stats[:, k] for k in range(5))
     unseen = cv2.dilate((~seen).astype(np.uint8), np.ones((3, 3), np.uint8)).astype(bool)

@@ -73,10 +73,10 @@ class Facings:
 def solve(room: FacingRoom, weights: FacingWeights) -> Facings:
     """The likeliest headings of all objects together, by damped max-product messages."""
     factors = Factors.of(room)
-    own, context = beliefs(factors, weights)
-    headings = (own + context).argmax(axis=1)
+    unary, context = beliefs(factors, weights)
+    headings = (unary + context).argmax(axis=1)
     costs = (context.max(axis=1, keepdims=True) - context) / weights.picture
-    return Facings(room, headings, costs, own + context, _shares(factors, weights, headings, own + context))
+    return Facings(room, headings, costs, unary + context, _shares(factors, weights, headings, unary + context))
 
 
 def beliefs(factors: Factors, weights: FacingWeights) -> tuple[Float[np.ndarray, "n 24"], Float[np.ndarray, "n 24"]]:
@@ -111,10 +111,10 @@ def _shares(
     off = np.abs((np.arange(HEADINGS) - headings[:, None] + HEADINGS // 2) % HEADINGS - HEADINGS // 2)
     rivals = np.where(off > CLEARLY_OTHER, total, -np.inf).argmax(axis=1)
     shares: dict[tuple[int, str], float] = {}
-    said = [(i, name, values) for name, i, values in factors.ones]
+    terms_of_pair = [(i, name, values) for name, i, values in factors.ones]
     for name, i, j, table in factors.pairs:
-        said += [(i, name, table[:, headings[j]]), (j, name, table[headings[i]])]
-    for i, name, values in said:
+        terms_of_pair += [(i, name, table[:, headings[j]]), (j, name, table[headings[i]])]
+    for i, name, values in terms_of_pair:
         nats = weights.of(name) * float(values[headings[i]] - values[rivals[i]])
         shares[i, name] = shares.get((i, name), 0.0) + nats
     ids = [item.object_id for item in factors.room.objects]

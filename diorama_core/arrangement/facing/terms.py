@@ -61,8 +61,8 @@ def shown(kinds: frozenset[str] | None) -> Callable[[FacingRoom, int], Agreement
     """Photos show fronts of some kinds: away from the camera is unlikely, sideways hardly less so than toward it."""
 
     def one(room: FacingRoom, i: int) -> Agreement | None:
-        own = room.objects[i].kind
-        if own not in kinds if kinds is not None else own in SEATS | STORAGE | SCREENS | LOUNGE | NO_FRONT:
+        kind = room.objects[i].kind
+        if kind not in kinds if kinds is not None else kind in SEATS | STORAGE | SCREENS | LOUNGE | NO_FRONT:
             return None
         cosine = toward(room, i, room.toward_camera(i))
         return 0.25 * cosine + 0.75 * np.minimum(cosine, 0.0)

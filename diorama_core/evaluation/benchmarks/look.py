@@ -206,8 +206,8 @@ def _one_room(
         index = of_mask.get(str(item.mask_id))
         if index is not None and before.has_object(item.id):
             pair = before.object(item.id), after.object(item.id)
-            own = [pixels == _index(scene, item.id) for scene, pixels in shown]
-            colours = _colours(view, index, own, differences)
+            masks = [pixels == _index(scene, item.id) for scene, pixels in shown]
+            colours = _colours(view, index, masks, differences)
             looks.append(_measured(name, given, view, index, pair, seen.geometry.camera, colours, library))
     true_light = main_light(room_light(view.scene), np.array([view.scene.objects[k].pose.position for k in view.asked]))
     off_deg = light_error_deg(true_light, view.camera, look.light, seen.geometry.camera)
@@ -269,16 +269,16 @@ def _difference(photo: Picture, shown: Picture) -> Float[np.ndarray, "h w"]:
 def _colours(
     view: TruthView,
     index: int,
-    own: Sequence[Bool[np.ndarray, "h w"]],
+    masks: Sequence[Bool[np.ndarray, "h w"]],
     differences: Sequence[Float[np.ndarray, "h w"]],
 ) -> tuple[float | None, float | None]:
-    """Mean differences where the photo and both models (`own`) show the object, and nothing before it."""
+    """Mean differences where the photo and both models (`masks`) show the object, and nothing before it."""
     mask = (view.object_ids == index).astype(np.uint8)
     visible = cv2.resize(mask, SIZE, interpolation=cv2.INTER_NEAREST).astype(bool)
-    there = np.logical_and.reduce([visible, *own])
-    if there.sum() < MIN_PIXELS:
+    is_visible = np.logical_and.reduce([visible, *masks])
+    if is_visible.sum() < MIN_PIXELS:
         return None, None
-    before, after = (float(d[there].mean()) for d in differences)
+    before, after = (float(d[is_visible].mean()) for d in differences)
     return before, after
 
 

@@ -152,9 +152,11 @@ def plan(
         folders = ", ".join(str(source.photos) for source in sources)
         raise InputError(f"{folders}: none of the {len(missing)} annotated photos is there; name pictures by their ids")
     fold_of = {name: k % folds for k, name in enumerate(sorted(tasks_by_id))} if folds else {}
-    own = {name: settings[fold_of[name] if len(settings) > 1 else 0] for name in tasks_by_id} if settings else {}
+    settings_of_photo = (
+        {name: settings[fold_of[name] if len(settings) > 1 else 0] for name in tasks_by_id} if settings else {}
+    )
     tasks = [
-        _changed(replace(task, settings=own.get(name, {})), change, cache, tiles)
+        _changed(replace(task, settings=settings_of_photo.get(name, {})), change, cache, tiles)
         for change in ("", *perturbations)
         for name, task in tasks_by_id.items()
     ]

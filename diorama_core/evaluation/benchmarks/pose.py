@@ -318,14 +318,14 @@ def _count_groups(
         grids = (checks.rotation[row], checks.translation[row], checks.scale[row])
         every = grids[0] & grids[1] & grids[2]
         shares = [(float(g.sum()) - 1) / others for g in (*grids, every)]
-        own = object_alignment([true[row]], [placed[row]]).acc
+        accuracy = object_alignment([true[row]], [placed[row]]).acc
         item = view.scene.objects[index]
         name = CATEGORY_NAMES.get(item.category, item.category)
         name = name if name in paper.CATEGORIES else "others"
         for group in (*object_groups(view, index), f"category: {name}"):
-            groups.setdefault(group, []).append((*shares, own))
+            groups.setdefault(group, []).append((*shares, accuracy))
 
 
 def _counted(rows: Sequence[tuple[float, ...]]) -> GroupCounts:
-    r, t, s, every, own = (float(x) for x in np.mean(rows, axis=0))
-    return GroupCounts(len(rows), r, t, s, every, own)
+    r, t, s, every, object_acc = (float(x) for x in np.mean(rows, axis=0))
+    return GroupCounts(len(rows), r, t, s, every, object_acc)

@@ -79,11 +79,11 @@ class PoseScores:
     @classmethod
     def failed(cls, asked: int) -> PoseScores:
         """The prediction failed."""
-        pairs, every, own = (
+        pairs, every, per_object = (
             Alignment(reading, asked, 0.0, 0.0, 0.0, 0.0)
             for reading in ("mean over pairs", "against every other object", "object-focus")
         )
-        return cls(asked, pairs, every, own, 0.0, 0.0, 0.0, 0.0, None)
+        return cls(asked, pairs, every, per_object, 0.0, 0.0, 0.0, 0.0, None)
 
 
 def pose_scores(view: TruthView, scene: Scene | None, library: ShapeLibrary) -> PoseScores:

@@ -210,8 +210,8 @@ def calibration_table(scenes: Sequence[Reviewed]) -> Table:
             belief = reviewed.scene.object(name).belief
             if belief is None:
                 continue
-            said = {"kind": belief.kinds[:1], "supporter": belief.supporters[:1]}
-            sure = {subject: of_one[0][1] for subject, of_one in said.items() if of_one}
+            first_choices = {"kind": belief.kinds[:1], "supporter": belief.supporters[:1]}
+            sure = {subject: of_one[0][1] for subject, of_one in first_choices.items() if of_one}
             sure |= {"front": belief.fronts[0]} if belief.fronts else {}
             answers = reviewed.right(reviewed.scene, name)
             for subject, right in answers.items():

@@ -77,13 +77,13 @@ class ScansBench:
         rows = []
         for way in dict.fromkeys(r.way for r in self.results):
             of_way = [r for r in self.results if r.way == way]
-            hits, things, openings = (sum(getattr(r, n) for r in of_way) for n in ("found", "things", "openings"))
+            hits, asked, openings = (sum(getattr(r, n) for r in of_way) for n in ("found", "things", "openings"))
             shares = [r.right / max(r.found, 1) for r in of_way]
             span = bootstrap_interval(shares, [r.found for r in of_way])
             right = sum(r.right for r in of_way) / max(hits, 1)
             seen = sum(r.openings_found for r in of_way) / max(openings, 1)
             wrong, seconds = sum(r.openings_false for r in of_way), sum(r.seconds for r in of_way) / len(of_way)
-            values = (right, hits / max(things, 1), things, seen, openings, wrong, seconds)
+            values = (right, hits / max(asked, 1), asked, seen, openings, wrong, seconds)
             rows.append(Row(way, values, intervals=(span, *(None,) * 6)))
         rooms = len({r.case for r in self.results})
         note = (
@@ -170,15 +170,15 @@ def scored(name: str, way: str, truth: Scene, scene: Scene, seconds: float) -> S
         seconds: that it took.
     """
     turned = [[_moved(o, yaw_rotation(k * np.pi / 2)) for o in scene.objects] for k in range(4)]
-    things = [o for o in truth.objects if _asked(o)]
-    pairs = max((_pairs(things, objects) for objects in turned), key=len)
-    best = max(turned, key=lambda objects: len(_pairs(things, objects)))
+    asked = [o for o in truth.objects if _asked(o)]
+    pairs = max((_pairs(asked, objects) for objects in turned), key=len)
+    best = max(turned, key=lambda objects: len(_pairs(asked, objects)))
     right = sum(broad(a.category) == broad(b.category) for a, b in pairs)
     openings = [o for o in truth.objects if o.category in OPENING_CATEGORIES]
     cut = [o for o in best if o.category in OPENING_CATEGORIES]
     met = sum(any(_same_opening(o, c) for c in cut) for o in openings)
     false = sum(not any(_same_opening(o, c) for o in openings) for c in cut)
-    return ScanResult(name, way, len(things), len(pairs), right, len(openings), met, false, seconds)
+    return ScanResult(name, way, len(asked), len(pairs), right, len(openings), met, false, seconds)
 
 
 def _asked(item: SceneObject) -> bool:
@@ -191,15 +191,15 @@ def _moved(item: SceneObject, R: Float[np.ndarray, "3 3"]) -> SceneObject:
     return replace(item, pose=pose)
 
 
-def _pairs(things: Sequence[SceneObject], objects: Sequence[SceneObject]) -> list[tuple[SceneObject, SceneObject]]:
+def _pairs(truths: Sequence[SceneObject], objects: Sequence[SceneObject]) -> list[tuple[SceneObject, SceneObject]]:
     """Things with what was found in their place, each once, the best first."""
-    rows = [(_shared(a, b), i, j) for i, a in enumerate(things) for j, b in enumerate(objects)]
+    rows = [(_shared(a, b), i, j) for i, a in enumerate(truths) for j, b in enumerate(objects)]
     pairs, used_things, used_found = [], set[int](), set[int]()
     for share, i, j in sorted(rows, key=lambda row: (-row[0], row[1:])):
         if share >= MIN_SHARED and i not in used_things and j not in used_found:
             used_things.add(i)
             used_found.add(j)
-            pairs.append((things[i], objects[j]))
+            pairs.append((truths[i], objects[j]))
     return pairs
 
 

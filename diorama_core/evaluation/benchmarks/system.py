@@ -160,8 +160,10 @@ class SystemBench:
         if len(self.seeds) > 1:
             tables.append(series_table(plain))
         if self.left_out:
-            said = "; ".join(f"{r.case} ({r.reason})" for r in self.left_out)
-            tables[0] = replace(tables[0], note=f"{tables[0].note} Left out because they could not be made: {said}.")
+            omissions = "; ".join(f"{r.case} ({r.reason})" for r in self.left_out)
+            tables[0] = replace(
+                tables[0], note=f"{tables[0].note} Left out because they could not be made: {omissions}."
+            )
         return tuple(tables)
 
     def to_json(self) -> dict[str, object]:

@@ -120,15 +120,15 @@ def scene_table(results: Results) -> Table:
 
 
 def _scene_row(name: str, scores: Sequence[SceneScores]) -> Row:
-    own = [s.own for s in scores]
+    alignments = [s.own for s in scores]
     spans: dict[str, Interval | None] = {
         key: bootstrap_interval([getattr(s, key) for s in scores]) for key in ("image_iou", "chamfer_cm")
     }
     return Row(
         name,
-        (pooled(own).acc, _median_off(scores), *(_mean([getattr(s, key) for s in scores]) for _, key in _SCENE)),
+        (pooled(alignments).acc, _median_off(scores), *(_mean([getattr(s, key) for s in scores]) for _, key in _SCENE)),
         intervals=(
-            bootstrap_interval([a.acc for a in own], [a.count for a in own]),
+            bootstrap_interval([a.acc for a in alignments], [a.count for a in alignments]),
             None,
             *(spans.get(key) for _, key in _SCENE),
         ),
@@ -145,16 +145,16 @@ def substitution_table(results: Results) -> Table:
     rows = []
     for name, cases in results:
         scores = ([c.before or SceneScores.failed(c.scores.asked) for c in cases], [c.scores for c in cases])
-        own = [[s.own for s in part] for part in scores]
+        alignments = [[s.own for s in part] for part in scores]
         rows.append(
             Row(
                 name,
                 (
-                    *(pooled(o).acc for o in own),
+                    *(pooled(o).acc for o in alignments),
                     *(_mean([getattr(s, key) for s in part]) for key in ("chamfer_cm", "image_iou") for part in scores),
                 ),
                 intervals=(
-                    *(bootstrap_interval([a.acc for a in o], [a.count for a in o]) for o in own),
+                    *(bootstrap_interval([a.acc for a in o], [a.count for a in o]) for o in alignments),
                     *(None,) * 4,
                 ),
             )

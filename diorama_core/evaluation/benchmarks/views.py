@@ -81,8 +81,8 @@ class ViewsBench:
             "In brackets the 90 % interval of the mean (bootstrap over rooms). Time: processor seconds a scene."
         )
         if self.left_out:
-            said = "; ".join(f"{r.case} ({r.reason})" for r in self.left_out)
-            note += f" Left out because they could not be made: {said}."
+            omissions = "; ".join(f"{r.case} ({r.reason})" for r in self.left_out)
+            note += f" Left out because they could not be made: {omissions}."
         return (Table("Several photos of one room", columns, tuple(rows), note),)
 
     def to_json(self) -> dict[str, object]:

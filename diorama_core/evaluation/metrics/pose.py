@@ -105,10 +105,10 @@ def scene_alignment(
     grids = [checks.rotation, checks.translation, checks.scale]
     grids.append(grids[0] & grids[1] & grids[2])
     if n < 2:
-        there = float(all(p is not None for p in predicted)) if n else 0.0
+        share_present = float(all(p is not None for p in predicted)) if n else 0.0
         return (
-            Alignment("mean over pairs", n, there, there, there, there),
-            Alignment("against every other object", n, there, there, there, there),
+            Alignment("mean over pairs", n, share_present, share_present, share_present, share_present),
+            Alignment("against every other object", n, share_present, share_present, share_present, share_present),
         )
     off = ~np.eye(n, dtype=bool)
     pairs = [float(g[off].mean()) for g in grids]

@@ -96,12 +96,12 @@ class SceneScores:
     @classmethod
     def failed(cls, asked: int) -> SceneScores:
         """The prediction failed."""
-        pairs, every, own = (
+        pairs, every, per_object = (
             Alignment(reading, asked, 0.0, 0.0, 0.0, 0.0)
             for reading in ("mean over pairs", "against every other object", "object-focus")
         )
         return cls(
-            asked, 0, pairs, every, own, pairs, pairs, None, None, relation=0.0, orientation=0.0, placement=0.0,
+            asked, 0, pairs, every, per_object, pairs, pairs, None, None, relation=0.0, orientation=0.0, placement=0.0,
             structure=0.0, box_overlap_cm=None, mesh_overlap_l=None, supported=0.0, truly_supported=0.0,
             out_of_bounds=1.0, stable=None, drift_cm=None, image_iou=0.0, chamfer_cm=None, f_score=0.0,
             kind=0.0,
@@ -320,8 +320,8 @@ def mean_mask_iou(
     k = intrinsics or scene.camera.intrinsics
     items = [o for o in scene.objects if not o.hidden]
     caster = MeshCaster([(library.mesh(o.shape_id), o.pose.matrix) for o in items])
-    own = Camera(scene.camera.intrinsics.scaled(k.width, k.height), scene.camera.T_world_camera)
-    seen = caster.buffers(own).instance
+    camera = Camera(scene.camera.intrinsics.scaled(k.width, k.height), scene.camera.T_world_camera)
+    seen = caster.buffers(camera).instance
     index = {o.id: number for number, o in enumerate(items)}
     total = 0.0
     for true, name in pairs:
@@ -349,10 +349,10 @@ def surface_agreement(
     """Mean distance to the other points, both ways averaged, and the F-score: the harmonic mean of the shares of
     either side's points that have one of the other side within `near_m`.
     """
-    there, back = np.asarray(cKDTree(true).query(points)[0]), np.asarray(cKDTree(points).query(true)[0])
-    precision, recall = float((there <= near_m).mean()), float((back <= near_m).mean())
+    forward, back = np.asarray(cKDTree(true).query(points)[0]), np.asarray(cKDTree(points).query(true)[0])
+    precision, recall = float((forward <= near_m).mean()), float((back <= near_m).mean())
     both = precision + recall
-    return 0.5 * float(there.mean() + back.mean()), 2 * precision * recall / both if both else 0.0
+    return 0.5 * float(forward.mean() + back.mean()), 2 * precision * recall / both if both else 0.0
 
 
 def structure_of(scene: Scene, library: ShapeLibrary) -> dict[str, float]:

@@ -35,9 +35,9 @@ def points_of(mesh: trimesh.Trimesh, seed: str, count: int = SAMPLES) -> Float[n
 
 def chamfer(a: Float[np.ndarray, "n 3"], b: Float[np.ndarray, "m 3"]) -> float:
     """Two-way chamfer distance: mean squared distance to the nearest point, one way plus the other."""
-    there, _ = cKDTree(b).query(a)
+    forward, _ = cKDTree(b).query(a)
     back, _ = cKDTree(a).query(b)
-    return float(np.mean(np.square(there)) + np.mean(np.square(back)))
+    return float(np.mean(np.square(forward)) + np.mean(np.square(back)))
 
 
 def shape_distance(library: ShapeLibrary, a: str, b: str) -> float:

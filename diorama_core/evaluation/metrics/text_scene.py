@@ -78,14 +78,14 @@ def measure(asked: Asked, scene: Scene, library: ShapeLibrary) -> TextScene:
     failures: list[str] = []
     counted = 0
     for name, number in asked.counts.items():
-        there = len(_named(scene, name))
-        counted += there == number
-        if there != number:
-            failures.append(f"{there} of {number} {name}")
+        present = len(_named(scene, name))
+        counted += present == number
+        if present != number:
+            failures.append(f"{present} of {number} {name}")
     looks = _looks(asked, scene, library, failures)
     objects, room = _relations(asked, scene, frame, failures)
     standing = [o for o in scene.objects if o.category not in OPENING_CATEGORIES]
-    held = sum(_is_supported(scene, library, o) for o in standing)
+    supported = sum(_is_supported(scene, library, o) for o in standing)
     hit = {i for pair in Collisions(library).of(scene, [o.id for o in standing]) for i in pair}
     beyond = [o for o in standing if not within(footprint_of(o)[None], frame.outline, OUTSIDE_M)[0]]
     failures += [f"{o.label} collides" for o in standing if o.id in hit]
@@ -96,7 +96,7 @@ def measure(asked: Asked, scene: Scene, library: ShapeLibrary) -> TextScene:
         looks=looks,
         object_relations=objects,
         room_relations=room,
-        supported=(held, len(standing)),
+        supported=(supported, len(standing)),
         colliding=(len([o for o in standing if o.id in hit]), len(standing)),
         outside=(len(beyond), len(standing)),
         navigable=_navigable(free),
@@ -107,8 +107,8 @@ def measure(asked: Asked, scene: Scene, library: ShapeLibrary) -> TextScene:
 
 def _named(scene: Scene, name: str) -> list[SceneObject]:
     """Objects of a category; special kinds of it count where there is none of itself."""
-    own = [o for o in scene.objects if o.category == name]
-    return own or [o for o in scene.objects if o.category in with_kin(name)]
+    of_category = [o for o in scene.objects if o.category == name]
+    return of_category or [o for o in scene.objects if o.category in with_kin(name)]
 
 
 def _looks(asked: Asked, scene: Scene, library: ShapeLibrary, failures: list[str]) -> tuple[int, int]:

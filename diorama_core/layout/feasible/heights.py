@@ -125,15 +125,15 @@ def _solved(
     foot_hidden = observations.hidden[:, 3] | from_below
     lines, wanted = [], []
     for k, i in enumerate(chains.members):
-        own = np.arange(unknowns) == k
+        is_unknown = np.arange(unknowns) == k
         fits = int(problem.parent[i]) < 0 or abs(_observed_level(problem, i) - foot[i]) <= problem.settings.load_m
         hidden = [foot_hidden[i], observations.hidden[i, 1]]
         weight = np.where(hidden, problem.settings.hidden, 1.0) / _apparent_height_m(observations, i)
         if fits:
-            lines += [weight[0] * chains.rows[i], weight[1] * (chains.rows[i] + own)]
+            lines += [weight[0] * chains.rows[i], weight[1] * (chains.rows[i] + is_unknown)]
             wanted += list(weight * (np.array([foot[i], foot[i] + height[i]]) - chains.constant[i]))
         else:  # it does not stand there as observed, and says nothing about that place
-            lines.append(weight[1] * own)
+            lines.append(weight[1] * is_unknown)
             wanted.append(weight[1] * height[i])
     # A hidden foot says nothing against a height: the top was measured, and the foot is where the supporter is.
     whole = [foot[i] + height[i] - (chains.constant[i] + chains.rows[i] @ start) for i in chains.members]

@@ -119,7 +119,7 @@ class DragSolver:
         kin = problem.kin.copy()
         for k in problem.rides(i):
             kin[k, :] = kin[:, k] = False
-        levels = tuple(() if k == i else own for k, own in enumerate(problem.levels))
+        levels = tuple(() if k == i else levels_of_object for k, levels_of_object in enumerate(problem.levels))
         changed = replace(problem, parent=parent, surface=tuple(surfaces), levels=levels, on_plane=tuple(planes))
         for k in problem.rides(i):
             for above in changed.chain(k):
@@ -130,11 +130,11 @@ class DragSolver:
 def _places(
     scene: Scene, library: ShapeLibrary, problem: Problem, index: int
 ) -> tuple[tuple[RestingSurface, Support], ...]:
-    own = {problem.ids[k] for k in problem.rides(index)}
+    riders = {problem.ids[k] for k in problem.rides(index)}
     child = problem.ids[index]
     places = [(plane_surface(p), Support(child, p.id)) for p in scene.architecture.by_role("floor")]
     for item in scene.objects:
-        if item.id in own:
+        if item.id in riders:
             continue
         for number, surface in enumerate(object_surfaces(library.shape(item.shape_id), item)):
             world = surface.in_world(item.pose)

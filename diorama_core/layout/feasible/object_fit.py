@@ -67,8 +67,8 @@ class ObjectFit:
             return None
         distance = self._surface(x) if self.surface_measured else self._centre(x)
         clamped = self._clamped()
-        held, gaps = self._held(x)
-        rows = [outline[0], sight[0], distance[0], held, clamped]
+        fixed_rows, gaps = self._held(x)
+        rows = [outline[0], sight[0], distance[0], fixed_rows, clamped]
         return np.vstack(rows), np.concatenate([outline[1], sight[1], distance[1], gaps, clamped @ x])
 
     def _outline(self, x: Float[np.ndarray, "5"]) -> tuple[Float[np.ndarray, "r 5"], Float[np.ndarray, " r"]] | None:

@@ -35,8 +35,8 @@ def aligned(
     if is_wall_like(surface):
         up = np.array([0.0, 0.0, 1.0])
         flat_up = up - (up @ n) * n
-        own = swung[:, 2] - (swung[:, 2] @ n) * n
-        if float(own @ flat_up) > UPRIGHT_WITHIN * float(np.linalg.norm(own) * np.linalg.norm(flat_up)):
+        horizontal = swung[:, 2] - (swung[:, 2] @ n) * n
+        if float(horizontal @ flat_up) > UPRIGHT_WITHIN * float(np.linalg.norm(horizontal) * np.linalg.norm(flat_up)):
             return _twist(swung, n, np.array([0.0, 0.0, 1.0]), up)
         return swung
     # The front, unless another axis lies much flatter on the support.

@@ -88,8 +88,8 @@ class PhotoObservations:
     def replaced(self, members: Int[np.ndarray, " m"], other: PhotoObservations) -> PhotoObservations:
         """These observations with some objects as others have them, but for what decided their heights."""
 
-        def rows(own: np.ndarray, theirs: np.ndarray) -> np.ndarray:
-            changed = own.copy()
+        def rows(values: np.ndarray, theirs: np.ndarray) -> np.ndarray:
+            changed = values.copy()
             changed[members] = theirs[members]
             return changed
 
@@ -102,8 +102,8 @@ class PhotoObservations:
             observed=rows(self.observed, other.observed),
             least=least,
             most=most,
-            loads=tuple(other.loads[i] if i in members else own for i, own in enumerate(self.loads)),
-            tracked=tuple(other.tracked[i] if i in members else own for i, own in enumerate(self.tracked)),
+            loads=tuple(other.loads[i] if i in members else tracked for i, tracked in enumerate(self.loads)),
+            tracked=tuple(other.tracked[i] if i in members else tracked for i, tracked in enumerate(self.tracked)),
             contradicted=rows(self.contradicted, other.contradicted),
         )
 
@@ -270,8 +270,8 @@ def _posed_bounds_px(problem: Problem, camera: Camera) -> Float[np.ndarray, "n 4
 def _bounds_in_picture_px(problem: Problem, camera: Camera) -> Float[np.ndarray, "n 4"]:
     """Bounds of what the picture shows of each posed shape, cut at its border; NaN for those outside it."""
     k, bounds = camera.intrinsics, np.full((problem.count, 4), np.nan)
-    for i, own in enumerate(_outline_points(problem)):
-        world = (own * problem.scale[i]) @ problem.R[i].T + problem.p[i]
+    for i, points in enumerate(_outline_points(problem)):
+        world = (points * problem.scale[i]) @ problem.R[i].T + problem.p[i]
         flat = camera.project(world[camera.to_camera(world)[:, 2] >= problem.settings.nearest_m])
         if len(flat):
             bounds[i] = np.clip([*flat.min(axis=0), *flat.max(axis=0)], 0, [k.width, k.height] * 2)

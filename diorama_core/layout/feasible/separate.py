@@ -88,17 +88,17 @@ def build_program(
     """
     n = problem.count
     moving = [i for i in range(n) if problem.free[i] and np.abs(structure.basis[i]).max() > 0]
-    J, own = np.zeros((n, 3, 2 * len(moving))), np.zeros((n, 3, 2 * len(moving)))
+    J, jacobian = np.zeros((n, 3, 2 * len(moving))), np.zeros((n, 3, 2 * len(moving)))
     cost = np.zeros((2 * len(moving), 2 * len(moving)))
     for column, i in enumerate(moving):
         mine = slice(2 * column, 2 * column + 2)
         J[problem.rides(i), :, mine] = structure.basis[i]
-        own[i, :, mine] = structure.basis[i]
+        jacobian[i, :, mine] = structure.basis[i]
         cost[mine, mine] = weight[i]
     if seen is not None:
         cost += np.tensordot(J, np.matmul(seen, J), axes=([0, 1], [0, 1]))
     bodies = place_bodies(problem.packed, structure.R, structure.p, structure.scale)
-    bound = -np.einsum("bc,bcv->bv", structure.bound_normal, own[structure.bound_owner])
+    bound = -np.einsum("bc,bcv->bv", structure.bound_normal, jacobian[structure.bound_owner])
     wall_rows, wall_need = _wall_rows(problem, structure, bodies, J)
     rows, need = np.vstack([bound, wall_rows]), np.concatenate([-structure.bound_slack, wall_need])
     alive = np.linalg.norm(rows, axis=1) > 1e-9
@@ -108,7 +108,7 @@ def build_program(
         bodies,
         may_meet(problem, bodies, [_placed(structure, problem, i) for i in range(n)]),
         J,
-        np.abs(own).max(axis=1, initial=0.0) > 1e-12,
+        np.abs(jacobian).max(axis=1, initial=0.0) > 1e-12,
         rows[alive],
         need[alive],
         np.linalg.inv(np.linalg.cholesky(cost)).T,
@@ -343,5 +343,5 @@ def _keep_apart(program: Program, pairs: list[tuple[int, int]], y: Float[np.ndar
     for block in program.blocks:
         rows = np.array([k for k in range(len(block.a)) if (int(block.a[k]), int(block.b[k])) in wanted], dtype=int)
         if len(rows):
-            own = PairAxes(block.a[rows], block.b[rows], block.normals[rows], block.gaps[rows])
-            _set_axes(program, own, w[owner[own.a]] - w[owner[own.b]])
+            axes = PairAxes(block.a[rows], block.b[rows], block.normals[rows], block.gaps[rows])
+            _set_axes(program, axes, w[owner[axes.a]] - w[owner[axes.b]])

@@ -64,9 +64,9 @@ def _needed(
     A load that is larger than its supporter says more about its own size, and hangs over.
     """
     j = int(problem.parent[i])
-    own = structure.surface[i]
-    assert own is not None, "it stands on something"
-    place: RestingSurface = own.at(structure.R[j], structure.p[j], structure.scale[j])
+    surface = structure.surface[i]
+    assert surface is not None, "it stands on something"
+    place: RestingSurface = surface.at(structure.R[j], structure.p[j], structure.scale[j])
     centre, grown = _seen(problem, i, place.level, eye)
     reach = float(reach_of(problem.footing[i], structure.R[i], grown * problem.scale[i], outward[None])[0])
     edge = float((place.polygon @ outward).max())

@@ -40,8 +40,8 @@ def may_meet(
             rises = _rises(bodies, parts, place, problem.settings.above_m)
             soft, reach_m = problem.firm[i] < 1.0, problem.settings.beside_m
             beside = parts[rises & _stands_beside(bodies, parts, place, reach_m) if soft else rises]
-            own = np.flatnonzero(owner == i)
-            allowed[np.ix_(own, beside)] = allowed[np.ix_(beside, own)] = True
+            body_rows = np.flatnonzero(owner == i)
+            allowed[np.ix_(body_rows, beside)] = allowed[np.ix_(beside, body_rows)] = True
     return allowed
 
 

@@ -223,8 +223,8 @@ def build_problem(
         levels=tuple(levels),
         contact=np.array(contacts, dtype=np.float64).reshape(-1, 3),
         footing=tuple(
-            footing_of(own, face) if share == 1.0 else box_footing(share * np.asarray(o.shape_size_m), face)
-            for o, own, share, face in zip(objects, parts, firm, contacts)
+            footing_of(object_parts, face) if share == 1.0 else box_footing(share * np.asarray(o.shape_size_m), face)
+            for o, object_parts, share, face in zip(objects, parts, firm, contacts)
         ),
         box_px=np.array([o.box_px or (np.nan,) * 4 for o in objects], dtype=np.float64).reshape(-1, 4),
         free=free,

@@ -76,11 +76,11 @@ class PosedPicture:
         """
         depth = np.full((len(casters), *wanted.shape), np.inf, np.float32)
         for i, caster in enumerate(casters):
-            own = poses[np.array([i])]
-            window = grid.window(caster.bounds_px(grid.camera, own))
+            pose = poses[np.array([i])]
+            window = grid.window(caster.bounds_px(grid.camera, pose))
             if window is not None:
                 rays = grid.rays[window]
-                depth[i][window] = _cast(grid, caster, rays.reshape(-1, 3), own).reshape(rays.shape[:2])
+                depth[i][window] = _cast(grid, caster, rays.reshape(-1, 3), pose).reshape(rays.shape[:2])
         return cls(grid, wanted, casters, depth, settings)
 
     def __post_init__(self) -> None:
@@ -107,7 +107,7 @@ class PosedPicture:
         depth = np.repeat(here[None], len(poses), axis=0)
         rays = self.grid.rays[window][open_to_change]
         depth[1:, open_to_change] = _cast(self.grid, self.casters[i], rays, poses[1:])
-        seen = [self._with(i, rest, own) for own in depth]
+        seen = [self._with(i, rest, depth_of_pose) for depth_of_pose in depth]
         pixels, right = np.array([p for p, _ in seen]), np.array([r for _, r in seen])
         agreement = right / np.maximum(pixels + self.wanted_pixels - right, 1)
         return TriedPoses(i, poses, rest, agreement, bounds)
@@ -115,9 +115,9 @@ class PosedPicture:
     def replace(self, look: TriedPoses, chosen: int) -> None:
         """Let the object of a look be seen in one of its poses from now on."""
         i, window, rays = look.index, look.rest.window, self.grid.rays[look.rest.window]
-        own = _cast(self.grid, self.casters[i], rays.reshape(-1, 3), look.poses[np.array([chosen])])
+        depth = _cast(self.grid, self.casters[i], rays.reshape(-1, 3), look.poses[np.array([chosen])])
         self.depth_m[i] = np.inf
-        self.depth_m[i][window] = own.reshape(rays.shape[:2])
+        self.depth_m[i][window] = depth.reshape(rays.shape[:2])
         self._pixels, self._right = self._with(i, look.rest, self.depth_m[i][window])
 
     def _farthest_move(self, i: int, poses: PoseBatch) -> tuple[float, float, float]:

@@ -123,17 +123,17 @@ def with_conventions(
     new = {s.path for s in waiting}
     groups = {g: paths for g, paths in groups.items() if len(paths) > 1 and new.intersection(paths)}
     asked = [plain[path] for paths in groups.values() for path in asked_of(paths)]
-    said: dict[Path, tuple[Evidence, Convention, float]] = {}
+    evidence_of_files: dict[Path, tuple[Evidence, Convention, float]] = {}
     for piece in workers.map(partial(_asked, limits=limits), asked):
         progress.check()
         if piece.error is None and piece.value is not None:
-            said[piece.item.path] = piece.value
+            evidence_of_files[piece.item.path] = piece.value
     known: dict[Path, Convention] = {}
     for paths in groups.values():
-        told = [said[path] for path in paths if path in said]
-        if told:
-            kept = any(MIN_METRES <= longest <= MAX_METRES for _, _, longest in told)
-            joint = replace(joint_convention(told[0][1], [evidence for evidence, _, _ in told]), kept=kept)
+        evidences = [evidence_of_files[path] for path in paths if path in evidence_of_files]
+        if evidences:
+            kept = any(MIN_METRES <= longest <= MAX_METRES for _, _, longest in evidences)
+            joint = replace(joint_convention(evidences[0][1], [evidence for evidence, _, _ in evidences]), kept=kept)
             known |= dict.fromkeys(paths, joint)
     return [replace(s, convention=known.get(s.path)) for s in waiting]
 

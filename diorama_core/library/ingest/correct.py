@@ -99,10 +99,10 @@ def _agreed(shape: Shape, R_to_from: np.ndarray, scale: float, category: str) ->
     old = shape.guess
     x, z = axis_vector(old.front.value), axis_vector(old.up.value)
     R_file_to_new = R_to_from @ np.stack([x, np.cross(z, x), z])
-    said = "corrected by hand"
+    reason = "corrected by hand"
     return Guess(
-        up=Assumption(axis_name(R_file_to_new[2]), 1.0, said),
-        front=Assumption(axis_name(R_file_to_new[0]), 1.0, said),
-        unit=Assumption(f"{float(old.unit.value) * scale:.6g}", 1.0, said) if scale != 1.0 else old.unit,
-        category=Assumption(category, 1.0, said),
+        up=Assumption(axis_name(R_file_to_new[2]), 1.0, reason),
+        front=Assumption(axis_name(R_file_to_new[0]), 1.0, reason),
+        unit=Assumption(f"{float(old.unit.value) * scale:.6g}", 1.0, reason) if scale != 1.0 else old.unit,
+        category=Assumption(category, 1.0, reason),
     )

@@ -138,7 +138,7 @@ def _table(
         for column, (log_sizes, prior) in enumerate(zip(sizes, units.values(), strict=True)):
             rows[:, column] = weight + alike + frame + np.log(prior) + _size_fit(log_sizes, name)
             if given.category is None:
-                rows[~_possible(name, log_sizes, said=name in (named.weights or ())), column] = -np.inf
+                rows[~_possible(name, log_sizes, is_given=name in (named.weights or ())), column] = -np.inf
         if given.unit_m is None and len(units) > 1 and name != taxonomy.UNKNOWN.name:  # which has no usual size
             free = _best_scale(log_extents, name)
             fit = _size_fit(log_extents + free[:, None], name)
@@ -146,12 +146,12 @@ def _table(
     return table, log_extents
 
 
-def _possible(name: str, log_sizes: Float[np.ndarray, "n 3"], *, said: bool) -> Bool[np.ndarray, " n"]:
+def _possible(name: str, log_sizes: Float[np.ndarray, "n 3"], *, is_given: bool) -> Bool[np.ndarray, " n"]:
     """For each size, whether a thing of the kind can be so large; only which axis is up matters."""
     possible: dict[float, bool] = {}
     for size in log_sizes:
         if size[2] not in possible:
-            possible[size[2]] = is_possible(name, np.exp(size), said=said)
+            possible[size[2]] = is_possible(name, np.exp(size), is_given=is_given)
     return np.array([possible[size[2]] for size in log_sizes])
 
 
@@ -250,7 +250,9 @@ def _candidates(
     prior = {kind: likely + float(np.log(share * len(frequent))) for kind, share in frequent.items()}
     alike = {kind: -SIMILARITY * float(unlike[rows].min()) for kind in prior if len(rows := known.rows_of(kind))}
     score = {kind: prior[kind] + value + float(_size_fit(log_sizes, kind).max()) for kind, value in alike.items()}
-    possible = (kind for kind in sorted(score, key=lambda k: -score[k]) if _possible(kind, log_sizes, said=False).any())
+    possible = (
+        kind for kind in sorted(score, key=lambda k: -score[k]) if _possible(kind, log_sizes, is_given=False).any()
+    )
     return {taxonomy.UNKNOWN.name: other, **{kind: prior[kind] for kind in islice(possible, LIKEST)}}
 
 
@@ -262,9 +264,9 @@ def _unlike(
     if len(rows) == 0:
         return np.full(len(features), NOTHING_ALIKE)
     difference = np.stack([np.abs(known.features[rows] - f).mean(axis=1) for f in features])
-    own = log_extents - log_extents.mean(axis=1, keepdims=True)
+    proportions = log_extents - log_extents.mean(axis=1, keepdims=True)
     theirs = known.log_extents[rows] - known.log_extents[rows].mean(axis=1, keepdims=True)
-    difference += PROPORTION / SIMILARITY * np.abs(own[:, None] - theirs[None]).mean(axis=2)
+    difference += PROPORTION / SIMILARITY * np.abs(proportions[:, None] - theirs[None]).mean(axis=2)
     return np.sort(difference, axis=1)[:, :ALIKE].mean(axis=1)
 
 

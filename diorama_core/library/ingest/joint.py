@@ -83,8 +83,8 @@ def joint_convention(promised: Convention, evidence: Sequence[Evidence]) -> Conv
     turns, units = quarter_turns(), list(UNITS)
     prior = convention_prior(promised, units)
     total = prior - logsumexp(prior)
-    for said in evidence:
-        likely = np.exp(said - logsumexp(said))
+    for log_likelihood in evidence:
+        likely = np.exp(log_likelihood - logsumexp(log_likelihood))
         total = total + np.log((1 - EXCEPTION) * likely + EXCEPTION / likely.size)
     posterior = np.exp(total - logsumexp(total))
     ups, fronts = [axis_name(R[2]) for R in turns], [axis_name(R[0]) for R in turns]

@@ -57,9 +57,9 @@ class ModelForm:
 
 def form_of(head: FileHead) -> ModelForm | None:
     """The format of a file: as its content says, else as its name does; None where it is none that is read."""
-    told = next((form for form in MODEL_FORMS if form.tells(head)), None)
-    if told is not None or (head.size and what_else(head) is not None):
-        return told
+    known_form = next((form for form in MODEL_FORMS if form.tells(head)), None)
+    if known_form is not None or (head.size and what_else(head) is not None):
+        return known_form
     return next((form for form in MODEL_FORMS if head.suffix in form.suffixes), None)
 
 
@@ -99,8 +99,8 @@ def read_model(path: Path, root: Path, limits: Limits = DEFAULT_LIMITS, member: 
 def _read_gltf(path: Path, references: References, limits: Limits) -> RawModel:
     glb = gltf.packed(_content(path, limits), references, limits)
     scene = trimesh.load_scene(io.BytesIO(glb), file_type="glb")
-    names, own = gltf.node_names(glb), gltf.frame_of_own(glb)
-    return RawModel(scene, names, GLTF, tuple(references.warnings), own)
+    names, frame = gltf.node_names(glb), gltf.frame_of_own(glb)
+    return RawModel(scene, names, GLTF, tuple(references.warnings), frame)
 
 
 def _read_obj(path: Path, references: References, limits: Limits) -> RawModel:

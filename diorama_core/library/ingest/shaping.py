@@ -126,8 +126,8 @@ def evidence_of(
     """
     raw = read_model(source.path, source.root, limits, source.member)
     whole = repaired(raw.scene, limits).whole
-    said = frame_evidence(whole, relief(whole), _named(raw, source), known, source.given)
-    return said, raw.convention, float(whole.extents.max())
+    evidence = frame_evidence(whole, relief(whole), _named(raw, source), known, source.given)
+    return evidence, raw.convention, float(whole.extents.max())
 
 
 def ingest_model(
@@ -153,8 +153,10 @@ def ingest_model(
     convention = source.convention or raw.convention
     if raw.own is not None and given.up is None and given.front is None:
         model = _turned_model(model, raw.own.R_file_object.T)
-        own = Given(up="+z", front="+x", unit_m=1.0, category=raw.own.category, reason="the file, which Diorama wrote")
-        given = given.over(own)
+        facts = Given(
+            up="+z", front="+x", unit_m=1.0, category=raw.own.category, reason="the file, which Diorama wrote"
+        )
+        given = given.over(facts)
     elif square:
         model, note = _squared(model, convention, given)
         remarks = (*remarks, *note)

@@ -79,24 +79,24 @@ class JoinedDetection:
             photo, words, progress: as documented in `protocols.DetectionStage`.
         """
         everyday = self.everyday.detect(photo, words, progress.part(0.0, 0.5))
-        own = self.own.detect(photo, words, progress.part(0.5, 1.0))
-        return joined_boxes(everyday, own)
+        own_boxes = self.own.detect(photo, words, progress.part(0.5, 1.0))
+        return joined_boxes(everyday, own_boxes)
 
 
-def joined_boxes(everyday: Sequence[LabelledBox], own: Sequence[LabelledBox]) -> tuple[LabelledBox, ...]:
+def joined_boxes(everyday: Sequence[LabelledBox], own_boxes: Sequence[LabelledBox]) -> tuple[LabelledBox, ...]:
     """Boxes of both, best first; of two that overlap the everyday detector's stays, since it learnt from photos."""
     known = np.array([b.box for b in everyday], dtype=float).reshape(-1, 4)
-    boxes = np.array([b.box for b in own], dtype=float).reshape(-1, 4)
+    boxes = np.array([b.box for b in own_boxes], dtype=float).reshape(-1, 4)
     overlap = overlaps(boxes, known).max(axis=1, initial=0.0)
-    new = [box for box, shared in zip(own, overlap, strict=True) if shared < SAME_IOU]
+    new = [box for box, shared in zip(own_boxes, overlap, strict=True) if shared < SAME_IOU]
     return tuple(sorted((*everyday, *new), key=lambda b: -b.score))
 
 
 def left_out(stage: OwnDetection | JoinedDetection, photo: Photo) -> int:
     """How many likely objects a build did not use, because it takes only those of which the recogniser is sure."""
-    own = stage if isinstance(stage, OwnDetection) else stage.own
-    likely = OwnDetection(own.recogniser, LIKELY, own.most).detect(photo, (), Progress())
-    unsure = [box for box in likely if box.score < own.threshold]
+    own_stage = stage if isinstance(stage, OwnDetection) else stage.own
+    likely = OwnDetection(own_stage.recogniser, LIKELY, own_stage.most).detect(photo, (), Progress())
+    unsure = [box for box in likely if box.score < own_stage.threshold]
     known = () if isinstance(stage, OwnDetection) else stage.everyday.detect(photo, (), Progress())
     return len(joined_boxes(known, unsure)) - len(known)
 

@@ -162,14 +162,14 @@ def _below(
     nearer = np.zeros(len(who), dtype=bool)
     farther = np.zeros(len(who), dtype=bool)
     if depth_m is not None:
-        own = depth_m[np.maximum(lowest - 1, 0), columns]
-        there = depth_m[under, columns]
-        known = (own > 0) & (there > 0)
-        nearer = known & (there < own - settings.nearer_m - 0.02 * own) & (who >= 0)
+        depth_above = depth_m[np.maximum(lowest - 1, 0), columns]
+        depth_below = depth_m[under, columns]
+        known = (depth_above > 0) & (depth_below > 0)
+        nearer = known & (depth_below < depth_above - settings.nearer_m - 0.02 * depth_above) & (who >= 0)
         if world is not None:  # the front edge of what carries it is nearer too, but as high as the object ends
             level = np.abs(world[under, columns, 2] - world[np.maximum(lowest - 1, 0), columns, 2]) < settings.level_m
             nearer &= ~level
-        farther = known & (there > own + settings.contact_m + 0.02 * own)
+        farther = known & (depth_below > depth_above + settings.contact_m + 0.02 * depth_above)
     hidden = float((nearer.sum() + (total - len(who))) / total)
     below: dict[str, float] = {}
     carrying = ~nearer & ~farther
@@ -185,7 +185,7 @@ def _behind(index: int, item: DetectedObject, owners: Int32[np.ndarray, "h w"], 
         return 0.0
     mine = (owners == index).astype(np.uint8)
     ring = (cv2.dilate(mine, np.ones((7, 7), np.uint8)) > 0) & (owners < 0) & (depth_m > 0)
-    own = depth_m[(mine > 0) & (depth_m > 0)]
-    if not ring.any() or not len(own):
+    object_depth = depth_m[(mine > 0) & (depth_m > 0)]
+    if not ring.any() or not len(object_depth):
         return 0.0
-    return float(max(np.median(depth_m[ring]) - np.quantile(own, 0.9), 0.0))
+    return float(max(np.median(depth_m[ring]) - np.quantile(object_depth, 0.9), 0.0))

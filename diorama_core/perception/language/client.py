@@ -342,9 +342,9 @@ class LmmClient:
             404: f"check that it has a model called {self.settings.model}",
             429: "its rate limit is reached: wait a little",
         }.get(status or 0, "try again later")
-        said = " ".join(str(getattr(error, "message", error)).split())[:120]
+        message = " ".join(str(getattr(error, "message", error)).split())[:120]
         kind = EndpointDownError if status == 429 or (status or 0) >= 500 else UnavailableError
-        return kind(f"{where} answered {status or 'an error'} ({said}); {advice}, {off}")
+        return kind(f"{where} answered {status or 'an error'} ({message}); {advice}, {off}")
 
 
 def _validated(text: str, schema: type[T]) -> tuple[T | None, str]:

@@ -54,12 +54,12 @@ def counted(replies: Sequence[GraphReply], objects: Mapping[int, str], architect
 
 def _facing(replies: Sequence[GraphReply], objects: Mapping[int, str]) -> tuple[tuple[str, str], ...]:
     """Directions that more than half of the replies name."""
-    said: dict[str, Counter[str]] = {}
+    votes: dict[str, Counter[str]] = {}
     for reply in replies:
         for entry in reply.objects:
             if entry.id in objects and entry.face_direction != UNKNOWN_FACING:
-                said.setdefault(objects[entry.id], Counter())[entry.face_direction] += 1
-    best = {key: min(c.items(), key=lambda item: (-item[1], item[0])) for key, c in said.items()}
+                votes.setdefault(objects[entry.id], Counter())[entry.face_direction] += 1
+    best = {key: min(c.items(), key=lambda item: (-item[1], item[0])) for key, c in votes.items()}
     return tuple((key, word) for key, (word, n) in best.items() if 2 * n > len(replies))
 
 

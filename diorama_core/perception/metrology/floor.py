@@ -161,10 +161,10 @@ def _costs_at_heights(
     again = rows.rows(named)
     starts = np.concatenate([contact_start(rows, view, settings.fit), other_start(again, view, settings=settings.fit)])
     first = solve(stacked([rows, again]), starts, view, settings.heights.scan_iterations, settings.fit)
-    own = np.concatenate([np.arange(len(rows)), np.flatnonzero(named)])
+    rows_of_costs = np.concatenate([np.arange(len(rows)), np.flatnonzero(named)])
     cost, unknowns = np.full(len(rows), np.inf), np.zeros((len(rows), UNKNOWNS))
     for k in np.argsort(-first.cost, kind="stable"):
-        cost[own[k]], unknowns[own[k]] = first.cost[k], first.unknowns[k]
+        cost[rows_of_costs[k]], unknowns[rows_of_costs[k]] = first.cost[k], first.unknowns[k]
     for step in (1, -1):
         start = _from_neighbours(unknowns, step)
         again_solved = solve(rows, start, view, settings.heights.continued_iterations, settings.fit)

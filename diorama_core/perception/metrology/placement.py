@@ -358,8 +358,8 @@ def readings_of(
     readings = {}
     for index in np.unique(solved.problems.item).astype(int):
         mine = np.flatnonzero(solved.problems.item == index)
-        own = Cuboids(boxes.centre[mine], boxes.yaw_rad[mine], boxes.size_m[mine])
-        retained = mine[distinct(own, costs[mine], settings.placement)]
+        own_cuboids = Cuboids(boxes.centre[mine], boxes.yaw_rad[mine], boxes.size_m[mine])
+        retained = mine[distinct(own_cuboids, costs[mine], settings.placement)]
         remaining_boxes = Cuboids(boxes.centre[retained], boxes.yaw_rad[retained], boxes.size_m[retained])
         readings[int(index)] = Readings(solved.problems.rows(retained), remaining_boxes, costs[retained])
     return readings

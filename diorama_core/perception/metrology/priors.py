@@ -87,13 +87,13 @@ def _modes_of_meanings(
 ) -> tuple[SizeMode, ...]:
     """The likeliest mode of every other kind that a word may mean and that is held alike, dearer where it is rarer."""
     shares = dict(meanings)
-    own, held = max(shares.get(name, 0.0), settings.min_share), _held(name)
+    weight, kinds_held = max(shares.get(name, 0.0), settings.min_share), _held(name)
     others = [
         (kind, share)
         for kind, share in meanings
-        if kind != name and share >= settings.min_share and _held(kind) == held
+        if kind != name and share >= settings.min_share and _held(kind) == kinds_held
     ]
-    return tuple(_rarer(kind, share, name, own) for kind, share in others[: settings.max_meanings])
+    return tuple(_rarer(kind, share, name, weight) for kind, share in others[: settings.max_meanings])
 
 
 def _rarer(kind: str, share: float, than: str, its_share: float) -> SizeMode:

@@ -55,7 +55,7 @@ def jacobian(
     boxes = cuboids(unknowns, problems, view)
     corners = corners_camera(boxes, problems.camera_height_m, view)
     frame = _Frame.of(boxes, problems, view)
-    edges, told = _edges(corners, frame, here, problems, view, settings)
+    edges, is_informative = _edges(corners, frame, here, problems, view, settings)
     slopes = np.zeros((len(problems), here.residuals.shape[1], UNKNOWNS))
     plan = _on_the_plan(boxes, view)
     slopes[:, EDGES] = edges
@@ -67,7 +67,7 @@ def jacobian(
     slopes[:, FOOTPRINT, :4] = _outside_footprint(boxes, plan, here.residuals[:, FOOTPRINT], problems, settings)
     slopes[:, WALL, :3] = _off_wall(boxes, plan, here.residuals[:, WALL], problems, settings)
     slopes[:, FAR, :2] = _too_far(boxes, plan, here.residuals[:, FAR], settings)
-    rest = np.flatnonzero(~told)
+    rest = np.flatnonzero(~is_informative)
     if len(rest):
         slopes[rest] = _by_differences(problems.rows(rest), unknowns[rest], here.rows(rest), view, settings)
     return slopes
@@ -129,8 +129,8 @@ def _edges(
     """Slopes of the four sides of the projected box, and where they are told."""
     at = extreme_points(corners, here.bounds_px, here.visible, view.intrinsics)
     of_bounds = at.slopes(frame.moved(at.unit), view.intrinsics)
-    there = edge_residuals(here.bounds_px + _STEP, here.visible, here.inset_px, problems, view, settings)
-    by_bound = (there - here.residuals[:, EDGES]) / _STEP
+    stepped = edge_residuals(here.bounds_px + _STEP, here.visible, here.inset_px, problems, view, settings)
+    by_bound = (stepped - here.residuals[:, EDGES]) / _STEP
     return (by_bound.T * of_bounds).transpose(2, 1, 0), at.told
 
 
@@ -228,5 +228,5 @@ def _by_differences(
     probes = (unknowns[None] + _STEP * np.eye(UNKNOWNS)[:, None]).reshape(-1, UNKNOWNS)
     repeated = problems.rows(np.tile(np.arange(count), UNKNOWNS))
     inset = np.tile(here.inset_px, (UNKNOWNS, 1))
-    there = values(probes, repeated, view, inset, settings).residuals.reshape(UNKNOWNS, count, -1)
-    return np.asarray(((there - here.residuals) / _STEP).transpose(1, 2, 0))
+    stepped = values(probes, repeated, view, inset, settings).residuals.reshape(UNKNOWNS, count, -1)
+    return np.asarray(((stepped - here.residuals) / _STEP).transpose(1, 2, 0))

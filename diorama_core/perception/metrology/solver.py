@@ -72,13 +72,13 @@ def solve(
             slopes.put(anew, _slopes(plain.rows(anew), unknowns[anew], at.rows(anew), view, settings))
         part, here = problems.rows(active), unknowns[active]
         bounds = low[active], high[active]
-        there = np.clip(here + _step(slopes.rows(active), here, damping[active], bounds, settings), *bounds)
-        at_there = values(there, part, view, settings=settings)
+        trial = np.clip(here + _step(slopes.rows(active), here, damping[active], bounds, settings), *bounds)
+        at_there = values(trial, part, view, settings=settings)
         reached = _cost(at_there)
         gain = cost[active] - reached
         better = gain > 0
         moved = active[better]
-        unknowns[moved], cost[moved] = there[better], reached[better]
+        unknowns[moved], cost[moved] = trial[better], reached[better]
         at.put(moved, at_there.rows(better))
         damping[active] = np.where(better, damping[active] * 0.3, damping[active] * 6.0)
         active = active[(~better & (damping[active] < 1e5)) | (gain > settings.min_gain)]

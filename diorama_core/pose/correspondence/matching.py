@@ -77,17 +77,17 @@ def cyclic_matches(
     if count == 0:
         none = np.zeros((views, 0), dtype=int)
         return Matches(none, none, none.astype(float), np.zeros(views, dtype=int))
-    there = similarity.argmax(axis=2)
-    best = np.take_along_axis(similarity, there[..., None], axis=2)[..., 0]
+    forward = similarity.argmax(axis=2)
+    best = np.take_along_axis(similarity, forward[..., None], axis=2)[..., 0]
     back = similarity.argmax(axis=1)
-    home = query_patches[np.take_along_axis(back, there, axis=1)]
+    home = query_patches[np.take_along_axis(back, forward, axis=1)]
     start = np.broadcast_to(query_patches, home.shape)
     cycle = np.hypot(home % PATCHES - start % PATCHES, home // PATCHES - start // PATCHES)
     good = (cycle < MAX_CYCLE) & (best >= MIN_SIMILARITY)
     order = np.argsort(np.where(good, -best, np.inf), axis=1, kind="stable")[:, :keep]
     return Matches(
         query=query_patches[order],
-        template=np.take_along_axis(there, order, axis=1),
+        template=np.take_along_axis(forward, order, axis=1),
         similarity=np.take_along_axis(best, order, axis=1).astype(float),
         count=np.minimum(good.sum(axis=1), min(keep, count)),
     )
@@ -97,7 +97,7 @@ def template_scores(similarity: Float32[np.ndarray, "v q p"]) -> Float[np.ndarra
     """How like the whole picture is to each view: mean of every patch's best similarity, both ways (best match)."""
     if similarity.shape[1] == 0:
         return np.zeros(len(similarity))
-    there = similarity.max(axis=2).mean(axis=1)
+    forward = similarity.max(axis=2).mean(axis=1)
     inside = similarity.max(axis=1) > -1
     back = np.where(inside, similarity.max(axis=1), 0.0).sum(axis=1) / np.maximum(inside.sum(axis=1), 1)
-    return 0.5 * (there + back)
+    return 0.5 * (forward + back)

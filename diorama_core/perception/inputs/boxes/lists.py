@@ -99,11 +99,11 @@ def read_entries(
                 f"{name}: entry {index} has no box ({_keys(row)}); boxes are a JSON list of "
                 '{"bbox": [x1, y1, x2, y2], "class": "chair"}'
             )
-        values, own, open_ = box
+        values, is_own_layout, open_ = box
         ambiguous = ambiguous and open_ and layout is None
         turned = isinstance(keys_of(row).get("box2d"), list)
         values = (values[1], values[0], values[3], values[2]) if turned else values
-        boxes.append(BoxEntry(from_layout(values, layout or own), word_of(row, names), score_of(row)))
+        boxes.append(BoxEntry(from_layout(values, layout or is_own_layout), word_of(row, names), score_of(row)))
         unit = "thousandths" if turned else unit
     words, notes = _words(rows, boxes)
     entries = tuple(BoxEntry(e.corners, w, e.score) for e, w in zip(boxes, words, strict=True))

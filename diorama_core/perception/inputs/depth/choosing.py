@@ -59,8 +59,8 @@ def chosen_reading(
     if best.kind not in ("distance", "inverse") or not clearly:
         return depth, doubt
     if best.kind == "distance":
-        said = f"{name} holds distances along the rays, not along the optical axis: only so are walls and floor flat"
-        return best, (said + "; they were converted (--depth-kind depth keeps them)",)
+        remark = f"{name} holds distances along the rays, not along the optical axis: only so are walls and floor flat"
+        return best, (remark + "; they were converted (--depth-kind depth keeps them)",)
     raise AmbiguousDepthError(
         f"{name}: this is inverse depth or disparity (larger is nearer), which has no unit; give metric depth, or add "
         "--depth-kind inverse to fit it to the objects' usual sizes",

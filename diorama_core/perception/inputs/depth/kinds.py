@@ -193,8 +193,8 @@ def _before_background(values: np.ndarray, valid: np.ndarray, box: LabelledBox, 
     width, tall = x2 - x1, y2 - y1
     inner = np.s_[y1 + tall // 3 : y2 - tall // 4, x1 + width // 4 : x2 - width // 4]
     above = np.s_[max(0, y1 - max(tall // 3, 3)) : y1, x1:x2]
-    here, there = _median(values, valid, inner), _median(values, valid, above)
-    return None if here is None or there is None else float(np.clip(4.0 * (there - here) / spread, -1.0, 1.0))
+    here, above_it = _median(values, valid, inner), _median(values, valid, above)
+    return None if here is None or above_it is None else float(np.clip(4.0 * (above_it - here) / spread, -1.0, 1.0))
 
 
 def _median(values: np.ndarray, valid: np.ndarray, part: tuple[slice, ...] | slice) -> float | None:

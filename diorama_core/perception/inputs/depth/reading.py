@@ -157,8 +157,8 @@ def _understood(
 ) -> tuple[Float32[np.ndarray, "h w"], tuple[str, ...]]:
     """The numbers as metres along the optical axis."""
     stated = 1.0 if raw.is_float else MILLIMETRES
-    told = options.kind == "depth" and options.per_metre is not None
-    if told or (options.kind == "auto" and valid.sum() < MIN_PIXELS):
+    is_metric = options.kind == "depth" and options.per_metre is not None
+    if is_metric or (options.kind == "auto" and valid.sum() < MIN_PIXELS):
         return _in_metres(numbers, options.per_metre or stated), ()
     readings = depth_readings(numbers, valid, scene.boxes, scene.focal, options.kind)
     reading, notes = chosen_reading(name, readings, raw.stated_kind, options.kind)

@@ -116,8 +116,8 @@ def split_by_boxes(
         several += 1
         for pieces in list(owners.values())[1:]:
             apart[np.isin(labels, pieces)] = apart.max() + 1
-    said = f"{number_of(several, 'mask')} of several objects, split by the boxes"
-    return apart, (said,) if several else ()
+    note = f"{number_of(several, 'mask')} of several objects, split by the boxes"
+    return apart, (note,) if several else ()
 
 
 def _resized(values: Shaped[np.ndarray, "h w *c"], size: tuple[int, int]) -> Shaped[np.ndarray, "h2 w2 *c"]:
@@ -174,15 +174,15 @@ def match_instances(instances: Int32[np.ndarray, "h w"], boxes: tuple[LabelledBo
     The overlap is that of the mask's bounding box (IoU), so that a sofa's mask is not taken by the pillow's box inside
     it. A box goes whole to the mask that overlaps it most; further masks of the same box keep their own extent.
     """
-    own = {k: _extent(instances == k) for k in range(1, int(instances.max()) + 1)}
+    extents = {k: _extent(instances == k) for k in range(1, int(instances.max()) + 1)}
     best: dict[int, tuple[float, int]] = {}
     given = np.array([b.box for b in boxes], dtype=np.float64).reshape(-1, 4)
-    for k, extent in own.items():
+    for k, extent in extents.items():
         overlaps = box_iou(np.array(extent), given)
         if overlaps.size and overlaps.max() > 0:
             best[k] = (float(overlaps.max()), int(overlaps.argmax()))
     matched: list[tuple[int, LabelledBox]] = []
-    for k, extent in own.items():
+    for k, extent in extents.items():
         if k not in best:
             matched.append((k, LabelledBox(extent, UNKNOWN.name, UNKNOWN.name)))
             continue
