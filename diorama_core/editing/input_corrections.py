@@ -123,8 +123,8 @@ def _without_outline(inputs: Inputs, box: LabelledBox | None) -> Inputs:
     if not gone or inputs.instances is None:
         return inputs
     instances = np.where(np.isin(inputs.instances, list(gone)), 0, inputs.instances).astype(np.int32)
-    retained = tuple((i, b) for i, b in inputs.instance_boxes if i not in gone)
-    return replace(inputs, instances=instances if retained else None, instance_boxes=retained)
+    instance_boxes = tuple((i, b) for i, b in inputs.instance_boxes if i not in gone)
+    return replace(inputs, instances=instances if instance_boxes else None, instance_boxes=instance_boxes)
 
 
 def _with_outline(inputs: Inputs, box: LabelledBox, mask: Bool[np.ndarray, "h w"]) -> Inputs:

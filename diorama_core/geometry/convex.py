@@ -147,8 +147,8 @@ def _directions(vectors: np.ndarray) -> Float[np.ndarray, "k 3"]:
     units = vectors[lengths > 1e-12] / lengths[lengths > 1e-12, None]
     same = np.abs(units @ units.T) >= _SAME_DIRECTION
     # Each direction is kept unless an earlier one is the same.
-    retained = units[~np.tril(same, -1).any(axis=1)]
-    return retained if len(retained) else np.eye(3)
+    distinct = units[~np.tril(same, -1).any(axis=1)]
+    return distinct if len(distinct) else np.eye(3)
 
 
 def _hull_edges(hull: ConvexHull) -> Float[np.ndarray, "e 3"]:
@@ -317,17 +317,17 @@ def _added(a: _Cloud, b: _Cloud) -> float:
 
 def _drop_contained(clouds: list[np.ndarray]) -> list[np.ndarray]:
     """Without the parts that lie inside a larger one (largest first)."""
-    retained: list[np.ndarray] = []
+    outer: list[np.ndarray] = []
     planes: list[np.ndarray] = []
     for cloud in clouds:
         if any((cloud @ p[:, :3].T + p[:, 3] <= 1e-5).all() for p in planes):
             continue
-        retained.append(cloud)
+        outer.append(cloud)
         try:
             planes.append(ConvexHull(cloud).equations)
         except (QhullError, ValueError):
             continue
-    return retained
+    return outer
 
 
 def _prism_about(points: np.ndarray, axis: int, volume: float) -> ConvexPart | None:

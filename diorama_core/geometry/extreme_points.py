@@ -94,9 +94,9 @@ def _cut_points(
     enter, leave = clip_ends(slack[:, a], slack[:, b])
     at = np.concatenate([enter.max(axis=0), leave.min(axis=0)])
     by = np.concatenate([enter.argmax(axis=0), leave.argmin(axis=0)])
-    retained = np.tile(enter.max(axis=0) <= leave.min(axis=0), (2, 1))
+    is_visible = np.tile(enter.max(axis=0) <= leave.min(axis=0), (2, 1))
     ends = np.concatenate([start, start], axis=1) + at * np.concatenate([way, way], axis=1)
-    chosen = _extremes(_pixels(ends, k), retained)
+    chosen = _extremes(_pixels(ends, k), is_visible)
     of_edge = chosen % len(a)
     share = np.take_along_axis(at, chosen, axis=0)
     box = box_corners((1.0, 1.0, 1.0)).T
@@ -112,8 +112,8 @@ def _pixels(points: Float[np.ndarray, "3 p n"], k: Intrinsics) -> Float[np.ndarr
     return np.stack([k.fx * points[0] / z, k.fy * points[1] / z])
 
 
-def _extremes(pixels: Float[np.ndarray, "2 p n"], retained: Bool[np.ndarray, "p n"]) -> Int[np.ndarray, "4 n"]:
+def _extremes(pixels: Float[np.ndarray, "2 p n"], is_visible: Bool[np.ndarray, "p n"]) -> Int[np.ndarray, "4 n"]:
     """Index of the point at x1, y1, x2 and y2."""
-    low = np.where(retained, pixels, np.inf).argmin(axis=1)
-    high = np.where(retained, pixels, -np.inf).argmax(axis=1)
+    low = np.where(is_visible, pixels, np.inf).argmin(axis=1)
+    high = np.where(is_visible, pixels, -np.inf).argmax(axis=1)
     return np.concatenate([low, high])

@@ -142,10 +142,10 @@ def _segment_bounds(
     """Least and greatest pixels of the parts of segments inside the frustum; infinite where nothing is."""
     enters, leaves = clip_ends(start_slack, end_slack)
     enter, leave = enters.max(axis=0), leaves.min(axis=0)
-    retained = np.concatenate([enter <= leave] * 2)
+    is_visible = np.concatenate([enter <= leave] * 2)
     way = end - start
     pixels = _project(np.concatenate([start + enter * way, start + leave * way], axis=1), k)
-    return np.where(retained, pixels, np.inf).min(axis=1), np.where(retained, pixels, -np.inf).max(axis=1)
+    return np.where(is_visible, pixels, np.inf).min(axis=1), np.where(is_visible, pixels, -np.inf).max(axis=1)
 
 
 def clip_ends(

@@ -147,8 +147,8 @@ def _block(
         axes = np.concatenate([axes, crosses], axis=1)
     lengths = np.sqrt((axes * axes).sum(axis=2))
     used = lengths > _DEGENERATE
-    retained = used.any(axis=0)
-    axes, lengths, used = axes[:, retained], lengths[:, retained], used[:, retained]
+    is_used = used.any(axis=0)
+    axes, lengths, used = axes[:, is_used], lengths[:, is_used], used[:, is_used]
     axes = axes / np.where(used, lengths, 1.0)[..., None]
     on_a, on_b = np.matmul(Va, axes.transpose(0, 2, 1)), np.matmul(Vb, axes.transpose(0, 2, 1))
     ahead = np.where(used, on_a.min(axis=1) - on_b.max(axis=1), -np.inf)

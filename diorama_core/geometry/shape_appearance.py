@@ -112,8 +112,8 @@ def _trimmed_middle(xy: Float[np.ndarray, "n 2"], share: float) -> Float[np.ndar
     middle = np.median(xy, axis=0)
     for _ in range(8):
         away = np.linalg.norm(xy - middle, axis=1)
-        retained = xy[away <= np.quantile(away, share)]
-        middle = 0.5 * (retained.min(axis=0) + retained.max(axis=0))
+        inner = xy[away <= np.quantile(away, share)]
+        middle = 0.5 * (inner.min(axis=0) + inner.max(axis=0))
     return middle
 
 

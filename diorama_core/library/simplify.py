@@ -86,9 +86,9 @@ def _fewer(
     near, faces_used = np.ascontiguousarray(points[used]), faces_used.astype(np.uint32)
     area, extents = _area(faces_used, near), np.ptp(near, axis=0)
     for error in errors:
-        retained = np.empty_like(faces_used)
-        count = meshoptimizer.simplify(retained, faces_used, near, target_index_count=target, target_error=error)
-        left = retained[:count]
+        simplified = np.empty_like(faces_used)
+        count = meshoptimizer.simplify(simplified, faces_used, near, target_index_count=target, target_error=error)
+        left = simplified[:count]
         share_left = _area(left, near) / max(area, 1e-12)
         if count and MIN_AREA_SHARE <= share_left <= MAX_AREA_SHARE and _spans(left, near, extents, max_shorter):
             return used[left].astype(np.uint32)

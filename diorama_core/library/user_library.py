@@ -104,8 +104,8 @@ class UserLibrary:
 
     def thumbnail(self, shape_id: str) -> bytes | None:
         """The picture that came with the shape, where its library keeps one."""
-        retained = getattr(self._library, "thumbnail", None)
-        return None if retained is None else retained(shape_id)
+        thumbnail = getattr(self._library, "thumbnail", None)
+        return None if thumbnail is None else thumbnail(shape_id)
 
 
 class ProjectShapes(UserLibrary):

@@ -17,7 +17,7 @@ from diorama_core.scene.types import Architecture, Camera, Pose, Scene, SceneObj
 def acyclic(edges: Sequence[Support]) -> tuple[Support, ...]:
     """The edges without edges that would close a circle: different photos may disagree about what stands on what."""
     parent: dict[str, str] = {}
-    retained = []
+    forest = []
     for edge in edges:
         above, seen = edge.parent, {edge.child}
         while above in parent and above not in seen:
@@ -25,8 +25,8 @@ def acyclic(edges: Sequence[Support]) -> tuple[Support, ...]:
             above = parent[above]
         if above not in seen:
             parent[edge.child] = edge.parent
-            retained.append(edge)
-    return tuple(retained)
+            forest.append(edge)
+    return tuple(forest)
 
 
 def edge_in_room(edge: Support, scene: Scene, room: Architecture) -> Support:

@@ -71,11 +71,11 @@ def plausible_shapes(
     likely = [s for s in others if totals[s] >= MIN_PLAUSIBLE]
     if alike is None or any(item.colour is None for item in members):
         return (chosen_id, *likely)
-    retained = [chosen_id]
+    shape_ids = [chosen_id]
     for shape_id in likely:
-        if all(alike(shape_id, k) < SAME_FORM for k in retained):
-            retained.append(shape_id)
-    return tuple(retained)
+        if all(alike(shape_id, k) < SAME_FORM for k in shape_ids):
+            shape_ids.append(shape_id)
+    return tuple(shape_ids)
 
 
 def _sets(scene: Scene) -> list[list[SceneObject]]:

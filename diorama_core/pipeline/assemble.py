@@ -35,14 +35,14 @@ def assemble(
     """
     candidates: Mapping[str, PosedCandidates] = {p.object_id: p for p in posed if p.candidates}
     items = tuple(_scene_object(o, candidates[o.id], library, colours.get(o.id)) for o in objects if o.id in candidates)
-    retained = {item.id for item in items} | {p.id for p in architecture.architecture.planes}
+    ids = {item.id for item in items} | {p.id for p in architecture.architecture.planes}
     parent_of = {edge.child: edge.parent for edge in architecture.supports}
     supports = []
     for edge in architecture.supports:
         parent: str | None = edge.parent
-        while parent is not None and parent not in retained:
+        while parent is not None and parent not in ids:
             parent = parent_of.get(parent)
-        if edge.child in retained and parent is not None:
+        if edge.child in ids and parent is not None:
             supports.append(replace(edge, parent=parent))
     scene = Scene(
         camera=geometry.camera, architecture=architecture.architecture, objects=items, supports=tuple(supports)

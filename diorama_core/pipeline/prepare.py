@@ -109,7 +109,7 @@ def _appearances() -> Path:
 
 def _prepare(name: str, wanted: _Wanted, shape_ids: Sequence[str]) -> list[tuple[str, str]]:
     """Prepare some shapes; returns those that could not be, and why."""
-    library, retained = open_library(name, anew=True), TemplateCache(cached=1)
+    library, templates = open_library(name, anew=True), TemplateCache(cached=1)
     similarity = EmbeddedSimilarity(library)
     failures = []
     for shape_id in shape_ids:
@@ -124,7 +124,7 @@ def _prepare(name: str, wanted: _Wanted, shape_ids: Sequence[str]) -> list[tuple
                 shape_form(library, shape, appearance)
                 usual_form_factor(library, shape, appearance)
             if wanted.templates:
-                retained.get(library, shape)
+                templates.get(library, shape)
         except DioramaError as error:
             failures.append((shape_id, str(error)))
     return failures

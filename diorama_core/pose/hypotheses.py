@@ -182,12 +182,12 @@ def unlike_best(
     yaw = np.arctan2(poses.R[:, 1, 0], poses.R[:, 0, 0])
     reach = settings.same_place * (poses.scale * shape_size_m).max(axis=1)
     fold = 2 * np.pi / symmetry
-    retained: list[int] = []
+    indices: list[int] = []
     for index in order:
-        turn = np.abs(np.mod(yaw[retained] - yaw[index] + fold / 2, fold) - fold / 2)
-        away = np.linalg.norm(poses.position[retained] - poses.position[index], axis=1)
+        turn = np.abs(np.mod(yaw[indices] - yaw[index] + fold / 2, fold) - fold / 2)
+        away = np.linalg.norm(poses.position[indices] - poses.position[index], axis=1)
         if not ((turn < _SAME_TURN_RAD) & (away < reach[index])).any():
-            retained.append(int(index))
-        if len(retained) == count:
+            indices.append(int(index))
+        if len(indices) == count:
             break
-    return np.array(retained)
+    return np.array(indices)

@@ -234,10 +234,8 @@ def _compare(mesh: trimesh.Trimesh, materials: dict[int, Material]) -> ShapeAppe
 def _material(source: PBRMaterial) -> Material:
     rgba = [1.0] * 4 if source.baseColorFactor is None else [float(c) / 255.0 for c in source.baseColorFactor]
     emissive = (0.0, 0.0, 0.0) if source.emissiveFactor is None else tuple(float(c) for c in source.emissiveFactor)
-    retained = ("normalTexture", "metallicRoughnessTexture", "occlusionTexture", "emissiveTexture")
-    maps = {
-        key: np.asarray(getattr(source, key).convert("RGB")) for key in retained if getattr(source, key) is not None
-    }
+    names = ("normalTexture", "metallicRoughnessTexture", "occlusionTexture", "emissiveTexture")
+    maps = {key: np.asarray(getattr(source, key).convert("RGB")) for key in names if getattr(source, key) is not None}
     return Material(
         name=source.name or "material",
         colour=(rgba[0], rgba[1], rgba[2]),

@@ -217,12 +217,12 @@ def set_metrics(scene: Scene, metrics: Mapping[str, float]) -> Scene:
 def set_planes(scene: Scene, planes: Iterable[Plane]) -> Scene:
     """Replace the room's planes; support edges to planes that are gone are dropped."""
     changed = replace(scene, architecture=replace(scene.architecture, planes=tuple(planes)))
-    retained = tuple(
+    supports = tuple(
         replace(s, adheres_to=tuple(w for w in s.adheres_to if changed.has_plane(w)))
         for s in scene.supports
         if changed.has_object(s.parent) or changed.has_plane(s.parent)
     )
-    return replace(changed, supports=retained)
+    return replace(changed, supports=supports)
 
 
 def fresh_id(scene: Scene, category: str) -> str:

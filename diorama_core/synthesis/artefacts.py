@@ -36,13 +36,13 @@ def true_objects(view: TruthView) -> tuple[DetectedObject, ...]:
 
 def true_supports(view: TruthView) -> tuple[Support, ...]:
     """The support graph among the objects asked for; what an absent object holds up stands on its supporter."""
-    retained = {view.scene.objects[k].id for k in view.asked}
+    ids = {view.scene.objects[k].id for k in view.asked}
     parent_of = {s.child: s.parent for s in view.scene.supports}
     edges = []
     for edge in view.scene.supports:
-        if edge.child in retained:
+        if edge.child in ids:
             parent = edge.parent
-            while parent not in retained and parent in parent_of:
+            while parent not in ids and parent in parent_of:
                 parent = parent_of[parent]
             surface = edge.parent_surface if parent == edge.parent else None
             edges.append(replace(edge, parent=parent, parent_surface=surface))

@@ -50,12 +50,12 @@ def planar_clusters(
     """
     if len(points) < MIN_POINTS:
         return np.full(len(points), -1)
-    retained, directions = _thinned(points, normals, settings)
-    labels = _grown(retained, directions, seed, settings)
+    representatives, directions = _thinned(points, normals, settings)
+    labels = _grown(representatives, directions, seed, settings)
     if (labels < 0).all():
         return np.full(len(points), -1)
     settled = labels >= 0
-    nearest = cKDTree(retained[settled]).query(points)[1]
+    nearest = cKDTree(representatives[settled]).query(points)[1]
     return np.asarray(labels[settled][nearest])
 
 

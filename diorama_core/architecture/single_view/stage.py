@@ -244,15 +244,15 @@ def _planes(
     ceiling = CeilingPiece(np.array([0.0, 0.0, -1.0]), -top_m, np.inf)
     planes = room_planes(pieces, (ceiling,), geometry.camera, top_m, settings.floor_confidence, openings)
     seen = visible_planes(planes, geometry.camera, settings.ceiling_step)
-    retained = []
+    walls = []
     for index, plane in enumerate(planes):
         if plane.role == "ceiling" and not hung and float((seen == index).mean()) < settings.min_visible_share:
             continue
-        retained.append(plane)
+        walls.append(plane)
     known = [None if p.candidate is None else settings.measured - p.candidate.seen_through for p in pieces]
     mean = float(np.mean([c for c in known if c is not None]))
     sure = {f"wall_{k}": GUESS_CONFIDENCE if c is None else c for k, c in enumerate(known, 1)} | {"ceiling": mean}
-    return tuple(replace(p, confidence=sure.get(p.id, p.confidence)) for p in retained)
+    return tuple(replace(p, confidence=sure.get(p.id, p.confidence)) for p in walls)
 
 
 def _source(

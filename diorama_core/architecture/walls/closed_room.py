@@ -122,11 +122,11 @@ def floor_outline(pieces: tuple[WallPiece, ...], camera: Camera, settings: WallS
 
 
 def _distinct(points: list[Float[np.ndarray, "2"]]) -> list[Float[np.ndarray, "2"]]:
-    retained = [points[0]]
+    corners = [points[0]]
     for point in points[1:]:
-        if min(float(np.linalg.norm(point - k)) for k in (retained[-1], retained[0])) > 1e-6:
-            retained.append(point)
-    return retained
+        if min(float(np.linalg.norm(point - k)) for k in (corners[-1], corners[0])) > 1e-6:
+            corners.append(point)
+    return corners
 
 
 def is_simple(outline: Float[np.ndarray, "n 2"]) -> bool:

@@ -35,8 +35,8 @@ def without_openings(
 ) -> tuple[tuple[DetectedObject, ...], ObjectGeometry]:
     """The objects and the geometry without what became a hole in a wall."""
     gone = set(room.openings)
-    retained = tuple(c for c in geometry.cuboids if c.object_id not in gone)
-    return tuple(o for o in objects if o.id not in gone), replace(geometry, cuboids=retained)
+    cuboids = tuple(c for c in geometry.cuboids if c.object_id not in gone)
+    return tuple(o for o in objects if o.id not in gone), replace(geometry, cuboids=cuboids)
 
 
 def with_passages(

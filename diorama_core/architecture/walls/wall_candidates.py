@@ -80,11 +80,11 @@ def find_walls(
     candidates: list[WallCandidate] = []
     for normal in _directions(surface, upright, settings):
         candidates += _parallel_walls(surface, upright, normal, top_m, settings)
-    retained: list[WallCandidate] = []
+    distinct: list[WallCandidate] = []
     for wall in sorted(candidates, key=lambda w: -w.area_m2):
-        if not any(same_wall(surface, wall, other, settings) for other in retained):
-            retained.append(wall)
-    return retained
+        if not any(same_wall(surface, wall, other, settings) for other in distinct):
+            distinct.append(wall)
+    return distinct
 
 
 def same_wall(

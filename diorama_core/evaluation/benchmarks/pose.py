@@ -127,14 +127,14 @@ class _Tally:
     def finished(self, seed: int) -> PoseBench:
         """All of them."""
         true, estimated = self.retained[TRUE_DEPTH], self.retained[ESTIMATED_DEPTH]
-        retained = tuple((k, tuple(true[k]), tuple(estimated[k])) for k in RETRIEVALS)
+        poses = tuple((k, tuple(true[k]), tuple(estimated[k])) for k in RETRIEVALS)
         return PoseBench(
             seed,
             tuple(
                 (*condition, tuple((name, tuple(rows)) for name, rows in solvers.items()))
                 for condition, solvers in self.compared.items()
             ),
-            retained,
+            poses,
             tuple((name, tuple(rows)) for name, rows in self.ablation.items()),
             tuple((name, _counted(rows)) for name, rows in sorted(self.groups.items())),
             tuple((name, _counted(rows)) for name, rows in sorted(self.groups_after.items())),

@@ -108,15 +108,15 @@ class SpeedBench:
 
     def figures(self) -> dict[str, float]:
         """What the regression file keeps."""
-        retained: dict[str, float] = {}
+        figures: dict[str, float] = {}
         for s in self.series:
             if s.points and s.points[-1][1] >= MIN_RECORDED_S:
                 quantity = f"{s.points[-1][0]:g} {s.against}"
-                retained[f"{s.what} at {quantity}"] = s.points[-1][1] / self.yardstick_s
-                retained[f"{GROWTH}{s.what} from {s.points[0][0]:g} to {quantity}"] = s.exponent
+                figures[f"{s.what} at {quantity}"] = s.points[-1][1] / self.yardstick_s
+                figures[f"{GROWTH}{s.what} from {s.points[0][0]:g} to {quantity}"] = s.exponent
                 if s.peaks_mb and s.peaks_mb[-1] is not None:
-                    retained[f"{MEMORY}{s.what} at {quantity}"] = s.peaks_mb[-1]
-        return {**retained, **_gains(self.series)}
+                    figures[f"{MEMORY}{s.what} at {quantity}"] = s.peaks_mb[-1]
+        return {**figures, **_gains(self.series)}
 
     def to_json(self) -> dict[str, object]:
         """Tables and figures."""

@@ -131,12 +131,12 @@ def orientation_stage(
         normal = np.einsum("eij,ej->ei", owner, edges.normal)
         value, slope = gradients.align(face, normal)
         slope = 3.0 * weights.align * edges.weight[:, None] * slope
-        retained, turn = gradients.semantic(state.R[:, :, 0], front)
+        cost, turn = gradients.semantic(state.R[:, :, 0], front)
         gradient = to_child @ cross(face, slope) - to_supporter @ cross(normal, slope)
         gradient += weights.heading * cross(state.R[:, :, 0], turn)
         velocity = schedule.momentum * velocity + gradient * free
         state.R = np.matmul(rotation_from_vector(-schedule.rate * rate * velocity), state.R)
-        terms = {"align": 3.0 * weights.align * value, "heading": weights.heading * retained}
+        terms = {"align": 3.0 * weights.align * value, "heading": weights.heading * cost}
         report("orientation", step, state, terms)
     state.R = orthonormal(state.R)
 

@@ -70,8 +70,8 @@ def _turn(up: str, front: str | None) -> np.ndarray:
     """Rotation whose rows are the new axes in the old frame."""
     z = axis_vector(up)
     if front is None:
-        retained = next(a for a in ("+x", "-z" if up == "+x" else "+z", "+y") if a[1] != up[1])
-        front = retained
+        axis = next(a for a in ("+x", "-z" if up == "+x" else "+z", "+y") if a[1] != up[1])
+        front = axis
     x = axis_vector(front)
     if x @ z:
         raise InputError(f"up {up} and front {front} lie along one axis; they must be at right angles")

@@ -104,7 +104,7 @@ def repaired(scene: trimesh.Scene, limits: Limits) -> Repaired:
 
 def _repaired(scene: trimesh.Scene, limits: Limits) -> Repaired:
     notes: list[str] = []
-    retained = []
+    meshes = []
     total = 0
     materials: dict[int, PBRMaterial] = {}
     for name, mesh, T, part in _placed(scene, notes):
@@ -118,13 +118,13 @@ def _repaired(scene: trimesh.Scene, limits: Limits) -> Repaired:
         if len(faces):
             made = _compact(vertices, faces, _visual(mesh, faces, materials, limits), name)
             made.metadata |= {} if part is None else {part_notes.KEY: part.as_json()}
-            retained.append(made)
-    if not retained:
+            meshes.append(made)
+    if not meshes:
         raise LibraryError("no triangle with area is in it")
-    whole = Repaired(tuple(retained), ())
+    whole = Repaired(tuple(meshes), ())
     if not (whole.whole.extents > 0).any() or np.sort(whole.whole.extents)[1] < 1e-9:
         raise LibraryError("it has no extent")
-    thick, was_flat = with_thickness(retained)
+    thick, was_flat = with_thickness(meshes)
     notes += [f"it was flat and got a thickness of {THICKNESS:.1%} of its longest side"] if was_flat else []
     notes += _openness(whole.whole)
     return Repaired(thick, tuple(dict.fromkeys(notes)))

@@ -67,8 +67,8 @@ class CombinedLibrary:
 
     def thumbnail(self, shape_id: str) -> bytes | None:
         """The picture that came with the shape, where its library keeps one."""
-        retained = getattr(self._of(shape_id), "thumbnail", None)
-        return None if retained is None else retained(shape_id)
+        thumbnail = getattr(self._of(shape_id), "thumbnail", None)
+        return None if thumbnail is None else thumbnail(shape_id)
 
     def is_built(self, shape_id: str) -> bool:
         """Whether what its library derives from the shape is on disk; stored libraries have it from the start."""

@@ -93,13 +93,13 @@ def _habitual_intrinsics(photo: Photo, focal: float) -> Intrinsics:
 
 def _distinct(fits: tuple[FrameFit, ...], count: int, settings: LineCameraSettings) -> tuple[FrameFit, ...]:
     """The best readings that differ from all better ones, and are not hopeless beside the first."""
-    retained: list[FrameFit] = []
+    distinct: list[FrameFit] = []
     for fit in fits:
         if fit.score > fits[0].score - settings.hopeless_gap and all(
-            frame_difference_rad(fit.R_world_camera, k.R_world_camera) > DISTINCT_RAD for k in retained
+            frame_difference_rad(fit.R_world_camera, k.R_world_camera) > DISTINCT_RAD for k in distinct
         ):
-            retained.append(fit)
-    return tuple(retained[:count])
+            distinct.append(fit)
+    return tuple(distinct[:count])
 
 
 def _from_lines(

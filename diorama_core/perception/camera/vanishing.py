@@ -145,14 +145,14 @@ def _separated(
     frames = np.array([R for _, R, _ in ranked])
     log_focals = np.log([f for _, _, f in ranked])
     alive = np.ones(len(ranked), dtype=bool)
-    retained: list[tuple[float, np.ndarray, float]] = []
-    while alive.any() and len(retained) < count:
+    distinct: list[tuple[float, np.ndarray, float]] = []
+    while alive.any() and len(distinct) < count:
         first = int(alive.argmax())
-        retained.append(ranked[first])
+        distinct.append(ranked[first])
         near = frame_difference_rad(frames, frames[first]) < _SEPARATION_RAD
         alive &= ~(near & (np.abs(log_focals - log_focals[first]) < 0.1))
         alive[first] = False
-    return retained
+    return distinct
 
 
 def _refined(

@@ -120,9 +120,9 @@ def _labelled(detections: Detections, names: tuple[str, ...], part_share: float)
     kinds = np.array([order[families[k]] for k in detections.labels], dtype=int)
     alike = Detections(detections.boxes, detections.scores, kinds)
     whole = without_parts_of_same(alike, part_share)
-    retained = [i for i in range(len(detections)) if any((whole.boxes == detections.boxes[i]).all(axis=1))]
+    rows = [i for i in range(len(detections)) if any((whole.boxes == detections.boxes[i]).all(axis=1))]
     boxes = []
-    for i in retained:
+    for i in rows:
         name, resolution = names[detections.labels[i]], categories[detections.labels[i]]
         x1, y1, x2, y2 = (float(v) for v in detections.boxes[i])
         if min(x2 - x1, y2 - y1) < MIN_SIDE_PX:

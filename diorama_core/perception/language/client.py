@@ -189,14 +189,12 @@ class LmmClient:
             UnusableReplyError: it can, but no reply passed validation.
             Cancelled: on request.
         """
-        retained = self._retained(prompt, pictures, schema, vote)
-        if retained is not None and retained.exists():
+        cached = self._retained(prompt, pictures, schema, vote)
+        if cached is not None and cached.exists():
             try:
-                return Reply(
-                    schema.model_validate_json(read_bytes(retained, MAX_REPLY_BYTES, UnavailableError)), Usage()
-                )
+                return Reply(schema.model_validate_json(read_bytes(cached, MAX_REPLY_BYTES, UnavailableError)), Usage())
             except (ValidationError, UnavailableError):
-                retained.unlink(missing_ok=True)
+                cached.unlink(missing_ok=True)
         messages: list[dict[str, Any]] = [
             {"role": "system", "content": self.system},
             {"role": "user", "content": [{"type": "text", "text": prompt}, *map(_picture, pictures)]},
@@ -207,8 +205,8 @@ class LmmClient:
             usage = usage + used
             value, problem = _validated(text, schema)
             if value is not None:
-                if retained is not None:
-                    write_derived(retained, value.model_dump_json().encode())
+                if cached is not None:
+                    write_derived(cached, value.model_dump_json().encode())
                 return Reply(value, usage)
             messages = [
                 *messages[:2],
@@ -367,10 +365,10 @@ def strict_schema(schema: type[BaseModel]) -> dict[str, Any]:
             return [strict(one) for one in node]
         if not isinstance(node, dict):
             return node
-        retained = {k: strict(v) for k, v in node.items() if k not in ("default", "maxItems", "title")}
-        if retained.get("type") == "object":
-            retained |= {"additionalProperties": False, "required": list(retained.get("properties", {}))}
-        return retained
+        strict_part = {k: strict(v) for k, v in node.items() if k not in ("default", "maxItems", "title")}
+        if strict_part.get("type") == "object":
+            strict_part |= {"additionalProperties": False, "required": list(strict_part.get("properties", {}))}
+        return strict_part
 
     return dict(strict(schema.model_json_schema()))
 

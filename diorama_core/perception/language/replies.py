@@ -45,8 +45,8 @@ def _sound(kind: type[BaseModel]) -> BeforeValidator:
     def sound(entries: object) -> object:
         if not isinstance(entries, list):
             return entries
-        retained = [entry for entry in entries if _is(kind, entry)]
-        return retained if retained or not entries else entries
+        sound_entries = [entry for entry in entries if _is(kind, entry)]
+        return sound_entries if sound_entries or not entries else entries
 
     return BeforeValidator(sound)
 

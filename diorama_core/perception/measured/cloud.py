@@ -100,5 +100,5 @@ def largest_piece(points: Float[np.ndarray, "n 3"], settings: MeasuredSettings =
     joined = ndimage.binary_dilation(grid, np.ones((3, 3, 3), bool))
     labels = ndimage.label(joined)[0][tuple(cells.T)]
     sizes = np.bincount(labels)
-    retained = points[sizes[labels] >= 0.2 * sizes.max()]
-    return retained if len(retained) >= MIN_POINTS else np.zeros((0, 3))
+    large = points[sizes[labels] >= 0.2 * sizes.max()]
+    return large if len(large) >= MIN_POINTS else np.zeros((0, 3))

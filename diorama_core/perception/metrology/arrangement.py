@@ -20,13 +20,13 @@ def distinct(
     boxes: Cuboids, costs: Float[np.ndarray, "n"], settings: PlacementSettings = SETTINGS.placement
 ) -> list[int]:
     """The cheapest rows that differ from each other in place, heading or size, cheapest first."""
-    retained: list[int] = []
+    rows: list[int] = []
     for row in np.argsort(costs, kind="stable"):
-        if len(retained) == settings.max_readings or (retained and costs[row] > costs[retained[0]] + settings.dearest):
+        if len(rows) == settings.max_readings or (rows and costs[row] > costs[rows[0]] + settings.dearest):
             break
-        if not any(alike(boxes, int(row), boxes, other, settings) for other in retained):
-            retained.append(int(row))
-    return retained
+        if not any(alike(boxes, int(row), boxes, other, settings) for other in rows):
+            rows.append(int(row))
+    return rows
 
 
 def alike(some: Cuboids, a: int, others: Cuboids, b: int, settings: PlacementSettings) -> bool:

@@ -359,9 +359,11 @@ def readings_of(
     for index in np.unique(solved.problems.item).astype(int):
         mine = np.flatnonzero(solved.problems.item == index)
         own_cuboids = Cuboids(boxes.centre[mine], boxes.yaw_rad[mine], boxes.size_m[mine])
-        retained = mine[distinct(own_cuboids, costs[mine], settings.placement)]
-        remaining_boxes = Cuboids(boxes.centre[retained], boxes.yaw_rad[retained], boxes.size_m[retained])
-        readings[int(index)] = Readings(solved.problems.rows(retained), remaining_boxes, costs[retained])
+        distinct_rows = mine[distinct(own_cuboids, costs[mine], settings.placement)]
+        remaining_boxes = Cuboids(
+            boxes.centre[distinct_rows], boxes.yaw_rad[distinct_rows], boxes.size_m[distinct_rows]
+        )
+        readings[int(index)] = Readings(solved.problems.rows(distinct_rows), remaining_boxes, costs[distinct_rows])
     return readings
 
 
