@@ -1,4 +1,4 @@
-"""A library of few shapes of every kind, for builds whose choice among many is not what a test asks about.
+"""Libraries of few shapes, for builds whose choice among many is not what a test asks about.
 
 What is met in a photo is compared with all shapes of its kind, each of which is first seen from all sides.
 """
@@ -8,14 +8,19 @@ from __future__ import annotations
 from collections import Counter
 from dataclasses import replace
 from functools import cache
+from typing import Final
 
 from diorama_app.projects.example import EXAMPLE
 from diorama_core.library.catalogue import base_id, built_in_library
+from diorama_core.library.ingest.sink import Ingested
+from diorama_core.library.store import create_library
 from diorama_core.project.storage import Project
 from diorama_core.scene.types import Scene
 from diorama_core.synthesis.splits import Subset
 
 OF_A_KIND = 4
+SEATS: Final = "few-seats"
+"""Name of the stored library, for commands and servers that are given one."""
 
 
 def few_shapes(*scenes: Scene) -> Subset:
@@ -27,6 +32,17 @@ def few_shapes(*scenes: Scene) -> Subset:
 def example_scene() -> Scene:
     """The room that comes with Diorama."""
     return Project.open(EXAMPLE / "project").load_scene()
+
+
+@cache
+def stored_seats() -> str:
+    """The name of a stored library of three chairs and a sofa, whose ids begin with `my-`."""
+    built_in, store = built_in_library(), create_library(SEATS)
+    for category, count in (("chair", 3), ("sofa", 1)):
+        for listed in built_in.in_category(category)[:count]:
+            record = replace(built_in.shape(listed.id), id=f"my-{listed.id}", source="tests")
+            store.add(Ingested(record, built_in.glb(listed.id), None, listed.id))
+    return SEATS
 
 
 @cache

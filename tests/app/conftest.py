@@ -8,6 +8,7 @@ from pathlib import Path
 import pytest
 import viser
 
+from diorama_app import serve
 from diorama_app.commands.camera_presets import Views
 from diorama_app.commands.definitions import build_commands
 from diorama_app.commands.registry import CommandTable
@@ -33,11 +34,13 @@ def server() -> Iterator[viser.ViserServer]:
 
 @pytest.fixture(scope="module")
 def running(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Running]:
-    """An editor as `diorama serve` starts it, with the small room as its project `demo`."""
+    """An editor as `diorama serve` starts it, with the small room as its project `demo`; nothing is preloaded."""
     folder = tmp_path_factory.mktemp("projects")
-    made = start(project=make_project(folder / "demo").folder, projects_dir=folder, library=PlainLibrary())
-    yield made
-    made.stop()
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(serve, "warm_up", lambda stopped: None)
+        made = start(project=make_project(folder / "demo").folder, projects_dir=folder, library=PlainLibrary())
+        yield made
+        made.stop()
 
 
 @pytest.fixture

@@ -20,14 +20,16 @@ from diorama_core.pose.correspondence.solvers import CorrespondencePose
 from diorama_core.project.storage import Project
 from tests.app.small_room import furnished_scene
 from tests.cli.room_photo import write_room
+from tests.few_shapes import stored_seats
 
 
 @pytest.fixture(scope="module")
 def project(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A project built by the command itself."""
+    """A project built by the command itself, from a library of few shapes."""
     folder = tmp_path_factory.mktemp("cli")
     photo, boxes = write_room(folder)
-    assert main(["build", str(photo), "--boxes", str(boxes), "-o", str(folder / "room")]) == 0
+    command = ["build", str(photo), "--boxes", str(boxes), "--library", stored_seats()]
+    assert main([*command, "-o", str(folder / "room")]) == 0
     return folder / "room"
 
 
@@ -47,7 +49,8 @@ def test_build_writes_a_whole_project(project: Path) -> None:
 def test_building_again_reads_finished_stages(project: Path, capsys: pytest.CaptureFixture[str]) -> None:
     photo, boxes = project.parent / "room.png", project.parent / "boxes.json"
     before = (project / "scene.json").read_text()
-    assert main(["build", str(photo), "--boxes", str(boxes), "-o", str(project), "--json"]) == 0
+    command = ["build", str(photo), "--boxes", str(boxes), "--library", stored_seats(), "-o", str(project), "--json"]
+    assert main(command) == 0
     report = json.loads(capsys.readouterr().out)
     assert all(s["cached"] for s in report["stages"] if s["stage"] not in ("layout", "refinement"))
     assert (project / "scene.json").read_text() == before
@@ -101,6 +104,7 @@ def test_arrangements_write_scenes_with_other_shapes(
     photo, boxes = write_room(tmp_path)
     shutil.copytree(project, tmp_path / "room")  # its stages are finished
     arguments = ["build", str(photo), "--boxes", str(boxes), "-o", str(tmp_path / "room"), "--arrangements", "3"]
+    arguments += ["--library", stored_seats()]
     assert main([*arguments, "--json"]) == 0
     names = json.loads(capsys.readouterr().out)["scenes"]
     shapes = [
@@ -200,7 +204,8 @@ def test_boxes_outside_and_unknown_classes(tmp_path: Path, capsys: pytest.Captur
     boxes.write_text(json.dumps([{"bbox": [900, 900, 950, 950], "class": "chair"}]))
     assert "outside" in _one_line(capsys, ["build", str(photo), "--boxes", str(boxes), "-o", str(tmp_path / "a")])
     boxes.write_text(json.dumps([{"bbox": [120, 110, 180, 200], "class": "flurbistan"}]))
-    assert main(["build", str(photo), "--boxes", str(boxes), "-o", str(tmp_path / "b")]) == 0
+    command = ["build", str(photo), "--boxes", str(boxes), "--library", stored_seats(), "-o", str(tmp_path / "b")]
+    assert main(command) == 0
     document = json.loads((tmp_path / "b" / "scene.json").read_text())
     assert [o["label"] for o in document["objects"]] == ["flurbistan"]
 

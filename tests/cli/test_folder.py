@@ -10,6 +10,7 @@ from diorama_app.cli import main
 from diorama_app.cli.build import add_build
 from diorama_app.cli.folder import REPORT
 from tests.cli.room_photo import write_room
+from tests.few_shapes import stored_seats
 
 
 def test_a_folder_becomes_projects_and_a_report(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -18,7 +19,8 @@ def test_a_folder_becomes_projects_and_a_report(tmp_path: Path, capsys: pytest.C
     _, boxes = write_room(photos)
     boxes.rename(photos / "room.boxes.json")
     (photos / "broken.jpg").write_text("no picture")
-    command = ["build", str(photos), "--out", str(output), "--workers", "1", "--profile", "embedded", "--json"]
+    command = ["build", str(photos), "--out", str(output), "--workers", "1", "--profile", "embedded"]
+    command += ["--library", stored_seats(), "--json"]
     assert main(command) == 1
     said = capsys.readouterr()
     rows = {Path(row["photo"]).name: row for row in json.loads(said.out)["photos"]}

@@ -11,28 +11,20 @@ from PIL import Image
 
 from diorama_app.cli import main
 from diorama_core.library.catalogue import built_in_library
-from diorama_core.library.ingest.sink import Ingested
-from diorama_core.library.store import create_library
 from diorama_core.render.views import StudioView, render_shape
 from tests.cli.room_photo import write_room
+from tests.few_shapes import stored_seats
 
 
 @pytest.fixture(scope="module")
 def mine() -> str:
-    """The name of a stored library with two chairs and a sofa of other names than the built-in ones."""
-    built_in, store = built_in_library(), create_library("mine")
-    for category, count in (("chair", 2), ("sofa", 1)):
-        for shape in built_in.in_category(category)[:count]:
-            record = built_in.shape(shape.id)
-            record = type(record)(**{**vars(record), "id": f"my-{shape.id}", "source": "tests"})
-            store.add(Ingested(record, built_in.glb(shape.id), None, shape.id))
-    return "mine"
+    return stored_seats()
 
 
 def test_listing_and_searching_a_stored_library(mine: str, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["library", "list", "--library", mine, "--json"]) == 0
     ids = [row["id"] for row in json.loads(capsys.readouterr().out)]
-    assert len(ids) == 3
+    assert len(ids) == 4
     assert all(i.startswith("my-") for i in ids)
     assert main(["library", "search", "couches", "--library", f"built-in+{mine}", "-k", "200", "--json"]) == 0
     found = [row["id"] for row in json.loads(capsys.readouterr().out)]

@@ -9,24 +9,23 @@ import sys
 from dataclasses import replace
 from pathlib import Path
 
-import pytest
-
 from diorama_core.project.storage import Project
 from tests.app.small_room import furnished_scene, make_project
 from tests.cli.room_photo import write_room
+from tests.few_shapes import stored_seats
 
 
 def _run(*command: bytes) -> subprocess.CompletedProcess[bytes]:
     return subprocess.run([os.fsencode(sys.executable), b"-m", b"diorama_app.cli", *command], capture_output=True)
 
 
-@pytest.mark.slow
 def test_a_photo_and_its_project_may_be_called_anything(tmp_path: Path) -> None:
     """A project built from `caf\\xe9.jpg` could never be opened again."""
     photo, boxes = write_room(tmp_path, marked=1)
     named, output = os.fsencode(tmp_path) + b"/caf\xe9.png", os.fsencode(tmp_path) + b"/r\xf6om"
     os.rename(photo, named)
-    done = _run(b"build", named, b"--boxes", os.fsencode(boxes), b"--profile", b"embedded", b"-o", output, b"--json")
+    given = (b"--boxes", os.fsencode(boxes), b"--profile", b"embedded", b"--library", os.fsencode(stored_seats()))
+    done = _run(b"build", named, *given, b"-o", output, b"--json")
     assert done.returncode == 0, done.stderr
     json.loads(done.stdout)
     project = Project.open(Path(os.fsdecode(output)))

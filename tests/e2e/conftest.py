@@ -1,9 +1,13 @@
-"""One Chromium, one server and one tab a process; pictures of every test's end are kept in `test-artefacts`."""
+"""One Chromium, one server and one tab a process; a picture of what failed is kept in `test-artefacts`.
+
+With DIORAMA_TEST_PICTURES=1 there is one of every test's end, for people to look at.
+"""
 
 from __future__ import annotations
 
+import os
 import warnings
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Generator, Iterator
 from pathlib import Path
 
 import pytest
@@ -17,6 +21,8 @@ from tests.e2e.browser import FLAGS, PATIENCE_MS, SIZE, EditorPage, chromium
 
 playwright = pytest.importorskip("playwright.sync_api", reason="the browser tests need playwright (extra 'dev')")
 
+FAILED = pytest.StashKey[bool]()
+"""Of a test that failed before its fixtures end."""
 ARTEFACTS = Path(__file__).resolve().parents[2] / "test-artefacts" / "screens"
 
 StartServer = Callable[..., Running]
@@ -25,6 +31,13 @@ FORGET = """() => {
     for (const key of Object.keys(localStorage)) if (key !== 'diorama-tour') localStorage.removeItem(key);
 }"""
 """What a page keeps in the browser, but for the tour that was seen."""
+
+
+@pytest.hookimpl(wrapper=True)
+def pytest_runtest_makereport(item: pytest.Item) -> Generator[None, pytest.TestReport, pytest.TestReport]:
+    report = yield
+    item.stash[FAILED] = item.stash.get(FAILED, False) or report.failed
+    return report
 
 
 @pytest.fixture(scope="session")
@@ -152,7 +165,7 @@ def visit(context, request: pytest.FixtureRequest) -> Iterator[Callable[[Running
     yield open_page
     errors = [error for page in pages for error in page.errors]
     for index, page in enumerate(pages):
-        keep_picture(page, f"{request.node.name}-{index}")
+        keep_picture(page, f"{request.node.name}-{index}", failed=request.node.stash[FAILED])
         page.page.close()
     assert not errors, errors
 
@@ -180,7 +193,7 @@ def editor(shared_page: EditorPage, tmp_path: Path, request: pytest.FixtureReque
         shared_page.tab(tab)
     shared_page.settle()
     yield shared_page
-    keep_picture(shared_page, request.node.name)
+    keep_picture(shared_page, request.node.name, failed=request.node.stash[FAILED])
     errors, shared_page.errors = shared_page.errors, []
     session.jobs.cancel()
     shared_page.page.keyboard.press("Escape")
@@ -198,7 +211,9 @@ def go_home(editor: EditorPage) -> None:
         workspace.close_unused(at_once=True)
 
 
-def keep_picture(page: EditorPage, name: str) -> None:
-    """Keep what is on the screen, for people to look at."""
+def keep_picture(page: EditorPage, name: str, *, failed: bool = False) -> None:
+    """Keep what is on the screen, where people want to look at it; drawing it takes a third of a second."""
+    if not failed and "DIORAMA_TEST_PICTURES" not in os.environ:
+        return
     ARTEFACTS.mkdir(parents=True, exist_ok=True)
     page.page.screenshot(path=str(ARTEFACTS / f"{name}.png"))

@@ -19,7 +19,7 @@ from diorama_core.geometry.planes import plane_rectangle
 from diorama_core.project.storage import Project
 from tests.app.small_room import PlainLibrary, make_project
 from tests.e2e.browser import QUERY, EditorPage
-from tests.e2e.conftest import keep_picture
+from tests.e2e.conftest import FAILED, keep_picture
 from tests.ports import free, lasting_port
 from tests.waiting import until
 
@@ -30,7 +30,7 @@ pytestmark = pytest.mark.browser
 def newcomer(context, serve: Callable[..., Running], request: pytest.FixtureRequest) -> Iterator[EditorPage]:
     page = EditorPage.open(context, serve(), newcomer=True)
     yield page
-    keep_picture(page, request.node.name)
+    keep_picture(page, request.node.name, failed=request.node.stash[FAILED])
     page.page.close()
     assert not page.errors, page.errors
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import importlib
 import io
 import json
 import os
@@ -13,6 +14,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from importlib.util import find_spec
 from pathlib import Path
+from types import ModuleType
 
 import pytest
 import trimesh
@@ -23,6 +25,7 @@ from diorama_app.http_api.access import MAX_BODY_BYTES
 from diorama_app.projects.formats import EXPORT_FORMATS
 from tests.app.http_api.openapi_client import Client, send
 from tests.cli.room_photo import write_room
+from tests.few_shapes import stored_seats
 from tests.io.test_bombs import png
 from tests.waiting import until
 
@@ -37,6 +40,7 @@ ROOT = Path(__file__).resolve().parents[3]
 def running(projects: Path, *more: str) -> Iterator[tuple[str, subprocess.Popen]]:
     """A server and its address."""
     command = [sys.executable, "-m", "diorama_app.cli", "api", "--port", "0", "--projects", str(projects), *more]
+    command += ["--library", stored_seats()]
     process = subprocess.Popen(command, stdout=subprocess.PIPE, text=True, cwd=ROOT)
     assert process.stdout is not None
     try:
@@ -159,6 +163,57 @@ def test_large_requests_are_refused_before_they_are_read(client: Client) -> None
             connection.sendall(f"{head}{line}\r\n\r\n".encode())
             status = int(connection.recv(1000).split()[1])
         assert status in (400, 413)
+
+
+def test_a_generated_client_drives_it(
+    client: Client, finished: str, photo: dict, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Another project's generator makes it of the OpenAPI document."""
+    pytest.importorskip("openapi_python_client", reason="needs a generator (extra 'dev')")
+    pytest.importorskip("httpx", reason="needs what generated clients need (extra 'dev')")
+    generate_client(client.document, tmp_path)
+    monkeypatch.syspath_prepend(str(tmp_path))
+
+    def module(name: str) -> ModuleType:
+        return importlib.import_module(f"room_client.{name}")
+
+    made, models, types = module("client").Client(base_url=client.url, timeout=120.0), module("models"), module("types")
+    picture = types.File(payload=io.BytesIO(photo["photo"][1]), file_name="my room.png", mime_type="image/png")
+    profile = models.BodyCreateJobProfile.EMBEDDED
+    body = models.BodyCreateJob(photo=picture, boxes=photo["boxes"], fov_deg=62.0, profile=profile)
+    begun = module("api.default.create_job").sync(client=made, body=body)
+    assert isinstance(begun, models.JobAnswer), begun
+    module("api.default.cancel_job").sync(begun.id, client=made)
+    job = module("api.default.get_job").sync(finished, client=made, wait_s=60.0)
+    assert (job.state, job.error) == (models.JobAnswerState.DONE, None)
+    scene = module("api.default.get_scene").sync(job.id, client=made)
+    assert len(scene["objects"]) == job.objects
+    file = module("api.default.export_scene").sync(job.id, "glb", client=made)
+    assert len(trimesh.load_scene(file.payload, file_type="glb").geometry) >= job.objects
+    drawn = module("api.default.get_picture").sync_detailed(job.id, client=made, view="top", width=200, height=100)
+    assert Image.open(io.BytesIO(drawn.content)).size == (200, 100)
+    project = module("api.default.get_project").sync(job.id, client=made)
+    first = project.objects[0].id
+    hide = models.SetState(objects=[first], state=models.SetStateState.HIDDEN)
+    body = models.EditRequest(version=project.version, edits=[hide], author="Client")
+    edited = module("api.default.edit_project").sync(job.id, client=made, body=body)
+    assert edited.changed == [first]
+    stale = module("api.default.edit_project").sync(job.id, client=made, body=body)
+    assert isinstance(stale, models.ErrorAnswer)
+    undone = module("api.default.undo_project").sync(job.id, client=made, body=models.StepRequest(author="Client"))
+    assert undone.version != edited.version
+    missing = module("api.default.get_job").sync("nobody", client=made)
+    assert isinstance(missing, models.ErrorAnswer)
+    assert "nobody" in missing.error
+
+
+def generate_client(document: dict, folder: Path) -> None:
+    """Put the package `room_client` into a folder."""
+    (folder / "openapi.json").write_text(json.dumps(document))
+    (folder / "config.yml").write_text("post_hooks: []\n")
+    command = [sys.executable, "-m", "openapi_python_client", "generate", "--path", str(folder / "openapi.json")]
+    command += ["--output-path", str(folder / "room_client"), "--meta", "none", "--config", str(folder / "config.yml")]
+    subprocess.run(command, check=True, capture_output=True, timeout=120)
 
 
 @pytest.mark.skipif(not Path("/proc/self/status").exists(), reason="reads memory from /proc")
