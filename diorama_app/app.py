@@ -192,7 +192,7 @@ class Editor:
         client.open_tab = Tabs(gui, (LEFT_TABS, RIGHT_TABS)).open
         client.go_to = Address(gui).go_to
         left = gui.add_tab_group()
-        scene, from_photo, arrange, projects = (left.add_tab(name) for name in LEFT_TABS)
+        scene, from_photo, arrange, projects = (left.add_tab(_(name)) for name in LEFT_TABS)
 
         def place(title: str, make: Callable[[], P]) -> P:
             placed = InPlace(gui, title, make)
@@ -236,7 +236,7 @@ class Editor:
     def _right_side(self, client: Client, place: Place, add_tab: Callable[[str], viser.GuiTabHandle]) -> None:
         """Create what is about the selection, the library and the export, in tabs of their own."""
         gui = client.viser_client.gui
-        about, library, exporting = (add_tab(name) for name in RIGHT_TABS)
+        about, library, exporting = (add_tab(_(name)) for name in RIGHT_TABS)
         with about:
             place(_("The object"), lambda: ObjectCard(gui, client, self.commands))
             place(_("The surface"), lambda: Surfaces(gui, client))

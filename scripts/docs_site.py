@@ -19,7 +19,7 @@ PARTS = {
     "Use": ("installing", "editor", "what-goes-in", "export", "many-photos", "library", "models", "blender"),
     "Programs": ("python", "api", "agents", "scene-file", "reference/index"),
     "Method": ("how-it-works", "architecture-reconstruction", "benchmark", "layout-benchmark", "reliability"),
-    "Project": ("contributing", "adding", "style", "changelog", "licences", "editor-comparison"),
+    "Project": ("contributing", "adding", "style", "changelog", "licences", "editor-comparison", "translating"),
 }
 """The pages in the order of the site's navigation."""
 REFERENCE = {

@@ -7,6 +7,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Literal
 
+from diorama_app.strings import N_
 from diorama_core.export import FORMATS, Format
 
 Choice = Literal["ceiling", "selection", "textures", "compression", "lights", "photo", "welded"]
@@ -33,7 +34,8 @@ HTML = Format(
 EXPORT_FORMATS: Mapping[str, Format] = {**FORMATS, HTML.name: HTML}
 """By the name the command line knows them by."""
 
-MODELS, SIMULATORS, PLANS, SHOW = "3D models", "Simulators", "Plans and buildings", "To show and to compare"
+MODELS, SIMULATORS = N_("3D models"), N_("Simulators")
+PLANS, SHOW = N_("Plans and buildings"), N_("To show and to compare")
 _SHAPES = frozenset[Choice]({"ceiling", "selection"})
 _TEXTURED = _SHAPES | frozenset[Choice]({"textures"})
 _BODIES = _TEXTURED | frozenset[Choice]({"welded"})

@@ -175,9 +175,9 @@
       const remove = element("button", "", { type: "button", textContent: "✕", title: _("Delete this box (Delete)") });
       remove.setAttribute("aria-label", _("Delete the box of {label}").replace("{label}", row.label));
       remove.onclick = () => send("delete", i);
-      const likely = state.likely.map((word, k) => {
+      const likely = state.likely.map(([word, shown], k) => {
         const choice = element("button", `likely${word === row.label ? " chosen" : ""}`, { type: "button", title: _("Key {number}").replace("{number}", k + 1) });
-        choice.append(element("kbd", "", { textContent: k + 1 }), ` ${word}`);
+        choice.append(element("kbd", "", { textContent: k + 1 }), ` ${shown}`);
         choice.onclick = () => send("name", [i, word]);
         return choice;
       });
@@ -258,7 +258,7 @@
       next = at;
       at = null;
     } else if (digit !== null && state.selected !== null && state.likely[digit]) {
-      send("name", [state.selected, state.likely[digit]]);
+      send("name", [state.selected, state.likely[digit][0]]);
     } else {
       return false;
     }

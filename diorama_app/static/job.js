@@ -19,7 +19,7 @@
     now.append(make("span", { className: "stage" }), make("span", { className: "left" }));
     const meter = make("progress", { max: 100 });
     meter.setAttribute("aria-label", _("Progress"));
-    strip.append(header, meter, now, make("div", { className: "found" }));
+    strip.append(header, meter, now, make("div", { className: "found", lang: "en" }));
     document.body.append(strip);
   };
   window.__dioJob = (job) => {

@@ -54,12 +54,13 @@
     ".mantine-ColorInput-eyeDropperButton": _("Pick a colour from the screen"),
     '[data-testid="floating-panel-handle"] button': _("Find a command (Ctrl+K)"),
     "html.dio-phone #root button.mantine-ActionIcon-root": _("Find a command"),
+    '[aria-label="Collapse panel area"]': _("Collapse the panels"),
+    '[aria-label="Expand panel area"]': _("Expand the panels"),
   };
   const nameButtons = () => {
     for (const [which, words] of Object.entries(BUTTONS)) {
-      for (const button of document.querySelectorAll(`${which}:not([aria-label])`)) {
-        button.setAttribute("aria-label", words);
-        button.title = words;
+      for (const button of document.querySelectorAll(which)) {
+        if (button.ariaLabel !== words) Object.assign(button, { ariaLabel: words, title: words });
       }
     }
   };

@@ -181,7 +181,9 @@ class AnnotationCanvas:
             likely: names for the selected one.
         """
         if self.is_open:
-            self._boxes.tell({"boxes": _rows(boxes), "selected": selected, "likely": list(likely)})
+            self._boxes.tell(
+                {"boxes": _rows(boxes), "selected": selected, "likely": [(name, _(name)) for name in likely]}
+            )
 
     def show_proposals(self, boxes: Sequence[LabelledBox]) -> None:
         """Draw boxes that nobody accepted yet."""

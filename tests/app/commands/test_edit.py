@@ -54,7 +54,7 @@ def test_what_stood_on_a_deleted_table_comes_down_and_may_go_too(session: Editor
     assert lamp.corners_world[:, 2].min() == pytest.approx(0.0, abs=1e-6)
     assert session.scene.support_of("lamp_1").parent == "floor"
     message, label, do = offered[-1]
-    assert message == "Deleted dining table; what stood on it is lower now: lamp"
+    assert message == "Deleted dining table; lowered what stood on top: lamp"
     assert label == "Delete it too"
     do()
     assert not session.scene.has_object("lamp_1")

@@ -25,7 +25,7 @@ def test_one_step_for_one_or_for_all_walls(session, client) -> None:
     assert chosen_surfaces(client, all_walls=False) == ("wall_2",)
     finish_surfaces(client, usual_finish("brick"), all_walls=True)
     assert all(p.finish is not None for p in session.scene.architecture.by_role("wall"))
-    assert session.document.history.current.label == "4 walls: brick"
+    assert session.document.history.current.label == "brick on 4 walls"
     session.undo(client)
     assert all(p.finish is None for p in session.scene.architecture.planes)
     client.select_surface("floor")

@@ -12,6 +12,7 @@ from concurrent.futures import Future
 import pytest
 import viser
 
+from diorama_app.strings import translated_script
 from diorama_app.web import viser_adapter
 from diorama_app.web.requests import MESSAGES_AT_ONCE, MESSAGES_PER_S, paced
 from diorama_app.web.responses import SCRIPTS
@@ -29,7 +30,7 @@ def test_our_scripts_run_before_the_page_and_the_page_is_whole(server: viser.Vis
     page = gzip.decompress(body) if encoding == "gzip" else body
     assert len(SCRIPTS) >= 3
     for path in SCRIPTS:
-        script = path.read_bytes()
+        script = translated_script(path.read_text("utf-8")).encode()
         assert page.count(script) == 1
         assert page.index(script) < page.index(b"<script data-p")
     assert page.rstrip().endswith(b"</html>")
