@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from diorama_core.arrangement.explain import strongest
 from diorama_core.artefacts import Inputs, LabelledBox
 from diorama_core.editing.reconstructed import replaced
 from diorama_core.geometry.planes import plane_rectangle
@@ -25,6 +26,7 @@ from diorama_core.pipeline.stages import Stages, embedded_stages
 from diorama_core.pipeline.steps import Derivation, LayoutStep, StageStep
 from diorama_core.progress import Progress
 from diorama_core.project.build import build_project
+from diorama_core.project.reasons import load_reasons
 from diorama_core.project.storage import Project
 from diorama_core.scene.schema import scene_to_json
 from diorama_core.synthesis.layout_rooms import box_library
@@ -110,6 +112,28 @@ def test_a_corrected_object_is_measured_in_the_room_that_the_build_had(room: Roo
     assert found.support.parent == "floor"
     names = {path.name.rsplit("-", 1)[0] for path in cache.glob("*.zip")}
     assert names == {"camera", "objects", "naming", "geometry", "architecture", *(["graph"] if stages.graph else [])}
+
+
+def test_every_object_has_reasons_for_its_kind_place_and_support(room: Room) -> None:
+    built, project = room.built, room.project
+    by_decision = {
+        item.id: {r.decision for r in built.reasons if r.object_id == item.id} for item in built.scene.objects
+    }
+    assert all({"kind", "place", "support"} <= decisions for decisions in by_decision.values()), by_decision
+    chair = next(item for item in built.scene.objects if item.category == "chair")
+    (word,) = [r for r in built.reasons if r.object_id == chair.id and r.term == "word"]
+    assert word.sentence == "named “chair” by you"
+    assert word.amount > 3.0
+    assert len(strongest(built.reasons, chair.id)) == 2
+    kept, damage = load_reasons(project)
+    assert not damage
+    assert {(r.object_id, r.decision, r.term) for r in kept} == {
+        (r.object_id, r.decision, r.term) for r in built.reasons
+    }
+    measured = built.inputs.depth_m is not None
+    assert any(r.term == "depth" for r in built.reasons) == measured
+    assert any(r.term == "graph" for r in built.reasons) == measured
+    assert any(r.term == "outline" for r in built.reasons) != measured
 
 
 class Counting:
