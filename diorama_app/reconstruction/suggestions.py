@@ -29,6 +29,9 @@ SMALLER = 0.5
 SAME_IOU = 0.5
 """Intersection over union from which two boxes are one object's."""
 
+_WORKER = ThreadPoolExecutor(2, "suggestions")
+"""Of all pages: networks that run beside one another only take each other's processor and memory."""
+
 
 class Suggestions:
     """What one photo shows, worked out in the background.
@@ -52,7 +55,6 @@ class Suggestions:
         self._wanted: Box | None = None
         """The box whose outline was asked for last: others that wait are worked out for nobody."""
         self._asked: set[object] = set()
-        self._worker = ThreadPoolExecutor(1, "suggestions")
 
     def names(self, boxes: Sequence[Box], index: int) -> tuple[str, ...]:
         """The likeliest names of one of the marked boxes, best first; nothing yet where they are still worked out."""
@@ -99,7 +101,7 @@ class Suggestions:
                 log.warning("nothing is suggested: %s", error)
                 then(None)
 
-        self._worker.submit(tell)
+        _WORKER.submit(tell)
 
     def name(self, box: Box, marked: Sequence[Box], then: Callable[[LabelledBox], None]) -> None:
         """Tell the likeliest name of what a box holds that somebody drew.
@@ -118,7 +120,7 @@ class Suggestions:
                 name = UNKNOWN
             then(LabelledBox(box, name, name))
 
-        self._worker.submit(tell)
+        _WORKER.submit(tell)
 
     def _ask(self, key: object, work_out: Callable[[], object]) -> None:
         """Work something out once; what cannot be had is not tried again at every redraw."""
@@ -134,7 +136,7 @@ class Suggestions:
                 return
             self._on_ready()
 
-        self._worker.submit(work)
+        _WORKER.submit(work)
 
     def _look_at(self, boxes: Sequence[Box]) -> None:
         from diorama_core.models.recogniser import own_recogniser

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import logging
+import os
 import threading
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
 from typing import Literal
 
@@ -34,6 +36,14 @@ JobKind = Literal[
 PERCEIVING: frozenset[JobKind] = frozenset({"build", "outline", "text"})
 """Kinds that run the pipeline, which needs Open3D."""
 
+COMPUTING: frozenset[JobKind] = PERCEIVING | {"import", "find", "join", "optimise", "picture"}
+"""Kinds that keep a processor busy until they end, and hold much memory meanwhile."""
+AT_ONCE = max(2, os.cpu_count() or 2)
+"""Of those, over all projects of a server: more would only make each of them slower, and memory run out."""
+_TURNS = threading.BoundedSemaphore(AT_ONCE)
+WAIT_S = 0.2
+"""Between two looks at whether a job that waits for its turn was cancelled."""
+
 
 @dataclass(frozen=True)
 class JobStatus:
@@ -61,6 +71,19 @@ class Outcome:
     cancelled: bool = False
     in_favour: bool = False
     """Whether it was cancelled for something else that the person does, which tells enough."""
+
+
+@contextmanager
+def _turn(progress: Progress) -> Iterator[None]:
+    """Wait until another job may compute; raises `Cancelled` on request."""
+    if not _TURNS.acquire(blocking=False):
+        progress.report(0.0, _("Waiting for the work of other projects"))
+        while not _TURNS.acquire(timeout=WAIT_S):
+            progress.check()
+    try:
+        yield
+    finally:
+        _TURNS.release()
 
 
 class Jobs:
@@ -144,9 +167,13 @@ class Jobs:
         assert status is not None
         outcome = Outcome(status.kind)
         try:
-            if status.kind in PERCEIVING:
-                load_open3d()
-            work(progress)
+            if status.kind not in COMPUTING:
+                work(progress)
+            else:
+                with _turn(progress):
+                    if status.kind in PERCEIVING:
+                        load_open3d()
+                    work(progress)
         except Cancelled:
             outcome = Outcome(status.kind, cancelled=True, in_favour=self._in_favour)
         except DioramaError as error:

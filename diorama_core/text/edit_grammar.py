@@ -19,9 +19,10 @@ from diorama_core.io.bounded import shortened
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.library.taxonomy import broad, category
 from diorama_core.scene.types import Scene
-from diorama_core.text.edit_lengths import all_but, counted_edits, lifted, nearer, shift_of
+from diorama_core.text.edit_lengths import all_but, at_distance, counted_edits, lifted, nearer, shift_of
 from diorama_core.text.edit_plan import (
     MAX_COPIES,
+    Copy,
     Edit,
     Insert,
     Move,
@@ -37,7 +38,7 @@ from diorama_core.text.edit_wording import EXAMPLES, VERBS, plain
 from diorama_core.text.edit_words_objects import object_edits, places_of_phrases
 from diorama_core.text.edit_words_room import room_edits
 from diorama_core.text.looks import look_of
-from diorama_core.text.phrases import NUMBERS, PlacePhrase, noun_phrase, split_places
+from diorama_core.text.phrases import APPEARANCES, NUMBERS, PlacePhrase, noun_phrase, relation_pattern, split_places
 from diorama_core.text.selecting import Selector
 
 _VERB = re.compile(
@@ -50,6 +51,8 @@ _PARTS = frozenset({"drawer", "drawers", "shelf", "shelves", "legs", "arms", "ba
 """What furniture has and what is no object beside it."""
 _AND_SO = frozenset({"of", "more", "new", "another", "please", "also", "and", "pair", "set", "few", "some", "with"})
 """Words that may stand beside what is named anew."""
+_COMPARED = {"bigger": 1.25, "larger": 1.25, "smaller": 0.8}
+"""“I want a bigger rug” is about the rug that is there."""
 _SCALES = {"twice": 2.0, "double": 2.0, "half": 0.5}
 MAX_LINE = 380
 """Characters of a refusal."""
@@ -105,7 +108,7 @@ def _edits_of(
     if verb == "turn":
         return (_turn(selector, clause, rest),)
     if verb in ("swap", "change"):
-        return (_swap(selector, clause, rest),)
+        return _with_copies(_swap(selector, clause, rest))
     if verb in ("paint", "make"):
         return _each_alone(_look, selector, clause, rest)
     if verb in ("larger", "smaller"):
@@ -114,6 +117,8 @@ def _edits_of(
         return (lifted(selector, clause, rest, _subject),)
     if verb in ("move", "put") and (height := _HIGHER.search(rest)) is not None:
         return (lifted(selector, "lower" if height[1] == "lower" else "raise", rest[: height.start()], _subject),)
+    if verb in ("put", "move") and (shift := at_distance(selector, rest, _subject, leaves=verb == "put")) is not None:
+        return (shift,)
     if verb == "move":
         return _each_alone(_move, selector, clause, rest)
     if verb == "put":
@@ -162,10 +167,13 @@ def _subject(selector: Selector, text: str) -> tuple[str, ...]:
         return ids[number:]
     kept, _, left = (
         part.strip()
-        for part in re.sub(r"\b(?:other than|apart from|but not|but)\b", "except", text).partition("except")
+        for part in re.sub(r"\b(?:other than|apart from|but not|but keep|but leave|but)\b", "except", text).partition(
+            "except"
+        )
     )
     if left:
-        left_out = _subject(selector, left)
+        whose = noun_phrase(kept)[0] if set(left.split()) <= {*APPEARANCES, "the", "one"} else None
+        left_out = _subject(selector, left if whose is None else f"{left} {whose.label}")  # "all but the largest"
         return tuple(i for i in _subject(selector, kept) if i not in left_out)
     parts = re.split(r",\s*|\band\b", text) if not re.search(r"\bbetween\b", text) else [text]
     objects: list[str] = []
@@ -253,7 +261,7 @@ def _turn(selector: Selector, clause: str, rest: str) -> Edit:
         sign = -1.0 if re.search(r"\bright\b|(?<!anti)(?<!counter)(?<!-)\bclockwise\b", rest) else 1.0
         head = re.sub(r"\b(left|right|clockwise)\b", "", head)
         return Turn(objects=list(_subject(selector, head)), degrees=max(min(sign * float(degrees[1]), 360.0), -360.0))
-    toward = re.match(r"(.*?)\s*\b(?:to face|to look at|towards?|to|at|facing)\b\s+(.*)$", rest) or re.match(
+    toward = re.match(r"(.*?)\s*\b(?:(?:to |it )?faces?|to look at|towards?|to|at|facing)\b\s+(.*)$", rest) or re.match(
         r"(the [\w ]+?)\s+(the [\w ]+)$", rest
     )
     if toward is not None and toward[1] and toward[2] not in ("left", "right", "the left", "the right"):
@@ -265,6 +273,15 @@ def _turn(selector: Selector, clause: str, rest: str) -> Edit:
         head = rest[: fixed.start()] if fixed is not None else str(toward and toward[1])
         return Turn(objects=list(_subject(selector, re.sub(r"\bto the\b\s*$", "", head))), degrees=angle)
     raise EditRefused(f"“{clause}”: which way? For example: turn the armchair to the window, or by 90 degrees")
+
+
+def _with_copies(edit: Edit) -> tuple[Edit, ...]:
+    """ "two armchairs" in the place of one sofa: the second beside the first."""
+    phrase = noun_phrase(edit.what)[0] if isinstance(edit, Swap) and len(edit.objects) == 1 else None
+    more = 0 if phrase is None or not isinstance(edit, Swap) or phrase.label == edit.what else phrase.count - 1
+    return (
+        (edit, Copy(objects=edit.objects, count=min(more, MAX_COPIES))) if more and isinstance(edit, Swap) else (edit,)
+    )
 
 
 def _swap(selector: Selector, clause: str, rest: str) -> Edit:
@@ -355,7 +372,11 @@ def _factor(text: str, larger: bool) -> float:
 def _inserts(selector: Selector, clause: str, rest: str) -> tuple[Edit, ...]:
     """Each of "a lamp, two plants and a rug", with the phrases of place that follow it."""
     parts = [rest] if re.search(r"\bbetween\b", rest) else re.split(r",\s*(?:and\s+)?|\band\b", rest)
-    return tuple(edit for part in parts if part.strip() for edit in _with_its_own(selector, clause, part.strip()))
+    parts = [p.strip() for p in parts if p.strip()]
+    at = None if not parts else relation_pattern().search(parts[-1])
+    if at is not None and not re.search(r"\b(?:it|them|each|one)\b", parts[-1][at.start() :]):
+        parts = [p if split_places(p)[1] or " to " in p else f"{p} {parts[-1][at.start() :]}" for p in parts]
+    return tuple(edit for part in parts for edit in _with_its_own(selector, clause, part))
 
 
 def _with_its_own(selector: Selector, clause: str, rest: str) -> tuple[Edit, ...]:
@@ -368,7 +389,8 @@ def _with_its_own(selector: Selector, clause: str, rest: str) -> tuple[Edit, ...
         return (_insert(selector, clause, rest),)
     if belongings.category in (*OPENING_CATEGORIES, carrier.category) or belongings.label in _PARTS:
         return (_insert(selector, clause, rest),)
-    first = _insert(selector, clause, f"{match[1]} {rest[len(head) :].strip()}")
+    place = re.sub(r"^(?:on|in|at|under|by|beside) (?:it|top)\b", "", rest[len(head) :].strip())
+    first = _insert(selector, clause, f"{match[1]} {place}")
     name = f"new {carrier.category}"
     relation = _usual_kind(belongings.category, carrier.category)
     what = " ".join((*belongings.appearance, belongings.label))
@@ -376,7 +398,7 @@ def _with_its_own(selector: Selector, clause: str, rest: str) -> tuple[Edit, ...
     return first.model_copy(update={"name": name}), second
 
 
-def _insert(selector: Selector, clause: str, rest: str) -> Insert:
+def _insert(selector: Selector, clause: str, rest: str) -> Insert | Resize:
     head, places = split_places(rest)
     onto = None if places else re.match(r"(.+?) to ((?:the|my|this|all|each|every) .+)$", rest)
     if onto is not None:
@@ -385,10 +407,17 @@ def _insert(selector: Selector, clause: str, rest: str) -> Insert:
         if phrase is not None and not re.fullmatch(r"\w+ (?:\w+ )?room", onto[2]):
             target = selector.scene.object(selector.targets(onto[2])[0])
             places = [PlacePhrase(_usual_kind(phrase.category, target.category), onto[2])]
+    purpose = None if places else re.match(r"(.+?) for ((?:the|my|this) .+)$", head)
+    if purpose is not None:
+        head, places = purpose[1], [PlacePhrase("near", purpose[2])]
     phrase, unknown = noun_phrase(head)
-    if phrase is None or not phrase.label:
-        words = unknown or head or clause
+    if phrase is None or not phrase.label or phrase.beyond:
+        words = unknown or (" ".join(phrase.beyond) if phrase is not None else "") or head or clause
         raise EditRefused(f"“{words}” is not understood; for example: {EXAMPLES}")
+    there = [o.id for o in selector.scene.objects if o.category == phrase.category]
+    change = next((f for w, f in _COMPARED.items() if w in phrase.appearance), None)
+    if change is not None and there and not places:
+        return Resize(objects=there, factor=change)
     if category(phrase.category).name in OPENING_CATEGORIES:
         raise EditRefused(f"a {phrase.category} is part of the room, which edits by words leave as it is")
     wanted = places_of_phrases(selector, places)

@@ -20,7 +20,7 @@ from diorama_core.text.edit_outcome import Done
 from diorama_core.text.edit_places import lifted_onto, missed_notes
 from diorama_core.text.edit_plan import Insert
 from diorama_core.text.looks import fitting_shapes
-from diorama_core.text.phrases import NounPhrase, noun_phrase
+from diorama_core.text.phrases import NUMBERS, NounPhrase, noun_phrase
 from diorama_core.text.prompt import RequestedObject
 from diorama_core.text.requested_relations import usual_relations
 
@@ -50,6 +50,8 @@ def inserted(positioner: Positioner, scene: Scene, edit: Insert, relations: Sequ
     shape: Shape | None = None
     missed: list[str] = []
     for copy in range(edit.count):
+        if shape is not None and copy * _pieces(shape) >= edit.count:
+            break  # "curtains" are one pair
         options, lacking = _options(positioner.library, phrase, relations, targets)
         if phrase.category in SEATS and not phrase.appearance:
             present = dict.fromkeys(o.shape_id for o in scene.objects if o.category == phrase.category)
@@ -80,8 +82,13 @@ def inserted(positioner: Positioner, scene: Scene, edit: Insert, relations: Sequ
     assert shape is not None
     after, note = looking_like(after, new, lacking)
     where = "".join(f" {r.words(scene)}" for r in relations)
-    what = f"{edit.count} x {phrase.category}" if edit.count > 1 else with_article(phrase.category)
+    what = f"{len(new)} x {phrase.category}" if len(new) > 1 else with_article(phrase.category)
     return Done(after, (f"add {what} ({shape.caption or shape.id}){where}",), tuple(new), (*note, *missed))
+
+
+def _pieces(shape: Shape) -> int:
+    """How many of its kind a shape is: "pair of linen curtains" is two."""
+    return NUMBERS.get(shape.caption.partition(" ")[0].lower(), 1)
 
 
 def _on_floor(scene: Scene, object_id: str) -> bool:

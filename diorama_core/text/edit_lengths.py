@@ -6,9 +6,13 @@ import re
 from collections import Counter
 from collections.abc import Callable
 
+import numpy as np
+
+from diorama_core.editing.footprints import footprint_of, gaps
 from diorama_core.errors import EditRefused
 from diorama_core.library.taxonomy import broad
 from diorama_core.text.edit_plan import MAX_COPIES, Edit, Insert, Place, Remove, Resize, Shift
+from diorama_core.text.edit_room import gap_to_wall
 from diorama_core.text.phrases import NUMBERS, split_places
 from diorama_core.text.selecting import Selector
 
@@ -22,10 +26,18 @@ _NEARER = re.compile(
     r"^(.+?)\s+(?:a (?:bit|little) |much |further )*(closer|nearer|towards?|away|farther|further)(?: (?:to|from))? "
     r"((?:the|my|that|this) .+)$"
 )
+_FROM = re.compile(
+    r"^(.+?),?(?: to| at| about| around| exactly)*(?P<away> away)?(?: from| off) ((?:the|my|its|this) .+)$"
+)
+_TO_A_GAP = re.compile(
+    r"^(.+?) (?:closer|nearer) to ((?:the|my|that|this) [^,]+?),? (?:to |at |about |around )*(?:away|apart|off)$"
+)
 _A_LITTLE = re.compile(r"\b(?:a (?:bit|little)|slightly|a touch)\b")
 A_LITTLE_M = 0.2
 STEP_M, HUNG_STEP_M = 0.5, 0.1
 """Where no distance is said: along the floor, and up or down a wall."""
+GAP_STEPS = 8
+"""Of finding how far to go until a gap is left: each takes up what the one before left."""
 MAX_SHIFT_M, MAX_LIFT_M = 20.0, 3.0
 
 Subject = Callable[[Selector, str], tuple[str, ...]]
@@ -68,6 +80,33 @@ def nearer(selector: Selector, rest: str, subject: Subject) -> Shift | None:
         return Shift(objects=list(subject(selector, way[1])), toward=toward, toward_m=sign * distance)
     toward = selector.targets(way[3])[0]
     return Shift(objects=list(subject(selector, way[1])), toward=toward, toward_m=sign * distance)
+
+
+def at_distance(selector: Selector, rest: str, subject: Subject, *, leaves: bool) -> Shift | None:
+    """ "the table 40 cm from the sofa", "closer to the sofa, about 40 cm away": None where it says something else.
+
+    Args:
+        selector: finds the objects.
+        rest: what follows the verb.
+        subject: the ids that a phrase means.
+        leaves: whether "40 cm away from" is what is left between them, as in "put it", or the way, as in "move it".
+    """
+    length = length_in(rest)
+    plain = " ".join(_DISTANCE.sub(" ", rest).split())
+    way = _TO_A_GAP.match(plain) or _FROM.match(plain)
+    if length is None or way is None or split_places(way[1])[1] or (way.groupdict().get("away") and not leaves):
+        return None
+    object_id, *more = subject(selector, way[1])
+    if re.fullmatch(r"\w+ walls?", way[way.re.groups]):
+        return Shift(objects=[object_id, *more], off_wall_m=length - gap_to_wall(selector.scene, object_id))
+    target = selector.targets(way[way.re.groups])[0]
+    item, other = selector.scene.object(object_id), footprint_of(selector.scene.object(target))
+    ahead = selector.scene.object(target).pose.position[:2] - item.pose.position[:2]
+    ahead = ahead / max(float(np.linalg.norm(ahead)), 1e-6)
+    toward_m = 0.0
+    for _ in range(GAP_STEPS):
+        toward_m += float(gaps((footprint_of(item) + toward_m * ahead)[None], other)[0]) - length
+    return Shift(objects=[object_id, *more], toward=target, toward_m=toward_m)
 
 
 def lifted(selector: Selector, clause: str, rest: str, subject: Subject) -> Shift:

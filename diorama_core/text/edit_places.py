@@ -90,7 +90,7 @@ def shifted(positioner: Positioner, scene: Scene, ids: Sequence[str], edit: Shif
         (edit.off_wall_m, "away from the wall", "toward the wall"),
         (edit.toward_m if toward else 0.0, f"toward {goal}", f"away from {goal}"),
     )
-    distances = " and ".join(f"{abs(m):g} m {plus if m > 0 else minus}" for m, plus, minus in ways if m)
+    distances = " and ".join(f"{abs(m):.3g} m {plus if m > 0 else minus}" for m, plus, minus in ways if m)
     return Done(after, (f"move {names_of(scene, ids)} {distances}",), tuple(ids), tuple(notes))
 
 

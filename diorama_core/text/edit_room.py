@@ -181,6 +181,12 @@ def off_wall(scene: Scene, object_id: str) -> Float[np.ndarray, "2"]:
     return np.asarray(normal / max(float(np.linalg.norm(normal)), 1e-9))
 
 
+def gap_to_wall(scene: Scene, object_id: str) -> float:
+    """Metres between an object and the wall at it."""
+    wall = _wall_at(scene, object_id)
+    return float((scene.object(object_id).corners_world @ wall.normal).min()) - wall.offset
+
+
 def _top_of_walls(scene: Scene) -> float:
     tops = [float(p.polygon[:, 2].max()) for p in scene.architecture.by_role("wall")]
     if not tops:

@@ -40,9 +40,9 @@ _SHOULD = re.compile(
     r"^(?:please )?((?:the|all|every|each|my|these|those) .+?) (?:should|must|ought to|ha(?:s|ve) to)(?: be)? "
 )
 _POLITE = re.compile(
-    r"^(?:(?:please|now|then|also|and|hey|ok|okay|well|can you|could you|can we|could we|would you|will you|let's"
-    r"|let us|i would like you to|i'd like you to|i want you to|i want to|i'd like to|i would like to|we want to"
-    r"|we'd like to|go ahead and|just),? )+"
+    r"^(?:(?:please|now|then|also|and|hey|ok|okay|well|maybe|perhaps|can you|could you|can we|could we|would you"
+    r"|will you|let's|let us|i would like you to|i'd like you to|i want you to|i want to|i'd like to|i would like to"
+    r"|we want to|we'd like to|go ahead and|just),? )+"
 )
 _AT_END = re.compile(r",? (?:please|for me|thanks|thank you|now|instead|\?)$|\?$")
 _GIVEN = re.compile(
@@ -51,9 +51,19 @@ _GIVEN = re.compile(
 )
 """“give the sofa a dark green colour”; the walls, too."""
 _WANTED = re.compile(
-    r"^(?:i|we)(?: want| would like|'d like|'d love| need) ((?:the|my|this|these|those|all|both) .+?)"
+    r"^(?:i|we)(?: want| would like|'d like|'d love| need|(?:'d| would)? (?:prefer|rather have))"
+    r" ((?:the|my|this|these|those|all|both) .+?)"
     r"(?: to (?:be |(?=face |look |point ))(.+))?$"
 )
+_MAY = re.compile(
+    r"^(?:can|could|may) ((?:the|all|every|each|my|this|these|those) .+?) (?:(be|have|get)|go|stand|hang|sit|lie) "
+)
+_GONE = re.compile(r"^(?:make|want|have|get) (.+?) (?:be )?(?:gone|removed|deleted|out of here)$")
+_ATTRIBUTE = re.compile(r"\b((?:the|my|this|its) [\w -]+?)'s (?=(?:colou?r|width|height|depth|length)\b)(\w+)")
+_COLOUR_OF = re.compile(r"^(?:change|make|set|turn) the colou?r of (.+?) (?:to|into|be) ")
+_SO_IT_IS = re.compile(r"\bso (?:that )?(?:it|they)(?:'s|'re| is| are)?(?: right)? ")
+_ANYTHING = re.compile(r"\b(?:anything|whatever)(?: (?:that is|that's|is))?\b")
+_FILLED = re.compile(r"^fill (.+?) with (?:some )?(?!a |an |one )(.+)$")
 _TAKEN = re.compile(
     r"^(?:take|get) ((?:the|my|all|every|both|those|these|this|that|it|them|everything)\b.*?)"
     r" (?:off|down|out|away|from)(?: of| from)?(?: ((?:the|my|its|their) .+))?$"
@@ -108,7 +118,9 @@ def clauses_of(command: str) -> tuple[str, ...]:
 def plain(clause: str) -> str:
     """A clause without what is only polite, in the form of a command."""
     clause = _COPY.sub("it", _POLITE.sub("", _AT_END.sub("", clause)).strip())
-    clause = _OVER.sub("", _SHOULD.sub(r"make \1 ", clause))
+    clause = _OVER.sub("", _SHOULD.sub(r"make \1 ", _MAY.sub(_permitted, clause)))
+    clause = _COLOUR_OF.sub(r"make \1 ", _ATTRIBUTE.sub(r"the \2 of \1", _SO_IT_IS.sub("", clause)))
+    clause = _FILLED.sub(r"add several \2 on \1", _ANYTHING.sub("everything", clause))
     if (given := _GIVEN.match(clause)) is not None:
         who, number, what = given.groups()
         phrase, _ = noun_phrase(what)
@@ -116,10 +128,15 @@ def plain(clause: str) -> str:
         return f"add {number} {what} to {who}" if names else f"make {who} {what}"
     if (wanted := _WANTED.match(clause)) is not None:
         verb = "put" if wanted[2] is None and split_places(wanted[1])[1] else "make"
-        return " ".join(w for w in (verb, wanted[1], wanted[2]) if w)
+        clause = " ".join(w for w in (verb, wanted[1], wanted[2]) if w)
     if (taken := _TAKEN.match(clause)) is not None:
         return f"remove {_on(taken)}"
-    return _ORIGIN.sub(" on ", clause)
+    return _ORIGIN.sub(" on ", _GONE.sub(r"remove \1", clause))
+
+
+def _permitted(asked: re.Match[str]) -> str:
+    """ "can the walls be green" and "could the piano go by the window" as commands."""
+    return f"make {asked[1]} " if asked[2] else f"put {asked[1]} "
 
 
 def _without_remarks(clauses: list[str]) -> tuple[str, ...]:
@@ -151,6 +168,8 @@ def _on(taken: re.Match[str]) -> str:
 
 
 def _cured(match: re.Match[str] | None) -> str | None:
+    if match is not None and match.re is _LIKED and re.search(r"need|want|use", match[0][: match.start(1)]):
+        return f"remove {match[1]}"
     too = (
         None
         if match is None or match.re is not _REMARK

@@ -55,10 +55,20 @@ _SIZED = re.compile(
     rf"^make (?P<who>.+?) (?:(?:a (?:bit|little)|much|slightly|somewhat|about|exactly) )*"
     rf"(?:(?P<times>half|twice|double|(?:\d+(?:\.\d+)?) times) as )?(?P<side>{_SIDE})$"
 )
+_LENGTH_AND_SIDE = re.compile(rf"\d+(?:\.\d+)? ?(?:c?m|c\w+et(?:re|er)s?|met(?:re|er)s?) ({_SIDE})\b")
 _SET_SIDE = re.compile(
     r"^(?P<verb>set|change|make|increase|reduce|decrease|raise|lower) the (?P<side>width|depth|height|length) of "
     r"(?P<who>.+?)(?: (?P<to>to|by))?$"
 )
+_BOTH_SIDES = re.compile(
+    r"^(?:make|resize|set) (.+?) (?:to (?:be )?|about |exactly )*(\d+(?:\.\d+)?) ?(m|cm)?(?:et\w+)?,? ?(?:by|x|×) ?"
+    r"(\d+(?:\.\d+)?) ?(m|cm)(?:et\w+)?(?: in size)?$"
+)
+_ONE_LENGTH = re.compile(r"^(?:make|resize|set) (.+?)(?: to(?: be)?| about| exactly| just| only)*$")
+_AS_ANOTHER = re.compile(
+    rf"^(?:make|set) (.+?) (?:the same (height|width|depth|length) as|(?:just )?as ({_SIDE}) as) ((?:the|my|this) .+)$"
+)
+_AXES: dict[str, int] = {"depth": 0, "width": 1, "height": 2}
 _TIMES = {"half": 0.5, "twice": 2.0, "double": 2.0}
 STEP_FACTOR = 1.25
 """Where no length is said."""
@@ -108,11 +118,14 @@ def object_edits(selector: Selector, clause: str, subject: Subject) -> tuple[Edi
     Raises:
         EditRefused: the clause is one of these, and names what is not there.
     """
+    if len(each := list(_LENGTH_AND_SIDE.finditer(clause))) > 1 and clause.startswith(("make ", "set ")):
+        ids = list(subject(selector, clause[: each[0].start()].partition(" ")[2]))
+        return tuple(Measure(objects=ids, side=_SIDES[m[1]][0], to_m=length_in(m[0]) or 0.0) for m in each)
     for read in (_sized, _off_wall, _state, _copied, _exchanged, _named, _arranged):
         edits = read(selector, clause, subject)
         if edits is not None:
             return (edits,)
-    return None
+    return _sized_whole(selector, clause, subject)
 
 
 def _sized(selector: Selector, clause: str, subject: Subject) -> Measure | None:
@@ -139,6 +152,29 @@ def _sized(selector: Selector, clause: str, subject: Subject) -> Measure | None:
     if relative and groups.get("to") != "to":
         return Measure(objects=ids, side=side, by_m=sign * length)
     return Measure(objects=ids, side=side, to_m=length)
+
+
+def _sized_whole(selector: Selector, clause: str, subject: Subject) -> tuple[Edit, ...] | None:
+    """ "make the rug 3 by 2 m", "make the sideboard 1.6 m", "make the table as high as the desk"."""
+    if (like := _AS_ANOTHER.match(clause)) is not None:
+        side = _SIDES.get(like[2] or like[3], ("width", 1.0))[0]
+        length = float(selector.scene.object(selector.targets(like[4])[0]).size_m[_AXES[side]])
+        return (Measure(objects=list(subject(selector, like[1])), side=side, to_m=length),)
+    both = _BOTH_SIDES.match(clause)
+    one = None if length_in(clause) is None else _ONE_LENGTH.match(" ".join(without_lengths(clause).split()))
+    if both is not None:
+        units = [0.01 if (u or both[5]) == "cm" else 1.0 for u in (both[3], both[5])]
+        lengths, ids = sorted(float(n) * u for n, u in zip((both[2], both[4]), units)), subject(selector, both[1])
+        sides = sorted(("depth", "width"), key=lambda s: float(selector.scene.object(ids[0]).size_m[_AXES[s]]))
+    elif one is not None and one[1] not in ("the room", "the ceiling"):
+        ids, lengths = subject(selector, one[1]), [length_in(clause) or 0.0]
+        sides = [max(_AXES, key=lambda s: float(selector.scene.object(ids[0]).size_m[_AXES[s]]))]
+    else:
+        return None
+    return tuple(
+        Measure(objects=list(ids), side=cast("Literal['width', 'depth', 'height']", side), to_m=length)
+        for side, length in zip(sides, lengths, strict=True)
+    )
 
 
 def _off_wall(selector: Selector, clause: str, subject: Subject) -> Shift | None:

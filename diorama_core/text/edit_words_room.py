@@ -122,6 +122,10 @@ def _lengths(selector: Selector, clause: str) -> tuple[Edit, ...] | None:
     lifted = re.match(r"^(?:raise|lift|lower|drop) the ceiling\b((?: (?:by|to|a|slightly|much)\b.*)?)$", clause)
     if lifted is not None:
         return (_length("height", lifted[1], shrinks=clause.startswith(("lower", "drop"))),)
+    both = re.match(r"^make the room (?:to be )?(\d+(?:\.\d+)?) ?m?\w* ?(?:by|x|×) ?(\d+(?:\.\d+)?) ?m\w*$", clause)
+    if both is not None:
+        long_m, wide_m = sorted((float(both[1]), float(both[2])), reverse=True)
+        return RoomLength(side="length", to_m=long_m), RoomLength(side="width", to_m=wide_m)
     made = re.match(r"^(?:make|extend|enlarge|widen|lengthen|shrink|shorten|set) the (room|ceiling)\b(.*)$", clause)
     if made is None:
         return None
@@ -165,7 +169,8 @@ def _light(selector: Selector, clause: str) -> tuple[Edit, ...] | None:
         return (Light(brighter_ev=STOPS if dim[1] == "brighten" else -STOPS),)
     timed = re.match(
         r"^(?:make it|set the (?:time|hour|light)(?: of day)?(?: to)?|it should be"
-        r"|show (?:me )?(?:it|the room|this room)(?: in| at| by)?) (.+?)(?: with (?:the )?(?:lamps|lights) (on|off))?$",
+        r"|(?:show|let me see|let us see) (?:me )?(?:it|the room|this room)(?: in| at| by)?) (.+?)"
+        r"(?: with (?:the )?(?:lamps|lights) (on|off))?$",
         clause,
     )
     if timed is None:

@@ -22,6 +22,13 @@ _FILLER = frozenset(
      "these", "those", "our", "your", "please", "just", "also", "set", "new", "other", "more", "piece", "pieces", "then",
      "them", "and", "on", "in", "whole", "either", "standing", "hanging", "sitting", "placed", "lying"}
 )  # fmt: skip
+_ADVERBS = frozenset(
+    {"back", "up", "down", "over", "away", "along", "around", "together", "apart", "again", "too", "closer", "nearer",
+     "close", "right", "left", "straight", "exactly", "directly", "further", "so", "they", "here", "face", "all", "now"}
+)  # fmt: skip
+"""What may follow a noun and says how something is done, not what it is."""
+_OF_CLAUSES = frozenset({"where", "when", "if", "until", "unless", "than", "how", "what", "who", "not", "without"})
+"""A phrase with one of these says more than which object is meant."""
 APPEARANCES = frozenset(
     [
         "red",
@@ -200,6 +207,8 @@ class NounPhrase:
     pronoun: bool = False
     rows: int = 0
     """In how many rows they stand; 0 where nothing is said."""
+    beyond: tuple[str, ...] = ()
+    """Words after the noun that say nothing known: what precedes it may be any attribute, what follows is of a place."""
 
 
 @dataclass(frozen=True)
@@ -269,6 +278,9 @@ def noun_phrase(text: str) -> tuple[NounPhrase | None, str]:
     start, end, category_name = known
     label = " ".join(words[start:end])
     appearance = tuple(w for w in words[:start] + words[end:] if w in APPEARANCES)
+    beyond = tuple(w for w in words[end:] if w not in APPEARANCES | _ADVERBS) + tuple(
+        w for w in words[:start] if w in _OF_CLAUSES
+    )
     last = words[end - 1]
     plural = (
         last.endswith("s")
@@ -281,12 +293,20 @@ def noun_phrase(text: str) -> tuple[NounPhrase | None, str]:
         count = rows * (each or (USUAL_IN_ROW if plural else 1)) if count == 1 else count
         several = plural or count > 1
         return NounPhrase(
-            label, category_name, min(count, MAX_IN_ROWS), appearance, definite, every, several, rows=rows
+            label,
+            category_name,
+            min(count, MAX_IN_ROWS),
+            appearance,
+            definite,
+            every,
+            several,
+            rows=rows,
+            beyond=beyond,
         ), ""
     if plural and count == 1:
         count = 2
     return NounPhrase(
-        label, category_name, min(count, MAX_OF_A_KIND), appearance, definite, every, plural or count > 1
+        label, category_name, min(count, MAX_OF_A_KIND), appearance, definite, every, plural or count > 1, beyond=beyond
     ), ""
 
 

@@ -62,6 +62,8 @@ class Selector:
         exact = [o.id for o in self.scene.objects if o.label.lower() == _plain(words)]
         if len(exact) == 1:
             return (exact[0],)
+        if phrase.beyond and not any(set(phrase.beyond) <= set(o.label.lower().split()) for o in self.scene.objects):
+            raise EditRefused(f"“{words.strip()}”: “{' '.join(phrase.beyond)}” is not understood")
         objects = self._named(phrase, words)
         objects = self._in_place(objects, places, words)
         if movable and not phrase.label:  # "everything" that is moved is what stands on the floor, with what it carries

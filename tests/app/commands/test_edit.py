@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import queue
 import threading
 import time
 from dataclasses import replace
@@ -19,7 +20,7 @@ from diorama_app.panels.outliner import tree_html
 from diorama_app.panels.room_size import RoomSize
 from diorama_app.panels.supports import supporters
 from diorama_app.session.client import Client
-from diorama_app.session.jobs import Jobs, JobStatus, Outcome
+from diorama_app.session.jobs import AT_ONCE, Jobs, JobStatus, Outcome
 from diorama_app.session.session import EditorSession
 from diorama_app.session.ui_thread import UiThread
 from diorama_core.errors import EditRefused, InputError
@@ -259,3 +260,28 @@ def test_one_job_at_a_time_and_cancel_ends_it() -> None:
     jobs.start("build", "Building", fail)
     assert jobs.wait(60.0)
     assert ended[-1].error == "the photo is no photo"
+
+
+def test_no_more_jobs_compute_at_once_than_processors_and_what_waits_can_be_cancelled() -> None:
+    ended = queue.Queue[Outcome]()
+    statuses = queue.Queue[JobStatus]()
+    computing, release = threading.Semaphore(0), threading.Event()
+
+    def work(progress: Progress) -> None:
+        computing.release()
+        release.wait(60.0)
+
+    every = [Jobs(lambda status: None, ended.put) for _ in range(AT_ONCE)]
+    for jobs in every:
+        jobs.start("build", "Building", work)
+        assert computing.acquire(timeout=60.0)
+    late, quick = Jobs(statuses.put, ended.put), Jobs(lambda status: None, ended.put)
+    late.start("build", "Building", work)
+    while "Waiting" not in statuses.get(timeout=60.0).message:
+        pass
+    quick.start("export", "Exporting", lambda progress: None)
+    assert ended.get(timeout=60.0) == Outcome("export")
+    late.cancel()
+    assert ended.get(timeout=60.0) == Outcome("build", cancelled=True)
+    release.set()
+    assert all(jobs.wait(60.0) for jobs in every)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import queue
 import threading
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import numpy as np
@@ -95,12 +96,14 @@ def test_outlines_that_nobody_waits_for_hold_up_nothing(monkeypatch: pytest.Monk
 
     monkeypatch.setattr("diorama_core.perception.masks.EmbeddedMasks.inside_box", inside_box)
     begin, ready = threading.Event(), threading.Event()
+    worker = ThreadPoolExecutor(1)
+    monkeypatch.setattr("diorama_app.reconstruction.suggestions._WORKER", worker)
     suggestions = Suggestions(plain_photo(), ready.set)
-    suggestions._worker.submit(begin.wait, 30)
+    worker.submit(begin.wait, 30)
     boxes = [(10.0, 10.0, 50.0 + k, 60.0) for k in range(5)]
     assert [suggestions.outline(box) for box in boxes] == [None] * 5
     begin.set()
-    suggestions._worker.submit(lambda: None).result(30)
+    worker.submit(lambda: None).result(30)
     assert traced == boxes[-1:]
 
 
