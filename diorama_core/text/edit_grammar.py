@@ -37,7 +37,7 @@ from diorama_core.text.edit_plan import (
 from diorama_core.text.edit_wording import EXAMPLES, VERBS, plain
 from diorama_core.text.edit_words_objects import object_edits, places_of_phrases
 from diorama_core.text.edit_words_room import room_edits
-from diorama_core.text.looks import look_of
+from diorama_core.text.looks import has_look, look_of
 from diorama_core.text.phrases import APPEARANCES, NUMBERS, PlacePhrase, noun_phrase, relation_pattern, split_places
 from diorama_core.text.selecting import Selector
 
@@ -46,7 +46,9 @@ _VERB = re.compile(
     + "|".join(f"(?P<{name}>(?:{words})\\b)" for name, words in VERBS.items())
     + ")"
 )
-_HIGHER = re.compile(r"(?:\s+(?:a (?:bit|little)|slightly|much|somewhat))?\s+(higher|lower)(?: up| down)?$")
+_HIGHER = re.compile(
+    r"(?:\s+(?:a (?:bit|little)|slightly|much|somewhat))?\s+(?:(higher|lower)(?: up| down)?|up|(down))$"
+)
 _PARTS = frozenset({"drawer", "drawers", "shelf", "shelves", "legs", "arms", "back", "lid", "wheels", "shade"})
 """What furniture has and what is no object beside it."""
 _AND_SO = frozenset({"of", "more", "new", "another", "please", "also", "and", "pair", "set", "few", "some", "with"})
@@ -105,6 +107,8 @@ def _edits_of(
         if not on:
             raise EditRefused(f"there is nothing on {scene.object(carrier[0]).label}")
         return (Remove(objects=on),)
+    if verb == "turn" and re.search(r" into (?:an?|some) ", rest):
+        return _with_copies(_swap(selector, clause, rest))
     if verb == "turn":
         return (_turn(selector, clause, rest),)
     if verb in ("swap", "change"):
@@ -116,7 +120,11 @@ def _edits_of(
     if verb == "lift":
         return (lifted(selector, clause, rest, _subject),)
     if verb in ("move", "put") and (height := _HIGHER.search(rest)) is not None:
-        return (lifted(selector, "lower" if height[1] == "lower" else "raise", rest[: height.start()], _subject),)
+        return (
+            lifted(
+                selector, "lower" if height[2] or height[1] == "lower" else "raise", rest[: height.start()], _subject
+            ),
+        )
     if verb in ("put", "move") and (shift := at_distance(selector, rest, _subject, leaves=verb == "put")) is not None:
         return (shift,)
     if verb == "move":
@@ -165,6 +173,9 @@ def _subject(selector: Selector, text: str) -> tuple[str, ...]:
         if len(ids) <= number:
             raise EditRefused(f"there {'is' if len(ids) == 1 else 'are'} only {len(ids)} of these")
         return ids[number:]
+    if (share := re.match(r"half (?:of )?(?:the |my |all )*(.+)", text)) is not None:
+        ids = _subject(selector, f"all {share[1]}")
+        return ids[: max(len(ids) // 2, 1)]
     kept, _, left = (
         part.strip()
         for part in re.sub(r"\b(?:other than|apart from|but not|but keep|but leave|but)\b", "except", text).partition(
@@ -179,6 +190,7 @@ def _subject(selector: Selector, text: str) -> tuple[str, ...]:
     objects: list[str] = []
     for part in parts:
         if part.strip():
+            part = re.sub(r"\b(?:it|them)$", parts[0], part.strip()) if part is not parts[0] else part
             head, places = split_places(part)
             objects += [i for i in selector.objects(head, places) if i not in objects]
     return tuple(objects)
@@ -349,6 +361,11 @@ def _look(selector: Selector, clause: str, rest: str) -> Edit:
         if phrase is None:
             continue
         return Restyle(objects=list(_subject(selector, head)), look=look)
+    head, _, shaped = rest.rpartition(" ")
+    if shaped in APPEARANCES and (ids := _subject(selector, head)):  # "make the rug round"
+        kind = selector.scene.object(ids[0]).category
+        if any(has_look(shape, shaped) for shape in selector.library.in_category(kind)):
+            return Swap(objects=list(ids), what=f"{shaped} {kind}")
     if _room_part(rest) is not None:
         raise EditRefused(f"“{clause}”: in what colour? For example: paint the walls light blue")
     raise EditRefused(f"“{clause}” names no colour, material or size known here; for example: make all chairs wooden")

@@ -16,7 +16,11 @@ from diorama_core.text.edit_room import gap_to_wall
 from diorama_core.text.phrases import NUMBERS, split_places
 from diorama_core.text.selecting import Selector
 
-_DISTANCE = re.compile(r"\b(?:by )?(\d+(?:\.\d+)?|a|half a|one|two) ?(m|cm|metres?|meters?|centimet(?:re|er)s?)\b")
+_DISTANCE = re.compile(
+    r"\b(?:by )?(\d+(?:\.\d+)?|an?|half an?|one|two) ?"
+    r"(?:(m|metres?|meters?)|(cm|centimet(?:re|er)s?)|(ft|foot|feet)|(inch(?:es)?))\b"
+)
+_UNITS_M = (1.0, 0.01, 0.3048, 0.0254)
 _WAYS = {
     "left": (-1.0, 0.0), "right": (1.0, 0.0), "back": (0.0, 1.0), "backwards": (0.0, 1.0), "backward": (0.0, 1.0),
     "forward": (0.0, -1.0), "forwards": (0.0, -1.0), "closer": (0.0, -1.0), "away": (0.0, 1.0),
@@ -129,8 +133,8 @@ def length_in(text: str) -> float | None:
     match = _DISTANCE.search(text)
     if match is None:
         return None
-    number = {"a": 1.0, "half a": 0.5, "one": 1.0, "two": 2.0}.get(match[1]) or float(match[1])
-    return number * (0.01 if match[2].startswith("c") else 1.0)
+    number = {"a": 1.0, "half a": 0.5, "one": 1.0, "two": 2.0}.get(re.sub("an$", "a", match[1])) or float(match[1])
+    return number * next(m for m, unit in zip(_UNITS_M, match.groups()[1:]) if unit)
 
 
 def without_lengths(text: str) -> str:

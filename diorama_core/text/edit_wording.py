@@ -22,7 +22,7 @@ VERBS = {
     "smaller": "shrink|scale down|reduce",
     "lift": "raise|lift|lower",
     "move": "move|shift|push|pull|drag|bring|slide|relocate|carry",
-    "put": "put|place|set|hang|stand|lay|position|arrange|line up|cent(?:er|re)",
+    "put": "put|try|place|set|hang|stand|lay|position|arrange|line up|cent(?:er|re)",
     "insert": "add|insert|give me|i want|we want|i would like|i'd like|we'd like|i'd love|i need|we need"
     "|there should be|create|get|bring in|have",
 }
@@ -58,6 +58,7 @@ _WANTED = re.compile(
 _MAY = re.compile(
     r"^(?:can|could|may) ((?:the|all|every|each|my|this|these|those) .+?) (?:(be|have|get)|go|stand|hang|sit|lie) "
 )
+_HAVE_FACE = re.compile(r"^(?:have|let) ((?:the|my|all|both) .+?) (?=(?:face|look|point)\b)")
 _GONE = re.compile(r"^(?:make|want|have|get) (.+?) (?:be )?(?:gone|removed|deleted|out of here)$")
 _ATTRIBUTE = re.compile(r"\b((?:the|my|this|its) [\w -]+?)'s (?=(?:colou?r|width|height|depth|length)\b)(\w+)")
 _COLOUR_OF = re.compile(r"^(?:change|make|set|turn) the colou?r of (.+?) (?:to|into|be) ")
@@ -74,7 +75,7 @@ _PICKED_UP = re.compile(
 )
 _SET_DOWN = re.compile(r"^(?:put|place|set|move|hang|stand|lay|bring) (?:it|them) ")
 _ORIGIN = re.compile(
-    r"(?<!away)(?<!across)(?<!ther)(?<![ \d]m)(?<!cm)(?<!metre)(?<!metres)(?<!meter)(?<!meters)"
+    r"(?<!away)(?<!apart)(?<!across)(?<!ther)(?<![ \d]m)(?<!cm)(?<!metre)(?<!metres)(?<!meter)(?<!meters)"
     r" (?:from|off)(?: of)? (?=(?:the|my|this|its) )"
 )
 _OVER = re.compile(r"\bover (?=(?:to|by|next|near|beside|there|in front)\b)")
@@ -118,7 +119,7 @@ def clauses_of(command: str) -> tuple[str, ...]:
 def plain(clause: str) -> str:
     """A clause without what is only polite, in the form of a command."""
     clause = _COPY.sub("it", _POLITE.sub("", _AT_END.sub("", clause)).strip())
-    clause = _OVER.sub("", _SHOULD.sub(r"make \1 ", _MAY.sub(_permitted, clause)))
+    clause = _OVER.sub("", _SHOULD.sub(r"make \1 ", _MAY.sub(_permitted, _HAVE_FACE.sub(r"make \1 ", clause))))
     clause = _COLOUR_OF.sub(r"make \1 ", _ATTRIBUTE.sub(r"the \2 of \1", _SO_IT_IS.sub("", clause)))
     clause = _FILLED.sub(r"add several \2 on \1", _ANYTHING.sub("everything", clause))
     if (given := _GIVEN.match(clause)) is not None:

@@ -6,6 +6,8 @@ import re
 from collections.abc import Sequence
 from typing import Literal, cast
 
+import numpy as np
+
 from diorama_core.editing.relations import Relation, is_met
 from diorama_core.editing.room_frame import RoomFrame
 from diorama_core.errors import EditRefused
@@ -70,6 +72,8 @@ _AS_ANOTHER = re.compile(
 )
 _AXES: dict[str, int] = {"depth": 0, "width": 1, "height": 2}
 _TIMES = {"half": 0.5, "twice": 2.0, "double": 2.0}
+SCREEN_WIDTH = 16 / np.hypot(16, 9)
+"""Of the diagonal, in which screens are sold."""
 STEP_FACTOR = 1.25
 """Where no length is said."""
 _STATES: dict[str, Literal["locked", "unlocked", "hidden", "shown", "open", "closed", "on", "off"]] = {
@@ -168,6 +172,11 @@ def _sized_whole(selector: Selector, clause: str, subject: Subject) -> tuple[Edi
         sides = sorted(("depth", "width"), key=lambda s: float(selector.scene.object(ids[0]).size_m[_AXES[s]]))
     elif one is not None and one[1] not in ("the room", "the ceiling"):
         ids, lengths = subject(selector, one[1]), [length_in(clause) or 0.0]
+        if re.search(r"\binch(?:es)?\b", clause) and selector.scene.object(ids[0]).category in (
+            "television",
+            "monitor",
+        ):
+            lengths = [SCREEN_WIDTH * lengths[0]]
         sides = [max(_AXES, key=lambda s: float(selector.scene.object(ids[0]).size_m[_AXES[s]]))]
     else:
         return None

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import re
+from contextlib import suppress
 from typing import Literal, cast
 
 from diorama_core.errors import EditRefused
 from diorama_core.geometry.openings import OPENING_CATEGORIES
 from diorama_core.text.edit_lengths import length_in
 from diorama_core.text.edit_plan import Edit, InsertOpening, Light, Paint, RoomLength
-from diorama_core.text.edit_room import covering_in_words
+from diorama_core.text.edit_room import covering_in_words, wall_on
 from diorama_core.text.edit_words_objects import side_in
 from diorama_core.text.selecting import Selector
 
@@ -28,6 +29,11 @@ _ASKED = re.compile(
     r"|i want|i need|clad|wallpaper(?= the))\b"
 )
 _BESIDE = re.compile(r"\b(?:me|some|an?|new|in|into|to|with|of|on|for|be|look|out|the room|room|it|colou?r|one)\b")
+_SPARED = re.compile(
+    r"^(.*\bwalls\b.*?),? (?:except|apart from|other than|but(?: not)?)(?: for)?"
+    r" the (left|right|back|far|front)(?: wall| one)?(.*)$"
+)
+"""“all walls beige except the back wall”."""
 _BEHIND = re.compile(r"\bbehind (?P<at>(?:the|my|this) .+?)(?=\s+(?:in|with|to)\b|$)")
 _GROWS = {
     "height": "higher|taller|high|tall|lower",
@@ -72,8 +78,16 @@ def _surfaces(selector: Selector, clause: str) -> tuple[Edit, ...] | None:
     if len(parts) > 1 and all(_PART.search(p) for p in parts):
         surfaces = [_surface(selector, p) for p in parts]
         return tuple(e for e in surfaces if e is not None) if None not in surfaces else None
-    one = _surface(selector, rest)
-    return None if one is None else (one,)
+    spared = _SPARED.match(rest)
+    one = _surface(selector, rest if spared is None else f"{spared[1]} {spared[3]}")
+    if one is None or spared is None:
+        return None if one is None else (one,)
+    left_out = wall_on(selector.scene, side_in(spared[2])).id
+    sides = {}
+    for side in ("left", "right", "back", "front"):
+        with suppress(EditRefused):  # the room has none there
+            sides[wall_on(selector.scene, side).id] = side
+    return tuple(one.model_copy(update={"wall": side}) for wall, side in sides.items() if wall != left_out)
 
 
 def _surface(selector: Selector, text: str) -> Paint | None:
