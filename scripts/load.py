@@ -62,7 +62,7 @@ class Person:
     def hidden(self, object_id: str) -> bool:
         """Whether this page says that an object is hidden."""
         content = str(self.page.elements[self.outliner].get("content", ""))
-        found = re.search(rf'data-do="hide" data-arg="{object_id}"[^>]* title="(Hide|Show)"', content)
+        found = re.search(rf'data-do="hide" data-arg="{object_id}"[^>]* title="(Hide|Show) ', content)
         assert found is not None, f"the outliner has no row for {object_id}"
         return found[1] == "Show"
 

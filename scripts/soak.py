@@ -158,7 +158,7 @@ class Person:
         self.hidden = not self.hidden
         uuid = self._act('data-do="hide"', "hide", self.own)
         now = "Show" if self.hidden else "Hide"
-        self.page.wait_for(lambda: self._shown(uuid, rf'data-arg="{self.own}"[^>]* title="{now}"'), PATIENCE_S)
+        self.page.wait_for(lambda: self._shown(uuid, rf'data-arg="{self.own}"[^>]* title="{now} '), PATIENCE_S)
 
     def words(self) -> None:
         self._act(
