@@ -57,7 +57,7 @@ class WordEdits:
                 return
             client.post(lambda: self._show(proposed, "", scene))
 
-        session.jobs.start("words", _("Understanding your words"), work)
+        session.jobs.start("words", _("Interpreting your request"), work)
 
     def apply(self) -> None:
         """Make the proposed edits, as one undo step."""

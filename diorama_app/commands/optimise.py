@@ -75,7 +75,9 @@ def optimise(
     left = frozenset[str]() if only or by_hand_too else left_to_people(start)
     free = frozenset(only) or frozenset(o.id for o in start.objects if o.id not in left)
     if not free:
-        raise EditRefused("people placed everything here, so it stays; select what may move and optimise the selection")
+        raise EditRefused(
+            "everything here was placed by people and stays; select what may move, then optimise the selection"
+        )
     run = LayoutRun(
         recipe_name, time.monotonic(), start, only, left=sum(o.by_hand and o.id in left for o in start.objects)
     )

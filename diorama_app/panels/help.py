@@ -19,7 +19,7 @@ MOUSE = (
     (N_("Select in a rectangle"), N_("Shift-drag")),
     (N_("Move an object"), N_("Drag it")),
     (N_("Move, snapping inverted"), N_("Alt-drag")),
-    (N_("Rotate the view"), N_("Drag the background")),
+    (N_("Rotate the view"), N_("Drag background")),
     (N_("Pan the view"), N_("Right-drag")),
     (N_("All commands"), "Ctrl+K"),
 )

@@ -35,7 +35,7 @@ def ask_depth(client: Client, unknown: AmbiguousDepthError, then: Callable[[Dept
     if not unknown.choices:
         raise unknown
     choices = [(_capital(answer.words), answer) for answer in unknown.choices]
-    _ask(client, _("How is the depth to be read?"), str(unknown).split(";", 1)[0], choices, then)
+    _ask(client, _("How should the depth be read?"), str(unknown).split(";", 1)[0], choices, then)
 
 
 def _capital(words: str) -> str:

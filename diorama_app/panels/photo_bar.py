@@ -55,7 +55,7 @@ def upside_down_note() -> str:
 def straightened_note() -> str:
     """What is said of a photo that was straightened by its own lines, and the button that undoes it."""
     back = button(_("Undo straightening"), "bend", title=_("Use the photo as it is in its file"))
-    said = _("The lens bent straight lines, so the photo was straightened.")
+    said = _("The photo was straightened because its lens bends straight lines.")
     return f'<div class="bar"><span class="lead">{text(said)}</span>{back}</div>'
 
 

@@ -139,7 +139,7 @@ class Properties:
             )
 
         cells = "".join(map(cell, clearances(scene, item.id)))
-        hint = _("Free length on each side, to the nearest wall or neighbour; type one to move the object")
+        hint = _("Free distance on each side to the nearest wall or neighbour; type a value to move the object")
         return (
             _heading(_("Distances"), hint, unit) + _grid(cells).replace('class="fields"', 'class="fields four"')
             if cells

@@ -121,7 +121,7 @@ class Review:
             length = format_length(float(choice.value), self._client.preferences.unit)
             label = text(_("About {length}").format(length=length))
         key = text(f"{question.id}={choice.value}")
-        hint = _("Point at it to see it in the room (key {number})").format(number=number)
+        hint = _("Hover to preview it in the room; key {number} chooses it").format(number=number)
         return (
             f'<button type="button" class="tile" data-do="answer" data-arg="{key}" data-peek="{key}" '
             f'data-digit="{number}" title="{text(hint)}">'

@@ -74,7 +74,7 @@ def ready_to_build(inputs: Inputs | None) -> bool:
 def builds_unasked(session: EditorSession) -> bool:
     """Whether a build runs that whoever marks something in the photo puts an end to."""
     status = session.jobs.status
-    return status is not None and status.title == UNASKED and not status.cancelling
+    return status is not None and status.title == _(UNASKED) and not status.cancelling
 
 
 def build_found(session: EditorSession, found: Sequence[LabelledBox]) -> None:

@@ -18,18 +18,19 @@
       Math.max(...rects.map((r) => r.bottom)) - top);
   };
   const STEPS = [
-    [_("Look around"), _("Drag the background to turn the view, drag with the right button to shift it, and scroll to come " +
-      "closer. Walls in the way fade by themselves."), view],
+    [_("Look around"), _("Drag the background to turn the view, drag with the right button to pan, and scroll to zoom. " +
+      "Walls that block the view fade automatically."), view],
     [_("Move furniture"), _("Drag a piece of furniture to where it should be. Move, Free and Size choose the handles of what " +
       "is selected; Snap and No overlaps help you to place it."), () => box(tool("gizmo_floor"), tool("slide"))],
-    [_("Change what is selected"), _("Object shows alternatives to swap with one click, and colours, sizes and numbers. " +
-      "Click a wall or the floor to paint, paper, tile or board it."), () => box(tab(_("Object")))],
-    [_("Add furniture"), _("Library finds furniture by words and puts it into the room. You can add models of your own."),
+    [_("Change what is selected"), _("The Object tab shows alternatives to swap with one click, and colours, sizes and " +
+      "numbers. Click a wall or the floor to paint it, or to cover it with paper, tiles or boards."), () => box(tab(_("Object")))],
+    [_("Add furniture"), _("The Library tab finds furniture by name and puts it into the room. You can add your own models."),
       () => box(tab(_("Library")))],
-    [_("Use your own photo"), _("Photo takes a picture of a room: mark the furniture with one click each, and build the " +
-      "scene."), () => box(tab(_("Photo")))],
-    [_("Nothing is lost"), _("Every change is saved as you make it, and every change can be undone. Export writes the room " +
-      "for Blender, Unity, simulators and floor plans. Press ? for all keys."), () => box(tool("undo"), tool("redo"), tool("help"))],
+    [_("Use your own photo"), _("The Photo tab takes a photo of a room: mark each piece of furniture with one click, and " +
+      "build the scene."), () => box(tab(_("Photo")))],
+    [_("Nothing is lost"), _("Every change is saved as you make it, and every change can be undone. The Export tab writes the " +
+      "room for Blender, Unity, simulators and floor plans. Press ? for all keys."),
+      () => box(tool("undo"), tool("redo"), tool("help"))],
   ];
   let tour = null, at = 0;
   const store = (storage, key, value) => {

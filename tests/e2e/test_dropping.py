@@ -56,7 +56,7 @@ def test_a_photo_with_boxes_then_its_depth(editor: EditorPage, tmp_path: Path) -
     inverse = tmp_path / "d.npy"
     np.save(inverse, 20 / room()[0] + 1.3)
     drop(editor, inverse)
-    asked = editor.page.get_by_text("How is the depth to be read?")
+    asked = editor.page.get_by_text("How should the depth be read?")
     expect(asked).to_be_visible(timeout=LEARN_MS)
     keep_picture(editor, "dropped-depth-asked")
     editor.page.get_by_role("button", name="Inverse depth").click()
@@ -85,11 +85,11 @@ def test_a_bent_photo_is_straightened_and_left_bent_when_asked(editor: EditorPag
     Image.fromarray(bent(lines(), -0.15)).save(tmp_path / "wide.png")
     drop(editor, tmp_path / "wide.png")
     editor.until(lambda: editor.session.inputs.photo.straightened is not None, "straightened", seconds=90)
-    expect(editor.page.get_by_text("The lens bent straight lines")).to_be_visible(timeout=LEARN_MS)
+    expect(editor.page.get_by_text("The photo was straightened")).to_be_visible(timeout=LEARN_MS)
     keep_picture(editor, "straightened-photo")
     editor.page.get_by_role("button", name="Undo straightening").click()
     editor.until(lambda: editor.session.inputs.photo.straightened is None, "as its file has it", seconds=90)
-    expect(editor.page.get_by_text("The lens bent straight lines")).not_to_be_visible()
+    expect(editor.page.get_by_text("The photo was straightened")).not_to_be_visible()
     keep_picture(editor, "bent-photo")
 
 

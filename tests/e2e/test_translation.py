@@ -14,7 +14,7 @@ from playwright.sync_api import BrowserContext, expect
 from diorama_app.serve import start
 from diorama_app.session.preferences import Preferences
 from diorama_app.strings import use_language
-from tests.app.small_room import PlainLibrary, make_project
+from tests.app.small_room import PlainLibrary, furnished_scene, make_project
 from tests.e2e.browser import EditorPage
 from tests.e2e.conftest import keep_picture
 from tests.review.doubtful_room import doubtful_scene
@@ -87,7 +87,8 @@ def untranslated(editor: EditorPage, where: str) -> set[str]:
     editor.page.wait_for_timeout(400)  # the page names fields five times a second
     session = editor.session
     captions = (shape.caption for shape in session.library.shapes())
-    labels = [*(o.label for o in session.scene.objects), *captions, "demo", "room.png", *NO_TEXT]
+    objects = (*session.scene.objects, *furnished_scene().objects)
+    labels = [*(o.label for o in objects), *captions, "demo", "room.png", *NO_TEXT]
     known = [
         form for label in sorted(filter(None, labels), key=len, reverse=True) for form in (label, label.capitalize())
     ]

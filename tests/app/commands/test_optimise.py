@@ -76,7 +76,7 @@ def test_a_selection_is_asked_for_whoever_placed_it(session, client) -> None:
 def test_a_room_that_people_furnished_alone_is_not_tidied(session, client) -> None:
     by_hand = replace(session.scene, objects=tuple(replace(o, by_hand=True) for o in session.scene.objects))
     session.commit("all", by_hand, by=client)
-    with pytest.raises(EditRefused, match="people placed everything"):
+    with pytest.raises(EditRefused, match="everything here was placed by people"):
         optimise.optimise(session, "feasible")
 
 

@@ -12,7 +12,7 @@ import torch
 
 from diorama_app.reconstruction import networks
 from diorama_app.reconstruction.networks import NO_DETECTOR, detect_with_networks, find_furniture, get_networks
-from diorama_app.reconstruction.text_to_scene import COMPOSED, describe_room, how_pictures_come
+from diorama_app.reconstruction.text_to_scene import NO_ENDPOINT, describe_room, how_pictures_come
 from diorama_app.session.client import Client
 from diorama_core.artefacts import Inputs, LabelledBox
 from diorama_core.errors import EditRefused, InputError, UnavailableError
@@ -167,7 +167,7 @@ def test_a_room_needs_words_and_a_whole_setting(
 ) -> None:
     with pytest.raises(InputError, match="describe the room"):
         describe_room(client, "  ")
-    assert how_pictures_come() == COMPOSED
+    assert how_pictures_come() == NO_ENDPOINT
     monkeypatch.setenv("DIORAMA_IMAGE_BASE_URL", "http://127.0.0.1:9/v1")
     assert "DIORAMA_IMAGE_MODEL" in how_pictures_come()
     with pytest.raises(UnavailableError, match="DIORAMA_IMAGE_MODEL"):

@@ -24,7 +24,7 @@ def test_a_part_that_cannot_be_drawn_costs_that_part_only(
     monkeypatch.setattr(session.view, "show_photo_camera", drawn.append)
     session.refresh()
     assert drawn == [client]
-    assert client.viser_client.told == ["the view could not be drawn; your work is saved. See the server's log."]
+    assert client.viser_client.told == ["The view could not be drawn; your work is saved. See the server's log."]
 
 
 def test_a_shape_that_cannot_be_read_is_said_as_it_is(
