@@ -1,11 +1,13 @@
-"""Exports rooms, has engines load them and two seconds of gravity run there, and writes the table of the docs.
+"""Exports rooms, has engines simulate them and programs open them, and writes the table of the docs.
 
-    DIORAMA_ENGINES_PYTHON=engines/bin/python PYTHONPATH=. python scripts/engines.py PROJECT... [--engines NAME...]
-        [--docs docs/export.md]
+    DIORAMA_ENGINES_PYTHON=engines/bin/python PYTHONPATH=. python scripts/engines.py PROJECT... [--edited] [--text]
+        [--scan] [--engines NAME...] [--docs docs/export.md] [--pictures FOLDER]
 
-The engines live in an environment of their own (`pip install mujoco pybullet drake sapien 'newton[sim,importers]'`).
-An object is stable when it moves by less than a centimetre and two degrees; joints count that the engine has with the
-limits that were written, and colliders that it has.
+The engines live in an environment of their own (`pip install mujoco pybullet drake sapien 'newton[sim,importers]'`),
+Blender in another; `engine_programs.py` names the programs. An object is stable when it moves by less than a centimetre
+and two degrees; joints count that the engine has with the limits that were written, and colliders that it has. Pictures
+are compared with ours of the same camera: mean difference of colour (CIE 1976), and how many are nearly all white or
+black.
 """
 
 from __future__ import annotations
@@ -17,21 +19,50 @@ import os
 import subprocess
 import sys
 import tempfile
-from dataclasses import dataclass
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from diorama_core.export import FORMATS, export_scene
+import cv2
+import numpy as np
+from engine_programs import PROGRAMS, Program, said, three_page
+from export_scenes import Source, from_scan, from_text, projects
+from PIL import Image
+
+from diorama_app.projects.formats import EXPORT_FORMATS
+from diorama_core.export import export_scene
+from diorama_core.export.blender import blender_python
 from diorama_core.export.bodies import PhysicalScene
 from diorama_core.export.colliders import physical_scene
+from diorama_core.export.gathering import ExportScene
 from diorama_core.export.limbs import ExportLimb
 from diorama_core.export.stability import MAX_DRIFT_M
 from diorama_core.library.catalogue import built_in_library
-from diorama_core.project.storage import Project
+from diorama_core.library.record import ShapeLibrary
+from diorama_core.render.picture import picture, scene_view
+from diorama_core.render.raycast import PinholeView
 
-FILES = {"mujoco": "mjcf", "pybullet": "urdf", "sapien": "urdf", "drake": "sdf", "newton": "usdc"}
+FILES = {
+    "mujoco": "mjcf",
+    "pybullet": "urdf",
+    "sapien": "urdf",
+    "drake": "sdf",
+    "newton": "usdc",
+}
 """Which format each engine is given."""
-NAMES = {"mujoco": "MuJoCo", "pybullet": "PyBullet", "sapien": "SAPIEN", "drake": "Drake", "newton": "newton"}
+NAMES = {
+    "mujoco": "MuJoCo",
+    "pybullet": "PyBullet",
+    "sapien": "SAPIEN",
+    "drake": "Drake",
+    "newton": "newton",
+}
+DRAWN = {"MuJoCo": "mujoco", "PyBullet": "pybullet", "Blender": "blender", "three.js": "three"}
+"""Rows with a picture, and what draws it."""
+WIDTH_PX = 320
+WHITE_L, BLACK_L, MAX_SHARE = 97.0, 3.0, 0.4
+"""A picture is pale or black when more than this share of it is lighter or darker."""
 MAX_TURN_DEG, PATIENCE_S = 2.0, 900.0
 BEGIN, END = "<!-- engines -->", "<!-- /engines -->"
 """What surrounds the table in the docs."""
@@ -39,9 +70,12 @@ BEGIN, END = "<!-- engines -->", "<!-- /engines -->"
 
 @dataclass
 class Row:
-    """One engine's line of the table."""
+    """One engine's or program's line of the table."""
 
+    kind: str
+    """The format that it is given."""
     version: str = "–"
+    simulates: bool = True
     loads: int = 0
     stable: int = 0
     free: int = 0
@@ -49,6 +83,9 @@ class Row:
     all_joints: int = 0
     colliders: int = 0
     all_colliders: int = 0
+    differences: list[float] = field(default_factory=list)
+    """Of the pictures."""
+    pale: int = 0
 
     def add(
         self, found: dict[str, Any], free: list[str], limits: list[tuple[float, float] | None], colliders: int
@@ -65,12 +102,32 @@ class Row:
         moved = [found["moved"][name] for name in free if name in found["moved"]]
         self.stable += sum(m < MAX_DRIFT_M and deg < MAX_TURN_DEG for m, deg in moved)
         self.colliders += min(found["colliders"], colliders)
-        left = [None if each is None else tuple(each) for each in found["limits"]]
+        left: list[Any] = [None if each is None else tuple(each) for each in found["limits"]]
         for expected in limits:
             match = next((each for each in left if same(each, expected)), "none")
             if match != "none":
                 left.remove(match)
                 self.joints += 1
+
+    def compare(self, shown: np.ndarray, ours: np.ndarray) -> None:
+        """Add a picture beside ours."""
+        theirs, here = (cv2.cvtColor(p.astype(np.float32) / 255, cv2.COLOR_RGB2LAB) for p in (shown, ours))
+        self.differences.append(float(np.linalg.norm(theirs - here, axis=2).mean()))
+        self.pale += bool(max((theirs[..., 0] > WHITE_L).mean(), (theirs[..., 0] < BLACK_L).mean()) > MAX_SHARE)
+
+    def line(self, name: str, rooms: int) -> str:
+        """The row in Markdown."""
+        counts = "– | – | –"
+        if self.simulates and self.loads:
+            counts = (
+                f"{self.stable} of {self.free} | {self.joints} of {self.all_joints} | "
+                f"{self.colliders} of {self.all_colliders}"
+            )
+        shown = "–"
+        if self.differences:
+            shown = f"{np.mean(self.differences):.1f} ({len(self.differences)})"
+            shown += f", {self.pale} pale or black" if self.pale else ""
+        return f"| {name} | {self.version} | `{self.kind}` | {self.loads} of {rooms} | {counts} | {shown} |"
 
 
 def same(a: tuple[float, float] | None, b: tuple[float, float] | None) -> bool:
@@ -85,20 +142,15 @@ def limits_in(kind: str, limb: ExportLimb) -> tuple[float, float] | None:
     return limb.lower - shift, limb.upper - shift
 
 
-def colliders_in(physical: PhysicalScene) -> int:
-    bodies = sum(len(b.parts) + sum(len(m.parts) for m in b.moving) for b in physical.bodies)
-    return bodies + sum(len(slab.pieces) for slab in physical.slabs)
-
-
 def checked(engine: str, folder: Path) -> dict[str, Any] | None:
     """What an engine says of a room; None where it does not load it."""
-    command = [
-        os.environ.get("DIORAMA_ENGINES_PYTHON", sys.executable),
-        str(Path(__file__).with_name("engine_checks.py")),
-    ]
-    done = subprocess.run(
-        [*command, engine, str(folder)], capture_output=True, text=True, timeout=PATIENCE_S, check=False
-    )
+    script = str(Path(__file__).with_name("engine_checks.py"))
+    command = [os.environ.get("DIORAMA_ENGINES_PYTHON", sys.executable), script, engine, str(folder)]
+    try:
+        done = subprocess.run(command, capture_output=True, text=True, timeout=PATIENCE_S, check=False)
+    except subprocess.TimeoutExpired:
+        print(f"{engine}: not done after {PATIENCE_S:.0f} s", file=sys.stderr)
+        return None
     if done.returncode:
         print(f"{engine}: {(done.stderr.strip().splitlines() or ['died'])[-1]}", file=sys.stderr)
         return None
@@ -106,52 +158,140 @@ def checked(engine: str, folder: Path) -> dict[str, Any] | None:
     return found
 
 
-def check_room(project: Project, rows: dict[str, Row]) -> None:
-    """Export one room in every format that is needed, and count what each engine makes of it."""
-    library, scene = built_in_library(), project.load_scene()
-    with tempfile.TemporaryDirectory() as name:
-        for kind in {FILES[engine] for engine in rows}:
-            suffix, textures = FORMATS[kind].suffixes[0], project.textures(scene)
-            gathered = export_scene(scene, library, Path(name) / f"room{suffix}", kind, textures=textures)
-        physical = physical_scene(gathered)
-        colliders, free = colliders_in(physical), [b.node.slug for b in physical.bodies if b.free]
-        for engine, row in rows.items():
-            limits = [limits_in(FILES[engine], m.limb) for b in physical.bodies for m in b.moving]
-            row.free += len(free)
-            row.all_joints += len(limits)
-            row.all_colliders += colliders
-            found = checked(engine, Path(name))
-            if found is not None:
-                row.add(found, free, limits, colliders)
-                moved = {
-                    n: f"{100 * m:.1f} cm {deg:.0f}°"
-                    for n, (m, deg) in found["moved"].items()
-                    if m >= MAX_DRIFT_M or deg >= MAX_TURN_DEG
-                }
-                joints = "" if len(found["limits"]) == len(limits) else f", {len(found['limits'])} joints"
-                print(f"{project.name} {engine}: {moved or 'at rest'}{joints}", file=sys.stderr, flush=True)
+def exported(source: Source, kinds: Iterable[str], library: ShapeLibrary, folder: Path) -> dict[str, ExportScene]:
+    """The room in every format that is needed."""
+    found = {}
+    for kind in kinds:
+        path = folder / f"{'game' if kind == 'game' else 'room'}{EXPORT_FORMATS[kind].suffixes[0]}"
+        found[kind] = export_scene(source.scene, library, path, EXPORT_FORMATS[kind], textures=source.textures)
+    return found
 
 
-def table(rows: dict[str, Row], rooms: int) -> list[str]:
-    lines = ["| engine | version | file | loads | stable | joints | colliders |", "|---|---|---|---:|---:|---:|---:|"]
-    for engine, row in rows.items():
-        counts = (
-            f"{row.stable} of {row.free} | {row.joints} of {row.all_joints} | {row.colliders} of {row.all_colliders}"
-        )
-        lines.append(f"| {NAMES[engine]} | {row.version} | `{FILES[engine]}` | {row.loads} of {rooms} | {counts} |")
+def simulate(rows: dict[str, Row], physical: PhysicalScene, folder: Path, name: str) -> None:
+    """Count what each engine makes of a room."""
+    bodies = sum(len(b.parts) + sum(len(m.parts) for m in b.moving) for b in physical.bodies)
+    colliders = bodies + sum(len(slab.pieces) for slab in physical.slabs)
+    free = [b.node.slug for b in physical.bodies if b.free]
+    for engine in [engine for engine in FILES if NAMES[engine] in rows]:
+        row = rows[NAMES[engine]]
+        limits = [limits_in(row.kind, m.limb) for b in physical.bodies for m in b.moving]
+        row.free += len(free)
+        row.all_joints += len(limits)
+        row.all_colliders += colliders
+        found = checked(engine, folder)
+        if found is None:
+            continue
+        row.add(found, free, limits, colliders)
+        moved = {
+            n: f"{100 * m:.1f} cm {deg:.0f}°"
+            for n, (m, deg) in found["moved"].items()
+            if m >= MAX_DRIFT_M or deg >= MAX_TURN_DEG
+        }
+        joints = "" if len(found["limits"]) == len(limits) else f", {len(found['limits'])} joints"
+        print(f"{name} {engine}: {moved or 'at rest'}{joints}", file=sys.stderr, flush=True)
+
+
+def open_in_programs(rows: dict[str, Row], gathered: dict[str, ExportScene], folder: Path, name: str) -> None:
+    """Count the programs that open a room without a finding."""
+    for program in [p for p in PROGRAMS if p.name in rows and rows[p.name].version]:
+        kind = program.kind
+        path = folder / f"{'game' if kind == 'game' else 'room'}{EXPORT_FORMATS[kind].suffixes[0]}"
+        try:
+            found = program.findings(path, gathered[kind])
+        except Exception as error:  # every failure is a finding of its own
+            found = [f"{type(error).__name__}: {error}"]
+        rows[program.name].loads += not found
+        if found:
+            print(f"{name} {program.name}: {found[:3]}", file=sys.stderr, flush=True)
+
+
+def draw(rows: dict[str, Row], source: Source, library: ShapeLibrary, folder: Path, album: Path | None) -> None:
+    """Compare the engines' pictures of a room with ours, where it has a camera."""
+    camera = source.scene.camera
+    if camera is None:
+        return
+    size = WIDTH_PX, round(WIDTH_PX * camera.intrinsics.height / camera.intrinsics.width)
+    view = scene_view(source.scene, "photo", size)
+    assert isinstance(view, PinholeView)
+    lens = view.camera
+    k = lens.intrinsics
+    about = {"width": size[0], "height": size[1], "intrinsics": [k.fx, k.fy, k.cx, k.cy]}
+    (folder / "camera.json").write_text(json.dumps({**about, "T_world_camera": lens.T_world_camera.tolist()}))
+    ours = picture(source.scene, library, size=size, textures=source.textures)
+    shown = {"diorama": ours}
+    for name, engine in DRAWN.items():
+        if name in rows and rows[name].version not in ("", "–"):
+            drawn = picture_by(engine, folder, size)
+            if drawn is not None:
+                rows[name].compare(drawn, ours)
+                shown[engine] = drawn
+    if album is not None:
+        album.mkdir(parents=True, exist_ok=True)
+        Image.fromarray(np.hstack(list(shown.values()))).save(album / f"{source.name}.png")
+
+
+def picture_by(engine: str, folder: Path, size: tuple[int, int]) -> np.ndarray | None:
+    """What an engine draws of a room; None where it draws nothing."""
+    out = folder / f"{engine}.png"
+    if engine == "three":
+        with three_page(folder / "room.glb", *size) as (page, _, _):
+            page.locator("canvas").screenshot(path=out)
+    else:
+        python = blender_python() if engine == "blender" else os.environ.get("DIORAMA_ENGINES_PYTHON", sys.executable)
+        output = said(python, str(Path(__file__).with_name("engine_pictures.py")), engine, str(folder), str(out))
+        if not out.is_file():
+            print(f"{engine}: {(output.strip().splitlines() or ['no picture'])[-1]}", file=sys.stderr)
+            return None
+    return np.asarray(Image.open(out).convert("RGB"))
+
+
+def table(rows: dict[str, Row], rooms: list[str]) -> list[str]:
+    lines = [
+        "| engine | version | file | loads | stable | joints | colliders | picture |",
+        "|---|---|---|---:|---:|---:|---:|---:|",
+        *(row.line(name, len(rooms)) for name, row in rows.items() if row.version),
+    ]
+    missing = [name for name, row in rows.items() if not row.version]
     day = datetime.datetime.now(tz=datetime.UTC).strftime("%d %B %Y").lstrip("0")
-    return [*lines, "", f"Checked by `scripts/engines.py` on {day}; number of rooms: {rooms}."]
+    said_last = f"Checked by `scripts/engines.py` on {day}. Rooms: {', '.join(rooms)}."
+    return [*lines, "", said_last, *([f"Not installed there: {', '.join(missing)}."] if missing else [])]
+
+
+def sources(a: argparse.Namespace, library: ShapeLibrary) -> Iterator[Source]:
+    """The rooms that are asked for."""
+    if a.scan:
+        yield from_scan()
+    if a.text:
+        yield from_text(library)
+    yield from projects(a.projects, library, edited=1 if a.edited else 0)
 
 
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("projects", nargs="+", type=Path, metavar="PROJECT")
-    parser.add_argument("--engines", nargs="*", default=list(FILES), choices=list(FILES))
+    parser.add_argument("projects", nargs="*", type=Path, metavar="PROJECT")
+    parser.add_argument("--edited", action="store_true", help="the first project after edits, too")
+    parser.add_argument("--text", action="store_true", help="a room from words")
+    parser.add_argument("--scan", action="store_true", help="a room as RoomPlan measures it")
+    every = [*FILES, *(p.name for p in PROGRAMS)]
+    parser.add_argument("--engines", nargs="*", default=every, choices=every, metavar="NAME", help=", ".join(every))
     parser.add_argument("--docs", type=Path, metavar="FILE.md", help="write the table there, between its marks")
+    parser.add_argument("--pictures", type=Path, metavar="FOLDER", help="keep the engines' pictures beside ours there")
     a = parser.parse_args()
-    rows = {engine: Row() for engine in a.engines}
-    for done, project in enumerate(map(Project.open, a.projects), 1):
-        check_room(project, rows)
+    os.environ.setdefault("MUJOCO_GL", "osmesa")
+    library, done = built_in_library(), list[str]()
+    asked: list[Program] = [p for p in PROGRAMS if p.name in a.engines]
+    rows = {NAMES[engine]: Row(FILES[engine]) for engine in FILES if engine in a.engines}
+    rows |= {p.name: Row(p.kind, p.release(), simulates=False) for p in asked}
+    for source in sources(a, library):
+        with tempfile.TemporaryDirectory() as name:
+            kinds = dict.fromkeys(["glb", *(row.kind for row in rows.values())])
+            gathered = exported(source, kinds, library, Path(name))
+            open_in_programs(rows, gathered, Path(name), source.name)
+            bodies = next((gathered[row.kind] for row in rows.values() if row.simulates), None)
+            if bodies is not None:
+                simulate(rows, physical_scene(bodies), Path(name), source.name)
+            draw(rows, source, library, Path(name), a.pictures)
+        done.append(source.name)
         lines = table(rows, done)
         if a.docs is not None:
             before, _, rest = a.docs.read_text("utf-8").partition(BEGIN)
