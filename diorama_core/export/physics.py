@@ -18,7 +18,7 @@ from diorama_core.render.appearance import Material, Surface
 
 MIN_SHEET_M, MAX_SHEET_M = 0.0005, 0.003
 """Thickness of surfaces that enclose no volume (leaves, lamp shades, cloth) lies between these."""
-MAX_PRIOR_RATIO = 1.5
+MAX_PRIOR_RATIO = 1.25
 """A mass may differ from the usual one of its category and size by this factor at most: a shape shows its outer
 materials, which says less than what such things weigh."""
 UNKNOWN_MASS_KG = 1.0
