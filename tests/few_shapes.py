@@ -23,9 +23,9 @@ SEATS: Final = "few-seats"
 """Name of the stored library, for commands and servers that are given one."""
 
 
-def few_shapes(*scenes: Scene) -> Subset:
+def few_shapes(*scenes: Scene, of_a_kind: int = OF_A_KIND) -> Subset:
     """The first built-in shapes of every kind, and those of the scenes."""
-    first = _first_of_every_kind()
+    first = _first_of_every_kind(of_a_kind)
     return replace(first, ids=first.ids | {base_id(o.shape_id) for scene in scenes for o in scene.objects})
 
 
@@ -46,10 +46,10 @@ def stored_seats() -> str:
 
 
 @cache
-def _first_of_every_kind() -> Subset:
+def _first_of_every_kind(count: int) -> Subset:
     library, met, chosen = built_in_library(), Counter[str](), list[str]()
     for shape in library.shapes():
         met[shape.category] += 1
-        if met[shape.category] <= OF_A_KIND:
+        if met[shape.category] <= count:
             chosen.append(shape.id)
     return Subset(library, frozenset(chosen), "few")
