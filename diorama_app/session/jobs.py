@@ -83,6 +83,9 @@ def _turn(progress: Progress) -> Iterator[None]:
     try:
         yield
     finally:
+        from diorama_core.processes import give_back_memory
+
+        give_back_memory()
         _TURNS.release()
 
 

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import ctypes
-import functools
 import itertools
 import sys
 import time
@@ -14,6 +12,7 @@ from pathlib import Path
 import numpy as np
 
 from diorama_core.errors import InputError, UnavailableError
+from diorama_core.processes import give_back_memory
 from diorama_core.progress import Progress, ProgressEvent
 
 YARDSTICK_REPEATS = 5
@@ -64,7 +63,7 @@ class _Meter:
     """Starts when it is made."""
 
     def __init__(self) -> None:
-        _give_back_memory()
+        give_back_memory()
         self._before_mb = _begin_peak_mb()
         self._begun = time.process_time()
 
@@ -112,21 +111,6 @@ def process_peak_mb() -> float:
         raise UnavailableError("this system does not tell how much memory a process took; run it elsewhere") from error
     scale = 1024.0 if sys.platform != "darwin" else 1024.0**2
     return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / scale
-
-
-@functools.cache
-def _libc() -> ctypes.CDLL | None:
-    try:
-        return ctypes.CDLL("libc.so.6")
-    except OSError:
-        return None
-
-
-def _give_back_memory() -> None:
-    """Ask the allocator to hand back what is free, so that work that reuses it is not seen as needing none."""
-    library = _libc()
-    if library is not None:
-        library.malloc_trim(0)
 
 
 def _begin_peak_mb() -> float | None:
