@@ -58,3 +58,25 @@ def test_archives_are_capped_before_they_are_unpacked(monkeypatch: pytest.Monkey
         arrays_of(buffer.getvalue(), ["b"])
     with pytest.raises(zipfile.BadZipFile):
         arrays_of(b"no archive", ["b"])
+
+
+@pytest.mark.parametrize("version", [(1, 0), (2, 0)])
+def test_headers_that_others_write_are_read(version: tuple[int, int]) -> None:
+    """Keys in another order, which the quick reader does not know."""
+    value = np.arange(12.0).reshape(3, 4)
+    text = b"{'shape': (3, 4), 'fortran_order': False, 'descr': '<f8'}\n"
+    size = len(text).to_bytes(2 if version == (1, 0) else 4, "little")
+    content = b"\x93NUMPY" + bytes(version) + size + text + value.tobytes()
+    np.testing.assert_array_equal(array_of(content), value)
+
+
+def test_an_entry_of_another_size_than_its_archive_says_is_refused() -> None:
+    buffer = io.BytesIO()
+    with zipfile.ZipFile(buffer, "w", zipfile.ZIP_DEFLATED) as archive:
+        archive.writestr("a.npy", b"abc")
+    content = bytearray(buffer.getvalue())
+    listed = content.index(b"PK\x01\x02") + 24
+    assert int.from_bytes(content[listed : listed + 4], "little") == 3
+    content[listed : listed + 4] = (10).to_bytes(4, "little")
+    with zipfile.ZipFile(io.BytesIO(content)) as archive, pytest.raises(ValueError, match="another size than stated"):
+        arrays.entry(archive, "a.npy")

@@ -8,6 +8,7 @@ import subprocess
 import sys
 import time
 from collections.abc import Iterator
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import numpy as np
@@ -107,12 +108,35 @@ def test_what_takes_too_long_is_ended() -> None:
 def test_waiting_for_a_processor_does_not_count(monkeypatch: pytest.MonkeyPatch) -> None:
     used = limited.cpu_time(os.getpid())
     assert used is not None
-    assert used[0] > 0.0
+    times = os.times()
+    assert times.system > 0.05
+    assert used[0] == pytest.approx(times.user + times.system, abs=0.05)
     assert limited.cpu_time(-1) is None
     monkeypatch.setattr(limited, "cpu_time", lambda pid: (1.0, True))  # ready, and never given a turn
     process = LimitedProcess(memory=800_000_000, seconds=0.3)
     process.call("room.png", time.sleep, 1.0)
     process.close()
+
+
+def test_closing_ends_the_process_and_leaves_no_files_open(process: LimitedProcess) -> None:
+    first = process.call("x", pid)
+    before = len(os.listdir("/proc/self/fd"))
+    for _ in range(3):
+        process.close()
+        assert not runs(first)
+        first = process.call("x", pid)
+    until(lambda: len(os.listdir("/proc/self/fd")) <= before, "pipes of processes that ended are closed")
+
+
+def test_stopping_ends_what_somebody_waits_for(process: LimitedProcess) -> None:
+    worker = process.call("x", pid)
+    with ThreadPoolExecutor(1) as threads:
+        waiting = threads.submit(process.call, "room.png", time.sleep, 600.0)
+        until(lambda: process._lock.locked(), "it was asked")
+        process.stop()
+        with pytest.raises(InputError, match=r"room\.png"):
+            waiting.result(60.0)
+    until(lambda: not runs(worker), "it has ended")
 
 
 def test_errors_meant_for_people_arrive_as_they_are(process: LimitedProcess) -> None:

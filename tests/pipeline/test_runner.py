@@ -160,3 +160,30 @@ def test_what_was_just_written_stays_whatever_the_clock_says(tmp_path: Path) -> 
     _write(newest, ())
     assert newest.exists()
     assert len(list(tmp_path.glob("*.zip"))) == CACHED_PER_STAGE
+
+
+@dataclass(frozen=True)
+class Around:
+    """A stage that holds another one in a dataclass of its own."""
+
+    inner: object
+
+
+def test_stages_within_stages_count_for_the_key() -> None:
+    outer = Around(Around(SingleViewMetrology()))
+    assert stage_code(outer) != stage_code(outer, Edited("perception.metrology.rows"))
+    assert stage_code(outer) == stage_code(outer, Edited("export.gltf"))
+    assert stage_code(Around(SingleViewMetrology)) == stage_code(Around(SingleViewMetrology)), "a class is no stage"
+
+
+def test_an_artefact_is_read_once_for_all_keys_and_runs_are_timed(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    read: list[object] = []
+    real = runner_module.codec.fingerprint
+    monkeypatch.setattr(runner_module.codec, "fingerprint", lambda value: (read.append(value), real(value))[1])
+    runner = Runner(tmp_path)
+    for name in ("widen", "widen again"):
+        runner.run(name, Widen(), Widen().widen, (BOX,), Progress())
+    assert read == [BOX]
+    assert all(0.0 <= run.seconds < 60.0 for run in runner.runs)

@@ -72,6 +72,18 @@ def test_versions_of_earlier_programs_are_older_than_all_with_a_number(project: 
     assert len(project.backups()) == MAX_BACKUPS
 
 
+def test_within_a_minute_no_other_version_is_kept_unless_asked(project: Project, clock: list[float]) -> None:
+    kept = backups.Backups(project.folder / "versions")
+    assert kept.keep(project.scene_path, at_once=False)
+    assert kept.paths()[0].name.startswith("scene-n000001-")
+    project.scene_path.write_bytes(project.scene_path.read_bytes() + b" ")
+    assert not kept.keep(project.scene_path, at_once=False)
+    assert kept.keep(project.scene_path, at_once=True)
+    clock[0] += 61.0
+    assert not kept.keep(project.scene_path, at_once=False), "it holds the same"
+    assert [path.name[:13] for path in kept.paths()] == ["scene-n000002", "scene-n000001"]
+
+
 def test_the_same_scene_is_kept_once(project: Project, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(backups, "BACKUP_EVERY_S", 0.0)
     for _ in range(5):

@@ -9,9 +9,11 @@ import numpy as np
 import pytest
 
 from diorama_core.errors import ProjectError, SceneError
-from diorama_core.project import backups
+from diorama_core.library.library_names import BUILT_IN
+from diorama_core.pipeline.runner import StageRun
+from diorama_core.project import backups, storage
 from diorama_core.project.storage import Project
-from diorama_core.scene.types import Scene
+from diorama_core.scene.types import Architecture, Plane, Scene
 from tests.pipeline.test_codec import example_inputs
 from tests.scene.test_edits import _stack
 
@@ -27,6 +29,7 @@ def test_a_project_keeps_inputs_scene_and_textures(tmp_path: Path) -> None:
     assert again.load_inputs() == inputs
     assert again.load_scene() == _stack()
     assert again.texture("wall_1") is not None
+    assert again.shared_library_name == BUILT_IN
     assert (tmp_path / "room" / "photo.jpg").exists()
     assert json.loads((tmp_path / "room" / "project.json").read_text())["warnings"] == ["a note"]
 
@@ -91,3 +94,24 @@ def test_texture_names_cannot_leave_the_project(tmp_path: Path) -> None:
     project.save_textures({"../../outside": np.zeros((4, 4, 3), np.uint8)})
     assert not (tmp_path.parent / "outside.jpg").exists()
     assert (project.folder / "textures" / "outside.jpg").exists()
+
+
+def test_how_long_stages_took_is_noted(tmp_path: Path) -> None:
+    project = Project.create(tmp_path / "room")
+    project.save_stage_runs([StageRun("depth", "Depth()", 0.25, cached=False)])
+    noted = json.loads((project.folder / "project.json").read_text())["stages"]
+    assert noted == [{"stage": "depth", "used": "Depth()", "seconds": 0.25, "cached": False}]
+
+
+def test_pictures_beyond_the_limit_and_those_that_are_missing_are_left_out(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    project = Project.create(tmp_path / "room")
+    wall = Plane("wall_1", "wall", np.array([[0, 0, 0], [2, 0, 0], [2, 0, 2.0]]), texture="a")
+    floor = Plane("floor", "floor", np.array([[0, 0, 0], [2, 0, 0], [2, 2, 0.0]]), texture="b")
+    lost = replace(floor, id="floor_2", texture="c")
+    scene = Scene(architecture=Architecture((wall, floor, lost)))
+    project.save_textures({name: np.full((8, 8, 3), 120, np.uint8) for name in "ab"})
+    assert set(project.textures(scene)) == {"a", "b"}
+    monkeypatch.setattr(storage, "MAX_TEXTURE_PIXELS", 64)
+    assert set(project.textures(scene)) == {"a"}

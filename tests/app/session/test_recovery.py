@@ -233,3 +233,15 @@ def test_notes_of_earlier_programs_are_found(project: Project, tmp_path: Path) -
     found = here.left_behind(project)
     assert found is not None
     assert found.scene() == renamed()
+
+
+def test_notes_of_other_projects_go_after_a_month(project: Project, tmp_path: Path) -> None:
+    here = Recovery(tmp_path / "unsaved")
+    other = make_project(tmp_path / "other")
+    Recovery(tmp_path / "unsaved").note(other, renamed())
+    (note,) = (tmp_path / "unsaved").glob("*.json")
+    here.clean_up(project)
+    assert note.exists()
+    os.utime(note, (0.0, time.time() - recovery.FORGOTTEN_S - 60.0))
+    here.clean_up(project)
+    assert not note.exists()
