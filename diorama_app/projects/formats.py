@@ -66,6 +66,7 @@ GUIDES: Mapping[str, Guide] = {
     "svg": Guide(PLANS, "browsers, Inkscape, Illustrator", _FURNITURE),
     "pdf": Guide(PLANS, "any PDF viewer; prints to scale", _FURNITURE),
     "dxf": Guide(PLANS, "made for AutoCAD, LibreCAD, QCAD", _FURNITURE),
+    "schedule": Guide(PLANS, "made for spreadsheets", _FURNITURE),
     "sh3d": Guide(PLANS, "version 7.0.2; made for 5.3 and newer", _FURNITURE | frozenset[Choice]({"textures"})),
     "ifc": Guide(PLANS, "IfcOpenShell; made for Revit, Bonsai, IFC viewers", _SHAPES),
     "html": Guide(SHOW, "any browser, without a network", _TEXTURED),

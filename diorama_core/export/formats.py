@@ -131,6 +131,13 @@ _TABLE = (
     ),
     Format("hdr", "Environment map", (".hdr",), "the light from all sides of the room", "environment:write_hdr"),
     Format("ply", "PLY mesh", (".ply",), "one mesh with vertex colours", "ply:write_ply"),
+    Format(
+        "schedule",
+        "Furniture schedule (CSV)",
+        (".csv",),
+        "a row for each object: kind, size, place, materials",
+        "schedule:write_schedule",
+    ),
     Format("stl", "STL for printing", (".stl",), "bare triangles in millimetres", "stl:write_stl"),
     Format(
         "scene-state",
