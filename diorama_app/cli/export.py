@@ -51,9 +51,9 @@ def add_export(commands: Any) -> None:
     )
     p.add_argument(
         "--engine",
-        choices=("godot", "unreal", "none"),
+        choices=("godot", "unreal", "unity", "three"),
         default="godot",
-        help="of a game pack: whose names colliders have; none leaves them out (default: %(default)s)",
+        help="of a game pack: whose names colliders have; Unity and three.js have none (default: %(default)s)",
     )
     p.add_argument(
         "--light-uv",

@@ -129,7 +129,7 @@ class _Builder:
         if drawn and self._gathered.options.light_uv:
             drawn = tuple(unwrapped(drawn))
         children = [*below]
-        for number, part in enumerate(parts if self._gathered.options.engine != "none" else ()):
+        for number, part in enumerate(parts if self._gathered.options.engine in ("godot", "unreal") else ()):
             corners, faces = hull_faces(part @ to_pivot[:3, :3].T + to_pivot[:3, 3])
             faces = faces.astype(np.int32)
             hull = Surface(_single(corners), _single(_outward(corners)), faces, UNSEEN)

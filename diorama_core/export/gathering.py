@@ -35,7 +35,7 @@ from diorama_core.scene.types import Camera, Plane, Scene, SceneObject, Support
 Compression = Literal["none", "meshopt", "draco"]
 Bodies = Literal["free", "welded"]
 LightUnits = Literal["unit", "photometric", "none"]
-GameEngine = Literal["godot", "unreal", "none"]
+GameEngine = Literal["godot", "unreal", "unity", "three"]
 
 
 @dataclass(frozen=True)
@@ -60,7 +60,8 @@ class ExportOptions:
     """Whether lights of GLB and USD have unit exposure (a luminance of 1 is white, as programs without a camera's
     exposure show it), are in lumens and lux, or are left out."""
     engine: GameEngine = "godot"
-    """Whose names convex colliders of a game's file have; "none" leaves them out."""
+    """Which engine a game's file is for: colliders have its names; for Unity and three.js, which have none, they are
+    left out."""
     light_uv: bool = False
     """Whether a game's meshes have a second set of texture coordinates without overlaps, for baked light."""
     robot_radius_m: float = 0.25

@@ -36,7 +36,7 @@ def test_objects_stand_on_their_origin_and_parts_turn_about_theirs(tmp_path: Pat
 
 
 def test_what_is_drawn_is_where_the_scene_has_it(tmp_path: Path) -> None:
-    document, _, scene = written(tmp_path, engine="none")
+    document, _, scene = written(tmp_path, engine="three")
     nodes = {n["name"]: n for n in document["nodes"]}
     for item in (o for o in scene.objects if scene.meshes[o.mesh].triangles < MAX_TRIANGLES):
         points = np.concatenate([s.vertices for s in scene.meshes[item.mesh].surfaces]) * item.scale
@@ -48,7 +48,7 @@ def test_what_is_drawn_is_where_the_scene_has_it(tmp_path: Path) -> None:
 
 
 def test_colliders_have_the_names_of_the_engine(tmp_path: Path) -> None:
-    for engine, mark in (("godot", "-convcolonly"), ("unreal", "UCX_"), ("none", None)):
+    for engine, mark in (("godot", "-convcolonly"), ("unreal", "UCX_"), ("unity", None), ("three", None)):
         names = [n["name"] for n in written(tmp_path, engine=engine)[0]["nodes"]]
         assert any("-convcolonly" in n or "UCX_" in n for n in names) == (mark is not None)
         assert mark is None or sum(mark in n for n in names) > 10
@@ -56,7 +56,7 @@ def test_colliders_have_the_names_of_the_engine(tmp_path: Path) -> None:
 
 
 def test_there_are_few_materials_and_triangles(tmp_path: Path) -> None:
-    document, _, scene = written(tmp_path, engine="none")
+    document, _, scene = written(tmp_path, engine="three")
     assert len(document["materials"]) < len(scene.materials)
     for mesh in document["meshes"]:
         count = sum(document["accessors"][p["indices"]]["count"] // 3 for p in mesh["primitives"])

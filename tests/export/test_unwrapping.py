@@ -35,7 +35,7 @@ def test_no_two_triangles_share_a_texel() -> None:
 
 def test_a_game_pack_has_both_sets_where_it_is_asked_for(tmp_path: Path) -> None:
     for asked, compression in ((False, "none"), (True, "none"), (True, "meshopt")):
-        scene = gathered("primitives", light_uv=asked, engine="none", compression=compression)
+        scene = gathered("primitives", light_uv=asked, engine="three", compression=compression)
         write_game(scene, tmp_path / "room.glb")
         document = read_glb((tmp_path / "room.glb").read_bytes())[0]
         parts = [set(p["attributes"]) for m in document["meshes"] for p in m["primitives"]]
