@@ -253,7 +253,7 @@ def table(rows: dict[str, Row], rooms: list[str]) -> list[str]:
     ]
     missing = [name for name, row in rows.items() if not row.version]
     day = datetime.datetime.now(tz=datetime.UTC).strftime("%d %B %Y").lstrip("0")
-    said_last = f"Checked by `scripts/engines.py` on {day}. Rooms: {', '.join(rooms)}."
+    said_last = f"Checked by `scripts/engines.py` on {day}. Rooms: {'; '.join(rooms)}."
     return [*lines, "", said_last, *([f"Not installed there: {', '.join(missing)}."] if missing else [])]
 
 
