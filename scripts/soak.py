@@ -21,6 +21,7 @@ import sys
 import tempfile
 import threading
 import time
+import traceback
 from collections import defaultdict
 from collections.abc import Callable
 from pathlib import Path
@@ -33,6 +34,7 @@ import trimesh
 from PIL import Image
 
 import scripts.needs  # noqa: F401  # ends with a line where a package is missing
+from diorama_core.project.lock import OWNER
 from diorama_core.project.storage import Project
 from scripts.load import room_of, serving
 from tests.app.http_api.openapi_client import Client
@@ -78,7 +80,8 @@ class Figures:
             return
         except Exception as error:  # counted, and the person goes on
             with self._lock:
-                self.failed[kind].append(f"{type(error).__name__}: {str(error)[:100]}")
+                where = [f.line for f in traceback.extract_tb(error.__traceback__) if f.filename == __file__][-1]
+                self.failed[kind].append(f"{type(error).__name__}: {str(error)[:100]}, in: {where}")
             return
         with self._lock:
             self.seconds[kind].append(time.monotonic() - began)
@@ -118,6 +121,7 @@ class Person:
 
     def __init__(self, port: int, folder: Path, own: str, figures: Figures, seed: int) -> None:
         self.port, self.folder, self.own, self.figures = port, folder, own, figures
+        self.name = f"{folder.name}-{own}"
         self.chance = np.random.default_rng(seed)
         self.page = WirePage(port, query=f"?project={folder.name}")
         self.numbers = defaultdict[str, int](int)
@@ -185,13 +189,13 @@ class Person:
         self._until(lambda: len(list(folder.glob("*.zip"))) > count)
 
     def scan(self) -> None:
-        self._send("Open a file", f"scan-{self.own}.ply", _scan(int(self.chance.integers(100))))
-        self._begun(f"scan-{self.own}")
+        self._send("Open a file", f"scan-{self.name}.ply", _scan(int(self.chance.integers(100))))
+        self._begun(f"scan-{self.name}")
 
     def build(self) -> None:
         """A project of a photo, built on a page of its own."""
-        self._send("New from a photo", f"photo-{self.own}.png", _png(int(self.chance.integers(200))))
-        folder = self._begun(f"photo-{self.own}", scene=False)
+        self._send("New from a photo", f"photo-{self.name}.png", _png(int(self.chance.integers(200))))
+        folder = self._begun(f"photo-{self.name}", scene=False)
         page, self.page = self.page, WirePage(self.port, query=f"?project={folder.name}")
         try:
             self.page.wait_for(lambda: self._holds("__dioCanvas.told", "image/jpeg"), PATIENCE_S)
@@ -220,7 +224,8 @@ class Person:
         def found() -> Path | None:
             new = [p for p in self.folder.parent.glob(f"{stem}*") if p.name not in self.before]
             whole = "scene.json" if scene else "stages/inputs.zip"
-            return next((p for p in new if (p / whole).exists() and (p / "project.json").exists()), None)
+            begun = (p for p in new if (p / whole).exists() and (p / "project.json").exists())
+            return next((p for p in begun if scene or not (p / OWNER).exists()), None)  # who made it has let it go
 
         self._until(found)
         folder = found()
