@@ -85,11 +85,11 @@ def test_a_bent_photo_is_straightened_and_left_bent_when_asked(editor: EditorPag
     Image.fromarray(bent(lines(), -0.15)).save(tmp_path / "wide.png")
     drop(editor, tmp_path / "wide.png")
     editor.until(lambda: editor.session.inputs.photo.straightened is not None, "straightened", seconds=90)
-    expect(editor.page.get_by_text("The photo was straightened")).to_be_visible(timeout=LEARN_MS)
+    expect(editor.page.get_by_text("because its lens bends straight lines")).to_be_visible(timeout=LEARN_MS)
     keep_picture(editor, "straightened-photo")
     editor.page.get_by_role("button", name="Undo straightening").click()
     editor.until(lambda: editor.session.inputs.photo.straightened is None, "as its file has it", seconds=90)
-    expect(editor.page.get_by_text("The photo was straightened")).not_to_be_visible()
+    expect(editor.page.get_by_text("because its lens bends straight lines")).not_to_be_visible()
     keep_picture(editor, "bent-photo")
 
 
