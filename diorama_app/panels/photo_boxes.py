@@ -61,7 +61,11 @@ class PhotoBoxes:
 
     def _suggested(self, inputs: Inputs) -> Suggestions:
         if self._suggestions is None or self._suggestions.photo is not inputs.photo:
-            self._suggestions = Suggestions(inputs.photo, lambda: self._client.post(self._refresh, key="suggestions"))
+            self._suggestions = Suggestions(
+                inputs.photo,
+                lambda: self._client.post(self._refresh, key="suggestions"),
+                lambda: not self._client.has_left,
+            )
             self._dismissed = set()
         return self._suggestions
 

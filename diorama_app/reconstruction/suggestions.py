@@ -39,10 +39,14 @@ class Suggestions:
     Args:
         photo: the photo.
         on_ready: called from a thread when something that was asked for is there.
+        is_wanted: whether somebody still looks at it: what waits for its turn is left out otherwise.
     """
 
-    def __init__(self, photo: Photo, on_ready: Callable[[], None]) -> None:
+    def __init__(
+        self, photo: Photo, on_ready: Callable[[], None], is_wanted: Callable[[], bool] = lambda: True
+    ) -> None:
         self.photo = photo
+        self._is_wanted = is_wanted
         self._on_ready = on_ready
         self._seen: dict[Box, Float[np.ndarray, k]] = {}
         """Probabilities of the namer's categories."""
@@ -101,7 +105,7 @@ class Suggestions:
                 log.warning("nothing is suggested: %s", error)
                 then(None)
 
-        _WORKER.submit(tell)
+        self._submit(tell)
 
     def name(self, box: Box, marked: Sequence[Box], then: Callable[[LabelledBox], None]) -> None:
         """Tell the likeliest name of what a box holds that somebody drew.
@@ -120,7 +124,10 @@ class Suggestions:
                 name = UNKNOWN
             then(LabelledBox(box, name, name))
 
-        _WORKER.submit(tell)
+        self._submit(tell)
+
+    def _submit(self, task: Callable[[], None]) -> None:
+        _WORKER.submit(lambda: task() if self._is_wanted() else None)
 
     def _ask(self, key: object, work_out: Callable[[], object]) -> None:
         """Work something out once; what cannot be had is not tried again at every redraw."""
@@ -136,7 +143,7 @@ class Suggestions:
                 return
             self._on_ready()
 
-        _WORKER.submit(work)
+        self._submit(work)
 
     def _look_at(self, boxes: Sequence[Box]) -> None:
         from diorama_core.models.recogniser import own_recogniser

@@ -95,6 +95,7 @@ class Client:
         """Shows a line at the foot of the view, with a button that undoes when asked."""
         self.offer: Callable[[str, str, Callable[[], None]], None] = lambda message, label, do: None
         """Shows a line that stays, with a button that does something."""
+        self.has_left = False
         self.to_say: tuple[str, bool] | None = None
         """What is shown there with the next redraw."""
         self.open_start: Callable[[], None] = lambda: None

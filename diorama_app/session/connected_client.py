@@ -30,6 +30,8 @@ class ConnectedClient(Protocol):
     job_panel: Panel | None
     curves: Panel | None
     """What is redrawn while a layout is optimised."""
+    has_left: bool
+    """Whether the page was closed: nobody waits for anything any more."""
     to_say: tuple[str, bool] | None
     """A line for the foot of the view, and whether it offers undo."""
     toast: Callable[[str, bool], None]

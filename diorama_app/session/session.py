@@ -238,7 +238,9 @@ class EditorSession(SharedDocument):
 
     def left(self, viser_client: viser.ClientHandle) -> None:
         """A browser went away."""
-        self.clients.pop(viser_client.client_id, None)
+        client = self.clients.pop(viser_client.client_id, None)
+        if client is not None:
+            client.has_left = True
         self.ui_thread.forget(viser_client.client_id)
         self.refresh_panels()
         self.on_left()
@@ -281,6 +283,8 @@ class EditorSession(SharedDocument):
         self.preparer.stop()
         self.reader.close()
         self.thumbnails.stop()
+        for client in self.clients.values():
+            client.has_left = True
 
     def _refresh_job(self) -> None:
         self._tell_watchers()

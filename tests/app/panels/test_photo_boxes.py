@@ -24,7 +24,7 @@ LAMP = LabelledBox((400.0, 50.0, 460.0, 200.0), "lamp", "lamp", 0.55)
 class Known(suggestions.Suggestions):
     """Knows a chair and a lamp at once."""
 
-    def __init__(self, photo: Photo, on_ready: Callable[[], None]) -> None:
+    def __init__(self, photo: Photo, on_ready: Callable[[], None], is_wanted: Callable[[], bool]) -> None:
         self.photo = photo
 
     def boxes(self) -> tuple[LabelledBox, ...]:

@@ -108,6 +108,23 @@ def test_outlines_that_nobody_waits_for_hold_up_nothing(monkeypatch: pytest.Monk
 
 
 @shipped
+def test_what_waits_for_its_turn_is_left_out_when_nobody_looks_any_more(monkeypatch: pytest.MonkeyPatch) -> None:
+    worker, begin = ThreadPoolExecutor(1), threading.Event()
+    monkeypatch.setattr("diorama_app.reconstruction.suggestions._WORKER", worker)
+    here = [True]
+    told = queue.Queue[LabelledBox | None]()
+    suggestions = Suggestions(plain_photo(), lambda: None, lambda: here[0])
+    worker.submit(begin.wait, 30)
+    suggestions.boxes()
+    suggestions.at(20.0, 20.0, (), told.put)
+    here[0] = False
+    begin.set()
+    worker.submit(lambda: None).result(30)
+    assert told.empty()
+    assert suggestions.boxes() == ()
+
+
+@shipped
 def test_what_is_drawn_is_told_with_its_likeliest_name() -> None:
     told = queue.Queue[LabelledBox]()
     suggestions = Suggestions(PHOTO, lambda: None)
