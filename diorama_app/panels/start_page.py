@@ -55,6 +55,8 @@ class StartPage:
         self._open = False
         self._words = ""
         self._lengths_m = USUAL_ROOM_M
+        self._refused: dict[str, str] = {}
+        """What was typed as a length and is none, by field: it stays there to be corrected, and no room is made."""
         gui.add_html(run_once(REMOVE))
         self._opened_over: Project | None = None
         self._photo_field = hidden_upload(gui, client, _("Start with a photo"), take_photo)
@@ -122,6 +124,8 @@ class StartPage:
             describe_room(client, self._words)
             self.close()
         elif action.do == "empty":
+            for words in self._refused.values():
+                parse_length(words, client.preferences.unit)  # which says again what is wrong
             start_empty_room(client, *self._lengths_m)
             self.close()
         elif action.do == "example" and action.arg in EXAMPLES:
@@ -133,16 +137,20 @@ class StartPage:
             self._visit(action.arg)
 
     def _typed(self, which: str, words: str) -> None:
+        if which not in LENGTHS:
+            return
         try:
             length = parse_length(words, self._client.preferences.unit)
-            if which in LENGTHS:
-                width, depth, height = (
-                    length if name == which else old for name, old in zip(LENGTHS, self._lengths_m, strict=True)
-                )
-                self._lengths_m = (width, depth, height)
         except InputError:
+            self._refused[which] = words
             self._html.show(self._drawn(), again=True)
             raise
+        width, depth, height = (
+            length if name == which else old for name, old in zip(LENGTHS, self._lengths_m, strict=True)
+        )
+        self._lengths_m = (width, depth, height)
+        if self._refused.pop(which, None) is not None:
+            self._html.show(self._drawn(), again=True)
 
     def _visit(self, name: str) -> None:
         session = self._client.session
@@ -156,9 +164,11 @@ class StartPage:
 
     def _drawn(self) -> str:
         unit = self._client.preferences.unit
+        invalid = ' aria-invalid="true"'
         fields = "".join(
             f'<label>{text(_(name))}<input data-change="length" data-arg="{name}" '
-            f'value="{text(format_length(length, unit))}" aria-label="{text(_(whole))}"></label>'
+            f'value="{text(self._refused.get(name) or format_length(length, unit))}" aria-label="{text(_(whole))}"'
+            f"{invalid if name in self._refused else ''}></label>"
             for (name, whole), length in zip(LENGTHS.items(), self._lengths_m, strict=True)
         )
         photo, file = self._photo_field, self._file_field

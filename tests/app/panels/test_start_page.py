@@ -46,7 +46,13 @@ def test_an_empty_room_of_the_lengths_given(session, client, page, panel) -> Non
     panel.open()
     page.change("length", "3.2", "Width")
     page.change("length", "410 cm", "Depth")
+    before = session.project
     page.change("length", "much", "Height")
+    assert 'value="much"' in page.html, "it stays there to be corrected"
+    page.act("empty")
+    assert session.project is before, "no room of another height than the one that was typed"
+    page.change("length", "2.5", "Height")
+    assert "aria-invalid" not in page.html
     page.act("empty")
     np.testing.assert_allclose(plane_rectangle(session.scene.plane("floor"))[2], (3.2, 4.1))
     assert session.scene.plane("wall_1").texture in session.textures
