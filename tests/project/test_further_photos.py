@@ -38,6 +38,8 @@ def test_a_photo_that_is_saved_is_not_written_again_and_one_taken_out_is_gone(tm
     save_photos(project, (one,), (one, two))
     assert path.stat().st_mtime_ns == before
     assert [p.name for p in load_photos(project)[0]] == ["one"]
+    save_photos(project, (one, two), (one,))
+    assert [p.name for p in load_photos(project)[0]] == ["one", "two"], "only those that are saved are left alone"
 
 
 def test_a_damaged_photo_is_named_and_the_others_are_read(tmp_path: Path) -> None:

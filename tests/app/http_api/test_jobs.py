@@ -38,6 +38,7 @@ def test_the_queue_is_bounded_and_kept_on_disk(tmp_path: Path, monkeypatch: pyte
     projects = tmp_path / "projects"
     queue = _queue(projects)
     first, second = _add(queue, tmp_path), _add(queue, tmp_path)
+    assert Project.open(projects / first.id).info()["library"] == "built-in"
     with pytest.raises(QueueFullError, match="2 jobs are waiting"):
         _add(queue, tmp_path)
     assert len(list(projects.iterdir())) == 2, "what is refused leaves nothing behind"

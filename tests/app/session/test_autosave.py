@@ -17,12 +17,14 @@ from diorama_app.commands.edit import rename
 from diorama_app.panels.projects import Projects
 from diorama_app.projects import manage as project_care
 from diorama_app.reconstruction.photo_outlines import PhotoOutlines
+from diorama_app.session.autosave import Unwritten
 from diorama_app.session.client import Client
 from diorama_app.session.session import EditorSession
+from diorama_core.artefacts import Inputs
 from diorama_core.scene import edits
 from diorama_core.scene.types import Scene
 from tests.app.people import join
-from tests.app.small_room import PlainLibrary, make_project
+from tests.app.small_room import PlainLibrary, furnished_scene, make_project, plain_photo
 from tests.io.test_bombs import png
 
 
@@ -148,3 +150,12 @@ def projects_panel(session: EditorSession, client: Client) -> Projects:
     nothing = [lambda client: None] * 2
     commands = build_commands(session, Views(session), PhotoOutlines(session), lambda g: False, *nothing)
     return Projects(session.server.gui, client, commands, lambda name, content: None)
+
+
+def test_what_is_newer_replaces_what_waits_and_the_rest_stays() -> None:
+    scene, other = furnished_scene(), furnished_scene()
+    waiting = Unwritten(scene=scene, further=())
+    assert waiting.with_newer(Unwritten(scene=other)).scene is other
+    assert waiting.with_newer(Unwritten(scene=other)).further == ()
+    assert waiting.with_newer(Unwritten(inputs=Inputs(plain_photo()))).scene is scene
+    assert Unwritten().with_newer(waiting).further == ()

@@ -11,10 +11,12 @@ from concurrent.futures import Future
 
 import pytest
 import viser
+from websockets.datastructures import Headers
+from websockets.http11 import Request
 
 from diorama_app.strings import translated_script
 from diorama_app.web import viser_adapter
-from diorama_app.web.requests import MESSAGES_AT_ONCE, MESSAGES_PER_S, paced
+from diorama_app.web.requests import MESSAGES_AT_ONCE, MESSAGES_PER_S, paced, project_of, redirected
 from diorama_app.web.responses import SCRIPTS
 from diorama_app.web.viser_adapter import create_server, stop_server
 from diorama_app.web.visitors import Visitors
@@ -109,15 +111,23 @@ def test_a_page_that_is_closed_while_its_picture_is_made_is_no_error(caplog: pyt
 def test_messages_of_one_connection_are_taken_at_a_pace() -> None:
     class Connection:
         async def recv(self) -> bytes:
-            return b""
+            return b"an edit"
+
+    read_at: list[float] = []
 
     async def read(connection: Connection) -> None:
         for _ in range(MESSAGES_AT_ONCE + 90):
+            assert await connection.recv() == b"an edit"
+            read_at.append(time.monotonic())
+        await asyncio.sleep(1.0)
+        for _ in range(30):  # a second of rest is a second's messages more at once
             await connection.recv()
+            read_at.append(time.monotonic())
 
     began = time.monotonic()
     asyncio.run(paced(read)(Connection()))
-    assert time.monotonic() - began > 0.9 * 90 / MESSAGES_PER_S
+    assert read_at[MESSAGES_AT_ONCE + 89] - began > 0.9 * 90 / MESSAGES_PER_S
+    assert read_at[-1] - read_at[-30] < 0.5 * 30 / MESSAGES_PER_S
 
 
 def test_every_connection_is_paced(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -131,3 +141,11 @@ def test_every_connection_is_paced(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(viser_adapter, "paced", noted)
     stop_server(create_server(host="127.0.0.1", port=0, label="test", visitors=Visitors("127.0.0.1")))
     assert len(handlers) == 1
+
+
+def test_an_address_names_its_project_and_one_that_names_none_leads_to_one() -> None:
+    assert project_of("/?project=my%20room&tour=1") == "my room"
+    assert project_of("/?tour=1") is None
+    reply = redirected(Request("/?tour=&unit=ft", Headers()), "my room")
+    assert reply.status_code == 302
+    assert reply.headers["Location"] == "/?tour=&unit=ft&project=my+room"
