@@ -168,6 +168,7 @@ class Person:
         self._act(
             'data-change="ask"', "ask", ["", str(self.chance.choice(["make all chairs red", "move the lamp left"]))]
         )
+        self._until(lambda: self._holds('aria-label="Proposed edits"'))
         uuid, _ = self._piece('aria-label="Proposed edits"')
         self._act('aria-label="Proposed edits"', "cancel", "")
         self.page.wait_for(lambda: not self._shown(uuid, "Proposed edits"), PATIENCE_S)

@@ -29,8 +29,9 @@ SMALLER = 0.5
 SAME_IOU = 0.5
 """Intersection over union from which two boxes are one object's."""
 
-_WORKER = ThreadPoolExecutor(2, "suggestions")
-"""Of all pages: networks that run beside one another only take each other's processor and memory."""
+_ASKED, _AHEAD = ThreadPoolExecutor(1, "suggestions"), ThreadPoolExecutor(1, "proposals")
+"""Of all pages: networks that run beside one another only take each other's processor and memory. What somebody clicked
+on waits for no photo that is looked at ahead."""
 
 
 class Suggestions:
@@ -126,8 +127,8 @@ class Suggestions:
 
         self._submit(tell)
 
-    def _submit(self, task: Callable[[], None]) -> None:
-        _WORKER.submit(lambda: task() if self._is_wanted() else None)
+    def _submit(self, task: Callable[[], None], *, ahead: bool = False) -> None:
+        (_AHEAD if ahead else _ASKED).submit(lambda: task() if self._is_wanted() else None)
 
     def _ask(self, key: object, work_out: Callable[[], object]) -> None:
         """Work something out once; what cannot be had is not tried again at every redraw."""
@@ -143,7 +144,7 @@ class Suggestions:
                 return
             self._on_ready()
 
-        self._submit(work)
+        self._submit(work, ahead=key is None)
 
     def _look_at(self, boxes: Sequence[Box]) -> None:
         from diorama_core.models.recogniser import own_recogniser

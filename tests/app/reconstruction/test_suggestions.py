@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 import torch
 
+from diorama_app.reconstruction import suggestions as suggesting
 from diorama_app.reconstruction.suggestions import COUNT, Suggestions, unmarked
 from diorama_core.artefacts import Box, LabelledBox, Photo
 from diorama_core.models import own_weights
@@ -98,7 +99,8 @@ def test_outlines_that_nobody_waits_for_hold_up_nothing(monkeypatch: pytest.Monk
     monkeypatch.setattr("diorama_core.perception.masks.EmbeddedMasks.inside_box", inside_box)
     begin, ready = threading.Event(), threading.Event()
     worker = ThreadPoolExecutor(1)
-    monkeypatch.setattr("diorama_app.reconstruction.suggestions._WORKER", worker)
+    monkeypatch.setattr(suggesting, "_ASKED", worker)
+    monkeypatch.setattr(suggesting, "_AHEAD", worker)
     suggestions = Suggestions(photo, ready.set)
     worker.submit(begin.wait, 30)
     boxes = [(10.0, 10.0, 50.0 + k, 60.0) for k in range(5)]
@@ -111,7 +113,8 @@ def test_outlines_that_nobody_waits_for_hold_up_nothing(monkeypatch: pytest.Monk
 @shipped
 def test_what_waits_for_its_turn_is_left_out_when_nobody_looks_any_more(monkeypatch: pytest.MonkeyPatch) -> None:
     worker, begin = ThreadPoolExecutor(1), threading.Event()
-    monkeypatch.setattr("diorama_app.reconstruction.suggestions._WORKER", worker)
+    monkeypatch.setattr(suggesting, "_ASKED", worker)
+    monkeypatch.setattr(suggesting, "_AHEAD", worker)
     here = [True]
     told = queue.Queue[LabelledBox | None]()
     suggestions = Suggestions(plain_photo(), lambda: None, lambda: here[0])
@@ -192,3 +195,18 @@ def test_without_weights_nothing_is_suggested(monkeypatch: pytest.MonkeyPatch, t
     told: queue.Queue[LabelledBox | None] = queue.Queue()
     suggestions.at(20.0, 20.0, (), told.put)
     assert told.get(timeout=60) is None
+
+
+@shipped
+def test_a_click_waits_for_no_photo_that_is_looked_at_ahead(monkeypatch: pytest.MonkeyPatch) -> None:
+    ahead, begin = ThreadPoolExecutor(1), threading.Event()
+    monkeypatch.setattr(suggesting, "_AHEAD", ahead)
+    told = queue.Queue[LabelledBox | None]()
+    suggestions = Suggestions(plain_photo(), lambda: None)
+    ahead.submit(begin.wait, 60)
+    suggestions.boxes()
+    suggestions.at(20.0, 20.0, (), told.put)
+    told.get(timeout=60)
+    assert not begin.is_set()
+    begin.set()
+    ahead.shutdown()
