@@ -26,7 +26,9 @@ from diorama_core.scene.types import Scene
 SHOWN_EV = 2.0
 """The slider of the exposure goes so far each way."""
 
-_SLIDERS = f"""
+
+def _drawn_sliders() -> str:
+    return f"""
 <div class="dio-light">
  <div class="dio-daylight">
   <label class="dio-slider"><span>{text(_("Time of day"))} <b data-clock></b></span>
@@ -74,7 +76,7 @@ class LightPanel:
             + button(_("Daylight"), "day", title=_("Sun and sky at a time of day"), on=settings.hour is not None)
             + "</div>"
         )
-        self._sliders.show(_SLIDERS)
+        self._sliders.show(_drawn_sliders())
         self._lamps.show(_lamps(scene))
         about = json.dumps(told_light(scene), separators=(",", ":"))
         sun = self._client.session.viewport.room_light.told or "null"

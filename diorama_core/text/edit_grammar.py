@@ -7,6 +7,7 @@ scene as the clauses before it leave it.
 from __future__ import annotations
 
 import re
+from contextlib import suppress
 from collections.abc import Callable, Sequence
 from typing import Literal
 
@@ -362,7 +363,10 @@ def _look(selector: Selector, clause: str, rest: str) -> Edit:
             continue
         return Restyle(objects=list(_subject(selector, head)), look=look)
     head, _, shaped = rest.rpartition(" ")
-    if shaped in APPEARANCES and (ids := _subject(selector, head)):  # "make the rug round"
+    ids: tuple[str, ...] = ()
+    with suppress(EditRefused):  # what is wrong with the look is the better answer
+        ids = _subject(selector, head) if shaped in APPEARANCES else ()
+    if ids:  # "make the rug round"
         kind = selector.scene.object(ids[0]).category
         if any(has_look(shape, shaped) for shape in selector.library.in_category(kind)):
             return Swap(objects=list(ids), what=f"{shaped} {kind}")

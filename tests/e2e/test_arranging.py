@@ -148,7 +148,7 @@ def test_what_stood_on_a_deleted_table_comes_down_and_may_go_too(editor: EditorP
     editor.until(lambda: selection(editor) == ("table_1",))
     editor.page.keyboard.press("Delete")
     editor.until(lambda: not scene(editor).has_object("table_1"), "deleted")
-    editor.notice("is lower now: lamp")
+    editor.notice("lowered what stood on top: lamp")
     assert scene(editor).object("lamp_1").corners_world[:, 2].min() == pytest.approx(0.0, abs=1e-6)
     editor.button("Delete it too").click()
     editor.until(lambda: not scene(editor).has_object("lamp_1"), "with what stood on it")

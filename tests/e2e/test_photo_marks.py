@@ -131,7 +131,7 @@ def test_escape_deselects_first_and_an_empty_view_offers_to_go_on(started: Edito
     page.keyboard.press("Escape")
     expect(page.locator(".dio-canvas")).to_have_count(0)
     card = page.locator("#dio-no-scene")
-    expect(card).to_contain_text("1 object marked")
+    expect(card).to_contain_text("1 object is marked")
     expect(card.get_by_role("button", name="Build scene (1)")).to_be_enabled()
     card.get_by_role("button", name="Continue marking").click()
     editor.at_board()

@@ -78,7 +78,7 @@ def test_what_floats_and_what_is_unsure_is_marked_in_the_view_and_in_the_list(ed
     session.ui_thread.post(lambda: session.edit("found", lambda s: edits.move(seen_in_photo(s), "chair_1", lifted)))
     editor.until(lambda: session.badges.get("chair_1") == ("floats",), "it floats")
     expect(editor.page.locator('.dio .row[data-arg="chair_1"] .chip')).to_have_text("floats")
-    expect(editor.page.locator('.dio .row[data-arg="table_1"] .chip')).to_have_text("unsure")
+    expect(editor.page.locator('.dio .row[data-arg="table_1"] .chip')).to_have_text("uncertain")
     table, chair = (str(session.viewport.node_name(i)) for i in ("table_1", "chair_1"))
     for name, sign in ((table, "?"), (chair, "⚠")):
         assert editor.client.viser_client.scene._handle_from_node_name[f"{name}/mark/tag"].text == sign

@@ -163,7 +163,7 @@ assert session.ui_thread.wait()
 session.autosave.flush()
 assert session.ui_thread.wait()
 assert session.scene.object("chair_1").label == "throne"
-assert "not saved" in told[-1] and "only in memory" in told[-1] and "kept" not in told[-1], told
+assert "ot saved" in told[-1] and "only in memory" in told[-1] and "kept" not in told[-1], told
 assert project.scene_path.read_bytes() == before
 session.close()
 stop_server(server)

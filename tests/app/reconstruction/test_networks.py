@@ -173,7 +173,7 @@ def test_a_room_needs_words_and_a_whole_setting(
     with pytest.raises(UnavailableError, match="DIORAMA_IMAGE_MODEL"):
         describe_room(client, "a kitchen")
     monkeypatch.setenv("DIORAMA_IMAGE_MODEL", "painter")
-    assert how_pictures_come() == "painter draws the picture."
+    assert how_pictures_come() == "painter generates the picture."
     before = client.session.scene
     describe_room(client, "a kitchen")
     (message,) = _told(client)
