@@ -16,7 +16,7 @@ import numpy as np
 
 import diorama_core as diorama
 
-SECONDS, HELD_S, MAX_FORCE_N = 2.5, 0.5, 40.0
+SECONDS, HELD_S, MAX_FORCE_N = 4.0, 0.5, 40.0
 
 
 def main(project: str) -> None:
