@@ -7,8 +7,8 @@ scene as the clauses before it leave it.
 from __future__ import annotations
 
 import re
-from contextlib import suppress
 from collections.abc import Callable, Sequence
+from contextlib import suppress
 from typing import Literal
 
 from pydantic import ValidationError
