@@ -11,7 +11,7 @@ import viser
 from diorama_app.commands.optimise import pause
 from diorama_app.session.client import Client
 from diorama_app.session.jobs import JobStatus
-from diorama_app.strings import _
+from diorama_app.strings import SOURCE_LANGUAGE, _, language
 from diorama_app.web.html import Action, LiveHtml, run_once
 
 MIN_SHARE, MIN_S = 0.08, 4.0
@@ -38,12 +38,14 @@ class JobStrip:
         if status is None:
             self._tell(None)
             return
+        stage = _(status.message)  # one with numbers in it stays English
         can_pause = status.kind == "optimise" and run is not None and not status.cancelling
         self._tell(
             {
                 "title": status.title,
                 "percent": round(100 * status.fraction),
-                "stage": _(status.message)[:1].upper() + _(status.message)[1:],
+                "stage": stage[:1].upper() + stage[1:],
+                "lang": "en" if stage == status.message and language() != SOURCE_LANGUAGE else "",
                 "left": time_left(status, time.monotonic()),
                 "found": " · ".join(status.found[-FOUND_SHOWN:]),
                 "pause": (_("Resume") if run is not None and run.paused else _("Pause")) if can_pause else "",

@@ -30,6 +30,7 @@
     part("b").textContent = job.title;
     part("progress").value = job.percent;
     part(".stage").textContent = job.stage;
+    part(".stage").lang = job.lang;
     part(".left").textContent = job.left;
     part(".found").textContent = job.found;
     part(".pause").hidden = !job.pause;
