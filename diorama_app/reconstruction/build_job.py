@@ -30,11 +30,11 @@ if TYPE_CHECKING:
 
 
 UNASKED = N_("Building what was found")
+"""Title of a build with what was found in a photo, of which nobody looked at anything."""
 BUILT = (
     "The scene has {count} object. Click it to change it.",
     "The scene has {count} objects. Click one to change it.",
 )
-"""Title of a build with what was found in a photo, of which nobody looked at anything."""
 AWAITED = "build_when_seen"
 """What a project's file says of an uploaded photo that is to be built as soon as its objects are found."""
 

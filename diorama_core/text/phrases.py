@@ -288,25 +288,16 @@ def noun_phrase(text: str) -> tuple[NounPhrase | None, str]:
         and not category_name.endswith("s")
         and last != category_name.split()[-1]
     )
+    rows, most = 0, MAX_OF_A_KIND
     if in_rows is not None:
         rows, each = in_rows
+        most = MAX_IN_ROWS
         count = rows * (each or (USUAL_IN_ROW if plural else 1)) if count == 1 else count
-        several = plural or count > 1
-        return NounPhrase(
-            label,
-            category_name,
-            min(count, MAX_IN_ROWS),
-            appearance,
-            definite,
-            every,
-            several,
-            rows=rows,
-            beyond=beyond,
-        ), ""
-    if plural and count == 1:
+    elif plural and count == 1:
         count = 2
+    several = plural or count > 1
     return NounPhrase(
-        label, category_name, min(count, MAX_OF_A_KIND), appearance, definite, every, plural or count > 1, beyond=beyond
+        label, category_name, min(count, most), appearance, definite, every, several, rows=rows, beyond=beyond
     ), ""
 
 
