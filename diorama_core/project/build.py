@@ -127,5 +127,9 @@ def save_artefacts(project: Project, built: Built, given: Inputs, warnings: Sequ
 
 
 def with_found_boxes(given: Inputs, built: Built) -> Inputs:
-    """The given inputs with the boxes that networks found, as they are saved; themselves where nothing was found."""
-    return given if built.inputs.boxes == given.boxes else replace(given, boxes=built.inputs.boxes)
+    """The given inputs with the boxes that networks found, as they are saved; themselves where nothing was found.
+
+    A build leaves guessed words out; they stay in what is saved.
+    """
+    is_given = [b.box for b in built.inputs.boxes] == [b.box for b in given.boxes]
+    return given if is_given else replace(given, boxes=built.inputs.boxes)
