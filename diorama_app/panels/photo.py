@@ -192,8 +192,7 @@ class PhotoPanel:
         camera = _intrinsics(self._camera.value)
         upload = upload_again(session.project, before, new, answer, camera, turn=turn, bend=bend)
         project = session.project
-        if work.builds_unasked(session):
-            session.jobs.cancel(in_favour=True)  # it would be built without what is added
+        work.stop_unasked(session)
 
         def done(read: ReadInputs) -> None:
             if session.inputs is not before:
@@ -269,7 +268,7 @@ class PhotoPanel:
             self._build_found()
 
     def _mark_by_hand(self) -> None:
-        self._session.jobs.cancel(in_favour=True)
+        work.stop_unasked(self._session)
         self._client.refresh()
 
     # -- words ------------------------------------------------------------------------------------------------

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 
-from diorama_app.reconstruction.build_job import builds_unasked
+from diorama_app.reconstruction.build_job import stop_unasked
 from diorama_app.reconstruction.networks import can_find_furniture
 from diorama_app.reconstruction.suggestions import Suggestions
 from diorama_app.session.client import Client
@@ -196,8 +196,7 @@ class PhotoBoxes:
         self._client.refresh()
 
     def _annotate(self, label: str, inputs: Inputs) -> None:
-        if builds_unasked(self._client.session):
-            self._client.session.jobs.cancel(in_favour=True)  # who marks something wants to build with it
+        stop_unasked(self._client.session)
         self._client.annotate(label, inputs)
 
     def _rename(self, index: int, name: str) -> None:

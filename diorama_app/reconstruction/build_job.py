@@ -101,6 +101,14 @@ def is_awaited(project: Project) -> bool:
     return awaited
 
 
+def stop_unasked(session: EditorSession) -> None:
+    """End the build that nobody asked for, and begin none: a person says more of the photo than was found in it."""
+    if session.project is not None:
+        is_awaited(session.project)
+    if builds_unasked(session):
+        session.jobs.cancel(in_favour=True)
+
+
 def build(session: EditorSession) -> None:
     """Build the scene of the open project's photo, as one undo step.
 

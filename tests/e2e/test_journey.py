@@ -87,11 +87,13 @@ def test_a_photo_with_boxes_becomes_a_scene(
     editor.until(lambda: editor.session.photo is not None and editor.session.photo.name == photo.name, "read")
     assert session.scene is example, "the example stays as it is"
     session = editor.session
-    before = session.scene
     editor.page.get_by_text("More", exact=True).click()
     editor.upload("Add boxes", boxes)
     editor.until(lambda: len(session.inputs.boxes) == MARKED, "the boxes are read")
     marked = len(session.inputs.boxes)
+    editor.until(lambda: session.jobs.status is None, "the build that nobody asked for ends")
+    assert not session.scene.objects, "and nothing was built without the boxes"
+    before = session.scene
     editor.dismiss_notices()
     editor.build_button().click()
     editor.until(lambda: session.jobs.status is None and session.scene is not before, "built", seconds=BUILD_S)

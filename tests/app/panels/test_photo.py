@@ -81,6 +81,17 @@ def test_who_wishes_to_mark_photos_is_not_built_for(client, page, empty, built) 
     assert built == []
 
 
+def test_nothing_is_built_unasked_while_boxes_are_read(session, client, page, empty, built, monkeypatch) -> None:
+    page.upload("Upload a photo", "room.png", picture(640, 480))
+    page.settle()
+    session.project.update_info(**{build_job.AWAITED: True})
+    monkeypatch.setattr(session.reader, "read", lambda *given: None)  # is still reading
+    page.upload("Add boxes", "boxes.json", b"[]")
+    empty._seen_for = None
+    empty.refresh()
+    assert built == []
+
+
 def test_the_page_asks_for_a_photo_first(client, page, empty) -> None:
     assert "Start with a photo of a room" in page.html
     assert not page.shows("build")
