@@ -13,7 +13,7 @@ from dataclasses import dataclass
 
 import cv2
 import numpy as np
-from jaxtyping import Bool, Float, Float32, UInt8
+from jaxtyping import Bool, Float, Float32, Int, UInt8
 
 from diorama_core.architecture.texture.quilting import broad_shading
 from diorama_core.artefacts import DetectedObject
@@ -173,33 +173,51 @@ def floor_texels(
     is_floor[rows, columns] = _of_material(lab, main, settings)
     picture = np.zeros((*seen.shape, 3), np.float32)
     picture[rows, columns] = lab
-    others: list[np.ndarray] = []
-    looked_at = is_floor[rows, columns]
+    is_floor, others = _with_pattern(is_floor, picture, np.stack([rows, columns]), main, pixel_m, settings)
+    if others:
+        is_floor |= _turning_into(is_floor, others, _change(picture, seen, pixel_m, settings), pixel_m, settings)
+    return is_floor & ~_grown_pieces(seen & ~is_floor, pixel_m, settings)
+
+
+def _with_pattern(
+    is_floor: Bool[np.ndarray, "h w"],
+    picture: Float32[np.ndarray, "h w 3"],
+    seen_at: Int[np.ndarray, "2 n"],
+    main: Float[np.ndarray, "3"],
+    pixel_m: float,
+    settings: FloorMaterialSettings,
+) -> tuple[Bool[np.ndarray, "h w"], list[Bool[np.ndarray, "h w"]]]:
+    """The texels of the main colour with those of colours that alternate with it, and texels of each other colour that
+    the main one may have in another light.
+
+    Args:
+        is_floor: texels of the main colour.
+        picture: CIE Lab of what is seen.
+        seen_at: rows and columns of the seen texels.
+        main: the main colour.
+        pixel_m: size of a texel.
+        settings: numbers to work with.
+    """
+    rows, columns = seen_at
+    lab, others = picture[rows, columns].astype(np.float64), []
+    is_compared = is_floor[rows, columns]
+    lit_alike = (np.abs(picture - main) < _LIT_LAB).all(axis=-1) & (picture[..., 0] >= main[0] - settings.shadow_l)
     for _ in range(settings.other_colours):
-        left = ~looked_at
+        left = ~is_compared
         if left.mean() < settings.min_of_pattern:
             break
         fullest = _fullest(lab[left][:: max(1, int(left.sum()) // settings.samples)], settings)
         texels = _of_material(lab, fullest, settings) & left
         if texels.mean() < settings.min_of_pattern:
             break
-        looked_at |= texels
-        other = np.zeros(seen.shape, dtype=bool)
+        is_compared |= texels
+        other = np.zeros(is_floor.shape, dtype=bool)
         other[rows, columns] = texels
         if _intermingled(is_floor, other, pixel_m, settings):
-            is_floor |= other
+            is_floor = is_floor | other
         else:
-            others.append(
-                other
-                & (np.abs(picture - main) < _LIT_LAB).all(axis=-1)
-                & (picture[..., 0] >= main[0] - settings.shadow_l)
-            )
-    is_floor |= (
-        _turning_into(is_floor, others, _change(picture, seen, pixel_m, settings), pixel_m, settings)
-        if others
-        else False
-    )
-    return is_floor & ~_grown_pieces(seen & ~is_floor, pixel_m, settings)
+            others.append(other & lit_alike)
+    return is_floor, others
 
 
 def _change(
