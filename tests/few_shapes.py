@@ -5,6 +5,7 @@ What is met in a photo is compared with all shapes of its kind, each of which is
 
 from __future__ import annotations
 
+import hashlib
 from collections import Counter
 from dataclasses import replace
 from functools import cache
@@ -13,6 +14,7 @@ from typing import Final
 from diorama_app.projects.example import EXAMPLE
 from diorama_core.library.catalogue import base_id, built_in_library
 from diorama_core.library.ingest.sink import Ingested
+from diorama_core.library.record import ShapeLibrary
 from diorama_core.library.store import create_library
 from diorama_core.project.storage import Project
 from diorama_core.scene.types import Scene
@@ -40,9 +42,16 @@ def stored_seats() -> str:
     built_in, store = built_in_library(), create_library(SEATS)
     for category, count in (("chair", 3), ("sofa", 1)):
         for listed in built_in.in_category(category)[:count]:
-            record = replace(built_in.shape(listed.id), id=f"my-{listed.id}", source="tests")
-            store.add(Ingested(record, built_in.glb(listed.id), None, listed.id))
+            store.add(stored_copy(built_in, listed.id, f"my-{listed.id}"))
     return SEATS
+
+
+def stored_copy(library: ShapeLibrary, shape_id: str, name: str) -> Ingested:
+    """A shape of a library as a stored one has it, called `name`: its content is its file, which is read back."""
+    glb = library.glb(shape_id)
+    digest = hashlib.sha256(glb).hexdigest()[:24]
+    record = replace(library.shape(shape_id), id=name, source="tests", content_hash=digest)
+    return Ingested(record, glb, None, shape_id)
 
 
 @cache

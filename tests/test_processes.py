@@ -8,7 +8,6 @@ import subprocess
 import sys
 import textwrap
 import time
-from dataclasses import replace
 from pathlib import Path
 from threading import Lock
 
@@ -17,7 +16,6 @@ import pytest
 from diorama_core import processes
 from diorama_core.errors import Cancelled, InputError
 from diorama_core.library.catalogue import built_in_library
-from diorama_core.library.ingest.sink import Ingested
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.library.user_library import UserLibrary
 from diorama_core.pose.made_to_measure import MadeToMeasure
@@ -25,6 +23,7 @@ from diorama_core.pose.render_and_compare import RenderAndCompare
 from diorama_core.processes import are_ready, each_there, prepare, there
 from diorama_core.progress import Progress, ProgressEvent
 from diorama_core.workers import LocalWorkers
+from tests.few_shapes import stored_copy
 from tests.processes import runs
 from tests.waiting import until
 
@@ -168,7 +167,7 @@ def test_libraries_of_ones_own_are_sent_with_the_others(
     monkeypatch.setenv("DIORAMA_LIBRARIES", str(tmp_path))
     built_in, library = built_in_library(), UserLibrary(built_in_library())
     chair = built_in.in_category("chair")[0]
-    library.own().add(Ingested(replace(chair, id="my-chair"), built_in.glb(chair.id), None, "my-chair"))
+    library.own().add(stored_copy(built_in, chair.id, "my-chair"))
     process, *told = there(answers, library, "my-chair")
     assert process != os.getpid()
     assert told == list(answers(library, "my-chair")[1:])

@@ -21,6 +21,7 @@ from diorama_core.render.view_features import WIDTH, colour_feature, view_featur
 from diorama_core.render.views import StudioView, render_shape
 from diorama_core.retrieval.appearance_similarity import EMBEDDED_FEATURES
 from diorama_core.workers import LocalWorkers
+from tests.few_shapes import stored_copy
 
 CHOSEN = (
     "chair-slat-oak",
@@ -39,7 +40,7 @@ def library(tmp_path_factory: pytest.TempPathFactory) -> StoredLibrary:
     known = {s.id for s in built_in.shapes()}
     store = create_library("chosen")
     for shape_id in [c for c in CHOSEN if c in known]:
-        store.add(Ingested(built_in.shape(shape_id), built_in.glb(shape_id), None, shape_id))
+        store.add(stored_copy(built_in, shape_id, shape_id))
     assert len(store) >= 5
     return store
 
