@@ -33,7 +33,12 @@ def add_export(commands: Any) -> None:
     p.add_argument("-o", "--output", type=Path, metavar="FILE", help="(default: in the project's exports folder)")
     p.add_argument("--no-ceiling", action="store_true", help="leave ceilings out, to look into the room from above")
     p.add_argument("--only", metavar="ID,ID", help="write these objects only, without the room")
-    p.add_argument("--texture-size", type=int, metavar="PX", help="longest side of pictures; larger ones are reduced")
+    p.add_argument(
+        "--texture-size",
+        type=int,
+        metavar="PX",
+        help="longest side of pictures; larger ones are reduced (default: as they are, 1024 in a game pack)",
+    )
     p.add_argument(
         "--compress",
         nargs="?",
@@ -54,6 +59,16 @@ def add_export(commands: Any) -> None:
         choices=("godot", "unreal", "unity", "three"),
         default="godot",
         help="of a game pack: whose names colliders have; Unity and three.js have none (default: %(default)s)",
+    )
+    p.add_argument(
+        "--max-triangles",
+        type=int,
+        default=3000,
+        metavar="N",
+        help="of a game pack: about how many each object has at most (default: %(default)s)",
+    )
+    p.add_argument(
+        "--max-total-triangles", type=int, metavar="N", help="of a game pack: how many the whole room has at most"
     )
     p.add_argument(
         "--light-uv",
@@ -120,6 +135,9 @@ def _options(a: argparse.Namespace, room: diorama.Reconstruction) -> ExportOptio
         raise InputError(f"--only {a.only}: there is no object {unknown[0]!r} in {a.project}; see its scene.json")
     if a.texture_size is not None and a.texture_size < 1:
         raise InputError(f"--texture-size {a.texture_size}: give a number of pixels, such as 1024")
+    for name, count in (("max-triangles", a.max_triangles), ("max-total-triangles", a.max_total_triangles)):
+        if count is not None and count < 1:
+            raise InputError(f"--{name} {count}: give a number of triangles, such as 3000")
     return ExportOptions(
         ceiling=not a.no_ceiling,
         only=only,
@@ -127,6 +145,8 @@ def _options(a: argparse.Namespace, room: diorama.Reconstruction) -> ExportOptio
         compression=a.compress,
         lights=a.lights,
         engine=a.engine,
+        max_triangles=a.max_triangles,
+        max_total_triangles=a.max_total_triangles,
         light_uv=a.light_uv,
         robot_radius_m=a.robot_radius,
         photo=a.photo,

@@ -54,6 +54,8 @@ class Format:
     """Function inside `diorama_core.export` (`module:function`) that says what is missing, where no module tells."""
     joints: bool = False
     """Whether shapes that know their joints are written in parts that move."""
+    texture_px: int | None = None
+    """Longest side of its pictures where no other is asked for."""
 
     @property
     def missing(self) -> str:
@@ -98,9 +100,11 @@ _TABLE = (
         "game",
         "Game pack (GLB)",
         (".glb",),
-        "moving parts on their hinges, convex colliders, few materials and triangles, one mesh for the room, lights",
+        "moving parts on their hinges, convex colliders, few materials and triangles, levels of detail, one mesh for "
+        "the room, lights",
         "game:write_game",
         joints=True,
+        texture_px=1024,
     ),
     Format("usda", "USD text", (".usda",), _USD_KEEPS, "usd:write_usda", "usd", "pxr", joints=True),
     Format("usdc", "USD binary", (".usdc",), _USD_KEEPS, "usd:write_usdc", "usd", "pxr", joints=True),
@@ -218,11 +222,11 @@ def export_scene(
     if path.suffix.lower() not in chosen.suffixes:
         endings = " or ".join(chosen.suffixes)
         raise ExportError(f"{path}: {chosen.title} files end in {endings}; choose such a name")
-    write = chosen.writer()
+    write, options = chosen.writer(), options or EVERYTHING
     gathered = gather(
         scene,
         library,
-        options=replace(options or EVERYTHING, joints=chosen.joints),
+        options=replace(options, joints=chosen.joints, max_texture_px=options.max_texture_px or chosen.texture_px),
         textures=textures,
         photo=photo,
         name=name or path.stem,

@@ -1,12 +1,13 @@
 """A GLB for game engines: few materials, few triangles, moving parts and convex colliders as nodes of their own.
 
-Metres, +Y up, no node is scaled. An object's origin is the middle of its foot, a moving part's is on its joint's axis;
-`extras` say how it moves. The room is one mesh. Plain colours lie together in one picture and share one material.
+Metres, +Y up, objects look along their +Z, no node is scaled. An object's origin is the middle of its foot, a moving
+part's is on its joint's axis; `extras` say how it moves. The room is one mesh. Plain colours lie together in one
+picture and share one material. Levels of detail are nodes outside the scene, as MSFT_lod has them.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -18,7 +19,7 @@ from diorama_core.errors import ExportError
 from diorama_core.export.bodies import PhysicalScene, Points, RigidBody, hull_faces
 from diorama_core.export.colliders import physical_scene
 from diorama_core.export.files import whole_file
-from diorama_core.export.gathering import ExportScene
+from diorama_core.export.gathering import ExportObject, ExportScene
 from diorama_core.export.gltf import placement
 from diorama_core.export.gltf_document import GltfDocument
 from diorama_core.export.lights import MainLight
@@ -28,13 +29,23 @@ from diorama_core.library.simplify import LARGEST_ERRORS, simplified_triangles
 from diorama_core.progress import Progress
 from diorama_core.render.appearance import Material, Surface
 
-MAX_TRIANGLES = 3000
-"""Of one object: what shows it in a game's usual distance; a keyboard has three times as many."""
+COVERAGES = (0.5, 0.25, 0.0)
+"""Share of the picture's height down to which each level is shown. At half the height a quarter of the triangles are as
+large on the screen as before."""
+MAX_SHARE_OF_FINER = 0.7
+"""A level with more of the triangles of the one before it saves less than its change of form costs."""
+HALVINGS = 6
+"""How often the span of budgets is halved: to 2 % of the largest."""
 ERRORS = (0.15, *LARGEST_ERRORS)
+"""Of the finest level, which keeps to the triangles that were asked for; coarser ones keep their form first."""
 MAX_SHORTER = 0.08
 """Pieces may lose their bevels: without, a keyboard keeps 5,300 triangles."""
 Y_UP = np.array([[1.0, 0.0, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0], [0.0, -1.0, 0.0, 0.0], [0.0, 0.0, 0.0, 1.0]])
 """From +Z up to +Y up."""
+FRONT_Z = np.array([[0.0, 1.0, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0], [1.0, 0.0, 0.0, 0.0], [0.0, 0.0, 0.0, 1.0]])
+"""From an object's +X front and +Z up to the +Z front and +Y up of glTF, which importers turn to their engine's."""
+Levels = Sequence[Sequence[Surface]]
+"""Surfaces in full, then of each coarser level."""
 UNSEEN = Material("collider", (0.2, 0.6, 0.9), alpha=0.3)
 
 
@@ -56,27 +67,62 @@ class _Builder:
         self._gathered, self._progress = gathered, progress
         self._document = GltfDocument(generator="Diorama", compression=gathered.options.compression)
         self._materials = GameMaterials(gathered.materials)
+        self._lighter: dict[tuple[str, float, tuple[float, ...]], tuple[Surface, ...]] = {}
 
     def built(self) -> GltfDocument:
         self._progress.report(0.0, "preparing colliders")
         physical = physical_scene(self._gathered)
+        budget = self._budget()
         nodes = [self._room(physical)] if physical.slabs else []
         for done, body in enumerate(physical.bodies):
             self._progress.report(0.3 + 0.7 * done / len(physical.bodies), f"writing {body.node.name}")
-            nodes.append(self._object(body))
+            nodes.append(self._object(body, self._share(body.node, budget)))
         nodes += self._lights()
         root = self._document.add("nodes", {"name": "diorama", **({"children": nodes} if nodes else {})})
         self._document.set_scene(self._document.add("scenes", {"name": self._gathered.name, "nodes": [root]}))
         return self._document
 
+    def _triangles(self, item: ExportObject, share: float = 1.0) -> int:
+        """Triangles of an object with its moving parts, when so many of them are left."""
+        keys = (item.mesh, *(limb.mesh for limb in item.limbs))
+        return sum(len(s.faces) for key in keys for s in self._mesh(key, share))
+
+    def _budget(self) -> int:
+        """Triangles that each object may have, so that it and all together have as many as were asked for.
+
+        Raises:
+            ExportError: the shapes would be lost before so few are left.
+        """
+        most, total = self._gathered.options.max_triangles, self._gathered.options.max_total_triangles
+        if total is None or self._total(most) <= total:
+            return most
+        if (fewest := self._total(0)) > total:
+            raise ExportError(
+                f"{self._gathered.name}: its shapes keep {fewest} triangles, {total} were asked for; "
+                "ask for more or write fewer objects"
+            )
+        fits = 0
+        for _ in range(HALVINGS):
+            middle = (fits + most) // 2
+            fits, most = (middle, most) if self._total(middle) <= total else (fits, middle)
+        return fits
+
+    def _total(self, budget: int) -> int:
+        """Triangles of all when each object may have so many."""
+        room = sum(self._gathered.meshes[p.mesh].triangles for p in self._gathered.planes)
+        return room + sum(self._triangles(item, self._share(item, budget)) for item in self._gathered.objects)
+
+    def _share(self, item: ExportObject, budget: int) -> float:
+        return min(budget / max(self._triangles(item), 1), 1.0)
+
     def _room(self, physical: PhysicalScene) -> int:
         """Planes as one mesh, with a collider for each convex piece."""
         surfaces = [s for p in self._gathered.planes for s in self._gathered.meshes[p.mesh].surfaces]
         pieces = [piece for slab in physical.slabs for piece in slab.pieces]
-        return self._node("room", surfaces, np.eye(4), np.eye(4), pieces, [], {"static": True})
+        return self._node("room", [surfaces], np.eye(4), Y_UP, pieces, [], {"static": True})
 
-    def _object(self, body: RigidBody) -> int:
-        """An object above the middle of its foot, its moving parts below it."""
+    def _object(self, body: RigidBody, share: float) -> int:
+        """An object above the middle of its foot, its moving parts below it, with a share of their triangles."""
         item, name = body.node, body.node.name
         foot = _shifted(np.array([0.0, 0.0, -0.5 * item.item.size_m[2]]))
         limbs = []
@@ -84,31 +130,49 @@ class _Builder:
             limb, hinge = moving.limb, _shifted(moving.limb.origin)
             about: dict[str, Any] = {
                 "joint": limb.kind,
-                "axis": _turned(limb.axis),
+                "axis": [float(v) for v in FRONT_Z[:3, :3] @ limb.axis],
                 "lower": limb.lower,
                 "upper": limb.upper,
             }
-            surfaces = self._fitting(limb.mesh, item.scale)
-            placed = np.linalg.inv(foot) @ limb.T_object_limb @ hinge
+            levels = self._levels(limb.mesh, item.scale, share)
+            placed = FRONT_Z @ np.linalg.inv(foot) @ limb.T_object_limb @ hinge @ FRONT_Z.T
             label, extras = f"{name} {limb.name}", {**about, "open": limb.opened}
-            limbs.append(self._node(label, surfaces, placed, hinge, moving.parts, [], extras))
+            to_pivot = FRONT_Z @ np.linalg.inv(hinge)
+            limbs.append(self._node(label, levels, placed, to_pivot, moving.parts, [], extras))
         extras = {"id": item.id, "category": item.item.category, "static": not body.free, "mass_kg": body.mass_kg}
-        surfaces = self._fitting(item.mesh, item.scale)
-        return self._node(name, surfaces, item.T_world @ foot, foot, body.parts, limbs, extras)
+        levels = self._levels(item.mesh, item.scale, share)
+        placed = Y_UP @ item.T_world @ foot @ FRONT_Z.T
+        return self._node(name, levels, placed, FRONT_Z @ np.linalg.inv(foot), body.parts, limbs, extras)
 
-    def _fitting(self, key: str, scale: Float[np.ndarray, "3"]) -> list[Surface]:
-        """The surfaces of a mesh at an object's scale, with few triangles."""
+    def _levels(self, key: str, scale: Float[np.ndarray, "3"], share: float) -> Levels:
+        """A mesh at an object's scale with a share of its triangles, and with a quarter of them each time it is half
+        as high in the picture."""
+        found = [self._mesh(key, share)]
+        for level in range(1, 1 if self._gathered.options.engine == "godot" else len(COVERAGES)):
+            coarser = self._mesh(key, share / 4**level, LARGEST_ERRORS)
+            if _count(coarser) > MAX_SHARE_OF_FINER * _count(found[-1]):
+                break
+            found.append(coarser)
+        return [
+            [replace(s, vertices=_single(s.vertices * scale), normals=_normals(s, scale)) for s in one] for one in found
+        ]
+
+    def _mesh(self, key: str, share: float, errors: tuple[float, ...] = ERRORS) -> tuple[Surface, ...]:
+        """The surfaces of a mesh at scale 1 with about this share of their triangles."""
         mesh = self._gathered.meshes[key]
-        share = MAX_TRIANGLES / max(mesh.triangles, 1)
-        lighter = mesh.surfaces if share >= 1.0 else [_lighter(s, share) for s in mesh.surfaces]
-        return [replace(s, vertices=_single(s.vertices * scale), normals=_normals(s, scale)) for s in lighter]
+        if share >= 1.0:
+            return mesh.surfaces
+        wanted = (key, share, errors)
+        if wanted not in self._lighter:
+            self._lighter[wanted] = tuple(_lighter(s, share, errors) for s in mesh.surfaces)
+        return self._lighter[wanted]
 
     def _node(
         self,
         name: str,
-        surfaces: Iterable[Surface],
+        levels: Levels,
         T_parent: Float[np.ndarray, "4 4"],
-        T_pivot: Float[np.ndarray, "4 4"],
+        to_pivot: Float[np.ndarray, "4 4"],
         parts: Iterable[Points],
         below: list[int],
         extras: dict[str, Any],
@@ -117,32 +181,56 @@ class _Builder:
 
         Args:
             name: Of the node and its mesh.
-            surfaces: In the frame of the object, with its scale.
-            T_parent: Where the pivot is in the parent's frame.
-            T_pivot: Where it is in the object's frame.
+            levels: Surfaces in the frame of the object, with its scale.
+            T_parent: Where the node is in its parent's frame.
+            to_pivot: From the object's frame to the node's.
             parts: Convex colliders in the object's frame.
             below: Further children.
             extras: What is said of it.
         """
-        to_pivot = Y_UP @ np.linalg.inv(T_pivot)
-        drawn = self._materials.merged(_moved(s, to_pivot) for s in surfaces)
-        if drawn and self._gathered.options.light_uv:
-            drawn = tuple(unwrapped(drawn))
+        drawn = [self._materials.merged(_moved(s, to_pivot) for s in surfaces) for surfaces in levels]
+        if self._gathered.options.light_uv:
+            drawn = [tuple(unwrapped(one)) if one else one for one in drawn]
         children = [*below]
-        for number, part in enumerate(parts if self._gathered.options.engine in ("godot", "unreal") else ()):
+        coarser = len(drawn) > 1
+        parts = list(parts) if self._gathered.options.engine in ("godot", "unreal") else []
+        shown = f"{name} shape" if coarser and (below or parts) else name  # children would vanish with their level
+        for number, part in enumerate(parts):
             corners, faces = hull_faces(part @ to_pivot[:3, :3].T + to_pivot[:3, 3])
             faces = faces.astype(np.int32)
             hull = Surface(_single(corners), _single(_outward(corners)), faces, UNSEEN)
-            label = collider_name(name, number, self._gathered.options.engine)
+            label = collider_name(shown, number, self._gathered.options.engine)
             children.append(
                 self._document.add("nodes", {"name": label, "mesh": self._document.add_mesh(label, (hull,))})
             )
-        node: dict[str, Any] = {"name": name, **placement(Y_UP @ T_parent @ Y_UP.T), "extras": extras}
-        if drawn:
-            node["mesh"] = self._document.add_mesh(name, drawn)
+        node: dict[str, Any] = {"name": name, **placement(T_parent), "extras": extras}
+        if shown != name:
+            children.append(self._document.add("nodes", self._with_levels({"name": shown}, drawn)))
+        elif drawn[0]:
+            node = self._with_levels(node, drawn)
         if children:
             node["children"] = children
         return self._document.add("nodes", node)
+
+    def _with_levels(self, node: dict[str, Any], drawn: Sequence[tuple[Surface, ...]]) -> dict[str, Any]:
+        """A node with its mesh, and with a node for each coarser one at the same place."""
+        name = node["name"]
+        place: dict[str, Any] = {key: node[key] for key in ("rotation", "translation") if key in node}
+        meshes = [
+            self._document.add_mesh(f"{name}_LOD{level}" if level else name, surfaces)
+            for level, surfaces in enumerate(drawn)
+        ]
+        node = {**node, "mesh": meshes[0]}
+        if len(meshes) == 1:
+            return node
+        levels = [
+            self._document.add("nodes", {"name": f"{name}_LOD{level}", **place, "mesh": mesh})
+            for level, mesh in enumerate(meshes[1:], start=1)
+        ]
+        self._document.use("MSFT_lod")
+        covered = [*COVERAGES[: len(levels)], COVERAGES[-1]]
+        extras = {**node.get("extras", {}), "MSFT_screencoverage": covered}
+        return {**node, "extensions": {"MSFT_lod": {"ids": levels}}, "extras": extras}
 
     def _lights(self) -> list[int]:
         """Lamps, windows and the photo's main light, in the world."""
@@ -165,9 +253,9 @@ def collider_name(name: str, number: int, engine: str) -> str:
     return f"UCX_{name}_{number:02d}" if engine == "unreal" else f"{name} {number}-convcolonly"
 
 
-def _lighter(surface: Surface, share: float) -> Surface:
+def _lighter(surface: Surface, share: float, errors: tuple[float, ...]) -> Surface:
     triangles = np.ascontiguousarray(surface.faces.reshape(-1), dtype=np.uint32)
-    fewer = simplified_triangles(triangles, surface.vertices, share, ERRORS, MAX_SHORTER)
+    fewer = simplified_triangles(triangles, surface.vertices, share, errors, MAX_SHORTER)
     used, faces = np.unique(fewer, return_inverse=True)
     uv, colours = surface.uv, surface.colours
     return replace(
@@ -202,8 +290,8 @@ def _shifted(offset: Float[np.ndarray, "3"]) -> Float[np.ndarray, "4 4"]:
     return T
 
 
-def _turned(axis: Float[np.ndarray, "3"]) -> list[float]:
-    return [float(v) for v in Y_UP[:3, :3] @ axis]
+def _count(surfaces: Iterable[Surface]) -> int:
+    return sum(len(s.faces) for s in surfaces)
 
 
 def _single(values: np.ndarray) -> np.ndarray:

@@ -61,7 +61,11 @@ class ExportOptions:
     exposure show it), are in lumens and lux, or are left out."""
     engine: GameEngine = "godot"
     """Which engine a game's file is for: colliders have its names; for Unity and three.js, which have none, they are
-    left out."""
+    left out. Godot makes levels of detail itself when it imports."""
+    max_triangles: int = 3000
+    """About how many each object of a game has at most: what shows it in a game's usual distance."""
+    max_total_triangles: int | None = None
+    """How many the room and its objects have at most in a game, each in its finest level; None for any number."""
     light_uv: bool = False
     """Whether a game's meshes have a second set of texture coordinates without overlaps, for baked light."""
     robot_radius_m: float = 0.25

@@ -65,7 +65,7 @@ class GltfDocument:
 
     def add_light(self, light: dict[str, Any]) -> int:
         """A light of KHR_lights_punctual."""
-        self._use("KHR_lights_punctual")
+        self.use("KHR_lights_punctual")
         lights = self._json.setdefault("extensions", {}).setdefault("KHR_lights_punctual", {"lights": []})["lights"]
         lights.append(light)
         return len(lights) - 1
@@ -101,7 +101,8 @@ class GltfDocument:
         self.write(file)
         return file.getvalue()
 
-    def _use(self, extension: str, *, required: bool = False) -> None:
+    def use(self, extension: str, *, required: bool = False) -> None:
+        """Name an extension that the document uses, or that its readers must know."""
         for field in ("extensionsUsed", "extensionsRequired") if required else ("extensionsUsed",):
             names = self._json.setdefault(field, [])
             if extension not in names:
@@ -135,7 +136,7 @@ class GltfDocument:
     def _draco_primitive(self, arrays: dict[str, np.ndarray], faces: np.ndarray, material: int) -> dict[str, Any]:
         """A primitive whose accessors say what Draco's data decode to."""
         packed = draco_mesh(arrays, faces)
-        self._use(EXTENSION, required=True)
+        self.use(EXTENSION, required=True)
         accessors = {}
         for name in arrays:
             kind = _WIDTHS[arrays[name].shape[1]]
@@ -163,7 +164,7 @@ class GltfDocument:
             "type": _WIDTHS[width],
         }
         if normalised:
-            self._use("KHR_mesh_quantization", required=True)
+            self.use("KHR_mesh_quantization", required=True)
             entry["normalized"] = True
         if name == "POSITION":
             entry |= {"min": [float(v) for v in values.min(axis=0)], "max": [float(v) for v in values.max(axis=0)]}
@@ -191,7 +192,7 @@ class GltfDocument:
 
     def _compressed_view(self, encoded: bytes, values: np.ndarray, mode: str) -> int:
         """A view of the fallback buffer, which no file stores, with the compressed data that stand for it."""
-        self._use(meshopt.EXTENSION, required=True)
+        self.use(meshopt.EXTENSION, required=True)
         stride = values.itemsize * (values.shape[1] if values.ndim > 1 else 1)
         packed = {
             "buffer": 0,

@@ -2,22 +2,38 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
+import pytest
 import trimesh
 
-from diorama_core.export.game import MAX_TRIANGLES, write_game
+from diorama_core.errors import ExportError
+from diorama_core.export.game import MAX_SHARE_OF_FINER, write_game
 from diorama_core.export.palette import GameMaterials
 from diorama_core.io.glb import read_glb
 from diorama_core.render.appearance import Material, Surface
 from tests.export.scenes import gathered
+
+ENGINES = ("godot", "unreal", "unity", "three")
 
 
 def written(tmp_path: Path, **options: object) -> tuple[dict, trimesh.Scene, object]:
     scene = gathered("fittings", joints=True, **options)
     write_game(scene, tmp_path / "room.glb")
     return read_glb((tmp_path / "room.glb").read_bytes())[0], trimesh.load(tmp_path / "room.glb"), scene
+
+
+def triangles(document: dict, mesh: int) -> int:
+    parts = document["meshes"][mesh]["primitives"]
+    return sum(document["accessors"][p["indices"]]["count"] // 3 for p in parts)
+
+
+def corners(document: dict, mesh: int) -> np.ndarray:
+    parts = document["meshes"][mesh]["primitives"]
+    bounds = [document["accessors"][p["attributes"]["POSITION"]] for p in parts]
+    return np.array([np.min([b["min"] for b in bounds], axis=0), np.max([b["max"] for b in bounds], axis=0)])
 
 
 def test_objects_stand_on_their_origin_and_parts_turn_about_theirs(tmp_path: Path) -> None:
@@ -35,20 +51,68 @@ def test_objects_stand_on_their_origin_and_parts_turn_about_theirs(tmp_path: Pat
             np.testing.assert_allclose(T[:3, 3], hinge[[0, 2, 1]] * [1, 1, -1], atol=1e-5)
 
 
-def test_what_is_drawn_is_where_the_scene_has_it(tmp_path: Path) -> None:
-    document, _, scene = written(tmp_path, engine="three")
+@pytest.mark.parametrize("engine", ENGINES)
+def test_metres_y_up_and_objects_that_look_along_z(engine: str, tmp_path: Path) -> None:
+    """What glTF asks for, and what each engine's import turns to its own units and axes."""
+    document, loaded, scene = written(tmp_path, engine=engine)
     nodes = {n["name"]: n for n in document["nodes"]}
-    for item in (o for o in scene.objects if scene.meshes[o.mesh].triangles < MAX_TRIANGLES):
+    to_gltf = np.array([[1, 0, 0], [0, 0, 1], [0, -1, 0]])
+    for item in (o for o in scene.objects if scene.meshes[o.mesh].triangles < 1000):
+        T = loaded.graph[item.name][0]
+        np.testing.assert_allclose(T[:3, 2], to_gltf @ item.T_world[:3, 0], atol=1e-6)  # front
+        np.testing.assert_allclose(T[:3, 1], to_gltf @ item.T_world[:3, 2], atol=1e-6)  # up
         points = np.concatenate([s.vertices for s in scene.meshes[item.mesh].surfaces]) * item.scale
-        expected = (points + np.array([0, 0, item.item.size_m[2] / 2]))[:, [0, 2, 1]] * [1, 1, -1]
-        parts = document["meshes"][nodes[item.name]["mesh"]]["primitives"]
-        bounds = [document["accessors"][p["attributes"]["POSITION"]] for p in parts]
-        np.testing.assert_allclose(np.min([b["min"] for b in bounds], axis=0), expected.min(axis=0), atol=1e-5)
-        np.testing.assert_allclose(np.max([b["max"] for b in bounds], axis=0), expected.max(axis=0), atol=1e-5)
+        expected = (points + np.array([0, 0, item.item.size_m[2] / 2]))[:, [1, 2, 0]]
+        shown = nodes[item.name] if "mesh" in nodes[item.name] else nodes[f"{item.name} shape"]
+        bounds = corners(document, shown["mesh"])
+        np.testing.assert_allclose(bounds, [expected.min(axis=0), expected.max(axis=0)], atol=1e-5)
+
+
+@pytest.mark.parametrize("engine", ENGINES)
+def test_coarser_levels_are_nodes_beside_the_scene(engine: str, tmp_path: Path) -> None:
+    document, loaded, _ = written(tmp_path, engine=engine)
+    nodes = document["nodes"]
+    finest = [n for n in nodes if "MSFT_lod" in n.get("extensions", {})]
+    assert ("MSFT_lod" in document.get("extensionsUsed", [])) == bool(finest) == (engine != "godot")
+    shown = {child for n in nodes for child in n.get("children", [])}
+    for node in finest:
+        ids = node["extensions"]["MSFT_lod"]["ids"]
+        assert not shown & set(ids)
+        assert not node.get("children"), "a level takes its children along when it is hidden"
+        levels = [node, *(nodes[k] for k in ids)]
+        assert [n["name"] for n in levels[1:]] == [f"{node['name']}_LOD{k}" for k in range(1, len(levels))]
+        assert len({str((n.get("rotation"), n.get("translation"))) for n in levels}) == 1
+        counts = [triangles(document, n["mesh"]) for n in levels]
+        assert all(b <= MAX_SHARE_OF_FINER * a for a, b in pairwise(counts)), node["name"]
+        covered = node["extras"]["MSFT_screencoverage"]
+        assert len(covered) == len(levels)
+        assert covered == sorted(covered, reverse=True)
+        assert covered[-1] == 0.0
+        sizes = [np.ptp(corners(document, n["mesh"]), axis=0) for n in levels]
+        assert max(np.abs(s - sizes[0]).max() for s in sizes) < 0.1 * sizes[0].max()
+    assert not any("_LOD" in name for name in loaded.graph.nodes_geometry)
+
+
+def test_triangles_keep_to_their_budgets(tmp_path: Path) -> None:
+    counts = {}
+    for name, asked in (("each", {"max_triangles": 2400}), ("all", {"max_total_triangles": 12000}), ("free", {})):
+        document, _, scene = written(tmp_path, engine="unity", **asked)
+        levels = {k for n in document["nodes"] for k in n.get("extensions", {}).get("MSFT_lod", {}).get("ids", [])}
+        finest = {
+            n["name"]: triangles(document, n["mesh"])
+            for k, n in enumerate(document["nodes"])
+            if "mesh" in n and k not in levels
+        }
+        counts[name] = [sum(v for k, v in finest.items() if k.startswith(o.name)) for o in scene.objects]
+        assert sum(finest.values()) <= asked.get("max_total_triangles", np.inf)
+    assert max(counts["each"]) <= 1.25 * 2400
+    assert max(counts["all"]) < max(counts["free"])
+    with pytest.raises(ExportError, match=r"its shapes keep \d+ triangles, 500 were"):
+        written(tmp_path, max_total_triangles=500)
 
 
 def test_colliders_have_the_names_of_the_engine(tmp_path: Path) -> None:
-    for engine, mark in (("godot", "-convcolonly"), ("unreal", "UCX_"), ("unity", None), ("three", None)):
+    for engine, mark in zip(ENGINES, ("-convcolonly", "UCX_", None, None), strict=True):
         names = [n["name"] for n in written(tmp_path, engine=engine)[0]["nodes"]]
         assert any("-convcolonly" in n or "UCX_" in n for n in names) == (mark is not None)
         assert mark is None or sum(mark in n for n in names) > 10
@@ -60,7 +124,7 @@ def test_there_are_few_materials_and_triangles(tmp_path: Path) -> None:
     assert len(document["materials"]) < len(scene.materials)
     for mesh in document["meshes"]:
         count = sum(document["accessors"][p["indices"]]["count"] // 3 for p in mesh["primitives"])
-        assert count <= 1.25 * MAX_TRIANGLES, mesh["name"]
+        assert count <= 1.25 * scene.options.max_triangles, mesh["name"]
         materials = [p["material"] for p in mesh["primitives"]]
         assert len(materials) == len(set(materials))
 
