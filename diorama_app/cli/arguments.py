@@ -77,6 +77,14 @@ def projects_folder(given: Path | None) -> Path:
     return platformdirs.user_documents_path() / "Diorama"
 
 
+UNITS = {"m": 1.0, "cm": 0.01, "mm": 0.001, "in": 0.0254, "inch": 0.0254, "ft": 0.3048, "foot": 0.3048}
+
+
+def unit(text: str) -> float:
+    """Metres in a unit: a name, or a number of metres."""
+    return UNITS[text.lower()] if text.lower() in UNITS else positive(text)
+
+
 def positive(text: str) -> float:
     """A positive number."""
     value = float(text)

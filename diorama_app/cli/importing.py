@@ -7,7 +7,7 @@ import shutil
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from diorama_app.cli.arguments import command, print_note, progress_bar
+from diorama_app.cli.arguments import command, print_note, progress_bar, unit
 from diorama_core.errors import InputError
 from diorama_core.io.text import number_of
 
@@ -37,6 +37,12 @@ def add_import(commands: Any) -> None:
     p.add_argument("-o", "--output", type=Path, required=True, metavar="PROJECT", help="project folder to write")
     p.add_argument("--photo", type=Path, metavar="FILE", help="taken in a scanned room: looks and kinds come from it")
     p.add_argument("--boxes", type=Path, metavar="FILE", help="of the photo, as in diorama build; otherwise found")
+    p.add_argument(
+        "--unit",
+        type=unit,
+        metavar="m|cm|mm|inch|foot|METRES",
+        help="of the file's lengths (default: what the file says, or what makes it as large as rooms are)",
+    )
     p.add_argument("--library", metavar="NAME", help="shape library (default: the one the file names, or built-in)")
 
 
@@ -68,7 +74,7 @@ def _imported_into(project: Project, a: argparse.Namespace) -> tuple[Opened, tup
     warnings: tuple[str, ...] = ()
     with progress_bar() as progress:
         part = progress if a.photo is None else progress.part(0.0, 0.2)
-        imported = imported_apart(a.file, project.shapes_folder, a.library, part)
+        imported = imported_apart(a.file, project.shapes_folder, a.library, part, a.unit)
         opened = imported.opened
         project.update_info(library=imported.library_name)
         library = diorama.open_library(project.library_name)

@@ -14,7 +14,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import diorama_core as diorama
-from diorama_app.cli.arguments import command, positive, progress_bar
+from diorama_app.cli.arguments import command, progress_bar, unit
 from diorama_core.errors import InputError
 
 if TYPE_CHECKING:
@@ -23,7 +23,6 @@ if TYPE_CHECKING:
     from diorama_core.library.record import Shape
 
 AXES = ("+x", "-x", "+y", "-y", "+z", "-z")
-UNITS = {"m": 1.0, "cm": 0.01, "mm": 0.001, "in": 0.0254, "inch": 0.0254, "ft": 0.3048}
 DATASETS = ("auto", "none", "objaverse-lvis", "shapenetcore", "hssd", "3d-future", "abo")
 TABLE_ROWS = 60
 SHOWN = 20
@@ -65,11 +64,6 @@ def axis(text: str) -> str:
     if name not in AXES:
         raise argparse.ArgumentTypeError(f"{text!r} is no axis; write x, y or z, or a minus as in --front=-y")
     return name
-
-
-def unit(text: str) -> float:
-    """Metres in a unit: a name, or a number of metres."""
-    return UNITS[text.lower()] if text.lower() in UNITS else positive(text)
 
 
 def _add(a: argparse.Namespace) -> None:

@@ -18,7 +18,9 @@ MAX_QUIET_S = 90.0
 R = TypeVar("R")
 
 
-def imported_apart(path: Path, shapes: Path, library_name: str | None, progress: Progress) -> Imported:
+def imported_apart(
+    path: Path, shapes: Path, library_name: str | None, progress: Progress, unit_m: float | None = None
+) -> Imported:
     """`import_scene` in a process of its own; it raises the same, and `InputError` where that process had to end.
 
     Args:
@@ -26,8 +28,9 @@ def imported_apart(path: Path, shapes: Path, library_name: str | None, progress:
         shapes: the project's folder of shapes, made where shapes come out of the file.
         library_name: of the library where shapes are looked up first; None takes the one that the file names.
         progress: reports and cancellation.
+        unit_m: metres in one unit of the file; None believes the file.
     """
-    return _apart(path, _imported, path, shapes, library_name, progress=progress)
+    return _apart(path, _imported, path, shapes, library_name, unit_m, progress=progress)
 
 
 def read_apart(path: Path, shapes: Path, known: frozenset[str], progress: Progress) -> Opened:
@@ -42,8 +45,8 @@ def read_apart(path: Path, shapes: Path, known: frozenset[str], progress: Progre
     return _apart(path, read_scene, path, shapes, known, progress=progress)
 
 
-def _imported(path: Path, shapes: Path, library_name: str | None, progress: Progress) -> Imported:
-    return import_scene(path, shapes, library_name=library_name, progress=progress)
+def _imported(path: Path, shapes: Path, library_name: str | None, unit_m: float | None, progress: Progress) -> Imported:
+    return import_scene(path, shapes, library_name=library_name, unit_m=unit_m, progress=progress)
 
 
 def _apart(path: Path, read: Callable[..., R], *args: Any, progress: Progress) -> R:

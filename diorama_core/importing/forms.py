@@ -9,6 +9,7 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
+from typing import TypeVar
 
 import numpy as np
 import trimesh
@@ -54,7 +55,8 @@ class SceneForm:
     """Endings, or what the folder is."""
     becomes: str
     tells: Callable[[FileHead], bool]
-    read: Callable[[Path, Progress], Content]
+    read: Callable[[Path, Progress, float | None], Content]
+    """From its place, telling how far it is; the last is the metres in one unit, where somebody said them."""
     extra: str = ""
     """Optional library that it needs."""
 
@@ -92,30 +94,44 @@ def marked_file(path: Path) -> MarkedFile | None:
         UnavailableError: an optional library is missing.
     """
     with told(path) as (form, place):
-        content = form.read(place, Progress())
+        content = form.read(place, Progress(), None)
     return content if isinstance(content, MarkedFile) else None
 
 
-def _gltf(path: Path, progress: Progress) -> Content:
-    return read_marked_gltf(path) or _scan_or_parts(*parts_of_gltf(path))
+R = TypeVar("R", MarkedFile | None, MeasuredRoom | None)
 
 
-def _usd(path: Path, progress: Progress) -> Content:
-    return read_marked_usd(path) or read_room_plan(path) or _scan_or_parts(*parts_of_usd(path))
+def _in_known_unit(content: R, path: Path, unit_m: float | None) -> R:
+    """What says its own unit; raises `InputError` where somebody gives another."""
+    if content is not None and unit_m is not None:
+        raise InputError(f"{path.name} says its unit itself; leave out --unit")
+    return content
 
 
-def _room_plan(path: Path, progress: Progress) -> Content:
-    room = read_room_plan(path)
+def _gltf(path: Path, progress: Progress, unit_m: float | None) -> Content:
+    marked = _in_known_unit(read_marked_gltf(path), path, unit_m)
+    return marked or _scan_or_parts(*parts_of_gltf(path, unit_m))
+
+
+def _usd(path: Path, progress: Progress, unit_m: float | None) -> Content:
+    marked = _in_known_unit(read_marked_usd(path), path, unit_m)
+    return marked or _in_known_unit(read_room_plan(path), path, unit_m) or _scan_or_parts(*parts_of_usd(path, unit_m))
+
+
+def _room_plan(path: Path, progress: Progress, unit_m: float | None) -> Content:
+    room = _in_known_unit(read_room_plan(path), path, unit_m)
     if room is None:
         raise InputError(f"{path.name} is no scan of RoomPlan (there are no walls in it); export the scan again")
     return room
 
 
-def _home(path: Path, progress: Progress) -> Content:
+def _home(path: Path, progress: Progress, unit_m: float | None) -> Content:
+    if unit_m is not None:
+        raise InputError(f"{path.name} is in centimetres, as all homes are; leave out --unit")
     return SceneParts(*parts_of_sweet_home(path, progress))
 
 
-def _model(path: Path, progress: Progress) -> Content:
+def _model(path: Path, progress: Progress, unit_m: float | None) -> Content:
     """A scene in a format that does not say its frame: its levels and its size tell."""
     try:
         raw = read_model(path, path.parent)
@@ -123,8 +139,9 @@ def _model(path: Path, progress: Progress) -> Content:
         raise InputError(f"{path.name}: {error}") from error
     if not any(isinstance(g, trimesh.Trimesh) and len(g.faces) for g in raw.scene.geometry.values()):
         points = [np.asarray(g.vertices, float) for g in raw.scene.geometry.values() if hasattr(g, "vertices")]
-        return PointCloud(np.vstack(points) if points else np.zeros((0, 3)), None)
-    to_world, notes = frame_of_scene(raw)
+        cloud = PointCloud(np.vstack(points) if points else np.zeros((0, 3)), None)
+        return cloud if unit_m is None else cloud.in_unit(unit_m)
+    to_world, notes = frame_of_scene(raw, unit_m)
     return _scan_or_parts(split_scene(raw.scene, to_world), notes)
 
 
@@ -132,8 +149,9 @@ def _scan_or_parts(parts: tuple[Part, ...], notes: tuple[str, ...]) -> Content:
     return scan_in(parts) or SceneParts(parts, notes)
 
 
-def _cloud(path: Path, progress: Progress) -> Content:
-    return read_points(path)
+def _cloud(path: Path, progress: Progress, unit_m: float | None) -> Content:
+    cloud = read_points(path)
+    return cloud if unit_m is None else cloud.in_unit(unit_m)
 
 
 def _points(form: PointForm) -> SceneForm:

@@ -29,9 +29,14 @@ HUGE_M, USUAL_M = 100.0, 60.0
 SUBUNITS = {1.0: "metres", 0.01: "centimetres", 0.001: "millimetres"}
 
 
-def parts_of_gltf(path: Path) -> tuple[tuple[Part, ...], tuple[str, ...]]:
-    """Objects of a GLB or glTF file, and notes; raises `InputError` when it cannot be read."""
-    return _in_metres(_model(path), Z_UP)
+def parts_of_gltf(path: Path, unit_m: float | None = None) -> tuple[tuple[Part, ...], tuple[str, ...]]:
+    """Objects of a GLB or glTF file, and notes; raises `InputError` when it cannot be read.
+
+    Args:
+        path: The file.
+        unit_m: Metres in one unit of it; None believes the format, unless the scene would be larger than a hall.
+    """
+    return _in_metres(_model(path), Z_UP, unit_m)
 
 
 def shape_parts(path: Path, marked: MarkedFile, item: SceneObject) -> Part | None:
@@ -50,11 +55,11 @@ def shape_parts(path: Path, marked: MarkedFile, item: SceneObject) -> Part | Non
     return _part(scene, item.category, nodes, root, to_shape) if nodes else None
 
 
-def parts_of_usd(path: Path) -> tuple[tuple[Part, ...], tuple[str, ...]]:
-    """Objects of a USD or USDZ file, and notes; raises `InputError` when it cannot be read."""
+def parts_of_usd(path: Path, unit_m: float | None = None) -> tuple[tuple[Part, ...], tuple[str, ...]]:
+    """Objects of a USD or USDZ file, and notes; `parts_of_gltf` says the arguments and errors."""
     stage = opened_stage(path)
     with usd_errors(path):
-        return _in_metres(usd_scene(stage), world_of(stage))
+        return _in_metres(usd_scene(stage), world_of(stage), unit_m)
 
 
 def _model(path: Path) -> trimesh.Scene:
@@ -64,11 +69,16 @@ def _model(path: Path) -> trimesh.Scene:
         raise InputError(f"{path.name}: {error}") from error
 
 
-def _in_metres(scene: trimesh.Scene, to_world: Float[np.ndarray, "4 4"]) -> tuple[tuple[Part, ...], tuple[str, ...]]:
+def _in_metres(
+    scene: trimesh.Scene, to_world: Float[np.ndarray, "4 4"], unit_m: float | None
+) -> tuple[tuple[Part, ...], tuple[str, ...]]:
     """The parts of a scene, and a note where its unit is not the one it says.
 
     What would be larger than a hall was written in centimetres or millimetres.
     """
+    if unit_m is not None:
+        factor = unit_m / float(np.linalg.norm(to_world[:3, 0]))
+        return split_scene(scene, np.diag([factor, factor, factor, 1.0]) @ to_world), ()
     largest = 1.0 if scene.extents is None else float(np.max(scene.extents)) * float(np.linalg.norm(to_world[:3, 0]))
     factor = next((f for f in SUBUNITS if largest * f <= (HUGE_M if f == 1.0 else USUAL_M)), 0.001)
     parts = split_scene(scene, np.diag([factor, factor, factor, 1.0]) @ to_world)

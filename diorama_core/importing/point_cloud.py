@@ -24,6 +24,8 @@ MAX_ALONE, NOTED_ALONE = 0.1, 0.002
 """Shares of the points: more are a thin scan, fewer are not worth a note."""
 MESH_POINTS_M2 = 1500.0
 """Points that stand for a square metre of a mesh."""
+GUESSED = "lengths were taken for"
+"""How a note on a guessed unit begins."""
 Up = Float[np.ndarray, "3"]
 
 
@@ -52,6 +54,21 @@ class PointCloud:
     """Direction against gravity, where the format says it."""
     notes: tuple[str, ...] = ()
     photos: tuple[ScanPhoto, ...] = ()
+    unit_m: float = 1.0
+    """Metres that one unit of the file was taken for."""
+
+    def in_unit(self, unit_m: float) -> PointCloud:
+        """The cloud of a file whose unit is known to be another."""
+        factor = unit_m / self.unit_m
+        notes = tuple(note for note in self.notes if not note.startswith(GUESSED))
+        photos = tuple(_scaled(photo, factor) for photo in self.photos)
+        return replace(self, points=self.points * factor, notes=notes, photos=photos, unit_m=unit_m)
+
+
+def _scaled(photo: ScanPhoto, factor: float) -> ScanPhoto:
+    T = photo.camera.T_world_camera.copy()
+    T[:3, 3] *= factor
+    return replace(photo, camera=Camera(photo.camera.intrinsics, T), unit_m=photo.unit_m * factor)
 
 
 def in_metres(cloud: PointCloud) -> PointCloud:
@@ -61,7 +78,8 @@ def in_metres(cloud: PointCloud) -> PointCloud:
         return cloud
     together, notes = without_floaters(finite)
     unit = likely_unit(together, cloud.up)
-    return replace(cloud, points=together * unit.metres, notes=(*cloud.notes, *notes, *unit_note(unit)))
+    notes = (*cloud.notes, *notes, *unit_note(unit))
+    return replace(cloud, points=together * unit.metres, notes=notes, unit_m=unit.metres)
 
 
 def without_floaters(points: Float[np.ndarray, "n 3"]) -> tuple[Float[np.ndarray, "m 3"], tuple[str, ...]]:
@@ -96,7 +114,7 @@ def unit_note(unit: Unit) -> tuple[str, ...]:
     """A line where lengths were not taken for metres."""
     if unit.metres == 1.0:
         return ()
-    return (f"lengths were taken for {unit.name}: only so the points are about as large as a room",)
+    return (f"{GUESSED} {unit.name}: only so the points are about as large as a room",)
 
 
 def points_of_mesh(loaded: object) -> Float[np.ndarray, "n 3"]:

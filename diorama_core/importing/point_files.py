@@ -100,7 +100,7 @@ def _from_mesh(mesh: trimesh.Trimesh, up: np.ndarray | None) -> PointCloud:
     """Points are spread by square metres, so the unit comes first."""
     unit = likely_unit(np.asarray(mesh.vertices, np.float64), up)
     mesh.apply_scale(unit.metres)
-    return PointCloud(points_of_mesh(mesh), up, unit_note(unit))
+    return PointCloud(points_of_mesh(mesh), up, unit_note(unit), unit_m=unit.metres)
 
 
 def _from_array(read: Callable[[Path], Float[np.ndarray, "n 3"]], note: str, path: Path) -> PointCloud:

@@ -13,18 +13,19 @@ LOWER = 0.85
 """Largest ratio of extents at which the shorter axis is vertical although the format's habit says otherwise."""
 
 
-def frame_of_scene(raw: RawModel) -> tuple[Float[np.ndarray, "4 4"], tuple[str, ...]]:
+def frame_of_scene(raw: RawModel, unit_m: float | None = None) -> tuple[Float[np.ndarray, "4 4"], tuple[str, ...]]:
     """The file's frame and unit to the world (+Z up, metres), and notes about what had to be guessed.
 
     Args:
         raw: A scene of a room, not a single model.
+        unit_m: Metres in one unit of the file; None takes what the format says or the size makes likely.
     """
     promised = max(AXES, key=lambda axis: raw.convention.up.get(axis, 0.0))
     extents = np.asarray(raw.scene.extents, float)
     others = [a for a in ("+y", "+z") if a != promised and raw.convention.up.get(a, 0.0) > 0.05]
     up = next((a for a in others if _extent(extents, a) < LOWER * _extent(extents, promised)), promised)
     corners = np.asarray(raw.scene.to_geometry().vertices, np.float64)
-    sure = {u: p for u, p in raw.convention.unit.items() if p > 0.75}
+    sure = {u: p for u, p in raw.convention.unit.items() if p > 0.75} if unit_m is None else {unit_m: 1.0}
     unit = likely_unit(corners, axis_vector(up).astype(float))
     metres = next(iter(sure)) if sure else unit.metres
     z = axis_vector(up).astype(float)

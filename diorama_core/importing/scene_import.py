@@ -33,7 +33,12 @@ class Imported:
 
 
 def import_scene(
-    path: Path, shapes: Path | None = None, *, library_name: str | None = None, progress: Progress | None = None
+    path: Path,
+    shapes: Path | None = None,
+    *,
+    library_name: str | None = None,
+    unit_m: float | None = None,
+    progress: Progress | None = None,
 ) -> Imported:
     """Open a file as a scene.
 
@@ -42,15 +47,16 @@ def import_scene(
         shapes: The project's folder of shapes (`Project.shapes_folder`), made where shapes come out of the file; None
             where there can be none.
         library_name: Where shapes are looked up first; None takes the library the file names, or the built-in one.
+        unit_m: Metres in one unit of the file; None believes the file, or takes what makes it as large as rooms are.
         progress: Where it is reported and cancelling is noticed.
 
     Raises:
-        InputError: the file cannot be read.
+        InputError: the file cannot be read, or says its unit itself and another is given.
         UnavailableError: an optional library is missing.
         LibraryError: no shape library of that name, or models cannot be kept.
     """
     progress = progress or Progress()
-    with _read(path, progress) as (place, content):
+    with _read(path, progress, unit_m) as (place, content):
         if isinstance(content, MarkedFile):
             return _imported_mark(place, shapes, content, library_name, progress)
         name = library_name or "built-in"
@@ -79,12 +85,12 @@ def read_scene(path: Path, shapes: Path, known: frozenset[str], progress: Progre
 
 
 @contextmanager
-def _read(path: Path, progress: Progress) -> Iterator[tuple[Path, Content]]:
+def _read(path: Path, progress: Progress, unit_m: float | None = None) -> Iterator[tuple[Path, Content]]:
     """Where a file lies, unpacked where it was an archive, and what is in it."""
     progress.report(0.0, f"reading {path.name}")
     with told(path) as (form, place):
         progress.report(0.0, f"{path.name} is read as {form.name}")
-        yield place, form.read(place, progress)
+        yield place, form.read(place, progress, unit_m)
 
 
 def _opened(path: Path, content: Content, shapes: Path | None, library_name: str, progress: Progress) -> Opened:

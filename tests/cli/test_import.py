@@ -7,6 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+import trimesh
 from PIL import Image
 
 from diorama_app.cli import main
@@ -49,6 +50,16 @@ def test_what_cannot_be_read_is_one_line_and_leaves_no_project(tmp_path, capsys)
     err = capsys.readouterr().err.strip().splitlines()[-1]
     assert err.startswith("diorama: ")
     assert not (tmp_path / "p").exists()
+
+
+def test_a_unit_is_given_where_the_file_is_wrong_about_its_own(tmp_path, capsys) -> None:
+    floor = trimesh.creation.box(bounds=[(-8, -0.1, -8), (8, 0, 8)])
+    stool = trimesh.creation.box(bounds=[(0, 0, 0), (1.5, 1.75, 1.5)])
+    trimesh.Scene({"floor": floor, "stool": stool}).export(tmp_path / "room.glb")
+    assert main(["import", str(tmp_path / "room.glb"), "-o", str(tmp_path / "room"), "--unit", "foot"]) == 0
+    (found,) = Project.open(tmp_path / "room").load_scene().objects
+    np.testing.assert_allclose(sorted(found.size_m), 0.3048 * np.array([1.5, 1.5, 1.75]), rtol=1e-4)
+    assert "taken for" not in capsys.readouterr().err
 
 
 def test_a_film_of_a_project(tmp_path, furnished: Scene, monkeypatch) -> None:

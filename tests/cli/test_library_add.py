@@ -8,7 +8,8 @@ import pytest
 import trimesh
 
 from diorama_app.cli import main
-from diorama_app.cli.library_add import axis, unit
+from diorama_app.cli.arguments import unit
+from diorama_app.cli.library_add import axis
 from diorama_core.library.store import open_library
 
 

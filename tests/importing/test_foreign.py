@@ -33,7 +33,7 @@ def known(tmp_path_factory: pytest.TempPathFactory) -> KnownShapes:
 
 def opened(path: Path, known: KnownShapes, folder: Path):
     with told(path) as (form, place):
-        content = form.read(place, Progress())
+        content = form.read(place, Progress(), None)
     assert isinstance(content, SceneParts)
     return scene_of_parts(content.parts, path, StoredLibrary(folder / "models", create=True), Progress(), known)
 

@@ -13,8 +13,9 @@ from PIL import Image
 from scipy.spatial.transform import Rotation
 
 from diorama_core.errors import InputError
+from diorama_core.export import export_scene
 from diorama_core.importing.depth_frames import FRAME_FORMS, cloud_of_frames
-from diorama_core.importing.forms import SCENE_FORMS, SUFFIXES, told
+from diorama_core.importing.forms import SCENE_FORMS, SUFFIXES, SceneParts, told
 from diorama_core.importing.measured_cloud import measured_cloud
 from diorama_core.importing.part import Part
 from diorama_core.importing.parts import joined_flat_parts
@@ -28,8 +29,11 @@ from diorama_core.importing.splats import read_splat_ply
 from diorama_core.importing.text_clouds import is_text_cloud
 from diorama_core.io.file_heads import head_of
 from diorama_core.library.ingest.models import read_model
+from diorama_core.progress import Progress
 from diorama_core.scene.types import Plane
+from tests.importing.roomplan_files import write_json
 from tests.importing.scans import DEPTH, HEIGHT, WIDTH, cameras, room_meshes, room_points, write_app_scan
+from tests.primitives import PrimitiveLibrary, furnished_room
 
 
 def part(name: str, mesh: trimesh.Trimesh) -> Part:
@@ -210,3 +214,79 @@ def test_the_table_has_names_and_endings() -> None:
     assert {".glb", ".usdz", ".sh3d", ".json", ".ply", ".xyz", ".pcd", ".zip"} <= set(SUFFIXES)
     assert all(form.name and form.files and form.becomes for form in SCENE_FORMS)
     assert PointCloud(np.zeros((1, 3)), None).notes == ()
+
+
+UNIT_M = {"m": 1.0, "cm": 0.01, "mm": 0.001, "inch": 0.0254, "foot": 0.3048}
+
+
+def stage_of(path: Path, meshes: dict[str, trimesh.Trimesh]) -> None:
+    """Meshes in a stage that calls its lengths metres."""
+    pxr = pytest.importorskip("pxr", reason="usd-core is not installed (optional extra 'usd')")
+    from pxr import Usd, UsdGeom
+
+    assert pxr is not None
+    stage = Usd.Stage.CreateNew(str(path))
+    UsdGeom.SetStageMetersPerUnit(stage, 1.0)
+    UsdGeom.SetStageUpAxis(stage, UsdGeom.Tokens.z)
+    stage.SetDefaultPrim(UsdGeom.Xform.Define(stage, "/World").GetPrim())
+    for name, mesh in meshes.items():
+        prim = UsdGeom.Mesh.Define(stage, f"/World/{name}")
+        prim.CreatePointsAttr(mesh.vertices.tolist())
+        prim.CreateFaceVertexCountsAttr([3] * len(mesh.faces))
+        prim.CreateFaceVertexIndicesAttr(mesh.faces.reshape(-1).tolist())
+    stage.Save()
+
+
+@pytest.mark.parametrize("unit", UNIT_M)
+@pytest.mark.parametrize("suffix", [".glb", ".obj", ".usda", ".usdc", ".ply", ".xyz"])
+def test_a_given_unit_is_believed(suffix: str, unit: str, tmp_path: Path) -> None:
+    """The room is twice as large as rooms usually are, so that nothing is guessed right by chance."""
+    path, factor = tmp_path / f"room{suffix}", 2.0 / UNIT_M[unit]
+    if suffix == ".xyz":
+        np.savetxt(path, factor * room_points()[::20], fmt="%.6f")
+        expected = 2.0 * np.ptp(room_points()[::20], axis=0)
+    else:
+        meshes = {name: mesh.copy().apply_scale(factor) for name, mesh in room_parts().items()}
+        whole = trimesh.util.concatenate(list(room_parts().values()))
+        expected = 2.0 * whole.extents
+        if suffix in (".usda", ".usdc"):
+            stage_of(path, meshes)
+        elif suffix == ".ply":
+            whole.apply_scale(factor).export(path)
+        else:
+            scene = trimesh.Scene(meshes)
+            if suffix == ".glb":
+                scene.apply_transform(trimesh.transformations.rotation_matrix(-np.pi / 2, [1, 0, 0]))
+            scene.export(path)
+    with told(path) as (form, place):
+        content = form.read(place, Progress(), UNIT_M[unit])
+    if isinstance(content, PointCloud):
+        found = np.ptp(content.points, axis=0)
+        assert not any("taken for" in note for note in content.notes)
+    else:
+        assert isinstance(content, SceneParts)
+        bounds = np.array([p.whole.bounds for p in content.parts])
+        found = bounds[:, 1].max(axis=0) - bounds[:, 0].min(axis=0)
+        assert not any("lengths" in note for note in content.notes)
+    np.testing.assert_allclose(sorted(found), sorted(expected), rtol=0.02)
+
+
+def test_files_that_say_their_unit_take_no_other(tmp_path: Path) -> None:
+    room = write_json(tmp_path / "room.json")
+    home = tmp_path / "home.sh3d"
+    with zipfile.ZipFile(home, "w") as archive:
+        archive.writestr("Home.xml", "<home/>")
+    own = tmp_path / "own.glb"
+    export_scene(furnished_room(PrimitiveLibrary()), PrimitiveLibrary(), own, "glb")
+    for path in (room, home, own):
+        with told(path) as (form, place), pytest.raises(InputError, match="leave out --unit"):
+            form.read(place, Progress(), 0.01)
+
+
+def test_pictures_of_a_scan_keep_their_place_in_another_unit(tmp_path: Path) -> None:
+    cloud = read_points(write_app_scan(tmp_path / "scan", "polycam"))
+    half = cloud.in_unit(0.5 * cloud.unit_m)
+    np.testing.assert_allclose(half.points, 0.5 * cloud.points)
+    for before, after in zip(cloud.photos, half.photos, strict=True):
+        np.testing.assert_allclose(after.camera.position, 0.5 * before.camera.position)
+        assert after.unit_m == 0.5 * before.unit_m

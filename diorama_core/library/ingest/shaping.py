@@ -165,7 +165,7 @@ def ingest_model(
     frame = guess_frame(whole, pictures, convention, _named(raw, source), known, given)
     size = frame.unit_m * whole.extents.max()
     if not TINY_M <= size <= HUGE_M:
-        raise LibraryError(f"it would be {size:.3g} m large; give its unit")
+        raise LibraryError(f"it would be {size:.3g} m large; give its unit with --unit")
     meshes = _canonical(model, frame)
     fold = symmetry_fold(_whole(meshes), turned(pictures, frame.R_shape_file))
     record = _record(source, given, frame, fold)
