@@ -15,6 +15,7 @@ from typing import Any, Literal
 import numpy as np
 from jaxtyping import Float
 
+from diorama_core.export.door_swings import door_swings, opening_out
 from diorama_core.export.lights import EvenLight, ExportLight, MainLight, even_light_of, lights_of, main_light_of
 from diorama_core.export.limbs import ExportLimb, OneShape, by_joint, limb_of
 from diorama_core.export.names import Labels
@@ -238,6 +239,7 @@ def gather(
     shown = {o.id for o in scene.objects if not o.hidden and (options.only is None or o.id in options.only)}
     order = [scene.object(i) for i in top_down(scene) if i in shown]
     painted: dict[tuple[object, ...], dict[int | None, str]] = {}
+    swings = door_swings(order, lambda i: articulation_of(library, i)) if options.joints else {}
     objects = []
     for number, item in enumerate(order):
         if progress is not None:
@@ -248,7 +250,8 @@ def gather(
             made = _shape_meshes(library, item, options, textures, shared, labels)
             painted[paint] = {number: mesh.key for number, mesh in made.items()}
             meshes |= {mesh.key: mesh for mesh in made.values()}
-        objects.append(_node(scene, library, item, painted[paint], shown, labels))
+        outward = item.id in swings and swings[item.id].outward
+        objects.append(_node(scene, library, item, painted[paint], shown, labels, outward=outward))
     lit = [] if options.lights == "none" else [o.item for o in objects]
     return ExportScene(
         name=clean_text(name),
@@ -320,11 +323,16 @@ def _node(
     made: Mapping[int | None, str],
     shown: set[str],
     labels: Labels,
+    *,
+    outward: bool,
 ) -> ExportObject:
+    """The node of an object; the hinges of a door may let it open out of the room."""
     name = item.label if item.label == item.id else f"{item.label} ({item.id})"
     numbers = [number for number in made if number is not None]
     pieces = articulation_of(library, item.shape_id) if numbers else None
     joints = () if pieces is None else pieces.joints
+    if pieces is not None and outward:
+        joints = tuple(opening_out(j, pieces, n) if j.kind == "hinge" else j for n, j in enumerate(joints))
     return ExportObject(
         id=item.id,
         name=labels.name(name),

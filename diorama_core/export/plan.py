@@ -10,6 +10,7 @@ import manifold3d
 import numpy as np
 from jaxtyping import Float
 
+from diorama_core.export.door_swings import DoorSwing, door_swings
 from diorama_core.export.footprints import Outline, footprints
 from diorama_core.export.gathering import ExportObject, ExportScene
 from diorama_core.export.wall_lines import DrawnWall, Opening, wall_lines
@@ -24,8 +25,6 @@ OVERHEAD_M = 1.7
 """Objects whose lower side is higher hang above the section and are drawn dashed."""
 DIMENSION_GAP_M = 0.3
 """Between a wall's outer side and its first dimension line, and between two lines."""
-ONE_LEAF_M = 1.15
-"""Doors wider than this have two leaves."""
 ARC_POINTS = 13
 LEVEL_M = 0.05
 """Objects whose lower sides differ by less stand on one level."""
@@ -78,7 +77,7 @@ class FloorPlan:
     walls: tuple[Outline, ...]
     """Cut walls as filled outlines; holes run clockwise."""
     door_leaves: tuple[Outline, ...]
-    """Open lines: leaf and swing of each door."""
+    """Open lines: leaf and swing of each door, or the shut leaf of one that does not open."""
     window_panes: tuple[Outline, ...]
     """Open lines in the thickness of the wall."""
     pieces: tuple[Piece, ...]
@@ -116,11 +115,11 @@ def room_lines(planes: Sequence[Plane], items: Sequence[SceneObject], scene: Sce
     walls = wall_lines(planes, items, scene)
     floors = _within_walls([p.polygon[:, :2] for p in planes if p.role == "floor"], walls)
     openings = [(w, o) for w in walls for o in w.openings]
-    shapes = {item.id: item.shape_id for item in items}
+    swings = door_swings(items, articulation)
     return RoomLines(
         floors,
         _cut_walls(walls, floors),
-        tuple(line for w, o in openings if o.is_door and o.object_id for line in _door(w, o, shapes[o.object_id])),
+        tuple(line for w, o in openings if o.is_door and o.object_id for line in _door(w, o, swings.get(o.object_id))),
         tuple(line for w, o in openings if not o.is_door for line in _window(w, o)),
         walls,
     )
@@ -240,24 +239,16 @@ def _area(outline: Outline) -> manifold3d.CrossSection:
     return manifold3d.CrossSection([outline if counter_clockwise else outline[::-1]], manifold3d.FillRule.Positive)
 
 
-def _door(wall: DrawnWall, opening: Opening, shape_id: str) -> tuple[Outline, ...]:
-    """The open leaf and the quarter circle it swings through, into the room; a wide door has two leaves.
-
-    One that is known to have no hinge is drawn shut, on the wall's inner face.
-    """
-    width, pieces = opening.to_m - opening.from_m, articulation(shape_id)
-    if pieces is not None and all(joint.kind != "hinge" for joint in pieces.joints):
+def _door(wall: DrawnWall, opening: Opening, swing: DoorSwing | None) -> tuple[Outline, ...]:
+    """Each leaf as far open as it goes and the arc it swings through; one that does not open is drawn shut."""
+    if swing is None or not swing.can_open:
         return (np.stack([wall.at(opening.from_m), wall.at(opening.to_m)]),)
-    if width <= ONE_LEAF_M:
-        return _leaf(wall, opening.from_m, width)
-    return (*_leaf(wall, opening.from_m, width / 2), *_leaf(wall, opening.to_m, -width / 2))
-
-
-def _leaf(wall: DrawnWall, hinge_m: float, reach_m: float) -> tuple[Outline, Outline]:
-    """A leaf hinged at a place along the wall that closes so far along it (backward where negative)."""
-    hinge, angles = wall.at(hinge_m), np.linspace(0, np.pi / 2, ARC_POINTS)[:, None]
-    swing = hinge + reach_m * np.cos(angles) * wall.along - abs(reach_m) * np.sin(angles) * wall.outward
-    return np.stack([hinge, swing[-1]]), swing
+    angles = np.linspace(0, swing.free_rad, ARC_POINTS)
+    found: list[Outline] = []
+    for leaf in swing.leaves:
+        arc = np.concatenate([leaf.turned(leaf.tip[None], float(angle)) for angle in angles])
+        found += [np.stack([leaf.hinge, arc[-1]]), arc]
+    return tuple(found)
 
 
 def _window(wall: DrawnWall, opening: Opening) -> tuple[Outline, ...]:
