@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
+from itertools import combinations
 from pathlib import Path
 
 import numpy as np
@@ -27,6 +28,7 @@ def plan(editor: EditorPage) -> Iterator[EditorPage]:
     editor.page.keyboard.press("7")
     expect(editor.page.locator("#dio-plan svg")).to_be_visible()
     editor.settle()
+    editor.until(lambda: is_still(editor), "fitted to the page")
     yield editor
     editor.tool("Room").click()
     expect(editor.page.locator("#dio-plan")).to_have_count(0)
@@ -36,6 +38,13 @@ def on_plan(editor: EditorPage, point: np.ndarray) -> tuple[float, float]:
     """Where a point of the floor is on the page."""
     x, y = editor.page.evaluate("(p) => window.__dioPlan.toPage(p)", [float(v) for v in point[:2]])
     return float(x), float(y)
+
+
+def is_still(editor: EditorPage) -> bool:
+    """Whether the plan stays where it is: it is fitted anew while the page's panels come."""
+    before = [on_plan(editor, np.full(2, at)) for at in (0.0, 1.0)]
+    editor.page.wait_for_timeout(200)
+    return before == [on_plan(editor, np.full(2, at)) for at in (0.0, 1.0)]
 
 
 def drag_by(editor: EditorPage, start: np.ndarray, shift: tuple[float, float]) -> None:
@@ -61,14 +70,17 @@ def test_walls_furniture_doors_and_lengths_are_seen(plan: EditorPage) -> None:
 
 
 def test_names_lie_over_furniture_and_cover_no_other(plan: EditorPage) -> None:
-    boxes = plan.page.evaluate("""[...document.querySelectorAll('#dio-plan .names text')].map((t) => {
-        const b = t.getBoundingClientRect();
-        return [b.left, b.top, b.right, b.bottom];
-    })""")
-    assert len(boxes) >= 2
-    for i, a in enumerate(boxes):
-        for b in boxes[:i]:
-            assert a[0] >= b[2] or b[0] >= a[2] or a[1] >= b[3] or b[1] >= a[3], (a, b)
+    def boxes() -> list[list[float]]:
+        return plan.page.evaluate("""[...document.querySelectorAll('#dio-plan .names text')].map((t) => {
+            const b = t.getBoundingClientRect();
+            return [b.left, b.top, b.right, b.bottom];
+        })""")
+
+    def are_apart(a: list[float], b: list[float]) -> bool:
+        return a[0] >= b[2] or b[0] >= a[2] or a[1] >= b[3] or b[1] >= a[3]
+
+    plan.until(lambda: len(boxes()) >= 2, "named")
+    plan.until(lambda: all(are_apart(a, b) for a, b in combinations(boxes(), 2)), "apart")
     after = "piece => piece.compareDocumentPosition(document.querySelector('#dio-plan .names')) & 4"
     assert plan.page.locator("#dio-plan .piece:not(.opening)").first.evaluate(after)
 
@@ -200,6 +212,7 @@ def test_a_picture_lies_below_and_is_scaled_by_a_known_length(plan: EditorPage, 
     page.locator("#dio-plan-tools input[type=file]").set_input_files(drawing)
     picture = page.locator("#dio-plan image")
     expect(picture).to_be_visible()
+    plan.until(lambda: is_still(plan), "fitted to the picture, too")
     box = picture.bounding_box()
     assert box is not None
     for share in (0.25, 0.75):
