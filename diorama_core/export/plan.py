@@ -8,6 +8,7 @@ from itertools import pairwise
 
 import manifold3d
 import numpy as np
+import shapely
 from jaxtyping import Float
 
 from diorama_core.export.door_swings import DoorSwing, door_swings
@@ -26,6 +27,10 @@ OVERHEAD_M = 1.7
 DIMENSION_GAP_M = 0.3
 """Between a wall's outer side and its first dimension line, and between two lines."""
 ARC_POINTS = 13
+MIN_AREA_M2 = 0.5
+"""Smaller pieces of floor are niches and thresholds."""
+FINE_M = 0.05
+"""How exactly the freest place is found."""
 LEVEL_M = 0.05
 """Objects whose lower sides differ by less stand on one level."""
 REACH_M = 1e-3
@@ -42,6 +47,7 @@ class Piece:
     outlines: tuple[Outline, ...]
     size_m: tuple[float, float]
     """Along its own front (depth) and across (width)."""
+    height_m: float
     overhead: bool
     on_floor: bool
     """Whether it stands on the floor, rather than on other furniture or on a wall."""
@@ -69,6 +75,19 @@ class Dimension:
 
 
 @dataclass(frozen=True, eq=False)
+class Area:
+    """A floor's area and the point where it is written."""
+
+    at: Float[np.ndarray, "2"]
+    area_m2: float
+
+    @property
+    def text(self) -> str:
+        """As it is written."""
+        return f"{self.area_m2:.1f} m²"
+
+
+@dataclass(frozen=True, eq=False)
 class FloorPlan:
     """What a plan shows."""
 
@@ -83,6 +102,17 @@ class FloorPlan:
     pieces: tuple[Piece, ...]
     """The lowest first, so that what lies on top is drawn over it."""
     dimensions: tuple[Dimension, ...]
+
+    @property
+    def areas(self) -> tuple[Area, ...]:
+        """Each floor's area, to be written where the most floor is free."""
+        taken = shapely.union_all([_polygon(o) for p in self.pieces for o in p.outlines if len(o) > 2])
+        found = []
+        for floor in map(_polygon, self.floors):
+            free = floor.difference(taken)
+            circle = shapely.maximum_inscribed_circle(floor if free.is_empty else free, tolerance=FINE_M)
+            found.append(Area(np.asarray(circle.coords[0]), floor.area))
+        return tuple(area for area in found if area.area_m2 >= MIN_AREA_M2)
 
     @property
     def bounds(self) -> Float[np.ndarray, "2 2"]:
@@ -202,10 +232,10 @@ def _piece(scene: ExportScene, item: ExportObject, outlines: tuple[Outline, ...]
     level = 0.0 if floor is None else float(floor.centre[2])
     roles = {p.id: p.plane.role for p in scene.planes}
     on_floor = item.support is None or roles.get(item.support.parent) == "floor"
-    depth, width, _ = (float(v) for v in item.item.size_m)
+    depth, width, height = (float(v) for v in item.item.size_m)
     overhead = bottom - level > OVERHEAD_M
     label = "" if item.item.category in UNNAMED else item.item.label
-    return Piece(item.id, label, outlines, (depth, width), overhead, on_floor, bottom)
+    return Piece(item.id, label, outlines, (depth, width), height, overhead, on_floor, bottom)
 
 
 def _cut_walls(walls: Sequence[DrawnWall], floors: Sequence[Outline]) -> tuple[Outline, ...]:
@@ -231,6 +261,10 @@ def _meets(point: Float[np.ndarray, "2"], ends: Sequence[Float[np.ndarray, "2"]]
 def _strip(wall: DrawnWall, from_m: float, to_m: float, near_m: float, far_m: float) -> Outline:
     corners = ((from_m, near_m), (to_m, near_m), (to_m, far_m), (from_m, far_m))
     return np.stack([wall.at(along, behind) for along, behind in corners])
+
+
+def _polygon(outline: Outline) -> shapely.Geometry:
+    return shapely.make_valid(shapely.Polygon(outline))
 
 
 def _area(outline: Outline) -> manifold3d.CrossSection:

@@ -59,6 +59,9 @@ def dxf_text(plan: FloorPlan) -> str:
     taken: set[str] = set()
     for piece in plan.pieces:
         _add_piece(document, space, piece, taken)
+    for area in plan.areas:
+        label = space.add_text(area.text, height=TEXT_MM, dxfattribs={"layer": "LABELS"})
+        label.set_placement(area.at * MM_PER_M, align=_middle())
     _dimension_style(document)
     for dimension in plan.dimensions:
         _add_dimension(space, dimension)

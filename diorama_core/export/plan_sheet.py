@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections import Counter
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -15,6 +17,9 @@ CHOICES = ((20, A4), (25, A4), (50, A4), (50, A3), (100, A4), (100, A3), (200, A
 """Denominators of scales with their pages, the first that fits is taken."""
 MARGIN_MM, TITLE_MM, DIMENSION_ROOM_MM = 10.0, 16.0, 6.0
 TEXT_MM, SMALL_MM, TICK_MM = 2.5, 2.0, 1.4
+SCHEDULE_MM, ROW_MM = 78.0, 4.0
+COLUMNS_MM = (0.0, 5.0, 46.0)
+"""Where the columns of the schedule begin: number, name, size."""
 LETTER = 0.56
 """Mean width of a letter, in text heights."""
 
@@ -68,9 +73,11 @@ def plan_sheet(plan: FloorPlan) -> PlanSheet:
         ExportError: when no scale fits.
     """
     low, high = plan.bounds
-    scale, page = _choice(high - low)
+    rows = _schedule(plan)
+    beside = SCHEDULE_MM if rows else 0.0
+    scale, page = _choice(high - low, beside)
     width, height = page
-    centre = np.array([width / 2, (height + TITLE_MM) / 2])
+    centre = np.array([(width - beside) / 2, (height + TITLE_MM) / 2])
     to_page = _ToPage((low + high) / 2, 1000.0 / scale, centre)
     marks: list[SheetLine | Text] = [SheetLine((to_page(f),), True, 0.96, 0.0, group="floor") for f in plan.floors]
     for piece in plan.pieces:
@@ -82,6 +89,8 @@ def plan_sheet(plan: FloorPlan) -> PlanSheet:
         marks += _dimension_marks(dimension, to_page)
     for piece in plan.pieces:
         marks += _label_marks(piece, to_page)
+    marks += [_text(a.text, to_page(a.at), TEXT_MM, 0.0) for a in plan.areas]
+    marks += _schedule_marks(rows, width - MARGIN_MM - SCHEDULE_MM, height - MARGIN_MM)
     marks += _title_marks(plan.name, scale, width)
     return PlanSheet(plan.name, scale, width, height, tuple(m for m in marks if isinstance(m, Text) or m.points))
 
@@ -98,10 +107,10 @@ class _ToPage:
         return (points - self.centre_m) * self.mm_per_m + self.centre_mm
 
 
-def _choice(extent_m: Float[np.ndarray, "2"]) -> tuple[int, tuple[float, float]]:
+def _choice(extent_m: Float[np.ndarray, "2"], beside_mm: float) -> tuple[int, tuple[float, float]]:
     for scale, (width, height) in CHOICES:
         for page in ((width, height), (height, width)):
-            free = np.array(page) - 2 * MARGIN_MM - 2 * DIMENSION_ROOM_MM - [0.0, TITLE_MM]
+            free = np.array(page) - 2 * MARGIN_MM - 2 * DIMENSION_ROOM_MM - [beside_mm, TITLE_MM]
             if (extent_m * 1000.0 / scale <= free).all():
                 return scale, page
     raise ExportError(f"a plan of {extent_m[0]:.0f} x {extent_m[1]:.0f} m fits no page; export the DXF instead")
@@ -153,6 +162,33 @@ def _dimension_marks(dimension: Dimension, to_page: _ToPage) -> list[SheetLine |
     short = float(np.linalg.norm(end - start)) < LETTER * SMALL_MM * len(dimension.text)
     height = 0.7 * SMALL_MM if short else SMALL_MM
     return [*marks, _text(dimension.text, (start + end) / 2 + 0.85 * SMALL_MM * up, height, turn, "dimensions")]
+
+
+def _schedule(plan: FloorPlan) -> list[tuple[str, str, str]]:
+    """Number, name and width × depth × height of the furniture, equal pieces once."""
+    sizes = (f"{p.size_m[1]:.2f} × {p.size_m[0]:.2f} × {p.height_m:.2f}" for p in plan.pieces)
+    counted = Counter((p.label, size) for p, size in zip(plan.pieces, sizes, strict=True) if p.label)
+    return [(str(n), label, size) for (label, size), n in sorted(counted.items())]
+
+
+def _schedule_marks(rows: Sequence[tuple[str, str, str]], left: float, top: float) -> list[SheetLine | Text]:
+    """The schedule at the right border, as long as the page is."""
+    room = int((top - MARGIN_MM - TITLE_MM) / ROW_MM) - 1
+    shown = list(rows[:room])
+    if len(rows) > room:
+        more = sum(int(number) for number, *_ in rows[room - 1 :])
+        shown = [*rows[: room - 1], (str(more), "more", "")]
+    table = [("", "furniture", "width × depth × height"), *shown] if rows else []
+    marks: list[SheetLine | Text] = []
+    for line, cells in enumerate(table):
+        y = top - (line + 0.5) * ROW_MM
+        letters = int((COLUMNS_MM[2] - COLUMNS_MM[1]) / (LETTER * SMALL_MM))
+        named = cells[1] if len(cells[1]) <= letters else f"{cells[1][: letters - 1]}…"
+        for x, cell in zip(COLUMNS_MM, (cells[0], named, cells[2]), strict=True):
+            marks += [Text(cell, (left + x, y), SMALL_MM, anchor="start", group="schedule")] if cell else []
+        under = np.array([[left, y - ROW_MM / 2], [left + SCHEDULE_MM, y - ROW_MM / 2]])
+        marks.append(SheetLine((under,), stroke_mm=0.25 if line == 0 else 0.08, group="schedule"))
+    return marks
 
 
 def _title_marks(name: str, scale: int, width_mm: float) -> list[SheetLine | Text]:

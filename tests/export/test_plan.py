@@ -116,6 +116,33 @@ def test_the_sheet_is_in_scale() -> None:
     assert {"table", "chair"} <= {m.text for m in sheet.marks if isinstance(m, Text)}
 
 
+def test_the_sheet_has_the_floor_s_area_and_a_schedule() -> None:
+    scene = furnished_room(LIBRARY)
+    sheet = plan_sheet(floor_plan(gather(scene, LIBRARY)))
+    texts = [m for m in sheet.marks if isinstance(m, Text)]
+    assert "20.0 m²" in {t.text for t in texts}
+    rows: dict[float, dict[float, str]] = {}
+    for text in (t for t in texts if t.group == "schedule"):
+        rows.setdefault(text.at[1], {})[text.at[0]] = text.text
+    _, *listed = [[row[x] for x in sorted(row)] for row in rows.values()]
+    named = [o.label for o in scene.objects if o.category != "rug"]
+    assert sum(int(number) for number, *_ in listed) == len(named)
+    assert {label for _, label, _ in listed} == set(named)
+    depth, width, height = scene.object("t").size_m
+    assert f"{width:.2f} × {depth:.2f} × {height:.2f}" in {size for *_, size in listed}
+
+
+def test_a_schedule_longer_than_the_page_counts_the_rest() -> None:
+    scene = furnished_room(LIBRARY)
+    many = [replace(scene.objects[0], id=f"o{k}", label=f"thing {k:03d}") for k in range(120)]
+    crowded = replace(scene, objects=tuple(many), supports=())
+    sheet = plan_sheet(floor_plan(gather(crowded, LIBRARY)))
+    texts = [m for m in sheet.marks if isinstance(m, Text) and m.group == "schedule"]
+    assert min(t.at[1] for t in texts) > 0
+    assert "more" in {t.text for t in texts}
+    assert sum(int(t.text) for t in texts if t.text.isdigit()) == len(many)
+
+
 def test_a_plan_too_large_for_paper_says_so() -> None:
     floor = np.array([[0, 0, 0], [900, 0, 0], [900, 900, 0], [0, 900, 0]], float)
     scene = Scene(architecture=Architecture((Plane("floor", "floor", floor),)))
