@@ -3,9 +3,10 @@
     python scripts/mutants.py [--only backups,contained] [--sample 20] [--seed 0] [--minutes 60]
 
 A mutant is a module with one change: a comparison with its neighbour, `and` for `or`, a condition negated, a number one
-more, a value not returned, a call or an error left out. The module's own tests run in a fork of this process that has
-loaded everything; a mutant that they pass has survived, and its line is printed. Constants at the top of modules,
-words for people and what is logged are left alone: they are settings and prose. Needs the packages of the tests.
+more, a value not returned, a call or an error left out. Those of the module's own tests that reach the changed line run
+in a fork of this process, which has collected them; a mutant that they pass has survived, and its line is printed.
+Constants at the top of modules, words for people and what is logged are left alone: they are settings and prose. Needs
+the packages of the tests.
 """
 
 from __future__ import annotations
@@ -14,24 +15,37 @@ import argparse
 import ast
 import contextlib
 import copy
+import gc
+import json
 import os
 import random
 import resource
 import signal
 import sys
+import tempfile
+import threading
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
-from importlib import import_module
+from functools import partial
 from pathlib import Path
-from types import CodeType, ModuleType
+from types import CodeType, FrameType, FunctionType
+from typing import TYPE_CHECKING
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 
 import scripts.needs  # noqa: F401  # ends with a line where a package is missing
 
+os.environ["DIORAMA_CHECK_SHAPES"] = "0"  # before tests are imported
+
+import pytest
+from _pytest.runner import runtestprotocol
+
+if TYPE_CHECKING:
+    from _typeshed import TraceFunction
+
 ROOT = Path(__file__).resolve().parents[1]
-LIBRARIES = ("pytest", "hypothesis", "diorama_core")
+QUIETLY = ("-s", "-o", "addopts=-p no:dash -p no:terminal -p no:cacheprovider")
 PATIENCE, MIN_PATIENCE_S = 6.0, 20.0
 """Times as much of the processor as the tests take without a defect, and seconds: a mutant that takes more is found."""
 WAITING, WAITING_S = 20.0, 300.0
@@ -107,28 +121,44 @@ class Mutant:
     """One defect: the node that is changed, as the module's tree is walked, and what becomes of it."""
 
     number: int
-    line: int
+    lines: frozenset[int]
+    """Of the statement, without those within it."""
     before: str
-    after: str
-    tree: ast.Module = field(repr=False)
+    after: ast.AST = field(repr=False)
+
+    def __str__(self) -> str:
+        return f"line {min(self.lines)}: {_short(self.before)}  ->  {_short(ast.unparse(self.after))}"
 
 
 def mutants_of(source: str, spared: tuple[str, ...] = ()) -> list[Mutant]:
     """Every small defect of a module, but for those of the functions that are spared."""
     tree = ast.parse(source)
+    changeable = _changeable(tree, spared)
     found: list[Mutant] = []
-    for number in sorted(_changeable(tree, spared)):
-        for way in range(2):
-            changed = copy.deepcopy(tree)
-            node, parent, place = _located(changed)[number]
-            before = ast.unparse(node)
-            new = _changed(node, way)
-            if new is None:
-                continue
-            _put(parent, place, new)
-            ast.fix_missing_locations(changed)
-            found.append(Mutant(number, node.lineno, before, ast.unparse(new), changed))
+    lines: dict[ast.AST, frozenset[int]] = {}
+    for number, (node, parent, _) in enumerate(_located(tree)):
+        lines[node] = _lines(node) if isinstance(node, ast.stmt) else lines.get(parent, frozenset())
+        for way in range(2) if number in changeable else ():
+            if (new := _changed(node, way)) is not None:
+                found.append(Mutant(number, lines[node], ast.unparse(node), new))
     return found
+
+
+def _lines(statement: ast.stmt) -> frozenset[int]:
+    body = getattr(statement, "body", None)
+    end = max(body[0].lineno, statement.lineno + 1) if body else (statement.end_lineno or 0) + 1
+    return frozenset(range(statement.lineno, end))
+
+
+def with_defect(source: str, mutant: Mutant) -> ast.Module:
+    """The tree of a module with the defect in it."""
+    tree = ast.parse(source)
+    _, parent, (name, index) = _located(tree)[mutant.number]
+    if index is None:
+        setattr(parent, name, mutant.after)
+    else:
+        getattr(parent, name)[index] = mutant.after
+    return ast.fix_missing_locations(tree)
 
 
 def _located(tree: ast.Module) -> list[tuple[ast.AST, ast.AST, tuple[str, int | None]]]:
@@ -141,14 +171,6 @@ def _located(tree: ast.Module) -> list[tuple[ast.AST, ast.AST, tuple[str, int | 
             elif isinstance(value, list):
                 rows += [(v, parent, (name, i)) for i, v in enumerate(value) if isinstance(v, ast.AST)]
     return rows
-
-
-def _put(parent: ast.AST, place: tuple[str, int | None], node: ast.AST) -> None:
-    name, index = place
-    if index is None:
-        setattr(parent, name, node)
-    else:
-        getattr(parent, name)[index] = node
 
 
 def _changeable(tree: ast.Module, spared: tuple[str, ...]) -> set[int]:
@@ -197,7 +219,7 @@ def _changed(node: ast.AST, way: int) -> ast.AST | None:
         case ast.Return(value=value) if way == 1 and value is not None and not isinstance(value, ast.Constant):
             return ast.Return(ast.Constant(None))
         case ast.Expr(value=ast.Call() | ast.Await()) if way == 1:
-            return ast.Pass()
+            return ast.If(ast.Constant(False), [node], [])  # which leaves the method's cell for `super` in place
         case ast.Raise() if way == 1:
             return ast.Pass()
     return None
@@ -205,29 +227,34 @@ def _changed(node: ast.AST, way: int) -> ast.AST | None:
 
 @dataclass(frozen=True)
 class Ran:
-    """What became of a module's tests."""
+    """What became of tests."""
 
     passed: bool
     cpu_s: float
     wall_s: float
 
 
-def run_tests(path: Path, tests: tuple[str, ...], tree: ast.Module | None, known: Ran | None = None) -> Ran:
-    """A module's tests with a defect in it, in a fork of this process.
+def in_fork(work: Callable[[], bool], known: Ran | None = None) -> Ran:
+    """Do something in a fork of this process, which hears nothing of it but how it ended.
 
     Args:
-        path: the module.
-        tests: its files of tests.
-        tree: the module with the defect; None without one.
-        known: the tests without a defect: those that take much longer have found it.
+        work: True when it went well.
+        known: the same without a defect: what takes much longer has failed.
     """
     began = time.monotonic()
     process = os.fork()
     if process == 0:
+        os.setpgid(0, 0)
+        quiet = os.open(os.devnull, os.O_WRONLY)
+        os.dup2(quiet, 1)
+        os.dup2(quiet, 2)
         if known is not None:
             most = int(max(MIN_PATIENCE_S, PATIENCE * known.cpu_s))
             resource.setrlimit(resource.RLIMIT_CPU, (most, most))
-        _run_tests(path, tests, tree)
+        try:
+            os._exit(0 if work() else 1)
+        finally:
+            os._exit(1)
     until = None if known is None else began + max(WAITING_S, WAITING * known.wall_s)
     while True:
         done, status, used = os.wait4(process, os.WNOHANG)
@@ -241,44 +268,88 @@ def run_tests(path: Path, tests: tuple[str, ...], tree: ast.Module | None, known
         time.sleep(0.05)
 
 
-def _run_tests(path: Path, tests: tuple[str, ...], tree: ast.Module | None) -> None:
-    """In the fork: put the changed functions and classes in the place of those that are loaded, and run the tests."""
-    os.setpgid(0, 0)
-    quiet = os.open(os.devnull, os.O_WRONLY)
-    os.dup2(quiet, 1)
-    os.dup2(quiet, 2)
-    import pytest
+class Trial:
+    """What pytest does in the place of running the tests that it has collected: see which mutants they find."""
 
-    if tree is not None:
-        _replace(_module_of(path), compile(tree, str(path), "exec"))
-    status = pytest.main(["-x", "-q", "-p", "no:cacheprovider", *tests])
-    os._exit(0 if status == pytest.ExitCode.OK else 1)
+    def __init__(self, path: Path, mutants: list[Mutant]) -> None:
+        self.path, self.mutants = path, mutants
+        self.survived: list[Mutant] | None = None
+        """None where the tests fail without a defect."""
+        self._reached: set[int] = set()
+        self._by_fixtures: dict[Path, set[int]] = {}
+
+    def pytest_runtestloop(self, session: pytest.Session) -> bool:
+        """Run all tests once, and then for each mutant those that reach it, quick ones first."""
+        with tempfile.TemporaryDirectory() as folder:
+            os.environ["PYTEST_DEBUG_TEMPROOT"] = folder
+            notes = Path(folder) / "notes.json"
+            if not in_fork(lambda: self._traced(session.items, notes)).passed:
+                return True
+            rows = sorted(json.loads(notes.read_text()), key=lambda row: row[1])
+            source, functions = self.path.read_text(), _functions_of(self.path)
+            self.survived = []
+            for mutant in self.mutants:
+                mine = [row for row in rows if mutant.lines & set(row[3])] or rows
+                items = [session.items[number] for number, *_ in mine]
+                code = compile(with_defect(source, mutant), str(self.path), "exec")
+                known = Ran(True, sum(cpu for _, cpu, _, _ in mine), sum(wall for _, _, wall, _ in mine))
+                if in_fork(partial(_passes, items, functions, code), known).passed:
+                    self.survived.append(mutant)
+        return True
+
+    def pytest_runtest_call(self, item: pytest.Item) -> None:
+        """What was reached until here, fixtures did: perhaps for all tests of the file."""
+        self._by_fixtures.setdefault(item.path, set()).update(self._reached)
+        self._reached.clear()
+
+    def _traced(self, items: list[pytest.Item], notes: Path) -> bool:
+        """Run tests; note of each its number, the seconds it took and the module's lines that it reached."""
+        here, rows = str(self.path), []
+
+        def trace(frame: FrameType, event: str, about: object) -> TraceFunction | None:
+            if frame.f_code.co_filename != here:
+                return None
+            self._reached.add(frame.f_lineno)
+            return trace
+
+        threading.settrace(trace)
+        sys.settrace(trace)
+        for number, (item, following) in enumerate(zip(items, [*items[1:], None], strict=True)):
+            cpu, wall = time.process_time(), time.monotonic()
+            if any(report.failed for report in runtestprotocol(item, log=False, nextitem=following)):
+                return False
+            rows.append((number, time.process_time() - cpu, time.monotonic() - wall, set(self._reached)))
+            self._reached.clear()
+        found = [(n, c, w, sorted(lines | self._by_fixtures.get(items[n].path, set()))) for n, c, w, lines in rows]
+        notes.write_text(json.dumps(found))
+        return True
 
 
-def _module_of(path: Path) -> ModuleType:
-    return import_module(".".join(path.relative_to(ROOT).with_suffix("").parts))
+def _passes(items: list[pytest.Item], functions: list[FunctionType], code: CodeType) -> bool:
+    _put_in(functions, code)
+    return not any(
+        report.failed
+        for item, following in zip(items, [*items[1:], None], strict=True)
+        for report in runtestprotocol(item, log=False, nextitem=following)
+    )
 
 
-def _replace(module: ModuleType, code: CodeType) -> None:
-    """Execute a module's changed code in it; whoever had imported a function or a class of it gets the new one."""
-    before = {
-        name: value for name, value in vars(module).items() if getattr(value, "__module__", "") == module.__name__
-    }
-    exec(code, vars(module))
-    new = {id(value): vars(module)[name] for name, value in before.items()}
-    for name, other in list(sys.modules.items()):
-        if name.partition(".")[0] in ("diorama_core", "diorama_app") and other is not module:
-            for attribute, value in list(vars(other).items()):
-                if id(value) in new:
-                    setattr(other, attribute, new[id(value)])
+def _functions_of(path: Path) -> list[FunctionType]:
+    """The functions of a module, wherever they are held: in classes, behind decorators, in tests."""
+    gc.unfreeze()  # `tests/conftest.py` has frozen what was imported
+    return [f for f in gc.get_objects() if type(f) is FunctionType and f.__code__.co_filename == str(path)]
 
 
-def _load(tests: tuple[str, ...]) -> None:
-    """Import what tests import of the program, so that no fork has to."""
-    for test in tests:
-        for statement in ast.walk(ast.parse((ROOT / test).read_text())):
-            if isinstance(statement, ast.ImportFrom) and (statement.module or "").startswith("diorama"):
-                import_module(str(statement.module))
+def _put_in(functions: list[FunctionType], code: CodeType) -> None:
+    """Let a module's functions do what its changed code says."""
+    changed: dict[str, CodeType] = {}
+    waiting = [code]
+    while waiting:
+        inner = [c for c in waiting.pop().co_consts if isinstance(c, CodeType)]
+        changed |= {c.co_qualname: c for c in inner}
+        waiting += inner
+    for function in functions:
+        function.__code__ = changed[function.__code__.co_qualname]
 
 
 def chosen(options: argparse.Namespace) -> Iterator[tuple[Path, tuple[str, ...], list[Mutant], int]]:
@@ -298,25 +369,23 @@ def main() -> int:
     parser.add_argument("--seed", type=int, default=0, help="of the samples")
     parser.add_argument("--minutes", type=float, default=1e6, help="begin no module after so long")
     options = parser.parse_args()
-    os.environ["DIORAMA_CHECK_SHAPES"] = "0"
     os.chdir(ROOT)
-    for library in LIBRARIES:
-        import_module(library)
     until, total, survived = time.monotonic() + 60.0 * options.minutes, 0, 0
     for path, tests, mutants, count in chosen(options):
         if time.monotonic() > until:
             print(f"{path.relative_to(ROOT)} and what follows: no time", flush=True)
             break
-        _load(tests)
-        known = run_tests(path, tests, None)
-        if not known.passed:
+        trial = Trial(path, mutants)
+        pytest.main([*QUIETLY, *tests], plugins=[trial])
+        if trial.survived is None:
             print(f"{path.relative_to(ROOT)}: its tests fail without a defect", flush=True)
             return 2
-        alive = [m for m in mutants if run_tests(path, tests, m.tree, known).passed]
-        total, survived = total + len(mutants), survived + len(alive)
-        print(f"{path.relative_to(ROOT)}: {len(mutants)} of {count} mutants, {len(alive)} survived", flush=True)
-        for mutant in alive:
-            print(f"  line {mutant.line}: {_short(mutant.before)}  ->  {_short(mutant.after)}", flush=True)
+        total, survived = total + len(mutants), survived + len(trial.survived)
+        print(
+            f"{path.relative_to(ROOT)}: {len(mutants)} of {count} mutants, {len(trial.survived)} survived", flush=True
+        )
+        for mutant in trial.survived:
+            print(f"  {mutant}", flush=True)
     print(f"{total} mutants, {survived} survived ({100.0 * survived / max(total, 1):.1f} %, asked: at most 5)")
     return 0
 
