@@ -108,6 +108,13 @@ COMPARED: dict[type[ast.cmpop], type[ast.cmpop]] = {
     ast.Is: ast.IsNot,
     ast.IsNot: ast.Is,
 }
+AT_A_CLOCK: dict[type[ast.cmpop], type[ast.cmpop]] = {
+    ast.Lt: ast.GtE,
+    ast.LtE: ast.Gt,
+    ast.Gt: ast.LtE,
+    ast.GtE: ast.Lt,
+}
+"""No clock reads exactly the limit: there the neighbour makes no difference, the contrary does."""
 COMPUTED: dict[type[ast.operator], type[ast.operator]] = {
     ast.Add: ast.Sub,
     ast.Sub: ast.Add,
@@ -197,11 +204,17 @@ def _is_prose(node: ast.AST) -> bool:
     return logged or isinstance(node, ast.Constant)
 
 
+def _reads_a_clock(node: ast.AST) -> bool:
+    clocks = ("time.time", "time.monotonic", "time.perf_counter", "loop.time")
+    return any(isinstance(n, ast.Call) and ast.unparse(n.func) in clocks for n in ast.walk(node))
+
+
 def _changed(node: ast.AST, way: int) -> ast.AST | None:
     """The node with a defect, or None where there is none of this kind."""
     match node:
         case ast.Compare(ops=[op]) if type(op) in COMPARED and way == 0:
-            return ast.Compare(node.left, [COMPARED[type(op)]()], node.comparators)
+            other = AT_A_CLOCK.get(type(op)) if _reads_a_clock(node) else None
+            return ast.Compare(node.left, [(other or COMPARED[type(op)])()], node.comparators)
         case ast.BoolOp() if way == 0:
             return ast.BoolOp(ast.Or() if isinstance(node.op, ast.And) else ast.And(), node.values)
         case ast.UnaryOp(op=ast.Not()) if way == 0:

@@ -122,12 +122,12 @@ def to_bin(folder: Path, projects_dir: Path) -> Path:
 def in_bin(projects_dir: Path) -> tuple[Path, ...]:
     """Where projects in the bin lie, the last deleted first."""
     places = [p for p in (projects_dir / BIN).glob("*") if (p / "project.json").exists()]
-    return tuple(sorted(places, key=lambda p: p.name.rsplit("-", 1)[-1], reverse=True))
+    return tuple(sorted(places, key=lambda p: p.name.rpartition("-")[2], reverse=True))
 
 
 def out_of_bin(place: Path, projects_dir: Path) -> Path:
     """Put a project from the bin back where it was."""
-    folder = projects_dir / place.name.rsplit("-", 1)[0]
+    folder = projects_dir / place.name.rpartition("-")[0]
     if folder.exists():
         raise ProjectError(f"{folder.name} exists again; rename or delete it first")
     try:

@@ -31,6 +31,8 @@ FORGOTTEN_S = 30 * 86400.0
 """Unsaved changes of a project that nobody opened for so long are removed."""
 SETTLED_S = 3.0
 """What is younger may be another program's that is about to save it."""
+_DIGITS = 16
+"""Of a digest, or of what tells sessions apart, in a note's name."""
 
 
 @dataclass(frozen=True)
@@ -70,7 +72,7 @@ class Recovery:
     def __init__(self, folder: Path | None = None) -> None:
         """Use a folder beside no project; by default one in the cache folder."""
         self._folder = folder or default_cache_dir() / "unsaved"
-        self._session = uuid.uuid4().hex[:12]
+        self._session = uuid.uuid4().hex[:_DIGITS]
 
     def note(self, project: Project, scene: Scene) -> bool:
         """Remember a change before it is saved; False when it cannot be kept here."""
@@ -128,7 +130,7 @@ class Recovery:
 
 
 def _place(project: Project) -> str:
-    return hashlib.sha256(os.fsencode(project.folder.resolve())).hexdigest()[:16]
+    return hashlib.sha256(os.fsencode(project.folder.resolve())).hexdigest()[:_DIGITS]
 
 
 def _saved_digest(project: Project) -> str:
@@ -138,6 +140,6 @@ def _saved_digest(project: Project) -> str:
 def _digest(path: Path) -> str:
     """Digest of a scene file's content; `none` where it cannot be read."""
     try:
-        return hashlib.sha256(read_bytes(path, MAX_JSON_BYTES, ProjectError)).hexdigest()[:16]
+        return hashlib.sha256(read_bytes(path, MAX_JSON_BYTES, ProjectError)).hexdigest()[:_DIGITS]
     except ProjectError:
         return "none"

@@ -29,8 +29,8 @@ class Backups:
 
     def paths(self) -> tuple[Path, ...]:
         """Earlier scene files, newest first; no links, and nothing that the program did not write."""
-        dated = [(order, p) for p in self.folder.glob("scene-*.json") if (order := _order(p)) is not None]
-        return tuple(p for _, p in sorted(dated, reverse=True) if p.is_file() and not p.is_symlink())
+        known = [(number, p) for p in self.folder.glob("scene-*.json") if (number := _number(p)) is not None]
+        return tuple(p for _, p in sorted(known, reverse=True) if p.is_file() and not p.is_symlink())
 
     def keep(self, scene: Path, *, at_once: bool) -> bool:
         """Keep a scene file that is about to be replaced: at most one a minute, and none twice in a row.
@@ -51,7 +51,7 @@ class Backups:
         content = read_bytes(scene, MAX_JSON_BYTES, ProjectError)
         if known and _holds(known[0], content):
             return False
-        number = 1 + max((_order(p) or (0, ""))[0] for p in known) if known else 1
+        number = 1 + max((_number(p) or 0 for p in known), default=0)
         stamp = time.strftime("%Y%m%dT%H%M%SZ", time.gmtime())
         write_atomically(self.folder / f"scene-n{number:06d}-{stamp}.json", content, error=ProjectError)
         self._prune()
@@ -68,9 +68,9 @@ def _holds(path: Path, content: bytes) -> bool:
     return path.stat().st_size == len(content) and read_bytes(path, MAX_JSON_BYTES, ProjectError) == content
 
 
-def _order(path: Path) -> tuple[int, str] | None:
-    """By what versions are sorted; None for a file that is none."""
+def _number(path: Path) -> int | None:
+    """Of a version; None for a file that is none."""
     numbered = _NUMBERED.fullmatch(path.name)
     if numbered is not None:
-        return int(numbered[1]), path.name
-    return (0, path.name) if _FORMER.fullmatch(path.name) else None
+        return int(numbered[1])
+    return 0 if _FORMER.fullmatch(path.name) else None

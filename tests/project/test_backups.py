@@ -14,6 +14,7 @@ from diorama_core.project.backups import MAX_BACKUPS
 from diorama_core.project.storage import Project, read_scene
 from diorama_core.scene.types import Scene
 from tests.scene.test_edits import _stack
+from tests.somebody_else import delete_first
 
 YEAR_S = 365 * 86400.0
 
@@ -36,7 +37,7 @@ def project(tmp_path: Path) -> Project:
 @pytest.fixture
 def clock(monkeypatch: pytest.MonkeyPatch) -> list[float]:
     """The time that programs are told, and files get."""
-    now = [time.time()]
+    now = [float(int(time.time()))]
     monkeypatch.setattr(time, "time", lambda: now[0])
     monkeypatch.setattr(time, "gmtime", lambda at=None, real=time.gmtime: real(now[0] if at is None else at))
     replaced = os.replace
@@ -68,6 +69,7 @@ def test_versions_of_earlier_programs_are_older_than_all_with_a_number(project: 
     for number in range(1, 4):
         clock[0] -= 120.0
         project.save_scene(_numbered(number))
+    assert [path.name[:13] for path in project.backups()[:2]] == ["scene-n000002", "scene-n000001"]
     assert _numbers(project)[:3] == [2, 1, 0]
     assert len(project.backups()) == MAX_BACKUPS
 
@@ -79,9 +81,19 @@ def test_within_a_minute_no_other_version_is_kept_unless_asked(project: Project,
     project.scene_path.write_bytes(project.scene_path.read_bytes() + b" ")
     assert not kept.keep(project.scene_path, at_once=False)
     assert kept.keep(project.scene_path, at_once=True)
-    clock[0] += 61.0
+    clock[0] += 60.0
     assert not kept.keep(project.scene_path, at_once=False), "it holds the same"
-    assert [path.name[:13] for path in kept.paths()] == ["scene-n000002", "scene-n000001"]
+    project.scene_path.write_bytes(project.scene_path.read_bytes() + b" ")
+    assert kept.keep(project.scene_path, at_once=False)
+    assert [path.name[:13] for path in kept.paths()] == [f"scene-n00000{number}" for number in (3, 2, 1)]
+
+
+def test_a_version_that_somebody_else_deletes_first_is_gone(project: Project, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(backups, "BACKUP_EVERY_S", 0.0)
+    delete_first(monkeypatch)
+    for number in range(1, MAX_BACKUPS + 3):
+        project.save_scene(_numbered(number))
+    assert _numbers(project)[-1] == 2
 
 
 def test_the_same_scene_is_kept_once(project: Project, monkeypatch: pytest.MonkeyPatch) -> None:
