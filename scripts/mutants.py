@@ -193,15 +193,21 @@ def _changeable(tree: ast.Module, spared: tuple[str, ...]) -> set[int]:
             left_out |= {id(n) for part in outside for n in ast.walk(part)}
         elif isinstance(node, ast.AnnAssign):
             left_out |= {id(n) for n in ast.walk(node.annotation)}
-        elif isinstance(node, ast.JoinedStr) or (isinstance(node, ast.Expr) and _is_prose(node.value)):
+        elif isinstance(node, ast.JoinedStr) or _is_prose(node) or _is_patience(node):
             left_out |= {id(n) for n in ast.walk(node)}
     return {number for number, (node, _, _) in enumerate(_located(tree)) if id(node) in within - left_out}
 
 
 def _is_prose(node: ast.AST) -> bool:
     """Whether a statement is a docstring, or something that is logged."""
-    logged = isinstance(node, ast.Call) and ast.unparse(node.func).split(".")[0] in ("log", "logging", "print")
-    return logged or isinstance(node, ast.Constant)
+    value = node.value if isinstance(node, ast.Expr) else None
+    logged = isinstance(value, ast.Call) and ast.unparse(value.func).split(".")[0] in ("log", "logging", "print")
+    return logged or isinstance(value, ast.Constant)
+
+
+def _is_patience(node: ast.AST) -> bool:
+    """Whether it says how long something may take: a second more is no defect."""
+    return isinstance(node, ast.keyword) and node.arg == "timeout"
 
 
 def _reads_a_clock(node: ast.AST) -> bool:

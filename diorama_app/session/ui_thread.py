@@ -15,6 +15,7 @@ from collections import OrderedDict, deque
 from collections.abc import Callable, Hashable
 from concurrent.futures import Future
 from dataclasses import dataclass, field
+from itertools import count
 from typing import TypeVar
 
 from diorama_app.strings import _
@@ -58,7 +59,7 @@ class UiThread:
         """Queues of the browsers that asked for something, the one whose turn it is first; None is the server's own."""
         self._keyed: dict[tuple[Hashable | None, str], _Posted] = {}
         self._delayed: list[_Delayed] = []
-        self._number = 0
+        self._numbers = count()
         self._busy = self._stopping = False
         self._thread = threading.Thread(target=self._work, daemon=True, name="desk")
         self._thread.start()
@@ -93,8 +94,7 @@ class UiThread:
             if key is not None:
                 self._keyed[(client_id, key)] = posted
             if after_s > 0:
-                self._number += 1
-                heapq.heappush(self._delayed, _Delayed(time.monotonic() + after_s, self._number, posted))
+                heapq.heappush(self._delayed, _Delayed(time.monotonic() + after_s, next(self._numbers), posted))
             else:
                 self._enqueue(posted)
             self._changed.notify_all()
@@ -162,7 +162,6 @@ class UiThread:
         message = f"the server is busy with your last {MAX_WAITING} actions; later ones were ignored"
         self._keyed[key] = refusal = _Posted(lambda: told(message), told, None, key[1])
         self._enqueue(refusal)
-        self._changed.notify_all()
 
     def _next(self) -> _Posted | None:
         """The next task, waiting for it; None when the UI thread is stopped and everything is done."""

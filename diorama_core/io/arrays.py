@@ -80,7 +80,7 @@ def entry(archive: zipfile.ZipFile, name: str) -> bytes:
     """
     stated = archive.getinfo(name).file_size
     with archive.open(name) as stream:
-        content = stream.read(stated + 1)
+        content = stream.read(stated)
     if len(content) != stated:
         raise ValueError(f"{name} has another size than stated")
     return content

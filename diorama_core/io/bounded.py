@@ -38,6 +38,7 @@ _STRINGS = re.compile(rb'"[^"\\]*+(?:\\.[^"\\]*+)*+(?:"|\Z|\\\Z)', re.DOTALL)
 _OPEN, _CLOSED = np.frombuffer(b"[{", np.uint8), np.frombuffer(b"]}", np.uint8)
 _LARGE = re.compile(rb"[0-9.][eE]\+?[0-9]{3}|[0-9]{300}")
 _MAX_WORDS = 200
+_WITHOUT_WAITING = getattr(os, "O_NONBLOCK", 0)
 
 
 def read_bytes(path: Path, most: int, error: Kind, advice: str = "restore it from a copy") -> bytes:
@@ -54,16 +55,14 @@ def read_bytes(path: Path, most: int, error: Kind, advice: str = "restore it fro
     """
     try:
         # Without waiting: a named pipe in a received folder would otherwise hold the reader for ever.
-        handle = os.open(path, os.O_RDONLY | getattr(os, "O_NONBLOCK", 0))
+        handle = os.open(path, os.O_RDONLY | _WITHOUT_WAITING)
         with os.fdopen(handle, "rb") as stream:
             about = os.fstat(stream.fileno())
             if not stat.S_ISREG(about.st_mode):
                 raise error(f"{path} is not a file; {advice}")
-            if about.st_size <= most:
-                data = stream.read(most + 1)
-                if len(data) <= most:
-                    return data
-            raise error(f"{path} has more than the {megabytes(most)} that are read; {advice}")
+            if about.st_size > most:
+                raise error(f"{path} has more than the {megabytes(most)} that are read; {advice}")
+            return stream.read(most)
     except OSError as reason:
         raise error(f"{path} cannot be read ({reason.strerror or reason}); {advice}") from reason
     except (ValueError, MemoryError) as reason:  # a null character in the name; a file larger than what is free
@@ -102,7 +101,7 @@ def parse_json(
     """
     try:
         raw = data.encode() if isinstance(data, str) else data
-        if _depth(raw) > MAX_JSON_DEPTH:
+        if _is_too_deep(raw):
             raise error(f"{name} is nested more than {MAX_JSON_DEPTH} levels deep; {advice}")
         value = json.loads(raw.decode("utf-8-sig"), parse_constant=_refuse_constant if finite else float)
         if finite and _infinite(raw):
@@ -190,13 +189,11 @@ def megabytes(count: int) -> str:
     return f"{count / 1e6:.3g} MB" if count >= 100_000 else f"{count / 1e3:.3g} kB"
 
 
-def _depth(data: bytes) -> int:
-    """How deeply brackets are nested outside strings. A quick upper bound spares small files the work."""
-    if data.count(b"[") + data.count(b"{") <= MAX_JSON_DEPTH:
-        return 0
+def _is_too_deep(data: bytes) -> bool:
+    """Whether brackets are nested too deeply outside strings."""
     marks = np.frombuffer(_STRINGS.sub(b"", data), np.uint8)
     steps = np.isin(marks, _OPEN).astype(np.int8) - np.isin(marks, _CLOSED)
-    return int(np.cumsum(steps[steps != 0], dtype=np.int32).max(initial=0))
+    return bool((np.cumsum(steps[steps != 0], dtype=np.int32) > MAX_JSON_DEPTH).any())
 
 
 def _refuse_constant(name: str) -> float:

@@ -40,7 +40,7 @@ def _tuple_fits(value: tuple, arguments: tuple) -> bool:
         return True
     if len(arguments) == 2 and arguments[1] is Ellipsis:
         return all(fits(one, arguments[0]) for one in value)
-    return len(value) == len(arguments) and all(fits(v, a) for v, a in zip(value, arguments, strict=True))
+    return len(value) == len(arguments) and all(map(fits, value, arguments))
 
 
 def _instance_fits(value: Any, annotation: type) -> bool:

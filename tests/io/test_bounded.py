@@ -88,6 +88,7 @@ def test_json_that_cannot_be_written_back_is_refused(text, reason: str) -> None:
 
 def test_brackets_in_strings_are_no_levels_and_infinity_may_be_allowed(tmp_path: Path) -> None:
     assert parse_json("[" * MAX_JSON_DEPTH + "]" * MAX_JSON_DEPTH, "x", InputError)
+    assert parse_json(json.dumps([[]] * 100), "x", InputError) == [[]] * 100
     deep = ["[" * 500, '\\"[' * 100]
     assert parse_json(json.dumps(deep), "x", InputError) == deep
     assert parse_json("[1e999, Infinity]", "x", InputError, finite=False) == [float("inf")] * 2
@@ -99,6 +100,7 @@ def test_pictures_are_judged_before_they_are_decoded(tmp_path: Path) -> None:
     assert picture_of(png(), "x", InputError).shape == (4, 6, 3)
     with pytest.raises(InputError, match="6 x 4 pixels are more than"):
         picture_of(png(), "x", InputError, most_pixels=23)
+    assert picture_of(png(), "x", InputError, most_pixels=24).shape == (4, 6, 3)
     with pytest.raises(InputError, match="is not a whole picture"):
         picture_of(png()[:50], "x", InputError)
     with pytest.raises(InputError, match=r"not a whole picture \(JPEG\)"):

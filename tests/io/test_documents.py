@@ -46,3 +46,12 @@ def test_a_document_that_its_reader_refuses_replaces_nothing(tmp_path: Path) -> 
     assert path.read_bytes() == b"older"
     write_document(path, b"newer", lambda data: None, ProjectError, most=5)
     assert path.read_bytes() == b"newer"
+
+
+def test_what_contains_itself_replaces_nothing(tmp_path: Path) -> None:
+    path, endless = tmp_path / "a.json", []
+    write_json(path, "older", ProjectError)
+    endless.append(endless)
+    with pytest.raises(ProjectError, match=r"a\.json stays as it was: a value cannot be written"):
+        write_json(path, endless, ProjectError)
+    assert read_json(path, ProjectError) == "older"

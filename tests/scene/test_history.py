@@ -46,8 +46,33 @@ def test_repeated_nudges_within_the_window_become_one_step() -> None:
     for i in range(5):
         history = history.commit(Entry("nudge", Scene(), merge_key="nudge chair", time_s=0.3 * i))
     assert len(history.entries) == 2
-    late = history.commit(Entry("nudge", Scene(), merge_key="nudge chair", time_s=9.0))
-    assert len(late.entries) == 3
+    last = history.current.time_s
+    for time_s, key, author, count in (
+        (last + 0.5, "nudge chair", "", 2),
+        (last + 0.6, "nudge chair", "", 3),
+        (last + 0.1, "nudge table", "", 3),
+        (last + 0.1, "nudge chair", "somebody else", 3),
+        (last + 0.1, None, "", 3),
+    ):
+        longer = history.commit(Entry("nudge", Scene(), merge_key=key, time_s=time_s, author=author))
+        assert len(longer.entries) == count, (time_s, key, author)
+    assert len(history.undo().commit(Entry("nudge", Scene(), merge_key=None)).entries) == 2, "the first state stays"
+
+
+def test_the_first_state_is_never_merged_and_steps_without_a_key_are_steps() -> None:
+    opened = Entry("open", Scene(), merge_key="nudge chair")
+    history = History((opened,)).commit(Entry("nudge", Scene(), merge_key="nudge chair"))
+    assert history.entries[0] is opened
+    for _ in range(2):
+        history = history.commit(Entry("plain", Scene()))
+    assert len(history.entries) == 4
+
+
+def test_where_nothing_can_be_undone_or_done_again_the_history_stays() -> None:
+    history = History.start(Scene(), label="begin")
+    assert history.current.label == "begin"
+    assert history.undo() is history
+    assert history.redo() is history
 
 
 def test_the_oldest_entries_are_dropped_beyond_the_limit() -> None:
