@@ -48,7 +48,7 @@ ROOT = Path(__file__).resolve().parents[1]
 QUIETLY = ("-s", "-o", "addopts=-p no:dash -p no:terminal -p no:cacheprovider")
 PATIENCE, MIN_PATIENCE_S = 6.0, 20.0
 """Times as much of the processor as the tests take without a defect, and seconds: a mutant that takes more is found."""
-WAITING, WAITING_S = 20.0, 300.0
+WAITING, WAITING_S = 20.0, 90.0
 """The same of the clock, for one that waits for ever; other work on the machine must not make a mutant found."""
 
 GUARDED: dict[str, tuple[str, ...]] = {
@@ -193,7 +193,7 @@ def _changeable(tree: ast.Module, spared: tuple[str, ...]) -> set[int]:
             left_out |= {id(n) for part in outside for n in ast.walk(part)}
         elif isinstance(node, ast.AnnAssign):
             left_out |= {id(n) for n in ast.walk(node.annotation)}
-        elif isinstance(node, ast.JoinedStr) or _is_prose(node) or _is_patience(node):
+        elif isinstance(node, ast.JoinedStr) or _is_prose(node) or _is_taste(node):
             left_out |= {id(n) for n in ast.walk(node)}
     return {number for number, (node, _, _) in enumerate(_located(tree)) if id(node) in within - left_out}
 
@@ -205,9 +205,9 @@ def _is_prose(node: ast.AST) -> bool:
     return logged or isinstance(value, ast.Constant)
 
 
-def _is_patience(node: ast.AST) -> bool:
-    """Whether it says how long something may take: a second more is no defect."""
-    return isinstance(node, ast.keyword) and node.arg == "timeout"
+def _is_taste(node: ast.AST) -> bool:
+    """Whether it says how long something may take, or how far a file's lines are indented: one more is no defect."""
+    return isinstance(node, ast.keyword) and node.arg in ("timeout", "indent")
 
 
 def _reads_a_clock(node: ast.AST) -> bool:

@@ -65,7 +65,7 @@ def answer_of(queue: JobQueue, job: Job) -> JobAnswer:
     return JobAnswer(
         id=job.id,
         state=job.state,
-        progress=min(max(progress.fraction, 0.0), 1.0),
+        progress=progress.fraction,
         message=progress.message,
         created=job.created,
         seconds=job.seconds,

@@ -31,13 +31,9 @@ class Connection(H11Protocol):  # type: ignore[misc]  # uvicorn's modules are An
         super().data_received(data)
         if self.conn.their_state is h11.IDLE:
             self._wait_for_head()
-        else:
-            self._stop_waiting()
-
-    def connection_lost(self, exc: Exception | None) -> None:
-        """Wait no longer."""
-        self._stop_waiting()
-        super().connection_lost(exc)
+        elif self._patience is not None:
+            self._patience.cancel()
+            self._patience = None
 
     def send_400_response(self, msg: str) -> None:
         """Tell that the request is no HTTP."""
@@ -53,14 +49,4 @@ class Connection(H11Protocol):  # type: ignore[misc]  # uvicorn's modules are An
 
     def _wait_for_head(self) -> None:
         if self._patience is None:
-            self._patience = self.loop.call_later(HEAD_S, self._give_up)
-
-    def _stop_waiting(self) -> None:
-        if self._patience is not None:
-            self._patience.cancel()
-            self._patience = None
-
-    def _give_up(self) -> None:
-        self._patience = None
-        if not self.transport.is_closing() and self.conn.their_state is h11.IDLE:
-            self.transport.close()
+            self._patience = self.loop.call_later(HEAD_S, self.transport.close)

@@ -115,7 +115,6 @@ class Autosave:
         with self._writing:
             with self._condition:
                 waiting, self._waiting = self._waiting, {}
-                self._new = False
             for project, unwritten in waiting.items():
                 if not self._write(project, unwritten):
                     with self._condition:

@@ -26,6 +26,7 @@ from diorama_core.progress import Progress
 T = TypeVar("T")
 log = logging.getLogger(__name__)
 
+KEY_DIGITS = 24
 CACHED_PER_STAGE = 4
 """Number of cached results per stage on disk, so that undoing a correction is instant."""
 
@@ -92,7 +93,7 @@ class Runner:
 
     def _key(self, name: str, stage: object, artefacts: tuple[Any, ...]) -> str:
         parts = [stage_code(stage), name, repr(stage), *(self._fingerprint(a) for a in artefacts)]
-        return hashlib.sha256("\n".join(parts).encode()).hexdigest()[:24]
+        return hashlib.sha256("\n".join(parts).encode()).hexdigest()[:KEY_DIGITS]
 
     def _fingerprint(self, artefact: Any) -> str:
         known = self._fingerprints.get(id(artefact))

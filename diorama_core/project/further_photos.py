@@ -31,7 +31,8 @@ MAX_PHOTOS = 64
 MAX_POSES = 8
 """Remembered poses of one object: after an undo, those of earlier builds are the program's, too."""
 MAX_NOTED_BYTES = 32_000_000
-SAME_M = 1e-4
+SAME_M, DIGITS = 1e-4, 6
+"""How close a pose is the same, and the decimals that are noted."""
 PLANE = "plane "
 """Before the ids of planes among those of objects, which have no blanks."""
 
@@ -130,12 +131,12 @@ def _colour(colour: tuple[float, float, float] | None) -> str:
 
 
 def _corners(plane: Plane) -> list[float]:
-    return [round(float(v), 6) for v in plane.polygon.ravel()]
+    return [round(float(v), DIGITS) for v in plane.polygon.ravel()]
 
 
 def _row(pose: Pose) -> list[float]:
     values = np.concatenate([pose.position, pose.R_world_object.ravel(), np.broadcast_to(pose.scale, 3)])
-    return [round(float(v), 6) for v in values]
+    return [round(float(v), DIGITS) for v in values]
 
 
 def _with(row: list[Any], rows: list[list[Any]]) -> list[list[Any]]:
@@ -144,9 +145,7 @@ def _with(row: list[Any], rows: list[list[Any]]) -> list[list[Any]]:
 
 
 def _is_at(row_now: list[float], rows: Iterable[list[Any]]) -> bool:
-    return any(
-        len(row) == len(row_now) and all(_is_near(a, b) for a, b in zip(row, row_now, strict=True)) for row in rows
-    )
+    return any(len(row) == len(row_now) and all(map(_is_near, row, row_now)) for row in rows)
 
 
 def _is_near(noted: object, now: float) -> bool:

@@ -21,7 +21,7 @@ from diorama_core.io.documents import write_json
 
 LOCK = ".diorama.lock"
 OWNER = ".diorama-owner.lock"
-MAX_OWNER_BYTES = 10_000
+MAX_OWNER, MAX_OWNER_BYTES = 150, 10_000
 
 
 class ProjectLockedError(ProjectError):
@@ -87,7 +87,7 @@ def owner(folder: Path) -> str:
     try:
         about = read_json(folder / OWNER, ProjectError, most=MAX_OWNER_BYTES)
         words = f"{about['what']} of {about['who']} on {about['host']} (process {about['process']}, {about['since']})"
-        return shortened(words, 150)
+        return shortened(words, MAX_OWNER)
     except (ProjectError, LookupError, TypeError):
         return "another program"
 

@@ -37,6 +37,7 @@ FORMAT = "diorama-project"
 VERSION = 1
 MAX_INFO_BYTES = 4_000_000
 MAX_NAME = 120
+JPEG_QUALITY = 92
 MAX_UPLOAD_BYTES = 256 * 1024 * 1024
 MAX_TEXTURE_PIXELS = 200_000_000
 """Texture pixels of a whole scene together; the rest are shown in their plain colour."""
@@ -265,9 +266,10 @@ class Project:
             except ProjectError as error:
                 log.warning("a plane or an object is shown without its picture: %s", error)
                 continue
-            pixels += 0 if picture is None else picture.shape[0] * picture.shape[1]
-            if picture is not None and pixels <= MAX_TEXTURE_PIXELS:
-                textures[name] = picture
+            if picture is not None:
+                pixels += picture.size // 3
+                if pixels <= MAX_TEXTURE_PIXELS:
+                    textures[name] = picture
         return textures
 
     def _texture_path(self, name: str) -> Path:
@@ -325,5 +327,5 @@ def _is_leftover(path: Path) -> bool:
 def jpeg(rgb: UInt8[np.ndarray, "h w 3"]) -> bytes:
     """A picture as a JPEG file of high quality."""
     buffer = io.BytesIO()
-    Image.fromarray(rgb).save(buffer, "JPEG", quality=92)
+    Image.fromarray(rgb).save(buffer, "JPEG", quality=JPEG_QUALITY)
     return buffer.getvalue()

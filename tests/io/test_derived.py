@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 from diorama_core.io.derived import derived, read_arrays, read_derived, write_arrays, write_derived
+from tests.somebody_else import delete_first
 
 
 def test_bytes_are_made_once(tmp_path: Path) -> None:
@@ -77,3 +78,14 @@ def test_the_least_recently_used_files_make_room(tmp_path: Path) -> None:
     assert {p.name for p in tmp_path.iterdir()} == {"newest", "oldest", "coming"}
     write_derived(tmp_path / "small", b"", limit_bytes=0)
     assert {p.name for p in tmp_path.iterdir()} == {"small"}
+
+
+def test_room_is_made_to_the_byte_whoever_else_makes_it(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    delete_first(monkeypatch)
+    for age, name in enumerate(["newer", "older"]):
+        write_derived(tmp_path / name, bytes(10))
+        os.utime(tmp_path / name, (1e9 - age, 1e9 - age))
+    write_derived(tmp_path / "first", bytes(5), limit_bytes=25)
+    assert {p.name for p in tmp_path.iterdir()} == {"newer", "older", "first"}
+    write_derived(tmp_path / "second", bytes(5), limit_bytes=29)
+    assert {p.name for p in tmp_path.iterdir()} == {"newer", "first", "second"}

@@ -15,6 +15,7 @@ from diorama_core.pipeline import runner as runner_module
 from diorama_core.pipeline.runner import CACHED_PER_STAGE, Runner, _read, _write, stage_code
 from diorama_core.pose import MadeToMeasure, RenderAndCompare
 from diorama_core.progress import CancelToken, Progress, ProgressEvent
+from tests.somebody_else import delete_first
 
 BOX = LabelledBox((0, 0, 4, 4), "chair", "chair")
 OTHER = LabelledBox((0, 0, 5, 5), "chair", "chair")
@@ -187,3 +188,63 @@ def test_an_artefact_is_read_once_for_all_keys_and_runs_are_timed(
         runner.run(name, Widen(), Widen().widen, (BOX,), Progress())
     assert read == [BOX]
     assert all(0.0 <= run.seconds < 60.0 for run in runner.runs)
+
+
+def test_a_stage_reports_its_begin_and_its_end(tmp_path: Path) -> None:
+    events: list[ProgressEvent] = []
+    run(tmp_path, Widen(), BOX, Progress(events.append))
+    assert [(event.fraction, event.message) for event in events] == [(0.0, "widen…"), (1.0, "widen: done")]
+
+
+@pytest.mark.parametrize("folder", [True, False])
+def test_what_is_not_to_be_saved_is_made_each_time(tmp_path: Path, folder: bool) -> None:
+    stage, runner = Widen(), Runner(tmp_path if folder else None)
+    for _ in range(2):
+        runner.run("widen", stage, stage.widen, (BOX,), Progress(), saved=not folder)
+    assert [done.cached for done in runner.runs] == [False, False]
+    assert list(tmp_path.iterdir()) == []
+
+
+@dataclass(frozen=True)
+class Provisional:
+    provisional: bool = True
+
+
+def test_a_provisional_result_is_not_saved(tmp_path: Path) -> None:
+    runner = Runner(tmp_path)
+    runner.run("guess", Widen(), lambda box, progress: Provisional(), (BOX,), Progress())
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_result_that_was_cancelled_while_it_was_made_is_not_saved(tmp_path: Path) -> None:
+    token = CancelToken()
+
+    def make(box: LabelledBox, progress: Progress) -> LabelledBox:
+        token.cancel()
+        return box
+
+    with pytest.raises(Cancelled):
+        Runner(tmp_path).run("widen", Widen(), make, (BOX,), Progress(token=token))
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_results_that_were_used_stay_longest_whoever_deletes_the_others(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    delete_first(monkeypatch)
+    run(tmp_path, Widen(by=100.0), BOX)
+    (used,) = tmp_path.glob("*.zip")
+    os.utime(used, (1e9, 1e9))
+    for i in range(CACHED_PER_STAGE - 1):
+        run(tmp_path, Widen(by=float(i)), BOX)
+    for path in tmp_path.glob("*.zip"):
+        os.utime(path, (1e9 + 1.0, 1e9 + 1.0) if path != used else (1e9, 1e9))
+    other = tmp_path / f"widen-more-{0:024x}.zip"
+    other.write_bytes(b"of another stage")
+    assert run(tmp_path, Widen(by=100.0), BOX)[1]
+    run(tmp_path, Widen(by=-1.0), BOX)
+    assert used.exists()
+    assert other.exists()
+    assert len(list(tmp_path.glob("*.zip"))) == CACHED_PER_STAGE + 1
+    used.write_bytes(b"damaged")
+    assert run(tmp_path, Widen(by=100.0), BOX)[1] is False, "somebody else deleted it first"

@@ -8,9 +8,18 @@ import pytest
 
 from diorama_core.artefacts import FurtherPhoto, Inputs
 from diorama_core.pipeline import codec
-from diorama_core.project.further_photos import load_photos, note_placed, save_photos, still_made, still_placed
+from diorama_core.project.further_photos import (
+    MAX_PHOTOS,
+    MAX_POSES,
+    load_photos,
+    note_placed,
+    save_photos,
+    still_made,
+    still_placed,
+)
 from diorama_core.scene.edits import move, recolour, rename
 from diorama_core.scene.room_edits import move_plane
+from diorama_core.scene.types import PhotoMaterial, Scene
 from tests.app.small_room import make_project, photo_camera, plain_photo
 
 
@@ -38,8 +47,10 @@ def test_a_photo_that_is_saved_is_not_written_again_and_one_taken_out_is_gone(tm
     save_photos(project, (one,), (one, two))
     assert path.stat().st_mtime_ns == before
     assert [p.name for p in load_photos(project)[0]] == ["one"]
-    save_photos(project, (one, two), (one,))
-    assert [p.name for p in load_photos(project)[0]] == ["one", "two"], "only those that are saved are left alone"
+    three = FurtherPhoto("three", Inputs(plain_photo()))
+    save_photos(project, (one, three), (one,))
+    assert path.stat().st_mtime_ns == before
+    assert [p.name for p in load_photos(project)[0]] == ["one", "three"], "only those that are saved are left alone"
 
 
 def test_a_damaged_photo_is_named_and_the_others_are_read(tmp_path: Path) -> None:
@@ -116,3 +127,69 @@ def test_what_a_person_swapped_painted_or_named_is_not_as_it_was_made(tmp_path: 
     assert still_made(project, locked) == ids - {"table_1"}
     swapped = tuple(replace(o, shape_id="another") if o.id == "chair_1" else o for o in scene.objects)
     assert still_made(project, replace(scene, objects=swapped)) == ids - {"chair_1"}
+
+
+@pytest.mark.parametrize(("by_m", "is_placed"), [(5e-5, True), (-5e-5, True), (2e-4, False), (-2e-4, False)])
+def test_what_moved_less_than_a_tenth_of_a_millimetre_is_where_it_was_put(
+    tmp_path: Path, by_m: float, is_placed: bool
+) -> None:
+    project = make_project(tmp_path / "demo")
+    scene = project.load_scene()
+    note_placed(project, scene)
+    chair = scene.object("chair_1")
+    moved = move(scene, "chair_1", replace(chair.pose, position=chair.pose.position + np.array([by_m, 0.0, 0.0])))
+    assert ("chair_1" in still_placed(project, moved)) == is_placed
+
+
+def test_the_newest_poses_are_remembered_each_once(tmp_path: Path) -> None:
+    project = make_project(tmp_path / "demo")
+    first = project.load_scene()
+    chair = first.object("chair_1")
+    steps = [
+        move(first, "chair_1", replace(chair.pose, position=chair.pose.position + np.array([0.1 * i, 0.0, 0.0])))
+        for i in range(MAX_POSES + 1)
+    ]
+    for scene in (*steps[:-1], steps[0], steps[-1]):
+        note_placed(project, scene)
+    known = ["chair_1" in still_placed(project, scene) for scene in steps]
+    assert known == [True, False] + [True] * (MAX_POSES - 1)
+    assert "chair_1" in still_made(project, steps[1]), "it looks the same everywhere"
+
+
+def test_the_picture_for_people_is_written_once(tmp_path: Path) -> None:
+    project = make_project(tmp_path / "demo")
+    save_photos(project, (FurtherPhoto("one", Inputs(plain_photo())),))
+    picture = project.folder / "photos" / "one.jpg"
+    picture.write_bytes(b"cropped by a person")
+    save_photos(project, (FurtherPhoto("one", Inputs(plain_photo())),))
+    assert picture.read_bytes() == b"cropped by a person"
+
+
+def test_no_more_photos_are_read_than_a_project_may_have(tmp_path: Path) -> None:
+    project = make_project(tmp_path / "demo")
+    project.update_info(photos=[f"photo {number}" for number in range(MAX_PHOTOS + 1)])
+    assert len(load_photos(project)[1]) == MAX_PHOTOS
+    project.update_info(photos="one")
+    assert load_photos(project) == ((), ())
+
+
+def test_what_the_photo_shows_of_an_object_is_part_of_its_look(tmp_path: Path) -> None:
+    project = make_project(tmp_path / "demo")
+    scene = project.load_scene()
+
+    def painted(*materials: PhotoMaterial) -> Scene:
+        first, *others = scene.objects
+        return replace(scene, objects=(replace(first, photo_materials=materials), *others))
+
+    made = painted(PhotoMaterial("wood", (0.5, 0.4, 0.3), "wood"), PhotoMaterial("fabric", (0.1, 0.2, 0.3)))
+    note_placed(project, made)
+    item = made.objects[0].id
+    assert item in still_made(project, made)
+    assert item not in still_made(project, scene)
+    for slot, colour, texture in (
+        ("metal", (0.1, 0.2, 0.3), None),
+        ("fabric", (0.9, 0.2, 0.3), None),
+        ("fabric", (0.1, 0.2, 0.3), "cloth"),
+    ):
+        other = painted(made.objects[0].photo_materials[0], PhotoMaterial(slot, colour, texture))
+        assert item not in still_made(project, other)

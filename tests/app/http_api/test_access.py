@@ -2,6 +2,7 @@ from __future__ import annotations
 
 import asyncio
 import json
+import time
 
 import pytest
 
@@ -14,6 +15,11 @@ HOST = (b"host", b"127.0.0.1:8090")
 
 def ask(guard: Guard, *headers: tuple[bytes, bytes], method: str = "GET", query: bytes = b"", parts=(b"",)):
     """The status and what the request is told."""
+    sent = messages(guard, *headers, method=method, query=query, parts=parts)
+    return sent[0]["status"], json.loads(sent[1]["body"])
+
+
+def messages(guard: Guard, *headers: tuple[bytes, bytes], method: str = "GET", query: bytes = b"", parts=(b"",)):
     sent, left = [], list(parts)
     scope = {"type": "http", "method": method, "path": "/v1/jobs", "query_string": query, "headers": [*headers]}
 
@@ -24,7 +30,7 @@ def ask(guard: Guard, *headers: tuple[bytes, bytes], method: str = "GET", query:
         sent.append(message)
 
     asyncio.run(guard(scope, receive, send))
-    return sent[0]["status"], json.loads(sent[1]["body"])
+    return sent
 
 
 async def served(scope, receive, send) -> None:
@@ -71,31 +77,32 @@ def test_only_so_many_bodies_at_once() -> None:
 
 def test_silent_and_dripping_bodies_are_given_up_and_hold_no_place(monkeypatch: pytest.MonkeyPatch) -> None:
     """Four uploads that sent nothing kept every other one, and every cancel, out for 40 seconds."""
-    monkeypatch.setattr(access, "STALLED_S", 0.05)
-    monkeypatch.setattr(access, "GRACE_S", 0.3)
+    now = [time.monotonic()]
 
     async def trouble(drip: bool) -> tuple[int, int]:
-        guard, sent = Guard(served, Visitors("127.0.0.1")), []
+        guard, sent, held = Guard(served, Visitors("127.0.0.1")), [], []
 
         async def receive():
+            held.append(guard._bodies)
             if not drip:
-                await asyncio.sleep(30.0)
-            await asyncio.sleep(0.02)
-            return {"type": "http.request", "body": b"x" if drip else b"", "more_body": True}
+                await asyncio.Event().wait()
+            now[0] += 0.25 * access.GRACE_S / MAX_BODIES
+            return {"type": "http.request", "body": b"x", "more_body": True}
 
         async def send(message):
             sent.append(message)
 
         scope = {"type": "http", "method": "POST", "path": "/v1/jobs", "query_string": b"", "headers": [HOST]}
-        uploads = [asyncio.create_task(guard(scope, receive, send)) for _ in range(MAX_BODIES)]
-        await asyncio.sleep(0.04)
-        held = guard._bodies
-        await asyncio.gather(*uploads)
+        await asyncio.gather(*(guard(scope, receive, send) for _ in range(MAX_BODIES)))
         assert {m["status"] for m in sent if "status" in m} == {408}
         assert (b"connection", b"close") in sent[0]["headers"]
-        return held, guard._bodies
+        assert len(held) < 6 * MAX_BODIES
+        return max(held), guard._bodies
 
+    monkeypatch.setattr(access, "STALLED_S", 0.05)
     assert asyncio.run(trouble(drip=False)) == (0, 0), "silent ones hold no place"
+    monkeypatch.setattr(access, "STALLED_S", 600.0)
+    monkeypatch.setattr(time, "monotonic", lambda: now[0])
     assert asyncio.run(trouble(drip=True)) == (MAX_BODIES, 0)
 
 
@@ -111,3 +118,96 @@ def test_what_nobody_expected_is_one_json_line_and_logged(caplog: pytest.LogCapt
 def test_too_many_requests_are_refused(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(access, "MAX_REQUESTS", 0)
     assert ask(Guard(served, Visitors("127.0.0.1")), HOST)[0] == 503
+
+
+@pytest.mark.parametrize(
+    ("query", "length", "status", "says"),
+    [
+        (b"", 0, 401, {b"www-authenticate": b"Bearer"}),
+        (b"token=right", MAX_BODY_BYTES + 1, 413, {b"connection": b"close"}),
+        (b"token=right", MAX_BODY_BYTES, 503, {b"retry-after": b"5"}),
+    ],
+)
+def test_a_refusal_says_what_to_do(query: bytes, length: int, status: int, says: dict[bytes, bytes]) -> None:
+    guard = Guard(served, Visitors("127.0.0.1", "right"))
+    for _ in range(MAX_BODIES):
+        guard.take_place()
+    announced = (b"content-length", str(length).encode())
+    start, body = messages(guard, HOST, announced, method="POST", query=query, parts=(b"x",))
+    told = dict(start["headers"])
+    assert start["status"] == status
+    assert int(told[b"content-length"]) == len(body["body"])
+    hints = (b"www-authenticate", b"connection", b"retry-after")
+    assert {name: value for name, value in told.items() if name in hints} == says
+
+
+def test_what_is_no_request_is_handed_on() -> None:
+    asked: list[str] = []
+
+    async def started(scope, receive, send) -> None:
+        asked.append(scope["type"])
+
+    asyncio.run(Guard(started, Visitors("127.0.0.1", "right"))({"type": "lifespan"}, None, None))
+    assert asked == ["lifespan"]
+
+
+def test_requests_count_while_they_last(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(access, "MAX_REQUESTS", 2)
+
+    async def waits(scope, receive, send) -> None:
+        await scope["ends"].wait()
+        await served(scope, receive, send)
+
+    async def crowd(guard: Guard) -> list[int]:
+        sent, ends = [], asyncio.Event()
+
+        async def receive():
+            return {"type": "http.request", "more_body": False}
+
+        async def send(message):
+            sent.append(message)
+
+        scope = {"type": "http", "method": "GET", "path": "/", "query_string": b"", "headers": [HOST], "ends": ends}
+        requests = [asyncio.create_task(guard(scope, receive, send)) for _ in range(3)]
+        while not any(task.done() for task in requests):
+            await asyncio.sleep(0)
+        ends.set()
+        await asyncio.gather(*requests)
+        return sorted(m["status"] for m in sent if "status" in m)
+
+    guard = Guard(waits, Visitors("127.0.0.1"))
+    assert [asyncio.run(crowd(guard)) for _ in range(3)] == [[200, 200, 503]] * 3
+
+
+def test_after_the_last_part_comes_the_end_of_the_connection() -> None:
+    async def reads_on(scope, receive, send) -> None:
+        assert (await receive())["body"] == b"x"
+        assert (await receive())["body"] == b"what the server sends then"
+        await send({"type": "http.response.start", "status": 200, "headers": []})
+
+    parts = [{"type": "http.request", "body": b"x"}, {"body": b"what the server sends then", "more_body": False}]
+
+    async def one_part() -> list[dict]:
+        sent: list[dict] = []
+
+        async def receive():
+            return parts.pop(0)
+
+        async def send(message):
+            sent.append(message)
+
+        scope = {"type": "http", "method": "POST", "path": "/", "query_string": b"", "headers": [HOST]}
+        await Guard(reads_on, Visitors("127.0.0.1"))(scope, receive, send)
+        return sent
+
+    assert asyncio.run(one_part())[0]["status"] == 200
+    assert parts == []
+
+
+def test_an_error_within_an_answer_is_only_logged(caplog: pytest.LogCaptureFixture) -> None:
+    async def broken(scope, receive, send) -> None:
+        await send({"type": "http.response.start", "status": 200, "headers": []})
+        raise ZeroDivisionError("half way")
+
+    assert [m["type"] for m in messages(Guard(broken, Visitors("127.0.0.1")), HOST)] == ["http.response.start"]
+    assert "half way" in caplog.text

@@ -16,11 +16,13 @@ from diorama_app.http_api.job import Job
 from diorama_app.http_api.jobs import MAX_TRIES, JobQueue, JobStateError, QueueFullError, UnknownJobError
 from diorama_app.http_api.routes import create_app
 from diorama_app.web.visitors import Visitors
+from diorama_core.errors import ProjectError
 from diorama_core.perception.inputs import read_inputs
 from diorama_core.progress import Progress
 from diorama_core.project.storage import Project
 from tests.app.small_room import PlainLibrary, furnished_scene, make_project
 from tests.cli.room_photo import write_room
+from tests.waiting import until
 
 
 def _queue(folder: Path) -> JobQueue:
@@ -262,3 +264,128 @@ def test_what_cannot_be_deleted_stays_a_job(tmp_path: Path, monkeypatch: pytest.
     monkeypatch.setattr(jobs.shutil, "rmtree", refused)
     assert _ask(queue, "DELETE", "/v1/jobs/room") == (500, {"error": "room cannot be deleted (Permission denied)"})
     assert queue.job("room").state == "done"
+
+
+def _job(folder: Path, created: str, **changes: object) -> str:
+    make_project(folder).update_info(job={"created": created, "state": "queued", **changes})
+    return folder.name
+
+
+def test_jobs_are_listed_newest_first_and_built_oldest_first(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    built: list[str] = []
+    monkeypatch.setattr(jobs, "build_job", lambda job, *rest: built.append(job.id))
+    for day, name in ((2, "b"), (1, "c"), (2, "a"), (3, "d")):
+        _job(tmp_path / name, f"2026-11-0{day}T03:00:00")
+    _job(tmp_path / "over", "2026-11-04T03:00:00", state="done")
+    queue = _queue(tmp_path)
+    assert [job.id for job in queue.jobs()] == ["over", "d", "b", "a", "c"]
+    queue.start()
+    until(lambda: all(job.over for job in queue.jobs()), "all are built")
+    queue.close()
+    assert (built[0], set(built[1:3]), built[3:]) == ("c", {"a", "b"}, ["d"])
+    assert all(job.state == "done" and job.error is None for job in queue.jobs())
+    with pytest.raises(JobStateError, match="c is over already"):
+        queue.cancel("c")
+
+
+def test_what_the_end_of_a_server_stopped_is_built_by_the_next(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    begun = threading.Event()
+
+    def build(job: Job, folder: Path, library: object, progress: Progress) -> None:
+        progress.report(0.5, "half way")
+        begun.set()
+        while True:
+            progress.check()
+
+    monkeypatch.setattr(jobs, "build_job", build)
+    job_id = _job(tmp_path / "room", "2026-11-01T03:00:00", tries=1)
+    queue = _queue(tmp_path)
+    assert (queue.progress(queue.job(job_id)).fraction, queue._thread.daemon) == (0.0, True)
+    queue.start()
+    assert begun.wait(60.0)
+    running = queue.job(job_id)
+    assert (running.state, running.tries) == ("running", 2)
+    assert queue.progress(running).message == "half way"
+    with pytest.raises(JobStateError, match="room is running; cancel it first"):
+        queue.remove(job_id)
+    queue.close()
+    assert (queue.job(job_id).state, queue.job(job_id).tries) == ("queued", 1)
+    with pytest.raises(QueueFullError):
+        _add(queue, tmp_path)
+    assert _queue(tmp_path).job(job_id) == queue.job(job_id)
+    monkeypatch.setattr(jobs, "build_job", lambda *about: None)
+    later = _queue(tmp_path)
+    later.start()
+    over = asyncio.run(later.wait(job_id, 60.0))
+    later.close()
+    assert (over.state, over.tries) == ("done", 2)
+    assert over.seconds is not None
+    assert 0.0 <= over.seconds < 60.0
+    assert later.progress(over).fraction == 1.0
+    assert _queue(tmp_path).job(job_id) == over, "its project has it"
+
+
+def test_who_waits_gets_the_job_as_it_is_when_the_time_or_the_server_is_over(tmp_path: Path) -> None:
+    job_id = _job(tmp_path / "room", "2026-11-01T03:00:00")
+    queue = _queue(tmp_path)
+
+    async def close_meanwhile() -> str:
+        waiting = asyncio.create_task(queue.wait(job_id, 600.0))
+        while not queue._listeners:
+            await asyncio.sleep(0)
+        queue.close()
+        return (await asyncio.wait_for(waiting, 60.0)).state
+
+    assert asyncio.run(queue.wait(job_id, 0.01)).state == "queued"
+    assert queue._listeners == set()
+    assert asyncio.run(close_meanwhile()) == "queued"
+    assert queue._listeners == set()
+    with pytest.raises(UnknownJobError):
+        asyncio.run(queue.wait("none", 1.0))
+
+
+def test_a_job_that_cannot_be_written_leaves_nothing_and_holds_no_place(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(jobs, "MAX_QUEUED", 1)
+    queue = _queue(tmp_path / "projects")
+    with monkeypatch.context() as full:
+        full.setattr(jobs, "note_job", refuse)
+        for _ in range(2):
+            with pytest.raises(ProjectError, match="the disk is full"):
+                _add(queue, tmp_path)
+    assert list((tmp_path / "projects").iterdir()) == []
+    assert queue.jobs() == ()
+    assert _add(queue, tmp_path).state == "queued"
+
+
+def refuse(*about: object) -> None:
+    raise ProjectError("the disk is full")
+
+
+def test_a_job_that_is_being_written_has_its_place(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(jobs, "MAX_QUEUED", 1)
+    queue, real = _queue(tmp_path / "projects"), jobs.note_job
+
+    def while_another_asks(folder: Path, job: Job) -> None:
+        with pytest.raises(QueueFullError, match="1 jobs are waiting"), queue._place():
+            pass
+        real(folder, job)
+
+    monkeypatch.setattr(jobs, "note_job", while_another_asks)
+    job = _add(queue, tmp_path)
+    assert Project(tmp_path / "projects" / job.id).uploads().keys() == {"photo"}
+
+
+def test_a_job_whose_project_somebody_deleted_can_be_removed(tmp_path: Path) -> None:
+    _done(tmp_path, "room")
+    queue = _queue(tmp_path)
+    shutil.rmtree(tmp_path / "room")
+    queue.remove("room")
+    assert queue.jobs() == ()
+
+
+def test_a_folder_that_cannot_be_made_is_one_line(tmp_path: Path) -> None:
+    (tmp_path / "file").write_text("")
+    with pytest.raises(ProjectError, match=r"cannot be made \(Not a directory\)"):
+        _queue(tmp_path / "file" / "projects")

@@ -2,18 +2,22 @@ from __future__ import annotations
 
 import os
 import time
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
 
+from diorama_app.session import autosave as autosave_module
 from diorama_app.session import recovery
 from diorama_app.session.autosave import Autosave
 from diorama_app.session.recovery import Recovery
+from diorama_core.artefacts import FurtherPhoto, Inputs
 from diorama_core.errors import ProjectError, SceneError
+from diorama_core.project.further_photos import load_photos
 from diorama_core.project.storage import Project
 from diorama_core.scene import edits
 from diorama_core.scene.types import Scene
-from tests.app.small_room import furnished_scene, make_project
+from tests.app.small_room import furnished_scene, make_project, plain_photo
 from tests.somebody_else import delete_first
 from tests.waiting import until
 
@@ -272,3 +276,115 @@ def test_notes_of_other_projects_go_after_a_month(project: Project, tmp_path: Pa
     os.utime(note, (0.0, time.time() - recovery.FORGOTTEN_S - 60.0))
     here.clean_up(project)
     assert not note.exists()
+
+
+class Saves:
+    """The scenes that a project is asked to save, and what happens then."""
+
+    def __init__(self, monkeypatch: pytest.MonkeyPatch, *failures: Exception) -> None:
+        self.scenes: list[Scene] = []
+        self.meanwhile: Callable[[], None] = lambda: None
+        really_save, failing = Project.save_scene, list(failures)
+
+        def save(project: Project, scene: Scene) -> bool:
+            self.scenes.append(scene)
+            self.meanwhile()
+            if failing:
+                raise failing.pop(0)
+            return really_save(project, scene)
+
+        monkeypatch.setattr(Project, "save_scene", save)
+
+
+@pytest.fixture
+def autosave(tmp_path: Path) -> Autosave:
+    """One of which only the test writes anything."""
+    made = Autosave(lambda line: None, Recovery(tmp_path / "unsaved"), retry_s=600.0)
+    made.stop()
+    return made
+
+
+def test_a_scene_that_is_saved_is_written_again_only_where_it_is_gone(
+    project: Project, autosave: Autosave, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    saves, scene = Saves(monkeypatch), renamed()
+    assert autosave.saved_at is None
+    for count, removed in ((1, False), (1, False), (2, True)):
+        if removed:
+            project.scene_path.unlink()
+        autosave.save_soon(project, scene)
+        autosave.flush()
+        assert len(saves.scenes) == count
+    assert project.load_scene() == scene
+    assert autosave.saved_at is not None
+    autosave.save_soon(project, furnished_scene())
+    autosave.flush()
+    assert project.load_scene() == furnished_scene()
+
+
+def test_what_is_said_of_photos_is_saved_without_a_scene(
+    project: Project, autosave: Autosave, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    saves = Saves(monkeypatch)
+    project.update_info(warnings=["blurred"])
+    inputs, one, two = Inputs(plain_photo(64, 48)), *(FurtherPhoto(n, Inputs(plain_photo())) for n in ("one", "two"))
+    autosave.save_soon(project, None, inputs, (one,))
+    autosave.flush()
+    assert project.load_inputs() == inputs
+    assert project.info()["warnings"] == ["blurred"]
+    path = project.folder / "photos" / "one.zip"
+    before = path.stat().st_mtime_ns
+    autosave.save_soon(project, None, None, (one, two))
+    autosave.flush()
+    assert [photo.name for photo in load_photos(project)[0]] == ["one", "two"]
+    assert path.stat().st_mtime_ns == before, "it is saved already"
+    assert saves.scenes == []
+
+
+def test_what_is_newer_wins_over_what_could_not_be_saved(
+    project: Project, autosave: Autosave, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    saves = Saves(monkeypatch, ProjectError("the disk is full"))
+    newer = edits.rename(furnished_scene(), "chair_1", "newer")
+    saves.meanwhile = lambda: autosave.save_soon(project, newer)
+    autosave.save_soon(project, renamed())
+    autosave.flush()
+    saves.meanwhile = lambda: None
+    autosave.flush()
+    assert project.load_scene() == newer
+    assert saves.scenes[1:] == [newer]
+
+
+def test_a_defect_is_logged_and_a_full_disk_is_not(
+    project: Project, autosave: Autosave, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
+) -> None:
+    Saves(monkeypatch, ProjectError("the disk is full"), ZeroDivisionError("a defect"))
+    for count in (0, 1):
+        autosave.save_soon(project, renamed())
+        autosave.flush()
+        assert len(caplog.records) == count
+    assert "the scene cannot be written (a defect)" in autosave.trouble
+
+
+def test_photos_that_cannot_be_saved_are_only_in_memory(
+    project: Project, autosave: Autosave, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(Project, "save_inputs", lambda *about: (_ for _ in ()).throw(ProjectError("the disk is full")))
+    autosave.save_soon(project, None, Inputs(plain_photo()))
+    autosave.flush()
+    assert "only in memory" in autosave.trouble
+
+
+def test_what_cannot_be_saved_is_tried_again_at_its_time_and_the_thread_ends(
+    project: Project, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(autosave_module, "SETTLE_S", 0.001)
+    saves = Saves(monkeypatch, *[ProjectError("the disk is full")] * 50)
+    made = Autosave(lambda line: None, Recovery(tmp_path / "unsaved"), retry_s=600.0)
+    made.save_soon(project, renamed())
+    until(lambda: made.trouble)
+    time.sleep(0.2)  # a thread that does not wait tries many times in so long
+    assert len(saves.scenes) == 1
+    assert made._thread.daemon
+    made.stop()
+    assert not made._thread.is_alive()
