@@ -69,7 +69,7 @@ def _holds(path: Path, content: bytes) -> bool:
 
 
 def _number(path: Path) -> int | None:
-    """Of a version; None for a file that is none."""
+    """Number of a version, by which they are sorted; None for a file that is none."""
     numbered = _NUMBERED.fullmatch(path.name)
     if numbered is not None:
         return int(numbered[1])
