@@ -2,7 +2,7 @@
 
     python scripts/engine_pictures.py ENGINE FOLDER PICTURE.png
 
-FOLDER holds `room.xml`, `room.urdf` and `room.glb` with what they refer to, and `camera.json`: width, height, and the
+FOLDER holds `room.xml`, `room.urdf` and `room.blend` with what they refer to, and `camera.json`: width, height, and the
 camera's `intrinsics` (fx, fy, cx, cy, in pixels) and `T_world_camera` (x right, y down, z forward).
 """
 
@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import json
 import sys
+import xml.etree.ElementTree as ET
 from pathlib import Path
 from typing import Any
 
@@ -32,7 +33,7 @@ def mujoco(folder: Path, camera: dict[str, Any], out: Path) -> None:
 
 
 def pybullet(folder: Path, camera: dict[str, Any], out: Path) -> None:
-    """URDF, by the renderer that needs no graphics card."""
+    """URDF, drawn by the processor without shadows. It has no lights, so they are those of MJCF."""
     import pybullet as p
     from PIL import Image
 
@@ -46,21 +47,31 @@ def pybullet(folder: Path, camera: dict[str, Any], out: Path) -> None:
     view = p.computeViewMatrix(T[:3, 3], T[:3, 3] + T[:3, 2], -T[:3, 1])
     left, right, bottom, top = -cx / fx, (width - cx) / fx, (cy - height) / fy, cy / fy
     lens = p.computeProjectionMatrix(*(near * side for side in (left, right, bottom, top)), near, far)
-    shown = p.getCameraImage(width, height, view, lens, renderer=p.ER_TINY_RENDERER)[2]
+    model = ET.parse(folder / "room.xml")
+    around, main = model.find("visual/headlight"), model.find("worldbody/light[@name='main_light']")
+    toward = T[:3, 3] if main is None else -np.fromstring(main.get("dir"), sep=" ")
+    directed = around.get("diffuse") if main is None else main.get("diffuse")
+    light = {
+        "lightDirection": toward.tolist(),
+        "lightAmbientCoeff": float(around.get("ambient").split()[0]),
+        "lightDiffuseCoeff": float(directed.split()[0]),
+        "lightSpecularCoeff": 0.0,
+        "shadow": 0,
+    }
+    shown = p.getCameraImage(width, height, view, lens, renderer=p.ER_TINY_RENDERER, **light)[2]
     Image.fromarray(np.reshape(shown, (height, width, 4))[..., :3].astype(np.uint8)).save(out)
 
 
 def blender(folder: Path, camera: dict[str, Any], out: Path) -> None:
-    """GLB, path traced in the *Standard* view."""
+    """The Blender file with its own camera and lights, path traced in the *Standard* view."""
     import bpy
 
-    bpy.ops.wm.read_factory_settings(use_empty=True)
-    bpy.ops.import_scene.gltf(filepath=str(folder / "room.glb"), export_import_convert_lighting_mode="COMPAT")
+    bpy.ops.wm.open_mainfile(filepath=str(folder / "room.blend"))
     scene = bpy.context.scene
-    scene.camera = next(o for o in bpy.data.objects if o.type == "CAMERA")
     scene.render.engine, scene.cycles.device = "CYCLES", "CPU"
     scene.cycles.samples, scene.cycles.use_denoising = SAMPLES, True
     scene.render.resolution_x, scene.render.resolution_y = camera["width"], camera["height"]
+    scene.render.resolution_percentage = 100
     scene.view_settings.view_transform, scene.render.filepath = "Standard", str(out)
     bpy.ops.render.render(write_still=True)
 

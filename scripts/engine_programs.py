@@ -1,7 +1,7 @@
 """Programs that open an exported file without simulating it: how each is asked, and what it finds wrong.
 
 What is not installed is said in the table. Debian has assimp-utils, sweethome3d (with a Java compiler), godot3-server,
-libsdformat-dev and poppler-utils; npm has three (`npm install --prefix .venv/node three`).
+libsdformat-dev and poppler-utils.
 """
 
 from __future__ import annotations
@@ -13,6 +13,7 @@ import os
 import shutil
 import subprocess
 import tempfile
+import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
@@ -20,6 +21,7 @@ from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 from check_exports import check_blend, check_dxf, check_ifc, check_pdf
 from playwright.sync_api import Page, sync_playwright
 
@@ -27,8 +29,8 @@ from diorama_core.export.blender import blender_python, missing_blender
 from diorama_core.export.gathering import ExportScene
 from tests.export.validators import usd_findings
 
-ROOT = Path(__file__).resolve().parents[1]
-THREE = Path(os.environ.get("DIORAMA_THREE", ROOT / ".venv" / "node" / "node_modules" / "three"))
+THREE_VARIABLE = "DIORAMA_THREE"
+"""Names the folder of three.js."""
 SWEET_HOME = Path("/usr/share/sweethome3d/sweethome3d.jar")
 PATIENCE_S = 600.0
 Check = Callable[[Path, ExportScene], list[str]]
@@ -66,29 +68,65 @@ def check_assimp(path: Path, gathered: ExportScene) -> list[str]:
 
 
 _GODOT = """extends SceneTree
-func count(node, found):
-	found[node.get_class()] = found.get(node.get_class(), 0) + 1
+func walk(node, found):
+	if node is CollisionShape:
+		found.colliders += 1
+	if node is MeshInstance:
+		for surface in node.mesh.get_surface_count():
+			found.materials[node.mesh.surface_get_material(surface).get_instance_id()] = true
+	if node is Spatial:
+		found.places[node.name] = [node.translation.x, node.translation.y, node.translation.z]
 	for child in node.get_children():
-		count(child, found)
-	return found
+		walk(child, found)
 func _init():
-	print("FOUND ", to_json(count(load("res://room.glb").instance(), {})))
+	var found = {"colliders": 0, "materials": {}, "places": {}}
+	walk(load("res://room.glb").instance(), found)
+	print("FOUND ", to_json(found))
 	quit()
 """
 
 
 def check_godot(path: Path, gathered: ExportScene) -> list[str]:
-    """Imports the game pack into an empty project and counts its bodies."""
+    """Imports the game pack into an empty project: colliders and materials are counted, doors are at their hinges."""
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
         (folder / "project.godot").write_text('config_version=4\n[application]\nconfig/name="room"\n')
         (folder / "count.gd").write_text(_GODOT)
         shutil.copyfile(path, folder / "room.glb")
-        said("godot3-server", "--path", name, "--editor", "--quit", cwd=folder)
+        godot_import(folder)
         lines = said("godot3-server", "--path", name, "-s", "count.gd", cwd=folder).splitlines()
-    counted: dict[str, int] = next((json.loads(line[6:]) for line in lines if line.startswith("FOUND ")), {})
-    wrong = [line for line in lines if "SCRIPT ERROR" in line]
-    return wrong + ([] if counted.get("StaticBody") and counted.get("MeshInstance") else [f"only {counted}"])
+    found = next((json.loads(line[6:]) for line in lines if line.startswith("FOUND ")), None)
+    if found is None:
+        return [line for line in lines if "SCRIPT ERROR" in line] or ["not imported"]
+    colliders, materials, hinges = game_pack(path)
+    wrong = [] if found["colliders"] == colliders else [f"{found['colliders']} of {colliders} colliders"]
+    wrong += [] if len(found["materials"]) == materials else [f"{len(found['materials'])} of {materials} materials"]
+    places = {part: np.array(found["places"].get(part, [np.inf] * 3)) for part in hinges}
+    return wrong + [f"{part} at {at}" for part, at in places.items() if not np.allclose(at, hinges[part], atol=1e-3)]
+
+
+def godot_import(folder: Path) -> None:
+    """Has the editor import what is in a project. Godot 3.2's server does not quit then, whatever is asked of it."""
+    command, environment = ["godot3-server", "--path", str(folder), "--editor"], {**os.environ, "HOME": str(folder)}
+    quiet = {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL}
+    editor = subprocess.Popen(command, env=environment, **quiet)
+    end = time.monotonic() + PATIENCE_S
+    while editor.poll() is None and time.monotonic() < end and not [*folder.glob(".import/*.md5")]:
+        time.sleep(0.5)
+    editor.terminate()
+    editor.wait()
+
+
+def game_pack(path: Path) -> tuple[int, int, dict[str, list[float]]]:
+    """Number of colliders and of materials that are seen, and where parts that move are in their objects."""
+    content = path.read_bytes()
+    document = json.loads(content[20 : 20 + int.from_bytes(content[12:16], "little")])
+    nodes = document["nodes"]
+    colliders = [node for node in nodes if node["name"].endswith("-convcolonly")]
+    seen = [document["meshes"][node["mesh"]] for node in nodes if "mesh" in node and node not in colliders]
+    materials = {primitive["material"] for mesh in seen for primitive in mesh["primitives"]}
+    hinges = {n["name"]: n.get("translation", [0.0] * 3) for n in nodes if "joint" in n.get("extras", {})}
+    return len(colliders), len(materials), hinges
 
 
 _HOME = """import com.eteks.sweethome3d.io.HomeFileRecorder;
@@ -132,10 +170,17 @@ renderer.setSize(innerWidth, innerHeight); document.body.append(renderer.domElem
 new GLTFLoader().load('/room.glb', file => {
   const scene = new THREE.Scene(); scene.add(file.scene); scene.updateMatrixWorld(true);
   const camera = file.cameras[0] ?? new THREE.PerspectiveCamera();
-  camera.aspect = innerWidth / innerHeight; camera.updateProjectionMatrix(); renderer.render(scene, camera);
+  camera.aspect = innerWidth / innerHeight; camera.updateProjectionMatrix();
+  const {width, height, cx, cy} = camera.userData; // glTF's cameras look through the middle of the picture
+  if (width) camera.setViewOffset(width, height, width / 2 - cx, height / 2 - cy, width, height);
+  renderer.render(scene, camera);
   let meshes = 0; file.scene.traverse(node => { meshes += node.isMesh ? 1 : 0; }); window.shown = meshes;
 }, undefined, error => { window.shown = String(error); });
 </script>"""
+
+
+def three() -> Path:
+    return Path(os.environ[THREE_VARIABLE])
 
 
 @contextmanager
@@ -148,7 +193,7 @@ def three_page(path: Path, width: int, height: int) -> Iterator[tuple[Page, list
         if name == "room.glb":
             route.fulfill(body=path.read_bytes(), content_type="model/gltf-binary")
         elif name.startswith("three/"):
-            route.fulfill(body=(THREE / name[6:]).read_bytes(), content_type="text/javascript")
+            route.fulfill(body=(three() / name[6:]).read_bytes(), content_type="text/javascript")
         else:
             route.fulfill(body="" if name else _PAGE, content_type="text/html")
 
@@ -174,7 +219,7 @@ def check_three(path: Path, gathered: ExportScene) -> list[str]:
 
 
 def three_release() -> str:
-    return str(json.loads((THREE / "package.json").read_text())["version"]) if THREE.is_dir() else ""
+    return str(json.loads((three() / "package.json").read_text())["version"]) if three().is_dir() else ""
 
 
 def blender_release() -> str:

@@ -1,10 +1,10 @@
 """Exports rooms, has engines simulate them and programs open them, and writes the table of the docs.
 
-    DIORAMA_ENGINES_PYTHON=engines/bin/python PYTHONPATH=. python scripts/engines.py PROJECT... [--edited] [--text]
-        [--scan] [--engines NAME...] [--docs docs/export.md] [--pictures FOLDER]
+    PYTHONPATH=. python scripts/engines.py PROJECT... [--edited] [--text] [--scan] [--engines NAME...]
+        [--environments FOLDER] [--docs docs/export.md] [--pictures FOLDER]
 
-The engines live in an environment of their own (`pip install mujoco pybullet drake sapien 'newton[sim,importers]'`),
-Blender in another; `engine_programs.py` names the programs. An object is stable when it moves by less than a centimetre
+Engines of PyPI and npm are installed into `--environments` where they are missing (6 GB); `engine_programs.py` names
+the programs of Debian. An object is stable when it moves by less than a centimetre
 and two degrees; joints count that the engine has with the limits that were written, and colliders that it has. Pictures
 are compared with ours of the same camera: mean difference of colour (CIE 1976), and how many are nearly all white or
 black.
@@ -26,13 +26,14 @@ from typing import Any
 
 import cv2
 import numpy as np
-from engine_programs import PROGRAMS, Program, said, three_page
+from engine_environments import THREE, environment, make, python_of
+from engine_programs import PROGRAMS, THREE_VARIABLE, said, three_page
 from export_scenes import Source, from_scan, from_text, projects
 from PIL import Image
 
 from diorama_app.projects.formats import EXPORT_FORMATS
 from diorama_core.export import export_scene
-from diorama_core.export.blender import blender_python
+from diorama_core.export.blender import PYTHON_VARIABLE
 from diorama_core.export.bodies import PhysicalScene
 from diorama_core.export.colliders import physical_scene
 from diorama_core.export.gathering import ExportScene
@@ -40,7 +41,7 @@ from diorama_core.export.limbs import ExportLimb
 from diorama_core.export.stability import MAX_DRIFT_M
 from diorama_core.library.catalogue import built_in_library
 from diorama_core.library.record import ShapeLibrary
-from diorama_core.render.picture import picture, scene_view
+from diorama_core.render.picture import instances_seen, picture, scene_view
 from diorama_core.render.raycast import PinholeView
 
 FILES = {
@@ -58,7 +59,7 @@ NAMES = {
     "drake": "Drake",
     "newton": "newton",
 }
-DRAWN = {"MuJoCo": "mujoco", "PyBullet": "pybullet", "Blender": "blender", "three.js": "three"}
+DRAWN = {"MuJoCo": "mujoco", "PyBullet": "pybullet", "Blender": "blender", "three.js": "three.js"}
 """Rows with a picture, and what draws it."""
 WIDTH_PX = 320
 WHITE_L, BLACK_L, MAX_SHARE = 97.0, 3.0, 0.4
@@ -109,8 +110,9 @@ class Row:
                 left.remove(match)
                 self.joints += 1
 
-    def compare(self, shown: np.ndarray, ours: np.ndarray) -> None:
-        """Add a picture beside ours."""
+    def compare(self, shown: np.ndarray, ours: np.ndarray, inside: np.ndarray) -> None:
+        """Add a picture beside ours, where the room is seen: what is behind it, each program has its own."""
+        shown, ours = shown[inside][None], ours[inside][None]
         theirs, here = (cv2.cvtColor(p.astype(np.float32) / 255, cv2.COLOR_RGB2LAB) for p in (shown, ours))
         self.differences.append(float(np.linalg.norm(theirs - here, axis=2).mean()))
         self.pale += bool(max((theirs[..., 0] > WHITE_L).mean(), (theirs[..., 0] < BLACK_L).mean()) > MAX_SHARE)
@@ -142,10 +144,9 @@ def limits_in(kind: str, limb: ExportLimb) -> tuple[float, float] | None:
     return limb.lower - shift, limb.upper - shift
 
 
-def checked(engine: str, folder: Path) -> dict[str, Any] | None:
+def checked(engine: str, python: Path, folder: Path) -> dict[str, Any] | None:
     """What an engine says of a room; None where it does not load it."""
-    script = str(Path(__file__).with_name("engine_checks.py"))
-    command = [os.environ.get("DIORAMA_ENGINES_PYTHON", sys.executable), script, engine, str(folder)]
+    command = [str(python), str(Path(__file__).with_name("engine_checks.py")), engine, str(folder)]
     try:
         done = subprocess.run(command, capture_output=True, text=True, timeout=PATIENCE_S, check=False)
     except subprocess.TimeoutExpired:
@@ -167,18 +168,18 @@ def exported(source: Source, kinds: Iterable[str], library: ShapeLibrary, folder
     return found
 
 
-def simulate(rows: dict[str, Row], physical: PhysicalScene, folder: Path, name: str) -> None:
+def simulate(rows: dict[str, Row], environments: Path, physical: PhysicalScene, folder: Path, name: str) -> None:
     """Count what each engine makes of a room."""
     bodies = sum(len(b.parts) + sum(len(m.parts) for m in b.moving) for b in physical.bodies)
     colliders = bodies + sum(len(slab.pieces) for slab in physical.slabs)
     free = [b.node.slug for b in physical.bodies if b.free]
-    for engine in [engine for engine in FILES if NAMES[engine] in rows]:
+    for engine in [engine for engine in FILES if NAMES[engine] in rows and rows[NAMES[engine]].version]:
         row = rows[NAMES[engine]]
         limits = [limits_in(row.kind, m.limb) for b in physical.bodies for m in b.moving]
         row.free += len(free)
         row.all_joints += len(limits)
         row.all_colliders += colliders
-        found = checked(engine, folder)
+        found = checked(engine, python_of(environments, engine), folder)
         if found is None:
             continue
         row.add(found, free, limits, colliders)
@@ -205,7 +206,9 @@ def open_in_programs(rows: dict[str, Row], gathered: dict[str, ExportScene], fol
             print(f"{name} {program.name}: {found[:3]}", file=sys.stderr, flush=True)
 
 
-def draw(rows: dict[str, Row], source: Source, library: ShapeLibrary, folder: Path, album: Path | None) -> None:
+def draw(
+    rows: dict[str, Row], environments: Path, source: Source, library: ShapeLibrary, folder: Path, album: Path | None
+) -> None:
     """Compare the engines' pictures of a room with ours, where it has a camera."""
     camera = source.scene.camera
     if camera is None:
@@ -218,27 +221,28 @@ def draw(rows: dict[str, Row], source: Source, library: ShapeLibrary, folder: Pa
     about = {"width": size[0], "height": size[1], "intrinsics": [k.fx, k.fy, k.cx, k.cy]}
     (folder / "camera.json").write_text(json.dumps({**about, "T_world_camera": lens.T_world_camera.tolist()}))
     ours = picture(source.scene, library, size=size, textures=source.textures)
+    inside = instances_seen(source.scene, library, size=size) >= 0
     shown = {"diorama": ours}
     for name, engine in DRAWN.items():
         if name in rows and rows[name].version not in ("", "–"):
-            drawn = picture_by(engine, folder, size)
+            drawn = picture_by(engine, python_of(environments, engine), folder, size)
             if drawn is not None:
-                rows[name].compare(drawn, ours)
+                rows[name].compare(drawn, ours, inside)
                 shown[engine] = drawn
     if album is not None:
         album.mkdir(parents=True, exist_ok=True)
         Image.fromarray(np.hstack(list(shown.values()))).save(album / f"{source.name}.png")
 
 
-def picture_by(engine: str, folder: Path, size: tuple[int, int]) -> np.ndarray | None:
+def picture_by(engine: str, python: Path, folder: Path, size: tuple[int, int]) -> np.ndarray | None:
     """What an engine draws of a room; None where it draws nothing."""
     out = folder / f"{engine}.png"
-    if engine == "three":
+    if engine == "three.js":
         with three_page(folder / "room.glb", *size) as (page, _, _):
             page.locator("canvas").screenshot(path=out)
     else:
-        python = blender_python() if engine == "blender" else os.environ.get("DIORAMA_ENGINES_PYTHON", sys.executable)
-        output = said(python, str(Path(__file__).with_name("engine_pictures.py")), engine, str(folder), str(out))
+        script = Path(__file__).with_name("engine_pictures.py")
+        output = said(str(python), str(script), engine, str(folder), str(out))
         if not out.is_file():
             print(f"{engine}: {(output.strip().splitlines() or ['no picture'])[-1]}", file=sys.stderr)
             return None
@@ -274,23 +278,32 @@ def main() -> None:
     parser.add_argument("--scan", action="store_true", help="a room as RoomPlan measures it")
     every = [*FILES, *(p.name for p in PROGRAMS)]
     parser.add_argument("--engines", nargs="*", default=every, choices=every, metavar="NAME", help=", ".join(every))
+    parser.add_argument(
+        "--environments", type=Path, default=Path(".venv/engines"), metavar="FOLDER", help="where engines are installed"
+    )
     parser.add_argument("--docs", type=Path, metavar="FILE.md", help="write the table there, between its marks")
     parser.add_argument("--pictures", type=Path, metavar="FOLDER", help="keep the engines' pictures beside ours there")
     a = parser.parse_args()
+    make(a.environments, a.engines)
     os.environ.setdefault("MUJOCO_GL", "osmesa")
+    os.environ[THREE_VARIABLE] = str(environment(a.environments, "three.js") / THREE)
+    os.environ.setdefault(PYTHON_VARIABLE, str(python_of(a.environments, "Blender")))
     library, done = built_in_library(), list[str]()
-    asked: list[Program] = [p for p in PROGRAMS if p.name in a.engines]
-    rows = {NAMES[engine]: Row(FILES[engine]) for engine in FILES if engine in a.engines}
-    rows |= {p.name: Row(p.kind, p.release(), simulates=False) for p in asked}
+    rows = {
+        NAMES[engine]: Row(FILES[engine], "–" if python_of(a.environments, engine).is_file() else "")
+        for engine in FILES
+        if engine in a.engines
+    }
+    rows |= {p.name: Row(p.kind, p.release(), simulates=False) for p in PROGRAMS if p.name in a.engines}
     for source in sources(a, library):
         with tempfile.TemporaryDirectory() as name:
-            kinds = dict.fromkeys(["glb", *(row.kind for row in rows.values())])
+            kinds = dict.fromkeys(["glb", *(row.kind for row in rows.values() if row.version)])
             gathered = exported(source, kinds, library, Path(name))
             open_in_programs(rows, gathered, Path(name), source.name)
-            bodies = next((gathered[row.kind] for row in rows.values() if row.simulates), None)
+            bodies = next((gathered[row.kind] for row in rows.values() if row.simulates and row.version), None)
             if bodies is not None:
-                simulate(rows, physical_scene(bodies), Path(name), source.name)
-            draw(rows, source, library, Path(name), a.pictures)
+                simulate(rows, a.environments, physical_scene(bodies), Path(name), source.name)
+            draw(rows, a.environments, source, library, Path(name), a.pictures)
         done.append(source.name)
         lines = table(rows, done)
         if a.docs is not None:

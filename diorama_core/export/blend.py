@@ -12,7 +12,6 @@ from PIL import Image
 
 from diorama_core.errors import ExportError
 from diorama_core.export.blender import run_in_blender
-from diorama_core.export.cycles import room_lights
 from diorama_core.export.files import whole_file
 from diorama_core.export.gathering import ExportScene
 from diorama_core.export.gltf import write_gathered
@@ -36,10 +35,10 @@ def write_blend(scene: ExportScene, path: Path, progress: Progress | None = None
     worker = Path(__file__).with_name("blend_worker.py")
     with whole_file(Path(path)) as temporary, tempfile.TemporaryDirectory() as name:
         folder = Path(name)
-        plain = replace(scene, options=replace(scene.options, compression="none", lights="photometric"))
+        plain = replace(scene, options=replace(scene.options, compression="none"))
         write_gathered(plain, folder / "room.glb", progress.part(0.0, 0.3))
         job: dict[str, object] = {"glb": str(folder / "room.glb"), "blend": str(folder / "room.blend")}
-        job["lights"] = room_lights(scene.scene) if scene.planes or scene.objects else []
+        job["lighting"] = "SPEC" if scene.options.lights == "photometric" else "COMPAT"
         if scene.camera is not None:
             k = scene.camera.intrinsics
             job["camera"] = {"width": k.width, "height": k.height, "fx": k.fx, "fy": k.fy, "cx": k.cx, "cy": k.cy}

@@ -7,7 +7,6 @@ import sys
 from pathlib import Path
 from typing import Any
 
-AMBIENT = 0.35
 BRANCHES = {"architecture": "Architecture", "objects": "Objects"}
 """Nodes below the scene's root, and the collections of what hangs below them."""
 
@@ -17,14 +16,13 @@ def save(job: dict[str, Any]) -> None:
 
     Args:
         job: `glb`, `blend`, and where there are any, `camera` (`width`, `height`, `fx`, `fy`, `cx`, `cy`, in pixels)
-            and `photo` (a picture's file); `lights` as those of `cycles_worker`.
+            and `photo` (a picture's file); `lighting` as the glTF import calls the units of lights.
     """
     import bpy  # Blender's Python has it, ours rarely
 
     bpy.ops.wm.read_factory_settings(use_empty=True)
-    bpy.ops.import_scene.gltf(filepath=job["glb"])
+    bpy.ops.import_scene.gltf(filepath=job["glb"], export_import_convert_lighting_mode=job["lighting"])
     print("diorama 0.5 sorting collections", flush=True)
-    _room_lights(bpy, job["lights"])
     _collections(bpy)
     camera = next((o for o in bpy.data.objects if o.type == "CAMERA"), None)
     if camera is not None and "camera" in job:
@@ -32,25 +30,10 @@ def save(job: dict[str, Any]) -> None:
     scene = bpy.context.scene
     scene.render.engine = "CYCLES"
     scene.unit_settings.system = "METRIC"
-    scene.world = bpy.data.worlds.new("ambient")
-    scene.world.use_nodes = True
-    scene.world.node_tree.nodes["Background"].inputs["Strength"].default_value = AMBIENT
+    scene.view_settings.view_transform = "Standard"
     bpy.ops.file.pack_all()
     print("diorama 0.9 saving", flush=True)
     bpy.ops.wm.save_as_mainfile(filepath=job["blend"], compress=True)
-
-
-def _room_lights(bpy: Any, lights: list[dict[str, Any]]) -> None:
-    """Rectangles before the windows and under the ceiling, so that the room is lit when it is rendered."""
-    from mathutils import Matrix  # as bpy
-
-    for number, light in enumerate(lights):
-        data = bpy.data.lights.new(f"room light {number + 1}", "AREA")
-        data.shape, data.size, data.size_y = "RECTANGLE", light["width_m"], light["height_m"]
-        data.energy = light["watts"]
-        lamp = bpy.data.objects.new(data.name, data)
-        lamp.matrix_world = Matrix(light["matrix"])
-        bpy.context.scene.collection.objects.link(lamp)
 
 
 def _collections(bpy: Any) -> None:

@@ -176,7 +176,8 @@ class ExportScene:
     @cached_property
     def even_light(self) -> EvenLight | None:
         """The room's even light; None where lights are photometric: there is no such lamp."""
-        return even_light_of(self.scene) if self._room_is_lit and self.options.lights == "unit" else None
+        wanted = self._room_is_lit and self.options.lights == "unit"
+        return even_light_of(self.scene, self.lights) if wanted else None
 
     @property
     def _room_is_lit(self) -> bool:

@@ -28,7 +28,7 @@ from diorama_core.export.gathering import (
     rigid_inverse,
 )
 from diorama_core.export.gltf_document import GltfDocument
-from diorama_core.export.lights import EvenLight, ExportLight, MainLight
+from diorama_core.export.lights import ExportLight
 from diorama_core.export.names import unique_name
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.progress import Progress
@@ -120,8 +120,7 @@ class _Builder:
         ]
         if self._gathered.camera is not None:
             children.append(self._camera(self._gathered.camera))
-        room_lights = (self._gathered.main_light, self._gathered.even_light)
-        children += [self._room_light(light) for light in room_lights if light is not None]
+        children += self._room_lights()
         root: dict[str, Any] = {
             "name": self._unique("diorama"),
             "rotation": [-_HALF_TURN, 0.0, 0.0, _HALF_TURN],
@@ -228,17 +227,22 @@ class _Builder:
         }
         return self._document.add("nodes", node)
 
-    def _room_light(self, light: MainLight | EvenLight) -> int:
-        about: dict[str, Any]
-        if isinstance(light, MainLight):
-            about = {"name": "main light", "type": "directional", "color": [float(c) for c in light.colour]}
-            about |= {"intensity": light.lux * self._gathered.strength(light)}
-            place = placement(light.T_world)
-        else:
-            about = {"name": "even light", "type": "point", "intensity": light.candela}
-            place = {"translation": [float(v) for v in light.position]}
-        extension = {"KHR_lights_punctual": {"light": self._document.add_light(about)}}
-        return self._document.add("nodes", {"name": self._unique(str(about["name"])), **place, "extensions": extension})
+    def _room_lights(self) -> list[int]:
+        """The main light, and the points of the light from all sides."""
+        main, even, found = self._gathered.main_light, self._gathered.even_light, []
+        if main is not None:
+            about = {"name": "main light", "type": "directional", "color": [float(c) for c in main.colour]}
+            about |= {"intensity": main.lux * self._gathered.strength(main)}
+            found.append(self._room_light(self._document.add_light(about), placement(main.T_world), "main light"))
+        if even is not None:
+            light = self._document.add_light({"name": "even light", "type": "point", "intensity": even.candela})
+            places = [{"translation": [float(v) for v in position]} for position in even.positions]
+            found += [self._room_light(light, place, "even light") for place in places]
+        return found
+
+    def _room_light(self, light: int, place: dict[str, Any], name: str) -> int:
+        extension = {"KHR_lights_punctual": {"light": light}}
+        return self._document.add("nodes", {"name": self._unique(name), **place, "extensions": extension})
 
     def _camera(self, camera: Camera) -> int:
         """The photo's camera. glTF knows no principal point off the centre, so `extras` keeps the intrinsics."""

@@ -14,6 +14,7 @@ from typing import Literal
 
 import numpy as np
 from jaxtyping import Float
+from scipy.spatial import ConvexHull, QhullError
 
 from diorama_core.geometry.sun import daylight
 from diorama_core.render.appearance import Surface
@@ -98,25 +99,64 @@ class MainLight:
 
 @dataclass(frozen=True, eq=False)
 class EvenLight:
-    """What reaches a room from all sides, from a point in its middle, for programs whose light does not bounce."""
+    """What reaches a room from all sides, from points within it, for programs whose light does not bounce."""
 
-    position: Float[np.ndarray, "3"]
+    positions: Float[np.ndarray, "n 3"]
+    """One lights the middle of a room only, so a wide room has two in each direction."""
     candela: float
-    """At unit exposure."""
+    """Of each, at unit exposure."""
 
 
-def even_light_of(scene: Scene) -> EvenLight | None:
-    """The even part of a room's light; None without a room."""
+def even_irradiance(scene: Scene, others: Iterable[ExportLight] = ()) -> float:
+    """Light that reaches a room's walls, floor and ceiling evenly in our pictures; 1 shows white what is white.
+
+    Args:
+        scene: With the room.
+        others: Lights of its objects. The light that the photo tells holds them already.
+    """
+    settings = scene.light_settings
+    if settings.hour is not None:
+        return SKY_AROUND * float(daylight(settings.hour, settings.north_rad).sky.mean())
+    directed = 0.0 if scene.light is None else 2.0 * scene.light.strength * MEAN_IRRADIANCE
+    received = sum(light.lumens / light.white_nits for light in others) / (np.pi * _room_area(scene))
+    return max(MEAN_IRRADIANCE - directed / 4.0 - received, 0.0)
+
+
+def even_light_of(scene: Scene, others: Iterable[ExportLight] = ()) -> EvenLight | None:
+    """The even part of a room's light; None without a room. Arguments are those of `even_irradiance`.
+
+    Args:
+        scene: With the room.
+        others: Lights of its objects.
+    """
     if not scene.architecture.planes:
         return None
-    settings, irradiance = scene.light_settings, MEAN_IRRADIANCE
-    if settings.hour is not None:
-        irradiance = SKY_AROUND * float(daylight(settings.hour, settings.north_rad).sky.mean())
-    elif scene.light is not None:
-        irradiance -= 2.0 * scene.light.strength * MEAN_IRRADIANCE / 4.0
-    middle = _middle(scene)
-    reach = np.ptp(np.concatenate([p.polygon for p in scene.architecture.planes]), axis=0).min() / 2
-    return EvenLight(middle, float(np.pi * irradiance * reach**2))
+    # A point of I candela sends 4 pi I lumens to the walls; what gets pi lux shows white.
+    total = even_irradiance(scene, others) * _room_area(scene) / 4.0
+    places = _spread(_corners(scene))
+    return EvenLight(places, total / len(places))
+
+
+def _corners(scene: Scene) -> Float[np.ndarray, "k 3"]:
+    return np.concatenate([p.polygon for p in scene.architecture.planes])
+
+
+def _room_area(scene: Scene) -> float:
+    """Of walls, floor and ceiling, where some of them are missing too; square metres."""
+    corners = _corners(scene)
+    try:
+        return float(ConvexHull(corners).area)
+    except QhullError:  # a floor alone
+        width, depth, height = np.ptp(corners, axis=0)
+        return float(2 * (width * depth + depth * height + height * width))
+
+
+def _spread(corners: Float[np.ndarray, "k 3"]) -> Float[np.ndarray, "n 3"]:
+    """Points at half the room's height, two side by side in each direction that is 1.5 times as wide as high."""
+    low, high = corners.min(axis=0), corners.max(axis=0)
+    size = high - low
+    shares = [(0.25, 0.75) if width > 1.5 * size[2] else (0.5,) for width in size[:2]]
+    return np.array([low + size * [x, y, 0.5] for x in shares[0] for y in shares[1]])
 
 
 def main_light_of(scene: Scene) -> MainLight | None:
@@ -165,8 +205,7 @@ def _window(scene: Scene, item: SceneObject) -> ExportLight:
 
 
 def _middle(scene: Scene) -> Float[np.ndarray, "3"]:
-    planes = scene.architecture.planes
-    if planes:
-        corners = np.concatenate([p.polygon for p in planes])
+    if scene.architecture.planes:
+        corners = _corners(scene)
         return (corners.min(axis=0) + corners.max(axis=0)) / 2
     return np.zeros(3) if scene.camera is None else scene.camera.position

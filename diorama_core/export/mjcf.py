@@ -18,21 +18,22 @@ from diorama_core.export.bodies import MovingPart, PhysicalScene, Points, RigidB
 from diorama_core.export.colliders import physical_scene
 from diorama_core.export.files import Entry, companion_folder, write_package
 from diorama_core.export.gathering import ExportMesh, ExportObject, ExportScene, rigid_inverse
-from diorama_core.export.lights import ExportLight, MainLight
+from diorama_core.export.lights import ExportLight, MainLight, even_irradiance
 from diorama_core.export.links import body_name, collider_file, collider_files
 from diorama_core.export.physics import FLOOR_FRICTION, Inertia
 from diorama_core.export.pictures import OncePerPicture, png_bytes
 from diorama_core.export.wavefront import obj_file
 from diorama_core.export.xml_values import numbers, srgb_rgba
 from diorama_core.progress import Progress
+from diorama_core.render.lighting import MEAN_IRRADIANCE
 from diorama_core.scene.types import Camera
 
 _CAMERA_AXES = np.diag([1.0, -1.0, -1.0])
 """MuJoCo's cameras look along their -z with y up; ours along +z with y down."""
-FULL_LIGHT_CANDELA = 100.0
-"""Luminous intensity that MuJoCo's unitless brightness of 1 stands for."""
-FULL_LIGHT_LUX = 1000.0
-"""Illuminance by a directional light that MuJoCo shows at full strength."""
+SENSOR_M = 0.036
+"""Width of the camera's sensor: any gives the same picture."""
+SCREEN_GAMMA = 2.2
+"""MuJoCo multiplies colours as screens have them by light, so its lights are powers of what falls."""
 
 
 def write_mjcf(gathered: ExportScene, path: Path, progress: Progress | None = None) -> None:
@@ -67,7 +68,9 @@ def mjcf_text(gathered: ExportScene, physical: PhysicalScene, folder: str | None
     root = Element("mujoco", model=gathered.name)
     SubElement(root, "compiler", angle="radian", autolimits="true")
     SubElement(root, "option", timestep="0.002", integrator="implicitfast", cone="elliptic", impratio="10")
-    SubElement(SubElement(root, "visual"), "headlight", ambient="0.35 0.35 0.35", diffuse="0.5 0.5 0.5")
+    even, from_viewer = _around(gathered)
+    headlight = {"ambient": numbers([_shown(0.0, even)] * 3), "diffuse": numbers([_shown(even, from_viewer)] * 3)}
+    SubElement(SubElement(root, "visual"), "headlight", headlight)
     _defaults(SubElement(root, "default"))
     assets, world = SubElement(root, "asset"), SubElement(root, "worldbody")
     if folder is not None:
@@ -76,14 +79,14 @@ def mjcf_text(gathered: ExportScene, physical: PhysicalScene, folder: str | None
     if gathered.camera is not None:
         _camera(world, gathered.camera)
     if gathered.main_light is not None:
-        _main_light(world, gathered.main_light)
+        _main_light(world, gathered.main_light, even)
     below: dict[str | None, list[RigidBody]] = {}
     for body in physical.bodies:
         below.setdefault(None if body.free else body.carrier, []).append(body)
     lights: dict[str, list[ExportLight]] = {}
     for light in gathered.lights:
         lights.setdefault(light.owner, []).append(light)
-    writer = _BodyWriter(gathered, assets, below, lights, folder)
+    writer = _BodyWriter(gathered, assets, below, lights, even, folder)
     for body in below.get(None, ()):
         writer.write(world, body, np.eye(4))
     # A part and the case it sits in touch; MuJoCo knows that by itself only where the case can move.
@@ -104,12 +107,14 @@ class _BodyWriter:
         assets: Element,
         below: dict[str | None, list[RigidBody]],
         lights: dict[str, list[ExportLight]],
+        even: float,
         folder: str | None,
     ) -> None:
         self._gathered = gathered
         self._assets = assets
         self._below = below
         self._lights = lights
+        self._even = even
         self._folder = folder
 
     def write(self, parent: Element, body: RigidBody, T_world_parent: Float[np.ndarray, "4 4"]) -> None:
@@ -130,7 +135,7 @@ class _BodyWriter:
         if self._folder is not None:
             _visuals(element, self._assets, self._gathered.meshes[node.mesh], node, self._folder)
             for light in self._lights.get(node.id, ()):
-                _light(element, rigid_inverse(node.T_world) @ light.T_world, light)
+                _light(element, rigid_inverse(node.T_world) @ light.T_world, light, self._even)
         for moving in body.moving:
             self._limb(element, body, moving)
         for child in self._below.get(node.id, ()):
@@ -263,15 +268,27 @@ def _meshes(gathered: ExportScene, folder: str, progress: Progress) -> Iterator[
             yield f"{folder}/meshes/{mesh.key}_{number}.obj", obj_file(surface)
 
 
-def _light(element: Element, T: Float[np.ndarray, "4 4"], light: ExportLight) -> None:
-    strength = min(light.candela / FULL_LIGHT_CANDELA, 1.0) * np.asarray(light.colour)
+def _around(gathered: ExportScene) -> tuple[float, float]:
+    """Irradiance from all sides, and from the viewer: where no main light is known, that one shapes what is seen."""
+    even = even_irradiance(gathered.scene, gathered.lights) if gathered.planes else MEAN_IRRADIANCE
+    # Parallel light E has the mean E / 4 over all directions.
+    return (even, 0.0) if gathered.main_light is not None else (0.8 * even, 0.8 * even)
+
+
+def _shown(before: float, added: float) -> float:
+    """What light adds to MuJoCo's brightness where there is other light before."""
+    return float((before + added) ** (1 / SCREEN_GAMMA) - before ** (1 / SCREEN_GAMMA))
+
+
+def _light(element: Element, T: Float[np.ndarray, "4 4"], light: ExportLight, even: float) -> None:
+    strength = _shown(even, light.candela / light.white_nits / np.pi) * np.asarray(light.colour)
     kind = {"type": "point"} if light.kind == "lamp" else {"type": "spot", "cutoff": "80", "exponent": "1"}
-    place = {"pos": numbers(T[:3, 3]), "dir": numbers(-T[:3, 2])}
+    place = {"pos": numbers(T[:3, 3]), "dir": numbers(-T[:3, 2]), "attenuation": "0 0 1"}
     SubElement(element, "light", {**kind, **place, "diffuse": numbers(strength), "castshadow": "false"})
 
 
-def _main_light(world: Element, light: MainLight) -> None:
-    diffuse = min(light.lux / FULL_LIGHT_LUX, 1.0) * np.asarray(light.colour)
+def _main_light(world: Element, light: MainLight, even: float) -> None:
+    diffuse = _shown(even, light.lux / light.white_nits / np.pi) * np.asarray(light.colour)
     place = {"pos": numbers(light.T_world[:3, 3]), "dir": numbers(-light.T_world[:3, 2])}
     about = {"name": "main_light", "type": "directional", "diffuse": numbers(diffuse), "castshadow": "false"}
     SubElement(world, "light", {**about, **place})
@@ -281,8 +298,13 @@ def _camera(world: Element, camera: Camera) -> None:
     T = camera.T_world_camera.copy()
     T[:3, :3] = T[:3, :3] @ _CAMERA_AXES
     k = camera.intrinsics
-    fovy = 2 * float(np.degrees(np.arctan(0.5 * k.height / k.fy)))  # always in degrees, whatever the setting
-    SubElement(world, "camera", {"name": "photo", "fovy": f"{fovy:.9g}", **_placement(T)})
+    lens = {
+        "resolution": f"{k.width} {k.height}",
+        "sensorsize": numbers([SENSOR_M, SENSOR_M * k.height / k.width]),
+        "focalpixel": numbers([k.fx, k.fy]),
+        "principalpixel": numbers([0.5 * k.width - k.cx, 0.5 * k.height - k.cy]),
+    }
+    SubElement(world, "camera", {"name": "photo", **lens, **_placement(T)})
 
 
 def _placement(T: Float[np.ndarray, "4 4"]) -> dict[str, str]:

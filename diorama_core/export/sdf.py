@@ -16,7 +16,6 @@ from diorama_core.export.bodies import PhysicalScene
 from diorama_core.export.gathering import ExportMesh, ExportScene
 from diorama_core.export.lights import ExportLight, MainLight
 from diorama_core.export.links import Link, collider_file, grouped, visual_file, write_linked
-from diorama_core.export.mjcf import FULL_LIGHT_LUX
 from diorama_core.export.physics import FLOOR_FRICTION
 from diorama_core.export.xml_values import inertia_terms, numbers, srgb_rgba
 from diorama_core.progress import Progress
@@ -25,6 +24,8 @@ VERSION = "1.9"
 ROOM = "room"
 HYDROELASTIC_MODULUS = "1e8"
 """Stiffness of surfaces in Drake, pascals: what stands sinks in by less than a millimetre."""
+FULL_LIGHT_LUX = 1000.0
+"""Illuminance by a directional light of full intensity."""
 
 
 def write_sdf(gathered: ExportScene, path: Path, progress: Progress | None = None) -> None:

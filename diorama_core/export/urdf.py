@@ -7,6 +7,7 @@ prismatic and continuous joints with limits.
 from __future__ import annotations
 
 import json
+from dataclasses import replace
 from pathlib import Path
 from xml.etree.ElementTree import Element, SubElement, indent, tostring
 
@@ -143,7 +144,10 @@ def _visuals(element: Element, mesh: ExportMesh, scale: Float[np.ndarray, "3"], 
         geometry = SubElement(visual, "geometry")
         SubElement(geometry, "mesh", filename=visual_file(folder, mesh, number), scale=numbers(scale))
         material = SubElement(visual, "material", name=f"{mesh.key}_{number}")
-        SubElement(material, "color", rgba=numbers(srgb_rgba(surface.material)))
+        seen = surface.material
+        if seen.texture is not None:  # its colour is in the picture, by which programs multiply this one
+            seen = replace(seen, colour=(1.0, 1.0, 1.0))
+        SubElement(material, "color", rgba=numbers(srgb_rgba(seen)))
 
 
 def _colliders(element: Element, owner: str, count: int, folder: str) -> None:

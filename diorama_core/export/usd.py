@@ -140,7 +140,8 @@ def build_stage(
     if gathered.main_light is not None:
         add_main_light(stage, f"{ROOT}/MainLight", gathered.main_light, gathered.strength(gathered.main_light))
     if gathered.even_light is not None:
-        add_even_light(stage, f"{ROOT}/EvenLight", gathered.even_light)
+        for number, place in enumerate(gathered.even_light.positions, 1):
+            add_even_light(stage, f"{ROOT}/EvenLight{number}", place, gathered.even_light.candela)
     for light in gathered.lights:
         owner = gathered.object(light.owner)
         T = rigid_inverse(owner.T_world) @ light.T_world

@@ -8,7 +8,7 @@ import numpy as np
 from jaxtyping import Float
 from pxr import Gf, Sdf, Usd, UsdGeom, UsdLux, UsdShade, Vt
 
-from diorama_core.export.lights import EvenLight, ExportLight, MainLight
+from diorama_core.export.lights import ExportLight, MainLight
 from diorama_core.export.names import slug_of, unique_name
 from diorama_core.export.pictures import Picture, picture_suffix
 from diorama_core.export.usd_values import extent, integers, place, vectors
@@ -223,13 +223,20 @@ def add_light(stage: Usd.Stage, path: str, light: ExportLight, T: Float[np.ndarr
     place(made, T)
 
 
-def add_even_light(stage: Usd.Stage, path: str, light: EvenLight) -> None:
-    """A small sphere in the room's middle."""
+def add_even_light(stage: Usd.Stage, path: str, position: Float[np.ndarray, "3"], candela: float) -> None:
+    """A small sphere, one of those that stand for the light from all sides.
+
+    Args:
+        stage: that gets the light.
+        path: of the new prim.
+        position: in the world, metres.
+        candela: to all sides.
+    """
     made = UsdLux.SphereLight.Define(stage, path)
     made.CreateRadiusAttr(EVEN_LIGHT_M)
-    made.CreateIntensityAttr(light.candela / (np.pi * EVEN_LIGHT_M**2))
+    made.CreateIntensityAttr(candela / (np.pi * EVEN_LIGHT_M**2))
     made.CreateExtentAttr(extent(np.array([[-1.0] * 3, [1.0] * 3]) * EVEN_LIGHT_M))
-    made.AddTranslateOp(UsdGeom.XformOp.PrecisionDouble).Set(Gf.Vec3d(*(float(v) for v in light.position)))
+    made.AddTranslateOp(UsdGeom.XformOp.PrecisionDouble).Set(Gf.Vec3d(*(float(v) for v in position)))
 
 
 def add_main_light(stage: Usd.Stage, path: str, light: MainLight, strength: float) -> None:

@@ -5,12 +5,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from diorama_core.export.lights import WINDOW_LUX, lights_of
+from diorama_core.export.lights import WINDOW_LUX, even_irradiance, even_light_of, lights_of
 from diorama_core.render.appearance import Material
 from diorama_core.render.lamps import LAMP_LUMENS
 from diorama_core.scene.light_settings import LightSettings
-from diorama_core.scene.types import Pose
-from tests.app.small_room import furnished_scene
+from diorama_core.scene.types import Architecture, Pose, Scene
+from tests.app.small_room import furnished_scene, room_planes
 from tests.export.surfaces import ball
 
 SCENE = furnished_scene()
@@ -62,3 +62,32 @@ def test_a_person_says_which_lamps_shine_and_windows_follow_the_time_of_day() ->
     at_night = light(LightSettings(hour=0.0, lamps_on=("lamp_1",)))
     assert at_night[0] == usual[0]
     assert at_night[1] < 0.1 * usual[1]
+
+
+def room(width: float, depth: float) -> Scene:
+    return replace(SCENE, architecture=Architecture(room_planes(width, depth, 2.5)))
+
+
+@pytest.mark.parametrize(("width", "depth", "points"), [(2.4, 3.0, 1), (2.4, 5.0, 2), (6.0, 5.0, 4)])
+def test_a_room_gets_as_much_even_light_as_in_pictures(width: float, depth: float, points: int) -> None:
+    scene = room(width, depth)
+    light = even_light_of(scene)
+    assert light is not None
+    assert len(light.positions) == points
+    closed = 2 * (width * depth + 2.5 * (width + depth))
+    assert 4 * np.pi * light.candela * points / closed == pytest.approx(np.pi * even_irradiance(scene))
+
+
+def test_lamps_give_a_part_of_it_unless_a_person_switched_them_on() -> None:
+    scene = room(4.4, 4.0)
+    lamps = lights_of(scene, [LAMP], {"lamp_1": (ball(),)})
+    assert even_irradiance(scene, lamps) < even_irradiance(scene)
+    evening = replace(scene, light_settings=LightSettings(18.0, lamps_on=("lamp_1",)))
+    assert even_irradiance(evening, lamps) == even_irradiance(evening)
+
+
+def test_a_floor_alone_has_a_light() -> None:
+    floor = replace(SCENE, architecture=Architecture(room_planes()[:1]))
+    light = even_light_of(floor)
+    assert light is not None
+    assert np.isfinite(light.candela)

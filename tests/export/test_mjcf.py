@@ -37,6 +37,17 @@ def test_mujoco_loads_the_file_with_its_meshes(source: str, tmp_path: Path) -> N
         np.testing.assert_allclose(data.body(item.slug).xmat.reshape(3, 3), item.T_world[:3, :3], atol=1e-6)
 
 
+def test_the_photo_s_camera_looks_past_the_middle_where_the_photo_s_does() -> None:
+    scene, library = scene_of("fittings")
+    assert scene.camera is not None
+    lens = replace(scene.camera.intrinsics, cx=scene.camera.intrinsics.cx + 40.0)
+    off = gather(replace(scene, camera=replace(scene.camera, intrinsics=lens)), library)
+    model = mujoco.MjModel.from_xml_string(mjcf_text(off, physical_scene(off)))
+    pixel = model.cam_sensorsize[0][0] / lens.width
+    expected = [lens.fx, lens.fy, lens.width / 2 - lens.cx, lens.height / 2 - lens.cy]
+    np.testing.assert_allclose(model.cam_intrinsic[0] / pixel, expected, rtol=1e-4, atol=1e-3)
+
+
 def test_a_zip_holds_the_model_and_all_it_refers_to(tmp_path: Path) -> None:
     write_mjcf(gathered("fittings"), tmp_path / "room.zip")
     with zipfile.ZipFile(tmp_path / "room.zip") as archive:
