@@ -10,6 +10,7 @@ import ctypes
 import ctypes.util
 import json
 import os
+import re
 import shutil
 import subprocess
 import tempfile
@@ -118,14 +119,15 @@ def godot_import(folder: Path) -> None:
 
 
 def game_pack(path: Path) -> tuple[int, int, dict[str, list[float]]]:
-    """Number of colliders and of materials that are seen, and where parts that move are in their objects."""
+    """Number of colliders and of materials that are seen, and where parts that move are, by Godot's names for them."""
     content = path.read_bytes()
     document = json.loads(content[20 : 20 + int.from_bytes(content[12:16], "little")])
     nodes = document["nodes"]
     colliders = [node for node in nodes if node["name"].endswith("-convcolonly")]
     seen = [document["meshes"][node["mesh"]] for node in nodes if "mesh" in node and node not in colliders]
     materials = {primitive["material"] for mesh in seen for primitive in mesh["primitives"]}
-    hinges = {n["name"]: n.get("translation", [0.0] * 3) for n in nodes if "joint" in n.get("extras", {})}
+    moving = [node for node in nodes if "joint" in node.get("extras", {})]
+    hinges = {re.sub(r"[^\w -]+", "", node["name"]): node.get("translation", [0.0] * 3) for node in moving}
     return len(colliders), len(materials), hinges
 
 

@@ -231,8 +231,8 @@ class _Builder:
         """The main light, and the points of the light from all sides."""
         main, even, found = self._gathered.main_light, self._gathered.even_light, []
         if main is not None:
-            about = {"name": "main light", "type": "directional", "color": [float(c) for c in main.colour]}
-            about |= {"intensity": main.lux * self._gathered.strength(main)}
+            about: dict[str, Any] = {"type": "directional", "color": [float(c) for c in main.colour]}
+            about |= {"name": "main light", "intensity": main.lux * self._gathered.strength(main)}
             found.append(self._room_light(self._document.add_light(about), placement(main.T_world), "main light"))
         if even is not None:
             light = self._document.add_light({"name": "even light", "type": "point", "intensity": even.candela})

@@ -69,7 +69,10 @@ def mjcf_text(gathered: ExportScene, physical: PhysicalScene, folder: str | None
     SubElement(root, "compiler", angle="radian", autolimits="true")
     SubElement(root, "option", timestep="0.002", integrator="implicitfast", cone="elliptic", impratio="10")
     even, from_viewer = _around(gathered)
-    headlight = {"ambient": numbers([_shown(0.0, even)] * 3), "diffuse": numbers([_shown(even, from_viewer)] * 3)}
+    headlight = {
+        "ambient": numbers(np.full(3, _shown(0.0, even))),
+        "diffuse": numbers(np.full(3, _shown(even, from_viewer))),
+    }
     SubElement(SubElement(root, "visual"), "headlight", headlight)
     _defaults(SubElement(root, "default"))
     assets, world = SubElement(root, "asset"), SubElement(root, "worldbody")
@@ -300,9 +303,9 @@ def _camera(world: Element, camera: Camera) -> None:
     k = camera.intrinsics
     lens = {
         "resolution": f"{k.width} {k.height}",
-        "sensorsize": numbers([SENSOR_M, SENSOR_M * k.height / k.width]),
-        "focalpixel": numbers([k.fx, k.fy]),
-        "principalpixel": numbers([0.5 * k.width - k.cx, 0.5 * k.height - k.cy]),
+        "sensorsize": numbers(SENSOR_M * np.array([1.0, k.height / k.width])),
+        "focalpixel": numbers(np.array([k.fx, k.fy])),
+        "principalpixel": numbers(np.array([0.5 * k.width - k.cx, 0.5 * k.height - k.cy])),
     }
     SubElement(world, "camera", {"name": "photo", **lens, **_placement(T)})
 
