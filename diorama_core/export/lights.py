@@ -144,7 +144,7 @@ def _corners(scene: Scene) -> Float[np.ndarray, "k 3"]:
 
 
 def _room_area(scene: Scene) -> float:
-    """Of walls, floor and ceiling, where some of them are missing too; square metres."""
+    """Area of walls, floor and ceiling in square metres, of those that are missing too."""
     corners = _corners(scene)
     try:
         return float(ConvexHull(corners).area)

@@ -123,6 +123,8 @@ def test_messages_of_one_connection_are_taken_at_a_pace(monkeypatch: pytest.Monk
     monkeypatch.setattr(time, "monotonic", lambda: now[0])
     monkeypatch.setattr(asyncio, "sleep", sleep)
 
+    rests: list[float] = []
+
     async def read(connection: Connection) -> None:
         for rest_s, at_once in ((0.0, MESSAGES_AT_ONCE), (1.0, MESSAGES_PER_S), (600.0, MESSAGES_AT_ONCE)):
             now[0] += rest_s
@@ -133,8 +135,10 @@ def test_messages_of_one_connection_are_taken_at_a_pace(monkeypatch: pytest.Monk
             for _ in range(MESSAGES_PER_S):
                 await connection.recv()
             assert now[0] - began == pytest.approx(1.0)
+            rests.append(rest_s)
 
     asyncio.run(paced(read)(Connection()))
+    assert rests == [0.0, 1.0, 600.0], "the handler is awaited"
 
 
 def test_every_connection_is_paced(monkeypatch: pytest.MonkeyPatch) -> None:
