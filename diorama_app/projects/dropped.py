@@ -180,7 +180,7 @@ def _solid_readings(path: Path, head: FileHead) -> tuple[Reading, ...]:
     if model is None:
         return (as_scene,)
     try:
-        content = scene.read(path, Progress())
+        content = scene.read(path, Progress(), None)
     except (DioramaError, MemoryError):
         return as_model  # taking it in says what is wrong
     if isinstance(content, MarkedFile):
@@ -195,7 +195,7 @@ def _is_readable(path: Path) -> bool:
     """Whether a text that may be points has enough of them."""
     scene = _scene_form(head_of(path))
     try:
-        return scene is not None and scene.read(path, Progress()) is not None
+        return scene is not None and scene.read(path, Progress(), None) is not None
     except (DioramaError, MemoryError):
         return False
 
