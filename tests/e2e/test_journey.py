@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -77,7 +78,7 @@ def test_a_photo_with_boxes_becomes_a_scene(
 ) -> None:
     photo, all_boxes = _photo_with_boxes()
     boxes = tmp_path / "boxes.json"
-    boxes.write_text(json.dumps(json.loads(all_boxes.read_text())[:MARKED]))
+    boxes.write_text(json.dumps(all_boxes[:MARKED]))
     editor = visit(serve(library=few_shapes(example_scene())))
     session = editor.session
     example = session.scene
@@ -104,12 +105,12 @@ def test_a_photo_with_boxes_becomes_a_scene(
     expect(editor.page.locator(".dio .row[data-grab]:visible")).to_have_count(len(session.scene.objects))
 
 
-def _photo_with_boxes() -> tuple[Path, Path]:
+def _photo_with_boxes() -> tuple[Path, list[dict[str, Any]]]:
     """A real photo where there are any, else the example's own."""
     folder = SHARED / "photos"
     if folder.is_dir():
-        return folder / "im3d_4.jpg", folder / "im3d_4_detections.json"
-    return EXAMPLE / "photo.jpg", EXAMPLE / "boxes.json"
+        return folder / "im3d_4.jpg", json.loads((folder / "im3d_4_detections.json").read_text())
+    return EXAMPLE / "photo.jpg", json.loads((EXAMPLE / "boxes.json").read_text())["boxes"]
 
 
 def _swappable(scene: Scene) -> SceneObject:
