@@ -2,6 +2,7 @@
 
     DioramaError
     ├── InputError          a file or value the user gave cannot be used
+    │   └── SphericalPhotoError  the photo shows all directions
     ├── SceneError          a scene document or an edit of it is not valid
     │   └── EditRefused     the edit would break the scene (a cycle, a locked object)
     ├── LibraryError        a shape is missing, unreadable or malformed
@@ -21,6 +22,10 @@ class DioramaError(Exception):
 
 class InputError(DioramaError):
     """A file or value given by the user cannot be used."""
+
+
+class SphericalPhotoError(InputError):
+    """The photo shows all directions: it is for `build_sphere`, not for what takes a perspective photo."""
 
 
 class SceneError(DioramaError):

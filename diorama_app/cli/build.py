@@ -19,7 +19,7 @@ from diorama_app.cli.arguments import (
     progress_bar,
 )
 from diorama_app.projects.options import POSES, ROOMS, SYSTEMS, BuildOptions, PhotoFiles, build_files
-from diorama_core.errors import InputError
+from diorama_core.errors import InputError, SphericalPhotoError
 
 if TYPE_CHECKING:
     pass
@@ -198,9 +198,15 @@ def _build_photo(a: argparse.Namespace, options: BuildOptions) -> None:
     files = PhotoFiles(
         a.image, a.boxes, a.masks, a.depth, a.intrinsics, a.fov, a.distortion, a.half_turn, a.camera_height
     )
-    with progress_bar() as progress:
-        room = build_files(files, options, a.output, progress, print_note)
-        scenes = write_arrangements(room, a.arrangements, progress)
+    try:
+        with progress_bar() as progress:
+            room = build_files(files, options, a.output, progress, print_note)
+            scenes = write_arrangements(room, a.arrangements, progress)
+    except SphericalPhotoError:
+        from diorama_app.cli.posed import build_sphere
+
+        build_sphere(a, files, options)
+        return
     if a.explain is not None and room.built is not None:
         write_reasons(a.explain, room.built.reasons, InputError)
     report = build_report(room, scenes)

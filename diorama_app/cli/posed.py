@@ -1,4 +1,4 @@
-"""`diorama build DIR --poses PATH|find -o PROJECT`: several photos of one room, with known cameras or without."""
+"""`diorama build`: several photos of one room, with known cameras or without (`--poses`), or one 360 degree photo."""
 
 from __future__ import annotations
 
@@ -14,7 +14,8 @@ FIND = "find"
 """Instead of a path: the photos themselves tell where they were taken."""
 
 if TYPE_CHECKING:
-    from diorama_app.projects.options import BuildOptions
+    from diorama_app.projects.options import BuildOptions, PhotoFiles
+    from diorama_app.projects.posed_build import PosedBuild
 
 
 def build_posed(a: argparse.Namespace, options: BuildOptions) -> None:
@@ -45,6 +46,31 @@ def build_posed(a: argparse.Namespace, options: BuildOptions) -> None:
             else read_poses(a.poses, [p.photo for p in photos])
         )
         built = build_posed_photos(photos, poses, options, a.output, progress.part(0.1 if find else 0.0, 1.0))
+    _told(a, built)
+
+
+def build_sphere(a: argparse.Namespace, files: PhotoFiles, options: BuildOptions) -> None:
+    """Build one project of the 360 degree photo `a.image`.
+
+    Args:
+        a: the command's arguments.
+        files: the photo and what is known of it.
+        options: of the build.
+
+    Raises:
+        InputError: the photo or something given with it cannot be used.
+    """
+    from diorama_app.projects.posed_build import build_sphere_photo
+
+    if a.arrangements != 1 or a.explain is not None:
+        raise InputError(f"{a.image.name} is a 360 degree photo; --arrangements and --explain are for other photos")
+    with progress_bar() as progress:
+        built = build_sphere_photo(files, options, a.output, progress)
+    _told(a, built)
+
+
+def _told(a: argparse.Namespace, built: PosedBuild) -> None:
+    """Print what was built."""
     scene = built.room.scene
     several = sum(len(track.boxes) > 1 for track in built.room.tracks)
     if a.json:

@@ -1,13 +1,19 @@
-"""Several photos of one room become one project."""
+"""Several photos of one room, or one 360 degree photo, become one project."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import io
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from pathlib import Path
 
+import numpy as np
+from jaxtyping import UInt8
+from PIL import Image
+
 import diorama_core as diorama
-from diorama_app.projects.options import BuildOptions
+from diorama_app.projects.options import BuildOptions, PhotoFiles
 from diorama_app.projects.photo_folder import FolderPhoto
 from diorama_core.artefacts import FurtherPhoto, Inputs
 from diorama_core.errors import InputError, ProjectError
@@ -17,6 +23,7 @@ from diorama_core.multiview.found_poses import UnposedPhoto, find_poses
 from diorama_core.multiview.lens import straightened
 from diorama_core.multiview.posed_photos import PosedPhoto, Poses
 from diorama_core.multiview.rooms import JoinedRoom, PosedInputs, build_room, in_room
+from diorama_core.multiview.sphere_scene import build_sphere
 from diorama_core.multiview.turned_cameras import quarters_of, upright_camera
 from diorama_core.perception.inputs import read_inputs
 from diorama_core.pipeline.presets import stages_for
@@ -29,6 +36,14 @@ from diorama_core.scene.types import Camera
 
 MAX_ASPECT_OFF = 0.02
 """Difference of a photo's aspect ratio from its camera's: more is another picture, or one that was cut or turned."""
+
+
+MAX_SPHERE_PX = 4096
+"""Width to which 360 degree photos are reduced: views of a quarter turn are then as sharp as photos."""
+
+
+_Row = tuple[str, Callable[[], bytes], PosedInputs]
+"""A photo's name, what reads its file, and the photo with its camera."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -80,11 +95,13 @@ def build_posed_photos(
     """
     library = diorama.open_library(options.library)
     pairs, notes = _paired(photos, poses)
-    read: list[tuple[str, Path, PosedInputs]] = []
+    read: list[_Row] = []
     for photo, posed in pairs:
         inputs, warnings = _inputs(photo)
         notes += [f"{photo.photo.name}: {line}" for line in warnings]
-        read.append((photo.photo.name, photo.photo, _posed(photo, inputs, posed, stored=poses.stored_pixels)))
+        read.append(
+            (photo.photo.name, photo.photo.read_bytes, _posed(photo, inputs, posed, stored=poses.stored_pixels))
+        )
     read.sort(key=lambda row: (-len(row[2].inputs.boxes), row[0]))
 
     def choose(inputs: Inputs) -> Stages:
@@ -101,6 +118,55 @@ def build_posed_photos(
         all_notes = (*poses.notes, *notes, *scale, *room.notes)
         _save(project, room, read, placed, options.library, all_notes)
     return PosedBuild(room, project, tuple(row[0] for row in read), all_notes)
+
+
+def build_sphere_photo(files: PhotoFiles, options: BuildOptions, output: Path, progress: Progress) -> PosedBuild:
+    """One project of a 360 degree photo; its views are the project's photos.
+
+    Args:
+        files: the photo, with boxes in its pixels and the camera's height where they are given.
+        options: of the build.
+        output: folder that is written.
+        progress: reports and cancellation.
+
+    Raises:
+        InputError: the photo cannot be used, or something is given that is not used with it.
+        ProjectError: `output` cannot be written, or holds something else.
+        LibraryError: there is no such library.
+        Cancelled: on request.
+    """
+    unused = {
+        "--depth": files.depth, "--masks": files.masks, "--intrinsics": files.intrinsics, "--fov": files.fov_deg,
+        "--distortion": files.distortion or None, "--half-turn": files.half_turn or None, "--pose": options.pose,
+        "--room": None if options.room == "closed" else options.room,
+        "--system": None if options.system == "diorama" else options.system,
+    }  # fmt: skip
+    named = next((name for name, value in unused.items() if value is not None), None)
+    if named is not None:
+        raise InputError(f"{files.photo.name} is a 360 degree photo, with which {named} is not used; leave it out")
+    library, networks = diorama.open_library(options.library), options.networks(files)
+    given = read_inputs(files.photo, boxes=files.boxes, max_side=MAX_SPHERE_PX, sphere=True)
+
+    def choose(inputs: Inputs) -> Stages:
+        return stages_for(options.profile, inputs, library, recipe=options.recipe, choice=networks)
+
+    project = Project.create(output)
+    with ProjectLock(project.folder, "diorama build"):
+        layout = recipe(options.recipe, library, depth_measured=True)
+        built = build_sphere(
+            given.inputs.photo, given.inputs.boxes, library, choose, layout, progress,
+            camera_height_m=files.camera_height_m,
+        )  # fmt: skip
+        notes = (*given.warnings, *built.room.notes)
+        rows = [(n, partial(_png, v.inputs.photo.rgb), v) for n, v in zip(built.names, built.views, strict=True)]
+        _save(project, built.room, rows, built.views, options.library, notes)
+    return PosedBuild(built.room, project, built.names, notes)
+
+
+def _png(rgb: UInt8[np.ndarray, "h w 3"]) -> bytes:
+    buffer = io.BytesIO()
+    Image.fromarray(rgb).save(buffer, "PNG", compress_level=2)
+    return buffer.getvalue()
 
 
 def _paired(photos: Sequence[FolderPhoto], poses: Poses) -> tuple[list[tuple[FolderPhoto, PosedPhoto]], list[str]]:
@@ -146,7 +212,7 @@ def _posed(photo: FolderPhoto, inputs: Inputs, posed: PosedPhoto, *, stored: boo
 def _save(
     project: Project,
     room: JoinedRoom,
-    read: Sequence[tuple[str, Path, PosedInputs]],
+    read: Sequence[_Row],
     placed: Sequence[PosedInputs],
     library: str,
     notes: tuple[str, ...],
@@ -154,8 +220,8 @@ def _save(
     """The project with the main photo; the others lie in `photos`, their cameras in `project.json`."""
     folder = project.folder / "photos"
     folder.mkdir(exist_ok=True)
-    for name, path, _ in read:
-        write_atomically(folder / name, path.read_bytes(), error=ProjectError)  # a link there is replaced, not followed
+    for name, data, _ in read:
+        write_atomically(folder / name, data(), error=ProjectError)  # a link there is replaced, not followed
     cameras = [
         {
             "photo": name,

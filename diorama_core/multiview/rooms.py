@@ -171,30 +171,57 @@ def build_room(
     room_photos = [said_alone(r) for r in read]
     joined = joined_objects(room_photos, progress.part(0.2, 0.45))
     tracks = tuple(with_agreeing_boxes(t, room_photos) for t in joined)
+    single = len(photos) == 1
+    rooms = (None,) * len(read) if single else _room_of_all(read, room_photos, tracks, progress.part(0.45, 0.55))
+    room = joined_scene(read, room_photos, tracks, rooms, library, layout, progress.part(0.55, 1.0), preview)
+    several = sum(len(t.boxes) > 1 for t in tracks)
+    notes = (f"{len(photos)} photos: {several} of {len(tracks)} objects are seen in more than one",)
+    return replace(room, notes=(*notes, *room.notes))
+
+
+def joined_scene(
+    read: Sequence[ReadPhoto],
+    room_photos: Sequence[RoomPhoto],
+    tracks: tuple[Track, ...],
+    rooms: Sequence[GivenRoom | None],
+    library: ShapeLibrary,
+    layout: LayoutStage,
+    progress: Progress | None = None,
+    preview: Preview | None = None,
+) -> JoinedRoom:
+    """One scene of photos that were read, whose objects and whose room are known.
+
+    Args:
+        read: the photos; the first is the one the scene is looked at from.
+        room_photos: what each says by itself.
+        tracks: objects of all photos.
+        rooms: for each photo the room in its own world; None for what it shows itself.
+        library: where shapes come from.
+        layout: the optimiser of the whole room.
+        progress: reports and cancellation.
+        preview: receives the layout optimiser's intermediate scenes.
+    """
+    progress, single = progress or Progress(), len(read) == 1
     best = [max(t.fitted, key=lambda b: (shown(room_photos[b[0]], b[1]), -b[0]))[0] for t in tracks]
     used = sorted({0, *best})
     built: dict[int, Built] = {}
-    single = len(photos) == 1
-    rooms = (None,) * len(read) if single else _room_of_all(read, room_photos, tracks, progress.part(0.45, 0.55))
     for number, index in enumerate(used):
-        part = progress.part(0.55 + 0.3 * number / len(used), 0.55 + 0.3 * (number + 1) / len(used))
+        part = progress.part(0.65 * number / len(used), 0.65 * (number + 1) / len(used))
         built[index] = built_alone(read[index], index, tracks, library, part, room=rooms[index], plane_pictures=single)
     scene, textures = _merged(read, built, tracks, best)
     report = None
     if scene.objects:
-        scene, report = layout.optimise(scene, progress.part(0.85, 0.95), preview)
+        scene, report = layout.optimise(scene, progress.part(0.65, 0.9), preview)
         scene = set_metrics(scene, report.after)
     if not single:
-        progress.report(0.95, "pictures of floor and walls")
+        progress.report(0.9, "pictures of floor and walls")
         placed = [placed_picture(r, _ids_in(tracks, index)) for index, r in enumerate(read)]
         pictures = room_pictures(scene, placed, library)
         planes = tuple(replace(p, texture=p.id if p.id in pictures else None) for p in scene.architecture.planes)
         scene, textures = replace(scene, architecture=Architecture(planes)), {**textures, **pictures}
     progress.report(1.0, "done")
-    several = sum(len(t.boxes) > 1 for t in tracks)
-    notes = (f"{len(photos)} photos: {several} of {len(tracks)} objects are seen in more than one",)
     seen = tuple(_seen_in(tracks, index, r, scene) for index, r in enumerate(read))
-    return JoinedRoom(scene, tracks, built[0], textures, report, (*notes, *built[0].notes), seen)
+    return JoinedRoom(scene, tracks, built[0], textures, report, built[0].notes, seen)
 
 
 def _seen_in(tracks: Sequence[Track], index: int, read: ReadPhoto, scene: Scene) -> tuple[tuple[str, Box], ...]:

@@ -13,6 +13,7 @@ import numpy as np
 from jaxtyping import Float, Float32, UInt8
 
 from diorama_core.geometry.openings import with_openings
+from diorama_core.geometry.sphere import directions
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.progress import Progress
 from diorama_core.render.lighting import Effort, ambient
@@ -75,16 +76,6 @@ def panorama(
         seen = np.where(is_of_face[..., None], picture, seen)
     colour = scene.light.colour if scene.light is not None and scene.light_settings.hour is None else (1.0, 1.0, 1.0)
     return np.asarray(np.maximum(seen, 0.0) * np.asarray(colour, np.float32))
-
-
-def directions(width: int) -> Float[np.ndarray, "h w 3"]:
-    """Where each pixel of a map looks, unit vectors in the world."""
-    height = width // 2
-    longitude = np.pi * (1.0 - 2.0 * (np.arange(width) + 0.5) / width)
-    latitude = np.pi * (0.5 - (np.arange(height) + 0.5) / height)
-    across = np.cos(latitude)[:, None]
-    up = np.broadcast_to(np.sin(latitude)[:, None], (height, width))
-    return np.stack([across * np.sin(longitude), -across * np.cos(longitude), up], axis=-1)
 
 
 def middle(scene: Scene) -> Float[np.ndarray, "3"]:

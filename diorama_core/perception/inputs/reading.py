@@ -48,6 +48,7 @@ def read_inputs(
     masks: Path | bytes | Source | None = None,
     half_turn: bool = False,
     max_side: int = 1600,
+    sphere: bool = False,
 ) -> ReadInputs:
     """Read and check what the user gave.
 
@@ -66,14 +67,16 @@ def read_inputs(
         masks: In any form of `MASK_FORMS`: a picture with one colour or one id per instance, a folder, an array.
         half_turn: Whether the photo and all that belongs to it are upside down, and are turned by 180 degrees.
         max_side: Larger photos are reduced so that the longer side has this many pixels.
+        sphere: Whether the photo is to be a 360 degree photo (equirectangular).
 
     Returns:
         The inputs in photo pixels, and warnings in words for the user.
 
     Raises:
+        SphericalPhotoError: it is a 360 degree photo and none was to be read.
         InputError: one line saying what cannot be used, where, and what to do.
     """
-    decoded = read_photo(read_source(image, "photo", name), max_side)
+    decoded = read_photo(read_source(image, "photo", name), max_side, sphere=sphere)
     photo, warnings = decoded.photo, list(decoded.notes)
     unturned, camera = decoded, _read_intrinsics(decoded, intrinsics, fov_deg)
     if half_turn:

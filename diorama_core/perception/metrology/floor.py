@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -49,15 +49,38 @@ def scan_heights(observations: BoxObservations, view: View, settings: MetrologyS
 
     Without any, the prior decides.
     """
-    standing = [i for i in range(len(observations)) if stands_on_floor(observations.categories[i])]
-    voters = [i for i in standing if observations.categories[i].name not in TELL_LITTLE] or standing
+    return scan_heights_together([(observations, view, range(len(observations)))], settings=settings)
+
+
+def scan_heights_together(
+    pictures: Sequence[tuple[BoxObservations, View, Collection[int]]],
+    further_cost: Float[np.ndarray, "13"] | None = None,
+    settings: MetrologySettings = SETTINGS,
+) -> HeightScan:
+    """Find the height of a camera that took several pictures from one place.
+
+    Args:
+        pictures: objects, camera, and which of the objects vote.
+        further_cost: what else speaks against each of `HEIGHTS_M`, in squared sigmas.
+        settings: of metrology.
+    """
+    standing = [
+        [i for i in voting if stands_on_floor(observations.categories[i])] for observations, _, voting in pictures
+    ]
+    telling = [
+        [i for i in rows if observations.categories[i].name not in TELL_LITTLE]
+        for rows, (observations, _, _) in zip(standing, pictures, strict=True)
+    ]
     log_heights = np.log(HEIGHTS_M)
     off = (log_heights - np.log(settings.heights.height_prior_m)) / settings.heights.height_log_sigma
     total = (settings.heights.height_tails + 1) * np.log1p(off**2 / settings.heights.height_tails)
-    if voters:
-        rows = stacked([p for i in voters for p in _scan_rows(observations, i, settings.fit)])
-        total = total + _votes(rows, observations, view, settings)
-    log_height, log_sigma, cost = _parabola_minimum(log_heights, total)
+    for voters, (observations, view, _) in zip(telling if any(telling) else standing, pictures, strict=True):
+        if voters:
+            rows = stacked([p for i in voters for p in _scan_rows(observations, i, settings.fit)])
+            total = total + _votes(rows, observations, view, settings)
+    log_height, log_sigma, cost = _parabola_minimum(
+        log_heights, total if further_cost is None else total + further_cost
+    )
     return HeightScan(float(np.exp(log_height)), log_sigma, cost)
 
 

@@ -3,15 +3,18 @@ from __future__ import annotations
 import json
 from pathlib import Path
 
+import numpy as np
 import pytest
 from PIL import Image
 
 from diorama_app.cli import main
 from diorama_app.cli.posed import build_posed
-from diorama_app.projects.options import BuildOptions
+from diorama_app.projects.options import BuildOptions, PhotoFiles
 from diorama_app.projects.photo_folder import photos_of
-from diorama_app.projects.posed_build import build_posed_photos
+from diorama_app.projects.posed_build import build_posed_photos, build_sphere_photo
 from diorama_core.errors import InputError
+from diorama_core.geometry.planes import in_polygon
+from diorama_core.geometry.sphere import sphere_pixels
 from diorama_core.layout.recipes import recipe
 from diorama_core.library.catalogue import built_in_library
 from diorama_core.multiview.posed_photos import PosedPhoto, read_poses
@@ -22,6 +25,7 @@ from diorama_core.project.storage import Project
 from tests.cli.room_photo import room_picture
 from tests.multiview.colmap_files import write_colmap
 from tests.multiview.rooms import CAMERAS, THINGS, photo
+from tests.multiview.spheres import BOX, room_sphere
 
 POSED = CAMERAS[:2]
 SHOWN = THINGS[:1]
@@ -101,3 +105,41 @@ def test_a_photo_s_own_world_has_the_camera_above_its_origin(camera) -> None:
     assert abs(own[:2]).max() < 1e-9
     ahead = T[:3, :3].T @ camera.T_world_camera[:3, 2]
     assert ahead[1] > abs(ahead[0]) - 1e-9
+
+
+@pytest.mark.slow
+def test_a_360_degree_photo_becomes_one_closed_room(tmp_path: Path, capsys) -> None:
+    """A wardrobe against a wall of a drawn room, the camera 1.4 m above its floor."""
+    picture, height_m = room_sphere(BOX, 0.85, width=1600), 1.4
+    size, centre = np.array([0.6, 1.0, 2.0]), np.array([2.1 * height_m - 0.3, 0.3, 1.0 - height_m])
+    corners = centre + size / 2 * np.stack(np.meshgrid([-1, 1], [-1, 1], [-1, 1]), axis=-1).reshape(-1, 3)
+    at = sphere_pixels(corners, 1600)
+    x1, y1, x2, y2 = (round(float(v)) for v in (*at.min(axis=0), *at.max(axis=0)))
+    picture[y1:y2, x1:x2] = [150, 110, 70]
+    Image.fromarray(picture).save(tmp_path / "sphere.png")
+    (tmp_path / "boxes.json").write_text(json.dumps([{"bbox": [x1, y1, x2, y2], "class": "wardrobe"}]))
+    command = [
+        "build",
+        str(tmp_path / "sphere.png"),
+        "--boxes",
+        str(tmp_path / "boxes.json"),
+        "-o",
+        str(tmp_path / "room"),
+    ]
+    assert main([*command, "--profile", "embedded", "--json"]) == 0
+    said = json.loads(capsys.readouterr().out)
+    assert any("360 degree photo" in note for note in said["notes"])
+    assert len(said["photos"]) == 8
+    scene = Project.open(tmp_path / "room").load_scene()
+    assert [o.category for o in scene.objects] == ["wardrobe"]
+    floor = scene.architecture.floor
+    assert floor is not None
+    assert len(scene.architecture.by_role("wall")) == 4
+    assert in_polygon(scene.objects[0].pose.position[None, :2], floor.polygon[:, :2])[0]
+    assert np.ptp(floor.polygon[:, :2], axis=0) == pytest.approx(height_m * np.ptp(BOX, axis=0), rel=0.12)
+
+
+def test_what_a_360_degree_photo_does_not_take_is_refused(tmp_path: Path) -> None:
+    with pytest.raises(InputError, match=r"--fov is not used"):
+        build_sphere_photo(PhotoFiles(tmp_path / "a.jpg", fov_deg=60.0), BuildOptions(), tmp_path / "room", Progress())
+    assert not (tmp_path / "room").exists()

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from PIL import Image
 
-from diorama_core.errors import InputError
+from diorama_core.errors import InputError, SphericalPhotoError
 
 SWEEP_ASPECT = 2.2
 """Longer than any single shot of a camera: phones crop to 16:9 (1.78), films to 2.4 with borders cut."""
@@ -36,13 +36,17 @@ def check_perspective(name: str, picture: Image.Image, exif: Mapping[int, Any], 
         has_focal: whether the header states the focal length of a single shot.
 
     Raises:
-        InputError: it is one.
+        SphericalPhotoError: it shows all directions.
+        InputError: it is another panorama.
     """
     projection = _stated_projection(picture)
     aspect = max(picture.size) / min(picture.size)
     crop = "crop it to one direction, without its bent lines"
     if projection == "equirectangular" or (projection is None and _is_sphere(picture)):
-        raise InputError(f"{name}: this is a 360 degree photo (equirectangular), not a perspective one; {crop}")
+        raise SphericalPhotoError(
+            f"{name}: this is a 360 degree photo (equirectangular), not a perspective one; give it alone to "
+            f"'diorama build', or {crop}"
+        )
     if projection not in (None, "perspective", "rectilinear") or exif.get(_CUSTOM_RENDERED) == _PANORAMA:
         raise InputError(
             f"{name}: this is a panorama ({projection or 'by its header'}), not a perspective photo; {crop}"
@@ -52,6 +56,20 @@ def check_perspective(name: str, picture: Image.Image, exif: Mapping[int, Any], 
     if aspect > SWEEP_ASPECT:
         return (f"{aspect:.1f} : 1 is the shape of a panorama; if it is one, {crop}",)
     return ()
+
+
+def check_sphere(name: str, picture: Image.Image) -> None:
+    """Raise `InputError` where a picture is not all of a sphere.
+
+    Args:
+        name: of the file.
+        picture: upright, decoded.
+    """
+    if not _SPHERE_ASPECT[0] <= picture.width / picture.height <= _SPHERE_ASPECT[1]:
+        size = f"{picture.width} x {picture.height}"
+        raise InputError(f"{name}: {size} is not 2 : 1, so it is no whole 360 degree photo; stitch all directions")
+    if _stated_projection(picture) != "equirectangular" and not _is_sphere(picture):
+        raise InputError(f"{name}: its left and right sides do not meet, so it is no 360 degree photo")
 
 
 def _stated_projection(picture: Image.Image) -> str | None:

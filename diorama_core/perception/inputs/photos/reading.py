@@ -18,7 +18,7 @@ from diorama_core.perception.inputs.photos.bits import dark_colours, eight_bits
 from diorama_core.perception.inputs.photos.borders import plain_borders
 from diorama_core.perception.inputs.photos.decoding import load_pixels, open_picture
 from diorama_core.perception.inputs.photos.frame import PhotoFrame
-from diorama_core.perception.inputs.photos.panoramas import check_perspective
+from diorama_core.perception.inputs.photos.panoramas import check_perspective, check_sphere
 from diorama_core.perception.inputs.photos.table import PHOTO_FORMS
 from diorama_core.perception.inputs.source import Source
 
@@ -41,8 +41,13 @@ class DecodedPhoto:
     notes: tuple[str, ...] = ()
 
 
-def read_photo(source: Source, max_side: int) -> DecodedPhoto:
+def read_photo(source: Source, max_side: int, *, sphere: bool = False) -> DecodedPhoto:
     """The upright photo, reduced to `max_side`.
+
+    Args:
+        source: its file.
+        max_side: pixels of the longer side, at most.
+        sphere: whether it is to be a 360 degree photo, whose borders are no frame.
 
     Raises:
         InputError: when it cannot be used; the message says why.
@@ -61,12 +66,18 @@ def read_photo(source: Source, max_side: int) -> DecodedPhoto:
     original = (raw_size[1], raw_size[0]) if orientation >= 5 else raw_size
     _check_shape(source.name, original)
     focal = focal_from_exif(exif, *original)
-    notes += more + check_perspective(source.name, upright, exif, has_focal=focal is not None)
+    notes += more
+    if sphere:
+        check_sphere(source.name, upright)
+    else:
+        notes += check_perspective(source.name, upright, exif, has_focal=focal is not None)
     brighter, more = dark_colours(upright, source)
     rgb, bits = _to_rgb(_coarser(brighter, max_side), source.name)
     reduced, smaller = _reduced(rgb, original, max_side)
     frame = PhotoFrame(original, (0, 0, 0, 0), orientation)
-    reduced, frame, cut = _without_border(reduced, frame)
+    cut: tuple[str, ...] = ()
+    if not sphere:
+        reduced, frame, cut = _without_border(reduced, frame)
     if any(frame.margins):
         focal = focal_from_exif(exif, *frame.inner_size)
     photo = Photo(

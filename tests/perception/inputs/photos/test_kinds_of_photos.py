@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from diorama_core.errors import InputError
+from diorama_core.errors import InputError, SphericalPhotoError
 from diorama_core.perception.inputs import read_inputs
 from diorama_core.perception.inputs.form import form_of
 from diorama_core.perception.inputs.photos.bits import eight_bits
@@ -164,6 +164,20 @@ def test_spheres_and_sweeps_are_refused_and_long_crops_remarked() -> None:
     assert "shape of a panorama" in check_perspective("p", long, {}, has_focal=False)[0]
     assert check_perspective("p", Image.fromarray(NOISE), {}, has_focal=True) == ()
     assert check_perspective("p", Image.fromarray(NOISE[:80]), {}, has_focal=False) == ()
+
+
+def test_a_sphere_is_read_whole_where_one_is_asked_for() -> None:
+    black = panorama(400, 200)
+    black.paste((0, 0, 0), (0, 180, 400, 200))  # the tripod is often covered
+    assert read_inputs(encoded(black), sphere=True).inputs.photo.original_size == (400, 200)
+    with pytest.raises(SphericalPhotoError):
+        read_inputs(encoded(black))
+    for no_sphere, why in (
+        (Image.fromarray(NOISE), "2 : 1"),
+        (panorama(400, 200).crop((0, 0, 200, 100)), "do not meet"),
+    ):
+        with pytest.raises(InputError, match=why):
+            read_inputs(encoded(no_sphere), sphere=True)
 
 
 @pytest.mark.parametrize("orientation", range(1, 9))

@@ -1,0 +1,396 @@
+"""The room around a 360 degree photo, from its borders with ceiling and floor all the way round.
+
+Seen from the camera, the room is at each azimuth one upright wall along an axis of the room: a wall at distance r is
+seen up to the elevation atan(h cos(a) / r), a being the azimuth from its nearest point, and down to -atan(cos(a) / r);
+the camera's height above the floor is 1, the ceiling is h above the camera. The sequence of walls that explains the
+picture's edges best is found by dynamic programming over azimuths and all heights of the ceiling at once (Flint et al.
+2010, "A dynamic programming approach to reconstructing building interiors"): a wall goes on, meets the next one in a
+corner, or ends before a farther one. It is closed by going round twice. Distances are then refined together.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from itertools import product
+
+import cv2
+import numpy as np
+from jaxtyping import Float, Float32, Int, UInt8
+from scipy.ndimage import uniform_filter1d
+
+QUARTER = np.pi / 2
+
+
+@dataclass(frozen=True)
+class SphereRoomSettings:
+    """How edges speak for a room."""
+
+    columns: int = 360
+    """Azimuths of the search."""
+    nearest: float = 0.25
+    farthest: float = 8.0
+    """Distances of walls, in heights of the camera above the floor."""
+    log_step: float = 0.04
+    """Of distances and heights."""
+    log_heights: tuple[float, float] = (-1.2, 0.6)
+    """Of the ceiling above the camera, in heights of the camera: a room of 2.2 m seen from 1.7 m, one of 3.5 m from
+    1.2 m."""
+    widest_rad: float = float(np.deg2rad(84.0))
+    """Azimuth from a wall's nearest point up to which it is looked at: beyond, the corner with the next wall is far."""
+    noise: float = 0.5
+    """Change of colour that is no edge where a picture has none, CIELAB a pixel."""
+    noise_px: float = 1.0
+    shade_px: float = 5.0
+    coarse_px: float = 2.5
+    """Deviations of blurs at 1024 pixels around: against noise; of what is taken out as shade, which grows softly
+    into corners; and of the edges in the search, for a step of it."""
+    band: int = 6
+    along_deg: float = 40.0
+    """Steps on either side of a border, and azimuth along it, whose colours are compared: tiles and boards have lines
+    along walls, too, but the same colours beyond (Martin et al. 2004, on natural image boundaries)."""
+    colour_step: float = 8.0
+    """Of the histograms of lightness and of the two chromatic axes, in CIELAB: some just noticeable differences."""
+    alike_ceiling: float = 0.5
+    """What an edge between like colours counts at the ceiling, which is often as white as the walls; on the floor it
+    is a line of the floor."""
+    ceiling_weight: float = 1.0
+    floor_weight: float = 0.6
+    """Furniture hides the floor's border more often than the ceiling's."""
+    corner_cost: float = 8.0
+    jump_cost: float = 24.0
+    """What a corner, and a wall that ends before a farther one (three corners), must gain: degrees of a perfect
+    edge."""
+    away: tuple[float, float] = (1.5, 0.6)
+    """Distance of the room's border over the camera's height, all round: median, and deviation of the logarithm. A
+    room of 4 m and a camera at 1.4 m have the former; from a corridor to a hall is twice the latter."""
+    headroom: tuple[float, float] = (1.86, 0.2)
+    """Height of the room over the camera's, likewise: 2.6 m over 1.4 m, by `WallSettings` and `HeightScanSettings`."""
+    prior_weight: float = 25.0
+    """What half a squared deviation of either counts, in degrees of a perfect edge."""
+    refining: tuple[float, ...] = (0.04, 0.02, 0.01, 0.005, 0.0025)
+    rounds: int = 3
+    """Steps of the refinement, in logarithms, and how often each is tried."""
+
+
+SETTINGS = SphereRoomSettings()
+
+
+@dataclass(frozen=True, eq=False)
+class SphereRoom:
+    """A room around the camera, whose height above the floor is 1."""
+
+    outline: Float[np.ndarray, "n 2"]
+    """Corners in plan, counter-clockwise, the camera at the origin."""
+    ceiling: float
+    """Height of the ceiling above the camera."""
+    support: Float[np.ndarray, "n"]
+    """How much of each wall's borders was seen, 0 to 1; the wall from each corner to the next. 0 where it is hidden."""
+
+
+@dataclass(frozen=True)
+class _Wall:
+    """A wall as it is seen: from one azimuth on, up to that of the next one."""
+
+    axis: int
+    """Quarter turns of the direction to it from +X."""
+    log_distance: float
+    jumps: bool
+    """Whether it begins behind the end of the wall before it."""
+    begins: float
+    """Azimuth, used where it jumps."""
+
+
+class _Edges:
+    """Structure tensor of a level picture, to be asked for edges along curves."""
+
+    def __init__(self, level: UInt8[np.ndarray, "h w 3"], settings: SphereRoomSettings, blur_px: float = 0.0) -> None:
+        height, self.width = level.shape[:2]
+        scale = self.width / 1024
+        pad = round(4 * settings.shade_px * scale)
+        self.lab = cv2.cvtColor(level.astype(np.float32) / 255, cv2.COLOR_RGB2LAB)
+        lab = np.concatenate([self.lab[:, -pad:], self.lab, self.lab[:, :pad]], axis=1)
+        shade = cv2.GaussianBlur(lab, (0, 0), settings.shade_px * scale)
+        lab = cv2.GaussianBlur(lab, (0, 0), settings.noise_px * scale) - shade
+        latitude = np.pi * (0.5 - (np.arange(height) + 0.5) / height)
+        east = np.gradient(lab, axis=1) / np.maximum(np.cos(latitude), 0.05)[:, None, None]
+        north = -np.gradient(lab, axis=0)
+        tensor = np.stack([(east * east).sum(-1), (east * north).sum(-1), (north * north).sum(-1)], axis=-1)
+        if blur_px > 0:
+            tensor = cv2.GaussianBlur(tensor, (0, 0), blur_px * scale)
+        tensor = tensor[:, pad - 1 : self.width + pad + 1].astype(np.float32)
+        self.usual = float(np.median(np.sqrt(tensor[..., 0] + tensor[..., 2])[np.abs(latitude) < np.pi / 3]))
+        self.usual = max(self.usual, settings.noise)
+        self._tensor = tensor
+
+    def along(
+        self, azimuth: Float[np.ndarray, "..."], tangent: Float[np.ndarray, "..."], slope: Float[np.ndarray, "..."]
+    ) -> Float32[np.ndarray, "..."]:
+        """Strength, 0 to 1, of edges that run along a curve.
+
+        Args:
+            azimuth: of its points.
+            tangent: of their elevations.
+            slope: change of elevation with azimuth there.
+        """
+        azimuth, tangent, slope = np.broadcast_arrays(azimuth, tangent, slope)
+        elevation = np.arctan(tangent)
+        found = self._at(self._tensor, azimuth, elevation, 0.5)  # a column of padding, half a pixel
+        # Azimuth grows to the left: the curve's normal in (east, north).
+        across = np.stack([slope, np.cos(elevation)], axis=-1)
+        across /= np.linalg.norm(across, axis=-1, keepdims=True)
+        power = (
+            found[..., 0] * across[..., 0] ** 2
+            + 2 * found[..., 1] * across[..., 0] * across[..., 1]
+            + found[..., 2] * across[..., 1] ** 2
+        )
+        share = power / np.maximum(found[..., 0] + found[..., 2], 1e-9)
+        strength = np.sqrt(np.maximum(power, 0.0)) * share**2
+        return (strength / (strength + self.usual)).astype(np.float32)
+
+    def _at(
+        self,
+        of: Float32[np.ndarray, "h w2 3"],
+        azimuth: Float[np.ndarray, "..."],
+        elevation: Float[np.ndarray, "..."],
+        pad: float,
+    ) -> Float32[np.ndarray, "..."]:
+        x = np.mod(0.25 - azimuth / (2 * np.pi), 1.0) * self.width + pad
+        y = (0.5 - elevation / np.pi) * (self.width / 2) - 0.5
+        flat = (-1, azimuth.shape[-1])
+        at = (x.reshape(flat).astype(np.float32), y.reshape(flat).astype(np.float32))
+        return cv2.remap(of, *at, cv2.INTER_LINEAR, borderMode=cv2.BORDER_REPLICATE).reshape(*azimuth.shape, 3)
+
+    def contrast(
+        self, azimuth: Float[np.ndarray, "n"], axis: int, reach: Float[np.ndarray, "r"], settings: SphereRoomSettings
+    ) -> Float32[np.ndarray, "n r"]:
+        """How much colours differ beyond a wall's border and before it, 0 to 1, along some of the border.
+
+        Args:
+            azimuth: where; the whole round.
+            axis: of the wall.
+            reach: as for `border`, in equal steps of logarithms.
+            settings: numbers to work with.
+        """
+        off = np.angle(np.exp(1j * (azimuth - axis * QUARTER)))
+        elevation = np.arctan(np.maximum(np.cos(off), 0.02)[:, None] / reach)
+        colour = self._at(self.lab, np.broadcast_to(azimuth[:, None], elevation.shape), elevation, -0.5)
+        facing = (np.abs(off) < settings.widest_rad).astype(np.float32)[:, None]
+        size = round(settings.along_deg * len(azimuth) / 360)
+        weight = np.maximum(uniform_filter1d(facing, size, axis=0, mode="wrap"), 1e-3)
+        at, most = np.arange(len(reach)), len(reach) - 1
+        low, high = np.maximum(at - settings.band, 0), np.minimum(at + 1 + settings.band, most + 1)
+        differ = np.zeros(elevation.shape)
+        for channel, (least, greatest) in enumerate(((0.0, 100.0), (-40.0, 40.0), (-40.0, 40.0))):
+            bins = np.arange(least, greatest + 1e-6, settings.colour_step)
+            place = np.clip(colour[..., channel], least, greatest)[..., None]
+            soft = np.maximum(0.0, 1.0 - np.abs(place - bins) / settings.colour_step) * facing[..., None]
+            soft = uniform_filter1d(soft, size, axis=0, mode="wrap") / weight[..., None]
+            total = np.cumsum(np.concatenate([np.zeros_like(soft[:, :1]), soft], axis=1), axis=1)
+            beyond = (total[:, high] - total[:, np.minimum(at + 1, most)]) / np.maximum(high - at - 1, 1)[:, None]
+            near = (total[:, at] - total[:, low]) / np.maximum(at - low, 1)[:, None]
+            differ += 0.5 * np.abs(beyond - near).sum(axis=-1)
+        differ[:, : settings.band] = differ[:, -settings.band :] = 0.0
+        return np.minimum(differ, 1.0).astype(np.float32)
+
+    def border(
+        self, azimuth: Float[np.ndarray, "..."], axis: int | Int[np.ndarray, "..."], reach: Float[np.ndarray, "..."]
+    ) -> Float32[np.ndarray, "..."]:
+        """Strength of the edges where a wall would meet the ceiling, or the floor.
+
+        Args:
+            azimuth: where.
+            axis: of the wall.
+            reach: its distance over the height of the plane above the camera; negative below.
+        """
+        off = azimuth - axis * QUARTER
+        tangent = np.cos(off) / reach
+        return self.along(azimuth, tangent, -np.sin(off) / reach / (1 + tangent**2))
+
+
+def room_on_sphere(level: UInt8[np.ndarray, "h w 3"], settings: SphereRoomSettings = SETTINGS) -> SphereRoom:
+    """The room that the edges of a picture speak for.
+
+    Args:
+        level: equirectangular, +Z up, the room's axes along x and y (`geometry.sphere`).
+        settings: numbers to work with.
+    """
+    walls, log_height = _searched(_Edges(level, settings, settings.coarse_px), settings)
+    fine = _Edges(level, settings)
+    walls, log_height = _refined(fine, walls, log_height, settings)
+    return _outlined(fine, walls, log_height, settings)
+
+
+def _searched(edges: _Edges, settings: SphereRoomSettings) -> tuple[tuple[_Wall, ...], float]:
+    """The best closed sequence of walls, and the logarithm of the ceiling's height above the camera."""
+    step, n = settings.log_step, settings.columns
+    distances = np.arange(np.log(settings.nearest), np.log(settings.farthest), step)
+    heights = np.arange(round(settings.log_heights[0] / step), round(settings.log_heights[1] / step) + 1, 2)
+    azimuth = (np.arange(n) + 0.5) * 2 * np.pi / n
+    low, count = int(-heights.max()), len(distances)
+    wider = distances[0] + step * np.arange(low, count - int(heights.min()))
+    evidence = np.zeros((n, len(heights), 4, count), np.float32)
+    for axis in range(4):
+        floor, ceiling = (
+            edges.border(azimuth[:, None], axis, reach[None])
+            * (alike + (1.0 - alike) * edges.contrast(azimuth, axis, reach, settings))
+            for reach, alike in ((-np.exp(distances), 0.0), (np.exp(wider), settings.alike_ceiling))
+        )
+        away = np.abs(np.angle(np.exp(1j * (azimuth - axis * QUARTER)))) > settings.widest_rad
+        for at, m in enumerate(heights):
+            shifted = ceiling[:, -m - low : -m - low + count]
+            evidence[:, at, axis] = settings.ceiling_weight * shifted + settings.floor_weight * floor
+            evidence[away, at, axis] = -np.inf
+        off = np.abs(np.cos(azimuth - axis * QUARTER))[:, None]
+        far = (distances - np.log(off) - np.log(settings.away[0])) / settings.away[1]
+        evidence[:, :, axis] -= settings.prior_weight / 360 * 0.5 * far[:, None] ** 2
+    high = (np.log1p(np.exp(heights * step)) - np.log(settings.headroom[0])) / settings.headroom[1]
+    evidence -= (settings.prior_weight / 360 * 0.5 * high**2)[:, None, None]
+    evidence *= 360 / n
+    states, height = _best_path(evidence, azimuth, settings)
+    return _walls_of(states, azimuth, distances), float(heights[height] * step)
+
+
+def _best_path(
+    evidence: Float32[np.ndarray, "n m 4 r"], azimuth: Float[np.ndarray, "n"], settings: SphereRoomSettings
+) -> tuple[Int[np.ndarray, "n 2"], int]:
+    """Axis and distance at each azimuth, and which height, of the best way round."""
+    n, heights, _, count = evidence.shape
+    value = evidence[0].copy()
+    came = np.zeros((2 * n, heights, 4, count), np.int16)
+    here = np.arange(4 * count, dtype=np.int16).reshape(4, count)
+    for turn in range(1, 2 * n):
+        j = turn % n
+        best, origin = value.copy(), np.broadcast_to(here, value.shape).copy()
+        top = value.argmax(axis=2)
+        farther = np.take_along_axis(value, top[..., None], 2) - settings.jump_cost
+        better = farther > best
+        best = np.where(better, farther, best)
+        origin = np.where(better, (top + count * np.arange(4))[..., None].astype(np.int16), origin)
+        edge = azimuth[j] - np.pi / n
+        for axis in range(4):
+            for other in ((axis + 1) % 4, (axis - 1) % 4):
+                one, two = np.cos(edge - other * QUARTER), np.cos(edge - axis * QUARTER)
+                if min(one, two) <= np.cos(settings.widest_rad):
+                    continue
+                # The walls meet where their distances along the ray are one.
+                index = np.arange(count) + round(float(np.log(one / two)) / settings.log_step)
+                fits = (index >= 0) & (index < count)
+                met = value[:, other, index[fits]] - settings.corner_cost
+                better = met > best[:, axis, fits]
+                best[:, axis, fits] = np.where(better, met, best[:, axis, fits])
+                origin[:, axis, fits] = np.where(better, other * count + index[fits], origin[:, axis, fits])
+        came[turn] = origin
+        value = best + evidence[j]
+    height, state = divmod(int(value.reshape(heights, -1).argmax()), 4 * count)
+    path = np.zeros(2 * n, int)
+    for turn in range(2 * n - 1, -1, -1):
+        path[turn] = state
+        state = int(came[turn, height].reshape(-1)[state])
+    middle = path[n // 2 : n // 2 + n]
+    closed = np.roll(middle, n // 2)
+    return np.column_stack([closed // count, closed % count]), height
+
+
+def _walls_of(
+    states: Int[np.ndarray, "n 2"], azimuth: Float[np.ndarray, "n"], distances: Float[np.ndarray, "r"]
+) -> tuple[_Wall, ...]:
+    begins = np.flatnonzero((states != np.roll(states, 1, axis=0)).any(axis=1))
+    half = np.pi / len(azimuth)
+    return tuple(
+        _Wall(int(axis), float(distances[index]), bool(states[j - 1, 0] == axis), float(azimuth[j] - half))
+        for j, (axis, index) in zip(begins, states[begins], strict=True)
+    )
+
+
+def _starts(walls: tuple[_Wall, ...]) -> Float[np.ndarray, "w"]:
+    """Azimuths at which walls begin: where they meet the one before."""
+    starts = []
+    for wall, before in zip(walls, (walls[-1], *walls[:-1]), strict=True):
+        if wall.jumps:
+            starts.append(wall.begins)
+            continue
+        a, b = (np.exp(w.log_distance) * _towards(w.axis) for w in (wall, before))
+        starts.append(float(np.arctan2(*(a + b)[::-1])))
+    return np.array(starts)
+
+
+def _towards(axis: int) -> Float[np.ndarray, "2"]:
+    return np.rint([np.cos(axis * QUARTER), np.sin(axis * QUARTER)])
+
+
+def _owners(walls: tuple[_Wall, ...], azimuth: Float[np.ndarray, "n"]) -> Int[np.ndarray, "n"] | None:
+    """Which wall is seen at each azimuth; None where the walls do not follow one another round."""
+    starts = np.mod(_starts(walls) - walls[0].begins, 2 * np.pi)
+    starts[0] = 0.0 if not walls[0].jumps and starts[0] > np.pi else starts[0]
+    if not (np.diff(starts) > 1e-6).all():
+        return None
+    return (np.searchsorted(starts, np.mod(azimuth - walls[0].begins, 2 * np.pi), side="right") - 1) % len(walls)
+
+
+def _seen_borders(
+    edges: _Edges, walls: tuple[_Wall, ...], log_height: float, settings: SphereRoomSettings
+) -> tuple[Float[np.ndarray, "n"], Int[np.ndarray, "n"]] | None:
+    """Evidence at each azimuth, 0 to 1, and which wall is seen there."""
+    azimuth = (np.arange(2 * settings.columns) + 0.5) * np.pi / settings.columns
+    owner = _owners(walls, azimuth)
+    if owner is None:
+        return None
+    axis = np.array([w.axis for w in walls])[owner]
+    reach = np.exp([w.log_distance for w in walls])[owner]
+    if (np.cos(azimuth - axis * QUARTER) <= 0.01).any():
+        return None
+    ceiling = edges.border(azimuth, axis, reach / np.exp(log_height))
+    floor = edges.border(azimuth, axis, -reach)
+    weights = settings.ceiling_weight, settings.floor_weight
+    return (weights[0] * ceiling + weights[1] * floor) / sum(weights), owner
+
+
+def _refined(
+    edges: _Edges, walls: tuple[_Wall, ...], log_height: float, settings: SphereRoomSettings
+) -> tuple[tuple[_Wall, ...], float]:
+    """Distances and the ceiling's height, one after the other by ever smaller steps, where the edges are strongest."""
+
+    def score(tried: tuple[_Wall, ...], height: float) -> float:
+        seen = _seen_borders(edges, tried, height, settings)
+        return -1.0 if seen is None else float(seen[0].mean())
+
+    best = score(walls, log_height)
+    for step in settings.refining:
+        for _ in range(settings.rounds):
+            before = best
+            for move, index in product((step, -step), range(-2, len(walls))):
+                # All together keep the ceiling's border, and move the floor's; the ceiling alone moves its border.
+                moved = tuple(
+                    replace(w, log_distance=w.log_distance + move) if index in (-2, number) else w
+                    for number, w in enumerate(walls)
+                )
+                height = log_height + (move if index < 0 else 0.0)
+                now = score(moved, height)
+                if now > best:
+                    best, walls, log_height = now, moved, height
+            if best == before:
+                break
+    return walls, log_height
+
+
+def _outlined(edges: _Edges, walls: tuple[_Wall, ...], log_height: float, settings: SphereRoomSettings) -> SphereRoom:
+    """The room's corners; where a wall ends before a farther one, a hidden wall leads back from its end."""
+    seen = _seen_borders(edges, walls, log_height, settings)
+    starts = _starts(walls)
+    support = np.zeros(len(walls)) if seen is None else np.bincount(seen[1], seen[0], len(walls))
+    if seen is not None:
+        support /= np.maximum(np.bincount(seen[1], minlength=len(walls)), 1)
+    corners, sure = [], []
+    for index, (wall, before) in enumerate(zip(walls, (walls[-1], *walls[:-1]), strict=True)):
+        u = _towards(wall.axis)
+        if not wall.jumps:
+            corners.append(np.exp(wall.log_distance) * u + np.exp(before.log_distance) * _towards(before.axis))
+            sure.append(support[index])
+            continue
+        ray = np.array([np.cos(starts[index]), np.sin(starts[index])])
+        near, far = sorted((before.log_distance, wall.log_distance))
+        end = ray * np.exp(near) / float(ray @ u)
+        behind = end + u * (np.exp(far) - float(end @ u))
+        corners += [end, behind] if before.log_distance < wall.log_distance else [behind, end]
+        sure += [0.0, support[index]]
+    return SphereRoom(np.array(corners), float(np.exp(log_height)), np.array(sure))

@@ -1,0 +1,222 @@
+"""Perspective views of a 360 degree photo, and its objects in all of them: things at a seam are one.
+
+A thing is known by its middle's azimuth, half its width, and the elevations of its upper and lower end there. So a
+box that was drawn in the equirectangular picture, and one that a detector found in a view, become boxes in all views.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from jaxtyping import Float, UInt8
+
+from diorama_core.artefacts import Inputs, LabelledBox, Photo
+from diorama_core.geometry.projection import box_iou
+from diorama_core.geometry.sphere import directions_at, level_axes, perspective
+from diorama_core.library.taxonomy import broad
+from diorama_core.multiview.rooms import PosedInputs
+from diorama_core.scene.types import Camera, Intrinsics
+
+
+@dataclass(frozen=True)
+class SphereViewsSettings:
+    """How a sphere is divided into views."""
+
+    count: int = 8
+    """Views: neighbours share half of what they show, so that what is narrower than half a view is whole in one."""
+    aside_deg: float = 45.0
+    up_deg: float = 45.0
+    down_deg: float = 60.0
+    """Borders of a view: what stands a step away has its foot in it."""
+    max_width_px: int = 1000
+    min_shown: float = 0.3
+    """Share of a thing's width within a view for it to be marked there."""
+    same_box: float = 0.4
+    """Intersection over union from which boxes of one kind in different views are one thing."""
+    inside: float = 0.7
+    """Share of the smaller of two boxes of one kind in the other from which they are one thing, cut in one view."""
+    seam: float = 0.005
+    """Boxes that end so near the picture's sides, as a share of its width, may go on beyond the seam."""
+    widest_deg: float = 160.0
+    """What is wider is below the camera or behind it, too; no view shows it."""
+
+
+SETTINGS = SphereViewsSettings()
+
+
+@dataclass(frozen=True)
+class SphereBox:
+    """A thing on the sphere, in the level frame of the room; radians."""
+
+    azimuth: float
+    half_width: float
+    low: float
+    high: float
+    """Elevations at its middle."""
+    labelled: LabelledBox
+    """Its name; the box is the picture's that it was marked in."""
+
+    def beside(self, azimuth: float) -> float:
+        """Azimuth of its middle from another one, half a turn at most."""
+        return float(np.angle(np.exp(1j * (self.azimuth - azimuth))))
+
+    def rectangle(self, azimuth: float) -> Float[np.ndarray, "4"]:
+        """Its extent in azimuths and elevations, azimuths counted from another one."""
+        middle = self.beside(azimuth)
+        return np.array([middle - self.half_width, self.low, middle + self.half_width, self.high])
+
+
+def drawn_on_sphere(
+    boxes: Sequence[LabelledBox],
+    size: tuple[int, int],
+    R_room_sphere: Float[np.ndarray, "3 3"],
+    settings: SphereViewsSettings = SETTINGS,
+) -> tuple[SphereBox, ...]:
+    """Boxes of an equirectangular picture, those that meet across its seam as one.
+
+    Args:
+        boxes: in pixels.
+        size: width and height of the picture.
+        R_room_sphere: from the picture's frame to the room's.
+        settings: numbers to work with.
+    """
+    things = []
+    for labelled in _across_seam(boxes, size[0], settings):
+        x1, y1, x2, y2 = labelled.box
+        middle = np.array([(x1 + x2) / 2, (y1 + y2) / 2])
+        sides = np.array([[x1, middle[1]], [x2, middle[1]], [middle[0], y1], [middle[0], y2], middle])
+        away = directions_at(sides, size) @ R_room_sphere.T
+        azimuth, elevation = np.arctan2(away[:, 1], away[:, 0]), np.arctan2(away[:, 2], np.hypot(*away[:, :2].T))
+        half = np.pi * (x2 - x1) / size[0]
+        things.append(SphereBox(float(azimuth[4]), half, float(elevation[3]), float(elevation[2]), labelled))
+    return tuple(things)
+
+
+def _across_seam(boxes: Sequence[LabelledBox], width: int, settings: SphereViewsSettings) -> tuple[LabelledBox, ...]:
+    """Boxes, the two parts of a thing at the picture's sides as one that reaches beyond its right side."""
+    near, left = settings.seam * width, list(boxes)
+    for first in boxes:
+        for second in boxes:
+            a, b = first.box, second.box
+            meet = (
+                abs(a[2] - width) <= near and b[0] <= near and first.category == second.category and first is not second
+            )
+            shared = min(a[3], b[3]) - max(a[1], b[1])
+            if meet and shared > 0.5 * min(a[3] - a[1], b[3] - b[1]) and first in left and second in left:
+                whole = (a[0], min(a[1], b[1]), b[2] + width, max(a[3], b[3]))
+                left = [x for x in left if x is not first and x is not second] + [replace(first, box=whole)]
+    return tuple(left)
+
+
+@dataclass(frozen=True, eq=False)
+class SphereView:
+    """A level perspective view."""
+
+    azimuth: float
+    intrinsics: Intrinsics
+
+    def camera(self, height_m: float) -> Camera:
+        """In the room, the floor at 0 and the sphere's middle at the origin of the plan."""
+        T = np.eye(4)
+        T[:3, :3], T[2, 3] = level_axes(self.azimuth), height_m
+        return Camera(self.intrinsics, T)
+
+    def shown(self, thing: SphereBox, settings: SphereViewsSettings = SETTINGS) -> LabelledBox | None:
+        """A thing's box in the view; None where too little of it is there."""
+        k, off = self.intrinsics, thing.beside(self.azimuth)
+        if thing.half_width > np.deg2rad(settings.widest_deg) / 2:
+            return None
+        aside = np.deg2rad(settings.aside_deg)
+        left, right = min(off + thing.half_width, aside), max(off - thing.half_width, -aside)
+        if left - right < 2 * settings.min_shown * thing.half_width:
+            return None
+        middle = np.cos(np.clip(off, -aside, aside))
+        x1, x2 = (k.cx - k.fx * np.tan(a) for a in (left, right))
+        y1, y2 = (
+            float(np.clip(k.cy - k.fy * np.tan(np.clip(e, -1.5, 1.5)) / middle, 0, k.height))
+            for e in (thing.high, thing.low)
+        )
+        if y2 - y1 < 2.0 or x2 - x1 < 2.0:
+            return None
+        return replace(thing.labelled, box=(float(x1), y1, float(x2), y2))
+
+    def on_sphere(self, labelled: LabelledBox) -> SphereBox:
+        """A box of the view as a thing."""
+        k, (x1, y1, x2, y2) = self.intrinsics, labelled.box
+        left, right = (float(np.arctan((k.cx - x) / k.fx)) for x in (x1, x2))
+        middle = (left + right) / 2
+        high, low = (float(np.arctan((k.cy - y) / k.fy * np.cos(middle))) for y in (y1, y2))
+        return SphereBox(self.azimuth + middle, (left - right) / 2, low, high, labelled)
+
+
+def sphere_views(width_px: int, settings: SphereViewsSettings = SETTINGS) -> tuple[SphereView, ...]:
+    """Views all round, as sharp in their middle as a picture of so many pixels around."""
+    focal = min(width_px / (2 * np.pi), settings.max_width_px / 2 / np.tan(np.deg2rad(settings.aside_deg)))
+    aside, up, down = (focal * np.tan(np.deg2rad(a)) for a in (settings.aside_deg, settings.up_deg, settings.down_deg))
+    k = Intrinsics(round(2 * aside), round(up + down), focal, focal, round(2 * aside) / 2, float(up))
+    return tuple(SphereView(turn * 2 * np.pi / settings.count, k) for turn in range(settings.count))
+
+
+def view_photo(
+    rgb: UInt8[np.ndarray, "h w 3"], R_room_sphere: Float[np.ndarray, "3 3"], view: SphereView, name: str
+) -> Photo:
+    """What a view shows."""
+    k = view.intrinsics
+    picture = perspective(rgb, R_room_sphere.T @ level_axes(view.azimuth), k)
+    return Photo(picture, name, (k.width, k.height))
+
+
+def found_in_views(
+    found: Sequence[tuple[SphereView, Sequence[LabelledBox]]], settings: SphereViewsSettings = SETTINGS
+) -> tuple[SphereBox, ...]:
+    """Things that were found in views, each once: as the view has it that shows it whole, and nearest its middle."""
+    rows = []
+    for view, boxes in found:
+        for labelled in boxes:
+            x1, _, x2, _ = labelled.box
+            cut = min(x1, view.intrinsics.width - x2) < settings.seam * view.intrinsics.width
+            thing = view.on_sphere(labelled)
+            rows.append((cut, -labelled.score * np.cos(thing.beside(view.azimuth)), thing))
+    things: list[SphereBox] = []
+    for _, _, thing in sorted(rows, key=lambda row: row[:2]):
+        if not any(_is_same(thing, other, settings) for other in things):
+            things.append(thing)
+    return tuple(things)
+
+
+def _is_same(a: SphereBox, b: SphereBox, settings: SphereViewsSettings) -> bool:
+    if broad(a.labelled.category) != broad(b.labelled.category):
+        return False
+    one, two = a.rectangle(b.azimuth), b.rectangle(b.azimuth)
+    both = np.maximum(np.minimum(one[2:], two[2:]) - np.maximum(one[:2], two[:2]), 0.0).prod()
+    smaller = min((one[2:] - one[:2]).prod(), (two[2:] - two[:2]).prod())
+    return bool(box_iou(one, two) > settings.same_box or both > settings.inside * smaller)
+
+
+def marked_views(
+    photos: Sequence[tuple[SphereView, Photo]], things: Sequence[SphereBox], height_m: float
+) -> tuple[tuple[PosedInputs, ...], tuple[tuple[tuple[int, int], ...], ...]]:
+    """Views with the things that they show, and for each thing its (view, box), the view that shows it best first.
+
+    Args:
+        photos: the views with their pictures.
+        things: on the sphere.
+        height_m: of the camera above the floor.
+    """
+    sightings: list[list[tuple[int, int]]] = [[] for _ in things]
+    posed = []
+    for number, (view, photo) in enumerate(photos):
+        boxes: list[LabelledBox] = []
+        for thing, seen in zip(things, sightings, strict=True):
+            box = view.shown(thing)
+            if box is not None:
+                seen.append((number, len(boxes)))
+                boxes.append(box)
+        posed.append(PosedInputs(Inputs(photo, tuple(boxes), intrinsics=view.intrinsics), view.camera(height_m)))
+    ordered = (
+        tuple(sorted(seen, key=lambda s: abs(thing.beside(photos[s[0]][0].azimuth))))
+        for thing, seen in zip(things, sightings, strict=True)
+    )
+    return tuple(posed), tuple(ordered)

@@ -1,0 +1,65 @@
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from diorama_core.artefacts import LabelledBox, Photo
+from diorama_core.multiview.sphere_views import (
+    SphereBox,
+    drawn_on_sphere,
+    found_in_views,
+    marked_views,
+    sphere_views,
+    view_photo,
+)
+
+SIZE = (2048, 1024)
+VIEWS = sphere_views(SIZE[0])
+CHAIR = LabelledBox((0.0, 0.0, 1.0, 1.0), "chair", "chair")
+
+
+@given(st.floats(-3.14, 3.14), st.floats(0.03, 0.3), st.floats(-0.9, -0.3), st.floats(0.1, 0.8))
+def test_every_narrow_thing_is_whole_in_some_view_and_comes_back(
+    a: float, half: float, low: float, tall: float
+) -> None:
+    thing = SphereBox(a, half, low, low + tall, CHAIR)
+    shown = [(view, box) for view in VIEWS if (box := view.shown(thing)) is not None]
+    view, box = min(shown, key=lambda row: abs(thing.beside(row[0].azimuth)))
+    assert 0 < box.box[0] < box.box[2] < view.intrinsics.width
+    back = view.on_sphere(box)
+    assert back.beside(a) == pytest.approx(0.0, abs=0.02)
+    assert back.half_width == pytest.approx(half, abs=1e-6)
+
+
+def test_a_thing_at_the_seam_is_one() -> None:
+    parts = [
+        LabelledBox((1990.0, 500.0, 2048.0, 700.0), "chair", "chair"),
+        LabelledBox((0.0, 510.0, 60.0, 690.0), "chair", "chair"),
+    ]
+    apart = LabelledBox((0.0, 100.0, 50.0, 200.0), "picture", "picture")
+    things = drawn_on_sphere([*parts, apart], SIZE, np.eye(3))
+    assert len(things) == 2
+    whole = next(t for t in things if t.labelled.category == "chair")
+    assert whole.half_width == pytest.approx(np.pi * 118 / 2048)
+    assert whole.azimuth == pytest.approx(np.pi / 2, abs=0.01)  # the seam is behind: +Y
+
+
+def test_views_are_marked_with_the_best_one_first_and_what_is_found_twice_is_one() -> None:
+    thing = SphereBox(0.5, 0.2, -0.4, 0.1, CHAIR)
+    photos = [(v, Photo(np.zeros((v.intrinsics.height, v.intrinsics.width, 3), np.uint8), "p", SIZE)) for v in VIEWS]
+    posed, seen = marked_views(photos, [thing], 1.4)
+    nearest = min(range(len(VIEWS)), key=lambda n: abs(thing.beside(VIEWS[n].azimuth)))
+    assert seen[0][0] == (nearest, 0)
+    assert len(seen[0]) >= 2
+    assert all(p.camera.position[2] == 1.4 for p in posed)
+    found = found_in_views([(v, p.inputs.boxes) for v, p in zip(VIEWS, posed, strict=True)])
+    assert len(found) == 1
+    assert found[0].beside(0.5) == pytest.approx(0.0, abs=0.02)
+
+
+def test_a_view_s_picture_has_its_camera_s_size() -> None:
+    photo = view_photo(np.zeros((128, 256, 3), np.uint8), np.eye(3), VIEWS[1], "a.png")
+    k = VIEWS[1].intrinsics
+    assert (photo.width, photo.height) == (k.width, k.height)
