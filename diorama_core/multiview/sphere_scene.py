@@ -126,7 +126,8 @@ def build_sphere(
         pictures, things, found, choose, progress.part(0.15, 0.3), camera_height_m, settings
     )
     room_photos = [said_alone(r) for r in read]
-    tracks, named = [], []
+    tracks: list[Track] = []
+    named: list[tuple[SphereBox, str]] = []
     for thing, seen in zip(things, sightings, strict=True):
         if not seen:
             continue

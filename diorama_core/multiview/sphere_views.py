@@ -162,7 +162,14 @@ def sphere_views(width_px: int, settings: SphereViewsSettings = SETTINGS) -> tup
 def view_photo(
     rgb: UInt8[np.ndarray, "h w 3"], R_room_sphere: Float[np.ndarray, "3 3"], view: SphereView, name: str
 ) -> Photo:
-    """What a view shows."""
+    """The picture of a view.
+
+    Args:
+        rgb: equirectangular.
+        R_room_sphere: from the picture's own frame to the room's.
+        view: where it looks.
+        name: of the picture's file.
+    """
     k = view.intrinsics
     picture = perspective(rgb, R_room_sphere.T @ level_axes(view.azimuth), k)
     return Photo(picture, name, (k.width, k.height))
