@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 
 from diorama_core.errors import Cancelled
+from diorama_core.geometry.sphere import directions
 from diorama_core.progress import CancelToken, Progress
 from diorama_core.render.lighting import Effort
-from diorama_core.geometry.sphere import directions
 from diorama_core.render.panorama import middle, panorama
 from diorama_core.scene.types import Architecture, Plane, RoomLight, Scene
 from tests.primitives import PrimitiveLibrary, box_room, furnished_room
