@@ -9,7 +9,7 @@ import pytest
 
 from diorama_core.evaluation.benchmarks import views
 from diorama_core.evaluation.benchmarks.cases import Case, LeftOut, recipe
-from diorama_core.evaluation.benchmarks.views import ALONE, RoomView, ViewsBench, ViewsResult, photographed, run
+from diorama_core.evaluation.benchmarks.views import ALONE, SPHERE, RoomView, ViewsBench, ViewsResult, photographed, run
 from diorama_core.evaluation.metrics.pose import Alignment
 from diorama_core.library.catalogue import built_in_library
 from diorama_core.library.record import ShapeLibrary
@@ -76,6 +76,7 @@ def test_a_room_is_built_from_two_photos(monkeypatch: pytest.MonkeyPatch) -> Non
         views, "split_library", lambda whole, *of: few_shapes(of_a_kind=2) if len(of) > 1 else split_library(whole, *of)
     )
     bench = run(built_in_library(), 1, SEED, counts=(2,))
-    assert [r.way for r in bench.results] == [ALONE, "2 photos with their cameras"]
+    assert [r.way for r in bench.results] == [ALONE, "2 photos with their cameras", SPHERE]
     assert all(not r.failure for r in bench.results)
     assert bench.results[1].own.count == MARKED
+    assert bench.results[2].room > 0.8
