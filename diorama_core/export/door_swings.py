@@ -31,13 +31,13 @@ class Leaf:
     """One leaf of a door from above, in the world."""
 
     hinge: Float[np.ndarray, "2"]
-    """Where it turns."""
+    """Place of the axis in the plan."""
     tip: Float[np.ndarray, "2"]
     """Its other end on the hinge's side, shut."""
     outline: Outline
-    """Shut."""
+    """Corners of the shut leaf."""
     sign: float
-    """Of its turn about up."""
+    """Sign of its turn about up, 1 or -1."""
 
     def turned(self, points: Outline, angle_rad: float) -> Outline:
         """Points of the shut leaf when it is open by an angle."""
@@ -47,16 +47,16 @@ class Leaf:
 
 @dataclass(frozen=True, eq=False)
 class DoorSwing:
-    """How a door with hinges opens."""
+    """Leaves of a hinged door and the side to which they open."""
 
     outward: bool
     leaves: tuple[Leaf, ...]
     free_rad: float
-    """How far all leaves turn clear of other objects."""
+    """Angle up to which all leaves turn clear of other objects."""
 
     @property
     def can_open(self) -> bool:
-        """Whether somebody comes through."""
+        """True where somebody comes through."""
         return self.free_rad >= MIN_OPEN_RAD
 
 
@@ -129,7 +129,7 @@ def _panel(pieces: Articulation, number: int) -> Float[np.ndarray, "n 3"]:
 
 
 def _obstacles(door: SceneObject, others: Sequence[SceneObject]) -> shapely.Geometry:
-    """What stands as high as a door's leaf, from above."""
+    """Outlines from above of objects as high as a door's leaf."""
     low, high = float(door.corners_world[:, 2].min()) + STEP_OVER_M, float(door.corners_world[:, 2].max())
     outlines = []
     for corners in (o.corners_world for o in others):
@@ -139,7 +139,7 @@ def _obstacles(door: SceneObject, others: Sequence[SceneObject]) -> shapely.Geom
 
 
 def _free_rad(leaves: Sequence[Leaf], obstacles: shapely.Geometry) -> float:
-    """How far leaves turn before one of them meets something, up to a quarter turn."""
+    """Angle up to which no leaf meets anything, a quarter turn at most."""
     for angle in np.arange(STEP_RAD, QUARTER_RAD + STEP_RAD / 2, STEP_RAD):
         turned = (shapely.Polygon(leaf.turned(leaf.outline, float(angle))) for leaf in leaves)
         if any(t.intersects(obstacles) for t in turned):

@@ -101,12 +101,12 @@ class MainLight:
 
 @dataclass(frozen=True, eq=False)
 class EvenLight:
-    """What reaches a room from all sides, from points within it, for programs whose light does not bounce."""
+    """Light from all sides of a room, as points within it, for programs whose light does not bounce."""
 
     positions: Float[np.ndarray, "n 3"]
     """One lights the middle of a room only, so a wide room has two in each direction."""
     candela: float
-    """Of each, at unit exposure."""
+    """Intensity of each point at unit exposure."""
 
 
 def even_irradiance(scene: Scene, others: Iterable[ExportLight] = ()) -> float:

@@ -279,7 +279,7 @@ def _around(gathered: ExportScene) -> tuple[float, float]:
 
 
 def _shown(before: float, added: float) -> float:
-    """What light adds to MuJoCo's brightness where there is other light before."""
+    """Brightness that a light adds in MuJoCo where there is other light before."""
     return float((before + added) ** (1 / SCREEN_GAMMA) - before ** (1 / SCREEN_GAMMA))
 
 

@@ -83,7 +83,7 @@ class Area:
 
     @property
     def text(self) -> str:
-        """As it is written."""
+        """The light as it is written."""
         return f"{self.area_m2:.1f} m²"
 
 

@@ -14,7 +14,7 @@ from diorama_core.scene.types import Camera, Intrinsics
 
 
 def directions(width: int) -> Float[np.ndarray, "h w 3"]:
-    """Where each pixel of a map looks, unit vectors in the sphere's frame; the map is half as high as wide."""
+    """Directions of all pixels of a map, unit vectors in the sphere's frame; the map is half as high as wide."""
     x, y = np.meshgrid(np.arange(width) + 0.5, np.arange(width // 2) + 0.5)
     return directions_at(np.stack([x, y], axis=-1), (width, width // 2))
 
@@ -28,7 +28,7 @@ def directions_at(pixels: Float[np.ndarray, "*n 2"], size: tuple[int, int]) -> F
 
 
 def sphere_pixels(towards: Float[np.ndarray, "*n 3"], width: int) -> Float[np.ndarray, "*n 2"]:
-    """Where a map shows directions of any length: x in [0, width), y in [0, width / 2]."""
+    """Pixels at which a map shows directions of any length: x in [0, width), y in [0, width / 2]."""
     x, y, z = towards[..., 0], towards[..., 1], towards[..., 2]
     longitude, latitude = np.arctan2(x, -y), np.arctan2(z, np.hypot(x, y))
     return np.stack(
@@ -37,7 +37,7 @@ def sphere_pixels(towards: Float[np.ndarray, "*n 3"], width: int) -> Float[np.nd
 
 
 def sampled(picture: UInt8[np.ndarray, "h w 3"], towards: Float[np.ndarray, "a b 3"]) -> UInt8[np.ndarray, "a b 3"]:
-    """What an equirectangular picture shows in some directions, also across its seam."""
+    """Colours of an equirectangular picture in some directions, also across its seam."""
     height, width = picture.shape[:2]
     at = (sphere_pixels(towards, width) * [1.0, height / (width / 2)] - 0.5).astype(np.float32)
     wrapped = np.concatenate([picture[:, -1:], picture, picture[:, :1]], axis=1)

@@ -56,7 +56,7 @@ class SceneForm:
     becomes: str
     tells: Callable[[FileHead], bool]
     read: Callable[[Path, Progress, float | None], Content]
-    """From its place, telling how far it is; the last is the metres in one unit, where somebody said them."""
+    """Reader of the file at a place; the last argument is the metres in one unit, where somebody said them."""
     extra: str = ""
     """Optional library that it needs."""
 
@@ -102,7 +102,7 @@ R = TypeVar("R", MarkedFile | None, MeasuredRoom | None)
 
 
 def _in_known_unit(content: R, path: Path, unit_m: float | None) -> R:
-    """What says its own unit; raises `InputError` where somebody gives another."""
+    """Content that says its own unit; raises `InputError` where somebody gives another."""
     if content is not None and unit_m is not None:
         raise InputError(f"{path.name} says its unit itself; leave out --unit")
     return content

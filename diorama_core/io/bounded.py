@@ -190,7 +190,7 @@ def megabytes(count: int) -> str:
 
 
 def _is_too_deep(data: bytes) -> bool:
-    """Whether brackets are nested too deeply outside strings."""
+    """True where brackets are nested too deeply outside strings."""
     marks = np.frombuffer(_STRINGS.sub(b"", data), np.uint8)
     steps = np.isin(marks, _OPEN).astype(np.int8) - np.isin(marks, _CLOSED)
     return bool((np.cumsum(steps[steps != 0], dtype=np.int32) > MAX_JSON_DEPTH).any())

@@ -20,10 +20,10 @@ from diorama_core.scene.types import Camera, Intrinsics, yaw_rotation
 
 @dataclass(frozen=True)
 class SphereFrameSettings:
-    """How straight lines are read from the sphere."""
+    """Numbers by which straight lines are read from the sphere."""
 
     side_px: int = 640
-    """Of the views in which segments are looked for: a quarter turn each."""
+    """Side of the views in which segments are looked for: a quarter turn each."""
     max_tilt_deg: float = 15.0
     """Cameras that stitch level the horizon; a tripod or a hand is off by less than this."""
     level_deg: float = 5.0
@@ -43,7 +43,7 @@ class SphereLines:
     """Segments all around."""
 
     normals: Float[np.ndarray, "n 3"]
-    """Of their great circles, unit, in the sphere's frame."""
+    """Normals of their great circles, unit, in the sphere's frame."""
     weights: Float[np.ndarray, "n"]
     """Their angular lengths."""
 

@@ -23,7 +23,7 @@ QUARTER = np.pi / 2
 
 @dataclass(frozen=True)
 class SphereRoomSettings:
-    """How edges speak for a room."""
+    """Numbers by which edges speak for a room."""
 
     columns: int = 360
     """Azimuths of the search."""
@@ -31,10 +31,10 @@ class SphereRoomSettings:
     farthest: float = 8.0
     """Distances of walls, in heights of the camera above the floor."""
     log_step: float = 0.04
-    """Of distances and heights."""
+    """Step of distances and heights."""
     log_heights: tuple[float, float] = (-1.2, 0.6)
-    """Of the ceiling above the camera, in heights of the camera: a room of 2.2 m seen from 1.7 m, one of 3.5 m from
-    1.2 m."""
+    """Heights of the ceiling above the camera, in heights of the camera: a room of 2.2 m seen from 1.7 m, one of
+    3.5 m from 1.2 m."""
     widest_rad: float = float(np.deg2rad(84.0))
     """Azimuth from a wall's nearest point up to which it is looked at: beyond, the corner with the next wall is far."""
     noise: float = 0.5
@@ -49,16 +49,16 @@ class SphereRoomSettings:
     """Steps on either side of a border, and azimuth along it, whose colours are compared: tiles and boards have lines
     along walls, too, but the same colours beyond (Martin et al. 2004, on natural image boundaries)."""
     colour_step: float = 8.0
-    """Of the histograms of lightness and of the two chromatic axes, in CIELAB: some just noticeable differences."""
+    """Step of the histograms of lightness and the chromatic axes, in CIELAB: some just noticeable differences."""
     alike_ceiling: float = 0.5
-    """What an edge between like colours counts at the ceiling, which is often as white as the walls; on the floor it
+    """Weight of an edge between like colours at the ceiling, which is often as white as the walls; on the floor it
     is a line of the floor."""
     ceiling_weight: float = 1.0
     floor_weight: float = 0.6
     """Furniture hides the floor's border more often than the ceiling's."""
     corner_cost: float = 8.0
     jump_cost: float = 24.0
-    """What a corner, and a wall that ends before a farther one (three corners), must gain: degrees of a perfect
+    """Gain that a corner, and a wall that ends before a farther one (three corners), must gain: degrees of a perfect
     edge."""
     away: tuple[float, float] = (1.5, 0.6)
     """Distance of the room's border over the camera's height, all round: median, and deviation of the logarithm. A
@@ -66,7 +66,7 @@ class SphereRoomSettings:
     headroom: tuple[float, float] = (1.86, 0.2)
     """Height of the room over the camera's, likewise: 2.6 m over 1.4 m, by `WallSettings` and `HeightScanSettings`."""
     prior_weight: float = 25.0
-    """What half a squared deviation of either counts, in degrees of a perfect edge."""
+    """Cost of half a squared deviation of either, in degrees of a perfect edge."""
     refining: tuple[float, ...] = (0.04, 0.02, 0.01, 0.005, 0.0025)
     rounds: int = 3
     """Steps of the refinement, in logarithms, and how often each is tried."""
@@ -84,7 +84,7 @@ class SphereRoom:
     ceiling: float
     """Height of the ceiling above the camera."""
     support: Float[np.ndarray, "n"]
-    """How much of each wall's borders was seen, 0 to 1; the wall from each corner to the next. 0 where it is hidden."""
+    """Share of each wall's borders that was seen, 0 to 1, for the wall from each corner to the next; 0 if hidden."""
 
 
 @dataclass(frozen=True)
@@ -95,7 +95,7 @@ class _Wall:
     """Quarter turns of the direction to it from +X."""
     log_distance: float
     jumps: bool
-    """Whether it begins behind the end of the wall before it."""
+    """True where it begins behind the end of the wall before it."""
     begins: float
     """Azimuth, used where it jumps."""
 
@@ -163,7 +163,7 @@ class _Edges:
     def contrast(
         self, azimuth: Float[np.ndarray, "n"], axis: int, reach: Float[np.ndarray, "r"], settings: SphereRoomSettings
     ) -> Float32[np.ndarray, "n r"]:
-        """How much colours differ beyond a wall's border and before it, 0 to 1, along some of the border.
+        """Difference of colours beyond a wall's border and before it, 0 to 1, along some of the border.
 
         Args:
             azimuth: where; the whole round.
@@ -319,7 +319,7 @@ def _towards(axis: int) -> Float[np.ndarray, "2"]:
 
 
 def _owners(walls: tuple[_Wall, ...], azimuth: Float[np.ndarray, "n"]) -> Int[np.ndarray, "n"] | None:
-    """Which wall is seen at each azimuth; None where the walls do not follow one another round."""
+    """The wall that is seen at each azimuth; None where the walls do not follow one another round."""
     starts = np.mod(_starts(walls) - walls[0].begins, 2 * np.pi)
     starts[0] = 0.0 if not walls[0].jumps and starts[0] > np.pi else starts[0]
     if not (np.diff(starts) > 1e-6).all():

@@ -54,7 +54,7 @@ LEVEL_WIDTH_PX = 1024
 
 @dataclass(frozen=True)
 class SphereSceneSettings:
-    """How sure a room on the sphere is."""
+    """Numbers that say how sure a room on the sphere is."""
 
     ceiling_log_sigma: float = 0.08
     """Deviation of the logarithm of rooms' heights from `WallSettings.usual_ceiling_m`: 2.4 to 2.8 m are usual."""
@@ -71,11 +71,11 @@ SETTINGS = SphereSceneSettings()
 
 @dataclass(frozen=True, eq=False)
 class SphereScene:
-    """What was built of a 360 degree photo."""
+    """The scene of a 360 degree photo with its views."""
 
     room: JoinedRoom
     views: tuple[PosedInputs, ...]
-    """With their marks and cameras; the first is the one that the scene opens with."""
+    """Views with their marks and cameras; the first is the one that the scene opens with."""
     names: tuple[str, ...]
     R_room_sphere: Float[np.ndarray, "3 3"]
     things: tuple[tuple[SphereBox, str], ...]
@@ -159,7 +159,7 @@ def _degrees(view: SphereView) -> int:
 def _found(
     pictures: Sequence[tuple[SphereView, Photo]], choose: Callable[[Inputs], Stages], progress: Progress
 ) -> tuple[SphereBox, ...]:
-    """What a detector finds in the views."""
+    """Objects that a detector finds in the views."""
     rows = []
     for number, (view, photo) in enumerate(pictures):
         given = Inputs(photo, intrinsics=view.intrinsics)

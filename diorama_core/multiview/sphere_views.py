@@ -22,7 +22,7 @@ from diorama_core.scene.types import Camera, Intrinsics
 
 @dataclass(frozen=True)
 class SphereViewsSettings:
-    """How a sphere is divided into views."""
+    """Numbers by which a sphere is divided into views."""
 
     count: int = 8
     """Views: neighbours share half of what they show, so that what is narrower than half a view is whole in one."""
@@ -40,7 +40,7 @@ class SphereViewsSettings:
     seam: float = 0.005
     """Boxes that end so near the picture's sides, as a share of its width, may go on beyond the seam."""
     widest_deg: float = 160.0
-    """What is wider is below the camera or behind it, too; no view shows it."""
+    """Widest half angle of an object: a wider one is below the camera or behind it, and no view shows it."""
 
 
 SETTINGS = SphereViewsSettings()
@@ -118,7 +118,7 @@ class SphereView:
     intrinsics: Intrinsics
 
     def camera(self, height_m: float) -> Camera:
-        """In the room, the floor at 0 and the sphere's middle at the origin of the plan."""
+        """Camera of the view in the room, the floor at 0 and the sphere's middle at the origin of the plan."""
         T = np.eye(4)
         T[:3, :3], T[2, 3] = level_axes(self.azimuth), height_m
         return Camera(self.intrinsics, T)

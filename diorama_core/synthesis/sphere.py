@@ -60,7 +60,7 @@ class SphereTruth:
 
 
 def sphere_place(scene: Scene, seed: int) -> Float[np.ndarray, "4 4"]:
-    """Where a tripod stands for a 360 degree photo: in the free place nearest the middle, not quite level.
+    """Place of a tripod for a 360 degree photo: in the free place nearest the middle, not quite level.
 
     Args:
         scene: the room.
