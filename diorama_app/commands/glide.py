@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import threading
 from functools import partial
 from typing import TYPE_CHECKING
 
@@ -43,9 +42,7 @@ def glide(session: EditorSession, before: Scene) -> None:
         share = number / STEPS
         eased = share * share * (3.0 - 2.0 * share)
         session.viewport.preview({name: pose_between(*way, eased) for name, way in ways.items()})
-        timer = threading.Timer(DURATION_S / STEPS, lambda: session.ui_thread.post(partial(step, number + 1)))
-        timer.daemon = True
-        timer.start()
+        session.ui_thread.post(partial(step, number + 1), after_s=DURATION_S / STEPS, awaited=False)
 
     if ways:
         step(0)

@@ -23,7 +23,7 @@ from diorama_app.viewport.annotation_canvas import (
     Selected,
 )
 from diorama_app.web.html import button, text
-from diorama_core.artefacts import Box, Inputs, LabelledBox, Photo
+from diorama_core.artefacts import Inputs, LabelledBox, Photo
 from diorama_core.editing.box_checks import merged_boxes, too_tall
 from diorama_core.editing.input_corrections import labelled_box, same_object, with_box_at, without_box
 from diorama_core.errors import InputError
@@ -44,9 +44,8 @@ class PhotoBoxes:
 
     def __init__(self, client: Client, refresh: Callable[[], None]) -> None:
         self._client, self._refresh = client, refresh
-        self._suggestions: Suggestions | None = None
-        self._dismissed: set[Box] = set()
-        """Proposals that were turned down."""
+        self._suggestions: list[Suggestions] = []
+        """Of the photos that were looked at."""
 
     def show(self, inputs: Inputs) -> None:
         """Draw boxes and proposals on the canvas."""
@@ -60,31 +59,36 @@ class PhotoBoxes:
             canvas.show_mask(None if index is None else self._suggested(inputs).outline(inputs.boxes[index].box))
 
     def _suggested(self, inputs: Inputs) -> Suggestions:
-        if self._suggestions is None or self._suggestions.photo is not inputs.photo:
-            self._suggestions = Suggestions(
-                inputs.photo,
-                lambda: self._client.post(self._refresh, key="suggestions"),
-                lambda: not self._client.has_left,
-            )
-            self._dismissed = set()
-        return self._suggestions
+        for known in self._suggestions:
+            if known.photo is inputs.photo:
+                return known
+        session = self._client.session
+        photos = [p.inputs.photo for p in session.further_photos]
+        photos += [] if session.photo is None else [session.photo]
+        new = Suggestions(
+            inputs.photo,
+            lambda: self._client.post(self._refresh, key="suggestions"),
+            lambda: not self._client.has_left,
+        )
+        self._suggestions = [*(s for s in self._suggestions if any(s.photo is p for p in photos)), new]
+        return new
 
     def _likely(self, inputs: Inputs, index: int) -> tuple[str, ...]:
         return self._suggested(inputs).names([b.box for b in inputs.boxes], index)
 
     def _proposals(self, inputs: Inputs) -> tuple[LabelledBox, ...]:
         """Likely objects that nobody marked or turned down yet."""
-        likely = (b for b in self._suggested(inputs).boxes() if b.box not in self._dismissed)
-        return tuple(b for b in likely if same_object(inputs.boxes, b.box) is None)
+        return tuple(b for b in self._suggested(inputs).boxes() if same_object(inputs.boxes, b.box) is None)
 
     def proposals(self) -> tuple[LabelledBox, ...]:
         """Likely objects of the scene's own photo that nobody marked or turned down yet."""
         inputs = self._client.session.inputs
-        return () if inputs is None or self._suggestions is None else self._proposals(inputs)
+        return self._proposals(inputs) if inputs is not None and self._suggestions else ()
 
     def dismiss(self, proposal: LabelledBox) -> None:
         """Turn a proposal down."""
-        self._dismissed.add(proposal.box)
+        for known in self._suggestions:
+            known.dismiss(proposal.box)
         self._client.refresh()
 
     def proposed(self, inputs: Inputs) -> int:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import threading
 from collections.abc import Callable
 
 import viser
@@ -55,9 +54,8 @@ class Toasts:
             if number == self._said:
                 self._html.show("")
 
-        timer = threading.Timer(seconds, lambda: self._client.post(end))
-        timer.daemon = True
-        timer.start()
+        client = self._client
+        client.session.ui_thread.post(end, client_id=client.id, after_s=seconds, awaited=False)
 
     def refresh(self) -> None:
         """Say what a click in the view does now."""

@@ -60,6 +60,7 @@ class Suggestions:
         self._wanted: Box | None = None
         """The box whose outline was asked for last: others that wait are worked out for nobody."""
         self._asked: set[object] = set()
+        self._dismissed: set[Box] = set()
 
     def names(self, boxes: Sequence[Box], index: int) -> tuple[str, ...]:
         """The likeliest names of one of the marked boxes, best first; nothing yet where they are still worked out."""
@@ -72,7 +73,11 @@ class Suggestions:
         """Likely objects with their names, best first; nothing yet where they are still worked out."""
         if self._boxes is None:
             self._ask(None, self._proposed)
-        return self._boxes or ()
+        return tuple(b for b in self._boxes or () if b.box not in self._dismissed)
+
+    def dismiss(self, box: Box) -> None:
+        """Leave out a box that somebody turned down."""
+        self._dismissed.add(box)
 
     def sure(self) -> tuple[LabelledBox, ...]:
         """Those of the likely objects that a build uses though nobody looked at them."""

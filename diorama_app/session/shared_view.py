@@ -6,7 +6,6 @@ Used from the UI thread only, except where a method says otherwise.
 from __future__ import annotations
 
 import logging
-import threading
 from collections.abc import Callable
 from functools import partial
 from typing import Any, Protocol, runtime_checkable
@@ -152,6 +151,4 @@ class SharedView:
             self.on_drag(object_id, event)
 
     def _replace_later(self, task: Callable[[], None]) -> None:
-        timer = threading.Timer(MESH_OVERLAP_S, lambda: self._shown.ui_thread.post(task))
-        timer.daemon = True
-        timer.start()
+        self._shown.ui_thread.post(task, after_s=MESH_OVERLAP_S, awaited=False)

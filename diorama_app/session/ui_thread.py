@@ -40,6 +40,7 @@ class _Posted:
     on_error: OnError
     client_id: Hashable | None
     key: str | None
+    awaited: bool = True
 
 
 @dataclass(order=True)
@@ -72,6 +73,7 @@ class UiThread:
         on_error: OnError | None = None,
         client_id: Hashable | None = None,
         after_s: float = 0.0,
+        awaited: bool = True,
     ) -> None:
         """Do `task` soon, after those posted before for the same browser.
 
@@ -81,8 +83,9 @@ class UiThread:
             on_error: told in one line what went wrong; everybody by default.
             client_id: the browser whose queue it joins; the server's own when None.
             after_s: how long it waits at least.
+            awaited: whether `wait` waits for it; a message that leaves the page is no work.
         """
-        posted = _Posted(task, on_error or self._on_error, client_id, key)
+        posted = _Posted(task, on_error or self._on_error, client_id, key, awaited)
         with self._changed:
             waiting = None if key is None else self._keyed.get((client_id, key))
             if waiting is not None:
@@ -141,13 +144,15 @@ class UiThread:
         """Block until nothing is left to do; False when that took too long."""
         with self._changed:
             return self._changed.wait_for(
-                lambda: not (self._busy or self._delayed or any(self._queues.values())), timeout_s
+                lambda: not (self._busy or any(d.posted.awaited for d in self._delayed) or any(self._queues.values())),
+                timeout_s,
             )
 
     def stop(self) -> None:
-        """Finish what was posted, then end the thread."""
+        """Finish what was posted and is awaited, then end the thread."""
         with self._changed:
             self._stopping = True
+            self._delayed = sorted(d for d in self._delayed if d.posted.awaited)
             self._changed.notify_all()
         if threading.current_thread() is not self._thread:
             self._thread.join(timeout=5.0)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import threading
 import time
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 
 import pytest
 
@@ -13,7 +14,7 @@ from diorama_app.reconstruction import suggestions
 from diorama_app.reconstruction.build_job import UNASKED
 from diorama_app.session.client import Client
 from diorama_app.viewport.annotation_canvas import Accepted, Clicked, Dismissed, Drawn, Named, Selected
-from diorama_core.artefacts import Box, Inputs, LabelledBox, Photo
+from diorama_core.artefacts import Box, FurtherPhoto, Inputs, LabelledBox, Photo
 from diorama_core.progress import Progress
 from tests.app.small_room import plain_photo
 
@@ -25,13 +26,11 @@ class Known(suggestions.Suggestions):
     """Knows a chair and a lamp at once."""
 
     def __init__(self, photo: Photo, on_ready: Callable[[], None], is_wanted: Callable[[], bool]) -> None:
-        self.photo = photo
-
-    def boxes(self) -> tuple[LabelledBox, ...]:
-        return CHAIR, LAMP
+        super().__init__(photo, on_ready, is_wanted)
+        self._boxes = CHAIR, LAMP
 
     def sure(self) -> tuple[LabelledBox, ...]:
-        return (CHAIR,)
+        return tuple(b for b in self.boxes() if b is CHAIR)
 
     def names(self, boxes: Sequence[Box], index: int) -> tuple[str, ...]:
         return ("chair", "stool", "bench", "sofa")
@@ -105,6 +104,26 @@ def test_proposals_are_accepted_under_another_name_or_dropped(session, client: C
     marking.happened(Dismissed(0))
     marking.happened(Accepted(0, ""))
     assert labels(session) == ["floor lamp"], "none is left to accept"
+
+
+def test_each_photo_is_looked_at_once_whichever_is_shown(
+    session, client: Client, marking: PhotoBoxes, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    looked_at: list[str] = []
+
+    class Counted(Known):
+        def __init__(self, photo: Photo, *more: Callable[[], object]) -> None:
+            looked_at.append(photo.name)
+            super().__init__(photo, *more)
+
+    monkeypatch.setattr("diorama_app.panels.photo_boxes.Suggestions", Counted)
+    beside = replace(plain_photo(), name="beside.png")
+    session.commit("add", session.scene, further=(FurtherPhoto("beside", Inputs(beside)),))
+    assert marking.proposed(session.inputs) == 2
+    for _ in range(3):  # at every redraw the card asks for the scene's photo, the canvas for the one that is marked
+        assert len(marking.proposals()) == 2
+        assert marking.proposed(session.further_photos[0].inputs) == 2
+    assert looked_at == [session.photo.name, "beside.png"]
 
 
 def test_the_list_escapes_names(session) -> None:

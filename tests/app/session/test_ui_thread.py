@@ -90,6 +90,22 @@ def test_a_delayed_task_waits_and_is_waited_for(ui_thread: UiThread) -> None:
     assert done[0] - began >= 0.1
 
 
+def test_what_nobody_awaits_is_done_later_or_dropped_at_the_end(
+    ui_thread: UiThread, clock: list[float], told: list[str]
+) -> None:
+    done: list[str] = []
+    ui_thread.post(lambda: done.append("faded"), after_s=5.0, awaited=False)
+    ui_thread.post(lambda: done.append("left"), after_s=50.0, awaited=False)
+    assert ui_thread.wait()
+    assert done == []
+    clock[0] += 6.0
+    ui_thread.post(lambda: done.append("edit"))
+    assert ui_thread.wait()
+    assert sorted(done) == ["edit", "faded"]
+    ui_thread.stop()
+    assert "left" not in done
+
+
 def test_stopping_does_what_was_posted(told: list[str]) -> None:
     ui_thread, done = UiThread(told.append), []
     ui_thread.post(lambda: done.append(1), after_s=30.0)
