@@ -87,6 +87,7 @@ _WHOLE = "and the whole scene: it opens here again"
 _USD_KEEPS = f"materials, textures, camera, lights, supports, colliders, masses, joints, {_WHOLE}"
 _SIM_KEEPS = "visual meshes with materials, convex colliders, masses, friction, joints"
 _PLAN_KEEPS = "walls, openings, footprints, names, lengths"
+_LIST_KEEPS = "a row for each object: name, kind, size, place, room, materials"
 
 _TABLE = (
     Format(
@@ -135,12 +136,15 @@ _TABLE = (
     ),
     Format("hdr", "Environment map", (".hdr",), "the light from all sides of the room", "environment:write_hdr"),
     Format("ply", "PLY mesh", (".ply",), "one mesh with vertex colours", "ply:write_ply"),
+    Format("csv", "Furniture list (CSV)", (".csv",), _LIST_KEEPS, "schedule:write_csv"),
     Format(
-        "schedule",
-        "Furniture schedule (CSV)",
-        (".csv",),
-        "a row for each object: kind, size, place, materials",
-        "schedule:write_schedule",
+        "xlsx",
+        "Furniture list (XLSX)",
+        (".xlsx",),
+        f"{_LIST_KEEPS}, picture",
+        "schedule:write_xlsx",
+        "plan",
+        "xlsxwriter",
     ),
     Format("stl", "STL for printing", (".stl",), "bare triangles in millimetres", "stl:write_stl"),
     Format(

@@ -34,7 +34,9 @@ class Substance:
 
     name: str
     density: float
-    """Kilograms per cubic metre."""
+    """Kilograms per cubic metre: metals, stone, concrete, glass, rubber, soil and wood as in the table of J. M. Gere,
+    Mechanics of Materials, 5th edition; wood is oak's and pine's mean. Ceramic is porcelain, plastic ABS, foam that of
+    seats; cloth and leather are foam under a cover."""
     wall_m: float
     """Thickness of the walls of hollow objects made of it; infinite for what is solid throughout."""
     friction: float

@@ -138,7 +138,8 @@ class Category:
     plausible_height_m: tuple[float, float] | None = None
     plausible_width_m: tuple[float, float] | None = None
     density: float = field(kw_only=True)
-    """Kilograms per cubic metre of bounding box: a rough guess for physics, from weighing catalogues' furniture."""
+    """Kilograms per cubic metre of bounding box: a guess for physics, held to published masses by
+    `tests/export/test_physics.py`."""
     # how usual it is, and what is taken for it
     frequency: float | None = None
     """How often a thing in a room is one, of a hundred."""
