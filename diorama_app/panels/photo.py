@@ -22,6 +22,7 @@ from diorama_app.projects.begin import begin_project, keep_given
 from diorama_app.projects.reading_again import upload_again, with_depth
 from diorama_app.projects.uploads import Upload
 from diorama_app.reconstruction import build_job as work
+from diorama_app.reconstruction.dropped_photos import build_all_round
 from diorama_app.reconstruction.networks import (
     NO_DETECTOR,
     PROPOSALS_ONLY,
@@ -40,7 +41,7 @@ from diorama_app.viewport.annotation_canvas import Deleted, Selected
 from diorama_app.viewport.mesh_assets import reduced
 from diorama_app.web.html import Action, LiveHtml, button, text
 from diorama_core.artefacts import Inputs
-from diorama_core.errors import InputError
+from diorama_core.errors import InputError, SphericalPhotoError
 from diorama_core.io.text import sentences
 from diorama_core.models.manifest import networks_of
 from diorama_core.models.store import ModelStore
@@ -122,8 +123,11 @@ class PhotoPanel:
                 project.update_info(**{work.AWAITED: True})
             self._session.visit(client, project, sentences(read.warnings[:3]))
 
-        def ask(unknown: AmbiguousDepthError) -> None:
-            ask_depth(client, unknown, lambda answer: self.begin(upload.answered(answer)))
+        def ask(unknown: AmbiguousDepthError | SphericalPhotoError) -> None:
+            if isinstance(unknown, SphericalPhotoError):
+                build_all_round(client, upload)
+            else:
+                ask_depth(client, unknown, lambda answer: self.begin(upload.answered(answer)))
 
         self._session.reader.read(upload, client.id, client.post, done, ask)
         self._announce(upload.name, upload.photo)
@@ -205,7 +209,9 @@ class PhotoPanel:
                 client.to_say = sentences(read.warnings[:3]), True
                 client.refresh()
 
-        def ask(unknown: AmbiguousDepthError) -> None:
+        def ask(unknown: AmbiguousDepthError | SphericalPhotoError) -> None:
+            if isinstance(unknown, SphericalPhotoError):
+                raise unknown
             ask_depth(client, unknown, lambda chosen: self._read_again(label, new, chosen, turn=turn, bend=bend))
 
         session.reader.read(upload, client.id, client.post, done, ask)

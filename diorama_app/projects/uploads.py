@@ -28,6 +28,8 @@ class Upload:
     depth_kind: DepthKind = "auto"
     half_turn: bool = False
     """Whether everything is upside down in its file."""
+    sphere: bool = False
+    """Whether the photo is to be a 360 degree photo."""
     bend: float | None = None
     """The photo's distortion as `Photo.straightened` has it, 0 to leave it; None where its lines are to say."""
 
@@ -85,6 +87,9 @@ def _read(upload: Upload) -> ReadInputs:
         intrinsics=upload.intrinsics,
         fov_deg=upload.fov_deg,
         half_turn=upload.half_turn,
+        sphere=upload.sphere,
     )
+    if upload.sphere:
+        return read
     inputs, notes = straightened_by_lines(read.inputs, upload.bend)
     return ReadInputs(inputs, read.warnings if upload.bend is not None else (*notes, *read.warnings))

@@ -1,10 +1,11 @@
-"""Several photos that were dropped together: a project each, or one room of all."""
+"""Several photos that were dropped together: a project each, or one room of all; one photo of a whole room."""
 
 from __future__ import annotations
 
 import shutil
 import tempfile
 from collections.abc import Mapping
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -12,7 +13,7 @@ from diorama_app.projects.begin import begin_project, fresh_folder, keep_given
 from diorama_app.projects.dropped import MAX_BYTES, DroppedPhoto, Reading
 from diorama_app.projects.dropped_files import files_of, upload_of
 from diorama_app.projects.photo_folder import FolderPhoto
-from diorama_app.projects.uploads import decoded
+from diorama_app.projects.uploads import Upload, decoded
 from diorama_app.session.client import Client
 from diorama_app.strings import _
 from diorama_core.errors import DioramaError, InputError
@@ -92,6 +93,45 @@ def build_one_room(client: Client, name: str, content: bytes, reading: Reading) 
         client.post(lambda: session.visit(client, built.project, said))
 
     session.jobs.start("build", _("Building a room from {count} photos").format(count=len(reading.photos)), work)
+
+
+def build_all_round(client: Client, upload: Upload) -> None:
+    """Build one project of a 360 degree photo, and open it.
+
+    Args:
+        client: the browser that asked.
+        upload: the photo, with boxes where they came with it.
+
+    Raises:
+        InputError: something came with it that is not used.
+    """
+    for name, given in (("depth", upload.depth), ("masks", upload.masks)):
+        if given is not None:
+            raise InputError(f"{upload.name} is a 360 degree photo, with which {name} is not used; leave it out")
+    session = client.session
+
+    def work(progress: Progress) -> None:
+        from diorama_app.projects.options import BuildOptions  # the pipeline, without which the editor opens
+        from diorama_app.projects.posed_build import build_read_sphere
+        from diorama_core.pipeline.choices import NetworkChoice
+
+        process = LimitedProcess()
+        try:
+            given = decoded(replace(upload, sphere=True), process)
+        finally:
+            process.close()
+        output = fresh_folder(session.projects_dir, upload.name)
+        try:
+            built = build_read_sphere(given, BuildOptions(), NetworkChoice(), output, progress)
+        except BaseException:
+            shutil.rmtree(output, ignore_errors=True)
+            raise
+        said = _("The whole room from a 360 degree photo; objects: {objects}.").format(
+            objects=len(built.room.scene.objects)
+        )
+        client.post(lambda: session.visit(client, built.project, said))
+
+    session.jobs.start("build", _("Building the whole room of a 360 degree photo"), work)
 
 
 def _check_photos(reading: Reading, files: Mapping[str, bytes]) -> None:

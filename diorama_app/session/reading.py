@@ -10,7 +10,7 @@ from typing import Any
 
 from diorama_app.projects.dropped import Dropped, understood
 from diorama_app.projects.uploads import Upload, decoded
-from diorama_core.errors import EditRefused
+from diorama_core.errors import EditRefused, SphericalPhotoError
 from diorama_core.io.limited import LimitedProcess
 from diorama_core.perception.inputs import ReadInputs
 from diorama_core.perception.inputs.depth.units import AmbiguousDepthError
@@ -36,7 +36,7 @@ class Reader:
         client_id: int,
         post: Post,
         then: Callable[[ReadInputs], None],
-        ask: Callable[[AmbiguousDepthError], None] | None = None,
+        ask: Callable[[AmbiguousDepthError | SphericalPhotoError], None] | None = None,
     ) -> None:
         """Decode an upload, then do something with it.
 
@@ -45,7 +45,8 @@ class Reader:
             client_id: whose it is.
             post: runs a task where errors are told to that person.
             then: given the checked inputs, there.
-            ask: given what a depth map may be, there; None where that is an error.
+            ask: given what a depth map may be, or that the photo shows all directions, there; None where that is an
+                error.
 
         Raises:
             EditRefused: two uploads of this person are being read already.
@@ -98,13 +99,15 @@ class Reader:
         client_id: int,
         post: Post,
         then: Callable[[ReadInputs], None],
-        ask: Callable[[AmbiguousDepthError], None] | None,
+        ask: Callable[[AmbiguousDepthError | SphericalPhotoError], None] | None,
     ) -> None:
         try:
             read = decoded(upload, self._process)
             post(lambda: then(read))
+        except (AmbiguousDepthError, SphericalPhotoError) as error:
+            post(_raising(error) if ask is None else partial(ask, error))
         except Exception as error:  # raised again on the UI thread, for whoever uploaded
-            post(partial(ask, error) if ask is not None and isinstance(error, AmbiguousDepthError) else _raising(error))
+            post(_raising(error))
         finally:
             self._end(client_id)
 

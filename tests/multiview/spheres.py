@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
+import io
+import json
+
 import numpy as np
 from jaxtyping import Float, UInt8
+from PIL import Image
 
-from diorama_core.geometry.sphere import directions
+from diorama_core.geometry.sphere import directions, sphere_pixels
 
 COLOURS = np.array(
     [[226, 221, 208], [156, 174, 192], [214, 226, 176], [192, 156, 178], [171, 195, 169], [229, 214, 199]]
@@ -39,3 +43,16 @@ def room_sphere(
     shown[reach * away[..., 2] > ceiling] = CEILING
     shown[reach * away[..., 2] < -1.0] = FLOOR
     return shown
+
+
+def sphere_with_wardrobe(height_m: float) -> tuple[bytes, bytes]:
+    """A PNG of the box with a wardrobe against a wall, and its box as JSON; the camera is so high above the floor."""
+    picture = room_sphere(BOX, 0.85, width=1600)
+    size, centre = np.array([0.6, 1.0, 2.0]), np.array([2.1 * height_m - 0.3, 0.3, 1.0 - height_m])
+    corners = centre + size / 2 * np.stack(np.meshgrid([-1, 1], [-1, 1], [-1, 1]), axis=-1).reshape(-1, 3)
+    at = sphere_pixels(corners, 1600)
+    x1, y1, x2, y2 = (round(float(v)) for v in (*at.min(axis=0), *at.max(axis=0)))
+    picture[y1:y2, x1:x2] = [150, 110, 70]
+    encoded = io.BytesIO()
+    Image.fromarray(picture).save(encoded, "PNG")
+    return encoded.getvalue(), json.dumps([{"bbox": [x1, y1, x2, y2], "class": "wardrobe"}]).encode()

@@ -22,6 +22,8 @@ from diorama_core.perception.inputs.photos.reading import DecodedPhoto, half_tur
 from diorama_core.perception.inputs.source import Source, read_folder, read_source
 from diorama_core.scene.types import Intrinsics
 
+MAX_SIDE_PX, MAX_SPHERE_PX = 1600, 4096
+"""Longer side to which photos are reduced, and 360 degree photos: a view of a quarter turn is then as sharp."""
 FOV_RANGE_DEG = (15.0, 150.0)
 """Horizontal fields of view that a photo of a room can have."""
 
@@ -47,7 +49,7 @@ def read_inputs(
     boxes: Path | bytes | Source | None = None,
     masks: Path | bytes | Source | None = None,
     half_turn: bool = False,
-    max_side: int = 1600,
+    max_side: int | None = None,
     sphere: bool = False,
 ) -> ReadInputs:
     """Read and check what the user gave.
@@ -66,7 +68,8 @@ def read_inputs(
         boxes: In any form of `BOX_FORMS`, by default in pixels of the upright original photo.
         masks: In any form of `MASK_FORMS`: a picture with one colour or one id per instance, a folder, an array.
         half_turn: Whether the photo and all that belongs to it are upside down, and are turned by 180 degrees.
-        max_side: Larger photos are reduced so that the longer side has this many pixels.
+        max_side: Larger photos are reduced so that the longer side has this many pixels; by default `MAX_SIDE_PX`, or
+            `MAX_SPHERE_PX` of a 360 degree photo.
         sphere: Whether the photo is to be a 360 degree photo (equirectangular).
 
     Returns:
@@ -76,7 +79,8 @@ def read_inputs(
         SphericalPhotoError: it is a 360 degree photo and none was to be read.
         InputError: one line saying what cannot be used, where, and what to do.
     """
-    decoded = read_photo(read_source(image, "photo", name), max_side, sphere=sphere)
+    side = max_side or (MAX_SPHERE_PX if sphere else MAX_SIDE_PX)
+    decoded = read_photo(read_source(image, "photo", name), side, sphere=sphere)
     photo, warnings = decoded.photo, list(decoded.notes)
     unturned, camera = decoded, _read_intrinsics(decoded, intrinsics, fov_deg)
     if half_turn:

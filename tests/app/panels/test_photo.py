@@ -11,6 +11,7 @@ from PIL import Image
 
 from diorama_app.panels import photo as photo_panel
 from diorama_app.panels.photo import PhotoPanel
+from diorama_app.projects.uploads import Upload
 from diorama_app.reconstruction import build_job
 from diorama_app.viewport.annotation_canvas import Deleted, Drawn, Finished, Named, Reshaped, Selected
 from diorama_core.artefacts import LabelledBox
@@ -18,8 +19,10 @@ from diorama_core.perception.inputs.source import Source
 from diorama_core.project.storage import Project
 from tests.app.page import Page
 from tests.app.panels.test_photo_boxes import CHAIR, Known
+from tests.multiview.spheres import sphere_with_wardrobe
 from tests.multiview.test_plumb_lines import bent, lines
 from tests.perception.inputs.files import depth_png, encoded
+from tests.waiting import until
 
 
 def picture(width: int = 64, height: int = 48, kind: str = "PNG") -> bytes:
@@ -38,6 +41,33 @@ def panel(session, page: Page, client, commands, monkeypatch) -> PhotoPanel:
     client.panels = [made]
     made.refresh()
     return made
+
+
+@pytest.mark.slow
+def test_a_360_degree_photo_is_built_as_a_whole_room_of_its_own(
+    session, page: Page, panel: PhotoPanel, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    visited: list[Project] = []
+    monkeypatch.setattr(session, "visit", lambda client, project, said: visited.append(project))
+    content, boxes = sphere_with_wardrobe(1.4)
+    panel.begin(Upload(content, "hall.png", boxes=Source(boxes, "hall.json")))
+    until(lambda: bool(visited), lambda: session.jobs.status, seconds=300)
+    scene = visited[0].load_scene()
+    assert [o.category for o in scene.objects] == ["wardrobe"]
+    assert len(scene.architecture.by_role("wall")) == 4
+
+
+def test_a_360_degree_photo_takes_no_depth(
+    session, page: Page, panel: PhotoPanel, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    before, told = set(session.projects_dir.iterdir()), []
+    monkeypatch.setattr(session, "notice", lambda client_id, message, kind: told.append(message))
+    content, _ = sphere_with_wardrobe(1.4)
+    panel.begin(Upload(content, "hall.png", depth=Source(b"", "hall.npy")))
+    session.reader.wait()
+    page.settle()
+    assert "360 degree photo, with which depth is not used" in told[0]
+    assert set(session.projects_dir.iterdir()) == before
 
 
 @pytest.fixture

@@ -14,7 +14,6 @@ from diorama_app.projects.photo_folder import photos_of
 from diorama_app.projects.posed_build import build_posed_photos, build_sphere_photo
 from diorama_core.errors import InputError
 from diorama_core.geometry.planes import in_polygon
-from diorama_core.geometry.sphere import sphere_pixels
 from diorama_core.layout.recipes import recipe
 from diorama_core.library.catalogue import built_in_library
 from diorama_core.multiview.posed_photos import PosedPhoto, read_poses
@@ -25,7 +24,7 @@ from diorama_core.project.storage import Project
 from tests.cli.room_photo import room_picture
 from tests.multiview.colmap_files import write_colmap
 from tests.multiview.rooms import CAMERAS, THINGS, photo
-from tests.multiview.spheres import BOX, room_sphere
+from tests.multiview.spheres import BOX, sphere_with_wardrobe
 
 POSED = CAMERAS[:2]
 SHOWN = THINGS[:1]
@@ -110,14 +109,10 @@ def test_a_photo_s_own_world_has_the_camera_above_its_origin(camera) -> None:
 @pytest.mark.slow
 def test_a_360_degree_photo_becomes_one_closed_room(tmp_path: Path, capsys) -> None:
     """A wardrobe against a wall of a drawn room, the camera 1.4 m above its floor."""
-    picture, height_m = room_sphere(BOX, 0.85, width=1600), 1.4
-    size, centre = np.array([0.6, 1.0, 2.0]), np.array([2.1 * height_m - 0.3, 0.3, 1.0 - height_m])
-    corners = centre + size / 2 * np.stack(np.meshgrid([-1, 1], [-1, 1], [-1, 1]), axis=-1).reshape(-1, 3)
-    at = sphere_pixels(corners, 1600)
-    x1, y1, x2, y2 = (round(float(v)) for v in (*at.min(axis=0), *at.max(axis=0)))
-    picture[y1:y2, x1:x2] = [150, 110, 70]
-    Image.fromarray(picture).save(tmp_path / "sphere.png")
-    (tmp_path / "boxes.json").write_text(json.dumps([{"bbox": [x1, y1, x2, y2], "class": "wardrobe"}]))
+    height_m = 1.4
+    picture, boxes = sphere_with_wardrobe(height_m)
+    (tmp_path / "sphere.png").write_bytes(picture)
+    (tmp_path / "boxes.json").write_bytes(boxes)
     command = [
         "build",
         str(tmp_path / "sphere.png"),

@@ -44,8 +44,8 @@ def check_perspective(name: str, picture: Image.Image, exif: Mapping[int, Any], 
     crop = "crop it to one direction, without its bent lines"
     if projection == "equirectangular" or (projection is None and _is_sphere(picture)):
         raise SphericalPhotoError(
-            f"{name}: this is a 360 degree photo (equirectangular), not a perspective one; give it alone to "
-            f"'diorama build', or {crop}"
+            f"{name}: this is a 360 degree photo (equirectangular), not a perspective one; upload it "
+            f"alone in the editor, give it to 'diorama build', or {crop}"
         )
     if projection not in (None, "perspective", "rectilinear") or exif.get(_CUSTOM_RENDERED) == _PANORAMA:
         raise InputError(

@@ -49,8 +49,7 @@ PHOTO_FORMS: tuple[Form[Source, PhotoFile], ...] = (
         "JPEG, PNG, WebP, AVIF, TIFF, BMP, GIF, PPM, JPEG 2000",
         "everything else",
         "turned by its EXIF; 10, 12 and 14 bits stretched; plain borders cut off; of several pages the largest; "
-        "a 360 degree photo alone is [a whole room](many-photos.md#one-360-degree-photo) for `diorama build`, refused "
-        "elsewhere; sweep panoramas are refused",
+        "a 360 degree photo alone is [a whole room](many-photos.md#one-360-degree-photo); sweep panoramas are refused",
         _is_anything,
         PhotoFile,
     ),
