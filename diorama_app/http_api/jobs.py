@@ -27,6 +27,7 @@ from diorama_core.io.limited import LimitedProcess
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.perception.inputs import ReadInputs
 from diorama_core.pipeline.presets import Profile
+from diorama_core.processes import give_back_memory
 from diorama_core.progress import CancelToken, Progress, ProgressEvent
 from diorama_core.project.storage import Project
 
@@ -264,6 +265,7 @@ class JobQueue:
                 over = self._over(job, running, token)
             except Exception as problem:  # one room's defect must not end the builds of all
                 over = replace(running, state="failed", error=line_of(problem, job.id))
+            give_back_memory()
             with self._changed:
                 self._tokens.pop(job.id, None)
                 self._progress.pop(job.id, None)

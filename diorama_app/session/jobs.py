@@ -83,9 +83,6 @@ def _turn(progress: Progress) -> Iterator[None]:
     try:
         yield
     finally:
-        from diorama_core.processes import give_back_memory
-
-        give_back_memory()
         _TURNS.release()
 
 
@@ -190,6 +187,9 @@ class Jobs:
                 ),
             )
         finally:
+            from diorama_core.processes import give_back_memory  # a tenth of a second, not needed before
+
+            give_back_memory()
             with self._lock:
                 self._status = None
         self._on_end(outcome)

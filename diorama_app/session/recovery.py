@@ -16,7 +16,7 @@ import uuid
 from dataclasses import dataclass
 from pathlib import Path
 
-from diorama_core.errors import DioramaError, ProjectError
+from diorama_core.errors import ProjectError
 from diorama_core.io.atomic import remove_leftovers
 from diorama_core.io.bounded import MAX_JSON_BYTES, read_bytes
 from diorama_core.io.documents import write_document
@@ -79,8 +79,8 @@ class Recovery:
         path = self._folder / f"{_place(project)}-{self._session}-{_saved_digest(project)}.json"
         try:
             write_document(path, scene_to_json(scene).encode(), scene_from_json, ProjectError)
-        except (OSError, ValueError, DioramaError) as error:
-            log.warning("unsaved changes cannot be stored in %s (%s)", self._folder, error)
+        except Exception as error:  # whatever it is, the thread that saves goes on
+            log.warning("unsaved changes cannot be stored in %s (%r)", self._folder, error)
             return False
         self._forget(project, but=path)
         return True

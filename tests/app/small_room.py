@@ -67,20 +67,26 @@ class PlainLibrary:
 
     def parts(self, shape_id: str) -> trimesh.Scene:
         self.shape(shape_id)  # says when there is none
-        name, size, colour = SIZES[shape_id]
-        boxes = _chair(size) if name == "chair" else _table(size) if name == "table" else [(size, (0, 0, 0))]
-        scene = trimesh.Scene()
-        for extents, place in boxes:
-            box = trimesh.creation.box(extents, trimesh.transformations.translation_matrix(place))
-            box.unmerge_vertices()
-            box.visual = trimesh.visual.TextureVisuals(
-                material=PBRMaterial(baseColorFactor=[*colour, 255], metallicFactor=0.0, roughnessFactor=0.8)
-            )
-            scene.add_geometry(box)
-        return scene
+        return _parts(shape_id)
 
     def glb(self, shape_id: str) -> bytes:
         return _glb(shape_id)
+
+
+@cache
+def _parts(shape_id: str) -> trimesh.Scene:
+    """Made once, as libraries do."""
+    name, size, colour = SIZES[shape_id]
+    boxes = _chair(size) if name == "chair" else _table(size) if name == "table" else [(size, (0, 0, 0))]
+    scene = trimesh.Scene()
+    for extents, place in boxes:
+        box = trimesh.creation.box(extents, trimesh.transformations.translation_matrix(place))
+        box.unmerge_vertices()
+        box.visual = trimesh.visual.TextureVisuals(
+            material=PBRMaterial(baseColorFactor=[*colour, 255], metallicFactor=0.0, roughnessFactor=0.8)
+        )
+        scene.add_geometry(box)
+    return scene
 
 
 @cache

@@ -191,6 +191,22 @@ def test_a_scene_that_cannot_be_written_does_not_end_the_thread(
     autosave.stop()
 
 
+def test_a_note_that_cannot_be_made_does_not_end_the_thread(
+    project: Project, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def no_memory(scene: Scene) -> str:
+        raise MemoryError
+
+    autosave = Autosave(lambda message: None, Recovery(tmp_path / "unsaved"), retry_s=0.05)
+    with monkeypatch.context() as short:
+        short.setattr("diorama_app.session.recovery.scene_to_json", no_memory)
+        autosave.save_soon(project, furnished_scene())
+        until(lambda: project.has_scene and project.load_scene() == furnished_scene())
+    autosave.save_soon(project, renamed())
+    until(lambda: project.load_scene() == renamed())
+    autosave.stop()
+
+
 def test_leftovers_are_removed_when_their_time_is_over(project: Project, tmp_path: Path) -> None:
     old, here = Recovery(tmp_path / "unsaved"), Recovery(tmp_path / "unsaved")
     old.note(project, renamed())
