@@ -72,6 +72,16 @@ def test_what_a_departed_browser_asked_for_is_dropped(ui_thread: UiThread) -> No
     assert done == ["here"]
 
 
+def test_a_key_of_a_departed_browser_is_free_again(ui_thread: UiThread) -> None:
+    go, done = blocked(ui_thread), []
+    ui_thread.post(lambda: done.append("of who left"), client_id=1, key="redraw")
+    ui_thread.forget(1)
+    ui_thread.post(lambda: done.append("of who came"), client_id=1, key="redraw")
+    go.set()
+    assert ui_thread.wait()
+    assert done == ["of who came"]
+
+
 def test_a_newer_task_of_the_same_key_replaces_the_one_that_waits(ui_thread: UiThread) -> None:
     go, done = blocked(ui_thread), []
     for i in range(200):
