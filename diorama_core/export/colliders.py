@@ -34,6 +34,8 @@ FOOT_M = 0.006
 NEAR_TOP_M = 0.012
 """Corners of a carrier this near to the level of a foot belong to the face that holds it up."""
 MIN_HOLD_M2 = 1e-5
+TURNING_CUTS = 3
+"""Planes that take the rear of a leaf's free edge off: what is left of 5 mm is a tenth of one."""
 MIN_JOINT_FRICTION = 0.5
 """Newtons or newton metres."""
 HOLD = 1.5
@@ -211,7 +213,7 @@ def _body(gathered: ExportScene, node: ExportObject) -> RigidBody:
     moving = tuple(
         MovingPart(
             limb,
-            _scaled(limb_parts(library, shape.id, limb.number), node),
+            _turning_clear(_scaled(limb_parts(library, shape.id, limb.number), node), limb),
             weights[limb.number],
             joint_friction(limb, weights[limb.number], node.T_world),
         )
@@ -237,6 +239,26 @@ def joint_friction(limb: ExportLimb, inertia: Inertia, T_world: Float[np.ndarray
     lever = R @ (_placed(limb.T_object_limb, inertia.centre) - limb.origin)
     load = weight if limb.kind == "slide" else np.cross(lever, weight)
     return max(MIN_JOINT_FRICTION, HOLD * abs(float(axis @ load)))
+
+
+def _turning_clear(parts: tuple[Points, ...], limb: ExportLimb) -> tuple[Points, ...]:
+    """Parts of a leaf without the rear of its free edge, which would turn into what stands flush beside it.
+
+    A leaf of width w and thickness t reaches sqrt(w^2 + t^2) from its hinge; real ones have a gap of that size.
+    """
+    if limb.kind != "hinge" or not parts:
+        return parts
+    every = np.concatenate(parts) - limb.origin
+    out = every.mean(axis=0)
+    out -= (out @ limb.axis) * limb.axis
+    out = np.where(np.abs(out) == np.abs(out).max(), np.sign(out), 0.0)  # leaves lie along an axis of their object
+    ahead = np.cross(limb.axis, out)
+    reach, rear = float((every @ out).max()), float(-(every @ ahead).min())
+    for angle in np.linspace(0.0, np.arctan2(max(rear, 0.0), reach), TURNING_CUTS + 1)[1:]:
+        normal = np.sin(angle) * ahead - np.cos(angle) * out
+        level = float(normal @ limb.origin) - reach
+        parts = tuple(p if (rest := cut(p, normal, level, np.inf)) is None else rest for p in parts)
+    return parts
 
 
 def _scaled(parts: Iterable[ConvexPart], node: ExportObject) -> tuple[Points, ...]:

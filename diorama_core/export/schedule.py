@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import io
+import re
 from datetime import datetime
 from pathlib import Path
 
@@ -19,6 +20,8 @@ COLUMNS = (
 )
 FORMULA_STARTS = ("=", "+", "-", "@")
 """Spreadsheets take text of a CSV that begins so for a formula."""
+NUMBERED = re.compile(r"( \d+)?( from the photo.*)?( \d+)?$")
+"""What is in a material's name only to tell it from others."""
 PICTURE_PX, WIDEST = 96, 40
 """Side of a picture in XLSX; the widest column, in characters."""
 
@@ -84,7 +87,7 @@ def _row(gathered: ExportScene, node: ExportObject) -> list[str | float | int]:
     depth, width, height = (float(v) for v in item.size_m)
     x, y, _ = (float(v) for v in item.pose.position)
     supporter = "" if node.support is None else node.support.parent
-    materials = ", ".join(sorted({s.material.name for s in surfaces}))
+    materials = ", ".join(sorted({NUMBERED.sub("", s.material.name) for s in surfaces}))
     return [
         *(node.id, node.name, item.category),
         *(width, depth, height, x, y, float(item.corners_world[:, 2].min())),

@@ -2,10 +2,13 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from scipy.spatial.transform import Rotation
 
+from diorama_core.export.colliders import body_of
 from diorama_core.export.limbs import limb_of
+from diorama_core.library.catalogue import built_in_library
 from diorama_core.library.furniture.joints import drawer_slide
-from diorama_core.scene.types import Pose, SceneObject
+from diorama_core.scene.types import Pose, Scene, SceneObject
 
 
 def test_a_stretched_drawer_comes_out_farther() -> None:
@@ -15,3 +18,19 @@ def test_a_stretched_drawer_comes_out_farther() -> None:
     np.testing.assert_allclose(limb.origin, [0.2, 0.2, 0.9])
     np.testing.assert_allclose(limb.axis, [1.0, 0.0, 0.0])
     assert limb.upper == pytest.approx(0.8)
+
+
+@pytest.mark.parametrize("shape", ["refrigerator-retro-blue", "refrigerator-double", "wardrobe-white-two"])
+def test_a_door_that_is_flush_with_a_wall_turns_past_it(shape: str) -> None:
+    library = built_in_library()
+    record = library.shape(shape)
+    item = SceneObject("a", "a", record.category, shape, record.size_m, Pose.upright((0.0, 0.0, 1.0), 0.0))
+    leaves = [m for m in body_of(Scene(objects=(item,)), library, "a").moving if m.limb.kind == "hinge"]
+    assert leaves
+    for leaf in leaves:
+        points, limb = np.concatenate(leaf.parts) - leaf.limb.origin, leaf.limb
+        turns = (Rotation.from_rotvec(angle * limb.axis) for angle in np.linspace(limb.lower, limb.upper, 60))
+        away = np.sign(points.mean(axis=0)[1])
+        assert (
+            max(float((away * turn.apply(points)[:, 1]).max()) for turn in turns) < (away * points[:, 1]).max() + 5e-4
+        )

@@ -14,7 +14,7 @@ import pytest
 from PIL import Image
 
 from diorama_core.export import FORMATS, export_scene
-from diorama_core.export.schedule import COLUMNS, write_csv, write_xlsx
+from diorama_core.export.schedule import COLUMNS, NUMBERED, write_csv, write_xlsx
 from tests.export.scenes import gathered, scene_of
 
 
@@ -42,6 +42,11 @@ def test_names_are_no_formulas(tmp_path: Path) -> None:
     named = [replace(o, name="=1+1") for o in room.objects[:1]]
     write_csv(replace(room, objects=(*named, *room.objects[1:])), tmp_path / "room.csv")
     assert "'=1+1" in {row["name"] for row in rows_of(tmp_path / "room.csv")}
+
+
+def test_materials_are_named_without_what_tells_them_apart() -> None:
+    names = ("leather 02 from the photo 65cf15a3", "leather 3 from the photo 0f1", "light oak", "brass 2")
+    assert [NUMBERED.sub("", name) for name in names] == ["leather", "leather", "light oak", "brass"]
 
 
 def workbook(path: Path) -> tuple[list[list[str | float]], list[Image.Image]]:
