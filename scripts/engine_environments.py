@@ -1,4 +1,4 @@
-"""Environments of the engines: of Python one each, so that none asks another for an older package, and one of node."""
+"""Environments of the engines: of Python one each, so that none asks another for an older package, of node likewise."""
 
 from __future__ import annotations
 
@@ -16,10 +16,9 @@ PACKAGES = {
     "newton": ("newton[sim,importers]",),
     "Blender": ("bpy==5.0.1",),
     "three.js": ("three",),
+    "Babylon.js": ("babylonjs", "babylonjs-loaders"),
 }
-"""What pip installs for each, or npm for three.js. Blender's module is that of `diorama_core.export.blender`."""
-THREE = Path("node_modules", "three")
-"""Where npm puts it."""
+"""What pip installs for each, or npm for those of JavaScript. Blender's is that of `diorama_core.export.blender`."""
 
 
 def environment(folder: Path, engine: str) -> Path:
@@ -52,7 +51,7 @@ def make(folder: Path, engines: Iterable[str]) -> None:
 
 
 def _install(where: Path, engine: str) -> None:
-    if engine == "three.js":
+    if engine.endswith(".js"):
         commands = [["npm", "install", "--silent", "--prefix", str(where), *PACKAGES[engine]]]
     else:
         pip = [str(where / "bin" / "python"), "-m", "pip", "install", "--quiet", "--disable-pip-version-check"]

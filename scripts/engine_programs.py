@@ -1,11 +1,12 @@
 """Programs that open an exported file without simulating it: how each is asked, and what it finds wrong.
 
 What is not installed is said in the table. Debian has assimp-utils, sweethome3d (with a Java compiler), godot3-server,
-libsdformat-dev and poppler-utils.
+inkscape, librecad, libreoffice-calc, libsdformat-dev, poppler-utils and slic3r.
 """
 
 from __future__ import annotations
 
+import csv
 import ctypes
 import ctypes.util
 import json
@@ -18,22 +19,26 @@ import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
+from functools import partial
 from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 from check_exports import check_blend, check_dxf, check_ifc, check_pdf
+from engine_environments import environment
+from PIL import Image
 from playwright.sync_api import Page, sync_playwright
 
 from diorama_core.export.blender import blender_python, missing_blender
 from diorama_core.export.gathering import ExportScene
 from tests.export.validators import usd_findings
 
-THREE_VARIABLE = "DIORAMA_THREE"
-"""Names the folder of three.js."""
+ENVIRONMENTS_VARIABLE = "DIORAMA_ENVIRONMENTS"
+"""Names the folder of the engines that npm installs."""
 SWEET_HOME = Path("/usr/share/sweethome3d/sweethome3d.jar")
 PATIENCE_S = 600.0
+INK, MIN_INK = 220, 0.001
 Check = Callable[[Path, ExportScene], list[str]]
 
 
@@ -51,7 +56,8 @@ class Program:
 
 def said(*command: str, cwd: Path | None = None) -> str:
     """What a program prints, errors included."""
-    env = {**os.environ, "LANG": "en_US.UTF-8", **({} if cwd is None else {"HOME": str(cwd)})}
+    env = {**os.environ, "LANG": "en_US.UTF-8", "QT_QPA_PLATFORM": "offscreen"}
+    env |= {} if cwd is None else {"HOME": str(cwd)}
     done = subprocess.run(command, capture_output=True, text=True, timeout=PATIENCE_S, check=False, cwd=cwd, env=env)
     return done.stdout + done.stderr
 
@@ -59,7 +65,7 @@ def said(*command: str, cwd: Path | None = None) -> str:
 def debian(package: str) -> str:
     """Version of a Debian package without Debian's own marks."""
     found = said("dpkg-query", "-W", "-f", "${Version}", package) if shutil.which("dpkg-query") else ""
-    return "" if "no packages" in found else found.partition("-")[0].partition("~")[0].partition("+")[0]
+    return "" if "no packages" in found else re.sub(r"^\d+:|[-~+].*", "", found)
 
 
 def check_assimp(path: Path, gathered: ExportScene) -> list[str]:
@@ -164,7 +170,7 @@ def sdformat() -> str:
     return next((n for k in range(16, 9, -1) if (n := ctypes.util.find_library(f"sdformat{k}"))), "")
 
 
-_PAGE = """<body style="margin:0"><script type="importmap">{"imports":{"three":"/three/build/three.module.js",
+_THREE = """<body style="margin:0"><script type="importmap">{"imports":{"three":"/three/build/three.module.js",
 "three/addons/":"/three/examples/jsm/"}}</script><script type="module">
 import * as THREE from 'three'; import {GLTFLoader} from 'three/addons/loaders/GLTFLoader.js';
 const renderer = new THREE.WebGLRenderer({preserveDrawingBuffer: true, antialias: true});
@@ -179,25 +185,44 @@ new GLTFLoader().load('/room.glb', file => {
   let meshes = 0; file.scene.traverse(node => { meshes += node.isMesh ? 1 : 0; }); window.shown = meshes;
 }, undefined, error => { window.shown = String(error); });
 </script>"""
+_BABYLON = """<body style="margin:0"><canvas id="canvas" style="display:block; width:100vw; height:100vh"></canvas>
+<script src="/babylonjs/babylon.js"></script><script src="/babylonjs-loaders/babylonjs.loaders.min.js"></script><script>
+BABYLON.SceneLoaderFlags.ShowLoadingScreen = false;
+const engine = new BABYLON.Engine(canvas, true, {preserveDrawingBuffer: true});
+BABYLON.LoadSceneAsync('/room.glb', engine).then(scene => scene.executeWhenReady(() => {
+  const camera = scene.cameras[0] ?? new BABYLON.UniversalCamera('', BABYLON.Vector3.Zero(), scene);
+  scene.activeCamera = camera;
+  const extras = scene.getNodes().map(node => node.metadata?.gltf?.extras).find(found => found?.cx);
+  if (extras) { // glTF's cameras look through the middle of the picture
+    const lens = camera.getProjectionMatrix().toArray().slice(), forward = scene.useRightHandedSystem ? -1 : 1;
+    lens[8] = forward * (2 * extras.cx / extras.width - 1); lens[9] = forward * (1 - 2 * extras.cy / extras.height);
+    camera.freezeProjectionMatrix(BABYLON.Matrix.FromArray(lens));
+  }
+  scene.render(); window.shown = scene.meshes.filter(mesh => mesh.getTotalVertices()).length;
+})).catch(error => { window.shown = String(error); });
+</script>"""
+PAGES = {"three.js": ("three", _THREE), "Babylon.js": ("babylonjs", _BABYLON)}
+"""What npm calls an engine, and a page that shows a file with it."""
 
 
-def three() -> Path:
-    return Path(os.environ[THREE_VARIABLE])
+def node_modules(engine: str) -> Path:
+    return environment(Path(os.environ[ENVIRONMENTS_VARIABLE]), engine) / "node_modules"
 
 
 @contextmanager
-def three_page(path: Path, width: int, height: int) -> Iterator[tuple[Page, list[str], Any]]:
-    """A page of Chromium in which three.js has loaded a file; what it complained about; how many meshes it has."""
+def web_page(engine: str, path: Path, width: int, height: int) -> Iterator[tuple[Page, list[str], Any]]:
+    """A page of Chromium in which an engine has loaded a file; what it complained about; how many meshes it has."""
     complaints: list[str] = []
 
     def serve(route: Any) -> None:
         name = route.request.url.split("//", 1)[1].partition("/")[2].partition("?")[0]
+        module = node_modules(engine) / name
         if name == "room.glb":
             route.fulfill(body=path.read_bytes(), content_type="model/gltf-binary")
-        elif name.startswith("three/"):
-            route.fulfill(body=(three() / name[6:]).read_bytes(), content_type="text/javascript")
+        elif module.is_file():
+            route.fulfill(body=module.read_bytes(), content_type="text/javascript")
         else:
-            route.fulfill(body="" if name else _PAGE, content_type="text/html")
+            route.fulfill(body="" if name else PAGES[engine][1], content_type="text/html")
 
     with sync_playwright() as playwright:
         browser = playwright.chromium.launch(
@@ -215,13 +240,14 @@ def three_page(path: Path, width: int, height: int) -> Iterator[tuple[Page, list
         browser.close()
 
 
-def check_three(path: Path, gathered: ExportScene) -> list[str]:
-    with three_page(path, 64, 48) as (_, complaints, meshes):
+def check_in_page(engine: str, path: Path) -> list[str]:
+    with web_page(engine, path, 64, 48) as (_, complaints, meshes):
         return complaints + ([] if isinstance(meshes, int) and meshes else [str(meshes)])
 
 
-def three_release() -> str:
-    return str(json.loads((three() / "package.json").read_text())["version"]) if three().is_dir() else ""
+def npm_release(engine: str) -> str:
+    package = node_modules(engine) / PAGES[engine][0] / "package.json"
+    return str(json.loads(package.read_text())["version"]) if package.is_file() else ""
 
 
 def blender_release() -> str:
@@ -230,8 +256,51 @@ def blender_release() -> str:
     return said(blender_python(), "-c", "import bpy; print(bpy.app.version_string)").strip().splitlines()[-1]
 
 
+def check_libreoffice(path: Path, gathered: ExportScene) -> list[str]:
+    """LibreOffice Calc writes what it has read of a workbook as CSV."""
+    with tempfile.TemporaryDirectory() as name:
+        said("soffice", "--headless", "--convert-to", "csv", "--outdir", name, str(path), cwd=Path(name))
+        read = Path(name) / f"{path.stem}.csv"
+        rows = list(csv.reader(read.open(encoding="utf-8"))) if read.is_file() else []
+    return [] if {row[0] for row in rows[1:]} == {o.id for o in gathered.objects} else [f"{len(rows)} rows"]
+
+
+def check_librecad(path: Path, gathered: ExportScene) -> list[str]:
+    """LibreCAD prints a drawing, which is not empty then."""
+    with tempfile.TemporaryDirectory() as name:
+        shutil.copyfile(path, f"{name}/plan.dxf")
+        said("librecad", "dxf2pdf", "-a", "-c", f"{name}/plan.dxf", cwd=Path(name))
+        said("pdftoppm", "-singlefile", "-r", "40", "-png", f"{name}/plan.pdf", f"{name}/plan")
+        return drawn(Path(name) / "plan.png")
+
+
+def check_inkscape(path: Path, gathered: ExportScene) -> list[str]:
+    """Inkscape draws a plan with its labels."""
+    with tempfile.TemporaryDirectory() as name:
+        said("inkscape", str(path), "--export-background=white", f"--export-filename={name}/plan.png", cwd=Path(name))
+        return drawn(Path(name) / "plan.png")
+
+
+def drawn(picture: Path) -> list[str]:
+    """Finds a picture missing or empty: of less than a thousandth of ink."""
+    if not picture.is_file():
+        return ["no picture"]
+    ink = float((np.asarray(Image.open(picture).convert("L")) < INK).mean())
+    return [] if ink > MIN_INK else [f"{ink:.4f} of ink"]
+
+
+def check_slic3r(path: Path, gathered: ExportScene) -> list[str]:
+    """Slic3r finds a closed body of all triangles, in millimetres."""
+    found = dict(line.partition(" = ")[::2] for line in said("slic3r", "--info", str(path)).splitlines())
+    triangles = int.from_bytes(path.read_bytes()[80:84], "little")
+    return [] if found.get("number_of_facets", "").strip() == str(triangles) else [str(found)[:200]]
+
+
 PROGRAMS = (
-    Program("three.js", "glb", three_release, check_three),
+    *(
+        Program(engine, "glb", partial(npm_release, engine), lambda path, _, engine=engine: check_in_page(engine, path))
+        for engine in PAGES
+    ),
     Program("assimp", "glb", lambda: debian("assimp-utils"), check_assimp),
     Program("Blender", "blend", blender_release, check_blend),
     Program("Godot", "game", lambda: debian("godot3-server"), check_godot),
@@ -241,5 +310,9 @@ PROGRAMS = (
     Program("IfcOpenShell's validator", "ifc", lambda: version("ifcopenshell"), check_ifc),
     Program("Sweet Home 3D's classes", "sh3d", lambda: debian("sweethome3d"), check_sweet_home),
     Program("poppler", "pdf", lambda: debian("poppler-utils"), check_pdf),
+    Program("Inkscape", "svg", lambda: debian("inkscape"), check_inkscape),
+    Program("LibreCAD", "dxf", lambda: debian("librecad"), check_librecad),
+    Program("LibreOffice Calc", "xlsx", lambda: debian("libreoffice-calc"), check_libreoffice),
+    Program("Slic3r", "stl", lambda: debian("slic3r"), check_slic3r),
     Program("ezdxf's audit", "dxf", lambda: version("ezdxf"), check_dxf),
 )

@@ -26,8 +26,8 @@ from typing import Any
 
 import cv2
 import numpy as np
-from engine_environments import THREE, environment, make, python_of
-from engine_programs import PROGRAMS, THREE_VARIABLE, said, three_page
+from engine_environments import make, python_of
+from engine_programs import ENVIRONMENTS_VARIABLE, PROGRAMS, said, web_page
 from export_scenes import Source, from_scan, from_text, projects
 from PIL import Image
 
@@ -59,7 +59,12 @@ NAMES = {
     "drake": "Drake",
     "newton": "newton",
 }
-DRAWN = {"MuJoCo": "mujoco", "PyBullet": "pybullet", "Blender": "blender", "three.js": "three.js"}
+DRAWN = {
+    "MuJoCo": "mujoco",
+    "PyBullet": "pybullet",
+    "Blender": "blender",
+    **{name: name for name in ("three.js", "Babylon.js")},
+}
 """Rows with a picture, and what draws it."""
 WIDTH_PX = 320
 WHITE_L, BLACK_L, MAX_SHARE = 97.0, 3.0, 0.4
@@ -237,8 +242,8 @@ def draw(
 def picture_by(engine: str, python: Path, folder: Path, size: tuple[int, int]) -> np.ndarray | None:
     """What an engine draws of a room; None where it draws nothing."""
     out = folder / f"{engine}.png"
-    if engine == "three.js":
-        with three_page(folder / "room.glb", *size) as (page, _, _):
+    if engine.endswith(".js"):
+        with web_page(engine, folder / "room.glb", *size) as (page, _, _):
             page.locator("canvas").screenshot(path=out)
     else:
         script = Path(__file__).with_name("engine_pictures.py")
@@ -286,7 +291,7 @@ def main() -> None:
     a = parser.parse_args()
     make(a.environments, a.engines)
     os.environ.setdefault("MUJOCO_GL", "osmesa")
-    os.environ[THREE_VARIABLE] = str(environment(a.environments, "three.js") / THREE)
+    os.environ[ENVIRONMENTS_VARIABLE] = str(a.environments)
     os.environ.setdefault(PYTHON_VARIABLE, str(python_of(a.environments, "Blender")))
     library, done = built_in_library(), list[str]()
     rows = {

@@ -135,6 +135,7 @@ def _dimension_style(document: Any) -> None:
     style.dxf.dimexo = 60.0
     style.dxf.dimgap = 30.0
     style.dxf.dimscale = 1.0
+    style.copy_to_header(document)  # LibreCAD sizes the text of dimensions by the header alone
 
 
 def _add_dimension(space: Any, dimension: Dimension) -> None:

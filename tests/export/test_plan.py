@@ -14,6 +14,7 @@ from diorama_core.export import export_scene
 from diorama_core.export.footprints import signed_area
 from diorama_core.export.gathering import gather
 from diorama_core.export.plan import floor_plan
+from diorama_core.export.plan_dxf import TEXT_MM
 from diorama_core.export.plan_sheet import SheetLine, Text, plan_sheet
 from diorama_core.progress import CancelToken, Progress
 from diorama_core.scene.types import Architecture, Plane, Pose, Scene, SceneObject, Support
@@ -186,6 +187,7 @@ def test_dxf_passes_the_audit_and_measures_right(tmp_path) -> None:
     assert audit.errors == []
     assert audit.fixes == []
     assert document.units == ezdxf.units.MM
+    assert document.header["$DIMTXT"] == TEXT_MM, "LibreCAD sizes the text of dimensions by the header"
     space = document.modelspace()
     lengths = sorted(float(d.get_measurement()) for d in space.query("DIMENSION"))
     assert lengths.count(pytest.approx(4000)) == 2
