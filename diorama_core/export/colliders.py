@@ -242,22 +242,26 @@ def joint_friction(limb: ExportLimb, inertia: Inertia, T_world: Float[np.ndarray
 
 
 def _turning_clear(parts: tuple[Points, ...], limb: ExportLimb) -> tuple[Points, ...]:
-    """Parts of a leaf without the rear of its free edge, which would turn into what stands flush beside it.
+    """Parts of a leaf that stay within its own width while it turns, so that what is flush beside it is no obstacle.
 
-    A leaf of width w and thickness t reaches sqrt(w^2 + t^2) from its hinge; real ones have a gap of that size.
+    A leaf of width w and thickness t reaches sqrt(w^2 + t^2) from its hinge: the rear of its free edge goes, where real
+    ones have a gap of that size. So does what a handle reaches over that edge.
     """
     if limb.kind != "hinge" or not parts:
         return parts
-    every = np.concatenate(parts) - limb.origin
-    out = every.mean(axis=0)
+    placed = [part - limb.origin for part in parts]
+    out = np.concatenate(placed).mean(axis=0)
     out -= (out @ limb.axis) * limb.axis
     out = np.where(np.abs(out) == np.abs(out).max(), np.sign(out), 0.0)  # leaves lie along an axis of their object
     ahead = np.cross(limb.axis, out)
-    reach, rear = float((every @ out).max()), float(-(every @ ahead).min())
-    for angle in np.linspace(0.0, np.arctan2(max(rear, 0.0), reach), TURNING_CUTS + 1)[1:]:
+    panel = max(placed, key=lambda part: float(np.prod(np.ptp(part, axis=0)))) @ ahead
+    leaf = np.concatenate([p for p in placed if (p @ ahead).min() < panel.max() and (p @ ahead).max() > panel.min()])
+    reach, rear = float((leaf @ out).max()), max(0.0, -float((leaf @ ahead).min()))
+    for angle in np.linspace(0.0, np.arctan2(rear, reach), TURNING_CUTS + 1):
         normal = np.sin(angle) * ahead - np.cos(angle) * out
         level = float(normal @ limb.origin) - reach
-        parts = tuple(p if (rest := cut(p, normal, level, np.inf)) is None else rest for p in parts)
+        inside = [part for part in parts if (part @ normal).max() > level]
+        parts = tuple(part if (rest := cut(part, normal, level, np.inf)) is None else rest for part in inside)
     return parts
 
 

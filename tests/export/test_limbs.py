@@ -5,7 +5,7 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from diorama_core.export.colliders import body_of
-from diorama_core.export.limbs import limb_of
+from diorama_core.export.limbs import ExportLimb, limb_of
 from diorama_core.library.catalogue import built_in_library
 from diorama_core.library.furniture.joints import drawer_slide
 from diorama_core.scene.types import Pose, Scene, SceneObject
@@ -20,17 +20,27 @@ def test_a_stretched_drawer_comes_out_farther() -> None:
     assert limb.upper == pytest.approx(0.8)
 
 
-@pytest.mark.parametrize("shape", ["refrigerator-retro-blue", "refrigerator-double", "wardrobe-white-two"])
-def test_a_door_that_is_flush_with_a_wall_turns_past_it(shape: str) -> None:
+def leaves_of(shape: str) -> list[tuple[np.ndarray, ExportLimb]]:
+    """Corners of each leaf's convex bodies, closed, and how it turns."""
     library = built_in_library()
     record = library.shape(shape)
     item = SceneObject("a", "a", record.category, shape, record.size_m, Pose.upright((0.0, 0.0, 1.0), 0.0))
-    leaves = [m for m in body_of(Scene(objects=(item,)), library, "a").moving if m.limb.kind == "hinge"]
-    assert leaves
-    for leaf in leaves:
-        points, limb = np.concatenate(leaf.parts) - leaf.limb.origin, leaf.limb
+    moving = body_of(Scene(objects=(item,)), library, "a").moving
+    return [(np.concatenate(m.parts), m.limb) for m in moving if m.limb.kind == "hinge"]
+
+
+@pytest.mark.parametrize("shape", ["refrigerator-retro-blue", "refrigerator-double", "wardrobe-white-two"])
+def test_a_door_that_is_flush_with_a_wall_turns_past_it(shape: str) -> None:
+    for points, limb in leaves_of(shape):
         turns = (Rotation.from_rotvec(angle * limb.axis) for angle in np.linspace(limb.lower, limb.upper, 60))
-        away = np.sign(points.mean(axis=0)[1])
+        corners = points - limb.origin
+        away = np.sign(corners.mean(axis=0)[1])
         assert (
-            max(float((away * turn.apply(points)[:, 1]).max()) for turn in turns) < (away * points[:, 1]).max() + 5e-4
+            max(float((away * turn.apply(corners)[:, 1]).max()) for turn in turns) < (away * corners[:, 1]).max() + 5e-4
         )
+
+
+def test_a_handle_does_not_hold_the_other_leaf_shut() -> None:
+    """Its bar reaches over the edge of its leaf."""
+    (left, _), (right, _) = leaves_of("sideboard-rustic")
+    assert right[:, 1].max() < left[:, 1].min()
