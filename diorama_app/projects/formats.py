@@ -45,32 +45,34 @@ _FURNITURE = frozenset[Choice]({"selection"})
 GUIDES: Mapping[str, Guide] = {
     "glb": Guide(
         MODELS,
-        "Blender, three.js; made for Unity, Unreal and Godot",
+        "Blender, three.js, Babylon.js; made for Unity, Unreal and Godot",
         _TEXTURED | frozenset[Choice]({"compression", "lights", "photo"}),
     ),
-    "game": Guide(MODELS, "Blender; made for Godot, others by `diorama export --engine`", _TEXTURED | {"lights"}),
+    "game": Guide(
+        MODELS, "Godot, Blender; made for other engines by `diorama export --engine`", _TEXTURED | {"lights"}
+    ),
     "blend": Guide(MODELS, "Blender, with the photo behind the camera", _TEXTURED),
-    "usdz": Guide(MODELS, "made for iPhone and iPad (AR Quick Look)", _USD),
+    "usdz": Guide(MODELS, "Blender; made for iPhone and iPad (AR Quick Look)", _USD),
     "usdc": Guide(MODELS, "Blender, newton; made for Isaac Sim, Unreal, Maya", _USD),
-    "usda": Guide(MODELS, "the same programs, as readable text", _USD),
-    "obj": Guide(MODELS, "nearly every 3D program", _TEXTURED),
+    "usda": Guide(MODELS, "Blender; made for the same programs as `usdc`, as readable text", _USD),
+    "obj": Guide(MODELS, "Blender, assimp; made for nearly every 3D program", _TEXTURED),
     "hdr": Guide(MODELS, "made for Unity and Blender, as light and reflections beside a GLB", frozenset()),
-    "ply": Guide(MODELS, "Open3D; made for MeshLab and CloudCompare", _SHAPES),
-    "stl": Guide(MODELS, "made for slicers of 3D printers", _SHAPES),
+    "ply": Guide(MODELS, "Blender, Open3D; made for MeshLab and CloudCompare", _SHAPES),
+    "stl": Guide(MODELS, "Slic3r, Blender; made for slicers of 3D printers", _SHAPES),
     "mjcf": Guide(SIMULATORS, "MuJoCo", _BODIES),
     "urdf": Guide(SIMULATORS, "MuJoCo, PyBullet, SAPIEN; made for RViz and MoveIt", _BODIES),
     "sdf": Guide(SIMULATORS, "Drake; made for Gazebo", _BODIES),
     "robot": Guide(
         SIMULATORS, "MuJoCo, Drake; made for ROS 2 (nav2) and Isaac Sim: one zip with maps and places", _BODIES
     ),
-    "svg": Guide(PLANS, "browsers, Inkscape, Illustrator", _FURNITURE),
-    "pdf": Guide(PLANS, "any PDF viewer; prints to scale", _FURNITURE),
-    "dxf": Guide(PLANS, "made for AutoCAD, LibreCAD, QCAD", _FURNITURE),
-    "csv": Guide(PLANS, "made for spreadsheets", _FURNITURE),
-    "xlsx": Guide(PLANS, "made for spreadsheets, with pictures", _FURNITURE),
+    "svg": Guide(PLANS, "Chromium, Inkscape; made for other browsers and Illustrator", _FURNITURE),
+    "pdf": Guide(PLANS, "poppler; made for any PDF viewer, prints to scale", _FURNITURE),
+    "dxf": Guide(PLANS, "LibreCAD; made for AutoCAD and QCAD", _FURNITURE),
+    "csv": Guide(PLANS, "LibreOffice Calc; made for other spreadsheets", _FURNITURE),
+    "xlsx": Guide(PLANS, "LibreOffice Calc; made for other spreadsheets, with pictures", _FURNITURE),
     "sh3d": Guide(PLANS, "version 7.0.2; made for 5.3 and newer", _FURNITURE | frozenset[Choice]({"textures"})),
     "ifc": Guide(PLANS, "IfcOpenShell; made for Revit, Bonsai, IFC viewers", _SHAPES),
-    "html": Guide(SHOW, "any browser, without a network", _TEXTURED),
-    "scene-state": Guide(SHOW, "SceneEval, SmartScenes tools", _TEXTURED),
+    "html": Guide(SHOW, "Chromium; made for any browser, without a network", _TEXTURED),
+    "scene-state": Guide(SHOW, "made for SceneEval and SmartScenes tools", _TEXTURED),
 }
 """By format name, in the order in which they are offered."""
