@@ -18,7 +18,7 @@ import tempfile
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 from importlib.metadata import version
 from pathlib import Path
@@ -39,6 +39,8 @@ ENVIRONMENTS_VARIABLE = "DIORAMA_ENVIRONMENTS"
 SWEET_HOME = Path("/usr/share/sweethome3d/sweethome3d.jar")
 PATIENCE_S = 600.0
 INK, MIN_INK = 220, 0.001
+NEAR_M = 0.03
+"""Fewer triangles than a shape has move its corners by less."""
 Check = Callable[[Path, ExportScene], list[str]]
 
 
@@ -81,35 +83,80 @@ func walk(node, found):
 	if node is MeshInstance:
 		for surface in node.mesh.get_surface_count():
 			found.materials[node.mesh.surface_get_material(surface).get_instance_id()] = true
-	if node is Spatial:
-		found.places[node.name] = [node.translation.x, node.translation.y, node.translation.z]
 	for child in node.get_children():
 		walk(child, found)
+func bounds(node, box):
+	if node is MeshInstance:
+		for surface in node.mesh.get_surface_count():
+			for vertex in node.mesh.surface_get_arrays(surface)[0]:
+				var point = node.global_transform.xform(vertex)
+				box = AABB(point, Vector3()) if box == null else box.expand(point)
+	for child in node.get_children():
+		box = bounds(child, box)
+	return box
+func open(node, travels, found):
+	for child in node.get_children():
+		open(child, travels, found)
+	if travels.has(node.name):
+		var travel = travels[node.name]
+		var axis = Vector3(travel.axis[0], travel.axis[1], travel.axis[2])
+		if travel.joint == "slide":
+			node.translate_object_local(axis * travel.way)
+		else:
+			node.rotate_object_local(axis, travel.way)
+		var box = bounds(node, null)
+		var end = box.position + box.size
+		found.opened[node.name] = [box.position.x, box.position.y, box.position.z, end.x, end.y, end.z]
 func _init():
-	var found = {"colliders": 0, "materials": {}, "places": {}}
-	walk(load("res://room.glb").instance(), found)
+	var found = {"colliders": 0, "materials": {}, "opened": {}}
+	var room = load("res://room.glb").instance()
+	get_root().add_child(room)
+	walk(room, found)
+	var file = File.new()
+	file.open("res://travels.json", File.READ)
+	open(room, JSON.parse(file.get_as_text()).result, found)
 	print("FOUND ", to_json(found))
 	quit()
 """
 
 
 def check_godot(path: Path, gathered: ExportScene) -> list[str]:
-    """Imports the game pack into an empty project: colliders and materials are counted, doors are at their hinges."""
+    """Imports the game pack into an empty project: colliders and materials are counted, and what moves is opened by the
+    axis and the travel that its node says, about the node's own origin."""
+    colliders, materials, travels = game_pack(path)
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
         (folder / "project.godot").write_text('config_version=4\n[application]\nconfig/name="room"\n')
         (folder / "count.gd").write_text(_GODOT)
+        (folder / "travels.json").write_text(json.dumps(travels))
         shutil.copyfile(path, folder / "room.glb")
         godot_import(folder)
         lines = said("godot3-server", "--path", name, "-s", "count.gd", cwd=folder).splitlines()
     found = next((json.loads(line[6:]) for line in lines if line.startswith("FOUND ")), None)
     if found is None:
         return [line for line in lines if "SCRIPT ERROR" in line] or ["not imported"]
-    colliders, materials, hinges = game_pack(path)
     wrong = [] if found["colliders"] == colliders else [f"{found['colliders']} of {colliders} colliders"]
     wrong += [] if len(found["materials"]) == materials else [f"{len(found['materials'])} of {materials} materials"]
-    places = {part: np.array(found["places"].get(part, [np.inf] * 3)) for part in hinges}
-    return wrong + [f"{part} at {at}" for part, at in places.items() if not np.allclose(at, hinges[part], atol=1e-3)]
+    for part, bounds in opened_bounds(gathered).items():
+        box = np.array(found["opened"].get(part, [np.inf] * 6)).reshape(2, 3)
+        wrong += [] if np.allclose(box, bounds, atol=NEAR_M) else [f"{part} opens to {box.round(2).tolist()}"]
+    return wrong
+
+
+def opened_bounds(gathered: ExportScene) -> dict[str, np.ndarray]:
+    """Where each moving part is when it is open, +Y up, by Godot's name for it."""
+    found = {}
+    for node, limb in ((item, limb) for item in gathered.objects for limb in item.limbs):
+        T = node.T_world @ replace(limb, opened=limb.upper).T_object_limb
+        corners = np.concatenate([s.vertices for s in gathered.meshes[limb.mesh].surfaces]) * node.scale
+        x, y, z = (corners @ T[:3, :3].T + T[:3, 3]).T
+        world = np.column_stack([x, z, -y])
+        found[godot_name(f"{node.name} {limb.name}")] = np.array([world.min(axis=0), world.max(axis=0)])
+    return found
+
+
+def godot_name(name: str) -> str:
+    return re.sub(r"[^\w -]+", "", name)
 
 
 def godot_import(folder: Path) -> None:
@@ -124,17 +171,19 @@ def godot_import(folder: Path) -> None:
     editor.wait()
 
 
-def game_pack(path: Path) -> tuple[int, int, dict[str, list[float]]]:
-    """Number of colliders and of materials that are seen, and where parts that move are, by Godot's names for them."""
+def game_pack(path: Path) -> tuple[int, int, dict[str, dict[str, Any]]]:
+    """Number of colliders and of materials that are seen, and how far each part moves that can, by Godot's names."""
     content = path.read_bytes()
     document = json.loads(content[20 : 20 + int.from_bytes(content[12:16], "little")])
     nodes = document["nodes"]
     colliders = [node for node in nodes if node["name"].endswith("-convcolonly")]
     seen = [document["meshes"][node["mesh"]] for node in nodes if "mesh" in node and node not in colliders]
     materials = {primitive["material"] for mesh in seen for primitive in mesh["primitives"]}
-    moving = [node for node in nodes if "joint" in node.get("extras", {})]
-    hinges = {re.sub(r"[^\w -]+", "", node["name"]): node.get("translation", [0.0] * 3) for node in moving}
-    return len(colliders), len(materials), hinges
+    moving = [(node["name"], node["extras"]) for node in nodes if "joint" in node.get("extras", {})]
+    travels = {
+        godot_name(name): {"joint": e["joint"], "axis": e["axis"], "way": e["upper"] - e["open"]} for name, e in moving
+    }
+    return len(colliders), len(materials), travels
 
 
 _HOME = """import com.eteks.sweethome3d.io.HomeFileRecorder;
