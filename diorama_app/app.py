@@ -15,10 +15,8 @@ from diorama_app.commands.definitions import build_commands
 from diorama_app.commands.registry import Command
 from diorama_app.interaction.gestures import Gestures
 from diorama_app.interaction.wall_handle import WallHandle
-from diorama_app.panels.address import Address
 from diorama_app.panels.all_projects import AllProjects
 from diorama_app.panels.alternatives import Alternatives
-from diorama_app.panels.compare import Compare
 from diorama_app.panels.dropping import DroppedFiles, listen_for_drops
 from diorama_app.panels.edit_by_words import EditByWords
 from diorama_app.panels.export import ExportPanel
@@ -28,14 +26,14 @@ from diorama_app.panels.in_place import InPlace
 from diorama_app.panels.job import JobStrip
 from diorama_app.panels.library import LibraryPanel
 from diorama_app.panels.light import LightPanel
-from diorama_app.panels.measure import Tape
+from diorama_app.panels.messages import Toasts
 from diorama_app.panels.networks import Networks
 from diorama_app.panels.object_card import ObjectCard
-from diorama_app.panels.one_panel import OnePanel
 from diorama_app.panels.optimiser import Optimiser
 from diorama_app.panels.outliner import Outliner
-from diorama_app.panels.overlays import Overlays
-from diorama_app.panels.own_model import OwnModel
+from diorama_app.panels.overlays import Compare, Overlays, Silhouettes
+from diorama_app.panels.own_models import OwnModel
+from diorama_app.panels.page import Address, OnePanel, Tabs
 from diorama_app.panels.photo import PhotoPanel
 from diorama_app.panels.photo_camera import PhotoCameraPanel
 from diorama_app.panels.photo_correction import PhotoCorrection
@@ -46,13 +44,10 @@ from diorama_app.panels.plan import Plan
 from diorama_app.panels.projects import Projects
 from diorama_app.panels.properties import Properties
 from diorama_app.panels.review import Review
-from diorama_app.panels.room_size import RoomSize
-from diorama_app.panels.silhouettes import Silhouettes
+from diorama_app.panels.room_size import RoomSize, Tape
 from diorama_app.panels.start_page import StartPage
 from diorama_app.panels.supports import Supports
 from diorama_app.panels.surfaces import Surfaces
-from diorama_app.panels.tabs import Tabs
-from diorama_app.panels.toast import Toasts
 from diorama_app.panels.toolbar import Toolbar
 from diorama_app.panels.unsaved import UnsavedChanges
 from diorama_app.panels.walls import Walls

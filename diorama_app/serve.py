@@ -24,11 +24,11 @@ from urllib.parse import urlsplit
 import viser
 
 import diorama_core as diorama
-from diorama_app.session.preload import warm_up
+from diorama_app.session.preparation import warm_up
 from diorama_app.strings import SOURCE_LANGUAGE, use_language
 from diorama_app.web.viser_adapter import create_server, stop_server
 from diorama_app.web.visitors import ANY_HOST, Visitors, page_address, with_token
-from diorama_core.io.quick_imports import load_quickly
+from diorama_core.io.large_libraries import load_quickly
 from diorama_core.project.storage import Project
 
 if TYPE_CHECKING:

@@ -13,7 +13,7 @@ from typing import Literal
 import numpy as np
 from jaxtyping import Bool, Float, Float32, Int32, UInt8
 
-from diorama_core.geometry.camera_attitude import CameraAttitude
+from diorama_core.geometry.rotations import CameraAttitude
 from diorama_core.provenance import CameraSource, DepthSource, GraphSource, RoomSource, ScaleSource
 from diorama_core.scene.types import Architecture, Camera, Candidate, Intrinsics, Support
 from diorama_core.scene.values import ArrayValue

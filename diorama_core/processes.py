@@ -25,7 +25,7 @@ from typing import Any, TypeVar
 from loky import cpu_count, get_reusable_executor
 from loky.process_executor import ShutdownExecutorError
 
-from diorama_core.io.quick_imports import load_quickly
+from diorama_core.io.large_libraries import load_quickly
 from diorama_core.progress import Progress
 
 Result = TypeVar("Result")

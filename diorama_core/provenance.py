@@ -1,6 +1,6 @@
 """Where the values of an artefact come from: facts that stages state, projects store and tests compare.
 
-`diorama_core.pipeline.provenance_text` makes the sentences that users read.
+`diorama_core.pipeline.findings` makes the sentences that users read.
 """
 
 from __future__ import annotations

@@ -21,10 +21,14 @@ import numpy as np
 from jaxtyping import Bool, Float
 from scipy.optimize import minimize
 
-from diorama_core.arrangement.lower_rims import seen_below
 from diorama_core.arrangement.noise import MEASURED, REASONED, ObservationNoise
 from diorama_core.arrangement.standing import LEAST_ODDS, STANDING_TERMS, wall_relation
-from diorama_core.arrangement.support_hypotheses import SupportEvidence, SupportHypothesis, support_hypotheses
+from diorama_core.arrangement.support_hypotheses import (
+    SupportEvidence,
+    SupportHypothesis,
+    seen_below,
+    support_hypotheses,
+)
 from diorama_core.arrangement.support_terms import PATH, TERMS, place_name
 from diorama_core.artefacts import Inputs
 from diorama_core.evaluation.adapters.photo_annotations import AnnotatedPhoto

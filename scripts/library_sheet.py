@@ -13,9 +13,9 @@ from pathlib import Path
 from PIL import Image
 
 from diorama_core.library.catalogue import built_in_library
-from diorama_core.library.sheet import contact_sheet
 from diorama_core.library.taxonomy import CATEGORIES
 from diorama_core.render.thumbnails import thumbnail
+from diorama_core.render.views import contact_sheet
 
 
 def main() -> int:

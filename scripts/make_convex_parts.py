@@ -16,9 +16,8 @@ import numpy as np
 import trimesh
 
 from diorama_core.geometry.convex import convex_parts
-from diorama_core.geometry.packed_parts import NAMES, PackedParts, Parts, packed
 from diorama_core.io.atomic import write_atomically
-from diorama_core.layout.problem.parts import BUILT_IN_PARTS, solids_key
+from diorama_core.layout.problem.parts import BUILT_IN_PARTS, NAMES, PackedParts, Parts, packed, solids_key
 from diorama_core.library.catalogue import built_in_library
 from diorama_core.library.furniture.articulation import articulation
 from diorama_core.library.furniture.model import joined

@@ -24,8 +24,7 @@ from diorama_app.strings import script_texts
 from diorama_core import errors
 from diorama_core.appearance.patterns import COLOURS
 from diorama_core.library.catalogue import built_in_library
-from diorama_core.library.company import ROOMS
-from diorama_core.library.taxonomy import CATEGORIES
+from diorama_core.library.taxonomy import CATEGORIES, ROOMS
 from diorama_core.review.questions import TURNS
 from diorama_core.scene.types import Finish, PlaneRole, SurfacePattern
 

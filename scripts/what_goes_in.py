@@ -14,7 +14,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from diorama_core.perception.inputs.form import Form
+    from diorama_core.perception.inputs.source import Form
 
 ROOT = Path(__file__).resolve().parents[1]
 sys.path.insert(0, str(ROOT))
@@ -26,7 +26,7 @@ EXTRA = "needs `diorama[{}]`"
 def tables() -> dict[str, str]:
     """The generated parts of the page, by name."""
     from diorama_core.importing.forms import SCENE_FORMS
-    from diorama_core.io.other_files import OTHER_FILES
+    from diorama_core.io.file_heads import OTHER_FILES
     from diorama_core.library.ingest.models import MODEL_FORMS
     from diorama_core.perception.inputs.boxes.table import BOX_FORMS
     from diorama_core.perception.inputs.depth.containers import DEPTH_FORMS

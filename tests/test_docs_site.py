@@ -2,33 +2,25 @@
 
 from __future__ import annotations
 
-import importlib.util
 import re
 from importlib import import_module
 from pathlib import Path
-from types import ModuleType
 
 import pytest
+
+from scripts import docs_site as script
 
 ROOT = Path(__file__).parents[1]
 
 
 @pytest.fixture(scope="module")
-def script() -> ModuleType:
-    spec = importlib.util.spec_from_file_location("docs_site", ROOT / "scripts" / "docs_site.py")
-    module = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
-    return module
-
-
-@pytest.fixture(scope="module")
-def pages(script: ModuleType, tmp_path_factory: pytest.TempPathFactory) -> Path:
+def pages(tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("site") / "pages"
     script.main(folder)
     return folder
 
 
-def test_every_page_is_in_the_navigation_once(script: ModuleType, pages: Path) -> None:
+def test_every_page_is_in_the_navigation_once(pages: Path) -> None:
     written = {path.stem for path in pages.glob("*.md")} - {"index"} | {"reference/index"}
     assert sorted(name for part in script.PARTS.values() for name in part) == sorted(written)
 
@@ -39,5 +31,5 @@ def test_links_stay_within_the_site(pages: Path) -> None:
             assert (page.parent / target).exists(), f"{page.name}: {target}"
 
 
-def test_the_reference_is_of_modules_that_exist(script: ModuleType) -> None:
+def test_the_reference_is_of_modules_that_exist() -> None:
     assert all(import_module(module).__doc__ for _, module in script.REFERENCE.values())

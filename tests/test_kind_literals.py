@@ -2,24 +2,16 @@
 
 from __future__ import annotations
 
-import importlib.util
 from pathlib import Path
-from types import ModuleType
 
 import pytest
+
+from scripts import kind_literals as script
 
 ROOT = Path(__file__).resolve().parents[1]
 
 
-@pytest.fixture(scope="module")
-def script() -> ModuleType:
-    spec = importlib.util.spec_from_file_location("kind_literals", ROOT / "scripts" / "kind_literals.py")
-    module = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
-    return module
-
-
-def test_kinds_are_asked_of_the_table(script: ModuleType) -> None:
+def test_kinds_are_asked_of_the_table() -> None:
     assert script.complaints(ROOT) == []
     assert set(script.TABLES) <= set(script.checked(ROOT))
 
@@ -35,7 +27,7 @@ def checkout(tmp_path: Path) -> Path:
     return tmp_path
 
 
-def test_names_outside_the_library_count(script: ModuleType, checkout: Path) -> None:
+def test_names_outside_the_library_count(checkout: Path) -> None:
     assert script.complaints(checkout, 0) == []
     (checkout / "diorama_core/pose/turns.py").write_text("x = y == 'chair' or y in ('desk', 'chair')\n")
     assert script.complaints(checkout, 3) == []
@@ -52,7 +44,7 @@ def test_names_outside_the_library_count(script: ModuleType, checkout: Path) -> 
         "def f(x):\n    return x in ('chair', 'desk', 'lamp')",
     ],
 )
-def test_tables_of_kinds_are_named(script: ModuleType, checkout: Path, code: str) -> None:
+def test_tables_of_kinds_are_named(checkout: Path, code: str) -> None:
     (checkout / "diorama_core/pose/turns.py").write_text(code + "\n")
     assert any(
         "diorama_core/pose/turns.py" in line and "table of kinds" in line for line in script.complaints(checkout)

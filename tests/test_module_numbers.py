@@ -2,12 +2,9 @@
 
 from __future__ import annotations
 
-import importlib.util
-import sys
 from pathlib import Path
-from types import ModuleType
 
-import pytest
+from scripts import module_numbers as script
 
 ROOT = Path(__file__).resolve().parents[1]
 
@@ -25,27 +22,18 @@ def f():
 '''
 
 
-@pytest.fixture(scope="module")
-def script() -> ModuleType:
-    spec = importlib.util.spec_from_file_location("module_numbers", ROOT / "scripts" / "module_numbers.py")
-    module = importlib.util.module_from_spec(spec)
-    sys.modules[spec.name] = module
-    spec.loader.exec_module(module)
-    return module
-
-
-def test_numbers_at_the_top_of_a_module_are_counted(script):
+def test_numbers_at_the_top_of_a_module_are_counted():
     found = list(script.numbers_of("m", TEXT))
     assert [number.names for number in found] == [("NEAR_M",), ("LOW", "HIGH"), ("SHARE",)]
 
 
-def test_names_with_other_values_elsewhere_are_ambiguous(script):
+def test_names_with_other_values_elsewhere_are_ambiguous():
     of = script.numbers_of
     found = [*of("a", "NEAR_M = 0.05\nFAR_M = 2\n"), *of("b", "NEAR_M = 0.9\nFAR_M = 2\n")]
     assert list(script.ambiguous(found)) == ["NEAR_M"]
 
 
-def test_the_ceilings_hold_and_are_not_higher_than_they_must_be(script):
+def test_the_ceilings_hold_and_are_not_higher_than_they_must_be():
     found = list(script.numbers(ROOT))
     assert len(found) <= script.MAX_NUMBERS, "put new numbers into the stage's settings"
     assert len(script.ambiguous(found)) <= script.MAX_AMBIGUOUS, "give one concept one name in one place"

@@ -2,24 +2,16 @@
 
 from __future__ import annotations
 
-import importlib.util
 from pathlib import Path
-from types import ModuleType
 
 import pytest
+
+from scripts import untested_modules as script
 
 ROOT = Path(__file__).resolve().parents[1]
 
 
-@pytest.fixture(scope="module")
-def script() -> ModuleType:
-    spec = importlib.util.spec_from_file_location("untested_modules", ROOT / "scripts" / "untested_modules.py")
-    module = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
-    return module
-
-
-def test_every_module_has_a_test_or_a_reason(script: ModuleType) -> None:
+def test_every_module_has_a_test_or_a_reason() -> None:
     assert script.complaints(ROOT, script.untested_modules(ROOT), script.read_reasons(ROOT)) == []
 
 
@@ -50,7 +42,7 @@ def write(root: Path, name: str, text: str) -> None:
 ALL = {"diorama_core.solids", "diorama_core.pose.turns", "diorama_app.page"}
 
 
-def test_designs_and_packages_need_none(script: ModuleType, checkout: Path) -> None:
+def test_designs_and_packages_need_none(checkout: Path) -> None:
     assert script.modules(checkout) == script.untested_modules(checkout) == ALL
 
 
@@ -65,9 +57,7 @@ def test_designs_and_packages_need_none(script: ModuleType, checkout: Path) -> N
         ("tests/app/test_page.py", "", "diorama_app.page"),
     ],
 )
-def test_importing_or_mirroring_a_module_tests_it(
-    script: ModuleType, checkout: Path, name: str, text: str, tested: str
-) -> None:
+def test_importing_or_mirroring_a_module_tests_it(checkout: Path, name: str, text: str, tested: str) -> None:
     write(checkout, name, text)
     assert script.untested_modules(checkout) == ALL - {tested}
 
@@ -81,12 +71,12 @@ def test_importing_or_mirroring_a_module_tests_it(
         ("tests/test_a.py", "import diorama_core\n"),
     ],
 )
-def test_other_imports_do_not(script: ModuleType, checkout: Path, name: str, text: str) -> None:
+def test_other_imports_do_not(checkout: Path, name: str, text: str) -> None:
     write(checkout, name, text)
     assert script.untested_modules(checkout) == ALL
 
 
-def test_the_table_of_reasons_is_checked(script: ModuleType, checkout: Path) -> None:
+def test_the_table_of_reasons_is_checked(checkout: Path) -> None:
     write(checkout, "tests/test_a.py", "import diorama_core.solids\n")
     untested = script.untested_modules(checkout)
     told = script.complaints(

@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from diorama_core.io.typed import field_types
+from diorama_core.io.bounded import field_types
 from diorama_core.pipeline import codec
 from diorama_core.provenance import (
     AttitudeSource,

@@ -2,16 +2,9 @@
 
 from __future__ import annotations
 
-import importlib.util
 import re
-from pathlib import Path
 
-SCRIPT = Path(__file__).parents[1] / "scripts" / "what_goes_in.py"
-spec = importlib.util.spec_from_file_location("what_goes_in", SCRIPT)
-assert spec is not None
-assert spec.loader is not None
-page = importlib.util.module_from_spec(spec)
-spec.loader.exec_module(page)
+from scripts import what_goes_in as page
 
 
 def test_the_page_is_up_to_date() -> None:

@@ -17,7 +17,7 @@ SHOWS_ASSETS = """
 from diorama_app.panels.start_page import PICTURES
 from diorama_app.projects.example import EXAMPLE
 from diorama_core.layout.problem.parts import BUILT_IN_PARTS
-from diorama_core.models.own_weights import FOLDER, has_own_recogniser
+from diorama_core.io.assets import FOLDER, has_own_recogniser
 
 assert has_own_recogniser() and EXAMPLE.is_dir() and PICTURES.is_dir() and BUILT_IN_PARTS.is_file()
 print(FOLDER)

@@ -13,18 +13,17 @@ from typing import Any
 from diorama_app.cli.api import add_api, add_mcp
 from diorama_app.cli.bench import add_bench
 from diorama_app.cli.build import add_build
-from diorama_app.cli.doctor import add_doctor
-from diorama_app.cli.edit import add_edit
 from diorama_app.cli.export import add_export
 from diorama_app.cli.importing import add_import
 from diorama_app.cli.library import add_library
+from diorama_app.cli.machine import add_doctor
 from diorama_app.cli.models import add_models
 from diorama_app.cli.project import add_project
 from diorama_app.cli.review import add_review
 from diorama_app.cli.scenes import add_optimise, add_picture, add_serve
-from diorama_app.cli.text import add_text
+from diorama_app.cli.words import add_edit, add_text
 from diorama_core.errors import Cancelled, DioramaError
-from diorama_core.io.quick_imports import load_quickly
+from diorama_core.io.large_libraries import load_quickly
 from diorama_core.io.text import clean_strings
 
 LOAD_MUCH = (

@@ -1,14 +1,20 @@
-"""What the commands share: how a command is declared and how its arguments are read."""
+"""What the commands share: how a command is declared, how its arguments are read, and a progress bar on stderr, which
+is plain lines where stderr is not a terminal.
+"""
 
 from __future__ import annotations
 
 import argparse
+import signal
 import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
 from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
 from diorama_core.errors import UnavailableError
+from diorama_core.progress import CancelToken, Progress, ProgressEvent
 
 RECIPES = ("feasible", "paper", "all-in-one")
 WITHOUT_PHOTO = "orbit:35"
@@ -37,13 +43,6 @@ def command(commands: Any, name: str, run: Any, summary: str, example: str) -> a
     parser.add_argument("--verbose", action="store_true", help="log what happens and show tracebacks")
     parser.set_defaults(run=run)
     return parser
-
-
-def progress_bar() -> Any:
-    """The bar on stderr."""
-    from diorama_app.cli.progress_bar import progress_bar
-
-    return progress_bar()
 
 
 def print_note(note: str) -> None:
@@ -143,3 +142,43 @@ def size(text: str) -> tuple[int, int]:
     if not (16 <= width <= 8192 and 16 <= height <= 8192):
         raise argparse.ArgumentTypeError(f"{text!r}; each side must be between 16 and 8192")
     return width, height
+
+
+@contextmanager
+def progress_bar() -> Iterator[Progress]:
+    """A `Progress` drawn on stderr; Ctrl+C asks the work to stop at its next check, a second one stops at once."""
+    token = CancelToken()
+    previous = signal.getsignal(signal.SIGINT)
+
+    def stop(number: int, frame: object) -> None:
+        if token.cancelled:
+            raise KeyboardInterrupt
+        token.cancel()
+
+    signal.signal(signal.SIGINT, stop)
+    try:
+        if sys.stderr.isatty():
+            from rich.console import Console  # a tenth of a second to load
+            from rich.progress import BarColumn, TaskProgressColumn, TextColumn, TimeElapsedColumn
+            from rich.progress import Progress as Bar
+
+            columns = (TextColumn("{task.description:<28}"), BarColumn(), TaskProgressColumn(), TimeElapsedColumn())
+            with Bar(*columns, console=Console(stderr=True), transient=True) as bar:
+                task = bar.add_task("", total=1.0)
+                yield Progress(lambda e: bar.update(task, completed=e.fraction, description=e.message), token)
+        else:
+            yield Progress(_Lines(), token)
+    finally:
+        signal.signal(signal.SIGINT, previous)
+
+
+class _Lines:
+    """One line for each new message."""
+
+    def __init__(self) -> None:
+        self._last = ""
+
+    def __call__(self, event: ProgressEvent) -> None:
+        if event.message != self._last:
+            self._last = event.message
+            print(f"{event.fraction:4.0%} {event.message}", file=sys.stderr)

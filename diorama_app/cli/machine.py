@@ -1,18 +1,22 @@
-"""Checks of what Diorama needs on this machine."""
+"""Checks of what Diorama needs on this machine, and `diorama doctor`: can this machine run Diorama?"""
 
 from __future__ import annotations
 
+import argparse
 import importlib
 import importlib.metadata
+import json
 import os
 import shutil
 import sys
 import tempfile
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import diorama_core as diorama
-from diorama_core.geometry.open3d_import import o3d
+from diorama_app.cli.arguments import command
+from diorama_core.io.large_libraries import o3d
 
 PACKAGES = {
     "viser": "viser",
@@ -97,7 +101,7 @@ def _cores() -> Finding:
 
 def _accelerator() -> Finding:
     """What onnxruntime, which runs the networks, can use; torch only lays out scenes."""
-    from diorama_core.models.onnxruntime_loading import load_onnxruntime
+    from diorama_core.io.large_libraries import load_onnxruntime
     from diorama_core.models.runtime import ACCELERATORS
 
     onnxruntime = load_onnxruntime()
@@ -116,3 +120,25 @@ def _browser() -> Finding:
     return Finding(
         "browser", found is not None, found or "none on this machine; open the page from another", needed=False
     )
+
+
+def add_doctor(commands: Any) -> None:
+    """Declare `diorama doctor`."""
+    p = command(commands, "doctor", _doctor, "Check that this machine can run Diorama.", "diorama doctor")
+    p.add_argument("--json", action="store_true", help="print the findings as JSON")
+
+
+def _doctor(a: argparse.Namespace) -> int:
+    from diorama_app.cli.machine import examine
+
+    findings = examine()
+    if a.json:
+        print(json.dumps([finding.__dict__ for finding in findings]))
+    else:
+        for finding in findings:
+            mark = "ok  " if finding.ok else "FAIL" if finding.needed else "none"
+            print(f"{mark}  {finding.name:<22} {finding.detail}")
+    broken = [finding.name for finding in findings if finding.needed and not finding.ok]
+    if broken:
+        print(f"diorama: this machine lacks {', '.join(broken)}; see the lines above", file=sys.stderr)
+    return 1 if broken else 0

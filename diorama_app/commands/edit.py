@@ -33,7 +33,7 @@ def names_of(scene: Scene, ids: Iterable[str]) -> str:
 
 def delete_selected(client: Client) -> None:
     """Delete the selection; what stood on it comes down, and is offered to go as well."""
-    from diorama_core.editing.removal import without_objects
+    from diorama_core.editing.support_changes import without_objects
 
     session, chosen = client.session, client.need_selection()
     names = names_of(session.scene, chosen)
@@ -220,7 +220,7 @@ def attach(client: Client, object_id: str, parent_id: str, *, anyway: bool = Fal
         anyway: whether size and weight do not matter.
     """
     from diorama_core.editing.placing import seated
-    from diorama_core.editing.sensible_support import why_not_on
+    from diorama_core.editing.support_changes import why_not_on
 
     session = client.session
     scene = session.scene

@@ -25,7 +25,7 @@ from diorama_core.editing.placing import (
     spot_in_view,
 )
 from diorama_core.editing.relations import SEATS
-from diorama_core.editing.sensible_support import why_not_on
+from diorama_core.editing.support_changes import why_not_on
 from diorama_core.errors import EditRefused
 from diorama_core.library.record import Shape
 from diorama_core.library.taxonomy import broad, resolve

@@ -20,7 +20,7 @@ from diorama_core.editing.hand_placed import left_to_people
 from diorama_core.errors import EditRefused
 from diorama_core.geometry.rotations import rotation_from_vector, rotation_vector
 from diorama_core.layout.report import layout_figures
-from diorama_core.layout.weights import AS_IT_IS, Weights
+from diorama_core.layout.settings import AS_IT_IS, Weights
 from diorama_core.layout.what_got_worse import Problems, new_problems, resized_too_much, with_believed_sizes
 from diorama_core.progress import Progress
 from diorama_core.scene import edits

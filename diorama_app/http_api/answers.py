@@ -1,4 +1,6 @@
-"""What the API answers about jobs: the forms, and how a job's files become one, whatever state they are in."""
+"""What the API answers about jobs and errors: the forms, how a job's files become one, whatever state they are in, and
+one JSON line with the status that fits.
+"""
 
 from __future__ import annotations
 
@@ -6,12 +8,18 @@ from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
+from fastapi import Request, Response
+from fastapi.exceptions import RequestValidationError
+from fastapi.responses import JSONResponse
 from pydantic import BaseModel, Field
+from starlette.exceptions import HTTPException as StarletteHTTPException
 
 from diorama_app.http_api.job import Job, State
-from diorama_app.http_api.jobs import JobQueue
-from diorama_core.errors import DioramaError, ProjectError
+from diorama_app.http_api.jobs import JobQueue, JobStateError, QueueFullError, UnknownJobError
+from diorama_app.http_api.open_projects import StaleVersionError, UnknownProjectError
+from diorama_core.errors import DioramaError, EditRefused, ExportError, InputError, ProjectError, UnavailableError
 from diorama_core.io.bounded import shortened
+from diorama_core.io.text import clean_text
 from diorama_core.project.storage import read_scene
 
 MAX_NOTES, MAX_NOTE_LENGTH = 50, 300
@@ -93,3 +101,47 @@ def _object_count(path: Path) -> int:
 def _counted(path: Path, written_ns: int, size: int, inode: int) -> int:
     """Objects of a scene file as it was written then."""
     return len(read_scene(path).objects)
+
+
+STATUS: dict[type[DioramaError], int] = {
+    UnknownJobError: 404,
+    UnknownProjectError: 404,
+    JobStateError: 409,
+    StaleVersionError: 409,
+    EditRefused: 422,
+    InputError: 422,
+    ExportError: 422,
+    QueueFullError: 429,
+    UnavailableError: 501,
+}
+WORDS = {
+    400: "The request cannot be read.",
+    401: "The token is missing or wrong.",
+    403: "The host or origin is refused.",
+    404: "There is no such job, project, object, scene or format.",
+    408: "The request did not go on.",
+    409: "The job's state does not allow it, or the scene has changed since that version.",
+    413: "The request is too large.",
+    422: "An input cannot be used, or an edit cannot be done.",
+    429: "Too many jobs wait.",
+    500: "The files were damaged.",
+    501: "An optional part of the server is missing, or it is busy.",
+    503: "Too many uploads at once.",
+}
+
+
+def documented(*statuses: int) -> dict[int | str, dict[str, Any]]:
+    """The errors of an address for the OpenAPI document; those of access are everywhere."""
+    return {s: {"model": ErrorAnswer, "description": WORDS[s]} for s in (401, 403, *statuses)}
+
+
+def told(request: Request, error: Exception) -> Response:
+    """An error as its one line, with the status that fits."""
+    if isinstance(error, StarletteHTTPException):
+        return JSONResponse({"error": clean_text(str(error.detail))}, error.status_code, error.headers)
+    if isinstance(error, RequestValidationError):
+        first = error.errors()[0]
+        where = ".".join(str(part) for part in first["loc"][1:]) or "the request"
+        return JSONResponse({"error": clean_text(f"{where}: {first['msg']}")}, 422)
+    status = next((status for kind, status in STATUS.items() if isinstance(error, kind)), 500)
+    return JSONResponse({"error": clean_text(" ".join(str(error).split()))}, status)

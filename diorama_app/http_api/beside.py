@@ -20,7 +20,7 @@ import platformdirs
 import uvicorn
 from pydantic import BaseModel, ValidationError
 
-from diorama_app.http_api.connections import Connection
+from diorama_app.http_api.access import Connection
 from diorama_app.http_api.open_projects import OpenProjects
 from diorama_app.http_api.routes import create_app
 from diorama_app.http_api.server import IDLE_S, listen

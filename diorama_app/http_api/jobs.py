@@ -18,8 +18,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Literal
 
-from diorama_app.http_api.building import build_job, line_of
-from diorama_app.http_api.job import Job, Recipe, State, note_job, noted_jobs
+from diorama_app.http_api.job import Job, Recipe, State, build_job, line_of, note_job, noted_jobs
 from diorama_app.projects.begin import begin_project
 from diorama_core.errors import Cancelled, DioramaError, ProjectError
 from diorama_core.io.bounded import shortened

@@ -13,22 +13,22 @@ from starlette.concurrency import run_in_threadpool
 from diorama_app.commands import review
 from diorama_app.commands.optimise import optimise
 from diorama_app.http_api import project_answers as answers
+from diorama_app.http_api.answers import documented
 from diorama_app.http_api.files import FILE, PICTURE, VIEWS, file_answer, format_of, png
-from diorama_app.http_api.open_projects import OpenProjects, UnknownProjectError, edit, need_version, room_of
-from diorama_app.http_api.photo_form import PhotoForm
-from diorama_app.http_api.problems import documented
-from diorama_app.http_api.project_forms import (
+from diorama_app.http_api.forms import (
     AUTHOR,
     DescribeRequest,
     EditAnswer,
     EditRequest,
     EventData,
     OptimiseRequest,
+    PhotoForm,
     ProjectList,
     ReviewRequest,
     StepAnswer,
     StepRequest,
 )
+from diorama_app.http_api.open_projects import OpenProjects, UnknownProjectError, edit, need_version, room_of
 from diorama_app.projects.manage import address_of, name_of
 from diorama_app.reconstruction.build_job import build
 from diorama_app.session.session import EditorSession

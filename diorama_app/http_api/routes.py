@@ -13,12 +13,11 @@ from starlette.exceptions import HTTPException as StarletteHTTPException
 
 import diorama_core as diorama
 from diorama_app.http_api.access import Guard
-from diorama_app.http_api.answers import FormatAnswer, JobAnswer, JobList, answer_of
+from diorama_app.http_api.answers import FormatAnswer, JobAnswer, JobList, answer_of, documented, told
 from diorama_app.http_api.files import FILE, PICTURE, VIEWS, file_answer, format_of, png
+from diorama_app.http_api.forms import PhotoForm
 from diorama_app.http_api.jobs import JobQueue, Upload
 from diorama_app.http_api.open_projects import OpenProjects
-from diorama_app.http_api.photo_form import PhotoForm
-from diorama_app.http_api.problems import documented, told
 from diorama_app.http_api.project_routes import project_router
 from diorama_app.projects import uploads as sent
 from diorama_app.projects.formats import EXPORT_FORMATS

@@ -8,7 +8,7 @@ from pathlib import Path
 import uvicorn
 
 import diorama_core as diorama
-from diorama_app.http_api.connections import Connection
+from diorama_app.http_api.access import Connection
 from diorama_app.http_api.jobs import JobQueue
 from diorama_app.http_api.open_projects import OpenProjects
 from diorama_app.http_api.routes import create_app

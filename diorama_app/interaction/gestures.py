@@ -14,7 +14,7 @@ import viser
 
 from diorama_app.commands.insert import place_at
 from diorama_app.commands.measure import measure_at
-from diorama_app.commands.surfaces import surface_under
+from diorama_app.commands.room_looks import surface_under
 from diorama_app.interaction.marquee import objects_in
 from diorama_app.interaction.resize_handles import SizeHandles
 from diorama_app.session.client import Client, Measuring, Placing, Playing

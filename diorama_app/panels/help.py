@@ -7,8 +7,8 @@ from collections.abc import Sequence
 import viser
 
 from diorama_app.commands.registry import Command, CommandTable
-from diorama_app.panels.dialog import dialog
 from diorama_app.panels.fields import on_press
+from diorama_app.panels.messages import dialog
 from diorama_app.session.client import Client
 from diorama_app.strings import N_, _
 from diorama_app.web.html import text

@@ -6,8 +6,8 @@ from collections.abc import Callable, Sequence
 from functools import partial
 from typing import TypeVar
 
-from diorama_app.panels.dialog import dialog
 from diorama_app.panels.fields import on_press
+from diorama_app.panels.messages import dialog
 from diorama_app.projects.dropped import Dropped, Reading
 from diorama_app.session.client import Client
 from diorama_app.strings import _

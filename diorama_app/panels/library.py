@@ -11,16 +11,16 @@ import viser
 from diorama_app.commands.import_model import import_model
 from diorama_app.commands.insert import insert_shape, start_placing, stop_placing, toggle_favourite
 from diorama_app.panels.fields import on_change
-from diorama_app.panels.own_shelf import OwnShelf
+from diorama_app.panels.own_models import OwnShelf
 from diorama_app.panels.upload_field import UploadField
 from diorama_app.session.client import Client, Placing
 from diorama_app.session.units import format_size
 from diorama_app.strings import N_, _
 from diorama_app.web.html import Action, LiveHtml, button, text
 from diorama_core.library.browsing import Filters, Shelf, SizeClass, browsed, one_of_each
-from diorama_core.library.company import ROOMS
 from diorama_core.library.record import Shape
 from diorama_core.library.search import search
+from diorama_core.library.taxonomy import ROOMS
 from diorama_core.library.user_library import UserLibrary
 from diorama_core.scene.types import Scene
 

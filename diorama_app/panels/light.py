@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 import viser
 
-from diorama_app.commands import light as lighting
+from diorama_app.commands import room_looks as lighting
 from diorama_app.session.client import Client
 from diorama_app.strings import _
 from diorama_app.web.html import Action, LiveHtml, button, run_once, text

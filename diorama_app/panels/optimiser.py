@@ -16,7 +16,7 @@ from diorama_app.session.layout_run import LayoutRun
 from diorama_app.session.preferences import RecipeName
 from diorama_app.strings import N_, _, plural
 from diorama_app.web.html import Action, LiveHtml, button, library_text, text
-from diorama_core.layout.weights import Weights, weighted_costs
+from diorama_core.layout.settings import Weights, weighted_costs
 from diorama_core.layout.what_got_worse import in_words, resized_in_words
 from diorama_core.scene.types import Scene
 

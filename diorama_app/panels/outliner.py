@@ -16,7 +16,7 @@ from diorama_app.session.client import Client
 from diorama_app.strings import _, plural
 from diorama_app.viewport.decorations import is_unsure
 from diorama_app.web.html import Action, LiveHtml, button, run_once, text
-from diorama_core.editing.sensible_support import why_not_on
+from diorama_core.editing.support_changes import why_not_on
 from diorama_core.errors import EditRefused
 from diorama_core.library.taxonomy import resolve
 from diorama_core.scene.support import descendants

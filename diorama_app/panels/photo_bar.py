@@ -8,7 +8,7 @@ from diorama_app.session.client import Client
 from diorama_app.strings import _, plural
 from diorama_app.web.html import button, text
 from diorama_core.artefacts import Inputs
-from diorama_core.perception.inputs.boxes.standing import is_upside_down
+from diorama_core.perception.inputs.boxes.agreement import is_upside_down
 
 
 def photo_bar(client: Client, inputs: Inputs, proposals: int) -> str:

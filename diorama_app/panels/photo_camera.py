@@ -20,7 +20,7 @@ from diorama_app.session.units import format_length, parse_length
 from diorama_app.strings import N_, _
 from diorama_app.web.html import Action, LiveHtml, button, text
 from diorama_core.errors import InputError
-from diorama_core.geometry.camera_attitude import CameraAttitude
+from diorama_core.geometry.rotations import CameraAttitude
 from diorama_core.scene.types import Camera
 
 FIELDS = {

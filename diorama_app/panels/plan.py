@@ -20,8 +20,7 @@ from diorama_app.session.client import Client
 from diorama_app.session.units import Unit, format_length, parse_length
 from diorama_app.strings import _, plural
 from diorama_app.web.html import Action, LiveHtml, run_once
-from diorama_core.editing.plan_edits import corners, move_corner, set_wall_length, wall_feet
-from diorama_core.editing.wall_edits import draw_room, split_wall
+from diorama_core.editing.plan_edits import corners, draw_room, move_corner, set_wall_length, split_wall, wall_feet
 from diorama_core.errors import EditRefused, LibraryError
 from diorama_core.export.footprints import Outline, outline
 from diorama_core.export.plan import OVERHEAD_M, UNNAMED, RoomLines, drawing_order, room_lines

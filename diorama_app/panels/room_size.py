@@ -1,10 +1,13 @@
-"""The room: its surfaces to choose from, its height and the offsets of its walls; mounted objects follow."""
+"""The room: its surfaces to choose from, its height and the offsets of its walls; mounted objects; the measured length,
+and a field for the true length.
+"""
 
 from __future__ import annotations
 
 import viser
 
 from diorama_app.commands.edit import supporter_name
+from diorama_app.commands.measure import measured_m, rescale_measured, stop_measuring
 from diorama_app.session.client import Client
 from diorama_app.session.units import format_length, parse_length
 from diorama_app.strings import _
@@ -73,3 +76,39 @@ def _row(name: str, do: str, arg: str, value: str, hint: str) -> str:
         f"<tr><td>{text(name)}</td><td><input data-change={do} data-arg='{text(arg)}' value='{text(value)}' {empty} "
         f"aria-label='{text(name)}' title='{text(hint)}' style='width:110px'></td></tr>"
     )
+
+
+class Tape:
+    """Shown while two points are marked."""
+
+    def __init__(self, gui: viser.GuiApi, client: Client) -> None:
+        self._client = client
+        self._html = LiveHtml(gui, self._act)
+
+    def refresh(self) -> None:
+        """Draw the length, and ask for the true one."""
+        length = measured_m(self._client.doing)
+        if length is None:
+            self._html.show("")
+            return
+        shown = text(format_length(length, self._client.preferences.unit))
+        self._html.show(
+            f'<div class="card">{_("<b>{length}</b> between the two points.").format(length=shown)}'
+            '<div style="display:flex;gap:4px;margin-top:6px;align-items:center">'
+            f'<input data-change="true" placeholder="{text(_("true length, such as 2.4 m"))}" '
+            f'aria-label="{text(_("True length"))}" '
+            f'title="{text(_("Rescale the scene to this length"))}">{button(_("Done"), "done")}</div></div>'
+        )
+
+    def _act(self, action: Action) -> None:
+        client = self._client
+
+        def done() -> None:
+            stop_measuring(client)
+            client.refresh()
+
+        if action.do == "true" and action.pair[1].strip():
+            words = action.pair[1]
+            client.post(lambda: rescale_measured(client, parse_length(words, client.preferences.unit)))
+        elif action.do == "done":
+            client.post(done)

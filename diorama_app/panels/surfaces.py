@@ -13,7 +13,7 @@ import viser
 
 from diorama_app.commands.edit import supporter_name
 from diorama_app.commands.insert import put_opening
-from diorama_app.commands.surfaces import finish_surfaces
+from diorama_app.commands.room_looks import finish_surfaces
 from diorama_app.session.client import Client
 from diorama_app.session.units import format_length
 from diorama_app.strings import _

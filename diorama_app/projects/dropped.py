@@ -17,9 +17,8 @@ from diorama_app.projects.packing import is_packed
 from diorama_app.projects.photo_folder import DATA, PHOTOS
 from diorama_core.errors import DioramaError, InputError
 from diorama_core.importing.array_clouds import is_array_cloud
-from diorama_core.io.archives import content_of, unpacked
-from diorama_core.io.file_heads import FileHead, head_of
-from diorama_core.io.other_files import what_else
+from diorama_core.io.contained import content_of, unpacked
+from diorama_core.io.file_heads import FileHead, head_of, what_else
 from diorama_core.perception.inputs.sorting import Recognised, Sort, recognised, recognised_alone
 from diorama_core.progress import Progress
 

@@ -11,7 +11,7 @@ from pathlib import Path
 from diorama_app.projects.dropped import MAX_BYTES, DroppedPhoto, is_one_file
 from diorama_app.projects.reading_again import with_depth
 from diorama_app.projects.uploads import Upload
-from diorama_core.io.archives import unpacked
+from diorama_core.io.contained import unpacked
 from diorama_core.io.file_heads import head_of
 from diorama_core.perception.inputs.sorting import Sort
 from diorama_core.perception.inputs.source import Source

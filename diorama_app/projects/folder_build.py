@@ -15,9 +15,8 @@ from diorama_app.projects.options import BuildOptions, build_files
 from diorama_app.projects.photo_folder import FolderPhoto
 from diorama_app.projects.report import build_report
 from diorama_core.errors import DioramaError, ProjectError
-from diorama_core.io.atomic import write_atomically
+from diorama_core.io.atomic import write_atomically, write_json
 from diorama_core.io.bounded import read_json
-from diorama_core.io.documents import write_json
 from diorama_core.progress import Progress
 from diorama_core.workers import FinishedItem, WorkerDied, Workers
 

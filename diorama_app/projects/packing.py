@@ -12,8 +12,8 @@ from pathlib import Path
 from diorama_app.projects.begin import fresh_folder
 from diorama_app.projects.manage import not_copied
 from diorama_core.errors import InputError, ProjectError
-from diorama_core.io.archives import content_of, unpacked
 from diorama_core.io.atomic import write_atomically
+from diorama_core.io.contained import content_of, unpacked
 from diorama_core.library.library_names import BUILT_IN
 from diorama_core.project.storage import OWN_SHAPES, Project
 

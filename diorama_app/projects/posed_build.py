@@ -19,12 +19,12 @@ from diorama_core.artefacts import FurtherPhoto, Inputs
 from diorama_core.errors import InputError, ProjectError
 from diorama_core.io.atomic import write_atomically
 from diorama_core.layout.recipes import recipe
+from diorama_core.multiview.camera_changes import quarters_of, upright_camera
 from diorama_core.multiview.found_poses import UnposedPhoto, find_poses
 from diorama_core.multiview.lens import straightened
 from diorama_core.multiview.posed_photos import PosedPhoto, Poses
 from diorama_core.multiview.rooms import JoinedRoom, PosedInputs, build_room, in_room
 from diorama_core.multiview.sphere_scene import build_sphere
-from diorama_core.multiview.turned_cameras import quarters_of, upright_camera
 from diorama_core.perception.inputs import ReadInputs, read_inputs
 from diorama_core.pipeline.choices import NetworkChoice
 from diorama_core.pipeline.presets import stages_for

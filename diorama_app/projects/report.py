@@ -8,12 +8,12 @@ from typing import Any
 from diorama_core.api import Reconstruction
 from diorama_core.artefacts import LayoutReport
 from diorama_core.errors import ProjectError
-from diorama_core.io.documents import write_document
+from diorama_core.io.atomic import write_document
 from diorama_core.io.text import number_of
 from diorama_core.perception.foundation.proposals import JoinedDetection, OwnDetection, left_out
 from diorama_core.pipeline.arrangements import arrangement, arrangement_count
+from diorama_core.pipeline.findings import camera_sentence
 from diorama_core.pipeline.plan import evaluate
-from diorama_core.pipeline.provenance_text import camera_sentence
 from diorama_core.pipeline.runner import Runner
 from diorama_core.pipeline.steps import LaidOut
 from diorama_core.progress import Progress

@@ -12,7 +12,7 @@ from diorama_app.session.session import EditorSession
 from diorama_app.strings import N_, _
 from diorama_core.artefacts import Inputs
 from diorama_core.errors import EditRefused, InputError
-from diorama_core.geometry.camera_attitude import CameraAttitude
+from diorama_core.geometry.rotations import CameraAttitude
 from diorama_core.scene.room_edits import floor_height, rescale_to_length
 from diorama_core.scene.types import Camera, Intrinsics, Scene
 

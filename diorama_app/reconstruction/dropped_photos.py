@@ -17,7 +17,7 @@ from diorama_app.projects.uploads import Upload, decoded
 from diorama_app.session.client import Client
 from diorama_app.strings import _
 from diorama_core.errors import DioramaError, InputError
-from diorama_core.io.archives import unpacked
+from diorama_core.io.contained import unpacked
 from diorama_core.io.limited import LimitedProcess
 from diorama_core.progress import Progress
 from diorama_core.project.storage import Project

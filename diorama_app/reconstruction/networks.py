@@ -9,9 +9,9 @@ from diorama_app.strings import N_, _, plural
 from diorama_core.artefacts import LabelledBox, Photo
 from diorama_core.editing.input_corrections import with_boxes_added
 from diorama_core.errors import EditRefused, InputError, UnavailableError
+from diorama_core.io.assets import has_own_recogniser
 from diorama_core.models.manifest import NETWORKS, networks_of
 from diorama_core.models.network import Network
-from diorama_core.models.own_weights import has_own_recogniser
 from diorama_core.models.pull import pull
 from diorama_core.models.store import ModelStore
 from diorama_core.progress import Progress

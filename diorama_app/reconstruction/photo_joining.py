@@ -172,7 +172,7 @@ def _joined(
 ) -> AddedPhoto:
     from diorama_core.layout.recipes import recipe
     from diorama_core.multiview.adding import with_photo
-    from diorama_core.multiview.finding import camera_of, photos_of_scene
+    from diorama_core.multiview.registration import camera_of, photos_of_scene
     from diorama_core.pipeline.presets import stages_for
 
     library = client.session.offered

@@ -27,7 +27,7 @@ def start_empty_room(client: Client, width_m: float, depth_m: float, height_m: f
         ProjectError: the folder cannot be written.
     """
     from diorama_core.appearance.surface_finish import with_finish_pictures  # OpenCV; opening does without it
-    from diorama_core.editing.new_room import empty_room
+    from diorama_core.editing.plan_edits import empty_room
 
     session = client.session
     scene, made = with_finish_pictures(empty_room(width_m, depth_m, height_m), {})

@@ -14,8 +14,8 @@ from jaxtyping import Bool, Float
 
 from diorama_core.artefacts import Box, LabelledBox, Photo
 from diorama_core.errors import UnavailableError
+from diorama_core.io.assets import has_own_recogniser
 from diorama_core.models.boxes import Detections, areas, overlaps
-from diorama_core.models.own_weights import has_own_recogniser
 from diorama_core.models.store import ModelStore
 
 log = logging.getLogger(__name__)

@@ -13,7 +13,7 @@ from typing import Literal
 
 from diorama_app.strings import N_, _
 from diorama_core.errors import Cancelled, DioramaError, EditRefused
-from diorama_core.geometry.open3d_import import load_open3d
+from diorama_core.io.large_libraries import load_open3d
 from diorama_core.progress import CancelToken, Progress, ProgressEvent, Segments
 
 log = logging.getLogger(__name__)

@@ -17,9 +17,8 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from diorama_core.errors import ProjectError
-from diorama_core.io.atomic import remove_leftovers
+from diorama_core.io.atomic import remove_leftovers, write_document
 from diorama_core.io.bounded import MAX_JSON_BYTES, read_bytes
-from diorama_core.io.documents import write_document
 from diorama_core.library.catalogue import default_cache_dir
 from diorama_core.project.storage import Project, read_scene
 from diorama_core.scene.schema import scene_from_json, scene_to_json

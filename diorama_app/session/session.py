@@ -15,15 +15,14 @@ from typing import Any
 import viser
 
 from diorama_app.session.connected_client import ConnectedClient
-from diorama_app.session.glances import Glances
-from diorama_app.session.job_reports import JobReports
 from diorama_app.session.jobs import Jobs, Outcome
 from diorama_app.session.layout_run import LayoutRun
+from diorama_app.session.preparation import Preparer
 from diorama_app.session.problem_checker import Checker, Problems
 from diorama_app.session.project_contents import read_project
 from diorama_app.session.project_saving import ProjectSaving
 from diorama_app.session.reading import Reader
-from diorama_app.session.shape_preparation import Preparer
+from diorama_app.session.redraws import Glances, JobReports
 from diorama_app.session.shared_document import SharedDocument
 from diorama_app.session.shared_view import SharedView
 from diorama_app.session.ui_thread import UiThread

@@ -13,8 +13,8 @@ from typing import Any, Protocol, runtime_checkable
 import viser
 
 from diorama_app.session.connected_client import ConnectedClient
+from diorama_app.session.preparation import Preparer
 from diorama_app.session.redraws import Redraws
-from diorama_app.session.shape_preparation import Preparer
 from diorama_app.session.textures import Textures
 from diorama_app.session.ui_thread import UiThread
 from diorama_app.strings import N_, _

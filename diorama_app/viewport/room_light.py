@@ -18,8 +18,7 @@ from jaxtyping import Float
 
 from diorama_app.viewport.mesh_assets import ShapeBytes, plane_triangles
 from diorama_core.geometry.openings import OPENING_CATEGORIES, with_openings
-from diorama_core.geometry.sun import Daylight, daylight
-from diorama_core.geometry.sun_patches import sun_patches
+from diorama_core.geometry.sun import Daylight, daylight, sun_patches
 from diorama_core.geometry.unseen_walls import closed_room
 from diorama_core.scene.light_settings import LightSettings
 from diorama_core.scene.types import Architecture, Plane, RoomLight, Scene, SceneObject

@@ -1,4 +1,5 @@
-"""The scene on the page: updates viser nodes where the displayed scene differs.
+"""The scene on the page: updates viser nodes where the displayed scene differs, and the ground that a room stands on,
+with its soft shadow, so that it does not hang in the air.
 
 Every object is a frame `/objects/<n>` in its pose, with the mesh as a child (`marks` adds what each browser sees).
 Nodes belong to the server, so that all browsers see the same and a reload shows it again.
@@ -11,8 +12,11 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+import trimesh
 import viser
 from jaxtyping import UInt8
+from PIL import Image, ImageDraw, ImageFilter
+from trimesh.visual.material import PBRMaterial
 
 from diorama_app.viewport.decorations import remove_quietly
 from diorama_app.viewport.mesh_assets import NO_PICTURES, ShapeBytes, plane_glb, plane_triangles, reduced
@@ -22,6 +26,40 @@ from diorama_core.geometry.rotations import quaternion_wxyz
 from diorama_core.library.photo_materials import Pictures
 from diorama_core.library.stretch import Scale, relative_scale
 from diorama_core.scene.types import Finish, PhotoMaterial, Plane, Pose, Scene, SceneObject
+
+PIXELS = 192
+MARGIN_M = 1.2
+BELOW_M = 0.08
+"""So far below the floor."""
+BLUR_M = 0.32
+DARKEST = 110
+"""Opacity of the shadow beside the room, of 255."""
+
+
+def ground_glb(floor: Plane) -> bytes:
+    """A rectangle below a floor with its blurred outline in black, as GLB bytes; seen from above only."""
+    low, high = floor.polygon[:, :2].min(axis=0) - MARGIN_M, floor.polygon[:, :2].max(axis=0) + MARGIN_M
+    size = high - low
+    shape = np.maximum((PIXELS * size / size.max()).astype(int), 2)
+    outline = Image.new("L", (int(shape[0]), int(shape[1])))
+    corners = (floor.polygon[:, :2] - low) / size * shape
+    ImageDraw.Draw(outline).polygon([(float(x), float(y)) for x, y in corners], fill=DARKEST)
+    mask = np.asarray(outline.filter(ImageFilter.GaussianBlur(BLUR_M * float(shape[0] / size[0]))))[::-1]
+    picture = np.zeros((*mask.shape, 4), np.uint8)
+    picture[..., 3] = mask
+    z = float(floor.polygon[:, 2].min()) - BELOW_M
+    vertices = np.array([[low[0], low[1], z], [high[0], low[1], z], [high[0], high[1], z], [low[0], high[1], z]])
+    material = PBRMaterial(
+        baseColorTexture=Image.fromarray(picture), alphaMode="BLEND", metallicFactor=0.0, roughnessFactor=1.0
+    )
+    mesh = trimesh.Trimesh(
+        vertices=vertices,
+        faces=[[0, 1, 2], [0, 2, 3]],
+        visual=trimesh.visual.TextureVisuals(uv=[[0, 0], [1, 0], [1, 1], [0, 1]], material=material),
+        process=False,
+    )
+    return bytes(trimesh.Scene(mesh).export(file_type="glb"))
+
 
 MESH_NAMES = 8
 """An object's meshes take turns among so many names, so that what is on its way out keeps its own."""
@@ -150,7 +188,7 @@ class Viewport:
             self._ground = None
         self._ground_of = floor
         if floor is not None:
-            from diorama_app.viewport.ground import ground_glb  # OpenCV; opening a project does without it
+            from diorama_app.viewport.scene_view import ground_glb  # OpenCV; opening a project does without it
 
             self._ground = self._server.scene.add_glb(
                 "/ground", ground_glb(floor), cast_shadow=False, receive_shadow=False

@@ -31,10 +31,17 @@ from websockets.asyncio.server import ServerConnection
 from websockets.exceptions import InvalidMessage
 
 from diorama_app.strings import _
-from diorama_app.web.bridge import Bridge, ConnectionHandler
-from diorama_app.web.requests import HttpHandler, Pictures, ProjectServers, paced, project_of, request_check
-from diorama_app.web.upload_limits import RunningUpload, why_refused
-from diorama_app.web.visitors import Visitors
+from diorama_app.web.requests import (
+    Bridge,
+    ConnectionHandler,
+    HttpHandler,
+    Pictures,
+    ProjectServers,
+    paced,
+    project_of,
+    request_check,
+)
+from diorama_app.web.visitors import RunningUpload, Visitors, why_refused
 from diorama_core.errors import InputError
 from diorama_core.io.text import clean_strings
 

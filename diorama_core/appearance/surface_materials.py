@@ -14,7 +14,7 @@ from diorama_core.appearance.lit_colour import is_shade, unveiled
 from diorama_core.appearance.plainness import shows_plain
 from diorama_core.appearance.surface_view import SurfaceView
 from diorama_core.appearance.texture_example import Example, best_example, tileable
-from diorama_core.geometry.rows import cells_of
+from diorama_core.geometry.vectors import cells_of
 from diorama_core.io.srgb import linear_to_srgb, luminance, srgb_to_linear
 from diorama_core.library.slots import Role, Slot
 from diorama_core.render.gloss import roughness_seen, without_gloss

@@ -15,9 +15,8 @@ from pathlib import Path
 import numpy as np
 
 from diorama_core.arrangement.support_hypotheses import SupportHypothesis
-from diorama_core.library.company import often_carried
 from diorama_core.library.labels import with_article
-from diorama_core.library.taxonomy import PORTABLE
+from diorama_core.library.taxonomy import PORTABLE, often_carried
 
 PATH = Path(__file__).with_name("support_weights.json")
 FAR_TOLERANCES = 5.0

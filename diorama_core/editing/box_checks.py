@@ -8,7 +8,7 @@ import numpy as np
 
 from diorama_core.artefacts import Box, LabelledBox
 from diorama_core.editing.placing import DOOR
-from diorama_core.library.kind_sizes import MAX_SIGMAS, OFF_ANYWAY, sizes_of_kind
+from diorama_core.library.kinds import MAX_SIGMAS, OFF_ANYWAY, sizes_of_kind
 from diorama_core.library.taxonomy import category, with_kin
 
 SAME_SHARE = 0.7

@@ -5,8 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from diorama_core.editing.relations import Relation
-from diorama_core.library.company import often_carried, usual_carriers
-from diorama_core.library.taxonomy import broad, category, having
+from diorama_core.library.taxonomy import broad, category, having, often_carried, usual_carriers
 from diorama_core.scene.types import Scene, SceneObject
 
 OFTEN_AT_WALLS = having("often_at_wall")

@@ -12,7 +12,7 @@ from jaxtyping import Bool
 from diorama_core.artefacts import Box, Inputs, LabelledBox, Photo
 from diorama_core.geometry.projection import box_iou
 from diorama_core.library.labels import understand_label
-from diorama_core.perception.inputs.boxes.standing import turned_box
+from diorama_core.perception.inputs.boxes.agreement import turned_box
 
 SAME_BOX_IOU = 0.98
 """Boxes that overlap so much are the same one, written with fewer digits."""

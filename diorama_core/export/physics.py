@@ -12,7 +12,7 @@ from weakref import WeakKeyDictionary
 import numpy as np
 from jaxtyping import Float, Float32
 
-from diorama_core.geometry.rows import unique_rows
+from diorama_core.geometry.vectors import unique_rows
 from diorama_core.library.record import Shape
 from diorama_core.render.appearance import Material, Surface
 

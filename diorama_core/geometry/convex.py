@@ -20,7 +20,7 @@ from scipy.sparse import coo_matrix
 from scipy.sparse.csgraph import connected_components
 from scipy.spatial import ConvexHull, HalfspaceIntersection, QhullError
 
-from diorama_core.geometry.rows import unique_rows
+from diorama_core.geometry.vectors import unique_rows
 from diorama_core.scene.values import ArrayValue, frozen_array
 
 TIGHT = 0.88

@@ -11,8 +11,8 @@ import cv2
 import numpy as np
 from jaxtyping import Bool, Float, UInt8
 
-from diorama_core.geometry.rows import cells_of
 from diorama_core.geometry.shape_appearance import ShapeAppearance
+from diorama_core.geometry.vectors import cells_of
 from diorama_core.scene.values import ArrayValue
 
 

@@ -1,4 +1,4 @@
-"""Where cuboids land in a picture, for many cuboids at once.
+"""Where cuboids and edges land in a picture, for many at once.
 
 Edges are clipped to the view frustum, and the near plane's cut with them, so that a cuboid that is cut by the
 picture's border, or that reaches behind the camera, has exactly the bounds that a person would draw around its
@@ -7,13 +7,14 @@ visible part.
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from functools import cache
 from itertools import combinations
 
 import numpy as np
 from jaxtyping import Bool, Float, Int, Real
 
-from diorama_core.scene.types import Intrinsics, box_corners
+from diorama_core.scene.types import Camera, Intrinsics, Plane, box_corners
 
 NEAR_M = 0.05
 """Depth of the near plane."""
@@ -200,3 +201,26 @@ def _edge_pairs_of_faces() -> Int[np.ndarray, "36 2"]:
     edges = edges_of_cuboid()
     in_face = [((edges >> axis & 1) == side).all(axis=1) for axis in range(3) for side in (0, 1)]
     return np.array([pair for face in in_face for pair in combinations(np.flatnonzero(face), 2)])
+
+
+def box_edges(corners_world: Float[np.ndarray, "8 3"]) -> Float[np.ndarray, "12 2 3"]:
+    """Both ends of a box's edges, of corners in the order of `box_corners`."""
+    return corners_world[edges_of_cuboid()]
+
+
+def plane_edges(plane: Plane) -> Float[np.ndarray, "n 2 3"]:
+    """Both ends of the edges of a plane's polygon."""
+    return np.stack([plane.polygon, np.roll(plane.polygon, -1, axis=0)], axis=1)
+
+
+def seen_segments(camera: Camera, edges_world: Iterable[Float[np.ndarray, "_ 2 3"]]) -> Float[np.ndarray, "k 2 2"]:
+    """Segments in pixels, cut where they come too near the camera; those all behind it are left out."""
+    ends = np.concatenate([np.empty((0, 2, 3)), *edges_world])
+    depth = camera.to_camera(ends)[..., 2]
+    kept = depth.max(axis=1) > NEAR_M
+    ends, depth = ends[kept], depth[kept]
+    rows, behind = np.arange(len(ends)), depth.argmin(axis=1)
+    low, high = depth[rows, behind], depth[rows, 1 - behind]
+    share = np.where(low < NEAR_M, (NEAR_M - low) / np.maximum(high - low, 1e-9), 0.0)
+    ends[rows, behind] += share[:, None] * (ends[rows, 1 - behind] - ends[rows, behind])
+    return camera.project(ends)

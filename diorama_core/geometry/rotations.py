@@ -1,6 +1,10 @@
-"""Rotations as matrices, quaternions and rotation vectors: one face of `scipy.spatial.transform`, array to array."""
+"""Rotations as matrices, quaternions and rotation vectors (`scipy.spatial.transform`, array to array), and a camera's
+pitch and roll relative to the floor.
+"""
 
 from __future__ import annotations
+
+from dataclasses import dataclass
 
 import numpy as np
 from jaxtyping import Float
@@ -34,3 +38,39 @@ def yaw_rotations(yaws_rad: Float[np.ndarray, "n"]) -> Float[np.ndarray, "n 3 3"
     R[:, 1, 0] = np.sin(yaws_rad)
     R[:, 0, 1], R[:, 2, 2] = -R[:, 1, 0], 1.0
     return R
+
+
+UP = np.array([0.0, 0.0, 1.0])
+
+
+@dataclass(frozen=True)
+class CameraAttitude:
+    """Attitude of a camera relative to the floor."""
+
+    pitch_rad: float
+    """Downward, of the viewing direction."""
+    roll_rad: float
+    """Clockwise about the viewing direction, as the photographer sees it."""
+
+    @classmethod
+    def of(cls, R_world_camera: Float[np.ndarray, "3 3"]) -> CameraAttitude:
+        """Attitude of this camera."""
+        right, forward = R_world_camera[:, 0], R_world_camera[:, 2]
+        level, below = _level_axes(forward)
+        return cls(float(-np.arcsin(np.clip(forward[2], -1, 1))), float(np.arctan2(right @ below, right @ level)))
+
+    def rotation(self, heading: Float[np.ndarray, "3"]) -> Float[np.ndarray, "3 3"]:
+        """R_world_camera of a camera with this attitude that looks along `heading`, whose height is not used."""
+        flat = np.asarray(heading) * (1.0, 1.0, 0.0)
+        flat = flat / np.linalg.norm(flat)
+        forward = np.cos(self.pitch_rad) * flat - np.sin(self.pitch_rad) * UP
+        level, below = _level_axes(forward)
+        c, s = np.cos(self.roll_rad), np.sin(self.roll_rad)
+        return np.column_stack([c * level + s * below, c * below - s * level, forward])
+
+
+def _level_axes(forward: Float[np.ndarray, "3"]) -> tuple[np.ndarray, np.ndarray]:
+    """Right and down of a camera that looks along `forward` and is not rolled."""
+    level = np.cross(forward, UP)
+    level = level / np.linalg.norm(level)
+    return level, np.cross(forward, level)

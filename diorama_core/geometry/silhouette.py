@@ -16,8 +16,8 @@ import trimesh
 from jaxtyping import Bool, Float, Float32, Int, UInt32
 from scipy.spatial import ConvexHull, QhullError
 
-from diorama_core.geometry.open3d_import import o3d
 from diorama_core.geometry.projection import NEAR_M, edges_of_cuboid, frustum_slack
+from diorama_core.io.large_libraries import o3d
 from diorama_core.scene.types import Camera, box_corners
 
 ALL_CORES = 0

@@ -1,6 +1,6 @@
 """Every form in which a room, a scan or a scene comes: how it is told, and how it is read. `SCENE_FORMS` is the table.
 
-A form is told by what is in the file, not by its name alone. What no form tells is said by `other_files`.
+A form is told by what is in the file, not by its name alone. What no form tells is said by `file_heads.what_else`.
 """
 
 from __future__ import annotations
@@ -27,9 +27,8 @@ from diorama_core.importing.scan_mesh import scan_in
 from diorama_core.importing.scene_frame import frame_of_scene
 from diorama_core.importing.sweethome import parts_of_sweet_home
 from diorama_core.importing.usd import read_marked_usd
-from diorama_core.io.archives import content_of, unpacked
-from diorama_core.io.file_heads import FileHead, head_of
-from diorama_core.io.other_files import what_else
+from diorama_core.io.contained import content_of, unpacked
+from diorama_core.io.file_heads import FileHead, head_of, what_else
 from diorama_core.library.ingest.models import form_of, read_model
 from diorama_core.progress import Progress
 

@@ -22,7 +22,7 @@ from diorama_core.importing.storeys import (
     inner_face,
     measured_storeys,
 )
-from diorama_core.library.kind_sizes import is_possible
+from diorama_core.library.kinds import is_possible
 from diorama_core.library.record import Shape, ShapeLibrary
 from diorama_core.library.taxonomy import UNKNOWN, category
 from diorama_core.retrieval.pools import RetrievalQuery, pool_for, size_cost

@@ -19,8 +19,7 @@ from diorama_core.importing.measured_types import (
 )
 from diorama_core.importing.scanned_rugs import scanned_rugs
 from diorama_core.importing.scanned_tops import apart_from_tops
-from diorama_core.library.company import CARRIED_KINDS
-from diorama_core.library.taxonomy import CATEGORIES, UNKNOWN, having
+from diorama_core.library.taxonomy import CARRIED_KINDS, CATEGORIES, UNKNOWN, having
 from diorama_core.scene.types import yaw_rotation
 
 OFF_M = 0.06

@@ -24,7 +24,7 @@ from diorama_core.io.bounded import read_picture
 from diorama_core.library.labels import meanings
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.library.taxonomy import UNKNOWN, category
-from diorama_core.perception.naming import OwnNaming, own_naming
+from diorama_core.perception.foundation.proposals import OwnNaming, own_naming
 from diorama_core.progress import Progress
 from diorama_core.retrieval.kinds_together import kinds_together
 from diorama_core.retrieval.seen_kinds import as_it_looks

@@ -26,11 +26,11 @@ from diorama_core.geometry.openings import OPENING_CATEGORIES
 from diorama_core.importing.part import Part
 from diorama_core.io.bounded import shortened
 from diorama_core.io.contained import ContainedFiles
-from diorama_core.io.xml_text import parse_xml
+from diorama_core.io.text import parse_xml
 from diorama_core.library.ingest.limits import DEFAULT_LIMITS
 from diorama_core.library.ingest.models import SUFFIXES, read_model
 from diorama_core.library.ingest.names import named_kind
-from diorama_core.library.kind_sizes import is_possible
+from diorama_core.library.kinds import is_possible
 from diorama_core.library.taxonomy import UNKNOWN
 from diorama_core.progress import Progress
 from diorama_core.scene.schema import MAX_ITEMS

@@ -58,7 +58,7 @@ def _columns(heading: str, delimiter: str | None) -> tuple[int, ...]:
 
 def read_pcd(path: Path) -> Float[np.ndarray, "n 3"]:
     """The points of a PCD file in any of its three encodings."""
-    from diorama_core.geometry.open3d_import import o3d
+    from diorama_core.io.large_libraries import o3d
 
     cloud = o3d.io.read_point_cloud(str(path), format="pcd")
     return np.asarray(cloud.points, np.float64).reshape(-1, 3)

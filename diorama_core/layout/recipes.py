@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from diorama_core.errors import InputError
 from diorama_core.layout.feasible.recipe import FeasibleRecipe
-from diorama_core.layout.weights import AS_IT_IS, Weights
+from diorama_core.layout.settings import AS_IT_IS, Weights
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.protocols import LayoutStage
 

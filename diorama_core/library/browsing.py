@@ -6,8 +6,8 @@ from collections.abc import Callable, Collection, Sequence
 from dataclasses import dataclass
 from typing import Literal
 
-from diorama_core.library.company import ROOMS
 from diorama_core.library.record import Shape
+from diorama_core.library.taxonomy import ROOMS
 
 Shelf = Literal["all", "favourites", "recent", "own"]
 SizeClass = Literal["small", "medium", "large"]

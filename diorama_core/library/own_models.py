@@ -12,8 +12,8 @@ from pathlib import Path
 from pydantic import BaseModel, ConfigDict, ValidationError
 
 from diorama_core.errors import LibraryError
+from diorama_core.io.atomic import write_json
 from diorama_core.io.bounded import read_bytes, shortened
-from diorama_core.io.documents import write_json
 from diorama_core.io.text import clean_text
 
 MAX_NAME = 80

@@ -14,7 +14,7 @@ import trimesh
 from jaxtyping import Float
 
 from diorama_core.errors import LibraryError
-from diorama_core.io.typed import fits
+from diorama_core.io.bounded import fits
 from diorama_core.library.furniture.joints import Joint
 
 KEY = "part"

@@ -18,6 +18,7 @@ from scipy.sparse import coo_matrix
 from scipy.sparse.csgraph import connected_components
 from scipy.spatial import ConvexHull
 
+from diorama_core.io.large_libraries import o3d
 from diorama_core.library.record import SupportSurface
 
 if TYPE_CHECKING:
@@ -94,8 +95,6 @@ def support_surfaces(mesh: trimesh.Trimesh, lattice: int = 72) -> tuple[SupportS
 
 
 def _caster(mesh: trimesh.Trimesh) -> RaycastingScene:
-    from diorama_core.geometry.open3d_import import o3d  # a second to load, and listing shapes does without it
-
     scene = o3d.t.geometry.RaycastingScene(nthreads=1)
     scene.add_triangles(mesh.vertices.astype(np.float32), mesh.faces.astype(np.uint32))
     return scene
@@ -121,8 +120,6 @@ def _hits(
     mesh: trimesh.Trimesh, caster: RaycastingScene, x: Float[np.ndarray, "r"], y: Float[np.ndarray, "r"], top: float
 ) -> tuple[Int[np.ndarray, "h"], Float[np.ndarray, "h"], Float[np.ndarray, "h"]]:
     """Every hit of downward rays: ray number, height, and the face normal's z; sorted by ray, then downward."""
-    from diorama_core.geometry.open3d_import import o3d
-
     rays = np.zeros((len(x), 6), dtype=np.float32)
     rays[:, 0], rays[:, 1], rays[:, 2], rays[:, 5] = x, y, top, -1.0
     hits = caster.list_intersections(o3d.core.Tensor.from_numpy(rays))
@@ -177,8 +174,6 @@ def _walled_off(
 
     Only neighbours under one roof are asked: objects in the open may reach over what parts them.
     """
-    from diorama_core.geometry.open3d_import import o3d
-
     walled = np.zeros(len(a), dtype=bool)
     roofed = np.flatnonzero(np.isfinite(spots.clearance[a]) & np.isfinite(spots.clearance[b]))
     if len(roofed) == 0:

@@ -19,8 +19,8 @@ from jaxtyping import Float, Float32, UInt8
 from scipy.special import softmax
 
 from diorama_core.errors import UnavailableError
+from diorama_core.io import assets
 from diorama_core.io.derived import read_arrays
-from diorama_core.models import own_weights
 from diorama_core.models.efficientnet import CLASSES, FEATURES, SIDE_PX, lite0_graph
 from diorama_core.models.images import box_crop
 from diorama_core.models.runtime import SHARED_SESSIONS, SessionPool
@@ -65,7 +65,7 @@ class KindReadings(ArrayValue):
 
 @dataclass(frozen=True)
 class KindEvidence:
-    """Input: an upright RGB picture and boxes in it. Output: log-likelihoods of the kinds of `own_weights.CARD`."""
+    """Input: an upright RGB picture and boxes in it. Output: log-likelihoods of the kinds of `assets.CARD`."""
 
     graph: Path = field(repr=False)
     readings: KindReadings = field(repr=False, compare=False)
@@ -126,7 +126,7 @@ def own_evidence(kinds: tuple[str, ...]) -> KindEvidence | None:
 
 
 def _readings(kinds: tuple[str, ...]) -> KindReadings:
-    table, path = (own_weights.FOLDER / name for name in (own_weights.CLASS_TABLE, own_weights.KIND_LAYER))
+    table, path = (assets.FOLDER / name for name in (assets.CLASS_TABLE, assets.KIND_LAYER))
     layer = read_arrays(path, "kinds", "mean", "basis", "weights")
     if layer is None or tuple(map(str, layer[0])) != kinds:
         raise UnavailableError(f"{path}: is missing or of another namer; restore it from the repository")

@@ -17,8 +17,8 @@ from jaxtyping import Float32, Shaped, UInt8
 from scipy.special import expit
 
 from diorama_core.errors import UnavailableError
-from diorama_core.models import own_weights
-from diorama_core.models.own_weights import OUTLINER
+from diorama_core.io import assets
+from diorama_core.io.assets import OUTLINER
 from diorama_core.models.runtime import SHARED_SESSIONS, SessionPool
 from diorama_core.models.store import sha256_of
 
@@ -91,7 +91,7 @@ def own_outliner() -> BoxOutliner:
     Raises:
         UnavailableError: when they are not there.
     """
-    return BoxOutliner.of(own_weights.FOLDER)
+    return BoxOutliner.of(assets.FOLDER)
 
 
 def window(rgb: UInt8[np.ndarray, "h w 3"], box: Box) -> Float32[np.ndarray, "4 s s"]:

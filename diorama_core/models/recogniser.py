@@ -17,11 +17,11 @@ from jaxtyping import Float, Float32, UInt8
 from scipy.special import expit, softmax
 
 from diorama_core.errors import UnavailableError
-from diorama_core.models import own_weights
+from diorama_core.io import assets
+from diorama_core.io.assets import CARD, DETECTOR, NAMER
 from diorama_core.models.boxes import Detections, clipped, joined, without_doubles
 from diorama_core.models.images import FILL, box_crop, box_geometry
 from diorama_core.models.kind_evidence import KindEvidence, own_evidence, with_evidence
-from diorama_core.models.own_weights import CARD, DETECTOR, NAMER
 from diorama_core.models.runtime import SHARED_SESSIONS, SessionPool
 from diorama_core.models.store import sha256_of
 from diorama_core.scene.values import ArrayValue
@@ -181,7 +181,7 @@ def own_recogniser() -> Recogniser:
     Raises:
         UnavailableError: when its own weights are not there or damaged.
     """
-    alone = Recogniser.of(own_weights.FOLDER)
+    alone = Recogniser.of(assets.FOLDER)
     return replace(alone, evidence=own_evidence(alone.categories))
 
 

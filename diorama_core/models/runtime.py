@@ -22,7 +22,7 @@ import numpy as np
 
 from diorama_core.errors import Cancelled, UnavailableError
 from diorama_core.io.bounded import shortened
-from diorama_core.models.onnxruntime_loading import load_onnxruntime
+from diorama_core.io.large_libraries import load_onnxruntime
 from diorama_core.progress import Progress
 
 _LOG = logging.getLogger(__name__)

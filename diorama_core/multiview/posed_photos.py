@@ -23,8 +23,8 @@ from scipy.spatial.transform import Rotation
 from diorama_core.errors import InputError
 from diorama_core.io.bounded import megabytes, read_json, shortened
 from diorama_core.io.contained import ContainedFiles
+from diorama_core.multiview.camera_changes import quarters_of
 from diorama_core.multiview.lens import STRAIGHT, Lens
-from diorama_core.multiview.turned_cameras import quarters_of
 from diorama_core.scene.types import Camera, Intrinsics
 
 MAX_BYTES = 512_000_000

@@ -12,7 +12,7 @@ from diorama_core.artefacts import FurtherPhoto, Inputs
 from diorama_core.errors import InputError
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.multiview.adding import with_photo
-from diorama_core.multiview.finding import photos_of_scene
+from diorama_core.multiview.registration import photos_of_scene
 from diorama_core.pipeline.stages import Stages
 from diorama_core.progress import Progress
 from diorama_core.protocols import LayoutStage

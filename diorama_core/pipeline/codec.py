@@ -18,11 +18,10 @@ import numpy as np
 
 from diorama_core import artefacts, provenance
 from diorama_core.errors import ProjectError
-from diorama_core.geometry import camera_attitude
+from diorama_core.geometry import rotations
 from diorama_core.io.arrays import array_of, entry
-from diorama_core.io.bounded import parse_json, shortened
+from diorama_core.io.bounded import as_member, field_types, fits, parse_json, shortened
 from diorama_core.io.text import clean_strings
-from diorama_core.io.typed import as_member, field_types, fits
 from diorama_core.scene import light_settings, types
 
 MAX_BYTES = 400_000_000
@@ -51,7 +50,7 @@ _CLASSES: dict[str, type] = {
         artefacts.RankedShapes,
         artefacts.PosedCandidates,
         artefacts.LayoutReport,
-        camera_attitude.CameraAttitude,
+        rotations.CameraAttitude,
         provenance.CameraSource,
         provenance.RoomSource,
         provenance.GraphSource,

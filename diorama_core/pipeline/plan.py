@@ -11,17 +11,16 @@ from concurrent.futures import Future, ThreadPoolExecutor
 from contextlib import ExitStack
 from typing import Any
 
-from diorama_core.architecture.before_walls import drawn_before_walls
-from diorama_core.architecture.mounting import snap_mounted_objects
+from diorama_core.architecture.along_sight import drawn_before_walls, snap_mounted_objects
 from diorama_core.architecture.walls.passages import without_openings
 from diorama_core.arrangement.out_of_reach import left_where_seen
 from diorama_core.artefacts import Inputs
 from diorama_core.layout.clear_shapes import clear_shapes
-from diorama_core.perception.graph.apply import with_graph
+from diorama_core.perception.graph.geometric import with_graph
 from diorama_core.pipeline.assemble import assemble
 from diorama_core.pipeline.beliefs import with_beliefs
+from diorama_core.pipeline.beside import looking_ahead
 from diorama_core.pipeline.findings import drawing, finding
-from diorama_core.pipeline.look_ahead import looking_ahead
 from diorama_core.pipeline.reasons import reasons_of_build
 from diorama_core.pipeline.runner import Runner
 from diorama_core.pipeline.scene_steps import (

@@ -11,7 +11,7 @@ from diorama_core.arrangement.noise import ObservationNoise
 from diorama_core.artefacts import DetectedObject, Inputs, ObjectGeometry, PosedCandidates, Reason, SceneGraph
 from diorama_core.library.labels import is_named, meanings, with_article
 from diorama_core.library.taxonomy import CATEGORIES
-from diorama_core.pipeline.provenance_text import graph_sentence
+from diorama_core.pipeline.findings import graph_sentence
 from diorama_core.pipeline.steps import Corrected, LaidOut
 from diorama_core.retrieval.seen_kinds import as_it_looks
 from diorama_core.scene.types import Scene

@@ -23,8 +23,8 @@ from diorama_core.artefacts import (
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.perception.illuminant import Illuminant
 from diorama_core.pipeline.beside import prepare_processes
+from diorama_core.pipeline.findings import camera_sentence, geometry_sentence, graph_sentence, room_sentence
 from diorama_core.pipeline.plan import evaluate
-from diorama_core.pipeline.provenance_text import camera_sentence, geometry_sentence, graph_sentence, room_sentence
 from diorama_core.pipeline.runner import Runner, StageRun
 from diorama_core.pipeline.stages import Stages, embedded_stages
 from diorama_core.pipeline.steps import Artefacts

@@ -12,11 +12,11 @@ from diorama_core.layout.refinement.stage import MaskRefinement
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.perception.camera.estimate import EmbeddedCamera, with_given_attitude
 from diorama_core.perception.depth import MeasuredDepth, RenderedDepth
+from diorama_core.perception.foundation.proposals import own_naming
 from diorama_core.perception.graph.geometric import GeometricGraph
 from diorama_core.perception.masks import EmbeddedMasks
 from diorama_core.perception.measured import MeasuredGeometry
 from diorama_core.perception.metrology import SingleViewMetrology
-from diorama_core.perception.naming import own_naming
 from diorama_core.pose import MadeToMeasure, RenderAndCompare
 from diorama_core.protocols import (
     ArchitectureStage,

@@ -1,4 +1,6 @@
-"""What posing knows of every object: its place, what it may face, and what the picture shows of it."""
+"""What posing knows of every object (its place, what it may face, what the picture shows of it), and its shapes in
+their best poses, with the candidates that they make.
+"""
 
 from __future__ import annotations
 
@@ -8,20 +10,22 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from diorama_core.arrangement.facing.evidence import HeadingCosts, WallSamples
-from diorama_core.artefacts import Cuboid, DepthMap, DetectedObject, Inputs, ObjectGeometry
+from diorama_core.arrangement.facing.solve import Facings
+from diorama_core.artefacts import Cuboid, DepthMap, DetectedObject, Inputs, ObjectGeometry, PosedCandidates
 from diorama_core.geometry.observed import observe_among
 from diorama_core.geometry.see_through import SeeThrough
 from diorama_core.library.labels import is_named
 from diorama_core.library.record import Shape
 from diorama_core.library.taxonomy import NEVER_OPEN, category
-from diorama_core.pose.agree import SETS
 from diorama_core.pose.appearance_likelihood import AppearanceLikelihood, cells_for
 from diorama_core.pose.details import Details
 from diorama_core.pose.hypotheses import Anchor, anchor_of
 from diorama_core.pose.mask_observations import Evidence
 from diorama_core.pose.measured import MeasuredObject, foot_height_m
+from diorama_core.pose.sets import SETS
 from diorama_core.pose.settings import SETTINGS, PoseSearchSettings, PoseSettings
 from diorama_core.pose.surface import measured_surface, noise_of
+from diorama_core.scene.types import Candidate, Pose
 from diorama_core.workers import each
 
 
@@ -171,3 +175,45 @@ class _Surroundings:
                 close = AppearanceLikelihood.of(rgb, item.mask, near, surface, cuboid.size_m, self.settings.evidence)
         carried = tuple(self.cuboids[j] for j, parent in enumerate(parents) if parent == i)
         return PosingTask(item, cuboid, anchor, carried, coarse, fine, measured, close, details, self.settings.search)
+
+
+@dataclass(frozen=True, eq=False)
+class PosedShape:
+    """One shape's best pose."""
+
+    shape: Shape
+    pose: Pose
+    error: float
+    """Disagreement with the picture, 0 to 1."""
+    rank: float
+    """By which the shapes of one object are ordered: a logarithm, higher is better."""
+    doubt: float = 0.0
+    """How nearly as well it fits when turned otherwise: 0 to 1."""
+
+
+def ordered_shapes(shapes: Sequence[PosedShape], ranks: Mapping[str, float]) -> tuple[PosedShape, ...]:
+    """The shapes of one object by rank, the best first."""
+    return tuple(sorted(shapes, key=lambda posed: (-ranks[posed.shape.id], posed.shape.id)))
+
+
+def candidates_of(
+    task: PosingTask, ordered: Sequence[PosedShape], ranks: Mapping[str, float], facings: Facings
+) -> PosedCandidates:
+    """The posed shapes of one object; scores are relative to the best one's agreement with the picture.
+
+    Args:
+        task: of the object.
+        ordered: its posed shapes, best first.
+        ranks: log score of each shape id.
+        facings: what was decided about all objects' fronts, with reasons.
+    """
+    best = ordered[0]
+    top = ranks[best.shape.id]
+    candidates = tuple(
+        Candidate(p.shape.id, p.shape.size_m, float(np.exp(ranks[p.shape.id] - top) * (1.0 - best.error)), p.pose)
+        for p in ordered
+    )
+    confidence = task.fine.confidence(best.error, task.cuboid.confidence) * (1.0 - 0.5 * best.doubt)
+    reasons = tuple(share for share in facings.shares if share.object_id == task.item.id)
+    headings = facings.probabilities_of(task.item.id)
+    return PosedCandidates(task.item.id, candidates, confidence, reasons, headings)

@@ -10,23 +10,28 @@ import numpy as np
 from jaxtyping import Float
 
 from diorama_core.arrangement.facing.solve import solve
-from diorama_core.arrangement.facing.weights import FacingWeights, facing_weights
+from diorama_core.arrangement.facing.terms import FacingWeights, facing_weights
 from diorama_core.artefacts import DepthMap, DetectedObject, Inputs, ObjectGeometry, PosedCandidates, RankedShapes
 from diorama_core.geometry.shape_appearance import SHARED_APPEARANCES, ShapeAppearance
 from diorama_core.geometry.silhouette import PoseBatch, ShapeCaster
 from diorama_core.library.catalogue import default_cache_dir
 from diorama_core.library.record import ROUND, Shape, ShapeLibrary
 from diorama_core.library.taxonomy import category
-from diorama_core.pose.agree import agreed_ranks
 from diorama_core.pose.hypotheses import Hypotheses, hypotheses_for, unlike_best
 from diorama_core.pose.levels import level_cost
 from diorama_core.pose.limits import SizeLimits, sides_log_of
 from diorama_core.pose.measured import MeasuredObject
-from diorama_core.pose.posed_shapes import PosedShape, candidates_of, ordered_shapes
-from diorama_core.pose.posing_tasks import PosingTask, likeliest_kinds, posing_tasks
+from diorama_core.pose.posing_tasks import (
+    PosedShape,
+    PosingTask,
+    candidates_of,
+    likeliest_kinds,
+    ordered_shapes,
+    posing_tasks,
+)
 from diorama_core.pose.refine import BoxFit
 from diorama_core.pose.room_evidence import Trials, TriedShape, facing_room, powers, wall_samples
-from diorama_core.pose.sets import shared_scales
+from diorama_core.pose.sets import agreed_ranks, shared_scales
 from diorama_core.pose.settings import SETTINGS, PoseSettings
 from diorama_core.pose.turns import TurnSearch
 from diorama_core.processes import each_there

@@ -18,9 +18,8 @@ import numpy as np
 
 from diorama_core.artefacts import FurtherPhoto
 from diorama_core.errors import ProjectError
-from diorama_core.io.atomic import write_atomically
+from diorama_core.io.atomic import write_atomically, write_document, write_json
 from diorama_core.io.bounded import read_bytes, read_json, shortened
-from diorama_core.io.documents import write_document, write_json
 from diorama_core.pipeline import codec
 from diorama_core.project.storage import Project, jpeg
 from diorama_core.scene.types import Plane, Pose, Scene, SceneObject

@@ -16,8 +16,8 @@ from types import TracebackType
 from filelock import FileLock, Timeout
 
 from diorama_core.errors import ProjectError
+from diorama_core.io.atomic import write_json
 from diorama_core.io.bounded import read_json, shortened
-from diorama_core.io.documents import write_json
 
 LOCK = ".diorama.lock"
 OWNER = ".diorama-owner.lock"

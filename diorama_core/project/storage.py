@@ -22,9 +22,8 @@ from PIL import Image
 
 from diorama_core.artefacts import Inputs, Photo
 from diorama_core.errors import ProjectError, SceneError
-from diorama_core.io.atomic import write_atomically
+from diorama_core.io.atomic import write_atomically, write_document, write_json
 from diorama_core.io.bounded import MAX_JSON_BYTES, parse_json, read_bytes, read_picture, shortened
-from diorama_core.io.documents import write_document, write_json
 from diorama_core.io.text import file_label
 from diorama_core.library.library_names import BUILT_IN, ESCAPED_PLUS
 from diorama_core.pipeline import codec

@@ -17,8 +17,7 @@ from PIL import Image
 from trimesh.visual.color import ColorVisuals
 from trimesh.visual.material import PBRMaterial
 
-from diorama_core.geometry.rows import unique_rows
-from diorama_core.geometry.vectors import cross, dot, unit
+from diorama_core.geometry.vectors import cross, dot, unique_rows, unit
 from diorama_core.io.cache import LruCache
 from diorama_core.library.paint import painted
 from diorama_core.library.photo_materials import PhotographedMaterial, Pictures, with_photo_materials

@@ -12,9 +12,8 @@ from jaxtyping import Bool, Float32, Int
 from diorama_core.geometry.vectors import dot
 from diorama_core.progress import Progress
 from diorama_core.render.filters import Neighbours
-from diorama_core.render.grid import Grid, bands
 from diorama_core.render.lighting import TILE, Effort, Lighting, Spots, irradiance
-from diorama_core.render.raycast import Caster
+from diorama_core.render.raycast import Caster, Grid, bands
 from diorama_core.render.world import World
 from diorama_core.workers import each
 

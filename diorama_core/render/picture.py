@@ -14,9 +14,8 @@ from diorama_core.geometry.vectors import unit
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.progress import Progress
 from diorama_core.render.filters import as_bytes, tone_mapped
-from diorama_core.render.grid import bands
 from diorama_core.render.lighting import Effort, Lighting, room_lighting, studio
-from diorama_core.render.raycast import Caster, OrthographicView, PinholeView, View, pixel_centres
+from diorama_core.render.raycast import Caster, OrthographicView, PinholeView, View, bands, pixel_centres
 from diorama_core.render.scene_light import with_settings
 from diorama_core.render.shading import Shot, shoot
 from diorama_core.render.world import World, scene_world

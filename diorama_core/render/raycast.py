@@ -1,4 +1,5 @@
-"""Ray-casting on the processor: rays of a view, and what each ray meets first.
+"""Ray-casting on the processor: rays of a view, what each ray meets first, and what every pixel sees as images and
+bands of rows.
 
 Triangles of everything that is seen go into one acceleration structure, so that a hit's triangle index alone tells
 the object, its material and its texture coordinates. Rays are scaled so that the hit distance is the depth.
@@ -13,10 +14,10 @@ from typing import Any
 
 import numpy as np
 import trimesh
-from jaxtyping import Bool, Float, Float32, Int32
+from jaxtyping import Bool, Float, Float32, Int, Int32
 
-from diorama_core.geometry.open3d_import import o3d
 from diorama_core.geometry.vectors import face_normals, facing
+from diorama_core.io.large_libraries import o3d
 from diorama_core.scene.types import Camera
 
 RayArray = Float32[np.ndarray, "*n 6"]
@@ -197,3 +198,48 @@ def render_buffers(meshes: Sequence[tuple[trimesh.Trimesh, Float[np.ndarray, "4 
         camera: The pinhole camera; the buffers have its image size.
     """
     return MeshCaster(meshes).buffers(camera)
+
+
+@dataclass(frozen=True, eq=False)
+class Grid:
+    """The first places of all pixels; 0 where nothing is seen (`instance` -1)."""
+
+    found: Bool[np.ndarray, "h w"]
+    points: Float32[np.ndarray, "h w 3"]
+    normals: Float32[np.ndarray, "h w 3"]
+    """Smooth shading normals, toward the viewer."""
+    flat_normals: Float32[np.ndarray, "h w 3"]
+    """Normals of the triangles, toward the viewer."""
+    instance: Int[np.ndarray, "h w"]
+    depth: Float32[np.ndarray, "h w"]
+    """Along the viewing axis."""
+    pixel_m: Float32[np.ndarray, "h w"]
+    """Width that a pixel covers at its depth."""
+    photographed: Bool[np.ndarray, "h w"]
+    """Whether the colour of what is seen already holds the light of the room."""
+
+    def part(self, rows: slice, columns: slice = slice(None)) -> Grid:
+        """Some rows and columns, as a view of the same memory."""
+        return Grid(
+            self.found[rows, columns],
+            self.points[rows, columns],
+            self.normals[rows, columns],
+            self.flat_normals[rows, columns],
+            self.instance[rows, columns],
+            self.depth[rows, columns],
+            self.pixel_m[rows, columns],
+            self.photographed[rows, columns],
+        )
+
+
+def pixel_footprint(view: View, depth: Float32[np.ndarray, "h w"]) -> Float32[np.ndarray, "h w"]:
+    """Width in metres that a pixel covers at its depth."""
+    middle = np.array([[view.width / 2, view.height / 2], [view.width / 2 + 1, view.height / 2]])
+    a, b = view.rays(middle).astype(np.float64)
+    at_zero, per_metre = np.linalg.norm(b[:3] - a[:3]), np.linalg.norm(b[3:] - a[3:])
+    return (at_zero + per_metre * depth).astype(np.float32)
+
+
+def bands(height: int, rows: int = 48) -> list[slice]:
+    """Rows in groups small enough for the processor's cache."""
+    return [slice(start, min(start + rows, height)) for start in range(0, height, rows)]

@@ -12,9 +12,8 @@ from diorama_core.progress import Progress
 from diorama_core.render.filters import tone_mapped
 from diorama_core.render.gathering import fallen_light
 from diorama_core.render.gloss import gloss_share
-from diorama_core.render.grid import Grid, bands, pixel_footprint
 from diorama_core.render.lighting import Effort, Lighting, ambient, unshadowed
-from diorama_core.render.raycast import Caster, RayArray, View, pixel_centres
+from diorama_core.render.raycast import Caster, Grid, RayArray, View, bands, pixel_centres, pixel_footprint
 from diorama_core.render.world import Places, World
 from diorama_core.workers import each
 

@@ -20,7 +20,7 @@ from jaxtyping import Bool, Float, Float32, Int, Int32, UInt8, UInt16, UInt32
 from scipy.spatial import ConvexHull, QhullError
 
 from diorama_core.errors import LibraryError
-from diorama_core.geometry.open3d_import import o3d
+from diorama_core.io.large_libraries import o3d
 from diorama_core.progress import Progress
 from diorama_core.scene.types import Camera, Intrinsics
 

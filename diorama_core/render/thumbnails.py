@@ -13,8 +13,8 @@ from diorama_core.io.cache import LruCache
 from diorama_core.io.derived import derived
 from diorama_core.library.catalogue import default_cache_dir
 from diorama_core.library.record import Shape, ShapeLibrary, record_of
-from diorama_core.library.sheet import contact_sheet
 from diorama_core.progress import Progress
+from diorama_core.render.views import contact_sheet
 
 if TYPE_CHECKING:
     from diorama_core.render.appearance import Paint

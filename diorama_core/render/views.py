@@ -1,17 +1,17 @@
-"""Views of single shapes: studio pictures with a contact shadow on nothing."""
+"""Views of single shapes, studio pictures with a contact shadow on nothing, and contact sheets of many of them."""
 
 from __future__ import annotations
 
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import cv2
 import numpy as np
 from jaxtyping import Float, Float32, UInt8
-from PIL import Image
+from PIL import Image, ImageDraw
 
 from diorama_core.library.opening import OpenedShapes, can_open
 from diorama_core.library.record import Shape, ShapeLibrary, record_of
-from diorama_core.library.sheet import PAGE
 from diorama_core.library.taxonomy import category
 from diorama_core.render.appearance import Paint, shape_surfaces
 from diorama_core.render.filters import as_bytes, tone_mapped
@@ -156,3 +156,40 @@ def _over(shot: Shot, shadow: Float32[np.ndarray, "h w"]) -> UInt8[np.ndarray, "
     opacity = covered + shadow[..., None] * (1 - covered)
     straight = colour * covered / np.maximum(opacity, 1e-3)
     return np.concatenate([as_bytes(straight), as_bytes(opacity)], axis=-1)
+
+
+CAPTION_PX = 18
+PAGE = (246, 245, 243)
+INK = (60, 60, 60)
+
+
+def contact_sheet(
+    shapes: Sequence[Shape], picture: Callable[[Shape], Image.Image], size_px: int = 240, columns: int = 6
+) -> Image.Image:
+    """A page with every shape's picture over its id and size.
+
+    Args:
+        shapes: What to show, in order.
+        picture: Renders one shape; the library itself renders nothing.
+        size_px: Side of one picture.
+        columns: Pictures side by side.
+
+    """
+    rows = max(-(-len(shapes) // columns), 1)
+    page = Image.new("RGB", (columns * size_px, rows * (size_px + CAPTION_PX)), PAGE)
+    draw = ImageDraw.Draw(page)
+    for number, shape in enumerate(shapes):
+        left, top = (number % columns) * size_px, (number // columns) * (size_px + CAPTION_PX)
+        image = picture(shape).convert("RGBA").resize((size_px, size_px))
+        page.paste(image, (left, top), image)
+        x, y, z = shape.size_m
+        words = f"{shape.id}  {x:.2f} x {y:.2f} x {z:.2f}"
+        draw.text((left + 4, top + size_px + 2), _fitted(draw, words, size_px - 8), fill=INK)
+    return page
+
+
+def _fitted(draw: ImageDraw.ImageDraw, words: str, width_px: int) -> str:
+    """The words, or as many of their letters as fit."""
+    while words and draw.textlength(words) > width_px:
+        words = words[:-1]
+    return words.rstrip()

@@ -21,9 +21,16 @@ from diorama_core.geometry.palettes import palette_agreement, palette_of_appeara
 from diorama_core.geometry.shape_appearance import SHARED_APPEARANCES, ShapeAppearance
 from diorama_core.library.catalogue import default_cache_dir
 from diorama_core.library.record import Shape, ShapeLibrary
-from diorama_core.render.colour_layout import LAYOUT_WIDTH, colour_layout, layout_agreement, painted_views
 from diorama_core.render.templates import TemplateGrid, templates_with_faces
-from diorama_core.render.view_features import EDGES_WIDTH, OUTLINE_WIDTH, outline_and_edges
+from diorama_core.render.view_features import (
+    EDGES_WIDTH,
+    LAYOUT_WIDTH,
+    OUTLINE_WIDTH,
+    colour_layout,
+    layout_agreement,
+    outline_and_edges,
+    painted_views,
+)
 from diorama_core.retrieval.feature_cache import cached_features, has_features
 from diorama_core.retrieval.outlines import filled, open_share
 from diorama_core.retrieval.settings import SETTINGS, SimilaritySettings

@@ -12,10 +12,10 @@ from jaxtyping import Float
 
 from diorama_core.artefacts import Cuboid, DetectedObject, Inputs, LabelledBox, ObjectGeometry, RankedShapes
 from diorama_core.geometry.observed import Observed, observe_among
-from diorama_core.geometry.open3d_import import load_open3d
 from diorama_core.geometry.see_through import SeeThrough
 from diorama_core.geometry.shape_appearance import SHARED_APPEARANCES, ShapeAppearance
 from diorama_core.geometry.silhouette import PoseBatch
+from diorama_core.io.large_libraries import load_open3d
 from diorama_core.library.catalogue import default_cache_dir
 from diorama_core.library.labels import is_named
 from diorama_core.library.record import Shape, ShapeLibrary

@@ -15,9 +15,17 @@ from math import fsum
 import numpy as np
 from jaxtyping import Bool, Float
 
-from diorama_core.library.company import CARRIES_AS, HARDLY_CARRIED, ROOMS, SELDOM_CARRIED
 from diorama_core.library.labels import meanings
-from diorama_core.library.taxonomy import CATEGORIES, UNKNOWN, category, column
+from diorama_core.library.taxonomy import (
+    CARRIES_AS,
+    CATEGORIES,
+    HARDLY_CARRIED,
+    ROOMS,
+    SELDOM_CARRIED,
+    UNKNOWN,
+    category,
+    column,
+)
 from diorama_core.scene.values import ArrayValue
 
 Box = tuple[float, float, float, float]

@@ -9,7 +9,7 @@ import numpy as np
 from jaxtyping import Float
 
 from diorama_core.artefacts import DetectedObject, SeenKinds
-from diorama_core.library.kind_sizes import size_density
+from diorama_core.library.kinds import size_density
 from diorama_core.retrieval.settings import SETTINGS, MeasuredSizeSettings
 
 TRUST, _TRUST_BESIDE_WORD = 0.8, 0.5

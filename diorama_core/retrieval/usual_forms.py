@@ -13,8 +13,8 @@ import cv2
 import numpy as np
 from jaxtyping import Int32, UInt8
 
-from diorama_core.geometry.rows import cells_of
 from diorama_core.geometry.shape_appearance import ShapeAppearance
+from diorama_core.geometry.vectors import cells_of
 from diorama_core.library.form import FULL_RECTANGLE
 from diorama_core.library.record import Shape, ShapeLibrary
 from diorama_core.library.taxonomy import category, having, with_kin

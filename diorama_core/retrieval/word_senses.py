@@ -19,9 +19,8 @@ from jaxtyping import Float
 from diorama_core.artefacts import CameraEstimate, DetectedObject
 from diorama_core.library.labels import is_named, meanings, names_a_kind
 from diorama_core.library.taxonomy import UNKNOWN, Mount, category
-from diorama_core.retrieval.box_views import HEIGHTS_M, BoxView, box_likelihood, box_view
+from diorama_core.retrieval.box_views import HEIGHTS_M, BoxView, box_likelihood, box_view, lying_likelihoods
 from diorama_core.retrieval.kinds_together import Lying, carriers, carries, kinds_together
-from diorama_core.retrieval.lying_views import lying_likelihoods
 from diorama_core.retrieval.seen_kinds import as_it_looks
 from diorama_core.scene.types import Intrinsics
 

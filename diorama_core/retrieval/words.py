@@ -8,8 +8,8 @@ from dataclasses import replace
 import numpy as np
 from jaxtyping import Float
 
+from diorama_core.library.labels import MEANINGS
 from diorama_core.library.language import tokens
-from diorama_core.library.loose_words import MEANINGS
 from diorama_core.library.naming import understand
 from diorama_core.library.record import Shape, ShapeLibrary
 from diorama_core.library.search import text_index

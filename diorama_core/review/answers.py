@@ -9,7 +9,7 @@ import numpy as np
 
 from diorama_core.editing.placing import seated
 from diorama_core.editing.reconstructed import moved_onto
-from diorama_core.editing.removal import without_objects
+from diorama_core.editing.support_changes import without_objects
 from diorama_core.errors import EditRefused
 from diorama_core.library.record import ShapeLibrary, record_of
 from diorama_core.library.taxonomy import CATEGORIES

@@ -11,7 +11,7 @@ import fcl
 import numpy as np
 from jaxtyping import Float
 
-from diorama_core.geometry.open3d_import import o3d
+from diorama_core.io.large_libraries import o3d
 from diorama_core.library.record import Shape, ShapeLibrary
 from diorama_core.scene.types import Pose, box_corners
 from diorama_core.scene.values import Vector3

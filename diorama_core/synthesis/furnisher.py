@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from jaxtyping import Float
 
-from diorama_core.geometry.wall_line import WallLine
+from diorama_core.editing.room_frame import WallLine
 from diorama_core.layout.problem.parts import parts_of_shape
 from diorama_core.library.record import Shape, ShapeLibrary, SupportSurface
 from diorama_core.scene.types import Pose, SceneObject, Support

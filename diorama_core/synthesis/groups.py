@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from jaxtyping import Float
 
-from diorama_core.geometry.wall_line import WallLine
+from diorama_core.editing.room_frame import WallLine
 from diorama_core.synthesis.bodies import Item
 from diorama_core.synthesis.furnisher import WALL_GAP_M, Furnisher
 

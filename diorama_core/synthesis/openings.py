@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
+from diorama_core.editing.room_frame import WallLine
 from diorama_core.geometry.openings import STANDS_OUT_M
-from diorama_core.geometry.wall_line import WallLine
 from diorama_core.synthesis.bodies import Item
 from diorama_core.synthesis.furnisher import Furnisher
 from diorama_core.synthesis.plan import footprint

@@ -14,7 +14,7 @@ import manifold3d
 import numpy as np
 from jaxtyping import Float
 
-from diorama_core.geometry.wall_line import WallLine
+from diorama_core.editing.room_frame import WallLine
 from diorama_core.scene.types import Architecture, Plane
 from diorama_core.scene.values import ArrayValue
 

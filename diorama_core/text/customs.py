@@ -5,9 +5,8 @@ from __future__ import annotations
 from typing import cast
 
 from diorama_core.editing.relations import RelationKind
-from diorama_core.library.company import usual_carriers
 from diorama_core.library.taxonomy import category as find_category
-from diorama_core.library.taxonomy import with_kin
+from diorama_core.library.taxonomy import usual_carriers, with_kin
 from diorama_core.synthesis import RoomKind
 
 ESSENTIALS: dict[RoomKind, tuple[tuple[str, int], ...]] = {

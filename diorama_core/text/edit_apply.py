@@ -15,14 +15,13 @@ from diorama_core.library.taxonomy import broad
 from diorama_core.scene import edits
 from diorama_core.scene.support import descendants
 from diorama_core.scene.types import Scene
-from diorama_core.text.edit_exact import outlined, placed, supported, wall_moved
 from diorama_core.text.edit_insert import inserted
 from diorama_core.text.edit_looks import restyled, swapped
-from diorama_core.text.edit_outcome import Done, names_of
 from diorama_core.text.edit_places import moved, resized, shifted, turned
 from diorama_core.text.edit_plan import (
     Align,
     Copy,
+    Done,
     DrawRoom,
     Edit,
     Exchange,
@@ -46,9 +45,21 @@ from diorama_core.text.edit_plan import (
     Side,
     Swap,
     Turn,
+    names_of,
 )
 from diorama_core.text.edit_room import covered, direction_of, lengthened, lit, opened_wall, wall_on
-from diorama_core.text.edit_states import aligned, copied, exchanged, measured, put_in_state, renamed
+from diorama_core.text.edit_states import (
+    aligned,
+    copied,
+    exchanged,
+    measured,
+    outlined,
+    placed,
+    put_in_state,
+    renamed,
+    supported,
+    wall_moved,
+)
 
 
 @dataclass(eq=False)

@@ -16,9 +16,8 @@ from diorama_core.library.taxonomy import CATEGORIES, broad, category, having, w
 from diorama_core.scene import edits
 from diorama_core.scene.types import Pose, Scene, SceneObject
 from diorama_core.text.edit_looks import looking_like
-from diorama_core.text.edit_outcome import Done
 from diorama_core.text.edit_places import lifted_onto, missed_notes
-from diorama_core.text.edit_plan import Insert
+from diorama_core.text.edit_plan import Done, Insert
 from diorama_core.text.looks import fitting_shapes
 from diorama_core.text.phrases import NUMBERS, NounPhrase, noun_phrase
 from diorama_core.text.prompt import RequestedObject

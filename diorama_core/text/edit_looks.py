@@ -14,8 +14,8 @@ from diorama_core.library.language import size_request
 from diorama_core.library.record import Shape, ShapeLibrary, record_of
 from diorama_core.scene import edits
 from diorama_core.scene.types import Candidate, Pose, Scene, SceneObject
-from diorama_core.text.edit_outcome import Done, names_of
 from diorama_core.text.edit_places import freed
+from diorama_core.text.edit_plan import Done, names_of
 from diorama_core.text.looks import fitting_shapes, has_look, is_made_of, look_of, nearest_in_size, scale_into
 from diorama_core.text.phrases import noun_phrase
 

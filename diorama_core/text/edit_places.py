@@ -18,8 +18,7 @@ from diorama_core.library.taxonomy import broad, category
 from diorama_core.scene import edits
 from diorama_core.scene.support import ancestors, descendants
 from diorama_core.scene.types import Pose, Scene, Support, yaw_rotation
-from diorama_core.text.edit_outcome import Done, names_of
-from diorama_core.text.edit_plan import Shift, Turn
+from diorama_core.text.edit_plan import Done, Shift, Turn, names_of
 from diorama_core.text.edit_room import direction_of, off_wall
 
 SHARES = (1.0, 0.8, 0.6, 0.4, 0.2)

@@ -1,13 +1,18 @@
-"""Typed edits that name objects by id: what words, language models and other programs ask for, as JSON."""
+"""Typed edits that name objects by id: what words, language models and other programs ask for as JSON, and what an edit
+made of a scene.
+"""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from dataclasses import dataclass
 from typing import Annotated, Literal
 
 from pydantic import BaseModel, ConfigDict, Field, FiniteFloat
 
 from diorama_core.editing.relations import RelationKind
 from diorama_core.scene.schema import MAX_ITEMS
+from diorama_core.scene.types import Scene
 
 MAX_EDITS = 60
 MAX_COPIES = 12
@@ -288,3 +293,21 @@ class EditPlan(_Strict):
     edits: Annotated[list[Edit], Field(max_length=MAX_EDITS)]
     not_understood: Annotated[list[Words], Field(max_length=20)] = []
     """Parts of the command that are none of these edits."""
+
+
+@dataclass(frozen=True, eq=False)
+class Done:
+    """A scene after edits, and what was done."""
+
+    scene: Scene
+    lines: tuple[str, ...]
+    """One for each edit, in words."""
+    touched: tuple[str, ...] = ()
+    """Ids of objects that were changed last: what "it" means next."""
+    notes: tuple[str, ...] = ()
+    """What was done otherwise than asked, in words."""
+
+
+def names_of(scene: Scene, ids: Sequence[str]) -> str:
+    """The labels of objects in a row."""
+    return ", ".join(scene.object(i).label for i in ids)

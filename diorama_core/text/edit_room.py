@@ -26,8 +26,7 @@ from diorama_core.scene.room_edits import (
     set_surface_finish,
 )
 from diorama_core.scene.types import Plane, Scene, SurfaceFinish, SurfacePattern
-from diorama_core.text.edit_outcome import Done
-from diorama_core.text.edit_plan import InsertOpening, Light, Paint, RoomLength
+from diorama_core.text.edit_plan import Done, InsertOpening, Light, Paint, RoomLength
 from diorama_core.text.looks import look_of
 
 _PATTERNS: dict[SurfacePattern, str] = {

@@ -7,10 +7,9 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from diorama_core.editing.relations import SEATS, is_long
-from diorama_core.library.company import carrier_in
 from diorama_core.library.language import size_request
 from diorama_core.library.record import Shape, ShapeLibrary
-from diorama_core.library.taxonomy import broad, category, having
+from diorama_core.library.taxonomy import broad, carrier_in, category, having
 from diorama_core.scene import edits
 from diorama_core.scene.types import Scene
 from diorama_core.synthesis import groups

@@ -11,12 +11,12 @@ from typing import Any
 import numpy as np
 import torch
 
-from diorama_core.arrangement.facing.weights import PATH as WEIGHTS
+from diorama_core.arrangement.facing.terms import PATH as WEIGHTS
 from diorama_core.errors import DioramaError, InputError, UnavailableError
 from diorama_core.evaluation.benchmarks.photos import PhotoSource, plan
+from diorama_core.io.assets import CARD, DETECTOR, FOLDER, NAMER, OUTLINER
 from diorama_core.io.atomic import write_atomically
 from diorama_core.library.catalogue import built_in_library
-from diorama_core.models.own_weights import CARD, DETECTOR, FOLDER, NAMER, OUTLINER
 from diorama_core.models.recogniser import Recogniser
 from diorama_core.progress import Progress
 from diorama_core.training.adapting import adapted_detector, labelled_photos

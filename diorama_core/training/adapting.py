@@ -23,8 +23,8 @@ from diorama_core.evaluation.benchmarks.recognition import in_photo
 from diorama_core.library.form import MEASURED
 from diorama_core.models.recogniser import places
 from diorama_core.progress import Progress
-from diorama_core.training.detector import Detector, detector_loss
 from diorama_core.training.export import export_detector
+from diorama_core.training.networks import Detector, detector_loss
 from diorama_core.training.picture_files import PictureFiles
 from diorama_core.training.pictures import LabelledPicture
 from diorama_core.training.train import SIZE, Schedule, detector_batch

@@ -19,7 +19,7 @@ _TINY = 1e-7
 
 
 def join_namers(paths: Sequence[Path], output: Path) -> None:
-    """Write one graph with the inputs and outputs of a namer (`training.naming`), made of several.
+    """Write one graph with the inputs and outputs of a namer (`training.networks`), made of several.
 
     Its logits are the logarithms of the mean probabilities of kinds and of the values of every attribute of form.
     Namers that learnt before an attribute was there say nothing of it: they tell the first of `library.form.MEASURED`.

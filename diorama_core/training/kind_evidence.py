@@ -18,10 +18,10 @@ from scipy.special import log_softmax
 
 from diorama_core.evaluation.adapters.photo_annotations import picture_of, read_annotations
 from diorama_core.evaluation.benchmarks.recognition import in_photo
+from diorama_core.io import assets
 from diorama_core.io.derived import write_arrays
 from diorama_core.library.labels import meanings
 from diorama_core.library.taxonomy import UNKNOWN
-from diorama_core.models import own_weights
 from diorama_core.models.efficientnet import lite0_graph
 from diorama_core.models.kind_evidence import (
     OWN_FLOOR,
@@ -210,8 +210,8 @@ def train(sources: Sequence[tuple[Path, Path]], output: Path, progress: Progress
         output: the file of the layer.
         progress: reports and cancellation.
     """
-    alone = Recogniser.of(own_weights.FOLDER)
-    table = own_weights.FOLDER / own_weights.CLASS_TABLE
+    alone = Recogniser.of(assets.FOLDER)
+    table = assets.FOLDER / assets.CLASS_TABLE
     nothing = KindReadings(np.zeros((1, 1)), np.zeros(1), np.zeros((1, 1)), np.zeros((1, 1)))
     progress.report(0.0, "looking at photos")
     looks = looks_of(sources, alone, KindEvidence(lite0_graph(), nothing, "none"))

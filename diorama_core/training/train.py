@@ -18,9 +18,15 @@ from diorama_core.models.images import box_crop, box_geometry
 from diorama_core.models.recogniser import places
 from diorama_core.progress import Progress
 from diorama_core.training.augment import MOSAIC_SHARE, photographed, training_picture
-from diorama_core.training.detector import Detector, assigned, detector_loss
-from diorama_core.training.naming import Namer, naming_loss
-from diorama_core.training.outlining import OutlineNetwork, outline_loss
+from diorama_core.training.networks import (
+    Detector,
+    Namer,
+    OutlineNetwork,
+    assigned,
+    detector_loss,
+    naming_loss,
+    outline_loss,
+)
 from diorama_core.training.picture_files import BoxStatistics, PictureFiles
 from diorama_core.training.pictures import LabelledPicture
 from diorama_core.training.shape_views import ShapeViewFiles, crop_before

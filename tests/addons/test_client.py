@@ -14,7 +14,7 @@ pytest.importorskip("uvicorn", reason="needs uvicorn (pip install 'diorama[api]'
 
 from addons.blender import client as client_module  # after the check for its libraries
 from addons.blender.client import AUTHOR, Client, RefusedError, local_editor
-from diorama_app.http_api import beside, project_forms
+from diorama_app.http_api import beside, forms
 from diorama_app.http_api.beside import api_beside
 from diorama_app.serve import Running
 from diorama_core.text.edit_plan import MAX_EDITS
@@ -73,4 +73,4 @@ def test_limits_are_those_of_the_interface() -> None:
     from addons.blender import transforms
 
     assert transforms.MAX_EDITS == MAX_EDITS
-    assert len(AUTHOR) <= project_forms.EditRequest.model_fields["author"].metadata[0].max_length
+    assert len(AUTHOR) <= forms.EditRequest.model_fields["author"].metadata[0].max_length

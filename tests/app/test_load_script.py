@@ -2,38 +2,25 @@
 
 from __future__ import annotations
 
-import importlib.util
 from collections.abc import Iterator
 from pathlib import Path
-from types import ModuleType
 
 import pytest
 
 from diorama_app.serve import Running, start
+from scripts import load
 from tests.app.small_room import PlainLibrary, make_project
 
-SCRIPT = Path(__file__).resolve().parents[2] / "scripts" / "load.py"
-
 
 @pytest.fixture
-def load() -> ModuleType:
-    spec = importlib.util.spec_from_file_location("load_script", SCRIPT)
-    assert spec is not None
-    assert spec.loader is not None
-    module = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
-    return module
-
-
-@pytest.fixture
-def running(load: ModuleType, tmp_path: Path) -> Iterator[Running]:
+def running(tmp_path: Path) -> Iterator[Running]:
     project = make_project(tmp_path / "projects" / "demo", load.room_of(12))
     made = start(project=project.folder, projects_dir=tmp_path / "projects", low_graphics=True, library=PlainLibrary())
     yield made
     made.stop()
 
 
-def test_a_person_hides_and_shows_an_object_and_sees_it(load: ModuleType, running: Running) -> None:
+def test_a_person_hides_and_shows_an_object_and_sees_it(running: Running) -> None:
     person, other = load.Person(running.port), load.Person(running.port)
     for _ in range(2):
         person.edit("more_3")

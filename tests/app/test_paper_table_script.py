@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-import importlib.util
 import json
 from dataclasses import replace
 from pathlib import Path
-from types import ModuleType
 
 import pytest
 import torch
@@ -16,34 +14,21 @@ from diorama_core.evaluation.benchmarks import system
 from diorama_core.evaluation.benchmarks.system import WAYS
 from diorama_core.models.store import ModelStore
 from diorama_core.synthesis.truth import TruthView
+from scripts import paper_table as script
 from tests.few_marked import few_marked
 from tests.few_shapes import few_shapes
 from tests.models import tiny_networks, tiny_sams
 
-SCRIPT = Path(__file__).parents[2] / "scripts/paper_table.py"
-
-
-@pytest.fixture
-def script() -> ModuleType:
-    spec = importlib.util.spec_from_file_location("paper_table", SCRIPT)
-    assert spec is not None
-    assert spec.loader is not None
-    module = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
-    return module
-
 
 def test_a_machine_without_a_card_is_one_clear_line(
-    script: ModuleType, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     monkeypatch.setattr(script, "providers", lambda: ["CPUExecutionProvider"])
     assert script.main([]) == 1
     assert "no CUDA card" in capsys.readouterr().err
 
 
-def test_networks_are_fetched_and_the_table_names_the_machine(
-    script: ModuleType, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
-) -> None:
+def test_networks_are_fetched_and_the_table_names_the_machine(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     asked: list[list[str]] = []
 
     def diorama(words: list[str]) -> int:
@@ -63,7 +48,7 @@ def test_networks_are_fetched_and_the_table_names_the_machine(
     assert json.loads((tmp_path / "out/paper-table.json").read_text())["machine"].startswith("Card 9")
 
 
-def test_the_rows_that_it_asks_for_exist(script: ModuleType) -> None:
+def test_the_rows_that_it_asks_for_exist() -> None:
     assert set(script.GIVEN.split(",")) <= set(WAYS)
 
 
@@ -95,9 +80,7 @@ def few_of(view: TruthView) -> Inputs:
 
 @pytest.mark.slow
 @pytest.mark.unchecked
-def test_a_trial_on_a_processor_runs_to_its_end(
-    script: ModuleType, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
-) -> None:
+def test_a_trial_on_a_processor_runs_to_its_end(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     monkeypatch.setenv("DIORAMA_MODELS", str(tmp_path / "models"))
     for name in ("DIORAMA_LMM_BASE_URL", "DIORAMA_LMM_MODEL"):
         monkeypatch.delenv(name, raising=False)

@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 
 from diorama_app.projects.example import EXAMPLE
-from diorama_app.session import preload
+from diorama_app.session import preparation
 from diorama_core.library.catalogue import built_in_library
 from diorama_core.library.ingest import known_shapes
 from diorama_core.project.storage import Project
@@ -84,7 +84,7 @@ os._exit(0)
 def test_open3d_loads_while_other_threads_load_modules() -> None:
     script = """
 import sys, types
-from diorama_core.geometry.open3d_import import load_open3d
+from diorama_core.io.large_libraries import load_open3d
 
 def meanwhile(frame, event, arg):
     def at_each_line(frame, event, arg):
@@ -108,9 +108,9 @@ print(len(added))
 
 def test_what_the_first_upload_needs_is_learnt_beside_and_ends_with_the_server(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(known_shapes, "are_known", lambda: False)
-    monkeypatch.setattr(preload, "LEARN", "import time; time.sleep(60)")
+    monkeypatch.setattr(preparation, "LEARN", "import time; time.sleep(60)")
     stopped = threading.Event()
-    beside = threading.Thread(target=preload.learn_shapes, args=(stopped,), daemon=True)
+    beside = threading.Thread(target=preparation.learn_shapes, args=(stopped,), daemon=True)
     beside.start()
     time.sleep(0.3)  # the process is started meanwhile, of which nothing tells
     assert beside.is_alive()
@@ -121,9 +121,9 @@ def test_what_the_first_upload_needs_is_learnt_beside_and_ends_with_the_server(m
 
 def test_nothing_is_learnt_twice(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(known_shapes, "are_known", lambda: True)
-    monkeypatch.setattr(preload, "LEARN", "raise SystemExit('learnt again')")
+    monkeypatch.setattr(preparation, "LEARN", "raise SystemExit('learnt again')")
     monkeypatch.setattr(subprocess, "Popen", None)
-    preload.learn_shapes(threading.Event())
+    preparation.learn_shapes(threading.Event())
 
 
 @pytest.mark.slow
@@ -138,7 +138,7 @@ from diorama_core.library.catalogue import built_in_library
 from diorama_app.serve import start
 from diorama_core.project.storage import Project
 from tests.app.small_room import PlainLibrary
-preload.WARM_UP_AFTER_S = 0.0
+preparation.WARM_UP_AFTER_S = 0.0
 running = start(project=Path(sys.argv[1]), projects_dir=Path(sys.argv[1]).parent, library=PlainLibrary())
 running.stop()
 """

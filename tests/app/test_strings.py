@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-import importlib.util
 from collections.abc import Iterator
 from pathlib import Path
-from types import ModuleType
 
 import pytest
 from babel.messages.catalog import Catalog
@@ -13,16 +11,9 @@ from babel.messages.mofile import write_mo
 
 from diorama_app.strings import N_, _, language, plural, translated_script, use_language
 from diorama_core.errors import InputError
+from scripts import strings as script
 
 ROOT = Path(__file__).resolve().parents[2]
-
-
-@pytest.fixture(scope="module")
-def script() -> ModuleType:
-    spec = importlib.util.spec_from_file_location("strings_script", ROOT / "scripts" / "strings.py")
-    module = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
-    return module
 
 
 @pytest.fixture
@@ -38,11 +29,11 @@ def german(tmp_path: Path) -> Iterator[Path]:
     use_language("en")
 
 
-def test_the_table_is_up_to_date(script: ModuleType) -> None:
+def test_the_table_is_up_to_date() -> None:
     assert script.TABLE.read_bytes() == script.table(), "run python scripts/strings.py"
 
 
-def test_what_is_marked_is_found(script: ModuleType) -> None:
+def test_what_is_marked_is_found() -> None:
     code = """
 MANY = ("{count} box", "{count} boxes")
 label = _("a") if x else N_("b")

@@ -1,6 +1,9 @@
 from __future__ import annotations
 
 import argparse
+import os
+import signal
+import time
 from pathlib import Path
 
 import pytest
@@ -11,10 +14,12 @@ from diorama_app.cli.arguments import (
     intrinsics,
     positive,
     print_note,
+    progress_bar,
     projects_folder,
     size,
     view,
 )
+from diorama_core.errors import Cancelled
 
 
 @pytest.mark.parametrize(
@@ -77,3 +82,36 @@ def test_projects_are_where_they_were_or_among_the_documents(tmp_path: Path, mon
     assert projects_folder(None) == tmp_path / "Papers" / "Diorama"
     (tmp_path / "Diorama").mkdir()
     assert projects_folder(None) == tmp_path / "Diorama"
+
+
+def interrupt() -> None:
+    """As Ctrl+C does; the handler runs at the next instruction."""
+    os.kill(os.getpid(), signal.SIGINT)
+    time.sleep(0.01)
+
+
+@pytest.mark.posix
+def test_without_a_terminal_every_new_message_is_a_line(capsys: pytest.CaptureFixture[str]) -> None:
+    with progress_bar() as progress:
+        for fraction, message in ((0.0, "Reading"), (0.3, "Reading"), (0.5, "Building"), (1.0, "Building")):
+            progress.report(fraction, message)
+    assert capsys.readouterr().err.splitlines() == ["  0% Reading", " 50% Building"]
+
+
+def interrupted(times: int) -> None:
+    """Work that Ctrl+C is pressed in."""
+    with progress_bar() as progress:
+        progress.report(0.1, "a")
+        for _ in range(times):
+            interrupt()
+        progress.report(0.2, "b")
+
+
+@pytest.mark.posix
+def test_ctrl_c_stops_at_the_next_check_and_a_second_one_at_once() -> None:
+    before = signal.getsignal(signal.SIGINT)
+    with pytest.raises(Cancelled):
+        interrupted(1)
+    with pytest.raises(KeyboardInterrupt):
+        interrupted(2)
+    assert signal.getsignal(signal.SIGINT) is before

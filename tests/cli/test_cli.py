@@ -14,8 +14,8 @@ from PIL import Image
 
 from diorama_app.cli import main, scenes
 from diorama_app.projects.options import POSES, pose_solver
+from diorama_core.io import assets
 from diorama_core.library.catalogue import built_in_library
-from diorama_core.models import own_weights
 from diorama_core.pose.correspondence.solvers import CorrespondencePose
 from diorama_core.project.storage import Project
 from tests.app.small_room import furnished_scene
@@ -62,8 +62,8 @@ def test_a_photo_alone_gives_a_room_and_an_invitation(
     """A photo of 16 bits a pixel, one of the two oddest modes; `perception/inputs/photos` tests all."""
     without = tmp_path / "without recogniser"
     without.mkdir()
-    shutil.copyfile(own_weights.FOLDER / own_weights.OUTLINER, without / own_weights.OUTLINER)
-    monkeypatch.setattr(own_weights, "FOLDER", without)
+    shutil.copyfile(assets.FOLDER / assets.OUTLINER, without / assets.OUTLINER)
+    monkeypatch.setattr(assets, "FOLDER", without)
     photo, _ = write_room(tmp_path)
     Image.fromarray(np.asarray(Image.open(photo).convert("L")).astype(np.uint16) * 257).save(tmp_path / "deep.png")
     assert main(["build", str(tmp_path / "deep.png"), "-o", str(tmp_path / "empty")]) == 0

@@ -12,8 +12,8 @@ from playwright.sync_api import expect
 from diorama_app.projects.example import EXAMPLE
 from diorama_app.session.preferences import Preferences
 from diorama_core.artefacts import LabelledBox
+from diorama_core.io.assets import has_own_recogniser
 from diorama_core.models.boxes import overlaps
-from diorama_core.models.own_weights import has_own_recogniser
 from tests.app.small_room import PlainLibrary, make_project
 from tests.e2e.browser import EditorPage
 

@@ -17,7 +17,7 @@ from diorama_app.panels.in_place import InPlace
 from diorama_app.panels.outliner import Outliner
 from diorama_app.serve import Running
 from diorama_app.session.jobs import JobKind
-from diorama_app.web import upload_limits
+from diorama_app.web import visitors
 from diorama_core.progress import Progress, ProgressEvent
 from diorama_core.project.storage import Project
 from diorama_core.scene import edits
@@ -71,7 +71,7 @@ def test_what_cannot_be_used_is_one_clear_notice_and_nothing_is_lost(
         assert session.inputs is inputs
         editor.dismiss_notices()
     assert editor.page.evaluate("window.__praise") == {"made": True, "seen": False}
-    monkeypatch.setattr(upload_limits, "MAX_UPLOAD_BYTES", 1000)
+    monkeypatch.setattr(visitors, "MAX_UPLOAD_BYTES", 1000)
     large = tmp_path / "large.jpg"
     large.write_bytes(b"\xff" * 5000)
     editor.upload("Upload a photo", large)

@@ -11,7 +11,7 @@ import pytest
 from playwright.sync_api import expect
 
 from diorama_app.session.recovery import Recovery
-from diorama_core.geometry.camera_attitude import CameraAttitude
+from diorama_core.geometry.rotations import CameraAttitude
 from diorama_core.scene import edits
 from tests.app.small_room import furnished_scene, make_project
 from tests.e2e.browser import EditorPage

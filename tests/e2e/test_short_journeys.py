@@ -13,7 +13,7 @@ from playwright.sync_api import expect
 
 from diorama_app.projects.example import EXAMPLE
 from diorama_app.serve import Running
-from diorama_core.models.own_weights import has_own_recogniser
+from diorama_core.io.assets import has_own_recogniser
 from diorama_core.review.questions import NO, TURNS, YES, Question, questions
 from diorama_core.scene.types import Scene, SceneObject
 from tests.e2e.browser import EditorPage

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from diorama_core.editing.clearances import clear_of_walls
-from diorama_core.editing.new_room import empty_room
+from diorama_core.editing.plan_edits import empty_room
 from diorama_core.scene.types import Pose
 from tests.editing.objects import item
 

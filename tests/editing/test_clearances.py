@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from diorama_core.editing.clearances import clearances, moved_to_clearance, room_before
-from diorama_core.editing.new_room import empty_room
+from diorama_core.editing.plan_edits import empty_room
 from diorama_core.errors import EditRefused
 from diorama_core.scene.types import Pose, Scene, SceneObject, Support
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from diorama_core.editing.free_space import free_space
-from diorama_core.editing.new_room import empty_room
+from diorama_core.editing.plan_edits import empty_room
 from diorama_core.library.record import Shape
 from diorama_core.scene.types import Architecture, Pose, Scene, SceneObject, Support
 

@@ -22,7 +22,7 @@ from diorama_core.editing.input_corrections import (
     with_correction,
     without_box,
 )
-from diorama_core.geometry.camera_attitude import CameraAttitude
+from diorama_core.geometry.rotations import CameraAttitude
 from diorama_core.perception.camera.estimate import GivenAttitudeCamera
 from diorama_core.perception.inputs import read_inputs
 from diorama_core.pipeline import codec

@@ -10,7 +10,7 @@ from diorama_core.errors import EditRefused
 from diorama_core.geometry.sun import sun_direction
 from diorama_core.scene.light_settings import PHOTO_LIGHT, LightSettings
 from diorama_core.scene.types import RoomLight, Scene
-from tests.geometry.test_sun_patches import room
+from tests.geometry.test_sun import room
 
 
 def test_daylight_begins_with_the_noon_sun_before_the_largest_window() -> None:

@@ -235,7 +235,7 @@ def _mtl(data: bytes) -> object:
 
 
 def _language(data: bytes) -> object:
-    from diorama_core.perception.language.json_text import json_in
+    from diorama_core.perception.language.replies import json_in
 
     return json_in(data.decode("utf-8", "replace"))
 

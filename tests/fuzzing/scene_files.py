@@ -33,7 +33,7 @@ from diorama_core.importing.sweethome import parts_of_sweet_home
 from diorama_core.library.catalogue import built_in_library
 from diorama_core.multiview.posed_photos import PosedPhoto, read_poses
 from diorama_core.multiview.rooms import photo_world
-from diorama_core.perception.language.json_text import json_in
+from diorama_core.perception.language.replies import json_in
 from diorama_core.scene.schema import scene_to_json
 from diorama_core.text.edit_apply import EditApplier
 from diorama_core.text.edit_plan import EditPlan

@@ -1,4 +1,4 @@
-"""Projected bounds of cuboids against brute force."""
+"""Projected bounds of cuboids against brute force. Edges of boxes and planes in a picture."""
 
 from __future__ import annotations
 
@@ -6,8 +6,16 @@ import numpy as np
 from hypothesis import example, given
 from hypothesis import strategies as st
 
-from diorama_core.geometry.projection import NEAR_M, box_iou, cuboid_corners, visible_bounds
-from diorama_core.scene.types import Intrinsics, box_corners, yaw_rotation
+from diorama_core.geometry.projection import (
+    NEAR_M,
+    box_edges,
+    box_iou,
+    cuboid_corners,
+    plane_edges,
+    seen_segments,
+    visible_bounds,
+)
+from diorama_core.scene.types import Camera, Intrinsics, Plane, box_corners, yaw_rotation
 
 K = Intrinsics(640, 480, 520.0, 515.0, 310.0, 250.0)
 FROM_WORLD = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]])
@@ -78,3 +86,39 @@ def test_corners_agree_with_the_scene_types() -> None:
 def test_box_iou() -> None:
     a = np.array([[0, 0, 2, 2], [0, 0, 1, 1]])
     np.testing.assert_allclose(box_iou(a, np.array([[1, 0, 3, 2], [2, 2, 3, 3]])), [1 / 3, 0.0])
+
+
+def _camera() -> Camera:
+    """At the origin, looking along +X, with x of the picture along -Y."""
+    T = np.eye(4)
+    T[:3, :3] = np.array([[0.0, 0.0, 1.0], [-1.0, 0.0, 0.0], [0.0, -1.0, 0.0]])
+    return Camera(Intrinsics.from_fov(200, 100, np.pi / 2), T)
+
+
+def test_a_box_has_twelve_edges_each_along_one_axis() -> None:
+    edges = box_edges(box_corners((1.0, 2.0, 3.0)))
+    lengths = np.abs(edges[:, 1] - edges[:, 0])
+    assert edges.shape == (12, 2, 3)
+    assert sorted(lengths.max(axis=1)) == [1.0] * 4 + [2.0] * 4 + [3.0] * 4
+    assert np.allclose(lengths.sum(axis=1), lengths.max(axis=1))
+
+
+def test_a_square_before_the_camera_lands_where_it_is_projected() -> None:
+    square = Plane("wall_1", "wall", np.array([[2.0, 1, 0], [2.0, -1, 0], [2.0, -1, 1], [2.0, 1, 1]]))
+    seen = seen_segments(_camera(), [plane_edges(square)])
+    assert seen.shape == (4, 2, 2)
+    assert np.allclose(seen[0], [[50.0, 50.0], [150.0, 50.0]])
+
+
+def test_lines_are_cut_near_the_camera_and_left_out_behind_it() -> None:
+    through = np.array([[[-3.0, 1.0, 0.0], [3.0, 1.0, 0.0]]])
+    behind = np.array([[[-3.0, 1.0, 0.0], [-1.0, 1.0, 0.0]]])
+    seen = seen_segments(_camera(), [through, behind])
+    assert seen.shape == (1, 2, 2)
+    far = seen[0][np.abs(seen[0, :, 0] - 100 + 100 / 3) < 1e-6]
+    near = seen[0][np.abs(seen[0, :, 0] - 100 + 100 / 0.05) < 1e-3]
+    assert len(far) == len(near) == 1
+
+
+def test_nothing_is_seen_of_nothing() -> None:
+    assert seen_segments(_camera(), []).shape == (0, 2, 2)

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from diorama_core.editing.new_room import empty_room
+from diorama_core.editing.plan_edits import empty_room
 from diorama_core.geometry.unseen_walls import HEAD_M, SILL_M, closed_room, unseen_parts
 from diorama_core.scene.types import Architecture, Plane, Pose, Scene, SceneObject
 

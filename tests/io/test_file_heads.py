@@ -8,9 +8,8 @@ from pathlib import Path
 import pytest
 
 from diorama_core.errors import InputError
-from diorama_core.io.archives import content_of, unpacked
-from diorama_core.io.file_heads import head_of
-from diorama_core.io.other_files import OTHER_FILES, what_else
+from diorama_core.io.contained import content_of, unpacked
+from diorama_core.io.file_heads import OTHER_FILES, head_of, what_else
 
 
 def zipped(path: Path, **files: bytes) -> Path:

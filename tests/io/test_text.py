@@ -2,10 +2,21 @@ from __future__ import annotations
 
 import os
 
+import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from diorama_core.io.text import REPLACEMENT, clean_strings, clean_text, file_label, number_of, sentences
+from diorama_core.errors import InputError
+from diorama_core.io.text import (
+    MAX_DEPTH,
+    REPLACEMENT,
+    clean_strings,
+    clean_text,
+    file_label,
+    number_of,
+    parse_xml,
+    sentences,
+)
 
 ANY_TEXT = st.text(st.characters(categories=None, codec=None), max_size=40)  # halves and controls included
 
@@ -50,3 +61,47 @@ def test_numbers_have_their_noun_in_the_right_form() -> None:
 
 def test_notes_become_sentences() -> None:
     assert sentences(("the photo is dark", "25% is unsure")) == "The photo is dark. 25% is unsure."
+
+
+BOMB = '<?xml version="1.0" encoding="{}"?><!DOCTYPE a [<!ENTITY b "bbbb">]><a>&b;</a>'
+
+
+@pytest.mark.parametrize("encoding", ["utf-8", "utf-16", "utf-16-le", "utf-16-be", "iso-8859-1", "cp037"])
+def test_entities_are_refused_in_any_encoding(encoding: str) -> None:
+    """Looked for as bytes, `<!ENTITY` passed in UTF-16."""
+    with pytest.raises(InputError, match=r"^home (defines entities|is damaged)"):
+        parse_xml(BOMB.format(encoding).encode(encoding), "home", InputError)
+
+
+def test_entities_of_parameters_and_files_are_refused() -> None:
+    for declared in ('% b "c"', 'b SYSTEM "file:///etc/hostname"', '% b SYSTEM "file:///etc/hostname"'):
+        with pytest.raises(InputError, match="defines entities"):
+            parse_xml(f"<!DOCTYPE a [<!ENTITY {declared}>]><a/>".encode(), "home", InputError)
+
+
+def test_depth_is_bounded_and_damage_is_one_line() -> None:
+    def nested(depth: int) -> bytes:
+        return b"<a>" * depth + b"</a>" * depth
+
+    beside = b"<b/>" * MAX_DEPTH  # which say nothing of how deep what follows is
+    assert parse_xml(nested(MAX_DEPTH), "home", InputError).tag == "a"
+    assert len(parse_xml(b"<a>" + beside + nested(MAX_DEPTH - 1) + b"</a>", "home", InputError)) == MAX_DEPTH + 1
+    with pytest.raises(InputError, match="has elements nested"):
+        parse_xml(b"<a>" + beside + nested(MAX_DEPTH) + b"</a>", "home", InputError)
+    for data in (
+        nested(MAX_DEPTH + 1),
+        b"<a>" * 2_000_000,
+        b"<a",
+        b"",
+        b"\xff\xfe",
+        b'<?xml version="1.0" encoding="rot13"?><a/>',
+    ):
+        with pytest.raises(InputError, match=r"^home (has elements nested|is damaged)"):
+            parse_xml(data, "home", InputError)
+
+
+def test_text_in_utf_16_is_read() -> None:
+    assert (
+        parse_xml('<?xml version="1.0" encoding="utf-16"?><a b="é"/>'.encode("utf-16"), "home", InputError).get("b")
+        == "é"
+    )

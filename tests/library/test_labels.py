@@ -1,11 +1,34 @@
-"""What labels of people, detectors and data sets say that a thing is."""
+"""Words that are used loosely, and labels of data sets. What labels of people, detectors and data sets say that a thing
+is.
+"""
 
 from __future__ import annotations
 
 import pytest
 
-from diorama_core.library.labels import FREQUENCIES, is_named, meanings, names_a_kind, plain_word, understand_label
+from diorama_core.library.labels import (
+    FREQUENCIES,
+    LABELS,
+    MEANINGS,
+    is_named,
+    meanings,
+    names_a_kind,
+    plain_word,
+    understand_label,
+)
 from diorama_core.library.taxonomy import CATEGORIES, UNKNOWN
+
+NAMES = {c.name for c in CATEGORIES}
+
+
+def test_every_row_of_loose_words_speaks_of_known_kinds() -> None:
+    assert {kind for row in MEANINGS.values() for kind in row} <= NAMES
+    assert set(LABELS.values()) <= NAMES | set(MEANINGS)
+
+
+def test_no_word_has_two_rows() -> None:
+    assert not set(LABELS) & set(MEANINGS)
+
 
 VOCABULARY = {
     "chair": "chair, Chairs, dining chair, a wooden chair, folding chair, chair_2, chair 3, stack of chairs, CHAIR",
@@ -134,9 +157,6 @@ def test_slips_are_understood_and_near_names_come_first() -> None:
 def test_names_of_kinds_and_words_of_several() -> None:
     assert all(map(names_a_kind, ("chair", "couch", "a red armchair", "table")))
     assert not any(map(names_a_kind, ("stand", "seat", "furniture", "object", "???")))
-
-
-NAMES = {c.name for c in CATEGORIES}
 
 
 def test_every_row_speaks_of_known_kinds() -> None:

@@ -20,9 +20,9 @@ import diorama_core.library.kind_rows as rows
 rows.PATH = Path(sys.argv[1])
 import numpy as np
 from diorama_core.library.catalogue import built_in_library
-from diorama_core.library.company import ROOMS, often_carried, usual_carriers
+from diorama_core.library.taxonomy import ROOMS, often_carried, usual_carriers
 from diorama_core.library.labels import meanings
-from diorama_core.library.kind_sizes import sizes_of_kind
+from diorama_core.library.kinds import sizes_of_kind
 from diorama_core.library.labels import understand_label
 from diorama_core.library.taxonomy import having, lies_on_furniture, resolve
 from diorama_core.retrieval.pools import RetrievalQuery, pool_for

@@ -6,11 +6,10 @@ the weights alone.
 
 from __future__ import annotations
 
-import importlib.util
 import itertools
 from collections import OrderedDict
+from importlib import import_module
 from pathlib import Path
-from types import ModuleType
 
 import numpy as np
 import pytest
@@ -24,19 +23,10 @@ from diorama_core.models.openshape import OpenShape, patches_of
 from diorama_core.models.runtime import SessionPool
 from diorama_core.models.store import ModelStore
 from diorama_core.pipeline import network_stages
+from scripts import convert_duoduoclip, convert_gigapose, convert_openclip, convert_openshape
 from tests.models import tiny_networks
 
-SCRIPTS = Path(__file__).resolve().parents[2] / "scripts"
 WIDTH, LAYERS, ALONE = 128, 4, 2
-
-
-def _script(name: str) -> ModuleType:
-    spec = importlib.util.spec_from_file_location(name, SCRIPTS / f"{name}.py")
-    assert spec is not None
-    assert spec.loader is not None
-    module = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
-    return module
 
 
 def _shaken(network_: nn.Module) -> nn.Module:
@@ -101,7 +91,7 @@ def test_duoduoclips_shape_tower_is_rebuilt_from_a_checkpoint(
     state["duoduoclip.token_embedding.weight"] = torch.zeros(3, 4)  # the text tower's, which is not taken
     settings = {"model": {"network": {"layers_threshold": alone, "base_name": "ViT-B-32"}}}
     torch.save({"state_dict": state, "hyper_parameters": settings, "epoch": 3}, tmp_path / "own.ckpt")
-    _script("convert_duoduoclip").main([str(tmp_path / "own.ckpt"), "-o", str(tmp_path / "made")])
+    convert_duoduoclip.main([str(tmp_path / "own.ckpt"), "-o", str(tmp_path / "made")])
     store = ModelStore(tmp_path / "store")
     assert store.add_folder(tmp_path / "made") == ("duoduoclip",)
     facade = DuoduoClip(store.path(network("duoduoclip"), "visual.onnx"), pool=SessionPool())
@@ -176,7 +166,7 @@ class _PointBert(nn.Module):
 def test_openshapes_point_encoder_is_rebuilt_from_a_checkpoint(tmp_path: Path, rng: np.random.Generator) -> None:
     encoder = _shaken(_PointBert())
     torch.save({"state_dict": {f"module.{k}": v for k, v in encoder.state_dict().items()}}, tmp_path / "own.pt")
-    _script("convert_openshape").main([str(tmp_path / "own.pt"), "-o", str(tmp_path / "made")])
+    convert_openshape.main([str(tmp_path / "own.pt"), "-o", str(tmp_path / "made")])
     store = ModelStore(tmp_path / "store")
     assert store.add_folder(tmp_path / "made") == ("openshape",)
     facade = OpenShape(store.path(network("openshape"), "points.onnx"), pool=SessionPool())
@@ -192,7 +182,7 @@ def test_openclip_is_converted_from_a_folder_with_its_weights_beside_the_graphs(
     model, *_ = tiny_networks.clip(tmp_path, network_stages.OPENCLIP_WIDTHS["openclip-bigg14"])
     model.save_pretrained(tmp_path / "own")
     tiny_networks.clip_tokenizer(tmp_path / "own" / "tokenizer.json")
-    _script("convert_openclip").main([str(tmp_path / "own"), "-o", str(tmp_path / "made")])
+    convert_openclip.main([str(tmp_path / "own"), "-o", str(tmp_path / "made")])
     assert sorted(p.name for p in (tmp_path / "made" / "openclip-bigg14" / "visual").iterdir()) == [
         "model.onnx",
         "model.onnx_data",
@@ -261,7 +251,7 @@ def test_gigaposes_scale_network_is_rebuilt_from_a_checkpoint(
     state |= {f"{prefix}regressor.{k}": v for k, v in regressor.state_dict().items()}
     state["ae_net.dinov2.cls_token"] = torch.zeros(1)  # the first network's, which is not taken
     torch.save({"state_dict": state}, tmp_path / "own.ckpt")
-    _script("convert_gigapose").main([str(tmp_path / "own.ckpt"), "-o", str(tmp_path / "made")])
+    convert_gigapose.main([str(tmp_path / "own.ckpt"), "-o", str(tmp_path / "made")])
     store = ModelStore(tmp_path / "store")
     assert store.add_folder(tmp_path / "made") == ("gigapose-scale",)
     graphs = (store.path(network("gigapose-scale"), name) for name in ("features.onnx", "regressor.onnx"))
@@ -289,6 +279,6 @@ def test_checkpoints_that_cannot_be_used_are_one_clear_line(tmp_path: Path, scri
     elif damage == "another network":
         torch.save({"state_dict": {"layer.weight": torch.zeros(2)}}, path)
     with pytest.raises(SystemExit) as error:
-        _script(script).main([str(path), "-o", str(tmp_path / "made")])
+        import_module(f"scripts.{script}").main([str(path), "-o", str(tmp_path / "made")])
     assert len(str(error.value.code).splitlines()) == 1
     assert not (tmp_path / "made").exists()

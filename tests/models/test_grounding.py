@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import importlib.util
 from pathlib import Path
-from types import ModuleType
 
 import numpy as np
 import pytest
@@ -17,19 +15,10 @@ from diorama_core.models.manifest import network
 from diorama_core.models.runtime import NetworkError, SessionPool
 from diorama_core.models.store import ModelStore
 from diorama_core.pipeline import network_stages
+from scripts import convert_llmdet
 
-SCRIPTS = Path(__file__).parents[2] / "scripts"
 WORDS = {"[CLS]": 101, "[SEP]": 102, ".": 1012, "chair": 5, "table": 6, "coffee": 7, "lamp": 8, "sofa": 9, "[UNK]": 1}
 SIDE = 224
-
-
-def _script() -> ModuleType:
-    spec = importlib.util.spec_from_file_location("convert_llmdet", SCRIPTS / "convert_llmdet.py")
-    assert spec is not None
-    assert spec.loader is not None
-    module = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
-    return module
 
 
 @pytest.fixture(scope="module")
@@ -71,7 +60,7 @@ def copy(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture(scope="module")
 def facade(copy: Path, tmp_path_factory: pytest.TempPathFactory) -> GroundingDino:
-    script, target = _script(), tmp_path_factory.mktemp("graph") / "model.onnx"
+    script, target = convert_llmdet, tmp_path_factory.mktemp("graph") / "model.onnx"
     before = torch.linspace
     script.write_network(script.read_model(copy), target, SIDE)
     assert torch.linspace is before, "what was replaced for the export is back"
@@ -131,7 +120,7 @@ def test_another_tokenizer_is_one_clear_line(facade: GroundingDino, tmp_path: Pa
 
 
 def test_a_copy_becomes_a_network_of_the_store(copy: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    script = _script()
+    script = convert_llmdet
     monkeypatch.setattr(
         script, "write_network", lambda model, target: (target.parent.mkdir(parents=True), target.touch())
     )
@@ -152,6 +141,6 @@ def test_a_copy_that_cannot_be_used_is_one_clear_line(copy: Path, tmp_path: Path
             (folder / name).write_bytes((copy / name).read_bytes())
         (folder / "model.safetensors").write_bytes(b"no weights")
     with pytest.raises(SystemExit) as caught:
-        _script().main([str(folder), "-o", str(tmp_path / "made")])
+        convert_llmdet.main([str(folder), "-o", str(tmp_path / "made")])
     assert "\n" not in str(caught.value)
     assert str(folder) in str(caught.value)

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from diorama_core.errors import UnavailableError
-from diorama_core.models import own_weights
+from diorama_core.io import assets
 from diorama_core.models.efficientnet import CLASSES, FEATURES
 from diorama_core.models.kind_evidence import (
     KindReadings,
@@ -20,13 +20,11 @@ from diorama_core.models.kind_evidence import (
 )
 from diorama_core.models.recogniser import Recogniser, own_recogniser
 
-own_weights_there = pytest.mark.skipif(
-    not own_weights.has_own_recogniser(), reason="the recogniser's weights were left out"
-)
+own_weights_there = pytest.mark.skipif(not assets.has_own_recogniser(), reason="the recogniser's weights were left out")
 
 
 def test_the_table_calls_every_class_by_one_name() -> None:
-    text = (own_weights.FOLDER / own_weights.CLASS_TABLE).read_text()
+    text = (assets.FOLDER / assets.CLASS_TABLE).read_text()
     names: dict[str, set[str]] = {}
     for number, name in re.findall(r"(\d+) ([^,]+?) \d+(?:,|\n|$)", text):
         names.setdefault(number, set()).add(name)
@@ -68,7 +66,7 @@ def test_evidence_that_says_nothing_changes_nothing_much() -> None:
 
 @own_weights_there
 def test_boxes_are_named_with_evidence_and_cached_apart(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
-    own, alone = own_recogniser(), Recogniser.of(own_weights.FOLDER)
+    own, alone = own_recogniser(), Recogniser.of(assets.FOLDER)
     assert own.evidence is not None
     assert own.evidence.weights in repr(own)
     rgb = np.random.default_rng(0).integers(0, 255, (90, 120, 3)).astype(np.uint8)
@@ -83,6 +81,6 @@ def test_boxes_are_named_with_evidence_and_cached_apart(monkeypatch: pytest.Monk
 def test_without_its_layer_the_namer_goes_on_alone_and_says_so(
     monkeypatch: pytest.MonkeyPatch, tmp_path: Path, caplog: pytest.LogCaptureFixture
 ) -> None:
-    monkeypatch.setattr(own_weights, "KIND_LAYER", "no-such-layer.npz")
+    monkeypatch.setattr(assets, "KIND_LAYER", "no-such-layer.npz")
     assert own_evidence.__wrapped__(own_recogniser().categories) is None
     assert "no-such-layer.npz: is missing or of another namer; restore it" in caplog.text

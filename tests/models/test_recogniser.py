@@ -10,8 +10,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from diorama_core.errors import UnavailableError
+from diorama_core.io.assets import FOLDER
 from diorama_core.models.images import CROP_SIDE, box_crop, box_geometry
-from diorama_core.models.own_weights import FOLDER
 from diorama_core.models.recogniser import Recogniser, fitted, own_recogniser
 
 

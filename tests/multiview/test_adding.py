@@ -16,7 +16,7 @@ from diorama_core.layout.recipes import recipe
 from diorama_core.library.catalogue import built_in_library
 from diorama_core.multiview import adding
 from diorama_core.multiview.adding import AddedPhoto, with_photo
-from diorama_core.multiview.finding import photos_of_scene
+from diorama_core.multiview.registration import photos_of_scene
 from diorama_core.pipeline.stages import Stages, embedded_stages
 from diorama_core.scene.edits import move, remove
 from diorama_core.scene.room_edits import move_plane

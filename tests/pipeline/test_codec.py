@@ -12,7 +12,7 @@ from hypothesis import assume, given
 
 from diorama_core.artefacts import DetectedObject, Inputs, LabelledBox, Photo
 from diorama_core.errors import ProjectError
-from diorama_core.geometry.camera_attitude import CameraAttitude
+from diorama_core.geometry.rotations import CameraAttitude
 from diorama_core.io.text import clean_text
 from diorama_core.pipeline import codec
 from diorama_core.provenance import DepthSource

@@ -12,14 +12,14 @@ import torch
 from diorama_core.architecture.from_depth import PlanarRoom
 from diorama_core.artefacts import Inputs, LabelledBox, Photo
 from diorama_core.errors import InputError, UnavailableError
-from diorama_core.models import own_weights
+from diorama_core.io import assets
 from diorama_core.models.manifest import network
 from diorama_core.models.store import ModelStore
 from diorama_core.perception.foundation.proposals import OwnDetection
 from diorama_core.perception.language.client import LmmSettings
 from diorama_core.pipeline.choices import NetworkChoice, profile_status
+from diorama_core.pipeline.findings import camera_sentence
 from diorama_core.pipeline.presets import propose_boxes, stages_for
-from diorama_core.pipeline.provenance_text import camera_sentence
 from diorama_core.pipeline.run import Built, build_scene
 from diorama_core.pipeline.stages import Stages
 from diorama_core.pose import MadeToMeasure
@@ -218,7 +218,7 @@ def test_without_networks_the_recogniser_of_our_own_proposes_and_builds_use_what
     assert {b.box for b in sure} <= {b.box for b in likely}
     marked = Inputs(photo, (LabelledBox(BOX, "sofa", "sofa"),))
     assert stages_for("embedded", marked, box_library(), store=store).detection is None
-    monkeypatch.setattr(own_weights, "FOLDER", tmp_path)
+    monkeypatch.setattr(assets, "FOLDER", tmp_path)
     assert stages_for("embedded", Inputs(photo), box_library(), store=store).detection is None
     assert propose_boxes(photo, store=store) is None
 

@@ -6,8 +6,8 @@ import numpy as np
 
 from diorama_core.artefacts import PosedCandidates
 from diorama_core.library.catalogue import built_in_library
+from diorama_core.pose.details import InnerEdges
 from diorama_core.pose.fitted_choice import FittedChoice
-from diorama_core.pose.inner_edges import InnerEdges
 from diorama_core.pose.seen_objects import SeenObject
 from diorama_core.scene.types import Candidate
 from tests.pose.test_turned_profile import as_large, seen

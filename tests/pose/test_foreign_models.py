@@ -13,8 +13,7 @@ import pytest
 import trimesh
 
 from diorama_core.evaluation.metrics.pose import Alignment, Placed, pooled, scene_alignment
-from diorama_core.library.ingest.relief import relief
-from diorama_core.library.ingest.symmetry import symmetry_fold
+from diorama_core.library.ingest.relief import relief, symmetry_fold
 from diorama_core.library.record import Shape
 from diorama_core.library.taxonomy import resolve
 from diorama_core.pose import RenderAndCompare

@@ -1,4 +1,6 @@
-"""What a thing may be decides how it faces; without a name that is what its shapes are."""
+"""What a thing may be decides how it faces; without a name that is what its shapes are. The order of one object's posed
+shapes, and what decided which way it faces.
+"""
 
 from __future__ import annotations
 
@@ -15,9 +17,12 @@ from diorama_core.artefacts import (
     Photo,
 )
 from diorama_core.library.catalogue import built_in_library
-from diorama_core.pose.posing_tasks import PosingTask, likeliest_kinds, posing_tasks
+from diorama_core.pose import RenderAndCompare
+from diorama_core.pose.posing_tasks import PosedShape, PosingTask, likeliest_kinds, ordered_shapes, posing_tasks
+from diorama_core.progress import Progress
 from diorama_core.provenance import DepthSource, ScaleSource
-from diorama_core.scene.types import Camera, Intrinsics, Support
+from diorama_core.scene.types import Camera, Intrinsics, Pose, Support
+from tests.pose.rooms import LIBRARY, Room, camera_at, standing
 
 WIDTH, HEIGHT = 160, 120
 CAMERA = Camera(
@@ -71,3 +76,20 @@ def test_names_say_what_things_are_and_shapes_what_nameless_ones_may_be() -> Non
         "b": (("table-gate-leg", 0.9), ("chair-padded-blue", 0.8), ("chair-padded-tan", 0.7)),
     }
     assert likeliest_kinds(objects, ranked, RECORDS) == {"a": "chair", "b": "table"}
+
+
+def test_shapes_are_ordered_by_rank_and_then_by_name() -> None:
+    pose = Pose(np.eye(3), np.zeros(3), np.ones(3))
+    shapes = [PosedShape(LIBRARY.shape(name), pose, 0.1, 0.0) for name in ("table", "chair", "bed")]
+    found = ordered_shapes(shapes, {"table": 0.0, "chair": 0.0, "bed": 1.0})
+    assert [one.shape.id for one in found] == ["bed", "chair", "table"]
+
+
+def test_candidates_say_why_they_face_as_they_do() -> None:
+    room = Room(camera_at(), (standing("chair", 0.2, 2.6, 30.0),), (0,))
+    posed = RenderAndCompare(LIBRARY).pose(
+        room.inputs, room.objects, room.geometry, room.depth(measured=False), room.ranked(), Progress()
+    )
+    reasons = posed[0].reasons
+    assert {(r.object_id, r.decision) for r in reasons} == {(posed[0].object_id, "front")}
+    assert "picture" in {r.term for r in reasons}

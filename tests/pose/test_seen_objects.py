@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from diorama_core.geometry.silhouette import ShapeCaster
-from diorama_core.pose.inner_edges import InnerEdges
+from diorama_core.pose.details import InnerEdges
 from diorama_core.pose.seen_objects import SeenObject
 from diorama_core.pose.settings import SETTINGS
 from diorama_core.scene.types import Pose

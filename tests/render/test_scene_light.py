@@ -12,7 +12,7 @@ from diorama_core.render.lighting import Effort
 from diorama_core.render.picture import picture
 from diorama_core.scene.light_settings import LightSettings
 from diorama_core.scene.types import Scene, SceneObject
-from tests.geometry.test_sun_patches import room
+from tests.geometry.test_sun import room
 from tests.primitives import PrimitiveLibrary, furnished_room
 
 LIBRARY = PrimitiveLibrary()

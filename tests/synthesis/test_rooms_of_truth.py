@@ -7,8 +7,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from diorama_core.editing.room_frame import WallLine
 from diorama_core.errors import LibraryError
-from diorama_core.geometry.wall_line import WallLine
 from diorama_core.layout.exact import mesh_overlap_m3
 from diorama_core.library.catalogue import built_in_library
 from diorama_core.scene.types import Plane

@@ -20,8 +20,8 @@ from diorama_core.training.adapting import (
     labelled_photos,
     trained_detector,
 )
-from diorama_core.training.detector import Detector, detector_loss
 from diorama_core.training.export import export_detector
+from diorama_core.training.networks import Detector, detector_loss
 from diorama_core.training.picture_files import PictureFiles
 from diorama_core.training.train import Schedule
 from tests.training.test_augment import picture

@@ -8,7 +8,7 @@ import torch
 
 from diorama_core.arrangement.facing.evidence import HEADINGS, FacingRoom
 from diorama_core.arrangement.facing.solve import solve
-from diorama_core.arrangement.facing.weights import FacingWeights
+from diorama_core.arrangement.facing.terms import FacingWeights
 from diorama_core.training import facings
 from diorama_core.training.facings import AS_TOLD, NAMES, FacingCase, FacingModel, as_settings, beginning, certificate
 from tests.arrangement.facing.rooms import room, thing

@@ -9,14 +9,13 @@ import pytest
 import torch
 
 from diorama_core.errors import InputError
+from diorama_core.io.assets import CARD, DETECTOR, NAMER
 from diorama_core.library.form import MEASURED, VALUES
-from diorama_core.models.own_weights import CARD, DETECTOR, NAMER
 from diorama_core.models.recogniser import Looks, Recogniser
 from diorama_core.models.runtime import SessionPool
-from diorama_core.training.detector import Detector
 from diorama_core.training.export import export_detector, export_namer, write_card
 from diorama_core.training.joined import join_namers
-from diorama_core.training.naming import Namer
+from diorama_core.training.networks import Detector, Namer
 
 NAMES = ("bed", "chair", "table")
 

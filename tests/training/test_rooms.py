@@ -6,7 +6,7 @@ import numpy as np
 import torch
 
 from diorama_core.library.catalogue import built_in_library
-from diorama_core.training.layers import Residual, convolution
+from diorama_core.training.networks import Residual, convolution
 from diorama_core.training.rooms import varied_room
 
 

@@ -10,17 +10,15 @@ import pytest
 import torch
 
 from diorama_core.errors import Cancelled, InputError
+from diorama_core.io.assets import CARD, DETECTOR, NAMER, OUTLINER
 from diorama_core.models.images import box_crop, box_geometry
 from diorama_core.models.outliner import SIDE, BoxOutliner, in_photo, window
-from diorama_core.models.own_weights import CARD, DETECTOR, NAMER, OUTLINER
 from diorama_core.models.recogniser import Recogniser
 from diorama_core.models.runtime import SessionPool
 from diorama_core.progress import Progress
 from diorama_core.training import pictures, shape_views, train
-from diorama_core.training.detector import Detector
 from diorama_core.training.export import export_detector, export_namer, export_outliner, write_card
-from diorama_core.training.naming import Namer
-from diorama_core.training.outlining import OutlineNetwork
+from diorama_core.training.networks import Detector, Namer, OutlineNetwork
 from diorama_core.training.picture_files import PictureFiles
 from diorama_core.training.shape_views import ShapeViewFiles, ShapeViews
 from diorama_core.training.train import (

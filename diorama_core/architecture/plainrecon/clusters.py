@@ -13,7 +13,7 @@ from jaxtyping import Bool, Float, Int
 from scipy.spatial import cKDTree
 from sklearn.cluster import DBSCAN, KMeans
 
-from diorama_core.geometry.open3d_import import o3d
+from diorama_core.io.large_libraries import o3d
 
 GROWTH_COSINE = float(np.cos(np.deg2rad(10.0)))
 MIN_POINTS = 200

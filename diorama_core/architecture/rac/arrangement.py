@@ -13,7 +13,7 @@ from itertools import combinations
 import numpy as np
 from jaxtyping import Bool, Float, Int
 
-from diorama_core.geometry.rows import unique_rows
+from diorama_core.geometry.vectors import unique_rows
 from diorama_core.scene.types import Camera
 
 MIN_AREA_PX = 0.5

@@ -16,7 +16,7 @@ import numpy as np
 from jaxtyping import Bool, Float, Float32, UInt8
 
 from diorama_core.artefacts import Box, DetectedObject
-from diorama_core.geometry.rows import cells_of
+from diorama_core.geometry.vectors import cells_of
 from diorama_core.scene.values import ArrayValue
 
 _CELL_LAB = np.array([14.0, 8.0, 8.0])

@@ -9,8 +9,7 @@ import numpy as np
 from jaxtyping import Float, Int
 
 from diorama_core.arrangement.facing.evidence import HEADINGS, STEP_RAD, FacingRoom, HeadingCosts
-from diorama_core.arrangement.facing.terms import TERMS, Term, pairs_of
-from diorama_core.arrangement.facing.weights import FacingWeights
+from diorama_core.arrangement.facing.terms import TERMS, FacingWeights, Term, pairs_of
 from diorama_core.artefacts import Reason
 
 PICTURE = "picture"

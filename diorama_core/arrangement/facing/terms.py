@@ -1,4 +1,5 @@
-"""What speaks for headings, whatever the picture shows: each term is one small function.
+"""What speaks for headings, whatever the picture shows: each term is one small function with a fitted weight.
+`weights.json` beside this module says how the weights were fitted and what leaving each out costs.
 
 A term gives every heading of an object (or every pair of headings of two objects) an agreement of at most 1; its
 weight, fitted by `python -m diorama_core.training facings`, makes nats of it.
@@ -6,14 +7,53 @@ weight, fitted by `python -m diorama_core.training facings`, makes nats of it.
 
 from __future__ import annotations
 
+import json
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
+from functools import cache
+from pathlib import Path
 
 import numpy as np
 from jaxtyping import Float
 
 from diorama_core.arrangement.facing.evidence import HEADINGS, FacingRoom, unit
 from diorama_core.library.taxonomy import broad, having, with_kin
+
+PATH = Path(__file__).with_name("weights.json")
+
+
+@dataclass(frozen=True)
+class FacingWeights:
+    """Nats of every term's agreement (`terms.TERMS`); of the picture, a factor of its log-likelihood."""
+
+    picture: float
+    shown_seats: float
+    shown_sofas: float
+    shown_storage: float
+    shown_screens: float
+    shown_others: float
+    at_table: float
+    at_user: float
+    back_at_wall: float
+    back_at_wall_others: float
+    out_of_wall: float
+    as_told: float
+    leaning: float
+    at_middle: float
+    as_carrier: float
+    side_by_side: float
+    as_bed: float
+
+    def of(self, term: str) -> float:
+        """The weight of a term."""
+        return float(getattr(self, term))
+
+
+@cache
+def facing_weights() -> FacingWeights:
+    """The fitted weights."""
+    return FacingWeights(**json.loads(PATH.read_text(encoding="utf-8"))["weights"])
+
 
 Agreement = Float[np.ndarray, "24"]
 PairAgreement = Float[np.ndarray, "24 24"]

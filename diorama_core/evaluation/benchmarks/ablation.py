@@ -17,7 +17,7 @@ from diorama_core.evaluation.benchmarks.photo_tables import OF_OBJECTS
 from diorama_core.evaluation.benchmarks.photos import PhotoPlan
 from diorama_core.evaluation.benchmarks.system_tables import CaseResult
 from diorama_core.evaluation.metrics.pose import pooled
-from diorama_core.evaluation.reports.intervals import Interval, paired_interval
+from diorama_core.evaluation.reports.tables import Interval, paired_interval
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.pipeline.settings import with_settings
 from diorama_core.pipeline.stages import Stages, embedded_stages

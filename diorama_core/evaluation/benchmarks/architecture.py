@@ -18,8 +18,7 @@ from diorama_core.errors import Cancelled
 from diorama_core.evaluation.benchmarks.cases import LeftOut, attempted, recipe
 from diorama_core.evaluation.metrics.architecture import ArchitectureScores, architecture_scores
 from diorama_core.evaluation.reports import paper
-from diorama_core.evaluation.reports.intervals import bootstrap_interval
-from diorama_core.evaluation.reports.tables import Column, Row, Table, paper_rows
+from diorama_core.evaluation.reports.tables import Column, Row, Table, bootstrap_interval, paper_rows
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.pipeline.plan import evaluate
 from diorama_core.pipeline.runner import Runner

@@ -9,8 +9,7 @@ import numpy as np
 
 from diorama_core.evaluation.benchmarks.photo_build import PhotoScores
 from diorama_core.evaluation.metrics.annotated import ObjectResult
-from diorama_core.evaluation.reports.intervals import paired_interval, statistic_interval
-from diorama_core.evaluation.reports.tables import Column, Row, Table, Value
+from diorama_core.evaluation.reports.tables import Column, Row, Table, Value, paired_interval, statistic_interval
 
 Results = Sequence[PhotoScores]
 

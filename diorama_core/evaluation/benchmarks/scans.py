@@ -16,8 +16,7 @@ import numpy as np
 from jaxtyping import Float
 
 from diorama_core.evaluation.benchmarks.cases import Case, LeftOut, furnished, made, recipe
-from diorama_core.evaluation.reports.intervals import bootstrap_interval
-from diorama_core.evaluation.reports.tables import Column, Row, Table
+from diorama_core.evaluation.reports.tables import Column, Row, Table, bootstrap_interval
 from diorama_core.geometry.openings import OPENING_CATEGORIES
 from diorama_core.importing.measured_cloud import measured_cloud
 from diorama_core.importing.measured_room import opened_room

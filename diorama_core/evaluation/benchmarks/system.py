@@ -25,7 +25,7 @@ from diorama_core.evaluation.benchmarks.system_tables import (
 )
 from diorama_core.evaluation.metrics.scene import SceneScores, scene_scores
 from diorama_core.evaluation.reports.tables import Table
-from diorama_core.library.loose_words import MEANINGS
+from diorama_core.library.labels import MEANINGS
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.library.taxonomy import UNKNOWN, resolve
 from diorama_core.pipeline.published import acdc_stages, published_acdc_stages, published_stages

@@ -10,8 +10,7 @@ import numpy as np
 from diorama_core.evaluation.metrics.pose import Alignment, pooled
 from diorama_core.evaluation.metrics.scene import SceneScores
 from diorama_core.evaluation.reports import paper
-from diorama_core.evaluation.reports.intervals import Interval, bootstrap_interval
-from diorama_core.evaluation.reports.tables import Column, Row, Table, Value, paper_rows
+from diorama_core.evaluation.reports.tables import Column, Interval, Row, Table, Value, bootstrap_interval, paper_rows
 
 
 @dataclass(frozen=True)

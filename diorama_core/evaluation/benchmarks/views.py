@@ -21,8 +21,7 @@ from diorama_core.errors import Cancelled
 from diorama_core.evaluation.benchmarks.cases import MIN_ASKED, SIZE, Case, LeftOut, furnished, made, recipe
 from diorama_core.evaluation.metrics.pose import Alignment, object_alignment, pooled
 from diorama_core.evaluation.metrics.scene import as_placed, in_true_world, matched
-from diorama_core.evaluation.reports.intervals import bootstrap_interval
-from diorama_core.evaluation.reports.tables import Column, Row, Table
+from diorama_core.evaluation.reports.tables import Column, Row, Table, bootstrap_interval
 from diorama_core.layout.recipes import recipe as layout_recipe
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.multiview.rooms import PosedInputs, build_room

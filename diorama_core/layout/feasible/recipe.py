@@ -10,19 +10,17 @@ import numpy as np
 from jaxtyping import Float
 
 from diorama_core.artefacts import LayoutReport, PhotoDisagreement
-from diorama_core.layout.feasible.cords import reaching_ceilings
 from diorama_core.layout.feasible.heights import joint_heights
 from diorama_core.layout.feasible.photo_observations import PhotoObservations, disagreements, photo_observations
+from diorama_core.layout.feasible.reach import reaching_ceilings, reaching_loads
 from diorama_core.layout.feasible.relocate import relocate
 from diorama_core.layout.feasible.resize import fitted_sizes
 from diorama_core.layout.feasible.separate import Program, Separation, base, build_program, relaxed, separate
 from diorama_core.layout.feasible.structure import Structure, exact_structure
 from diorama_core.layout.feasible.visible_points import ObservedView, VisiblePoints
-from diorama_core.layout.feasible.wide_supports import reaching_loads
 from diorama_core.layout.problem.problem import Problem, build_problem
 from diorama_core.layout.report import measure
-from diorama_core.layout.settings import LAYOUT, LayoutSettings
-from diorama_core.layout.weights import AS_IT_IS, Weights
+from diorama_core.layout.settings import AS_IT_IS, LAYOUT, LayoutSettings, Weights
 from diorama_core.layout.what_got_worse import disagreement_in_words
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.progress import Progress

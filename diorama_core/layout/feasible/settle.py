@@ -10,10 +10,9 @@ from jaxtyping import Float
 from diorama_core.arrangement.surfaces import RestingSurface, is_wall_like
 from diorama_core.geometry.planes import plane_axes
 from diorama_core.geometry.vectors import cross
-from diorama_core.layout.feasible.footprints import INSET_M, largest_share
-from diorama_core.layout.feasible.orientation import aligned
 from diorama_core.layout.feasible.photo_observations import PhotoObservations
 from diorama_core.layout.feasible.quadratic import HARD, least_distance
+from diorama_core.layout.feasible.rest import INSET_M, aligned, largest_share
 from diorama_core.layout.problem.footing import reach_of
 from diorama_core.layout.problem.problem import Problem
 

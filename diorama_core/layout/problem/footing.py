@@ -11,7 +11,7 @@ import numpy as np
 from jaxtyping import Float
 
 from diorama_core.geometry.convex import ConvexPart
-from diorama_core.geometry.rows import unique_rows
+from diorama_core.geometry.vectors import unique_rows
 from diorama_core.scene.types import box_corners
 
 CONTACT_SHARE = 0.03

@@ -18,7 +18,7 @@ from diorama_core.layout.problem.volumes import Volumes, contact_templates
 from diorama_core.layout.published import costs, staged
 from diorama_core.layout.published.staged import Edges, Report, StageSchedule, State
 from diorama_core.layout.report import measure
-from diorama_core.layout.weights import AS_IT_IS, Weights
+from diorama_core.layout.settings import AS_IT_IS, Weights
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.progress import Progress
 from diorama_core.protocols import Preview

@@ -17,7 +17,7 @@ from diorama_core.geometry.vectors import cross
 from diorama_core.layout import gradients
 from diorama_core.layout.problem.problem import Problem
 from diorama_core.layout.problem.volumes import Volumes, contact_templates
-from diorama_core.layout.weights import AS_IT_IS, Weights
+from diorama_core.layout.settings import AS_IT_IS, Weights
 
 
 @dataclass(frozen=True)

@@ -1,4 +1,6 @@
-"""How an object may still move, grow and turn where it rests, and poses near its own that keep to that."""
+"""How an object of a settled layout may still move, grow and turn where it rests, how far that is from what was
+observed of it, and what the layout must not lose by it.
+"""
 
 from __future__ import annotations
 
@@ -12,7 +14,9 @@ from diorama_core.geometry.planes import plane_axes
 from diorama_core.geometry.rotations import yaw_rotations
 from diorama_core.geometry.silhouette import PoseBatch
 from diorama_core.layout.problem.problem import Problem
+from diorama_core.layout.report import USUAL_ERRORS, part_overlaps, support_errors
 from diorama_core.layout.settings import REFINEMENT, RefinementSettings
+from diorama_core.scene.types import Pose, box_corners
 
 
 @dataclass(frozen=True, eq=False)
@@ -116,3 +120,106 @@ def freedom(
         turns=not walls and not loaded and not is_wall_like(surface) and bool(upright[2]),
         settings=settings,
     )
+
+
+@dataclass(frozen=True)
+class Precision:
+    """Standard deviations of what was observed of an object."""
+
+    distance_m: float
+    """Deviation of its distance from the camera, in metres."""
+    distance_share: float
+    """Deviation of the distance as a share of it."""
+    size_share: float
+    """Deviation of each of its extents, as a share."""
+    sizes_follow: bool
+    """Whether sizes follow distances, because a photo alone gave both."""
+
+
+MEASURED = Precision(distance_m=0.01, distance_share=0.0, size_share=0.03, sizes_follow=False)
+"""With measured depth."""
+REASONED = Precision(distance_m=0.0, distance_share=0.033, size_share=0.05, sizes_follow=True)
+"""From a photo alone."""
+
+
+@dataclass(frozen=True, eq=False)
+class PosePrior:
+    """One observed pose."""
+
+    eye: Float[np.ndarray, "3"]
+    """The camera's position."""
+    observed: Pose
+    precision: Precision
+    settings: RefinementSettings = REFINEMENT
+
+    def was_pushed_away(self, position: Float[np.ndarray, "3"]) -> bool:
+        """Whether a position is farther from a measured one than is usual."""
+        usual = self.settings.linear_sigmas * self.precision.distance_m
+        return usual > 0.0 and float(np.linalg.norm(position - self.observed.position)) > usual
+
+    def cost(self, poses: PoseBatch) -> Float[np.ndarray, " p"]:
+        """Cost of other poses, in shares of the agreement of one mask."""
+        distance = float(np.linalg.norm(self.observed.position - self.eye))
+        nearer = np.log(np.linalg.norm(poses.position - self.eye, axis=1) / distance)
+        grown = np.log(poses.scale / self.observed.scale)
+        if self.precision.sizes_follow:
+            grown = grown - nearer[:, None]
+        cosine = (np.einsum("pij,ij->p", poses.R, self.observed.R_world_object) - 1.0) / 2.0
+        sigma = float(np.hypot(self.precision.distance_m / distance, self.precision.distance_share))
+        turned = np.arccos(np.clip(cosine, -1.0, 1.0)) / self.settings.turn_sigma_rad
+        deviations = np.column_stack([nearer / sigma, turned, grown / self.precision.size_share])
+        squares = np.minimum(deviations**2, self.settings.max_sigmas**2)
+        away, linear = np.abs(deviations[:, 0]), self.settings.linear_sigmas
+        distant = np.where(away <= linear, away**2, linear * (2.0 * away - linear))
+        return self.settings.sigma * (distant + squares[:, 1] + squares[:, 2:].mean(axis=1))
+
+
+ROUNDING_M = 1e-6
+
+
+@dataclass(frozen=True, eq=False)
+class RoomLeft:
+    """Tells which moves of single objects leave a layout as sound as it was settled."""
+
+    problem: Problem
+    """The settled layout."""
+    support_errors: Float[np.ndarray, "n 3"]
+    """Most that each object may be tilted on its support, off it and beyond its bounds: as is usual, or as it was."""
+    overlaps_m: dict[tuple[int, int], float]
+    """Depths of the overlaps that were left."""
+
+    @classmethod
+    def of(cls, problem: Problem) -> RoomLeft:
+        """What is left around the objects of a settled layout."""
+        poses = problem.R, problem.p, problem.scale
+        errors = np.maximum(support_errors(problem, *poses) + ROUNDING_M, USUAL_ERRORS)
+        return cls(problem, errors, part_overlaps(problem, *poses, supporters=True))
+
+    def allows(
+        self, i: int, R: Float[np.ndarray, "n 3 3"], p: Float[np.ndarray, "n 3"], scale: Float[np.ndarray, "n 3"]
+    ) -> bool:
+        """Whether object i may be where it is among all others.
+
+        Args:
+            i: index of the object.
+            R: rotations, world from object.
+            p: centres, world, metres.
+            scale: along the axes of each object.
+        """
+        affected = [i, *np.flatnonzero(self.problem.parent == i)]
+        worse = support_errors(self.problem, R, p, scale)[affected] > self.support_errors[affected]
+        if worse.any() or self._through_wall(i, R, p, scale):
+            return False
+        depths = part_overlaps(self.problem, R, p, scale, only=i, supporters=True)
+        return all(depth <= self.overlaps_m.get(pair, 0.0) + ROUNDING_M for pair, depth in depths.items())
+
+    def _through_wall(self, i: int, R: np.ndarray, p: np.ndarray, scale: np.ndarray) -> bool:
+        """Whether the object is farther behind a wall than it was."""
+        problem, local = self.problem, box_corners(self.problem.shape_size[i])
+        was = problem.p[i] + (local * problem.scale[i]) @ problem.R[i].T
+        now = p[i] + (local * scale[i]) @ R[i].T
+        for wall in problem.walls_near(i):
+            before, after = (float((corners @ wall.normal).min()) - wall.offset for corners in (was, now))
+            if after < min(before, 0.0) - ROUNDING_M:
+                return True
+        return False

@@ -11,10 +11,8 @@ from jaxtyping import Float
 from diorama_core.geometry.projection import box_iou
 from diorama_core.geometry.silhouette import PoseBatch
 from diorama_core.layout.problem.problem import Problem
-from diorama_core.layout.refinement.freedom import Freedom, freedom
+from diorama_core.layout.refinement.freedom import Freedom, PosePrior, RoomLeft, freedom
 from diorama_core.layout.refinement.posed_picture import PosedPicture, TriedPoses
-from diorama_core.layout.refinement.prior import PosePrior
-from diorama_core.layout.refinement.room_left import RoomLeft
 from diorama_core.layout.settings import REFINEMENT, RefinementSettings
 from diorama_core.progress import Progress
 

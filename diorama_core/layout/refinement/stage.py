@@ -17,9 +17,9 @@ from diorama_core.artefacts import DetectedObject, LayoutReport
 from diorama_core.geometry.silhouette import PoseBatch, ShapeCaster
 from diorama_core.layout.feasible.photo_observations import disagreements
 from diorama_core.layout.problem.problem import Problem, build_problem
+from diorama_core.layout.refinement.freedom import MEASURED, REASONED, PosePrior, Precision
 from diorama_core.layout.refinement.pixel_grid import PixelGrid
 from diorama_core.layout.refinement.posed_picture import PosedPicture
-from diorama_core.layout.refinement.prior import MEASURED, REASONED, PosePrior, Precision
 from diorama_core.layout.refinement.search import Search
 from diorama_core.layout.report import measure
 from diorama_core.layout.settings import REFINEMENT, RefinementSettings

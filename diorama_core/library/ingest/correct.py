@@ -10,11 +10,10 @@ import trimesh
 from diorama_core.errors import InputError
 from diorama_core.library import taxonomy
 from diorama_core.library.ingest.given import Given, axis_name, axis_vector
-from diorama_core.library.ingest.relief import relief
+from diorama_core.library.ingest.relief import relief, symmetry_fold
 from diorama_core.library.ingest.repair import Repaired
 from diorama_core.library.ingest.shaping import Painter, packed_shape
 from diorama_core.library.ingest.sink import Ingested
-from diorama_core.library.ingest.symmetry import symmetry_fold
 from diorama_core.library.part_notes import transform
 from diorama_core.library.record import Assumption, Guess, Shape, ShapeLibrary, usual_contact_faces
 

@@ -13,8 +13,7 @@ from pathlib import Path
 
 from diorama_core.errors import InputError
 from diorama_core.io.bounded import read_bytes, shortened
-from diorama_core.io.file_heads import head_of
-from diorama_core.io.other_files import OtherFile, what_else
+from diorama_core.io.file_heads import OtherFile, head_of, what_else
 from diorama_core.library.ingest.given import Given
 from diorama_core.library.ingest.models import SUFFIXES, form_of
 from diorama_core.library.ingest.shaping import ModelSource

@@ -23,7 +23,7 @@ from diorama_core.library.ingest.given import AXES, UNITS, Given, axis_name
 from diorama_core.library.ingest.known_shapes import KnownShapes, relief_features
 from diorama_core.library.ingest.names import NameEvidence
 from diorama_core.library.ingest.relief import Relief, quarter_turns, turned
-from diorama_core.library.kind_sizes import is_possible
+from diorama_core.library.kinds import is_possible
 from diorama_core.library.labels import meanings
 from diorama_core.library.record import Assumption, Guess
 

@@ -15,10 +15,9 @@ from typing import Any
 import trimesh
 
 from diorama_core.errors import DioramaError, LibraryError, UnavailableError
-from diorama_core.io.archives import unpacked
-from diorama_core.io.file_heads import FileHead, head_of
-from diorama_core.io.other_files import what_else
-from diorama_core.io.xml_text import parse_xml
+from diorama_core.io.contained import unpacked
+from diorama_core.io.file_heads import FileHead, head_of, what_else
+from diorama_core.io.text import parse_xml
 from diorama_core.library.ingest import fbx, gltf
 from diorama_core.library.ingest.frames import GLTF, OBJ, PLY, STL, THREE_DS, Convention, OwnFrame
 from diorama_core.library.ingest.limits import DEFAULT_LIMITS, Limits

@@ -23,10 +23,9 @@ from diorama_core.library.ingest.known_shapes import KnownShapes
 from diorama_core.library.ingest.limits import DEFAULT_LIMITS, Limits
 from diorama_core.library.ingest.models import RawModel, read_model
 from diorama_core.library.ingest.names import NameEvidence, named_categories, words_of
-from diorama_core.library.ingest.relief import relief, turned
+from diorama_core.library.ingest.relief import relief, symmetry_fold, turned
 from diorama_core.library.ingest.repair import Repaired, repaired
 from diorama_core.library.ingest.sink import Ingested
-from diorama_core.library.ingest.symmetry import symmetry_fold
 from diorama_core.library.part_notes import PartNotes, notes_of, transform
 from diorama_core.library.record import Guess, Shape, ShapeLibrary, SymmetryFold, usual_contact_faces
 from diorama_core.library.surfaces import support_surfaces

@@ -15,7 +15,7 @@ import trimesh
 from jaxtyping import Float
 
 from diorama_core.errors import LibraryError
-from diorama_core.io.xml_text import parse_xml
+from diorama_core.io.text import parse_xml
 from diorama_core.library.ingest.limits import DEFAULT_LIMITS, Limits
 
 UNITS_M = {

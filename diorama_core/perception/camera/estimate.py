@@ -8,7 +8,7 @@ import numpy as np
 from jaxtyping import Float
 
 from diorama_core.artefacts import CameraEstimate, CameraHypothesis, Inputs, Photo
-from diorama_core.geometry.camera_attitude import CameraAttitude
+from diorama_core.geometry.rotations import CameraAttitude
 from diorama_core.geometry.segments import line_segments_px
 from diorama_core.perception.camera.frames import frame_difference_rad
 from diorama_core.perception.camera.gravity_depth import GravityFrame, frame_from_depth

@@ -1,4 +1,6 @@
-"""Boxes and names from the recogniser that comes with Diorama, for a person to accept or correct."""
+"""Boxes and names from the recogniser that comes with Diorama, for a person to accept or correct, and what its namer
+thinks of marked objects.
+"""
 
 from __future__ import annotations
 
@@ -8,11 +10,12 @@ from dataclasses import dataclass
 import numpy as np
 from jaxtyping import Float
 
-from diorama_core.artefacts import Box, LabelledBox, Photo
+from diorama_core.artefacts import Box, DetectedObject, LabelledBox, Photo, SeenKinds
+from diorama_core.io.assets import has_own_recogniser
 from diorama_core.library.labels import is_named, meanings
 from diorama_core.library.taxonomy import ARCHITECTURE_WORDS, UNKNOWN
 from diorama_core.models.boxes import Detections, areas, joined, overlaps
-from diorama_core.models.recogniser import Recogniser
+from diorama_core.models.recogniser import Recogniser, own_recogniser
 from diorama_core.progress import Progress
 from diorama_core.protocols import DetectionStage
 from diorama_core.retrieval.kinds_together import carriers, kinds_together
@@ -173,3 +176,29 @@ def _words(boxes: Float[np.ndarray, "n 4"], known: Sequence[LabelledBox]) -> lis
     shared = overlaps(boxes, np.array([k.box for k in known], dtype=float))
     same = [(int(row.argmax()), float(row.max())) for row in shared]
     return [(known[k].label, known[k].category) if share >= SAME_IOU else nothing for k, share in same]
+
+
+@dataclass(frozen=True)
+class OwnNaming:
+    """Asks the shipped namer about every box."""
+
+    recogniser: Recogniser
+
+    def name(self, photo: Photo, objects: tuple[DetectedObject, ...], progress: Progress) -> tuple[SeenKinds, ...]:
+        """Probabilities of all categories, as if all were equally frequent, and of all forms, for every object.
+
+        Args:
+            photo, objects, progress: as documented in `protocols.NamingStage`.
+        """
+        progress.report(0.0, f"Looking at {len(objects)} objects")
+        boxes = np.array([item.box for item in objects], dtype=float).reshape(-1, 4)
+        looks, names = self.recogniser.look(photo.rgb, boxes), self.recogniser.categories
+        return tuple(
+            SeenKinds(item.id, names, kinds, tuple(map(float, form)))
+            for item, kinds, form in zip(objects, looks.kinds, looks.forms, strict=True)
+        )
+
+
+def own_naming() -> OwnNaming | None:
+    """The namer that comes with Diorama; None where its weights were left out."""
+    return OwnNaming(own_recogniser()) if has_own_recogniser() else None

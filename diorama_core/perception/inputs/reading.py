@@ -13,8 +13,8 @@ import numpy as np
 
 from diorama_core.artefacts import Inputs, LabelledBox
 from diorama_core.errors import InputError
+from diorama_core.perception.inputs.boxes.agreement import is_upside_down, turned_box
 from diorama_core.perception.inputs.boxes.reading import read_boxes
-from diorama_core.perception.inputs.boxes.standing import is_upside_down, turned_box
 from diorama_core.perception.inputs.depth.kinds import DepthKind
 from diorama_core.perception.inputs.depth.reading import DepthEncoding, DepthOptions, read_depth
 from diorama_core.perception.inputs.masks.reading import read_masks

@@ -1,12 +1,16 @@
-"""Files and uploads as bytes with a name, and the files that lie beside or within them."""
+"""Files and uploads as bytes with a name, the files that lie beside or within them, and the forms by which they are
+recognised and read.
+"""
 
 from __future__ import annotations
 
 import io
 import stat
 import zipfile
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Generic, TypeVar
 
 from diorama_core.errors import InputError
 
@@ -145,3 +149,28 @@ def _check_count(name: str, count: int) -> None:
         raise InputError(f"{name}: holds no file; choose another")
     if count > MAX_FILES:
         raise InputError(f"{name}: {count} files are more than the {MAX_FILES} accepted; keep those of this photo")
+
+
+Content = TypeVar("Content")
+Read = TypeVar("Read")
+
+
+@dataclass(frozen=True)
+class Form(Generic[Content, Read]):
+    """One row of a table of forms, and of the page *What goes in*."""
+
+    name: str
+    """What people call it, as in "COCO results"."""
+    written_by: str
+    """Programs and devices that write it."""
+    understood: str
+    """What is read of it and what is not, in one sentence for the page."""
+    recognises: Callable[[Content], bool]
+    """Whether content is of this form; never raises."""
+    read: Callable[[Content], Read]
+    """The values; raises `InputError` where content of this form is damaged."""
+
+
+def form_of(forms: Sequence[Form[Content, Read]], content: Content) -> Form[Content, Read] | None:
+    """The first form that recognises the content, or None."""
+    return next((form for form in forms if form.recognises(content)), None)

@@ -22,7 +22,7 @@ from pydantic import BaseModel, ValidationError
 from diorama_core.errors import UnavailableError
 from diorama_core.io.bounded import read_bytes, shortened
 from diorama_core.io.derived import write_derived
-from diorama_core.perception.language.json_text import json_in
+from diorama_core.perception.language.replies import json_in
 from diorama_core.progress import Progress
 
 if TYPE_CHECKING:

@@ -1,12 +1,19 @@
-"""What the model is asked (paper, supplement A) and what a reply may hold."""
+"""What the model is asked (paper, supplement A), what a reply may hold, the JSON object in what it wrote, and several
+replies as one graph.
+"""
 
 from __future__ import annotations
 
+import json
 import re
-from collections.abc import Sequence
-from typing import Annotated, Literal
+from collections import Counter
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Annotated, Any, Literal
 
 from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, ValidationError
+
+from diorama_core.scene.types import Relation, Support
 
 RELATIONS = ("placed on", "mounted on")
 FACING = ("toward camera", "away from camera", "left", "right", "unknown")
@@ -133,3 +140,107 @@ Return the output in JSON according to the following format:
   ]
 }}
 Relationships are expressed as <subject_id, type, target_id>. Each pair of <subject_id, target_id> only occurs once."""
+
+
+_FENCE = "```"
+_LANGUAGE = re.compile("json", re.IGNORECASE)
+_MAX_STARTS = 50
+
+
+def json_in(text: str) -> dict[str, Any] | None:
+    """The object that a text is, holds between fences, or holds amid prose; None without any."""
+    for candidate in (text, *_fenced(text)):
+        try:
+            document = json.loads(candidate)
+        except (ValueError, RecursionError):
+            continue
+        if isinstance(document, dict):
+            return document
+    return _amid_prose(text)
+
+
+def _fenced(text: str) -> list[str]:
+    """What stands between pairs of fences. In one pass: replies are as long and as odd as they like."""
+    inside = text.split(_FENCE)[1:-1:2]
+    return [part[4:] if _LANGUAGE.match(part) else part for part in inside]
+
+
+def _amid_prose(text: str) -> dict[str, Any] | None:
+    """The largest object that begins at some brace."""
+    decoder = json.JSONDecoder()
+    best: tuple[int, dict[str, Any]] | None = None
+    position = -1
+    for _ in range(_MAX_STARTS):
+        position = text.find("{", position + 1)
+        if position < 0:
+            break
+        try:
+            document, end = decoder.raw_decode(text, position)
+        except (ValueError, RecursionError):
+            continue
+        if isinstance(document, dict) and (best is None or end - position > best[0]):
+            best = (end - position, document)
+    return None if best is None else best[1]
+
+
+UNKNOWN_FACING = "unknown"
+
+
+@dataclass(frozen=True)
+class Ballot:
+    """What the replies say together."""
+
+    edges: tuple[tuple[Support, float], ...]
+    """At most one per object, with the share of the replies that agree."""
+    facing: tuple[tuple[str, str], ...]
+    captions: tuple[tuple[str, str], ...]
+    rejected: int
+    """Relations that named unknown ids or an object as its own support."""
+
+
+def counted(replies: Sequence[GraphReply], objects: Mapping[int, str], architecture: Mapping[int, str]) -> Ballot:
+    """The majority of the replies.
+
+    Args:
+        replies: validated ones.
+        objects: object id by mark.
+        architecture: "floor", "wall" or "ceiling" by the number that stands for it.
+    """
+    names = {**objects, **architecture}
+    votes: dict[str, Counter[tuple[str, Relation]]] = {}
+    rejected = 0
+    for reply in replies:
+        seen: set[int] = set()
+        for entry in reply.support_relation:
+            known = entry.subject_id in objects and entry.target_id in names and entry.subject_id != entry.target_id
+            if not known or entry.subject_id in seen:
+                rejected += 1
+                continue
+            seen.add(entry.subject_id)
+            choice: tuple[str, Relation] = (names[entry.target_id], entry.type)
+            votes.setdefault(objects[entry.subject_id], Counter())[choice] += 1
+    edges = []
+    for child, counts in votes.items():
+        (parent, relation), agreeing = min(counts.items(), key=lambda item: (-item[1], item[0]))
+        edges.append((Support(child, parent, relation), agreeing / len(replies)))
+    return Ballot(tuple(edges), _fronts(replies, objects), _captions(replies, objects), rejected)
+
+
+def _fronts(replies: Sequence[GraphReply], objects: Mapping[int, str]) -> tuple[tuple[str, str], ...]:
+    """Directions that more than half of the replies name."""
+    votes: dict[str, Counter[str]] = {}
+    for reply in replies:
+        for entry in reply.objects:
+            if entry.id in objects and entry.face_direction != UNKNOWN_FACING:
+                votes.setdefault(objects[entry.id], Counter())[entry.face_direction] += 1
+    best = {key: min(c.items(), key=lambda item: (-item[1], item[0])) for key, c in votes.items()}
+    return tuple((key, word) for key, (word, n) in best.items() if 2 * n > len(replies))
+
+
+def _captions(replies: Sequence[GraphReply], objects: Mapping[int, str]) -> tuple[tuple[str, str], ...]:
+    captions: dict[str, str] = {}
+    for reply in replies:
+        for entry in reply.objects:
+            if entry.id in objects and entry.caption:
+                captions.setdefault(objects[entry.id], entry.caption)
+    return tuple(captions.items())

@@ -17,8 +17,7 @@ from diorama_core.perception.language.client import (
     Usage,
 )
 from diorama_core.perception.language.marks import marked, picture_bytes
-from diorama_core.perception.language.replies import RECOGNITION_PROMPT, ClassesReply, GraphReply, graph_prompt
-from diorama_core.perception.language.votes import counted
+from diorama_core.perception.language.replies import RECOGNITION_PROMPT, ClassesReply, GraphReply, counted, graph_prompt
 from diorama_core.progress import Progress
 from diorama_core.provenance import GraphMethod, GraphSource, LanguageModelUse
 from diorama_core.scene.types import Support

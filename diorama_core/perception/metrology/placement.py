@@ -10,25 +10,25 @@ from jaxtyping import Float
 
 from diorama_core.geometry.projection import cuboid_corners
 from diorama_core.library import taxonomy
-from diorama_core.library.company import STACKED_ON, often_carried
 from diorama_core.library.taxonomy import (
     AGAINST_WALLS,
     PORTABLE,
+    STACKED_ON,
     UNKNOWN,
     Category,
     Mount,
     column,
     having,
     lies_on_furniture,
+    often_carried,
 )
 from diorama_core.library.taxonomy import category as find_category
 from diorama_core.perception.metrology.arrangement import arrange, distinct
 from diorama_core.perception.metrology.box_observations import BoxObservations
-from diorama_core.perception.metrology.carried_costs import CarriedCosts
 from diorama_core.perception.metrology.floor import place_on_floor, solve_all
+from diorama_core.perception.metrology.mutual_costs import CarriedCosts, seen_through_top
 from diorama_core.perception.metrology.priors import SizeMode, plain_mode
 from diorama_core.perception.metrology.problem import Cuboids, Problems, View, cuboids
-from diorama_core.perception.metrology.seen_through_tops import seen_through_top
 from diorama_core.perception.metrology.settings import SETTINGS, MetrologySettings, PlacementSettings
 from diorama_core.perception.metrology.silhouette import corner_costs
 from diorama_core.perception.metrology.solver import Solutions, joined

@@ -13,8 +13,7 @@ from functools import cache
 import numpy as np
 from jaxtyping import Float
 
-from diorama_core.library.kind_sizes import sizes_of_kind
-from diorama_core.library.kinds import outline_of
+from diorama_core.library.kinds import outline_of, sizes_of_kind
 from diorama_core.library.taxonomy import PORTABLE, UNKNOWN, Mount, SizePrior, category, column
 from diorama_core.perception.metrology.settings import SETTINGS, PlacementSettings
 

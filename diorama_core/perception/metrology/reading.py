@@ -1,14 +1,19 @@
-"""Reading a placement: which way the object faces and how sure its cuboid is."""
+"""Reading a placement: which way the object faces, how sure its cuboid is, and what holds its place and size."""
 
 from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 from jaxtyping import Float
 
+from diorama_core.arrangement.explain import SCALE
+from diorama_core.artefacts import Decision, DetectedObject, Reason
 from diorama_core.library.taxonomy import UNKNOWN, Category
 from diorama_core.perception.metrology.box_observations import BoxObservations
-from diorama_core.perception.metrology.placement import FLOOR, WALL, Placement
-from diorama_core.perception.metrology.settings import SETTINGS, HeightScanSettings
+from diorama_core.perception.metrology.placement import CEILING, FLOOR, WALL, Placement
+from diorama_core.perception.metrology.problem import UNKNOWNS, View, stacked, values
+from diorama_core.perception.metrology.settings import SETTINGS, CuboidFitSettings, HeightScanSettings
 
 
 def heading_and_size(
@@ -63,3 +68,76 @@ def confidence_of(
     unseen = int((observations.hidden(index, parent) | observations.truncated[index]).sum())
     fit = np.exp(-placement.cost / settings.cost_scale)
     return float(np.clip(fit * settings.hidden_factor**unseen * np.exp(-height_log_sigma), 0.02, 1.0))
+
+
+HUNG: Mapping[int, str] = {WALL: "hangs on walls", CEILING: "hangs from ceilings"}
+FORWARD, SIZE = slice(1, 2), slice(2, 5)
+"""Columns of the unknowns: the logarithms of the distance and of the extents."""
+TERMS: Mapping[str, tuple[slice, str, str]] = {
+    "outline": (slice(0, 3), "it looks as large in the photo as it would there", "it looks that large in the photo"),
+    "foot": (slice(3, 4), "the photo shows its foot there", "the photo shows its foot there"),
+    "cut off": (slice(4, 6), "the photo cuts off no more of it", "the photo cuts off no more of it"),
+    "usual size": (slice(6, 9), "its kind is usually as large as that", "its kind is usually that large"),
+    "base": (slice(9, 10), "its base is as high as what holds it", "its base is as high as what holds it"),
+    "top": (slice(10, 11), "its top is as high as usual", "its top is as high as usual"),
+    "on it": (slice(11, 13), "there it is on what holds it", "it fits on what holds it"),
+    "wall": (slice(13, 14), "there its back is at the wall", "its back is at the wall"),
+}
+"""By term its residuals (`problem.values`), and why it holds the place and the size."""
+
+
+def reasons_of(
+    placements: Sequence[Placement], view: View, objects: Sequence[DetectedObject], settings: CuboidFitSettings
+) -> tuple[Reason, ...]:
+    """By how many nats each term opposes that an object is a tenth farther or nearer, larger or smaller.
+
+    Args:
+        placements: of the objects.
+        view: intrinsics, and rotation from camera to world.
+        objects: by the indices of the placements.
+        settings: of the fit.
+    """
+    if not placements:
+        return ()
+    problems = stacked([p.problem for p in placements])
+    found = np.stack([_unknowns(p, view) for p in placements])
+
+    def nats(unknowns: Float[np.ndarray, "n 6"]) -> Float[np.ndarray, "n r"]:
+        return 0.5 * values(unknowns, problems, view, settings=settings).residuals ** 2
+
+    here = nats(found)
+    reasons: list[Reason] = []
+    changes: tuple[tuple[Decision, slice], ...] = (("place", FORWARD), ("size", SIZE))
+    for column, (decision, changed) in enumerate(changes):
+        step = np.zeros(UNKNOWNS)
+        step[changed] = SCALE.change
+        costs = 0.5 * (nats(found + step) + nats(found - step)) - here
+        for placement, of_terms in zip(placements, costs, strict=True):
+            object_id = objects[placement.index].id
+            for term, (of_term, *sentences) in TERMS.items():
+                cost = float(of_terms[of_term].sum())
+                if abs(cost) >= SCALE.least_nats:
+                    reasons.append(Reason(object_id, decision, term, cost, "nats", sentences[column]))
+    return (*reasons, *(_of_support(p, objects) for p in placements))
+
+
+def _of_support(placement: Placement, objects: Sequence[DetectedObject]) -> Reason:
+    """How sure it is that an object's foot is seen where it stands; or that its kind hangs where it does."""
+    object_id, supporter = objects[placement.index].id, placement.supporter
+    if supporter in HUNG:
+        return Reason(object_id, "support", "kind", SCALE.hung_nats, "nats", f"its kind {HUNG[supporter]}")
+    on = "the floor" if supporter == FLOOR else f"the {objects[supporter].label}"
+    odds = float(np.clip(placement.problem.hidden_odds[0, 3], SCALE.rare, 1.0 / SCALE.rare))
+    seen = "is seen" if odds < 1.0 else "is hidden, and taken to be"
+    return Reason(object_id, "support", "foot", -float(np.log(odds)), "nats", f"its foot {seen} on {on}")
+
+
+def _unknowns(placement: Placement, view: View) -> Float[np.ndarray, "6"]:
+    """The solver's unknowns of a cuboid that was placed."""
+    box, problem = placement.cuboid, placement.problem
+    ahead, right = view.heading, np.array([view.heading[1], -view.heading[0]])
+    plan, size_m = box.centre[0, :2], box.size_m[0]
+    forward = max(float(plan @ ahead), 1e-3)
+    sigma = float(problem.base_sigma_m[0])
+    base = 0.0 if sigma == 0 else (float(box.base_m[0]) - float(problem.base_m[0])) / sigma
+    return np.array([float(plan @ right) / forward, np.log(forward), *np.log(np.maximum(size_m, 1e-3)), base])

@@ -8,8 +8,15 @@ from dataclasses import dataclass
 import numpy as np
 from jaxtyping import Float
 
-from diorama_core.library.company import SELDOM_CARRIED, WITH_BOARDS, often_carried
-from diorama_core.library.taxonomy import AGAINST_WALLS, PORTABLE, UNKNOWN, column
+from diorama_core.library.taxonomy import (
+    AGAINST_WALLS,
+    PORTABLE,
+    SELDOM_CARRIED,
+    UNKNOWN,
+    WITH_BOARDS,
+    column,
+    often_carried,
+)
 from diorama_core.perception.metrology.box_observations import BoxObservations
 from diorama_core.perception.metrology.priors import (
     SizeMode,

@@ -23,8 +23,7 @@ from diorama_core.io.cache import LruCache
 from diorama_core.library.record import Shape, ShapeLibrary
 from diorama_core.models.gigapose import ScaleNetwork
 from diorama_core.pose.correspondence.crops import PatchCrop, crop_object, template_view
-from diorama_core.pose.correspondence.encoded import EncodedViews
-from diorama_core.pose.correspondence.features import GeometricFeatures, PatchFeatures
+from diorama_core.pose.correspondence.features import EncodedViews, GeometricFeatures, PatchFeatures
 from diorama_core.pose.correspondence.matching import cyclic_matches, similarities, template_scores
 from diorama_core.pose.correspondence.rigid import (
     POOLED_VIEWS,

@@ -12,9 +12,8 @@ import pytest
 pytest.importorskip("uvicorn", reason="needs uvicorn (pip install 'diorama[api]')")
 import uvicorn
 
-from diorama_app.http_api import connections
-from diorama_app.http_api.access import Application
-from diorama_app.http_api.connections import Connection
+from diorama_app.http_api import access
+from diorama_app.http_api.access import Application, Connection
 from tests.app.http_api.test_access import served
 
 
@@ -31,7 +30,7 @@ async def _sent(*parts: bytes, app: Application = served, times_out: int = 0) ->
 
     def noted(delay: float, *call: Any) -> asyncio.TimerHandle:
         handle = call_later(delay, *call)
-        timers.extend([handle] if delay == connections.HEAD_S else [])
+        timers.extend([handle] if delay == access.HEAD_S else [])
         return handle
 
     loop.call_later = noted

@@ -8,7 +8,7 @@ from diorama_app.panels.light import LightPanel, told_light
 from diorama_core.scene.light_settings import PHOTO_LIGHT, LightSettings
 from diorama_core.scene.types import Scene
 from tests.app.page import Page
-from tests.geometry.test_sun_patches import room
+from tests.geometry.test_sun import room
 
 
 @pytest.fixture

@@ -6,7 +6,7 @@ from diorama_app.panels.layout_report import WEIGHTS
 from diorama_app.panels.optimiser import RECIPES, Optimiser
 from diorama_app.session.layout_run import LayoutRun
 from diorama_core.artefacts import LayoutReport
-from diorama_core.layout.weights import weighted_costs
+from diorama_core.layout.settings import weighted_costs
 from tests.app.page import Page
 
 START = "Optimise layout"

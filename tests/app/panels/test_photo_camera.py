@@ -5,7 +5,7 @@ import pytest
 
 from diorama_app.panels import photo_camera
 from diorama_app.panels.photo_camera import PhotoCameraPanel, figures
-from diorama_core.geometry.camera_attitude import CameraAttitude
+from diorama_core.geometry.rotations import CameraAttitude
 from tests.app.page import Page
 from tests.app.small_room import photo_camera as camera_of_the_photo
 

@@ -10,7 +10,7 @@ import pytest
 from PIL import Image
 
 from diorama_app.projects.pictures import SIZE, project_picture
-from diorama_core.editing.new_room import empty_room
+from diorama_core.editing.plan_edits import empty_room
 from diorama_core.project.storage import Project
 
 

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from diorama_app.reconstruction.camera_correction import checked_angles
 from diorama_core.artefacts import CameraEstimate, CameraHypothesis, Inputs
 from diorama_core.errors import InputError
-from diorama_core.geometry.camera_attitude import CameraAttitude
+from diorama_core.geometry.rotations import CameraAttitude
 from diorama_core.perception.camera.estimate import GivenAttitudeCamera
 from diorama_core.progress import Progress
 from diorama_core.provenance import CameraSource

@@ -16,7 +16,7 @@ from diorama_app.reconstruction.text_to_scene import NO_ENDPOINT, describe_room,
 from diorama_app.session.client import Client
 from diorama_core.artefacts import Inputs, LabelledBox
 from diorama_core.errors import EditRefused, InputError, UnavailableError
-from diorama_core.models import own_weights
+from diorama_core.io import assets
 from diorama_core.models.network import ModelFile, Network
 from diorama_core.models.store import ModelStore
 from diorama_core.project.storage import Project
@@ -138,7 +138,7 @@ def test_networks_are_downloaded_and_detect_at_once(
 def test_found_furniture_joins_the_boxes_drawn_by_hand(
     store: ModelStore, client: Client, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(own_weights, "FOLDER", tmp_path / "left out")
+    monkeypatch.setattr(assets, "FOLDER", tmp_path / "left out")
     photo = plain_photo(WIDTH, HEIGHT)
     client.session.open_project(begun(tmp_path / "projects" / "tiny", Inputs(photo)))
     find_furniture(client)

@@ -14,7 +14,7 @@ import torch
 from diorama_app.reconstruction import suggestions as suggesting
 from diorama_app.reconstruction.suggestions import COUNT, Suggestions, unmarked
 from diorama_core.artefacts import Box, LabelledBox, Photo
-from diorama_core.models import own_weights
+from diorama_core.io import assets
 from diorama_core.models.boxes import Detections
 from diorama_core.models.store import ModelStore
 from tests.app.small_room import plain_photo
@@ -25,7 +25,7 @@ from tests.pipeline.test_presets import HEIGHT, WIDTH, _Yolox
 
 PHOTO = Photo(np.full((60, 80, 3), 120, np.uint8), "room.png", (80, 60))
 BOX = (10.0, 10.0, 50.0, 50.0)
-shipped = pytest.mark.skipif(not own_weights.has_own_recogniser(), reason="no weights are shipped")
+shipped = pytest.mark.skipif(not assets.has_own_recogniser(), reason="no weights are shipped")
 
 
 @shipped
@@ -187,7 +187,7 @@ def test_in_a_marked_box_something_smaller_is_meant() -> None:
 
 
 def test_without_weights_nothing_is_suggested(monkeypatch: pytest.MonkeyPatch, tmp_path) -> None:
-    monkeypatch.setattr(own_weights, "FOLDER", tmp_path)
+    monkeypatch.setattr(assets, "FOLDER", tmp_path)
     suggestions = Suggestions(PHOTO, lambda: None)
     assert suggestions.names([BOX], 0) == ()
     assert suggestions.boxes() == ()

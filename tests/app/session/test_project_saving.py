@@ -7,10 +7,59 @@ from pathlib import Path
 import pytest
 
 from diorama_app.session.document import Document
-from diorama_app.session.project_saving import ProjectSaving
+from diorama_app.session.project_saving import ProjectAccess, ProjectSaving
+from diorama_core.errors import EditRefused, ProjectError
+from diorama_core.project import lock
 from diorama_core.project.storage import Project
 from diorama_core.scene import edits
 from tests.app.small_room import PlainLibrary, make_project
+
+
+@pytest.fixture
+def demo(tmp_path):
+    return make_project(tmp_path / "demo")
+
+
+def test_the_first_to_come_may_change_the_project_and_the_second_reads_why_not(demo) -> None:
+    first, second = ProjectAccess(), ProjectAccess()
+    assert first.take(demo)
+    first.need_writable()
+    assert not second.take(demo)
+    with pytest.raises(EditRefused, match="open in the editor of"):
+        second.need_writable()
+    first.release()
+    assert second.take(demo)
+    assert second.read_only == ""
+    second.release()
+
+
+def test_opening_the_same_project_again_keeps_the_lock(demo) -> None:
+    access = ProjectAccess()
+    assert access.take(demo)
+    assert not access.take(demo)
+    assert not ProjectAccess().take(demo)
+    access.release()
+
+
+def test_another_project_gives_the_first_one_free(demo, tmp_path) -> None:
+    access, other = ProjectAccess(), ProjectAccess()
+    access.take(demo)
+    assert access.take(make_project(tmp_path / "second"))
+    assert other.take(demo)
+    access.release()
+    other.release()
+
+
+def test_a_folder_that_cannot_be_locked_is_opened_all_the_same(demo, monkeypatch) -> None:
+    def full(*given) -> None:
+        raise ProjectError("the disk is full")
+
+    monkeypatch.setattr("diorama_app.session.project_saving.ProjectLock", full)
+    access = ProjectAccess()
+    assert not access.take(demo)
+    access.need_writable()
+    assert access.unwritable == "changes will not be saved: the disk is full"
+    assert lock.LOCK not in {p.name for p in demo.folder.iterdir()}
 
 
 @pytest.fixture

@@ -1,10 +1,13 @@
 from __future__ import annotations
 
 import time
+from pathlib import Path
 
 import pytest
 
-from diorama_app.session.redraws import EVERY_S, Redraws
+from diorama_app.session import redraws
+from diorama_app.session.jobs import JobStatus, Outcome
+from diorama_app.session.redraws import EVERY_S, FRESH_S, Glances, JobReports, Redraws
 from diorama_app.session.ui_thread import UiThread
 from tests.waiting import until
 
@@ -58,3 +61,83 @@ def test_who_went_away_is_not_drawn(ui_thread) -> None:
     until(lambda: there.drawn, "who is there is drawn")
     assert ui_thread.wait(60.0)
     assert (gone.drawn, len(there.drawn)) == ([], 1)
+
+
+RUNNING = JobStatus("build", "Building", fraction=0.3)
+
+
+@pytest.fixture
+def said() -> list:
+    return []
+
+
+@pytest.fixture
+def reports(said):
+    ui_thread = UiThread(said.append)
+    made = JobReports(
+        ui_thread,
+        on_start=lambda: said.append("start"),
+        on_progress=lambda: said.append("progress"),
+        on_end=said.append,
+    )
+    made.wait = ui_thread.wait
+    yield made
+    ui_thread.stop()
+
+
+@pytest.fixture
+def clock(monkeypatch):
+    now = [100.0]
+    monkeypatch.setattr(redraws.time, "monotonic", lambda: now[0])
+    return now
+
+
+def report(reports, status: JobStatus) -> None:
+    redraws.JobReports.changed(reports, status)
+    reports.wait()
+
+
+def test_progress_is_told_a_few_times_a_second(reports, said, clock) -> None:
+    for _ in range(5):
+        report(reports, RUNNING)
+    assert said == ["progress"]
+    clock[0] += 2 * redraws.REPORT_INTERVAL_S
+    report(reports, RUNNING)
+    assert said == ["progress", "progress"]
+
+
+def test_the_start_and_a_cancel_are_told_at_once(reports, said, clock) -> None:
+    report(reports, RUNNING)
+    report(reports, JobStatus("build", "Building"))
+    report(reports, JobStatus("build", "Building", fraction=0.3, cancelling=True))
+    assert said == ["progress", "start", "progress"]
+
+
+def test_the_end_is_told_with_how_it_ended(reports, said) -> None:
+    outcome = Outcome("build", error="the photo is too dark")
+    reports.ended(outcome)
+    reports.wait()
+    assert said == [outcome]
+
+
+def test_the_disk_is_looked_at_once_a_second_and_after_own_changes() -> None:
+    now = [0.0]
+    glances, looked = Glances(lambda: now[0]), []
+
+    def look() -> int:
+        looked.append(1)
+        return len(looked)
+
+    assert [glances.of("name", look), glances.of("name", look)] == [1, 1]
+    assert glances.of("versions", lambda: "others") == "others"
+    now[0] = 1.5 * FRESH_S
+    assert glances.of("name", look) == 2
+    glances.forget()
+    assert glances.of("name", look) == 3
+
+
+def test_what_cannot_be_read_is_tried_again() -> None:
+    glances = Glances()
+    with pytest.raises(OSError):
+        glances.of("name", Path("/nowhere/at/all").stat)
+    assert glances.of("name", lambda: "there") == "there"

@@ -10,7 +10,7 @@ from diorama_app.viewport.room_light import MAX_LAMPS_LIGHT, RoomLightView
 from diorama_core.scene.light_settings import LightSettings
 from diorama_core.scene.types import RoomLight, Scene
 from tests.app.small_room import PlainLibrary, furnished_scene
-from tests.geometry.test_sun_patches import room
+from tests.geometry.test_sun import room
 
 SCENE = furnished_scene()
 DAY, NIGHT = LightSettings(hour=12.0, north_rad=-1.5707963), LightSettings(hour=0.0, north_rad=-1.5707963)

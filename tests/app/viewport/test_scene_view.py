@@ -1,19 +1,35 @@
 from __future__ import annotations
 
 import asyncio
+import io
 from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
+import trimesh
 
 from diorama_app.viewport.mesh_assets import ShapeBytes, plane_glb, reduced
-from diorama_app.viewport.scene_view import MESH_NAMES, Viewport
+from diorama_app.viewport.scene_view import BELOW_M, MARGIN_M, MESH_NAMES, Viewport, ground_glb
+from diorama_core.editing.plan_edits import empty_room
 from diorama_core.geometry.rotations import quaternion_wxyz
 from diorama_core.io.glb import read_glb
 from diorama_core.scene import edits
 from diorama_core.scene.types import Pose
 from tests.app.small_room import PlainLibrary, furnished_scene, room_planes
+
+
+def test_the_ground_is_dark_below_the_room_and_fades_out_around_it() -> None:
+    floor = empty_room(4.0, 2.0, 2.5).architecture.floor
+    assert floor is not None
+    mesh = trimesh.load(io.BytesIO(ground_glb(floor)), file_type="glb").to_geometry()
+    low, high = mesh.bounds
+    np.testing.assert_allclose(high - low, [4.0 + 2 * MARGIN_M, 2.0 + 2 * MARGIN_M, 0.0], atol=1e-5)
+    assert low[2] == np.float32(-BELOW_M)
+    alpha = np.asarray(mesh.visual.material.baseColorTexture)[..., 3]
+    assert alpha[0].max() < 3
+    assert alpha[alpha.shape[0] // 2, alpha.shape[1] // 2] > 90
+
 
 SCENE = furnished_scene()
 

@@ -11,7 +11,7 @@ import pytest
 
 from diorama_app.serve import Running, start
 from diorama_app.web import viser_adapter
-from diorama_app.web.upload_limits import (
+from diorama_app.web.visitors import (
     MAX_BYTES_IN_FLIGHT,
     MAX_UPLOAD_BYTES,
     MAX_UPLOADS_IN_FLIGHT,

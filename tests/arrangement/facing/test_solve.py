@@ -9,7 +9,7 @@ import pytest
 
 from diorama_core.arrangement.facing.evidence import HEADINGS, FacingRoom
 from diorama_core.arrangement.facing.solve import Factors, solve
-from diorama_core.arrangement.facing.weights import FacingWeights, facing_weights
+from diorama_core.arrangement.facing.terms import FacingWeights, facing_weights
 from tests.arrangement.facing.rooms import heading_deg, room, thing
 
 WEIGHTS = facing_weights()

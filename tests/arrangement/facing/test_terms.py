@@ -1,16 +1,25 @@
-"""Where each term would have things face, seen from above."""
+"""The fitted weights and what is told of them. Where each term would have things face, seen from above."""
 
 from __future__ import annotations
 
-from dataclasses import fields, replace
+import json
+from dataclasses import asdict, fields, replace
 
 import numpy as np
 import pytest
 
 from diorama_core.arrangement.facing.evidence import FacingRoom
-from diorama_core.arrangement.facing.terms import TERMS, Term
-from diorama_core.arrangement.facing.weights import FacingWeights
+from diorama_core.arrangement.facing.terms import PATH, TERMS, FacingWeights, Term, facing_weights
 from tests.arrangement.facing.rooms import heading_deg, room, thing, wall_along_y
+
+
+def test_every_weight_is_fitted_and_says_what_leaving_it_out_costs() -> None:
+    document = json.loads(PATH.read_text())
+    weights = asdict(facing_weights())
+    assert all(weight > 0 for weight in weights.values())
+    assert document["command"].startswith("python -m diorama_core.training facings")
+    assert set(document["change of that without a term"]) == set(weights)
+
 
 BY_NAME = {term.name: term for term in TERMS}
 

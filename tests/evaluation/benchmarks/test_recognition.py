@@ -18,7 +18,7 @@ from diorama_core.artefacts import LabelledBox, Photo
 from diorama_core.errors import InputError
 from diorama_core.evaluation.benchmarks.recognition import run
 from diorama_core.evaluation.reports.tables import Table
-from diorama_core.models.own_weights import CARD, DETECTOR, NAMER
+from diorama_core.io.assets import CARD, DETECTOR, NAMER
 from diorama_core.models.recogniser import Recogniser, own_recogniser
 from diorama_core.models.runtime import Session
 from diorama_core.models.store import ModelStore
@@ -26,9 +26,8 @@ from diorama_core.perception.foundation.proposals import JoinedDetection, OwnDet
 from diorama_core.pipeline.network_stages import everyday_detector
 from diorama_core.pipeline.presets import clickers, namers
 from diorama_core.progress import Progress
-from diorama_core.training.detector import Detector
 from diorama_core.training.export import export_detector, export_namer, score, write_card
-from diorama_core.training.naming import Namer
+from diorama_core.training.networks import Detector, Namer
 
 ANNOTATIONS = Path(__file__).parents[2] / "photo_annotations.json"
 OBJECTS = [

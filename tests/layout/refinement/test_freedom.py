@@ -1,12 +1,27 @@
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
+from diorama_core.geometry.silhouette import PoseBatch
+from diorama_core.layout.feasible.recipe import FeasibleRecipe
 from diorama_core.layout.problem.problem import Problem, build_problem
-from diorama_core.layout.refinement.freedom import Freedom, freedom
+from diorama_core.layout.refinement.freedom import (
+    MEASURED,
+    REASONED,
+    Freedom,
+    PosePrior,
+    Precision,
+    RoomLeft,
+    freedom,
+)
+from diorama_core.layout.report import part_overlaps
+from diorama_core.layout.settings import REFINEMENT
+from diorama_core.progress import Progress
 from diorama_core.scene import edits
-from diorama_core.scene.types import Scene, box_corners
+from diorama_core.scene.types import Pose, Scene, box_corners, yaw_rotation
 from tests.layout.refinement.views import looking_down
 from tests.layout.small_rooms import Room
 
@@ -98,3 +113,122 @@ def test_what_is_round_remains_round(room: Room) -> None:
     poses = free.poses(problem.R[i], problem.p[i], problem.scale[i], problem.shape_size[i], changes)
     assert poses.scale[:, 0] == pytest.approx(poses.scale[:, 1])
     assert np.ptp(poses.scale[:, 2] / poses.scale[:, 0]) > 0.05
+
+
+EYE = np.array([0.0, 0.0, 1.5])
+OBSERVED = Pose.upright((0.0, 2.0, 0.5), 0.0, (1.0, 1.2, 0.8))
+
+
+def cost(pose: Pose, precision: Precision) -> float:
+    batch = PoseBatch(pose.R_world_object[None], pose.position[None], np.array(pose.scale)[None])
+    return float(PosePrior(EYE, OBSERVED, precision).cost(batch)[0])
+
+
+@pytest.mark.parametrize("precision", [MEASURED, REASONED])
+def test_the_observed_pose_costs_nothing_and_a_standard_deviation_what_it_weighs(precision: Precision) -> None:
+    assert cost(OBSERVED, precision) == pytest.approx(0.0, abs=1e-12)
+    turned = replace(OBSERVED, R_world_object=yaw_rotation(0.1))
+    assert cost(turned, precision) == pytest.approx(REFINEMENT.sigma)
+    larger = replace(OBSERVED, scale=np.array(OBSERVED.scale) * np.exp(precision.size_share))
+    assert cost(larger, precision) == pytest.approx(REFINEMENT.sigma)
+
+
+def test_from_a_photo_alone_what_is_farther_is_larger() -> None:
+    away = Pose(OBSERVED.R_world_object, EYE + 1.1 * (OBSERVED.position - EYE), OBSERVED.scale)
+    enlarged = replace(away, scale=1.1 * np.array(away.scale))
+    assert cost(enlarged, REASONED) < cost(away, REASONED)
+    assert cost(enlarged, MEASURED) > cost(away, MEASURED)
+
+
+def test_what_the_layout_changed_much_costs_no_more_for_another_change() -> None:
+    much, more = (replace(OBSERVED, R_world_object=yaw_rotation(turn)) for turn in (1.0, 1.4))
+    assert (
+        cost(much, MEASURED)
+        == pytest.approx(cost(more, MEASURED))
+        == pytest.approx(REFINEMENT.sigma * REFINEMENT.max_sigmas**2)
+    )
+
+
+@pytest.mark.parametrize("precision", [MEASURED, REASONED])
+def test_what_the_layout_moved_far_is_drawn_back_evenly(precision: Precision) -> None:
+    usual = max(precision.distance_m / float(np.linalg.norm(OBSERVED.position - EYE)), precision.distance_share)
+    away = [np.exp(k * usual) for k in (0.5, 4.0, 8.0, 12.0)]
+    near, *far = (cost(_at_distance(d, precision), precision) for d in away)
+    assert near == pytest.approx(REFINEMENT.sigma * 0.25)
+    assert (
+        far[2] - far[1]
+        == pytest.approx(far[1] - far[0])
+        == pytest.approx(REFINEMENT.sigma * 4.0 * 2.0 * REFINEMENT.linear_sigmas)
+    )
+
+
+def _at_distance(times: float, precision: Precision) -> Pose:
+    grown = times if precision.sizes_follow else 1.0
+    return Pose(OBSERVED.R_world_object, EYE + times * (OBSERVED.position - EYE), grown * np.array(OBSERVED.scale))
+
+
+def test_only_what_was_measured_is_known_to_have_been_pushed_away() -> None:
+    prior = PosePrior(EYE, OBSERVED, MEASURED)
+    assert not prior.was_pushed_away(OBSERVED.moved((0.01, 0.0, 0.0)).position)
+    assert prior.was_pushed_away(OBSERVED.moved((0.1, 0.0, 0.0)).position)
+    assert not PosePrior(EYE, OBSERVED, REASONED).was_pushed_away(OBSERVED.moved((0.1, 0.0, 0.0)).position)
+
+
+def settled(room: Room) -> Problem:
+    scene, _ = FeasibleRecipe(room.library).optimise(room.scene(), Progress())
+    return build_problem(scene, room.library, adherence_m=0.004)
+
+
+def allowed(problem: Problem, name: str, move: tuple[float, float, float], grown: float = 1.0) -> bool:
+    i, p, scale = problem.ids.index(name), problem.p.copy(), problem.scale.copy()
+    p[i] += move
+    scale[i] *= grown
+    return RoomLeft.of(problem).allows(i, problem.R, p, scale)
+
+
+def test_a_settled_layout_is_allowed_and_so_is_a_move_into_free_space(room: Room) -> None:
+    room.put("box_24", (0.0, 0.0, 0.15), id="a")
+    room.put("box_24", (1.5, 0.0, 0.15), id="b")
+    problem = settled(room)
+    assert allowed(problem, "a", (0.0, 0.0, 0.0))
+    assert allowed(problem, "a", (0.3, 0.2, 0.0))
+
+
+def test_into_a_neighbour_through_a_wall_and_off_the_floor_nothing_moves(room: Room) -> None:
+    room.put("box_24", (0.0, 0.0, 0.15), id="a")
+    room.put("box_24", (1.5, 0.0, 0.15), id="b")
+    room.put("box_24", (0.0, 2.2, 0.15), id="at wall")
+    problem = settled(room)
+    assert not allowed(problem, "a", (1.5, 0.1, 0.0))
+    assert not allowed(problem, "a", (0.0, 0.0, 0.05))
+    assert not allowed(problem, "at wall", (0.0, 0.4, 0.0))
+
+
+def test_what_carries_something_does_not_leave_it_in_the_air(room: Room) -> None:
+    low = room.put("box_24", (0.0, 0.0, 0.15), id="low")
+    room.put("box_24", (0.0, 0.0, 0.45), on=low, id="on top", scale=(0.9, 0.9, 0.5))
+    problem = settled(room)
+    assert not allowed(problem, "low", (0.3, 0.0, 0.0))
+    assert not allowed(problem, "on top", (0.3, 0.0, 0.0))
+    assert np.isclose(problem.p[0, 2], problem.shape_size[0, 2] / 2)
+
+
+def test_what_hangs_over_an_edge_does_not_leave_it_farther(room: Room) -> None:
+    low = room.put("box_24", (0.0, 0.0, 0.15), id="low")
+    room.put("box_24", (0.0, 0.0, 0.45), on=low, id="on top", scale=(2.0, 2.0, 0.5))
+    problem = settled(room)
+    assert allowed(problem, "on top", (0.0, 0.0, 0.0))
+    assert not allowed(problem, "on top", (0.05, 0.0, 0.0), grown=1.0)
+
+
+def test_what_is_on_a_lower_board_overlaps_the_sides_and_not_what_is_beside_it(room: Room) -> None:
+    shelf = room.put("bookshelf_6", (0.0, 0.0, 0.9), id="shelf")
+    place, half = room.library.shape("bookshelf_6").surfaces[1], room.library.shape("cup_21").size_m[2] / 2
+    room.put("cup_21", (0.0, 0.0, 0.9 + place.height_m + half), on=shelf, id="cup")
+    problem = settled(room)
+    through, p = problem.ids.index("cup"), problem.p.copy()
+    p[through, 1] += 0.5 * room.library.shape("bookshelf_6").size_m[1]
+    poses = problem.R, p, problem.scale
+    assert part_overlaps(problem, *poses, only=through, supporters=True)[0, 1] > 0.01
+    assert not part_overlaps(problem, *poses, only=through)
+    assert not part_overlaps(problem, problem.R, problem.p, problem.scale, supporters=True)

@@ -5,9 +5,9 @@ import numpy as np
 from diorama_core.geometry.silhouette import PoseBatch, ShapeCaster
 from diorama_core.layout.feasible.recipe import FeasibleRecipe
 from diorama_core.layout.problem.problem import build_problem
+from diorama_core.layout.refinement.freedom import MEASURED, PosePrior
 from diorama_core.layout.refinement.pixel_grid import PixelGrid
 from diorama_core.layout.refinement.posed_picture import PosedPicture
-from diorama_core.layout.refinement.prior import MEASURED, PosePrior
 from diorama_core.layout.refinement.search import Search
 from diorama_core.layout.settings import REFINEMENT
 from diorama_core.progress import Progress

@@ -27,7 +27,7 @@ from diorama_core.library.ingest.repair import repaired, with_thickness
 from diorama_core.library.ingest.three_ds import read_3ds
 from diorama_core.library.ingest.three_mf import read_3mf
 from diorama_core.library.ingest.usd_stage import frame_of, opened_stage
-from diorama_core.library.kind_sizes import is_possible
+from diorama_core.library.kinds import is_possible
 from tests.library.ingest.models import chair, y_up
 
 

@@ -4,8 +4,7 @@ import numpy as np
 import trimesh
 
 from diorama_core.library.catalogue import built_in_library
-from diorama_core.library.ingest.relief import quarter_turns, relief, turned
-from diorama_core.library.ingest.symmetry import coincides, symmetry_fold
+from diorama_core.library.ingest.relief import coincides, quarter_turns, relief, symmetry_fold, turned
 from tests.library.ingest.models import block, chair, table
 
 

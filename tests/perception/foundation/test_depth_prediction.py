@@ -14,7 +14,7 @@ from diorama_core.perception.foundation.depth_prediction import (
     with_depth,
 )
 from diorama_core.perception.measured import MeasuredGeometry
-from diorama_core.pipeline.provenance_text import camera_sentence, geometry_sentence
+from diorama_core.pipeline.findings import camera_sentence, geometry_sentence
 from diorama_core.progress import Progress
 from diorama_core.provenance import DepthSource, RoomMethod, RoomSource
 from diorama_core.scene.types import Architecture

@@ -9,7 +9,7 @@ from typing import Any
 import pytest
 
 from diorama_core.evaluation.benchmarks import relations as relations_bench
-from diorama_core.evaluation.metrics.relations import RelationCount, relations_of
+from diorama_core.evaluation.benchmarks.relations import RelationCount, relations_of
 from diorama_core.library.catalogue import built_in_library
 from diorama_core.perception.language.client import LmmSettings
 from diorama_core.synthesis import ROOM_KINDS, TruthView, furnished_room, render_truth, sample_cameras

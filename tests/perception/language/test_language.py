@@ -22,9 +22,8 @@ from diorama_core.artefacts import (
 from diorama_core.errors import Cancelled, UnavailableError
 from diorama_core.perception.graph.geometric import GeometricGraph
 from diorama_core.perception.language.client import LmmClient, LmmSettings, UnusableReplyError, strict_schema
-from diorama_core.perception.language.json_text import json_in
 from diorama_core.perception.language.marks import marked
-from diorama_core.perception.language.replies import ClassesReply, GraphReply, tidy_label
+from diorama_core.perception.language.replies import ClassesReply, GraphReply, json_in, tidy_label
 from diorama_core.perception.language.stages import LanguageGraph, LanguageRecognition, repaired
 from diorama_core.progress import CancelToken, Progress
 from diorama_core.provenance import GraphMethod, LanguageModelUse, ScaleSource

@@ -3,8 +3,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from diorama_core.library.kind_sizes import BROAD_SHARE, MAX_MODES
-from diorama_core.library.kinds import modes_of_kind
+from diorama_core.library.kinds import BROAD_SHARE, MAX_MODES, modes_of_kind
 from diorama_core.library.taxonomy import CATEGORIES, UNKNOWN, Category, category
 from diorama_core.perception.metrology.priors import (
     SizeMode,

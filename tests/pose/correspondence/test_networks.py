@@ -12,8 +12,7 @@ from diorama_core.models.features import Dinov2
 from diorama_core.models.gigapose import PatchTurns
 from diorama_core.models.runtime import SessionPool
 from diorama_core.pose.correspondence.crops import crop_object, template_view
-from diorama_core.pose.correspondence.encoded import EncodedViews
-from diorama_core.pose.correspondence.features import NetworkFeatures
+from diorama_core.pose.correspondence.features import EncodedViews, NetworkFeatures
 from diorama_core.pose.correspondence.rigid import from_matches, from_one_match
 from diorama_core.pose.correspondence.solvers import CorrespondencePose
 from diorama_core.progress import Progress

@@ -13,9 +13,8 @@ from diorama_core.library.taxonomy import ARCHITECTURE_WORDS, UNKNOWN
 from diorama_core.perception.inputs.boxes.entry import BoxEntry, BoxFile
 from diorama_core.perception.inputs.boxes.placing import placed_boxes
 from diorama_core.perception.inputs.boxes.table import BOX_FORMS, EXAMPLE, parsed
-from diorama_core.perception.inputs.form import form_of
 from diorama_core.perception.inputs.photos.reading import DecodedPhoto
-from diorama_core.perception.inputs.source import Source
+from diorama_core.perception.inputs.source import Source, form_of
 
 MAX_OBJECTS = 500
 MAX_BOXES_BYTES = 4_000_000

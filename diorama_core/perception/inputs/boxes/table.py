@@ -10,8 +10,7 @@ from diorama_core.errors import InputError
 from diorama_core.io.bounded import parse_json
 from diorama_core.perception.inputs.boxes import data_sets, lines, lists, markup, tools
 from diorama_core.perception.inputs.boxes.entry import BoxFile, BoxText, Size
-from diorama_core.perception.inputs.form import Form
-from diorama_core.perception.inputs.source import Source
+from diorama_core.perception.inputs.source import Form, Source
 
 EXAMPLE = 'a JSON list of {"bbox": [x1, y1, x2, y2], "class": "chair"}'
 _JSON_LINES = b"{"

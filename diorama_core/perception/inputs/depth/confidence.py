@@ -13,8 +13,7 @@ from diorama_core.errors import InputError
 from diorama_core.perception.inputs.depth.containers import DEPTH_FORMS
 from diorama_core.perception.inputs.depth.numpy_files import DepthContent
 from diorama_core.perception.inputs.depth.voids import only_sure
-from diorama_core.perception.inputs.form import form_of
-from diorama_core.perception.inputs.source import Source
+from diorama_core.perception.inputs.source import Source, form_of
 
 _NAMED = re.compile(r"confidence|(?:^|[_.\- ])conf(?![a-z])")
 _NO_MAPS = (".json", ".txt", ".csv", ".xml", ".yaml", ".yml", ".md", ".ini")

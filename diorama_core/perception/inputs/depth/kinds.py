@@ -15,8 +15,17 @@ from jaxtyping import Bool, Float
 
 from diorama_core.artefacts import LabelledBox
 from diorama_core.library.taxonomy import UNKNOWN, category
-from diorama_core.perception.inputs.depth.functions import DEPTH, INVERSE, ROOT, DepthFunction
-from diorama_core.perception.inputs.depth.planes import TRIALS, PlaneFit, SampledDepth, planes_of, sampled
+from diorama_core.perception.inputs.depth.planes import (
+    DEPTH,
+    INVERSE,
+    ROOT,
+    TRIALS,
+    DepthFunction,
+    PlaneFit,
+    SampledDepth,
+    planes_of,
+    sampled,
+)
 
 Kind = Literal["depth", "distance", "inverse", "root", "logarithm", "shifted"]
 DepthKind = Literal["auto", "depth", "distance", "inverse", "root", "logarithm", "shifted"]

@@ -20,9 +20,8 @@ from diorama_core.perception.inputs.depth.relative import metric_depth, metric_o
 from diorama_core.perception.inputs.depth.scale import focal_of_planes, scale_evidence
 from diorama_core.perception.inputs.depth.units import AmbiguousDepthError, DepthAnswer, unit_of
 from diorama_core.perception.inputs.depth.voids import measured
-from diorama_core.perception.inputs.form import form_of
 from diorama_core.perception.inputs.photos.reading import DecodedPhoto
-from diorama_core.perception.inputs.source import Source
+from diorama_core.perception.inputs.source import Source, form_of
 from diorama_core.scene.types import Intrinsics
 
 DepthEncoding = Literal["linear", "sunrgbd"]

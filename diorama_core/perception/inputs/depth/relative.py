@@ -12,9 +12,8 @@ from jaxtyping import Bool, Float
 
 from diorama_core.artefacts import LabelledBox
 from diorama_core.errors import InputError
-from diorama_core.perception.inputs.depth.functions import DepthFunction
 from diorama_core.perception.inputs.depth.kinds import DepthReading
-from diorama_core.perception.inputs.depth.planes import PlaneFit
+from diorama_core.perception.inputs.depth.planes import DepthFunction, PlaneFit
 from diorama_core.perception.inputs.depth.scale import (
     ScaleEvidence,
     focal_of_planes,

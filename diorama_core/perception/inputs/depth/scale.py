@@ -9,7 +9,7 @@ import numpy as np
 from jaxtyping import Bool, Float
 
 from diorama_core.artefacts import LabelledBox
-from diorama_core.library.kind_sizes import sizes_of_kind
+from diorama_core.library.kinds import sizes_of_kind
 from diorama_core.library.taxonomy import UNKNOWN
 from diorama_core.perception.inputs.depth.planes import PlaneFit
 

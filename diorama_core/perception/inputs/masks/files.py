@@ -11,9 +11,8 @@ from jaxtyping import Bool
 from numpy.lib import format as npy
 
 from diorama_core.errors import InputError
-from diorama_core.perception.inputs.masks.pictures import one_object, without_void
+from diorama_core.perception.inputs.masks.pictures import MAX_STACKED, MaskMap, one_object, painted, without_void
 from diorama_core.perception.inputs.masks.segments import MAX_TOTAL_MEGAPIXELS
-from diorama_core.perception.inputs.masks.stack import MAX_STACKED, MaskMap, painted
 from diorama_core.perception.inputs.source import Folder, Source
 
 AROUND_SHARE = 0.6

@@ -10,10 +10,9 @@ from diorama_core.errors import InputError
 from diorama_core.geometry.projection import box_iou
 from diorama_core.io.text import number_of
 from diorama_core.library.taxonomy import UNKNOWN
-from diorama_core.perception.inputs.form import form_of
 from diorama_core.perception.inputs.masks.table import MASK_FORMS, MaskContent
 from diorama_core.perception.inputs.photos.reading import DecodedPhoto
-from diorama_core.perception.inputs.source import Folder, Source
+from diorama_core.perception.inputs.source import Folder, Source, form_of
 
 MAX_OBJECTS, MANY = 500, 60
 SPECK_SHARE = 1e-4

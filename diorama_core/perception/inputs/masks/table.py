@@ -4,13 +4,16 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from diorama_core.perception.inputs.form import Form
 from diorama_core.perception.inputs.masks.files import read_arrays, read_folder_of_masks
-from diorama_core.perception.inputs.masks.markup import is_markup, read_cvat_masks
-from diorama_core.perception.inputs.masks.pictures import read_picture
-from diorama_core.perception.inputs.masks.segments import is_polygon_list, read_polygon_list, read_segments
-from diorama_core.perception.inputs.masks.stack import MaskMap
-from diorama_core.perception.inputs.source import Folder, Source
+from diorama_core.perception.inputs.masks.pictures import MaskMap, read_picture
+from diorama_core.perception.inputs.masks.segments import (
+    is_markup,
+    is_polygon_list,
+    read_cvat_masks,
+    read_polygon_list,
+    read_segments,
+)
+from diorama_core.perception.inputs.source import Folder, Form, Source
 
 
 @dataclass(frozen=True)

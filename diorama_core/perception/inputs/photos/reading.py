@@ -13,14 +13,12 @@ from PIL import Image
 from diorama_core.artefacts import Photo
 from diorama_core.errors import InputError
 from diorama_core.perception.camera.exif import focal_from_exif
-from diorama_core.perception.inputs.form import form_of
-from diorama_core.perception.inputs.photos.bits import dark_colours, eight_bits
 from diorama_core.perception.inputs.photos.borders import plain_borders
-from diorama_core.perception.inputs.photos.decoding import load_pixels, open_picture
+from diorama_core.perception.inputs.photos.decoding import dark_colours, eight_bits, load_pixels, open_picture
 from diorama_core.perception.inputs.photos.frame import PhotoFrame
 from diorama_core.perception.inputs.photos.panoramas import check_perspective, check_sphere
 from diorama_core.perception.inputs.photos.table import PHOTO_FORMS
-from diorama_core.perception.inputs.source import Source
+from diorama_core.perception.inputs.source import Source, form_of
 
 MIN_SIDE_PX = 32
 MAX_ASPECT = 8.0

@@ -4,10 +4,9 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from diorama_core.perception.inputs.form import Form
 from diorama_core.perception.inputs.photos.decoding import is_heif
 from diorama_core.perception.inputs.photos.raw import largest_picture, raw_kind
-from diorama_core.perception.inputs.source import Source
+from diorama_core.perception.inputs.source import Form, Source
 
 
 @dataclass(frozen=True)

@@ -7,10 +7,9 @@ import pytest
 
 from diorama_core.artefacts import LabelledBox, Photo
 from diorama_core.errors import InputError
-from diorama_core.perception.inputs.boxes.agreement import EdgeMap
+from diorama_core.perception.inputs.boxes.agreement import EdgeMap, is_upside_down
 from diorama_core.perception.inputs.boxes.entry import BoxEntry, BoxFile
 from diorama_core.perception.inputs.boxes.placing import placed_boxes
-from diorama_core.perception.inputs.boxes.standing import is_upside_down
 from diorama_core.perception.inputs.photos.frame import PhotoFrame
 from diorama_core.perception.inputs.photos.reading import DecodedPhoto
 

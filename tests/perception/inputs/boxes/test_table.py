@@ -12,8 +12,7 @@ from diorama_core.perception.inputs.boxes import data_sets, lines, lists, markup
 from diorama_core.perception.inputs.boxes.dictionaries import box_of, word_of
 from diorama_core.perception.inputs.boxes.reading import read_boxes
 from diorama_core.perception.inputs.boxes.table import BOX_FORMS, parsed
-from diorama_core.perception.inputs.form import form_of
-from diorama_core.perception.inputs.source import Source
+from diorama_core.perception.inputs.source import Source, form_of
 from tests.perception.inputs.files import decoded
 
 SIZE = (400, 300)

@@ -1,4 +1,4 @@
-"""The containers of depth give the same numbers."""
+"""Depth as text. The containers of depth give the same numbers."""
 
 from __future__ import annotations
 
@@ -11,13 +11,36 @@ from PIL import Image
 
 from diorama_core.errors import InputError
 from diorama_core.perception.inputs.depth.channels import one_channel
-from diorama_core.perception.inputs.depth.containers import DEPTH_FORMS
+from diorama_core.perception.inputs.depth.containers import DEPTH_FORMS, is_number_table, read_number_table
 from diorama_core.perception.inputs.depth.numpy_files import DepthContent, RawDepth
-from diorama_core.perception.inputs.form import form_of
-from diorama_core.perception.inputs.source import Source
+from diorama_core.perception.inputs.source import Source, form_of
 from tests.perception.inputs.depth.rooms import FOCAL, HEIGHT, WIDTH, room
-from tests.perception.inputs.depth.test_colours import in_bytes
+from tests.perception.inputs.depth.test_channels import in_bytes
 from tests.perception.inputs.files import encoded, npy
+
+ROW = ",".join(str(k / 10) for k in range(30))
+
+
+def text_of(*rows: str) -> Source:
+    return Source("\n".join(rows).encode(), "d.csv")
+
+
+def test_rows_of_equal_length_are_a_map() -> None:
+    values = read_number_table(text_of(*[ROW] * 30))
+    assert values.shape == (30, 30)
+    assert values[0, 29] == 2.9
+    assert np.isnan(read_number_table(text_of(*[ROW.replace("0.0", "nan")] * 30))[0, 0])
+
+
+@pytest.mark.parametrize("rows", [[ROW] * 5, ["0 0.1 0.2 0.3 0.4"] * 40, [ROW, *[ROW + ",1"] * 30], ["a" + ROW] * 30])
+def test_other_texts_are_none(rows: list[str]) -> None:
+    assert not is_number_table(text_of(*rows))
+
+
+def test_a_damaged_row_is_refused_in_one_line() -> None:
+    with pytest.raises(InputError, match="damaged"):
+        read_number_table(text_of(*[ROW] * 30, "1,2"))
+
 
 DEPTH, _ = room()
 MILLIMETRES = (DEPTH * 1000).astype(np.uint16)

@@ -16,16 +16,13 @@ from PIL import Image
 
 from diorama_core.artefacts import LabelledBox
 from diorama_core.errors import InputError
-from diorama_core.perception.inputs.form import form_of
 from diorama_core.perception.inputs.masks.files import read_arrays, read_folder_of_masks
-from diorama_core.perception.inputs.masks.markup import is_markup
-from diorama_core.perception.inputs.masks.pictures import VOC_VOID, read_picture, without_void
+from diorama_core.perception.inputs.masks.pictures import VOC_VOID, painted, read_picture, without_void
 from diorama_core.perception.inputs.masks.reading import read_masks
 from diorama_core.perception.inputs.masks.run_lengths import decoded_runs
-from diorama_core.perception.inputs.masks.segments import read_segments
-from diorama_core.perception.inputs.masks.stack import painted
+from diorama_core.perception.inputs.masks.segments import is_markup, read_segments
 from diorama_core.perception.inputs.masks.table import MASK_FORMS, MaskContent
-from diorama_core.perception.inputs.source import Folder, Source, read_folder
+from diorama_core.perception.inputs.source import Folder, Source, form_of, read_folder
 from tests.perception.inputs.files import decoded, encoded, npy
 
 HEIGHT, WIDTH = 90, 120

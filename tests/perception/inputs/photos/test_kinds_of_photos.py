@@ -12,14 +12,13 @@ from PIL import Image
 
 from diorama_core.errors import InputError, SphericalPhotoError
 from diorama_core.perception.inputs import read_inputs
-from diorama_core.perception.inputs.form import form_of
-from diorama_core.perception.inputs.photos.bits import eight_bits
 from diorama_core.perception.inputs.photos.borders import plain_borders
+from diorama_core.perception.inputs.photos.decoding import eight_bits
 from diorama_core.perception.inputs.photos.frame import PhotoFrame
 from diorama_core.perception.inputs.photos.panoramas import check_perspective
 from diorama_core.perception.inputs.photos.raw import raw_kind
 from diorama_core.perception.inputs.photos.table import PHOTO_FORMS
-from diorama_core.perception.inputs.source import Source
+from diorama_core.perception.inputs.source import Source, form_of
 from tests.perception.inputs.files import box, boxes_json, depth_png, encoded, npy
 
 WIDTH, HEIGHT = 160, 120

@@ -1,0 +1,126 @@
+"""One page in its browser: its address names its project, the tabs that were open last are open again after a reload,
+and on a phone it shows one panel.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable, Sequence
+
+import viser
+
+from diorama_app.session.client import Client
+from diorama_app.strings import _
+from diorama_app.web.html import Action, LiveHtml, run_once
+
+
+class Address:
+    """The address of one page."""
+
+    def __init__(self, gui: viser.GuiApi) -> None:
+        self._script = gui.add_html("")
+        self._moves = 0
+
+    def go_to(self, project: str) -> None:
+        """Take the page to a project, by the name of its folder; Back leads here again."""
+        self._moves += 1
+        self._script.content = run_once(f"window.__dioGoTo({json.dumps(project)}); /* {self._moves} */")
+
+
+STORED_AS = "diorama-tabs"
+TRIES = 40
+"""Number of attempts to find the tabs while the page loads, 50 ms apart."""
+
+_KEEPER = """
+const groups = %s, key = %s;
+const tabs = () => [...document.querySelectorAll('[role=tab]')];
+const named = (tab) => tab.textContent.trim();
+const enter = (tab) => {
+  tab.dispatchEvent(new KeyboardEvent('keydown', { key: 'Enter', bubbles: true }));
+  tab.click();
+};
+const read = () => { try { return JSON.parse(localStorage.getItem(key)) || []; } catch { return []; } };
+const note = () => {
+  const open = tabs().filter((t) => t.getAttribute('aria-selected') === 'true').map(named);
+  const remembered = groups.map((names) => names.find((name) => open.includes(name)) || names[0]);
+  try { localStorage.setItem(key, JSON.stringify(remembered)); } catch { window.__dioTabs = 'not remembered'; }
+};
+const recall = (left) => {
+  const there = tabs(), remembered = read();
+  if (groups.flat().some((name) => !there.some((t) => named(t) === name))) {
+    if (left) setTimeout(() => recall(left - 1), 50);
+    return;
+  }
+  for (const tab of there)
+    if (remembered.includes(named(tab)) && tab.getAttribute('aria-selected') !== 'true') enter(tab);
+  if (window.__dioTabWanted) enter(there.find((t) => named(t) === window.__dioTabWanted));
+};
+delete window.__dioTabWanted;
+window.__dioOpenTab = (name, left = 40) => {
+  window.__dioTabWanted = name;
+  const tab = tabs().find((t) => named(t) === name);
+  if (tab && tab.getAttribute('aria-selected') !== 'true') enter(tab);
+  if (left) setTimeout(() => window.__dioTabWanted === name && window.__dioOpenTab(name, left - 1), 50);
+  else if (window.__dioTabWanted === name) delete window.__dioTabWanted;
+};
+recall(%d);
+if (!window.__dioTabs) {
+  window.__dioTabs = 'remembered';
+  for (const kind of ['pointerdown', 'keydown'])
+    document.addEventListener(kind, (e) => {
+      if (e.isTrusted && e.target.closest('[role=tab]')) delete window.__dioTabWanted;
+    }, true);
+  for (const kind of ['pointerup', 'keyup'])
+    document.addEventListener(kind, () => setTimeout(note, 200), true);
+}
+"""
+"""viser's tabs answer to a press of the mouse, not to a click; a key does the same. Those of a phone answer to a click
+only. A tab that is opened is opened again where others are made meanwhile (a phone's), until a person chooses one."""
+
+
+class Tabs:
+    """The tabs of one page."""
+
+    def __init__(self, gui: viser.GuiApi, groups: Sequence[Sequence[str]]) -> None:
+        """Open the tabs that were open here the last time, and note which are from now on.
+
+        Args:
+            gui: the page.
+            groups: names of the tabs that stand side by side.
+        """
+        names = json.dumps([list(map(_, group)) for group in groups])
+        gui.add_html(run_once(_KEEPER % (names, json.dumps(STORED_AS), TRIES)))
+        self._opener = gui.add_html("")
+        self._asked = 0
+
+    def open(self, name: str) -> None:
+        """Bring a tab to the front."""
+        self._asked += 1
+        opening = f"window.__dioOpenTab && window.__dioOpenTab({json.dumps(_(name))}); /* {self._asked} */"
+        self._opener.content = run_once(opening)
+
+
+class OnePanel:
+    """A hidden button that the page presses by itself where there is room for one panel only."""
+
+    def __init__(self, gui: viser.GuiApi, client: Client, gather: Callable[[], None]) -> None:
+        """Put the button on the page.
+
+        Args:
+            gui: the page.
+            client: the owner.
+            gather: moves all tabs into one panel; called once.
+        """
+        self._client, self._gather = client, gather
+        self._gathered = False
+        self._html = LiveHtml(gui, lambda action: client.post(lambda: self._do(action)))
+
+    def refresh(self) -> None:
+        """Draw the button until it was pressed."""
+        hidden = '<button type="button" id="dio-one-panel" data-do="one panel" hidden></button>'
+        self._html.show("" if self._gathered else hidden)
+
+    def _do(self, action: Action) -> None:
+        if action.do == "one panel" and not self._gathered:
+            self._gathered = True
+            self._gather()
