@@ -30,7 +30,7 @@ def tables() -> dict[str, str]:
     from diorama_core.library.ingest.models import MODEL_FORMS
     from diorama_core.perception.inputs.boxes.table import BOX_FORMS
     from diorama_core.perception.inputs.depth.containers import DEPTH_FORMS
-    from diorama_core.perception.inputs.depth.units import USUAL_UNITS
+    from diorama_core.perception.inputs.depth.scale import USUAL_UNITS
     from diorama_core.perception.inputs.masks.table import MASK_FORMS
     from diorama_core.perception.inputs.photos.table import PHOTO_FORMS
 

@@ -160,7 +160,7 @@ def _add_methods(p: argparse.ArgumentParser) -> None:
 
 
 def _build(a: argparse.Namespace) -> None:
-    from diorama_app.cli.folder import build_folder
+    from diorama_app.cli.many_photos import build_folder
 
     options = BuildOptions(
         depth_scale=a.depth_scale,
@@ -178,7 +178,7 @@ def _build(a: argparse.Namespace) -> None:
     if a.explain is not None and (a.poses is not None or a.image.is_dir()):
         raise InputError("--explain is for one photo; each project of a folder of photos has its reasons.json")
     if a.poses is not None:
-        from diorama_app.cli.posed import build_posed
+        from diorama_app.cli.many_photos import build_posed
 
         build_posed(a, options)
     elif a.image.is_dir():
@@ -203,7 +203,7 @@ def _build_photo(a: argparse.Namespace, options: BuildOptions) -> None:
             room = build_files(files, options, a.output, progress, print_note)
             scenes = write_arrangements(room, a.arrangements, progress)
     except SphericalPhotoError:
-        from diorama_app.cli.posed import build_sphere
+        from diorama_app.cli.many_photos import build_sphere
 
         build_sphere(a, files, options)
         return

@@ -9,7 +9,7 @@ import numpy as np
 from diorama_app.session.client import Client
 from diorama_app.session.session import EditorSession
 from diorama_app.strings import _
-from diorama_app.viewport.framing import NARROW_FOV_RAD, bounds, room_view, side_view
+from diorama_app.viewport.camera import NARROW_FOV_RAD, bounds, room_view, side_view
 from diorama_core.errors import EditRefused
 
 

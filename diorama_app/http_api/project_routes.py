@@ -13,8 +13,7 @@ from starlette.concurrency import run_in_threadpool
 from diorama_app.commands import review
 from diorama_app.commands.optimise import optimise
 from diorama_app.http_api import project_answers as answers
-from diorama_app.http_api.answers import documented
-from diorama_app.http_api.files import FILE, PICTURE, VIEWS, file_answer, format_of, png
+from diorama_app.http_api.answers import FILE, PICTURE, VIEWS, documented, file_answer, format_of, png
 from diorama_app.http_api.forms import (
     AUTHOR,
     DescribeRequest,

@@ -13,8 +13,20 @@ from starlette.exceptions import HTTPException as StarletteHTTPException
 
 import diorama_core as diorama
 from diorama_app.http_api.access import Guard
-from diorama_app.http_api.answers import FormatAnswer, JobAnswer, JobList, answer_of, documented, told
-from diorama_app.http_api.files import FILE, PICTURE, VIEWS, file_answer, format_of, png
+from diorama_app.http_api.answers import (
+    FILE,
+    PICTURE,
+    VIEWS,
+    FormatAnswer,
+    JobAnswer,
+    JobList,
+    answer_of,
+    documented,
+    file_answer,
+    format_of,
+    png,
+    told,
+)
 from diorama_app.http_api.forms import PhotoForm
 from diorama_app.http_api.jobs import JobQueue, Upload
 from diorama_app.http_api.open_projects import OpenProjects

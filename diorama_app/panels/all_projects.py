@@ -40,7 +40,8 @@ class AllProjects:
 
     def open(self) -> None:
         """Show it over the page; Esc closes it."""
-        self._client.close_dialog()
+        if self._client.dialog is not None:
+            self._client.dialog()
         self._open, self._client.dialog = True, self.close
         self.refresh()
 

@@ -8,9 +8,9 @@ from __future__ import annotations
 import viser
 
 from diorama_app.commands.import_model import import_model
+from diorama_app.panels.fields import Take, hidden_upload
 from diorama_app.panels.input_questions import ask_which
 from diorama_app.panels.photo import PhotoPanel
-from diorama_app.panels.upload_field import Take, hidden_upload
 from diorama_app.projects.dropped import Dropped, Reading
 from diorama_app.projects.dropped_files import files_of, sources_of, upload_of
 from diorama_app.reconstruction.dropped_photos import begin_each, build_one_room

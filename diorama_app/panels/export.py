@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, TypeVar
 import viser
 
 from diorama_app.projects.formats import EXPORT_FORMATS, GUIDES, Choice
-from diorama_app.reconstruction.export_job import download_suffix, export
+from diorama_app.reconstruction.written_files import download_suffix, export
 from diorama_app.session.client import Client
 from diorama_app.strings import N_, _
 from diorama_app.web.html import Action, LiveHtml, button, switch, text

@@ -1,9 +1,18 @@
-"""Input fields that show the document and write to it, without echoing their own updates."""
+"""Input fields that show the document and write to it, without echoing their own updates, and buttons that take a file,
+shown in a panel or hidden behind something else that starts them.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from typing import Any
+
+import viser
+
+from diorama_app.session.client import Client
+from diorama_app.web.html import text
+from diorama_app.web.viser_adapter import component_uuid
+from diorama_core.io.text import clean_text
 
 QUIET_COLOUR = (84, 96, 114)
 """Colour of secondary buttons; viser's grey looks disabled."""
@@ -65,3 +74,58 @@ def unique_names(names: list[str]) -> list[str]:
         seen[name] = seen.get(name, 0) + 1
         result.append(name if seen[name] == 1 else f"{name} ({seen[name]})")
     return result
+
+
+Take = Callable[[str, bytes], None]
+"""Takes name and content of a file."""
+
+
+class UploadField:
+    """A button that opens the browser's file dialog and hands over what is chosen."""
+
+    def __init__(self, gui: viser.GuiApi, client: Client, label: str, take: Take, **about: Any) -> None:
+        """Put the button on the page.
+
+        Args:
+            gui: the panel.
+            client: whose page it is; `take` is called in its queue.
+            label: the button's words.
+            take: takes the file.
+            **about: further arguments of viser's `add_upload_button`: `mime_type`, `hint`, `color`.
+        """
+        self.handle = gui.add_upload_button(label, **about)
+        self.uuid = component_uuid(self.handle)
+        """The page's input is the element `file_upload_<uuid>`."""
+        # viser's page draws these buttons even where their `visible` is False.
+        self._hidden = gui.add_html(
+            f"<style>div:has(> #file_upload_{text(self.uuid)}) {{ display: none; }}</style>", visible=False
+        )
+
+        async def uploaded(event: viser.GuiEvent[viser.GuiUploadButtonHandle]) -> None:
+            file = event.target.value
+            client.post(lambda: take(clean_text(file.name), file.content))
+
+        self.handle.on_upload(uploaded)
+
+    def show_if(self, visible: bool) -> None:
+        """Show or hide the button."""
+        show_if(not visible, self._hidden)
+
+    @property
+    def visible(self) -> bool:
+        """Whether the page shows the button."""
+        return not self._hidden.visible
+
+
+def hidden_upload(gui: viser.GuiApi, client: Client, label: str, take: Take, **about: Any) -> str:
+    """An upload button that the page does not show, for what is dropped or chosen elsewhere; gives its id.
+
+    Args:
+        gui: of the page.
+        client: the browser that asked.
+        label: for those who do not see the page.
+        take: called with the files.
+    """
+    field = UploadField(gui, client, label, take, **about)
+    field.show_if(False)
+    return field.uuid

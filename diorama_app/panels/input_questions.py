@@ -12,7 +12,7 @@ from diorama_app.projects.dropped import Dropped, Reading
 from diorama_app.session.client import Client
 from diorama_app.strings import _
 from diorama_app.web.html import text
-from diorama_core.perception.inputs.depth.units import AmbiguousDepthError, DepthAnswer
+from diorama_core.perception.inputs.depth.scale import AmbiguousDepthError, DepthAnswer
 
 Answer = TypeVar("Answer")
 

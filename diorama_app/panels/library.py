@@ -10,9 +10,8 @@ import viser
 
 from diorama_app.commands.import_model import import_model
 from diorama_app.commands.insert import insert_shape, start_placing, stop_placing, toggle_favourite
-from diorama_app.panels.fields import on_change
+from diorama_app.panels.fields import UploadField, on_change
 from diorama_app.panels.own_models import OwnShelf
-from diorama_app.panels.upload_field import UploadField
 from diorama_app.session.client import Client, Placing
 from diorama_app.session.units import format_size
 from diorama_app.strings import N_, _

@@ -100,7 +100,8 @@ class Toasts:
 @contextmanager
 def dialog(client: Client, title: str) -> Iterator[Callable[[], None]]:
     """What is made inside the block is in a dialog, in place of one that is open; gives what closes it."""
-    client.close_dialog()
+    if client.dialog is not None:
+        client.dialog()
 
     def close() -> None:
         client.dialog = None

@@ -12,9 +12,8 @@ from diorama_app.commands.import_model import FIXES, correct_model, is_own_model
 from diorama_app.session.client import Client
 from diorama_app.strings import _
 from diorama_app.web.html import Action, LiveHtml, button, switch, text
-from diorama_core.library.own_models import OwnModels
 from diorama_core.library.record import Shape
-from diorama_core.library.user_library import UserLibrary
+from diorama_core.library.user_library import OwnModels, UserLibrary
 
 
 class OwnShelf:

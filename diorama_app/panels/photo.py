@@ -13,11 +13,10 @@ from jaxtyping import UInt8
 from PIL import Image
 
 from diorama_app.commands.registry import CommandTable
-from diorama_app.panels.fields import GO_COLOUR, enable, on_change, on_press, show_if, show_value
+from diorama_app.panels.fields import GO_COLOUR, UploadField, enable, on_change, on_press, show_if, show_value
 from diorama_app.panels.input_questions import ask_depth
 from diorama_app.panels.photo_bar import no_scene_card, photo_bar
 from diorama_app.panels.photo_boxes import PhotoBoxes, box_list
-from diorama_app.panels.upload_field import UploadField
 from diorama_app.projects.begin import begin_project, keep_given
 from diorama_app.projects.reading_again import upload_again, with_depth
 from diorama_app.projects.uploads import Upload
@@ -46,7 +45,7 @@ from diorama_core.io.text import sentences
 from diorama_core.models.manifest import networks_of
 from diorama_core.models.store import ModelStore
 from diorama_core.perception.inputs import ReadInputs
-from diorama_core.perception.inputs.depth.units import AmbiguousDepthError, DepthAnswer
+from diorama_core.perception.inputs.depth.scale import AmbiguousDepthError, DepthAnswer
 from diorama_core.perception.inputs.sorting import Sort
 from diorama_core.perception.inputs.source import Source
 from diorama_core.project.storage import Project

@@ -11,7 +11,7 @@ from jaxtyping import UInt8
 from PIL import Image
 
 from diorama_app.commands.camera_presets import Views
-from diorama_app.panels.upload_field import UploadField
+from diorama_app.panels.fields import UploadField
 from diorama_app.projects.uploads import Upload
 from diorama_app.reconstruction.photo_joining import awaits_photo, missing_for_joining, take_out, take_photo
 from diorama_app.session.client import Client

@@ -7,7 +7,7 @@ from collections.abc import Callable
 import viser
 
 from diorama_app.panels.messages import dialog
-from diorama_app.reconstruction.picture_job import PictureView, film_suffix, picture_size, take_picture
+from diorama_app.reconstruction.written_files import PictureView, film_suffix, picture_size, take_picture
 from diorama_app.session.client import Client
 from diorama_app.strings import N_, _
 from diorama_app.web.html import Action, LiveHtml, button, text

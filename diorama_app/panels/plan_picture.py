@@ -11,7 +11,7 @@ import numpy as np
 import viser
 from jaxtyping import UInt8
 
-from diorama_app.panels.upload_field import hidden_upload
+from diorama_app.panels.fields import hidden_upload
 from diorama_app.session.client import Client
 from diorama_app.strings import _
 from diorama_app.web.html import run_once

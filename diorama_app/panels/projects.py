@@ -13,8 +13,7 @@ import viser
 from PIL import Image
 
 from diorama_app.commands.registry import CommandTable
-from diorama_app.panels.fields import GO_COLOUR, QUIET_COLOUR, enable, on_press
-from diorama_app.panels.upload_field import UploadField
+from diorama_app.panels.fields import GO_COLOUR, QUIET_COLOUR, UploadField, enable, on_press
 from diorama_app.projects import manage as project_care
 from diorama_app.projects.packing import SUFFIX
 from diorama_app.reconstruction.opening_job import open_file

@@ -12,7 +12,7 @@ from functools import cache
 
 import viser
 
-from diorama_app.panels.upload_field import hidden_upload
+from diorama_app.panels.fields import hidden_upload
 from diorama_app.projects.manage import address_of, find_project, name_of, recent_projects
 from diorama_app.reconstruction.opening_job import open_file
 from diorama_app.reconstruction.starting_rooms import LIVING_ROOM, open_example, start_empty_room
@@ -82,7 +82,8 @@ class StartPage:
 
     def open(self) -> None:
         """Show it over the page; Esc closes it."""
-        self._client.close_dialog()
+        if self._client.dialog is not None:
+            self._client.dialog()
         self._open, self._opened_over = True, self._client.session.project
         self._client.dialog = self.close
         self.refresh()

@@ -21,7 +21,7 @@ from diorama_core.library.user_library import OWN, ShapeRecords, UserLibrary
 from diorama_core.perception.inputs import ReadInputs
 from diorama_core.perception.inputs.depth.confidence import is_map
 from diorama_core.perception.inputs.depth.kinds import DepthKind
-from diorama_core.perception.inputs.depth.units import DepthAnswer
+from diorama_core.perception.inputs.depth.scale import DepthAnswer
 from diorama_core.perception.inputs.source import Source
 from diorama_core.project.lock import ProjectLock
 from diorama_core.project.storage import OWN_SHAPES, Project

@@ -13,8 +13,8 @@ from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
+from diorama_app.projects.folder_build import DATA, PHOTOS
 from diorama_app.projects.packing import is_packed
-from diorama_app.projects.photo_folder import DATA, PHOTOS
 from diorama_core.errors import DioramaError, InputError
 from diorama_core.importing.array_clouds import is_array_cloud
 from diorama_core.io.contained import content_of, unpacked

@@ -13,8 +13,8 @@ from jaxtyping import UInt8
 from PIL import Image
 
 import diorama_core as diorama
+from diorama_app.projects.folder_build import FolderPhoto
 from diorama_app.projects.options import BuildOptions, PhotoFiles
-from diorama_app.projects.photo_folder import FolderPhoto
 from diorama_core.artefacts import FurtherPhoto, Inputs
 from diorama_core.errors import InputError, ProjectError
 from diorama_core.io.atomic import write_atomically

@@ -15,7 +15,7 @@ from diorama_app.projects.uploads import Upload
 from diorama_core.artefacts import Inputs
 from diorama_core.editing.input_corrections import boxes_json
 from diorama_core.errors import InputError
-from diorama_core.perception.inputs.depth.units import DepthAnswer
+from diorama_core.perception.inputs.depth.scale import DepthAnswer
 from diorama_core.perception.inputs.sorting import Sort
 from diorama_core.perception.inputs.source import Source
 from diorama_core.project.storage import Project

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 from diorama_core.io.limited import LimitedProcess
 from diorama_core.perception.inputs import ReadInputs, read_inputs
 from diorama_core.perception.inputs.depth.kinds import DepthKind
-from diorama_core.perception.inputs.depth.units import AmbiguousDepthError, DepthAnswer
+from diorama_core.perception.inputs.depth.scale import AmbiguousDepthError, DepthAnswer
 from diorama_core.perception.inputs.source import Source
 from diorama_core.pipeline import codec
 

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 from diorama_app.projects.begin import begin_project, fresh_folder, keep_given
 from diorama_app.projects.dropped import MAX_BYTES, DroppedPhoto, Reading
 from diorama_app.projects.dropped_files import files_of, upload_of
-from diorama_app.projects.photo_folder import FolderPhoto
+from diorama_app.projects.folder_build import FolderPhoto
 from diorama_app.projects.uploads import Upload, decoded
 from diorama_app.session.client import Client
 from diorama_app.strings import _
@@ -56,7 +56,6 @@ def begin_each(client: Client, name: str, content: bytes, reading: Reading) -> N
         client.post(lambda: session.visit(client, made[0], " ".join((said, *failed[:3]))))
 
     session.jobs.start("import", _("Reading {count} photos").format(count=len(reading.photos)), work)
-    client.close_dialog()
 
 
 def _begun(projects_dir: Path, photo: DroppedPhoto, files: Mapping[str, bytes], process: LimitedProcess) -> Project:
@@ -94,7 +93,6 @@ def build_one_room(client: Client, name: str, content: bytes, reading: Reading) 
         client.post(lambda: session.visit(client, built.project, said))
 
     session.jobs.start("build", _("Building a room from {count} photos").format(count=len(reading.photos)), work)
-    client.close_dialog()
 
 
 def build_all_round(client: Client, upload: Upload) -> None:
@@ -134,7 +132,6 @@ def build_all_round(client: Client, upload: Upload) -> None:
         client.post(lambda: session.visit(client, built.project, said))
 
     session.jobs.start("build", _("Building the whole room of a 360 degree photo"), work)
-    client.close_dialog()
 
 
 def _check_photos(reading: Reading, files: Mapping[str, bytes]) -> None:

@@ -11,8 +11,7 @@ from typing import cast
 from diorama_core.artefacts import FurtherPhoto, Inputs
 from diorama_core.errors import EditRefused
 from diorama_core.multiview.camera_changes import following
-from diorama_core.scene.commuting import moved_last, moved_next
-from diorama_core.scene.history import Entry, History
+from diorama_core.scene.history import Entry, History, moved_last, moved_next
 from diorama_core.scene.types import Scene
 
 

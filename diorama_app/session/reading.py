@@ -13,7 +13,7 @@ from diorama_app.projects.uploads import Upload, decoded
 from diorama_core.errors import EditRefused, SphericalPhotoError
 from diorama_core.io.limited import LimitedProcess
 from diorama_core.perception.inputs import ReadInputs
-from diorama_core.perception.inputs.depth.units import AmbiguousDepthError
+from diorama_core.perception.inputs.depth.scale import AmbiguousDepthError
 
 MAX_WAITING = 2
 """Uploads of one person that are read or wait for it."""

@@ -27,8 +27,8 @@ from diorama_app.session.shared_document import SharedDocument
 from diorama_app.session.shared_view import SharedView
 from diorama_app.session.ui_thread import UiThread
 from diorama_app.strings import _
+from diorama_app.viewport.camera import room_view
 from diorama_app.viewport.client_view import NoticeKind
-from diorama_app.viewport.framing import room_view
 from diorama_app.viewport.mesh_assets import ShapeBytes
 from diorama_app.viewport.scene_view import Viewport
 from diorama_app.viewport.thumbnails import Thumbnails

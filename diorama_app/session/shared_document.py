@@ -152,7 +152,7 @@ class SharedDocument(ABC):
         self.saving.access.need_writable()
 
     def undo(self, by: ConnectedClient | str) -> Entry:
-        """Take back the last change of a person, or of a program by its name; see `scene.commuting` for the rule.
+        """Take back the last change of a person, or of a program by its name; see `scene.history` for the rule.
 
         Of a person, also one of somebody who has left or of a program.
         """

@@ -18,8 +18,8 @@ from diorama_app.session.redraws import Redraws
 from diorama_app.session.textures import Textures
 from diorama_app.session.ui_thread import UiThread
 from diorama_app.strings import N_, _
+from diorama_app.viewport.camera import DEFAULT_FOV_RAD, room_view
 from diorama_app.viewport.client_view import NoticeKind
-from diorama_app.viewport.framing import DEFAULT_FOV_RAD, room_view
 from diorama_app.viewport.mesh_assets import ShapeBytes
 from diorama_app.viewport.photo_overlay import PhotoCamera
 from diorama_app.viewport.scene_view import Viewport

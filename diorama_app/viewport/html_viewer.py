@@ -22,8 +22,7 @@ import viser
 from jaxtyping import Float
 
 from diorama_app.strings import _, translated_script
-from diorama_app.viewport.camera import fitting_fov
-from diorama_app.viewport.framing import DEFAULT_FOV_RAD, NARROW_FOV_RAD, room_view, side_view
+from diorama_app.viewport.camera import DEFAULT_FOV_RAD, NARROW_FOV_RAD, fitting_fov, room_view, side_view
 from diorama_app.viewport.mesh_assets import ShapeBytes
 from diorama_app.viewport.room_light import RoomLightView
 from diorama_app.web.responses import STATIC

@@ -17,7 +17,7 @@ from diorama_core.pose.correspondence.solvers import HALF_GRID, CorrespondencePo
 from diorama_core.pose.discrete_turns import DiscreteTurns
 from diorama_core.protocols import ArchitectureStage
 from diorama_core.retrieval.hierarchical import HierarchicalRetrieval
-from diorama_core.retrieval.matched import MatchedByLooks
+from diorama_core.retrieval.published import MatchedByLooks
 
 
 def acdc_stages(base: Stages, has_depth: bool, library: ShapeLibrary) -> Stages:

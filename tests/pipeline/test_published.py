@@ -15,7 +15,7 @@ from diorama_core.perception.foundation.empty_room import EmptyRoomArchitecture
 from diorama_core.pipeline.published import acdc_stages, published_acdc_stages, published_stages, with_room
 from diorama_core.pipeline.stages import embedded_stages
 from diorama_core.pose.discrete_turns import DiscreteTurns
-from diorama_core.retrieval.matched import MatchedByLooks
+from diorama_core.retrieval.published import MatchedByLooks
 from tests.pose.rooms import LIBRARY, random_room
 
 

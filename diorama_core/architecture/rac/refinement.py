@@ -18,8 +18,8 @@ import numpy as np
 from jaxtyping import Bool, Float
 
 from diorama_core.architecture.rac.arrangement import PlaneLine
-from diorama_core.architecture.rac.comparison import RoomLayout, best_layout
 from diorama_core.architecture.rac.proposals import Proposals
+from diorama_core.architecture.rac.search import RoomLayout, best_layout
 from diorama_core.architecture.walls.surface import MeasuredSurface
 from diorama_core.scene.types import Camera
 

@@ -14,9 +14,9 @@ import shapely
 from jaxtyping import Float
 from shapely.geometry import MultiPolygon, Polygon
 
-from diorama_core.architecture.rac.comparison import RoomLayout, best_layout
 from diorama_core.architecture.rac.proposals import Proposals, proposals
 from diorama_core.architecture.rac.refinement import refined_layout
+from diorama_core.architecture.rac.search import RoomLayout, best_layout
 from diorama_core.architecture.supports import resolve_supports
 from diorama_core.architecture.texture.colours import coloured, object_pixels
 from diorama_core.architecture.walls.surface import measured_surface

@@ -25,8 +25,7 @@ from diorama_core.progress import Progress
 from diorama_core.protocols import RetrievalStage
 from diorama_core.retrieval.hierarchical import HierarchicalRetrieval
 from diorama_core.retrieval.joint import JointEmbedding
-from diorama_core.retrieval.matched import MatchedByLooks
-from diorama_core.retrieval.text_then_picture import By, TextThenPicture
+from diorama_core.retrieval.published import By, MatchedByLooks, TextThenPicture
 from diorama_core.synthesis.artefacts import true_geometry, true_objects
 from diorama_core.synthesis.splits import split_library
 from diorama_core.synthesis.truth import TruthView

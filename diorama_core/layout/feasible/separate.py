@@ -19,8 +19,8 @@ from diorama_core.geometry.sat import PairAxes, PosedBodies, pair_axes, place_bo
 from diorama_core.layout.escape import exits, ring
 from diorama_core.layout.feasible.quadratic import HARD, SOFT, least_distance
 from diorama_core.layout.feasible.structure import Structure
-from diorama_core.layout.problem.enclosure import may_meet
 from diorama_core.layout.problem.problem import Problem
+from diorama_core.layout.problem.volumes import may_meet
 
 _SAME_WAY = float(np.cos(np.deg2rad(20.0)))
 """A way out within this of one that was blocked is not tried again."""

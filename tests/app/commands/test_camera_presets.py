@@ -3,7 +3,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from diorama_app.viewport.framing import NARROW_FOV_RAD
+from diorama_app.viewport.camera import NARROW_FOV_RAD
 from diorama_core.errors import EditRefused
 from diorama_core.scene.types import Scene
 

@@ -9,8 +9,7 @@ pytest.importorskip("fastapi", reason="needs FastAPI (pip install 'diorama[api]'
 from fastapi import Request  # after the check for its library
 from pydantic import ValidationError
 
-from diorama_app.http_api.answers import told
-from diorama_app.http_api.files import png
+from diorama_app.http_api.answers import png, told
 from diorama_app.http_api.forms import EditRequest
 from diorama_app.http_api.project_answers import check_answer, object_answer
 from diorama_core.api import Reconstruction

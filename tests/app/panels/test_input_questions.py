@@ -9,7 +9,7 @@ import pytest
 
 from diorama_app.panels import input_questions
 from diorama_app.projects.dropped import Dropped, Reading
-from diorama_core.perception.inputs.depth.units import AmbiguousDepthError, DepthAnswer
+from diorama_core.perception.inputs.depth.scale import AmbiguousDepthError, DepthAnswer
 
 pytestmark = pytest.mark.unchecked  # the page is a stand-in
 

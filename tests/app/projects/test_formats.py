@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from diorama_app.projects.formats import EXPORT_FORMATS, GUIDES
-from diorama_app.reconstruction.export_job import download_suffix
+from diorama_app.reconstruction.written_files import download_suffix
 from diorama_core.export import export_scene
 from diorama_core.export.gathering import ExportOptions
 from diorama_core.progress import Progress

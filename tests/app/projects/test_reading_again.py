@@ -13,7 +13,7 @@ from diorama_app.projects.reading_again import upload_again, with_depth
 from diorama_app.projects.uploads import Upload
 from diorama_core.errors import InputError
 from diorama_core.perception.inputs import read_inputs
-from diorama_core.perception.inputs.depth.units import DepthAnswer
+from diorama_core.perception.inputs.depth.scale import DepthAnswer
 from diorama_core.perception.inputs.source import Source
 from diorama_core.project.storage import Project
 from tests.perception.inputs.files import depth_png, encoded

@@ -5,7 +5,7 @@ import pytest
 
 from diorama_app.session.client import Client, Placing
 from diorama_app.session.session import EditorSession
-from diorama_app.viewport.framing import room_view
+from diorama_app.viewport.camera import room_view
 from diorama_core.artefacts import FurtherPhoto, Inputs
 from diorama_core.errors import LibraryError
 from tests.app import pointer

@@ -3,8 +3,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from diorama_app.viewport.camera import ViewCamera, fitting_fov
-from diorama_app.viewport.framing import DEFAULT_FOV_RAD, room_view
+from diorama_app.viewport.camera import DEFAULT_FOV_RAD, ViewCamera, fitting_fov, room_view
 from diorama_core.geometry.rotations import quaternion_wxyz
 from diorama_core.render.picture import looking_along
 from tests.app.people import LocalClient

@@ -7,9 +7,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from diorama_core.architecture.rac.comparison import best_layout
 from diorama_core.architecture.rac.proposals import proposals
 from diorama_core.architecture.rac.refinement import depth_error_m, hidden_ends, refined_layout
+from diorama_core.architecture.rac.search import best_layout
 from diorama_core.architecture.rac.stage import RenderAndCompareRoom
 from diorama_core.architecture.walls.surface import measured_surface
 from diorama_core.evaluation.metrics.architecture import architecture_scores

@@ -1,3 +1,5 @@
+"""Ghosts on a floor's picture: what differs from its colour, lightness in full."""
+
 from __future__ import annotations
 
 from pathlib import Path
@@ -8,13 +10,34 @@ from PIL import Image
 
 from diorama_core.artefacts import Inputs, Photo
 from diorama_core.errors import InputError
-from diorama_core.evaluation.benchmarks.photo_build import SIZE, case_picture, case_writer, side_by_side, write_picture
+from diorama_core.evaluation.benchmarks.photo_build import (
+    SIZE,
+    case_picture,
+    case_writer,
+    ghost_share,
+    side_by_side,
+    usual_colour,
+    write_picture,
+)
 from diorama_core.pipeline.run import Built
 from diorama_core.scene.types import Scene
 from diorama_core.synthesis.truth import TruthView
 from tests.built import built_scene
 from tests.primitives import PrimitiveLibrary, box_room, place
 from tests.synthetic_rooms import look
+
+
+def test_ghosts_are_what_differs_from_the_floor():
+    floor = np.full((100, 100, 3), (150, 120, 90), np.uint8)
+    colour = usual_colour(floor)
+    assert ghost_share(floor, colour) == 0.0
+    floor[:50, :40] = (40, 90, 60)
+    assert ghost_share(floor, colour) == pytest.approx(0.2)
+    floor[:50, :40] = (75, 60, 45)  # a dark smear of the floor's own hue
+    assert ghost_share(floor, colour) == pytest.approx(0.2)
+    floor[:50, :40] = (135, 108, 80)
+    assert ghost_share(floor, colour) == 0.0
+
 
 LIBRARY = PrimitiveLibrary()
 GREY = np.full((60, 80, 3), 200, np.uint8)

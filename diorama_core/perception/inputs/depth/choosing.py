@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from diorama_core.errors import InputError
 from diorama_core.perception.inputs.depth.kinds import BENT, CONTRADICTION, MIN_ORDER, DepthKind, DepthReading
-from diorama_core.perception.inputs.depth.units import AmbiguousDepthError, DepthAnswer
+from diorama_core.perception.inputs.depth.scale import AmbiguousDepthError, DepthAnswer
 
 CONTRADICTING_PLANES = 0.08
 """Share of pixels by which inverse depth forms more planes, from which it would have to be what is given."""

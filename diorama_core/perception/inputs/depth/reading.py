@@ -17,8 +17,13 @@ from diorama_core.perception.inputs.depth.flips import turned, turned_over
 from diorama_core.perception.inputs.depth.kinds import BENT, DepthKind, depth_readings, rays_of
 from diorama_core.perception.inputs.depth.numpy_files import DepthContent, RawDepth
 from diorama_core.perception.inputs.depth.relative import metric_depth, metric_of_bent
-from diorama_core.perception.inputs.depth.scale import focal_of_planes, scale_evidence
-from diorama_core.perception.inputs.depth.units import AmbiguousDepthError, DepthAnswer, unit_of
+from diorama_core.perception.inputs.depth.scale import (
+    AmbiguousDepthError,
+    DepthAnswer,
+    focal_of_planes,
+    scale_evidence,
+    unit_of,
+)
 from diorama_core.perception.inputs.depth.voids import measured
 from diorama_core.perception.inputs.photos.reading import DecodedPhoto
 from diorama_core.perception.inputs.source import Source, form_of

@@ -15,13 +15,13 @@ from diorama_core.errors import InputError
 from diorama_core.perception.inputs.depth.kinds import DepthReading
 from diorama_core.perception.inputs.depth.planes import DepthFunction, PlaneFit
 from diorama_core.perception.inputs.depth.scale import (
+    CONTRADICTED_BY,
     ScaleEvidence,
     focal_of_planes,
     focal_score,
     scale_evidence,
     size_scatter,
 )
-from diorama_core.perception.inputs.depth.units import CONTRADICTED_BY
 
 OFFSETS = np.concatenate([[0.0], np.geomspace(0.003, 2.0, 60), -np.geomspace(0.003, 0.95, 40)])
 """Added to the numbers, in shares of their smallest: what a network or a program subtracted before."""

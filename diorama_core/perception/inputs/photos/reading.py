@@ -13,9 +13,8 @@ from PIL import Image
 from diorama_core.artefacts import Photo
 from diorama_core.errors import InputError
 from diorama_core.perception.camera.exif import focal_from_exif
-from diorama_core.perception.inputs.photos.borders import plain_borders
 from diorama_core.perception.inputs.photos.decoding import dark_colours, eight_bits, load_pixels, open_picture
-from diorama_core.perception.inputs.photos.frame import PhotoFrame
+from diorama_core.perception.inputs.photos.frame import PhotoFrame, plain_borders
 from diorama_core.perception.inputs.photos.panoramas import check_perspective, check_sphere
 from diorama_core.perception.inputs.photos.table import PHOTO_FORMS
 from diorama_core.perception.inputs.source import Source, form_of

@@ -11,8 +11,13 @@ from diorama_core.perception.inputs.depth.choosing import chosen_reading
 from diorama_core.perception.inputs.depth.kinds import depth_readings, near_and_far, rays_of
 from diorama_core.perception.inputs.depth.planes import PlaneFit, planes_of, sampled
 from diorama_core.perception.inputs.depth.relative import metric_depth, metric_of_bent
-from diorama_core.perception.inputs.depth.scale import ScaleEvidence, focal_of_planes, scale_evidence
-from diorama_core.perception.inputs.depth.units import AmbiguousDepthError, unit_of
+from diorama_core.perception.inputs.depth.scale import (
+    AmbiguousDepthError,
+    ScaleEvidence,
+    focal_of_planes,
+    scale_evidence,
+    unit_of,
+)
 from tests.perception.inputs.depth.rooms import CAMERA_M, CEILING_M, FOCAL, HEIGHT, WIDTH, room
 
 DEPTH, THINGS = room()

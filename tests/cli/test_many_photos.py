@@ -8,7 +8,7 @@ import pytest
 
 from diorama_app.cli import main
 from diorama_app.cli.build import add_build
-from diorama_app.cli.folder import REPORT
+from diorama_app.cli.many_photos import REPORT
 from tests.cli.room_photo import write_room
 from tests.few_shapes import stored_seats
 

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from diorama_core.arrangement.facing.evidence import WallSamples
 from diorama_core.geometry.silhouette import PoseBatch
 from diorama_core.pose.depth_fit import SeenPoints
-from diorama_core.pose.wall_bounds import WallBounds
+from diorama_core.pose.measured import WallBounds
 from diorama_core.scene.types import yaw_rotation
 
 SIZE_M = np.array([2.0, 1.0, 0.5])

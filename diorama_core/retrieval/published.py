@@ -1,7 +1,13 @@
-"""Retrieval as the publication has it: shapes near to the label's words, ordered by the crop; or by one of both alone.
+"""Retrieval as publications have it: shapes near to the label's words, ordered by the crop, and shapes as ACDC finds
+them (Dai et al. 2024, "digital cousins"): kinds by the label, then shapes by their looks.
 
 No size, outline in place or neighbour has a say (section 3.2 and supplement). The publication does not say how many
 shapes the words leave; shapes that carry others are not told apart here.
+
+The publication compares the label with the library's categories by CLIP and the masked crop with pictures of shapes
+by DINOv2, and lets a language model choose among the nearest. Here the taxonomy names the kinds, and looks are
+compared as the stage is told: in a joint embedding where networks are at hand, else by the embedded views, which
+stand in for it. No size, outline in place or neighbour has a say.
 """
 
 from __future__ import annotations
@@ -16,8 +22,9 @@ from jaxtyping import Float32
 from diorama_core.artefacts import DetectedObject, Inputs, ObjectGeometry, RankedShapes
 from diorama_core.library.record import Shape, ShapeLibrary
 from diorama_core.progress import Progress
-from diorama_core.retrieval.appearance_similarity import ObjectCrop
+from diorama_core.retrieval.appearance_similarity import AppearanceSimilarity, EmbeddedSimilarity, ObjectCrop
 from diorama_core.retrieval.joint import PROMPT, JointEmbedding, shape_vectors
+from diorama_core.retrieval.pools import near_kinds
 
 By = Literal["words", "picture", "words and picture"]
 
@@ -69,3 +76,45 @@ class TextThenPicture:
             cosine = known @ self.embedding.picture(ObjectCrop(inputs.photo.rgb, item.mask, item.label).crop)
         order = sorted(left.tolist(), key=lambda k: (-float(cosine[k]), shapes[k].id))[: self.shapes]
         return tuple((shapes[k].id, float(cosine[k])) for k in order)
+
+
+@dataclass(frozen=True)
+class MatchedByLooks:
+    """The shapes of an object's nearest kinds that look most like its crop."""
+
+    library: ShapeLibrary
+    similarity: AppearanceSimilarity | None = None
+    """Compares looks; by rendered views where None."""
+    kinds: int = 3
+    shapes: int = 6
+    """As in the publication's default configuration."""
+
+    def retrieve(
+        self, inputs: Inputs, objects: tuple[DetectedObject, ...], geometry: ObjectGeometry, progress: Progress
+    ) -> tuple[RankedShapes, ...]:
+        """At most `shapes` of every object that was placed; nothing for kinds of which the library has none.
+
+        Args:
+            inputs: as given.
+            objects: what was found in the photo, with masks.
+            geometry: the objects' cuboids, the camera, and what supports what.
+            progress: reports and cancellation.
+        """
+        similarity = self.similarity or EmbeddedSimilarity(self.library)
+        placed = {c.object_id for c in geometry.cuboids}
+        rankings = []
+        for index, item in enumerate(objects):
+            if item.id not in placed:
+                continue
+            progress.report(index / len(objects), f"Looking for shapes: {item.label}")
+            shapes = self._of_kind(item.category)
+            crop = ObjectCrop(inputs.photo.rgb, item.mask, item.label, 1.0, 1.0)
+            alike = similarity.of(crop, shapes)
+            order = sorted(range(len(shapes)), key=lambda k: (-alike[k], shapes[k].id))[: self.shapes]
+            rankings.append(RankedShapes(item.id, tuple((shapes[k].id, float(alike[k])) for k in order)))
+        return tuple(rankings)
+
+    def _of_kind(self, name: str) -> list[Shape]:
+        """Shapes of the category; of its nearest kinds where the library has none of itself."""
+        shapes = list(self.library.in_category(name))
+        return shapes or [s for kind in near_kinds(name)[: self.kinds] for s in self.library.in_category(kind)]

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from diorama_app.panels.upload_field import UploadField, hidden_upload
+from diorama_app.panels.fields import UploadField, hidden_upload
 from diorama_app.session.client import Client
 from tests.app.page import Page
 

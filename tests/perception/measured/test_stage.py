@@ -5,7 +5,7 @@ import pytest
 
 from diorama_core.library.taxonomy import category
 from diorama_core.perception.measured.boxes import TurnedExtent
-from diorama_core.perception.measured.standing import grounded, resting_heights, supporters
+from diorama_core.perception.measured.stage import grounded, resting_heights, supporters
 from diorama_core.scene.types import Support
 
 

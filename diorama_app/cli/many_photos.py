@@ -1,0 +1,162 @@
+"""`diorama build` of many photos: of a folder, unattended, each a room of its own (`--out DIR`), or of one room, with
+known cameras or without (`--poses`), and of one 360 degree photo.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import os
+import sys
+from typing import TYPE_CHECKING
+
+from diorama_app.cli.arguments import print_note, progress_bar
+from diorama_core.errors import InputError
+from diorama_core.io.text import number_of
+
+if TYPE_CHECKING:
+    from diorama_app.projects.folder_build import PhotoResult
+    from diorama_app.projects.options import BuildOptions
+
+REPORT = "report.html"
+
+
+def build_folder(a: argparse.Namespace, options: BuildOptions) -> None:
+    """Build every photo of the folder `a.image`, and write the report.
+
+    Raises:
+        InputError: an option is for one photo, or photos failed; the reasons are on stderr and in the report.
+    """
+    from diorama_app.projects.folder_build import build_photos, photos_of
+    from diorama_app.projects.folder_report import write_report
+    from diorama_core.workers import workers
+
+    check_options_of_one_photo(a)
+    photos, remarks = photos_of(a.image)
+    for remark in remarks:
+        print_note(remark)
+    pool = workers(a.ray, a.workers if a.workers is not None or a.ray else max((os.cpu_count() or 1) // 2, 1))
+    with progress_bar() as progress:
+        results = build_photos(photos, options, a.output.absolute(), pool, progress)
+    write_report(a.output.absolute() / REPORT, results, remarks)
+    failed = [r for r in results if r.error]
+    for result in failed:
+        print(f"failed: {result.photo.name}: {result.error}", file=sys.stderr)
+    if a.json:
+        print(json.dumps({"report": str(a.output / REPORT), "photos": [_as_json(r) for r in results]}))
+    else:
+        kept = sum(r.kept for r in results)
+        before = f" ({kept} were finished before)" if kept else ""
+        print(f"{a.output / REPORT}: {len(results) - len(failed)} of {len(results)} photos became scenes{before}")
+    if failed:
+        raise InputError(f"{len(failed)} of {len(results)} photos failed; the reasons are above and in the report")
+
+
+def check_options_of_one_photo(a: argparse.Namespace) -> None:
+    """Raise `InputError` where an option is given that says something of one photo."""
+    single = {"--depth": a.depth, "--intrinsics": a.intrinsics, "--boxes": a.boxes, "--masks": a.masks}
+    if a.half_turn:
+        raise InputError("--half-turn is for one photo; build upside-down photos of a folder one by one")
+    if a.distortion:
+        raise InputError("--distortion is for one photo; straighten the photos of a folder before")
+    named = next((name for name, value in single.items() if value is not None), None)
+    if named is not None:
+        kind = named.removeprefix("--").replace("intrinsics", "camera")
+        raise InputError(f"{named} is for one photo; of a folder, put a file NAME.{kind}... beside each photo NAME")
+    if a.fov is not None:
+        raise InputError("--fov is for one photo; of a folder, put a file NAME.camera.json beside each photo NAME")
+    if a.camera_height is not None:
+        raise InputError("--camera-height is for one photo; set the scale of others in the editor")
+    if a.arrangements != 1:
+        raise InputError("--arrangements is for one photo; leave it out for a folder")
+
+
+def _as_json(result: PhotoResult) -> dict[str, object]:
+    return {
+        "photo": str(result.photo),
+        "project": str(result.project),
+        "state": "failed" if result.error else "kept" if result.kept else "built",
+        "error": result.error or None,
+        "seconds": round(result.seconds, 2),
+        "tries": result.tries,
+        "result": result.report,
+    }
+
+
+FIND = "find"
+"""Instead of a path: the photos themselves tell where they were taken."""
+
+if TYPE_CHECKING:
+    from diorama_app.projects.options import BuildOptions, PhotoFiles
+    from diorama_app.projects.posed_build import PosedBuild
+
+
+def build_posed(a: argparse.Namespace, options: BuildOptions) -> None:
+    """Build one project of the photos in the folder `a.image`.
+
+    Raises:
+        InputError: no folder is named, or a photo or the poses cannot be used.
+        UnavailableError: cameras are to be found and pycolmap is not installed.
+    """
+    from diorama_app.cli.many_photos import check_options_of_one_photo
+    from diorama_app.projects.folder_build import photos_of
+    from diorama_app.projects.posed_build import build_posed_photos, poses_from_photos
+    from diorama_core.multiview.posed_photos import read_poses
+
+    if not a.image.is_dir():
+        raise InputError(f"--poses is for a folder of photos of one room; {a.image} is none")
+    if a.workers is not None or a.ray is not None:
+        raise InputError("--workers and --ray build photos one by one; leave them out with --poses")
+    check_options_of_one_photo(a)
+    photos, remarks = photos_of(a.image)
+    for remark in remarks:
+        print_note(remark)
+    with progress_bar() as progress:
+        find = str(a.poses) == FIND
+        poses = (
+            poses_from_photos(photos, progress.part(0.0, 0.1))
+            if find
+            else read_poses(a.poses, [p.photo for p in photos])
+        )
+        built = build_posed_photos(photos, poses, options, a.output, progress.part(0.1 if find else 0.0, 1.0))
+    _told(a, built)
+
+
+def build_sphere(a: argparse.Namespace, files: PhotoFiles, options: BuildOptions) -> None:
+    """Build one project of the 360 degree photo `a.image`.
+
+    Args:
+        a: the command's arguments.
+        files: the photo and what is known of it.
+        options: of the build.
+
+    Raises:
+        InputError: the photo or something given with it cannot be used.
+    """
+    from diorama_app.projects.posed_build import build_sphere_photo
+
+    if a.arrangements != 1 or a.explain is not None:
+        raise InputError(f"{a.image.name} is a 360 degree photo; --arrangements and --explain are for other photos")
+    with progress_bar() as progress:
+        built = build_sphere_photo(files, options, a.output, progress)
+    _told(a, built)
+
+
+def _told(a: argparse.Namespace, built: PosedBuild) -> None:
+    """Print what was built."""
+    scene = built.room.scene
+    several = sum(len(track.boxes) > 1 for track in built.room.tracks)
+    if a.json:
+        objects = [
+            {"id": o.id, "category": o.category, "shape": o.shape_id, "size_m": [round(float(v), 4) for v in o.size_m]}
+            for o in scene.objects
+        ]
+        found = {"project": str(a.output), "photos": list(built.photos), "objects": objects, "in_several": several}
+        print(json.dumps({**found, "notes": list(built.notes)}))
+        return
+    for note in built.notes:
+        print_note(note)
+    print(
+        f"{a.output}: {number_of(len(scene.objects))} of {number_of(len(built.photos), 'photo')}, "
+        f"{several} in more than one"
+    )
