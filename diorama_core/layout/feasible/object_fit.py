@@ -140,7 +140,9 @@ class ObjectFit:
     def _clamped(self) -> Float[np.ndarray, "6 5"]:
         clamped = np.zeros((6, 5))
         clamped[0, 0] = clamped[1, 1] = self.settings.keep_place
-        clamped[2:5, 2:] = self.settings.keep_size * self.extents[:, None] * (np.eye(3) - 1 / 3)
+        # Measured shares of a thin extent are as sure as those of a long one; in a photo metres are.
+        lengths = self.extents.max() if self.surface_measured else self.extents[:, None]
+        clamped[2:5, 2:] = self.settings.keep_size * lengths * (np.eye(3) - 1 / 3)
         clamped[5, 2:] = self.settings.keep_size * self.extents.max() / 3
         return clamped
 

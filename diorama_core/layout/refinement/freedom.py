@@ -133,7 +133,8 @@ class Precision:
     size_share: float
     """Deviation of each of its extents, as a share."""
     sizes_follow: bool
-    """Whether sizes follow distances, because a photo alone gave both."""
+    """Whether sizes follow distances, because a photo alone gave both. Measured ones cost by their deviation however
+    much they change; reasoned ones cost no more beyond `RefinementSettings.max_sigmas`."""
 
 
 MEASURED = Precision(distance_m=0.01, distance_share=0.0, size_share=0.03, sizes_follow=False)
@@ -169,9 +170,10 @@ class PosePrior:
         turned = np.arccos(np.clip(cosine, -1.0, 1.0)) / self.settings.turn_sigma_rad
         deviations = np.column_stack([nearer / sigma, turned, grown / self.precision.size_share])
         squares = np.minimum(deviations**2, self.settings.max_sigmas**2)
-        away, linear = np.abs(deviations[:, 0]), self.settings.linear_sigmas
+        away, linear = np.abs(deviations), self.settings.linear_sigmas
         distant = np.where(away <= linear, away**2, linear * (2.0 * away - linear))
-        return self.settings.sigma * (distant + squares[:, 1] + squares[:, 2:].mean(axis=1))
+        sized = squares[:, 2:] if self.precision.sizes_follow else distant[:, 2:]
+        return self.settings.sigma * (distant[:, 0] + squares[:, 1] + sized.mean(axis=1))
 
 
 ROUNDING_M = 1e-6
