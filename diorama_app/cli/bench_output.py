@@ -8,7 +8,6 @@ from pathlib import Path
 from typing import Any, Protocol, runtime_checkable
 
 from diorama_core.errors import InputError
-from diorama_core.io.atomic import write_atomically
 
 
 @runtime_checkable
@@ -35,6 +34,8 @@ def show_bench(bench: Bench, a: argparse.Namespace) -> None:
 def write_json(path: Path | None, document: dict[str, object]) -> None:
     """Write a document as JSON, where a path is given."""
     if path:
+        from diorama_core.io.atomic import write_atomically  # loads numpy
+
         write_atomically(path, json.dumps(document, indent=1).encode(), error=InputError)
 
 
@@ -48,4 +49,6 @@ def write_text(a: argparse.Namespace, text: str) -> None:
         before, _, after = there.partition(begin)
         rest = f"\n{after}".partition(end)[2]  # an empty section has one line break for both marks
         text = f"{before}{begin}\n{text.strip()}\n{end}{rest}"
+    from diorama_core.io.atomic import write_atomically  # loads numpy
+
     write_atomically(a.markdown, text.encode(), error=InputError)

@@ -6,10 +6,11 @@ from __future__ import annotations
 
 import xml.etree.ElementTree as ET
 from collections.abc import Iterable
-from typing import Any, NoReturn
+from typing import TYPE_CHECKING, Any, NoReturn
 from xml.parsers import expat
 
-from diorama_core.io.bounded import Kind, shortened
+if TYPE_CHECKING:
+    from diorama_core.io.bounded import Kind
 
 REPLACEMENT = "\ufffd"
 """Stands for what is no character."""
@@ -68,6 +69,8 @@ def parse_xml(data: bytes, name: str, error: Kind) -> ET.Element:
     Raises:
         error: no well-formed XML, entities, or elements nested too deeply.
     """
+    from diorama_core.io.bounded import shortened  # which loads numpy; the command line's help does without it
+
     try:
         _check(data, name, error)
         return ET.fromstring(data)
