@@ -19,7 +19,6 @@ from typing import Any
 from PIL import Image
 
 from diorama_app.projects.options import BuildOptions, PhotoFiles, build_files
-from diorama_app.projects.report import build_report
 from diorama_core.errors import DioramaError, InputError, ProjectError
 from diorama_core.io.atomic import write_atomically, write_json
 from diorama_core.io.bounded import read_json, shortened
@@ -242,6 +241,8 @@ def build_photo(photo: FolderPhoto, options: BuildOptions, output: Path) -> Phot
     (project / RECORD).unlink(missing_ok=True)
     warnings: list[str] = []
     room = build_files(photo.files(), options, project, Progress(), warnings.append)
+    from diorama_app.projects.report import build_report  # the recogniser, which the editor starts without
+
     report = build_report(room, ("scene.json",))
     report["notes"] = [*warnings, *report["notes"]]
     _draw(room, project / PICTURE)

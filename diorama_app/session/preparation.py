@@ -10,8 +10,10 @@ import subprocess
 import sys
 import threading
 from collections.abc import Iterable
+from typing import TYPE_CHECKING
 
-from diorama_core.library.record import ShapeLibrary
+if TYPE_CHECKING:
+    from diorama_core.library.record import ShapeLibrary  # loads trimesh, which the port need not wait for
 
 WARM_UP_AFTER_S = 10.0
 """Loading takes two seconds of one core, which the browser needs while the page opens."""

@@ -1,5 +1,7 @@
 """Rotations as matrices, quaternions and rotation vectors (`scipy.spatial.transform`, array to array), and a camera's
 pitch and roll relative to the floor.
+
+scipy is loaded when it is first needed: the editor's port opens without it.
 """
 
 from __future__ import annotations
@@ -8,26 +10,33 @@ from dataclasses import dataclass
 
 import numpy as np
 from jaxtyping import Float
-from scipy.spatial.transform import Rotation
 
 
 def quaternion_wxyz(R: Float[np.ndarray, "3 3"]) -> Float[np.ndarray, "4"]:
     """Unit quaternion (w, x, y, z), w >= 0, of a rotation matrix."""
+    from scipy.spatial.transform import Rotation
+
     return Rotation.from_matrix(R).as_quat(canonical=True, scalar_first=True)
 
 
 def rotation_from_quaternion(wxyz: Float[np.ndarray, "4"]) -> Float[np.ndarray, "3 3"]:
     """Rotation matrix of a quaternion (w, x, y, z), normalised first."""
+    from scipy.spatial.transform import Rotation
+
     return Rotation.from_quat(wxyz, scalar_first=True).as_matrix()
 
 
 def rotation_from_vector(vectors: Float[np.ndarray, "*n 3"]) -> Float[np.ndarray, "*n 3 3"]:
     """Rotation matrices of rotation vectors: axis times angle, radians."""
+    from scipy.spatial.transform import Rotation
+
     return Rotation.from_rotvec(vectors).as_matrix()
 
 
 def rotation_vector(R: Float[np.ndarray, "*n 3 3"]) -> Float[np.ndarray, "*n 3"]:
     """Rotation vectors (axis times angle, at most pi) of rotation matrices."""
+    from scipy.spatial.transform import Rotation
+
     return Rotation.from_matrix(R).as_rotvec()
 
 

@@ -133,7 +133,7 @@ def test_the_program_ends_well_while_it_still_loads(tmp_path: Path) -> None:
 import sys
 from pathlib import Path
 from diorama_app.projects.example import EXAMPLE
-from diorama_app.session import preload
+from diorama_app.session import preparation
 from diorama_core.library.catalogue import built_in_library
 from diorama_app.serve import start
 from diorama_core.project.storage import Project
