@@ -58,7 +58,7 @@ def write_xlsx(gathered: ExportScene, path: Path, progress: Progress | None = No
                 sheet.write_string(number, column, cell, None if number else bold)
             else:
                 sheet.write_number(number, column, cell, metres if isinstance(cell, float) else None)
-    sheet.write_string(0, len(COLUMNS), "picture", bold)
+    sheet.write_string(0, len(COLUMNS), "appearance", bold)
     for number, node in enumerate(nodes, 1):
         progress.report(number / (len(nodes) + 1), f"pictures: {number} of {len(nodes)}")
         progress.check()

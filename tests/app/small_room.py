@@ -66,7 +66,7 @@ class PlainLibrary:
         return self.parts(shape_id).to_geometry()
 
     def parts(self, shape_id: str) -> trimesh.Scene:
-        self.shape(shape_id)  # says when there is none
+        PlainLibrary.shape(self, shape_id)  # says when there is none
         return _parts(shape_id)
 
     def glb(self, shape_id: str) -> bytes:

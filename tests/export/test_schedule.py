@@ -74,7 +74,7 @@ def test_the_workbook_has_the_rows_of_the_csv_and_pictures(tmp_path: Path) -> No
     rows, pictures = workbook(tmp_path / "room.xlsx")
     write_csv(gathered("example"), tmp_path / "room.csv")
     expected = rows_of(tmp_path / "room.csv")
-    assert rows[0] == [*COLUMNS, "picture"]
+    assert rows[0] == [*COLUMNS, "appearance"]
     assert len(rows) - 1 == len(expected)
     for row, texts in zip(rows[1:], expected, strict=True):
         cells = dict(zip(COLUMNS, row, strict=True))
