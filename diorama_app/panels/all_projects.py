@@ -40,8 +40,7 @@ class AllProjects:
 
     def open(self) -> None:
         """Show it over the page; Esc closes it."""
-        if self._client.dialog is not None:
-            self._client.dialog()
+        self._client.close_dialog()
         self._open, self._client.dialog = True, self.close
         self.refresh()
 

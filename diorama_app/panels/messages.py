@@ -100,8 +100,7 @@ class Toasts:
 @contextmanager
 def dialog(client: Client, title: str) -> Iterator[Callable[[], None]]:
     """What is made inside the block is in a dialog, in place of one that is open; gives what closes it."""
-    if client.dialog is not None:
-        client.dialog()
+    client.close_dialog()
 
     def close() -> None:
         client.dialog = None

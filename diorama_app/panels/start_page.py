@@ -82,8 +82,7 @@ class StartPage:
 
     def open(self) -> None:
         """Show it over the page; Esc closes it."""
-        if self._client.dialog is not None:
-            self._client.dialog()
+        self._client.close_dialog()
         self._open, self._opened_over = True, self._client.session.project
         self._client.dialog = self.close
         self.refresh()

@@ -56,6 +56,7 @@ def begin_each(client: Client, name: str, content: bytes, reading: Reading) -> N
         client.post(lambda: session.visit(client, made[0], " ".join((said, *failed[:3]))))
 
     session.jobs.start("import", _("Reading {count} photos").format(count=len(reading.photos)), work)
+    client.close_dialog()
 
 
 def _begun(projects_dir: Path, photo: DroppedPhoto, files: Mapping[str, bytes], process: LimitedProcess) -> Project:
@@ -93,6 +94,7 @@ def build_one_room(client: Client, name: str, content: bytes, reading: Reading) 
         client.post(lambda: session.visit(client, built.project, said))
 
     session.jobs.start("build", _("Building a room from {count} photos").format(count=len(reading.photos)), work)
+    client.close_dialog()
 
 
 def build_all_round(client: Client, upload: Upload) -> None:
@@ -132,6 +134,7 @@ def build_all_round(client: Client, upload: Upload) -> None:
         client.post(lambda: session.visit(client, built.project, said))
 
     session.jobs.start("build", _("Building the whole room of a 360 degree photo"), work)
+    client.close_dialog()
 
 
 def _check_photos(reading: Reading, files: Mapping[str, bytes]) -> None:

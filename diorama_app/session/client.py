@@ -141,6 +141,11 @@ class Client:
             return further.camera, further.inputs.photo
         return self.session.scene.camera, self.session.photo
 
+    def close_dialog(self) -> None:
+        """Close what is open over the page."""
+        if self.dialog is not None:
+            self.dialog()
+
     def annotate(self, label: str, inputs: Inputs) -> None:
         """Change what is said of the chosen photo, as one undo step."""
         further = self.further_photo

@@ -389,3 +389,27 @@ def test_a_folder_that_cannot_be_made_is_one_line(tmp_path: Path) -> None:
     (tmp_path / "file").write_text("")
     with pytest.raises(ProjectError, match=r"cannot be made \(Not a directory\)"):
         _queue(tmp_path / "file" / "projects")
+
+
+def test_what_runs_is_noted_and_what_was_cancelled_while_it_waited_is_never_built(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    projects, begun, go, built = tmp_path / "new" / "projects", threading.Event(), threading.Event(), []
+
+    def build(job: Job, folder: Path, library: PlainLibrary, progress: Progress) -> None:
+        built.append(job.id)
+        begun.set()
+        go.wait(60.0)
+
+    monkeypatch.setattr(jobs, "build_job", build)
+    queue = _queue(projects)
+    first, second, third = (_add(queue, tmp_path) for _ in range(3))
+    queue.start()
+    assert begun.wait(60.0)
+    assert Project.open(projects / first.id).info()["job"]["state"] == "running"
+    queue.cancel(second.id)
+    go.set()
+    assert asyncio.run(queue.wait(third.id, 60.0)).state == "done"
+    assert built == [first.id, third.id]
+    assert queue.job(second.id).state == "cancelled"
+    queue.close()

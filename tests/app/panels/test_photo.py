@@ -48,10 +48,13 @@ def test_a_360_degree_photo_is_built_as_a_whole_room_of_its_own(
     session, page: Page, panel: PhotoPanel, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     visited: list[Project] = []
+    closed: list[str] = []
     monkeypatch.setattr(session, "visit", lambda client, project, said: visited.append(project))
+    page.client.dialog = lambda: closed.append("the start page, behind which the work is shown")
     content, boxes = sphere_with_wardrobe(1.4)
     panel.begin(Upload(content, "hall.png", boxes=Source(boxes, "hall.json")))
     until(lambda: bool(visited), lambda: session.jobs.status, seconds=300)
+    assert closed
     scene = visited[0].load_scene()
     assert [o.category for o in scene.objects] == ["wardrobe"]
     assert len(scene.architecture.by_role("wall")) == 4
