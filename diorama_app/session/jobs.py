@@ -187,9 +187,9 @@ class Jobs:
                 ),
             )
         finally:
-            from diorama_core.processes import give_back_memory  # a tenth of a second, not needed before
-
-            give_back_memory()
             with self._lock:
                 self._status = None
         self._on_end(outcome)
+        from diorama_core.processes import give_back_memory  # takes a tenth of a second, for which nobody waits
+
+        give_back_memory()

@@ -35,13 +35,17 @@ SECURITY_HEADERS = {
 
 
 def prepend_scripts(response: Response) -> None:
-    """Put our scripts in front of viser's, in the page itself; anything but a page is left alone."""
+    """Put our scripts in front of viser's, in the page itself; anything but a page is left alone.
+
+    The header names the encoding: a browser looks for the page's own word for it in the first kilobyte only.
+    """
     if not response.headers.get("Content-Type", "").startswith("text/html"):
         return
     zipped = response.headers.get("Content-Encoding") == "gzip"
     response.body = _page(bytes(response.body or b""), zipped)
-    del response.headers["Content-Length"]
+    del response.headers["Content-Length"], response.headers["Content-Type"]
     response.headers["Content-Length"] = str(len(response.body))
+    response.headers["Content-Type"] = "text/html; charset=utf-8"
 
 
 @functools.lru_cache(maxsize=2)

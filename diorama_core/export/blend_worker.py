@@ -22,6 +22,8 @@ def save(job: dict[str, Any]) -> None:
 
     bpy.ops.wm.read_factory_settings(use_empty=True)
     bpy.ops.import_scene.gltf(filepath=job["glb"], export_import_convert_lighting_mode=job["lighting"])
+    for light in bpy.data.lights:
+        light.use_shadow = not light.name.startswith("even light")  # in place of light from all sides, which has none
     print("diorama 0.5 sorting collections", flush=True)
     _collections(bpy)
     camera = next((o for o in bpy.data.objects if o.type == "CAMERA"), None)

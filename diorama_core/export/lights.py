@@ -104,7 +104,6 @@ class EvenLight:
     """Light from all sides of a room, as points within it, for programs whose light does not bounce."""
 
     positions: Float[np.ndarray, "n 3"]
-    """One lights the middle of a room only, so a wide room has two in each direction."""
     candela: float
     """Intensity of each point at unit exposure."""
 
@@ -154,11 +153,9 @@ def _room_area(scene: Scene) -> float:
 
 
 def _spread(corners: Float[np.ndarray, "k 3"]) -> Float[np.ndarray, "n 3"]:
-    """Points at half the room's height, two side by side in each direction that is 1.5 times as wide as high."""
+    """Points above furniture towards the room's four corners: from its middle what faces a wall would be black."""
     low, high = corners.min(axis=0), corners.max(axis=0)
-    size = high - low
-    shares = [(0.25, 0.75) if width > 1.5 * size[2] else (0.5,) for width in size[:2]]
-    return np.array([low + size * [x, y, 0.5] for x in shares[0] for y in shares[1]])
+    return np.array([low + (high - low) * [x, y, 0.6] for x in (0.3, 0.7) for y in (0.3, 0.7)])
 
 
 def main_light_of(scene: Scene) -> MainLight | None:

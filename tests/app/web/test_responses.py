@@ -22,6 +22,9 @@ def test_scripts_come_first_in_a_page_zipped_or_not() -> None:
     for answer in (plain, zipped):
         prepend_scripts(answer)
         assert answer.headers["Content-Length"] == str(len(answer.body))
+        assert answer.headers.get_all("Content-Type") == ["text/html; charset=utf-8"], (
+            "scripts stand before the page's own"
+        )
     assert gzip.decompress(zipped.body) == plain.body
     scripts, title = plain.body.split(b"<title>")
     assert scripts.count(b"<script>") == len(SCRIPTS)
