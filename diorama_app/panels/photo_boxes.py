@@ -45,7 +45,7 @@ class PhotoBoxes:
     def __init__(self, client: Client, refresh: Callable[[], None]) -> None:
         self._client, self._refresh = client, refresh
         self._suggestions: list[Suggestions] = []
-        """Of the photos that were looked at."""
+        """One for each photo that was looked at."""
 
     def show(self, inputs: Inputs) -> None:
         """Draw boxes and proposals on the canvas."""

@@ -12,7 +12,7 @@ from diorama_core.architecture.walls.settings import SETTINGS as WALLS
 from diorama_core.artefacts import Inputs, LabelledBox, Photo
 from diorama_core.geometry.sphere import directions, sampled
 from diorama_core.library.record import ShapeLibrary
-from diorama_core.multiview.joining import Track
+from diorama_core.multiview.joining import RoomPhoto, Track
 from diorama_core.multiview.joint_fit import JointCuboid
 from diorama_core.multiview.joint_room import SeenRoom, with_open_doorways
 from diorama_core.multiview.one_scene import moved_to_room
@@ -126,15 +126,8 @@ def build_sphere(
         pictures, things, found, choose, progress.part(0.15, 0.3), camera_height_m, settings
     )
     room_photos = [said_alone(r) for r in read]
-    tracks: list[Track] = []
-    named: list[tuple[SphereBox, str]] = []
-    for thing, seen in zip(things, sightings, strict=True):
-        if not seen:
-            continue
-        named.append((thing, track_name(len(tracks))))
-        one = room_photos[seen[0][0]].alone[seen[0][1]]
-        cuboid = JointCuboid(one.centre, one.yaw_rad, one.size_m, 0.0)
-        tracks.append(Track(tuple(sorted(seen)), one.kind, cuboid, tuple(seen[1:])))
+    shown = [(thing, seen) for thing, seen in zip(things, sightings, strict=True) if seen]
+    tracks = [_track(seen, room_photos) for _, seen in shown]
     rooms = _rooms(sphere_planes(found, height_m, settings), read, tracks)
     room = joined_scene(read, room_photos, tuple(tracks), rooms, library, layout, progress.part(0.3, 1.0), preview)
     tilt = float(np.rad2deg(np.arccos(np.clip(R[2, 2], -1.0, 1.0))))
@@ -147,8 +140,15 @@ def build_sphere(
         tuple(PosedInputs(r.inputs, r.posed.camera) for r in read),
         tuple(r.inputs.photo.name for r in read),
         R,
-        tuple(named),
+        tuple((thing, track_name(number)) for number, (thing, _) in enumerate(shown)),
     )
+
+
+def _track(seen: tuple[tuple[int, int], ...], photos: Sequence[RoomPhoto]) -> Track:
+    """One thing, as the view shows it that shows it best; `seen` are its views and boxes, that one first."""
+    one = photos[seen[0][0]].alone[seen[0][1]]
+    cuboid = JointCuboid(one.centre, one.yaw_rad, one.size_m, 0.0)
+    return Track(tuple(sorted(seen)), one.kind, cuboid, tuple(seen[1:]))
 
 
 def _degrees(view: SphereView) -> int:
