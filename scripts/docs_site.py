@@ -17,7 +17,7 @@ ROOT = Path(__file__).resolve().parents[1]
 ROOT_PAGES = {"README.md": "index.md", "CONTRIBUTING.md": "contributing.md", "CHANGELOG.md": "changelog.md"}
 PARTS = {
     "Use": ("installing", "editor", "what-goes-in", "export", "many-photos", "library", "models", "blender"),
-    "Programs": ("python", "api", "agents", "scene-file", "reference/index"),
+    "Programs": ("python", "api", "agents", "scene-file", "homes", "reference/index"),
     "Method": ("how-it-works", "architecture-reconstruction", "benchmark", "layout-benchmark", "reliability"),
     "Project": ("contributing", "adding", "style", "changelog", "licences", "editor-comparison", "translating"),
 }

@@ -16,7 +16,7 @@ from jaxtyping import Float
 from diorama_core.export.files import whole_file
 from diorama_core.export.gathering import ExportMesh, ExportObject, ExportScene
 from diorama_core.export.ifc_document import IfcDocument
-from diorama_core.export.wall_lines import DrawnWall, Opening, wall_lines
+from diorama_core.geometry.wall_lines import DrawnWall, Opening, wall_lines
 from diorama_core.io.srgb import srgb_to_linear
 from diorama_core.library.taxonomy import column
 from diorama_core.progress import Progress

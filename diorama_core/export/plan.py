@@ -14,8 +14,8 @@ from jaxtyping import Float
 from diorama_core.export.door_swings import DoorSwing, door_swings
 from diorama_core.export.footprints import Outline, footprints
 from diorama_core.export.gathering import ExportObject, ExportScene
-from diorama_core.export.wall_lines import DrawnWall, Opening, wall_lines
 from diorama_core.geometry.openings import OPENING_CATEGORIES
+from diorama_core.geometry.wall_lines import DrawnWall, Opening, wall_lines
 from diorama_core.library.furniture.articulation import articulation
 from diorama_core.scene.types import Plane, Scene, SceneObject
 

@@ -24,7 +24,7 @@ from diorama_core.export.files import Entry, add_entry, whole_file, write_whole
 from diorama_core.export.gathering import ExportMesh, ExportObject, ExportScene
 from diorama_core.export.gltf_document import GltfDocument, TextureFiles
 from diorama_core.export.pictures import OncePerPicture, texture_file
-from diorama_core.export.wall_lines import DrawnWall, Opening, wall_lines
+from diorama_core.geometry.wall_lines import DrawnWall, Opening, wall_lines
 from diorama_core.library.record import record_of
 from diorama_core.progress import Progress
 from diorama_core.render.appearance import Surface

@@ -20,10 +20,10 @@ from diorama_core.export.gathering import ExportMesh, ExportObject, ExportPlane,
 from diorama_core.export.lights import ExportLight
 from diorama_core.export.pictures import TexturePictures, encoded_picture, picture_suffix
 from diorama_core.export.scene_state import R_SHAPE_FILE
-from diorama_core.export.wall_lines import DrawnWall, wall_lines
 from diorama_core.export.wavefront import MaterialFile, ObjText
 from diorama_core.geometry.openings import OPENING_CATEGORIES
 from diorama_core.geometry.vectors import unit
+from diorama_core.geometry.wall_lines import DrawnWall, wall_lines
 from diorama_core.io.srgb import linear_to_srgb
 from diorama_core.progress import Progress
 from diorama_core.scene.types import Camera, Plane

@@ -6,7 +6,7 @@ one polygon: a door is a notch in its foot, a window is reached by a cut from be
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import replace
 
 import manifold3d
@@ -19,6 +19,10 @@ from diorama_core.scene.types import Architecture, Plane, Scene, SceneObject
 OPENING_CATEGORIES = ("door", "window")
 REACH_M = 0.3
 """A door or window whose middle is no farther than this from a wall's face belongs to it."""
+THICKEST_M = 0.5
+"""Two faces that look away from each other are one wall's up to this distance: a wall of stone."""
+FACING = 0.98
+"""Cosine from which on the faces of a wall are parallel: measured ones are a few degrees off."""
 FRAME_M = 0.02
 """So much of a wall stays behind the rim of what fills the opening, and nothing is seen past it."""
 FOOT_M = 0.05
@@ -43,14 +47,39 @@ def wall_of(item: SceneObject, walls: Iterable[Plane], scene: Scene) -> Plane | 
     return nearest if distance <= REACH_M else None
 
 
+def faces_behind(wall: Plane, point: Float[np.ndarray, "3"], walls: Sequence[Plane]) -> tuple[Plane, ...]:
+    """The other faces of a wall at a point of it: back to back with it, within the thickness of a wall.
+
+    Args:
+        wall: one face.
+        point: on it or near it (world, m).
+        walls: all faces.
+    """
+    if not walls:
+        return ()
+    normals = np.array([w.normal for w in walls])
+    gaps = wall.offset - np.array([w.centre for w in walls]) @ wall.normal
+    near = np.flatnonzero((normals @ wall.normal < -FACING) & (gaps > -FRAME_M) & (gaps < THICKEST_M))
+    return tuple(walls[k] for k in near.tolist() if _spans(walls[k], point))
+
+
+def walls_cut_by(fills: Iterable[SceneObject], walls: Sequence[Plane], scene: Scene) -> Mapping[str, tuple[Plane, ...]]:
+    """By the id of each door and window the faces that it cuts: its wall's first, then those behind it."""
+    cut = {}
+    for item in fills:
+        wall = wall_of(item, walls, scene)
+        cut[item.id] = () if wall is None else (wall, *faces_behind(wall, item.pose.position, walls))
+    return cut
+
+
 def with_openings(scene: Scene) -> Scene:
-    """The scene as it is drawn and written: every visible door and window cuts its wall."""
+    """The scene as it is drawn and written: every visible door and window cuts its wall, on both faces."""
     fills = [o for o in scene.objects if o.category in OPENING_CATEGORIES and not o.hidden]
     walls = scene.architecture.by_role("wall")
     if not fills or not walls:
         return scene
-    wall_of_fill = {o.id: wall_of(o, walls, scene) for o in fills}
-    by_wall = {w.id: [o for o in fills if wall_of_fill[o.id] is w] for w in walls}
+    cut = walls_cut_by(fills, walls, scene)
+    by_wall = {w.id: [o for o in fills if any(w is c for c in cut[o.id])] for w in walls}
     planes = tuple(cut_wall(p, by_wall[p.id]) if by_wall.get(p.id) else p for p in scene.architecture.planes)
     return replace(scene, architecture=Architecture(planes))
 
@@ -85,6 +114,11 @@ def _without(wall: Plane, covered: Sequence[Float[np.ndarray, "_ 3"]], frame_m: 
     holes = [c for c in contours if _area(c) < 0]
     flat = _with_slits(outer, holes)
     return replace(wall, polygon=flat @ axes.T + wall.offset * wall.normal)
+
+
+def _spans(wall: Plane, point: Float[np.ndarray, "3"]) -> bool:
+    u, v = plane_axes(wall.normal)
+    return all(float((wall.polygon @ a).min()) <= float(point @ a) <= float((wall.polygon @ a).max()) for a in (u, v))
 
 
 def _beside(item: SceneObject, wall: Plane) -> bool:

@@ -20,6 +20,7 @@ from diorama_core.importing.opening import Opened
 from diorama_core.importing.part import Part
 from diorama_core.importing.parts import shape_parts
 from diorama_core.importing.room import room_of, supports_of
+from diorama_core.importing.storeys import rooms_of_floors
 from diorama_core.library.ingest.frames import UNKNOWN
 from diorama_core.library.ingest.given import Given, axis_vector
 from diorama_core.library.ingest.known_shapes import KnownShapes, known_shapes
@@ -74,7 +75,9 @@ def scene_of_parts(
             notes.append(f"{part.name} was left out: {error}")
     objects = _objects(shaped)
     scene = Scene(architecture=Architecture(room.planes), objects=objects)
-    return Opened(Scene(None, scene.architecture, objects, supports_of(scene)), changes=tuple(notes))
+    rooms = rooms_of_floors([p for p in room.planes if p.id in room.names], room.names)
+    scene = Scene(None, scene.architecture, objects, supports_of(scene), rooms=rooms)
+    return Opened(scene, changes=tuple(notes))
 
 
 def take_missing_shapes(

@@ -159,6 +159,9 @@ def _points(form: PointForm) -> SceneForm:
 
 
 def _is_room_plan(head: FileHead) -> bool:
+    if head.is_folder:
+        captures = [head.path / name for name in head.names if name.lower().endswith(".json")]
+        return any('"referenceOriginTransform"' in p.read_text("utf-8", "replace") for p in captures[:MAX_ROOMS])
     if not head.text.startswith("{"):
         return False
     text = _whole_text(head)
@@ -177,13 +180,16 @@ def _is_model(*names: str) -> Callable[[FileHead], bool]:
 
 
 MAX_LOOKED_AT = 64_000_000
+MAX_ROOMS = 200
+"""Files of a folder that are looked at."""
 OBJECTS = "Diorama's own comes back as it was; else floor, walls and objects, or a scan"
 SCENE_FORMS = (
     SceneForm("glTF", ".glb, .gltf", OBJECTS, _is_model("glTF"), _gltf),
     SceneForm("Sweet Home 3D", ".sh3d", "its walls, floors and furniture, level by level",
               lambda h: h.is_zip and (h.has("/Home.xml", "/Home") or h.suffix == ".sh3d"), _home),
     SceneForm("USD", ".usd, .usda, .usdc, .usdz", f"{OBJECTS}; RoomPlan's rooms", _is_model("USD"), _usd, "usd"),
-    SceneForm("RoomPlan", ".json", "walls, doors and windows as measured, furniture in the boxes", _is_room_plan,
+    SceneForm("RoomPlan", ".json, a folder of captured rooms",
+              "walls, doors and windows as measured, furniture in the boxes, a home's rooms by name", _is_room_plan,
               _room_plan),
     *(_points(form) for form in POINT_FORMS),
     SceneForm("OBJ, FBX, Collada, 3DS", ".obj, .fbx, .dae, .3ds", "floor, walls and objects, or a scan",

@@ -12,15 +12,16 @@ import numpy as np
 from jaxtyping import Float
 from shapely.geometry import Point, Polygon
 
-from diorama_core.geometry.openings import STANDS_OUT_M, with_hole
+from diorama_core.geometry.openings import STANDS_OUT_M, faces_behind, with_hole
 from diorama_core.importing.measured_types import MeasuredBox, MeasuredOpening, MeasuredRoom
 from diorama_core.importing.opening import Opened
 from diorama_core.importing.storeys import (
     ceiling_planes,
-    floor_below,
     floor_planes,
+    floors_below,
     inner_face,
     measured_storeys,
+    rooms_of_floors,
 )
 from diorama_core.library.kinds import is_possible
 from diorama_core.library.record import Shape, ShapeLibrary
@@ -34,6 +35,8 @@ KEEP = 8
 RESTS_M = 0.08
 """How far the bottom of a box may be off what it stands on."""
 AT_WALL_M = 0.15
+THINNEST_M = 0.005
+"""Of a face of a wall: what has no thickness is no solid."""
 
 
 def opened_room(room: MeasuredRoom, library: ShapeLibrary) -> Opened:
@@ -44,11 +47,12 @@ def opened_room(room: MeasuredRoom, library: ShapeLibrary) -> Opened:
     """
     storeys = measured_storeys(room)
     walls = tuple(inner_face(w, storeys) for w in room.walls)
+    walls = _half_as_thick_as_apart(walls)
     walls, unused = _with_passages(walls, room.openings)
     floors = floor_planes(storeys)
     ceilings, remarks = ceiling_planes(storeys, walls)
     planes = (*floors, *walls, *ceilings)
-    below = [floor_below(b.centre, float(b.size_m[2]), storeys) for b in room.boxes]
+    below = floors_below(room.boxes, storeys)
     boxes = [
         _facing_the_room(_resting(b, storeys[k].height_m) if k is not None else b, walls)
         for b, k in zip(room.boxes, below, strict=True)
@@ -61,6 +65,7 @@ def opened_room(room: MeasuredRoom, library: ShapeLibrary) -> Opened:
     ids = [o.id for o in objects]
     supports = [_support(ids, index, known_supports) for index, known_supports in enumerate(holders)]
     notes = [*room.notes, *remarks]
+    seen: list[tuple[MeasuredOpening, Plane]] = []
     for opening in room.openings:
         wall = _wall_of(opening, walls)
         if wall is None or opening in unused:
@@ -68,11 +73,16 @@ def opened_room(room: MeasuredRoom, library: ShapeLibrary) -> Opened:
             notes.append(f"{opening.kind} of {opening.width_m:.2f} x {opening.height_m:.2f} m {reason}")
         if wall is None or opening.kind == "opening":
             continue
+        if any(_is_other_side(opening, wall, *known, walls) for known in seen):
+            continue
+        seen.append((opening, wall))
         item = _hung(names, opening, wall, library)
         objects.append(item)
         supports.append(Support(item.id, wall.id, "mounted on", child_face="back"))
     known_supports = tuple(s for s in supports if s is not None)
-    scene = Scene(None, Architecture(planes), tuple(objects), known_supports)
+    outlined = [s.name for s in storeys if s.outline is not None]
+    names_of = dict(zip((f.id for f in floors), outlined, strict=True))
+    scene = Scene(None, Architecture(planes), tuple(objects), known_supports, rooms=rooms_of_floors(floors, names_of))
     check_scene(scene)
     return Opened(scene, changes=tuple(notes))
 
@@ -233,6 +243,27 @@ def _wall_of(opening: MeasuredOpening, walls: Sequence[Plane]) -> Plane | None:
     return min(near)[2] if near and min(near)[0] < AT_WALL_M else None
 
 
+def _half_as_thick_as_apart(walls: Sequence[Plane]) -> tuple[Plane, ...]:
+    """Walls of which both faces were measured: each face has the half of what is between them."""
+
+    def halved(wall: Plane) -> Plane:
+        low, high = wall.polygon.min(axis=0), wall.polygon.max(axis=0)
+        points = [low + share * (high - low) for share in (0.25, 0.5, 0.75)]
+        gaps = [wall.offset - float(wall.normal @ f.centre) for p in points for f in faces_behind(wall, p, walls)]
+        return replace(wall, thickness=max(min(gaps) / 2, THINNEST_M)) if gaps else wall
+
+    return tuple(halved(w) for w in walls)
+
+
+def _is_other_side(
+    opening: MeasuredOpening, wall: Plane, known: MeasuredOpening, known_wall: Plane, walls: Sequence[Plane]
+) -> bool:
+    """Whether a door or window is known from the other face of its wall."""
+    apart = float(np.cross([0.0, 0.0, 1.0], wall.normal) @ (opening.centre - known.centre))
+    behind = faces_behind(wall, opening.centre, walls)
+    return opening.kind == known.kind and any(f is known_wall for f in behind) and abs(apart) < opening.width_m / 2
+
+
 def _with_passages(
     walls: tuple[Plane, ...], openings: Sequence[MeasuredOpening]
 ) -> tuple[tuple[Plane, ...], list[MeasuredOpening]]:
@@ -245,10 +276,10 @@ def _with_passages(
         side = np.cross([0.0, 0.0, 1.0], wall.normal) * opening.width_m / 2
         up = np.array([0.0, 0.0, opening.height_m / 2])
         corners = opening.centre + np.array([a * side + b * up for a in (-1, 1) for b in (-1, 1)])
-        cut_polygon = with_hole(cut[wall.id], corners)
-        if cut_polygon is cut[wall.id]:
+        if with_hole(cut[wall.id], corners) is cut[wall.id]:
             unused.append(opening)
-        cut[wall.id] = cut_polygon
+        for face in (wall, *faces_behind(wall, opening.centre, walls)):
+            cut[face.id] = with_hole(cut[face.id], corners)
     return tuple(cut.values()), unused
 
 

@@ -63,6 +63,8 @@ class MeasuredFloor:
 
     outline: Float[np.ndarray, "n 2"]
     height_m: float
+    name: str = ""
+    """What the file calls the room."""
 
 
 @dataclass(frozen=True, eq=False)

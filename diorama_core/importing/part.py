@@ -26,6 +26,8 @@ class Part:
     front: str | None = None
     """Own axis that its front looks along, where the file says so."""
     category: str | None = None
+    room: str | None = None
+    """Name of the room whose floor it is, where the file has rooms; None for everything else."""
 
     @cached_property
     def whole(self) -> trimesh.Trimesh:

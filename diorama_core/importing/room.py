@@ -4,12 +4,14 @@ under everything."""
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from jaxtyping import Float
 from shapely.geometry import Point, Polygon
+from shapely.geometry.polygon import orient
+from shapely.ops import unary_union
 
 from diorama_core.importing.part import Part
 from diorama_core.importing.room_by_shape import shell_planes, slab_role
@@ -25,6 +27,8 @@ ROUND_M = 0.3
 RESTS_M = 0.05
 """How far an object may hover over, or sink into, what it stands on."""
 NEAR_WALL_M = 0.15
+STRAIGHT_M = 1e-3
+"""Corners of an outline that are off a straight line by less are none."""
 PARALLEL = 0.9
 """Cosine between a wall's normal and the thinner side of what hangs on it, either way."""
 _ROLES: dict[PlaneRole, str] = {"floor": r"floor|ground", "ceiling": r"ceiling|roof", "wall": r"walls?"}
@@ -37,6 +41,8 @@ class Room:
     planes: tuple[Plane, ...]
     objects: tuple[Part, ...]
     notes: tuple[str, ...]
+    names: Mapping[str, str]
+    """Of the rooms of a home, by the id of their floor."""
 
 
 def room_of(parts: Sequence[Part]) -> Room:
@@ -47,6 +53,7 @@ def room_of(parts: Sequence[Part]) -> Room:
     inside = objects or tuple(parts)
     middle = np.mean([p.whole.bounds.mean(axis=0) for p in inside], axis=0)
     planes: list[Plane] = []
+    names: dict[str, str] = {}
     notes = []
     for part in objects:
         shell = shell_planes(part, _middle_within(part, objects))
@@ -59,10 +66,11 @@ def room_of(parts: Sequence[Part]) -> Room:
         plane = _plane(part, role, role if number == 1 and role != "wall" else f"{role}-{number}", middle)
         if not any(_same(plane, other) for other in planes):
             planes.append(plane)
+            names |= {} if part.room is None else {plane.id: part.room}
     if not any(p.role == "floor" for p in planes):
         planes.insert(0, _ground(parts))
         notes.append("the file has no floor: there is one under the lowest object")
-    return Room(tuple(planes), objects, tuple(notes))
+    return Room(tuple(planes), objects, tuple(notes), names)
 
 
 def _roles(parts: Sequence[Part]) -> list[tuple[Part, PlaneRole | None]]:
@@ -119,7 +127,8 @@ def _plane(part: Part, role: PlaneRole, name: str, middle: Float[np.ndarray, "3"
     if role != "wall":
         corners = [centre + s * a / 2 * along + t * b / 2 * across for s, t in ((-1, -1), (1, -1), (1, 1), (-1, 1))]
         z = high if role == "floor" else low
-        polygon = np.array([[*c, z] for c in corners])
+        ring = corners if part.room is None else _outline(part)
+        polygon = np.array([[*c, z] for c in ring])
         return Plane(name, role, polygon if role == "floor" else polygon[::-1], max(high - low, 0.01))
     if a < b:
         a, b, along, across = b, a, across, along
@@ -130,6 +139,13 @@ def _plane(part: Part, role: PlaneRole, name: str, middle: Float[np.ndarray, "3"
     polygon = np.array([[*left_end, low], [*right_end, low], [*right_end, high], [*left_end, high]])
     plane = Plane(name, "wall", polygon, max(b, 0.01))
     return plane if plane.normal[:2] @ inward > 0 else Plane(name, "wall", polygon[::-1], max(b, 0.01))
+
+
+def _outline(part: Part) -> Float[np.ndarray, "n 2"]:
+    """Corners of the floor of a room, counter-clockwise seen from above."""
+    upward = part.whole.triangles[part.whole.face_normals[:, 2] > PARALLEL]
+    area = orient(unary_union([Polygon(t[:, :2]) for t in upward]).simplify(STRAIGHT_M))
+    return np.asarray(max(getattr(area, "geoms", [area]), key=lambda a: a.area).exterior.coords)[:-1]
 
 
 def _same(plane: Plane, other: Plane) -> bool:

@@ -1,4 +1,7 @@
-"""Scans of Apple RoomPlan: `CapturedRoom` (or `CapturedStructure`) as JSON, and the parametric `room.usdz`.
+"""Scans of Apple RoomPlan: `CapturedRoom` or `CapturedStructure` as JSON, a folder of captured rooms, and the
+parametric `room.usdz`.
+
+Rooms of a folder are placed by their `referenceOriginTransform`: it takes the home's frame to the room's.
 
 RoomPlan is y-up and metric. The axes of a wall or an object are x along its width, y up, and z out of its front.
 https://developer.apple.com/documentation/roomplan/capturedroom
@@ -28,6 +31,8 @@ from diorama_core.importing.roomplan_parts import (
     joined_floors,
     kinds_of,
     moved,
+    named_floors,
+    spoken,
     storey_notes,
     without_unusable,
 )
@@ -42,13 +47,13 @@ _SURFACES: Mapping[str, OpeningKind] = {f"{kind}s": kind for kind in get_args(Op
 
 
 def read_room_plan(path: Path) -> MeasuredRoom | None:
-    """What RoomPlan measured; None for a file that is not from it.
+    """What RoomPlan measured; None for a file, or a folder of files, that is not from it.
 
     Raises:
         InputError: it cannot be read, or makes no sense.
         UnavailableError: a USDZ, and usd-core is missing.
     """
-    room = _from_json(path) if path.suffix.lower() == ".json" else read_usd(path)
+    room = read_usd(path) if path.is_file() and path.suffix.lower() != ".json" else _from_json(path)
     if room is not None and not _within_reach(room):
         raise InputError(f"{path.name}: something in it is not within {REACH_M / 1000:.0f} km; export the scan again")
     return room
@@ -66,10 +71,18 @@ def _within_reach(room: MeasuredRoom) -> bool:
 
 
 def _from_json(path: Path) -> MeasuredRoom | None:
-    document = read_json(path, InputError, most=MAX_JSON_BYTES, advice="export the scan again")
-    if not isinstance(document, dict) or not isinstance(document.get("walls"), list):
+    files = sorted(path.rglob("*.json")) if path.is_dir() else [path]
+    read = {f: read_json(f, InputError, most=MAX_JSON_BYTES, advice="export the scan again") for f in files}
+    rooms = {f: d for f, d in read.items() if isinstance(d, dict) and isinstance(d.get("walls"), list)}
+    if not rooms:
         return None
-    names = {key: document.get(key) or [] for key in ("walls", "objects", "floors", *_SURFACES)}
+    try:
+        document = next(iter(rooms.values())) if len(rooms) == 1 else _placed_together(rooms)
+    except (LookupError, TypeError, ValueError, AttributeError) as error:
+        raise InputError(
+            f"{path.name}: a room has no place in the home ({shortened(str(error))}); export its rooms together"
+        ) from error
+    names = {key: document.get(key) or [] for key in ("walls", "objects", "floors", "sections", *_SURFACES)}
     if not all(isinstance(rows, list) for rows in names.values()) or sum(map(len, names.values())) > MAX_PARTS:
         raise InputError(f"{path.name}: more than {MAX_PARTS} parts, or lists that are none; export the scan again")
     try:
@@ -78,16 +91,50 @@ def _from_json(path: Path) -> MeasuredRoom | None:
         openings = tuple(_json_opening(row, kind, ids) for key, kind in _SURFACES.items() for row in names[key])
         boxes, left_out = without_unusable(_json_box(row) for row in names["objects"])
         floors = [_outline(row) for row in names["floors"]]
+        sections = [(_section_name(row), Z_UP[:3, :3] @ _point(row["center"])) for row in names["sections"]]
     except (LookupError, TypeError, ValueError, AttributeError, ArithmeticError) as error:
         raise InputError(
             f"{path.name}: a wall or an object makes no sense ({shortened(str(error))}); export the scan again"
         ) from error
     joined = joined_floors([Polygon(f[:, :2]) for f in floors], [float(f[:, 2].mean()) for f in floors])
+    joined = named_floors(joined, [(name, at) for name, at in sections if name], walls)
     unsure = sum(box.confidence < CONFIDENCE["medium"] for box in boxes)
     curved = sum(row.get("curve") is not None for row in names["walls"])
     notes = [f"RoomPlan was unsure of {unsure} of {len(boxes)} objects"] if unsure else []
     notes += [f"{curved} curved walls are flat from end to end"] if curved else []
     return MeasuredRoom(walls, boxes, openings, joined, (*notes, *storey_notes(joined), *left_out))
+
+
+def _placed_together(rooms: Mapping[Path, Mapping[str, Any]]) -> Mapping[str, Any]:
+    """Captured rooms as one document, in the frame of the home; a room without a named section has its file's name."""
+    whole: dict[str, list[Any]] = {key: [] for key in ("walls", "objects", "floors", "sections", *_SURFACES)}
+    for path, room in rooms.items():
+        T = np.linalg.inv(np.asarray(room["referenceOriginTransform"], np.float64).reshape(4, 4).T)
+        for key, rows in whole.items():
+            if key == "sections":
+                continue
+            for row in room.get(key) or []:
+                M = T @ np.asarray(row["transform"], np.float64).reshape(4, 4).T
+                rows.append({**row, "transform": M.T.ravel().tolist()})
+        named = [s for s in room.get("sections") or [] if _section_name(s)]
+        called = path.parent.name if path.stem == "room" else path.stem
+        middles = [np.mean(_outline(f), axis=0) @ Z_UP[:3, :3] for f in room.get("floors") or []]
+        named = named or [{"label": called, "center": middle.tolist()} for middle in middles]
+        whole["sections"] += [{**s, "center": moved(T, _point(s["center"])).tolist()} for s in named]
+    return whole
+
+
+def _section_name(row: Mapping[str, Any]) -> str:
+    """What RoomPlan takes a part of the floor for; empty where it does not know."""
+    label = _word(row.get("label") or "")
+    return "" if label == "unidentified" else shortened(spoken(label), 60)
+
+
+def _point(values: Any) -> Float[np.ndarray, "3"]:
+    point = np.asarray(values, np.float64)
+    if point.shape != (3,) or not np.isfinite(point).all():
+        raise ValueError("a place is no three numbers")
+    return point
 
 
 def _matrix(row: Mapping[str, Any]) -> Float[np.ndarray, "4 4"]:

@@ -4,16 +4,19 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import replace
 
 import numpy as np
 from jaxtyping import Float
-from shapely.geometry import MultiPolygon, Polygon
-from shapely.ops import unary_union
+from shapely.geometry import LineString, MultiPolygon, Point, Polygon
+from shapely.ops import polygonize, unary_union
 
 from diorama_core.errors import InputError
+from diorama_core.geometry.rooms import floor_under
 from diorama_core.importing.measured_types import (
     MeasuredBox,
     MeasuredFloor,
+    MeasuredWall,
 )
 from diorama_core.io.bounded import shortened
 from diorama_core.library.labels import meanings
@@ -21,6 +24,10 @@ from diorama_core.library.taxonomy import UNKNOWN, column, resolve
 
 SAME_LEVEL_M = 0.3
 """Floors whose heights differ by less are of one storey."""
+CORNER_M = 0.25
+"""Ends of walls that are so near to another wall meet it."""
+THINNEST_ROOM_M = 0.5
+"""What is narrower is between the faces of a wall."""
 MIN_SIDE_M = 0.01
 """Share of the second longest side of a thing."""
 MAX_PARTS = 5_000
@@ -116,6 +123,48 @@ def joined_floors(floors: Sequence[Polygon], heights_m: Sequence[float]) -> tupl
             if isinstance(piece, Polygon) and not piece.is_empty:
                 joined.append(MeasuredFloor(np.asarray(piece.exterior.coords)[:-1, :2], height))
     return tuple(joined)
+
+
+def named_floors(
+    floors: Sequence[MeasuredFloor],
+    sections: Sequence[tuple[str, Float[np.ndarray, "3"]]],
+    walls: Sequence[MeasuredWall],
+) -> tuple[MeasuredFloor, ...]:
+    """Floors by the names of the sections on them; one of several sections is parted by the walls between them.
+
+    Args:
+        floors: as measured.
+        sections: names with their middles in the world.
+        walls: of the home.
+    """
+    if not floors or not sections:
+        return tuple(floors)
+    outlines, heights = [f.outline for f in floors], [f.height_m for f in floors]
+    under = floor_under(np.array([at for _, at in sections]), outlines, heights)
+    named: list[MeasuredFloor] = []
+    for number, floor in enumerate(floors):
+        on_it = [(name, Point(at[:2])) for (name, at), k in zip(sections, under, strict=True) if k == number]
+        cells = _cells(floor, walls) if len(on_it) > 1 else []
+        if sum(any(cell.contains(at) for _, at in on_it) for cell in cells) < 2:
+            named.append(replace(floor, name=" and ".join(dict.fromkeys(name for name, _ in on_it))))
+            continue
+        for cell in cells:
+            name = " and ".join(dict.fromkeys(name for name, at in on_it if cell.contains(at)))
+            named.append(MeasuredFloor(np.asarray(cell.exterior.coords)[:-1, :2], floor.height_m, name))
+    return tuple(named)
+
+
+def _cells(floor: MeasuredFloor, walls: Sequence[MeasuredWall]) -> list[Polygon]:
+    """The rooms that walls make of a floor, without what is between the faces of a wall."""
+    outline = Polygon(floor.outline)
+    lines = [outline.exterior]
+    for wall in walls:
+        if abs(float(wall.polygon[:, 2].min()) - floor.height_m) < SAME_LEVEL_M:
+            ends = wall.polygon[[0, int(np.linalg.norm((wall.polygon - wall.polygon[0])[:, :2], axis=1).argmax())], :2]
+            reach = (ends[1] - ends[0]) / max(float(np.linalg.norm(ends[1] - ends[0])), 1e-9) * CORNER_M
+            lines.append(LineString([ends[0] - reach, ends[1] + reach]))
+    cells = [c for c in polygonize(unary_union(lines)) if outline.contains(c.representative_point())]
+    return [c for c in cells if not c.buffer(-THINNEST_ROOM_M / 2).is_empty]
 
 
 def storey_notes(floors: Sequence[MeasuredFloor]) -> tuple[str, ...]:

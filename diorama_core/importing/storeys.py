@@ -2,16 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections import Counter
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from itertools import pairwise
 
 import numpy as np
 from jaxtyping import Float
 from shapely.geometry import MultiPoint, MultiPolygon, Point, Polygon
 from shapely.ops import polygonize, snap, unary_union
 
+from diorama_core.geometry.rooms import BORDER_M, SINKS_M, floor_under
 from diorama_core.importing.measured_types import MeasuredBox, MeasuredRoom, MeasuredWall
-from diorama_core.scene.types import Plane
+from diorama_core.scene.types import HomeRoom, Plane
 
 CORNER_M = 0.25
 """Ends of walls that are so near meet in a corner, where the file has no floor."""
@@ -19,12 +22,10 @@ INSIDE_M = 0.3
 """So far from a wall one is in the room, on one side of it."""
 LEVEL_M = 0.05
 """Walls whose tops differ by less carry a level ceiling."""
+STOREY_M = 1.2
+"""Floors that are farther apart in height are of two storeys: half of a low one."""
 HALF_WALL_M = 0.4
 """Walls that end so far below the others carry no ceiling."""
-BORDER_M = 0.25
-"""So near to a floor's border a wall is that room's."""
-SINKS_M = 0.3
-"""A thing may reach so far below the floor that it stands on."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -33,11 +34,12 @@ class Storey:
 
     outline: Polygon | None
     height_m: float
+    name: str = ""
 
 
 def measured_storeys(room: MeasuredRoom) -> tuple[Storey, ...]:
     """The floors of a room: as measured, or one that the walls enclose, or one around everything."""
-    measured = [Storey(Polygon(f.outline), f.height_m) for f in room.floors]
+    measured = [Storey(Polygon(f.outline), f.height_m, f.name) for f in room.floors]
     sound = tuple(s for s in measured if s.outline is not None and s.outline.is_valid and s.outline.area > 0)
     if sound:
         return sound
@@ -54,6 +56,28 @@ def floor_planes(storeys: Sequence[Storey]) -> tuple[Plane, ...]:
         if s.outline is not None
         for ring in (_ring(s.outline),)
     )
+
+
+def rooms_of_floors(floors: Sequence[Plane], names: Mapping[str, str]) -> tuple[HomeRoom, ...]:
+    """A room for each floor of a home; none where there is but one floor.
+
+    Args:
+        floors: of all storeys.
+        names: of rooms by the id of their floor; equal ones are numbered, and rooms without one, too.
+    """
+    if len(floors) < 2:
+        return ()
+    levels = sorted({float(f.centre[2]) for f in floors})
+    steps = [high for low, high in pairwise(levels) if high - low > STOREY_M]
+    taken: Counter[str] = Counter()
+    rooms = []
+    for number, floor in enumerate(floors, 1):
+        name = names.get(floor.id) or "room"
+        taken[name] += 1
+        called = f"{name} {taken[name]}" if taken[name] > 1 or name == "room" else name
+        storey = sum(float(floor.centre[2]) >= step for step in steps)
+        rooms.append(HomeRoom(f"room-{number}", called, floor.id, storey))
+    return tuple(rooms)
 
 
 def ceiling_planes(storeys: Sequence[Storey], walls: Sequence[Plane]) -> tuple[tuple[Plane, ...], tuple[str, ...]]:
@@ -92,15 +116,11 @@ def inner_face(wall: MeasuredWall, storeys: Sequence[Storey]) -> Plane:
     return replace(plane, polygon=plane.polygon + normal * wall.thickness_m / 2, thickness=wall.thickness_m)
 
 
-def floor_below(centre: Float[np.ndarray, "3"], height_m: float, storeys: Sequence[Storey]) -> int | None:
-    """Number of the floor that a thing is over: the highest one at or below its foot, under it before beside it."""
-    foot = float(centre[2]) - height_m / 2
-    candidates = [
-        (s.outline is not None and s.outline.buffer(BORDER_M).contains(Point(centre[:2])), s.height_m, -k)
-        for k, s in enumerate(storeys)
-        if s.height_m < foot + SINKS_M
-    ]
-    return -max(candidates)[2] if candidates else None
+def floors_below(boxes: Sequence[MeasuredBox], storeys: Sequence[Storey]) -> list[int | None]:
+    """Number of the floor that each box is over."""
+    feet = np.array([b.centre - [0.0, 0.0, b.size_m[2] / 2] for b in boxes]).reshape(-1, 3)
+    outlines = [np.zeros((0, 2)) if s.outline is None else _ring(s.outline) for s in storeys]
+    return floor_under(feet, outlines, [s.height_m for s in storeys])
 
 
 def _numbered(word: str, index: int) -> str:

@@ -225,7 +225,7 @@ def _room(room: ET.Element, level_m: float) -> Part:
     points = np.array([[_number(p, "x"), -_number(p, "y")] for p in room.findall("point")]) * M_PER_CM
     slab = _slab(points)
     slab.apply_translation([0.0, 0.0, level_m])
-    return Part("floor", trimesh.Scene({"floor": slab}), np.eye(4))
+    return Part("floor", trimesh.Scene({"floor": slab}), np.eye(4), room=shortened(room.get("name", ""), 60))
 
 
 def _slab(points: Float[np.ndarray, "n 2"]) -> trimesh.Trimesh:

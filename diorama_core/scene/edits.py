@@ -26,14 +26,24 @@ from diorama_core.scene.room_edits import (
     set_ceiling_height,
 )
 from diorama_core.scene.support import check_edge, descendants
-from diorama_core.scene.types import Candidate, Finish, MaterialSource, Plane, Pose, Scene, SceneObject, Support
+from diorama_core.scene.types import (
+    Candidate,
+    Finish,
+    HomeRoom,
+    MaterialSource,
+    Plane,
+    Pose,
+    Scene,
+    SceneObject,
+    Support,
+)
 from diorama_core.scene.values import Vector3
 
 __all__ = [
     "attach", "ceiling_height", "detach", "duplicate", "edge_length_m", "floor_height", "fresh_id", "insert", "move",
     "move_plane", "place", "recolour", "refinish", "remove", "rename", "rescale", "rescale_by_edge",
     "rescale_to_length", "resize", "set_ceiling_height", "set_hidden", "set_locked", "set_material_source",
-    "set_metrics", "set_open", "set_planes", "swap",
+    "set_metrics", "set_open", "set_planes", "set_room", "swap",
 ]  # fmt: skip
 
 SMALLEST_SIZE_M = 1e-3
@@ -225,10 +235,28 @@ def set_planes(scene: Scene, planes: Iterable[Plane]) -> Scene:
     return replace(changed, supports=supports)
 
 
+def set_room(scene: Scene, room_id: str, *, name: str | None = None, storey: int | None = None) -> Scene:
+    """Rename a room of a home, or say on which storey it is; None keeps what it is.
+
+    Raises:
+        EditRefused: there is no such room, or the name is empty.
+    """
+    if all(r.id != room_id for r in scene.rooms):
+        raise EditRefused(f"there is no room {room_id!r}; it may have been deleted")
+    text = None if name is None else " ".join(name.split())[:200]
+    if text == "":
+        raise EditRefused("a name cannot be empty; type at least one character")
+
+    def changed(room: HomeRoom) -> HomeRoom:
+        return replace(room, name=text or room.name, storey=room.storey if storey is None else storey)
+
+    return replace(scene, rooms=tuple(changed(r) if r.id == room_id else r for r in scene.rooms))
+
+
 def fresh_id(scene: Scene, category: str) -> str:
     """An id not yet used in the scene: the category, simplified, and a number."""
     stem = re.sub(r"[^a-z0-9]+", "_", category.lower()).strip("_") or "object"
-    taken = {o.id for o in scene.objects} | {p.id for p in scene.architecture.planes}
+    taken = {o.id for o in scene.objects} | {p.id for p in scene.architecture.planes} | {r.id for r in scene.rooms}
     return next(name for n in range(1, len(taken) + 2) if (name := f"{stem}_{n}") not in taken)
 
 

@@ -174,6 +174,7 @@ def _parts_of(entry: Entry) -> Mapping[Part, object]:
         **{("item", o.id): o for o in scene.objects},
         **{("support", s.child): s for s in scene.supports},
         **{("plane", p.id): p for p in scene.architecture.planes},
+        **{("room", r.id): r for r in scene.rooms},
         **{("field", name): getattr(scene, name) for name in _FIELDS},
     }
 
@@ -195,6 +196,7 @@ def _scene_of(parts: Mapping[Part, object], now: Scene, after: Scene) -> Scene:
         objects=in_order("item", objects),
         supports=in_order("support", children),
         architecture=replace(now.architecture, planes=in_order("plane", planes)),
+        rooms=in_order("room", (r.id for r in (*now.rooms, *after.rooms))),
         camera=cast("Camera | None", parts[("field", "camera")]),
         light=cast("RoomLight | None", parts[("field", "light")]),
         light_settings=cast("LightSettings", parts[("field", "light_settings")]),
@@ -205,6 +207,12 @@ def _since(part: Part, before: Entry, after: Entry, entry: Entry, label: str) ->
     """Why a change is not taken back."""
     kind, name = part
     scene = next((e.scene for e in (entry, before, after) if e.scene.has_object(name)), None)
-    what = scene.object(name).label if scene is not None else "the room" if kind == "plane" else "the view or the light"
+    what = (
+        scene.object(name).label
+        if scene is not None
+        else "the room"
+        if kind in ("plane", "room")
+        else "the view or the light"
+    )
     who = entry.author or "somebody"
     return f"{who} has changed {what} since, so “{label}” stays; undo takes back what nobody else has changed"

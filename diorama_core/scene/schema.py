@@ -26,6 +26,7 @@ from diorama_core.scene.types import (
     Candidate,
     FaceName,
     Finish,
+    HomeRoom,
     Intrinsics,
     MaterialSource,
     PhotoMaterial,
@@ -191,6 +192,13 @@ class _LightSettingsFile(_Model):
     lamps_on: Annotated[list[Words], Field(max_length=MAX_ITEMS)] | None = None
 
 
+class _HomeRoomFile(_Model):
+    id: Id
+    name: Words
+    floor: Id
+    storey: Annotated[int, Field(ge=-100, le=1000)]
+
+
 class _SceneFile(_Model):
     format: Literal["diorama-scene"]
     version: int
@@ -203,6 +211,7 @@ class _SceneFile(_Model):
     light: _LightFile | None = None
     light_settings: _LightSettingsFile | None = None
     scale_sigma: Sigma | None = None
+    rooms: Annotated[list[_HomeRoomFile], Field(max_length=MAX_ITEMS)] = []
 
 
 def scene_file_schema() -> dict[str, Any]:
@@ -229,6 +238,8 @@ def scene_to_json(scene: Scene, *, indent: int | None = 1) -> str:
         "light": None if scene.light is None else asdict(scene.light),
         "light_settings": asdict(scene.light_settings),
         "scale_sigma": scene.scale_sigma,
+        # One room is written as programs of before homes read it.
+        **({"rooms": [asdict(r) for r in scene.rooms]} if scene.rooms else {}),
     }
     return json.dumps(document, indent=indent, allow_nan=False)
 
@@ -382,6 +393,9 @@ def _candidate_to_file(candidate: Candidate) -> dict[str, Any]:
 
 
 def _scene_from_file(file: _SceneFile) -> Scene:
+    floors = {p.id for p in file.architecture.planes if p.role == "floor"}
+    if lost := [r for r in file.rooms if r.floor not in floors]:
+        raise ValueError(f"room {lost[0].id!r} has no floor {lost[0].floor!r}; name one of architecture.planes")
     return Scene(
         camera=_camera_from_file(file.camera),
         architecture=Architecture(tuple(_plane_from_file(p) for p in file.architecture.planes)),
@@ -391,6 +405,7 @@ def _scene_from_file(file: _SceneFile) -> Scene:
         light=None if file.light is None else RoomLight(**file.light.model_dump()),
         scale_sigma=file.scale_sigma,
         light_settings=PHOTO_LIGHT if file.light_settings is None else _light_settings(file.light_settings),
+        rooms=tuple(HomeRoom(**r.model_dump()) for r in file.rooms),
     )
 
 

@@ -55,7 +55,9 @@ def check_edge(scene: Scene, edge: Support) -> None:
 
 def check_scene(scene: Scene) -> None:
     """Raise `SceneError` with the first inconsistency between objects, planes and supports."""
-    ids = [o.id for o in scene.objects] + [p.id for p in scene.architecture.planes]
+    ids = [o.id for o in scene.objects] + [p.id for p in scene.architecture.planes] + [r.id for r in scene.rooms]
+    if len({r.floor for r in scene.rooms}) < len(scene.rooms):
+        raise SceneError("two rooms share one floor; give each its own")
     doubles = sorted(i for i, count in Counter(ids).items() if count > 1)
     if doubles:
         raise SceneError(f"ids must be unique; repeated: {', '.join(doubles[:5])}")

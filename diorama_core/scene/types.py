@@ -398,6 +398,19 @@ class RoomLight:
 
 
 @dataclass(frozen=True)
+class HomeRoom:
+    """One room of a home; what stands over its floor is in it (`diorama_core.geometry.rooms`)."""
+
+    id: str
+    name: str
+    """What people call it; free text, shown escaped."""
+    floor: str
+    """Id of its floor."""
+    storey: int = 0
+    """Counted from the lowest."""
+
+
+@dataclass(frozen=True)
 class Scene:
     """Everything that is in the room, where it is and what holds it up."""
 
@@ -413,8 +426,13 @@ class Scene:
     """As a person set it."""
     scale_sigma: float | None = None
     """Standard deviation of the logarithm of all lengths together; None where nothing is known."""
+    rooms: tuple[HomeRoom, ...] = ()
+    """Of a home; a scene without any is one room. Rooms whose floor is gone are gone."""
 
     def __post_init__(self) -> None:
+        if self.rooms:
+            floors = {p.id for p in self.architecture.by_role("floor")}
+            object.__setattr__(self, "rooms", tuple(r for r in self.rooms if r.floor in floors))
         # One order for equal graphs, so that equality and the file do not depend on the order of edits.
         rank = {o.id: i for i, o in enumerate(self.objects)}
         ordered = sorted(self.supports, key=lambda s: (rank.get(s.child, len(rank)), s.child))

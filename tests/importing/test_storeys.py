@@ -7,7 +7,7 @@ import pytest
 
 from diorama_core.importing.measured_room import opened_room
 from diorama_core.importing.measured_types import MeasuredBox, MeasuredFloor, MeasuredRoom, MeasuredWall
-from diorama_core.importing.storeys import ceiling_planes, floor_below, floor_planes, measured_storeys
+from diorama_core.importing.storeys import ceiling_planes, floor_planes, floors_below, measured_storeys
 from diorama_core.library.catalogue import built_in_library
 
 
@@ -65,5 +65,5 @@ def test_without_floors_the_walls_enclose_one() -> None:
     assert storey.outline is not None
     assert storey.outline.area == pytest.approx(9.0)
     assert floor_planes((storey,))[0].centre[2] == pytest.approx(0.5)
-    assert floor_below(np.array([1.0, 1.0, 1.0]), 1.0, (storey,)) == 0
+    assert floors_below([bed(1.0, 1.0, 0.5)], (storey,)) == [0]
     assert ceiling_planes((storey,), ()) == ((), ())

@@ -8,9 +8,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 import trimesh
+from shapely.geometry import Polygon
 
 from diorama_core.errors import InputError
+from diorama_core.geometry.rooms import rooms_of_objects
 from diorama_core.importing import sweethome
+from diorama_core.importing.scene_import import import_scene
 from diorama_core.importing.sweethome import THIN_M, parts_of_sweet_home
 from diorama_core.progress import Progress
 
@@ -153,3 +156,17 @@ def test_each_piece_is_progress(tmp_path: Path) -> None:
     told: list[str] = []
     parts_of_sweet_home(home(tmp_path, PIECE.format("") * 3), Progress(lambda event: told.append(event.message)))
     assert told == ["reading Chair"] * 3
+
+
+def test_rooms_of_several_levels_are_a_home(tmp_path: Path) -> None:
+    levels = '<level id="a" name="Ground" elevation="0"/><level id="b" name="Upper" elevation="260"/>'
+    corner = "".join(
+        f'<point x="{x}" y="{y}"/>' for x, y in ((0, 0), (400, 0), (400, 300), (200, 300), (200, 500), (0, 500))
+    )
+    rooms = f'<room level="a" name="Kitchen">{corner}</room>' + ROOM.replace("<room", '<room level="b"')
+    path = home(tmp_path, levels + rooms + PIECE.format('level="b"'))
+    scene = import_scene(path, tmp_path / "shapes").opened.scene
+    assert [(r.name, r.storey) for r in scene.rooms] == [("Kitchen", 0), ("room 1", 1)]
+    assert rooms_of_objects(scene) == {scene.objects[0].id: scene.rooms[1].id}
+    floor = scene.plane(scene.rooms[0].floor)
+    assert Polygon(floor.polygon[:, :2]).area == pytest.approx(16.0, rel=1e-3), "L-shaped, not the box around it"

@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from diorama_core.export.wall_lines import wall_lines
+from diorama_core.geometry.wall_lines import wall_lines
 from diorama_core.scene.types import Architecture, Plane, Pose, Scene, SceneObject, Support
 from tests.primitives import box_room
 

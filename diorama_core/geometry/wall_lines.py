@@ -9,7 +9,7 @@ import manifold3d
 import numpy as np
 from jaxtyping import Float
 
-from diorama_core.geometry.openings import OPENING_CATEGORIES, wall_of
+from diorama_core.geometry.openings import OPENING_CATEGORIES, walls_cut_by
 from diorama_core.geometry.planes import plane_rectangle
 from diorama_core.scene.types import Plane, Scene, SceneObject
 
@@ -31,7 +31,7 @@ class Opening:
     is_door: bool
     """Whether one walks through it."""
     object_id: str | None = None
-    """The door or window that fills it; None for a bare opening."""
+    """The door or window that fills it; None for a bare opening, and in the face behind a door's."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -75,8 +75,15 @@ def wall_lines(planes: Iterable[Plane], items: Sequence[SceneObject], scene: Sce
     """
     walls = [_bare(p) for p in planes if p.role == "wall"]
     fills = [o for o in items if o.category in OPENING_CATEGORIES]
-    walls_of = {o.id: wall_of(o, [w.plane for w in walls], scene) for o in fills}
-    return tuple(_with_openings(w, [o for o in fills if walls_of[o.id] is w.plane]) for w in walls)
+    cut = walls_cut_by(fills, [w.plane for w in walls], scene)
+
+    def opened(wall: DrawnWall) -> DrawnWall:
+        hung = [_filled(wall, o) for o in fills if cut[o.id] and cut[o.id][0] is wall.plane]
+        behind = [_filled(wall, o, is_behind=True) for o in fills if any(w is wall.plane for w in cut[o.id][1:])]
+        # Where each room has a door of its own in the wall, both stay.
+        return _with_openings(wall, [*hung, *(b for b in behind if not any(_meet(b, h) for h in hung))])
+
+    return tuple(opened(w) for w in walls)
 
 
 def _bare(plane: Plane) -> DrawnWall:
@@ -86,19 +93,20 @@ def _bare(plane: Plane) -> DrawnWall:
     return DrawnWall(plane, start, start + axes[:2, 0] * extents[0], float(heights.min()), float(heights.max()))
 
 
-def _with_openings(wall: DrawnWall, fills: Sequence[SceneObject]) -> DrawnWall:
-    filled = [_filled(wall, item) for item in fills]
+def _with_openings(wall: DrawnWall, filled: Sequence[Opening]) -> DrawnWall:
     bare = [o for o in _gaps(wall) if not any(_meet(o, f) for f in filled)]
     ordered = tuple(sorted((*filled, *bare), key=lambda o: o.from_m))
     return DrawnWall(wall.plane, wall.start, wall.end, wall.bottom_m, wall.top_m, ordered)
 
 
-def _filled(wall: DrawnWall, item: SceneObject) -> Opening:
+def _filled(wall: DrawnWall, item: SceneObject, *, is_behind: bool = False) -> Opening:
+    """The opening of a door or window, which fills it in the face that it hangs on."""
     corners = item.corners_world
     along = np.clip((corners[:, :2] - wall.start) @ wall.along, 0, wall.length_m)
     low, high = np.clip(corners[:, 2], wall.bottom_m, wall.top_m)[[corners[:, 2].argmin(), corners[:, 2].argmax()]]
     ends = float(along.min()), float(along.max())
-    return Opening(f"opening-{item.id}", *ends, float(low), float(high), item.category == "door", item.id)
+    name, fill = (f"opening-{item.id}-behind", None) if is_behind else (f"opening-{item.id}", item.id)
+    return Opening(name, *ends, float(low), float(high), item.category == "door", fill)
 
 
 def _gaps(wall: DrawnWall) -> list[Opening]:
