@@ -7,7 +7,7 @@ one polygon: a door is a notch in its foot, a window is reached by a cut from be
 from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Mapping, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import manifold3d
 import numpy as np
@@ -19,10 +19,6 @@ from diorama_core.scene.types import Architecture, Plane, Scene, SceneObject
 OPENING_CATEGORIES = ("door", "window")
 REACH_M = 0.3
 """A door or window whose middle is no farther than this from a wall's face belongs to it."""
-THICKEST_M = 0.5
-"""Two faces that look away from each other are one wall's up to this distance: a wall of stone."""
-FACING = 0.98
-"""Cosine from which on the faces of a wall are parallel: measured ones are a few degrees off."""
 FRAME_M = 0.02
 """So much of a wall stays behind the rim of what fills the opening, and nothing is seen past it."""
 FOOT_M = 0.05
@@ -32,6 +28,29 @@ STANDS_OUT_M = 0.06
 MIN_SIDE_M = 0.1
 
 Contour = Float[np.ndarray, "_ 2"]
+
+
+@dataclass(frozen=True)
+class HomeSettings:
+    """What counts as one wall, as an opening of it, and as being in a room."""
+
+    thickest_m: float = 0.5
+    """Two faces that look away from each other are one wall's up to this distance: a wall of stone."""
+    facing: float = 0.98
+    """Cosine from which on the faces of a wall are parallel: measured ones are a few degrees off."""
+    min_opening_m: float = 0.15
+    """Gaps in a wall's polygon that are narrower or lower than this are no opening."""
+    border_m: float = 0.25
+    """What is so near to a floor's border is still over it: what hangs in a doorway, or on the wall."""
+    sinks_m: float = 0.3
+    """A thing may reach so far below the floor that it stands on."""
+    under_ceiling_m: float = 1.0
+    """A point so far below a ceiling is in its room, and not on the floor above."""
+    before_m: float = 0.1
+    """A point so far before a wall's face is over the floor of the room that the wall is of."""
+
+
+HOME = HomeSettings()
 
 
 def wall_of(item: SceneObject, walls: Iterable[Plane], scene: Scene) -> Plane | None:
@@ -59,7 +78,7 @@ def faces_behind(wall: Plane, point: Float[np.ndarray, "3"], walls: Sequence[Pla
         return ()
     normals = np.array([w.normal for w in walls])
     gaps = wall.offset - np.array([w.centre for w in walls]) @ wall.normal
-    near = np.flatnonzero((normals @ wall.normal < -FACING) & (gaps > -FRAME_M) & (gaps < THICKEST_M))
+    near = np.flatnonzero((normals @ wall.normal < -HOME.facing) & (gaps > -FRAME_M) & (gaps < HOME.thickest_m))
     return tuple(walls[k] for k in near.tolist() if _spans(walls[k], point))
 
 

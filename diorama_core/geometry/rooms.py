@@ -14,18 +14,9 @@ import numpy as np
 import shapely
 from jaxtyping import Float
 
-from diorama_core.geometry.openings import faces_behind
+from diorama_core.geometry.openings import HOME, faces_behind
 from diorama_core.geometry.wall_lines import DrawnWall, Opening, wall_lines
 from diorama_core.scene.types import Architecture, HomeRoom, Plane, Scene
-
-BORDER_M = 0.25
-"""What is so near to a floor's border is still over it: what hangs in a doorway, or on the wall."""
-SINKS_M = 0.3
-"""A thing may reach so far below the floor that it stands on."""
-UNDER_CEILING_M = 1.0
-"""A point so far below a ceiling is in its room, and not on the floor above."""
-BEFORE_M = 0.1
-"""A point so far before a wall's face is over the floor of the room that the wall is of."""
 
 
 @dataclass(frozen=True)
@@ -60,9 +51,9 @@ def floor_under(
     at = shapely.points(points[:, :2])
     for number, outline in enumerate(outlines):
         away = shapely.distance(_area(outline), at) if len(outline) >= 3 else np.full(len(points), np.inf)
-        higher = int((heights > heights[number] + SINKS_M).sum())
-        for k in np.flatnonzero(points[:, 2] > heights[number] - SINKS_M):
-            cost = bool(away[k] >= BORDER_M), higher, float(away[k])
+        higher = int((heights > heights[number] + HOME.sinks_m).sum())
+        for k in np.flatnonzero(points[:, 2] > heights[number] - HOME.sinks_m):
+            cost = bool(away[k] >= HOME.border_m), higher, float(away[k])
             chosen[k] = (cost, number) if cost < chosen[k][0] else chosen[k]
     return [number for _, number in chosen]
 
@@ -74,7 +65,7 @@ def rooms_of_objects(scene: Scene) -> Mapping[str, str]:
     ceilings = {p.id for p in scene.architecture.by_role("ceiling")}
     hanging = {s.child for s in scene.supports if s.parent in ceilings}
     feet = np.array([[*o.pose.position[:2], o.corners_world[:, 2].min()] for o in scene.objects])
-    feet[[o.id in hanging for o in scene.objects], 2] -= UNDER_CEILING_M
+    feet[[o.id in hanging for o in scene.objects], 2] -= HOME.under_ceiling_m
     return _over_floors(scene, [o.id for o in scene.objects], feet)
 
 
@@ -152,8 +143,8 @@ def _before(plane: Plane) -> Float[np.ndarray, "3"]:
     """A point in the room that a wall or a ceiling is of, at the foot of a wall."""
     if plane.role == "ceiling":
         x, y = _area(plane.polygon[:, :2]).representative_point().coords[0]
-        return np.array([x, y, float(plane.polygon[:, 2].min()) - UNDER_CEILING_M])
-    middle = (plane.polygon.min(axis=0) + plane.polygon.max(axis=0)) / 2 + BEFORE_M * plane.normal
+        return np.array([x, y, float(plane.polygon[:, 2].min()) - HOME.under_ceiling_m])
+    middle = (plane.polygon.min(axis=0) + plane.polygon.max(axis=0)) / 2 + HOME.before_m * plane.normal
     return np.array([*middle[:2], float(plane.polygon[:, 2].min())])
 
 

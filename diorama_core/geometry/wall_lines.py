@@ -9,12 +9,9 @@ import manifold3d
 import numpy as np
 from jaxtyping import Float
 
-from diorama_core.geometry.openings import OPENING_CATEGORIES, walls_cut_by
+from diorama_core.geometry.openings import HOME, OPENING_CATEGORIES, walls_cut_by
 from diorama_core.geometry.planes import plane_rectangle
 from diorama_core.scene.types import Plane, Scene, SceneObject
-
-MIN_OPENING_M = 0.15
-"""Gaps in a wall's polygon that are narrower or lower than this are no opening."""
 
 
 @dataclass(frozen=True)
@@ -120,7 +117,7 @@ def _gaps(wall: DrawnWall) -> list[Opening]:
     for number, piece in enumerate(rest.decompose()):
         left, low, right, high = piece.bounds()
         inside = left > 1e-3 and right < length - 1e-3 and high < height - 1e-3
-        if inside and right - left >= MIN_OPENING_M and high - low >= MIN_OPENING_M:
+        if inside and right - left >= HOME.min_opening_m and high - low >= HOME.min_opening_m:
             low, high = low + wall.bottom_m, high + wall.bottom_m
             is_door = low < wall.bottom_m + 0.05
             found.append(Opening(f"opening-{wall.plane.id}-{number + 1}", left, right, low, high, is_door))

@@ -12,7 +12,8 @@ from jaxtyping import Float
 from shapely.geometry import MultiPoint, MultiPolygon, Point, Polygon
 from shapely.ops import polygonize, snap, unary_union
 
-from diorama_core.geometry.rooms import BORDER_M, SINKS_M, floor_under
+from diorama_core.geometry.openings import HOME
+from diorama_core.geometry.rooms import floor_under
 from diorama_core.importing.measured_types import MeasuredBox, MeasuredRoom, MeasuredWall
 from diorama_core.scene.types import HomeRoom, Plane
 
@@ -136,9 +137,9 @@ def _has_slope(wall: Plane) -> bool:
 
 def _is_of(wall: Plane, storey: Storey) -> bool:
     """Whether a wall is at the border of a floor, or on it, and begins at about its height."""
-    if storey.outline is None or abs(float(wall.polygon[:, 2].min()) - storey.height_m) > 2 * SINKS_M:
+    if storey.outline is None or abs(float(wall.polygon[:, 2].min()) - storey.height_m) > 2 * HOME.sinks_m:
         return False
-    return bool(storey.outline.distance(Point(wall.centre[:2])) < BORDER_M)
+    return bool(storey.outline.distance(Point(wall.centre[:2])) < HOME.border_m)
 
 
 def _room_of(wall: Plane, storeys: Sequence[Storey]) -> Polygon | None:

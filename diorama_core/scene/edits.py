@@ -236,7 +236,13 @@ def set_planes(scene: Scene, planes: Iterable[Plane]) -> Scene:
 
 
 def set_room(scene: Scene, room_id: str, *, name: str | None = None, storey: int | None = None) -> Scene:
-    """Rename a room of a home, or say on which storey it is; None keeps what it is.
+    """Rename a room of a home, or say on which storey it is.
+
+    Args:
+        scene: As it is.
+        room_id: Of the room.
+        name: What it is called from then on; None keeps its name.
+        storey: Counted from the lowest; None keeps it.
 
     Raises:
         EditRefused: there is no such room, or the name is empty.
