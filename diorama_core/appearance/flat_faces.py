@@ -87,7 +87,6 @@ def faces_of(
     hidden: Bool[np.ndarray, "h w"],
     detected: DetectedObject,
     camera: Camera,
-    settings: FlatFaceSettings = SETTINGS,
 ) -> tuple[FlatFace, ...]:
     """The faces of an object that show in the photo; none for objects without a flat face.
 
@@ -98,9 +97,8 @@ def faces_of(
         hidden: Where something else stands before it.
         detected: The object in the photo.
         camera: The photo's.
-        settings: Numbers to work with.
     """
-    kind = face_kind(item.category, item.size_m, settings)
+    kind = face_kind(item.category, item.size_m)
     if kind is None:
         return ()
     roles, layout = kind
@@ -108,24 +106,22 @@ def faces_of(
     chosen = [s for s in slots if s.role in roles or (s.main and MAIN in roles)]
     if not chosen and not SEEN_THROUGH & set(roles):
         chosen = [s for s in slots if s.main]
-    by_mask = detected.mask_confidence >= settings.sure_mask or item.category in NOT_RECTANGULAR
-    unseen = (hidden | ~detected.mask if by_mask else hidden) | pale_frame(rgb, settings) | _outside(detected)
-    made = [_face(item, parts, slot, layout, rgb, (hidden, unseen), detected, camera, settings) for slot in chosen]
+    by_mask = detected.mask_confidence >= SETTINGS.sure_mask or item.category in NOT_RECTANGULAR
+    unseen = (hidden | ~detected.mask if by_mask else hidden) | pale_frame(rgb) | _outside(detected)
+    made = [_face(item, parts, slot, layout, rgb, (hidden, unseen), detected, camera) for slot in chosen]
     return tuple(face for face in made if face is not None)
 
 
-def face_kind(
-    category: str, size_m: Float[np.ndarray, "3"], settings: FlatFaceSettings = SETTINGS
-) -> tuple[tuple[str, ...], TextureLayout] | None:
+def face_kind(category: str, size_m: Float[np.ndarray, "3"]) -> tuple[tuple[str, ...], TextureLayout] | None:
     """Roles of the slots that have an object's face, and which way it faces; None where it has none.
 
     Spines of a row of books face the front, the cover of one that lies flat faces up.
     """
     if category != "books":
         return FACES.get(category)
-    if size_m[2] >= settings.upright * size_m[0]:
+    if size_m[2] >= SETTINGS.upright * size_m[0]:
         return COVERS, "front"
-    return (COVERS, "top") if size_m[2] <= settings.lying * min(size_m[:2]) else None
+    return (COVERS, "top") if size_m[2] <= SETTINGS.lying * min(size_m[:2]) else None
 
 
 def _face(
@@ -137,7 +133,6 @@ def _face(
     hidden: tuple[Bool[np.ndarray, "h w"], Bool[np.ndarray, "h w"]],
     detected: DetectedObject,
     camera: Camera,
-    settings: FlatFaceSettings = SETTINGS,
 ) -> FlatFace | None:
     """The face of one slot; `hidden` is what others hide, and everything that is not to be read."""
     others, unseen = hidden
@@ -146,22 +141,17 @@ def _face(
     if H is None:
         return None
     if not is_cut(H):  # or the box in the photo does not end where the object does
-        H = (
-            box_alignment(
-                _outline_box(item, parts, camera), detected.box, sides_told(detected.box, others, settings), settings
-            )
-            @ H
-        )
-    if _share_in_mask(outline_px(H), others, detected, settings) < settings.min_in_mask:
+        H = box_alignment(_outline_box(item, parts, camera), detected.box, sides_told(detected.box, others)) @ H
+    if _share_in_mask(outline_px(H), others, detected) < SETTINGS.min_in_mask:
         return None
     picture = rectified(rgb, unseen, H)
-    if picture is None or picture.seen.mean() < settings.min_seen:
+    if picture is None or picture.seen.mean() < SETTINGS.min_seen:
         return None
-    roughness = ROUGHNESS.get(slot.role, settings.other_roughness)
-    if "screen" in FACES.get(item.category, ((), ""))[0] and not is_lit(picture, settings):
+    roughness = ROUGHNESS.get(slot.role, SETTINGS.other_roughness)
+    if "screen" in FACES.get(item.category, ((), ""))[0] and not is_lit(picture):
         dark = np.median(picture.colours[picture.seen], axis=0).clip(0, 255).astype(np.uint8)
         return FlatFace(
-            slot, layout, np.broadcast_to(dark, (settings.dark_side_px, settings.dark_side_px, 3)).copy(), roughness
+            slot, layout, np.broadcast_to(dark, (SETTINGS.dark_side_px, SETTINGS.dark_side_px, 3)).copy(), roughness
         )
     pixel_m = float(np.linalg.norm(rectangle.across * item.pose.scale)) / picture.seen.shape[1]
     return FlatFace(slot, layout, completed_picture(picture, pixel_m), roughness)
@@ -176,14 +166,11 @@ def _outside(detected: DetectedObject) -> Bool[np.ndarray, "h w"]:
 
 
 def _share_in_mask(
-    outline: Float[np.ndarray, "n 2"],
-    hidden: Bool[np.ndarray, "h w"],
-    detected: DetectedObject,
-    settings: FlatFaceSettings = SETTINGS,
+    outline: Float[np.ndarray, "n 2"], hidden: Bool[np.ndarray, "h w"], detected: DetectedObject
 ) -> float:
     """Share of a convex outline, as far as it is in the photo and not hidden, that is within the object's mask."""
     region = np.zeros(detected.mask.shape, np.uint8)
-    cv2.fillConvexPoly(region, np.rint(np.clip(outline, -settings.far_px, settings.far_px)).astype(np.int32), 1)
+    cv2.fillConvexPoly(region, np.rint(np.clip(outline, -SETTINGS.far_px, SETTINGS.far_px)).astype(np.int32), 1)
     free = region.astype(bool) & ~hidden
     return float((free & detected.mask).sum() / max(int(free.sum()), 1))
 
@@ -192,7 +179,6 @@ def box_alignment(
     projected: Float[np.ndarray, "4"],
     detected: tuple[float, float, float, float],
     cut_sides: tuple[bool, bool, bool, bool] = (True, True, True, True),
-    settings: FlatFaceSettings = SETTINGS,
 ) -> Float[np.ndarray, "3 3"]:
     """How pixels move and scale as an object's projected box is to become its box in the photo, as a homography.
 
@@ -202,11 +188,10 @@ def box_alignment(
         projected: The whole object's box as it is posed.
         detected: Its box in the photo.
         cut_sides: Which of its left, upper, right and lower side end the object itself (`sides_told`).
-        settings: Numbers to work with.
     """
     box = np.where(cut_sides, detected, projected)
     A = np.eye(3)
-    if float(box_iou(projected, box)) < settings.min_box_iou:
+    if float(box_iou(projected, box)) < SETTINGS.min_box_iou:
         return A
     for axis in (0, 1):
         low, high = projected[axis], projected[axis + 2]
@@ -215,15 +200,15 @@ def box_alignment(
     return A
 
 
-def pale_frame(rgb: UInt8[np.ndarray, "h w 3"], settings: FlatFaceSettings = SETTINGS) -> Bool[np.ndarray, "h w"]:
+def pale_frame(rgb: UInt8[np.ndarray, "h w 3"]) -> Bool[np.ndarray, "h w"]:
     """What undistorting left white along a photo's edges, with a small margin."""
     height, width = rgb.shape[:2]
-    rim = max(2, round(settings.rim * max(height, width)))
-    white = (rgb.min(axis=2) >= settings.pale).astype(np.uint8)
+    rim = max(2, round(SETTINGS.rim * max(height, width)))
+    white = (rgb.min(axis=2) >= SETTINGS.pale).astype(np.uint8)
     white[rim:-rim, rim:-rim] = 0
     _, labels = cv2.connectedComponents(white)
     lines = [labels[0], labels[-1], labels[:, 0], labels[:, -1]]
-    framed = [line[line > 0] for line in lines if (line > 0).mean() >= settings.mostly]
+    framed = [line[line > 0] for line in lines if (line > 0).mean() >= SETTINGS.mostly]
     if not framed:
         return np.zeros((height, width), dtype=bool)
     frame = np.isin(labels, np.unique(np.concatenate(framed)))
@@ -231,28 +216,28 @@ def pale_frame(rgb: UInt8[np.ndarray, "h w 3"], settings: FlatFaceSettings = SET
 
 
 def sides_told(
-    box: tuple[float, float, float, float], hidden: Bool[np.ndarray, "h w"], settings: FlatFaceSettings = SETTINGS
+    box: tuple[float, float, float, float], hidden: Bool[np.ndarray, "h w"]
 ) -> tuple[bool, bool, bool, bool]:
     """Which sides of a box (left, upper, right, lower) end the object, and not the photo or what hides it."""
     height, width = hidden.shape
-    rim = max(2.0, settings.rim * max(height, width))
+    rim = max(2.0, SETTINGS.rim * max(height, width))
     at_edge = (box[0] <= rim, box[1] <= rim, box[2] >= width - rim, box[3] >= height - rim)
     x1, y1, x2, y2 = (max(round(v), 0) for v in box)
     inside = hidden[y1:y2, x1:x2]
     deep = max(1, round(rim))
     strips = (inside[:, :deep], inside[:deep], inside[:, -deep:], inside[-deep:])
     left, upper, right, lower = (
-        not edge and (strip.size == 0 or float(strip.mean()) < settings.mostly)
+        not edge and (strip.size == 0 or float(strip.mean()) < SETTINGS.mostly)
         for edge, strip in zip(at_edge, strips, strict=True)
     )
     return left, upper, right, lower
 
 
-def is_lit(screen: Rectified, settings: FlatFaceSettings = SETTINGS) -> bool:
+def is_lit(screen: Rectified) -> bool:
     """Whether a screen shows something: one that is off is dark, and has at most a dim reflection."""
     pixels = screen.colours[screen.seen][:, None].clip(0, 255) / 255.0
     lightness = cv2.cvtColor(pixels.astype(np.float32), cv2.COLOR_RGB2Lab)[..., 0]
-    return bool(np.median(lightness) >= settings.lit_l or lightness.std() >= settings.lit_spread_l)
+    return bool(np.median(lightness) >= SETTINGS.lit_l or lightness.std() >= SETTINGS.lit_spread_l)
 
 
 def _outline_box(item: SceneObject, parts: trimesh.Scene, camera: Camera) -> Float[np.ndarray, "4"]:

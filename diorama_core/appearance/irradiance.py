@@ -40,9 +40,7 @@ class IrradianceSettings:
 SETTINGS = IrradianceSettings()
 
 
-def irradiance_map(
-    scene: Scene, camera: Camera, library: ShapeLibrary, settings: IrradianceSettings = SETTINGS
-) -> Float32[np.ndarray, "h w 3"]:
+def irradiance_map(scene: Scene, camera: Camera, library: ShapeLibrary) -> Float32[np.ndarray, "h w 3"]:
     """The light on what each pixel of the photo sees; 1 lights a white surface white.
 
     It has the colours of what is beside: a tan sofa on orange boards looks more orange than its leather is.
@@ -51,10 +49,9 @@ def irradiance_map(
         scene: With its light, in the poses in which the photo shows it.
         camera: The photo's; the map has its size.
         library: Where its shapes are.
-        settings: Numbers to work with.
     """
     k = camera.intrinsics
-    shrink = min(1.0, settings.longest_px / max(k.width, k.height))
+    shrink = min(1.0, SETTINGS.longest_px / max(k.width, k.height))
     small = k.scaled(max(8, round(k.width * shrink)), max(8, round(k.height * shrink)))
     view = PinholeView(Camera(small, camera.T_world_camera))
     world = scene_world(scene, library)
@@ -62,7 +59,7 @@ def irradiance_map(
     blockers = world.shadow_caster(without=range(count, count + len(scene.architecture.planes)))
     light = light_map(world, blockers, view, scene_lighting(scene, world, view), EFFORT)
     grey = luminance(light)
-    level = np.where(grey > 0, np.clip(grey, settings.darkest, settings.brightest), np.float32(settings.unknown))
+    level = np.where(grey > 0, np.clip(grey, SETTINGS.darkest, SETTINGS.brightest), np.float32(SETTINGS.unknown))
     tint = np.where(grey[..., None] > 0, light / np.maximum(grey, 1e-6)[..., None], 1.0)
-    whole = (level[..., None] * np.clip(tint, 1.0 / settings.max_tinted, settings.max_tinted)).astype(np.float32)
+    whole = (level[..., None] * np.clip(tint, 1.0 / SETTINGS.max_tinted, SETTINGS.max_tinted)).astype(np.float32)
     return np.asarray(cv2.resize(whole, (k.width, k.height), interpolation=cv2.INTER_LINEAR))

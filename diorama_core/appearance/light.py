@@ -53,10 +53,7 @@ class Shade:
 
 
 def estimated_light(
-    shades: Sequence[Shade],
-    walls: Shade | None = None,
-    to_window: Float[np.ndarray, "3"] | None = None,
-    settings: EstimatedLightSettings = SETTINGS,
+    shades: Sequence[Shade], walls: Shade | None = None, to_window: Float[np.ndarray, "3"] | None = None
 ) -> RoomLight:
     """The light that explains all materials' shades best; the usual one where nothing is known.
 
@@ -64,25 +61,24 @@ def estimated_light(
         shades: Of the objects' materials.
         walls: Those of one paint.
         to_window: Unit vector from what stands in the room to where daylight comes in.
-        settings: Numbers to work with.
     """
     observations = [(s, 1.0) for s in shades if len(s.luminance) >= 2] + (
-        [] if walls is None else [(walls, settings.of_walls)]
+        [] if walls is None else [(walls, SETTINGS.of_walls)]
     )
-    usual = USUAL if to_window is None else USUAL + settings.from_window * np.array([*to_window[:2], 0.0])
-    if sum(len(s.luminance) for s, _ in observations) < settings.min_samples and walls is None and to_window is None:
+    usual = USUAL if to_window is None else USUAL + SETTINGS.from_window * np.array([*to_window[:2], 0.0])
+    if sum(len(s.luminance) for s, _ in observations) < SETTINGS.min_samples and walls is None and to_window is None:
         return RoomLight()
 
     def residuals(b: Float[np.ndarray, "3"]) -> Float[np.ndarray, "m"]:
-        out = [(b - usual) / (settings.level_sigma, settings.level_sigma, settings.upright_sigma)]
+        out = [(b - usual) / (SETTINGS.level_sigma, SETTINGS.level_sigma, SETTINGS.upright_sigma)]
         for shade, factor in observations:
-            light = np.maximum(1.0 + shade.normals_world @ b, 1.0 - settings.max_length)
+            light = np.maximum(1.0 + shade.normals_world @ b, 1.0 - SETTINGS.max_length)
             albedo = np.log(shade.luminance / light)
             off = albedo - np.average(albedo, weights=shade.weight)
-            out.append(factor * np.sqrt(shade.weight) * off / settings.robust)
+            out.append(factor * np.sqrt(shade.weight) * off / SETTINGS.robust)
         return np.concatenate(out)
 
     solution = least_squares(residuals, usual, loss="soft_l1").x
     length = float(np.linalg.norm(solution))
     x, y, z = (float(v) for v in solution / max(length, 1e-9))
-    return RoomLight((x, y, z), min(length, settings.max_length)) if length > 1e-3 else RoomLight()
+    return RoomLight((x, y, z), min(length, SETTINGS.max_length)) if length > 1e-3 else RoomLight()

@@ -34,20 +34,17 @@ class LitColourSettings:
 SETTINGS = LitColourSettings()
 
 
-def unveiled(
-    colour: Float[np.ndarray, "3"], others: Sequence[Float[np.ndarray, "3"]], settings: LitColourSettings = SETTINGS
-) -> Float[np.ndarray, "3"]:
+def unveiled(colour: Float[np.ndarray, "3"], others: Sequence[Float[np.ndarray, "3"]]) -> Float[np.ndarray, "3"]:
     """The colour of a material that shows in one colour and in others (CIELAB).
 
     Args:
         colour: The one that speaks most for itself.
         others: What much of the surface shows too.
-        settings: Numbers to work with.
     """
-    lit = [other for other in others if is_shade(colour, other, settings)]
+    lit = [other for other in others if is_shade(colour, other, SETTINGS)]
     if lit:
         return max(lit, key=lambda other: float(other[0]))
-    bare = [other for other in others if is_glossed(colour, other, settings)]
+    bare = [other for other in others if is_glossed(colour, other)]
     return min(bare, key=lambda other: float(other[0])) if bare else colour
 
 
@@ -61,14 +58,12 @@ def is_shade(
     )
 
 
-def is_glossed(
-    light: Float[np.ndarray, "3"], dark: Float[np.ndarray, "3"], settings: LitColourSettings = SETTINGS
-) -> bool:
+def is_glossed(light: Float[np.ndarray, "3"], dark: Float[np.ndarray, "3"]) -> bool:
     """Whether the first colour is the second with a mirror image of something white on it."""
-    fades = np.hypot(*dark[1:]) - np.hypot(*light[1:]) >= settings.more_chroma
+    fades = np.hypot(*dark[1:]) - np.hypot(*light[1:]) >= SETTINGS.more_chroma
     added = _linear(light) - _linear(dark)
-    even = float(np.ptp(added)) < settings.neutral * float(added.mean())
-    return bool(light[0] - dark[0] >= settings.lighter_l and fades and even)
+    even = float(np.ptp(added)) < SETTINGS.neutral * float(added.mean())
+    return bool(light[0] - dark[0] >= SETTINGS.lighter_l and fades and even)
 
 
 def _linear(lab: Float[np.ndarray, "3"]) -> Float[np.ndarray, "3"]:

@@ -14,7 +14,7 @@ import cv2
 import numpy as np
 from jaxtyping import Bool, UInt8
 
-from diorama_core.appearance.room_cues import SETTINGS, AppearanceSettings
+from diorama_core.appearance.room_cues import SETTINGS
 from diorama_core.appearance.surface_materials import MAX_LINEAR
 from diorama_core.io.srgb import linear_to_srgb, luminance, srgb_to_linear
 from diorama_core.library.record import ShapeLibrary
@@ -35,7 +35,6 @@ def brightness_gains(
     scene: Scene,
     pictures: Pictures,
     library: ShapeLibrary,
-    settings: AppearanceSettings = SETTINGS,
 ) -> dict[str, float]:
     """By how much every object's materials must become brighter for it to look in the scene as in the photo.
 
@@ -46,19 +45,18 @@ def brightness_gains(
         scene: In its own light, white, with the materials; its camera is the photo's.
         pictures: Of the materials, by name.
         library: Where its shapes are.
-        settings: Numbers to work with.
     """
     if scene.camera is None:
         return {}
-    size = _small(scene.camera, settings)
+    size = _small(scene.camera)
     shown = _linear(picture(scene, library, size=size, textures=pictures, effort=EFFORT))
     photo = _linear(cv2.resize(rgb, size, interpolation=cv2.INTER_AREA))
     gains = {}
     for object_id, mask in visible.items():
         seen = cv2.resize(mask.astype(np.float32), size, interpolation=cv2.INTER_AREA) > 0.9
-        if np.count_nonzero(seen) >= settings.min_pixels:
+        if np.count_nonzero(seen) >= SETTINGS.min_pixels:
             ratios = np.maximum(photo[seen], DARKEST) / np.maximum(shown[seen], DARKEST)
-            gains[object_id] = float(np.clip(np.median(ratios), 1.0 / settings.max_gain, settings.max_gain))
+            gains[object_id] = float(np.clip(np.median(ratios), 1.0 / SETTINGS.max_gain, SETTINGS.max_gain))
     return gains
 
 
@@ -128,9 +126,9 @@ def _scaled(display: np.ndarray, gain: float) -> np.ndarray:
     return np.asarray(linear_to_srgb(np.clip(gain * srgb_to_linear(display), 0.0, 1.0)))
 
 
-def _small(camera: Camera, settings: AppearanceSettings = SETTINGS) -> tuple[int, int]:
+def _small(camera: Camera) -> tuple[int, int]:
     k = camera.intrinsics
-    shrink = min(1.0, settings.longest_px / max(k.width, k.height))
+    shrink = min(1.0, SETTINGS.longest_px / max(k.width, k.height))
     return max(8, round(k.width * shrink)), max(8, round(k.height * shrink))
 
 

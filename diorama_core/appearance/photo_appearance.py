@@ -16,7 +16,7 @@ from diorama_core.appearance.flat_faces import FlatFace, faces_of
 from diorama_core.appearance.irradiance import irradiance_map
 from diorama_core.appearance.light import SHINING, estimated_light
 from diorama_core.appearance.matched_brightness import brightened, brightness_gains
-from diorama_core.appearance.room_cues import SETTINGS, AppearanceSettings, toward_window, wall_shade
+from diorama_core.appearance.room_cues import SETTINGS, toward_window, wall_shade
 from diorama_core.appearance.sets import SETS, shared_materials
 from diorama_core.appearance.surface_materials import (
     ROUGHNESS,
@@ -73,7 +73,6 @@ def photo_appearance(
     scene: Scene,
     library: ShapeLibrary,
     illuminant_rgb: tuple[float, float, float] = (1.0, 1.0, 1.0),
-    settings: AppearanceSettings = SETTINGS,
 ) -> PhotoAppearance:
     """What the photo shows of the scene's objects.
 
@@ -83,18 +82,17 @@ def photo_appearance(
         scene: In the poses in which the photo shows it; without a camera nothing is taken.
         library: Where its shapes are.
         illuminant_rgb: Linear colour of the light that the photo was freed of; that of the scene's light.
-        settings: Numbers to work with.
     """
     if scene.camera is None:
         return PhotoAppearance({}, {})
     detected_by_id = {o.id: o for o in objects}
     camera = scene.camera
     seen = each(
-        lambda item: _seen(item, _parts(library, item), rgb, detected_by_id[item.id], objects, camera, settings),
+        lambda item: _seen(item, _parts(library, item), rgb, detected_by_id[item.id], objects, camera),
         [item for item in scene.objects if item.id in detected_by_id],
     )
     shades = [shade_of(s.view, p, rgb) for s in seen if s.view is not None for p in s.pixels]
-    walls, window = wall_shade(rgb, objects, scene, settings), toward_window(rgb, objects, scene, settings)
+    walls, window = wall_shade(rgb, objects, scene), toward_window(rgb, objects, scene, SETTINGS)
     light = estimated_light(shades, walls, window)
     red, green, blue = (float(c) / max(illuminant_rgb) for c in illuminant_rgb)
     light = replace(light, colour=(red, green, blue))
@@ -119,8 +117,8 @@ def photo_appearance(
     used = {m.texture for of_one in materials.values() for m in of_one}
     pictures = {name: picture for name, picture in pictures.items() if name in used}
     read = PhotoAppearance({key: value for key, value in materials.items() if value}, pictures, light)
-    read_from = {s.item.id: _read_from(s, detected_by_id[s.item.id], objects, settings) for s in seen}
-    return _as_bright(read, rgb, read_from, scene, library, settings)
+    read_from = {s.item.id: _read_from(s, detected_by_id[s.item.id], objects) for s in seen}
+    return _as_bright(read, rgb, read_from, scene, library)
 
 
 def _as_bright(
@@ -129,7 +127,6 @@ def _as_bright(
     read_from: Mapping[str, Bool[np.ndarray, "h w"]],
     scene: Scene,
     library: ShapeLibrary,
-    settings: AppearanceSettings = SETTINGS,
 ) -> PhotoAppearance:
     """The materials as bright as the photo shows them in the scene's light, part of which they reflect themselves.
 
@@ -139,22 +136,19 @@ def _as_bright(
         read_from: Pixels that show the materials of each object.
         scene: As in `photo_appearance`.
         library: Where its shapes are.
-        settings: Numbers to work with.
     """
     visible = {key: pixels for key, pixels in read_from.items() if key in read.materials}
-    for _ in range(settings.brightness_rounds):
-        gains = brightness_gains(rgb, visible, read.applied(scene), read.pictures, library, settings)
+    for _ in range(SETTINGS.brightness_rounds):
+        gains = brightness_gains(rgb, visible, read.applied(scene), read.pictures, library)
         materials, pictures = brightened(read.materials, read.pictures, gains, _sets(scene))
         read = replace(read, materials=materials, pictures=pictures)
     return read
 
 
-def _read_from(
-    seen: _Seen, detected: DetectedObject, objects: tuple[DetectedObject, ...], settings: AppearanceSettings = SETTINGS
-) -> Bool[np.ndarray, "h w"]:
+def _read_from(seen: _Seen, detected: DetectedObject, objects: tuple[DetectedObject, ...]) -> Bool[np.ndarray, "h w"]:
     """The pixels that show an object's materials: those of its slots' main colours, or all of a thing with faces."""
     if seen.faces or seen.view is None or not seen.pixels:
-        return _inner(detected, settings) & ~hiding(detected, objects, settings=settings)
+        return _inner(detected) & ~hiding(detected, objects)
     view, pixels = seen.view, np.zeros(detected.mask.shape, dtype=bool)
     near = np.kron(np.logical_or.reduce([p.near for p in seen.pixels]), np.ones((view.step, view.step), dtype=bool))
     labels_near = pixels[view.top : view.top + len(near), view.left : view.left + near.shape[1]]
@@ -162,12 +156,12 @@ def _read_from(
     return pixels
 
 
-def _inner(detected: DetectedObject, settings: AppearanceSettings = SETTINGS) -> Bool[np.ndarray, "h w"]:
+def _inner(detected: DetectedObject) -> Bool[np.ndarray, "h w"]:
     """The object's pixels without the outermost ones; of thin and small things fewer are left out."""
     mask, inner = detected.mask.astype(np.uint8), detected.mask
-    for side in settings.edges_px:
+    for side in SETTINGS.edges_px:
         inner = np.asarray(cv2.erode(mask, np.ones((side, side), np.uint8)).astype(bool))
-        if np.count_nonzero(inner) >= settings.min_inner * np.count_nonzero(mask):
+        if np.count_nonzero(inner) >= SETTINGS.min_inner * np.count_nonzero(mask):
             break
     return inner
 
@@ -192,16 +186,15 @@ def _seen(
     detected: DetectedObject,
     objects: tuple[DetectedObject, ...],
     camera: Camera,
-    settings: AppearanceSettings = SETTINGS,
 ) -> _Seen:
-    hidden = hiding(detected, objects, settings=settings)
+    hidden = hiding(detected, objects)
     faces = faces_of(item, parts, rgb, hidden, detected, camera)
-    visible = _inner(detected, settings) & ~hidden
+    visible = _inner(detected) & ~hidden
     slots = slots_of(parts)
     unhidden = visible if detected.mask_confidence >= 1.0 else _in_box(detected) & ~hidden
     view = surface_view(parts, slots, item.pose, camera, visible | unhidden)
     taken = {face.slot.name for face in faces}
-    behind = _in_box(detected) & ~detected.mask & ~hiding(detected, objects, smaller_only=True, settings=settings)
+    behind = _in_box(detected) & ~detected.mask & ~hiding(detected, objects, smaller_only=True)
     pixels = () if view is None else slot_pixels(view, slots, rgb, visible, unhidden, behind, taken)
     read = (p for p in pixels if p.slot.name not in taken)
     whole = tuple(p for p in read if view is not None and not _shines(item, p, view, rgb))
@@ -257,11 +250,7 @@ def _surfaces(
 
 
 def hiding(
-    detected: DetectedObject,
-    objects: tuple[DetectedObject, ...],
-    *,
-    smaller_only: bool = False,
-    settings: AppearanceSettings = SETTINGS,
+    detected: DetectedObject, objects: tuple[DetectedObject, ...], *, smaller_only: bool = False
 ) -> Bool[np.ndarray, "h w"]:
     """Where other objects stand before one: smaller ones wherever they are, larger ones beside its own mask.
 
@@ -271,14 +260,13 @@ def hiding(
         detected: The object.
         objects: What was found in the photo, with masks.
         smaller_only: Whether larger ones are left out.
-        settings: Numbers to work with.
     """
     hidden, area = np.zeros(detected.mask.shape, dtype=bool), detected.pixels
     for other in objects:
         smaller = other.pixels < area
         if other.id != detected.id and (smaller or not smaller_only):
             hidden |= other.mask if smaller else other.mask & ~detected.mask
-    radius = max(1, round(settings.mask_margin * max(hidden.shape)))
+    radius = max(1, round(SETTINGS.mask_margin * max(hidden.shape)))
     return cv2.dilate(hidden.astype(np.uint8), np.ones((2 * radius + 1,) * 2, np.uint8)).astype(bool)
 
 

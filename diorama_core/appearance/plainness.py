@@ -39,7 +39,6 @@ def shows_plain(
     rgb: UInt8[np.ndarray, "h w 3"],
     texture: UInt8[np.ndarray, "th tw 3"],
     tile_m: float,
-    settings: PlainnessSettings = SETTINGS,
 ) -> bool:
     """Whether a surface is much plainer in the photo than this texture would be at the photo's resolution.
 
@@ -49,30 +48,25 @@ def shows_plain(
         rgb: The photo.
         texture: The library's.
         tile_m: What one of it covers, in metres of the shape at scale 1.
-        settings: Numbers to work with.
     """
     inside = cv2.erode(near.astype(np.uint8), np.ones((5, 5), np.uint8)).astype(bool)
     cell_m = _cell_size_m(view, inside)
-    if inside.sum() < settings.min_cells or cell_m is None:
+    if inside.sum() < SETTINGS.min_cells or cell_m is None:
         return False
     side = round(tile_m / cell_m)
-    if side < settings.min_texels:
+    if side < SETTINGS.min_texels:
         return False
     whole = cv2.cvtColor(texture, cv2.COLOR_RGB2GRAY).astype(np.float32)
     small = cv2.resize(whole, (side, side), interpolation=cv2.INTER_AREA) if side < min(whole.shape) else whole
-    expected = contrast(small, np.ones(small.shape, dtype=bool), settings)
-    seen = contrast(
-        cv2.cvtColor(np.ascontiguousarray(view.of(rgb)), cv2.COLOR_RGB2GRAY).astype(np.float32), inside, settings
-    )
-    return expected >= settings.visible and seen < settings.much_less * expected
+    expected = contrast(small, np.ones(small.shape, dtype=bool))
+    seen = contrast(cv2.cvtColor(np.ascontiguousarray(view.of(rgb)), cv2.COLOR_RGB2GRAY).astype(np.float32), inside)
+    return expected >= SETTINGS.visible and seen < SETTINGS.much_less * expected
 
 
-def contrast(
-    grey: Float32[np.ndarray, "h w"], where: Bool[np.ndarray, "h w"], settings: PlainnessSettings = SETTINGS
-) -> float:
+def contrast(grey: Float32[np.ndarray, "h w"], where: Bool[np.ndarray, "h w"]) -> float:
     """Deviation of the fine detail in some places, as a share of their brightness."""
-    weight = cv2.GaussianBlur(where.astype(np.float32), (0, 0), settings.fine)
-    broad = cv2.GaussianBlur(grey * where, (0, 0), settings.fine) / np.maximum(weight, 1e-6)
+    weight = cv2.GaussianBlur(where.astype(np.float32), (0, 0), SETTINGS.fine)
+    broad = cv2.GaussianBlur(grey * where, (0, 0), SETTINGS.fine) / np.maximum(weight, 1e-6)
     return float((grey - broad)[where].std() / max(float(grey[where].mean()), 1.0))
 
 

@@ -49,34 +49,28 @@ class AppearanceSettings:
 SETTINGS = AppearanceSettings()
 
 
-def wall_shade(
-    rgb: UInt8[np.ndarray, "h w 3"],
-    objects: Sequence[DetectedObject],
-    scene: Scene,
-    settings: AppearanceSettings = SETTINGS,
-) -> Shade | None:
+def wall_shade(rgb: UInt8[np.ndarray, "h w 3"], objects: Sequence[DetectedObject], scene: Scene) -> Shade | None:
     """The walls of the paint that is seen most, as one material at several normals; None where only one is seen.
 
     Args:
         rgb: The photo, as white light would have it.
         objects: What stands before the walls.
         scene: With the photo's camera.
-        settings: Numbers to work with.
     """
     walls = [p for p in scene.architecture.by_role("wall") if p.seen]
     if scene.camera is None or len(walls) < 2:
         return None
     height, width = rgb.shape[:2]
-    x, y = np.meshgrid(np.arange(0, width, settings.step_px), np.arange(0, height, settings.step_px))
+    x, y = np.meshgrid(np.arange(0, width, SETTINGS.step_px), np.arange(0, height, SETTINGS.step_px))
     which = _plane_seen(scene.architecture, scene.camera, np.stack([x, y], axis=-1) + 0.5)
-    free = ~_covered(objects, (height, width), settings)[y, x]
+    free = ~_covered(objects, (height, width))[y, x]
     linear = srgb_to_linear(rgb[y, x] / 255.0)
     seen = {w.id: linear[free & (which == _index(scene.architecture, w))] for w in walls}
-    medians = {w.id: np.median(seen[w.id], axis=0) for w in walls if len(seen[w.id]) >= settings.min_cells}
+    medians = {w.id: np.median(seen[w.id], axis=0) for w in walls if len(seen[w.id]) >= SETTINGS.min_cells}
     if not medians:
         return None
     most = max(medians, key=lambda i: (len(seen[i]), i))
-    alike = [w for w in walls if w.id in medians and _far(medians[w.id], medians[most]) < settings.same_paint]
+    alike = [w for w in walls if w.id in medians and _far(medians[w.id], medians[most]) < SETTINGS.same_paint]
     if len(alike) < 2:
         return None
     cells = np.array([len(seen[w.id]) for w in alike], dtype=float)
@@ -140,11 +134,9 @@ def _plane_seen(room: Architecture, camera: Camera, pixels: Float[np.ndarray, "h
     return which
 
 
-def _covered(
-    objects: Sequence[DetectedObject], size: tuple[int, int], settings: AppearanceSettings = SETTINGS
-) -> Bool[np.ndarray, "h w"]:
+def _covered(objects: Sequence[DetectedObject], size: tuple[int, int]) -> Bool[np.ndarray, "h w"]:
     covered = np.zeros(size, np.uint8)
     for item in objects:
         covered |= item.mask.astype(np.uint8)
-    radius = max(1, round(settings.rim * max(size)))
+    radius = max(1, round(SETTINGS.rim * max(size)))
     return cv2.dilate(covered, np.ones((2 * radius + 1,) * 2, np.uint8)).astype(bool)

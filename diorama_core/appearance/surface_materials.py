@@ -116,7 +116,6 @@ def slot_pixels(
     unhidden: Bool[np.ndarray, "h w"],
     background: Bool[np.ndarray, "h w"],
     faces: Collection[str] = (),
-    settings: SurfaceMaterialSettings = SETTINGS,
 ) -> tuple[SlotPixels, ...]:
     """The slots that are seen well enough, with the pixels of their main colours.
 
@@ -128,41 +127,38 @@ def slot_pixels(
         unhidden: Pixels in the object's box that nothing else hides; of use where the mask is doubtful.
         background: Pixels in its box that show what is behind or below it.
         faces: Names of slots whose print was read from the photo.
-        settings: Numbers to work with.
     """
     seen, colours = view.of(visible) & (view.slot >= 0), view.of(rgb)
     shown = view.of(unhidden) & (cv2.erode((view.slot >= 0).astype(np.uint8), np.ones((5, 5), np.uint8)) > 0)
-    together = seen.sum() >= settings.min_outlined * shown.sum()
+    together = seen.sum() >= SETTINGS.min_outlined * shown.sum()
     lab = cv2.cvtColor(np.ascontiguousarray(colours, dtype=np.float32) / 255.0, cv2.COLOR_RGB2Lab)
     of_slots: dict[int, Bool[np.ndarray, "gh gw"]] = {}
     lost: set[int] = set()
     for index, slot in enumerate(slots):
         mine, posed = seen & (view.slot == index), shown & (view.slot == index)
-        if together and mine.sum() < settings.min_outlined * posed.sum():
+        if together and mine.sum() < SETTINGS.min_outlined * posed.sum():
             mine = posed
             lost.add(index)
         count = int(mine.sum())
         printed = slot.role == PRINTED and slot.name not in faces
         read = printed or slot.role in READ_ROLES or (slot.main and slot.role == "glass")
-        large = count * view.step**2 >= settings.min_pixels
-        if read and large and count >= settings.min_visible * max(seen.sum(), shown.sum()):
+        large = count * view.step**2 >= SETTINGS.min_pixels
+        if read and large and count >= SETTINGS.min_visible * max(seen.sum(), shown.sum()):
             of_slots[index] = mine
     beside = view.of(background) & (view.slot < 0)
-    seeds = _own_colours(lab, of_slots, beside, settings)
+    seeds = _own_colours(lab, of_slots, beside)
     pixels_of_slots = []
-    like = {index: _alike(lab, seeds[index], settings) for index in of_slots}
+    like = {index: _alike(lab, seeds[index]) for index in of_slots}
     near = {index: mine & like[index] for index, mine in of_slots.items()}
     for index, mine in of_slots.items():
-        unlike = [
-            k for k in of_slots if slots[k].role != slots[index].role and _is_near(seeds[k] - seeds[index], settings)
-        ]
-        vivid, covered = _is_vivid(seeds[index], settings), _covers(like[index], beside, settings)
-        crossed = vivid and any(near[k].sum() >= settings.crossed * near[index].sum() for k in unlike)
-        behind = index in lost and vivid and covered >= settings.behind
-        others = [of_slots[k] for k in of_slots if k != index and not _is_near(seeds[k] - seeds[index], settings)]
+        unlike = [k for k in of_slots if slots[k].role != slots[index].role and _is_near(seeds[k] - seeds[index])]
+        vivid, covered = _is_vivid(seeds[index]), _covers(like[index], beside)
+        crossed = vivid and any(near[k].sum() >= SETTINGS.crossed * near[index].sum() for k in unlike)
+        behind = index in lost and vivid and covered >= SETTINGS.behind
+        others = [of_slots[k] for k in of_slots if k != index and not _is_near(seeds[k] - seeds[index])]
         # A colour of the background is on other slots where one looks past them.
-        before = covered < settings.behind and _is_before_all(like[index], mine, others, settings)
-        if near[index].sum() >= settings.min_share * mine.sum() and not crossed and not behind and not before:
+        before = covered < SETTINGS.behind and _is_before_all(like[index], mine, others)
+        if near[index].sum() >= SETTINGS.min_share * mine.sum() and not crossed and not behind and not before:
             pixels_of_slots.append(SlotPixels(slots[index], index, near[index], mine))
     return tuple(pixels_of_slots)
 
@@ -188,7 +184,6 @@ def _own_colours(
     lab: Float32[np.ndarray, "gh gw 3"],
     of_slots: Mapping[int, Bool[np.ndarray, "gh gw"]],
     beside: Bool[np.ndarray, "gh gw"],
-    settings: SurfaceMaterialSettings = SETTINGS,
 ) -> dict[int, Float32[np.ndarray, "3"]]:
     """The colour of every slot: of those that cover much of it, the first that is not rather its neighbour's.
 
@@ -197,37 +192,32 @@ def _own_colours(
     slot's colours do, the one of which that is least true is taken. A large slot does not give up its colour because a
     small one that crosses it is all of it.
     """
-    options = {index: _colours_of(lab, mine, settings) for index, mine in of_slots.items()}
+    options = {index: _colours_of(lab, mine) for index, mine in of_slots.items()}
     seeds = {index: colours[0] for index, colours in options.items()}
     for index, mine in of_slots.items():
         others = [(of_slots[k], seeds[k]) for k in of_slots if k != index]
         colours = []
         shares = []
         for seed in options[index]:
-            near = _alike(lab, seed, settings)
+            near = _alike(lab, seed)
             share, pixels = _share(near, mine), np.count_nonzero(near & mine)
-            alike = [(near, where) for where, main in others if _is_near(main - seed, settings)]
+            alike = [(near, where) for where, main in others if _is_near(main - seed)]
             # The lit side of a neighbour is its colour, too; what is darker may be something black.
-            alike += [(near | _alike(lab, main, settings), where) for where, main in others if is_shade(main, seed)]
+            alike += [(near | _alike(lab, main), where) for where, main in others if is_shade(main, seed)]
             elsewhere = [_share(of, where) for of, where in alike if np.count_nonzero(of & where) >= pixels]
-            elsewhere.append(_covers(near, beside, settings) / settings.beside)
+            elsewhere.append(_covers(near, beside) / SETTINGS.beside)
             colours.append(share / max([share, *elsewhere, 1e-9]))
             shares.append(share)
         chosen = int(np.argmax(colours))
         main = options[index][chosen]
-        as_good = [k for k, score in enumerate(colours) if score >= settings.as_good * colours[chosen]]
-        much = [options[index][k] for k in as_good if shares[k] >= settings.min_outlined]
-        seeds[index] = unveiled(
-            main, [s for s in much if s[0] <= main[0] or _is_not_behind(lab, mine, beside, s, settings)]
-        )
+        as_good = [k for k, score in enumerate(colours) if score >= SETTINGS.as_good * colours[chosen]]
+        much = [options[index][k] for k in as_good if shares[k] >= SETTINGS.min_outlined]
+        seeds[index] = unveiled(main, [s for s in much if s[0] <= main[0] or _is_not_behind(lab, mine, beside, s)])
     return seeds
 
 
 def _is_before_all(
-    alike: Bool[np.ndarray, "gh gw"],
-    mine: Bool[np.ndarray, "gh gw"],
-    foreign: Sequence[Bool[np.ndarray, "gh gw"]],
-    settings: SurfaceMaterialSettings = SETTINGS,
+    alike: Bool[np.ndarray, "gh gw"], mine: Bool[np.ndarray, "gh gw"], foreign: Sequence[Bool[np.ndarray, "gh gw"]]
 ) -> bool:
     """Whether a slot's colour is of something before the object: on it in part, and as much on slots of other colours.
 
@@ -235,12 +225,11 @@ def _is_before_all(
         alike: Pixels of about its colour.
         mine: The slot.
         foreign: The slots of other colours.
-        settings: Numbers to work with.
     """
     share = _share(alike, mine)
-    if share >= settings.mostly or not foreign:
+    if share >= SETTINGS.mostly or not foreign:
         return False
-    return share < settings.clearly_own * _share(alike, np.any(foreign, axis=0))
+    return share < SETTINGS.clearly_own * _share(alike, np.any(foreign, axis=0))
 
 
 def _is_not_behind(
@@ -248,27 +237,22 @@ def _is_not_behind(
     mine: Bool[np.ndarray, "gh gw"],
     beside: Bool[np.ndarray, "gh gw"],
     seed: np.ndarray,
-    settings: SurfaceMaterialSettings = SETTINGS,
 ) -> bool:
     """Whether a light colour is a thing's lit side, and not the background seen beside a dark thing."""
-    exactly = np.linalg.norm(lab - seed, axis=-1) < settings.near_lab / 2
-    return bool(beside.sum() < settings.min_pixels or exactly[mine].mean() > settings.clearly * exactly[beside].mean())
+    exactly = np.linalg.norm(lab - seed, axis=-1) < SETTINGS.near_lab / 2
+    return bool(beside.sum() < SETTINGS.min_pixels or exactly[mine].mean() > SETTINGS.clearly * exactly[beside].mean())
 
 
-def _is_vivid(seed: np.ndarray, settings: SurfaceMaterialSettings = SETTINGS) -> bool:
-    return bool(np.hypot(*seed[1:]) >= settings.coloured)
+def _is_vivid(seed: np.ndarray) -> bool:
+    return bool(np.hypot(*seed[1:]) >= SETTINGS.coloured)
 
 
-def _covers(
-    alike: Bool[np.ndarray, "gh gw"], where: Bool[np.ndarray, "gh gw"], settings: SurfaceMaterialSettings = SETTINGS
-) -> float:
+def _covers(alike: Bool[np.ndarray, "gh gw"], where: Bool[np.ndarray, "gh gw"]) -> float:
     """Share of a region that is among pixels of about one colour; 0 of one too small to tell."""
-    return _share(alike, where) if np.count_nonzero(where) >= settings.min_pixels else 0.0
+    return _share(alike, where) if np.count_nonzero(where) >= SETTINGS.min_pixels else 0.0
 
 
-def _colours_of(
-    lab: Float32[np.ndarray, "gh gw 3"], mine: Bool[np.ndarray, "gh gw"], settings: SurfaceMaterialSettings = SETTINGS
-) -> list[Float32[np.ndarray, "3"]]:
+def _colours_of(lab: Float32[np.ndarray, "gh gw 3"], mine: Bool[np.ndarray, "gh gw"]) -> list[Float32[np.ndarray, "3"]]:
     """Medians of the bins of a coarse Lab grid that hold much of a slot, those of the colour that covers most first.
 
     Bins have grey in their middle, or whites and greys would lie in four of them. Of a colour that lies in several
@@ -277,16 +261,16 @@ def _colours_of(
     pixels = lab[mine]
     cells = np.floor(pixels / BIN_LAB + (0.0, 0.5, 0.5))
     label, counts = cells_of(cells)
-    order = [k for k in np.argsort(-counts, kind="stable") if counts[k] >= settings.min_of_bin * len(pixels)]
+    order = [k for k in np.argsort(-counts, kind="stable") if counts[k] >= SETTINGS.min_of_bin * len(pixels)]
     medians = {k: np.median(pixels[label == k], axis=0) for k in order}
     colours: list[Float32[np.ndarray, "3"]] = []
     while order:
-        alike = {k: [j for j in order if _is_near(medians[j] - medians[k], settings)] for k in order}
+        alike = {k: [j for j in order if _is_near(medians[j] - medians[k])] for k in order}
         covers = {k: sum(int(counts[j]) for j in alike[k]) for k in order}
         group = alike[max(order, key=covers.__getitem__)]
-        if colours and sum(int(counts[j]) for j in group) < settings.min_share * len(pixels):
+        if colours and sum(int(counts[j]) for j in group) < SETTINGS.min_share * len(pixels):
             break
-        colours += [medians[j] for j in group if j == group[0] or counts[j] >= settings.min_share * len(pixels)]
+        colours += [medians[j] for j in group if j == group[0] or counts[j] >= SETTINGS.min_share * len(pixels)]
         order = [k for k in order if k not in group]
     return colours
 
@@ -295,31 +279,26 @@ def _share(alike: Bool[np.ndarray, "gh gw"], where: Bool[np.ndarray, "gh gw"]) -
     return float(alike[where].mean())
 
 
-def _alike(
-    lab: Float32[np.ndarray, "gh gw 3"], seed: np.ndarray, settings: SurfaceMaterialSettings = SETTINGS
-) -> Bool[np.ndarray, "gh gw"]:
+def _alike(lab: Float32[np.ndarray, "gh gw 3"], seed: np.ndarray) -> Bool[np.ndarray, "gh gw"]:
     """Pixels of about one colour: shade varies over one surface, hue hardly."""
-    return np.asarray(_is_near(lab - seed, settings))
+    return np.asarray(_is_near(lab - seed))
 
 
-def _is_near(difference: np.ndarray, settings: SurfaceMaterialSettings = SETTINGS) -> np.ndarray:
-    return np.asarray(np.linalg.norm(difference / (2.0, 1.0, 1.0), axis=-1) < settings.near_lab)
+def _is_near(difference: np.ndarray) -> np.ndarray:
+    return np.asarray(np.linalg.norm(difference / (2.0, 1.0, 1.0), axis=-1) < SETTINGS.near_lab)
 
 
-def shade_of(
-    view: SurfaceView, pixels: SlotPixels, rgb: UInt8[np.ndarray, "h w 3"], settings: SurfaceMaterialSettings = SETTINGS
-) -> Shade:
+def shade_of(view: SurfaceView, pixels: SlotPixels, rgb: UInt8[np.ndarray, "h w 3"]) -> Shade:
     """How bright the slot is at each of its normals.
 
     Args:
         view: The shape in its pose.
         pixels: The slot's.
         rgb: The photo.
-        settings: Numbers to work with.
     """
     linear = luminance(srgb_to_linear(view.of(rgb)[pixels.near] / 255.0))
-    label, count = cells_of(np.round(view.normals_world[pixels.near] / settings.normal_cell))
-    of = [label == k for k in np.flatnonzero(count >= settings.min_face_pixels)]
+    label, count = cells_of(np.round(view.normals_world[pixels.near] / SETTINGS.normal_cell))
+    of = [label == k for k in np.flatnonzero(count >= SETTINGS.min_face_pixels)]
     normals = np.array([view.normals_world[pixels.near][m].mean(axis=0) for m in of]).reshape(-1, 3)
     brightness = np.array([max(float(np.median(linear[m])), 1e-4) for m in of])
     weight = np.array([float(m.mean()) for m in of])
@@ -332,7 +311,6 @@ def appearance_of(
     rgb: UInt8[np.ndarray, "h w 3"],
     light: Float32[np.ndarray, "h w 3"],
     weave: UInt8[np.ndarray, "th tw 3"] | None = None,
-    settings: SurfaceMaterialSettings = SETTINGS,
 ) -> SlotAppearance:
     """The slot's material under a light, without the gloss that a material of its role has.
 
@@ -342,7 +320,6 @@ def appearance_of(
         rgb: The photo.
         light: How much falls on every pixel of the photo.
         weave: The texture that the slot has in the library; it gives way to a plain one where the photo shows none.
-        settings: Numbers to work with.
     """
     linear = srgb_to_linear(view.of(rgb)[pixels.near] / 255.0)
     lit = view.of(light)[pixels.near]
@@ -363,7 +340,7 @@ def appearance_of(
         return SlotAppearance(
             pixels.slot,
             (red, green, blue),
-            np.tile(plain, (settings.plain_px, settings.plain_px, 1)),
+            np.tile(plain, (SETTINGS.plain_px, SETTINGS.plain_px, 1)),
             tile_m,
             roughness,
         )

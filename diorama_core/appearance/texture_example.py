@@ -61,11 +61,7 @@ class Example:
 
 
 def best_example(
-    view: SurfaceView,
-    mine: Bool[np.ndarray, "gh gw"],
-    near: Bool[np.ndarray, "gh gw"],
-    rgb: UInt8[np.ndarray, "h w 3"],
-    settings: TextureExampleSettings = SETTINGS,
+    view: SurfaceView, mine: Bool[np.ndarray, "gh gw"], near: Bool[np.ndarray, "gh gw"], rgb: UInt8[np.ndarray, "h w 3"]
 ) -> Example | None:
     """The largest even piece of a slot that shows a pattern; None where there is none.
 
@@ -74,23 +70,22 @@ def best_example(
         mine: Where the slot is seen, on the view's grid.
         near: Where it has its main colour.
         rgb: The photo.
-        settings: Numbers to work with.
     """
     inside = cv2.distanceTransform(np.pad(mine, 1).astype(np.uint8), cv2.DIST_L2, 3)[1:-1, 1:-1]
     best, score = None, 0.0
-    for row, column in _centres(inside, settings):
-        radius = min(float(inside[row, column]) * 0.7, settings.max_radius_px / view.step)
-        for share in settings.radii:
-            piece = _piece(view, near, rgb, row, column, int(share * radius), settings)
-            size = 0.0 if piece is None else len(piece.colours) * pattern_strength(piece.colours, settings)
+    for row, column in _centres(inside):
+        radius = min(float(inside[row, column]) * 0.7, SETTINGS.max_radius_px / view.step)
+        for share in SETTINGS.radii:
+            piece = _piece(view, near, rgb, row, column, int(share * radius))
+            size = 0.0 if piece is None else len(piece.colours) * pattern_strength(piece.colours)
             best, score = (piece, size) if size > score else (best, score)
     return best
 
 
-def _centres(inside: Float32[np.ndarray, "h w"], settings: TextureExampleSettings = SETTINGS) -> list[tuple[int, int]]:
+def _centres(inside: Float32[np.ndarray, "h w"]) -> list[tuple[int, int]]:
     """Places far inside, the farthest first, none within another's piece."""
     left, centres = inside.copy(), []
-    for _ in range(settings.candidates):
+    for _ in range(SETTINGS.candidates):
         row, column = np.unravel_index(int(np.argmax(left)), left.shape)
         radius = float(left[row, column])
         if radius < 6:
@@ -107,13 +102,12 @@ def _piece(
     row: int,
     column: int,
     radius: int,
-    settings: TextureExampleSettings = SETTINGS,
 ) -> Example | None:
     """The piece around one place, if it is flat, not too edge-on, of the material, even and patterned."""
-    if radius * view.step < settings.min_radius_px:
+    if radius * view.step < SETTINGS.min_radius_px:
         return None
     window = (slice(row - radius, row + radius + 1), slice(column - radius, column + radius + 1))
-    if near[window].mean() < settings.own_share:
+    if near[window].mean() < SETTINGS.own_share:
         return None
     y, x = np.mgrid[-radius : radius + 1, -radius : radius + 1].astype(np.float64)
     design = np.stack([x.ravel(), y.ravel(), np.ones(x.size)], axis=1)
@@ -123,19 +117,15 @@ def _piece(
     stretch = np.linalg.svd(J, compute_uv=False)
     size_m = 2 * radius * view.step * stretch[0]
     bend = np.abs(design @ fit - uv).max()
-    if stretch[1] < 1e-9 or stretch[0] > settings.max_stretch * stretch[1] or bend > settings.max_bend * size_m:
+    if stretch[1] < 1e-9 or stretch[0] > SETTINGS.max_stretch * stretch[1] or bend > SETTINGS.max_bend * size_m:
         return None
     place = np.array([view.left + column * view.step, view.top + row * view.step], dtype=np.float64)
-    example = _head_on(rgb, place, J, radius * view.step, settings)
-    return example if pattern_strength(example.colours, settings) > 0 else None
+    example = _head_on(rgb, place, J, radius * view.step)
+    return example if pattern_strength(example.colours) > 0 else None
 
 
 def _head_on(
-    rgb: UInt8[np.ndarray, "h w 3"],
-    place: Float[np.ndarray, "2"],
-    J: Float[np.ndarray, "2 2"],
-    radius_px: int,
-    settings: TextureExampleSettings = SETTINGS,
+    rgb: UInt8[np.ndarray, "h w 3"], place: Float[np.ndarray, "2"], J: Float[np.ndarray, "2 2"], radius_px: int
 ) -> Example:
     """The photo around a place, along the axes of the texture (v upward), one texel about one pixel."""
     texel_m = float(np.sqrt(abs(np.linalg.det(J))))
@@ -149,12 +139,12 @@ def _head_on(
     flags = cv2.INTER_LINEAR | cv2.WARP_INVERSE_MAP
     colours = cv2.warpAffine(rgb, M, size, flags=flags, borderMode=cv2.BORDER_REFLECT).astype(np.float32)
     whole = np.ones(colours.shape[:2], dtype=bool)
-    broad = broad_shading(colours, whole, settings.shading_share * size[0])
+    broad = broad_shading(colours, whole, SETTINGS.shading_share * size[0])
     flat = colours / np.maximum(broad, 1.0) * colours.reshape(-1, 3).mean(axis=0)
     return Example(flat.clip(0, 255).astype(np.float32), texel_m)
 
 
-def pattern_strength(colours: Float32[np.ndarray, "n n 3"], settings: TextureExampleSettings = SETTINGS) -> float:
+def pattern_strength(colours: Float32[np.ndarray, "n n 3"]) -> float:
     """How far a piece shows a pattern that repeats all over it, 0 to 1; 0 for plain ones and for seams, folds, marks.
 
     A pattern has detail finer than the piece, about as much of it in every part of the piece, and no part whose mean
@@ -162,35 +152,35 @@ def pattern_strength(colours: Float32[np.ndarray, "n n 3"], settings: TextureExa
     """
     size = len(colours)
     grey = cv2.GaussianBlur(cv2.cvtColor(colours, cv2.COLOR_RGB2GRAY), (0, 0), 0.7)
-    fine = grey - cv2.GaussianBlur(grey, (0, 0), settings.fine_share * size)
-    if size < settings.min_side_px or float(fine.std()) < settings.min_contrast:
+    fine = grey - cv2.GaussianBlur(grey, (0, 0), SETTINGS.fine_share * size)
+    if size < SETTINGS.min_side_px or float(fine.std()) < SETTINGS.min_contrast:
         return 0.0
     share = float(fine.var()) / max(float(grey.var()), 1e-6)
     cells = [
         c
-        for strip in np.array_split(fine, settings.cells, axis=0)
-        for c in np.array_split(strip, settings.cells, axis=1)
+        for strip in np.array_split(fine, SETTINGS.cells, axis=0)
+        for c in np.array_split(strip, SETTINGS.cells, axis=1)
     ]
     spreads = np.array([c.std() for c in cells])
     even = float(spreads.min() / max(spreads.max(), 1e-6))
-    means = cv2.resize(colours, (settings.cells, settings.cells), interpolation=cv2.INTER_AREA).reshape(-1, 3)
+    means = cv2.resize(colours, (SETTINGS.cells, SETTINGS.cells), interpolation=cv2.INTER_AREA).reshape(-1, 3)
     offset = float(np.abs(means - means.mean(axis=0)).max() / fine.std())
-    if share < settings.min_fine or even < settings.min_even or offset > settings.max_offset:
+    if share < SETTINGS.min_fine or even < SETTINGS.min_even or offset > SETTINGS.max_offset:
         return 0.0
     return even * share
 
 
-def tileable(example: Example, settings: TextureExampleSettings = SETTINGS) -> UInt8[np.ndarray, "m m 3"]:
+def tileable(example: Example) -> UInt8[np.ndarray, "m m 3"]:
     """The piece made to repeat: its halves swapped, so that its inside meets across the border, the gap quilted."""
     size = len(example.colours)
-    gap = max(settings.min_seam_px, round(settings.seam_share * size))
+    gap = max(SETTINGS.min_seam_px, round(SETTINGS.seam_share * size))
     side, first = size + gap, size // 2
     canvas = np.zeros((side, side, 3), np.float32)
     known = np.zeros((side, side), dtype=bool)
     canvas[:size, :size], known[:size, :size] = example.colours, True
     canvas, known = np.roll(canvas, (-first, -first), axis=(0, 1)), np.roll(known, (-first, -first), axis=(0, 1))
     mean = example.colours.reshape(-1, 3).mean(axis=0)
-    detail = detail_continued((canvas - mean) * known[..., None], known, settings.strongest)
+    detail = detail_continued((canvas - mean) * known[..., None], known, SETTINGS.strongest)
     if detail is None:
         detail = _mirrored(example.colours) - mean
     return (mean + detail).clip(0, 255).astype(np.uint8)

@@ -44,7 +44,7 @@ from diorama_core.multiview.rooms import (
     said_alone,
     track_name,
 )
-from diorama_core.multiview.settings import SETTINGS, JoiningSettings
+from diorama_core.multiview.settings import SETTINGS
 from diorama_core.pipeline.given_stages import GivenRoom
 from diorama_core.pipeline.stages import Stages
 from diorama_core.progress import Progress
@@ -210,11 +210,7 @@ def _hangs(item: SceneObject, scene: Scene) -> bool:
 
 
 def _at_likeliest_distance(
-    read: ReadPhoto,
-    new_photo: RoomPhoto,
-    known: RoomPhoto,
-    pairs: Sequence[tuple[int, int]],
-    settings: JoiningSettings = SETTINGS,
+    read: ReadPhoto, new_photo: RoomPhoto, known: RoomPhoto, pairs: Sequence[tuple[int, int]]
 ) -> tuple[ReadPhoto, RoomPhoto]:
     """The new photo so far from the only known one that the objects of both have the likeliest sizes and places.
 
@@ -225,9 +221,8 @@ def _at_likeliest_distance(
         new_photo: what it says by itself.
         known: the known photo.
         pairs: boxes of the known and of the new photo that are of one object.
-        settings: numbers to work with.
     """
-    if len(pairs) < settings.min_pairs:
+    if len(pairs) < SETTINGS.min_pairs:
         return read, new_photo
     eye = known.boxes.camera.position
 
@@ -240,11 +235,11 @@ def _at_likeliest_distance(
 
     def against(photo: RoomPhoto) -> float:
         costs = [fitted_track(((0, a), (1, b)), (known, photo)).cuboid.cost for a, b in pairs]
-        return float(np.minimum(costs, settings.max_cost).sum())
+        return float(np.minimum(costs, SETTINGS.max_cost).sum())
 
     tried = [at(float(f)) for f in DISTANCES]
     costs = [
-        against(photo) + (np.log(f) / settings.distance_log_sigma) ** 2
+        against(photo) + (np.log(f) / SETTINGS.distance_log_sigma) ** 2
         for f, (_, photo) in zip(DISTANCES, tried, strict=True)
     ]
     return tried[int(np.argmin(costs))]
@@ -263,10 +258,10 @@ def _boxes_of(
     return tuple(pairs)
 
 
-def _same(box: Box, read: ReadPhoto, settings: JoiningSettings = SETTINGS) -> int | None:
+def _same(box: Box, read: ReadPhoto) -> int | None:
     shares = [float(box_iou(np.array(box), np.array(o.box))) for o in read.objects]
     best = max(range(len(shares)), key=lambda k: shares[k], default=None)
-    return best if best is not None and shares[best] >= settings.same_box else None
+    return best if best is not None and shares[best] >= SETTINGS.same_box else None
 
 
 def _ids_of(photo: FurtherPhoto, read: ReadPhoto) -> dict[int, str]:
@@ -279,7 +274,6 @@ def _share_of_new(
     others: Sequence[tuple[FurtherPhoto, ReadPhoto, RoomPhoto]],
     new_photo: RoomPhoto,
     box: int,
-    settings: JoiningSettings = SETTINGS,
 ) -> float | None:
     """How much a new photo counts for what an object is; None where a known one shows it about as well.
 
@@ -289,7 +283,7 @@ def _share_of_new(
         return 1.0
     known = max((shown(others[number][2], index) for number, index in sightings), default=0.0)
     new = shown(new_photo, box)
-    return new / (new + known) if known > 0.0 and new > settings.clearly_better * known else None
+    return new / (new + known) if known > 0.0 and new > SETTINGS.clearly_better * known else None
 
 
 def _claimed(

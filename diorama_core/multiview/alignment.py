@@ -14,7 +14,7 @@ from jaxtyping import Float
 
 from diorama_core.artefacts import CameraEstimate
 from diorama_core.library.taxonomy import broad
-from diorama_core.multiview.settings import SETTINGS, JoiningSettings
+from diorama_core.multiview.settings import SETTINGS
 from diorama_core.perception.metrology.box_observations import BoxObservations
 from diorama_core.perception.metrology.floor import scan_heights
 from diorama_core.perception.metrology.placement import place_all
@@ -48,11 +48,7 @@ class PhotoReading:
 
 
 def align(
-    readings: Sequence[PhotoReading],
-    *,
-    metric: bool = False,
-    up: Float[np.ndarray, "3"] | None = None,
-    settings: JoiningSettings = SETTINGS,
+    readings: Sequence[PhotoReading], *, metric: bool = False, up: Float[np.ndarray, "3"] | None = None
 ) -> RoomAlignment:
     """The room's frame for a set of photos.
 
@@ -60,7 +56,6 @@ def align(
         readings: at least one.
         metric: whether the poses are in metres.
         up: direction against gravity in the poses' world, where it is known.
-        settings: numbers to work with.
     """
     R = _levelled(readings, up)
     cameras = [RoomAlignment(R, 1.0, np.zeros(3)).camera(r.camera) for r in readings]
@@ -70,8 +65,8 @@ def align(
     if not metric:
         for i in range(len(readings)):
             for j in range(i):
-                votes += _votes(cameras[i], cameras[j], readings[i], readings[j], alone[i][1], alone[j][1], settings)
-        scale = _peak(votes, settings) if votes else 1.0
+                votes += _votes(cameras[i], cameras[j], readings[i], readings[j], alone[i][1], alone[j][1])
+        scale = _peak(votes) if votes else 1.0
     heights = [h - scale * float(c.position[2]) for (h, _), c in zip(alone, cameras, strict=True)]
     return RoomAlignment(R, scale, np.array([0.0, 0.0, float(np.median(heights))]))
 
@@ -122,7 +117,6 @@ def _votes(
     reading_b: PhotoReading,
     distances_a: Float[np.ndarray, "n"],
     distances_b: Float[np.ndarray, "m"],
-    settings: JoiningSettings = SETTINGS,
 ) -> list[tuple[float, float]]:
     """(logarithm of metres a unit, weight) of pairs of boxes of a kind whose rays meet."""
     rays_a, rays_b = _rays(a, reading_a.observations), _rays(b, reading_b.observations)
@@ -130,14 +124,14 @@ def _votes(
     for i, kind_a in enumerate(reading_a.observations.categories):
         for j, kind_b in enumerate(reading_b.observations.categories):
             cosine = float(rays_a[i] @ rays_b[j])
-            if broad(kind_a.name) != broad(kind_b.name) or abs(cosine) > np.cos(settings.min_parallax_rad):
+            if broad(kind_a.name) != broad(kind_b.name) or abs(cosine) > np.cos(SETTINGS.min_parallax_rad):
                 continue
             along = np.linalg.solve(np.array([[1.0, -cosine], [cosine, -1.0]]), _pair(rays_a[i], rays_b[j], b, a))
             if min(along) <= 0:
                 continue
             apart = a.position + along[0] * rays_a[i] - b.position - along[1] * rays_b[j]
             miss = float(np.linalg.norm(apart)) / float(np.mean(along))
-            if miss < settings.miss:
+            if miss < SETTINGS.miss:
                 both = (np.log(distances_a[i] / along[0]), np.log(distances_b[j] / along[1]))
                 agree = float(np.exp(-0.5 * ((both[0] - both[1]) / 0.3) ** 2))
                 votes.append((float(np.mean(both)), agree))
@@ -155,10 +149,10 @@ def _rays(camera: Camera, observations: BoxObservations) -> Float[np.ndarray, "n
     return rays / np.linalg.norm(rays, axis=1, keepdims=True)
 
 
-def _peak(votes: Sequence[tuple[float, float]], settings: JoiningSettings = SETTINGS) -> float:
+def _peak(votes: Sequence[tuple[float, float]]) -> float:
     """Where the votes are densest."""
     at, weight = np.array(votes).T
-    density = [float(weight @ np.exp(-0.5 * ((at - x) / settings.vote_log_sigma) ** 2)) for x in at]
+    density = [float(weight @ np.exp(-0.5 * ((at - x) / SETTINGS.vote_log_sigma) ** 2)) for x in at]
     best = at[int(np.argmax(density))]
-    near = weight * np.exp(-0.5 * ((at - best) / settings.vote_log_sigma) ** 2)
+    near = weight * np.exp(-0.5 * ((at - best) / SETTINGS.vote_log_sigma) ** 2)
     return float(np.exp(near @ at / near.sum()))

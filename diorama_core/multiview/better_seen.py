@@ -5,22 +5,19 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 
-from diorama_core.multiview.settings import SETTINGS, JoiningSettings
+from diorama_core.multiview.settings import SETTINGS
 from diorama_core.scene.types import Candidate, SceneObject
 
 
-def better_seen(
-    item: SceneObject, present: SceneObject, share: float, settings: JoiningSettings = SETTINGS
-) -> SceneObject:
+def better_seen(item: SceneObject, present: SceneObject, share: float) -> SceneObject:
     """The object with its shape by all photos, and the colours that go with it.
 
     Args:
         item: as the photos so far have it.
         present: as the new photo alone has it, in the same place.
         share: how much the new photo counts, 0 to 1; those so far count for the rest.
-        settings: numbers to work with.
     """
-    candidates = joint_candidates(item.candidates, present.candidates, share, settings)
+    candidates = joint_candidates(item.candidates, present.candidates, share)
     if not candidates:
         return item
     best = candidates[0]
@@ -48,9 +45,7 @@ def better_seen(
     )
 
 
-def joint_candidates(
-    known: Sequence[Candidate], new: Sequence[Candidate], share: float, settings: JoiningSettings = SETTINGS
-) -> tuple[Candidate, ...]:
+def joint_candidates(known: Sequence[Candidate], new: Sequence[Candidate], share: float) -> tuple[Candidate, ...]:
     """The candidates of both by their scores together, best first; poses are the new photo's where it has one.
 
     Scores are compared with the best of their own photo.
@@ -59,14 +54,13 @@ def joint_candidates(
         known: of the photos so far.
         new: of the new photo.
         share: what the new photo counts, 0 to 1.
-        settings: numbers to work with.
     """
     so_far, now = _relative(known), _relative(new)
     posed = {c.shape_id: c for c in (*known, *new)}
 
     def score(shape_id: str) -> float:
-        a = so_far.get(shape_id, settings.unseen_shape * min(so_far.values(), default=0.0))
-        b = now.get(shape_id, settings.unseen_shape * min(now.values(), default=0.0))
+        a = so_far.get(shape_id, SETTINGS.unseen_shape * min(so_far.values(), default=0.0))
+        b = now.get(shape_id, SETTINGS.unseen_shape * min(now.values(), default=0.0))
         return (1.0 - share) * a + share * b
 
     ranked = sorted(posed, key=lambda shape_id: (-score(shape_id), shape_id))

@@ -101,7 +101,6 @@ def camera_in_room(
     progress: Progress | None = None,
     *,
     focal_known: bool = False,
-    settings: CameraInRoomSettings = SETTINGS,
 ) -> FoundCamera | None:
     """The camera from which the things of a room cover the boxes of a photo; None where none does.
 
@@ -112,19 +111,18 @@ def camera_in_room(
         boxes: marked in the photo.
         progress: reports and cancellation.
         focal_known: whether the focal length was given.
-        settings: numbers to work with.
     """
     progress = progress or Progress()
-    if min(len(measured), len(boxes)) < settings.min_same:
+    if min(len(measured), len(boxes)) < SETTINGS.min_same:
         return None
-    search = _Search(measured, boxes, estimate.best, focal_known, settings)
+    search = _Search(measured, boxes, estimate.best, focal_known, SETTINGS)
     finalists = search.finalists(floor, progress)
     cameras = []
     for number, camera in enumerate(finalists):
         progress.report(0.4 + 0.6 * number / len(finalists), "finding where the photo was taken")
-        cameras.append(search.fitted(camera, floor.buffer(settings.outside_m)))
+        cameras.append(search.fitted(camera, floor.buffer(SETTINGS.outside_m)))
     best = min(cameras, key=lambda fit: fit.cost)
-    return best if len(best.met) >= settings.min_same and best.cost <= settings.max_cost * len(best.met) else None
+    return best if len(best.met) >= SETTINGS.min_same and best.cost <= SETTINGS.max_cost * len(best.met) else None
 
 
 class _Search:

@@ -68,23 +68,21 @@ class Track:
         return [(photos[photo].boxes, box) for photo, box in self.fitted]
 
 
-def joined_objects(
-    photos: Sequence[RoomPhoto], progress: Progress | None = None, settings: JoiningSettings = SETTINGS
-) -> tuple[Track, ...]:
+def joined_objects(photos: Sequence[RoomPhoto], progress: Progress | None = None) -> tuple[Track, ...]:
     """The room's objects. Every box is of one of them; an object has one box at most in a photo.
 
     Photo by photo, known objects claim the boxes of their kind that their cuboids cover best; what is left is new. Then
     every photo's boxes are claimed again by cuboids that were fitted to all other photos.
     """
     progress = progress or Progress()
-    joining = _Joining(photos, settings)
+    joining = _Joining(photos, SETTINGS)
     tracks: list[Track] = []
-    steps = len(photos) * (1 + settings.rounds)
+    steps = len(photos) * (1 + SETTINGS.rounds)
     for number in range(len(photos)):
         progress.report(number / steps, f"joining photo {number + 1} of {len(photos)}")
         tracks = joining.with_photo(tracks, number)
     if len(photos) > 1:
-        for turn in range(settings.rounds):
+        for turn in range(SETTINGS.rounds):
             for number in range(len(photos)):
                 progress.report((len(photos) * (1 + turn) + number) / steps, f"joining photo {number + 1} again")
                 tracks = joining.with_photo(joining.without_photo(tracks, number), number)
@@ -207,26 +205,26 @@ def fitted_track(boxes: Boxes, photos: Sequence[RoomPhoto], settings: JoiningSet
     return Track(boxes, kind, fitted)
 
 
-def shown(photo: RoomPhoto, box: int, settings: JoiningSettings = SETTINGS) -> float:
+def shown(photo: RoomPhoto, box: int) -> float:
     """How well a photo shows an object: the area of its box, less where edges are hidden or cut."""
     seen = photo.boxes.observations
     x1, y1, x2, y2 = seen.box_px[box]
     unseen = int((seen.hidden(box) | seen.truncated[box]).sum())
     k = photo.boxes.camera.intrinsics
-    return float((x2 - x1) * (y2 - y1) / (k.width * k.height)) * settings.unseen_edge**unseen
+    return float((x2 - x1) * (y2 - y1) / (k.width * k.height)) * SETTINGS.unseen_edge**unseen
 
 
-def with_agreeing_boxes(track: Track, photos: Sequence[RoomPhoto], settings: JoiningSettings = SETTINGS) -> Track:
+def with_agreeing_boxes(track: Track, photos: Sequence[RoomPhoto]) -> Track:
     """The object with the cuboid of those boxes that agree.
 
     One photo by itself says what it says at no cost. Of two that disagree the one that shows the object better counts,
     of more those that are left when the one goes without which the others agree best.
     """
     fitted = track
-    while len(fitted.boxes) > 1 and fitted.cuboid.cost > settings.left_out_cost:
-        fewer = [fitted_track(tuple(b for b in fitted.boxes if b != out), photos, settings) for out in fitted.boxes]
-        best = min(fewer, key=lambda t: (t.cuboid.cost, -max(shown(photos[p], box, settings) for p, box in t.boxes)))
-        if best.cuboid.cost + settings.left_out_cost >= fitted.cuboid.cost:
+    while len(fitted.boxes) > 1 and fitted.cuboid.cost > SETTINGS.left_out_cost:
+        fewer = [fitted_track(tuple(b for b in fitted.boxes if b != out), photos, SETTINGS) for out in fitted.boxes]
+        best = min(fewer, key=lambda t: (t.cuboid.cost, -max(shown(photos[p], box) for p, box in t.boxes)))
+        if best.cuboid.cost + SETTINGS.left_out_cost >= fitted.cuboid.cost:
             break
         fitted = best
     left_out = tuple(b for b in track.boxes if b not in fitted.boxes)
@@ -234,10 +232,7 @@ def with_agreeing_boxes(track: Track, photos: Sequence[RoomPhoto], settings: Joi
 
 
 def edges_cut_short(
-    objects: Sequence[DetectedObject],
-    boxes_px: Float[np.ndarray, "n 4"],
-    distances_m: Float[np.ndarray, "n"],
-    settings: JoiningSettings = SETTINGS,
+    objects: Sequence[DetectedObject], boxes_px: Float[np.ndarray, "n 4"], distances_m: Float[np.ndarray, "n"]
 ) -> Bool[np.ndarray, "n 4"]:
     """For every object and edge (left, top, right, bottom) whether it may go on behind something nearer.
 
@@ -245,26 +240,23 @@ def edges_cut_short(
         objects: of one photo.
         boxes_px: their boxes.
         distances_m: how far their middles are from the camera.
-        settings: numbers to work with.
     """
     cut_short = np.zeros((len(objects), 4), dtype=bool)
     for i, box in enumerate(boxes_px):
-        near = [o.mask for j, o in enumerate(objects) if j != i and distances_m[j] < settings.nearer * distances_m[i]]
+        near = [o.mask for j, o in enumerate(objects) if j != i and distances_m[j] < SETTINGS.nearer * distances_m[i]]
         if not near:
             continue
         before = np.any(near, axis=0) & ~objects[i].mask
-        for edge, rows, columns in _strips(box, before.shape, settings):
+        for edge, rows, columns in _strips(box, before.shape):
             strip = before[rows, columns]
-            cut_short[i, edge] = bool(strip.size) and strip.mean() >= settings.min_covered
+            cut_short[i, edge] = bool(strip.size) and strip.mean() >= SETTINGS.min_covered
     return cut_short
 
 
-def _strips(
-    box: Float[np.ndarray, "4"], shape: tuple[int, ...], settings: JoiningSettings = SETTINGS
-) -> list[tuple[int, slice, slice]]:
+def _strips(box: Float[np.ndarray, "4"], shape: tuple[int, ...]) -> list[tuple[int, slice, slice]]:
     """The strips outside a box's edges, as far as they are in the picture."""
     x1, y1, x2, y2 = (round(float(v)) for v in box)
-    wide, high = (max(settings.min_strip_px, round(settings.strip * side)) for side in (x2 - x1, y2 - y1))
+    wide, high = (max(SETTINGS.min_strip_px, round(SETTINGS.strip * side)) for side in (x2 - x1, y2 - y1))
     beside, across = slice(max(y1, 0), y2), slice(max(x1, 0), x2)
     return [
         (0, beside, slice(max(x1 - wide, 0), max(x1, 0))),

@@ -75,26 +75,23 @@ class _Line:
     walls: tuple[Plane, ...]
 
 
-def joint_room(
-    photos: Sequence[SeenRoom], standing: Sequence[Float[np.ndarray, "_ 2"]], settings: JointRoomSettings = SETTINGS
-) -> Architecture:
+def joint_room(photos: Sequence[SeenRoom], standing: Sequence[Float[np.ndarray, "_ 2"]]) -> Architecture:
     """Floor, walls and ceiling of all photos; the first photo's where no photo sees a wall.
 
     Args:
         photos: at least one.
         standing: footprints of the objects on the floor.
-        settings: numbers to work with.
     """
-    lines, floor = _lines(photos, settings), photos[0].architecture.floor
-    outline = None if not lines or floor is None else _outline(photos, lines, standing, settings)
+    lines, floor = _lines(photos), photos[0].architecture.floor
+    outline = None if not lines or floor is None else _outline(photos, lines, standing)
     if outline is None or floor is None:
         return photos[0].architecture
-    top_m = _top(photos, settings)
+    top_m = _top(photos)
     level = float(floor.polygon[:, 2].mean())
     base = np.column_stack([outline, np.full(len(outline), level)])
     planes = [replace(floor, polygon=base)]
     for start, end in pairwise([*outline, outline[0]]):
-        wall = _wall(start, end, lines, level, top_m, settings)
+        wall = _wall(start, end, lines, level, top_m)
         if wall is not None:
             planes.append(replace(wall, id=f"wall_{len(planes)}"))
     ceiling = max(
@@ -127,12 +124,12 @@ def with_open_doorways(
     return Architecture(tuple(cut.get(p.id, p) for p in room.planes)), tuple(marks)
 
 
-def _top(photos: Sequence[SeenRoom], settings: JointRoomSettings = SETTINGS) -> float:
+def _top(photos: Sequence[SeenRoom]) -> float:
     """Height of the room: as the photos say that see much of a ceiling, else the middle of all walls' tops."""
     levels, weights = [], []
     for photo in photos:
         planes = photo.architecture.planes
-        seen = visible_planes(planes, photo.camera, settings.view_step)
+        seen = visible_planes(planes, photo.camera, SETTINGS.view_step)
         for index, plane in enumerate(planes):
             if plane.role == "ceiling":
                 levels.append(float(plane.polygon[:, 2].mean()))
@@ -142,7 +139,7 @@ def _top(photos: Sequence[SeenRoom], settings: JointRoomSettings = SETTINGS) -> 
     return float(np.median([w.polygon[:, 2].max() for p in photos for w in p.architecture.by_role("wall")]))
 
 
-def _lines(photos: Sequence[SeenRoom], settings: JointRoomSettings = SETTINGS) -> tuple[_Line, ...]:
+def _lines(photos: Sequence[SeenRoom]) -> tuple[_Line, ...]:
     """The seen walls of all photos, those that agree as one line, the surest first."""
     weighted: list[tuple[Plane, float, float]] = []
     for photo in photos:
@@ -155,7 +152,7 @@ def _lines(photos: Sequence[SeenRoom], settings: JointRoomSettings = SETTINGS) -
     lines = []
     while left:
         wall, _, away = left[0]
-        same = [r for r in left if _agree(wall, r[0], max(away, r[2]), settings)]
+        same = [r for r in left if _agree(wall, r[0], max(away, r[2]))]
         left = [r for r in left if not any(r is s for s in same)]
         weights = np.array([w for _, w, _ in same])
         normal = (weights[:, None] * [r[0].normal[:2] for r in same]).sum(axis=0)
@@ -165,12 +162,12 @@ def _lines(photos: Sequence[SeenRoom], settings: JointRoomSettings = SETTINGS) -
     return tuple(lines)
 
 
-def _agree(a: Plane, b: Plane, away_m: float, settings: JointRoomSettings = SETTINGS) -> bool:
+def _agree(a: Plane, b: Plane, away_m: float) -> bool:
     """Whether two walls are pieces of one: in one line, and side by side no farther apart than a door."""
     if float(a.normal @ b.normal) < SAME_COSINE:
         return False
     apart = abs(float(a.normal @ b.centre) - a.offset)
-    return apart < settings.same_m + settings.same_share * away_m
+    return apart < SETTINGS.same_m + SETTINGS.same_share * away_m
 
 
 def _weighted_median(values: Float[np.ndarray, "n"], weights: Float[np.ndarray, "n"]) -> float:
@@ -184,10 +181,7 @@ def _length(wall: Plane) -> float:
 
 
 def _outline(
-    photos: Sequence[SeenRoom],
-    lines: Sequence[_Line],
-    standing: Sequence[Float[np.ndarray, "_ 2"]],
-    settings: JointRoomSettings = SETTINGS,
+    photos: Sequence[SeenRoom], lines: Sequence[_Line], standing: Sequence[Float[np.ndarray, "_ 2"]]
 ) -> Float[np.ndarray, "n 2"] | None:
     """The outline of the cells in the room, counter-clockwise."""
     floors = [f.polygon[:, :2] for p in photos if (f := p.architecture.floor) is not None]
@@ -197,13 +191,13 @@ def _outline(
     for line in lines:
         normal = np.array([*line.normal, 0.0])
         halves = [clip_polygon(c, s * normal, s * line.offset) for c in cells for s in (1.0, -1.0)]
-        cells = [h for h in halves if len(h) >= 3 and _area(h[:, :2]) > settings.grid_m**2]
+        cells = [h for h in halves if len(h) >= 3 and _area(h[:, :2]) > SETTINGS.grid_m**2]
     xs, ys = (
-        np.arange(low[0], high[0], settings.grid_m) + settings.grid_m / 2,
-        np.arange(low[1], high[1], settings.grid_m) + settings.grid_m / 2,
+        np.arange(low[0], high[0], SETTINGS.grid_m) + SETTINGS.grid_m / 2,
+        np.arange(low[1], high[1], SETTINGS.grid_m) + SETTINGS.grid_m / 2,
     )
     grid = np.stack(np.meshgrid(xs, ys), axis=-1).reshape(-1, 2)
-    says = _evidence(grid, photos, lines, standing, settings)
+    says = _evidence(grid, photos, lines, standing)
     inside = [c[:, :2] for c in cells if (here := in_polygon(grid, c[:, :2])).any() and says[here].sum() > 0]
     if not inside:
         return None
@@ -220,30 +214,29 @@ def _evidence(
     photos: Sequence[SeenRoom],
     lines: Sequence[_Line],
     standing: Sequence[Float[np.ndarray, "_ 2"]],
-    settings: JointRoomSettings = SETTINGS,
 ) -> Float[np.ndarray, "n"]:
     """What speaks for each place being in the room, and against it."""
-    says = np.full(len(grid), settings.unknown)
+    says = np.full(len(grid), SETTINGS.unknown)
     placed = {id(w): line for line in lines for w in line.walls}
     for photo in photos:
         floor = photo.architecture.floor
         if floor is None:
             continue
         within, seen = in_polygon(grid, floor.polygon[:, :2]), _in_view(grid, photo.camera)
-        near = np.exp(-np.linalg.norm(grid - photo.camera.position[:2], axis=1) / settings.range_m)
-        says += np.where(within, np.where(seen, near, settings.beside_view * near), 0.0)
+        near = np.exp(-np.linalg.norm(grid - photo.camera.position[:2], axis=1) / SETTINGS.range_m)
+        says += np.where(within, np.where(seen, near, SETTINGS.beside_view * near), 0.0)
         for wall in photo.architecture.by_role("wall"):
             if wall.seen:
                 line = placed[id(wall)]
                 behind = grid @ line.normal < line.offset
                 hidden = behind & seen & _behind_piece(grid, photo.camera, wall)
                 says -= wall.confidence * (
-                    np.where(hidden, settings.shadow, 0.0) + np.where(behind, settings.behind, 0.0)
+                    np.where(hidden, SETTINGS.shadow, 0.0) + np.where(behind, SETTINGS.behind, 0.0)
                 )
     for footprint in standing:
-        says[in_polygon(grid, footprint)] += settings.standing
+        says[in_polygon(grid, footprint)] += SETTINGS.standing
     for photo in photos:
-        says[np.linalg.norm(grid - photo.camera.position[:2], axis=1) < settings.around_m] += settings.standing
+        says[np.linalg.norm(grid - photo.camera.position[:2], axis=1) < SETTINGS.around_m] += SETTINGS.standing
     return says
 
 
@@ -268,33 +261,28 @@ def _in_view(grid: Float[np.ndarray, "n 2"], camera: Camera) -> Bool[np.ndarray,
 
 
 def _wall(
-    start: Float[np.ndarray, "2"],
-    end: Float[np.ndarray, "2"],
-    lines: Sequence[_Line],
-    level_m: float,
-    top_m: float,
-    settings: JointRoomSettings = SETTINGS,
+    start: Float[np.ndarray, "2"], end: Float[np.ndarray, "2"], lines: Sequence[_Line], level_m: float, top_m: float
 ) -> Plane | None:
     """The wall over an edge of the floor; None where no line of walls runs there."""
     length = float(np.linalg.norm(end - start))
-    if length < settings.min_edge_m:
+    if length < SETTINGS.min_edge_m:
         return None
     along = (end - start) / length
     normal = np.array([-along[1], along[0]])  # the outline runs counter-clockwise: the room is to its left
     for line in lines:
         if (
             float(normal @ line.normal) < SAME_COSINE
-            or abs(float(line.normal @ (start + end)) / 2 - line.offset) > settings.grid_m
+            or abs(float(line.normal @ (start + end)) / 2 - line.offset) > SETTINGS.grid_m
         ):
             continue
         # Seen from the room, a wall's foot from left to right runs against the outline.
         polygon = np.array([[*end, level_m], [*start, level_m], [*start, top_m], [*end, top_m]])
         covering = [w for w in line.walls if _covered(w, start, along, length) > 0]
-        seen = np.zeros(max(2, round(length / settings.grid_m)), dtype=bool)
+        seen = np.zeros(max(2, round(length / SETTINGS.grid_m)), dtype=bool)
         for wall in covering:
             seen |= _covers(wall, start, along, length, len(seen))
         model = max(covering or line.walls, key=lambda w: w.confidence)
-        sure = model.confidence if seen.mean() >= settings.min_covered else GUESS_CONFIDENCE
+        sure = model.confidence if seen.mean() >= SETTINGS.min_covered else GUESS_CONFIDENCE
         return replace(model, polygon=polygon, confidence=sure)
     return None
 

@@ -39,10 +39,7 @@ SETTINGS = MountedWallsSettings()
 
 
 def walls_at_mounted(
-    room: Architecture,
-    mounted: Sequence[JointCuboid],
-    movable: Collection[str] | None = None,
-    settings: MountedWallsSettings = SETTINGS,
+    room: Architecture, mounted: Sequence[JointCuboid], movable: Collection[str] | None = None
 ) -> Architecture:
     """The room, each wall moved to the middle of the backs of the things that surely hang on it.
 
@@ -51,13 +48,12 @@ def walls_at_mounted(
         mounted: what hangs on walls, seen by two photos or more.
         movable: ids of walls that may move; all by default. The others stay in their planes, and end where they meet
             one that moved.
-        settings: numbers to work with.
     """
     for wall in room.by_role("wall"):
         if movable is not None and wall.id not in movable:
             continue
-        gaps = [gap for thing in mounted if (gap := _gap(wall, thing, room, settings)) is not None]
-        if not gaps or abs(float(np.median(gaps))) < settings.moved_m:
+        gaps = [gap for thing in mounted if (gap := _gap(wall, thing, room)) is not None]
+        if not gaps or abs(float(np.median(gaps))) < SETTINGS.moved_m:
             continue
         try:
             room = move_plane(Scene(architecture=room), wall.id, -float(np.median(gaps))).architecture
@@ -67,10 +63,7 @@ def walls_at_mounted(
 
 
 def room_holding(
-    preferred: Architecture,
-    others: Iterable[Architecture],
-    mounted: Sequence[JointCuboid],
-    settings: MountedWallsSettings = SETTINGS,
+    preferred: Architecture, others: Iterable[Architecture], mounted: Sequence[JointCuboid]
 ) -> Architecture:
     """The first of several readings of a room in which the fewest things on walls are without a wall.
 
@@ -78,18 +71,17 @@ def room_holding(
         preferred: taken unless another one holds more.
         others: looked at only where the preferred one leaves something without a wall.
         mounted: what hangs on walls.
-        settings: numbers to work with.
     """
 
     def without_wall(room: Architecture) -> int:
-        return sum(not _held(room, thing, settings) for thing in mounted)
+        return sum(not _held(room, thing) for thing in mounted)
 
     return preferred if without_wall(preferred) == 0 else min((preferred, *others), key=without_wall)
 
 
-def _held(room: Architecture, thing: JointCuboid, settings: MountedWallsSettings = SETTINGS) -> bool:
+def _held(room: Architecture, thing: JointCuboid) -> bool:
     """Whether a wall is within reach of a thing in plan."""
-    reach = settings.reach_m + float(thing.size_m[:2].min()) / 2
+    reach = SETTINGS.reach_m + float(thing.size_m[:2].min()) / 2
     return any(_from_wall(wall, thing.centre[:2]) < reach for wall in room.by_role("wall"))
 
 
@@ -110,21 +102,19 @@ def seen_whole(sightings: Sequence[tuple[PosedBoxes, int]]) -> bool:
     return len(sightings) > 1 and any(not photo.observations.truncated[box].any() for photo, box in sightings)
 
 
-def _gap(
-    wall: Plane, thing: JointCuboid, room: Architecture, settings: MountedWallsSettings = SETTINGS
-) -> float | None:
+def _gap(wall: Plane, thing: JointCuboid, room: Architecture) -> float | None:
     """From a wall into the room to the back of a thing that hangs on it; None where it hangs elsewhere."""
-    gaps = {w.id: gap for w in room.by_role("wall") if (gap := _distance(w, thing, settings)) is not None}
+    gaps = {w.id: gap for w in room.by_role("wall") if (gap := _distance(w, thing)) is not None}
     gap_m = gaps.get(wall.id)
     return gap_m if gap_m is not None and abs(gap_m) == min(map(abs, gaps.values())) else None
 
 
-def _distance(wall: Plane, thing: JointCuboid, settings: MountedWallsSettings = SETTINGS) -> float | None:
+def _distance(wall: Plane, thing: JointCuboid) -> float | None:
     axes = np.abs(yaw_rotation(thing.yaw_rad).T @ wall.normal)
     depth = float(axes @ thing.size_m)
     along = np.cross([0.0, 0.0, 1.0], wall.normal)
     span, at = wall.polygon @ along, float(thing.centre @ along)
     gap = float(wall.normal @ thing.centre) - depth / 2 - wall.offset
-    unsure = float(np.abs(wall.normal[:2]) @ np.array(thing.place_sigma_m)) > settings.max_sigma_m
-    beside = span.min() - settings.beside_m < at < span.max() + settings.beside_m
-    return gap if depth < settings.deepest_m and beside and not unsure and abs(gap) < settings.reach_m else None
+    unsure = float(np.abs(wall.normal[:2]) @ np.array(thing.place_sigma_m)) > SETTINGS.max_sigma_m
+    beside = span.min() - SETTINGS.beside_m < at < span.max() + SETTINGS.beside_m
+    return gap if depth < SETTINGS.deepest_m and beside and not unsure and abs(gap) < SETTINGS.reach_m else None

@@ -10,7 +10,7 @@ from jaxtyping import Float
 
 from diorama_core.geometry.openings import STANDS_OUT_M
 from diorama_core.multiview.joint_fit import JointCuboid
-from diorama_core.multiview.settings import SETTINGS, JoiningSettings
+from diorama_core.multiview.settings import SETTINGS
 from diorama_core.scene.types import Architecture, Camera, Pose, Scene, SceneObject, Support, yaw_rotation
 
 
@@ -92,10 +92,7 @@ def set_into_wall(item: SceneObject) -> SceneObject:
 
 
 def in_proportion(
-    size_m: Float[np.ndarray, "3"],
-    log_sigma: Float[np.ndarray, "3"],
-    shape_size_m: Float[np.ndarray, "3"],
-    settings: JoiningSettings = SETTINGS,
+    size_m: Float[np.ndarray, "3"], log_sigma: Float[np.ndarray, "3"], shape_size_m: Float[np.ndarray, "3"]
 ) -> Float[np.ndarray, "3"]:
     """Extents by a measurement and by the proportions of a shape, of unknown scale, each as sure as it is.
 
@@ -103,12 +100,11 @@ def in_proportion(
         size_m: measured.
         log_sigma: deviations of its logarithms.
         shape_size_m: of the shape.
-        settings: numbers to work with.
     """
     measured, shape = np.log(size_m), np.log(shape_size_m)
     known = 1.0 / np.maximum(log_sigma, 1e-3) ** 2
-    weight = 1.0 / (np.maximum(log_sigma, 1e-3) ** 2 + settings.proportion_sigma**2)
+    weight = 1.0 / (np.maximum(log_sigma, 1e-3) ** 2 + SETTINGS.proportion_sigma**2)
     scale = float(weight @ (measured - shape) / weight.sum())
-    precision = 1.0 / settings.proportion_sigma**2
+    precision = 1.0 / SETTINGS.proportion_sigma**2
     extents: Float[np.ndarray, "3"] = np.exp((known * measured + precision * (shape + scale)) / (known + precision))
     return extents

@@ -79,17 +79,17 @@ def _known_lens(photo: Photo, k1: float) -> tuple[Intrinsics, Lens]:
     return _camera(photo.width, photo.height), Lens((k1,) if k1 else ())
 
 
-def fitted_lens(rgb: UInt8[np.ndarray, "h w 3"], settings: PlumbLineSettings = SETTINGS) -> tuple[Intrinsics, Lens]:
+def fitted_lens(rgb: UInt8[np.ndarray, "h w 3"]) -> tuple[Intrinsics, Lens]:
     """The lens by which a photo's lines are bent, and the camera that its coefficient is for.
 
     The lens bends nothing where too few lines say that there is any distortion.
     """
     height, width = rgb.shape[:2]
-    factor = min(1.0, settings.side_px / max(height, width))
+    factor = min(1.0, SETTINGS.side_px / max(height, width))
     grey = cv2.cvtColor(rgb, cv2.COLOR_RGB2GRAY)
     small = cv2.resize(grey, None, fx=factor, fy=factor, interpolation=cv2.INTER_AREA) if factor < 1 else grey
-    lines = np.array(list(_edges(np.asarray(small), settings))).reshape(-1, _SAMPLES, 2)
-    k1 = _coefficient(lines, _camera(small.shape[1], small.shape[0]), settings)
+    lines = np.array(list(_edges(np.asarray(small)))).reshape(-1, _SAMPLES, 2)
+    k1 = _coefficient(lines, _camera(small.shape[1], small.shape[0]))
     return _camera(width, height), Lens((k1,) if k1 else ())
 
 
@@ -99,14 +99,14 @@ def _camera(width: int, height: int) -> Intrinsics:
     return Intrinsics(width, height, half, half, width / 2, height / 2)
 
 
-def _edges(grey: UInt8[np.ndarray, "h w"], settings: PlumbLineSettings) -> Iterator[Float[np.ndarray, "samples 2"]]:
+def _edges(grey: UInt8[np.ndarray, "h w"]) -> Iterator[Float[np.ndarray, "samples 2"]]:
     """Points along long smooth edges, in pixels."""
     smooth = cv2.GaussianBlur(grey, (0, 0), 1.0)
     dx, dy = cv2.Sobel(smooth, cv2.CV_16S, 1, 0), cv2.Sobel(smooth, cv2.CV_16S, 0, 1)
     strong = float(np.percentile(np.hypot(dx, dy), 90))
     edges = cv2.Canny(dx, dy, 0.4 * strong, strong, L2gradient=True) > 0
     across = np.arctan2(dy, dx)
-    least = settings.min_length * float(np.hypot(*grey.shape))
+    least = SETTINGS.min_length * float(np.hypot(*grey.shape))
     for number in range(_BINS):
         off = (across - number * np.pi / _BINS + np.pi / 2) % np.pi - np.pi / 2
         along = (edges & (np.abs(off) < _HALF_BIN_RAD)).astype(np.uint8)
@@ -115,34 +115,32 @@ def _edges(grey: UInt8[np.ndarray, "h w"], settings: PlumbLineSettings) -> Itera
         for label in 1 + np.flatnonzero(spans >= least):
             x, y, w, h = stats[label, :4]
             rows, columns = np.nonzero(labels[y : y + h, x : x + w] == label)
-            edge = _parabola(np.column_stack([columns + x + 0.5, rows + y + 0.5]), least, settings)
+            edge = _parabola(np.column_stack([columns + x + 0.5, rows + y + 0.5]), least)
             if edge is not None:
                 yield edge
 
 
-def _parabola(
-    points: Float[np.ndarray, "n 2"], least_px: float, settings: PlumbLineSettings
-) -> Float[np.ndarray, "samples 2"] | None:
+def _parabola(points: Float[np.ndarray, "n 2"], least_px: float) -> Float[np.ndarray, "samples 2"] | None:
     """Points of an edge as a parabola smooths them; None where it is none, or is round."""
     middle = points.mean(axis=0)
     axes = np.linalg.svd(points - middle, full_matrices=False)[2]
     along, across = ((points - middle) @ axes.T).T
     fit = np.polynomial.Polynomial.fit(along, across, 2)
     length = float(np.ptp(along))
-    if length < least_px or np.percentile(np.abs(fit(along) - across), 90) > settings.smooth_px:
+    if length < least_px or np.percentile(np.abs(fit(along) - across), 90) > SETTINGS.smooth_px:
         return None
     t = np.linspace(along.min(), along.max(), _SAMPLES)
-    if np.ptp(fit(t) - np.linspace(fit(t[0]), fit(t[-1]), _SAMPLES)) > settings.max_sagitta * length:
+    if np.ptp(fit(t) - np.linspace(fit(t[0]), fit(t[-1]), _SAMPLES)) > SETTINGS.max_sagitta * length:
         return None
     return np.asarray(middle + np.column_stack([t, fit(t)]) @ axes)
 
 
-def _coefficient(lines: Float[np.ndarray, "lines samples 2"], camera: Intrinsics, settings: PlumbLineSettings) -> float:
+def _coefficient(lines: Float[np.ndarray, "lines samples 2"], camera: Intrinsics) -> float:
     """The radial coefficient that makes most edges straight; 0 where it is not sure that there is one."""
-    if len(lines) < settings.min_lines:
+    if len(lines) < SETTINGS.min_lines:
         return 0.0
-    bent = np.count_nonzero(_deviation(lines) >= settings.straight_px)
-    if bent < (1.0 - settings.max_straight) * settings.min_lines:
+    bent = np.count_nonzero(_deviation(lines) >= SETTINGS.straight_px)
+    if bent < (1.0 - SETTINGS.max_straight) * SETTINGS.min_lines:
         return 0.0
     weights = np.linalg.norm(lines[:, -1] - lines[:, 0], axis=1)
 
@@ -150,20 +148,20 @@ def _coefficient(lines: Float[np.ndarray, "lines samples 2"], camera: Intrinsics
         return straight_points(lines.reshape(-1, 2), camera, Lens((k1,))).reshape(lines.shape)
 
     def cost(k1: float) -> float:
-        return float((weights * np.minimum(_deviation(straight(k1)) / settings.straight_px, 1.0) ** 2).sum())
+        return float((weights * np.minimum(_deviation(straight(k1)) / SETTINGS.straight_px, 1.0) ** 2).sum())
 
     def best_of(tried: Float[np.ndarray, " n"]) -> float:
         return float(min(tried, key=lambda k1: (cost(k1), abs(k1))))
 
-    tried = np.linspace(*settings.k1)
+    tried = np.linspace(*SETTINGS.k1)
     step = float(tried[1] - tried[0])
     best = best_of(best_of(tried) + np.linspace(-step, step, 21))
     then = straight(best)
-    tells = np.abs(_sagitta(lines) - _sagitta(then)) > settings.told_px
-    if np.count_nonzero(tells) < settings.min_lines:
+    tells = np.abs(_sagitta(lines) - _sagitta(then)) > SETTINGS.told_px
+    if np.count_nonzero(tells) < SETTINGS.min_lines:
         return 0.0
-    was, made = (float((_deviation(of)[tells] < settings.straight_px).mean()) for of in (lines, then))
-    return best if made >= settings.min_straight and was <= settings.max_straight else 0.0
+    was, made = (float((_deviation(of)[tells] < SETTINGS.straight_px).mean()) for of in (lines, then))
+    return best if made >= SETTINGS.min_straight and was <= SETTINGS.max_straight else 0.0
 
 
 def _deviation(lines: Float[np.ndarray, "lines samples 2"]) -> Float[np.ndarray, " lines"]:

@@ -83,11 +83,7 @@ class CommonPoints:
 
 
 def registered_camera(
-    new: UnposedPhoto,
-    known: Sequence[PlacedPhoto],
-    depth_along: DepthAlong,
-    progress: Progress | None = None,
-    settings: RegistrationSettings = SETTINGS,
+    new: UnposedPhoto, known: Sequence[PlacedPhoto], depth_along: DepthAlong, progress: Progress | None = None
 ) -> Camera:
     """The camera of a new photo, in the room.
 
@@ -101,7 +97,6 @@ def registered_camera(
         UnavailableError: pycolmap is not installed.
         InputError: the photo does not join.
         Cancelled: on request.
-        settings: numbers to work with.
     """
     common = [
         _on_surfaces(p.camera, pixels, depth_along)
@@ -110,13 +105,13 @@ def registered_camera(
     height, width = new.rgb.shape[:2]
     alike = [p.camera.intrinsics for p in known if p.photo.rgb.shape == new.rgb.shape]
     if new.focal_px is not None:
-        focal, sigma = new.focal_px, settings.focal_log_sigma
+        focal, sigma = new.focal_px, SETTINGS.focal_log_sigma
     elif alike:
-        focal, sigma = alike[0].fx, settings.focal_log_sigma
+        focal, sigma = alike[0].fx, SETTINGS.focal_log_sigma
     else:
         focal, sigma = width / (2 * float(np.tan(LIKELY_FOV_RAD / 2))), GUESSED_LOG_SIGMA
     k = Intrinsics(width, height, focal, focal, width / 2, height / 2)
-    camera = placed_camera([c for c in common if len(c.points)], k, sigma, settings)
+    camera = placed_camera([c for c in common if len(c.points)], k, sigma)
     if camera is None:
         raise InputError(
             f"{new.name} does not join: it has too little in common with the photos that are there; "
@@ -132,46 +127,43 @@ def _on_surfaces(camera: Camera, pixels: Float[np.ndarray, "n 4"], depth_along: 
     return CommonPoints(camera, pixels[hit, :2], pixels[hit, 2:], points)
 
 
-def placed_camera(
-    common: Sequence[CommonPoints], k: Intrinsics, focal_log_sigma: float, settings: RegistrationSettings = SETTINGS
-) -> Camera | None:
+def placed_camera(common: Sequence[CommonPoints], k: Intrinsics, focal_log_sigma: float) -> Camera | None:
     """The camera that sees common points where they are seen; None where too few agree on one.
 
     Args:
         common: by known photo.
         k: intrinsics to begin with; only the focal length may change.
         focal_log_sigma: how sure it is.
-        settings: numbers to work with.
     """
-    if sum(len(c.points) for c in common) < settings.min_points:
+    if sum(len(c.points) for c in common) < SETTINGS.min_points:
         return None
     points, pixels = np.vstack([c.points for c in common]), np.vstack([c.new_px for c in common])
     best: tuple[int, Intrinsics, np.ndarray, np.ndarray, np.ndarray] | None = None
     factors = (
-        np.exp(np.linspace(-1.5, 1.5, 7) * focal_log_sigma) if focal_log_sigma > settings.focal_log_sigma else (1.0,)
+        np.exp(np.linspace(-1.5, 1.5, 7) * focal_log_sigma) if focal_log_sigma > SETTINGS.focal_log_sigma else (1.0,)
     )
     for factor in factors:
         tried = replace(k, fx=k.fx * float(factor), fy=k.fy * float(factor))
-        cv2.setRNGSeed(settings.seed)
+        cv2.setRNGSeed(SETTINGS.seed)
         is_solved, turn, shift, inliers = cv2.solvePnPRansac(
             points,
             pixels,
             _matrix(tried),
             None,
-            iterationsCount=settings.ransac_turns,
-            reprojectionError=settings.near_share * k.width,
+            iterationsCount=SETTINGS.ransac_turns,
+            reprojectionError=SETTINGS.near_share * k.width,
             flags=cv2.SOLVEPNP_EPNP,
         )
         if is_solved and inliers is not None and (best is None or len(inliers) > best[0]):
             best = (len(inliers), tried, turn.ravel(), shift.ravel(), inliers.ravel())
-    if best is None or best[0] < max(settings.min_points, settings.min_share * len(points)):
+    if best is None or best[0] < max(SETTINGS.min_points, SETTINGS.min_share * len(points)):
         return None
     _, tried, turn, shift, inliers = best
     right = np.zeros(len(points), bool)
     right[inliers] = True
     ends = np.cumsum([0, *(len(c.points) for c in common)])
     supported = [right[a:b] for a, b in pairwise(ends)]
-    return _refined(common, supported, tried, turn, shift, focal_log_sigma, settings)
+    return _refined(common, supported, tried, turn, shift, focal_log_sigma)
 
 
 def _refined(
@@ -181,31 +173,30 @@ def _refined(
     turn: Float[np.ndarray, "3"],
     shift: Float[np.ndarray, "3"],
     focal_log_sigma: float,
-    settings: RegistrationSettings = SETTINGS,
 ) -> Camera:
     """The camera by epipolar lines and, much less, by the surfaces; robust against what is wrong of either."""
-    thin = [max(1, len(c.points) * len(common) // settings.max_terms) for c in common]
+    thin = [max(1, len(c.points) * len(common) // SETTINGS.max_terms) for c in common]
     lines = [c.rows(np.arange(len(c.points)) % t == 0) for c, t in zip(common, thin, strict=True)]
     surfaces = [c.rows(s) for c, s in zip(common, supported, strict=True)]
     anchors = np.vstack([c.points for c in surfaces]), np.vstack([c.new_px for c in surfaces])
     count = sum(len(c.points) for c in lines)
     # The surfaces' errors are alike over whole pieces of furniture: together they count as a few dozen points.
-    weight = np.sqrt(settings.min_points / len(anchors[0]))
+    weight = np.sqrt(SETTINGS.min_points / len(anchors[0]))
 
     def off(unknowns: np.ndarray) -> np.ndarray:
         camera = _camera(k, unknowns)
         seen = camera.to_camera(anchors[0])
         kc = camera.intrinsics
         pixels = seen[:, :2] / np.maximum(seen[:, 2:], 0.05) * [kc.fx, kc.fy] + [kc.cx, kc.cy]
-        surface = weight * ((pixels - anchors[1]) / (settings.surface_share * k.width)).ravel()
+        surface = weight * ((pixels - anchors[1]) / (SETTINGS.surface_share * k.width)).ravel()
         epipolar = (
-            np.concatenate([sampson_px(c.camera, camera, c.known_px, c.new_px) for c in lines]) / settings.epipolar_px
+            np.concatenate([sampson_px(c.camera, camera, c.known_px, c.new_px) for c in lines]) / SETTINGS.epipolar_px
         )
         return np.concatenate([epipolar, surface, [unknowns[6] / focal_log_sigma * np.sqrt(count) * 0.1]])
 
     unknowns = np.array([*turn, *shift, 0.0])
     for loss in ("soft_l1", "cauchy"):  # what is still far off then is another place
-        unknowns = least_squares(off, unknowns, loss=loss, x_scale=settings.scales, max_nfev=40).x
+        unknowns = least_squares(off, unknowns, loss=loss, x_scale=SETTINGS.scales, max_nfev=40).x
     return _camera(k, unknowns)
 
 

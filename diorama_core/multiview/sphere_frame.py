@@ -48,9 +48,9 @@ class SphereLines:
     """Their angular lengths."""
 
 
-def sphere_lines(picture: UInt8[np.ndarray, "h w 3"], settings: SphereFrameSettings = SETTINGS) -> SphereLines:
+def sphere_lines(picture: UInt8[np.ndarray, "h w 3"]) -> SphereLines:
     """Straight segments of an equirectangular picture, from perspective views that overlap by half."""
-    side, T = settings.side_px, np.eye(4)
+    side, T = SETTINGS.side_px, np.eye(4)
     k = Intrinsics.from_fov(side, side, np.pi / 2)
     looks = [(turn * np.pi / 4, 0.0) for turn in range(8)] + [(0.0, np.pi / 2), (0.0, -np.pi / 2)]
     normals, weights = [np.zeros((0, 3))], [np.zeros(0)]
@@ -66,16 +66,16 @@ def sphere_lines(picture: UInt8[np.ndarray, "h w 3"], settings: SphereFrameSetti
     return SphereLines(np.concatenate(normals), np.concatenate(weights))
 
 
-def room_axes(lines: SphereLines, settings: SphereFrameSettings = SETTINGS) -> Float[np.ndarray, "3 3"]:
+def room_axes(lines: SphereLines) -> Float[np.ndarray, "3 3"]:
     """The turn from the sphere's frame to +Z up with the room's axes along x and y, by the least turn about +Z.
 
     A picture without lines stays as it is.
     """
     if not len(lines.weights):
         return np.eye(3)
-    R = _with_yaw(lines, _levelled(lines, settings), settings)
-    sigma = np.sin(np.deg2rad(settings.sigma_deg))
-    for _ in range(settings.rounds):
+    R = _with_yaw(lines, _levelled(lines))
+    sigma = np.sin(np.deg2rad(SETTINGS.sigma_deg))
+    for _ in range(SETTINGS.rounds):
         # A small turn w moves an axis a by w x a: the sine n . a changes by w . (a x n).
         sines = lines.normals @ R.T
         axis = np.abs(sines).argmin(axis=1)
@@ -87,32 +87,30 @@ def room_axes(lines: SphereLines, settings: SphereFrameSettings = SETTINGS) -> F
     return R
 
 
-def _levelled(lines: SphereLines, settings: SphereFrameSettings) -> Float[np.ndarray, "3 3"]:
+def _levelled(lines: SphereLines) -> Float[np.ndarray, "3 3"]:
     """The least turn that makes upright lines upright."""
-    reach = np.deg2rad(np.arange(-settings.max_tilt_deg, settings.max_tilt_deg + 1e-6, settings.coarse_deg))
+    reach = np.deg2rad(np.arange(-SETTINGS.max_tilt_deg, SETTINGS.max_tilt_deg + 1e-6, SETTINGS.coarse_deg))
     tilts = np.stack(np.meshgrid(reach, reach), axis=-1).reshape(-1, 2)
     tilts = tilts[np.linalg.norm(tilts, axis=1) <= reach[-1]]
     ups = np.column_stack([np.sin(tilts), np.sqrt(1 - (np.sin(tilts) ** 2).sum(axis=1))])
-    votes = np.exp(-0.5 * (ups @ lines.normals.T / np.sin(np.deg2rad(settings.coarse_deg))) ** 2) @ lines.weights
+    votes = np.exp(-0.5 * (ups @ lines.normals.T / np.sin(np.deg2rad(SETTINGS.coarse_deg))) ** 2) @ lines.weights
     votes -= (
-        settings.level_weight * lines.weights.sum() * 0.5 * (np.rad2deg(tilts) ** 2).sum(axis=1) / settings.level_deg**2
+        SETTINGS.level_weight * lines.weights.sum() * 0.5 * (np.rad2deg(tilts) ** 2).sum(axis=1) / SETTINGS.level_deg**2
     )
     up = ups[int(np.argmax(votes))]
     turn = np.cross(up, [0.0, 0.0, 1.0])
     return rotation_from_vector(turn * (np.arcsin(np.linalg.norm(turn)) / max(float(np.linalg.norm(turn)), 1e-12)))
 
 
-def _with_yaw(
-    lines: SphereLines, R: Float[np.ndarray, "3 3"], settings: SphereFrameSettings
-) -> Float[np.ndarray, "3 3"]:
+def _with_yaw(lines: SphereLines, R: Float[np.ndarray, "3 3"]) -> Float[np.ndarray, "3 3"]:
     """The turn with the room's axes along x and y."""
     n = lines.normals @ R.T
     upright = np.hypot(n[:, 0], n[:, 1])
     angle = np.arctan2(n[:, 1], n[:, 0])  # a level line runs a quarter turn from its normal's: alike modulo that
     # Upright lines may run in no level direction, and lines at the horizon in all of them.
-    w = lines.weights * upright * (np.abs(n[:, 2]) > np.sin(2 * np.deg2rad(settings.coarse_deg)))
-    turns = np.deg2rad(np.arange(-45.0, 45.0, settings.coarse_deg / 2))
+    w = lines.weights * upright * (np.abs(n[:, 2]) > np.sin(2 * np.deg2rad(SETTINGS.coarse_deg)))
+    turns = np.deg2rad(np.arange(-45.0, 45.0, SETTINGS.coarse_deg / 2))
     off = np.angle(np.exp(4j * (angle[None] - turns[:, None]))) / 4
     sines = upright * np.sin(off)
-    votes = np.exp(-0.5 * (sines / np.sin(np.deg2rad(settings.coarse_deg))) ** 2) @ w
+    votes = np.exp(-0.5 * (sines / np.sin(np.deg2rad(SETTINGS.coarse_deg))) ** 2) @ w
     return yaw_rotation(-float(turns[int(np.argmax(votes))])) @ R

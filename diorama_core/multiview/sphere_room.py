@@ -161,7 +161,7 @@ class _Edges:
         return cv2.remap(of, *at, cv2.INTER_LINEAR, borderMode=cv2.BORDER_REPLICATE).reshape(*azimuth.shape, 3)
 
     def contrast(
-        self, azimuth: Float[np.ndarray, "n"], axis: int, reach: Float[np.ndarray, "r"], settings: SphereRoomSettings
+        self, azimuth: Float[np.ndarray, "n"], axis: int, reach: Float[np.ndarray, "r"]
     ) -> Float32[np.ndarray, "n r"]:
         """Difference of colours beyond a wall's border and before it, 0 to 1, along some of the border.
 
@@ -169,27 +169,26 @@ class _Edges:
             azimuth: where; the whole round.
             axis: of the wall.
             reach: as for `border`, in equal steps of logarithms.
-            settings: numbers to work with.
         """
         off = np.angle(np.exp(1j * (azimuth - axis * QUARTER)))
         elevation = np.arctan(np.maximum(np.cos(off), 0.02)[:, None] / reach)
         colour = self._at(self.lab, np.broadcast_to(azimuth[:, None], elevation.shape), elevation, -0.5)
-        facing = (np.abs(off) < settings.widest_rad).astype(np.float32)[:, None]
-        size = round(settings.along_deg * len(azimuth) / 360)
+        facing = (np.abs(off) < SETTINGS.widest_rad).astype(np.float32)[:, None]
+        size = round(SETTINGS.along_deg * len(azimuth) / 360)
         weight = np.maximum(uniform_filter1d(facing, size, axis=0, mode="wrap"), 1e-3)
         at, most = np.arange(len(reach)), len(reach) - 1
-        low, high = np.maximum(at - settings.band, 0), np.minimum(at + 1 + settings.band, most + 1)
+        low, high = np.maximum(at - SETTINGS.band, 0), np.minimum(at + 1 + SETTINGS.band, most + 1)
         differ = np.zeros(elevation.shape)
         for channel, (least, greatest) in enumerate(((0.0, 100.0), (-40.0, 40.0), (-40.0, 40.0))):
-            bins = np.arange(least, greatest + 1e-6, settings.colour_step)
+            bins = np.arange(least, greatest + 1e-6, SETTINGS.colour_step)
             place = np.clip(colour[..., channel], least, greatest)[..., None]
-            soft = np.maximum(0.0, 1.0 - np.abs(place - bins) / settings.colour_step) * facing[..., None]
+            soft = np.maximum(0.0, 1.0 - np.abs(place - bins) / SETTINGS.colour_step) * facing[..., None]
             soft = uniform_filter1d(soft, size, axis=0, mode="wrap") / weight[..., None]
             total = np.cumsum(np.concatenate([np.zeros_like(soft[:, :1]), soft], axis=1), axis=1)
             beyond = (total[:, high] - total[:, np.minimum(at + 1, most)]) / np.maximum(high - at - 1, 1)[:, None]
             near = (total[:, at] - total[:, low]) / np.maximum(at - low, 1)[:, None]
             differ += 0.5 * np.abs(beyond - near).sum(axis=-1)
-        differ[:, : settings.band] = differ[:, -settings.band :] = 0.0
+        differ[:, : SETTINGS.band] = differ[:, -SETTINGS.band :] = 0.0
         return np.minimum(differ, 1.0).astype(np.float32)
 
     def border(
@@ -207,24 +206,23 @@ class _Edges:
         return self.along(azimuth, tangent, -np.sin(off) / reach / (1 + tangent**2))
 
 
-def room_on_sphere(level: UInt8[np.ndarray, "h w 3"], settings: SphereRoomSettings = SETTINGS) -> SphereRoom:
+def room_on_sphere(level: UInt8[np.ndarray, "h w 3"]) -> SphereRoom:
     """The room that the edges of a picture speak for.
 
     Args:
         level: equirectangular, +Z up, the room's axes along x and y (`geometry.sphere`).
-        settings: numbers to work with.
     """
-    walls, log_height = _searched(_Edges(level, settings, settings.coarse_px), settings)
-    fine = _Edges(level, settings)
-    walls, log_height = _refined(fine, walls, log_height, settings)
-    return _outlined(fine, walls, log_height, settings)
+    walls, log_height = _searched(_Edges(level, SETTINGS, SETTINGS.coarse_px))
+    fine = _Edges(level, SETTINGS)
+    walls, log_height = _refined(fine, walls, log_height)
+    return _outlined(fine, walls, log_height)
 
 
-def _searched(edges: _Edges, settings: SphereRoomSettings) -> tuple[tuple[_Wall, ...], float]:
+def _searched(edges: _Edges) -> tuple[tuple[_Wall, ...], float]:
     """The best closed sequence of walls, and the logarithm of the ceiling's height above the camera."""
-    step, n = settings.log_step, settings.columns
-    distances = np.arange(np.log(settings.nearest), np.log(settings.farthest), step)
-    heights = np.arange(round(settings.log_heights[0] / step), round(settings.log_heights[1] / step) + 1, 2)
+    step, n = SETTINGS.log_step, SETTINGS.columns
+    distances = np.arange(np.log(SETTINGS.nearest), np.log(SETTINGS.farthest), step)
+    heights = np.arange(round(SETTINGS.log_heights[0] / step), round(SETTINGS.log_heights[1] / step) + 1, 2)
     azimuth = (np.arange(n) + 0.5) * 2 * np.pi / n
     low, count = int(-heights.max()), len(distances)
     wider = distances[0] + step * np.arange(low, count - int(heights.min()))
@@ -232,26 +230,26 @@ def _searched(edges: _Edges, settings: SphereRoomSettings) -> tuple[tuple[_Wall,
     for axis in range(4):
         floor, ceiling = (
             edges.border(azimuth[:, None], axis, reach[None])
-            * (alike + (1.0 - alike) * edges.contrast(azimuth, axis, reach, settings))
-            for reach, alike in ((-np.exp(distances), 0.0), (np.exp(wider), settings.alike_ceiling))
+            * (alike + (1.0 - alike) * edges.contrast(azimuth, axis, reach))
+            for reach, alike in ((-np.exp(distances), 0.0), (np.exp(wider), SETTINGS.alike_ceiling))
         )
-        away = np.abs(np.angle(np.exp(1j * (azimuth - axis * QUARTER)))) > settings.widest_rad
+        away = np.abs(np.angle(np.exp(1j * (azimuth - axis * QUARTER)))) > SETTINGS.widest_rad
         for at, m in enumerate(heights):
             shifted = ceiling[:, -m - low : -m - low + count]
-            evidence[:, at, axis] = settings.ceiling_weight * shifted + settings.floor_weight * floor
+            evidence[:, at, axis] = SETTINGS.ceiling_weight * shifted + SETTINGS.floor_weight * floor
             evidence[away, at, axis] = -np.inf
         off = np.abs(np.cos(azimuth - axis * QUARTER))[:, None]
-        far = (distances - np.log(off) - np.log(settings.away[0])) / settings.away[1]
-        evidence[:, :, axis] -= settings.prior_weight / 360 * 0.5 * far[:, None] ** 2
-    high = (np.log1p(np.exp(heights * step)) - np.log(settings.headroom[0])) / settings.headroom[1]
-    evidence -= (settings.prior_weight / 360 * 0.5 * high**2)[:, None, None]
+        far = (distances - np.log(off) - np.log(SETTINGS.away[0])) / SETTINGS.away[1]
+        evidence[:, :, axis] -= SETTINGS.prior_weight / 360 * 0.5 * far[:, None] ** 2
+    high = (np.log1p(np.exp(heights * step)) - np.log(SETTINGS.headroom[0])) / SETTINGS.headroom[1]
+    evidence -= (SETTINGS.prior_weight / 360 * 0.5 * high**2)[:, None, None]
     evidence *= 360 / n
-    states, height = _best_path(evidence, azimuth, settings)
+    states, height = _best_path(evidence, azimuth)
     return _walls_of(states, azimuth, distances), float(heights[height] * step)
 
 
 def _best_path(
-    evidence: Float32[np.ndarray, "n m 4 r"], azimuth: Float[np.ndarray, "n"], settings: SphereRoomSettings
+    evidence: Float32[np.ndarray, "n m 4 r"], azimuth: Float[np.ndarray, "n"]
 ) -> tuple[Int[np.ndarray, "n 2"], int]:
     """Axis and distance at each azimuth, and which height, of the best way round."""
     n, heights, _, count = evidence.shape
@@ -262,7 +260,7 @@ def _best_path(
         j = turn % n
         best, origin = value.copy(), np.broadcast_to(here, value.shape).copy()
         top = value.argmax(axis=2)
-        farther = np.take_along_axis(value, top[..., None], 2) - settings.jump_cost
+        farther = np.take_along_axis(value, top[..., None], 2) - SETTINGS.jump_cost
         better = farther > best
         best = np.where(better, farther, best)
         origin = np.where(better, (top + count * np.arange(4))[..., None].astype(np.int16), origin)
@@ -270,12 +268,12 @@ def _best_path(
         for axis in range(4):
             for other in ((axis + 1) % 4, (axis - 1) % 4):
                 one, two = np.cos(edge - other * QUARTER), np.cos(edge - axis * QUARTER)
-                if min(one, two) <= np.cos(settings.widest_rad):
+                if min(one, two) <= np.cos(SETTINGS.widest_rad):
                     continue
                 # The walls meet where their distances along the ray are one.
-                index = np.arange(count) + round(float(np.log(one / two)) / settings.log_step)
+                index = np.arange(count) + round(float(np.log(one / two)) / SETTINGS.log_step)
                 fits = (index >= 0) & (index < count)
-                met = value[:, other, index[fits]] - settings.corner_cost
+                met = value[:, other, index[fits]] - SETTINGS.corner_cost
                 better = met > best[:, axis, fits]
                 best[:, axis, fits] = np.where(better, met, best[:, axis, fits])
                 origin[:, axis, fits] = np.where(better, other * count + index[fits], origin[:, axis, fits])
@@ -328,10 +326,10 @@ def _owners(walls: tuple[_Wall, ...], azimuth: Float[np.ndarray, "n"]) -> Int[np
 
 
 def _seen_borders(
-    edges: _Edges, walls: tuple[_Wall, ...], log_height: float, settings: SphereRoomSettings
+    edges: _Edges, walls: tuple[_Wall, ...], log_height: float
 ) -> tuple[Float[np.ndarray, "n"], Int[np.ndarray, "n"]] | None:
     """Evidence at each azimuth, 0 to 1, and which wall is seen there."""
-    azimuth = (np.arange(2 * settings.columns) + 0.5) * np.pi / settings.columns
+    azimuth = (np.arange(2 * SETTINGS.columns) + 0.5) * np.pi / SETTINGS.columns
     owner = _owners(walls, azimuth)
     if owner is None:
         return None
@@ -341,22 +339,20 @@ def _seen_borders(
         return None
     ceiling = edges.border(azimuth, axis, reach / np.exp(log_height))
     floor = edges.border(azimuth, axis, -reach)
-    weights = settings.ceiling_weight, settings.floor_weight
+    weights = SETTINGS.ceiling_weight, SETTINGS.floor_weight
     return (weights[0] * ceiling + weights[1] * floor) / sum(weights), owner
 
 
-def _refined(
-    edges: _Edges, walls: tuple[_Wall, ...], log_height: float, settings: SphereRoomSettings
-) -> tuple[tuple[_Wall, ...], float]:
+def _refined(edges: _Edges, walls: tuple[_Wall, ...], log_height: float) -> tuple[tuple[_Wall, ...], float]:
     """Distances and the ceiling's height, one after the other by ever smaller steps, where the edges are strongest."""
 
     def score(tried: tuple[_Wall, ...], height: float) -> float:
-        seen = _seen_borders(edges, tried, height, settings)
+        seen = _seen_borders(edges, tried, height)
         return -1.0 if seen is None else float(seen[0].mean())
 
     best = score(walls, log_height)
-    for step in settings.refining:
-        for _ in range(settings.rounds):
+    for step in SETTINGS.refining:
+        for _ in range(SETTINGS.rounds):
             before = best
             for move, index in product((step, -step), range(-2, len(walls))):
                 # All together keep the ceiling's border, and move the floor's; the ceiling alone moves its border.
@@ -373,9 +369,9 @@ def _refined(
     return walls, log_height
 
 
-def _outlined(edges: _Edges, walls: tuple[_Wall, ...], log_height: float, settings: SphereRoomSettings) -> SphereRoom:
+def _outlined(edges: _Edges, walls: tuple[_Wall, ...], log_height: float) -> SphereRoom:
     """The room's corners; where a wall ends before a farther one, a hidden wall leads back from its end."""
-    seen = _seen_borders(edges, walls, log_height, settings)
+    seen = _seen_borders(edges, walls, log_height)
     starts = _starts(walls)
     support = np.zeros(len(walls)) if seen is None else np.bincount(seen[1], seen[0], len(walls))
     if seen is not None:

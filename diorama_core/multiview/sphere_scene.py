@@ -92,7 +92,6 @@ def build_sphere(
     preview: Preview | None = None,
     *,
     camera_height_m: float | None = None,
-    settings: SphereSceneSettings = SETTINGS,
 ) -> SphereScene:
     """Build one scene of a 360 degree photo.
 
@@ -105,7 +104,6 @@ def build_sphere(
         progress: reports and cancellation.
         preview: receives the layout optimiser's intermediate scenes.
         camera_height_m: above the floor, where it is known.
-        settings: numbers to work with.
 
     Raises:
         Cancelled: on request.
@@ -122,13 +120,11 @@ def build_sphere(
     things = drawn_on_sphere(boxes, (photo.width, photo.height), R)
     if not boxes:
         things = _found(pictures, choose, progress.part(0.05, 0.15))
-    read, sightings, height_m = _read(
-        pictures, things, found, choose, progress.part(0.15, 0.3), camera_height_m, settings
-    )
+    read, sightings, height_m = _read(pictures, things, found, choose, progress.part(0.15, 0.3), camera_height_m)
     room_photos = [said_alone(r) for r in read]
     shown = [(thing, seen) for thing, seen in zip(things, sightings, strict=True) if seen]
     tracks = [_track(seen, room_photos) for _, seen in shown]
-    rooms = _rooms(sphere_planes(found, height_m, settings), read, tracks)
+    rooms = _rooms(sphere_planes(found, height_m), read, tracks)
     room = joined_scene(read, room_photos, tuple(tracks), rooms, library, layout, progress.part(0.3, 1.0), preview)
     tilt = float(np.rad2deg(np.arccos(np.clip(R[2, 2], -1.0, 1.0))))
     notes = (
@@ -175,7 +171,6 @@ def _read(
     choose: Callable[[Inputs], Stages],
     progress: Progress,
     camera_height_m: float | None,
-    settings: SphereSceneSettings,
 ) -> tuple[list[ReadPhoto], tuple[tuple[tuple[int, int], ...], ...], float]:
     """The views, the one with most things first; where each thing is seen, best first; and the camera's height."""
     posed, sightings = marked_views(pictures, things, camera_height_m or 1.0)
@@ -189,24 +184,19 @@ def _read(
         read.append(read_photo(posed[index], replace(stages, detection=None), part))
     place = {index: number for number, index in enumerate(order)}
     shown = tuple(tuple((place[view], box) for view, box in seen) for seen in sightings)
-    height_m = camera_height_m or _height(read, shown, room, settings)
+    height_m = camera_height_m or _height(read, shown, room)
     return [_at_height(r, height_m) for r in read], shown, height_m
 
 
-def _height(
-    read: Sequence[ReadPhoto],
-    sightings: Sequence[tuple[tuple[int, int], ...]],
-    room: SphereRoom,
-    settings: SphereSceneSettings,
-) -> float:
+def _height(read: Sequence[ReadPhoto], sightings: Sequence[tuple[tuple[int, int], ...]], room: SphereRoom) -> float:
     """The camera's height by the sizes of all things, each as the view shows it that shows it best, and the room's."""
     pictures = []
     for number, r in enumerate(read):
         k = r.posed.camera.intrinsics
         voters = [seen[0][1] for seen in sightings if seen and seen[0][0] == number]
         pictures.append((gather(r.objects, k.width, k.height), View(k, r.camera.T_world_camera[:3, :3]), voters))
-    high = np.log(HEIGHTS_M * (1.0 + room.ceiling) / WALLS.usual_ceiling_m) / settings.ceiling_log_sigma
-    cost = (settings.tails + 1) * np.log1p(high**2 / settings.tails)
+    high = np.log(HEIGHTS_M * (1.0 + room.ceiling) / WALLS.usual_ceiling_m) / SETTINGS.ceiling_log_sigma
+    cost = (SETTINGS.tails + 1) * np.log1p(high**2 / SETTINGS.tails)
     return scan_heights_together(pictures, cost).height_m
 
 
@@ -216,26 +206,25 @@ def _at_height(read: ReadPhoto, height_m: float) -> ReadPhoto:
     return replace(read, posed=replace(read.posed, camera=replace(read.posed.camera, T_world_camera=T)))
 
 
-def sphere_planes(room: SphereRoom, height_m: float, settings: SphereSceneSettings = SETTINGS) -> Architecture:
+def sphere_planes(room: SphereRoom, height_m: float) -> Architecture:
     """Floor, walls and ceiling of a room, the floor at 0.
 
     Args:
         room: in heights of the camera.
         height_m: of the camera.
-        settings: numbers to work with.
     """
     outline, top = height_m * room.outline, height_m * (1.0 + room.ceiling)
     count = len(outline)
     base, lid = (np.column_stack([outline, np.full(count, z)]) for z in (0.0, top))
-    planes = [Plane("floor", "floor", base, confidence=settings.seen_confidence)]
+    planes = [Plane("floor", "floor", base, confidence=SETTINGS.seen_confidence)]
     for k in range(count):
         start, end = k, (k + 1) % count
         # Seen from the room, a wall's foot from left to right runs against the outline.
         polygon = np.stack([base[end], base[start], lid[start], lid[end]])
-        seen = room.support[k] >= settings.seen_support
-        sure = settings.seen_confidence if seen else settings.unseen_confidence
+        seen = room.support[k] >= SETTINGS.seen_support
+        sure = SETTINGS.seen_confidence if seen else SETTINGS.unseen_confidence
         planes.append(Plane(f"wall_{k + 1}", "wall", polygon, confidence=sure))
-    planes.append(Plane("ceiling", "ceiling", lid[::-1], confidence=settings.seen_confidence))
+    planes.append(Plane("ceiling", "ceiling", lid[::-1], confidence=SETTINGS.seen_confidence))
     return Architecture(tuple(planes))
 
 

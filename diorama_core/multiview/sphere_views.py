@@ -69,10 +69,7 @@ class SphereBox:
 
 
 def drawn_on_sphere(
-    boxes: Sequence[LabelledBox],
-    size: tuple[int, int],
-    R_room_sphere: Float[np.ndarray, "3 3"],
-    settings: SphereViewsSettings = SETTINGS,
+    boxes: Sequence[LabelledBox], size: tuple[int, int], R_room_sphere: Float[np.ndarray, "3 3"]
 ) -> tuple[SphereBox, ...]:
     """Boxes of an equirectangular picture, those that meet across its seam as one.
 
@@ -80,10 +77,9 @@ def drawn_on_sphere(
         boxes: in pixels.
         size: width and height of the picture.
         R_room_sphere: from the picture's frame to the room's.
-        settings: numbers to work with.
     """
     things = []
-    for labelled in _across_seam(boxes, size[0], settings):
+    for labelled in _across_seam(boxes, size[0]):
         x1, y1, x2, y2 = labelled.box
         middle = np.array([(x1 + x2) / 2, (y1 + y2) / 2])
         sides = np.array([[x1, middle[1]], [x2, middle[1]], [middle[0], y1], [middle[0], y2], middle])
@@ -94,9 +90,9 @@ def drawn_on_sphere(
     return tuple(things)
 
 
-def _across_seam(boxes: Sequence[LabelledBox], width: int, settings: SphereViewsSettings) -> tuple[LabelledBox, ...]:
+def _across_seam(boxes: Sequence[LabelledBox], width: int) -> tuple[LabelledBox, ...]:
     """Boxes, the two parts of a thing at the picture's sides as one that reaches beyond its right side."""
-    near, left = settings.seam * width, list(boxes)
+    near, left = SETTINGS.seam * width, list(boxes)
     for first in boxes:
         for second in boxes:
             a, b = first.box, second.box
@@ -123,14 +119,14 @@ class SphereView:
         T[:3, :3], T[2, 3] = level_axes(self.azimuth), height_m
         return Camera(self.intrinsics, T)
 
-    def shown(self, thing: SphereBox, settings: SphereViewsSettings = SETTINGS) -> LabelledBox | None:
+    def shown(self, thing: SphereBox) -> LabelledBox | None:
         """A thing's box in the view; None where too little of it is there."""
         k, off = self.intrinsics, thing.beside(self.azimuth)
-        if thing.half_width > np.deg2rad(settings.widest_deg) / 2:
+        if thing.half_width > np.deg2rad(SETTINGS.widest_deg) / 2:
             return None
-        aside = np.deg2rad(settings.aside_deg)
+        aside = np.deg2rad(SETTINGS.aside_deg)
         left, right = min(off + thing.half_width, aside), max(off - thing.half_width, -aside)
-        if left - right < 2 * settings.min_shown * thing.half_width:
+        if left - right < 2 * SETTINGS.min_shown * thing.half_width:
             return None
         middle = np.cos(np.clip(off, -aside, aside))
         x1, x2 = (k.cx - k.fx * np.tan(a) for a in (left, right))
@@ -151,12 +147,12 @@ class SphereView:
         return SphereBox(self.azimuth + middle, (left - right) / 2, low, high, labelled)
 
 
-def sphere_views(width_px: int, settings: SphereViewsSettings = SETTINGS) -> tuple[SphereView, ...]:
+def sphere_views(width_px: int) -> tuple[SphereView, ...]:
     """Views all round, as sharp in their middle as a picture of so many pixels around."""
-    focal = min(width_px / (2 * np.pi), settings.max_width_px / 2 / np.tan(np.deg2rad(settings.aside_deg)))
-    aside, up, down = (focal * np.tan(np.deg2rad(a)) for a in (settings.aside_deg, settings.up_deg, settings.down_deg))
+    focal = min(width_px / (2 * np.pi), SETTINGS.max_width_px / 2 / np.tan(np.deg2rad(SETTINGS.aside_deg)))
+    aside, up, down = (focal * np.tan(np.deg2rad(a)) for a in (SETTINGS.aside_deg, SETTINGS.up_deg, SETTINGS.down_deg))
     k = Intrinsics(round(2 * aside), round(up + down), focal, focal, round(2 * aside) / 2, float(up))
-    return tuple(SphereView(turn * 2 * np.pi / settings.count, k) for turn in range(settings.count))
+    return tuple(SphereView(turn * 2 * np.pi / SETTINGS.count, k) for turn in range(SETTINGS.count))
 
 
 def view_photo(
@@ -175,31 +171,29 @@ def view_photo(
     return Photo(picture, name, (k.width, k.height))
 
 
-def found_in_views(
-    found: Sequence[tuple[SphereView, Sequence[LabelledBox]]], settings: SphereViewsSettings = SETTINGS
-) -> tuple[SphereBox, ...]:
+def found_in_views(found: Sequence[tuple[SphereView, Sequence[LabelledBox]]]) -> tuple[SphereBox, ...]:
     """Things that were found in views, each once: as the view has it that shows it whole, and nearest its middle."""
     rows = []
     for view, boxes in found:
         for labelled in boxes:
             x1, _, x2, _ = labelled.box
-            cut = min(x1, view.intrinsics.width - x2) < settings.seam * view.intrinsics.width
+            cut = min(x1, view.intrinsics.width - x2) < SETTINGS.seam * view.intrinsics.width
             thing = view.on_sphere(labelled)
             rows.append((cut, -labelled.score * np.cos(thing.beside(view.azimuth)), thing))
     things: list[SphereBox] = []
     for _, _, thing in sorted(rows, key=lambda row: row[:2]):
-        if not any(_is_same(thing, other, settings) for other in things):
+        if not any(_is_same(thing, other) for other in things):
             things.append(thing)
     return tuple(things)
 
 
-def _is_same(a: SphereBox, b: SphereBox, settings: SphereViewsSettings) -> bool:
+def _is_same(a: SphereBox, b: SphereBox) -> bool:
     if broad(a.labelled.category) != broad(b.labelled.category):
         return False
     one, two = a.rectangle(b.azimuth), b.rectangle(b.azimuth)
     both = np.maximum(np.minimum(one[2:], two[2:]) - np.maximum(one[:2], two[:2]), 0.0).prod()
     smaller = min((one[2:] - one[:2]).prod(), (two[2:] - two[:2]).prod())
-    return bool(box_iou(one, two) > settings.same_box or both > settings.inside * smaller)
+    return bool(box_iou(one, two) > SETTINGS.same_box or both > SETTINGS.inside * smaller)
 
 
 def marked_views(

@@ -72,34 +72,30 @@ class Illuminant:
         return np.asarray(np.clip(linear_to_srgb(srgb_to_linear(np.asarray(srgb)) * gains), 0.0, 1.0))
 
 
-def estimate_illuminant(
-    rgb: UInt8[np.ndarray, "h w 3"],
-    walls: Bool[np.ndarray, "h w"] | None = None,
-    settings: IlluminantSettings = SETTINGS,
-) -> Illuminant:
+def estimate_illuminant(rgb: UInt8[np.ndarray, "h w 3"], walls: Bool[np.ndarray, "h w"] | None = None) -> Illuminant:
     """The light of a photo of a room.
 
     Args:
         rgb: the photo, sRGB.
         walls: pixels of its walls and ceiling, where they are known.
     """
-    small, of_walls = _reduced(rgb, walls, settings)
+    small, of_walls = _reduced(rgb, walls)
     light = srgb_to_linear(small / 255.0)
-    usable = ((light > settings.dark).all(axis=-1)) & ((light < settings.clipped).all(axis=-1))
-    if usable.sum() < settings.min_pixels:
+    usable = ((light > SETTINGS.dark).all(axis=-1)) & ((light < SETTINGS.clipped).all(axis=-1))
+    if usable.sum() < SETTINGS.min_pixels:
         return Illuminant()
-    votes = [(_chromaticity(_minkowski(light[usable], settings)), _STATISTICS_SIGMA)]
+    votes = [(_chromaticity(_minkowski(light[usable])), _STATISTICS_SIGMA)]
     edges = np.abs(cv2.Laplacian(cv2.GaussianBlur(light, (0, 0), 1.0), cv2.CV_64F))
-    votes.append((_chromaticity(_minkowski(edges[usable], settings)), _STATISTICS_SIGMA))
-    if (usable & of_walls).sum() >= settings.min_pixels:
-        votes.append((_chromaticity(_bright_median(light[usable & of_walls], settings)), _WALLS_SIGMA))
-    return _of_chromaticity(_combined(votes, settings))
+    votes.append((_chromaticity(_minkowski(edges[usable])), _STATISTICS_SIGMA))
+    if (usable & of_walls).sum() >= SETTINGS.min_pixels:
+        votes.append((_chromaticity(_bright_median(light[usable & of_walls])), _WALLS_SIGMA))
+    return _of_chromaticity(_combined(votes))
 
 
 def _reduced(
-    rgb: UInt8[np.ndarray, "h w 3"], walls: Bool[np.ndarray, "h w"] | None, settings: IlluminantSettings = SETTINGS
+    rgb: UInt8[np.ndarray, "h w 3"], walls: Bool[np.ndarray, "h w"] | None
 ) -> tuple[UInt8[np.ndarray, "a b 3"], Bool[np.ndarray, "a b"]]:
-    scale = min(1.0, settings.side_px / max(rgb.shape[:2]))
+    scale = min(1.0, SETTINGS.side_px / max(rgb.shape[:2]))
     size = max(1, round(rgb.shape[1] * scale)), max(1, round(rgb.shape[0] * scale))
     small = cv2.resize(rgb, size, interpolation=cv2.INTER_AREA)
     if walls is None:
@@ -108,13 +104,13 @@ def _reduced(
     return small, share > 0.99
 
 
-def _minkowski(light: Float[np.ndarray, "n 3"], settings: IlluminantSettings = SETTINGS) -> Float[np.ndarray, "3"]:
-    return np.asarray((light**settings.norm).mean(axis=0) ** (1.0 / settings.norm))
+def _minkowski(light: Float[np.ndarray, "n 3"]) -> Float[np.ndarray, "3"]:
+    return np.asarray((light**SETTINGS.norm).mean(axis=0) ** (1.0 / SETTINGS.norm))
 
 
-def _bright_median(light: Float[np.ndarray, "n 3"], settings: IlluminantSettings = SETTINGS) -> Float[np.ndarray, "3"]:
+def _bright_median(light: Float[np.ndarray, "n 3"]) -> Float[np.ndarray, "3"]:
     luminance = light.mean(axis=1)
-    return np.asarray(np.median(light[luminance >= np.quantile(luminance, 1.0 - settings.bright_share)], axis=0))
+    return np.asarray(np.median(light[luminance >= np.quantile(luminance, 1.0 - SETTINGS.bright_share)], axis=0))
 
 
 def _chromaticity(light: Float[np.ndarray, "3"]) -> Float[np.ndarray, "2"]:
@@ -130,15 +126,13 @@ def _of_chromaticity(chromaticity: Float[np.ndarray, "2"]) -> Illuminant:
     return Illuminant((red, green, blue))
 
 
-def _combined(
-    votes: list[tuple[Float[np.ndarray, "2"], Float[np.ndarray, "2"]]], settings: IlluminantSettings = SETTINGS
-) -> Float[np.ndarray, "2"]:
+def _combined(votes: list[tuple[Float[np.ndarray, "2"], Float[np.ndarray, "2"]]]) -> Float[np.ndarray, "2"]:
     """The posterior mean; estimates far from it are trusted less, step by step."""
     values, sigmas = (np.array(column) for column in zip(*votes, strict=True))
     mean = np.zeros(2)
     for _ in range(4):
         off = (values - mean) / np.hypot(sigmas, _EXPECTED_SIGMA)
-        trust = 1.0 / (1.0 + (off / settings.strange) ** 2)
+        trust = 1.0 / (1.0 + (off / SETTINGS.strange) ** 2)
         precision = trust / sigmas**2
         mean = (precision * values).sum(axis=0) / (precision.sum(axis=0) + 1.0 / _EXPECTED_SIGMA**2)
     return np.asarray(mean)

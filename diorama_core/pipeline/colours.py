@@ -39,11 +39,7 @@ SETTINGS = MainColourSettings()
 
 
 def room_illuminant(
-    inputs: Inputs,
-    objects: tuple[DetectedObject, ...],
-    room: Architecture,
-    camera: Camera,
-    settings: MainColourSettings = SETTINGS,
+    inputs: Inputs, objects: tuple[DetectedObject, ...], room: Architecture, camera: Camera
 ) -> Illuminant:
     """The light of a photo that its colours are freed of, by all its pixels and those of unhidden walls and ceiling.
 
@@ -52,19 +48,16 @@ def room_illuminant(
         objects: what was found in the photo, with masks.
         room: planes.
         camera: the photo's.
-        settings: numbers to work with.
     """
     shape = (inputs.photo.height, inputs.photo.width)
     step = max(1, max(shape) // GRID_PX)
     upper = np.array([plane.role != "floor" for plane in room.planes] + [False])  # the last one: no plane
     seen = upper[visible_planes(room.planes, camera, step)]
     walls = cv2.resize(seen.astype(np.uint8), shape[::-1], interpolation=cv2.INTER_NEAREST).astype(bool)
-    return estimate_illuminant(inputs.photo.rgb, walls & ~object_pixels(shape, objects)).partly(settings.adapted)
+    return estimate_illuminant(inputs.photo.rgb, walls & ~object_pixels(shape, objects)).partly(SETTINGS.adapted)
 
 
-def photo_colours(
-    rgb: UInt8[np.ndarray, "h w 3"], objects: tuple[DetectedObject, ...], settings: MainColourSettings = SETTINGS
-) -> dict[str, Colour]:
+def photo_colours(rgb: UInt8[np.ndarray, "h w 3"], objects: tuple[DetectedObject, ...]) -> dict[str, Colour]:
     """Main colour (sRGB 0 to 1) of every object that has a clear one; others are left out.
 
     Pixels near the mask's border and those of smaller objects in front are no evidence, and a lamp's light is no
@@ -79,7 +72,7 @@ def photo_colours(
         nearer |= item.mask
         if item.category in LAMPS:
             inner &= rgb.max(axis=2) < SHINING
-        colour = None if item.category in KEEP_THEIR_OWN else _main_colour(rgb, inner, settings)
+        colour = None if item.category in KEEP_THEIR_OWN else _main_colour(rgb, inner)
         if colour is not None:
             colours[item.id] = colour
     return colours
@@ -104,22 +97,20 @@ def shared_by_sets(
     return shared
 
 
-def _main_colour(
-    rgb: UInt8[np.ndarray, "h w 3"], mask: Bool[np.ndarray, "h w"], settings: MainColourSettings = SETTINGS
-) -> Colour | None:
+def _main_colour(rgb: UInt8[np.ndarray, "h w 3"], mask: Bool[np.ndarray, "h w"]) -> Colour | None:
     """Median of the fullest bin of a coarse Lab grid, and its neighbours'."""
     pixels = rgb[mask]
-    if len(pixels) < settings.min_pixels:
+    if len(pixels) < SETTINGS.min_pixels:
         return None
     lab = cv2.cvtColor(pixels[None].astype(np.float32) / 255.0, cv2.COLOR_RGB2Lab)[0]
     # Shade varies over one surface, hue hardly: lightness gets wider bins. Grey lies in the middle of one.
     bins = 16  # more than there are along either axis of hue, which reach from -127 to 127
-    widths = settings.bin_lab * np.array([2.0, 1.0, 1.0])
+    widths = SETTINGS.bin_lab * np.array([2.0, 1.0, 1.0])
     light, green_red, blue_yellow = np.floor(lab / widths + (0.0, 0.5, 0.5)).astype(int).T
     cell = (light * bins + green_red + bins // 2) * bins + blue_yellow + bins // 2
     seed = np.median(lab[cell == int(np.argmax(np.bincount(cell)))], axis=0)
-    near = np.linalg.norm((lab - seed) / (2.0, 1.0, 1.0), axis=1) < settings.bin_lab
-    if near.mean() < settings.min_share:
+    near = np.linalg.norm((lab - seed) / (2.0, 1.0, 1.0), axis=1) < SETTINGS.bin_lab
+    if near.mean() < SETTINGS.min_share:
         return None
     red, green, blue = (float(c) / 255.0 for c in np.median(pixels[near], axis=0))
     return (red, green, blue)

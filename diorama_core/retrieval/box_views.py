@@ -75,11 +75,7 @@ class BoxView:
 
 
 def box_view(
-    box: tuple[float, float, float, float],
-    carried: float,
-    k: Intrinsics,
-    R_world_camera: Float[np.ndarray, "3 3"],
-    settings: BoxViewSettings = SETTINGS,
+    box: tuple[float, float, float, float], carried: float, k: Intrinsics, R_world_camera: Float[np.ndarray, "3 3"]
 ) -> BoxView:
     """A box (x1, y1, x2, y2, pixels) as a camera sees it that is held so.
 
@@ -88,7 +84,6 @@ def box_view(
         carried: how likely it is for what lies on another thing.
         k: of the camera.
         R_world_camera: of the camera.
-        settings: numbers to work with.
     """
     x1, y1, x2, y2 = box
     middle_x, middle_y = (x1 + x2) / 2, (y1 + y2) / 2
@@ -100,85 +95,74 @@ def box_view(
         tan_bottom=float(rays[0, 2]),
         tan_top=float(rays[1, 2]),
         width=float(np.linalg.norm(rays[2, :2] - rays[3, :2])),
-        cut_bottom=y2 > k.height - settings.border_px,
-        cut_top=y1 < settings.border_px,
-        cut_side=x1 < settings.border_px or x2 > k.width - settings.border_px,
+        cut_bottom=y2 > k.height - SETTINGS.border_px,
+        cut_top=y1 < SETTINGS.border_px,
+        cut_side=x1 < SETTINGS.border_px or x2 > k.width - SETTINGS.border_px,
         carried=carried,
     )
 
 
-def box_likelihood(view: BoxView, kind: str, settings: BoxViewSettings = SETTINGS) -> Float[np.ndarray, "h"]:
+def box_likelihood(view: BoxView, kind: str) -> Float[np.ndarray, "h"]:
     """How likely such a box is for a kind, for every camera height: over all distances and the kind's modes."""
     entry = category(kind)
-    likely = _standing(view, entry.priors, entry.mount, settings)
+    likely = _standing(view, entry.priors, entry.mount)
     if entry.mount == "surface":
         likely = likely * view.carried
     elif entry.mount == "floor" and kind in CARRIED_KINDS:
-        lying = _standing(view, entry.priors, "surface", settings)
-        likely = (1.0 - settings.also_carried) * likely + settings.also_carried * view.carried * lying
-    return likely + settings.certain
+        lying = _standing(view, entry.priors, "surface")
+        likely = (1.0 - SETTINGS.also_carried) * likely + SETTINGS.also_carried * view.carried * lying
+    return likely + SETTINGS.certain
 
 
-def _standing(
-    view: BoxView, priors: tuple[SizePrior, ...], mount: Mount, settings: BoxViewSettings = SETTINGS
-) -> Float[np.ndarray, "h"]:
+def _standing(view: BoxView, priors: tuple[SizePrior, ...], mount: Mount) -> Float[np.ndarray, "h"]:
     return np.mean(
-        [
-            (place_density(view, p, mount, settings) * size_density(view, p, mount, settings)).mean(axis=1)
-            for p in priors
-        ],
+        [(place_density(view, p, mount) * size_density(view, p, mount)).mean(axis=1) for p in priors],
         axis=0,
     )
 
 
-def size_density(
-    view: BoxView, prior: SizePrior, mount: Mount, settings: BoxViewSettings = SETTINGS
-) -> Float[np.ndarray, "d"]:
+def size_density(view: BoxView, prior: SizePrior, mount: Mount) -> Float[np.ndarray, "d"]:
     """How usual the size would be that a thing in the box has, for every distance; a density over two logarithms.
 
     Args:
         view: of the box.
         prior: usual size of the kind.
         mount: how things of the kind are held.
-        settings: numbers to work with.
     """
     beyond = _depth_seen(view, prior)
     tall_m = np.maximum(DISTANCES_M * (view.tan_top - view.tan_bottom) + beyond * view.tan_top, 0.01)
     wide_m = np.maximum(DISTANCES_M * view.width, 0.01)
     across = 0.5 * (prior.width_m + prior.depth_m) if mount != "wall" else prior.width_m
-    tall = _log_normal(tall_m, prior.height_m, prior.sigma_height, view.cut_bottom or view.cut_top, settings)
-    return tall * _log_normal(wide_m, across, prior.sigma_width, view.cut_side, settings)
+    tall = _log_normal(tall_m, prior.height_m, prior.sigma_height, view.cut_bottom or view.cut_top)
+    return tall * _log_normal(wide_m, across, prior.sigma_width, view.cut_side)
 
 
-def place_density(
-    view: BoxView, prior: SizePrior, mount: Mount, settings: BoxViewSettings = SETTINGS
-) -> Float[np.ndarray, "h d"]:
+def place_density(view: BoxView, prior: SizePrior, mount: Mount) -> Float[np.ndarray, "h d"]:
     """How usual it is for a thing that is so mounted to be where it would be; densities over height in metres.
 
     Args:
         view: of the box.
         prior: usual size of the kind.
         mount: how things of the kind are held.
-        settings: numbers to work with.
     """
     bottom = HEIGHTS_M[:, None] + DISTANCES_M * view.tan_bottom
     top = HEIGHTS_M[:, None] + (DISTANCES_M + _depth_seen(view, prior)) * view.tan_top
-    sigma = foot_sigma_m(settings)
+    sigma = foot_sigma_m()
     if mount == "floor":
         return normal(np.minimum(bottom, 0.0) if view.cut_bottom else bottom, sigma)
     if mount == "ceiling":
         return normal(
-            np.maximum(top - settings.ceiling_m, 0.0) if view.cut_top else top - settings.ceiling_m,
-            settings.ceiling_sigma_m + sigma,
+            np.maximum(top - SETTINGS.ceiling_m, 0.0) if view.cut_top else top - SETTINGS.ceiling_m,
+            SETTINGS.ceiling_sigma_m + sigma,
         )
     if mount == "wall":
-        return normal((bottom + top) / 2 - settings.on_walls_m, settings.on_walls_sigma_m + sigma) * (bottom > 0.0)
-    return normal(bottom - settings.on_objects_m, settings.on_objects_sigma_m + sigma)
+        return normal((bottom + top) / 2 - SETTINGS.on_walls_m, SETTINGS.on_walls_sigma_m + sigma) * (bottom > 0.0)
+    return normal(bottom - SETTINGS.on_objects_m, SETTINGS.on_objects_sigma_m + sigma)
 
 
-def foot_sigma_m(settings: BoxViewSettings = SETTINGS) -> Float[np.ndarray, "d"]:
+def foot_sigma_m() -> Float[np.ndarray, "d"]:
     """How far from what it stands on a foot may seem to be, for every distance."""
-    return settings.foot_sigma_m + settings.foot_sigma_share * DISTANCES_M
+    return SETTINGS.foot_sigma_m + SETTINGS.foot_sigma_share * DISTANCES_M
 
 
 def _depth_seen(view: BoxView, prior: SizePrior) -> float:
@@ -191,15 +175,13 @@ def normal(off: Float[np.ndarray, "h d"], sigma: Float[np.ndarray, "d"] | float)
     return np.asarray(np.exp(-0.5 * (off / sigma) ** 2) / sigma)
 
 
-def _log_normal(
-    size_m: Float[np.ndarray, "d"], usual_m: float, sigma: float, cut: bool, settings: BoxViewSettings = SETTINGS
-) -> Float[np.ndarray, "d"]:
+def _log_normal(size_m: Float[np.ndarray, "d"], usual_m: float, sigma: float, cut: bool) -> Float[np.ndarray, "d"]:
     """Density of the logarithm of a size; smaller ones are as likely where a thing is cut or hidden."""
     off = np.log(size_m / usual_m)
-    spread = float(np.hypot(sigma, settings.view_sigma))
+    spread = float(np.hypot(sigma, SETTINGS.view_sigma))
     whole = np.exp(-0.5 * (off / spread) ** 2) / spread
-    part = ((off < 0) & (off > -settings.hidden_range)) * np.sqrt(2 * np.pi) / settings.hidden_range
-    share = 0.7 if cut else settings.hidden_share
+    part = ((off < 0) & (off > -SETTINGS.hidden_range)) * np.sqrt(2 * np.pi) / SETTINGS.hidden_range
+    share = 0.7 if cut else SETTINGS.hidden_share
     return np.asarray((1 - share) * whole + share * part)
 
 

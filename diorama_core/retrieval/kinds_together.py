@@ -70,25 +70,22 @@ def carries(kind: str) -> bool:
     return bool(_carriers()[_index()[kind]])
 
 
-def carriers(boxes: Sequence[Box], settings: KindsTogetherSettings = SETTINGS) -> list[int | None]:
+def carriers(boxes: Sequence[Box]) -> list[int | None]:
     """For every box the smallest larger one that its foot is in, as an index; None where there is none."""
     rows = np.asarray(boxes, dtype=np.float64).reshape(-1, 4)
     left, top, right, bottom = rows.T
     area, height, middle = (right - left) * (bottom - top), bottom - top, (left + right) / 2
     across = (left[None] <= middle[:, None]) & (middle[:, None] <= right[None])
-    above = (top[None] - settings.foot_slack * height[:, None] <= bottom[:, None]) & (
-        bottom[:, None] <= (bottom - settings.lowest_foot * height)[None]
+    above = (top[None] - SETTINGS.foot_slack * height[:, None] <= bottom[:, None]) & (
+        bottom[:, None] <= (bottom - SETTINGS.lowest_foot * height)[None]
     )
-    possible = across & above & (area[None] > settings.larger * area[:, None])
+    possible = across & above & (area[None] > SETTINGS.larger * area[:, None])
     best = np.where(possible, area[None], np.inf)
     return [int(row.argmin()) if np.isfinite(row).any() else None for row in best]
 
 
 def kinds_together(
-    alone: Sequence[Mapping[str, float]],
-    carrier_of: Sequence[int | None],
-    lying: Sequence[Lying | None] | None = None,
-    settings: KindsTogetherSettings = SETTINGS,
+    alone: Sequence[Mapping[str, float]], carrier_of: Sequence[int | None], lying: Sequence[Lying | None] | None = None
 ) -> list[Mapping[str, float]]:
     """For every thing how likely it is of each kind, given all others.
 
@@ -96,7 +93,6 @@ def kinds_together(
         alone: how likely it is of each kind by itself; kinds that are not there are impossible.
         carrier_of: for every thing the one that its foot is in; no thing carries itself, not even through others.
         lying: for every thing what its box says for its lying there; nothing by default.
-        settings: numbers to work with.
     """
     if not alone:
         return []
@@ -105,23 +101,23 @@ def kinds_together(
     for row, of_one in zip(unary, alone, strict=True):
         for kind, share in of_one.items():
             row[index[kind]] = share
-    edges = [_edge(of_one, settings) for of_one in lying or [None] * len(alone)]
-    explained = [_in_room(unary * usual, carrier_of, edges) for usual in _rooms(settings)]
-    says = settings.room_trust * np.array([log for _, log in explained])
+    edges = [_edge(of_one) for of_one in lying or [None] * len(alone)]
+    explained = [_in_room(unary * usual, carrier_of, edges) for usual in _rooms()]
+    says = SETTINGS.room_trust * np.array([log for _, log in explained])
     weight = np.exp(says - says.max())
     mixed = np.einsum("t,tnk->nk", weight / weight.sum(), np.stack([beliefs for beliefs, _ in explained]))
     return [{kind: float(row[index[kind]]) for kind in of_one} for row, of_one in zip(mixed, alone, strict=True)]
 
 
-def _edge(lying: Lying | None, settings: KindsTogetherSettings = SETTINGS) -> Float[np.ndarray, "k k"]:
+def _edge(lying: Lying | None) -> Float[np.ndarray, "k k"]:
     """How well every kind of a thing (row) goes with every kind of its carrier (column)."""
-    other_shares = _together(settings)
+    other_shares = _together()
     if lying is not None:
         index = _index()
         rows, columns = ([index[kind] for kind in kinds] for kinds in (lying.kinds, lying.carrier_kinds))
         other_shares = other_shares.copy()
         other_shares[np.ix_(rows, columns)] *= lying.ratio
-    return (1.0 - settings.lies_on_it) + settings.lies_on_it * other_shares
+    return (1.0 - SETTINGS.lies_on_it) + SETTINGS.lies_on_it * other_shares
 
 
 def _in_room(
@@ -179,7 +175,7 @@ def _frequency() -> Float[np.ndarray, "k"]:
 
 
 @cache
-def _together(settings: KindsTogetherSettings = SETTINGS) -> Float[np.ndarray, "k k"]:
+def _together() -> Float[np.ndarray, "k k"]:
     """How many times more often a thing of each kind (row) lies on one of each kind (column) than it is met at all."""
     names, index = _names(), _index()
     lies = np.array([category(name).mount == "surface" for name in names])
@@ -188,7 +184,7 @@ def _together(settings: KindsTogetherSettings = SETTINGS) -> Float[np.ndarray, "
         loads = {kind: often[like] for kind, often in column("lies_on").items() if like in often}
         ratio[:, index[carrier]] = np.where(lies, SELDOM_CARRIED, HARDLY_CARRIED)
         ratio[[index[kind] for kind in loads], index[carrier]] = list(loads.values())
-    return np.where(_carriers(), 1.0, settings.no_carrier) * ratio / (_frequency() @ ratio)
+    return np.where(_carriers(), 1.0, SETTINGS.no_carrier) * ratio / (_frequency() @ ratio)
 
 
 @cache
@@ -198,10 +194,10 @@ def _carriers() -> Bool[np.ndarray, "k"]:
 
 
 @cache
-def _rooms(settings: KindsTogetherSettings = SETTINGS) -> tuple[Float[np.ndarray, "k"], ...]:
+def _rooms() -> tuple[Float[np.ndarray, "k"], ...]:
     """For every type of room how many times more often each kind is met there."""
     rooms = []
     for kinds in ROOMS.values():
-        ratio = np.array([settings.at_home if name in kinds else 1.0 for name in _names()])
+        ratio = np.array([SETTINGS.at_home if name in kinds else 1.0 for name in _names()])
         rooms.append(ratio / float(_frequency() @ ratio))
     return tuple(rooms)

@@ -49,9 +49,7 @@ class WordSenseSettings:
 SETTINGS = WordSenseSettings()
 
 
-def with_word_senses(
-    objects: tuple[DetectedObject, ...], camera: CameraEstimate, settings: WordSenseSettings = SETTINGS
-) -> tuple[DetectedObject, ...]:
+def with_word_senses(objects: tuple[DetectedObject, ...], camera: CameraEstimate) -> tuple[DetectedObject, ...]:
     """The objects, those whose word is used loosely with the category that it most probably means here.
 
     Where a thing is held decides first, over all kinds that are held there. Among kinds that are held as the word says
@@ -59,9 +57,9 @@ def with_word_senses(
     A word that is no kind's name ("stand") means the likeliest.
     """
     best = camera.best
-    senses = sense_probabilities(objects, best.intrinsics, best.R_world_camera, camera.height_m, settings)
+    senses = sense_probabilities(objects, best.intrinsics, best.R_world_camera, camera.height_m)
     return tuple(
-        replace(item, category=_chosen(item, of_word, settings), meanings=_listed(of_word))
+        replace(item, category=_chosen(item, of_word), meanings=_listed(of_word))
         for item, of_word in zip(objects, senses, strict=True)
     )
 
@@ -76,7 +74,6 @@ def sense_probabilities(
     intrinsics: Intrinsics,
     R_world_camera: Float[np.ndarray, "3 3"],
     height_m: float | None = None,
-    settings: WordSenseSettings = SETTINGS,
 ) -> list[Mapping[str, float]]:
     """For every object the kinds its word may mean, with probabilities that the boxes leave them.
 
@@ -85,11 +82,10 @@ def sense_probabilities(
         intrinsics: of the photo's camera.
         R_world_camera: how it is held; world +Z is up.
         height_m: of the camera above the floor, where that is known.
-        settings: numbers to work with.
     """
     below = carriers([item.box for item in objects])
     views = [
-        box_view(item.box, _carried(item, objects, on, settings), intrinsics, R_world_camera)
+        box_view(item.box, _carried(item, objects, on), intrinsics, R_world_camera)
         for item, on in zip(objects, below, strict=True)
     ]
     senses = [
@@ -99,9 +95,9 @@ def sense_probabilities(
         {kind: box_likelihood(view, kind) for kind in of_word} for view, of_word in zip(views, senses, strict=True)
     ]
     usual, sigma = (
-        (settings.usual_height_m, settings.height_sigma_m)
+        (SETTINGS.usual_height_m, SETTINGS.height_sigma_m)
         if height_m is None
-        else (height_m, settings.measured_sigma_m)
+        else (height_m, SETTINGS.measured_sigma_m)
     )
     log_likelihoods = [-0.5 * ((HEIGHTS_M - np.clip(usual, HEIGHTS_M[0], HEIGHTS_M[-1])) / sigma) ** 2]
     for of_word, of_view in zip(senses, likely, strict=True):
@@ -139,28 +135,26 @@ def _as_lying(
     return lying
 
 
-def _chosen(item: DetectedObject, senses: Mapping[str, float], settings: WordSenseSettings = SETTINGS) -> str:
+def _chosen(item: DetectedObject, senses: Mapping[str, float]) -> str:
     detected_kind, named = item.category, is_named(item.label)
     if detected_kind == UNKNOWN.name or (named and not names_a_kind(item.label)):
         best = max(senses, key=lambda kind: senses[kind])
-        return best if named or senses[best] > settings.sure else detected_kind
+        return best if named or senses[best] > SETTINGS.sure else detected_kind
     mounts: dict[Mount, float] = {}
     for kind, share in senses.items():
         mount = category(kind).mount
         mounts[mount] = mounts.get(mount, 0.0) + share
     mount = max(mounts, key=mounts.__getitem__)
-    if mounts[mount] <= settings.switch * mounts.get(category(detected_kind).mount, 0.0):
+    if mounts[mount] <= SETTINGS.switch * mounts.get(category(detected_kind).mount, 0.0):
         mount = category(detected_kind).mount
     best = max((kind for kind in senses if category(kind).mount == mount), key=lambda kind: senses[kind])
-    return best if mount != category(detected_kind).mount or senses[best] > settings.majority else detected_kind
+    return best if mount != category(detected_kind).mount or senses[best] > SETTINGS.majority else detected_kind
 
 
-def _carried(
-    item: DetectedObject, objects: Sequence[DetectedObject], inside: int | None, settings: WordSenseSettings = SETTINGS
-) -> float:
+def _carried(item: DetectedObject, objects: Sequence[DetectedObject], inside: int | None) -> float:
     if any(_stands_on(other.box, item.box) for other in objects if other is not item):
         return 1.0
-    return settings.unsupported if inside is None else settings.inside
+    return SETTINGS.unsupported if inside is None else SETTINGS.inside
 
 
 def _stands_on(below: tuple[float, float, float, float], box: tuple[float, float, float, float]) -> bool:

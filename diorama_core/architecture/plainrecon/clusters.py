@@ -35,10 +35,7 @@ SETTINGS = PlaneClusterSettings()
 
 
 def planar_clusters(
-    points: Float[np.ndarray, "n 3"],
-    normals: Float[np.ndarray, "n 3"],
-    seed: int = 0,
-    settings: PlaneClusterSettings = SETTINGS,
+    points: Float[np.ndarray, "n 3"], normals: Float[np.ndarray, "n 3"], seed: int = 0
 ) -> Int[np.ndarray, "n"]:
     """The planar piece that each point belongs to, largest direction first; -1 everywhere when there is none.
 
@@ -46,12 +43,11 @@ def planar_clusters(
         points: Of the empty room.
         normals: Unit, toward the camera.
         seed: Of K-means.
-        settings: Numbers to work with.
     """
     if len(points) < MIN_POINTS:
         return np.full(len(points), -1)
-    representatives, directions = _thinned(points, normals, settings)
-    labels = _grown(representatives, directions, seed, settings)
+    representatives, directions = _thinned(points, normals)
+    labels = _grown(representatives, directions, seed)
     if (labels < 0).all():
         return np.full(len(points), -1)
     settled = labels >= 0
@@ -60,30 +56,25 @@ def planar_clusters(
 
 
 def _thinned(
-    points: Float[np.ndarray, "n 3"], normals: Float[np.ndarray, "n 3"], settings: PlaneClusterSettings = SETTINGS
+    points: Float[np.ndarray, "n 3"], normals: Float[np.ndarray, "n 3"]
 ) -> tuple[Float[np.ndarray, "m 3"], Float[np.ndarray, "m 3"]]:
     """One point a voxel, without statistical outliers."""
     cloud = o3d.geometry.PointCloud(o3d.utility.Vector3dVector(points))
     cloud.normals = o3d.utility.Vector3dVector(normals)
-    cloud = cloud.voxel_down_sample(settings.voxel_m)
-    cloud = cloud.remove_statistical_outlier(settings.outlier_neighbours, settings.outlier_deviations)[0]
+    cloud = cloud.voxel_down_sample(SETTINGS.voxel_m)
+    cloud = cloud.remove_statistical_outlier(SETTINGS.outlier_neighbours, SETTINGS.outlier_deviations)[0]
     directions = np.asarray(cloud.normals)
     lengths = np.linalg.norm(directions, axis=1)
     sound = lengths > 1e-6
     return np.asarray(cloud.points)[sound], directions[sound] / lengths[sound, None]
 
 
-def _grown(
-    points: Float[np.ndarray, "n 3"],
-    normals: Float[np.ndarray, "n 3"],
-    seed: int,
-    settings: PlaneClusterSettings = SETTINGS,
-) -> Int[np.ndarray, "n"]:
+def _grown(points: Float[np.ndarray, "n 3"], normals: Float[np.ndarray, "n 3"], seed: int) -> Int[np.ndarray, "n"]:
     """Seed normals from K-means; everything within the growth angle of one, parted where it is not connected."""
     labels = np.full(len(points), -1)
     if len(points) < MIN_POINTS:
         return labels
-    means = KMeans(min(settings.seeds, len(np.unique(normals.round(6), axis=0))), n_init=3, random_state=seed).fit(
+    means = KMeans(min(SETTINGS.seeds, len(np.unique(normals.round(6), axis=0))), n_init=3, random_state=seed).fit(
         normals
     )
     seeds = means.cluster_centers_ / np.maximum(np.linalg.norm(means.cluster_centers_, axis=1, keepdims=True), 1e-9)
@@ -94,19 +85,17 @@ def _grown(
         fullest = max(waiting, key=lambda k: int((near[:, k] & free).sum()))
         waiting.remove(fullest)
         member = near[:, fullest] & free
-        for piece in _connected(points, member, settings):
+        for piece in _connected(points, member):
             labels[piece], number = number, number + 1
         free &= ~member
     return labels
 
 
-def _connected(
-    points: Float[np.ndarray, "n 3"], member: Bool[np.ndarray, "n"], settings: PlaneClusterSettings = SETTINGS
-) -> list[Int[np.ndarray, "_"]]:
+def _connected(points: Float[np.ndarray, "n 3"], member: Bool[np.ndarray, "n"]) -> list[Int[np.ndarray, "_"]]:
     """Indices of the dense pieces of the members that are large enough, largest first."""
     chosen = np.flatnonzero(member)
     if len(chosen) < MIN_POINTS:
         return []
-    parts = DBSCAN(eps=settings.dense_m, min_samples=settings.dense_points).fit_predict(points[chosen])
+    parts = DBSCAN(eps=SETTINGS.dense_m, min_samples=SETTINGS.dense_points).fit_predict(points[chosen])
     pieces = [chosen[parts == k] for k in range(int(parts.max()) + 1)]
     return sorted((p for p in pieces if len(p) >= MIN_POINTS), key=lambda p: -len(p))

@@ -45,13 +45,7 @@ class LayoutRefinementSettings:
 SETTINGS = LayoutRefinementSettings()
 
 
-def refined_layout(
-    layout: RoomLayout,
-    surface: MeasuredSurface,
-    proposals: Proposals,
-    camera: Camera,
-    settings: LayoutRefinementSettings = SETTINGS,
-) -> RoomLayout:
+def refined_layout(layout: RoomLayout, surface: MeasuredSurface, proposals: Proposals, camera: Camera) -> RoomLayout:
     """The layout with walls ended where the picture looks past them, as far as that explains the depth better.
 
     Args:
@@ -59,13 +53,12 @@ def refined_layout(
         surface: measured points in the world, and which of them belong to objects.
         proposals: the proposed planes.
         camera: of the photo, in the world.
-        settings: rounds, and the errors in metres that are worth one.
     """
     pixels = camera.project(surface.points)
     ends: tuple[PlaneLine, ...] = ()
-    for _ in range(settings.max_rounds):
+    for _ in range(SETTINGS.max_rounds):
         error = depth_error_m(layout, surface, pixels)
-        new = hidden_ends(layout, surface, proposals, camera, settings) if error > settings.min_error_m else ()
+        new = hidden_ends(layout, surface, proposals, camera) if error > SETTINGS.min_error_m else ()
         tried = best_layout(surface, proposals, camera, (*ends, *new)) if new else None
         if tried is None or depth_error_m(tried, surface, pixels) >= error:
             break
@@ -82,11 +75,7 @@ def depth_error_m(layout: RoomLayout, surface: MeasuredSurface, pixels: Float[np
 
 
 def hidden_ends(
-    layout: RoomLayout,
-    surface: MeasuredSurface,
-    proposals: Proposals,
-    camera: Camera,
-    settings: LayoutRefinementSettings = SETTINGS,
+    layout: RoomLayout, surface: MeasuredSurface, proposals: Proposals, camera: Camera
 ) -> tuple[PlaneLine, ...]:
     """For every wall about which the layout is wrong, the line along which the depth leaves it.
 
@@ -95,7 +84,6 @@ def hidden_ends(
         surface: measured points in the world, and which of them belong to objects.
         proposals: the proposed planes.
         camera: of the photo, in the world.
-        settings: by how many metres, and over what share of the picture, a wall must be wrong.
     """
     pixels = camera.project(surface.points)
     shown, rendered = layout.planes_at(pixels), layout.depth_at(pixels)
@@ -107,14 +95,13 @@ def hidden_ends(
             continue
         inverse = layout.cells.inverse_at(wall, pixels)
         behind = np.where(inverse > 0, surface.depth_m - 1.0 / np.maximum(inverse, 1e-9), -np.inf)
-        drawn_too_far = (shown == wall) & (behind > settings.wrong_m)
-        left_out = (proposals.segment == wall) & (rendered - surface.depth_m > settings.wrong_m)
-        if (drawn_too_far | left_out).sum() < settings.min_share * size[0] * size[1]:
+        drawn_too_far = (shown == wall) & (behind > SETTINGS.wrong_m)
+        left_out = (proposals.segment == wall) & (rendered - surface.depth_m > SETTINGS.wrong_m)
+        if (drawn_too_far | left_out).sum() < SETTINGS.min_share * size[0] * size[1]:
             continue
         # Where two walls meet the depth does not jump, and their own line is there already.
         form = _line(
-            _changes(pixels * scale, np.abs(behind) <= settings.wrong_m, behind > 2.0 * settings.wrong_m, size),
-            settings,
+            _changes(pixels * scale, np.abs(behind) <= SETTINGS.wrong_m, behind > 2.0 * SETTINGS.wrong_m, size)
         )
         if form is not None:
             lines.append(PlaneLine(form * [*scale, 1.0], frozenset((wall,))))
@@ -138,21 +125,19 @@ def _changes(
     return np.concatenate(near)
 
 
-def _line(
-    places: Float[np.ndarray, "n 2"], settings: LayoutRefinementSettings = SETTINGS
-) -> Float[np.ndarray, "3"] | None:
+def _line(places: Float[np.ndarray, "n 2"]) -> Float[np.ndarray, "3"] | None:
     """The line that most places agree with, as a form whose normal has unit length; None where few do."""
-    if len(places) < settings.min_agreeing:
+    if len(places) < SETTINGS.min_agreeing:
         return None
     rng = np.random.default_rng(0)
-    first, second = places[rng.integers(len(places), size=(2, settings.line_trials))]
+    first, second = places[rng.integers(len(places), size=(2, SETTINGS.line_trials))]
     along = second - first
     length = np.linalg.norm(along, axis=1)
     normals = np.stack([-along[:, 1], along[:, 0]], axis=1) / np.maximum(length, 1e-9)[:, None]
     off = np.abs(normals @ places.T - (normals * first).sum(axis=1)[:, None])
-    agreeing = (off <= settings.line_samples) & (length > 1e-9)[:, None]
+    agreeing = (off <= SETTINGS.line_samples) & (length > 1e-9)[:, None]
     best = agreeing[np.argmax(agreeing.sum(axis=1))]
-    if best.sum() < settings.min_agreeing:
+    if best.sum() < SETTINGS.min_agreeing:
         return None
     centre = places[best].mean(axis=0)
     _, axes = np.linalg.eigh(np.cov((places[best] - centre).T))

@@ -73,12 +73,7 @@ class LevelView:
         return np.interp(slope, self.slopes, np.arange(len(self.slopes)))
 
 
-def level_view(
-    rgb: UInt8[np.ndarray, "h w 3"],
-    cues: RoomCues,
-    objects: tuple[DetectedObject, ...],
-    settings: LevelViewSettings = SETTINGS,
-) -> LevelView:
+def level_view(rgb: UInt8[np.ndarray, "h w 3"], cues: RoomCues, objects: tuple[DetectedObject, ...]) -> LevelView:
     """The precomputed evidence for scoring walls by headings.
 
     Args:
@@ -88,8 +83,8 @@ def level_view(
     """
     camera = cues.camera
     low, high = view_headings(camera)
-    edges = np.linspace(low, high, settings.headings + 1)
-    slopes = _slopes(camera, settings)
+    edges = np.linspace(low, high, SETTINGS.headings + 1)
+    slopes = _slopes(camera)
     middles, rows = 0.5 * (edges[1:] + edges[:-1]), 0.5 * (slopes[1:] + slopes[:-1])
     pixels, inside = projected(camera, _directions(middles, rows))
     hidden = object_pixels((rgb.shape[0], rgb.shape[1]), objects)
@@ -101,9 +96,7 @@ def level_view(
         edges_rad=edges,
         slopes=slopes,
         share=share / max(float(share.sum()), 1e-9),
-        floor_ratio=_floor_ratio(
-            _small_lab(rgb, settings), pixels / np.array(rgb.shape[1::-1]), free, middles, rows, cues, settings
-        ),
+        floor_ratio=_floor_ratio(_small_lab(rgb), pixels / np.array(rgb.shape[1::-1]), free, middles, rows, cues),
         lines=_line_shares(cues, edges, slopes),
         upright=_upright(cues, edges, slopes),
     )
@@ -121,7 +114,7 @@ def projected(
     return pixels, inside
 
 
-def _slopes(camera: Camera, settings: LevelViewSettings = SETTINGS) -> Float[np.ndarray, "k1"]:
+def _slopes(camera: Camera) -> Float[np.ndarray, "k1"]:
     k = camera.intrinsics
     rim = np.concatenate(
         [
@@ -130,8 +123,8 @@ def _slopes(camera: Camera, settings: LevelViewSettings = SETTINGS) -> Float[np.
     )  # fmt: skip
     rays = camera.rays(rim)
     slopes = rays[:, 2] / np.maximum(np.linalg.norm(rays[:, :2], axis=1), 1e-6)
-    low, high = np.arctan(np.clip([slopes.min(), slopes.max()], -settings.steepest, settings.steepest))
-    return np.asarray(np.tan(np.linspace(min(low, -0.2), max(high, 0.2), settings.slopes + 1)))
+    low, high = np.arctan(np.clip([slopes.min(), slopes.max()], -SETTINGS.steepest, SETTINGS.steepest))
+    return np.asarray(np.tan(np.linspace(min(low, -0.2), max(high, 0.2), SETTINGS.slopes + 1)))
 
 
 def _directions(headings: Float[np.ndarray, "m"], slopes: Float[np.ndarray, "k"]) -> Float[np.ndarray, "m k 3"]:
@@ -150,8 +143,8 @@ def _cell_shares(
     return np.asarray(np.abs(across[..., 0] * up[..., 1] - across[..., 1] * up[..., 0]))
 
 
-def _small_lab(rgb: UInt8[np.ndarray, "h w 3"], settings: LevelViewSettings = SETTINGS) -> UInt8[np.ndarray, "hs ws 3"]:
-    scale = min(1.0, settings.colour_side_px / max(rgb.shape[:2]))
+def _small_lab(rgb: UInt8[np.ndarray, "h w 3"]) -> UInt8[np.ndarray, "hs ws 3"]:
+    scale = min(1.0, SETTINGS.colour_side_px / max(rgb.shape[:2]))
     small = cv2.resize(rgb, None, fx=scale, fy=scale, interpolation=cv2.INTER_AREA)
     return np.asarray(cv2.cvtColor(cv2.medianBlur(small, 3), cv2.COLOR_RGB2LAB))
 
@@ -163,7 +156,6 @@ def _floor_ratio(
     headings: Float[np.ndarray, "m"],
     slopes: Float[np.ndarray, "k"],
     cues: RoomCues,
-    settings: LevelViewSettings = SETTINGS,
 ) -> Float[np.ndarray, "m k"]:
     """Log-likelihood ratio of floor colours (between objects on the floor) and wall colours (at eye height)."""
     shape = np.array(lab.shape[1::-1])
@@ -171,13 +163,13 @@ def _floor_ratio(
     cells = (lab[rows.clip(0, lab.shape[0] - 1), columns.clip(0, lab.shape[1] - 1)] / LAB_BINS).astype(int)
     floor = free & _on_sure_floor(headings, slopes, cues)
     eye = float(cues.camera.position[2])
-    wall = free & ((slopes > -eye / settings.horizon_m) & (slopes < settings.overhead_slope))[None]
-    if min(floor.sum(), wall.sum()) < settings.enough_seeds:
+    wall = free & ((slopes > -eye / SETTINGS.horizon_m) & (slopes < SETTINGS.overhead_slope))[None]
+    if min(floor.sum(), wall.sum()) < SETTINGS.enough_seeds:
         return np.zeros(free.shape)
-    ratio = np.log(_frequency(cells, floor) + settings.unseen_colour) - np.log(
-        _frequency(cells, wall) + settings.unseen_colour
+    ratio = np.log(_frequency(cells, floor) + SETTINGS.unseen_colour) - np.log(
+        _frequency(cells, wall) + SETTINGS.unseen_colour
     )
-    return np.where(free, np.clip(ratio / settings.clearest_ratio, -1.0, 1.0), 0.0)
+    return np.where(free, np.clip(ratio / SETTINGS.clearest_ratio, -1.0, 1.0), 0.0)
 
 
 def _frequency(cells: Int[np.ndarray, "m k 3"], chosen: Bool[np.ndarray, "m k"]) -> Float[np.ndarray, "m k"]:

@@ -48,10 +48,7 @@ SETTINGS = BestViewSettings()
 
 
 def best_view_textures(
-    pictures: Sequence[RoomPicture],
-    architecture: Architecture,
-    only: Collection[str] | None = None,
-    settings: BestViewSettings = SETTINGS,
+    pictures: Sequence[RoomPicture], architecture: Architecture, only: Collection[str] | None = None
 ) -> dict[str, UInt8[np.ndarray, "_ _ 3"]]:
     """RGB pictures of the planes that some photo sees well enough, by plane id.
 
@@ -59,7 +56,6 @@ def best_view_textures(
         pictures: The photos; the others are brought to the exposure of the first.
         architecture: The room, with its plain colours.
         only: Ids of the planes to make pictures of; all by default.
-        settings: Numbers to work with.
     """
     photos = [PhotoView(p) for p in pictures]
     planes = [p for p in architecture.planes if only is None or p.id in only]
@@ -69,7 +65,7 @@ def best_view_textures(
         views_of_photos = {k: v.of_plane(plane, architecture.planes, points, pixel_m) for k, v in enumerate(photos)}
         seen[plane.id] = {k: v for k, v in views_of_photos.items() if v is not None}
     sizes = {p.id: texel_points(p)[1] for p in planes}
-    gains = exposure_gains([(views, sizes[name]) for name, views in seen.items()], len(photos), settings)
+    gains = exposure_gains([(views, sizes[name]) for name, views in seen.items()], len(photos))
     sharpness = [p.camera.intrinsics.fx * p.camera.intrinsics.fy for p in pictures]
     textures: dict[str, np.ndarray] = {}
     for plane in planes:
@@ -77,7 +73,7 @@ def best_view_textures(
         if not views or not is_enough(np.any([v.shown for v in views.values()], axis=0), pixel_m, plane):
             continue
         chosen = [(views[k], gains[k], sharpness[k]) for k in sorted(views)]
-        colours, owned, is_covered = _blended(chosen, pixel_m, settings)
+        colours, owned, is_covered = _blended(chosen, pixel_m)
         if is_covered.any() and owned.any():
             ground = plane.role == "floor"
             colours = levelled(colours, owned, pixel_m) if ground else colours
@@ -88,26 +84,23 @@ def best_view_textures(
     return textures
 
 
-def exposure_gains(
-    planes: Sequence[tuple[Mapping[int, PlaneView], float]], count: int, settings: BestViewSettings = SETTINGS
-) -> Float[np.ndarray, "c 3"]:
+def exposure_gains(planes: Sequence[tuple[Mapping[int, PlaneView], float]], count: int) -> Float[np.ndarray, "c 3"]:
     """Factors on the colours of each photo that make common texels alike; the first photo's are 1.
 
     Args:
         planes: What photos, by number, show of each plane, and the size of its texels.
         count: Photos.
-        settings: Numbers to work with.
     """
     rows: list[tuple[int, int, float, np.ndarray]] = []
     for a, b in combinations(range(count), 2):
-        ratios = [_ratios(views[a], views[b], m, settings) for views, m in planes if a in views and b in views]
+        ratios = [_ratios(views[a], views[b], m) for views, m in planes if a in views and b in views]
         joined = np.concatenate(ratios) if ratios else np.zeros((0, 3))
-        if len(joined) >= settings.min_common:
+        if len(joined) >= SETTINGS.min_common:
             rows.append(
                 (
                     a,
                     b,
-                    float(np.sqrt(min(len(joined), settings.enough_common) / settings.enough_common)),
+                    float(np.sqrt(min(len(joined), SETTINGS.enough_common) / SETTINGS.enough_common)),
                     np.median(joined, 0),
                 )
             )
@@ -116,40 +109,35 @@ def exposure_gains(
     for row, (a, b, weight, ratio) in enumerate(rows):
         A[row, [a, b]] = weight, -weight
         target[row] = -weight * ratio
-    A[len(rows) :] = np.sqrt(settings.no_gain_weight) * np.eye(count)
+    A[len(rows) :] = np.sqrt(SETTINGS.no_gain_weight) * np.eye(count)
     logs = np.linalg.lstsq(A, target, rcond=None)[0]
-    return np.asarray(np.clip(np.exp(logs - logs[:1]), 1.0 / settings.max_gain, settings.max_gain))
+    return np.asarray(np.clip(np.exp(logs - logs[:1]), 1.0 / SETTINGS.max_gain, SETTINGS.max_gain))
 
 
-def _ratios(
-    a: PlaneView, b: PlaneView, pixel_m: float, settings: BestViewSettings = SETTINGS
-) -> Float[np.ndarray, "n 3"]:
+def _ratios(a: PlaneView, b: PlaneView, pixel_m: float) -> Float[np.ndarray, "n 3"]:
     """Logarithms of how many times as bright texels of one photo are as those of another."""
     both = a.own & b.own
     if not both.any():
         return np.zeros((0, 3))
-    one, other = (broad_shading(v.colours, v.own, settings.compared_m / pixel_m)[both] for v in (a, b))
-    light = (np.minimum(one, other) > settings.darkest).all(axis=1)
+    one, other = (broad_shading(v.colours, v.own, SETTINGS.compared_m / pixel_m)[both] for v in (a, b))
+    light = (np.minimum(one, other) > SETTINGS.darkest).all(axis=1)
     return np.asarray(np.log(one[light] / other[light]), dtype=np.float64)
 
 
 def _blended(
-    views: Sequence[tuple[PlaneView, Float[np.ndarray, "3"], float]],
-    pixel_m: float,
-    settings: BestViewSettings = SETTINGS,
+    views: Sequence[tuple[PlaneView, Float[np.ndarray, "3"], float]], pixel_m: float
 ) -> tuple[Float32[np.ndarray, "h w 3"], Bool[np.ndarray, "h w"], Bool[np.ndarray, "h w"]]:
     """Colours, which of them are the plane's own material, and where any photo sees it.
 
     Args:
         views: Each photo's with the gains of its colours and its pixels for each radian squared.
         pixel_m: Size of a texel.
-        settings: Numbers to work with.
     """
-    scores = np.stack([_score(view, pixel_m, settings) * sharp for view, _, sharp in views])
+    scores = np.stack([_score(view, pixel_m) * sharp for view, _, sharp in views])
     best, is_covered = scores.argmax(axis=0), scores.max(axis=0) > 0
     shape = is_covered.shape
-    total = {m: np.zeros(shape, np.float32) for m in (settings.detail_m, settings.shade_m)}
-    summed = {m: np.zeros((*shape, 3), np.float32) for m in (settings.detail_m, settings.shade_m)}
+    total = {m: np.zeros(shape, np.float32) for m in (SETTINGS.detail_m, SETTINGS.shade_m)}
+    summed = {m: np.zeros((*shape, 3), np.float32) for m in (SETTINGS.detail_m, SETTINGS.shade_m)}
     owned = np.zeros(shape, dtype=bool)
     for k, (view, gain, _) in enumerate(views):
         if not view.seen.any():
@@ -157,8 +145,8 @@ def _blended(
         mine = (best == k) & view.seen
         owned |= mine & view.own
         colours = view.colours * gain.astype(np.float32)
-        shade = broad_shading(colours, view.seen, settings.shade_m / pixel_m)
-        for length_m, band in ((settings.shade_m, shade), (settings.detail_m, colours - shade)):
+        shade = broad_shading(colours, view.seen, SETTINGS.shade_m / pixel_m)
+        for length_m, band in ((SETTINGS.shade_m, shade), (SETTINGS.detail_m, colours - shade)):
             weight = cv2.GaussianBlur(mine.astype(np.float32), (0, 0), max(length_m / pixel_m, 0.5))
             # A trace of every photo that sees a texel: where the best one's blur ends there must be some.
             weight = (weight + 1e-6) * view.seen
@@ -168,8 +156,8 @@ def _blended(
     return np.asarray(colours, dtype=np.float32).clip(0.0, 255.0), owned, is_covered
 
 
-def _score(view: PlaneView, pixel_m: float, settings: BestViewSettings = SETTINGS) -> Float[np.ndarray, "h w"]:
+def _score(view: PlaneView, pixel_m: float) -> Float[np.ndarray, "h w"]:
     """How well a photo sees each texel: its pixels there, fewer near what hides the plane; 0 where it is not seen."""
     padded = cv2.copyMakeBorder(view.seen.astype(np.uint8), 1, 1, 1, 1, cv2.BORDER_REPLICATE)
     inside = cv2.distanceTransform(padded, cv2.DIST_L2, 3)[1:-1, 1:-1] * pixel_m
-    return np.asarray(view.share * np.minimum(inside / settings.rim_m, 1.0) * view.seen, dtype=np.float64)
+    return np.asarray(view.share * np.minimum(inside / SETTINGS.rim_m, 1.0) * view.seen, dtype=np.float64)

@@ -56,7 +56,6 @@ def completed(
     *,
     ground: bool = False,
     sharp: Bool[np.ndarray, "h w"] | None = None,
-    settings: ContinuationSettings = SETTINGS,
 ) -> UInt8[np.ndarray, "h w 3"]:
     """The plane's picture: as seen, and where it was not seen, its shading spread smoothly and its detail continued.
 
@@ -72,10 +71,9 @@ def completed(
         is_plane: Which of the seen texels show the plane's material: what may be continued.
         ground: Whether it is a floor: boards and rugs vary more, and more broadly, than walls.
         sharp: Which of the plane's own texels are seen from near enough to copy detail from; all by default.
-        settings: Numbers to work with.
     """
     breadth_m, strongest = (
-        (settings.floor_shading_m, settings.floor_detail) if ground else (settings.wall_shading_m, settings.wall_detail)
+        (SETTINGS.floor_shading_m, SETTINGS.floor_detail) if ground else (SETTINGS.wall_shading_m, SETTINGS.wall_detail)
     )
     if ground:
         red, green, blue = (float(c) / 255.0 for c in np.median(colours[is_plane], axis=0))
@@ -84,17 +82,17 @@ def completed(
     even = is_plane
     if ground:
         # Shadows and glow at the feet of things are not carried on over the floor.
-        calm = is_plane & (np.abs(shading - np.array(plain, np.float32) * 255.0).max(axis=-1) < settings.calm_levels)
+        calm = is_plane & (np.abs(shading - np.array(plain, np.float32) * 255.0).max(axis=-1) < SETTINGS.calm_levels)
         even = calm if calm.any() else is_plane
     smooth = _pull_push(shading * even[..., None], even.astype(np.float32))
     distance = cv2.distanceTransform((~seen).astype(np.uint8), cv2.DIST_L2, 5)
-    keep = np.exp(-distance * pixel_m / settings.fade_m)[..., None]
+    keep = np.exp(-distance * pixel_m / SETTINGS.fade_m)[..., None]
     filled = keep * smooth + (1.0 - keep) * (np.array(plain, np.float32) * 255.0)
-    near = np.exp(-distance * pixel_m / settings.seam_m)[..., None]
+    near = np.exp(-distance * pixel_m / SETTINGS.seam_m)[..., None]
     beside = broad_shading(colours, seen, breadth_m / pixel_m)
-    alike = seen & (np.abs(beside - smooth).max(axis=-1) < (settings.calm_levels if ground else settings.seam_levels))
+    alike = seen & (np.abs(beside - smooth).max(axis=-1) < (SETTINGS.calm_levels if ground else SETTINGS.seam_levels))
     filled = near * _pull_push(beside * alike[..., None], alike.astype(np.float32)) + (1.0 - near) * filled
-    detail = _detail(colours - shading, is_plane, strongest, sharp, settings)
+    detail = _detail(colours - shading, is_plane, strongest, sharp)
     if detail is not None:
         filled = filled + detail
     # The first texels inside a mask's border still carry its rim; a soft seam hides the step.
@@ -108,17 +106,16 @@ def _detail(
     is_plane: Bool[np.ndarray, "h w"],
     strongest: float,
     sharp: Bool[np.ndarray, "h w"] | None,
-    settings: ContinuationSettings = SETTINGS,
 ) -> Float32[np.ndarray, "h w 3"] | None:
     """Detail everywhere: copied in blocks where large ones were seen or it has lines and figures, else made anew."""
     sample = plain_texels(detail, is_plane, strongest, sharp)
     size = block_size(sample)
     copied = size is None or size == LARGEST_BLOCK_PX or not is_gaussian(detail, sample)
-    if copied or (size is not None and size >= settings.lined_block_px and has_lines(detail, sample)):
+    if copied or (size is not None and size >= SETTINGS.lined_block_px and has_lines(detail, sample)):
         return detail_continued(detail, is_plane, strongest, source=sharp)
     # What is nearly as broad as the sample is rather light and shade.
     width = 2.0 * float(cv2.distanceTransform(np.pad(sample, 1).astype(np.uint8), cv2.DIST_L2, 5).max())
-    finer = detail - broad_shading(detail, sample, min(settings.sample_broadest * width, settings.broadest_px))
+    finer = detail - broad_shading(detail, sample, min(SETTINGS.sample_broadest * width, SETTINGS.broadest_px))
     made = gaussian_texture(finer, sample)
     return np.asarray(np.where(is_plane[..., None], detail, made), dtype=np.float32)
 

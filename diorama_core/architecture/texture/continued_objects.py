@@ -67,37 +67,33 @@ class ObjectColours(ArrayValue):
     lab: Float32[np.ndarray, "k 3"]
 
 
-def cut_patches(
-    rgb: UInt8[np.ndarray, "h w 3"], objects: Sequence[DetectedObject], settings: ContinuedObjectSettings = SETTINGS
-) -> Bool[np.ndarray, "h w"]:
+def cut_patches(rgb: UInt8[np.ndarray, "h w 3"], objects: Sequence[DetectedObject]) -> Bool[np.ndarray, "h w"]:
     """Pixels in the boxes of objects that belong to even patches of which the masks hold a part."""
     patches = np.zeros(rgb.shape[:2], dtype=bool)
     for item in objects:
         x1, y1, x2, y2 = (max(round(v), 0) for v in item.box)
         mask = item.mask[y1:y2, x1:x2]
-        if np.count_nonzero(mask) < settings.min_pixels:
+        if np.count_nonzero(mask) < SETTINGS.min_pixels:
             continue
         lab = cv2.cvtColor(rgb[y1:y2, x1:x2].astype(np.float32) / np.float32(255.0), cv2.COLOR_RGB2LAB)
-        for colour in _common_colours(lab[mask], settings.main_share):
+        for colour in _common_colours(lab[mask], SETTINGS.main_share):
             even = (np.abs(lab - colour) < _EVEN_LAB).all(axis=-1).astype(np.uint8)
             count, label = cv2.connectedComponents(even)
             mask_share = np.bincount(label[mask], minlength=count) / np.maximum(
                 np.bincount(label.ravel(), minlength=count), 1
             )
             mask_share[0] = 0.0
-            patches[y1:y2, x1:x2] |= (mask_share > settings.cut_share)[label] & ~mask
+            patches[y1:y2, x1:x2] |= (mask_share > SETTINGS.cut_share)[label] & ~mask
     return cv2.morphologyEx(patches.astype(np.uint8), cv2.MORPH_OPEN, np.ones((3, 3), np.uint8)).astype(bool)
 
 
-def object_colours(
-    rgb: UInt8[np.ndarray, "h w 3"], objects: Sequence[DetectedObject], settings: ContinuedObjectSettings = SETTINGS
-) -> tuple[ObjectColours, ...]:
+def object_colours(rgb: UInt8[np.ndarray, "h w 3"], objects: Sequence[DetectedObject]) -> tuple[ObjectColours, ...]:
     """Common colours of all objects that enough is seen of."""
     colours = []
     for item in objects:
         pixels = rgb[item.mask]
-        if len(pixels) >= settings.min_pixels:
-            colours.append(ObjectColours(item.box, _common_colours(_lab(pixels), settings.min_cell_share)))
+        if len(pixels) >= SETTINGS.min_pixels:
+            colours.append(ObjectColours(item.box, _common_colours(_lab(pixels), SETTINGS.min_cell_share)))
     return tuple(colours)
 
 
@@ -109,7 +105,6 @@ def continued_objects(
     objects: Sequence[ObjectColours],
     pixel_m: float,
     longest_px: int,
-    settings: ContinuedObjectSettings = SETTINGS,
 ) -> Bool[np.ndarray, "h w"]:
     """Texels of a wall that show more of objects than their boxes hold.
 
@@ -127,49 +122,42 @@ def continued_objects(
     if not len(rows) or not is_plane.any():
         return continued.astype(bool)
     lab = _lab(colours[rows, columns])
-    lit = _is_shade(lab, _lab(np.median(colours[is_plane], axis=0)[None])[0], settings)
-    reach = settings.reach * longest_px
+    lit = _is_shade(lab, _lab(np.median(colours[is_plane], axis=0)[None])[0])
+    reach = SETTINGS.reach * longest_px
     for item in objects:
         x1, y1, x2, y2 = item.box
         low, high = np.array([x1, y1]) - reach, np.array([x2, y2]) + reach
         beside = np.asarray(((pixels >= low) & (pixels <= high)).all(axis=1))
         if not beside.any() or not len(item.lab):
             continue
-        alike = np.flatnonzero((_distance(lab, item.lab) < settings.alike_lab) & ~lit)
+        alike = np.flatnonzero((_distance(lab, item.lab) < SETTINGS.alike_lab) & ~lit)
         pieces = np.zeros(foreign.shape, np.uint8)
         pieces[rows[alike], columns[alike]] = 1
-        joined = cv2.morphologyEx(pieces, cv2.MORPH_CLOSE, _square(settings.gap_m, pixel_m))
+        joined = cv2.morphologyEx(pieces, cv2.MORPH_CLOSE, _square(SETTINGS.gap_m, pixel_m))
         label = cv2.connectedComponents(joined, connectivity=8)[1][rows[alike], columns[alike]]
         for piece in np.unique(label[beside[alike]]):
             of_piece = alike[label == piece]
-            if _continues(pixels[of_piece], beside[of_piece], item.box, settings):
+            if _continues(pixels[of_piece], beside[of_piece], item.box):
                 continued[rows[of_piece], columns[of_piece]] = 1
-    return cv2.dilate(continued, _square(settings.rim_m, pixel_m)).astype(bool)
+    return cv2.dilate(continued, _square(SETTINGS.rim_m, pixel_m)).astype(bool)
 
 
-def _continues(
-    pixels: Float[np.ndarray, "n 2"],
-    beside: Bool[np.ndarray, "n"],
-    box: Box,
-    settings: ContinuedObjectSettings = SETTINGS,
-) -> bool:
+def _continues(pixels: Float[np.ndarray, "n 2"], beside: Bool[np.ndarray, "n"], box: Box) -> bool:
     """Whether a piece is not much larger than an object's box, and as broad there as elsewhere."""
     extent, joint = np.ptp(pixels, axis=0), np.ptp(pixels[beside], axis=0)
     size = np.array([box[2] - box[0], box[3] - box[1]])
     return bool(
-        (extent <= settings.larger * size).all()
-        and (joint >= settings.as_broad * extent).any()
-        and extent.max() >= settings.large * size.max()
+        (extent <= SETTINGS.larger * size).all()
+        and (joint >= SETTINGS.as_broad * extent).any()
+        and extent.max() >= SETTINGS.large * size.max()
     )
 
 
-def _is_shade(
-    lab: Float32[np.ndarray, "n 3"], of: Float32[np.ndarray, "3"], settings: ContinuedObjectSettings = SETTINGS
-) -> Bool[np.ndarray, "n"]:
+def _is_shade(lab: Float32[np.ndarray, "n 3"], of: Float32[np.ndarray, "3"]) -> Bool[np.ndarray, "n"]:
     """Which colours are of the wall's own in other light, which moves them toward and away from black."""
-    scale = (lab[:, :1] + settings.black_l) / (of[0] + settings.black_l)
+    scale = (lab[:, :1] + SETTINGS.black_l) / (of[0] + SETTINGS.black_l)
     off = np.abs(lab[:, 1:] - scale * of[1:])
-    return np.asarray((off < settings.shade_ab).all(axis=1) & (lab[:, 0] > settings.darkest_shade * of[0]))
+    return np.asarray((off < SETTINGS.shade_ab).all(axis=1) & (lab[:, 0] > SETTINGS.darkest_shade * of[0]))
 
 
 def _common_colours(lab: Float32[np.ndarray, "n 3"], share: float) -> Float32[np.ndarray, "k 3"]:

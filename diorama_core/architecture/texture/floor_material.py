@@ -87,14 +87,12 @@ class FloorMaterialSettings:
 SETTINGS = FloorMaterialSettings()
 
 
-def contact_pixels(
-    shape: tuple[int, int], objects: Sequence[DetectedObject], settings: FloorMaterialSettings = SETTINGS
-) -> Bool[np.ndarray, "h w"]:
+def contact_pixels(shape: tuple[int, int], objects: Sequence[DetectedObject]) -> Bool[np.ndarray, "h w"]:
     """Pixels of the photo a little below the feet of things, where the floor is usually seen.
 
     Within the box of a rug whose outline is only a guess, it is rather the rug.
     """
-    near, far = (round(share * shape[0]) for share in settings.contact_band)
+    near, far = (round(share * shape[0]) for share in SETTINGS.contact_band)
     contacts = np.zeros(shape, dtype=bool)
     for item in objects:
         columns = np.flatnonzero(item.mask.any(axis=0))
@@ -111,18 +109,15 @@ def contact_pixels(
     return contacts
 
 
-def white_level(rgb: UInt8[np.ndarray, "h w 3"], settings: FloorMaterialSettings = SETTINGS) -> float:
+def white_level(rgb: UInt8[np.ndarray, "h w 3"]) -> float:
     """Lightness L* of what is about white in a photo: a dark one's floor is as dark as the rest of it."""
     small = cv2.resize(rgb, (96, 72), interpolation=cv2.INTER_AREA).astype(np.float32) / 255.0
     lightness = cv2.cvtColor(small, cv2.COLOR_RGB2LAB)[..., 0]
-    return max(float(np.percentile(lightness, settings.white_share)), 1.0)
+    return max(float(np.percentile(lightness, SETTINGS.white_share)), 1.0)
 
 
 def floor_colour(
-    rgb: UInt8[np.ndarray, "n 3"],
-    places: Float[np.ndarray, "n 2"],
-    white: float,
-    settings: FloorMaterialSettings = SETTINGS,
+    rgb: UInt8[np.ndarray, "n 3"], places: Float[np.ndarray, "n 2"], white: float
 ) -> tuple[float, float, float]:
     """The colour (sRGB 0 to 1) of a floor among pixels of it and of what nobody marked.
 
@@ -132,8 +127,8 @@ def floor_colour(
         white: lightness L* that the photo's white has (`white_level`).
     """
     lab = cv2.cvtColor(rgb[:, None].astype(np.float32) / 255.0, cv2.COLOR_RGB2LAB)[:, 0].astype(np.float64)
-    main = _main_colour(lab, places, np.ones(len(lab)), np.zeros(len(lab), dtype=bool), white, settings)
-    red, green, blue = (float(c) / 255.0 for c in np.median(rgb[_of_material(lab, main, settings)], axis=0))
+    main = _main_colour(lab, places, np.ones(len(lab)), np.zeros(len(lab), dtype=bool), white)
+    red, green, blue = (float(c) / 255.0 for c in np.median(rgb[_of_material(lab, main)], axis=0))
     return red, green, blue
 
 
@@ -144,7 +139,6 @@ def floor_texels(
     contact: Bool[np.ndarray, "h w"],
     pixel_m: float,
     white: float = 100.0,
-    settings: FloorMaterialSettings = SETTINGS,
 ) -> Bool[np.ndarray, "h w"]:
     """The seen texels that show the floor's own material.
 
@@ -160,23 +154,22 @@ def floor_texels(
     if not len(rows):
         return seen.copy()
     lab = cv2.cvtColor((colours[rows, columns] / 255.0)[:, None], cv2.COLOR_RGB2LAB)[:, 0].astype(np.float64)
-    every = max(1, len(rows) // settings.samples)
+    every = max(1, len(rows) // SETTINGS.samples)
     main = _main_colour(
         lab[::every],
         np.stack([rows, columns], axis=1)[::every].astype(np.float64),
         weight[rows, columns][::every],
         contact[rows, columns][::every],
         white,
-        settings,
     )
     is_floor = np.zeros(seen.shape, dtype=bool)
-    is_floor[rows, columns] = _of_material(lab, main, settings)
+    is_floor[rows, columns] = _of_material(lab, main)
     picture = np.zeros((*seen.shape, 3), np.float32)
     picture[rows, columns] = lab
-    is_floor, others = _with_pattern(is_floor, picture, np.stack([rows, columns]), main, pixel_m, settings)
+    is_floor, others = _with_pattern(is_floor, picture, np.stack([rows, columns]), main, pixel_m)
     if others:
-        is_floor |= _turning_into(is_floor, others, _change(picture, seen, pixel_m, settings), pixel_m, settings)
-    return is_floor & ~_grown_pieces(seen & ~is_floor, pixel_m, settings)
+        is_floor |= _turning_into(is_floor, others, _change(picture, seen, pixel_m), pixel_m)
+    return is_floor & ~_grown_pieces(seen & ~is_floor, pixel_m)
 
 
 def _with_pattern(
@@ -185,7 +178,6 @@ def _with_pattern(
     seen_at: Int[np.ndarray, "2 n"],
     main: Float[np.ndarray, "3"],
     pixel_m: float,
-    settings: FloorMaterialSettings,
 ) -> tuple[Bool[np.ndarray, "h w"], list[Bool[np.ndarray, "h w"]]]:
     """The texels of the main colour with those of colours that alternate with it, and texels of each other colour that
     the main one may have in another light.
@@ -196,24 +188,23 @@ def _with_pattern(
         seen_at: rows and columns of the seen texels.
         main: the main colour.
         pixel_m: size of a texel.
-        settings: numbers to work with.
     """
     rows, columns = seen_at
     lab, others = picture[rows, columns].astype(np.float64), []
     is_compared = is_floor[rows, columns]
-    lit_alike = (np.abs(picture - main) < _LIT_LAB).all(axis=-1) & (picture[..., 0] >= main[0] - settings.shadow_l)
-    for _ in range(settings.other_colours):
+    lit_alike = (np.abs(picture - main) < _LIT_LAB).all(axis=-1) & (picture[..., 0] >= main[0] - SETTINGS.shadow_l)
+    for _ in range(SETTINGS.other_colours):
         left = ~is_compared
-        if left.mean() < settings.min_of_pattern:
+        if left.mean() < SETTINGS.min_of_pattern:
             break
-        fullest = _fullest(lab[left][:: max(1, int(left.sum()) // settings.samples)], settings)
-        texels = _of_material(lab, fullest, settings) & left
-        if texels.mean() < settings.min_of_pattern:
+        fullest = _fullest(lab[left][:: max(1, int(left.sum()) // SETTINGS.samples)])
+        texels = _of_material(lab, fullest) & left
+        if texels.mean() < SETTINGS.min_of_pattern:
             break
         is_compared |= texels
         other = np.zeros(is_floor.shape, dtype=bool)
         other[rows, columns] = texels
-        if _intermingled(is_floor, other, pixel_m, settings):
+        if _intermingled(is_floor, other, pixel_m):
             is_floor = is_floor | other
         else:
             others.append(other & lit_alike)
@@ -221,13 +212,10 @@ def _with_pattern(
 
 
 def _change(
-    picture: Float32[np.ndarray, "h w 3"],
-    seen: Bool[np.ndarray, "h w"],
-    pixel_m: float,
-    settings: FloorMaterialSettings = SETTINGS,
+    picture: Float32[np.ndarray, "h w 3"], seen: Bool[np.ndarray, "h w"], pixel_m: float
 ) -> Float32[np.ndarray, "h w 3"]:
     """How fast colours without their grain change, per metre; nan at the rim of what is seen."""
-    down, across = np.gradient(broad_shading(picture, seen, settings.gradual_m / pixel_m), axis=(0, 1))
+    down, across = np.gradient(broad_shading(picture, seen, SETTINGS.gradual_m / pixel_m), axis=(0, 1))
     change = np.hypot(down, across) / pixel_m
     change[cv2.erode(seen.astype(np.uint8), np.ones((3, 3), np.uint8), borderValue=0) == 0] = np.nan
     return np.asarray(change, dtype=np.float32)
@@ -238,14 +226,13 @@ def _turning_into(
     others: list[Bool[np.ndarray, "h w"]],
     change: Float32[np.ndarray, "h w 3"],
     pixel_m: float,
-    settings: FloorMaterialSettings = SETTINGS,
 ) -> Bool[np.ndarray, "h w"]:
     """The floor with the pieces of other colours whose border with it is gradual, one after another."""
-    reach = _disc(settings.rim_m, pixel_m)
-    pieces = [piece for other in others for piece in _pieces(other, settings.piece_m2 / pixel_m**2)]
+    reach = _disc(SETTINGS.rim_m, pixel_m)
+    pieces = [piece for other in others for piece in _pieces(other, SETTINGS.piece_m2 / pixel_m**2)]
     while True:
         beside = cv2.dilate(is_floor.astype(np.uint8), reach).astype(bool) & ~np.isnan(change[..., 0])
-        turning = [piece for piece in pieces if _gradual(piece, beside, change, reach, pixel_m, settings)]
+        turning = [piece for piece in pieces if _gradual(piece, beside, change, reach, pixel_m)]
         if not turning:
             return is_floor
         is_floor = np.logical_or.reduce([is_floor, *turning])
@@ -263,13 +250,12 @@ def _gradual(
     change: Float32[np.ndarray, "h w 3"],
     reach: UInt8[np.ndarray, "k k"],
     pixel_m: float,
-    settings: FloorMaterialSettings = SETTINGS,
 ) -> bool:
     """Whether colours change slowly along a piece's border with the texels beside the floor."""
     border = beside & cv2.dilate(piece.astype(np.uint8), reach).astype(bool)
-    if border.sum() * pixel_m**2 < settings.border_m2:
+    if border.sum() * pixel_m**2 < SETTINGS.border_m2:
         return False
-    return bool((np.median(change[border], axis=0) < settings.gradual * _TOLERANCE_LAB).all())
+    return bool((np.median(change[border], axis=0) < SETTINGS.gradual * _TOLERANCE_LAB).all())
 
 
 def _main_colour(
@@ -278,34 +264,30 @@ def _main_colour(
     weight: Float[np.ndarray, "n"],
     contact: Bool[np.ndarray, "n"],
     white: float,
-    settings: FloorMaterialSettings = SETTINGS,
 ) -> Float[np.ndarray, "3"]:
     """The colour that covers much of the photo, lies far apart, is at the feet of things, and is usual for floors."""
     at_feet = max(float(weight[contact].sum()), 1e-12)
     colours, covers, scores = [], [], []
-    for cell in _cells(lab, weight, settings):
-        cell = _mode(cell, lab, weight, settings)
+    for cell in _cells(lab, weight):
+        cell = _mode(cell, lab, weight)
         alike = (np.abs(lab - cell) < _CELL_LAB).all(axis=1)
-        spread = _spread(places[alike], weight[alike], settings)
+        spread = _spread(places[alike], weight[alike])
         middle = np.median(lab[alike], axis=0) if alike.any() else cell
-        shaded = settings.of_shade * float(weight[contact & ~alike & _shades_of(middle, lab, settings)].sum())
+        shaded = SETTINGS.of_shade * float(weight[contact & ~alike & _shades_of(middle, lab)].sum())
         touched = (float(weight[contact & alike].sum()) + shaded) / at_feet
         off = _USUAL_AXES @ (middle * np.array([100.0 / white, 1.0, 1.0]) - _USUAL_LAB)
         colours.append(middle)
-        covers.append(float(weight[alike].sum()) * spread * (settings.without_contact + touched))
+        covers.append(float(weight[alike].sum()) * spread * (SETTINGS.without_contact + touched))
         scores.append(covers[-1] * float(np.exp(-0.5 * (off**2).sum())))
-    return _lit(int(np.argmax(scores)), np.array(colours), np.array(covers), settings)
+    return _lit(int(np.argmax(scores)), np.array(colours), np.array(covers))
 
 
 def _mode(
-    cell: Float[np.ndarray, "3"],
-    lab: Float[np.ndarray, "n 3"],
-    weight: Float[np.ndarray, "n"],
-    settings: FloorMaterialSettings = SETTINGS,
+    cell: Float[np.ndarray, "3"], lab: Float[np.ndarray, "n 3"], weight: Float[np.ndarray, "n"]
 ) -> Float[np.ndarray, "3"]:
     """Where colours lie densest near a cell's middle: mean shift (Comaniciu and Meer 2002) with a flat kernel."""
-    for _ in range(settings.mean_shifts):
-        near = (np.abs(lab - cell) < settings.core * _CELL_LAB).all(axis=1)
+    for _ in range(SETTINGS.mean_shifts):
+        near = (np.abs(lab - cell) < SETTINGS.core * _CELL_LAB).all(axis=1)
         if not weight[near].sum() > 0.0:
             break
         moved = np.average(lab[near], axis=0, weights=weight[near])
@@ -315,9 +297,7 @@ def _mode(
     return np.asarray(cell)
 
 
-def _spread(
-    places: Float[np.ndarray, "n 2"], weight: Float[np.ndarray, "n"], settings: FloorMaterialSettings = SETTINGS
-) -> float:
+def _spread(places: Float[np.ndarray, "n 2"], weight: Float[np.ndarray, "n"]) -> float:
     """About the standard deviation of places, by quantiles: a sliver far away covers little of the photo."""
     if not weight.sum() > 0.0:
         return 0.0
@@ -325,88 +305,69 @@ def _spread(
     for along in places.T:
         order = np.argsort(along, kind="stable")
         below = np.cumsum(weight[order]) / weight.sum()
-        low, high = np.searchsorted(below, settings.quantiles)
+        low, high = np.searchsorted(below, SETTINGS.quantiles)
         halves.append((along[order[min(high, len(order) - 1)]] - along[order[low]]) / 2)
     return float(np.hypot(*halves))
 
 
-def _lit(
-    best: int,
-    colours: Float[np.ndarray, "k 3"],
-    covers: Float[np.ndarray, "k"],
-    settings: FloorMaterialSettings = SETTINGS,
-) -> Float[np.ndarray, "3"]:
+def _lit(best: int, colours: Float[np.ndarray, "k 3"], covers: Float[np.ndarray, "k"]) -> Float[np.ndarray, "3"]:
     """A colour, or the lighter one that it is a shade of and that covers clearly more."""
-    shade = np.array([bool(_shades_of(lighter, colours[best : best + 1], settings)[0]) for lighter in colours])
-    lighter = shade & (covers > settings.shade_cover * covers[best])
+    shade = np.array([bool(_shades_of(lighter, colours[best : best + 1])[0]) for lighter in colours])
+    lighter = shade & (covers > SETTINGS.shade_cover * covers[best])
     return np.asarray(colours[int(np.argmax(np.where(lighter, covers, 0.0))) if lighter.any() else best])
 
 
-def _shades_of(
-    colour: Float[np.ndarray, "3"], lab: Float[np.ndarray, "n 3"], settings: FloorMaterialSettings = SETTINGS
-) -> Bool[np.ndarray, "n"]:
+def _shades_of(colour: Float[np.ndarray, "3"], lab: Float[np.ndarray, "n 3"]) -> Bool[np.ndarray, "n"]:
     """Which colours are what a shadow makes of one: before the feet of things most are.
 
     In the shade of the sun the sky's light is left, which takes most of a warm colour's hue away.
     """
-    darkened = colour[1:] * ((lab[:, :1] + settings.black_l) / (colour[0] + settings.black_l))
+    darkened = colour[1:] * ((lab[:, :1] + SETTINGS.black_l) / (colour[0] + SETTINGS.black_l))
     kept = (lab[:, 1:] * darkened).sum(axis=1) / np.maximum((darkened**2).sum(axis=1), 1e-9)
-    shaded = darkened * np.clip(kept, settings.sky_lit, 1.0)[:, None]
+    shaded = darkened * np.clip(kept, SETTINGS.sky_lit, 1.0)[:, None]
     return np.asarray(
         (np.abs(shaded - lab[:, 1:]) < _CELL_LAB[1:]).all(axis=1) & (lab[:, 0] < colour[0] - _CELL_LAB[0] / 2)
     )
 
 
-def _cells(
-    lab: Float[np.ndarray, "n 3"], weight: Float[np.ndarray, "n"], settings: FloorMaterialSettings = SETTINGS
-) -> Float[np.ndarray, "k 3"]:
+def _cells(lab: Float[np.ndarray, "n 3"], weight: Float[np.ndarray, "n"]) -> Float[np.ndarray, "k 3"]:
     """Middles of the cells of colour that cover most."""
     cells, index = np.unique(np.round(lab / _CELL_LAB), axis=0, return_inverse=True)
     covered = np.bincount(index.ravel(), weights=weight)
-    return np.asarray(cells[np.argsort(-covered, kind="stable")][: settings.cells_tried] * _CELL_LAB)
+    return np.asarray(cells[np.argsort(-covered, kind="stable")][: SETTINGS.cells_tried] * _CELL_LAB)
 
 
-def _fullest(lab: Float[np.ndarray, "n 3"], settings: FloorMaterialSettings = SETTINGS) -> Float[np.ndarray, "3"]:
-    cell = _cells(lab, np.ones(len(lab)), settings)[0]
+def _fullest(lab: Float[np.ndarray, "n 3"]) -> Float[np.ndarray, "3"]:
+    cell = _cells(lab, np.ones(len(lab)))[0]
     return np.asarray(np.median(lab[(np.abs(lab - cell) < _CELL_LAB).all(axis=1)], axis=0))
 
 
-def _of_material(
-    lab: Float[np.ndarray, "n 3"], main: Float[np.ndarray, "3"], settings: FloorMaterialSettings = SETTINGS
-) -> Bool[np.ndarray, "n"]:
+def _of_material(lab: Float[np.ndarray, "n 3"], main: Float[np.ndarray, "3"]) -> Bool[np.ndarray, "n"]:
     """Colours that a material of one main colour has in light and shade."""
     near = np.abs(lab - main)
     core = near[(near < _CELL_LAB).all(axis=1)]
     typical = np.median(core, axis=0) if len(core) else np.zeros(3)
-    allowed = np.clip(settings.spreads * typical, _TOLERANCE_LAB, settings.widest * _TOLERANCE_LAB)
-    shadow = lab[:, 0] < main[0] - settings.shadow_l
+    allowed = np.clip(SETTINGS.spreads * typical, _TOLERANCE_LAB, SETTINGS.widest * _TOLERANCE_LAB)
+    shadow = lab[:, 0] < main[0] - SETTINGS.shadow_l
     return np.asarray((near <= allowed).all(axis=1) & ~shadow)
 
 
-def _intermingled(
-    one: Bool[np.ndarray, "h w"],
-    other: Bool[np.ndarray, "h w"],
-    pixel_m: float,
-    settings: FloorMaterialSettings = SETTINGS,
-) -> bool:
+def _intermingled(one: Bool[np.ndarray, "h w"], other: Bool[np.ndarray, "h w"], pixel_m: float) -> bool:
     """Whether each of two colours has the other near over most of its area, and the other lies between the first.
 
     A skirting board along a narrow strip of floor is near all of it, but on one side only.
     """
-    reach = _disc(settings.pattern_m, pixel_m)
+    reach = _disc(SETTINGS.pattern_m, pixel_m)
     beside = [cv2.dilate(part.astype(np.uint8), reach).astype(bool) for part in (one, other)]
     shares = [float(beside[1 - k][part].mean()) if part.any() else 0.0 for k, part in enumerate((one, other))]
     return (
-        min(shares) >= settings.pattern_share
-        and float(_between(one, pixel_m, settings)[other].mean()) >= settings.between_share
+        min(shares) >= SETTINGS.pattern_share and float(_between(one, pixel_m)[other].mean()) >= SETTINGS.between_share
     )
 
 
-def _between(
-    mask: Bool[np.ndarray, "h w"], pixel_m: float, settings: FloorMaterialSettings = SETTINGS
-) -> Bool[np.ndarray, "h w"]:
+def _between(mask: Bool[np.ndarray, "h w"], pixel_m: float) -> Bool[np.ndarray, "h w"]:
     """The texels with some of a mask near on two opposite sides, along rows or along columns."""
-    reach = max(1, round(settings.pattern_m / pixel_m))
+    reach = max(1, round(SETTINGS.pattern_m / pixel_m))
     sides = []
     for shape in ((1, reach + 1), (reach + 1, 1)):
         ends = ((0, 0), (shape[1] - 1, shape[0] - 1))
@@ -415,12 +376,10 @@ def _between(
     return np.asarray(sides[0] | sides[1])
 
 
-def _grown_pieces(
-    foreign: Bool[np.ndarray, "h w"], pixel_m: float, settings: FloorMaterialSettings = SETTINGS
-) -> Bool[np.ndarray, "h w"]:
+def _grown_pieces(foreign: Bool[np.ndarray, "h w"], pixel_m: float) -> Bool[np.ndarray, "h w"]:
     """Foreign pieces without specks of grain, with their rims."""
-    pieces = cv2.morphologyEx(foreign.astype(np.uint8), cv2.MORPH_OPEN, _disc(settings.speck_m, pixel_m))
-    return cv2.dilate(pieces, _disc(settings.rim_m, pixel_m)).astype(bool) | foreign
+    pieces = cv2.morphologyEx(foreign.astype(np.uint8), cv2.MORPH_OPEN, _disc(SETTINGS.speck_m, pixel_m))
+    return cv2.dilate(pieces, _disc(SETTINGS.rim_m, pixel_m)).astype(bool) | foreign
 
 
 def _disc(radius_m: float, pixel_m: float) -> UInt8[np.ndarray, "k k"]:

@@ -37,10 +37,7 @@ SETTINGS = LevelLightSettings()
 
 
 def levelled(
-    colours: Float32[np.ndarray, "h w 3"],
-    is_plane: Bool[np.ndarray, "h w"],
-    pixel_m: float,
-    settings: LevelLightSettings = SETTINGS,
+    colours: Float32[np.ndarray, "h w 3"], is_plane: Bool[np.ndarray, "h w"], pixel_m: float
 ) -> Float32[np.ndarray, "h w 3"]:
     """The colours of a floor as even light shows them; meaningful where they are its own.
 
@@ -51,13 +48,13 @@ def levelled(
     """
     if not is_plane.any():
         return colours
-    finer = broad_shading(colours, is_plane, settings.fine_m / pixel_m)
-    broad = broad_shading(colours, is_plane, settings.pattern_m / pixel_m)
+    finer = broad_shading(colours, is_plane, SETTINGS.fine_m / pixel_m)
+    broad = broad_shading(colours, is_plane, SETTINGS.pattern_m / pixel_m)
     main = np.median(colours[is_plane], axis=0).astype(np.float32)
     fine, pattern = colours - finer, finer - broad
-    light = broad_shading(colours, is_plane, settings.light_m / pixel_m) - main
-    light = settings.most_levels * np.tanh(light / settings.most_levels)
-    kept = _share_of_material(fine, pattern, is_plane, settings.around_m / pixel_m, settings)
+    light = broad_shading(colours, is_plane, SETTINGS.light_m / pixel_m) - main
+    light = SETTINGS.most_levels * np.tanh(light / SETTINGS.most_levels)
+    kept = _share_of_material(fine, pattern, is_plane, SETTINGS.around_m / pixel_m)
     return np.asarray(main + light + fine + kept[..., None] * pattern, dtype=np.float32)
 
 
@@ -66,11 +63,10 @@ def _share_of_material(
     pattern: Float32[np.ndarray, "h w 3"],
     is_plane: Bool[np.ndarray, "h w"],
     width_px: float,
-    settings: LevelLightSettings = SETTINGS,
 ) -> Float32[np.ndarray, "h w"]:
     """How much of what varies as broadly as a pattern is one, 0 to 1, by the fine detail around."""
     around = np.stack([(fine**2).mean(axis=-1), (pattern**2).mean(axis=-1)], axis=-1)
     weight = np.maximum(wide_blur(is_plane.astype(np.float32), width_px), 1e-4)
     energy = wide_blur(np.asarray(around * is_plane[..., None], dtype=np.float32), width_px) / weight[..., None]
-    expected = settings.with_edges**2 * energy[..., 1] + settings.min_levels**2
-    return np.asarray(np.minimum((energy[..., 0] + settings.min_levels**2) / expected, 1.0), dtype=np.float32)
+    expected = SETTINGS.with_edges**2 * energy[..., 1] + SETTINGS.min_levels**2
+    return np.asarray(np.minimum((energy[..., 0] + SETTINGS.min_levels**2) / expected, 1.0), dtype=np.float32)

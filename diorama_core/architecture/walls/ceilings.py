@@ -54,22 +54,20 @@ class CeilingPiece:
         return bool(self.normal[2] < -1.0 + 1e-9)
 
 
-def find_ceilings(surface: MeasuredSurface, settings: CeilingsSettings = SETTINGS) -> tuple[CeilingPiece, ...]:
+def find_ceilings(surface: MeasuredSurface) -> tuple[CeilingPiece, ...]:
     """The flat ceiling where one is seen, then slopes, largest first."""
-    slopes = _slopes(surface, settings)
-    height = ceiling_height(surface, without=_on_any(surface, slopes), settings=settings)
+    slopes = _slopes(surface)
+    height = ceiling_height(surface, without=_on_any(surface, slopes))
     flat = () if height is None else (CeilingPiece(np.array([0.0, 0.0, -1.0]), -height, np.inf),)
     return (*flat, *slopes)
 
 
-def ceiling_height(
-    surface: MeasuredSurface, without: Bool[np.ndarray, "n"] | None = None, settings: CeilingsSettings = SETTINGS
-) -> float | None:
+def ceiling_height(surface: MeasuredSurface, without: Bool[np.ndarray, "n"] | None = None) -> float | None:
     """Height of the highest large level surface that faces down; none where there is none above the camera."""
-    down = (surface.normals[:, 2] < -settings.level_cosine) & ~surface.is_object
+    down = (surface.normals[:, 2] < -SETTINGS.level_cosine) & ~surface.is_object
     down &= surface.points[:, 2] > max(1.7, surface.camera_position[2] + 0.2)
     down &= ~without if without is not None else True
-    if down.sum() < settings.min_flat_share * len(down) or len(down) == 0:
+    if down.sum() < SETTINGS.min_flat_share * len(down) or len(down) == 0:
         return None
     heights, areas = surface.points[down, 2], surface.area_m2[down]
     index = (heights / 0.05).astype(int)
@@ -80,24 +78,24 @@ def ceiling_height(
     return float(np.average(heights[core], weights=areas[core])) if core.any() else None
 
 
-def _slopes(surface: MeasuredSurface, settings: CeilingsSettings = SETTINGS) -> tuple[CeilingPiece, ...]:
+def _slopes(surface: MeasuredSurface) -> tuple[CeilingPiece, ...]:
     """Tilted planes overhead: the commonest direction first, its points removed, and again."""
     nz = surface.normals[:, 2]
     free = (nz < -STEEP_COSINE) & (nz > -FLAT_COSINE) & ~surface.is_object & (surface.points[:, 2] > 0.8)
     slopes: list[CeilingPiece] = []
-    for _ in range(2 * settings.max_slopes):
-        if free.sum() < settings.min_slope_points or len(slopes) == settings.max_slopes:
+    for _ in range(2 * SETTINGS.max_slopes):
+        if free.sum() < SETTINGS.min_slope_points or len(slopes) == SETTINGS.max_slopes:
             break
         member = free & (surface.normals @ _commonest(surface, free) > GROWTH_COSINE)
-        piece, taken = _fitted(surface, member, settings)
+        piece, taken = _fitted(surface, member)
         free &= ~(taken | member)
-        if piece is not None and not any(_alike(piece, other, settings) for other in slopes):
+        if piece is not None and not any(_alike(piece, other) for other in slopes):
             slopes.append(piece)
     return tuple(sorted(slopes, key=lambda p: -p.area_m2))
 
 
-def _alike(a: CeilingPiece, b: CeilingPiece, settings: CeilingsSettings = SETTINGS) -> bool:
-    return bool(a.normal @ b.normal > GROWTH_COSINE and abs(a.offset - b.offset) < settings.alike_m)
+def _alike(a: CeilingPiece, b: CeilingPiece) -> bool:
+    return bool(a.normal @ b.normal > GROWTH_COSINE and abs(a.offset - b.offset) < SETTINGS.alike_m)
 
 
 def _commonest(surface: MeasuredSurface, free: Bool[np.ndarray, "n"]) -> Float[np.ndarray, "3"]:
@@ -111,17 +109,17 @@ def _commonest(surface: MeasuredSurface, free: Bool[np.ndarray, "n"]) -> Float[n
 
 
 def _fitted(
-    surface: MeasuredSurface, member: Bool[np.ndarray, "n"], settings: CeilingsSettings = SETTINGS
+    surface: MeasuredSurface, member: Bool[np.ndarray, "n"]
 ) -> tuple[CeilingPiece | None, Bool[np.ndarray, "n"]]:
     """The plane through most of the members, if it can be a ceiling, and the points it explains."""
     nothing = np.zeros(len(member), dtype=bool)
-    if member.sum() < settings.min_slope_points:
+    if member.sum() < SETTINGS.min_slope_points:
         return None, nothing
     mean = surface.normals[member].mean(axis=0)
     offsets = surface.points @ (mean / np.linalg.norm(mean))
     inliers = member & (np.abs(offsets - np.median(offsets[member])) < 0.25)
     for _ in range(4):
-        if inliers.sum() < settings.min_slope_points:
+        if inliers.sum() < SETTINGS.min_slope_points:
             return None, nothing
         normal, offset = surface.world_plane(inliers)
         near = np.abs(surface.points @ normal - offset) < tolerance_m(surface.depth_m)
@@ -130,9 +128,9 @@ def _fitted(
     beyond = surface.points @ normal < offset - 0.1 - 2.0 * tolerance_m(surface.depth_m)
     area = float(surface.area_m2[inliers].sum())
     possible = (
-        area >= settings.min_slope_area_m2
-        and beyond.sum() <= settings.max_seen_through * inliers.sum()
-        and float(surface.points[inliers, 2].mean()) > settings.lowest_slope_m
+        area >= SETTINGS.min_slope_area_m2
+        and beyond.sum() <= SETTINGS.max_seen_through * inliers.sum()
+        and float(surface.points[inliers, 2].mean()) > SETTINGS.lowest_slope_m
         and float(surface.camera_position @ normal) > offset + 0.1
         and -FLAT_COSINE < normal[2] < -STEEP_COSINE
     )

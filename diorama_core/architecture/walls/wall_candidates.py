@@ -70,42 +70,35 @@ def tolerance_m(depth_m: Float[np.ndarray, "n"]) -> Float[np.ndarray, "n"]:
     return 0.04 + 0.015 * depth_m
 
 
-def find_walls(
-    surface: MeasuredSurface, top_m: float, settings: WallCandidatesSettings = SETTINGS
-) -> list[WallCandidate]:
+def find_walls(surface: MeasuredSurface, top_m: float) -> list[WallCandidate]:
     """Candidates that visibility allows, largest area first."""
     upright = (np.abs(surface.normals[:, 2]) < 0.35) & (surface.normals != 0).any(axis=1) & ~surface.is_object
-    if upright.sum() < settings.min_points:
+    if upright.sum() < SETTINGS.min_points:
         return []
     candidates: list[WallCandidate] = []
-    for normal in _directions(surface, upright, settings):
-        candidates += _parallel_walls(surface, upright, normal, top_m, settings)
+    for normal in _directions(surface, upright):
+        candidates += _parallel_walls(surface, upright, normal, top_m)
     distinct: list[WallCandidate] = []
     for wall in sorted(candidates, key=lambda w: -w.area_m2):
-        if not any(same_wall(surface, wall, other, settings) for other in distinct):
+        if not any(same_wall(surface, wall, other) for other in distinct):
             distinct.append(wall)
     return distinct
 
 
-def same_wall(
-    surface: MeasuredSurface, minor: WallCandidate, major: WallCandidate, settings: WallCandidatesSettings = SETTINGS
-) -> bool:
+def same_wall(surface: MeasuredSurface, minor: WallCandidate, major: WallCandidate) -> bool:
     """Whether the smaller candidate's points lie on the larger one too.
 
     Args:
         surface: the measured points.
         minor: the smaller candidate.
         major: the larger one.
-        settings: numbers to work with.
     """
     near = np.abs(surface.points[minor.inliers, :2] @ major.normal - major.offset)
     near = near < tolerance_m(surface.depth_m[minor.inliers])
-    return bool(near.mean() > settings.same_share and minor.normal @ major.normal > np.cos(APART_RAD))
+    return bool(near.mean() > SETTINGS.same_share and minor.normal @ major.normal > np.cos(APART_RAD))
 
 
-def _directions(
-    surface: MeasuredSurface, upright: Bool[np.ndarray, "n"], settings: WallCandidatesSettings = SETTINGS
-) -> list[Float[np.ndarray, "2"]]:
+def _directions(surface: MeasuredSurface, upright: Bool[np.ndarray, "n"]) -> list[Float[np.ndarray, "2"]]:
     """Horizontal normals that much surface shares: peaks of the circular histogram, snapped to the room's axes."""
     heading = np.arctan2(surface.normals[upright, 1], surface.normals[upright, 0])
     weight = surface.area_m2[upright]
@@ -115,7 +108,7 @@ def _directions(
     smooth = histogram + 0.6 * (np.roll(histogram, 1) + np.roll(histogram, -1))
     angles: list[float] = []
     for peak in np.argsort(-smooth, kind="stable"):
-        if smooth[peak] < max(settings.min_area_m2, 0.01 * weight.sum()):
+        if smooth[peak] < max(SETTINGS.min_area_m2, 0.01 * weight.sum()):
             break
         centre = -np.pi + (peak + 0.5) * BIN_RAD
         if any(abs(_turn(centre - other)) < APART_RAD for other in angles):
@@ -130,54 +123,46 @@ def _turn(angle_rad: np.ndarray | float) -> np.ndarray:
 
 
 def _parallel_walls(
-    surface: MeasuredSurface,
-    upright: Bool[np.ndarray, "n"],
-    normal: Float[np.ndarray, "2"],
-    top_m: float,
-    settings: WallCandidatesSettings = SETTINGS,
+    surface: MeasuredSurface, upright: Bool[np.ndarray, "n"], normal: Float[np.ndarray, "2"], top_m: float
 ) -> list[WallCandidate]:
     """All walls facing one way: peaks of the histogram of offsets, each refined and checked."""
     member = upright & (surface.normals[:, :2] @ normal > np.cos(1.8 * GROWTH_RAD))
     offsets = surface.points[:, :2] @ normal
-    if member.sum() < settings.min_points:
+    if member.sum() < SETTINGS.min_points:
         return []
-    low = float(offsets[member].min()) - settings.offset_bin_m
-    index = ((offsets[member] - low) / settings.offset_bin_m).astype(int)
+    low = float(offsets[member].min()) - SETTINGS.offset_bin_m
+    index = ((offsets[member] - low) / SETTINGS.offset_bin_m).astype(int)
     histogram = np.bincount(index, weights=surface.area_m2[member])
     smooth = np.convolve(histogram, np.ones(3), mode="same")
     walls: list[WallCandidate] = []
     free = member.copy()
     for peak in np.argsort(-smooth, kind="stable"):
-        if smooth[peak] < settings.min_area_m2:
+        if smooth[peak] < SETTINGS.min_area_m2:
             break
-        centre = low + (peak + 0.5) * settings.offset_bin_m
-        near = free & (np.abs(offsets - centre) < 2.5 * settings.offset_bin_m + tolerance_m(surface.depth_m))
-        walls += _refined(surface, near, normal, top_m, settings)
+        centre = low + (peak + 0.5) * SETTINGS.offset_bin_m
+        near = free & (np.abs(offsets - centre) < 2.5 * SETTINGS.offset_bin_m + tolerance_m(surface.depth_m))
+        walls += _refined(surface, near, normal, top_m)
         free &= ~near
     return walls
 
 
 def _refined(
-    surface: MeasuredSurface,
-    near: Bool[np.ndarray, "n"],
-    normal: Float[np.ndarray, "2"],
-    top_m: float,
-    settings: WallCandidatesSettings = SETTINGS,
+    surface: MeasuredSurface, near: Bool[np.ndarray, "n"], normal: Float[np.ndarray, "2"], top_m: float
 ) -> list[WallCandidate]:
     """The wall through a slice of points; where that cannot be one, the walls among its parts between gaps."""
-    if near.sum() < settings.min_points:
+    if near.sum() < SETTINGS.min_points:
         return []
-    fitted, offset = fit_line(surface.points[near, :2], surface.area_m2[near], normal, surface.noise, settings)
+    fitted, offset = fit_line(surface.points[near, :2], surface.area_m2[near], normal, surface.noise)
     inliers = np.abs(surface.points[:, :2] @ fitted - offset) < tolerance_m(surface.depth_m)
     inliers &= (surface.normals[:, :2] @ fitted > np.cos(2.0 * GROWTH_RAD)) & ~surface.is_object
     if offset > surface.camera_position[:2] @ fitted - 0.1:
         return []
-    whole = _judged(surface, fitted, offset, inliers, top_m, settings)
+    whole = _judged(surface, fitted, offset, inliers, top_m)
     if whole is not None:
         return [whole]
     along = np.array([-fitted[1], fitted[0]])
-    parts = _parted(surface.points[:, :2] @ along, inliers, settings)
-    judged = (_judged(surface, fitted, offset, part, top_m, settings) for part in parts if len(parts) > 1)
+    parts = _parted(surface.points[:, :2] @ along, inliers)
+    judged = (_judged(surface, fitted, offset, part, top_m) for part in parts if len(parts) > 1)
     return [wall for wall in judged if wall is not None]
 
 
@@ -187,27 +172,24 @@ def _judged(
     offset: float,
     inliers: Bool[np.ndarray, "n"],
     top_m: float,
-    settings: WallCandidatesSettings = SETTINGS,
 ) -> WallCandidate | None:
     """A wall, unless it is small, low, or farther objects are seen through it."""
-    if inliers.sum() < settings.min_points or _spread(surface.points[inliers, 2]) < MIN_RISE_M:
+    if inliers.sum() < SETTINGS.min_points or _spread(surface.points[inliers, 2]) < MIN_RISE_M:
         return None
     area = float(surface.area_m2[inliers].sum())
-    through = _seen_through(surface, normal, offset, inliers, top_m, settings)
-    if area < settings.min_area_m2 or through > settings.max_seen_through:
+    through = _seen_through(surface, normal, offset, inliers, top_m)
+    if area < SETTINGS.min_area_m2 or through > SETTINGS.max_seen_through:
         return None
     return WallCandidate(normal, offset, inliers, through, area)
 
 
-def _parted(
-    reach_m: Float[np.ndarray, "n"], member: Bool[np.ndarray, "n"], settings: WallCandidatesSettings = SETTINGS
-) -> list[Bool[np.ndarray, "n"]]:
+def _parted(reach_m: Float[np.ndarray, "n"], member: Bool[np.ndarray, "n"]) -> list[Bool[np.ndarray, "n"]]:
     """Members split wherever none lies within `GAP_M` along the wall."""
     chosen = np.flatnonzero(member)
     if len(chosen) == 0:
         return []
     order = chosen[np.argsort(reach_m[chosen], kind="stable")]
-    breaks = np.flatnonzero(np.diff(reach_m[order]) > settings.gap_m) + 1
+    breaks = np.flatnonzero(np.diff(reach_m[order]) > SETTINGS.gap_m) + 1
     parts = []
     for indices in np.split(order, breaks):
         part = np.zeros(len(member), dtype=bool)
@@ -222,11 +204,7 @@ def _spread(values: Float[np.ndarray, "n"]) -> float:
 
 
 def fit_line(
-    points: Float[np.ndarray, "n 2"],
-    weights: Float[np.ndarray, "n"],
-    normal: Float[np.ndarray, "2"],
-    noise: float,
-    settings: WallCandidatesSettings = SETTINGS,
+    points: Float[np.ndarray, "n 2"], weights: Float[np.ndarray, "n"], normal: Float[np.ndarray, "2"], noise: float
 ) -> tuple[Float[np.ndarray, "2"], float]:
     """Robust line through points seen from above: its normal, along a room axis where that agrees, and offset.
 
@@ -235,7 +213,6 @@ def fit_line(
         weights: Of the points.
         normal: About where it faces.
         noise: Relative error of the depths.
-        settings: Numbers to work with.
     """
     offset = float(np.median(points @ normal))
     core = np.ones(len(points), dtype=bool)
@@ -248,15 +225,15 @@ def fit_line(
         offset = float(centre @ normal)
     length = float(np.ptp(points[core] @ np.array([-normal[1], normal[0]])))
     axis = _along_axis(
-        points, weights, normal, noise, MAX_SNAP_RAD + float(np.arctan2(settings.narrow_slack_m, length)), settings
+        points, weights, normal, noise, MAX_SNAP_RAD + float(np.arctan2(SETTINGS.narrow_slack_m, length))
     )
     if axis is None:
         return normal, offset
-    tight = settings.tight_m + settings.tight_per_noise_m * noise
+    tight = SETTINGS.tight_m + SETTINGS.tight_per_noise_m * noise
     agree, at_axis = (weights[np.abs(points @ n - o) < tight].sum() for n, o in ((normal, offset), axis))
     return (
         axis
-        if at_axis > (settings.axis_share if length > settings.narrow_m else settings.narrow_share) * agree
+        if at_axis > (SETTINGS.axis_share if length > SETTINGS.narrow_m else SETTINGS.narrow_share) * agree
         else (normal, offset)
     )
 
@@ -267,7 +244,6 @@ def _along_axis(
     normal: Float[np.ndarray, "2"],
     noise: float,
     max_rad: float,
-    settings: WallCandidatesSettings = SETTINGS,
 ) -> tuple[Float[np.ndarray, "2"], float] | None:
     """The line along the nearest room axis that most points lie on; none when that is too far turned."""
     heading = float(np.arctan2(normal[1], normal[0]))
@@ -276,7 +252,7 @@ def _along_axis(
         return None
     axis = np.round([np.cos(quarter), np.sin(quarter)])
     offsets = points @ axis
-    width = settings.tight_m + settings.tight_per_noise_m * noise
+    width = SETTINGS.tight_m + SETTINGS.tight_per_noise_m * noise
     index = ((offsets - offsets.min()) / width).astype(int)
     votes = np.convolve(np.bincount(index, weights=weights), np.ones(2), mode="same")
     centre = float(offsets.min()) + float(votes.argmax()) * width
@@ -290,7 +266,6 @@ def _seen_through(
     offset: float,
     inliers: Bool[np.ndarray, "n"],
     top_m: float,
-    settings: WallCandidatesSettings = SETTINGS,
 ) -> float:
     """Share of the would-be wall, floor to ceiling over its points' width, that has farther objects behind it.
 
@@ -307,7 +282,7 @@ def _seen_through(
     size = surface.area_m2 * np.clip(share, 0.0, 1.0) ** 2
     own_top = float(np.quantile(surface.points[inliers, 2], 0.98))
     above = within & (crossing[:, 2] > own_top + 0.05)
-    if above.sum() >= settings.min_points and own_top < top_m - 0.3 and (beyond & above).sum() > 0.6 * above.sum():
+    if above.sum() >= SETTINGS.min_points and own_top < top_m - 0.3 and (beyond & above).sum() > 0.6 * above.sum():
         return 1.0
     on = within & inliers
     return float(size[beyond].sum() / max(size[beyond].sum() + size[on].sum(), 1e-9))

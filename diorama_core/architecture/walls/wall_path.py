@@ -76,11 +76,7 @@ def heading(point: Float[np.ndarray, "*n 2"], origin: Float[np.ndarray, "2"]) ->
 
 
 def wall_runs(
-    surface: MeasuredSurface,
-    walls: list[WallCandidate],
-    view: tuple[float, float],
-    top_m: float,
-    settings: WallPathSettings = SETTINGS,
+    surface: MeasuredSurface, walls: list[WallCandidate], view: tuple[float, float], top_m: float
 ) -> list[Run]:
     """The walls that lead, from left to right; headings in which none is known are left out.
 
@@ -89,50 +85,43 @@ def wall_runs(
         walls: Candidates that may be walls.
         view: Headings of the picture's left and right side.
         top_m: Height at which walls end.
-        settings: Numbers to work with.
     """
     if not walls:
         return []
-    headings = _divided(surface, view, settings)
-    runs = _cheapest(surface, walls, headings, top_m, settings)
-    returns = _returns(surface, runs, headings, top_m, settings)
-    return _cheapest(surface, walls + returns, headings, top_m, settings) if returns else runs
+    headings = _divided(surface, view)
+    runs = _cheapest(surface, walls, headings, top_m)
+    returns = _returns(surface, runs, headings, top_m)
+    return _cheapest(surface, walls + returns, headings, top_m) if returns else runs
 
 
-def _divided(surface: MeasuredSurface, view: tuple[float, float], settings: WallPathSettings = SETTINGS) -> _Headings:
-    edges = np.linspace(view[0], view[1], settings.heading_bins + 1)
+def _divided(surface: MeasuredSurface, view: tuple[float, float]) -> _Headings:
+    edges = np.linspace(view[0], view[1], SETTINGS.heading_bins + 1)
     of_point = ((heading(surface.points[:, :2], surface.camera_position[:2]) - view[0]) / (edges[1] - edges[0])).astype(
         int
     )
     return _Headings(
         edges,
-        of_point.clip(0, settings.heading_bins - 1),
-        surface.grid_rows * surface.grid_columns / settings.heading_bins,
+        of_point.clip(0, SETTINGS.heading_bins - 1),
+        surface.grid_rows * surface.grid_columns / SETTINGS.heading_bins,
     )
 
 
-def _cheapest(
-    surface: MeasuredSurface,
-    walls: list[WallCandidate],
-    headings: _Headings,
-    top_m: float,
-    settings: WallPathSettings = SETTINGS,
-) -> list[Run]:
+def _cheapest(surface: MeasuredSurface, walls: list[WallCandidate], headings: _Headings, top_m: float) -> list[Run]:
     """Viterbi over headings; the last label stands for no known wall."""
     costs = np.array(
-        [_wall_costs(surface, w, headings, top_m, settings) for w in walls]
-        + [np.full(settings.heading_bins, settings.unknown_cost)]
+        [_wall_costs(surface, w, headings, top_m) for w in walls]
+        + [np.full(SETTINGS.heading_bins, SETTINGS.unknown_cost)]
     )
-    total, came_from = costs[:, 0].copy(), np.zeros((settings.heading_bins, len(costs)), dtype=int)
-    for number in range(1, settings.heading_bins):
-        step = total[:, None] + _going_over(walls, headings, number, surface.camera_position[:2], settings)
+    total, came_from = costs[:, 0].copy(), np.zeros((SETTINGS.heading_bins, len(costs)), dtype=int)
+    for number in range(1, SETTINGS.heading_bins):
+        step = total[:, None] + _going_over(walls, headings, number, surface.camera_position[:2])
         came_from[number] = step.argmin(axis=0)
         total = step.min(axis=0) + costs[:, number]
-    labels = np.zeros(settings.heading_bins, dtype=int)
+    labels = np.zeros(SETTINGS.heading_bins, dtype=int)
     labels[-1] = int(total.argmin())
-    for number in range(settings.heading_bins - 1, 0, -1):
+    for number in range(SETTINGS.heading_bins - 1, 0, -1):
         labels[number - 1] = came_from[number, labels[number]]
-    breaks = [0, *(np.flatnonzero(np.diff(labels)) + 1).tolist(), settings.heading_bins]
+    breaks = [0, *(np.flatnonzero(np.diff(labels)) + 1).tolist(), SETTINGS.heading_bins]
     return [
         Run(walls[labels[a]], float(headings.edges[a]), float(headings.edges[b]))
         for a, b in pairwise(breaks)
@@ -141,11 +130,7 @@ def _cheapest(
 
 
 def _wall_costs(
-    surface: MeasuredSurface,
-    wall: WallCandidate,
-    headings: _Headings,
-    top_m: float,
-    settings: WallPathSettings = SETTINGS,
+    surface: MeasuredSurface, wall: WallCandidate, headings: _Headings, top_m: float
 ) -> Float[np.ndarray, "m"]:
     """Cost of one wall in every heading, 0 to about 3."""
     on = lies_on(surface, wall)
@@ -153,17 +138,15 @@ def _wall_costs(
     rest = (1.0 - share) * np.linalg.norm(surface.points[:, :2] - surface.camera_position[:2], axis=1)
     margin = 0.10 + 2.0 * tolerance_m(surface.depth_m)
     beyond = (share > 0) & (rest > margin) & (crossing[:, 2] > 0.05) & (crossing[:, 2] < top_m - 0.05)
-    lintel = _lintel_heights(surface, on, headings, settings)
+    lintel = _lintel_heights(surface, on, headings)
     below = beyond & (crossing[:, 2] < lintel[headings.of_point])
-    deep = _count(below & (rest > settings.min_doorway_depth_m), headings, settings) > 0.5 * _count(
-        below, headings, settings
-    )
+    deep = _count(below & (rest > SETTINGS.min_doorway_depth_m), headings) > 0.5 * _count(below, headings)
     doorway = below & deep[headings.of_point]
-    cues = _count(on | doorway, headings, settings) / (settings.full_evidence * headings.rows_px)
-    conflict = _count(beyond & ~doorway, headings, settings) / (settings.full_conflict * headings.rows_px)
-    costs = 1.0 - np.minimum(cues, 1.0) + settings.conflict_cost * np.minimum(conflict, 1.0)
+    cues = _count(on | doorway, headings) / (SETTINGS.full_evidence * headings.rows_px)
+    conflict = _count(beyond & ~doorway, headings) / (SETTINGS.full_conflict * headings.rows_px)
+    costs = 1.0 - np.minimum(cues, 1.0) + SETTINGS.conflict_cost * np.minimum(conflict, 1.0)
     reach = distance_along(wall, headings.middles, surface.camera_position[:2])
-    return np.where(np.isfinite(reach) & (reach > settings.nearest_wall_m), costs, 1.0 + 2 * settings.conflict_cost)
+    return np.where(np.isfinite(reach) & (reach > SETTINGS.nearest_wall_m), costs, 1.0 + 2 * SETTINGS.conflict_cost)
 
 
 def lies_on(surface: MeasuredSurface, wall: WallCandidate) -> Bool[np.ndarray, "n"]:
@@ -174,26 +157,22 @@ def lies_on(surface: MeasuredSurface, wall: WallCandidate) -> Bool[np.ndarray, "
     return np.asarray(near & agree & ~surface.is_object & (surface.points[:, 2] > 0.03))
 
 
-def _lintel_heights(
-    surface: MeasuredSurface, on: Bool[np.ndarray, "n"], headings: _Headings, settings: WallPathSettings = SETTINGS
-) -> Float[np.ndarray, "m"]:
+def _lintel_heights(surface: MeasuredSurface, on: Bool[np.ndarray, "n"], headings: _Headings) -> Float[np.ndarray, "m"]:
     """In every heading the height above which the wall is seen, where enough of it is; minus infinity elsewhere.
 
     Only a wall that is also seen lower down, beside the doorway, has a lintel; shelves and cupboards hang free.
     """
     high = on & (surface.points[:, 2] > 1.8)
-    enough = _count(high, headings, settings) > 0.02 * headings.rows_px
+    enough = _count(high, headings) > 0.02 * headings.rows_px
     if not (on & (surface.points[:, 2] < 1.5)).sum() > high.sum() * 0.5:
-        return np.full(settings.heading_bins, -np.inf)
-    lowest = np.full(settings.heading_bins, np.inf)
+        return np.full(SETTINGS.heading_bins, -np.inf)
+    lowest = np.full(SETTINGS.heading_bins, np.inf)
     np.minimum.at(lowest, headings.of_point[high], surface.points[high, 2])
     return np.where(enough, lowest, -np.inf)
 
 
-def _count(
-    chosen: Bool[np.ndarray, "n"], headings: _Headings, settings: WallPathSettings = SETTINGS
-) -> Float[np.ndarray, "m"]:
-    return np.bincount(headings.of_point[chosen], minlength=settings.heading_bins).astype(np.float64)
+def _count(chosen: Bool[np.ndarray, "n"], headings: _Headings) -> Float[np.ndarray, "m"]:
+    return np.bincount(headings.of_point[chosen], minlength=SETTINGS.heading_bins).astype(np.float64)
 
 
 def distance_along(
@@ -207,24 +186,20 @@ def distance_along(
 
 
 def _going_over(
-    walls: list[WallCandidate],
-    headings: _Headings,
-    number: int,
-    origin: Float[np.ndarray, "2"],
-    settings: WallPathSettings = SETTINGS,
+    walls: list[WallCandidate], headings: _Headings, number: int, origin: Float[np.ndarray, "2"]
 ) -> Float[np.ndarray, "w1 w1"]:
     """Cost of going from each label to each other at the border before heading `number`."""
     count = len(walls)
-    costs = np.full((count + 1, count + 1), settings.into_unknown_cost)
+    costs = np.full((count + 1, count + 1), SETTINGS.into_unknown_cost)
     at = headings.edges[number : number + 1]
     width = float(headings.edges[1] - headings.edges[0])
     reach = np.array([distance_along(w, at, origin)[0] for w in walls])
     with np.errstate(invalid="ignore"):
         apart = np.abs(reach[:, None] - reach[None, :])
         nearest = np.minimum(reach[:, None], reach[None, :])
-        meet = apart < settings.meet_m + settings.meet_per_m * nearest
-    meet |= np.abs(_corner_headings(walls, origin) - float(at[0])) < settings.corner_bins * width
-    costs[:count, :count] = np.where(meet, settings.corner_cost, settings.open_end_cost)
+        meet = apart < SETTINGS.meet_m + SETTINGS.meet_per_m * nearest
+    meet |= np.abs(_corner_headings(walls, origin) - float(at[0])) < SETTINGS.corner_bins * width
+    costs[:count, :count] = np.where(meet, SETTINGS.corner_cost, SETTINGS.open_end_cost)
     np.fill_diagonal(costs, 0.0)
     return costs
 
@@ -242,9 +217,7 @@ def _corner_headings(walls: list[WallCandidate], origin: Float[np.ndarray, "2"])
     return headings
 
 
-def _returns(
-    surface: MeasuredSurface, runs: list[Run], headings: _Headings, top_m: float, settings: WallPathSettings = SETTINGS
-) -> list[WallCandidate]:
+def _returns(surface: MeasuredSurface, runs: list[Run], headings: _Headings, top_m: float) -> list[WallCandidate]:
     """Walls between a nearer and a farther one, seen too aslant or too narrowly to be found by themselves."""
     origin = surface.camera_position[:2]
     width = float(headings.edges[1] - headings.edges[0])
@@ -256,31 +229,29 @@ def _returns(
             continue
         near, far = (left, right) if a < b else (right, left)
         middle = int((at[0] - headings.edges[0]) / width)
-        close = np.abs(headings.of_point - middle) <= settings.return_bins
+        close = np.abs(headings.of_point - middle) <= SETTINGS.return_bins
         close &= (surface.points[:, 2] > 0.1) & (surface.points[:, 2] < top_m - 0.05) & ~surface.is_object
         behind = surface.points[:, :2] @ near.wall.normal < near.wall.offset - 0.06
         before = surface.points[:, :2] @ far.wall.normal > far.wall.offset + 0.06
         between = close & behind & before
         for wall in (near.wall, far.wall):
-            candidate = _square_to(surface, wall, between, settings)
+            candidate = _square_to(surface, wall, between)
             known = [*(run.wall for run in runs), *returns]
             if candidate is not None and not any(same_wall(surface, candidate, w) for w in known):
                 returns.append(candidate)
     return returns
 
 
-def _square_to(
-    surface: MeasuredSurface, wall: WallCandidate, between: Bool[np.ndarray, "n"], settings: WallPathSettings = SETTINGS
-) -> WallCandidate | None:
+def _square_to(surface: MeasuredSurface, wall: WallCandidate, between: Bool[np.ndarray, "n"]) -> WallCandidate | None:
     """The wall at a right angle to another through points, facing the camera; none where they do not agree on it."""
-    if between.sum() < settings.return_points:
+    if between.sum() < SETTINGS.return_points:
         return None
     normal = wall.along
     offset = float(np.median(surface.points[between, :2] @ normal))
     if float(surface.camera_position[:2] @ normal) < offset:
         normal, offset = -normal, -offset
     inliers = between & (np.abs(surface.points[:, :2] @ normal - offset) < 0.5 * tolerance_m(surface.depth_m))
-    tall = inliers.sum() >= settings.return_points and np.ptp(surface.points[inliers, 2]) > MIN_RISE_M
+    tall = inliers.sum() >= SETTINGS.return_points and np.ptp(surface.points[inliers, 2]) > MIN_RISE_M
     if not tall or inliers.sum() < 0.5 * between.sum():
         return None
     offset = float(np.median(surface.points[inliers, :2] @ normal))

@@ -54,7 +54,6 @@ def clear_of_places(
     mesh: Callable[[], trimesh.Trimesh],
     *,
     carries: bool = False,
-    settings: ClearPlacesSettings = SETTINGS,
 ) -> tuple[ConvexPart, ...]:
     """The parts without what of them is over places above which the mesh leaves room.
 
@@ -65,41 +64,30 @@ def clear_of_places(
         surfaces: its places.
         mesh: gives its geometry, which most shapes need not be asked for.
         carries: whether people put things on its places rather than sit on them.
-        settings: numbers to work with.
     """
-    places = [
-        (_inscribed(np.asarray(s.polygon)[:, :2], settings), s.height_m, s.height_m + s.clearance_m) for s in surfaces
-    ]
-    if not any(
-        _reaches_over(part, _above(place, settings.rises_m[0], settings), settings)
-        for part in parts
-        for place in places
-    ):
+    places = [(_inscribed(np.asarray(s.polygon)[:, :2]), s.height_m, s.height_m + s.clearance_m) for s in surfaces]
+    if not any(_reaches_over(part, _above(place, SETTINGS.rises_m[0])) for part in parts for place in places):
         return parts
-    rises = (*settings.rises_m, settings.around_feet_m) if carries else settings.rises_m
+    rises = (*SETTINGS.rises_m, SETTINGS.around_feet_m) if carries else SETTINGS.rises_m
     surface = mesh()
     points = np.vstack(
-        [surface.vertices, trimesh.sample.sample_surface(surface, settings.samples, seed=settings.seed)[0]]
+        [surface.vertices, trimesh.sample.sample_surface(surface, SETTINGS.samples, seed=SETTINGS.seed)[0]]
     )
     for place in places:
-        rooms = (_above(place, rise, settings) for rise in rises)
-        free = next((room for room in rooms if not _within(points, *room, settings=settings).any()), None)
+        rooms = (_above(place, rise) for rise in rises)
+        free = next((room for room in rooms if not _within(points, *room).any()), None)
         if free is not None and not _is_enclosed(free, surface):
-            whole, flat = (place[0], place[1], free[2]), _above(place, settings.rises_m[0], settings)
-            parts = tuple(
-                piece
-                for p in parts
-                for piece in (_cut(p, whole, settings) if _reaches_over(p, flat, settings) else [p])
-            )
+            whole, flat = (place[0], place[1], free[2]), _above(place, SETTINGS.rises_m[0])
+            parts = tuple(piece for p in parts for piece in (_cut(p, whole) if _reaches_over(p, flat) else [p]))
     return parts
 
 
-def _inscribed(outline: Float[np.ndarray, "k 2"], settings: ClearPlacesSettings = SETTINGS) -> Float[np.ndarray, "m 2"]:
+def _inscribed(outline: Float[np.ndarray, "k 2"]) -> Float[np.ndarray, "m 2"]:
     """At most `MAX_SIDES` of an outline's corners, evenly along it."""
-    if len(outline) <= settings.max_sides:
+    if len(outline) <= SETTINGS.max_sides:
         return outline
     length = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.roll(outline, -1, axis=0) - outline, axis=1))])
-    at = np.searchsorted(length[:-1], np.arange(settings.max_sides) / settings.max_sides * length[-1])
+    at = np.searchsorted(length[:-1], np.arange(SETTINGS.max_sides) / SETTINGS.max_sides * length[-1])
     return outline[np.unique(np.minimum(at, len(outline) - 1))]
 
 
@@ -112,23 +100,19 @@ def _sides(outline: Float[np.ndarray, "k 2"]) -> tuple[Float[np.ndarray, "s 2"],
     return outward, (outward * outline[long]).sum(axis=1)
 
 
-def _above(place: Room, rise_m: float, settings: ClearPlacesSettings = SETTINGS) -> Room:
+def _above(place: Room, rise_m: float) -> Room:
     """The room over a place, above what rises from it so far."""
     outline, level, top = place
-    return outline, level + rise_m, top - settings.rises_m[1]
+    return outline, level + rise_m, top - SETTINGS.rises_m[1]
 
 
 def _within(
-    points: Float[np.ndarray, "n 3"],
-    outline: Float[np.ndarray, "k 2"],
-    low: float,
-    high: float,
-    settings: ClearPlacesSettings = SETTINGS,
+    points: Float[np.ndarray, "n 3"], outline: Float[np.ndarray, "k 2"], low: float, high: float
 ) -> Bool[np.ndarray, " n"]:
     """Which points are in a room."""
     outward, offset = _sides(outline)
     beside = (points[:, :2] @ outward.T - offset).max(axis=1)
-    return np.asarray((beside < -settings.margin_m) & (points[:, 2] > low) & (points[:, 2] < high))
+    return np.asarray((beside < -SETTINGS.margin_m) & (points[:, 2] > low) & (points[:, 2] < high))
 
 
 def _is_enclosed(room: Room, mesh: trimesh.Trimesh) -> bool:
@@ -144,36 +128,34 @@ def _is_enclosed(room: Room, mesh: trimesh.Trimesh) -> bool:
     return bool(Caster(np.asarray(mesh.vertices), np.asarray(mesh.faces, np.int32)).first_hits(rays).found.all())
 
 
-def _reaches_over(part: ConvexPart, room: Room, settings: ClearPlacesSettings = SETTINGS) -> bool:
+def _reaches_over(part: ConvexPart, room: Room) -> bool:
     """Whether a part has some of a room inside it."""
     outline, low, high = room
     vertices = part.vertices
     if vertices[:, 2].max() < low or vertices[:, 2].min() > high or len(outline) < 3:
         return False
     reach = np.minimum(vertices[:, :2].max(axis=0), outline.max(axis=0))
-    if (reach - np.maximum(vertices[:, :2].min(axis=0), outline.min(axis=0)) < settings.reaches_m).any():
+    if (reach - np.maximum(vertices[:, :2].min(axis=0), outline.min(axis=0)) < SETTINGS.reaches_m).any():
         return False
     outward, offset = _sides(outline)
-    inside = [[*n, 0.0, settings.margin_m + settings.reaches_m - o] for n, o in zip(outward, offset, strict=True)]
+    inside = [[*n, 0.0, SETTINGS.margin_m + SETTINGS.reaches_m - o] for n, o in zip(outward, offset, strict=True)]
     inside += [[0.0, 0.0, -1.0, low]]
     inside += [[0.0, 0.0, 1.0, -high]] if np.isfinite(high) else []
-    return len(_clipped(vertices, np.array(inside), settings)) > 0
+    return len(_clipped(vertices, np.array(inside))) > 0
 
 
-def _cut(part: ConvexPart, room: Room, settings: ClearPlacesSettings = SETTINGS) -> list[ConvexPart]:
+def _cut(part: ConvexPart, room: Room) -> list[ConvexPart]:
     """A part without what of it is in a room: what is beyond each of the room's sides, and below and above it."""
     outline, low, high = room
     outward, offset = _sides(outline)
-    beyond = [np.array([[-x, -y, 0.0, o - settings.margin_m]]) for (x, y), o in zip(outward, offset, strict=True)]
+    beyond = [np.array([[-x, -y, 0.0, o - SETTINGS.margin_m]]) for (x, y), o in zip(outward, offset, strict=True)]
     beyond += [np.array([[0.0, 0.0, 1.0, -low]])]
     beyond += [np.array([[0.0, 0.0, -1.0, high]])] if np.isfinite(high) else []
-    clouds = [_clipped(part.vertices, half, settings) for half in beyond]
+    clouds = [_clipped(part.vertices, half) for half in beyond]
     return [simplest_part(cloud) for cloud in _not_contained([c for c in clouds if len(c)])]
 
 
-def _clipped(
-    vertices: Float[np.ndarray, "v 3"], half_spaces: Float[np.ndarray, "h 4"], settings: ClearPlacesSettings = SETTINGS
-) -> Float[np.ndarray, "n 3"]:
+def _clipped(vertices: Float[np.ndarray, "v 3"], half_spaces: Float[np.ndarray, "h 4"]) -> Float[np.ndarray, "n 3"]:
     """Corners of what of a convex body is inside half-spaces (normal . x + offset <= 0); none where nothing is."""
     deepest = (vertices @ half_spaces[:, :3].T + half_spaces[:, 3]).min(axis=0)
     if (deepest > -THINNEST_M).any():  # nothing as thick as that is inside
@@ -182,7 +164,7 @@ def _clipped(
         planes = np.vstack([ConvexHull(vertices).equations, half_spaces])
     except (QhullError, ValueError):
         return np.zeros((0, 3))
-    inside = _point_inside(planes, vertices.mean(axis=0), settings)
+    inside = _point_inside(planes, vertices.mean(axis=0))
     if inside is None:
         return np.zeros((0, 3))
     try:
@@ -192,21 +174,19 @@ def _clipped(
     return np.unique(np.round(corners, 9), axis=0)
 
 
-def _point_inside(
-    planes: Float[np.ndarray, "h 4"], start: Float[np.ndarray, "3"], settings: ClearPlacesSettings = SETTINGS
-) -> Float[np.ndarray, "3"] | None:
+def _point_inside(planes: Float[np.ndarray, "h 4"], start: Float[np.ndarray, "3"]) -> Float[np.ndarray, "3"] | None:
     """A point inside half-spaces (unit normal . x + offset <= 0); None where what is inside is thinner than a part.
 
     Steps back from one plane after another (Agmon 1954) mostly end well inside; where they do not, the largest ball
     is sought, which takes thirty times as long.
     """
     point = start
-    for _ in range(settings.steps):
+    for _ in range(SETTINGS.steps):
         over = planes[:, :3] @ point + planes[:, 3]
         worst = int(over.argmax())
-        if over[worst] <= -settings.well_inside_m:
+        if over[worst] <= -SETTINGS.well_inside_m:
             return point
-        point = point - (over[worst] + 2.0 * settings.well_inside_m) * planes[worst, :3]
+        point = point - (over[worst] + 2.0 * SETTINGS.well_inside_m) * planes[worst, :3]
     rows = np.column_stack([planes[:, :3], np.ones(len(planes))])
     ball = linprog([0.0, 0.0, 0.0, -1.0], rows, -planes[:, 3], bounds=[(None, None)] * 3 + [(0.0, None)]).x
     return None if ball is None or ball[3] < THINNEST_M / 2 else np.asarray(ball[:3])

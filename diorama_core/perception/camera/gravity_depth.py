@@ -69,10 +69,7 @@ class _Samples:
 
 
 def frame_from_depth(
-    depth_m: Float32[np.ndarray, "h w"],
-    intrinsics: Intrinsics,
-    R_expected: Float[np.ndarray, "3 3"],
-    settings: GravityDepthSettings = SETTINGS,
+    depth_m: Float32[np.ndarray, "h w"], intrinsics: Intrinsics, R_expected: Float[np.ndarray, "3 3"]
 ) -> GravityFrame | None:
     """Gravity from level surfaces, room axes from walls, height from the floor.
 
@@ -85,17 +82,17 @@ def frame_from_depth(
     Returns:
         The frame, or None where no level surface can be seen.
     """
-    samples = _samples(depth_m, intrinsics, settings)
-    up = _level_direction(samples, R_expected[2], settings)
+    samples = _samples(depth_m, intrinsics)
+    up = _level_direction(samples, R_expected[2])
     if up is None:
         return None
-    floor = _floor(samples, up, settings)
+    floor = _floor(samples, up)
     if floor is None and up @ R_expected[2] < np.cos(UNSUPPORTED_CONE_RAD):
         return None
     if floor is not None:
         up, height = floor
     level = samples.normals @ up > np.cos(LEVEL_RAD)
-    axis, wall_share = _wall_direction(samples, up, R_expected[1], settings)
+    axis, wall_share = _wall_direction(samples, up, R_expected[1])
     return GravityFrame(
         R_world_camera=world_frame(up, axis),
         height_m=None if floor is None else height,
@@ -104,10 +101,8 @@ def frame_from_depth(
     )
 
 
-def _samples(
-    depth_m: Float32[np.ndarray, "h w"], intrinsics: Intrinsics, settings: GravityDepthSettings = SETTINGS
-) -> _Samples:
-    small, k = reduced(depth_m, intrinsics, settings.working_side_px)
+def _samples(depth_m: Float32[np.ndarray, "h w"], intrinsics: Intrinsics) -> _Samples:
+    small, k = reduced(depth_m, intrinsics, SETTINGS.working_side_px)
     points = points_camera(small, k)
     normals = smooth_normals_camera(small, k)
     known = (normals != 0).any(axis=-1)
@@ -117,9 +112,7 @@ def _samples(
     return _Samples(p, n, p[:, 2] ** 2 / (k.fx * k.fy) / slant)
 
 
-def _level_direction(
-    samples: _Samples, up_expected: Float[np.ndarray, "3"], settings: GravityDepthSettings = SETTINGS
-) -> Float[np.ndarray, "3"] | None:
+def _level_direction(samples: _Samples, up_expected: Float[np.ndarray, "3"]) -> Float[np.ndarray, "3"] | None:
     """The direction near the expected up that most measured area faces and most other area lies along.
 
     All candidates are weighed at once; the best is refined by least squares on the normals that agree.
@@ -128,13 +121,13 @@ def _level_direction(
     normals, areas = samples.normals[near], _tempered(samples.areas[near])
     if len(normals) < 30:
         return None
-    candidates = normals[_spread(len(normals), settings.max_trials)]
-    voters = _spread(len(normals), settings.max_voters)
+    candidates = normals[_spread(len(normals), SETTINGS.max_trials)]
+    voters = _spread(len(normals), SETTINGS.max_voters)
     agreement = np.exp((normals[voters] @ candidates.T - 1.0) / np.deg2rad(5.0) ** 2)
     support = areas[voters] @ agreement * (len(normals) / len(voters))
     # Walls cross level surfaces at right angles: a direction that walls lie along is more likely up.
     others = samples.normals[~near]
-    across = others[_spread(len(others), settings.max_voters)]
+    across = others[_spread(len(others), SETTINGS.max_voters)]
     along_walls = (np.abs(across @ candidates.T) < np.sin(np.deg2rad(4.0))).sum(axis=0)
     support += 0.3 * along_walls * (len(others) / max(len(across), 1))
     prior = 1.0 - 0.5 * (1.0 - candidates @ up_expected) / (1.0 - np.cos(UP_CONE_RAD))
@@ -160,33 +153,27 @@ def _tempered(areas: Float[np.ndarray, "n"]) -> Float[np.ndarray, "n"]:
     return np.sqrt(areas / areas.mean()) if len(areas) else areas
 
 
-def _floor(
-    samples: _Samples, up: Float[np.ndarray, "3"], settings: GravityDepthSettings = SETTINGS
-) -> tuple[Float[np.ndarray, "3"], float] | None:
+def _floor(samples: _Samples, up: Float[np.ndarray, "3"]) -> tuple[Float[np.ndarray, "3"], float] | None:
     """The lowest level surface of some extent with next to nothing below it: refined up, and camera height."""
     level = samples.normals @ up > np.cos(ALIGNED_RAD)
     drops = -(samples.points[level] @ up)
     if len(drops) == 0:
         return None
-    edges = np.arange(settings.floor_height_m[0], settings.floor_height_m[1], settings.bin_m)
+    edges = np.arange(SETTINGS.floor_height_m[0], SETTINGS.floor_height_m[1], SETTINGS.bin_m)
     histogram = np.histogram(drops, bins=edges, weights=samples.areas[level])[0]
     broad = np.convolve(histogram, np.ones(5), mode="same")
-    enough = np.flatnonzero(broad > max(settings.min_level_m2, 0.05 * broad.max()))
+    enough = np.flatnonzero(broad > max(SETTINGS.min_level_m2, 0.05 * broad.max()))
     all_drops = -(samples.points @ up)
     for start in enough[::-1]:
         low = max(0, start - 5)
-        height = float(edges[low + int(broad[low : start + 1].argmax())]) + 0.5 * settings.bin_m
-        if (all_drops > height + 0.06 + 0.03 * height).mean() < settings.below_share:
-            return _fitted_floor(samples, level, up, height, settings)
+        height = float(edges[low + int(broad[low : start + 1].argmax())]) + 0.5 * SETTINGS.bin_m
+        if (all_drops > height + 0.06 + 0.03 * height).mean() < SETTINGS.below_share:
+            return _fitted_floor(samples, level, up, height)
     return None
 
 
 def _fitted_floor(
-    samples: _Samples,
-    level: Bool[np.ndarray, "n"],
-    up: Float[np.ndarray, "3"],
-    height: float,
-    settings: GravityDepthSettings = SETTINGS,
+    samples: _Samples, level: Bool[np.ndarray, "n"], up: Float[np.ndarray, "3"], height: float
 ) -> tuple[Float[np.ndarray, "3"], float]:
     """The direction that fits the floor's points and the walls' normals best, each trusted as far as it reaches.
 
@@ -194,7 +181,7 @@ def _fitted_floor(
     are quadratic forms in the direction sought, so their sum's least eigenvector is the answer.
     """
     points = samples.points[level]
-    noise = settings.point_noise_m + settings.depth_noise_per_m * points[:, 2] ** 2
+    noise = SETTINGS.point_noise_m + SETTINGS.depth_noise_per_m * points[:, 2] ** 2
     start = up
     for _ in range(4):
         near = np.abs(points @ up + height) < 3.0 * noise
@@ -202,9 +189,9 @@ def _fitted_floor(
             break
         weights = 1.0 / noise[near] ** 2
         centre = (weights[:, None] * points[near]).sum(axis=0) / weights.sum()
-        off = (points[near] - centre) * np.sqrt(weights / settings.points_per_fact)[:, None]
+        off = (points[near] - centre) * np.sqrt(weights / SETTINGS.points_per_fact)[:, None]
         upright = samples.normals[np.abs(samples.normals @ up) < np.sin(LEVEL_RAD)]
-        form = off.T @ off + upright.T @ upright / (NORMAL_NOISE_RAD**2 * settings.normals_per_fact)
+        form = off.T @ off + upright.T @ upright / (NORMAL_NOISE_RAD**2 * SETTINGS.normals_per_fact)
         candidate = np.linalg.eigh(form)[1][:, 0]
         candidate = candidate if candidate @ start > 0 else -candidate
         if candidate @ start < np.cos(ALIGNED_RAD):
@@ -214,10 +201,7 @@ def _fitted_floor(
 
 
 def _wall_direction(
-    samples: _Samples,
-    up: Float[np.ndarray, "3"],
-    expected: Float[np.ndarray, "3"],
-    settings: GravityDepthSettings = SETTINGS,
+    samples: _Samples, up: Float[np.ndarray, "3"], expected: Float[np.ndarray, "3"]
 ) -> tuple[Float[np.ndarray, "3"], float]:
     """The horizontal direction that most upright surface faces, quarter turns free, and the share that agrees."""
     along = expected - (expected @ up) * up
@@ -226,7 +210,7 @@ def _wall_direction(
     upright = np.abs(samples.normals @ up) < np.sin(ALIGNED_RAD)
     if upright.sum() < 30:
         return along, 0.0
-    chosen = np.flatnonzero(upright)[_spread(int(upright.sum()), settings.max_voters)]
+    chosen = np.flatnonzero(upright)[_spread(int(upright.sum()), SETTINGS.max_voters)]
     normals, weights = samples.normals[chosen], _tempered(samples.areas[chosen])
     headings = np.arctan2(normals @ across, normals @ along)
     trials = np.deg2rad(np.arange(-45.0, 45.0, 0.5))

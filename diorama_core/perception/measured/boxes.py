@@ -51,22 +51,20 @@ class TurnedExtent:
         return yaw_rotation(self.yaw_rad) @ (0.5 * (self.low + self.high))
 
 
-def observed_extent(
-    points: Float[np.ndarray, "n 3"], category: Category, settings: MeasuredBoxSettings = SETTINGS
-) -> TurnedExtent:
+def observed_extent(points: Float[np.ndarray, "n 3"], category: Category) -> TurnedExtent:
     """The box around the points: along the room's axes unless a turned one is clearly tighter."""
     flat = points[:, :2].astype(np.float32)
     angle = float(np.deg2rad(cv2.minAreaRect(flat)[2]))
     turned = (angle + np.pi / 4) % (np.pi / 2) - np.pi / 4
-    straight, other = _bounds(points, 0.0, settings), _bounds(points, turned, settings)
-    gain = settings.free_gain if category.quarter_turns_free else settings.manhattan_gain
+    straight, other = _bounds(points, 0.0), _bounds(points, turned)
+    gain = SETTINGS.free_gain if category.quarter_turns_free else SETTINGS.manhattan_gain
     area, other_area = float(np.prod(straight.size[:2])), float(np.prod(other.size[:2]))
     return other if other_area < gain * area else straight
 
 
-def _bounds(points: Float[np.ndarray, "n 3"], yaw_rad: float, settings: MeasuredBoxSettings = SETTINGS) -> TurnedExtent:
+def _bounds(points: Float[np.ndarray, "n 3"], yaw_rad: float) -> TurnedExtent:
     local = points @ yaw_rotation(yaw_rad)
-    low, high = np.quantile(local, [settings.edge_quantile, 1.0 - settings.edge_quantile], axis=0)
+    low, high = np.quantile(local, [SETTINGS.edge_quantile, 1.0 - SETTINGS.edge_quantile], axis=0)
     return TurnedExtent(yaw_rad, low, high)
 
 
@@ -77,7 +75,6 @@ def completed(
     cut_off: Bool[np.ndarray, "3"],
     background: Float[np.ndarray, "m 3"],
     points: Float[np.ndarray, "n 3"],
-    settings: MeasuredBoxSettings = SETTINGS,
 ) -> TurnedExtent:
     """The box with its unseen back, and what the picture's sides cut off, added from the category's usual size.
 
@@ -88,7 +85,6 @@ def completed(
         cut_off: Whether the mask touches the picture's left, right and upper side.
         background: World points seen around the object; it does not reach through them.
         points: World points of the object; a top that is seen tells the extents.
-        settings: Numbers to work with.
     """
     R = yaw_rotation(extent.yaw_rad)
     eye = camera_position @ R
@@ -96,11 +92,11 @@ def completed(
     away = 0.5 * (low + high)[:2] - eye[:2]
     usual = usual_plan(extent.size, category)
     behind = background @ R
-    top_seen = _top_seen(points @ R, extent, settings)
+    top_seen = _top_seen(points @ R, extent)
     for axis in (0, 1):
         facing = abs(away[axis]) / max(float(np.linalg.norm(away)), 1e-9)
         unseen_back = bool(
-            facing > 0.5 and not top_seen[axis] and extent.size[axis] < settings.short_of_usual * usual[axis]
+            facing > 0.5 and not top_seen[axis] and extent.size[axis] < SETTINGS.short_of_usual * usual[axis]
         )
         side_cut = facing <= 0.7 and cut_off[:2].any() and extent.size[axis] < usual[axis]
         if not unseen_back and not side_cut:
@@ -117,15 +113,13 @@ def completed(
     return TurnedExtent(extent.yaw_rad, low, high)
 
 
-def _top_seen(
-    local: Float[np.ndarray, "n 3"], extent: TurnedExtent, settings: MeasuredBoxSettings = SETTINGS
-) -> Bool[np.ndarray, "2"]:
+def _top_seen(local: Float[np.ndarray, "n 3"], extent: TurnedExtent) -> Bool[np.ndarray, "2"]:
     """Along which axes the object's flat top is seen nearly from end to end."""
-    top = local[local[:, 2] > extent.high[2] - settings.top_layer_m]
+    top = local[local[:, 2] > extent.high[2] - SETTINGS.top_layer_m]
     if len(top) < 20:
         return np.zeros(2, dtype=bool)
     span = np.ptp(np.quantile(top[:, :2], [0.02, 0.98], axis=0), axis=0)
-    return (span > 0.7 * extent.size[:2]) & (span > 3.0 * settings.top_layer_m)
+    return (span > 0.7 * extent.size[:2]) & (span > 3.0 * SETTINGS.top_layer_m)
 
 
 def _outward(
