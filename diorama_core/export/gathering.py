@@ -8,7 +8,7 @@ library for what an object looks like; colliders come from `diorama_core.export.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Any, Literal
 
@@ -23,6 +23,7 @@ from diorama_core.export.photo_textures import MAX_PHOTO_TEXTURES_PX, bounded_pi
 from diorama_core.export.pictures import Picture, photo_text
 from diorama_core.export.sharing import SharedAppearance
 from diorama_core.geometry.openings import with_openings
+from diorama_core.geometry.rooms import rooms_of_objects, rooms_of_planes
 from diorama_core.io.text import clean_text
 from diorama_core.library.opening import OpenedShapes, articulation_of
 from diorama_core.library.record import ShapeLibrary
@@ -31,7 +32,7 @@ from diorama_core.progress import Progress
 from diorama_core.render.appearance import Material, PartsSource, Surface, shape_surfaces
 from diorama_core.render.slabs import plane_surfaces
 from diorama_core.scene.support import ancestors, top_down
-from diorama_core.scene.types import Camera, Plane, Scene, SceneObject, Support
+from diorama_core.scene.types import Camera, HomeRoom, Plane, Scene, SceneObject, Support
 
 Compression = Literal["none", "meshopt", "draco"]
 Bodies = Literal["free", "welded"]
@@ -121,6 +122,8 @@ class ExportObject:
     """Its edge of the support graph, as the scene says it (planes and hidden supporters included)."""
     limbs: tuple[ExportLimb, ...] = ()
     """Its moving parts; `mesh` then is the rest of it. Only with the option `joints`."""
+    group: tuple[str, ...] = ()
+    """Slugs of the storey and the room of a home that it is in."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -132,6 +135,8 @@ class ExportPlane:
     slug: str
     mesh: str
     plane: Plane
+    group: tuple[str, ...] = ()
+    """Slugs of the storey and the room of a home that it is of."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -178,6 +183,11 @@ class ExportScene:
         """The room's even light; None where lights are photometric: there is no such lamp."""
         wanted = self._room_is_lit and self.options.lights == "unit"
         return even_light_of(self.scene, self.lights) if wanted else None
+
+    @cached_property
+    def room_of(self) -> Mapping[str, HomeRoom]:
+        """The room of each plane and object of a home, by their ids."""
+        return _rooms_by_id(self.scene)
 
     @property
     def _room_is_lit(self) -> bool:
@@ -236,7 +246,10 @@ def gather(
     """
     shared, labels = SharedAppearance(options.max_texture_px), Labels()
     textures = bounded_pictures(scene, textures or {}, options.max_photo_textures_px)
+    slugs = {r.id: (f"storey_{r.storey}", labels.slug(r.name)) for r in scene.rooms}
+    groups = {name: slugs[room.id] for name, room in _rooms_by_id(scene).items()}
     planes, meshes = _planes(scene, options, textures, shared, labels)
+    planes = [replace(p, group=groups.get(p.id, ())) for p in planes]
     shown = {o.id for o in scene.objects if not o.hidden and (options.only is None or o.id in options.only)}
     order = [scene.object(i) for i in top_down(scene) if i in shown]
     painted: dict[tuple[object, ...], dict[int | None, str]] = {}
@@ -252,7 +265,8 @@ def gather(
             painted[paint] = {number: mesh.key for number, mesh in made.items()}
             meshes |= {mesh.key: mesh for mesh in made.values()}
         outward = item.id in swings and swings[item.id].outward
-        objects.append(_node(scene, library, item, painted[paint], shown, labels, outward=outward))
+        node = _node(scene, library, item, painted[paint], shown, labels, outward=outward)
+        objects.append(replace(node, group=groups.get(item.id, ())))
     lit = [] if options.lights == "none" else [o.item for o in objects]
     return ExportScene(
         name=clean_text(name),
@@ -276,6 +290,11 @@ def rigid_inverse(T: Float[np.ndarray, "4 4"]) -> Float[np.ndarray, "4 4"]:
     out = np.eye(4)
     out[:3, :3], out[:3, 3] = T[:3, :3].T, -T[:3, :3].T @ T[:3, 3]
     return out
+
+
+def _rooms_by_id(scene: Scene) -> dict[str, HomeRoom]:
+    rooms = {r.id: r for r in scene.rooms}
+    return {name: rooms[room] for name, room in {**rooms_of_planes(scene), **rooms_of_objects(scene)}.items()}
 
 
 def _planes(

@@ -9,7 +9,7 @@ be read back even after other programs moved or deleted nodes. `docs/export.md` 
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -113,8 +113,8 @@ class _Builder:
             self._lights.setdefault(light.owner, []).append(light)
 
     def built(self) -> GltfDocument:
-        planes = [self._plane(p) for p in self._gathered.planes]
-        objects = [self._object(o) for o in self._gathered.children_of(None)]
+        planes = self._grouped([(p.group, self._plane(p)) for p in self._gathered.planes])
+        objects = self._grouped([(o.group, self._object(o)) for o in self._gathered.children_of(None)])
         children = [
             self._branch(name, nodes) for name, nodes in (("architecture", planes), ("objects", objects)) if nodes
         ]
@@ -142,6 +142,14 @@ class _Builder:
 
     def _unique(self, name: str) -> str:
         return unique_name(name, self._names)
+
+    def _grouped(self, nodes: Sequence[tuple[tuple[str, ...], int]]) -> list[int]:
+        """The nodes of a home below a node a storey, and below it a node a room."""
+        grouped = [node for group, node in nodes if not group]
+        for name in dict.fromkeys(group[0] for group, _ in nodes if group):
+            inside = [(group[1:], node) for group, node in nodes if group[:1] == (name,)]
+            grouped.append(self._branch(name, self._grouped(inside)))
+        return grouped
 
     def _branch(self, name: str, children: list[int]) -> int:
         return self._document.add("nodes", {"name": self._unique(name), "children": children})

@@ -21,7 +21,7 @@ from diorama_core.io.srgb import srgb_to_linear
 from diorama_core.library.taxonomy import column
 from diorama_core.progress import Progress
 from diorama_core.render.appearance import Material
-from diorama_core.scene.types import Plane
+from diorama_core.scene.types import HomeRoom, Plane
 
 CLASSES: Mapping[str, str] = column("ifc_class")
 """Classes of categories; all others are furniture."""
@@ -51,40 +51,66 @@ class _Builder:
         self._maps: dict[str, Any] = {}
         self._types: dict[tuple[str, str], Any] = {}
         self._typed: dict[Any, list[Any]] = {}
+        self._storeys: dict[int, Any] = {}
 
     def built(self) -> IfcDocument:
         """The whole model."""
-        storey = self._storey()
+        building = self._building()
+        rooms = self._scene.scene.rooms
+        numbers = sorted({r.storey for r in rooms}) or [0]
+        self._storeys = {n: self._storey(building, n) for n in numbers}
+        self._to.rooted("IfcRelAggregates", RelatingObject=building, RelatedObjects=[*self._storeys.values()])
         walls = wall_lines([p.plane for p in self._scene.planes], self._items, self._scene.scene)
-        elements: list[Any] = []
-        pieces: list[Any] = []
+        contents: dict[Any, list[Any]] = {}
         holes: dict[str, Any] = {}
+        spaces = {r.id: self._space(self._storeys[r.storey], r) for r in rooms}
+        whole = None if rooms else self._space(self._storeys[0], None)
         for wall in walls:
-            elements.append(self._wall(wall, storey, holes))
+            storey = self._storey_of(wall.plane.id)
+            contents.setdefault(storey, []).append(self._wall(wall, storey, holes))
         for slab in self._scene.planes:
             if slab.plane.role != "wall":
-                elements.append(self._slab(slab.plane, slab.name, storey))
+                storey = self._storey_of(slab.id)
+                contents.setdefault(storey, []).append(self._slab(slab.plane, slab.name, storey))
         for number, item in enumerate(self._scene.objects):
             self._progress.report(number / len(self._scene.objects), f"writing {item.name}")
+            storey, room = self._storey_of(item.id), self._scene.room_of.get(item.id)
             element = self._object(item, storey)
-            (elements if element.is_a() in ("IfcDoor", "IfcWindow") else pieces).append(element)
+            space = whole if room is None else spaces[room.id]
+            place = storey if element.is_a() in ("IfcDoor", "IfcWindow") else space or storey
+            contents.setdefault(place, []).append(element)
             if item.id in holes:
                 self._to.rooted(
                     "IfcRelFillsElement", RelatingOpeningElement=holes[item.id], RelatedBuildingElement=element
                 )
         for kind, alike in self._typed.items():
             self._to.rooted("IfcRelDefinesByType", RelatedObjects=alike, RelatingType=kind)
-        for inside, place in ((elements, storey), (pieces, self._space(storey) or storey)):
-            if inside:
-                self._to.rooted("IfcRelContainedInSpatialStructure", RelatedElements=inside, RelatingStructure=place)
+        for place, inside in contents.items():
+            self._to.rooted("IfcRelContainedInSpatialStructure", RelatedElements=inside, RelatingStructure=place)
         return self._to
+
+    def _storey_of(self, part: str) -> Any:
+        """The storey of a plane or an object; of what is in no room the lowest."""
+        room = self._scene.room_of.get(part)
+        return self._storeys[min(self._storeys) if room is None else room.storey]
 
     @property
     def _items(self) -> Sequence[Any]:
         return [o.item for o in self._scene.objects]
 
-    def _storey(self) -> Any:
-        """Project, site, building and storey, each inside the one before."""
+    def _storey(self, building: Any, number: int) -> Any:
+        rooms = [r for r in self._scene.scene.rooms if r.storey == number]
+        heights = [float(self._scene.scene.plane(r.floor).centre[2]) for r in rooms]
+        return self._to.rooted(
+            "IfcBuildingStorey",
+            Name=f"Storey {number}" if rooms else "Storey",
+            ObjectPlacement=self._to.placement(np.eye(4), building.ObjectPlacement),
+            CompositionType="ELEMENT",
+            Elevation=min(heights, default=None),
+        )
+
+    def _building(self) -> Any:
+        """Project, site and building, each inside the one before."""
         units = [
             self._to.add("IfcSIUnit", None, "LENGTHUNIT", None, "METRE"),
             self._to.add("IfcSIUnit", None, "AREAUNIT", None, "SQUARE_METRE"),
@@ -96,26 +122,28 @@ class _Builder:
             "IfcProject", Name=self._scene.name, RepresentationContexts=[self._to.context], UnitsInContext=assignment
         )
         below = None
-        for kind, name in (("IfcSite", "Site"), ("IfcBuilding", "Building"), ("IfcBuildingStorey", "Storey")):
+        for kind, name in (("IfcSite", "Site"), ("IfcBuilding", "Building")):
             below = self._to.placement(np.eye(4), below)
             child = self._to.rooted(kind, Name=name, ObjectPlacement=below, CompositionType="ELEMENT")
             self._to.rooted("IfcRelAggregates", RelatingObject=parent, RelatedObjects=[child])
             parent = child
         return parent
 
-    def _space(self, storey: Any) -> Any | None:
-        """The room as a space from its floor to its ceiling; None without a floor."""
-        floor = next((p.plane for p in self._scene.planes if p.plane.role == "floor"), None)
+    def _space(self, storey: Any, room: HomeRoom | None) -> Any | None:
+        """A room as a space from its floor to its ceiling, or the whole scene; None without a floor."""
+        floors = [p.plane for p in self._scene.planes if p.plane.role == "floor"]
+        floor = next((f for f in floors if room is None or f.id == room.floor), None)
         if floor is None:
             return None
-        top = max(float(p.polygon[:, 2].max()) for p in self._scene.scene.architecture.planes)
+        planes = self._scene.scene.architecture.planes
+        top = max(float(p.polygon[:, 2].max()) for p in planes if self._scene.room_of.get(p.id) is room)
         height, area = top - float(floor.centre[2]), _area_m2(floor.polygon)
         if height <= 0.0:
             return None
         solid = self._to.extruded(floor.polygon[:, :2], float(floor.centre[2]), height)
         space = self._to.rooted(
             "IfcSpace",
-            Name=self._scene.name,
+            Name=self._scene.name if room is None else room.name,
             ObjectPlacement=self._to.placement(np.eye(4), storey.ObjectPlacement),
             Representation=self._to.shape([solid], "SweptSolid"),
             CompositionType="ELEMENT",

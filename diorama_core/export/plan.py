@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import pairwise
 
 import manifold3d
@@ -14,7 +14,8 @@ from jaxtyping import Float
 from diorama_core.export.door_swings import DoorSwing, door_swings
 from diorama_core.export.footprints import Outline, footprints
 from diorama_core.export.gathering import ExportObject, ExportScene
-from diorama_core.geometry.openings import OPENING_CATEGORIES
+from diorama_core.geometry.openings import OPENING_CATEGORIES, faces_behind
+from diorama_core.geometry.rooms import part_of_home, storeys_of
 from diorama_core.geometry.wall_lines import DrawnWall, Opening, wall_lines
 from diorama_core.library.furniture.articulation import articulation
 from diorama_core.scene.types import Plane, Scene, SceneObject
@@ -80,11 +81,13 @@ class Area:
 
     at: Float[np.ndarray, "2"]
     area_m2: float
+    room: str = ""
+    """Name of the room of a home."""
 
     @property
     def text(self) -> str:
-        """The light as it is written."""
-        return f"{self.area_m2:.1f} m²"
+        """The area as it is written, after the room's name."""
+        return f"{self.room} {self.area_m2:.1f} m²".lstrip()
 
 
 @dataclass(frozen=True, eq=False)
@@ -102,6 +105,25 @@ class FloorPlan:
     pieces: tuple[Piece, ...]
     """The lowest first, so that what lies on top is drawn over it."""
     dimensions: tuple[Dimension, ...]
+    rooms: tuple[tuple[str, Outline], ...] = ()
+    """Names and floors of the rooms of a home."""
+
+    def moved(self, by: Float[np.ndarray, "2"]) -> FloorPlan:
+        """The plan elsewhere (m), as storeys lie beside each other on one sheet."""
+
+        def lines(given: tuple[Outline, ...]) -> tuple[Outline, ...]:
+            return tuple(o + by for o in given)
+
+        return replace(
+            self,
+            floors=lines(self.floors),
+            walls=lines(self.walls),
+            door_leaves=lines(self.door_leaves),
+            window_panes=lines(self.window_panes),
+            pieces=tuple(replace(p, outlines=lines(p.outlines)) for p in self.pieces),
+            dimensions=tuple(replace(d, start=d.start + by, end=d.end + by) for d in self.dimensions),
+            rooms=tuple((name, outline + by) for name, outline in self.rooms),
+        )
 
     @property
     def areas(self) -> tuple[Area, ...]:
@@ -111,7 +133,9 @@ class FloorPlan:
         for floor in map(_polygon, self.floors):
             free = floor.difference(taken)
             circle = shapely.maximum_inscribed_circle(floor if free.is_empty else free, tolerance=FINE_M)
-            found.append(Area(np.asarray(circle.coords[0]), floor.area))
+            at = np.asarray(circle.coords[0])
+            named = (name for name, outline in self.rooms if _polygon(outline).covers(shapely.Point(at)))
+            found.append(Area(at, floor.area, next(named, "")))
         return tuple(area for area in found if area.area_m2 >= MIN_AREA_M2)
 
     @property
@@ -155,8 +179,23 @@ def room_lines(planes: Sequence[Plane], items: Sequence[SceneObject], scene: Sce
     )
 
 
+def floor_plans(scene: ExportScene) -> tuple[FloorPlan, ...]:
+    """The plan of a gathered scene; of a home one for each storey, the lowest first."""
+    storeys = storeys_of(scene.scene)
+    if len(storeys) < 2:
+        return (floor_plan(scene),)
+    found = []
+    for number, rooms in storeys.items():
+        part = part_of_home(scene.scene, [r.id for r in rooms])
+        planes = tuple(p for p in scene.planes if part.has_plane(p.id))
+        objects = tuple(o for o in scene.objects if part.has_object(o.id))
+        name = f"{scene.name}, storey {number}"
+        found.append(floor_plan(replace(scene, name=name, scene=part, planes=planes, objects=objects)))
+    return tuple(found)
+
+
 def floor_plan(scene: ExportScene) -> FloorPlan:
-    """The plan of a gathered scene."""
+    """The plan of a gathered scene as one."""
     room = room_lines([p.plane for p in scene.planes], [o.item for o in scene.objects], scene.scene)
     covered = footprints(scene)
     drawn = [o for o in scene.objects if o.item.category not in OPENING_CATEGORIES]
@@ -169,6 +208,7 @@ def floor_plan(scene: ExportScene) -> FloorPlan:
         window_panes=room.window_panes,
         pieces=tuple(piece for _, piece in sorted(pieces, key=lambda row: row[0])),
         dimensions=_dimensions(room.lines, room.floors),
+        rooms=tuple((r.name, scene.scene.plane(r.floor).polygon[:, :2]) for r in scene.scene.rooms),
     )
 
 
@@ -293,7 +333,10 @@ def _window(wall: DrawnWall, opening: Opening) -> tuple[Outline, ...]:
 
 def _dimensions(walls: Sequence[DrawnWall], floors: Sequence[Outline]) -> tuple[Dimension, ...]:
     """Lengths of the walls' faces, the parts between their openings, and the whole where no wall spans it."""
-    found = [d for w in walls for d in _wall_dimensions(w)]
+    faces = [w.plane for w in walls]
+    # Behind a wall between two rooms is no place for its length; the other room's plan of that side has it.
+    outer = [w for w in walls if not faces_behind(w.plane, w.plane.centre, faces)]
+    found = [d for w in outer for d in _wall_dimensions(w)]
     every = np.concatenate([*floors, *(np.stack([w.start, w.end]) for w in walls)]) if walls or floors else None
     if every is None:
         return ()

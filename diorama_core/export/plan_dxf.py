@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import io
 import re
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
@@ -11,7 +12,7 @@ import numpy as np
 
 from diorama_core.export.files import write_whole
 from diorama_core.export.gathering import ExportScene
-from diorama_core.export.plan import Dimension, FloorPlan, Piece, floor_plan
+from diorama_core.export.plan import Dimension, FloorPlan, Piece, floor_plans
 from diorama_core.progress import Progress
 
 MM_PER_M = 1000.0
@@ -34,13 +35,13 @@ def write_dxf(scene: ExportScene, path: Path, progress: Progress | None = None) 
     """Write the plan; raises `ExportError` when it cannot be written."""
     progress = progress or Progress()
     progress.report(0.1, "drawing the plan")
-    content = dxf_text(floor_plan(scene))
+    content = dxf_text(floor_plans(scene))
     progress.check()
     write_whole(Path(path), content.encode())
 
 
-def dxf_text(plan: FloorPlan) -> str:
-    """The plan as the text of a DXF file."""
+def dxf_text(plans: Sequence[FloorPlan]) -> str:
+    """Plans as the text of a DXF file: the first in the model space where it is, the others beside it."""
     import ezdxf
     from ezdxf import units
 
@@ -49,27 +50,34 @@ def dxf_text(plan: FloorPlan) -> str:
     document.header["$MEASUREMENT"] = 1
     for name, colour in LAYERS.items():
         document.layers.add(name, color=colour, linetype="DASHED" if name == "OVERHEAD" else "CONTINUOUS")
-    space = document.modelspace()
+    space, taken = document.modelspace(), set[str]()
+    _dimension_style(document)
+    right = float(plans[0].bounds[0, 0])
+    for plan in plans:
+        low, high = plan.bounds
+        _draw(document, space, plan.moved(np.array([right - low[0], 0.0])), taken)
+        right += float(high[0] - low[0])
+    low, high = plans[0].bounds * MM_PER_M
+    document.set_modelspace_vport(height=float(1.2 * max(high - low)), center=tuple((low + high) / 2))
+    stream = io.StringIO()
+    document.write(stream)
+    return stream.getvalue()
+
+
+def _draw(document: Any, space: Any, plan: FloorPlan, taken: set[str]) -> None:
     for floor in plan.floors:
         space.add_lwpolyline(floor * MM_PER_M, close=True, dxfattribs={"layer": "FLOOR"})
     _add_walls(space, plan)
     for layer, lines in (("WINDOWS", plan.window_panes), ("DOORS", plan.door_leaves)):
         for line in lines:
             space.add_lwpolyline(line * MM_PER_M, dxfattribs={"layer": layer})
-    taken: set[str] = set()
     for piece in plan.pieces:
         _add_piece(document, space, piece, taken)
     for area in plan.areas:
         label = space.add_text(area.text, height=TEXT_MM, dxfattribs={"layer": "LABELS"})
         label.set_placement(area.at * MM_PER_M, align=_middle())
-    _dimension_style(document)
     for dimension in plan.dimensions:
         _add_dimension(space, dimension)
-    low, high = plan.bounds * MM_PER_M
-    document.set_modelspace_vport(height=float(1.2 * max(high - low)), center=tuple((low + high) / 2))
-    stream = io.StringIO()
-    document.write(stream)
-    return stream.getvalue()
 
 
 def _add_walls(space: Any, plan: FloorPlan) -> None:

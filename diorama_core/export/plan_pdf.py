@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import io
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
 from diorama_core.export.files import write_whole
 from diorama_core.export.gathering import ExportScene
-from diorama_core.export.plan import floor_plan
+from diorama_core.export.plan import floor_plans
 from diorama_core.export.plan_sheet import PlanSheet, SheetLine, Text, plan_sheet
 from diorama_core.progress import Progress
 
@@ -21,13 +22,13 @@ def write_pdf(scene: ExportScene, path: Path, progress: Progress | None = None) 
     """Write the plan; raises `ExportError` when it cannot be written."""
     progress = progress or Progress()
     progress.report(0.1, "drawing the plan")
-    content = pdf_bytes(plan_sheet(floor_plan(scene)))
+    content = pdf_bytes([plan_sheet(p) for p in floor_plans(scene)])
     progress.check()
     write_whole(Path(path), content)
 
 
-def pdf_bytes(sheet: PlanSheet) -> bytes:
-    """A sheet as a PDF document of one page."""
+def pdf_bytes(sheets: Sequence[PlanSheet]) -> bytes:
+    """Sheets as a PDF document, a page each."""
     from reportlab.pdfbase import pdfmetrics
     from reportlab.pdfbase.cidfonts import UnicodeCIDFont
     from reportlab.pdfbase.ttfonts import TTFont
@@ -37,18 +38,19 @@ def pdf_bytes(sheet: PlanSheet) -> bytes:
     pdfmetrics.registerFont(UnicodeCIDFont(EAST_ASIAN))
     known = frozenset(pdfmetrics.getFont(LATIN).face.charToGlyph)
     buffer = io.BytesIO()
-    size = (sheet.width_mm * POINTS_PER_MM, sheet.height_mm * POINTS_PER_MM)
-    canvas = Canvas(buffer, pagesize=size, invariant=True)
-    canvas.setTitle(sheet.title)
+    canvas = Canvas(buffer, invariant=True)
+    canvas.setTitle(sheets[0].title)
     canvas.setCreator("Diorama")
-    canvas.scale(POINTS_PER_MM, POINTS_PER_MM)
-    canvas.setLineJoin(1)
-    for mark in sheet.marks:
-        if isinstance(mark, SheetLine):
-            _draw_line(canvas, mark)
-        else:
-            _draw_text(canvas, mark, known)
-    canvas.showPage()
+    for sheet in sheets:
+        canvas.setPageSize((sheet.width_mm * POINTS_PER_MM, sheet.height_mm * POINTS_PER_MM))
+        canvas.scale(POINTS_PER_MM, POINTS_PER_MM)
+        canvas.setLineJoin(1)
+        for mark in sheet.marks:
+            if isinstance(mark, SheetLine):
+                _draw_line(canvas, mark)
+            else:
+                _draw_text(canvas, mark, known)
+        canvas.showPage()
     canvas.save()
     return buffer.getvalue()
 

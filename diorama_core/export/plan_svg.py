@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import xml.etree.ElementTree as ET
+from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
@@ -10,7 +11,7 @@ from jaxtyping import Float
 
 from diorama_core.export.files import write_whole
 from diorama_core.export.gathering import ExportScene
-from diorama_core.export.plan import floor_plan
+from diorama_core.export.plan import floor_plans
 from diorama_core.export.plan_sheet import PlanSheet, SheetLine, Text, plan_sheet
 from diorama_core.progress import Progress
 
@@ -21,22 +22,37 @@ def write_svg(scene: ExportScene, path: Path, progress: Progress | None = None) 
     """Write the plan; raises `ExportError` when it cannot be written."""
     progress = progress or Progress()
     progress.report(0.1, "drawing the plan")
-    content = svg_text(plan_sheet(floor_plan(scene)))
+    content = svg_text([plan_sheet(p) for p in floor_plans(scene)])
     progress.check()
     write_whole(Path(path), content)
 
 
-def svg_text(sheet: PlanSheet) -> bytes:
-    """A sheet as an SVG document, one group per kind of mark."""
+def svg_text(sheets: Sequence[PlanSheet]) -> bytes:
+    """Sheets as an SVG document, below each other, each with one group per kind of mark."""
     ET.register_namespace("", NAMESPACE)
-    root = ET.Element(
-        _tag("svg"),
-        {
-            "width": f"{sheet.width_mm:g}mm",
-            "height": f"{sheet.height_mm:g}mm",
-            "viewBox": f"0 0 {sheet.width_mm:g} {sheet.height_mm:g}",
-        },
-    )
+    if len(sheets) > 1:
+        width, height = max(s.width_mm for s in sheets), sum(s.height_mm for s in sheets)
+        root, top = ET.Element(_tag("svg"), _size(width, height)), 0.0
+        for sheet in sheets:
+            page = _page(sheet)
+            page.set("y", f"{top:g}")
+            page.set("width", f"{sheet.width_mm:g}")
+            page.set("height", f"{sheet.height_mm:g}")
+            root.append(page)
+            top += sheet.height_mm
+    else:
+        root = _page(sheets[0])
+    ET.indent(root)
+    return ET.tostring(root, encoding="utf-8", xml_declaration=True)
+
+
+def _size(width_mm: float, height_mm: float) -> dict[str, str]:
+    size = {"width": f"{width_mm:g}mm", "height": f"{height_mm:g}mm"}
+    return {**size, "viewBox": f"0 0 {width_mm:g} {height_mm:g}"}
+
+
+def _page(sheet: PlanSheet) -> ET.Element:
+    root = ET.Element(_tag("svg"), _size(sheet.width_mm, sheet.height_mm))
     ET.SubElement(root, _tag("title")).text = sheet.title
     ET.SubElement(root, _tag("desc")).text = f"Floor plan, 1 : {sheet.scale}, one user unit is a millimetre on paper"
     ET.SubElement(root, _tag("rect"), {"width": "100%", "height": "100%", "fill": "#ffffff"})
@@ -46,8 +62,7 @@ def svg_text(sheet: PlanSheet) -> bytes:
             name = mark.group
             group = ET.SubElement(root, _tag("g"), {"class": name})
         _add(group, mark, sheet.height_mm)
-    ET.indent(root)
-    return ET.tostring(root, encoding="utf-8", xml_declaration=True)
+    return root
 
 
 def _add(group: ET.Element, mark: SheetLine | Text, height_mm: float) -> None:

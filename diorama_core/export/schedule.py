@@ -87,12 +87,13 @@ def _row(gathered: ExportScene, node: ExportObject) -> list[str | float | int]:
     depth, width, height = (float(v) for v in item.size_m)
     x, y, _ = (float(v) for v in item.pose.position)
     supporter = "" if node.support is None else node.support.parent
+    room = gathered.room_of.get(node.id)
     materials = ", ".join(sorted({NUMBERED.sub("", s.material.name) for s in surfaces}))
     return [
         *(node.id, node.name, item.category),
         *(width, depth, height, x, y, float(item.corners_world[:, 2].min())),
         round(float(np.degrees(item.pose.yaw_rad))) % 360,
-        *(supporter, gathered.name, item.shape_id, materials),
+        *(supporter, room.name if room is not None else gathered.name, item.shape_id, materials),
     ]
 
 

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import xml.etree.ElementTree as ET
 import zipfile
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 
@@ -22,11 +22,12 @@ from diorama_core.export.pictures import TexturePictures, encoded_picture, pictu
 from diorama_core.export.scene_state import R_SHAPE_FILE
 from diorama_core.export.wavefront import MaterialFile, ObjText
 from diorama_core.geometry.openings import OPENING_CATEGORIES
+from diorama_core.geometry.rooms import storeys_of
 from diorama_core.geometry.vectors import unit
 from diorama_core.geometry.wall_lines import DrawnWall, wall_lines
 from diorama_core.io.srgb import linear_to_srgb
 from diorama_core.progress import Progress
-from diorama_core.scene.types import Camera, Plane
+from diorama_core.scene.types import Camera, HomeRoom, Plane
 
 CM_PER_M = 100.0
 VERSION = "5300"
@@ -73,20 +74,23 @@ def home_xml(scene: ExportScene, models: Mapping[str, str], pictures: Mapping[st
     home = ET.Element("home", attributes)
     if scene.camera is not None:
         ET.SubElement(home, "observerCamera", _observer(scene.camera))
+    levels = {n: _add_level(home, scene, n, rooms) for n, rooms in storeys_of(scene.scene).items()}
     depth = {o.object_id: w.plane.thickness for w in walls for o in w.openings if o.object_id}
     for item in scene.objects:
         light = next((k for k in scene.lights if k.owner == item.id and k.kind == "lamp"), None)
         tag = "doorOrWindow" if item.item.category in OPENING_CATEGORIES else "light" if light else "pieceOfFurniture"
-        piece = ET.SubElement(home, tag, _piece(scene, item, models[model_key(item)], depth.get(item.id)))
+        level, low_m = _level_of(scene, item.id, levels)
+        about = _piece(scene, item, models[model_key(item)], depth.get(item.id), low_m)
+        piece = ET.SubElement(home, tag, level | about)
         if light is not None:
             _shine(piece, item, light)
     for number, wall in enumerate(walls):
-        element = ET.SubElement(home, "wall", _wall(wall, number))
+        element = ET.SubElement(home, "wall", _level_of(scene, wall.plane.id, levels)[0] | _wall(wall, number))
         for side in ("leftSideTexture", "rightSideTexture"):
             _picture(element, side, wall.plane, wall.length_m, wall.top_m - wall.bottom_m, pictures)
     for plane in scene.planes:
         if plane.plane.role == "floor":
-            _add_room(home, plane, pictures)
+            _add_room(home, plane, pictures, _level_of(scene, plane.id, levels)[0] | _name_of(scene, plane.id))
     ET.indent(home)
     return ET.tostring(home, encoding="utf-8", xml_declaration=True)
 
@@ -100,7 +104,7 @@ def _cm(metres: float) -> str:
     return f"{metres * CM_PER_M:.4f}"
 
 
-def _piece(scene: ExportScene, item: ExportObject, model: str, wall_m: float | None) -> dict[str, str]:
+def _piece(scene: ExportScene, item: ExportObject, model: str, wall_m: float | None, floor_m: float) -> dict[str, str]:
     upright = item.T_world[2, 2] > UPRIGHT
     corners = item.item.corners_world
     low, high = corners.min(axis=0), corners.max(axis=0)
@@ -119,7 +123,7 @@ def _piece(scene: ExportScene, item: ExportObject, model: str, wall_m: float | N
         "angle": f"{(-np.pi / 2 - yaw) % (2 * np.pi):.7f}",
         "x": _cm(float(x)),
         "y": _cm(-float(y)),
-        "elevation": _cm(float(low[2]) - _floor_m(scene)),
+        "elevation": _cm(float(low[2]) - floor_m),
         "width": _cm(width),
         "depth": _cm(max(depth, (wall_m or 0.0) + SLACK_M) if wall_m else depth),
         "height": _cm(height),
@@ -181,9 +185,41 @@ def _wall(wall: DrawnWall, number: int) -> dict[str, str]:
     }
 
 
-def _add_room(home: ET.Element, plane: ExportPlane, pictures: Mapping[str, str]) -> None:
+def _add_level(home: ET.Element, scene: ExportScene, storey: int, rooms: Sequence[HomeRoom]) -> tuple[str, float]:
+    """A level of a home; its id, and the height of its floor in the world (m)."""
+    floors = [scene.scene.plane(r.floor) for r in rooms]
+    low_m = min(float(f.centre[2]) for f in floors)
+    name = f"storey {storey}"
+    tops = [float(p.plane.polygon[:, 2].max()) for p in scene.planes if scene.room_of.get(p.id) in rooms]
+    attributes = {
+        "id": f"level{storey}",
+        "name": name,
+        "elevation": _cm(low_m - _floor_m(scene)),
+        "floorThickness": _cm(floors[0].thickness),
+        "height": _cm(max(tops, default=low_m) - low_m),
+        "elevationIndex": "0",
+    }
+    ET.SubElement(home, "level", attributes)
+    return attributes["id"], low_m
+
+
+def _level_of(scene: ExportScene, part: str, levels: Mapping[int, tuple[str, float]]) -> tuple[dict[str, str], float]:
+    """The level attribute of a plane or an object, and the height that it is measured from (m)."""
+    if not levels:
+        return {}, _floor_m(scene)
+    room = scene.room_of.get(part)
+    level, low_m = levels[min(levels) if room is None else room.storey]
+    return {"level": level}, low_m
+
+
+def _name_of(scene: ExportScene, floor: str) -> dict[str, str]:
+    room = scene.room_of.get(floor)
+    return {} if room is None else {"name": room.name}
+
+
+def _add_room(home: ET.Element, plane: ExportPlane, pictures: Mapping[str, str], more: Mapping[str, str]) -> None:
     attributes = {"id": f"room-{plane.slug}", "areaVisible": "true", "floorColor": _colour(plane.plane.colour)}
-    room = ET.SubElement(home, "room", attributes)
+    room = ET.SubElement(home, "room", {**more, **attributes})
     width, depth, _ = np.ptp(plane.plane.polygon, axis=0)
     _picture(room, "floorTexture", plane.plane, float(width), float(depth), pictures)
     for x, y, _ in plane.plane.polygon:

@@ -11,7 +11,7 @@ from __future__ import annotations
 import json
 import tempfile
 import zipfile
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 
@@ -20,7 +20,7 @@ from pxr import Gf, Kind, Sdf, Tf, Usd, UsdGeom, UsdSemantics
 from diorama_core.errors import ExportError
 from diorama_core.export.colliders import physical_scene
 from diorama_core.export.files import Entry, companion_folder, whole_file, write_package
-from diorama_core.export.gathering import ExportObject, ExportScene, rigid_inverse
+from diorama_core.export.gathering import ExportObject, ExportPlane, ExportScene, rigid_inverse
 from diorama_core.export.pictures import encoded_picture
 from diorama_core.export.usd_materials import (
     StageMaterials,
@@ -30,7 +30,7 @@ from diorama_core.export.usd_materials import (
     add_main_light,
     add_surfaces,
 )
-from diorama_core.export.usd_physics import add_physics, limb_path
+from diorama_core.export.usd_physics import add_physics, limb_path, object_path, plane_path
 from diorama_core.export.usd_values import note, place
 from diorama_core.progress import Progress
 from diorama_core.scene.schema import scene_to_json
@@ -154,9 +154,12 @@ def build_stage(
     return stage, pictures
 
 
-def object_path(item: ExportObject) -> str:
-    """Where an object's prim is."""
-    return f"{ROOT}/Objects/{item.slug}"
+def _define_groups(stage: Usd.Stage, branch: str, things: Sequence[ExportObject | ExportPlane]) -> None:
+    """A branch, and in it one group a storey and a room of a home."""
+    paths = [f"{ROOT}/{branch}"]
+    paths += ["/".join((ROOT, branch, *t.group[:depth])) for t in things for depth in range(1, len(t.group) + 1)]
+    for path in dict.fromkeys(paths):
+        Usd.ModelAPI(UsdGeom.Xform.Define(stage, path)).SetKind(Kind.Tokens.group)
 
 
 def _describe(prim: Usd.Prim, gathered: ExportScene) -> None:
@@ -182,10 +185,9 @@ def _prototypes(stage: Usd.Stage, gathered: ExportScene, materials: StageMateria
 def _architecture(stage: Usd.Stage, gathered: ExportScene, materials: StageMaterials) -> None:
     if not gathered.planes:
         return
-    group = UsdGeom.Xform.Define(stage, f"{ROOT}/Architecture")
-    Usd.ModelAPI(group).SetKind(Kind.Tokens.group)
+    _define_groups(stage, "Architecture", gathered.planes)
     for slab in gathered.planes:
-        prim = UsdGeom.Xform.Define(stage, f"{ROOT}/Architecture/{slab.slug}").GetPrim()
+        prim = UsdGeom.Xform.Define(stage, plane_path(slab)).GetPrim()
         Usd.ModelAPI(prim).SetKind(Kind.Tokens.component)
         prim.SetDisplayName(slab.name)
         plane = {"id": slab.plane.id, "role": slab.plane.role, "confidence": slab.plane.confidence}
@@ -196,8 +198,7 @@ def _architecture(stage: Usd.Stage, gathered: ExportScene, materials: StageMater
 def _objects(stage: Usd.Stage, gathered: ExportScene) -> None:
     if not gathered.objects:
         return
-    group = UsdGeom.Xform.Define(stage, f"{ROOT}/Objects")
-    Usd.ModelAPI(group).SetKind(Kind.Tokens.group)
+    _define_groups(stage, "Objects", gathered.objects)
     entries = {o["id"]: o for o in json.loads(scene_to_json(gathered.scene, indent=None))["objects"]}
     for item in gathered.objects:
         path = object_path(item)

@@ -7,7 +7,7 @@ from jaxtyping import Float
 from pxr import Gf, Sdf, Usd, UsdGeom, UsdPhysics, UsdShade
 
 from diorama_core.export.bodies import MovingPart, PhysicalScene, Points, RigidBody, hull_faces
-from diorama_core.export.gathering import ExportScene, rigid_inverse
+from diorama_core.export.gathering import ExportObject, ExportPlane, ExportScene, rigid_inverse
 from diorama_core.export.limbs import ExportLimb
 from diorama_core.export.physics import FLOOR_FRICTION, GRAVITY, Inertia
 from diorama_core.export.usd_values import extent, integers, quaternion, vectors
@@ -26,9 +26,10 @@ def add_physics(stage: Usd.Stage, gathered: ExportScene, physical: PhysicalScene
     several = scene.GetPrim().CreateAttribute("mjc:flag:multiccd", Sdf.ValueTypeNames.Bool)
     several.Set(True)  # newton: two bodies touch at up to four points; at one alone, what lies on another tips
     grips, colliders = _Grips(stage), _Colliders()
-    paths = {b.node.id: f"{ROOT}/Objects/{b.node.slug}" for b in physical.bodies}
+    paths = {b.node.id: object_path(b.node) for b in physical.bodies}
+    plane_of = {p.slug: plane_path(p) for p in gathered.planes}
     for slab in physical.slabs:
-        colliders.add(f"{ROOT}/Architecture/{slab.slug}", slab.pieces, grips.material(FLOOR_FRICTION))
+        colliders.add(plane_of[slab.slug], slab.pieces, grips.material(FLOOR_FRICTION))
     for body in physical.bodies:
         path, grip = paths[body.node.id], grips.material(body.friction)
         colliders.add(path, body.parts, grip)
@@ -47,6 +48,16 @@ def add_physics(stage: Usd.Stage, gathered: ExportScene, physical: PhysicalScene
             colliders.add(limb_path(path, moving.limb), moving.parts, grip)
             colliders.let_overlap(limb_path(path, moving.limb), path)  # a part and the case it sits in touch
     colliders.write(stage.GetRootLayer())
+
+
+def object_path(item: ExportObject) -> str:
+    """Where an object's prim is."""
+    return "/".join((ROOT, "Objects", *item.group, item.slug))
+
+
+def plane_path(slab: ExportPlane) -> str:
+    """Where the prim of a plane is."""
+    return "/".join((ROOT, "Architecture", *slab.group, slab.slug))
 
 
 def _base(physical: PhysicalScene, body: RigidBody) -> RigidBody:

@@ -271,8 +271,8 @@ class Architecture:
 
     @property
     def floor(self) -> Plane | None:
-        """The floor, if any."""
-        return next(iter(self.by_role("floor")), None)
+        """The floor, if any; of a home's the lowest."""
+        return min(self.by_role("floor"), key=lambda p: float(p.centre[2]), default=None)
 
 
 @dataclass(frozen=True)
