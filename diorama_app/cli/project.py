@@ -10,24 +10,36 @@ from typing import Any
 
 from diorama_app.cli.arguments import PROJECTS_HELP, command, projects_folder
 from diorama_core.errors import InputError
+from diorama_core.io.text import number_of
 
 
 def add_project(commands: Any) -> None:
     """Declare `diorama project`."""
-    p: argparse.ArgumentParser = commands.add_parser("project", help="List, copy, pack and unpack projects.")
-    actions = p.add_subparsers(dest="action", required=True, metavar="list|copy|zip|unzip")
+    p: argparse.ArgumentParser = commands.add_parser("project", help="List, copy, join, pack and unpack projects.")
+    actions = p.add_subparsers(dest="action", required=True, metavar="list|copy|join|zip|unzip")
     lists = command(actions, "list", _list, "List the projects, last changed first.", "diorama project list")
     copy = command(actions, "copy", _copy, "Copy a project beside it.", "diorama project copy my-room")
     pack = command(
         actions, "zip", _zip, "Pack a project into one file, to send.", "diorama project zip my-room -o room.diorama"
     )
     unpack = command(actions, "unzip", _unzip, "Make a project of a packed one.", "diorama project unzip room.diorama")
-    for one in (copy, pack):
+    join = command(
+        actions,
+        "join",
+        _join,
+        "Add another project's room to a home, at a door that both have.",
+        "diorama project join my-home my-kitchen --door door_1 --to door_2",
+    )
+    for one in (copy, join, pack):
         one.add_argument("project", type=Path, metavar="PROJECT", help="its folder, or its name among the projects")
+    join.add_argument("--door", required=True, metavar="ID", help="the door in PROJECT")
+    join.add_argument("other", type=Path, metavar="ROOM", help="the project that is added; it stays as it is")
+    join.add_argument("--to", required=True, metavar="ID", help="the same door in ROOM")
+    join.add_argument("--wall", type=float, default=0.12, metavar="METRES", help="between them (default: %(default)s)")
     pack.add_argument("-o", "--output", type=Path, metavar="FILE", help="file to write (default: PROJECT.diorama)")
     unpack.add_argument("file", type=Path, metavar="FILE")
     unpack.add_argument("-o", "--output", type=Path, metavar="PROJECT", help="folder to write (default: among them)")
-    for one in (lists, copy, pack, unpack):
+    for one in (lists, copy, join, pack, unpack):
         one.add_argument("--projects", type=Path, metavar="DIR", help=PROJECTS_HELP)
         one.add_argument("--json", action="store_true", help="print the result as JSON")
 
@@ -55,15 +67,29 @@ def _list(a: argparse.Namespace) -> None:
 def _copy(a: argparse.Namespace) -> None:
     from diorama_app.projects.manage import duplicate_project
 
-    folder = _folder(a)
+    folder = _folder(a, a.project)
     _say(a, duplicate_project(folder, folder.parent).folder, f"a copy of {folder.name}")
+
+
+def _join(a: argparse.Namespace) -> None:
+    from diorama_core.editing.homes import join_project
+    from diorama_core.project.lock import ProjectLock
+    from diorama_core.project.storage import Project
+
+    folder, room = _folder(a, a.project), _folder(a, a.other)
+    with ProjectLock(folder, "diorama project join"):
+        project, other = Project.open(folder), Project.open(room)
+        scene, textures = join_project(project, project.load_scene(), other, a.door, a.to, wall_m=a.wall)
+        project.save_textures(textures)
+        project.save_scene(scene)
+    _say(a, folder, f"a home of {number_of(len(scene.rooms), 'room')}")
 
 
 def _zip(a: argparse.Namespace) -> None:
     from diorama_app.projects.packing import SUFFIX, pack_project
     from diorama_core.project.storage import Project
 
-    folder = _folder(a)
+    folder = _folder(a, a.project)
     target = a.output or Path(f"{folder.name}{SUFFIX}")
     pack_project(Project.open(folder), target)
     _say(a, target, f"{target.stat().st_size / 1e6:.1f} MB; drop it on the page, or 'diorama project unzip'")
@@ -78,13 +104,13 @@ def _unzip(a: argparse.Namespace) -> None:
     _say(a, made.folder, f"the project “{made.name}”")
 
 
-def _folder(a: argparse.Namespace) -> Path:
+def _folder(a: argparse.Namespace, project: Path) -> Path:
     """The folder of a project that is given by its folder, by that folder's name or by the project's own."""
     from diorama_app.projects.manage import find_project, name_of, recent_projects
 
-    if a.project.is_dir():
-        return Path(a.project).resolve()
-    folder, given = projects_folder(a.projects), str(a.project)
+    if project.is_dir():
+        return project.resolve()
+    folder, given = projects_folder(a.projects), str(project)
     found = find_project(folder, given)
     named = [found] if found is not None else [f for f in recent_projects(folder) if name_of(f) == given]
     if not named:

@@ -8,7 +8,9 @@ import pytest
 
 from diorama_app.cli import main
 from diorama_app.cli.project import add_project
-from tests.app.small_room import make_project
+from diorama_core.project.storage import Project
+from tests.app.small_room import furnished_scene, make_project
+from tests.editing.test_homes import with_door
 
 
 def test_projects_are_listed_copied_packed_and_unpacked(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -39,12 +41,29 @@ def test_what_is_not_there_is_one_line(command: list[str], tmp_path: Path, capsy
     assert "nowhere" in error
 
 
+def test_a_room_joins_a_home_at_their_door(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    for name, wall in (("hall", "wall_3"), ("study", "wall_2")):
+        project = make_project(tmp_path / name)
+        project.save_scene(with_door(furnished_scene(), "door_9", wall, 0.2))
+    join = ["project", "join", "hall", "study", "--projects", str(tmp_path)]
+    assert main([*join, "--door", "door_9", "--to", "door_9"]) == 0
+    assert "a home of 2 rooms" in capsys.readouterr().out
+    made = Project.open(tmp_path / "hall").load_scene()
+    assert len(made.rooms) == 2
+    assert len(Project.open(tmp_path / "study").load_scene().rooms) == 0
+    assert main([*join, "--door", "door_1", "--to", "door_9"]) == 1
+    assert "choose one of: door_9" in capsys.readouterr().err
+    Project.open(tmp_path / "study").update_info(library="mine")
+    assert main([*join, "--door", "door_9", "--to", "door_9"]) == 1
+    assert "uses the library mine" in capsys.readouterr().err
+
+
 def test_an_action_is_asked_for(capsys: pytest.CaptureFixture[str]) -> None:
     parser = argparse.ArgumentParser()
     add_project(parser.add_subparsers())
     with pytest.raises(SystemExit, match="2"):
         parser.parse_args(["project"])
-    assert "list|copy|zip|unzip" in capsys.readouterr().err
+    assert "list|copy|join|zip|unzip" in capsys.readouterr().err
 
 
 def test_a_project_is_found_by_its_own_name_where_one_alone_has_it(

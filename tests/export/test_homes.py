@@ -44,8 +44,8 @@ def test_a_plan_has_a_sheet_a_storey_and_names_its_rooms(home: Scene, tmp_path: 
     assert len(pages) == 2
     for number, page in enumerate(pages):
         texts = [t.text or "" for t in page.iter() if t.tag.endswith("text")]
-        for room in home.rooms:
-            assert any(t.startswith(f"{room.name} ") and t.endswith("m²") for t in texts) == (room.storey == number)
+        named = sorted(t.rsplit(" ", 2)[0] for t in texts if t.endswith("m²"))
+        assert named == sorted(r.name for r in home.rooms if r.storey == number)
         assert any(t.endswith(f"storey {number}") for t in texts)
 
 
@@ -62,11 +62,11 @@ def test_the_pdf_has_a_page_a_storey_and_the_dxf_has_both(home: Scene, tmp_path:
 
 def test_ifc_has_storeys_with_a_space_for_each_room(home: Scene, tmp_path: Path) -> None:
     ifcopenshell = pytest.importorskip("ifcopenshell", reason="needs the extra [bim]")
-    import ifcopenshell.validate
+    validate = pytest.importorskip("ifcopenshell.validate")
 
     model = ifcopenshell.open(str(written(home, tmp_path, "ifc")))
-    logger = ifcopenshell.validate.json_logger()
-    ifcopenshell.validate.validate(model, logger, express_rules=True)
+    logger = validate.json_logger()
+    validate.validate(model, logger, express_rules=True)
     assert [json.dumps(s, default=str)[:300] for s in logger.statements] == []
     storeys = model.by_type("IfcBuildingStorey")
     heights = sorted({round(float(home.plane(r.floor).centre[2]), 3) for r in home.rooms})
@@ -101,7 +101,7 @@ def test_sweet_home_has_levels_and_comes_back(home: Scene, tmp_path: Path) -> No
 
 def test_glb_groups_by_storey_and_room_and_comes_back_whole(home: Scene, tmp_path: Path) -> None:
     path = written(home, tmp_path, "glb")
-    document, _ = read_glb(path.read_bytes(), path.name)
+    document, _ = read_glb(path.read_bytes())
     nodes = document["nodes"]
     objects = next(n for n in nodes if n["name"] == "objects")
     storeys = [nodes[k] for k in objects["children"]]

@@ -1,0 +1,220 @@
+"""Rooms joined to a home at a door that both of them show."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+
+import numpy as np
+from jaxtyping import Float, UInt8
+
+from diorama_core.errors import EditRefused
+from diorama_core.geometry.openings import wall_of
+from diorama_core.geometry.rooms import rooms_of_objects
+from diorama_core.multiview.one_scene import moved_to_room
+from diorama_core.project.storage import Project
+from diorama_core.scene import edits
+from diorama_core.scene.room_edits import floor_height
+from diorama_core.scene.types import Architecture, HomeRoom, Plane, Scene, Support, yaw_rotation
+
+USUAL_WALL_M = 0.12
+"""Thickness of a wall between two rooms where nobody says another: brick and plaster."""
+
+
+@dataclass(frozen=True, eq=False)
+class JoinedHome:
+    """A home with a room more."""
+
+    scene: Scene
+    textures: Mapping[str, str]
+    """What the pictures of the joined scene are called in the home, by what they were."""
+
+
+def joined(
+    home: Scene,
+    other: Scene,
+    door: str,
+    other_door: str,
+    *,
+    names: tuple[str, str] = ("room", "room"),
+    wall_m: float = USUAL_WALL_M,
+) -> JoinedHome:
+    """The home with another scene beside it, so that the two sides of a door are one door in one wall.
+
+    The other scene is moved as a whole; its door goes, and the home's is cut out of both faces. Its camera and what
+    belongs to its photo stay behind.
+
+    Args:
+        home: a home, or one room.
+        other: another room, or home.
+        door: id of the door in the home.
+        other_door: id of the same door in the other scene.
+        names: of the home and of the other scene, for those that are one room.
+        wall_m: thickness of the wall between them.
+
+    Raises:
+        EditRefused: one of the two is no door in a wall, or a scene has no floor.
+    """
+    if not 0.0 <= wall_m <= 1.0:
+        raise EditRefused(f"a wall cannot be {wall_m:g} m thick; give 0 to 1 m")
+    home, other = _as_home(home, names[0]), _as_home(other, names[1])
+    wall, there = _wall_of_door(home, door), _wall_of_door(other, other_door)
+    yaw = np.arctan2(*-wall.normal[[1, 0]]) - np.arctan2(*there.normal[[1, 0]])
+    T = np.eye(4)
+    T[:3, :3] = yaw_rotation(float(yaw))
+    target = _foot(home, door, wall) - wall_m * wall.normal
+    T[:3, 3] = target - T[:3, :3] @ _foot(other, other_door, there)
+    storeys = _storey(home, door) - _storey(other, other_door)
+    moved = moved_to_room(edits.remove(other, [other_door]), T)
+    called = _new_names(home, moved)
+    planes = tuple(_called(p, called, wall_m if p.id == there.id else None) for p in moved.architecture.planes)
+    textures = called.textures
+    objects = tuple(
+        replace(
+            o,
+            id=called.ids[o.id],
+            mask_id=None,
+            box_px=None,
+            photo_materials=tuple(
+                replace(m, texture=None if m.texture is None else textures[m.texture]) for m in o.photo_materials
+            ),
+        )
+        for o in moved.objects
+    )
+    supports = tuple(_support(s, called.ids) for s in moved.supports)
+    rooms = tuple(
+        replace(r, id=called.ids[r.id], floor=called.ids[r.floor], storey=r.storey + storeys, name=called.rooms[r.id])
+        for r in moved.rooms
+    )
+    thick = tuple(replace(p, thickness=wall_m / 2) if p is wall else p for p in home.architecture.planes)
+    scene = replace(
+        home,
+        architecture=Architecture((*thick, *planes)),
+        objects=(*home.objects, *objects),
+        supports=(*home.supports, *supports),
+        rooms=_counted_from_lowest((*home.rooms, *rooms)),
+    )
+    return JoinedHome(scene, textures)
+
+
+def join_project(
+    project: Project, scene: Scene, other: Project, door: str, other_door: str, *, wall_m: float = USUAL_WALL_M
+) -> tuple[Scene, Mapping[str, UInt8[np.ndarray, "_ _ 3"]]]:
+    """A project's scene with another project's beside it (`joined`), and the pictures that came with it.
+
+    Shapes that the other project brought itself are copied into the project.
+
+    Args:
+        project: of the home.
+        scene: of the home, as it is now.
+        other: the room that is added; it stays as it is.
+        door: id of the door in the home.
+        other_door: id of the same door in the other project.
+        wall_m: thickness of the wall between them.
+
+    Raises:
+        EditRefused: as `joined`, or the two use different libraries.
+        ProjectError: a project cannot be read or written.
+    """
+    if project.shared_library_name != other.shared_library_name:
+        raise EditRefused(
+            f"{other.name} uses the library {other.shared_library_name}, {project.name} {project.shared_library_name}; "
+            "build both with one library"
+        )
+    added = other.load_scene()
+    made = joined(scene, added, door, other_door, names=(project.name, other.name), wall_m=wall_m)
+    if other.shapes_folder.is_dir():
+        project.take_shapes(other)
+    return made.scene, {made.textures[name]: picture for name, picture in other.textures(added).items()}
+
+
+@dataclass(frozen=True)
+class _Names:
+    """Ids, pictures and names of a scene's rooms as they are called in another."""
+
+    ids: Mapping[str, str]
+    textures: Mapping[str, str]
+    rooms: Mapping[str, str]
+
+
+def _new_names(home: Scene, moved: Scene) -> _Names:
+    taken = set(_ids(home))
+    ids = {i: _free(i, taken) for i in _ids(moved)}
+    pictures = _pictures(home)
+    textures = {name: _free(name, pictures) for name in sorted(_pictures(moved))}
+    known = {r.name for r in home.rooms}
+    return _Names(ids, textures, {r.id: _free(r.name, known, " ") for r in moved.rooms})
+
+
+def _free(name: str, taken: set[str], between: str = "-") -> str:
+    """A name that is not taken, and is from then on: the name itself, or with a number."""
+    free = next(n for n in (name, *(f"{name}{between}{k}" for k in range(2, len(taken) + 3))) if n not in taken)
+    taken.add(free)
+    return free
+
+
+def _ids(scene: Scene) -> list[str]:
+    planes, objects = scene.architecture.planes, scene.objects
+    return [*(p.id for p in planes), *(o.id for o in objects), *(r.id for r in scene.rooms)]
+
+
+def _pictures(scene: Scene) -> set[str]:
+    planes = scene.architecture.planes
+    named = {t for p in planes for t in (p.texture, p.photo_texture)}
+    named |= {m.texture for o in scene.objects for m in o.photo_materials}
+    return {name for name in named if name is not None}
+
+
+def _called(plane: Plane, names: _Names, wall_m: float | None) -> Plane:
+    pictures = {t: None if t is None else names.textures[t] for t in (plane.texture, plane.photo_texture)}
+    return replace(
+        plane,
+        id=names.ids[plane.id],
+        texture=pictures[plane.texture],
+        photo_texture=pictures[plane.photo_texture],
+        thickness=plane.thickness if wall_m is None else wall_m / 2,
+    )
+
+
+def _support(edge: Support, ids: Mapping[str, str]) -> Support:
+    against = tuple(ids[w] for w in edge.adheres_to)
+    return replace(edge, child=ids[edge.child], parent=ids[edge.parent], adheres_to=against)
+
+
+def _as_home(scene: Scene, name: str) -> Scene:
+    """A scene that is one room as a home of one."""
+    floor = scene.architecture.floor
+    if floor is None:
+        raise EditRefused("a room without a floor has no place in a home; build it with one")
+    if scene.rooms:
+        return scene
+    return replace(scene, rooms=(HomeRoom(_free("room-1", set(_ids(scene))), name, floor.id),))
+
+
+def _wall_of_door(scene: Scene, door: str) -> Plane:
+    if not scene.has_object(door) or scene.object(door).category != "door":
+        doors = ", ".join(o.id for o in scene.objects if o.category == "door") or "none"
+        raise EditRefused(f"there is no door {door!r}; choose one of: {doors}")
+    wall = wall_of(scene.object(door), scene.architecture.by_role("wall"), scene)
+    if wall is None:
+        raise EditRefused(f"the door {door!r} is in no wall; move it to one first")
+    return wall
+
+
+def _foot(scene: Scene, door: str, wall: Plane) -> Float[np.ndarray, "3"]:
+    """The middle of a door on its wall's face, at the height of its room's floor."""
+    position = scene.object(door).pose.position
+    on_face = position - (float(wall.normal @ position) - wall.offset) * wall.normal
+    room = rooms_of_objects(scene).get(door)
+    floor = next((scene.plane(r.floor) for r in scene.rooms if r.id == room), None)
+    return np.append(on_face[:2], floor_height(scene) if floor is None else float(floor.centre[2]))
+
+
+def _storey(scene: Scene, door: str) -> int:
+    room = rooms_of_objects(scene).get(door)
+    return next((r.storey for r in scene.rooms if r.id == room), 0)
+
+
+def _counted_from_lowest(rooms: tuple[HomeRoom, ...]) -> tuple[HomeRoom, ...]:
+    lowest = min(r.storey for r in rooms)
+    return tuple(replace(r, storey=r.storey - lowest) for r in rooms)

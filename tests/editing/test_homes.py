@@ -1,0 +1,104 @@
+"""Rooms joined at a door: the two sides are one, names stay apart, and undo takes it back."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from diorama_core.editing.homes import joined
+from diorama_core.errors import EditRefused
+from diorama_core.geometry.rooms import doorways, rooms_of_objects, rooms_of_planes
+from diorama_core.multiview.one_scene import moved_to_room
+from diorama_core.scene import edits
+from diorama_core.scene.schema import scene_from_json, scene_to_json
+from diorama_core.scene.support import check_scene
+from diorama_core.scene.types import Pose, Scene, SceneObject, Support, yaw_rotation
+from tests.app.small_room import furnished_scene
+
+
+def with_door(scene: Scene, name: str, wall_id: str, along_m: float) -> Scene:
+    """A door of 0.9 x 2 m in a wall, so far from the middle of its foot to the right seen from inside."""
+    wall = scene.plane(wall_id)
+    right = np.cross([0.0, 0.0, 1.0], wall.normal)
+    middle = (wall.polygon.min(axis=0) + wall.polygon.max(axis=0)) / 2 + along_m * right + 0.03 * wall.normal
+    middle[2] = float(wall.polygon[:, 2].min()) + 1.0
+    yaw = float(np.arctan2(wall.normal[1], wall.normal[0]))
+    item = SceneObject(name, "door", "door", "door-flush-white", (0.06, 0.9, 2.0), Pose.upright(middle, yaw))
+    return edits.insert(scene, item, Support(name, wall_id, "mounted on", child_face="back"))
+
+
+@pytest.fixture
+def home() -> Scene:
+    return with_door(furnished_scene(), "door", "wall_3", 0.4)
+
+
+@pytest.fixture
+def turned() -> Scene:
+    """The same room elsewhere, turned, and seen through a door in another wall."""
+    T = np.eye(4)
+    T[:3, :3], T[:3, 3] = yaw_rotation(0.7), [11.0, -3.0, 0.4]
+    return moved_to_room(with_door(furnished_scene(), "way-in", "wall_2", -0.3), T)
+
+
+def test_the_two_sides_of_the_door_are_one(home: Scene, turned: Scene) -> None:
+    made = joined(home, turned, "door", "way-in", names=("hall", "study"), wall_m=0.2).scene
+    check_scene(made)
+    assert scene_from_json(scene_to_json(made)) == made
+    assert [(r.name, r.storey) for r in made.rooms] == [("hall", 0), ("study", 0)]
+    (doorway,) = doorways(made)
+    assert set(doorway.rooms) == {r.id for r in made.rooms}
+    assert doorway.depth_m == pytest.approx(0.2)
+    face, behind = (made.plane(w) for w in doorway.walls)
+    np.testing.assert_allclose(face.normal, -behind.normal, atol=1e-9)
+    assert face.thickness + behind.thickness == pytest.approx(0.2)
+    floors = [made.plane(r.floor) for r in made.rooms]
+    assert floors[0].centre[2] == pytest.approx(floors[1].centre[2])
+    assert len(made.objects) == len(home.objects) + len(turned.objects) - 1
+    along = np.cross([0.0, 0.0, 1.0], behind.normal)
+    here = (made.object("door").pose.position - behind.centre) @ along
+    assert here == pytest.approx(-0.3), "where the other room has it"
+
+
+def test_names_are_apart_and_everything_keeps_its_room(home: Scene, turned: Scene) -> None:
+    made = joined(home, turned, "door", "way-in").scene
+    assert [r.name for r in made.rooms] == ["room", "room 2"]
+    ids = [v.id for v in (*made.objects, *made.architecture.planes, *made.rooms)]
+    assert len(ids) == len(set(ids))
+    in_rooms = {**rooms_of_objects(made), **rooms_of_planes(made)}
+    first = {o.id for o in home.objects} | {p.id for p in home.architecture.planes}
+    assert {name for name, room in in_rooms.items() if room == made.rooms[0].id} == first
+    for edge in made.supports[-3:]:
+        assert made.has_object(edge.parent) or made.has_plane(edge.parent)
+
+
+def test_a_third_room_joins_at_another_door(home: Scene, turned: Scene) -> None:
+    two = joined(with_door(home, "second", "wall_1", 0.0), turned, "door", "way-in").scene
+    three = joined(two, turned, "second", "way-in", names=("x", "bath")).scene
+    assert [r.name for r in three.rooms] == ["room", "room 2", "bath"]
+    assert len(doorways(three)) == 2
+
+
+def test_pictures_of_both_stay(home: Scene, turned: Scene) -> None:
+    def papered(scene: Scene) -> Scene:
+        planes = (replace(p, texture=p.role) if p.role == "floor" else p for p in scene.architecture.planes)
+        return edits.set_planes(scene, planes)
+
+    made = joined(papered(home), papered(turned), "door", "way-in")
+    assert made.textures == {"floor": "floor-2"}
+    assert [p.texture for p in made.scene.architecture.by_role("floor")] == ["floor", "floor-2"]
+
+
+def test_what_cannot_be_joined_says_why(home: Scene, turned: Scene) -> None:
+    with pytest.raises(EditRefused, match="choose one of: way-in"):
+        joined(home, turned, "door", "door")
+    with pytest.raises(EditRefused, match="no door 'table'"):
+        joined(home, turned, "table", "way-in")
+    with pytest.raises(EditRefused, match="without a floor"):
+        joined(home, Scene(), "door", "way-in")
+    with pytest.raises(EditRefused, match="2 m thick"):
+        joined(home, turned, "door", "way-in", wall_m=2.0)
+    free = edits.detach(edits.move(home, "door", Pose.upright((0.0, 0.0, 1.0))), "door")
+    with pytest.raises(EditRefused, match="in no wall"):
+        joined(free, turned, "door", "way-in")
