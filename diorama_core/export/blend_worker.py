@@ -9,6 +9,8 @@ from typing import Any
 
 BRANCHES = {"architecture": "Architecture", "objects": "Objects"}
 """Nodes below the scene's root, and the collections of what hangs below them."""
+NEAR_M = 1.0
+"""What is nearer holds light from all sides off."""
 
 
 def save(job: dict[str, Any]) -> None:
@@ -16,14 +18,15 @@ def save(job: dict[str, Any]) -> None:
 
     Args:
         job: `glb`, `blend`, and where there are any, `camera` (`width`, `height`, `fx`, `fy`, `cx`, `cy`, in pixels)
-            and `photo` (a picture's file); `lighting` as the glTF import calls the units of lights.
+            and `photo` (a picture's file); `lighting` as the glTF import calls the units of lights; `around` is the
+            radiance of the light from all sides.
     """
     import bpy  # Blender's Python has it, ours rarely
 
     bpy.ops.wm.read_factory_settings(use_empty=True)
     bpy.ops.import_scene.gltf(filepath=job["glb"], export_import_convert_lighting_mode=job["lighting"])
-    for light in bpy.data.lights:
-        light.use_shadow = not light.name.startswith("even light")  # in place of light from all sides, which has none
+    if "around" in job:
+        _surroundings(bpy, job["around"])
     print("diorama 0.5 sorting collections", flush=True)
     _collections(bpy)
     camera = next((o for o in bpy.data.objects if o.type == "CAMERA"), None)
@@ -36,6 +39,19 @@ def save(job: dict[str, Any]) -> None:
     bpy.ops.file.pack_all()
     print("diorama 0.9 saving", flush=True)
     bpy.ops.wm.save_as_mainfile(filepath=job["blend"], compress=True)
+
+
+def _surroundings(bpy: Any, radiance: float) -> None:
+    """Light from all sides as Blender has it: the world's, which comes past walls but not past what is near."""
+    for light in list(bpy.data.lights):
+        if light.name.startswith("even light"):
+            bpy.data.lights.remove(light)
+    scene, world = bpy.context.scene, bpy.data.worlds.new("World")
+    scene.world = world
+    colour, strength = world.node_tree.nodes["Background"].inputs[:2]
+    colour.default_value, strength.default_value = (1.0, 1.0, 1.0, 1.0), radiance
+    world.light_settings.ao_factor, world.light_settings.distance = radiance, NEAR_M
+    scene.cycles.use_fast_gi, scene.cycles.fast_gi_method = True, "ADD"
 
 
 def _collections(bpy: Any) -> None:

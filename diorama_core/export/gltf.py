@@ -236,16 +236,16 @@ class _Builder:
         return self._document.add("nodes", node)
 
     def _room_lights(self) -> list[int]:
-        """The main light, and the points of the light from all sides."""
+        """The main light, and parallel ones for the light from all sides."""
         main, even, found = self._gathered.main_light, self._gathered.even_light, []
         if main is not None:
             about: dict[str, Any] = {"type": "directional", "color": [float(c) for c in main.colour]}
             about |= {"name": "main light", "intensity": main.lux * self._gathered.strength(main)}
             found.append(self._room_light(self._document.add_light(about), placement(main.T_world), "main light"))
         if even is not None:
-            light = self._document.add_light({"name": "even light", "type": "point", "intensity": even.candela})
-            places = [{"translation": [float(v) for v in position]} for position in even.positions]
-            found += [self._room_light(light, place, "even light") for place in places]
+            for T in even.T_world:  # three.js aims only the first of nodes that share a light
+                about = {"type": "directional", "name": "even light", "intensity": even.lux}
+                found.append(self._room_light(self._document.add_light(about), placement(T), "even light"))
         return found
 
     def _room_light(self, light: int, place: dict[str, Any], name: str) -> int:

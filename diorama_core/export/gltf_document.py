@@ -242,6 +242,9 @@ class GltfDocument:
             entry["alphaMode"] = "BLEND"
         if material.double_sided:
             entry["doubleSided"] = True
+        if material.photographed:  # its photo shows what it mirrors already
+            self.use("KHR_materials_specular")
+            entry["extensions"] = {"KHR_materials_specular": {"specularFactor": 0.0}}
         return entry
 
     def _texture(self, picture: Picture) -> int:

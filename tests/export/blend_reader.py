@@ -25,6 +25,7 @@ found = {
     "objects": {o.name: {"id": o["id"], "corners": corners(o)} for o in bpy.data.objects if "id" in o},
     "planes": sorted(o.name for o in bpy.data.objects if "diorama_plane" in o),
     "materials": sorted(m.name for m in bpy.data.materials if m.users),
+    "around": bpy.context.scene.world.node_tree.nodes["Background"].inputs["Strength"].default_value,
     "lights": len([o for o in bpy.data.objects if o.type == "LIGHT"]),
     "photo": bool(camera and camera.data.background_images and camera.data.background_images[0].image.packed_file),
     "camera": None if camera is None else [list(row) for row in camera.matrix_world],

@@ -12,6 +12,7 @@ import pytest
 
 from diorama_core.errors import Cancelled, UnavailableError
 from diorama_core.export import FORMATS, blender, export_scene
+from diorama_core.export.blend import EVEN_SHARE
 from diorama_core.export.blender import PYTHON_VARIABLE, blender_python, missing_blender, run_in_blender
 from diorama_core.progress import CancelToken, Progress
 from tests.export.scenes import scene_of
@@ -38,8 +39,8 @@ def test_blender_finds_every_object_where_it_was(tmp_path: Path) -> None:
     assert found["materials"] == sorted(m.name for m in gathered.materials)
     assert len(found["planes"]) == len(gathered.planes)
     assert gathered.even_light is not None
-    room_lights = len(gathered.even_light.positions) + (gathered.main_light is not None)
-    assert found["lights"] == len(gathered.lights) + room_lights
+    assert found["lights"] == len(gathered.lights) + (gathered.main_light is not None)
+    assert found["around"] == pytest.approx(EVEN_SHARE * gathered.even_light.lux / np.pi)
     assert set(found["collections"]) == {"Architecture", "Objects", "Lights", "Camera"}
     assert found["photo"]
     assert found["unpacked"] == []

@@ -101,6 +101,7 @@ def test_the_tree_follows_the_supports_beside_the_architecture() -> None:
     lights = {name for name in below("diorama") if name.startswith("even light")}
     assert below("diorama") - lights == {"architecture", "objects", "photo camera"}
     assert len(lights) == 4
+    assert len({node(document, name)["extensions"]["KHR_lights_punctual"]["light"] for name in lights}) == 4
     assert below("architecture") == {"floor", "ceiling", "wall back", "wall left", "wall right", "wall front"}
     assert below("table (t)") == {"ball (b)"}
     assert "ball (b)" not in below("objects")
@@ -139,12 +140,14 @@ def test_pictures_are_limited_and_have_sides_of_powers_of_two() -> None:
         view = document["bufferViews"][document["images"][0]["bufferView"]]
         image = Image.open(io.BytesIO(binary[view["byteOffset"] : view["byteOffset"] + view["byteLength"]]))
         assert image.size == expected
+        (seen,) = (m for m in document["materials"] if "extensions" in m)  # the photo shows what it mirrors already
+        assert seen["extensions"]["KHR_materials_specular"]["specularFactor"] == 0.0
 
 
 def test_lamps_and_windows_shine() -> None:
     document = gltf_reader.check(_glb(gathered("fittings")))
     lights = document["extensions"]["KHR_lights_punctual"]["lights"]
-    assert {light["type"] for light in lights} == {"point", "spot"}
+    assert {light["type"] for light in lights if light["name"] != "even light"} == {"point", "spot"}
     spot = next(n for n in document["nodes"] if n["name"].startswith("window") and "extensions" in n)
     R = Rotation.from_quat(spot["rotation"]).as_matrix()
     window = gathered("fittings").object("window_1")

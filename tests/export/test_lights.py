@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from diorama_core.export.lights import UNHINDERED, WINDOW_LUX, even_irradiance, even_light_of, lights_of
+from diorama_core.geometry.vectors import unit
 from diorama_core.render.appearance import Material
 from diorama_core.render.lamps import LAMP_LUMENS
 from diorama_core.scene.light_settings import LightSettings
@@ -75,7 +76,12 @@ def test_a_room_gets_as_much_even_light_as_in_pictures(width: float, depth: floa
     assert light is not None
     points = len(light.positions)
     closed = 2 * (width * depth + 2.5 * (width + depth))
-    assert 4 * np.pi * light.candela * points / closed == pytest.approx(UNHINDERED * np.pi * even_irradiance(scene))
+    expected = UNHINDERED * np.pi * even_irradiance(scene)
+    assert 4 * np.pi * light.candela * points / closed == pytest.approx(expected)
+    normals = unit(np.random.default_rng(0).normal(size=(100, 3)))
+    received = light.lux * np.maximum(normals @ light.T_world[:, :3, 2].T, 0.0).sum(axis=1)
+    assert 0.8 * expected < received.min()
+    assert received.max() < 1.2 * expected
 
 
 def test_lamps_give_a_part_of_it_unless_a_person_switched_them_on() -> None:
