@@ -34,7 +34,7 @@ SUN_LUX = 110_000.0
 UNHINDERED = 0.85
 """Share of the light in pictures that furniture and corners do not hold off (.84 and .87 in two rooms)."""
 MAIN_SHARE = 0.4
-"""Share of a photo's main light at unit exposure: furniture holds a part off, and photographed surfaces show it already.
+"""Share of a photo's main light at unit exposure: furniture holds a part off, and photographed ones show it.
 By it pictures of seven rooms in three.js differ least from ours (9.0 at 1, 7.6 at .4)."""
 EVENLY = np.array([[1, 1, 1], [1, -1, -1], [-1, 1, -1], [-1, -1, 1]]) / np.sqrt(3)
 """Where four parallel lights come from that together light surfaces of all directions alike, within a fifth."""
