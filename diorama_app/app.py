@@ -22,6 +22,7 @@ from diorama_app.panels.edit_by_words import EditByWords
 from diorama_app.panels.export import ExportPanel
 from diorama_app.panels.ghost import PlacingGhost
 from diorama_app.panels.help import show_help
+from diorama_app.panels.home import HomePanel
 from diorama_app.panels.in_place import InPlace
 from diorama_app.panels.job import JobStrip
 from diorama_app.panels.library import LibraryPanel
@@ -198,6 +199,7 @@ class Editor:
             place(_("Edits by words"), lambda: EditByWords(gui, client))
             place(_("The review"), lambda: Review(gui, client))
             place(_("The list of objects"), lambda: Outliner(gui, client))
+            place(_("The rooms of the home"), lambda: HomePanel(gui, client))
             place(_("The size of the room"), lambda: RoomSize(gui, client))
             place(_("The light"), lambda: LightPanel(gui, client))
         with from_photo:

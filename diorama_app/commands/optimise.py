@@ -83,12 +83,12 @@ def optimise(
     )
 
     def work(progress: Progress) -> None:
-        from diorama_core.layout.recipes import recipe
+        from diorama_core.layout.recipes import RoomByRoom, recipe
 
         frames = _Frames(session, run, progress)
         try:
             everything = len(free) == len(start.objects)
-            stage = recipe(recipe_name, session.library, None if everything else free, weights=weights)
+            stage = RoomByRoom(recipe(recipe_name, session.library, None if everything else free, weights=weights))
             final, report = stage.optimise(start, progress, frames.take)
             if recipe_name not in PUBLISHED:
                 final = with_believed_sizes(start, final)

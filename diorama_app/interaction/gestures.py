@@ -141,7 +141,7 @@ class Gestures:
                 return
             if object_id not in client.selection:
                 client.select((object_id,))
-            slide = Slide.begin(session.scene, session.library, object_id, grabbed, client.selection)
+            slide = Slide.begin(session.scene, session.library, object_id, grabbed, client.selection, client.rooms)
             self._remove()
             self._handles.show(None)
             self._drag = _BodyDrag(slide, session.scene)

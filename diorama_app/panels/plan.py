@@ -24,7 +24,8 @@ from diorama_core.editing.plan_edits import corners, draw_room, move_corner, set
 from diorama_core.errors import EditRefused, LibraryError
 from diorama_core.export.footprints import Outline, outline
 from diorama_core.export.plan import OVERHEAD_M, UNNAMED, RoomLines, drawing_order, room_lines
-from diorama_core.geometry.openings import OPENING_CATEGORIES, wall_of
+from diorama_core.geometry.openings import OPENING_CATEGORIES, faces_behind, wall_of
+from diorama_core.geometry.rooms import part_of_home
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.scene.room_edits import floor_height, move_plane
 from diorama_core.scene.types import Scene, SceneObject
@@ -99,13 +100,21 @@ class Plan:
         if not client.plan:
             self._tell("null")
             return
-        scene = client.session.scene
+        scene = self._seen()
         self._outlines.look_for(scene, lambda: client.post(self.refresh, key="plan"))
         self._picture.refresh()
         self._tell(json.dumps(self._about(scene), separators=(",", ":")))
 
+    def _seen(self) -> Scene:
+        """The scene; of a home the storey of what is shown, the lowest where everything is."""
+        scene, shown = self._client.session.scene, self._client.rooms
+        if not scene.rooms:
+            return scene
+        storeys = {r.storey for r in scene.rooms if r.id in shown} or {min(r.storey for r in scene.rooms)}
+        return part_of_home(scene, {r.id for r in scene.rooms if r.storey in storeys})
+
     def _everything(self) -> list[list[float]]:
-        scene = self._client.session.scene
+        scene = self._seen()
         visible = [o for o in scene.objects if not o.hidden]
         return _bounds(room_lines(scene.architecture.planes, visible, scene), [o.corners_world[:, :2] for o in visible])
 
@@ -131,6 +140,7 @@ class Plan:
             "walls": _walls(scene, client.surface, unit),
             "corners": [{"walls": [c.first, c.second], "at": _flat(c.at)} for c in corners(scene)],
             "pieces": pieces,
+            "rooms": [{"at": _flat(scene.plane(r.floor).centre[:2]), "name": r.name} for r in scene.rooms],
             **_doubts(scene),
         }
 
@@ -236,6 +246,7 @@ def _rectangle(item: SceneObject, half: np.ndarray) -> Outline:
 
 
 def _walls(scene: Scene, chosen: str | None, unit: Unit) -> list[dict[str, Any]]:
+    faces = scene.architecture.by_role("wall")
     return [
         {
             "id": f.id,
@@ -244,6 +255,7 @@ def _walls(scene: Scene, chosen: str | None, unit: Unit) -> list[dict[str, Any]]
             "end": _flat(f.end),
             "outward": [round(float(v), 6) for v in f.outward],
             "thickness": scene.plane(f.id).thickness,
+            "inner": bool(faces_behind(scene.plane(f.id), scene.plane(f.id).centre, faces)),
             "length": format_length(f.length_m, unit),
             "on": f.id == chosen,
         }

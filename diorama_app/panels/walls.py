@@ -20,6 +20,8 @@ from diorama_core.scene.types import Plane, Scene
 FADE_MS = 200
 GHOST = {"wall": 0.13, "floor": 0.13, "ceiling": 0.0}
 """What is left of a plane seen from behind. A ceiling goes: it would lie over the whole room seen from above."""
+HIDDEN = ([0.0, 0.0, 0.0], 1.0, 0.0)
+"""Seen from behind, wherever one stands, and nothing left of it."""
 PHOTO_NEAR_M = 0.03
 """Nearer to the photo's camera the model is compared with the photo, and nothing is laid over it."""
 
@@ -38,7 +40,16 @@ class Walls:
         """Tell the page what differs from what it knows."""
         session, client = self._client.session, self._client
         ms, view = 0 if session.low_graphics else FADE_MS, session.viewport
-        about = what_fades(session.scene, view.plane_name, view.node_name, client.selection, ms)
+        scene = session.scene
+        about = what_fades(scene, view.plane_name, view.node_name, client.selection, ms)
+        if client.rooms:
+            from diorama_core.geometry.rooms import part_of_home  # shapely; a room opens without it
+
+            shown = part_of_home(scene, client.rooms)
+            gone = {view.plane_name(p.id) for p in scene.architecture.planes if not shown.has_plane(p.id)}
+            about["planes"] = [[row[0], *HIDDEN] if row[0] in gone else row for row in about["planes"]]
+            gone = {view.node_name(o.id) for o in scene.objects if not shown.has_object(o.id)}
+            about["hung"] = [row for row in about["hung"] if row[0] not in gone] + [[name, *HIDDEN] for name in gone]
         told = json.dumps({**about, "versions": MESH_NAMES}, separators=(",", ":"))
         if told != self._told:
             self._told = told

@@ -75,6 +75,8 @@ class Client:
         self.selection: tuple[str, ...] = ()
         self.surface: str | None = None
         """Id of the plane that is chosen to be finished; while objects are selected, none is."""
+        self.rooms: frozenset[str] = frozenset()
+        """Ids of the rooms of a home that are shown; none: all."""
         self.preferences = Preferences()
         self.plan = False
         """Whether the plan is shown in place of the 3D view."""
@@ -253,13 +255,17 @@ class Client:
 
     def show_marks(self, scene: Scene | None = None) -> None:
         """Outlines, name tags and the others' cursors; around a preview where one is given."""
-        session = self.session
+        session, shown = self.session, scene or self.session.scene
+        if self.rooms:
+            from diorama_core.geometry.rooms import part_of_home  # shapely; a room opens without it
+
+            shown = part_of_home(shown, self.rooms)
         others = [(g.name, g.colour, g.selection) for g in session.clients.values() if g is not self]
         # Over the photo, marks would seem to be the photo's.
         warned = self.preferences.badges and self.view.photo.opacity < 0.5
         badges = session.badges if warned else {}
         self.marks.show(
-            scene or session.scene,
+            shown,
             session.viewport.node_name,
             self.selection,
             others,

@@ -13,6 +13,7 @@ from diorama_core.arrangement.surfaces import outside_m
 from diorama_core.editing.collisions import Collisions
 from diorama_core.editing.placing import places_of
 from diorama_core.errors import DioramaError
+from diorama_core.geometry.rooms import part_of_home, rooms_of_objects
 from diorama_core.library import taxonomy
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.scene.room_edits import floor_height
@@ -37,12 +38,14 @@ def problems(scene: Scene, library: ShapeLibrary, collisions: Collisions) -> Pro
         for object_id in pair:
             if COLLIDES not in found.setdefault(object_id, []):
                 found[object_id].append(COLLIDES)
+    rooms = rooms_of_objects(scene)
+    parts = {room: part_of_home(scene, [room]) for room in set(rooms.values())}
     for item in scene.objects:
         if item.hidden:
             continue
         if floats(scene, library, item):
             found.setdefault(item.id, []).append(FLOATS)
-        if outside_room(scene, item):
+        if outside_room(parts.get(rooms.get(item.id, ""), scene), item):
             found.setdefault(item.id, []).append(OUTSIDE)
     return {i: tuple(sorted(words)) for i, words in found.items()}
 

@@ -125,7 +125,7 @@
     field.select();
   };
   const measure = (layer, group, w) => {
-    const away = AWAY_PX / view.scale + w.thickness, a = plus(w.start, w.outward, away), b = plus(w.end, w.outward, away);
+    const away = w.inner ? -AWAY_PX / view.scale : AWAY_PX / view.scale + w.thickness, a = plus(w.start, w.outward, away), b = plus(w.end, w.outward, away);
     const tick = 5 / view.scale, middle = [(a[0] + b[0]) / 2, (a[1] + b[1]) / 2];
     add(group, "path", { class: "measure", d: path([a, b]) + [a, b].map((p) =>
       path([plus(p, w.outward, -tick), plus(p, w.outward, tick)])).join("") });
@@ -186,6 +186,7 @@
     }
     for (const outline of about.spreads) add(group, "path", { class: "spread", d: closed([outline]) });
     names(group);
+    for (const r of about.rooms) label(group, r.at, r.name, "label room");
     add(group, "path", { class: "wall", "fill-rule": "evenodd", d: closed(about.solid) });
     for (const line of about.swings) add(group, "path", { class: "line swing", d: path(line) });
     for (const line of about.panes) add(group, "path", { class: "line", d: path(line) });

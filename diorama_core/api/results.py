@@ -49,7 +49,7 @@ def optimise(
         inputs = reconstruction.inputs
         measured = inputs is not None and inputs.depth_m is not None
         recipe = recipes.recipe(recipe, reconstruction.library, depth_measured=measured)
-    scene, report = recipe.optimise(reconstruction.scene, progress or Progress(), preview)
+    scene, report = recipes.RoomByRoom(recipe).optimise(reconstruction.scene, progress or Progress(), preview)
     return replace(reconstruction, scene=set_metrics(scene, report.after), layout=report)
 
 

@@ -6,7 +6,7 @@ Pure: built once when a drag begins, asked for every position of the hand.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 import numpy as np
@@ -15,6 +15,7 @@ from jaxtyping import Float
 from diorama_core.arrangement.surfaces import RestingSurface, plane_surface
 from diorama_core.editing.placing import SupportTarget, fits, hits_along, inside, places_of, to_wall, within_wall
 from diorama_core.errors import EditRefused
+from diorama_core.geometry.rooms import part_of_home, rooms_of_objects
 from diorama_core.layout.feasible.local import DragSolver
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.library.taxonomy import resolve
@@ -37,6 +38,10 @@ class Slide:
     """The point of the object under the hand when the drag began, world."""
     along: tuple[str, ...] = ()
     """Other selected objects, which move by the same amount."""
+    rooms: frozenset[str] = frozenset()
+    """Ids of the rooms of a home that are seen, where the hand can put it; none: all."""
+    _solvers: dict[str, DragSolver] = field(default_factory=dict)
+    """Of a home's rooms that it came to so far."""
 
     @classmethod
     def begin(
@@ -46,6 +51,7 @@ class Slide:
         object_id: str,
         grabbed: Float[np.ndarray, "3"],
         selection: tuple[str, ...] = (),
+        rooms: frozenset[str] = frozenset(),
     ) -> Slide:
         """A drag of an object (and, when it is among several selected, of those too); refused when it is locked.
 
@@ -55,6 +61,7 @@ class Slide:
             object_id: of the object.
             grabbed: point of it under the pointer, world, metres.
             selection: ids that are selected.
+            rooms: ids of the rooms of a home that are seen; none: all.
         """
         item = scene.object(object_id)
         if item.locked:
@@ -65,13 +72,14 @@ class Slide:
         )
         nested = {d for i in along for d in descendants(scene, i)}
         along = [i for i in along if i not in nested and object_id not in descendants(scene, i)]
-        return cls(scene, library, item, np.asarray(grabbed, dtype=np.float64), tuple(along))
+        return cls(scene, library, item, np.asarray(grabbed, dtype=np.float64), tuple(along), rooms)
 
     @cached_property
     def places(self) -> tuple[SupportTarget, ...]:
         """Where it may go: what hangs stays on walls or ceiling, what stands on the floor leaves tables alone."""
         moved_ids = {self.item.id, *descendants(self.scene, self.item.id), *self.along}
-        places = places_of(self.scene, self.library, moved_ids)
+        seen = part_of_home(self.scene, self.rooms) if self.rooms else self.scene
+        places = places_of(seen, self.library, moved_ids)
         edge = self.scene.support_of(self.item.id)
         parent = None if edge is None else edge.parent
         if edge is not None and parent is not None and self.scene.has_plane(parent):
@@ -105,11 +113,26 @@ class Slide:
         if snap:
             pose = self._snapped(pose, place)
         if slide and not self.along and (place is None or place.upward):
-            scene = self.solver.solve(pose)
+            scene = self._slid(pose, place)
         else:
             scene = self._moved(pose, place)
         start = {o.id: o for o in self.scene.objects}
         return scene, {o.id: o.pose for o in scene.objects if o is not start.get(o.id)}
+
+    def _slid(self, pose: Pose, place: SupportTarget | None) -> Scene:
+        """The scene with the object as near to a pose as it can be; of a home only the room that it comes to counts."""
+        if not self.scene.rooms:
+            return self.solver.solve(pose)
+        moved = self._moved(pose, place)
+        item = moved.object(self.item.id)
+        room = rooms_of_objects(replace(moved, objects=(item,), supports=())).get(item.id)
+        if room is None:
+            return moved
+        if room not in self._solvers:
+            self._solvers[room] = DragSolver.prepare(part_of_home(moved, [room]), self.library, item.id)
+        solved = self._solvers[room].solve(pose)
+        moved, edge = edits.move(moved, item.id, solved.object(item.id).pose), solved.support_of(item.id)
+        return moved if edge is None or edge == moved.support_of(item.id) else edits.attach(moved, edge)
 
     def _moved(self, pose: Pose, place: SupportTarget | None) -> Scene:
         scene = edits.move(self.scene, self.item.id, pose)

@@ -5,6 +5,7 @@ and one object carries another only where that is sensible.
 from __future__ import annotations
 
 from collections.abc import Iterable
+from dataclasses import replace
 
 import numpy as np
 
@@ -12,6 +13,7 @@ from diorama_core.editing.footprints import footprint_of
 from diorama_core.editing.placing import seated
 from diorama_core.editing.positioning import Positioner
 from diorama_core.geometry.planes import in_polygon
+from diorama_core.geometry.rooms import rooms_of_objects
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.scene import edits
 from diorama_core.scene.support import descendants
@@ -65,6 +67,18 @@ def held_again(start: Scene, final: Scene) -> Scene:
         parent = max(below, key=lambda o: _top(o)).id if below else None if floor is None else floor.id
         final = edits.detach(final, item.id) if parent is None else edits.attach(final, Support(item.id, parent))
     return final
+
+
+def on_floor_of_room(scene: Scene, object_id: str) -> Scene:
+    """An object that stands on a floor of a home, on that of the room where it is now."""
+    edge, floors = scene.support_of(object_id), {r.id: r.floor for r in scene.rooms}
+    if edge is None or edge.parent not in floors.values():
+        return scene
+    item = scene.object(object_id)
+    room = rooms_of_objects(replace(scene, objects=(item,), supports=())).get(object_id)
+    return (
+        scene if room is None or floors[room] == edge.parent else edits.attach(scene, Support(object_id, floors[room]))
+    )
 
 
 def _lies_on(item: SceneObject, other: SceneObject) -> bool:

@@ -18,14 +18,21 @@ from diorama_core.scene.types import Pose, Scene, SceneObject, Support, yaw_rota
 from tests.app.small_room import furnished_scene
 
 
-def with_door(scene: Scene, name: str, wall_id: str, along_m: float) -> Scene:
+def with_door(
+    scene: Scene,
+    name: str,
+    wall_id: str,
+    along_m: float,
+    shape: tuple[str, tuple[float, float, float]] = ("door-flush-white", (0.06, 0.9, 2.0)),
+) -> Scene:
     """A door of 0.9 x 2 m in a wall, so far from the middle of its foot to the right seen from inside."""
     wall = scene.plane(wall_id)
     right = np.cross([0.0, 0.0, 1.0], wall.normal)
     middle = (wall.polygon.min(axis=0) + wall.polygon.max(axis=0)) / 2 + along_m * right + 0.03 * wall.normal
     middle[2] = float(wall.polygon[:, 2].min()) + 1.0
     yaw = float(np.arctan2(wall.normal[1], wall.normal[0]))
-    item = SceneObject(name, "door", "door", "door-flush-white", (0.06, 0.9, 2.0), Pose.upright(middle, yaw))
+    pose = Pose.upright(middle, yaw, tuple(np.divide((0.06, 0.9, 2.0), shape[1])))
+    item = SceneObject(name, "door", "door", *shape, pose)
     return edits.insert(scene, item, Support(name, wall_id, "mounted on", child_face="back"))
 
 
