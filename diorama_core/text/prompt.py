@@ -14,7 +14,7 @@ from diorama_core.text.foreign_words import in_english
 from diorama_core.text.phrases import MAX_OF_A_KIND, NUMBERS, NounPhrase, PlacePhrase, noun_phrase, split_places
 from diorama_core.text.rows import with_marks
 
-_ROOMS: tuple[tuple[str, RoomKind], ...] = (
+ROOMS: tuple[tuple[str, RoomKind], ...] = (
     ("living room", "living"), ("sitting room", "living"), ("lounge", "living"), ("family room", "living"),
     ("reading corner", "living"), ("reading nook", "living"), ("bedroom", "bedroom"), ("guest room", "bedroom"),
     ("nursery", "bedroom"), ("children's room", "bedroom"), ("child's room", "bedroom"),
@@ -371,7 +371,7 @@ def _room(text: str) -> tuple[RoomKind, str]:
     begins = re.match(r"(?:an? |the )?(?:[a-z'-]+ ){1,2}(?:corner|nook|area|den)\b", text)
     if begins and noun_phrase(begins.group().rpartition(" ")[0])[0] is None and "reading" not in begins.group():
         return _guessed_room(text), f" , {text[begins.end() :]}"
-    for words, kind in _ROOMS:
+    for words, kind in ROOMS:
         match = re.search(rf"\b(?:a |an |the )?(?:[a-z'-]+ ){{0,2}}?{words}\b(?! (?:{_COMPOUNDS})s?\b)", text)
         if match and not resolve(match.group()).exact:
             start = text.index(words, match.start())

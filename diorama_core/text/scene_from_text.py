@@ -11,6 +11,7 @@ from jaxtyping import UInt8
 
 from diorama_core.errors import InputError, UnavailableError
 from diorama_core.geometry.openings import OPENING_CATEGORIES
+from diorama_core.geometry.rooms import part_of_home
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.library.taxonomy import category, with_kin
 from diorama_core.perception.language.client import LmmSettings
@@ -19,6 +20,7 @@ from diorama_core.scene.types import Scene
 from diorama_core.synthesis import in_photo_world
 from diorama_core.synthesis.finishes import finish_textures
 from diorama_core.text.compose import composed_room
+from diorama_core.text.home import composed_home, rooms_asked
 from diorama_core.text.language import listed_request, mended
 from diorama_core.text.prompt import RequestedObject, understood_prompt
 from diorama_core.text.viewpoint import best_viewpoint
@@ -32,7 +34,8 @@ def finished(
     """The room in the world of a camera that shows most of it, and its planes' pictures by name."""
     # Every room has doors and windows; a picture may do without.
     worth = {o.id: 0.2 if o.category in OPENING_CATEGORIES else 1.0 for o in scene.objects}
-    scene = in_photo_world(replace(scene, camera=best_viewpoint(scene, library, size, worth)))
+    seen = part_of_home(scene, [scene.rooms[0].id]) if scene.rooms else scene
+    scene = in_photo_world(replace(scene, camera=best_viewpoint(seen, library, size, worth)))
     textures = finish_textures(scene.architecture)
     planes = tuple(replace(p, texture=p.id if p.id in textures else None) for p in scene.architecture.planes)
     return replace(scene, architecture=replace(scene.architecture, planes=planes)), textures
@@ -89,6 +92,10 @@ def scene_from_text(
         Cancelled: on request.
     """
     words, progress = words_of(prompt), progress or Progress()
+    if rooms := rooms_asked(words):
+        home, notes = composed_home(rooms, library, seed, progress.part(0.0, 0.6))
+        scene, textures = finished(home, library)
+        return SceneFromText(scene, textures, (f"a home of {len(scene.rooms)} rooms, composed by rules", *notes))
     request, remarks = None, ["the room was composed from the library by rules"]
     if language_model is not None:
         try:
