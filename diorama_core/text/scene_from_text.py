@@ -93,9 +93,9 @@ def scene_from_text(
     """
     words, progress = words_of(prompt), progress or Progress()
     if rooms := rooms_asked(words):
-        home, notes = composed_home(rooms, library, seed, progress.part(0.0, 0.6))
+        home, unmet_lines = composed_home(rooms, library, seed, progress.part(0.0, 0.6))
         scene, textures = finished(home, library)
-        return SceneFromText(scene, textures, (f"a home of {len(scene.rooms)} rooms, composed by rules", *notes))
+        return SceneFromText(scene, textures, (f"a home of {len(scene.rooms)} rooms, composed by rules", *unmet_lines))
     request, remarks = None, ["the room was composed from the library by rules"]
     if language_model is not None:
         try:
