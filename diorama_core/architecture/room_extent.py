@@ -51,7 +51,8 @@ SETTINGS = RoomExtentSettings()
 def containing_room(
     scene: Scene,
     *,
-    reasoned: bool = False,
+    objects_measured: bool = True,
+    walls_reasoned: bool = False,
     feet_seen: Collection[str] | None = None,
     settings: RoomExtentSettings = SETTINGS,
 ) -> Scene:
@@ -60,17 +61,20 @@ def containing_room(
 
     Args:
         scene: as observed.
-        reasoned: whether distances were reasoned from a photo alone: walls then come to what stands against them.
+        objects_measured: whether places of objects were measured: a wall before a measured one was not seen.
+        walls_reasoned: whether walls were reasoned from a photo alone: they come to what stands against them.
         feet_seen: ids of the objects whose lower ends the photo shows; of all when None.
         settings: numbers to work with.
     """
     floor = scene.architecture.floor
     if floor is None:
         return scene
-    if reasoned:
-        scene = _at_backs(scene, feet_seen, settings)
+    if walls_reasoned:
+        scene = _at_backs(scene, feet_seen, objects_measured, settings)
+        if objects_measured:
+            scene = _without_far_adherence(scene, settings)
     standing = [o for o in scene.objects if (edge := scene.support_of(o.id)) is not None and edge.parent == floor.id]
-    if not reasoned:
+    if objects_measured:
         scene = _doubted(scene, standing, settings)
     for wall in scene.architecture.by_role("wall"):
         if not wall.seen:
@@ -143,14 +147,25 @@ def _with_ceiling(scene: Scene, settings: RoomExtentSettings = SETTINGS) -> Scen
     return replace(scene, architecture=Architecture((*scene.architecture.planes, ceiling)), supports=supports)
 
 
-def _at_backs(scene: Scene, feet_seen: Collection[str] | None, settings: RoomExtentSettings = SETTINGS) -> Scene:
+def _at_backs(
+    scene: Scene,
+    feet_seen: Collection[str] | None,
+    objects_measured: bool,
+    settings: RoomExtentSettings = SETTINGS,
+) -> Scene:
     """The walls where most of what stands against them says: from a photo alone they are as uncertain as objects.
 
     Doors say it, too: their feet, which were seen on the floor, are the wall's. What stands before a wall without
-    touching it resists a wall that would come past its back. Each counts as much as its place is certain.
+    touching it resists a wall that would come past its back. Each counts as much as its place is certain; what lies
+    on furniture counts where its place was measured, since otherwise it follows from that of the furniture.
     """
     floor = scene.architecture.floor
-    edges = [s for s in scene.supports if floor is not None and s.parent == floor.id]
+    walls = {p.id for p in scene.architecture.planes if p.role != "floor"}
+    edges = [
+        s
+        for s in scene.supports
+        if floor is not None and (s.parent not in walls if objects_measured else s.parent == floor.id)
+    ]
     for wall in scene.architecture.by_role("wall"):
         against = [scene.object(s.child) for s in edges if wall.id in s.adheres_to]
         against += [o for o in _hanging(scene, wall.id) if o.category == "door"]
@@ -170,6 +185,16 @@ def _at_backs(scene: Scene, feet_seen: Collection[str] | None, settings: RoomExt
             continue
         scene = replace(moved, objects=scene.objects)
     return scene
+
+
+def _without_far_adherence(scene: Scene, settings: RoomExtentSettings) -> Scene:
+    """The scene without "against the wall" where an object was measured away from a wall that the photo shows."""
+
+    def near(edge: Support) -> tuple[str, ...]:
+        item = scene.object(edge.child)
+        return tuple(w for w in edge.adheres_to if abs(_back(item, scene.plane(w))) < settings.clearly_m)
+
+    return replace(scene, supports=tuple(replace(s, adheres_to=near(s)) for s in scene.supports))
 
 
 def _backs(
@@ -199,7 +224,7 @@ def _agreed(
     """How far inward a wall agrees best with the backs of what stands against it and of what stands before it."""
     if not len(backs):
         return 0.0
-    tried = np.concatenate([[0.0], backs])
+    tried = np.concatenate([[0.0], backs, others])
     apart = np.abs(tried[:, None] - backs) @ certainty
     past = np.maximum(tried[:, None] - others, 0.0) @ others_certainty
     return float(tried[np.argmin(apart + past + settings.hold * np.abs(tried))])
