@@ -156,8 +156,8 @@ def _at_backs(
     """The walls where most of what stands against them says: from a photo alone they are as uncertain as objects.
 
     Doors say it, too: their feet, which were seen on the floor, are the wall's. What stands before a wall without
-    touching it resists a wall that would come past its back. Each counts as much as its place is certain; what lies
-    on furniture counts where its place was measured, since otherwise it follows from that of the furniture.
+    touching it resists a wall that would come past its back. Each counts as much as its place is certain. What hangs on
+    walls and what lies on furniture counts where its place was measured: otherwise it follows from walls and furniture.
     """
     floor = scene.architecture.floor
     walls = {p.id for p in scene.architecture.planes if p.role != "floor"}
@@ -168,15 +168,16 @@ def _at_backs(
     ]
     for wall in scene.architecture.by_role("wall"):
         against = [scene.object(s.child) for s in edges if wall.id in s.adheres_to]
-        against += [o for o in _hanging(scene, wall.id) if o.category == "door"]
+        against += [o for o in _hanging(scene, wall.id) if objects_measured or o.category == "door"]
         others = [
             item
             for s in edges
             if wall.id not in s.adheres_to and _behind(item := scene.object(s.child), wall, np.inf) < np.inf
         ]
-        inward = _agreed(
-            *_backs(against, wall, feet_seen, settings), *_backs(others, wall, feet_seen, settings), settings=settings
-        )
+        backs, certainty = _backs(against, wall, feet_seen, settings)
+        before, before_certainty = _backs(others, wall, feet_seen, settings)
+        tried = np.concatenate([[0.0], backs, before]) if objects_measured else np.concatenate([[0.0], backs])
+        inward = _agreed(tried, backs, certainty, before, before_certainty, settings)
         if abs(inward) < settings.margin_m:
             continue
         try:
@@ -215,16 +216,14 @@ def _back(item: SceneObject, wall: Plane) -> float:
 
 
 def _agreed(
+    tried: Float[np.ndarray, " t"],
     backs: Float[np.ndarray, " a"],
     certainty: Float[np.ndarray, " a"],
     others: Float[np.ndarray, " b"],
     others_certainty: Float[np.ndarray, " b"],
     settings: RoomExtentSettings = SETTINGS,
 ) -> float:
-    """How far inward a wall agrees best with the backs of what stands against it and of what stands before it."""
-    if not len(backs):
-        return 0.0
-    tried = np.concatenate([[0.0], backs, others])
+    """How far inward, of what is tried, a wall agrees best with the backs of what stands against it and before it."""
     apart = np.abs(tried[:, None] - backs) @ certainty
     past = np.maximum(tried[:, None] - others, 0.0) @ others_certainty
     return float(tried[np.argmin(apart + past + settings.hold * np.abs(tried))])
