@@ -33,7 +33,7 @@ class SupportEvidence:
     believed: Mapping[str, Support] = field(default_factory=dict)
     """By object the edge that an earlier stage decided on."""
     below: Mapping[str, Mapping[str, float]] = field(default_factory=dict)
-    """See `lower_rims.seen_below`."""
+    """See `seen_below`."""
 
     @classmethod
     def of(cls, scene: Scene, below: Mapping[str, Mapping[str, float]]) -> SupportEvidence:
@@ -48,9 +48,9 @@ class SupportHypothesis:
     edge: Support
     role: Role
     kind: Category
-    """Identifier of the object that is held."""
+    """Kind of the object that is held."""
     carrier: Category | None = None
-    """Identifier of the object that holds it."""
+    """Kind of the object that holds it."""
     believed: bool = False
     """Whether an earlier stage decided so."""
     gap: float = 0.0
@@ -132,8 +132,10 @@ def _on_object(
     noise: ObservationNoise,
     evidence: SupportEvidence,
 ) -> SupportHypothesis | None:
-    """On the place of another object that agrees best; None where it is far beside all of them, unless a stage that
-    looked at the picture believes it: the two may since have moved apart along their lines of sight.
+    """The hypothesis that the object rests on the best-matching place of another object.
+
+    None if the object lies far beside all its places, unless an earlier stage that looked at the picture believes it:
+    both may have moved apart along their lines of sight.
     """
     corners = item.corners_world
     foot, height = float(corners[:, 2].min()), max(float(np.ptp(corners[:, 2])), 1e-3)

@@ -1,9 +1,8 @@
-"""Undo and redo over immutable scenes: a value itself, so it can be shared and tested. One person's change is taken
-back from under later changes of others, where those do not depend on it.
+"""Undo and redo over immutable scenes. The history is a value, so it can be shared and tested.
 
-The change is moved to the end of the history, past what others did since, and undone there; so redo brings it back. The
-rule is one: where anybody else has since changed the same object, wall or setting, or needs what would go, nothing is
-undone, and the message says what it is.
+A person's change is taken back even if others made later changes that do not depend on it: the change moves to the end
+of the history and is undone there, so redo brings it back. If somebody else has since changed the same object, wall or
+setting, or needs what would be removed, undo is refused, and the message names the reason.
 """
 
 from __future__ import annotations

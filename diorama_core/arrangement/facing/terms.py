@@ -86,7 +86,7 @@ class Term:
     """One reason to face somewhere; agreements of single objects, of pairs, or both."""
 
     name: str
-    """Its field of `weights.FacingWeights`."""
+    """Its field of `FacingWeights`."""
     sentence: str
     one: Callable[[FacingRoom, int], Agreement | None] | None = None
     pair: Callable[[FacingRoom, int, int], PairAgreement | None] | None = None
