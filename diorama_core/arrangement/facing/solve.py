@@ -46,8 +46,8 @@ class Facings:
     room: FacingRoom
     headings: Int[np.ndarray, "n"]
     costs: Float[np.ndarray, "n 24"]
-    """Cost of each heading from all terms and from the other objects, without the object's own picture. The best heading
-    costs 0; units are those of `FacingObject.picture`."""
+    """Cost of each heading from all terms and from the other objects, without the object's own picture; 0 for the best
+    heading, in the units of `FacingObject.picture`."""
     likely: Float[np.ndarray, "n 24"]
     """Logarithms of how likely headings are by everything, up to a constant for each object."""
     shares: tuple[Reason, ...]
