@@ -58,6 +58,7 @@ NOT_RUN = {
     "models verify": "needs networks; tests/cli/test_models_and_text.py",
     "optimise": "needs a project; tests/cli/test_cli.py",
     "picture": "needs a project; tests/cli/test_cli.py",
+    "project rooms": "needs a project; tests/cli/test_project.py",
     "project join": "needs two projects; tests/cli/test_project.py",
     "project zip": "needs a project; tests/cli/test_project.py",
     "review": "asks a person; tests/cli/test_review.py",

@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 import json
 import time
+from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
@@ -15,8 +16,8 @@ from diorama_core.io.text import number_of
 
 def add_project(commands: Any) -> None:
     """Declare `diorama project`."""
-    p: argparse.ArgumentParser = commands.add_parser("project", help="List, copy, join, pack and unpack projects.")
-    actions = p.add_subparsers(dest="action", required=True, metavar="list|copy|join|zip|unzip")
+    p: argparse.ArgumentParser = commands.add_parser("project", help="List, copy, join, measure and pack projects.")
+    actions = p.add_subparsers(dest="action", required=True, metavar="list|copy|join|rooms|zip|unzip")
     lists = command(actions, "list", _list, "List the projects, last changed first.", "diorama project list")
     copy = command(actions, "copy", _copy, "Copy a project beside it.", "diorama project copy my-room")
     pack = command(
@@ -30,7 +31,14 @@ def add_project(commands: Any) -> None:
         "Add another project's room to a home, at a door that both have.",
         "diorama project join my-home my-kitchen --door door_1 --to door_2",
     )
-    for one in (copy, join, pack):
+    rooms = command(
+        actions,
+        "rooms",
+        _rooms,
+        "Say how large rooms are, where a wheelchair turns and how wide the ways between doors are.",
+        "diorama project rooms my-home",
+    )
+    for one in (copy, join, rooms, pack):
         one.add_argument("project", type=Path, metavar="PROJECT", help="its folder, or its name among the projects")
     join.add_argument("--door", required=True, metavar="ID", help="the door in PROJECT")
     join.add_argument("other", type=Path, metavar="ROOM", help="the project that is added; it stays as it is")
@@ -39,7 +47,7 @@ def add_project(commands: Any) -> None:
     pack.add_argument("-o", "--output", type=Path, metavar="FILE", help="file to write (default: PROJECT.diorama)")
     unpack.add_argument("file", type=Path, metavar="FILE")
     unpack.add_argument("-o", "--output", type=Path, metavar="PROJECT", help="folder to write (default: among them)")
-    for one in (lists, copy, join, pack, unpack):
+    for one in (lists, copy, join, rooms, pack, unpack):
         one.add_argument("--projects", type=Path, metavar="DIR", help=PROJECTS_HELP)
         one.add_argument("--json", action="store_true", help="print the result as JSON")
 
@@ -83,6 +91,24 @@ def _join(a: argparse.Namespace) -> None:
         project.save_textures(textures)
         project.save_scene(scene)
     _say(a, folder, f"a home of {number_of(len(scene.rooms), 'room')}")
+
+
+def _rooms(a: argparse.Namespace) -> None:
+    from diorama_core.editing.reach import TURNING_M, uses_of
+    from diorama_core.project.storage import Project
+
+    project = Project.open(_folder(a, a.project))
+    uses = uses_of(project.load_scene())
+    if a.json:
+        rows = [{**asdict(u.room), **{k: v for k, v in asdict(u).items() if k != "room"}} for u in uses]
+        print(json.dumps({"path": str(project.folder), "rooms": rows}))
+        return
+    for use in uses:
+        turns = f"a circle of {TURNING_M} m" if use.turning_at else f"no circle of {TURNING_M} m"
+        ways = "" if use.way_m is None else f"; ways of {use.way_m} m" if use.way_m else "; no way between its doors"
+        stuck = f"; does not open: {', '.join(use.stuck)}" if use.stuck else ""
+        print(f"{use.room.name}, storey {use.room.storey}: {use.area_m2:.1f} m2, {turns}{ways}{stuck}")
+    print(f"{project.folder}: {sum(u.area_m2 for u in uses):.1f} m2 in {number_of(len(uses), 'room')}")
 
 
 def _zip(a: argparse.Namespace) -> None:

@@ -19,6 +19,7 @@ from shapely.ops import nearest_points
 from diorama_core.editing.footprints import footprint_of
 from diorama_core.editing.plan_edits import wall_feet
 from diorama_core.geometry.openings import OPENING_CATEGORIES
+from diorama_core.geometry.rooms import Doorway, doorways, part_of_home, storeys_of
 from diorama_core.scene.room_edits import floor_height
 from diorama_core.scene.types import Scene
 
@@ -55,8 +56,10 @@ class WalkableFloor:
 
 
 def walk_of(scene: Scene) -> WalkableFloor | None:
-    """The walk through a scene; None where it has no floor that a person fits on."""
-    free = _free(scene)
+    """The walk through a scene, of a home through its lowest storey; None where no floor is large enough."""
+    storeys = storeys_of(scene)
+    scene = scene if len(storeys) < 2 else part_of_home(scene, [r.id for r in storeys[min(storeys)]])
+    free = free_floor(scene, RADIUS_M)
     if free.is_empty:
         return None
     camera, level = scene.camera, floor_height(scene)
@@ -75,14 +78,16 @@ def walk_of(scene: Scene) -> WalkableFloor | None:
     return WalkableFloor(rings, (x, y), round(float(np.arctan2(ahead[1], ahead[0])), 4), round(level + eye, 4))
 
 
-def _free(scene: Scene) -> BaseGeometry:
-    """Where the middle of a person may be."""
+def free_floor(scene: Scene, radius_m: float) -> BaseGeometry:
+    """Where the middle of somebody upright, so wide on each side, may be."""
     floors = [shapely.make_valid(Polygon(p.polygon[:, :2])) for p in scene.architecture.by_role("floor")]
     doors = [Polygon(_through(footprint_of(o))) for o in scene.objects if o.category == "door" and not o.hidden]
+    bare = (d for d in doorways(scene) if d.opening.object_id is None and d.opening.is_door)
+    doors += [Polygon(_through(_passage(scene, d))) for d in bare]
     walls = shapely.unary_union([LineString([f.start, f.end]) for f in wall_feet(scene)])
     edges = shapely.unary_union([walls, *(f.exterior for f in floors if isinstance(f, Polygon))])
     in_way = shapely.unary_union([edges.difference(shapely.unary_union(doors)), *_furniture(scene)])
-    return shapely.unary_union([*floors, *doors]).difference(in_way.buffer(RADIUS_M)).simplify(SIMPLIFY_M)
+    return shapely.unary_union([*floors, *doors]).difference(in_way.buffer(radius_m)).simplify(SIMPLIFY_M)
 
 
 def _furniture(scene: Scene) -> Iterator[Polygon]:
@@ -91,6 +96,14 @@ def _furniture(scene: Scene) -> Iterator[Polygon]:
         low, high = float(item.corners_world[:, 2].min()) - level, float(item.corners_world[:, 2].max()) - level
         if item.category not in OPENING_CATEGORIES and not item.hidden and high > STEP_M and low < HEAD_M:
             yield Polygon(footprint_of(item))
+
+
+def _passage(scene: Scene, way: Doorway) -> Float[np.ndarray, "4 2"]:
+    """What a bare opening covers of the floor between its two faces."""
+    out = scene.plane(way.walls[0]).normal[:2]
+    along = np.array([-out[1], out[0]]) * (way.opening.to_m - way.opening.from_m) / 2
+    deep = out * max(way.depth_m, DOOR_SIDE_M) / 2
+    return np.array(way.at) + np.array([-along - deep, along - deep, along + deep, -along + deep])
 
 
 def _through(quad: Float[np.ndarray, "4 2"]) -> Float[np.ndarray, "4 2"]:

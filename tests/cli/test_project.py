@@ -51,6 +51,12 @@ def test_a_room_joins_a_home_at_their_door(tmp_path: Path, capsys: pytest.Captur
     made = Project.open(tmp_path / "hall").load_scene()
     assert len(made.rooms) == 2
     assert len(Project.open(tmp_path / "study").load_scene().rooms) == 0
+    assert main(["project", "rooms", "hall", "--projects", str(tmp_path)]) == 0
+    said = capsys.readouterr().out
+    assert "hall, storey 0: 17.6 m2, " in said
+    assert "35.2 m2 in 2 rooms" in said
+    assert main(["project", "rooms", "hall", "--projects", str(tmp_path), "--json"]) == 0
+    assert [r["name"] for r in json.loads(capsys.readouterr().out)["rooms"]] == ["hall", "study"]
     assert main([*join, "--door", "door_1", "--to", "door_9"]) == 1
     assert "choose one of: door_9" in capsys.readouterr().err
     Project.open(tmp_path / "study").update_info(library="mine")
@@ -63,7 +69,7 @@ def test_an_action_is_asked_for(capsys: pytest.CaptureFixture[str]) -> None:
     add_project(parser.add_subparsers())
     with pytest.raises(SystemExit, match="2"):
         parser.parse_args(["project"])
-    assert "list|copy|join|zip|unzip" in capsys.readouterr().err
+    assert "list|copy|join|rooms|zip|unzip" in capsys.readouterr().err
 
 
 def test_a_project_is_found_by_its_own_name_where_one_alone_has_it(
