@@ -20,7 +20,7 @@ from diorama_core.export.gathering import ExportObject, ExportOptions, ExportSce
 from diorama_core.export.limbs import ExportLimb, limb_parts
 from diorama_core.export.overlaps import Cuts, cut, seated
 from diorama_core.export.physics import GRAVITY, Inertia, friction_of, inertia_of, plausible_mass_kg
-from diorama_core.export.slabs import ground_piece, slab_pieces
+from diorama_core.export.slabs import barriers, ground_piece, slab_pieces
 from diorama_core.geometry.convex import ConvexPart
 from diorama_core.layout.problem.parts import parts_of_shape
 from diorama_core.library.record import Shape, ShapeLibrary, record_of
@@ -48,7 +48,7 @@ def physical_scene(gathered: ExportScene) -> PhysicalScene:
     """Reduce a gathered scene to rigid bodies.
 
     Mounted, locked and unsupported objects are welded to their supporter; everything else is free, or with the option
-    `bodies="welded"` nothing is.
+    `bodies="welded"` nothing is. Barriers that nobody sees stand where the room has no wall.
     """
     ground = gathered.scene.architecture.floor
     slabs = tuple(
@@ -77,7 +77,8 @@ def physical_scene(gathered: ExportScene) -> PhysicalScene:
             notes.append(f"{child} stands beside {parent}, which is to carry it, and is welded to it")
     apart = {i: replace(b, parts=cuts.parts(i), moving=cuts.moving(b)) for i, b in bodies.items()}
     done = tuple(_resting(b, None if b.node.parent is None else apart[b.node.parent]) for b in apart.values())
-    return PhysicalScene(done, slabs, tuple(notes))
+    around = barriers(gathered.scene.architecture, [o.item.corners_world for o in gathered.objects])
+    return PhysicalScene(done, (*slabs, *(around if ground and slabs else ())), tuple(notes))
 
 
 def body_of(scene: Scene, library: ShapeLibrary, object_id: str) -> RigidBody:

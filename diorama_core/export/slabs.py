@@ -2,19 +2,24 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+
 import manifold3d
 import numpy as np
 from jaxtyping import Float
 
-from diorama_core.export.bodies import Points
+from diorama_core.export.bodies import Points, StaticSlab
 from diorama_core.geometry.planes import plane_axes
-from diorama_core.scene.types import Plane
+from diorama_core.geometry.unseen_walls import heights, open_edges, rectangle
+from diorama_core.scene.types import Architecture, Plane
 
 MIN_SLAB_M = 0.05
 GROUND_BEYOND_M, GROUND_DEPTH_M = 10.0, 0.5
 """How far the floor reaches beyond the room, and down: what falls for two seconds is not stopped by less."""
 THIN_M = 1e-3
 """Pieces of slabs that are thinner than this are left out."""
+CLEAR_M = 0.02
+"""Between what stands over the floor's edge and the barrier beyond it."""
 
 
 def ground_piece(plane: Plane) -> tuple[Points, ...]:
@@ -37,6 +42,31 @@ def slab_pieces(plane: Plane) -> tuple[Points, ...]:
     return tuple(
         np.vstack([plane.polygon[t], plane.polygon[t] + depth]) for t in triangles if _height(flat[t]) > THIN_M
     )
+
+
+def barriers(architecture: Architecture, objects: Iterable[Points]) -> tuple[StaticSlab, ...]:
+    """Walls that nobody sees where a room has none, beyond what stands over the floor's edge there: robots stay inside.
+
+    Args:
+        architecture: With the floor.
+        objects: Corners of each object in the world.
+    """
+    found: list[StaticSlab] = []
+    corners = list(objects)
+    for a, b in open_edges(architecture):
+        length = float(np.linalg.norm(b - a))
+        along = (b - a) / length
+        outward = np.array([along[1], -along[0]])
+        away = CLEAR_M
+        spans = [((c[:, :2] - a) @ along, (c[:, :2] - a) @ outward) for c in corners]
+        for beside, beyond in sorted(spans, key=lambda span: float(span[1].min())):
+            meets = beside.max() > -away - MIN_SLAB_M and beside.min() < length + away + MIN_SLAB_M
+            if meets and beyond.max() > away - CLEAR_M and beyond.min() < away + MIN_SLAB_M + CLEAR_M:
+                away = float(beyond.max()) + CLEAR_M
+        start, end = (a + away * outward - away * along, b + away * outward + away * along)
+        plane = Plane(f"barrier_{len(found) + 1}", "wall", rectangle(start, end, (0, 1), heights(architecture)))
+        found.append(StaticSlab(plane.id, plane, slab_pieces(plane)))
+    return tuple(found)
 
 
 def _height(triangle: Float[np.ndarray, "3 2"]) -> float:

@@ -29,7 +29,9 @@ def add_physics(stage: Usd.Stage, gathered: ExportScene, physical: PhysicalScene
     paths = {b.node.id: object_path(b.node) for b in physical.bodies}
     plane_of = {p.slug: plane_path(p) for p in gathered.planes}
     for slab in physical.slabs:
-        colliders.add(plane_of[slab.slug], slab.pieces, grips.material(FLOOR_FRICTION))
+        path = plane_of.get(slab.slug, f"{ROOT}/Architecture/{slab.slug}")
+        UsdGeom.Xform.Define(stage, path)
+        colliders.add(path, slab.pieces, grips.material(FLOOR_FRICTION))
     for body in physical.bodies:
         path, grip = paths[body.node.id], grips.material(body.friction)
         colliders.add(path, body.parts, grip)

@@ -51,19 +51,19 @@ def unseen_parts(scene: Scene) -> Unseen:
     floor = scene.architecture.floor
     if floor is None:
         return Unseen()
-    level, top = float(floor.polygon[:, 2].mean()), _top(scene.architecture, float(floor.polygon[:, 2].mean()))
-    outline = floor.polygon if floor.normal[2] > 0 else floor.polygon[::-1]
-    gaps = [gap for a, b in _edges(outline) for gap in _gaps(a[:2], b[:2], scene.architecture.by_role("wall"))]
+    level, top = heights(scene.architecture)
+    outline = _upward(floor)
+    gaps = open_edges(scene.architecture)
     knows_windows = any(o.category == "window" and not o.hidden for o in scene.objects)
     planes: list[Plane] = []
     openings: list[LightOpening] = []
     for a, b in gaps:
         window = None if knows_windows else _usual_window(float(np.linalg.norm(b - a)), top - level)
         for s0, s1, z0, z1 in _pieces(window, top - level):
-            corners = _rectangle(a, b, (s0, s1), (level + z0, level + z1))
+            corners = rectangle(a, b, (s0, s1), (level + z0, level + z1))
             planes.append(Plane(f"unseen_{len(planes) + 1}", "wall", corners, confidence=0.0))
         if window is not None:
-            corners = _rectangle(a, b, window[:2], (level + window[2], level + window[3]))
+            corners = rectangle(a, b, window[:2], (level + window[2], level + window[3]))
             openings.append(LightOpening(corners, planes[-1].normal))
     if not scene.architecture.by_role("ceiling"):
         above = outline[::-1] * (1.0, 1.0, 0.0) + (0.0, 0.0, top)
@@ -77,9 +77,23 @@ def closed_room(scene: Scene) -> Scene:
     return replace(scene, architecture=Architecture((*scene.architecture.planes, *more))) if more else scene
 
 
-def _top(architecture: Architecture, level: float) -> float:
-    heights = [float(p.polygon[:, 2].max()) for p in architecture.planes if p.role != "floor"]
-    return max(heights, default=level + USUAL_HEIGHT_M)
+def open_edges(architecture: Architecture) -> list[tuple[Float[np.ndarray, "2"], Float[np.ndarray, "2"]]]:
+    """Parts of the floor's outline without a wall, from and to, the room on their left; none without a floor."""
+    floor, walls = architecture.floor, architecture.by_role("wall")
+    edges = [] if floor is None else _edges(_upward(floor))
+    return [gap for a, b in edges for gap in _gaps(a[:2], b[:2], walls)]
+
+
+def heights(architecture: Architecture) -> tuple[float, float]:
+    """Of the floor and of what is highest, in metres; the usual ones where nothing says them."""
+    floor = architecture.floor
+    level = 0.0 if floor is None else float(floor.polygon[:, 2].mean())
+    tops = [float(p.polygon[:, 2].max()) for p in architecture.planes if p.role != "floor"]
+    return level, max(tops, default=level + USUAL_HEIGHT_M)
+
+
+def _upward(floor: Plane) -> Float[np.ndarray, "n 3"]:
+    return floor.polygon if floor.normal[2] > 0 else floor.polygon[::-1]
 
 
 def _edges(outline: Float[np.ndarray, "n 3"]) -> Iterable[tuple[Float[np.ndarray, "3"], Float[np.ndarray, "3"]]]:
@@ -127,7 +141,7 @@ def _pieces(
     return [(0.0, 1.0, 0.0, low), (0.0, 1.0, high, height_m), (0.0, s0, low, high), (s1, 1.0, low, high)]
 
 
-def _rectangle(
+def rectangle(
     a: Float[np.ndarray, "2"], b: Float[np.ndarray, "2"], shares: tuple[float, float], heights: tuple[float, float]
 ) -> Corners:
     """Polygon of a wall whose foot runs from `a` to `b`, the room on its left; counter-clockwise from the room."""

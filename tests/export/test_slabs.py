@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import itertools
+
 import numpy as np
 import pytest
 
 from diorama_core.export.bodies import hull_volume
-from diorama_core.export.slabs import GROUND_BEYOND_M, MIN_SLAB_M, ground_piece, slab_pieces
-from diorama_core.scene.types import Plane
+from diorama_core.export.slabs import CLEAR_M, GROUND_BEYOND_M, MIN_SLAB_M, barriers, ground_piece, slab_pieces
+from diorama_core.scene.types import Architecture, Plane
 from tests.primitives import box_room
 
 
@@ -26,3 +28,17 @@ def test_the_floor_reaches_beyond_the_room() -> None:
     floor = next(p for p in box_room().planes if p.role == "floor")
     (ground,) = ground_piece(floor)
     assert np.ptp(ground[:, 0]) == pytest.approx(np.ptp(floor.polygon[:, 0]) + 2 * GROUND_BEYOND_M)
+
+
+def test_where_a_wall_is_missing_a_barrier_stands_beyond_what_reaches_out_there() -> None:
+    room = box_room()
+    assert barriers(room, ()) == ()
+    wall = next(p for p in room.planes if p.role == "wall")
+    open_room = Architecture(tuple(p for p in room.planes if p is not wall))
+    (near,) = barriers(open_room, ())
+    assert float((near.plane.centre - wall.centre) @ wall.normal) == pytest.approx(-CLEAR_M)
+    foot = wall.centre + np.array([0.0, 0.0, wall.polygon[:, 2].min() - wall.centre[2]])
+    cube = np.array(list(itertools.product((-0.3, 0.3), repeat=3)))
+    (far,) = barriers(open_room, [cube + foot, cube + foot - 0.5 * wall.normal, cube + foot + 2.0 * wall.normal])
+    assert float((far.plane.centre - wall.centre) @ wall.normal) == pytest.approx(-0.8 - CLEAR_M)
+    assert far.plane.normal @ wall.normal == pytest.approx(1.0)
