@@ -15,8 +15,9 @@ import viser
 from diorama_app.commands.insert import place_at
 from diorama_app.session.client import Client, Placing
 from diorama_app.web.html import Action, LiveHtml, run_once
-from diorama_core.editing.placing import DOOR, places_of
+from diorama_core.editing.placing import places_of
 from diorama_core.errors import EditRefused
+from diorama_core.geometry.openings import DOOR
 from diorama_core.library.record import Shape, ShapeLibrary
 from diorama_core.library.taxonomy import resolve
 from diorama_core.scene.types import Scene

@@ -12,6 +12,7 @@ from diorama_app.session.client import Client
 from diorama_app.strings import _
 from diorama_app.web.html import Action, LiveHtml, button, text
 from diorama_core.errors import EditRefused
+from diorama_core.geometry.openings import DOOR
 from diorama_core.project.storage import Project
 from diorama_core.scene.edits import set_room
 from diorama_core.scene.types import Scene
@@ -36,7 +37,7 @@ class HomePanel:
         """Draw the rooms, and what is chosen to join."""
         client, scene = self._client, self._client.session.scene
         client.rooms &= {r.id for r in scene.rooms}
-        self._folder.visible = bool(scene.rooms) or any(o.category == "door" for o in scene.objects)
+        self._folder.visible = bool(scene.rooms) or any(o.category == DOOR for o in scene.objects)
         if self._folder.visible:
             self._html.show(self._rooms(scene) + self._join(scene))
 
@@ -73,7 +74,7 @@ class HomePanel:
             return made
         other = Project.open(self._joining).load_scene()
         selected = self._client.selected
-        is_door = selected is not None and selected.category == "door"
+        is_door = selected is not None and selected.category == DOOR
         hint = _("Click the door in the plan, then the same door in the room")
         join = button(text(_("Join here")), "join", disabled=not (self._door and is_door))
         return f"{made}<p>{text(hint)}</p>{_plan(other, self._door)}<div class='bar'>{join}</div>"
@@ -92,7 +93,7 @@ class HomePanel:
                 session.edit(label, lambda s: set_room(s, room, name=name), by=client)
             case "project":
                 self._joining, self._door = manage.find_project(session.projects_dir, action.pair[1]), ""
-            case "door":
+            case "pick":
                 self._door = action.arg
             case "join":
                 self._join_here()
@@ -136,10 +137,10 @@ def _plan(scene: Scene, chosen: str) -> str:
 
     floors, walls = "".join(map(path, room.floors)), "".join(map(path, room.walls))
     doors = "".join(
-        f'<path class="{"on" if o.id == chosen else ""}" data-do="door" data-arg="{text(o.id)}" role="button" '
+        f'<path class="{"on" if o.id == chosen else ""}" data-do="pick" data-arg="{text(o.id)}" role="button" '
         f'tabindex="0" aria-label="{text(o.id)}" d="{path(_wider(footprint_of(o)))}"/>'
         for o in scene.objects
-        if o.category == "door"
+        if o.category == DOOR
     )
     width, height = (high - low) * scale
     return (

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from diorama_core.artefacts import Box, LabelledBox
-from diorama_core.editing.placing import DOOR
+from diorama_core.geometry.openings import DOOR
 from diorama_core.library.kinds import MAX_SIGMAS, OFF_ANYWAY, sizes_of_kind
 from diorama_core.library.taxonomy import category, with_kin
 

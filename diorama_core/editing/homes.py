@@ -9,7 +9,7 @@ import numpy as np
 from jaxtyping import Float, UInt8
 
 from diorama_core.errors import EditRefused
-from diorama_core.geometry.openings import wall_of
+from diorama_core.geometry.openings import DOOR, wall_of
 from diorama_core.geometry.rooms import rooms_of_objects
 from diorama_core.multiview.one_scene import moved_to_room
 from diorama_core.project.storage import Project
@@ -192,8 +192,8 @@ def _as_home(scene: Scene, name: str) -> Scene:
 
 
 def _wall_of_door(scene: Scene, door: str) -> Plane:
-    if not scene.has_object(door) or scene.object(door).category != "door":
-        doors = ", ".join(o.id for o in scene.objects if o.category == "door") or "none"
+    if not scene.has_object(door) or scene.object(door).category != DOOR:
+        doors = ", ".join(o.id for o in scene.objects if o.category == DOOR) or "none"
         raise EditRefused(f"there is no door {door!r}; choose one of: {doors}")
     wall = wall_of(scene.object(door), scene.architecture.by_role("wall"), scene)
     if wall is None:

@@ -8,10 +8,10 @@ import numpy as np
 from jaxtyping import Float
 
 from diorama_core.arrangement.surfaces import plane_surface
-from diorama_core.editing.placing import DOOR, Hit, SupportTarget, insertion
+from diorama_core.editing.placing import Hit, SupportTarget, insertion
 from diorama_core.editing.plan_edits import WallFoot, wall_feet
 from diorama_core.errors import EditRefused
-from diorama_core.geometry.openings import OPENING_CATEGORIES, wall_of
+from diorama_core.geometry.openings import DOOR, OPENING_CATEGORIES, wall_of
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.scene import edits
 from diorama_core.scene.types import Plane, Scene, SceneObject

@@ -12,6 +12,7 @@ import numpy as np
 from jaxtyping import Float
 
 from diorama_core.arrangement.surfaces import RestingSurface, object_surfaces, outside_m, plane_surface
+from diorama_core.geometry.openings import DOOR
 from diorama_core.library.record import Shape, ShapeLibrary
 from diorama_core.scene import edits
 from diorama_core.scene.support import descendants
@@ -21,7 +22,7 @@ UPWARD = 0.7
 """A surface is a place to stand on when its normal's z is at least this."""
 FITS_SHARE = 0.5
 """At least this share of a footprint's corners must be over a surface for an object to be put there."""
-DOOR = "door"
+
 HANGING_HEIGHT_M = 1.5
 """Height above the floor of the middle of what is hung on a wall."""
 TALLER_M = 0.01

@@ -11,7 +11,7 @@ from jaxtyping import Float
 
 from diorama_core.editing.walking import free_floor
 from diorama_core.export.door_swings import door_swings
-from diorama_core.geometry.openings import wall_of
+from diorama_core.geometry.openings import DOOR, wall_of
 from diorama_core.geometry.rooms import doorways, part_of_home
 from diorama_core.library.furniture.articulation import articulation
 from diorama_core.scene.types import HomeRoom, Scene
@@ -46,7 +46,7 @@ def uses_of(scene: Scene) -> tuple[RoomUse, ...]:
     for room in rooms:
         part = part_of_home(scene, [room.id]) if scene.rooms else scene
         outline = shapely.make_valid(shapely.Polygon(scene.plane(room.floor).polygon[:, :2]))
-        doors = [o.id for o in part.objects if o.category == "door"]
+        doors = [o.id for o in part.objects if o.category == DOOR]
         stuck = tuple(d for d in doors if d in swings and not swings[d].can_open)
         ways = entries.get(room.id, [])
         found.append(RoomUse(room, float(outline.area), _turning(part, outline), _way_m(part, outline, ways), stuck))
@@ -65,7 +65,7 @@ def _entries(scene: Scene) -> dict[str, list[tuple[Float[np.ndarray, "2"], Float
     for room in [r.id for r in scene.rooms] or ["room"]:
         part = part_of_home(scene, [room]) if scene.rooms else scene
         walls = part.architecture.by_role("wall")
-        for door in (o for o in part.objects if o.category == "door" and o.id not in inner):
+        for door in (o for o in part.objects if o.category == DOOR and o.id not in inner):
             face = wall_of(door, walls, part)
             if face is not None:
                 found.setdefault(room, []).append((door.pose.position[:2], face.normal[:2]))

@@ -18,7 +18,7 @@ from shapely.ops import nearest_points
 
 from diorama_core.editing.footprints import footprint_of
 from diorama_core.editing.plan_edits import wall_feet
-from diorama_core.geometry.openings import OPENING_CATEGORIES
+from diorama_core.geometry.openings import DOOR, OPENING_CATEGORIES
 from diorama_core.geometry.rooms import Doorway, doorways, part_of_home, storeys_of
 from diorama_core.scene.room_edits import floor_height
 from diorama_core.scene.types import Scene
@@ -81,7 +81,7 @@ def walk_of(scene: Scene) -> WalkableFloor | None:
 def free_floor(scene: Scene, radius_m: float) -> BaseGeometry:
     """Where the middle of somebody upright, so wide on each side, may be."""
     floors = [shapely.make_valid(Polygon(p.polygon[:, :2])) for p in scene.architecture.by_role("floor")]
-    doors = [Polygon(_through(footprint_of(o))) for o in scene.objects if o.category == "door" and not o.hidden]
+    doors = [Polygon(_through(footprint_of(o))) for o in scene.objects if o.category == DOOR and not o.hidden]
     bare = (d for d in doorways(scene) if d.opening.object_id is None and d.opening.is_door)
     doors += [Polygon(_through(_passage(scene, d))) for d in bare]
     walls = shapely.unary_union([LineString([f.start, f.end]) for f in wall_feet(scene)])

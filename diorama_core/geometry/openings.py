@@ -16,7 +16,7 @@ from jaxtyping import Float
 from diorama_core.geometry.planes import plane_axes
 from diorama_core.scene.types import Architecture, Plane, Scene, SceneObject
 
-OPENING_CATEGORIES = ("door", "window")
+OPENING_CATEGORIES = DOOR, WINDOW = ("door", "window")
 REACH_M = 0.3
 """A door or window whose middle is no farther than this from a wall's face belongs to it."""
 FRAME_M = 0.02

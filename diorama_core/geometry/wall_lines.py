@@ -9,7 +9,7 @@ import manifold3d
 import numpy as np
 from jaxtyping import Float
 
-from diorama_core.geometry.openings import HOME, OPENING_CATEGORIES, walls_cut_by
+from diorama_core.geometry.openings import DOOR, HOME, OPENING_CATEGORIES, walls_cut_by
 from diorama_core.geometry.planes import plane_rectangle
 from diorama_core.scene.types import Plane, Scene, SceneObject
 
@@ -103,7 +103,7 @@ def _filled(wall: DrawnWall, item: SceneObject, *, is_behind: bool = False) -> O
     low, high = np.clip(corners[:, 2], wall.bottom_m, wall.top_m)[[corners[:, 2].argmin(), corners[:, 2].argmax()]]
     ends = float(along.min()), float(along.max())
     name, fill = (f"opening-{item.id}-behind", None) if is_behind else (f"opening-{item.id}", item.id)
-    return Opening(name, *ends, float(low), float(high), item.category == "door", fill)
+    return Opening(name, *ends, float(low), float(high), item.category == DOOR, fill)
 
 
 def _gaps(wall: DrawnWall) -> list[Opening]:

@@ -17,7 +17,7 @@ from diorama_core.editing.homes import joined
 from diorama_core.editing.opening_insertion import with_opening
 from diorama_core.editing.plan_edits import wall_feet
 from diorama_core.errors import EditRefused, InputError
-from diorama_core.geometry.openings import faces_behind, wall_of, with_hole
+from diorama_core.geometry.openings import DOOR, WINDOW, faces_behind, wall_of, with_hole
 from diorama_core.geometry.rooms import doorways
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.progress import Progress
@@ -99,20 +99,20 @@ def composed_home(
         _, home, door = min(fits, key=lambda fit: fit[0])
         home = _opened(home, door) if one.is_open else home
     between = {d.opening.object_id for d in doorways(home)}
-    return edits.remove(home, [o.id for o in home.objects if o.category == "window" and o.id in between]), tuple(notes)
+    return edits.remove(home, [o.id for o in home.objects if o.category == WINDOW and o.id in between]), tuple(notes)
 
 
 def _places(
     home: Scene, room: Scene, library: ShapeLibrary, names: tuple[str, str]
 ) -> Iterator[tuple[float, Scene, str]]:
     """Every way in which a room joins: area of the whole's bounds, the home, and the id of the door between."""
-    own = next(o for o in room.objects if o.category == "door")
+    own = next(o for o in room.objects if o.category == DOOR)
     walls = home.architecture.by_role("wall")
     for foot in wall_feet(home):
         if faces_behind(home.plane(foot.id), home.plane(foot.id).centre, walls):
             continue
         try:
-            opened, door = with_opening(home, library, "door", foot.id, (foot.start + foot.end) / 2)
+            opened, door = with_opening(home, library, DOOR, foot.id, (foot.start + foot.end) / 2)
             made = joined(opened, room, door, own.id, names=names).scene
         except EditRefused:
             continue

@@ -43,7 +43,7 @@ def home() -> Scene:
 
 @pytest.fixture
 def turned() -> Scene:
-    """The same room elsewhere, turned, and seen through a door in another wall."""
+    """A furnished room elsewhere, turned, with its door in another wall."""
     T = np.eye(4)
     T[:3, :3], T[:3, 3] = yaw_rotation(0.7), [11.0, -3.0, 0.4]
     return moved_to_room(with_door(furnished_scene(), "way-in", "wall_2", -0.3), T)
