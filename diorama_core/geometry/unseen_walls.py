@@ -85,7 +85,7 @@ def open_edges(architecture: Architecture) -> list[tuple[Float[np.ndarray, "2"],
 
 
 def heights(architecture: Architecture) -> tuple[float, float]:
-    """Of the floor and of what is highest, in metres; the usual ones where nothing says them."""
+    """Heights of the floor and of what is highest, in metres; the usual ones where nothing says them."""
     floor = architecture.floor
     level = 0.0 if floor is None else float(floor.polygon[:, 2].mean())
     tops = [float(p.polygon[:, 2].max()) for p in architecture.planes if p.role != "floor"]

@@ -161,7 +161,8 @@ def _points(form: PointForm) -> SceneForm:
 def _is_room_plan(head: FileHead) -> bool:
     if head.is_folder:
         captures = [head.path / name for name in head.names if name.lower().endswith(".json")]
-        return any('"referenceOriginTransform"' in p.read_text("utf-8", "replace") for p in captures[:MAX_ROOMS])
+        readable = [p for p in captures[:MAX_ROOMS] if p.is_file() and p.stat().st_size <= MAX_LOOKED_AT]
+        return any('"referenceOriginTransform"' in p.read_text("utf-8", "replace") for p in readable)
     if not head.text.startswith("{"):
         return False
     text = _whole_text(head)
