@@ -41,20 +41,18 @@ def unveiled(colour: Float[np.ndarray, "3"], others: Sequence[Float[np.ndarray, 
         colour: The one that speaks most for itself.
         others: What much of the surface shows too.
     """
-    lit = [other for other in others if is_shade(colour, other, SETTINGS)]
+    lit = [other for other in others if is_shade(colour, other)]
     if lit:
         return max(lit, key=lambda other: float(other[0]))
     bare = [other for other in others if is_glossed(colour, other)]
     return min(bare, key=lambda other: float(other[0])) if bare else colour
 
 
-def is_shade(
-    dark: Float[np.ndarray, "3"], light: Float[np.ndarray, "3"], settings: LitColourSettings = SETTINGS
-) -> bool:
+def is_shade(dark: Float[np.ndarray, "3"], light: Float[np.ndarray, "3"]) -> bool:
     """Whether the first colour is what a shadow makes of the second."""
-    darkened = light[1:] * ((dark[0] + settings.black_l) / (light[0] + settings.black_l))
+    darkened = light[1:] * ((dark[0] + SETTINGS.black_l) / (light[0] + SETTINGS.black_l))
     return bool(
-        light[0] - dark[0] >= settings.lighter_l and (np.abs(darkened - dark[1:]) < settings.same_chromaticity).all()
+        light[0] - dark[0] >= SETTINGS.lighter_l and (np.abs(darkened - dark[1:]) < SETTINGS.same_chromaticity).all()
     )
 
 

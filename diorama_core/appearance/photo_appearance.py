@@ -92,7 +92,7 @@ def photo_appearance(
         [item for item in scene.objects if item.id in detected_by_id],
     )
     shades = [shade_of(s.view, p, rgb) for s in seen if s.view is not None for p in s.pixels]
-    walls, window = wall_shade(rgb, objects, scene), toward_window(rgb, objects, scene, SETTINGS)
+    walls, window = wall_shade(rgb, objects, scene), toward_window(rgb, objects, scene)
     light = estimated_light(shades, walls, window)
     red, green, blue = (float(c) / max(illuminant_rgb) for c in illuminant_rgb)
     light = replace(light, colour=(red, green, blue))

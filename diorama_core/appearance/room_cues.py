@@ -79,10 +79,7 @@ def wall_shade(rgb: UInt8[np.ndarray, "h w 3"], objects: Sequence[DetectedObject
 
 
 def toward_window(
-    rgb: UInt8[np.ndarray, "h w 3"],
-    objects: Sequence[DetectedObject],
-    scene: Scene,
-    settings: AppearanceSettings = SETTINGS,
+    rgb: UInt8[np.ndarray, "h w 3"], objects: Sequence[DetectedObject], scene: Scene
 ) -> Float[np.ndarray, "3"] | None:
     """Unit vector from what stands in the room to its largest window; None where none is seen by day.
 
@@ -90,13 +87,12 @@ def toward_window(
         rgb: The photo, as white light would have it.
         objects: What was found in the photo, with masks.
         scene: As it is.
-        settings: Numbers to work with.
     """
     mask_of = {o.id: o.mask for o in objects}
-    grey = luminance(srgb_to_linear(rgb[:: settings.step_px, :: settings.step_px] / 255.0))
+    grey = luminance(srgb_to_linear(rgb[:: SETTINGS.step_px, :: SETTINGS.step_px] / 255.0))
     windows = [o for o in scene.objects if o.category == "window" and o.id in mask_of]
-    least = settings.by_day * float(np.median(grey))
-    bright = [o for o in windows if _median(grey, mask_of[o.id][:: settings.step_px, :: settings.step_px]) >= least]
+    least = SETTINGS.by_day * float(np.median(grey))
+    bright = [o for o in windows if _median(grey, mask_of[o.id][:: SETTINGS.step_px, :: SETTINGS.step_px]) >= least]
     others = [o.pose.position for o in scene.objects if o.category != "window"]
     if not bright or not others:
         return None

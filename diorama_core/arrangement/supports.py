@@ -104,7 +104,6 @@ def with_decided_supports(
     library: ShapeLibrary,
     noise: ObservationNoise,
     evidence: SupportEvidence,
-    weights: SupportWeights | None = None,
 ) -> DecidedSupports:
     """The scene in which every object rests on its likeliest supporter and stands against its walls, and why.
 
@@ -116,9 +115,8 @@ def with_decided_supports(
         library: where shapes come from.
         noise: of the observed poses.
         evidence: what else is known.
-        weights: of the terms; the fitted ones by default.
     """
-    weights = weights or fitted_weights()
+    weights = fitted_weights()
     choices = chosen_supports(support_hypotheses(scene, library, noise, evidence), weights)
     moved = scene
     for name in _carriers_first(choices):

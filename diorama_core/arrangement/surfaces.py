@@ -412,23 +412,19 @@ def _most_plausible(
     return min(options, key=lambda o: o[:2])[2] if options else None
 
 
-def surfaces_below(item: SceneObject, other: SceneObject, shape: Shape, *, under: float = 0.0) -> list[RestingSurface]:
+def surfaces_below(item: SceneObject, other: SceneObject, shape: Shape) -> list[RestingSurface]:
     """Surfaces of another object, in the world, that lie below an object.
 
     Args:
         item: what may rest on them.
         other: whose they are.
         shape: the other's.
-        under: below what: the object's centre at 0, its top at 1.
     """
     if other.id == item.id:
         return []
     candidates = (surface.in_world(other.pose) for surface in object_surfaces(shape, other))
     centre = item.pose.position
-    half = 0.5 * under * float(np.ptp(item.corners_world[:, 2]))
-    return [
-        w for w in candidates if w.level < float(w.normal @ centre) + half and outside_m(w, centre) < NEAR_SURFACE_M
-    ]
+    return [w for w in candidates if w.level < float(w.normal @ centre) and outside_m(w, centre) < NEAR_SURFACE_M]
 
 
 def resting_cost(scene: Scene, item: SceneObject, edge: Support, surface: RestingSurface) -> float:

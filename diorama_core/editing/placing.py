@@ -201,7 +201,7 @@ def backed(item: SceneObject, wall: RestingSurface) -> Pose:
     return Pose(R, item.pose.position - gap * flat / max(float(flat @ n), 1e-6), item.pose.scale)
 
 
-def to_wall(item: SceneObject, walls: Iterable[RestingSurface], reach_m: float = WALL_MAGNET_M) -> Pose:
+def to_wall(item: SceneObject, walls: Iterable[RestingSurface]) -> Pose:
     """The pose pulled flush to a wall right behind it; unchanged when there is none."""
     for wall in walls:
         n = wall.normal
@@ -209,7 +209,7 @@ def to_wall(item: SceneObject, walls: Iterable[RestingSurface], reach_m: float =
         if abs(np.arctan2(np.sin(turn), np.cos(turn))) > WALL_MAGNET_RAD:
             continue
         gap = float(n @ item.pose.position) - wall.level - item.size_m[0] / 2
-        if abs(gap) <= reach_m and outside_m(wall, item.pose.position) <= 0.0:
+        if abs(gap) <= WALL_MAGNET_M and outside_m(wall, item.pose.position) <= 0.0:
             return backed(item, wall)
     return item.pose
 

@@ -128,15 +128,6 @@ class RoomFrame:
         """The stretch of a wall by its plane's id."""
         return next((w for w in self.walls if w.id == wall_id), None)
 
-    def nearest_wall(self, xy: Float[np.ndarray, "2"]) -> WallRun | None:
-        """The wall that a point is nearest to."""
-
-        def away(w: WallRun) -> float:
-            t = float(np.clip(w.t_of(xy), 0.0, w.length_m))
-            return float(np.linalg.norm(w.start + t * w.along - xy))
-
-        return min(self.walls, key=away, default=None)
-
 
 def _run(plane: Plane) -> WallRun | None:
     n = plane.normal
@@ -152,9 +143,9 @@ def _run(plane: Plane) -> WallRun | None:
     return WallRun(plane.id, along * t.min() + inward * foot, along * t.max() + inward * foot, low, high)
 
 
-def front_floor(item: SceneObject, free_m: float | None = None) -> Quad | None:
+def front_floor(item: SceneObject) -> Quad | None:
     """The floor that people need before an object; None where they need none."""
-    depth = category(item.category).floor_before_m or 0.0 if free_m is None else free_m
+    depth = category(item.category).floor_before_m or 0.0
     if depth <= 0.0:
         return None
     yaw = item.pose.yaw_rad

@@ -42,43 +42,40 @@ class RugSettings:
 SETTINGS = RugSettings()
 
 
-def scanned_rugs(points: Float[np.ndarray, "n 3"], settings: RugSettings = SETTINGS) -> list[Float[np.ndarray, "_ 3"]]:
+def scanned_rugs(points: Float[np.ndarray, "n 3"]) -> list[Float[np.ndarray, "_ 3"]]:
     """Points of each rug, the largest first.
 
     Args:
         points: of the room, away from walls; the floor at 0, +Z up.
-        settings: what is a rug.
     """
-    low = _free(points, settings)
+    low = _free(points)
     below = low[low[:, 2] <= 0, 2]
-    if len(below) < settings.min_points:
+    if len(below) < SETTINGS.min_points:
         return []
     noise_m = MAX_DEVIATION * float(np.median(-below))  # half of the floor's noise is below it
-    raised = low[:, 2] > max(settings.min_height_m, settings.sigmas * noise_m)
-    rugs = [p for p in _pieces(low, raised, settings) if _is_rug(p, low[~raised], noise_m, settings)]
+    raised = low[:, 2] > max(SETTINGS.min_height_m, SETTINGS.sigmas * noise_m)
+    rugs = [p for p in _pieces(low, raised) if _is_rug(p, low[~raised], noise_m)]
     return sorted(rugs, key=len, reverse=True)
 
 
-def _free(points: Float[np.ndarray, "n 3"], settings: RugSettings) -> Float[np.ndarray, "m 3"]:
+def _free(points: Float[np.ndarray, "n 3"]) -> Float[np.ndarray, "m 3"]:
     """Points at the floor where nothing stands."""
-    points = points[points[:, 2] < settings.standing_m]
+    points = points[points[:, 2] < SETTINGS.standing_m]
     if not len(points):
         return points
-    cells = np.floor((points[:, :2] - points[:, :2].min(axis=0)) / settings.cell_m).astype(int)
+    cells = np.floor((points[:, :2] - points[:, :2].min(axis=0)) / SETTINGS.cell_m).astype(int)
     grid = np.zeros(cells.max(axis=0) + 1, bool)
-    low = points[:, 2] < settings.max_height_m
+    low = points[:, 2] < SETTINGS.max_height_m
     grid[tuple(cells[~low].T)] = True
     return points[low & ~grid[tuple(cells.T)]]
 
 
-def _pieces(
-    low: Float[np.ndarray, "n 3"], raised: Bool[np.ndarray, " n"], settings: RugSettings
-) -> Iterator[Float[np.ndarray, "_ 3"]]:
+def _pieces(low: Float[np.ndarray, "n 3"], raised: Bool[np.ndarray, " n"]) -> Iterator[Float[np.ndarray, "_ 3"]]:
     """Raised points in groups that are apart from each other."""
-    cells = np.floor((low[:, :2] - low[:, :2].min(axis=0)) / settings.cell_m).astype(int)
+    cells = np.floor((low[:, :2] - low[:, :2].min(axis=0)) / SETTINGS.cell_m).astype(int)
     grid = np.zeros(cells.max(axis=0) + 1, bool)
     grid[tuple(cells[raised].T)] = True
-    grown = ndimage.binary_dilation(grid, np.ones((3, 3), bool), iterations=settings.reach)
+    grown = ndimage.binary_dilation(grid, np.ones((3, 3), bool), iterations=SETTINGS.reach)
     labels, count = ndimage.label(grown)
     which = np.where(raised, labels[tuple(cells.T)], 0)
     for number in range(count):
@@ -87,16 +84,14 @@ def _pieces(
         yield piece[np.abs(piece[:, 2] - level) < level / 2]  # without what stands on it
 
 
-def _is_rug(
-    piece: Float[np.ndarray, "n 3"], floor: Float[np.ndarray, "m 3"], noise_m: float, settings: RugSettings
-) -> bool:
-    if len(piece) < settings.min_points:
+def _is_rug(piece: Float[np.ndarray, "n 3"], floor: Float[np.ndarray, "m 3"], noise_m: float) -> bool:
+    if len(piece) < SETTINGS.min_points:
         return False
     height = float(np.median(piece[:, 2]))
     rectangle = cv2.minAreaRect(piece[:, :2].astype(np.float32))
-    if min(rectangle[1]) < settings.min_side_m or piece[:, 2].std() > max(settings.unlevel * height, 1.5 * noise_m):
+    if min(rectangle[1]) < SETTINGS.min_side_m or piece[:, 2].std() > max(SETTINGS.unlevel * height, 1.5 * noise_m):
         return False
     corners = cv2.boxPoints(rectangle)
     near = floor[((floor[:, :2] > corners.min(axis=0)) & (floor[:, :2] < corners.max(axis=0))).all(axis=1), :2]
     inside = sum(cv2.pointPolygonTest(corners, (float(x), float(y)), False) > 0 for x, y in near)
-    return inside <= settings.max_floor * (inside + len(piece))
+    return inside <= SETTINGS.max_floor * (inside + len(piece))

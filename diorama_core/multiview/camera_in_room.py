@@ -115,7 +115,7 @@ def camera_in_room(
     progress = progress or Progress()
     if min(len(measured), len(boxes)) < SETTINGS.min_same:
         return None
-    search = _Search(measured, boxes, estimate.best, focal_known, SETTINGS)
+    search = _Search(measured, boxes, estimate.best, focal_known)
     finalists = search.finalists(floor, progress)
     cameras = []
     for number, camera in enumerate(finalists):
@@ -134,11 +134,9 @@ class _Search:
         boxes: BoxObservations,
         reading: CameraHypothesis,
         focal_known: bool,
-        settings: CameraInRoomSettings,
     ) -> None:
-        self._settings = settings
         self._boxes, self._k = boxes, reading.intrinsics
-        self._focal_sigma = settings.given_focal_log_sigma if focal_known else settings.focal_log_sigma
+        self._focal_sigma = SETTINGS.given_focal_log_sigma if focal_known else SETTINGS.focal_log_sigma
         self._R_level = reading.R_world_camera
         self._corners = cuboid_corners(
             np.array([t.centre for t in measured]),
@@ -149,42 +147,42 @@ class _Search:
         same = np.array([[broad(c.name) in of_thing for c in boxes.categories] for of_thing in kinds])
         nameless = np.array([c is UNKNOWN for c in boxes.categories])
         self._could_be_met = int(same.any(axis=0).sum())
-        self._weight = np.where(same, 1.0, np.where(nameless, settings.nameless, 0.0))
+        self._weight = np.where(same, 1.0, np.where(nameless, SETTINGS.nameless, 0.0))
         self._things = measured
         extent = np.tile(boxes.box_px[:, 2:] - boxes.box_px[:, :2], 2)
-        self._sigma = np.hypot(boxes.edge_sigma_px, settings.cuboid_sigma * extent)
+        self._sigma = np.hypot(boxes.edge_sigma_px, SETTINGS.cuboid_sigma * extent)
         self._short = np.array([boxes.hidden(i) for i in range(len(boxes))]).reshape(-1, 4) | boxes.truncated
 
     def finalists(self, floor: Polygon, progress: Progress) -> list[Camera]:
         """The best of all places on the floor and all headings, no two of them alike."""
-        x0, y0, x1, y1 = floor.buffer(self._settings.outside_m).bounds
-        x, y = (np.arange(*ends, self._settings.step_m) for ends in ((x0, x1), (y0, y1)))
+        x0, y0, x1, y1 = floor.buffer(SETTINGS.outside_m).bounds
+        x, y = (np.arange(*ends, SETTINGS.step_m) for ends in ((x0, x1), (y0, y1)))
         plan = np.stack(np.meshgrid(x, y), axis=-1).reshape(-1, 2)
-        plan = plan[contains_xy(floor.buffer(self._settings.outside_m), plan[:, 0], plan[:, 1])]
-        places = np.vstack([np.column_stack([plan, np.full(len(plan), z)]) for z in self._settings.heights_m])
+        plan = plan[contains_xy(floor.buffer(SETTINGS.outside_m), plan[:, 0], plan[:, 1])]
+        places = np.vstack([np.column_stack([plan, np.full(len(plan), z)]) for z in SETTINGS.heights_m])
         rows: list[tuple[float, int, int]] = []
-        count = self._settings.headings
+        count = SETTINGS.headings
         for heading in range(count):
             progress.report(0.4 * heading / count, "looking for where the photo was taken")
             score = self._scores(places, self._turned(heading))
-            best = np.argsort(-score, kind="stable")[: 4 * self._settings.finalists]
+            best = np.argsort(-score, kind="stable")[: 4 * SETTINGS.finalists]
             rows += [(float(score[k]), heading, int(k)) for k in best]
         chosen: list[tuple[int, int]] = []
         for _, heading, k in sorted(rows, key=lambda row: (-row[0], row[1:])):
             if not any(self._alike(places, (heading, k), other) for other in chosen):
                 chosen.append((heading, k))
-            if len(chosen) == self._settings.finalists:
+            if len(chosen) == SETTINGS.finalists:
                 break
         return [self._camera(self._turned(heading), places[k]) for heading, k in chosen]
 
     def _alike(self, places: Float[np.ndarray, "p 3"], a: tuple[int, int], b: tuple[int, int]) -> bool:
-        count = self._settings.headings
+        count = SETTINGS.headings
         turn = abs((a[0] - b[0] + count // 2) % count - count // 2) * 2 * np.pi / count
         apart = np.linalg.norm(places[a[1], :2] - places[b[1], :2])
-        return bool(apart < self._settings.apart_m and turn < self._settings.apart_rad)
+        return bool(apart < SETTINGS.apart_m and turn < SETTINGS.apart_rad)
 
     def _turned(self, heading: int) -> Float[np.ndarray, "3 3"]:
-        return yaw_rotation(2 * np.pi * heading / self._settings.headings) @ self._R_level
+        return yaw_rotation(2 * np.pi * heading / SETTINGS.headings) @ self._R_level
 
     def _camera(self, R: Float[np.ndarray, "3 3"], place: Float[np.ndarray, "3"]) -> Camera:
         T = np.eye(4)
@@ -206,19 +204,19 @@ class _Search:
     def fitted(self, camera: Camera, room: Polygon) -> FoundCamera:
         """The camera after its things were fitted to the boxes that are theirs."""
         pairs, cost = self._pairs(camera), np.inf
-        for _ in range(self._settings.rounds):
-            if len(pairs) < self._settings.min_same:
+        for _ in range(SETTINGS.rounds):
+            if len(pairs) < SETTINGS.min_same:
                 break
             camera, cost = self._refined(camera, pairs)
             before, pairs = pairs, self._pairs(camera)
             if pairs == before:
                 break
         shared = self._shared(camera)
-        met = tuple((thing, box) for thing, box in pairs if shared[thing, box] >= self._settings.same)
+        met = tuple((thing, box) for thing, box in pairs if shared[thing, box] >= SETTINGS.same)
         odd = max(self._could_be_met - len(met), 0) + self._unmarked(camera, {thing for thing, _ in pairs})
         if not contains_xy(room, *camera.position[:2]) or self._within_a_thing(camera):
             cost = np.inf
-        return FoundCamera(camera, cost + self._settings.odd_cost * odd, met)
+        return FoundCamera(camera, cost + SETTINGS.odd_cost * odd, met)
 
     def _unmarked(self, camera: Camera, marked: set[int]) -> int:
         """How many things that nothing hides are in view without a box."""
@@ -226,7 +224,7 @@ class _Search:
         area = (bounds[:, 2:] - bounds[:, :2]).prod(axis=1)
         away = np.array([np.linalg.norm(t.centre - camera.position) for t in self._things])
         count = 0
-        for k in np.flatnonzero(visible & (area > self._settings.in_view * self._k.width * self._k.height)):
+        for k in np.flatnonzero(visible & (area > SETTINGS.in_view * self._k.width * self._k.height)):
             nearer = bounds[visible & (away < away[k])]
             common = np.clip(
                 np.minimum(nearer[:, 2:], bounds[k, 2:]) - np.maximum(nearer[:, :2], bounds[k, :2]), 0.0, None
@@ -274,11 +272,11 @@ class _Search:
             bounds, _ = self._bounds(moved_camera, cuboids)
             beyond = (bounds - seen) * outward / sigma
             edges = np.where(short, np.minimum(beyond, 0.0), beyond)
-            tilt = (moved_camera.T_world_camera[2, :3] - self._R_level[2]) / self._settings.up_sigma
+            tilt = (moved_camera.T_world_camera[2, :3] - self._R_level[2]) / SETTINGS.up_sigma
             turn = moved_camera.T_world_camera[:3, :3] @ self._R_level.T
             # 0 at every quarter turn.
-            heading = np.sin(2 * np.arctan2(turn[1, 0], turn[0, 0])) / 2 / self._settings.heading_sigma
-            height = (moved_camera.position[2] - self._settings.height_m) / self._settings.height_sigma_m
+            heading = np.sin(2 * np.arctan2(turn[1, 0], turn[0, 0])) / 2 / SETTINGS.heading_sigma
+            height = (moved_camera.position[2] - SETTINGS.height_m) / SETTINGS.height_sigma_m
             return np.concatenate([edges.ravel(), tilt, [heading, height, unknowns[6] / self._focal_sigma]])
 
         start = np.zeros(7)

@@ -13,7 +13,7 @@ from diorama_core.artefacts import DetectedObject
 from diorama_core.geometry.projection import box_iou, cuboid_corners, visible_bounds
 from diorama_core.library.taxonomy import PORTABLE, Category, broad
 from diorama_core.multiview.joint_fit import JointCuboid, PosedBoxes, fit_jointly, meeting_point
-from diorama_core.multiview.settings import SETTINGS, JoiningSettings
+from diorama_core.multiview.settings import SETTINGS
 from diorama_core.perception.metrology.placement import FLOOR
 from diorama_core.progress import Progress
 
@@ -75,7 +75,7 @@ def joined_objects(photos: Sequence[RoomPhoto], progress: Progress | None = None
     every photo's boxes are claimed again by cuboids that were fitted to all other photos.
     """
     progress = progress or Progress()
-    joining = _Joining(photos, SETTINGS)
+    joining = _Joining(photos)
     tracks: list[Track] = []
     steps = len(photos) * (1 + SETTINGS.rounds)
     for number in range(len(photos)):
@@ -92,8 +92,8 @@ def joined_objects(photos: Sequence[RoomPhoto], progress: Progress | None = None
 class _Joining:
     """Tracks of some photos; what was fitted once is not fitted again."""
 
-    def __init__(self, photos: Sequence[RoomPhoto], settings: JoiningSettings) -> None:
-        self._photos, self._settings = photos, settings
+    def __init__(self, photos: Sequence[RoomPhoto]) -> None:
+        self._photos = photos
         self._fits: dict[Boxes, Track] = {}
 
     def with_photo(self, tracks: list[Track], number: int) -> list[Track]:
@@ -105,7 +105,7 @@ class _Joining:
             for box in range(count):
                 if broad(track.kind.name) == broad(photo.alone[box].kind.name):
                     shared[k, box] = self._overlap(track, number, box)
-        claimed = claims(shared, self._settings)
+        claimed = claims(shared)
         joined = list(tracks)
         for box in range(count):
             if box in claimed:
@@ -127,19 +127,18 @@ class _Joining:
 
     def _fitted(self, boxes: Boxes) -> Track:
         if boxes not in self._fits:
-            self._fits[boxes] = fitted_track(boxes, self._photos, self._settings)
+            self._fits[boxes] = fitted_track(boxes, self._photos)
         return self._fits[boxes]
 
 
-def claims(shared: Float[np.ndarray, "t b"], settings: JoiningSettings = SETTINGS) -> dict[int, int]:
+def claims(shared: Float[np.ndarray, "t b"]) -> dict[int, int]:
     """Which object claims each box: the number of the one by the number of the other.
 
     Args:
         shared: how much of each object's outline is each box's (`overlap`); 0 where their kinds differ.
-        settings: numbers to work with.
     """
     rows, columns = linear_sum_assignment(-shared) if shared.size else ((), ())
-    return {int(c): int(r) for r, c in zip(rows, columns, strict=True) if shared[r, c] >= settings.min_overlap}
+    return {int(c): int(r) for r, c in zip(rows, columns, strict=True) if shared[r, c] >= SETTINGS.min_overlap}
 
 
 def overlap(cuboid: JointCuboid, only: tuple[RoomPhoto, int] | None, photo: RoomPhoto, box: int) -> float:
@@ -184,7 +183,7 @@ def _shared(cuboid: JointCuboid, photo: RoomPhoto, box: int) -> float:
     return float(box_iou(shown, seen)) if (shown[2:] > shown[:2]).all() else 0.0
 
 
-def fitted_track(boxes: Boxes, photos: Sequence[RoomPhoto], settings: JoiningSettings = SETTINGS) -> Track:
+def fitted_track(boxes: Boxes, photos: Sequence[RoomPhoto]) -> Track:
     """The cuboid of some boxes: of one box what its photo says, of more the joint fit."""
     alone = [photos[photo].alone[box] for photo, box in boxes]
     names = [a.kind.name for a in alone]
@@ -198,10 +197,10 @@ def fitted_track(boxes: Boxes, photos: Sequence[RoomPhoto], settings: JoiningSet
     )
     middle = np.median([a.centre for a in alone], axis=0)
     starts = [middle, meeting_point(sightings)]
-    fitted = fit_jointly(sightings, kind, starts, on_floor=standing, upright_m=float(middle[2]), settings=settings)
-    if standing and kind.name in PORTABLE and fitted.cost > settings.raised_cost:
-        raised = fit_jointly(sightings, kind, starts[1:], on_floor=False, settings=settings)
-        fitted = raised if raised.cost + settings.raised_cost < fitted.cost else fitted
+    fitted = fit_jointly(sightings, kind, starts, on_floor=standing, upright_m=float(middle[2]))
+    if standing and kind.name in PORTABLE and fitted.cost > SETTINGS.raised_cost:
+        raised = fit_jointly(sightings, kind, starts[1:], on_floor=False)
+        fitted = raised if raised.cost + SETTINGS.raised_cost < fitted.cost else fitted
     return Track(boxes, kind, fitted)
 
 
@@ -222,7 +221,7 @@ def with_agreeing_boxes(track: Track, photos: Sequence[RoomPhoto]) -> Track:
     """
     fitted = track
     while len(fitted.boxes) > 1 and fitted.cuboid.cost > SETTINGS.left_out_cost:
-        fewer = [fitted_track(tuple(b for b in fitted.boxes if b != out), photos, SETTINGS) for out in fitted.boxes]
+        fewer = [fitted_track(tuple(b for b in fitted.boxes if b != out), photos) for out in fitted.boxes]
         best = min(fewer, key=lambda t: (t.cuboid.cost, -max(shown(photos[p], box) for p, box in t.boxes)))
         if best.cuboid.cost + SETTINGS.left_out_cost >= fitted.cuboid.cost:
             break

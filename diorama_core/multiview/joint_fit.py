@@ -19,7 +19,7 @@ import numpy as np
 from jaxtyping import Bool, Float, Int
 
 from diorama_core.library.taxonomy import Category
-from diorama_core.multiview.settings import SETTINGS, JoiningSettings
+from diorama_core.multiview.settings import SETTINGS
 from diorama_core.perception.metrology.box_observations import BoxObservations
 from diorama_core.perception.metrology.priors import SizeMode, size_modes
 from diorama_core.perception.metrology.problem import UNTOLD, Problems, View, residuals, stacked
@@ -69,7 +69,6 @@ def fit_jointly(
     *,
     on_floor: bool,
     upright_m: float | None = None,
-    settings: JoiningSettings = SETTINGS,
 ) -> JointCuboid:
     """Fit one cuboid.
 
@@ -79,11 +78,10 @@ def fit_jointly(
         starts: middles to start from, the first of which is what the photos say each by itself.
         on_floor: whether its base is the floor's height.
         upright_m: expected height of the base, where it is not on the floor; that of the first start by default.
-        settings: numbers to work with.
     """
     modes = size_modes(kind.name)
-    odd = kind.quarter_turns_free or len(sightings) >= settings.min_photos_of_odd
-    odd_cost = settings.odd_angle_cost if kind.quarter_turns_free else settings.odd_square_cost
+    odd = kind.quarter_turns_free or len(sightings) >= SETTINGS.min_photos_of_odd
+    odd_cost = SETTINGS.odd_angle_cost if kind.quarter_turns_free else SETTINGS.odd_square_cost
     rows = [(mode, yaw, free) for mode in modes for yaw, free in _headings(mode, odd=odd)]
     batch = [(mode, yaw, free, start) for mode, yaw, free in rows for start in starts]
     unknowns = np.array([[*s[:2], *mode.log_size, 0.0 if on_floor else s[2], yaw] for mode, yaw, _, s in batch])
@@ -91,11 +89,11 @@ def fit_jointly(
         unknowns[:, 5] -= np.exp(unknowns[:, 4]) / 2
     fixed = np.array([[False] * 5 + [on_floor, not free] for _, _, free, _ in batch])
     base_m = float(np.median([s[2] for s in starts])) if upright_m is None else upright_m
-    problem = _Joint(sightings, [b[0] for b in batch], starts[0][:2], None if on_floor else base_m, settings)
+    problem = _Joint(sightings, [b[0] for b in batch], starts[0][:2], None if on_floor else base_m)
     extra = np.array([mode.cost + (odd_cost if free else 0.0) for mode, _, free, _ in batch])
-    unknowns, costs = _minimised(problem, unknowns, fixed, settings.first_iterations)
-    last = np.argsort(costs + extra, kind="stable")[: settings.finalists]
-    unknowns, costs = _minimised(problem.rows(last), unknowns[last], fixed[last], settings.iterations)
+    unknowns, costs = _minimised(problem, unknowns, fixed, SETTINGS.first_iterations)
+    last = np.argsort(costs + extra, kind="stable")[: SETTINGS.finalists]
+    unknowns, costs = _minimised(problem.rows(last), unknowns[last], fixed[last], SETTINGS.iterations)
     costs = costs + extra[last]
     best = int(np.argmin(costs))
     x, y, *log_size, base, yaw = unknowns[best]
@@ -130,9 +128,7 @@ class _Joint:
         modes: Sequence[SizeMode],
         place: Float[np.ndarray, "2"],
         base_m: float | None,
-        settings: JoiningSettings,
     ) -> None:
-        self._settings = settings
         self._place, self._base_m = place, base_m
         self._views: list[tuple[Camera, View, Problems]] = []
         for photo, index in sightings:
@@ -147,7 +143,7 @@ class _Joint:
                     base_sigma_m=1.0,
                     cut_sigma=UNTOLD,
                     hidden_px=photo.hidden_px[index],
-                    hidden_odds=np.where(photo.hidden_px[index] > 0, settings.hidden_odds, 0.0),
+                    hidden_odds=np.where(photo.hidden_px[index] > 0, SETTINGS.hidden_odds, 0.0),
                 )
                 for mode in modes
             ]
@@ -167,7 +163,7 @@ class _Joint:
 
     def bounded(self, unknowns: Float[np.ndarray, "n 7"]) -> Float[np.ndarray, "n 7"]:
         """The nearest unknowns with plausible sizes."""
-        most = self._settings.max_sigmas * self._sigma
+        most = SETTINGS.max_sigmas * self._sigma
         off = np.clip(unknowns[:, 2:5] - self._log_size, -most, most)
         return np.column_stack([unknowns[:, :2], self._log_size + off, unknowns[:, 5:]])
 
@@ -179,12 +175,12 @@ class _Joint:
             rows = problems.rows(chosen).changed(yaw_rad=unknowns[:, 6])
             edges = residuals(_as_seen(unknowns, camera, view), rows, view)[:, :4]
             behind = (rows.hidden_px > 0) & (edges > 0)
-            parts.append(np.where(behind, _bounded(edges, self._settings.max_hidden), edges))
+            parts.append(np.where(behind, _bounded(edges, SETTINGS.max_hidden), edges))
         size = np.einsum("nij,nj->ni", self._whitening[chosen], unknowns[:, 2:5] - self._log_size[chosen])
-        parts += [size, (unknowns[:, :2] - self._place) / self._settings.place_sigma_m]
+        parts += [size, (unknowns[:, :2] - self._place) / SETTINGS.place_sigma_m]
         if self._base_m is not None:
             middle = unknowns[:, 5:6] + np.exp(unknowns[:, 4:5]) / 2
-            parts += [(middle - self._base_m) / self._settings.base_sigma_m, np.minimum(unknowns[:, 5:6], 0.0) / 0.05]
+            parts += [(middle - self._base_m) / SETTINGS.base_sigma_m, np.minimum(unknowns[:, 5:6], 0.0) / 0.05]
         return np.concatenate(parts, axis=1)
 
 

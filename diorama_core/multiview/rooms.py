@@ -57,7 +57,7 @@ from diorama_core.pipeline.run import Built, build_scene
 from diorama_core.pipeline.runner import Runner
 from diorama_core.pipeline.stages import Stages
 from diorama_core.progress import Progress
-from diorama_core.protocols import LayoutStage, Preview
+from diorama_core.protocols import LayoutStage
 from diorama_core.scene.edits import set_metrics
 from diorama_core.scene.support import check_scene
 from diorama_core.scene.types import Architecture, Camera, Scene, SceneObject, Support, yaw_rotation
@@ -144,7 +144,6 @@ def build_room(
     choose: Callable[[Inputs], Stages],
     layout: LayoutStage,
     progress: Progress | None = None,
-    preview: Preview | None = None,
 ) -> JoinedRoom:
     """Build one scene of several photos of a room.
 
@@ -154,7 +153,6 @@ def build_room(
         choose: the stages for a photo.
         layout: the optimiser of the whole room; one for measured places, since rays of several photos measure them.
         progress: reports and cancellation.
-        preview: receives the layout optimiser's intermediate scenes.
 
     Raises:
         InputError: there is no photo.
@@ -173,7 +171,7 @@ def build_room(
     tracks = tuple(with_agreeing_boxes(t, room_photos) for t in joined)
     single = len(photos) == 1
     rooms = (None,) * len(read) if single else _room_of_all(read, room_photos, tracks, progress.part(0.45, 0.55))
-    room = joined_scene(read, room_photos, tracks, rooms, library, layout, progress.part(0.55, 1.0), preview)
+    room = joined_scene(read, room_photos, tracks, rooms, library, layout, progress.part(0.55, 1.0))
     several = sum(len(t.boxes) > 1 for t in tracks)
     notes = (f"{len(photos)} photos: {several} of {len(tracks)} objects are seen in more than one",)
     return replace(room, notes=(*notes, *room.notes))
@@ -187,7 +185,6 @@ def joined_scene(
     library: ShapeLibrary,
     layout: LayoutStage,
     progress: Progress | None = None,
-    preview: Preview | None = None,
 ) -> JoinedRoom:
     """One scene of photos that were read, whose objects and whose room are known.
 
@@ -199,7 +196,6 @@ def joined_scene(
         library: where shapes come from.
         layout: the optimiser of the whole room.
         progress: reports and cancellation.
-        preview: receives the layout optimiser's intermediate scenes.
     """
     progress, single = progress or Progress(), len(read) == 1
     best = [max(t.fitted, key=lambda b: (shown(room_photos[b[0]], b[1]), -b[0]))[0] for t in tracks]
@@ -211,7 +207,7 @@ def joined_scene(
     scene, textures = _merged(read, built, tracks, best)
     report = None
     if scene.objects:
-        scene, report = layout.optimise(scene, progress.part(0.65, 0.9), preview)
+        scene, report = layout.optimise(scene, progress.part(0.65, 0.9))
         scene = set_metrics(scene, report.after)
     if not single:
         progress.report(0.9, "pictures of floor and walls")

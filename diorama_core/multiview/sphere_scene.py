@@ -45,7 +45,7 @@ from diorama_core.pipeline.plan import evaluate
 from diorama_core.pipeline.runner import Runner
 from diorama_core.pipeline.stages import Stages
 from diorama_core.progress import Progress
-from diorama_core.protocols import LayoutStage, Preview
+from diorama_core.protocols import LayoutStage
 from diorama_core.scene.types import Architecture, Plane, Scene
 
 LEVEL_WIDTH_PX = 1024
@@ -89,7 +89,6 @@ def build_sphere(
     choose: Callable[[Inputs], Stages],
     layout: LayoutStage,
     progress: Progress | None = None,
-    preview: Preview | None = None,
     *,
     camera_height_m: float | None = None,
 ) -> SphereScene:
@@ -102,7 +101,6 @@ def build_sphere(
         choose: the stages for a view.
         layout: the optimiser of the whole room.
         progress: reports and cancellation.
-        preview: receives the layout optimiser's intermediate scenes.
         camera_height_m: above the floor, where it is known.
 
     Raises:
@@ -125,7 +123,7 @@ def build_sphere(
     shown = [(thing, seen) for thing, seen in zip(things, sightings, strict=True) if seen]
     tracks = [_track(seen, room_photos) for _, seen in shown]
     rooms = _rooms(sphere_planes(found, height_m), read, tracks)
-    room = joined_scene(read, room_photos, tuple(tracks), rooms, library, layout, progress.part(0.3, 1.0), preview)
+    room = joined_scene(read, room_photos, tuple(tracks), rooms, library, layout, progress.part(0.3, 1.0))
     tilt = float(np.rad2deg(np.arccos(np.clip(R[2, 2], -1.0, 1.0))))
     notes = (
         f"a 360 degree photo: the room has {len(found.outline)} walls, the camera is {height_m:.2f} m above the floor",

@@ -127,10 +127,10 @@ class StageStatus:
     """What to do to get a better implementation; empty where the best one is in use."""
 
 
-def profile_status(*, store: ModelStore | None = None, lmm: LmmSettings | None = None) -> tuple[StageStatus, ...]:
+def profile_status(*, store: ModelStore | None = None) -> tuple[StageStatus, ...]:
     """For every stage of the auto profile: what takes it now, and what would take it better."""
     store = store or ModelStore.default()
-    lmm = lmm or LmmSettings.from_environment()
+    lmm = LmmSettings.from_environment()
     return (
         _status(store, "detection", DETECTORS, "boxes drawn by you, proposals to correct"),
         _status(store, "outlines", SEGMENTERS, "outlines by the network that comes along, and by colour"),

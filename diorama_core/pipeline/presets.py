@@ -180,9 +180,9 @@ def own_detection(threshold: float = CONFIDENT, most: int = MOST) -> OwnDetectio
     return OwnDetection(own_recogniser(), threshold, most) if has_own_recogniser() else None
 
 
-def detection_routes(store: ModelStore | None = None) -> Mapping[str, DetectionStage]:
+def detection_routes() -> Mapping[str, DetectionStage]:
     """Every way to boxes on this machine, by name, to be compared: each detector, and the one that is used."""
-    store = store or ModelStore.default()
+    store = ModelStore.default()
     routes = {i: network_stages.detector(store, network(i)) for i in DETECTORS if store.has(network(i))}
     embedded = own_detection(LIKELY, MOST_SHOWN)
     if embedded is not None:

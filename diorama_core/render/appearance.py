@@ -259,7 +259,7 @@ def _picture(image: Image.Image | None) -> UInt8[np.ndarray, "h w c"] | None:
 
 
 def smooth_corner_normals(
-    vertices: Float32[np.ndarray, "n 3"], faces: Int32[np.ndarray, "m 3"], crease_rad: float = CREASE_RAD
+    vertices: Float32[np.ndarray, "n 3"], faces: Int32[np.ndarray, "m 3"]
 ) -> Float32[np.ndarray, "m*3 3"]:
     """A normal for every corner of every face: the area-weighted mean of the neighbours within the crease angle.
 
@@ -273,10 +273,10 @@ def smooth_corner_normals(
     of_vertex = _sums(owner, np.repeat(weighted, 3, axis=0), int(owner.max(initial=-1)) + 1)
     from_mean = dot(np.repeat(normals, 3, axis=0), unit(of_vertex).take(owner, axis=0))
     creased = np.zeros(len(of_vertex), dtype=bool)
-    creased[owner[from_mean <= np.cos(crease_rad / 2)]] = True
+    creased[owner[from_mean <= np.cos(CREASE_RAD / 2)]] = True
     sums = of_vertex.take(owner, axis=0)
     rest = np.flatnonzero(creased.take(owner))
-    sums[rest] = _within_crease(owner[rest], rest // 3, weighted, normals, crease_rad)
+    sums[rest] = _within_crease(owner[rest], rest // 3, weighted, normals, CREASE_RAD)
     lost = dot(sums, sums) < 1e-30
     sums[lost] = np.repeat(normals, 3, axis=0)[lost]
     return unit(sums).astype(np.float32)

@@ -68,7 +68,7 @@ def shoot(
 
 
 def light_map(
-    world: World, blockers: Caster, view: View, light: Lighting, effort: Effort, progress: Progress | None = None
+    world: World, blockers: Caster, view: View, light: Lighting, effort: Effort
 ) -> Float32[np.ndarray, "h w 3"]:
     """The light that falls on what every pixel of a view sees, 0 where nothing is; arguments as for `shoot`.
 
@@ -78,11 +78,9 @@ def light_map(
         view: Of the picture.
         light: Sources.
         effort: Rays.
-        progress: Reports and cancellation.
     """
-    progress = progress or Progress()
-    parts = each(lambda band: _first_sight(world, view, band), bands(view.height), progress.part(0.0, 0.2))
-    return fallen_light(world, blockers, _grid(parts, view), light, effort, progress.part(0.2, 1.0))
+    parts = each(lambda band: _first_sight(world, view, band), bands(view.height))
+    return fallen_light(world, blockers, _grid(parts, view), light, effort, Progress())
 
 
 @dataclass(frozen=True, eq=False)

@@ -52,10 +52,7 @@ WIDTH = OUTLINE_WIDTH + EDGES_WIDTH + 27
 
 
 def view_feature(
-    gray: UInt8[np.ndarray, "h w"],
-    mask: Bool[np.ndarray, "h w"],
-    colour: Float[np.ndarray, "c"],
-    weights: FeatureWeights = WEIGHTS,
+    gray: UInt8[np.ndarray, "h w"], mask: Bool[np.ndarray, "h w"], colour: Float[np.ndarray, "c"]
 ) -> Float32[np.ndarray, "width"] | None:
     """The feature of one picture of an object.
 
@@ -63,7 +60,6 @@ def view_feature(
         gray: Its brightness.
         mask: Where it is.
         colour: `colour_feature` of its main colours.
-        weights: How much each part counts.
 
     Returns:
         `WIDTH` numbers of unit length (shorter where colours are not known); None for an empty mask.
@@ -72,9 +68,9 @@ def view_feature(
     if feature is None:
         return None
     parts = (
-        np.sqrt(weights.outline) * feature[0],
-        np.sqrt(weights.edges) * feature[1],
-        np.sqrt(weights.colour) * colour,
+        np.sqrt(WEIGHTS.outline) * feature[0],
+        np.sqrt(WEIGHTS.edges) * feature[1],
+        np.sqrt(WEIGHTS.colour) * colour,
     )
     return np.concatenate(parts).astype(np.float32)
 

@@ -68,7 +68,6 @@ def render_shape(
     shape_id: str,
     size: tuple[int, int] = (320, 320),
     view: StudioView | None = None,
-    effort: Effort = STUDIO_EFFORT,
     paint: Paint = (None, None),
     open_share: float = 0.0,
 ) -> UInt8[np.ndarray, "h w 4"]:
@@ -79,7 +78,6 @@ def render_shape(
         shape_id: Which shape; `LibraryError` when unknown.
         size: Width and height in pixels.
         view: Where the viewer stands; None takes the shape's usual view.
-        effort: Rays per pixel.
         paint: Overrides of the main material: colour (sRGB) and finish.
         open_share: How far doors, drawers and lids stand open, 0 to 1.
 
@@ -93,9 +91,9 @@ def render_shape(
     camera = PinholeView(studio_camera(alone.vertices, view, *size))
     half = 0.5 * np.asarray(shape.size_m)
     light = studio(np.stack([-half, half]), -camera.camera.T_world_camera[:3, 2])
-    shot = shoot(alone, alone.shadow_caster(), camera, light, effort)
+    shot = shoot(alone, alone.shadow_caster(), camera, light, STUDIO_EFFORT)
     hung = category(shape.category).mount in ("wall", "ceiling")
-    shadow = np.zeros(shot.coverage.shape, np.float32) if hung else _shadow(shape, alone, light, camera, effort)
+    shadow = np.zeros(shot.coverage.shape, np.float32) if hung else _shadow(shape, alone, light, camera, STUDIO_EFFORT)
     return _over(shot, shadow)
 
 

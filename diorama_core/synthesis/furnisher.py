@@ -163,7 +163,6 @@ class Furnisher:
         free_front_m: float = 0.45,
         gap_m: float = WALL_GAP_M,
         corner: bool = False,
-        beside: Collection[str] = (),
     ) -> str | None:
         """Back to a wall: at `t_m` along it, in a corner, or anywhere that is free.
 
@@ -174,7 +173,6 @@ class Furnisher:
             free_front_m: Kept free before it.
             gap_m: To the wall.
             corner: Whether it stands in a corner.
-            beside: Ids that may be near.
         """
         width, depth = item.size_m[1], item.size_m[0]
         options = [w for w in (walls or self.plan.walls) if w.length_m > width + 2 * WALL_GAP_M]
@@ -192,19 +190,17 @@ class Furnisher:
                 wall.yaw_rad,
                 free_front_m=free_front_m,
                 adheres_to=(wall.id,),
-                beside=beside,
             )
             if placed:
                 return placed
         return None
 
-    def anywhere(self, item: Item, *, margin_m: float = 0.0, free_front_m: float = 0.0) -> str | None:
+    def anywhere(self, item: Item, *, margin_m: float = 0.0) -> str | None:
         """Somewhere on free floor, at any angle.
 
         Args:
             item: The shape.
             margin_m: Kept free around it.
-            free_front_m: Kept free before it.
         """
         low, high = self.plan.outline.min(axis=0), self.plan.outline.max(axis=0)
         reach = item.size_m[:2].max() / 2 + margin_m
@@ -212,14 +208,14 @@ class Furnisher:
             if (high - low <= 2 * reach).any():
                 return None
             xy = self.rng.uniform(low + reach, high - reach)
-            placed = self.stand(item, xy, float(self.rng.uniform(-np.pi, np.pi)), free_front_m=free_front_m)
+            placed = self.stand(item, xy, float(self.rng.uniform(-np.pi, np.pi)))
             if placed:
                 return placed
         return None
 
     # on walls and ceiling
 
-    def hang(self, item: Item, wall: WallLine, t_m: float, centre_z_m: float, *, off_m: float = 0.0) -> str | None:
+    def hang(self, item: Item, wall: WallLine, t_m: float, centre_z_m: float) -> str | None:
         """Back against a wall, centred `t_m` from its left end and `centre_z_m` above the floor.
 
         Args:
@@ -227,7 +223,6 @@ class Furnisher:
             wall: Where it is.
             t_m: Of its middle from the wall's left end.
             centre_z_m: Above the floor.
-            off_m: From the wall.
         """
         half = item.size_m[1] / 2
         low, high = centre_z_m - item.size_m[2] / 2, centre_z_m + item.size_m[2] / 2
@@ -236,7 +231,7 @@ class Furnisher:
         rectangle = np.array([t_m - half - 0.06, low - 0.04, t_m + half + 0.06, high + 0.04])
         if any(_rectangles_overlap(rectangle, other) for other in self._hung.get(wall.id, [])):
             return None
-        xy = wall.point(t_m, item.size_m[0] / 2 + off_m)
+        xy = wall.point(t_m, item.size_m[0] / 2)
         pose = Pose.upright([*xy, centre_z_m], wall.yaw_rad, item.scale)
         outward = np.array([*wall.inward, 0.0]) * 1e-3
         if not self._under_roof(item, pose) or self.bodies.hit_by(item, pose, lift=outward):

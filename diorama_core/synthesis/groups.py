@@ -114,12 +114,12 @@ def corner_objects(f: Furnisher, count: int, *categories: str) -> None:
         )
 
 
-def seating(f: Furnisher, *, television: bool = True) -> str | None:
+def seating(f: Furnisher) -> str | None:
     """A sofa at a wall, a rug that reaches under it, a low table on the rug, armchairs, lamps, a screen opposite."""
     sofa = _first_fit(f, "sofa", tries=4, free_front_m=0.9)
     if sofa is None:
         return None
-    screen = _screen_opposite(f, sofa) if television else None
+    screen = _screen_opposite(f, sofa)
     if f.chance(0.75):
         rug_before(f, sofa)
     table = _low_table(f, sofa)
@@ -345,12 +345,12 @@ def _places(f: Furnisher, size: np.ndarray, chair: Item, round_table: bool) -> l
     return [*sides[:keep], *ends]
 
 
-def workplace(f: Furnisher, *, wall: WallLine | None = None) -> str | None:
+def workplace(f: Furnisher) -> str | None:
     """A desk at a wall, turned so that one sits facing it, with a chair, a screen and what belongs to it."""
     item = f.pick("desk")
     if item is None:
         return None
-    walls = [wall] if wall else long_walls(f, item.size_m[1] + 0.2)
+    walls = long_walls(f, item.size_m[1] + 0.2)
     for candidate in [walls[int(k)] for k in f.rng.permutation(len(walls))]:
         desk = f.against_wall(item, walls=[candidate], free_front_m=0.85)
         if desk:

@@ -56,7 +56,7 @@ class SyntheticFrame:
 
 
 def scanned(
-    scene: Scene, library: ShapeLibrary, seed: int, *, places: int = 4, turns: int = 10, photos: bool = True
+    scene: Scene, library: ShapeLibrary, seed: int, *, places: int = 4, turns: int = 10
 ) -> tuple[SyntheticFrame, ...]:
     """The frames of a scan.
 
@@ -66,7 +66,6 @@ def scanned(
         seed: of the places and of the noise.
         places: where the phone is turned round.
         turns: frames in each place.
-        photos: whether each frame has a picture.
 
     Raises:
         SceneError: nobody could stand in the room.
@@ -75,7 +74,7 @@ def scanned(
     focal = 0.5 * PHOTO_SIZE[0] / float(np.tan(FOV_RAD / 2))
     k = Intrinsics(*PHOTO_SIZE, focal, focal, PHOTO_SIZE[0] / 2, PHOTO_SIZE[1] / 2)
     solid = _what_reflects(scene, library)
-    studio = Studio(scene, library) if photos else None
+    studio = Studio(scene, library)
     frames = []
     for place, stand in enumerate(sample_cameras(scene, library, seed, places)):
         for turn in range(turns):
@@ -85,7 +84,7 @@ def scanned(
             depth = np.where(depth > 0, depth + rng.normal(0.0, NOISE_M, depth.shape), 0.0)
             unsure = rng.random(depth.shape) < UNSURE_SHARE
             depth = np.where(unsure, depth * rng.uniform(0.5, 0.95, depth.shape), depth).astype(np.float32)
-            photo = None if studio is None else studio.photograph(camera, PHOTO_SIZE)[0]
+            photo = studio.photograph(camera, PHOTO_SIZE)[0]
             frames.append(SyntheticFrame(camera, depth, np.where(unsure, 0, 2).astype(np.uint8), photo))
     return tuple(frames)
 

@@ -28,14 +28,12 @@ from diorama_core.text.viewpoint import best_viewpoint
 SIZE = (1024, 768)
 
 
-def finished(
-    scene: Scene, library: ShapeLibrary, size: tuple[int, int] = SIZE
-) -> tuple[Scene, Mapping[str, UInt8[np.ndarray, "_ _ 3"]]]:
+def finished(scene: Scene, library: ShapeLibrary) -> tuple[Scene, Mapping[str, UInt8[np.ndarray, "_ _ 3"]]]:
     """The room in the world of a camera that shows most of it, and its planes' pictures by name."""
     # Every room has doors and windows; a picture may do without.
     worth = {o.id: 0.2 if o.category in OPENING_CATEGORIES else 1.0 for o in scene.objects}
     seen = part_of_home(scene, [scene.rooms[0].id]) if scene.rooms else scene
-    scene = in_photo_world(replace(scene, camera=best_viewpoint(seen, library, size, worth)))
+    scene = in_photo_world(replace(scene, camera=best_viewpoint(seen, library, SIZE, worth)))
     textures = finish_textures(scene.architecture)
     planes = tuple(replace(p, texture=p.id if p.id in textures else None) for p in scene.architecture.planes)
     return replace(scene, architecture=replace(scene.architecture, planes=planes)), textures

@@ -42,16 +42,13 @@ class MeasuredSurface:
     grid_columns: int = 320
     """Size of the grid from which the points come, unmeasured pixels included."""
 
-    def world_plane(
-        self, members: Bool[np.ndarray, "n"], weights: Float[np.ndarray, "n"] | None = None
-    ) -> tuple[Float[np.ndarray, "3"], float]:
+    def world_plane(self, members: Bool[np.ndarray, "n"]) -> tuple[Float[np.ndarray, "3"], float]:
         """Least-squares plane through members, in inverse depth: normal toward the camera, and offset."""
         local = self.points[members] - self.camera_position
         q = 1.0 / np.maximum(self.depth_m[members], 1e-6)
-        w = np.ones(len(q)) if weights is None else weights[members]
         # Rays of unit depth span the same linear model whatever the camera's rotation.
         rays = local * q[:, None]
-        abc = np.linalg.lstsq(rays * w[:, None], q * w, rcond=None)[0]
+        abc = np.linalg.lstsq(rays, q, rcond=None)[0]
         length = float(np.linalg.norm(abc))
         normal = -abc / max(length, 1e-12)
         return normal, float(normal @ self.camera_position) - 1.0 / max(length, 1e-12)

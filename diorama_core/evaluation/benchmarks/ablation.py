@@ -49,8 +49,6 @@ def built(
     library: ShapeLibrary,
     *,
     rooms: int = 0,
-    seed: int = 0,
-    known: Sequence[PhotoScores] = (),
     processes: int = 1,
     progress: Progress | None = None,
 ) -> Figures:
@@ -61,14 +59,12 @@ def built(
         plan: the photos.
         library: where shapes come from.
         rooms: rendered rooms, from the photo alone.
-        seed: of the rooms.
-        known: results of photos of an earlier run (`photos.run`).
         processes: photos built at once.
         progress: reports and cancellation.
     """
     progress = progress or Progress()
     changed = replace(plan, tasks=tuple(replace(task, settings=dict(values)) for task in plan.tasks))
-    bench = photos_bench.run(changed, library, known=known, processes=processes, progress=progress.part(0.0, 0.8))
+    bench = photos_bench.run(changed, library, processes=processes, progress=progress.part(0.0, 0.8))
     if not rooms:
         return Figures(bench.results)
 
@@ -76,7 +72,7 @@ def built(
         return with_settings(embedded_stages(inputs, searched), values)
 
     way = replace(system_bench.WAYS["photo"], stages=stages)
-    system = system_bench.run(library, rooms, (seed,), progress.part(0.8, 1.0), ways=(way,))
+    system = system_bench.run(library, rooms, (0,), progress.part(0.8, 1.0), ways=(way,))
     return Figures(bench.results, system.results[0][1])
 
 

@@ -25,8 +25,6 @@ SERIES = ("development", "reporting")
 PICTURE_PX = (480, 360)
 SHEET_COLUMNS = 3
 CAPTION_PX = 34
-Compose = Callable[[str, ShapeLibrary, int], tuple[Scene, Sequence[str]]]
-"""Prompt, library and seed to a scene and what it says is unmet."""
 
 
 @dataclass(frozen=True)
@@ -88,7 +86,6 @@ def run(
     progress: Progress | None = None,
     *,
     pictures: bool = False,
-    compose: Compose | None = None,
 ) -> tuple[TextBench, UInt8[np.ndarray, "_ _ 3"] | None]:
     """Compose a room for every prompt and measure it.
 
@@ -98,13 +95,11 @@ def run(
         seed: of the rooms.
         progress: reports and cancellation.
         pictures: whether to draw a sheet of all rooms.
-        compose: what makes rooms; by default the composer that `diorama text` uses.
 
     Returns:
         The measures, and the sheet where it was asked for.
     """
     progress = progress or Progress()
-    compose = compose or _composed
     series = {name: prompts_of(name) for name in SERIES}
     first = (scenes + 1) // 2 if scenes < sum(map(len, series.values())) else scenes
     wanted = [(name, asked) for name in SERIES for asked in series[name][:first]][:scenes]
@@ -113,7 +108,7 @@ def run(
     for k, (name, asked) in enumerate(wanted):
         progress.report(k / len(wanted), f"Composing: {asked.prompt[:50]}")
         begun = time.perf_counter()
-        scene, notes = compose(asked.prompt, library, seed)
+        scene, notes = _composed(asked.prompt, library, seed)
         seconds = time.perf_counter() - begun
         measured.append(Measured(name, asked.prompt, measure(asked, scene, library), tuple(notes), seconds))
         if pictures:

@@ -111,11 +111,11 @@ def architecture_scores(
     )
 
 
-def layout_view(planes: tuple[Plane, ...], camera: Camera, step: int = VIEW_STEP) -> LayoutView:
+def layout_view(planes: tuple[Plane, ...], camera: Camera) -> LayoutView:
     """The empty room seen through every `step`-th pixel."""
-    origin, rays = camera_rays(camera, step)
+    origin, rays = camera_rays(camera, VIEW_STEP)
     depth, labels = cast_planes(origin, rays, planes)
-    return LayoutView(labels, depth, step)
+    return LayoutView(labels, depth, VIEW_STEP)
 
 
 def segment_pairs(
@@ -196,9 +196,9 @@ def plane_points(planes: tuple[Plane, ...], spacing_m: float = SAMPLE_M) -> Floa
     return np.concatenate(points)
 
 
-def seen_points(planes: tuple[Plane, ...], camera: Camera, spacing_m: float = SAMPLE_M) -> Float[np.ndarray, "n 3"]:
+def seen_points(planes: tuple[Plane, ...], camera: Camera) -> Float[np.ndarray, "n 3"]:
     """Those of the points spread over planes that are in the picture and have no other plane before them."""
-    points = plane_points(planes, spacing_m)
+    points = plane_points(planes, SAMPLE_M)
     local, k = camera.to_camera(points), camera.intrinsics
     ahead = local[:, 2] > 1e-6
     points, local = points[ahead], local[ahead]

@@ -331,26 +331,22 @@ def mean_mask_iou(
     return total / len(pairs)
 
 
-def scene_points(
-    objects: Sequence[SceneObject], library: ShapeLibrary, count: int = OBJECT_POINTS
-) -> Float[np.ndarray, "n 3"]:
+def scene_points(objects: Sequence[SceneObject], library: ShapeLibrary) -> Float[np.ndarray, "n 3"]:
     """Points on the surfaces of objects in the world, as many on each."""
     points = [np.zeros((0, 3))]
     for item in objects:
         low, high = library.mesh(item.shape_id).bounds
-        local = shape_points(library, item.shape_id, count) * (high - low).max() + (low + high) / 2
+        local = shape_points(library, item.shape_id, OBJECT_POINTS) * (high - low).max() + (low + high) / 2
         points.append(item.pose.apply(local))
     return np.concatenate(points)
 
 
-def surface_agreement(
-    points: Float[np.ndarray, "n 3"], true: Float[np.ndarray, "m 3"], near_m: float = NEAR_M
-) -> tuple[float, float]:
+def surface_agreement(points: Float[np.ndarray, "n 3"], true: Float[np.ndarray, "m 3"]) -> tuple[float, float]:
     """Mean distance to the other points, both ways averaged, and the F-score: the harmonic mean of the shares of
     either side's points that have one of the other side within `near_m`.
     """
     forward, back = np.asarray(cKDTree(true).query(points)[0]), np.asarray(cKDTree(points).query(true)[0])
-    precision, recall = float((forward <= near_m).mean()), float((back <= near_m).mean())
+    precision, recall = float((forward <= NEAR_M).mean()), float((back <= NEAR_M).mean())
     both = precision + recall
     return 0.5 * float(forward.mean() + back.mean()), 2 * precision * recall / both if both else 0.0
 

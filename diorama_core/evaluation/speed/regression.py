@@ -82,9 +82,9 @@ def slower(now: Mapping[str, float], before: Mapping[str, float], tolerance: flo
     return {name: times for name, times in factors.items() if times is not None}
 
 
-def regression_table(now: Mapping[str, float], before: Mapping[str, float], tolerance: float = TOLERANCE) -> Table:
+def regression_table(now: Mapping[str, float], before: Mapping[str, float]) -> Table:
     """Every committed figure beside today's."""
-    worse = slower(now, before, tolerance)
+    worse = slower(now, before, TOLERANCE)
     rows = []
     for name in sorted(before):
         ratio = now[name] / before[name] if name in now and before[name] > 0 else None
@@ -92,7 +92,7 @@ def regression_table(now: Mapping[str, float], before: Mapping[str, float], tole
         rows.append(Row(name, (before[name], now.get(name), ratio, word)))
     columns = (Column("committed", ".3f"), Column("now", ".3f"), Column("ratio", ".2f"), Column("", ""))
     note = (
-        f"Times in yardsticks, memory in MB, growth as exponents. Slower: more than {tolerance:g} times, or an "
+        f"Times in yardsticks, memory in MB, growth as exponents. Slower: more than {TOLERANCE:g} times, or an "
         f"exponent higher by more than {EXPONENT_TOLERANCE:g}; an eager gain is better when larger."
     )
     return Table("Against the committed figures", columns, tuple(rows), note)

@@ -12,7 +12,7 @@ from diorama_core.library import taxonomy
 from diorama_core.library.ingest.given import Given, axis_name, axis_vector
 from diorama_core.library.ingest.relief import relief, symmetry_fold
 from diorama_core.library.ingest.repair import Repaired
-from diorama_core.library.ingest.shaping import Painter, packed_shape
+from diorama_core.library.ingest.shaping import packed_shape
 from diorama_core.library.ingest.sink import Ingested
 from diorama_core.library.part_notes import transform
 from diorama_core.library.record import Assumption, Guess, Shape, ShapeLibrary, usual_contact_faces
@@ -27,7 +27,6 @@ def corrected(
     scale: float = 1.0,
     category: str | None = None,
     source_key: str = "",
-    painter: Painter | None = None,
 ) -> Ingested:
     """The shape as it should have been taken in; hand it to the library's `add` to replace the old one.
 
@@ -39,7 +38,6 @@ def corrected(
         scale: Factor on its size (0.01 where metres were read and centimetres meant).
         category: What it is, in any words the taxonomy knows.
         source_key: Of the file it came from, so that adding the folder again leaves the correction alone.
-        painter: Makes the thumbnail.
 
     Raises:
         InputError: when the axes are not at right angles, the scale is not positive or the category is unknown.
@@ -62,7 +60,7 @@ def corrected(
         contact_faces=usual_contact_faces(taxonomy.category(name).mount),
         guess=_agreed(shape, R_to_from, scale, name),
     )
-    return packed_shape(record, meshes, painter, source_key, ())
+    return packed_shape(record, meshes, None, source_key, ())
 
 
 def _turn(up: str, front: str | None) -> np.ndarray:

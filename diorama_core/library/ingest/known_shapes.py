@@ -67,9 +67,9 @@ def known_shapes(
     return KnownShapes(categories, relief_features(reliefs.astype(np.float32) / 255.0), sizes)
 
 
-def are_known(cache_dir: Path | None = None) -> bool:
+def are_known() -> bool:
     """Whether the reliefs of the built-in shapes are in the cache."""
-    return {_key(s) for s in _spread(built_in_library().shapes())} <= _read(_place(cache_dir)).keys()
+    return {_key(s) for s in _spread(built_in_library().shapes())} <= _read(_place(None)).keys()
 
 
 def _place(cache_dir: Path | None) -> Path:

@@ -31,9 +31,7 @@ class ExifSettings:
 SETTINGS = ExifSettings()
 
 
-def focal_from_exif(
-    tags: Mapping[int, Any], width: int, height: int, settings: ExifSettings = SETTINGS
-) -> float | None:
+def focal_from_exif(tags: Mapping[int, Any], width: int, height: int) -> float | None:
     """Focal length in pixels of a `width` x `height` picture, or None where the header gives no trustworthy one.
 
     The 35 mm equivalent is taken by the diagonal (CIPA DCG-001); else the focal length in millimetres with the sensor's
@@ -43,39 +41,34 @@ def focal_from_exif(
         tags: The Exif sub-directory (tag number to value).
         width: Pixels across; upright or not does not matter.
         height: Pixels down.
-        settings: Numbers to work with.
     """
-    if _was_cropped(tags, width, height, settings):
+    if _was_cropped(tags, width, height):
         return None
     diagonal_px = float(np.hypot(width, height))
-    focal_35mm = _positive(tags.get(settings.focal_length_35mm))
-    focal = (
-        focal_35mm / FULL_FRAME_DIAGONAL_MM * diagonal_px
-        if focal_35mm
-        else _focal_from_pitch(tags, diagonal_px, settings)
-    )
+    focal_35mm = _positive(tags.get(SETTINGS.focal_length_35mm))
+    focal = focal_35mm / FULL_FRAME_DIAGONAL_MM * diagonal_px if focal_35mm else _focal_from_pitch(tags, diagonal_px)
     if focal is None or not PLAUSIBLE_FOCAL[0] <= focal / max(width, height) <= PLAUSIBLE_FOCAL[1]:
         return None
     return focal
 
 
-def _focal_from_pitch(tags: Mapping[int, Any], diagonal_px: float, settings: ExifSettings = SETTINGS) -> float | None:
+def _focal_from_pitch(tags: Mapping[int, Any], diagonal_px: float) -> float | None:
     """Millimetres over pixel pitch, carried over to the picture's present size by the diagonal."""
-    focal_mm = _positive(tags.get(settings.focal_length))
-    per_unit = _positive(tags.get(settings.focal_plane_x_resolution))
-    unit_mm = _MM_PER_UNIT.get(int(_positive(tags.get(settings.focal_plane_unit)) or 2))
-    pixel_x, pixel_y = _positive(tags.get(settings.pixel_x)), _positive(tags.get(settings.pixel_y))
+    focal_mm = _positive(tags.get(SETTINGS.focal_length))
+    per_unit = _positive(tags.get(SETTINGS.focal_plane_x_resolution))
+    unit_mm = _MM_PER_UNIT.get(int(_positive(tags.get(SETTINGS.focal_plane_unit)) or 2))
+    pixel_x, pixel_y = _positive(tags.get(SETTINGS.pixel_x)), _positive(tags.get(SETTINGS.pixel_y))
     if focal_mm is None or per_unit is None or unit_mm is None or pixel_x is None or pixel_y is None:
         return None
     return focal_mm * per_unit / unit_mm * diagonal_px / float(np.hypot(pixel_x, pixel_y))
 
 
-def _was_cropped(tags: Mapping[int, Any], width: int, height: int, settings: ExifSettings = SETTINGS) -> bool:
-    pixel_x, pixel_y = _positive(tags.get(settings.pixel_x)), _positive(tags.get(settings.pixel_y))
+def _was_cropped(tags: Mapping[int, Any], width: int, height: int) -> bool:
+    pixel_x, pixel_y = _positive(tags.get(SETTINGS.pixel_x)), _positive(tags.get(SETTINGS.pixel_y))
     if pixel_x is None or pixel_y is None:
         return False
     stated = max(pixel_x, pixel_y) / min(pixel_x, pixel_y)
-    return abs(stated * min(width, height) / max(width, height) - 1.0) > settings.crop_tolerance
+    return abs(stated * min(width, height) / max(width, height) - 1.0) > SETTINGS.crop_tolerance
 
 
 def _positive(value: Any) -> float | None:

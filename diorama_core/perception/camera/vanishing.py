@@ -81,15 +81,12 @@ class Lines:
         return cls(*(a.astype(np.float32) for a in as32))
 
 
-def search_frames(
-    lines: Lines, focal: float | None, count: int = _REFINED, settings: LineCameraSettings = SETTINGS
-) -> tuple[FrameFit, ...]:
+def search_frames(lines: Lines, focal: float | None, settings: LineCameraSettings = SETTINGS) -> tuple[FrameFit, ...]:
     """The best room frames of a picture's lines, best first, at least one.
 
     Args:
         lines: The segments.
         focal: Focal length over the longer side; None to look for it as well.
-        count: At most so many are returned; several may have converged to the same reading.
     """
     focals = FOCAL_GRID if focal is None else np.array([focal])
     starts: list[tuple[float, np.ndarray, float]] = []
@@ -101,7 +98,7 @@ def search_frames(
     starts.sort(key=lambda s: -s[0])
     chosen = _separated(starts, _REFINED)
     fits = sorted((_refined(lines, R, f, focal, settings) for _, R, f in chosen), key=lambda fit: -fit.score)
-    return tuple(fits[:count])
+    return tuple(fits[:_REFINED])
 
 
 def signed_sines(

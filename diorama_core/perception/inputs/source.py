@@ -76,7 +76,7 @@ def read_source(given: Path | bytes | Source, what: str, name: str | None = None
     return Source(data, label, given if isinstance(given, Path) else None)
 
 
-def read_folder(given: Path | bytes | Source, what: str, name: str | None = None) -> Folder | Source:
+def read_folder(given: Path | bytes | Source, what: str) -> Folder | Source:
     """The files of a folder or of a zip archive in the order of their names; any other file as `read_source` has it.
 
     Raises:
@@ -93,7 +93,7 @@ def read_folder(given: Path | bytes | Source, what: str, name: str | None = None
                 f"{given.name}: holds more than the {MAX_FILE_MB} MB accepted; keep the {what} of this photo"
             )
         return Folder(given.name, tuple(Source(p.read_bytes(), p.name, p) for p in paths if p.stat().st_size))
-    source = read_source(given, what, name)
+    source = read_source(given, what)
     return _unzipped(source) if source.data.startswith(b"PK\x03\x04") and source.suffix != ".npz" else source
 
 

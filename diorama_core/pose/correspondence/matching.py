@@ -63,15 +63,12 @@ def similarities(
     return np.where(view_inside[:, None], scores, -1.0)
 
 
-def cyclic_matches(
-    similarity: Float32[np.ndarray, "v q p"], query_patches: Int[np.ndarray, " q"], *, keep: int = MAX_MATCHES
-) -> Matches:
+def cyclic_matches(similarity: Float32[np.ndarray, "v q p"], query_patches: Int[np.ndarray, " q"]) -> Matches:
     """The accepted matches of every view.
 
     Args:
         similarity: From `similarities`.
         query_patches: Number of each of the picture's foreground patches.
-        keep: Most matches of a view.
     """
     views, count, _ = similarity.shape
     if count == 0:
@@ -84,12 +81,12 @@ def cyclic_matches(
     start = np.broadcast_to(query_patches, home.shape)
     cycle = np.hypot(home % PATCHES - start % PATCHES, home // PATCHES - start // PATCHES)
     good = (cycle < MAX_CYCLE) & (best >= MIN_SIMILARITY)
-    order = np.argsort(np.where(good, -best, np.inf), axis=1, kind="stable")[:, :keep]
+    order = np.argsort(np.where(good, -best, np.inf), axis=1, kind="stable")[:, :MAX_MATCHES]
     return Matches(
         query=query_patches[order],
         template=np.take_along_axis(forward, order, axis=1),
         similarity=np.take_along_axis(best, order, axis=1).astype(float),
-        count=np.minimum(good.sum(axis=1), min(keep, count)),
+        count=np.minimum(good.sum(axis=1), min(MAX_MATCHES, count)),
     )
 
 
