@@ -7,6 +7,7 @@ import numpy as np
 from jaxtyping import Float, Int
 
 from diorama_core.export.gathering import ExportMesh, ExportObject, ExportScene
+from diorama_core.geometry.planes import signed_area
 
 Outline = Float[np.ndarray, "_ 2"]
 GRID_M = 0.0005
@@ -74,12 +75,6 @@ def _is_closed(cells: Int[np.ndarray, "n 3 2"]) -> bool:
     start = corners[..., 0] * across + corners[..., 1]
     end = np.roll(start, -1, axis=1)
     return np.array_equal(np.sort(start * across**2 + end, axis=None), np.sort(end * across**2 + start, axis=None))
-
-
-def signed_area(polygon: Outline) -> float:
-    """Area, positive for counter-clockwise."""
-    x, y = polygon[:, 0], polygon[:, 1]
-    return float(0.5 * (x @ np.roll(y, -1) - y @ np.roll(x, -1)))
 
 
 def _flat(mesh: ExportMesh, matrix: Float[np.ndarray, "4 4"]) -> Float[np.ndarray, "n 3 2"]:

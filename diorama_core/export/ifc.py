@@ -11,11 +11,11 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from jaxtyping import Float
 
 from diorama_core.export.files import whole_file
 from diorama_core.export.gathering import ExportMesh, ExportObject, ExportScene
 from diorama_core.export.ifc_document import IfcDocument
+from diorama_core.geometry.planes import signed_area
 from diorama_core.geometry.wall_lines import DrawnWall, Opening, wall_lines
 from diorama_core.io.srgb import srgb_to_linear
 from diorama_core.library.taxonomy import column
@@ -137,7 +137,7 @@ class _Builder:
             return None
         planes = self._scene.scene.architecture.planes
         top = max(float(p.polygon[:, 2].max()) for p in planes if self._scene.room_of.get(p.id) is room)
-        height, area = top - float(floor.centre[2]), _area_m2(floor.polygon)
+        height, area = top - float(floor.centre[2]), abs(signed_area(floor.polygon[:, :2]))
         if height <= 0.0:
             return None
         solid = self._to.extruded(floor.polygon[:, :2], float(floor.centre[2]), height)
@@ -213,7 +213,7 @@ class _Builder:
             PredefinedType=predefined,
         )
         self._to.made_of(element, self._to.material(_plain(plane.colour), plane.role))
-        area = _area_m2(plane.polygon)
+        area = abs(signed_area(plane.polygon[:, :2]))
         self._to.measure(
             element, kind.removeprefix("Ifc"), height={"Width": float(plane.thickness)}, area={"NetArea": area}
         )
@@ -288,12 +288,6 @@ class _Builder:
             self._to.add("IfcPropertySingleValue", name, None, self._to.add("IfcLabel", value[:255]), None)
             for name, value in said.items()
         ]
-
-
-def _area_m2(polygon: Float[np.ndarray, "n 3"]) -> float:
-    """Area of a level outline."""
-    x, y = polygon[:, 0], polygon[:, 1]
-    return float(abs(x @ np.roll(y, -1) - y @ np.roll(x, -1)) / 2.0)
 
 
 def _plain(colour_srgb: tuple[float, float, float]) -> Material:

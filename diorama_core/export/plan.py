@@ -15,6 +15,7 @@ from diorama_core.export.door_swings import DoorSwing, door_swings
 from diorama_core.export.footprints import Outline, footprints
 from diorama_core.export.gathering import ExportObject, ExportScene
 from diorama_core.geometry.openings import OPENING_CATEGORIES, faces_behind
+from diorama_core.geometry.planes import signed_area
 from diorama_core.geometry.rooms import part_of_home, storeys_of
 from diorama_core.geometry.wall_lines import DrawnWall, Opening, wall_lines
 from diorama_core.library.furniture.articulation import articulation
@@ -308,9 +309,8 @@ def _polygon(outline: Outline) -> shapely.Geometry:
 
 
 def _area(outline: Outline) -> manifold3d.CrossSection:
-    x, y = outline[:, 0], outline[:, 1]
-    counter_clockwise = x @ np.roll(y, -1) >= y @ np.roll(x, -1)
-    return manifold3d.CrossSection([outline if counter_clockwise else outline[::-1]], manifold3d.FillRule.Positive)
+    turned = outline if signed_area(outline) >= 0 else outline[::-1]
+    return manifold3d.CrossSection([turned], manifold3d.FillRule.Positive)
 
 
 def _door(wall: DrawnWall, opening: Opening, swing: DoorSwing | None) -> tuple[Outline, ...]:

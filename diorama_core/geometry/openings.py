@@ -13,7 +13,7 @@ import manifold3d
 import numpy as np
 from jaxtyping import Float
 
-from diorama_core.geometry.planes import plane_axes
+from diorama_core.geometry.planes import plane_axes, signed_area
 from diorama_core.scene.types import Architecture, Plane, Scene, SceneObject
 
 OPENING_CATEGORIES = DOOR, WINDOW = ("door", "window")
@@ -129,8 +129,8 @@ def _without(wall: Plane, covered: Sequence[Float[np.ndarray, "_ 3"]], frame_m: 
     if rest.area() < 1e-4 or rest.area() > whole - 1e-6 or len(rest.decompose()) != 1:
         return wall
     contours = [np.asarray(c, dtype=np.float64) for c in rest.to_polygons()]
-    outer = next(c for c in contours if _area(c) > 0)
-    holes = [c for c in contours if _area(c) < 0]
+    outer = next(c for c in contours if signed_area(c) > 0)
+    holes = [c for c in contours if signed_area(c) < 0]
     flat = _with_slits(outer, holes)
     return replace(wall, polygon=flat @ axes.T + wall.offset * wall.normal)
 
@@ -181,8 +181,3 @@ def _below(ring: Contour, start: Float[np.ndarray, "2"]) -> tuple[int, Float[np.
             hits.append((height, number))
     height, edge = max(hits)
     return edge, np.array([start[0], height])
-
-
-def _area(contour: Contour) -> float:
-    after = np.roll(contour, -1, axis=0)
-    return float((contour[:, 0] * after[:, 1] - contour[:, 1] * after[:, 0]).sum()) / 2

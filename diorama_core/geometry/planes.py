@@ -147,6 +147,12 @@ def in_polygon(points: Float[np.ndarray, "*n 2"], outline: Float[np.ndarray, "k 
     return inside
 
 
+def signed_area(polygon: Float[np.ndarray, "k 2"]) -> float:
+    """Area of a polygon, positive for a counter-clockwise one; 0 for fewer than three corners."""
+    x, y = polygon[:, 0], polygon[:, 1]
+    return 0.5 * float(x @ np.roll(y, -1) - y @ np.roll(x, -1))
+
+
 def in_plane_polygon(points: Float[np.ndarray, "*n 3"], plane: Plane) -> Bool[np.ndarray, "*n"]:
     """Whether points of a plane lie in its polygon, whatever its shape."""
     axes = np.stack(plane_axes(plane.normal), axis=1)

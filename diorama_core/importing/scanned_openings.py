@@ -17,6 +17,7 @@ import numpy as np
 from jaxtyping import Bool, Float, UInt8
 from scipy import ndimage
 
+from diorama_core.geometry.planes import signed_area
 from diorama_core.importing.measured_types import MeasuredOpening, MeasuredWall, OpeningKind
 
 CELL_M, MAX_CELL_M = 0.05, 0.12
@@ -76,8 +77,7 @@ def scanned_openings(
         walls: upright rectangles.
         floor_outline: the room seen from above, either way round.
     """
-    x, y = floor_outline.T
-    area = float(x @ np.roll(y, -1) - y @ np.roll(x, -1))
+    area = signed_area(floor_outline)
     return tuple(chain.from_iterable(_of_wall(points, wall, np.sign(area)) for wall in walls))
 
 

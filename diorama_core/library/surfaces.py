@@ -18,6 +18,7 @@ from scipy.sparse import coo_matrix
 from scipy.sparse.csgraph import connected_components
 from scipy.spatial import ConvexHull
 
+from diorama_core.geometry.planes import signed_area
 from diorama_core.io.large_libraries import o3d
 from diorama_core.library.record import SupportSurface
 
@@ -87,7 +88,7 @@ def support_surfaces(mesh: trimesh.Trimesh, lattice: int = 72) -> tuple[SupportS
         if np.median(clearance) < blocked_below or len(region) * cell_m**2 < minimum_area:
             continue
         outline = _outline(spots, region)
-        if len(region) * cell_m**2 < MINIMUM_FILL * _area(outline) or _breadth(outline) < narrowest:
+        if len(region) * cell_m**2 < MINIMUM_FILL * abs(signed_area(outline)) or _breadth(outline) < narrowest:
             continue
         surfaces.append(_surface(spots, region, outline))
     surfaces = _joined(surfaces)
@@ -210,11 +211,6 @@ def _outline(spots: _Spots, region: Int[np.ndarray, "k"]) -> Float[np.ndarray, "
     return corners[ConvexHull(corners).vertices] * spots.cell_m + spots.origin
 
 
-def _area(outline: Float[np.ndarray, "n 2"]) -> float:
-    x, y = outline.T
-    return 0.5 * abs(float(x @ np.roll(y, -1) - y @ np.roll(x, -1)))
-
-
 def _breadth(outline: Float[np.ndarray, "n 2"]) -> float:
     """Smallest distance between parallel lines that hold a convex outline."""
     edges = np.roll(outline, -1, axis=0) - outline
@@ -243,8 +239,8 @@ def _common_outline(a: SupportSurface, b: SupportSurface) -> SupportSurface | No
         return None
     points = np.vstack([a.polygon, b.polygon])[:, :2]
     outline = points[ConvexHull(points).vertices]
-    parts = [_area(s.polygon[:, :2]) for s in (a, b)]
-    if sum(parts) < SEAM_FILL * _area(outline):
+    parts = [abs(signed_area(s.polygon[:, :2])) for s in (a, b)]
+    if sum(parts) < SEAM_FILL * abs(signed_area(outline)):
         return None
     height = max(a.height_m, b.height_m)
     return SupportSurface(np.column_stack([outline, np.full(len(outline), height)]), float("inf"), False)

@@ -21,7 +21,7 @@ from diorama_core.architecture.walls.openings import WallOpening, with_openings
 from diorama_core.architecture.walls.passages import with_passages
 from diorama_core.architecture.walls.wall_sequence import WallPiece
 from diorama_core.artefacts import DetectedObject
-from diorama_core.geometry.planes import clip_polygon, in_polygon
+from diorama_core.geometry.planes import clip_polygon, in_polygon, signed_area
 from diorama_core.scene.types import Architecture, Camera, Plane
 
 SAME_COSINE = float(np.cos(np.radians(8.0)))
@@ -191,7 +191,7 @@ def _outline(
     for line in lines:
         normal = np.array([*line.normal, 0.0])
         halves = [clip_polygon(c, s * normal, s * line.offset) for c in cells for s in (1.0, -1.0)]
-        cells = [h for h in halves if len(h) >= 3 and _area(h[:, :2]) > SETTINGS.grid_m**2]
+        cells = [h for h in halves if len(h) >= 3 and abs(signed_area(h[:, :2])) > SETTINGS.grid_m**2]
     xs, ys = (
         np.arange(low[0], high[0], SETTINGS.grid_m) + SETTINGS.grid_m / 2,
         np.arange(low[1], high[1], SETTINGS.grid_m) + SETTINGS.grid_m / 2,
@@ -203,9 +203,9 @@ def _outline(
         return None
     sections = [manifold3d.CrossSection([c], manifold3d.FillRule.NonZero).offset(1e-4) for c in map(_turned, inside)]
     union = manifold3d.CrossSection.batch_boolean(sections, manifold3d.OpType.Add).simplify(1e-2)
-    outlines = [o for o in union.to_polygons() if _signed(o) > 0]
+    outlines = [o for o in union.to_polygons() if signed_area(o) > 0]
     eyes = np.array([p.camera.position[:2] for p in photos])
-    best = max(outlines, key=lambda o: (int(in_polygon(eyes, o).sum()), _area(o)))
+    best = max(outlines, key=lambda o: (int(in_polygon(eyes, o).sum()), abs(signed_area(o))))
     return np.asarray(best, dtype=np.float64)
 
 
@@ -302,13 +302,4 @@ def _covered(wall: Plane, start: Float[np.ndarray, "2"], along: Float[np.ndarray
 
 def _turned(polygon: Float[np.ndarray, "n 2"]) -> Float[np.ndarray, "n 2"]:
     """The polygon counter-clockwise."""
-    return polygon if _signed(polygon) > 0 else polygon[::-1]
-
-
-def _area(polygon: Float[np.ndarray, "n 2"]) -> float:
-    return abs(_signed(polygon))
-
-
-def _signed(polygon: Float[np.ndarray, "n 2"]) -> float:
-    x, y = polygon[:, 0], polygon[:, 1]
-    return 0.5 * float(x @ np.roll(y, -1) - np.roll(x, -1) @ y)
+    return polygon if signed_area(polygon) > 0 else polygon[::-1]

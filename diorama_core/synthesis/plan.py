@@ -15,6 +15,7 @@ import numpy as np
 from jaxtyping import Float
 
 from diorama_core.editing.room_frame import WallLine
+from diorama_core.geometry.planes import signed_area
 from diorama_core.scene.types import Architecture, Plane
 from diorama_core.scene.values import ArrayValue
 
@@ -154,7 +155,7 @@ def room_plan(
     points = np.array(corners)
     if outline != "box":
         turned = points * np.where(rng.random(2) < 0.5, -1.0, 1.0)
-        points = turned if _signed_area(turned) > 0 else turned[::-1]
+        points = turned if signed_area(turned) > 0 else turned[::-1]
     return RoomPlan(points, float(rng.uniform(2.45, 2.85)))
 
 
@@ -164,11 +165,6 @@ def _without_corner(x: float, y: float, a: float, b: float) -> list[list[float]]
 
 def _cut_corner(x: float, y: float, a: float, b: float) -> list[list[float]]:
     return [[-x, -y], [x, -y], [x, y - b], [x - a, y], [-x, y]]
-
-
-def _signed_area(points: Float[np.ndarray, "n 2"]) -> float:
-    after = np.roll(points, -1, axis=0)
-    return float(0.5 * (points[:, 0] * after[:, 1] - points[:, 1] * after[:, 0]).sum())
 
 
 def footprint(size_m: Float[np.ndarray, "3"], xy: Float[np.ndarray, "2"], yaw_rad: float) -> Float[np.ndarray, "4 2"]:

@@ -10,8 +10,9 @@ import trimesh
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from diorama_core.export.footprints import GRID_M, _is_closed, footprints, outline, signed_area
+from diorama_core.export.footprints import GRID_M, _is_closed, footprints, outline
 from diorama_core.export.gathering import gather
+from diorama_core.geometry.planes import signed_area
 from diorama_core.scene.types import Pose, Scene
 from tests.primitives import PrimitiveLibrary, furnished_room, place
 

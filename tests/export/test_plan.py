@@ -11,11 +11,11 @@ import pytest
 
 from diorama_core.errors import Cancelled, ExportError
 from diorama_core.export import export_scene
-from diorama_core.export.footprints import signed_area
 from diorama_core.export.gathering import gather
 from diorama_core.export.plan import floor_plan
 from diorama_core.export.plan_dxf import TEXT_MM
 from diorama_core.export.plan_sheet import SheetLine, Text, plan_sheet
+from diorama_core.geometry.planes import signed_area
 from diorama_core.progress import CancelToken, Progress
 from diorama_core.scene.types import Architecture, Plane, Pose, Scene, SceneObject, Support
 from tests.export.scenes import scene_of

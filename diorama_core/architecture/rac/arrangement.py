@@ -13,6 +13,7 @@ from itertools import combinations
 import numpy as np
 from jaxtyping import Bool, Float, Int
 
+from diorama_core.geometry.planes import signed_area
 from diorama_core.geometry.vectors import unique_rows
 from diorama_core.scene.types import Camera
 
@@ -110,7 +111,7 @@ def arrangement(
         for corners, within in pieces:
             for positive in (True, False):
                 part = _part(corners, line.form if positive else -line.form)
-                if _area(part) > MIN_AREA_PX:
+                if abs(signed_area(part)) > MIN_AREA_PX:
                     cut.append((part, (*within, positive)))
         pieces = cut
     return Arrangement(inverse, lines, tuple(Cell(corners, within) for corners, within in pieces))
@@ -127,10 +128,3 @@ def _part(corners: Float[np.ndarray, "k 2"], form: Float[np.ndarray, "3"]) -> Fl
         if (side[i] > 0 > side[j]) or (side[i] < 0 < side[j]):
             kept.append(corners[i] + side[i] / (side[i] - side[j]) * (corners[j] - corners[i]))
     return np.array(kept).reshape(-1, 2)
-
-
-def _area(corners: Float[np.ndarray, "k 2"]) -> float:
-    if len(corners) < 3:
-        return 0.0
-    x, y = corners.T
-    return float(abs(x @ np.roll(y, -1) - y @ np.roll(x, -1))) / 2
