@@ -55,8 +55,8 @@ class Tools:
 
     def rooms(self) -> dict[str, Any]:
         """All rooms that there are; `open_room` takes the name under `project`."""
-        found: dict[str, Any] = self._api.get("v1/projects")
-        return found
+        answer: dict[str, Any] = self._api.get("v1/projects")
+        return answer
 
     def open_room(self, project: str) -> dict[str, Any]:
         """Open a room: its objects, its planes, what is doubtful, and the page where a person sees it."""
@@ -156,8 +156,8 @@ class Tools:
 
     def check(self) -> dict[str, Any]:
         """Whether people could use the room: collisions, floating, walkways, what is hard to reach; what to do."""
-        found: dict[str, Any] = self._api.get(self._path("/check"))
-        return found
+        answer: dict[str, Any] = self._api.get(self._path("/check"))
+        return answer
 
     def questions(self) -> dict[str, Any]:
         """What you or the person could tell of the room, the answer that makes most objects right first."""

@@ -117,8 +117,8 @@ def _export(a: argparse.Namespace) -> None:
     result: dict[str, Any] = {"file": str(output), "objects": len(written.objects), "planes": len(written.planes)}
     lines = [f"{output}: {number_of(len(written.objects))}, {number_of(len(written.planes), 'plane')}"]
     if a.simulate or a.shake:
-        found, said = _simulated(a, written, output)
-        result, lines = result | found, lines + said
+        simulated, notes = _simulated(a, written, output)
+        result, lines = result | simulated, lines + notes
     _print(a, result, lines)
 
 

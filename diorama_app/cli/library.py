@@ -102,8 +102,8 @@ def _library_list(a: argparse.Namespace) -> None:
     from diorama_core.library.taxonomy import resolve
 
     library = diorama.open_library(a.library)
-    found = library.shapes() if a.category is None else library.in_category(resolve(a.category).category.name)
-    _print_shapes(found, a.json)
+    shapes = library.shapes() if a.category is None else library.in_category(resolve(a.category).category.name)
+    _print_shapes(shapes, a.json)
 
 
 def _library_search(a: argparse.Namespace) -> None:
@@ -115,19 +115,19 @@ def _library_search(a: argparse.Namespace) -> None:
         raise InputError("say what to look for, in words or with --image FILE")
     library = diorama.open_library(a.library)
     if a.image is None:
-        found = find(library, a.text, a.k)
-        notes = [found.note]
+        matches = find(library, a.text, a.k)
+        notes = [matches.note]
     else:
         from diorama_core.render.crops import read_crop
         from diorama_core.render.image_search import ImageSearch
 
         crop = read_crop(a.image)
         with progress_bar() as progress:
-            found = ImageSearch(library).find(crop, a.text, a.k, progress)
-        notes = [found.note, crop.note]
+            matches = ImageSearch(library).find(crop, a.text, a.k, progress)
+        notes = [matches.note, crop.note]
     for note in filter(None, notes):
         print_note(note)
-    _print_shapes(found.shapes, a.json)
+    _print_shapes(matches.shapes, a.json)
 
 
 def _library_sheet(a: argparse.Namespace) -> None:

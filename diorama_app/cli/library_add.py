@@ -81,14 +81,14 @@ def _add(a: argparse.Namespace) -> None:
     dataset = recognised(folder) if a.dataset == "auto" else None if a.dataset == "none" else dataset_named(a.dataset)
     if dataset is not None and a.table is None:
         print(f"diorama: read as a copy of {dataset.name}", file=sys.stderr)
-        found = as_sources(dataset, folder, given)
+        models = as_sources(dataset, folder, given)
     else:
         table = read_table(a.table) if a.table is not None else {}
         absent = sorted(set(table) - {p.relative_to(folder).as_posix() for p in paths})
         if absent:
             raise InputError(f"{a.table}: there is no model {absent[0]!r} in {folder}; paths are relative to it")
-        found = sources(folder, paths, given, table)
-    if not found:
+        models = sources(folder, paths, given, table)
+    if not models:
         raise InputError(f"{folder}: no model lies there, but {_what_lies_in(folder, skipped)}; {_formats()} are read")
     name = a.name or folder.name.lower().replace(" ", "-")
     pool = workers(a.ray, a.workers)
@@ -97,7 +97,7 @@ def _add(a: argparse.Namespace) -> None:
     library = create_library(name)
     with progress_bar() as progress:
         report = add_models(
-            found, library, pool, painter=partial(thumbnail, size=160), skipped=skipped, progress=progress
+            models, library, pool, painter=partial(thumbnail, size=160), skipped=skipped, progress=progress
         )
     if not report.added and not existed:
         library.close()
@@ -228,8 +228,8 @@ def _described(shape: Shape) -> str:
         rows.append((f"surface {number}", f"{surface.height_m + height / 2:.3f} m above its foot, {above}{inside}"))
     if shape.guess is not None:
         for name in ("up", "front", "unit", "category"):
-            said = getattr(shape.guess, name)
-            value = f"{said.value} m" if name == "unit" else said.value
-            rows.append((f"assumed {name}", f"{value} ({said.confidence:.0%}, from {said.reason})"))
+            assumption = getattr(shape.guess, name)
+            value = f"{assumption.value} m" if name == "unit" else assumption.value
+            rows.append((f"assumed {name}", f"{value} ({assumption.confidence:.0%}, from {assumption.reason})"))
     width_of_names = max(len(name) for name, _ in rows)
     return "\n".join(f"{name:<{width_of_names}}  {value}" for name, value in rows)

@@ -116,9 +116,12 @@ def _accelerator() -> Finding:
 
 def _browser() -> Finding:
     names = ("chromium", "chromium-browser", "google-chrome", "firefox")
-    found = next((path for name in names if (path := shutil.which(name))), None)
+    path_of_browser = next((path for name in names if (path := shutil.which(name))), None)
     return Finding(
-        "browser", found is not None, found or "none on this machine; open the page from another", needed=False
+        "browser",
+        path_of_browser is not None,
+        path_of_browser or "none on this machine; open the page from another",
+        needed=False,
     )
 
 

@@ -151,8 +151,8 @@ def _told(a: argparse.Namespace, built: PosedBuild) -> None:
             {"id": o.id, "category": o.category, "shape": o.shape_id, "size_m": [round(float(v), 4) for v in o.size_m]}
             for o in scene.objects
         ]
-        found = {"project": str(a.output), "photos": list(built.photos), "objects": objects, "in_several": several}
-        print(json.dumps({**found, "notes": list(built.notes)}))
+        summary = {"project": str(a.output), "photos": list(built.photos), "objects": objects, "in_several": several}
+        print(json.dumps({**summary, "notes": list(built.notes)}))
         return
     for note in built.notes:
         print_note(note)

@@ -112,8 +112,8 @@ def _try(store: ModelStore, network_ids: Sequence[str]) -> None:
     with progress_bar() as progress:
         failed = rejected(store, network_ids, example_inputs().inputs, progress)
     if failed:
-        told = "; ".join(f"{c.network.title}: {c.words}" for c in failed)
-        raise UnavailableError(f"these files were damaged or changed, so they were deleted: {told}")
+        damaged = "; ".join(f"{c.network.title}: {c.words}" for c in failed)
+        raise UnavailableError(f"these files were damaged or changed, so they were deleted: {damaged}")
 
 
 def _members(what: str) -> tuple[Network, ...]:

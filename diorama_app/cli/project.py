@@ -137,8 +137,8 @@ def _folder(a: argparse.Namespace, project: Path) -> Path:
     if project.is_dir():
         return project.resolve()
     folder, given = projects_folder(a.projects), str(project)
-    found = find_project(folder, given)
-    named = [found] if found is not None else [f for f in recent_projects(folder) if name_of(f) == given]
+    match = find_project(folder, given)
+    named = [match] if match is not None else [f for f in recent_projects(folder) if name_of(f) == given]
     if not named:
         raise InputError(f"there is no project {given}; 'diorama project list' names those that there are")
     if len(named) > 1:

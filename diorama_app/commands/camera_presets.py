@@ -33,8 +33,8 @@ class Views:
         """Look through the camera of the chosen photo, the photo behind the model."""
         camera, photo = client.looked_through
         if camera is None and client.further_photo is not None:
-            said = _("the camera of {photo} is not known yet; add the photo to the scene first")
-            raise EditRefused(said.format(photo=client.photo_name))
+            message = _("the camera of {photo} is not known yet; add the photo to the scene first")
+            raise EditRefused(message.format(photo=client.photo_name))
         if camera is None:
             raise EditRefused("this scene has no photo; upload one in the Photo tab")
         self._plain(client)
@@ -73,11 +73,11 @@ class Views:
         """Walk through the room in the first person until Esc."""
         from diorama_core.editing.walking import walk_of  # shapely; the page opens without it
 
-        found = walk_of(self._session.scene)
-        if found is None:
+        route = walk_of(self._session.scene)
+        if route is None:
             raise EditRefused("this scene has no free floor to walk on; draw a room in the plan or move furniture")
         self._plain(client)
-        client.start_walk(found)
+        client.start_walk(route)
 
     def plan(self, client: Client) -> None:
         """Show the plan, or the 3D view again."""

@@ -34,8 +34,8 @@ class WordEdits:
         client, session = self.client, self.client.session
         session.need_writable()
         self.cancel()
-        said = " ".join(words.split())
-        if not said:
+        request = " ".join(words.split())
+        if not request:
             return
         scene, settings = session.scene, LmmSettings.from_environment()
 
@@ -44,7 +44,7 @@ class WordEdits:
 
             try:
                 proposed = propose_edits(
-                    said,
+                    request,
                     scene,
                     session.offered,
                     selected=client.selection,

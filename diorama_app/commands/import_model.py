@@ -57,14 +57,14 @@ def _taken_in(user_library: UserLibrary, name: str, content: bytes, progress: Pr
             raise InputError(f"{name}: {_(reason)}")
         # By its content: another file of the same name must not take the place of one that scenes hold.
         content_id = f"{slug(Path(name).stem)}-{hashlib.sha256(content).hexdigest()[:8]}"
-        found = sources(Path(folder), paths, Given(), {}, {paths[0]: content_id})
+        models = sources(Path(folder), paths, Given(), {}, {paths[0]: content_id})
         have = {shape.id for shape in user_library.own().shapes()}
-        new = [source for source in found if source.id not in have]
+        new = [source for source in models if source.id not in have]
         report = add_models(new, user_library.own(), workers(None, 1), progress=progress)
         if report.failed:
             raise InputError(f"{name}: {_(report.failed[0].reason)}")
-        _note_names(user_library, found, Path(name).stem)
-        return found[0].id
+        _note_names(user_library, models, Path(name).stem)
+        return models[0].id
 
 
 def _note_names(user_library: UserLibrary, found: Sequence[ModelSource], stem: str) -> None:
@@ -131,12 +131,12 @@ def correct_model(client: Client, object_id: str, fix: Fix | None = None, *, cat
     if not isinstance(user_library, UserLibrary) or not user_library.has_own(item.shape_id):
         raise EditRefused("only models that you uploaded can be corrected; upload one in the Library tab")
     own, change = user_library.own(), fix or Fix("", "")
-    found = corrected(own, item.shape_id, up=change.up, front=change.front, scale=change.scale, category=category)
+    ingested = corrected(own, item.shape_id, up=change.up, front=change.front, scale=change.scale, category=category)
     stem = item.shape_id.partition("~")[0]
     record = replace(
-        found.record, id=f"{stem}~{found.record.content_hash[:6]}-{found.record.category.replace(' ', '-')}"
+        ingested.record, id=f"{stem}~{ingested.record.content_hash[:6]}-{ingested.record.category.replace(' ', '-')}"
     )
-    own.add(replace(found, record=record))
+    own.add(replace(ingested, record=record))
     what = _(change.name).lower() if fix is not None else _(record.category)
 
     def take(scene: Scene) -> Scene:

@@ -156,13 +156,13 @@ def place_at(client: Client, shape_id: str, origin: Float[np.ndarray, 3], direct
     size = np.asarray(shape.size_m)
     usable = [h for h in hits_along(origin, direction, places) if fits(h.place, size, h.point, np.eye(3))]
     # A plant clicked onto a wall is not meant to hang there, a picture clicked onto the floor may well stand.
-    found = next((h for h in usable if h.place.upward or hung), None) or _on_ground(origin, direction)
-    if found is None:
+    hit = next((h for h in usable if h.place.upward or hung), None) or _on_ground(origin, direction)
+    if hit is None:
         raise EditRefused("nothing there can support it; click the floor, a table or a wall")
     client.doing = None
     new_id = edits.fresh_id(scene, shape.category)
-    yaw = facing(scene, float(found.point[0]), float(found.point[1]))
-    item, edge = insertion(scene, shape, new_id, found, yaw)
+    yaw = facing(scene, float(hit.point[0]), float(hit.point[1]))
+    item, edge = insertion(scene, shape, new_id, hit, yaw)
     item = replace(item, pose=clear_of_walls(scene, item), by_hand=True)
     known = scene.has_object(edge.parent) or scene.has_plane(edge.parent)
     session.edit(

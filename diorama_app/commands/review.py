@@ -39,15 +39,15 @@ def answer(session: EditorSession, question_id: str, value: str, *, by: Client |
     name = session.scene.object(object_id).label if session.scene.has_object(object_id) else ""
     label = _(N_("delete {label}") if value == NO else STEPS.get(subject, subject)).format(label=name).strip()
 
-    said: Inputs | None = None
+    rescaled: Inputs | None = None
     if subject == "scale" and session.scene.has_object(object_id):
         now_m, true_m = lengths(session.scene, object_id, value)
         label = _("{label} is {metres:g} m high").format(label=name, metres=true_m)
-        said = rescaled_inputs(session, true_m / now_m)
+        rescaled = rescaled_inputs(session, true_m / now_m)
 
     def change(scene: Scene) -> Scene:
         return answered(scene, session.library, question_id, value)
 
     before = session.scene
-    session.edit(label, change, by=by, author=author, by_hand=subject in ("front", "supporter"), inputs=said)
+    session.edit(label, change, by=by, author=author, by_hand=subject in ("front", "supporter"), inputs=rescaled)
     glide(session, before)

@@ -64,14 +64,14 @@ class Guard:
             await answer(send, 503, "too many requests are under way; try again in a moment")
             return
         self._requests += 1
-        told, body = _Told(send), _Body(self, receive)
+        reply, body = _Told(send), _Body(self, receive)
         try:
-            await self._app(scope, body, told)
+            await self._app(scope, body, reply)
         except HTTPException as error:
-            await told.answer(error.status_code, str(error.detail))
+            await reply.answer(error.status_code, str(error.detail))
         except Exception:  # the one place for what nobody expected: whoever asks gets a line, the log the rest
             log.exception("%s %s failed", scope["method"], quote(scope["path"]))
-            await told.answer(500, "internal error; the server's log says more")
+            await reply.answer(500, "internal error; the server's log says more")
         finally:
             self._requests -= 1
             self._bodies -= body.has_place

@@ -96,17 +96,17 @@ def _note(server: NotedServer) -> Path:
 
 def noted_servers() -> tuple[NotedServer, ...]:
     """Servers of this person that answer, the one that was started last first; what others left behind is removed."""
-    found = []
+    servers = []
     for path in sorted(_folder().glob("*.json"), key=lambda p: p.stat().st_mtime, reverse=True):
         try:
             server = NotedServer.model_validate_json(path.read_bytes())
             _answers(server)
-            found.append(server)
+            servers.append(server)
         except (OSError, ValidationError, ValueError) as error:
             log.info("the server of %s does not answer (%s)", path.name, error)
             with contextlib.suppress(OSError):
                 path.unlink()
-    return tuple(found)
+    return tuple(servers)
 
 
 def _answers(server: NotedServer) -> None:

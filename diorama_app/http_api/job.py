@@ -65,15 +65,15 @@ def note_job(folder: Path, job: Job) -> None:
 
 def noted_jobs(folder: Path) -> dict[Path, Job]:
     """Jobs that the projects of a folder tell of, by the project's folder; a project that cannot be read is none."""
-    found: dict[Path, Job] = {}
+    jobs: dict[Path, Job] = {}
     for path in sorted(folder.glob("*/project.json")):
         try:
             entry = Project(path.parent).info().get(JOB)
             if isinstance(entry, dict):
-                found[path.parent] = _checked(file_label(path.parent.name), entry)
+                jobs[path.parent] = _checked(file_label(path.parent.name), entry)
         except (DioramaError, TypeError, ValueError) as error:
             log.warning("%s is not listed: %s", path.parent, error)
-    return found
+    return jobs
 
 
 def _checked(job_id: str, entry: Mapping[str, Any]) -> Job:

@@ -192,17 +192,17 @@ def object_answer(scene: Scene, item: SceneObject, bad: Problems, reasons: Seque
 
 
 def _doubts(item: SceneObject, reasons: Sequence[Reason]) -> list[str]:
-    found = (
+    doubts = (
         [f"it may be wrong (confidence {item.confidence:.2f}); see the questions about it"] if is_unsure(item) else []
     )
     if item.by_hand:
-        return found  # somebody has decided since
+        return doubts  # somebody has decided since
     scores = [c.score for c in item.candidates if c.shape_id != item.shape_id]
     own = next((c.score for c in item.candidates if c.shape_id == item.shape_id), None)
     if own is not None and scores and max(scores) >= RIVAL_SHARE * own > 0:
-        found.append("another shape fits almost as well; see its alternatives")
+        doubts.append("another shape fits almost as well; see its alternatives")
     against = sorted((r for r in reasons if r.object_id == item.id and r.amount < 0), key=lambda r: r.amount)
-    return found + [f"{r.decision}: {r.sentence}" for r in against[:MAX_DOUBTS]]
+    return doubts + [f"{r.decision}: {r.sentence}" for r in against[:MAX_DOUBTS]]
 
 
 def plane_answer(plane: Plane) -> PlaneAnswer:

@@ -31,12 +31,12 @@ def objects_in(
         aspect: width over height.
     """
     half = np.tan(fov_rad / 2)
-    found = []
+    ids = []
     for item in scene.objects:
         p = R_world_camera.T @ (item.pose.position - position)
         if item.hidden or p[2] <= 1e-3:
             continue
         x, y = 0.5 + p[0] / p[2] / (2 * half * aspect), 0.5 + p[1] / p[2] / (2 * half)
         if low[0] <= x <= high[0] and low[1] <= y <= high[1]:
-            found.append(item.id)
-    return tuple(found)
+            ids.append(item.id)
+    return tuple(ids)

@@ -142,8 +142,8 @@ class AllProjects:
                 raise EditRefused("that project is open; open another one first")
             ProjectLock(folder).release()
             name, place = manage.name_of(folder), manage.to_bin(folder, session.projects_dir)
-            said = _("{name} is in the bin.").format(name=name)
-            client.offer(said, _("Restore"), lambda: self._undelete(manage.address_of(place)))
+            message = _("{name} is in the bin.").format(name=name)
+            client.offer(message, _("Restore"), lambda: self._undelete(manage.address_of(place)))
         else:
             self.close()
             project = Project.open(folder)

@@ -107,11 +107,11 @@ class Alternatives:
         return self._grid([self._shape(item, s) for s in near[:SHOWN]])
 
     def _found(self, item: SceneObject, words: str) -> str:
-        found = search(self._client.session.offered, words, k=SHOWN)
-        if not found:
+        shapes = search(self._client.session.offered, words, k=SHOWN)
+        if not shapes:
             none = _("Nothing in the library matches “{words}”. Try another word.").format(words=words)
             return f'<p class="dim">{text(none)}</p>'
-        return f'<div class="grid two">{"".join(self._shape(item, s) for s in found)}</div>'
+        return f'<div class="grid two">{"".join(self._shape(item, s) for s in shapes)}</div>'
 
     def _candidate(self, item: SceneObject, candidate: Candidate) -> str:
         size = [e * s for e, s in zip(candidate.shape_size_m, candidate.pose.scale, strict=True)]

@@ -54,10 +54,10 @@ class PlacingGhost:
                 scene = self._client.viser_client.scene
                 self._node = scene.add_glb(NODE, session.shapes.glb(wanted), position=FAR_M, cast_shadow=False)
         about = None if wanted is None else where_it_goes(session.scene, session.library, session.library.shape(wanted))
-        told = json.dumps(about, separators=(",", ":"))
-        if told != (self._told or "null"):
-            self._told = told
-            self._html.content = run_once(f"window.__dioGhost({told});")
+        state = json.dumps(about, separators=(",", ":"))
+        if state != (self._told or "null"):
+            self._told = state
+            self._html.content = run_once(f"window.__dioGhost({state});")
 
     def _dropped(self, action: Action) -> None:
         """Put what is dragged onto the view where the ray of the pointer ends."""

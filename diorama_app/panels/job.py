@@ -54,10 +54,10 @@ class JobStrip:
         )
 
     def _tell(self, job: dict[str, Any] | None) -> None:
-        told = json.dumps(job)
-        if told != self._told:
-            self._told = told
-            self._html.content = run_once(f"window.__dioJob({told})")
+        state = json.dumps(job)
+        if state != self._told:
+            self._told = state
+            self._html.content = run_once(f"window.__dioJob({state})")
 
     def _act(self, action: Action) -> None:
         session = self._client.session

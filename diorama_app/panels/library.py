@@ -93,17 +93,19 @@ class LibraryPanel:
             return  # a hundred tiles, the same as before
         self._drawn, self._drawn_of = drawn, scene
         self._choices.show(self._drawn_choices(shapes))
-        found = self._found(words, shapes)
+        matches = self._found(words, shapes)
         on_own_shelf = self._filters.shelf == "own"
 
         def tile(shape: Shape) -> str:
             return self._tile(shape, told=scene is not None, own=on_own_shelf)
 
-        shown = found[: self._most]
+        shown = matches[: self._most]
         tiles = self._mine.in_folders(shown, tile) if on_own_shelf else "".join(map(tile, shown))
         tiles = tiles if on_own_shelf or not tiles else f'<div class="grid two">{tiles}</div>'
         more = (
-            button(_("{count} more").format(count=len(found) - self._most), "more") if len(found) > self._most else ""
+            button(_("{count} more").format(count=len(matches) - self._most), "more")
+            if len(matches) > self._most
+            else ""
         )
         unknown = _("Nothing in the library matches “{words}”. Try another word.").format(words=words)
         nothing = unknown if words and not self._filters.any else _(EMPTY[self._filters.shelf])

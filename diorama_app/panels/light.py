@@ -80,10 +80,10 @@ class LightPanel:
         self._lamps.show(_lamps(scene))
         about = json.dumps(told_light(scene), separators=(",", ":"))
         sun = self._client.session.viewport.room_light.told or "null"
-        told = f"window.__dioLight.told({about}); window.__dioSun.told({sun});"
-        if told != self._told:
-            self._told = told
-            self._teller.content = run_once(told)
+        script = f"window.__dioLight.told({about}); window.__dioSun.told({sun});"
+        if script != self._told:
+            self._told = script
+            self._teller.content = run_once(script)
 
     def _act(self, action: Action) -> None:
         merged = action.do in ("hour", "sun", "exposure")

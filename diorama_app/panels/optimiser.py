@@ -92,8 +92,8 @@ class Optimiser:
         self._draw(run)
         labels = {o.id: o.label for o in session.scene.objects}
         ended = run is not None and run.final is not None
-        told = "" if run is None or not ended else _worse(run, labels) + _told(run, session.scene)
-        self._result.show(_choice(run) + told if run is not None and ended else "")
+        report = "" if run is None or not ended else _worse(run, labels) + _told(run, session.scene)
+        self._result.show(_choice(run) + report if run is not None and ended else "")
         self._report.show("" if run is None else report_html(run))
         self._arrangements.show(self._others() if idle else "")
 
@@ -231,9 +231,9 @@ def _worse(run: LayoutRun, labels: Mapping[str, str]) -> str:
         else ""
     )
     bar = f'<div class="bar tight" style="margin:6px 0 0 0">{back}{tidy}</div>' if back or tidy else ""
-    told = "".join(f"<p>{library_text(line)}</p>" for line in lines)
-    told = f"<b>{text(_('What got worse'))}</b>{told}"
-    return f'<div class="card warn" role="status" style="margin-bottom:6px">{told}{bar}</div>'
+    body = "".join(f"<p>{library_text(line)}</p>" for line in lines)
+    body = f"<b>{text(_('What got worse'))}</b>{body}"
+    return f'<div class="card warn" role="status" style="margin-bottom:6px">{body}{bar}</div>'
 
 
 def _told(run: LayoutRun, scene: Scene) -> str:
@@ -243,5 +243,5 @@ def _told(run: LayoutRun, scene: Scene) -> str:
         lines.append(plural(*STAYED, run.left))
     bar = button(_("Tidy up all"), "tidy all", title=_("Also move objects that people placed")) if run.left else ""
     bar = f'<div class="bar tight" style="margin:6px 0 0 0">{bar}</div>' if bar else ""
-    told = "".join(f"<p>{library_text(line)}</p>" for line in lines)
-    return f'<div class="card" role="status" style="margin-bottom:6px">{told}{bar}</div>' if lines else ""
+    body = "".join(f"<p>{library_text(line)}</p>" for line in lines)
+    return f'<div class="card" role="status" style="margin-bottom:6px">{body}{bar}</div>' if lines else ""

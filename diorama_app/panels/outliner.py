@@ -185,12 +185,12 @@ def to_check(scene: Scene, badges: Mapping[str, tuple[str, ...]]) -> tuple[str, 
 def _summary(tree: _Tree) -> str:
     """The number of objects, and of those that a person should look at."""
     count = plural("{count} object", "{count} objects", len(tree.scene.objects))
-    found = len(to_check(tree.scene, tree.badges))
-    if not found:
+    doubtful = len(to_check(tree.scene, tree.badges))
+    if not doubtful:
         return f'<p class="dim">{text(count)}</p>'
     hint = _("Select the objects that collide, float, are outside the room or are uncertain")
     show = button(_("Show"), "check", title=hint)
-    style, check = "padding:5px 9px;margin-bottom:6px", text(_("{count} to check").format(count=found))
+    style, check = "padding:5px 9px;margin-bottom:6px", text(_("{count} to check").format(count=doubtful))
     return f'<div class="job card warn" style="{style}"><span class="words"><b>{count}</b> · {check}</span>{show}</div>'
 
 

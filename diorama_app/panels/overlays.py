@@ -139,12 +139,12 @@ class Silhouettes:
     def refresh(self) -> None:
         """Tell the page what differs from what it knows."""
         client = self._client
-        told = json.dumps(
+        state = json.dumps(
             {"lines": [_line(o) for o in client.marks.outlines], "names": self._names()}, separators=(",", ":")
         )
-        if told != self._told:
-            self._told = told
-            self._html.content = run_once(_TOLD % told)
+        if state != self._told:
+            self._told = state
+            self._html.content = run_once(_TOLD % state)
 
     def _names(self) -> dict[str, str]:
         session = self._client.session

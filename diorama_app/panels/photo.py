@@ -328,8 +328,8 @@ def _intrinsics(given: str) -> tuple[float, float, float, float] | None:
     try:
         fx, fy, cx, cy = (float(part) for part in given.split(","))
     except ValueError as error:
-        said = _("the camera “{words}” is not four numbers; give fx,fy,cx,cy in pixels").format(words=given[:40])
-        raise InputError(said) from error
+        message = _("the camera “{words}” is not four numbers; give fx,fy,cx,cy in pixels").format(words=given[:40])
+        raise InputError(message) from error
     return fx, fy, cx, cy
 
 

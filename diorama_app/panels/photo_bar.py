@@ -22,8 +22,8 @@ def photo_bar(client: Client, inputs: Inputs, proposals: int) -> str:
     scene, further, busy = client.session.scene, client.further_photo, client.session.jobs.status is not None
     if builds_unasked(client.session):
         hint = _("Stop building, and draw boxes around the furniture yourself")
-        mine, said = button(_("Mark it myself"), "by hand", title=hint), _("Building what was found in the photo.")
-        return f'<div class="bar"><span class="lead">{text(said)}</span>{mine}</div>'
+        mine, message = button(_("Mark it myself"), "by hand", title=hint), _("Building what was found in the photo.")
+        return f'<div class="bar"><span class="lead">{text(message)}</span>{mine}</div>'
     pieces = []
     if proposals:
         pieces.append(f'<span class="lead">{text(plural("{count} proposal", "{count} proposals", proposals))}</span>')
@@ -55,8 +55,8 @@ def upside_down_note() -> str:
 def straightened_note() -> str:
     """What is said of a photo that was straightened by its own lines, and the button that undoes it."""
     back = button(_("Undo straightening"), "bend", title=_("Use the photo as it is in its file"))
-    said = _("The photo was straightened because its lens bends straight lines.")
-    return f'<div class="bar"><span class="lead">{text(said)}</span>{back}</div>'
+    message = _("The photo was straightened because its lens bends straight lines.")
+    return f'<div class="bar"><span class="lead">{text(message)}</span>{back}</div>'
 
 
 def _may_be_bent_back(client: Client, inputs: Inputs) -> bool:
@@ -70,12 +70,12 @@ def no_scene_card(client: Client) -> str:
     if inputs is None or not session.unfinished or client.view.canvas.is_open or session.jobs.status is not None:
         return ""
     count = len(inputs.boxes)
-    said = plural(
+    message = plural(
         "There is no scene yet: {count} object is marked.", "There is no scene yet: {count} objects are marked.", count
     )
-    said = said if count else _("There is no scene yet: nothing is marked.")
+    message = message if count else _("There is no scene yet: nothing is marked.")
     buttons = button(marking_label(inputs), "board") + build_button(inputs, busy=False)
-    return f'<div class="card"><p>{text(said)}</p><div class="bar">{buttons}</div></div>'
+    return f'<div class="card"><p>{text(message)}</p><div class="bar">{buttons}</div></div>'
 
 
 def marking_label(inputs: Inputs) -> str:

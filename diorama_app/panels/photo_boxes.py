@@ -242,10 +242,10 @@ MERGED = (
 def box_list(inputs: Inputs, selected: int | None) -> str:
     """All boxes, to be selected and deleted; how to make the first one."""
     if not inputs.boxes:
-        said = _("Click each piece of furniture in the photo, or drag a box around it.")
+        message = _("Click each piece of furniture in the photo, or drag a box around it.")
         if can_find_furniture():
-            said = _("Build the scene: furniture is detected automatically.") + " " + said
-        return f'<p class="dim">{text(said)}</p>'
+            message = _("Build the scene: furniture is detected automatically.") + " " + message
+        return f'<p class="dim">{text(message)}</p>'
     rows = []
     for index, box in enumerate(inputs.boxes):
         unknown = f' <span class="dim">{text(_("unknown kind"))}</span>' if box.category == "object" else ""

@@ -110,12 +110,14 @@ class PhotoStrip:
 def _about(photo: FurtherPhoto) -> str:
     """What is to do with the chosen photo."""
     if photo.camera is None:
-        said = _("Mark the furniture that the first photo does not show, or shows less well. Then add it to the scene.")
+        message = _(
+            "Mark the furniture that the first photo does not show, or shows less well. Then add it to the scene."
+        )
     else:
-        said = plural(
+        message = plural(
             "{count} object of the scene is visible in it.",
             "{count} objects of the scene are visible in it.",
             len(photo.seen),
         )
     out = button(_("Remove photo"), "out", title=_("Remove the photo; its objects stay. One undo step"))
-    return f'<p class="dim" style="margin-top:6px">{text(said)}</p><div class="bar tight">{out}</div>'
+    return f'<p class="dim" style="margin-top:6px">{text(message)}</p><div class="bar tight">{out}</div>'

@@ -48,14 +48,14 @@ class PicturesBelow:
     def refresh(self) -> None:
         """Tell the page what lies below, where it does not know."""
         project = self._client.session.project
-        found = None if project is None else load_plan_picture(project)
-        told = (project, None if found is None else (len(found[0]), found[1]))
-        if told == self._told:
+        stored = None if project is None else load_plan_picture(project)
+        state = (project, None if stored is None else (len(stored[0]), stored[1]))
+        if state == self._told:
             return
-        self._told = told
+        self._told = state
         about: dict[str, Any] = {"upload": self._uuid, "picture": None}
-        if found is not None:
-            jpeg, picture = found
+        if stored is not None:
+            jpeg, picture = stored
             url = "data:image/jpeg;base64," + base64.b64encode(jpeg).decode()
             about["picture"] = {"url": url, "size": picture.size, "at": picture.at, "metres": picture.metres}
         self._teller.content = run_once(f"window.__dioPlanTools.given({json.dumps(about)})")
@@ -68,12 +68,12 @@ class PicturesBelow:
             InputError: it cannot lie there.
         """
         project = self._project()
-        found = load_plan_picture(project)
+        stored = load_plan_picture(project)
         if place is None:
             place_plan_picture(project, None)
-        elif found is not None:
+        elif stored is not None:
             x, y = place["at"]
-            place_plan_picture(project, PlanPicture(found[1].size, (float(x), float(y)), float(place["metres"])))
+            place_plan_picture(project, PlanPicture(stored[1].size, (float(x), float(y)), float(place["metres"])))
         for client in self._client.session.clients.values():
             client.refresh()
 

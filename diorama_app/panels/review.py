@@ -201,8 +201,8 @@ class Review:
             return
         kind = understand_label(words).category
         if kind.name == UNKNOWN.name:
-            said = _("the library has no kind of object called “{words}”; try another word").format(words=words)
-            raise EditRefused(said)
+            message = _("the library has no kind of object called “{words}”; try another word").format(words=words)
+            raise EditRefused(message)
         show_value(self._other, "")
         review.answer(self._client.session, question.id, kind.name, by=self._client)
         self._show_object()

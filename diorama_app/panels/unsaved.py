@@ -42,12 +42,12 @@ class UnsavedChanges:
         return f'<div class="card warn">{text(_(session.autosave.trouble))}</div>' if session.autosave.trouble else ""
 
     def _offer(self) -> str:
-        found = self._found
-        if found is None or not found.path.exists():
+        unsaved = self._found
+        if unsaved is None or not unsaved.path.exists():
             return ""
-        said = _("Changes of {time} were not saved when Diorama ended.").format(time=found.when)
+        message = _("Changes of {time} were not saved when Diorama ended.").format(time=unsaved.when)
         return (
-            f'<div class="card warn">{text(said)}'
+            f'<div class="card warn">{text(message)}'
             f'<div class="bar tight" style="margin:6px 0 0 0">'
             + button(_("Restore unsaved changes"), "restore", title=_("One undo step"))
             + button(_("Discard"), "discard", title=_("Delete these changes permanently"))
@@ -70,7 +70,7 @@ class UnsavedChanges:
         self._client.post(lambda: self._do(action.do))
 
     def _do(self, what: str) -> None:
-        session, found = self._client.session, self._found
+        session, unsaved = self._client.session, self._found
         if what in ("copy", "again") and session.project is not None:
             copied = what == "copy"
             folder = session.project.folder
@@ -82,14 +82,14 @@ class UnsavedChanges:
         if what in ("build", "no build"):
             self._settle_build(go_on=what == "build")
             return
-        if found is None or not found.path.exists():
+        if unsaved is None or not unsaved.path.exists():
             return
         if what == "restore" and session.project is not None:
-            scene = found.scene()
+            scene = unsaved.scene()
             session.textures = {**session.textures, **session.project.textures(scene)}
             session.commit("restore unsaved changes", scene, by=self._client, selection=())
         if what in ("restore", "discard"):
-            found.discard()
+            unsaved.discard()
             session.refresh_panels()
 
     def _settle_build(self, *, go_on: bool) -> None:

@@ -148,7 +148,7 @@ def _of_file(path: Path, name: str, photo_size: tuple[int, int] | None) -> tuple
     if solid and not head.text:
         return solid
     try:
-        found = recognised(path.read_bytes(), name, photo_size)
+        readings = recognised(path.read_bytes(), name, photo_size)
     except InputError as error:
         solid = solid or (() if flat else _solid_readings(path, head))
         other = what_else(head)
@@ -157,7 +157,10 @@ def _of_file(path: Path, name: str, photo_size: tuple[int, int] | None) -> tuple
         if not solid:
             raise
         return solid
-    return (*(_of_sort(what, name) for what in found), *(r for r in solid if r.action != "scene" or _is_readable(path)))
+    return (
+        *(_of_sort(what, name) for what in readings),
+        *(r for r in solid if r.action != "scene" or _is_readable(path)),
+    )
 
 
 def _of_sort(what: Recognised, name: str) -> Reading:
@@ -270,10 +273,10 @@ def _of_photos(folder: Path, name: str, names: Sequence[str], photo_size: tuple[
 
 def _alone(path: Path) -> tuple[Recognised, ...]:
     """What a file of several is: a picture is depth or masks where it looks so by itself."""
-    found = recognised_alone(path.read_bytes(), path.name)
+    readings = recognised_alone(path.read_bytes(), path.name)
     words = f"{path.parent.name} {path.stem}".lower()
-    hinted = [what for what in found if what.sort.removesuffix("s") in words]
-    return tuple(dict.fromkeys((*hinted, *found)))
+    hinted = [what for what in readings if what.sort.removesuffix("s") in words]
+    return tuple(dict.fromkeys((*hinted, *readings)))
 
 
 def _grouped(photo: str, photos: Sequence[str], inputs: dict[str, Recognised]) -> DroppedPhoto:

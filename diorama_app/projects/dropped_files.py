@@ -48,14 +48,14 @@ def upload_of(photo: DroppedPhoto, files: Mapping[str, bytes]) -> Upload:
 def sources_of(chosen: Sequence[tuple[Sort, str]], files: Mapping[str, bytes]) -> dict[Sort, Source]:
     """Files by their sort; masks in several files are packed into one."""
     masks = [name for sort, name in chosen if sort == "masks"]
-    found = {sort: _source(name, files) for sort, name in chosen}
+    by_sort = {sort: _source(name, files) for sort, name in chosen}
     if len(masks) > 1:
         packed = io.BytesIO()
         with zipfile.ZipFile(packed, "w") as archive:
             for name in masks:
                 archive.writestr(Path(name).name, files[name])
-        found["masks"] = Source(packed.getvalue(), "masks.zip")
-    return found
+        by_sort["masks"] = Source(packed.getvalue(), "masks.zip")
+    return by_sort
 
 
 def _source(name: str, files: Mapping[str, bytes]) -> Source:

@@ -67,12 +67,12 @@ def unpack_project(file: Path, projects_dir: Path, *, folder: Path | None = None
     if folder is not None and folder.exists():
         raise ProjectError(f"{folder} exists already; choose a new folder")
     with unpacked(file, MAX_UNPACKED) as inside:
-        found = content_of(inside)
-        if not (found / "project.json").is_file():
+        contents = content_of(inside)
+        if not (contents / "project.json").is_file():
             raise InputError(
                 f"{file.name} is not a packed project (it has no project.json); make one with 'project zip'"
             )
-        received = Project.open(found)
+        received = Project.open(contents)
         if received.has_scene:
             received.load_scene()
         # What comes from elsewhere names no folders of this machine.
@@ -84,7 +84,7 @@ def unpack_project(file: Path, projects_dir: Path, *, folder: Path | None = None
             target.parent.mkdir(parents=True, exist_ok=True)
             # Copied beside and renamed, so that a copy cut short is never taken for a project.
             with tempfile.TemporaryDirectory(prefix=".copy-", dir=target.parent) as part:
-                shutil.copytree(found, Path(part) / target.name, ignore=not_copied)
+                shutil.copytree(contents, Path(part) / target.name, ignore=not_copied)
                 (Path(part) / target.name).rename(target)
         except OSError as error:
             raise ProjectError(f"cannot write {target} ({error.strerror or error}); free some space") from error

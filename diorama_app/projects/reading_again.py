@@ -46,15 +46,15 @@ def upload_again(
     if "photo" not in given:
         photo = replace(photo, straightened=None)  # the file that bends is not here
     known = "depth" not in new or new["depth"].data == given.get("depth")
-    told = answer or (depth_answer(project) if known else DepthAnswer(""))
+    reading = answer or (depth_answer(project) if known else DepthAnswer(""))
     return Upload(
         given.get("photo") or _png(photo.rgb[::-1, ::-1] if photo.half_turned else photo.rgb),
         photo.name,
         depth=new.get("depth") or _given_depth(project),
         boxes=new.get("boxes") or (boxes_json(before.boxes, photo) if before.boxes else None),
         masks=new.get("masks", given.get("masks")),
-        depth_scale=told.per_metre,
-        depth_kind=told.kind,
+        depth_scale=reading.per_metre,
+        depth_kind=reading.kind,
         intrinsics=intrinsics,
         half_turn=bool(photo.half_turned) != turn,
         bend=0.0 if bend else photo.straightened or 0.0,
@@ -71,14 +71,14 @@ def with_depth(new: Mapping[Sort, Source], project: Project | None) -> dict[Sort
     Raises:
         InputError: there is confidence, but no depth.
     """
-    found = dict(new)
-    confidence = found.pop("confidence", None)
+    fields = dict(new)
+    confidence = fields.pop("confidence", None)
     if confidence is None:
-        return found
-    depth = found.get("depth") or (None if project is None else _given_depth(project))
+        return fields
+    depth = fields.get("depth") or (None if project is None else _given_depth(project))
     if depth is None:
         raise InputError(f"{confidence.name}: this is the confidence of a depth map; add the depth map, too")
-    return {**found, "depth": replace(depth, companions=(confidence,))}
+    return {**fields, "depth": replace(depth, companions=(confidence,))}
 
 
 def _given_depth(project: Project) -> Source | None:

@@ -77,19 +77,19 @@ def builds_unasked(session: EditorSession) -> bool:
     return status is not None and status.title == _(UNASKED) and not status.cancelling
 
 
-def build_found(session: EditorSession, found: Sequence[LabelledBox]) -> None:
+def build_found(session: EditorSession, boxes: Sequence[LabelledBox]) -> None:
     """Build the scene of the open project's photo with what was found in it beside what is marked.
 
     Args:
         session: where.
-        found: boxes of which nobody looked at one.
+        boxes: boxes of which nobody looked at one.
 
     Raises:
         EditRefused: the project is read-only.
     """
     inputs = session.inputs
     if inputs is not None:
-        given = replace(inputs, boxes=(*inputs.boxes, *found))
+        given = replace(inputs, boxes=(*inputs.boxes, *boxes))
         start_build(session, given, _(UNASKED), _("build the scene"))
 
 
@@ -141,7 +141,7 @@ def start_build(session: EditorSession, inputs: Inputs, title: str, label: str, 
     if project is None:
         raise EditRefused("no project is open")
 
-    before, others, said = session.scene.camera, session.further_photos, session.inputs
+    before, others, inputs_before = session.scene.camera, session.further_photos, session.inputs
 
     def work(progress: Progress) -> None:
         from diorama_core.project.build import build_project, with_found_boxes
@@ -158,7 +158,9 @@ def start_build(session: EditorSession, inputs: Inputs, title: str, label: str, 
                 again = _with_others(project, built, before, others, session.offered, progress.part(alone, 1.0))
         made = NewScene.of(built, with_found_boxes(inputs, built), warnings, again)
         session.autosave.save_soon(project, made.scene)  # whatever is open by then
-        session.ui_thread.post(lambda: show_built(session, project, made, label=label, said=said, message=message))
+        session.ui_thread.post(
+            lambda: show_built(session, project, made, label=label, inputs_before=inputs_before, message=message)
+        )
 
     session.interrupted = False
     session.jobs.start("build", title, work)
@@ -178,7 +180,7 @@ def _with_others(
     from diorama_core.pipeline.presets import stages_for
     from diorama_core.project.further_photos import note_placed
 
-    found = with_photos_again(
+    joined = with_photos_again(
         built.scene,
         built.inputs,
         before,
@@ -188,9 +190,9 @@ def _with_others(
         lambda free: recipe("feasible", library, free, depth_measured=True),
         progress,
     )
-    project.save_textures(found.textures)
-    note_placed(project, found.scene)
-    return found
+    project.save_textures(joined.textures)
+    note_placed(project, joined.scene)
+    return joined
 
 
 @contextlib.contextmanager
@@ -215,7 +217,7 @@ def show_built(
     made: NewScene,
     *,
     label: str,
-    said: Inputs | None,
+    inputs_before: Inputs | None,
     message: str = "",
 ) -> None:
     """Show the built scene of the open project to all clients, as one undo step.
@@ -225,7 +227,7 @@ def show_built(
         project: the project that was built.
         made: what was built, which is saved or being saved.
         label: what the undo step is called.
-        said: what the document said of the photo when the build began; what a person has changed since stays.
+        inputs_before: what the document said of the photo when the build began; what a person has changed since stays.
         message: what is said instead of the number of objects.
     """
     if project != session.project:
@@ -239,7 +241,7 @@ def show_built(
     # Photos that were added or taken out meanwhile are as the person left them.
     known = {} if made.again is None else {p.name: p for p in made.again.photos}
     further = tuple(known.get(p.name, p) for p in session.further_photos)
-    inputs = made.inputs if session.inputs is said else None
+    inputs = made.inputs if session.inputs is inputs_before else None
     session.saving.inputs_are_saved(inputs)
     session.commit(label, made.scene, inputs=inputs, further=further if made.again is not None else None)
     session.view.show_whole_room()

@@ -83,8 +83,8 @@ def rescale_room(client: Client, label: str, now_m: float, true_m: float) -> Non
         now_m: its length in the scene.
         true_m: its true length.
     """
-    said = rescaled_inputs(client.session, true_m / now_m)
-    client.session.edit(label, lambda s: rescale_to_length(s, now_m, true_m), by=client, inputs=said)
+    rescaled = rescaled_inputs(client.session, true_m / now_m)
+    client.session.edit(label, lambda s: rescale_to_length(s, now_m, true_m), by=client, inputs=rescaled)
 
 
 def rescaled_inputs(session: EditorSession, factor: float) -> Inputs | None:
@@ -101,13 +101,15 @@ def camera_height_m(scene: Scene) -> float | None:
 def check_fov(fov_deg: float) -> None:
     """Raises `InputError` when the field of view is not plausible."""
     if not MIN_FOV_DEG <= fov_deg <= MAX_FOV_DEG:
-        said = _("a field of view of {fov:g}° is not possible; give {least:g} to {most:g}°")
-        raise InputError(said.format(fov=fov_deg, least=MIN_FOV_DEG, most=MAX_FOV_DEG))
+        message = _("a field of view of {fov:g}° is not possible; give {least:g} to {most:g}°")
+        raise InputError(message.format(fov=fov_deg, least=MIN_FOV_DEG, most=MAX_FOV_DEG))
 
 
 def checked_angles(tilt_deg: float, roll_deg: float) -> CameraAttitude:
     """Camera attitude; raises `InputError` when it is not plausible."""
     if abs(tilt_deg) > MAX_TILT_DEG or abs(roll_deg) > MAX_ROLL_DEG:
-        said = _(IMPOSSIBLE_ANGLES).format(tilt=tilt_deg, roll=roll_deg, max_tilt=MAX_TILT_DEG, max_roll=MAX_ROLL_DEG)
-        raise InputError(said)
+        message = _(IMPOSSIBLE_ANGLES).format(
+            tilt=tilt_deg, roll=roll_deg, max_tilt=MAX_TILT_DEG, max_roll=MAX_ROLL_DEG
+        )
+        raise InputError(message)
     return CameraAttitude(float(np.radians(tilt_deg)), float(np.radians(roll_deg)))

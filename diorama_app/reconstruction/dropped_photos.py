@@ -52,8 +52,8 @@ def begin_each(client: Client, name: str, content: bytes, reading: Reading) -> N
             process.close()
         if not made:
             raise InputError(failed[0])
-        said = _("Each of the {count} photos has its own project; this is the first.").format(count=len(made))
-        client.post(lambda: session.visit(client, made[0], " ".join((said, *failed[:3]))))
+        message = _("Each of the {count} photos has its own project; this is the first.").format(count=len(made))
+        client.post(lambda: session.visit(client, made[0], " ".join((message, *failed[:3]))))
 
     session.jobs.start("import", _("Reading {count} photos").format(count=len(reading.photos)), work)
     client.close_dialog()
@@ -88,10 +88,10 @@ def build_one_room(client: Client, name: str, content: bytes, reading: Reading) 
             except BaseException:
                 shutil.rmtree(output, ignore_errors=True)
                 raise
-        said = _("One room from {photos} photos; objects: {objects}.").format(
+        message = _("One room from {photos} photos; objects: {objects}.").format(
             photos=len(built.photos), objects=len(built.room.scene.objects)
         )
-        client.post(lambda: session.visit(client, built.project, said))
+        client.post(lambda: session.visit(client, built.project, message))
 
     session.jobs.start("build", _("Building a room from {count} photos").format(count=len(reading.photos)), work)
     client.close_dialog()
@@ -128,10 +128,10 @@ def build_all_round(client: Client, upload: Upload) -> None:
         except BaseException:
             shutil.rmtree(output, ignore_errors=True)
             raise
-        said = _("The whole room from a 360 degree photo; objects: {objects}.").format(
+        message = _("The whole room from a 360 degree photo; objects: {objects}.").format(
             objects=len(built.room.scene.objects)
         )
-        client.post(lambda: session.visit(client, built.project, said))
+        client.post(lambda: session.visit(client, built.project, message))
 
     session.jobs.start("build", _("Building the whole room of a 360 degree photo"), work)
     client.close_dialog()

@@ -86,8 +86,8 @@ def _pull(client: Client, missing: Sequence[Network], accepted: frozenset[str], 
         ModelStore.default(), missing, accept=lambda asked: {n.id for n in asked} <= accepted, progress=progress
     )
     _try([n for n in missing if n.id in fetched], progress)
-    said = plural(*READY, len(fetched))
-    client.post(lambda: client.session.notice_all(said, "good"))
+    message = plural(*READY, len(fetched))
+    client.post(lambda: client.session.notice_all(message, "good"))
 
 
 def _try(fetched: Sequence[Network], progress: Progress) -> None:
@@ -99,8 +99,8 @@ def _try(fetched: Sequence[Network], progress: Progress) -> None:
 
     failed = rejected(ModelStore.default(), [n.id for n in fetched], example_inputs().inputs, progress)
     if failed:
-        told = "; ".join(f"{c.network.title}: {c.words}" for c in failed)
-        raise UnavailableError(_("damaged or changed files were deleted: {files}").format(files=told))
+        damaged = "; ".join(f"{c.network.title}: {c.words}" for c in failed)
+        raise UnavailableError(_("damaged or changed files were deleted: {files}").format(files=damaged))
 
 
 def find_furniture(client: Client) -> None:
@@ -120,17 +120,17 @@ def _photo(client: Client) -> Photo:
 def _find(client: Client, photo: Photo, progress: Progress) -> None:
     from diorama_core.pipeline.presets import propose_boxes  # the whole pipeline; opening a project does without
 
-    found = propose_boxes(photo, progress=progress)
-    if found is None:
+    boxes = propose_boxes(photo, progress=progress)
+    if boxes is None:
         raise InputError(NO_DETECTOR)
-    client.post(lambda: _put_boxes(client, photo, found))
+    client.post(lambda: _put_boxes(client, photo, boxes))
 
 
-def _put_boxes(client: Client, photo: Photo, found: Sequence[LabelledBox]) -> None:
+def _put_boxes(client: Client, photo: Photo, boxes: Sequence[LabelledBox]) -> None:
     inputs = client.marked
     if inputs is None or inputs.photo is not photo:
         return  # somebody opened another project here meanwhile
-    marked = with_boxes_added(inputs, found)
+    marked = with_boxes_added(inputs, boxes)
     more = len(marked.boxes) - len(inputs.boxes)
     if not more:
         client.notice(_("No more furniture was detected in this photo."), "good")

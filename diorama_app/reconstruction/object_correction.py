@@ -29,8 +29,8 @@ def add_from_photo(client: Client, box: Box, label: str) -> None:
     session = client.session
     new_id = edits.fresh_id(session.scene, understand_label(label).category.name)
 
-    def put(scene: Scene, found: Found) -> Scene:
-        return inserted(scene, found, session.library)
+    def put(scene: Scene, result: Found) -> Scene:
+        return inserted(scene, result, session.library)
 
     step = _("insert {label} from the photo").format(label=label)
     _reconstruct(client, None, _labelled(box, label), new_id, step, put, select_new=True)
@@ -43,8 +43,8 @@ def rename_class(client: Client, object_id: str, label: str) -> None:
     if not words:
         raise EditRefused("type a category, for example armchair")
 
-    def put(scene: Scene, found: Found) -> Scene:
-        return renamed(scene, object_id, found)
+    def put(scene: Scene, result: Found) -> Scene:
+        return renamed(scene, object_id, result)
 
     assert item.box_px is not None
     step = _("change {label} to {words}").format(label=item.label, words=words)
@@ -99,7 +99,7 @@ def _reconstruct(
     def work(progress: Progress) -> None:
         from diorama_core.pipeline.reconstruct_object import reconstruct_object
 
-        found = reconstruct_object(
+        result = reconstruct_object(
             scene,
             inputs,
             session.offered,
@@ -112,9 +112,9 @@ def _reconstruct(
 
         def show() -> None:
             there = {o.id for o in session.scene.objects}
-            session.add_textures(found.pictures)
-            said = with_correction(_inputs(client), before, box, drawn)
-            session.edit(label, lambda s: put(s, found), by=client, inputs=said)
+            session.add_textures(result.pictures)
+            corrected = with_correction(_inputs(client), before, box, drawn)
+            session.edit(label, lambda s: put(s, result), by=client, inputs=corrected)
             new = [o.id for o in session.scene.objects if o.id not in there]
             if select_new and new:
                 client.view.canvas.close()
@@ -126,7 +126,7 @@ def _reconstruct(
 
 
 def _replaced(client: Client, object_id: str) -> Callable[[Scene, Found], Scene]:
-    return lambda scene, found: replaced(scene, object_id, found, client.session.library)
+    return lambda scene, result: replaced(scene, object_id, result, client.session.library)
 
 
 def _labelled(box: Box, label: str) -> LabelledBox:
@@ -143,8 +143,8 @@ def _inputs(client: Client) -> Inputs:
 def _seen(client: Client, object_id: str) -> SceneObject:
     item = client.session.scene.object(object_id)
     if item.box_px is None:
-        said = _("{label} was not found in the photo; draw a box around it in the Photo tab instead")
-        raise EditRefused(said.format(label=item.label))
+        message = _("{label} was not found in the photo; draw a box around it in the Photo tab instead")
+        raise EditRefused(message.format(label=item.label))
     if item.locked:
         raise EditRefused(_("{label} is locked; unlock it first").format(label=item.label))
     return item

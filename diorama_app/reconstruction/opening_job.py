@@ -41,8 +41,8 @@ def open_file(client: Client, name: str, content: bytes) -> None:
         open_packed(client, file_name, content)
         return
     if Path(file_name).suffix.lower() not in SUFFIXES:
-        said = _("{file} cannot be opened as a scene; choose a file of one of these kinds: {kinds}")
-        raise InputError(said.format(file=file_name, kinds=", ".join(SUFFIXES)))
+        message = _("{file} cannot be opened as a scene; choose a file of one of these kinds: {kinds}")
+        raise InputError(message.format(file=file_name, kinds=", ".join(SUFFIXES)))
 
     def work(progress: Progress) -> None:
         with tempfile.TemporaryDirectory(prefix="upload-") as folder:
@@ -70,8 +70,8 @@ def open_packed(client: Client, name: str, content: bytes) -> None:
             path = Path(folder) / file_name
             write_atomically(path, content, error=InputError)
             project = unpack_project(path, session.projects_dir)
-        said = _("Opened {name} from {file}.").format(name=project.name, file=file_name)
-        client.post(lambda: session.visit(client, project, said))
+        message = _("Opened {name} from {file}.").format(name=project.name, file=file_name)
+        client.post(lambda: session.visit(client, project, message))
 
     session.jobs.start("import", _("Opening {file}").format(file=file_name), work)
 

@@ -44,8 +44,8 @@ def take_photo(client: Client, file_name: str, inputs: Inputs) -> None:
     need_joinable(session.scene, session.inputs)
     photos = session.further_photos
     if len(photos) >= MAX_PHOTOS:
-        said = _("a room can have at most {count} more photos; remove one first").format(count=MAX_PHOTOS)
-        raise EditRefused(said)
+        message = _("a room can have at most {count} more photos; remove one first").format(count=MAX_PHOTOS)
+        raise EditRefused(message)
     name = fresh_name(file_name, [p.name for p in photos])
     further = (*photos, FurtherPhoto(name, inputs))
     session.commit(_("add the photo {name}").format(name=name), session.scene, further=further, by=client)
@@ -135,7 +135,7 @@ def _join_first(client: Client, inputs: Inputs) -> None:
         from diorama_core.pipeline.presets import stages_for
 
         session.autosave.flush()
-        found = with_photo_of_scan(
+        opened = with_photo_of_scan(
             Opened(scene),
             inputs,
             library,
@@ -143,22 +143,22 @@ def _join_first(client: Client, inputs: Inputs) -> None:
             lambda free: recipe("feasible", library, free, depth_measured=True),
             progress,
         )
-        client.post(lambda: _show_first(client, project, scene, inputs, found))
+        client.post(lambda: _show_first(client, project, scene, inputs, opened))
 
     session.jobs.start("join", _("Adding {name} to the scene").format(name=inputs.photo.name), work)
 
 
-def _show_first(client: Client, project: Project, before: Scene, inputs: Inputs, found: Opened) -> None:
+def _show_first(client: Client, project: Project, before: Scene, inputs: Inputs, opened: Opened) -> None:
     session = client.session
     if session.project != project:
         return  # another project was opened here meanwhile
     if session.scene is not before or session.inputs is not inputs:
         raise EditRefused("the scene was changed while the photo was added, so it stays as it is; add the photo again")
-    session.add_textures(dict(found.textures))
+    session.add_textures(dict(opened.textures))
     label = _("add the objects of {name}").format(name=inputs.photo.name)
-    session.commit(label, found.scene, by=client, selection=(), inputs=found.inputs)
+    session.commit(label, opened.scene, by=client, selection=(), inputs=opened.inputs)
     session.view.show_whole_room()
-    session.notice_all(f"{found.changes[-1]}.", "good")
+    session.notice_all(f"{opened.changes[-1]}.", "good")
 
 
 def _joined(
@@ -204,5 +204,5 @@ def _show(client: Client, project: Project, before: Scene, photo: FurtherPhoto, 
     further = tuple(added.photo if p is photo else p for p in now)
     label = _("add the objects of {name}").format(name=photo.name)
     session.commit(label, added.scene, by=client, selection=added.new, further=further)
-    said = _("{name} is added: {new} new objects, {known} already known. Click the photo to show its view.")
-    session.notice_all(said.format(name=photo.name, new=len(added.new), known=len(added.joined)), "good")
+    message = _("{name} is added: {new} new objects, {known} already known. Click the photo to show its view.")
+    session.notice_all(message.format(name=photo.name, new=len(added.new), known=len(added.joined)), "good")

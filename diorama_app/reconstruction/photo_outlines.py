@@ -39,13 +39,13 @@ class PhotoOutlines:
             from diorama_core.pipeline.runner import Runner
 
             runner = Runner(project.stages_folder)
-            found, _unused = with_usable_networks(
+            outlined, _unused = with_usable_networks(
                 lambda store: stages_for("auto", inputs, session.offered, store=store),
                 lambda stages: evaluate(stages, {"given": inputs}, ("objects",), runner, progress)["objects"],
             )
 
             def keep() -> None:
-                self._of, self._found = inputs, found
+                self._of, self._found = inputs, outlined
                 session.refresh_panels()
 
             client.post(keep)

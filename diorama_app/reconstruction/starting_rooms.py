@@ -35,8 +35,8 @@ def start_empty_room(client: Client, width_m: float, depth_m: float, height_m: f
     project = begin_with_scene(
         session.projects_dir, _("Empty room"), scene, made, ("started as an empty room",), session.library
     )
-    said = _("Insert furniture from the Library tab; click a wall or the floor to paint or cover it.")
-    session.visit(client, project, said)
+    message = _("Insert furniture from the Library tab; click a wall or the floor to paint or cover it.")
+    session.visit(client, project, message)
 
 
 def open_example(client: Client, kind: str) -> None:

@@ -216,11 +216,11 @@ class Suggestions:
         return self._ranked(boxes)[-1][0]
 
 
-def unmarked(found: Detections, x: float, y: float, marked: Sequence[Box]) -> Detections:
+def unmarked(detections: Detections, x: float, y: float, marked: Sequence[Box]) -> Detections:
     """The boxes that a click at (x, y) may mean beside those that are marked there: of smaller objects on these.
 
     Args:
-        found: boxes that are likely.
+        detections: boxes that are likely.
         x: of the click, pixels of the photo.
         y: likewise.
         marked: boxes that are there.
@@ -228,6 +228,6 @@ def unmarked(found: Detections, x: float, y: float, marked: Sequence[Box]) -> De
     boxes = np.array(marked, dtype=float).reshape(-1, 4)
     here = boxes[np.all((boxes[:, :2] <= (x, y)) & (boxes[:, 2:] >= (x, y)), axis=1)]
     if not len(here):
-        return found
-    smaller = areas(found.boxes) < SMALLER * areas(here).min()
-    return found.rows(np.flatnonzero(smaller & (overlaps(found.boxes, boxes).max(axis=1) < SAME_IOU)))
+        return detections
+    smaller = areas(detections.boxes) < SMALLER * areas(here).min()
+    return detections.rows(np.flatnonzero(smaller & (overlaps(detections.boxes, boxes).max(axis=1) < SAME_IOU)))

@@ -59,32 +59,38 @@ def creation(session: EditorSession, words: str) -> Callable[[Progress], tuple[P
     from diorama_core.perception.language.client import LmmSettings
     from diorama_core.text.pictures import ImageSettings
 
-    said = " ".join(words.split())
-    if not said:
+    prompt = " ".join(words.split())
+    if not prompt:
         raise InputError("describe the room, for example: a reading corner with two armchairs")
     endpoint, model = ImageSettings.from_environment(), LmmSettings.from_environment()
 
     def create(progress: Progress) -> tuple[Project, str]:
-        name = said[:1].upper() + said[1:60]
-        make = partial(_compose, said, model=model) if endpoint is None else partial(_draw_and_build, said, endpoint)
-        with new_project(session.projects_dir, said.replace(".", " "), name=name, library=session.library) as project:
+        name = prompt[:1].upper() + prompt[1:60]
+        make = (
+            partial(_compose, prompt, model=model) if endpoint is None else partial(_draw_and_build, prompt, endpoint)
+        )
+        with new_project(session.projects_dir, prompt.replace(".", " "), name=name, library=session.library) as project:
             what = make(project, session.offered, progress=progress)
         return project, what
 
     return create
 
 
-def _compose(said: str, project: Project, library: ShapeLibrary, model: LmmSettings | None, progress: Progress) -> str:
+def _compose(
+    prompt: str, project: Project, library: ShapeLibrary, model: LmmSettings | None, progress: Progress
+) -> str:
     """Compose the room in a new project; what to tell the user."""
     from diorama_core.text.scene_from_text import scene_from_text
 
-    made = scene_from_text(said, library, language_model=model, progress=progress)
+    made = scene_from_text(prompt, library, language_model=model, progress=progress)
     project.save_textures(made.textures)
     project.save_scene(made.scene)
     project.update_info(notes=list(made.notes))
     unmet = [note for note in made.notes[1:] if not note.startswith(("added", "mended"))]
-    said = plural(*COMPOSED, len(made.scene.objects))
-    return f"{said} {sentences(map(_, unmet))}" if unmet else f"{said} {_('It has everything that you asked for.')}"
+    message = plural(*COMPOSED, len(made.scene.objects))
+    return (
+        f"{message} {sentences(map(_, unmet))}" if unmet else f"{message} {_('It has everything that you asked for.')}"
+    )
 
 
 def _draw_and_build(
@@ -98,11 +104,11 @@ def _draw_and_build(
     made = picture_of(asked, endpoint, progress.part(0.0, 0.2))
     built = build_project(project, made.inputs, library, warnings=made.notes, progress=progress.part(0.2, 1.0))
     count = len(built.scene.objects)
-    said = plural("The scene has {count} object.", "The scene has {count} objects.", count)
-    said = said if count else _("No furniture was found; draw boxes.")
+    message = plural("The scene has {count} object.", "The scene has {count} objects.", count)
+    message = message if count else _("No furniture was found; draw boxes.")
     lacking = unmet(asked, built.scene)
     if lacking:
         names = ", ".join(lacking)
         project.update_info(notes=[f"missing from the scene: {names}", *project.info().get("notes", ())])
-        said += " " + _("Missing from the scene: {names}.").format(names=names)
-    return f"{said} {_('The picture is by {model}.').format(model=endpoint.model)}"
+        message += " " + _("Missing from the scene: {names}.").format(names=names)
+    return f"{message} {_('The picture is by {model}.').format(model=endpoint.model)}"

@@ -41,8 +41,8 @@ def export(client: Client, format_name: str, options: ExportOptions) -> None:
     if not scene.objects and not scene.architecture.planes:
         raise EditRefused("there is nothing to export yet; build or open a scene first")
     if format_name not in EXPORT_FORMATS:
-        said = _("cannot export as {format!r}; choose a format from the list").format(format=format_name)
-        raise ExportError(said)
+        message = _("cannot export as {format!r}; choose a format from the list").format(format=format_name)
+        raise ExportError(message)
     chosen = EXPORT_FORMATS[format_name]
     chosen.writer()  # says at once what is missing
     name = project.name if project is not None else "scene"
@@ -82,8 +82,8 @@ def hand_over(client: Client, name: str, content: bytes, progress: Progress) -> 
 
     def download() -> None:
         client.view.download(name, content)
-        said = _("{name} ({size}) is in your downloads.").format(name=name, size=size_in_words(len(content)))
-        client.notice(said, "good")
+        message = _("{name} ({size}) is in your downloads.").format(name=name, size=size_in_words(len(content)))
+        client.notice(message, "good")
 
     client.post(download)
 
@@ -163,8 +163,8 @@ def picture_size(client: Client, view: PictureView, width: int) -> tuple[int, in
     """
     most = MAX_FILM_WIDTH if view == "turntable" else MAX_WIDTH
     if not 16 <= width <= most:
-        said = _("a picture {width} pixels wide cannot be made here; choose 16 to {most}")
-        raise InputError(said.format(width=width, most=most))
+        message = _("a picture {width} pixels wide cannot be made here; choose 16 to {most}")
+        raise InputError(message.format(width=width, most=most))
     if view == "turntable":
         return width // 2 * 2, round(width / FILM_ASPECT / 2) * 2  # H.264 asks for even numbers
     if view == "here":

@@ -119,8 +119,8 @@ class Reader:
         then: Callable[[Dropped], None],
     ) -> None:
         try:
-            found = self._process.call(file[1], understood, *file)
-            post(lambda: then(found))
+            readings = self._process.call(file[1], understood, *file)
+            post(lambda: then(readings))
         except Exception as error:  # as above
             post(_raising(error))
         finally:

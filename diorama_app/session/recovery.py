@@ -99,8 +99,8 @@ class Recovery:
     def left_behind(self, project: Project) -> Unsaved | None:
         """The newest change of an earlier session that the project's own file does not have."""
         saved = _saved_digest(project)
-        found = [u for u in self._of_others(project) if u.is_settled and u.follows(saved)]
-        newest = max(found, key=lambda u: u.at, default=None)
+        candidates = [u for u in self._of_others(project) if u.is_settled and u.follows(saved)]
+        newest = max(candidates, key=lambda u: u.at, default=None)
         return None if newest is None or _digest(newest.path) == saved else newest
 
     def clean_up(self, project: Project) -> None:
@@ -120,12 +120,12 @@ class Recovery:
         remove_leftovers(project.folder)
 
     def _of_others(self, project: Project) -> list[Unsaved]:
-        found = []
+        unsaved = []
         for path in self._folder.glob(f"{_place(project)}-*.json"):
             with contextlib.suppress(OSError):  # its session may be removing it
                 if path.stem.split("-")[1] != self._session:
-                    found.append(Unsaved(path, path.stat().st_mtime))
-        return found
+                    unsaved.append(Unsaved(path, path.stat().st_mtime))
+        return unsaved
 
 
 def _place(project: Project) -> str:

@@ -132,8 +132,8 @@ class Glances:
         seen = self._seen.get(what)  # it may grow old between two questions
         if seen is None:
             seen = self._seen[what] = (look(),)
-        found: T = seen[0]
-        return found
+        value: T = seen[0]
+        return value
 
     def forget(self) -> None:
         """Look again at everything: it was changed here."""

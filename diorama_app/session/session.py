@@ -106,7 +106,7 @@ class EditorSession(SharedDocument):
         self.interrupted = False
         """Whether a build of this project was under way when the program ended."""
         self.reader = Reader()
-        self.checker = Checker(library, lambda found: self.ui_thread.post(lambda: self._badged(found)))
+        self.checker = Checker(library, lambda badges: self.ui_thread.post(lambda: self._badged(badges)))
         self.records = ShapeRecords(library)
         self.thumbnails = Thumbnails(library, self.records)
         self.shapes = ShapeBytes(library, light=low_graphics)
@@ -128,11 +128,11 @@ class EditorSession(SharedDocument):
         self._tell_watchers()
 
     def _tell_watchers(self) -> None:
-        for told in tuple(self.watchers):
-            told()
+        for watcher in tuple(self.watchers):
+            watcher()
 
-    def _badged(self, found: Problems) -> None:
-        self.badges = found
+    def _badged(self, badges: Problems) -> None:
+        self.badges = badges
         self.refresh_panels()
 
     @property

@@ -90,8 +90,8 @@ class SharedDocument(ABC):
             raise
         except ValueError as error:  # the scene's own values refuse what is no number
             self.refresh(by)
-            said = _("this is not possible: {reason}; give another value").format(reason=shortened(str(error)))
-            raise EditRefused(said) from error
+            message = _("this is not possible: {reason}; give another value").format(reason=shortened(str(error)))
+            raise EditRefused(message) from error
         if scene == self.scene and inputs is None:
             self.refresh(by)
             return
@@ -158,8 +158,8 @@ class SharedDocument(ABC):
         """
         self.need_writable()
         undone = self.document.undo(self._own(by))
-        said = _("Undone: {label}").format(label=undone.label)
-        self._time_travelled(by, said, self.document.history.current.selection)
+        message = _("Undone: {label}").format(label=undone.label)
+        self._time_travelled(by, message, self.document.history.current.selection)
         return undone
 
     def _own(self, by: ConnectedClient | str) -> IsMine:

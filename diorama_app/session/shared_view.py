@@ -138,8 +138,8 @@ class SharedView:
             self._shown.notice_all(str(error), "bad")
         except Exception:  # whatever a part of the page does wrong, the work is saved and the other parts are drawn
             log.exception("%s cannot be drawn", what)
-            said = _("{what} could not be drawn; your work is saved. See the server's log.")
-            self._shown.notice_all(said.format(what=_(what)[:1].upper() + _(what)[1:]), "bad")
+            message = _("{what} could not be drawn; your work is saved. See the server's log.")
+            self._shown.notice_all(message.format(what=_(what)[:1].upper() + _(what)[1:]), "bad")
 
     def _picked(self, object_id: str, event: viser.SceneNodePointerEvent) -> None:
         """Called from viser's event loop, as `_dragged` is."""

@@ -43,12 +43,12 @@ def _metres(words: str, unit: Unit) -> float:
     rest = re.sub(r"^(?=[.,]\d)", "0", words.strip())  # .95 is 0.95
     total, previous = 0.0, ""
     while rest:
-        found = _PART.match(rest)
-        if found is None:
+        match = _PART.match(rest)
+        if match is None:
             raise InputError(_(NOT_A_LENGTH).format(words=words[:30].strip()))
-        name = (found.group(2) or "").lower() or _implied(unit, previous)
-        total += _number(found.group(1)) * METRES_PER[name]
-        previous, rest = name, rest[found.end() :].strip()
+        name = (match.group(2) or "").lower() or _implied(unit, previous)
+        total += _number(match.group(1)) * METRES_PER[name]
+        previous, rest = name, rest[match.end() :].strip()
     return total
 
 

@@ -163,14 +163,14 @@ class AnnotationCanvas:
         self._on_event, self._shown = on_event, (photo, mode)
         height, width = photo.shape[:2]
         self._size = width, height
-        told = {
+        about = {
             "url": _uri(Image.fromarray(reduced(photo, MAX_SIDE_PX)), "JPEG", quality=JPEG_QUALITY),
             "size": [width, height],
             "mode": mode,
             "hint": _(HINTS[mode]),
             "names": list(names),
         }
-        self._photo.tell({"photo": told})
+        self._photo.tell({"photo": about})
 
     def show_boxes(self, boxes: Sequence[LabelledBox], selected: int | None, likely: Sequence[str] = ()) -> None:
         """Draw the boxes over the photo; the selected one offers its likely names.
@@ -235,10 +235,10 @@ class _Told:
         self._last = ""
 
     def tell(self, news: dict[str, Any]) -> None:
-        told = json.dumps(news, separators=(",", ":"))
-        if told != self._last:
-            self._last = told
-            self._html.content = run_once(f"window.__dioCanvas.told({told})")
+        message = json.dumps(news, separators=(",", ":"))
+        if message != self._last:
+            self._last = message
+            self._html.content = run_once(f"window.__dioCanvas.told({message})")
 
 
 def _event(action: Action, size: tuple[int, int]) -> Event | None:

@@ -88,15 +88,15 @@ def _page(glb: bytes, gathered: ExportScene) -> str:
             raise UnavailableError("viser's web client is missing; install viser again from its wheel") from error
     title, walk = html.escape(gathered.name), walk_of(gathered.scene)
     # As functions: in a template, a backslash of the name would be an escape.
-    page = re.sub(r"<title>.*?</title>", lambda found: f"<title>{title}</title>", page, count=1, flags=re.DOTALL)
-    told = {
+    page = re.sub(r"<title>.*?</title>", lambda match: f"<title>{title}</title>", page, count=1, flags=re.DOTALL)
+    replacements = {
         "VIEWS": json.dumps(views),
         "ASPECTS": json.dumps(ASPECTS),
         "WALK_PLAN": "null" if walk is None else walk.json,
     }
     scripts = [translated_script((STATIC / name).read_text(encoding="utf-8")) for name in ("walk.js", "viewer.html")]
-    told["WALKING"] = scripts[0]
-    over = re.sub("|".join(told), lambda found: told[found[0]], scripts[1])
+    replacements["WALKING"] = scripts[0]
+    over = re.sub("|".join(replacements), lambda match: replacements[match[0]], scripts[1])
     return page.replace("<head>", f"<head>{NOTICE}", 1).replace("</head>", f"{over}</head>", 1)
 
 

@@ -118,10 +118,10 @@ class ShapeBytes:
         """The colour of the shape's main material (sRGB, 0 to 255); grey where the shape is missing."""
         if shape_id not in self._main_colours:
             try:
-                found = main_rgb(self._library.parts(shape_id))
+                rgb = main_rgb(self._library.parts(shape_id))
             except LibraryError:
-                found = GREY
-            self._main_colours[shape_id] = found
+                rgb = GREY
+            self._main_colours[shape_id] = rgb
         return self._main_colours[shape_id]
 
 

@@ -37,9 +37,9 @@ class Seen:
     colour: Colour
 
 
-def seen_objects(scene: Scene, found: Sequence[DetectedObject]) -> tuple[Seen, ...]:
+def seen_objects(scene: Scene, detected: Sequence[DetectedObject]) -> tuple[Seen, ...]:
     """The scene's visible objects that were found in the photo, with the outlines that still hold."""
-    by_id = {obj.id: obj for obj in found}
+    by_id = {obj.id: obj for obj in detected}
     return tuple(
         Seen(item.id, item.box_px, _mask(item, by_id), hue(number))
         for number, item in enumerate(scene.objects)
@@ -47,8 +47,8 @@ def seen_objects(scene: Scene, found: Sequence[DetectedObject]) -> tuple[Seen, .
     )
 
 
-def _mask(item: SceneObject, found: Mapping[str, DetectedObject]) -> Bool[np.ndarray, "h w"] | None:
-    obj = found.get(item.id)
+def _mask(item: SceneObject, detected: Mapping[str, DetectedObject]) -> Bool[np.ndarray, "h w"] | None:
+    obj = detected.get(item.id)
     if obj is None or item.box_px is None or np.abs(np.subtract(obj.box, item.box_px)).max() > SAME_BOX_PX:
         return None
     return obj.mask

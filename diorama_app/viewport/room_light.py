@@ -206,10 +206,10 @@ class RoomLightView:
         )
 
     def _show_patches(self, patches: tuple[Float[np.ndarray, "_ 3"], ...], colour: Colour) -> None:
-        told = (colour, *(tuple(map(tuple, p.round(3).tolist())) for p in patches))
-        if told == self._patches:
+        state = (colour, *(tuple(map(tuple, p.round(3).tolist())) for p in patches))
+        if state == self._patches:
             return
-        self._patches = told
+        self._patches = state
         for name in [n for n in self._nodes if n.startswith("/lights/patch")]:
             self._drop(name)
         for number, patch in enumerate(patches):

@@ -181,9 +181,9 @@ def text(value: object) -> str:
 
 def library_text(english: str) -> str:
     """A line of the library as HTML: translated where it is constant, else marked as English for who reads it aloud."""
-    said = _(english)
-    line = text(said[:1].upper() + said[1:])
-    return line if said != english or language() == SOURCE_LANGUAGE else f'<span lang="en">{line}</span>'
+    translated = _(english)
+    line = text(translated[:1].upper() + translated[1:])
+    return line if translated != english or language() == SOURCE_LANGUAGE else f'<span lang="en">{line}</span>'
 
 
 def button(label: str, do: str, arg: object = "", *, title: str = "", on: bool = False, disabled: bool = False) -> str:
@@ -233,7 +233,7 @@ def switch(name: str, hint: str, arg: object, *, on: bool = False, disabled: boo
 def _read_actions(value: str) -> list[tuple[int, Action]]:
     """The page's latest actions with their numbers: a message that overtakes another repeats what that one said."""
     try:
-        said = clean_strings(json.loads(value))
-        return [(int(m["number"]), Action(str(m["do"]), str(m["arg"]), bool(m["add"]))) for m in said]
+        messages = clean_strings(json.loads(value))
+        return [(int(m["number"]), Action(str(m["do"]), str(m["arg"]), bool(m["add"]))) for m in messages]
     except (ValueError, KeyError, TypeError, OverflowError, RecursionError):
         return []  # typed by hand, or by a page that is not ours

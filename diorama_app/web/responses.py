@@ -106,7 +106,7 @@ def with_head(page: bytes) -> bytes:
         b"\n<script>" + translated_script(script.read_text("utf-8")).encode() + b"</script>" for script in SCRIPTS
     )
     page = re.sub(
-        rb"<title>.*?</title>", lambda found: b"<title>" + TITLE + b"</title>", page, count=1, flags=re.DOTALL
+        rb"<title>.*?</title>", lambda match: b"<title>" + TITLE + b"</title>", page, count=1, flags=re.DOTALL
     )
     page = re.sub(rb'<html lang="[^"]*"', f'<html lang="{language()}"'.encode(), page, count=1)
     return page.replace(b"<head>", b"<head>" + styles + scripts, 1)

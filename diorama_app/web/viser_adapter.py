@@ -347,16 +347,16 @@ class _Uploads:
 
     def _running(self) -> list[RunningUpload]:
         """Uploads under way; those that stand still are given up."""
-        now, found = time.monotonic(), list[RunningUpload]()
+        now, uploads = time.monotonic(), list[RunningUpload]()
         for gui, server in list(self._guis.items()):
             for uuid, state in list(gui._current_file_upload_states.items()):
                 if now - self._moved_at.get(uuid, now) > UPLOAD_STALLED_S:
                     gui._current_file_upload_states.pop(uuid, None)
                 else:
-                    found.append(RunningUpload(uuid, (server, state["client_id"]), state["total_bytes"]))
-        alive = {upload.uuid for upload in found}
+                    uploads.append(RunningUpload(uuid, (server, state["client_id"]), state["total_bytes"]))
+        alive = {upload.uuid for upload in uploads}
         self._moved_at = {uuid: at for uuid, at in self._moved_at.items() if uuid in alive}
-        return found
+        return uploads
 
 
 def _end_transfer(gui: viser.GuiApi, message: Any) -> None:

@@ -108,9 +108,9 @@ def _save_values(bpy: Any, job: dict[str, Any]) -> None:
 
 def report(stats: str, *_: Any) -> None:
     """Tell which sample Cycles is at."""
-    found = re.search(r"Sample (\d+)/(\d+)", str(stats))
-    if found is not None:
-        done, total = int(found.group(1)), int(found.group(2))
+    match = re.search(r"Sample (\d+)/(\d+)", str(stats))
+    if match is not None:
+        done, total = int(match.group(1)), int(match.group(2))
         print(f"diorama {done / total:.3f} sample {done} of {total}", flush=True)
 
 

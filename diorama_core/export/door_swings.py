@@ -71,7 +71,7 @@ def door_swings(
     """
     doors = {o.id: o for o in items if o.category == "door"}
     others = [o for o in items if o.id not in doors]
-    found = {}
+    swings = {}
     for door in doors.values():
         pieces = pieces_of(door.shape_id)
         inward, outward = tuple(_leaves(door, pieces, outward=False)), tuple(_leaves(door, pieces, outward=True))
@@ -82,8 +82,8 @@ def door_swings(
         if not swing.can_open and door.open_share == 0.0:
             other = DoorSwing(True, outward, _free_rad(outward, near))
             swing = other if other.can_open else swing
-        found[door.id] = swing
-    return found
+        swings[door.id] = swing
+    return swings
 
 
 def opening_out(joint: Joint, pieces: Articulation, number: int) -> Joint:

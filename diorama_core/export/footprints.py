@@ -25,17 +25,17 @@ AT_ONCE = 500
 def footprints(scene: ExportScene) -> dict[str, tuple[Outline, ...]]:
     """Outlines of every object in the world's x and y, by object id; holes are left out."""
     shapes: dict[str, tuple[Outline, ...]] = {}
-    found = {}
+    outlines = {}
     for item in scene.objects:
         if item.T_world[2, 2] > UPRIGHT:
             if item.mesh not in shapes:
                 shapes[item.mesh] = outline(_flat(scene.meshes[item.mesh], np.eye(4)))
-            found[item.id] = tuple(_placed(o, item) for o in shapes[item.mesh])
+            outlines[item.id] = tuple(_placed(o, item) for o in shapes[item.mesh])
         else:
             matrix = item.T_world.copy()
             matrix[:3, :3] = matrix[:3, :3] * item.scale
-            found[item.id] = outline(_flat(scene.meshes[item.mesh], matrix))
-    return found
+            outlines[item.id] = outline(_flat(scene.meshes[item.mesh], matrix))
+    return outlines
 
 
 def outline(triangles: Float[np.ndarray, "n 3 2"]) -> tuple[Outline, ...]:

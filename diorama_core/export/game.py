@@ -147,14 +147,15 @@ class _Builder:
     def _levels(self, key: str, scale: Float[np.ndarray, "3"], share: float) -> Levels:
         """A mesh at an object's scale with a share of its triangles, and with a quarter of them each time it is half
         as high in the picture."""
-        found = [self._mesh(key, share)]
+        levels = [self._mesh(key, share)]
         for level in range(1, 1 if self._gathered.options.engine == "godot" else len(COVERAGES)):
             coarser = self._mesh(key, share / 4**level, LARGEST_ERRORS)
-            if _count(coarser) > MAX_SHARE_OF_FINER * _count(found[-1]):
+            if _count(coarser) > MAX_SHARE_OF_FINER * _count(levels[-1]):
                 break
-            found.append(coarser)
+            levels.append(coarser)
         return [
-            [replace(s, vertices=_single(s.vertices * scale), normals=_normals(s, scale)) for s in one] for one in found
+            [replace(s, vertices=_single(s.vertices * scale), normals=_normals(s, scale)) for s in one]
+            for one in levels
         ]
 
     def _mesh(self, key: str, share: float, errors: tuple[float, ...] = ERRORS) -> tuple[Surface, ...]:
@@ -234,7 +235,7 @@ class _Builder:
 
     def _lights(self) -> list[int]:
         """Lamps, windows and the photo's main light, in the world."""
-        found: list[int] = []
+        nodes: list[int] = []
         main = self._gathered.main_light
         for light in (*self._gathered.lights, *(() if main is None else (main,))):
             about: dict[str, Any] = {"color": [float(c) for c in light.colour], "name": "light"}
@@ -243,9 +244,9 @@ class _Builder:
             else:
                 about |= {"type": "point", "intensity": light.candela * self._gathered.strength(light)}
             extension = {"KHR_lights_punctual": {"light": self._document.add_light(about)}}
-            node = {"name": f"light {len(found) + 1}", **placement(Y_UP @ light.T_world), "extensions": extension}
-            found.append(self._document.add("nodes", node))
-        return found
+            node = {"name": f"light {len(nodes) + 1}", **placement(Y_UP @ light.T_world), "extensions": extension}
+            nodes.append(self._document.add("nodes", node))
+        return nodes
 
 
 def collider_name(name: str, number: int, engine: str) -> str:

@@ -300,7 +300,7 @@ def _rooms_by_id(scene: Scene) -> dict[str, HomeRoom]:
 def _planes(
     scene: Scene, options: ExportOptions, textures: Mapping[str, Picture], shared: SharedAppearance, labels: Labels
 ) -> tuple[list[ExportPlane], dict[str, ExportMesh]]:
-    found, meshes = [], {}
+    planes, meshes = [], {}
     for plane in with_openings(scene).architecture.planes if options.only is None else ():
         if plane.role == "ceiling" and not options.ceiling:
             continue
@@ -309,8 +309,8 @@ def _planes(
         name = plane.role if plane.id == plane.role else f"{plane.role} {plane.id}"
         mesh = ExportMesh(labels.key(f"plane_{plane.id}"), plane.id, surfaces)
         meshes[mesh.key] = mesh
-        found.append(ExportPlane(plane.id, labels.name(name), labels.slug(name), mesh.key, plane))
-    return found, meshes
+        planes.append(ExportPlane(plane.id, labels.name(name), labels.slug(name), mesh.key, plane))
+    return planes, meshes
 
 
 def _shape_meshes(

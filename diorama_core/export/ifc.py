@@ -272,21 +272,21 @@ class _Builder:
         return self._maps[mesh.key]
 
     def _describe(self, element: Any, item: ExportObject) -> None:
-        said = {"Id": item.id, "Category": item.item.category, "Shape": item.item.shape_id}
+        properties = {"Id": item.id, "Category": item.item.category, "Shape": item.item.shape_id}
         if item.support is not None:
-            said |= {"Supporter": item.support.parent, "Relation": item.support.relation}
+            properties |= {"Supporter": item.support.parent, "Relation": item.support.relation}
         self._to.rooted(
             "IfcRelDefinesByProperties",
             RelatedObjects=[element],
             RelatingPropertyDefinition=self._to.rooted(
-                "IfcPropertySet", Name="Diorama", HasProperties=self._values(said)
+                "IfcPropertySet", Name="Diorama", HasProperties=self._values(properties)
             ),
         )
 
-    def _values(self, said: Mapping[str, str]) -> list[Any]:
+    def _values(self, properties: Mapping[str, str]) -> list[Any]:
         return [
             self._to.add("IfcPropertySingleValue", name, None, self._to.add("IfcLabel", value[:255]), None)
-            for name, value in said.items()
+            for name, value in properties.items()
         ]
 
 

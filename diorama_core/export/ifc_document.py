@@ -139,8 +139,8 @@ class IfcDocument:
             for name, value in values.items()
         ]
         name = f"Qto_{of}BaseQuantities"
-        found = self.rooted("IfcElementQuantity", Name=name, Quantities=quantities)
-        self.rooted("IfcRelDefinesByProperties", RelatedObjects=[element], RelatingPropertyDefinition=found)
+        quantity_set = self.rooted("IfcElementQuantity", Name=name, Quantities=quantities)
+        self.rooted("IfcRelDefinesByProperties", RelatedObjects=[element], RelatingPropertyDefinition=quantity_set)
 
     def tessellated(self, surfaces: Sequence[Surface]) -> Any:
         """Triangles in their materials' styles, as what types and elements map."""

@@ -78,14 +78,14 @@ def lights_of(
         objects: The objects that are shown.
         surfaces: What each looks like, by id, in its shape's frame.
     """
-    found, on = [], scene.light_settings.lamps_on
+    lights, on = [], scene.light_settings.lamps_on
     for item in objects:
         if item.category in LAMP_LUMENS:
             if on is None or item.id in on:
-                found.append(_lamp(item, surfaces[item.id], WHITE_NITS if on is None else WHITE_LUX / np.pi))
+                lights.append(_lamp(item, surfaces[item.id], WHITE_NITS if on is None else WHITE_LUX / np.pi))
         elif item.category == "window":
-            found.append(_window(scene, item))
-    return tuple(found)
+            lights.append(_window(scene, item))
+    return tuple(lights)
 
 
 @dataclass(frozen=True, eq=False)

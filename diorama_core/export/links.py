@@ -60,12 +60,12 @@ class Link:
 def links_of(gathered: ExportScene, physical: PhysicalScene) -> tuple[Link, ...]:
     """Links of all objects, parents first."""
     slugs = {b.node.id: b.node.slug for b in physical.bodies}
-    found = []
+    links = []
     for body in _carriers_first(physical.bodies):
         node = body.node
         parent = None if body.free or body.carrier is None else slugs[body.carrier]
         carrier = np.eye(4) if body.carrier is None or body.free else gathered.object(body.carrier).T_world
-        found.append(
+        links.append(
             Link(
                 name=node.slug,
                 parent=parent,
@@ -79,7 +79,7 @@ def links_of(gathered: ExportScene, physical: PhysicalScene) -> tuple[Link, ...]
             )
         )
         for moving in body.moving:
-            found.append(
+            links.append(
                 Link(
                     name=body_name(node.slug, moving.limb),
                     parent=node.slug,
@@ -94,7 +94,7 @@ def links_of(gathered: ExportScene, physical: PhysicalScene) -> tuple[Link, ...]
                     joint_friction=moving.friction,
                 )
             )
-    return tuple(found)
+    return tuple(links)
 
 
 def body_name(slug: str, limb: ExportLimb | None) -> str:
@@ -116,12 +116,12 @@ def _carriers_first(bodies: tuple[RigidBody, ...]) -> list[RigidBody]:
 
 def grouped(links: tuple[Link, ...]) -> dict[str, tuple[Link, ...]]:
     """Links by the one that carries them all, first that one, then what is joined to it; in the order of the links."""
-    found: dict[str, tuple[Link, ...]] = {}
+    groups: dict[str, tuple[Link, ...]] = {}
     top: dict[str, str] = {}
     for link in links:
         name = top[link.name] = link.name if link.parent is None else top[link.parent]
-        found[name] = (*found.get(name, ()), link)
-    return found
+        groups[name] = (*groups.get(name, ()), link)
+    return groups
 
 
 def write_linked(

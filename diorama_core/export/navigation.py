@@ -52,9 +52,11 @@ class BodyOutline:
 
 def outlined(physical: PhysicalScene) -> tuple[BodyOutline, ...]:
     """All convex bodies but the floor, those that joints move as they stand."""
-    found = [(None, p) for s in physical.slabs if s.plane.role != "floor" for p in s.pieces]
+    ceilings_and_walls = [(None, p) for s in physical.slabs if s.plane.role != "floor" for p in s.pieces]
     owned = [(b.node.id, p) for b in physical.bodies for p in world_parts(b)]
-    return tuple(BodyOutline(i, float(p[:, 2].min()), float(p[:, 2].max()), p) for i, p in (*found, *owned))
+    return tuple(
+        BodyOutline(i, float(p[:, 2].min()), float(p[:, 2].max()), p) for i, p in (*ceilings_and_walls, *owned)
+    )
 
 
 def floor_level(gathered: ExportScene) -> float:

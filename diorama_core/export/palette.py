@@ -83,12 +83,12 @@ def _joined(surfaces: list[Surface]) -> Surface:
         return surfaces[0]
 
     def rows(values: Iterator[np.ndarray | None], width: int, missing: float) -> np.ndarray | None:
-        found = list(values)
-        if all(v is None for v in found):
+        colours = list(values)
+        if all(v is None for v in colours):
             return None
         filled = [
             np.full((len(s.vertices), width), missing, dtype=np.float32) if v is None else v
-            for v, s in zip(found, surfaces, strict=True)
+            for v, s in zip(colours, surfaces, strict=True)
         ]
         return np.concatenate(filled)
 

@@ -43,7 +43,7 @@ def test_photos_have_their_new_cameras_and_those_that_do_not_join_are_named(
     made = NewScene(scene, {}, Inputs(plain_photo()), (), again=again)
     opened: list[str] = []
     client.open_tab = opened.append
-    show_built(session, session.project, made, label="set the camera", said=session.inputs)
+    show_built(session, session.project, made, label="set the camera", inputs_before=session.inputs)
     assert opened == [], "who corrects the camera goes on correcting it"
     assert session.scene is scene
     assert session.further_photos == (*photos, added)
@@ -57,7 +57,7 @@ def test_without_other_photos_nothing_is_said_of_them(session: EditorSession, mo
     monkeypatch.setattr(session, "notice_all", lambda message, kind: said.append(message))
     assert session.project is not None
     made = NewScene(replace(session.scene, camera=turned(photo_camera())), {}, Inputs(plain_photo()), ())
-    show_built(session, session.project, made, label="build", said=session.inputs)
+    show_built(session, session.project, made, label="build", inputs_before=session.inputs)
     assert not any("again" in line for line in said), said
 
 
@@ -109,7 +109,7 @@ def test_boxes_that_a_person_draws_while_a_scene_is_built_stay(session: EditorSe
     made = NewScene(built.scene, built.textures, Inputs(plain_photo()), ())
     before = session.inputs
     session.commit("draw a box", session.scene, inputs=said)
-    show_built(session, session.project, made, label="build", said=before)
+    show_built(session, session.project, made, label="build", inputs_before=before)
     assert session.inputs is said
     session.autosave.flush()
     kept = session.project.load_inputs()
@@ -124,6 +124,6 @@ def test_who_was_marking_sees_the_scene_after_a_build(session: EditorSession, cl
     opened: list[str] = []
     client.open_tab = opened.append
     made = NewScene(replace(session.scene, camera=turned(photo_camera())), {}, Inputs(photo), ())
-    show_built(session, session.project, made, label="build the scene", said=session.inputs)
+    show_built(session, session.project, made, label="build the scene", inputs_before=session.inputs)
     assert opened == ["Scene"]
     assert not client.view.canvas.is_open
