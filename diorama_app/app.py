@@ -254,12 +254,12 @@ class Editor:
 
     def _recall(self, viser_client: viser.ClientHandle) -> None:
         """Restore the client's stored preferences, unless it has changed them already."""
-        retained = remembered(viser_client)
+        preferences = remembered(viser_client)
 
         def take() -> None:
             client = self.session.clients.get(viser_client.client_id)
-            if isinstance(client, Client) and client.preferences == Preferences() != retained:
-                client.take_preferences(retained)
+            if isinstance(client, Client) and client.preferences == Preferences() != preferences:
+                client.take_preferences(preferences)
 
         self.session.ui_thread.post(take)
 

@@ -229,8 +229,8 @@ def serve(
     signal.signal(signal.SIGTERM, lambda *_: asked.set())  # before anybody is told that it runs
     print(f"Diorama is at {running.url} (Ctrl+C stops it)", flush=True)
     if host in ANY_HOST:
-        there = running.url.replace(urlsplit(running.url).netloc, f"{socket.gethostname()}:{running.port}")
-        print(f"From other machines: {there} (who has this address can change the project)", flush=True)
+        address = running.url.replace(urlsplit(running.url).netloc, f"{socket.gethostname()}:{running.port}")
+        print(f"From other machines: {address} (who has this address can change the project)", flush=True)
     if open_browser:
         threading.Thread(target=webbrowser.open, args=(running.url,), daemon=True).start()
     try:

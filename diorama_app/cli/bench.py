@@ -264,8 +264,10 @@ def _bench_speed(a: argparse.Namespace) -> int:
     with progress_bar() as progress:
         bench = run(built_in_library(), a.seed, progress, QUICK if a.quick else FULL, before=before)
     if a.keep:
-        retained = committed_figures(a.keep) if a.keep.exists() else {}  # a quick run and a full one keep other figures
-        write_atomically(a.keep, regression_bytes({**retained, **bench.figures()}), error=InputError)
+        committed = (
+            committed_figures(a.keep) if a.keep.exists() else {}
+        )  # a quick run and a full one keep other figures
+        write_atomically(a.keep, regression_bytes({**committed, **bench.figures()}), error=InputError)
     show_bench(bench, a)
     worse = slower(bench.figures(), before, a.tolerance)
     for name, times in worse.items():

@@ -44,9 +44,9 @@ def write_text(a: argparse.Namespace, text: str) -> None:
     if not a.markdown:
         return
     begin, end = f"\n<!-- bench {a.table} -->\n", f"\n<!-- end {a.table} -->\n"  # each on a line of its own
-    there = a.markdown.read_text(encoding="utf-8") if a.markdown.exists() else ""
-    if begin in there and end in there:
-        before, _, after = there.partition(begin)
+    document = a.markdown.read_text(encoding="utf-8") if a.markdown.exists() else ""
+    if begin in document and end in document:
+        before, _, after = document.partition(begin)
         rest = f"\n{after}".partition(end)[2]  # an empty section has one line break for both marks
         text = f"{before}{begin}\n{text.strip()}\n{end}{rest}"
     from diorama_core.io.atomic import write_atomically  # loads numpy

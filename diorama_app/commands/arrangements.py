@@ -62,9 +62,9 @@ class Arrangements:
             known = {c.shape_id: c for m in reversed(members) for c in reversed(m.candidates)}
             shapes = plausible_shapes(members, chosen_id=best)
             for item in members:
-                own = {c.shape_id: c for c in reversed(item.candidates)}
+                candidates = {c.shape_id: c for c in reversed(item.candidates)}
                 if not item.locked:
-                    offers[item.id] = tuple(own.get(s, known[s]) for s in shapes)
+                    offers[item.id] = tuple(candidates.get(s, known[s]) for s in shapes)
         return offers
 
 

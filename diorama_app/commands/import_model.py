@@ -130,13 +130,13 @@ def correct_model(client: Client, object_id: str, fix: Fix | None = None, *, cat
     item, user_library = session.scene.object(object_id), session.library
     if not isinstance(user_library, UserLibrary) or not user_library.has_own(item.shape_id):
         raise EditRefused("only models that you uploaded can be corrected; upload one in the Library tab")
-    own, change = user_library.own(), fix or Fix("", "")
-    ingested = corrected(own, item.shape_id, up=change.up, front=change.front, scale=change.scale, category=category)
+    store, change = user_library.own(), fix or Fix("", "")
+    ingested = corrected(store, item.shape_id, up=change.up, front=change.front, scale=change.scale, category=category)
     stem = item.shape_id.partition("~")[0]
     record = replace(
         ingested.record, id=f"{stem}~{ingested.record.content_hash[:6]}-{ingested.record.category.replace(' ', '-')}"
     )
-    own.add(replace(ingested, record=record))
+    store.add(replace(ingested, record=record))
     what = _(change.name).lower() if fix is not None else _(record.category)
 
     def take(scene: Scene) -> Scene:
@@ -145,6 +145,6 @@ def correct_model(client: Client, object_id: str, fix: Fix | None = None, *, cat
     try:
         session.edit(_("correct the model ({what})").format(what=what), take, by=client)
     except EditRefused:
-        own.remove([record.id])
+        store.remove([record.id])
         raise
     user_library.keep_order(user_library.own_models.superseded(item.shape_id, record.id))

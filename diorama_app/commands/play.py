@@ -113,8 +113,8 @@ def _stayed(before: Pose, after: Pose) -> bool:
 
 def _keep(client: Client, start: Scene, final: Scene) -> None:
     session = client.session
-    there = untouched(session.scene, start, final)
-    moved = {i: p for i, p in there.items() if not _stayed(start.object(i).pose, p)}
+    poses = untouched(session.scene, start, final)
+    moved = {i: p for i, p in poses.items() if not _stayed(start.object(i).pose, p)}
     if not moved:
         client.notice(_("Nothing moved."), "good")
         session.refresh()

@@ -34,13 +34,13 @@ def candidate_for(library: ShapeLibrary, item: SceneObject, shape_id: str, mode:
     if known is not None and mode == "as found":
         return known
     shape: Shape = library.shape(shape_id)
-    own = np.asarray(shape.size_m)
+    size_m = np.asarray(shape.size_m)
     if mode == "catalogue":
         scale = np.ones(3)
     elif mode == "same box":
-        scale = item.size_m / own
+        scale = item.size_m / size_m
     else:
-        scale = np.full(3, _even_scale(item.size_m, own))
+        scale = np.full(3, _even_scale(item.size_m, size_m))
     score = known.score if known is not None else 0.0
     return Candidate(shape.id, shape.size_m, score, replace(item.pose, scale=scale))
 
@@ -109,6 +109,6 @@ def next_alternative(client: Client, step: int) -> None:
     swap(client, item.id, shapes[(at + step) % len(shapes)])
 
 
-def _even_scale(box: np.ndarray, own: np.ndarray) -> float:
+def _even_scale(box: np.ndarray, size_m: np.ndarray) -> float:
     """The scale that keeps the volume's cube root, so that a swap neither grows nor shrinks what is there."""
-    return float(np.cbrt(np.prod(box / own)))
+    return float(np.cbrt(np.prod(box / size_m)))

@@ -198,8 +198,8 @@ def _doubts(item: SceneObject, reasons: Sequence[Reason]) -> list[str]:
     if item.by_hand:
         return doubts  # somebody has decided since
     scores = [c.score for c in item.candidates if c.shape_id != item.shape_id]
-    own = next((c.score for c in item.candidates if c.shape_id == item.shape_id), None)
-    if own is not None and scores and max(scores) >= RIVAL_SHARE * own > 0:
+    score = next((c.score for c in item.candidates if c.shape_id == item.shape_id), None)
+    if score is not None and scores and max(scores) >= RIVAL_SHARE * score > 0:
         doubts.append("another shape fits almost as well; see its alternatives")
     against = sorted((r for r in reasons if r.object_id == item.id and r.amount < 0), key=lambda r: r.amount)
     return doubts + [f"{r.decision}: {r.sentence}" for r in against[:MAX_DOUBTS]]
@@ -242,8 +242,10 @@ def detail_answer(
 
     from diorama_core.editing.footprints import footprint_of
 
-    own = shapely.Polygon(footprint_of(item))
-    gaps = {o.id: round(own.distance(shapely.Polygon(footprint_of(o))), 3) for o in scene.objects if o.id != item.id}
+    outline = shapely.Polygon(footprint_of(item))
+    gaps = {
+        o.id: round(outline.distance(shapely.Polygon(footprint_of(o))), 3) for o in scene.objects if o.id != item.id
+    }
     return DetailAnswer(
         object=about,
         carries=list(scene.children_of(item.id)),

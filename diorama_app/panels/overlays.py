@@ -46,8 +46,8 @@ class Overlays:
     def _refresh_picture(self) -> None:
         client, session = self._client, self._client.session
         preferences, scene, photo = client.preferences, session.scene, session.photo
-        own = client.further_photo is None
-        shown = client.view.camera.through_photo and own and photo is not None and scene.camera is not None
+        is_first = client.further_photo is None
+        shown = client.view.camera.through_photo and is_first and photo is not None and scene.camera is not None
         masks, planes = preferences.masks and self._outlines.found is not None, preferences.planes
         trial = client.trial_camera
         if not shown or not (masks or planes or trial is not None):

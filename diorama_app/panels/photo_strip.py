@@ -49,14 +49,14 @@ class PhotoStrip:
         if inputs is None or camera is None or not session.further_photos:
             self._html.show(f'<p class="dim">{text(_(missing or ADVICE))}</p>' if shown else "")
             return
-        own = self._tile("", _("First photo"), inputs.photo.rgb, on=client.further_photo is None, joined=True)
+        first = self._tile("", _("First photo"), inputs.photo.rgb, on=client.further_photo is None, joined=True)
         rest = "".join(
             self._tile(p.name, p.name, p.inputs.photo.rgb, on=p is client.further_photo, joined=p.camera is not None)
             for p in session.further_photos
         )
         further = client.further_photo
         about = "" if further is None else _about(further)
-        self._html.show(f'<h4>{text(_("Photos of this room"))}</h4><div class="grid">{own}{rest}</div>{about}')
+        self._html.show(f'<h4>{text(_("Photos of this room"))}</h4><div class="grid">{first}{rest}</div>{about}')
 
     def _tile(self, name: str, label: str, rgb: UInt8[np.ndarray, "h w 3"], *, on: bool, joined: bool) -> str:
         state = "" if joined else f"<small>{text(_('not in the scene yet'))}</small>"

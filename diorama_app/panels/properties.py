@@ -202,8 +202,8 @@ def _surface(item: SceneObject) -> str:
         button(_(label), "finish", finish or "", title=_(hint), on=item.finish == finish)
         for finish, (label, hint) in FINISHES.items()
     )
-    own = button(_("Original colours"), "own", title=_("Remove the paint")) if item.colour is not None else ""
-    paint = f'<div class="bar tight wide">{own}</div>' if own else ""
+    remove = button(_("Original colours"), "own", title=_("Remove the paint")) if item.colour is not None else ""
+    paint = f'<div class="bar tight wide">{remove}</div>' if remove else ""
     sources = "".join(
         button(_(label), "materials", source, title=_(hint), on=item.material_source == source)
         for source, (label, hint) in MATERIAL_SOURCES.items()

@@ -155,7 +155,9 @@ def _details(finish: SurfaceFinish) -> str:
         )
         for name in kind.colours
     )
-    own = f'<label>{text(_("Any colour"))}<input type="color" data-change="own" value="{_hex(finish.colour)}"></label>'
+    picker = (
+        f'<label>{text(_("Any colour"))}<input type="color" data-change="own" value="{_hex(finish.colour)}"></label>'
+    )
     percent, angle, hint = (
         text(_("Size (%)")),
         text(_("Direction (°)")),
@@ -176,7 +178,7 @@ def _details(finish: SurfaceFinish) -> str:
         button(f"{d}°", "turn", d, title=_("Turn to {angle}°").format(angle=d), on=degrees == d) for d in DIRECTIONS_DEG
     )
     bar = f'<div class="bar tight">{quick}</div>' if kind.directed else ""
-    fields = f'<div class="fields">{own}{size}{turn}</div>'
+    fields = f'<div class="fields">{picker}{size}{turn}</div>'
     return f'<h4>{text(_("Colour"))}</h4><div class="swatches">{swatches}</div>{fields}{bar}'
 
 

@@ -76,8 +76,8 @@ def new_project(
 def _note_library(project: Project, library: ShapeLibrary) -> None:
     """Note where the shapes of a project's scene are, all of which must be there."""
     shapes = {o.shape_id for o in project.load_scene().objects}
-    own = StoredLibrary(project.shapes_folder) if project.shapes_folder.is_dir() else None
-    known = ShapeRecords(library if own is None else CombinedLibrary([own, library]))
+    project_shapes = StoredLibrary(project.shapes_folder) if project.shapes_folder.is_dir() else None
+    known = ShapeRecords(library if project_shapes is None else CombinedLibrary([project_shapes, library]))
     for shape_id in shapes:
         try:
             known.shape(shape_id)
@@ -86,7 +86,7 @@ def _note_library(project: Project, library: ShapeLibrary) -> None:
     names = str(project.info().get("library", BUILT_IN)).split("+")
     uploads = {s.id for s in library.uploads()} if isinstance(library, UserLibrary) else set()
     names += [] if uploads.isdisjoint(shapes) else [OWN]
-    names += [] if own is None else [OWN_SHAPES]
+    names += [] if project_shapes is None else [OWN_SHAPES]
     project.update_info(library="+".join(dict.fromkeys(names)))
 
 

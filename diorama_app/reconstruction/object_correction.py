@@ -111,11 +111,11 @@ def _reconstruct(
         )
 
         def show() -> None:
-            there = {o.id for o in session.scene.objects}
+            ids_before = {o.id for o in session.scene.objects}
             session.add_textures(result.pictures)
             corrected = with_correction(_inputs(client), before, box, drawn)
             session.edit(label, lambda s: put(s, result), by=client, inputs=corrected)
-            new = [o.id for o in session.scene.objects if o.id not in there]
+            new = [o.id for o in session.scene.objects if o.id not in ids_before]
             if select_new and new:
                 client.view.canvas.close()
                 client.select(new)

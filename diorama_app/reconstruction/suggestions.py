@@ -186,8 +186,8 @@ class Suggestions:
         from diorama_core.progress import Progress
 
         known = self._everyday()
-        own = OwnDetection(own_recogniser(), LIKELY, MOST_SHOWN).detect(self.photo, (), Progress())
-        self._boxes = joined_boxes(known, own)
+        detected = OwnDetection(own_recogniser(), LIKELY, MOST_SHOWN).detect(self.photo, (), Progress())
+        self._boxes = joined_boxes(known, detected)
 
     def _trace(self, box: Box) -> None:
         from diorama_core.perception.masks import EmbeddedMasks

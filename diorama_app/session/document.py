@@ -132,8 +132,8 @@ class Document:
         """
         index = self._undone_next(is_mine)
         if index is None:
-            own = self.history.can_undo
-            raise EditRefused("there is nothing of yours to undo" if own else "there is nothing to undo")
+            mine = self.history.can_undo
+            raise EditRefused("there is nothing of yours to undo" if mine else "there is nothing to undo")
         self.history = moved_last(self.history, index)
         undone = self.history.current
         self.history = self.history.undo()
@@ -148,8 +148,8 @@ class Document:
         """
         index = self._redone_next(is_mine)
         if index is None:
-            own = self.history.can_redo
-            raise EditRefused("there is nothing of yours to redo" if own else "there is nothing to redo")
+            mine = self.history.can_redo
+            raise EditRefused("there is nothing of yours to redo" if mine else "there is nothing to redo")
         self.history = moved_next(self.history, index).redo()
         self._changes += 1
         return self.history.current

@@ -75,8 +75,8 @@ class ShapeBytes:
         shown = {m.texture: pictures[m.texture] for m in materials if m.texture is not None and m.texture in pictures}
 
         def made() -> bytes:
-            own = colour is None and finish is None and not materials and scale == EVEN and not open_share
-            if own:
+            unchanged = colour is None and finish is None and not materials and scale == EVEN and not open_share
+            if unchanged:
                 data = self._library.glb(shape_id)
             else:
                 parts = stretched_parts(opened_parts(self._library, shape_id, open_share, scale), scale)

@@ -165,8 +165,8 @@ def why_refused(request: UploadRequest, page: tuple[int, int], running: Sequence
         return "the page sent an invalid request; reload it"
     if any(request.transfer_uuid == upload.uuid for upload in running):
         return "it is being uploaded already"
-    own = sum(upload.page == page for upload in running)
-    if own >= MAX_UPLOADS_PER_CLIENT or len(running) >= MAX_UPLOADS_IN_FLIGHT:
+    of_page = sum(upload.page == page for upload in running)
+    if of_page >= MAX_UPLOADS_PER_CLIENT or len(running) >= MAX_UPLOADS_IN_FLIGHT:
         return "other uploads are under way; try again when they are done"
     if sum(upload.total_bytes for upload in running) + size > MAX_BYTES_IN_FLIGHT:
         return "other large uploads are under way; try again when they are done"

@@ -50,8 +50,10 @@ def missing_blender() -> str:
     """What to do before Blender can be used, in one line; empty when it can be."""
     named = os.environ.get(PYTHON_VARIABLE)
     if named:
-        found = shutil.which(named) is not None
-        return "" if found else f"{PYTHON_VARIABLE} names {named}, which cannot be run; name the Python that has bpy"
+        is_runnable = shutil.which(named) is not None
+        return (
+            "" if is_runnable else f"{PYTHON_VARIABLE} names {named}, which cannot be run; name the Python that has bpy"
+        )
     return "" if find_spec("bpy") is not None else f"Blender is not installed; {INSTALL}"
 
 

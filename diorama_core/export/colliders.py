@@ -156,7 +156,7 @@ def _held_parts(rug: RigidBody, riders: Iterable[RigidBody]) -> tuple[Points, ..
     """Pieces of a rug under the feet of what it carries. As a whole plate it would lift what stands over its edge, and
     a robot would push it; real ones give way under a foot and stay where they are."""
     corners = rug.node.item.corners_world
-    found = []
+    parts_on_rugs = []
     for rider in riders:
         parts = world_parts(rider)
         low = min((float(p[:, 2].min()) for p in parts), default=0.0)
@@ -167,8 +167,8 @@ def _held_parts(rug: RigidBody, riders: Iterable[RigidBody]) -> tuple[Points, ..
                 ends = [
                     np.column_stack([flat, np.full(len(flat), z)]) for z in (corners[:, 2].min(), corners[:, 2].max())
                 ]
-                found.append(_placed(rigid_inverse(rug.node.T_world), np.concatenate(ends)))
-    return tuple(found)
+                parts_on_rugs.append(_placed(rigid_inverse(rug.node.T_world), np.concatenate(ends)))
+    return tuple(parts_on_rugs)
 
 
 def world_parts(body: RigidBody) -> list[Points]:

@@ -66,8 +66,10 @@ def draco_mesh(arrays: Mapping[str, np.ndarray], faces: Int[np.ndarray, "m 3"]) 
     points = np.asarray(decoded.points, dtype=np.float32)
     kinds = {DracoPy.AttributeType.POSITION: "POSITION", DracoPy.AttributeType.NORMAL: "NORMAL"}
     kinds[DracoPy.AttributeType.TEX_COORD] = "TEXCOORD_0"
-    own = {number: name for name, number in _OWN.items()}
-    ids = {kinds.get(a["attribute_type"], own.get(a["unique_id"], "")): a["unique_id"] for a in decoded.attributes}
+    kinds_by_id = {number: name for name, number in _OWN.items()}
+    ids = {
+        kinds.get(a["attribute_type"], kinds_by_id.get(a["unique_id"], "")): a["unique_id"] for a in decoded.attributes
+    }
     return DracoMesh(data, ids, len(points), len(decoded.faces), points.min(axis=0), points.max(axis=0))
 
 

@@ -117,16 +117,16 @@ class Cuts:
         a, b = self._owners[i], self._owners[j]
         along_i, along_j = self._world[i] @ normals.T, self._world[j] @ normals.T
         gaps = along_i.min(axis=0) - along_j.max(axis=0)
-        own = a is not None and a == b
-        if gaps.max() >= 0 or (not own and (self._lifted(i, j) or self._lifted(j, i))):
+        is_same = a is not None and a == b
+        if gaps.max() >= 0 or (not is_same and (self._lifted(i, j) or self._lifted(j, i))):
             return
         for k in np.argsort(-gaps, kind="stable"):
             options = [(i, j, normals[k], float(along_j[:, k].max())), (j, i, -normals[k], float(-along_i[:, k].min()))]
             for part, other, normal, level in sorted(options, key=lambda option: self._firmness(option[0])):
                 gap = SKIN_M if normal[2] > UPRIGHT else GAP_M
-                if (own or not self._rides(other, part)) and self._cut(part, normal, level + gap):
+                if (is_same or not self._rides(other, part)) and self._cut(part, normal, level + gap):
                     return
-        if own or not self._sink(a, b):
+        if is_same or not self._sink(a, b):
             self._deep.append((i, j))
 
     def _lifted(self, rider: int, carrier: int) -> bool:
@@ -274,8 +274,8 @@ def cut(points: Points, normal: Float[np.ndarray, "3"], level: float, depth: flo
         return None
     t = height[height >= 0][:, None] / (height[height >= 0][:, None] - height[height < 0][None])
     crossing = above[:, None] * (1.0 - t[..., None]) + below[None] * t[..., None]
-    retained = np.vstack([above, crossing.reshape(-1, 3)])
+    corners = np.vstack([above, crossing.reshape(-1, 3)])
     try:
-        return np.asarray(retained[ConvexHull(retained).vertices])
+        return np.asarray(corners[ConvexHull(corners).vertices])
     except (QhullError, ValueError):
         return None

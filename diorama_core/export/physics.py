@@ -143,8 +143,8 @@ def _of_moments(total: float, first: Float[np.ndarray, "3"], second: Float[np.nd
     centre = first / total
     spread = second - total * np.outer(centre, centre)
     tensor = np.trace(spread) * np.eye(3) - spread
-    found = Inertia(total, centre, tensor + np.eye(3) * total * MIN_RADIUS_M**2)
-    return found.weighing(max(total, MIN_MASS_KG))
+    inertia = Inertia(total, centre, tensor + np.eye(3) * total * MIN_RADIUS_M**2)
+    return inertia.weighing(max(total, MIN_MASS_KG))
 
 
 def plausible_mass_kg(mass_kg: float, scale: Float[np.ndarray, "3"], record: Shape) -> float:
@@ -195,8 +195,8 @@ def enclosed_m3(surface: Surface) -> float:
     edges = np.concatenate([corners[:, [0, 1]], corners[:, [1, 2]], corners[:, [2, 0]]])
     edges = edges[edges[:, 0] != edges[:, 1]]
     count = int(place.max()) + 1
-    there, back = (np.sort(e[:, 0] * count + e[:, 1]) for e in (edges, edges[:, ::-1]))
-    closed = np.array_equal(there, back)  # every edge is walked as often one way as the other
+    forward, back = (np.sort(e[:, 0] * count + e[:, 1]) for e in (edges, edges[:, ::-1]))
+    closed = np.array_equal(forward, back)  # every edge is walked as often one way as the other
     a, b, c = (surface.vertices[surface.faces[:, k]].astype(np.float64) for k in range(3))
     volume = float(np.einsum("ij,ij->i", a, np.cross(b, c)).sum()) / 6.0
     return volume if closed and volume > 0 else 0.0

@@ -130,14 +130,14 @@ class FloorPlan:
     def areas(self) -> tuple[Area, ...]:
         """Each floor's area, to be written where the most floor is free."""
         taken = shapely.union_all([_polygon(o) for p in self.pieces for o in p.outlines if len(o) > 2])
-        found = []
+        named_areas = []
         for floor in map(_polygon, self.floors):
             free = floor.difference(taken)
             circle = shapely.maximum_inscribed_circle(floor if free.is_empty else free, tolerance=FINE_M)
             at = np.asarray(circle.coords[0])
             named = (name for name, outline in self.rooms if _polygon(outline).covers(shapely.Point(at)))
-            found.append(Area(at, floor.area, next(named, "")))
-        return tuple(area for area in found if area.area_m2 >= MIN_AREA_M2)
+            named_areas.append(Area(at, floor.area, next(named, "")))
+        return tuple(area for area in named_areas if area.area_m2 >= MIN_AREA_M2)
 
     @property
     def bounds(self) -> Float[np.ndarray, "2 2"]:
@@ -185,14 +185,14 @@ def floor_plans(scene: ExportScene) -> tuple[FloorPlan, ...]:
     storeys = storeys_of(scene.scene)
     if len(storeys) < 2:
         return (floor_plan(scene),)
-    found = []
+    plans = []
     for number, rooms in storeys.items():
         part = part_of_home(scene.scene, [r.id for r in rooms])
         planes = tuple(p for p in scene.planes if part.has_plane(p.id))
         objects = tuple(o for o in scene.objects if part.has_object(o.id))
         name = f"{scene.name}, storey {number}"
-        found.append(floor_plan(replace(scene, name=name, scene=part, planes=planes, objects=objects)))
-    return tuple(found)
+        plans.append(floor_plan(replace(scene, name=name, scene=part, planes=planes, objects=objects)))
+    return tuple(plans)
 
 
 def floor_plan(scene: ExportScene) -> FloorPlan:
@@ -228,12 +228,12 @@ def _within_walls(floors: Sequence[Outline], walls: Sequence[DrawnWall]) -> tupl
     for wall in walls:
         t = wall.plane.thickness
         barrier += _area(_strip(wall, -t, wall.length_m + t, 0.0, t))
-    found: list[Outline] = []
+    outlines: list[Outline] = []
     for floor in floors:
         whole = _area(floor)
         outside = [p for p in (whole - barrier).decompose() if not _is_before_a_wall(p, walls)] if walls else []
         if not outside or len(outside) == len((whole - barrier).decompose()):
-            found.append(floor)
+            outlines.append(floor)
             continue
         for piece in outside:
             near = piece.offset(REACH_M, manifold3d.JoinType.Miter)
@@ -241,8 +241,8 @@ def _within_walls(floors: Sequence[Outline], walls: Sequence[DrawnWall]) -> tupl
                 slab = _area(_strip(wall, 0.0, wall.length_m, 0.0, wall.plane.thickness))
                 whole -= slab if (near ^ slab).area() > 0.0 else manifold3d.CrossSection()
             whole -= piece.offset(max(w.plane.thickness for w in walls) + REACH_M, manifold3d.JoinType.Miter)
-        found += [np.asarray(o) for o in whole.to_polygons()]
-    return tuple(found)
+        outlines += [np.asarray(o) for o in whole.to_polygons()]
+    return tuple(outlines)
 
 
 def _is_before_a_wall(piece: manifold3d.CrossSection, walls: Sequence[DrawnWall]) -> bool:
@@ -318,11 +318,11 @@ def _door(wall: DrawnWall, opening: Opening, swing: DoorSwing | None) -> tuple[O
     if swing is None or not swing.can_open:
         return (np.stack([wall.at(opening.from_m), wall.at(opening.to_m)]),)
     angles = np.linspace(0, swing.free_rad, ARC_POINTS)
-    found: list[Outline] = []
+    lines: list[Outline] = []
     for leaf in swing.leaves:
         arc = np.concatenate([leaf.turned(leaf.tip[None], float(angle)) for angle in angles])
-        found += [np.stack([leaf.hinge, arc[-1]]), arc]
-    return tuple(found)
+        lines += [np.stack([leaf.hinge, arc[-1]]), arc]
+    return tuple(lines)
 
 
 def _window(wall: DrawnWall, opening: Opening) -> tuple[Outline, ...]:
@@ -336,18 +336,18 @@ def _dimensions(walls: Sequence[DrawnWall], floors: Sequence[Outline]) -> tuple[
     faces = [w.plane for w in walls]
     # Behind a wall between two rooms is no place for its length; the other room's plan of that side has it.
     outer = [w for w in walls if not faces_behind(w.plane, w.plane.centre, faces)]
-    found = [d for w in outer for d in _wall_dimensions(w)]
+    sides = [d for w in outer for d in _wall_dimensions(w)]
     every = np.concatenate([*floors, *(np.stack([w.start, w.end]) for w in walls)]) if walls or floors else None
     if every is None:
         return ()
     (left, low), (right, high) = every.min(axis=0), every.max(axis=0)
-    far = 3 * DIMENSION_GAP_M if found else DIMENSION_GAP_M
+    far = 3 * DIMENSION_GAP_M if sides else DIMENSION_GAP_M
     corner = np.array([left, low])
     whole = (
         Dimension(corner, np.array([right, low]), np.array([0.0, -far])),
         Dimension(np.array([left, high]), corner, np.array([-far, 0.0])),
     )
-    return (*found, *(d for d in whole if d.length_m > 0.01 and not _known(d, found)))
+    return (*sides, *(d for d in whole if d.length_m > 0.01 and not _known(d, sides)))
 
 
 def _wall_dimensions(wall: DrawnWall) -> list[Dimension]:
@@ -359,10 +359,10 @@ def _wall_dimensions(wall: DrawnWall) -> list[Dimension]:
     return [*parts, Dimension(wall.start, wall.end, first + DIMENSION_GAP_M * wall.outward)]
 
 
-def _known(whole: Dimension, found: Sequence[Dimension]) -> bool:
+def _known(whole: Dimension, known: Sequence[Dimension]) -> bool:
     """Whether a wall's length says the same already."""
     along = (whole.end - whole.start) / whole.length_m
     return any(
         abs(d.length_m - whole.length_m) < 0.01 and abs(float((d.end - d.start) @ along)) > 0.99 * d.length_m
-        for d in found
+        for d in known
     )

@@ -53,11 +53,11 @@ class Region:
 
 def regions_of(gathered: ExportScene, physical: PhysicalScene, bodies: Sequence[BodyOutline]) -> tuple[Region, ...]:
     """The floor first, then every level surface of the objects."""
-    found = [] if gathered.scene.architecture.floor is None else [_floor(gathered, bodies)]
+    regions = [] if gathered.scene.architecture.floor is None else [_floor(gathered, bodies)]
     for body in physical.bodies:
         for number, (part, surface) in enumerate(_surfaces(gathered, body)):
-            found.append(_region(body, part, surface, number, bodies))
-    return tuple(found)
+            regions.append(_region(body, part, surface, number, bodies))
+    return tuple(regions)
 
 
 def _floor(gathered: ExportScene, bodies: Sequence[BodyOutline]) -> Region:
@@ -77,10 +77,10 @@ def _surfaces(gathered: ExportScene, body: RigidBody) -> Iterator[tuple[str | No
     if not shape.surfaces and not gathered.children_of(node.id):
         return
     for surface in object_surfaces(shape, node.item):
-        own = surface.at(np.eye(3), np.zeros(3), node.scale)
-        if min(np.ptp(own.polygon[:, :2], axis=0)) >= MIN_SIDE_M and node.T_world[2, 2] > LEVEL:
-            below = own.polygon.mean(axis=0) - [0.0, 0.0, ABOVE_M]
-            yield next((m.limb.slug for m in body.moving if any(_holds(p, below) for p in m.parts)), None), own
+        scaled = surface.at(np.eye(3), np.zeros(3), node.scale)
+        if min(np.ptp(scaled.polygon[:, :2], axis=0)) >= MIN_SIDE_M and node.T_world[2, 2] > LEVEL:
+            below = scaled.polygon.mean(axis=0) - [0.0, 0.0, ABOVE_M]
+            yield next((m.limb.slug for m in body.moving if any(_holds(p, below) for p in m.parts)), None), scaled
 
 
 def _holds(part: Points, point: Float[np.ndarray, "3"]) -> bool:

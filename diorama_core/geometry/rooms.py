@@ -105,7 +105,7 @@ def doorways(scene: Scene) -> tuple[Doorway, ...]:
     in_rooms = rooms_of_planes(scene)
     walls = wall_lines(scene.architecture.planes, [o for o in scene.objects if not o.hidden], scene)
     lines, faces = {w.plane.id: w for w in walls}, [w.plane for w in walls]
-    found: list[Doorway] = []
+    doorways_of_all: list[Doorway] = []
     for wall in walls:
         for opening in wall.openings:
             middle = wall.at((opening.from_m + opening.to_m) / 2)
@@ -117,9 +117,9 @@ def doorways(scene: Scene) -> tuple[Doorway, ...]:
                 depth = abs(wall.plane.offset - float(wall.plane.normal @ face.centre))
                 at = middle + depth / 2 * wall.outward
                 place = (float(at[0]), float(at[1]))
-                if not any(_is_same(d, face.id, wall.plane.id, place, opening) for d in found):
-                    found.append(Doorway((pair[0], pair[1]), (wall.plane.id, face.id), opening, place, depth))
-    return tuple(found)
+                if not any(_is_same(d, face.id, wall.plane.id, place, opening) for d in doorways_of_all):
+                    doorways_of_all.append(Doorway((pair[0], pair[1]), (wall.plane.id, face.id), opening, place, depth))
+    return tuple(doorways_of_all)
 
 
 def _is_same(known: Doorway, first: str, second: str, at: tuple[float, float], opening: Opening) -> bool:

@@ -113,15 +113,15 @@ def _gaps(wall: DrawnWall) -> list[Opening]:
     flat = np.stack([(corners[:, :2] - wall.start) @ wall.along, corners[:, 2] - wall.bottom_m], axis=1)
     whole = manifold3d.CrossSection([[[0, 0], [length, 0], [length, height], [0, height]]])
     rest = whole - manifold3d.CrossSection([flat], manifold3d.FillRule.NonZero)
-    found = []
+    gaps = []
     for number, piece in enumerate(rest.decompose()):
         left, low, right, high = piece.bounds()
         inside = left > 1e-3 and right < length - 1e-3 and high < height - 1e-3
         if inside and right - left >= HOME.min_opening_m and high - low >= HOME.min_opening_m:
             low, high = low + wall.bottom_m, high + wall.bottom_m
             is_door = low < wall.bottom_m + 0.05
-            found.append(Opening(f"opening-{wall.plane.id}-{number + 1}", left, right, low, high, is_door))
-    return found
+            gaps.append(Opening(f"opening-{wall.plane.id}-{number + 1}", left, right, low, high, is_door))
+    return gaps
 
 
 def _meet(a: Opening, b: Opening) -> bool:

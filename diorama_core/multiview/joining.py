@@ -155,9 +155,9 @@ def overlap(cuboid: JointCuboid, only: tuple[RoomPhoto, int] | None, photo: Room
         return _shared(cuboid, photo, box)
     first, index = only
     one = photo.alone[box]
-    there = JointCuboid(one.centre, one.yaw_rad, one.size_m, 0.0)
+    moved = JointCuboid(one.centre, one.yaw_rad, one.size_m, 0.0)
     return max(
-        penalty * max(_shared(_pushed(cuboid, first, f), photo, box), _shared(_pushed(there, photo, f), first, index))
+        penalty * max(_shared(_pushed(cuboid, first, f), photo, box), _shared(_pushed(moved, photo, f), first, index))
         for f, penalty in zip(FARTHER, FARTHER_PENALTY, strict=True)
     )
 

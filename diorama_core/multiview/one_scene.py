@@ -45,12 +45,14 @@ def moved_to_room(scene: Scene, T: Float[np.ndarray, "4 4"]) -> Scene:
     """A scene of a photo's own world, and all candidates' poses, in the room: `p_room = T @ p`, rigid."""
     R, t = T[:3, :3], T[:3, 3]
 
-    def there(pose: Pose) -> Pose:
+    def pose_in_room(pose: Pose) -> Pose:
         return Pose(R @ pose.R_world_object, R @ pose.position + t, pose.scale)
 
     planes = tuple(replace(p, polygon=p.polygon @ R.T + t) for p in scene.architecture.planes)
     objects = tuple(
-        replace(o, pose=there(o.pose), candidates=tuple(replace(c, pose=there(c.pose)) for c in o.candidates))
+        replace(
+            o, pose=pose_in_room(o.pose), candidates=tuple(replace(c, pose=pose_in_room(c.pose)) for c in o.candidates)
+        )
         for o in scene.objects
     )
     camera = scene.camera and Camera(scene.camera.intrinsics, T @ scene.camera.T_world_camera)

@@ -134,16 +134,16 @@ class _Edges:
         """
         azimuth, tangent, slope = np.broadcast_arrays(azimuth, tangent, slope)
         elevation = np.arctan(tangent)
-        found = self._at(self._tensor, azimuth, elevation, 0.5)  # a column of padding, half a pixel
+        tensor = self._at(self._tensor, azimuth, elevation, 0.5)  # a column of padding, half a pixel
         # Azimuth grows to the left: the curve's normal in (east, north).
         across = np.stack([slope, np.cos(elevation)], axis=-1)
         across /= np.linalg.norm(across, axis=-1, keepdims=True)
         power = (
-            found[..., 0] * across[..., 0] ** 2
-            + 2 * found[..., 1] * across[..., 0] * across[..., 1]
-            + found[..., 2] * across[..., 1] ** 2
+            tensor[..., 0] * across[..., 0] ** 2
+            + 2 * tensor[..., 1] * across[..., 0] * across[..., 1]
+            + tensor[..., 2] * across[..., 1] ** 2
         )
-        share = power / np.maximum(found[..., 0] + found[..., 2], 1e-9)
+        share = power / np.maximum(tensor[..., 0] + tensor[..., 2], 1e-9)
         strength = np.sqrt(np.maximum(power, 0.0)) * share**2
         return (strength / (strength + self.usual)).astype(np.float32)
 

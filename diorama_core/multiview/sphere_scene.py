@@ -111,22 +111,22 @@ def build_sphere(
     progress.report(0.0, "reading the room's directions all round")
     R = room_axes(sphere_lines(photo.rgb))
     progress.report(0.03, "looking for the room's borders all round")
-    found = room_on_sphere(sampled(photo.rgb, directions(LEVEL_WIDTH_PX) @ R))
+    border = room_on_sphere(sampled(photo.rgb, directions(LEVEL_WIDTH_PX) @ R))
     views = sphere_views(photo.width)
     stem = photo.name.rsplit(".", 1)[0]
     pictures = [(v, view_photo(photo.rgb, R, v, f"{stem}-{_degrees(v):03d}.png")) for v in views]
     things = drawn_on_sphere(boxes, (photo.width, photo.height), R)
     if not boxes:
         things = _found(pictures, choose, progress.part(0.05, 0.15))
-    read, sightings, height_m = _read(pictures, things, found, choose, progress.part(0.15, 0.3), camera_height_m)
+    read, sightings, height_m = _read(pictures, things, border, choose, progress.part(0.15, 0.3), camera_height_m)
     room_photos = [said_alone(r) for r in read]
     shown = [(thing, seen) for thing, seen in zip(things, sightings, strict=True) if seen]
     tracks = [_track(seen, room_photos) for _, seen in shown]
-    rooms = _rooms(sphere_planes(found, height_m), read, tracks)
+    rooms = _rooms(sphere_planes(border, height_m), read, tracks)
     room = joined_scene(read, room_photos, tuple(tracks), rooms, library, layout, progress.part(0.3, 1.0))
     tilt = float(np.rad2deg(np.arccos(np.clip(R[2, 2], -1.0, 1.0))))
     notes = (
-        f"a 360 degree photo: the room has {len(found.outline)} walls, the camera is {height_m:.2f} m above the floor",
+        f"a 360 degree photo: the room has {len(border.outline)} walls, the camera is {height_m:.2f} m above the floor",
         *((f"its horizon was tilted by {tilt:.1f} degrees",) if tilt >= 1.0 else ()),
     )
     return SphereScene(

@@ -78,7 +78,7 @@ def drawn_on_sphere(
         size: width and height of the picture.
         R_room_sphere: from the picture's frame to the room's.
     """
-    things = []
+    boxes_on_sphere = []
     for labelled in _across_seam(boxes, size[0]):
         x1, y1, x2, y2 = labelled.box
         middle = np.array([(x1 + x2) / 2, (y1 + y2) / 2])
@@ -86,8 +86,8 @@ def drawn_on_sphere(
         away = directions_at(sides, size) @ R_room_sphere.T
         azimuth, elevation = np.arctan2(away[:, 1], away[:, 0]), np.arctan2(away[:, 2], np.hypot(*away[:, :2].T))
         half = np.pi * (x2 - x1) / size[0]
-        things.append(SphereBox(float(azimuth[4]), half, float(elevation[3]), float(elevation[2]), labelled))
-    return tuple(things)
+        boxes_on_sphere.append(SphereBox(float(azimuth[4]), half, float(elevation[3]), float(elevation[2]), labelled))
+    return tuple(boxes_on_sphere)
 
 
 def _across_seam(boxes: Sequence[LabelledBox], width: int) -> tuple[LabelledBox, ...]:
@@ -171,20 +171,20 @@ def view_photo(
     return Photo(picture, name, (k.width, k.height))
 
 
-def found_in_views(found: Sequence[tuple[SphereView, Sequence[LabelledBox]]]) -> tuple[SphereBox, ...]:
+def found_in_views(boxes_by_view: Sequence[tuple[SphereView, Sequence[LabelledBox]]]) -> tuple[SphereBox, ...]:
     """Things that were found in views, each once: as the view has it that shows it whole, and nearest its middle."""
     rows = []
-    for view, boxes in found:
+    for view, boxes in boxes_by_view:
         for labelled in boxes:
             x1, _, x2, _ = labelled.box
             cut = min(x1, view.intrinsics.width - x2) < SETTINGS.seam * view.intrinsics.width
             thing = view.on_sphere(labelled)
             rows.append((cut, -labelled.score * np.cos(thing.beside(view.azimuth)), thing))
-    things: list[SphereBox] = []
+    distinct: list[SphereBox] = []
     for _, _, thing in sorted(rows, key=lambda row: row[:2]):
-        if not any(_is_same(thing, other) for other in things):
-            things.append(thing)
-    return tuple(things)
+        if not any(_is_same(thing, other) for other in distinct):
+            distinct.append(thing)
+    return tuple(distinct)
 
 
 def _is_same(a: SphereBox, b: SphereBox) -> bool:

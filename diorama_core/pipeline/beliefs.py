@@ -175,6 +175,6 @@ def _distance_m(scene: Scene, item: SceneObject) -> float:
 
 def _decided_first(shares: Mapping[str, float], decided: str, settings: BeliefSettings) -> Shares:
     """The likeliest alternatives, what was decided before all others."""
-    others = sorted(((n, p) for n, p in shares.items() if n != decided), key=lambda found: (-found[1], found[0]))
+    others = sorted(((n, p) for n, p in shares.items() if n != decided), key=lambda pair: (-pair[1], pair[0]))
     chosen = ((decided, max(shares.get(decided, 0.0), settings.rare)), *others)[: settings.told]
     return tuple((name, round(share, 4)) for name, share in chosen if share >= settings.rare)

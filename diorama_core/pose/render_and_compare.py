@@ -234,7 +234,7 @@ class RenderAndCompare:
             turned = measured.turned(poses, fold, tried.limits)
             nothing = np.zeros(len(turned))
             other = self._chosen(task, tried, Hypotheses(turned, nothing, nothing))
-            poses, error, score = max((poses, error, score), other, key=lambda found: found[2])
+            poses, error, score = max((poses, error, score), other, key=lambda pair: pair[2])
         return PosedShape(tried.shape, _only(poses), error, self._rank(task, measured, tried, poses, error))
 
     def _turned_all_around(

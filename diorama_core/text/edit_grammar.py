@@ -435,10 +435,10 @@ def _insert(selector: Selector, clause: str, rest: str) -> Insert | Resize:
     if phrase is None or not phrase.label or phrase.beyond:
         words = unknown or (" ".join(phrase.beyond) if phrase is not None else "") or head or clause
         raise EditRefused(f"“{words}” is not understood; for example: {EXAMPLES}")
-    there = [o.id for o in selector.scene.objects if o.category == phrase.category]
+    same_kind = [o.id for o in selector.scene.objects if o.category == phrase.category]
     change = next((f for w, f in _COMPARED.items() if w in phrase.appearance), None)
-    if change is not None and there and not places:
-        return Resize(objects=there, factor=change)
+    if change is not None and same_kind and not places:
+        return Resize(objects=same_kind, factor=change)
     if category(phrase.category).name in OPENING_CATEGORIES:
         raise EditRefused(f"a {phrase.category} is part of the room, which edits by words leave as it is")
     wanted = places_of_phrases(selector, places)

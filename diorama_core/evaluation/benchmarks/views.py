@@ -263,8 +263,8 @@ class _Room:
         seconds = time.process_time() - begun
         true = [as_placed(t, self.library.shape(t.shape_id).symmetry) for t in items]
         placed = [None if m is None else as_placed(m) for m in matched(items, scene)]
-        own = object_alignment(true, placed)
-        return ViewsResult(self.case.name, way, own, seconds, "", *_room_agreement(scene, truth.scene))
+        alignment = object_alignment(true, placed)
+        return ViewsResult(self.case.name, way, alignment, seconds, "", *_room_agreement(scene, truth.scene))
 
 
 def _room_agreement(scene: Scene, truth: Scene) -> tuple[float, float]:

@@ -159,11 +159,11 @@ def placement_stage(
     free = problem.free.astype(np.float64)[:, None]
     for step, rate in enumerate(schedule.rates()):
         value, gradient = cost.of_positions(state.p)
-        retained, back = gradients.relative(state.p - start, problem.relations, links)
+        distance, back = gradients.relative(state.p - start, problem.relations, links)
         slope = 5.0 * weights.place * gradient + weights.neighbours * back
         velocity = schedule.momentum * velocity + slope * free
         state.p = state.p - schedule.rate * rate * velocity
-        terms = {"place": 5.0 * weights.place * value, "neighbours": weights.neighbours * retained}
+        terms = {"place": 5.0 * weights.place * value, "neighbours": weights.neighbours * distance}
         report("placement", step, state, terms)
 
 

@@ -57,13 +57,13 @@ def known_shapes(
     path = _place(cache_dir)
     categories = tuple(s.category for s in shapes)
     sizes = np.log([s.size_m for s in shapes])
-    retained = _read(path)
-    missing = [s for s in shapes if _key(s) not in retained]
+    reliefs_by_key = _read(path)
+    missing = [s for s in shapes if _key(s) not in reliefs_by_key]
     if missing:
-        retained |= _taken(library, missing, on_step)
-        retained = {_key(s): retained[_key(s)] for s in shapes}
-        _write(path, retained)
-    reliefs = np.stack([retained[_key(s)] for s in shapes])
+        reliefs_by_key |= _taken(library, missing, on_step)
+        reliefs_by_key = {_key(s): reliefs_by_key[_key(s)] for s in shapes}
+        _write(path, reliefs_by_key)
+    reliefs = np.stack([reliefs_by_key[_key(s)] for s in shapes])
     return KnownShapes(categories, relief_features(reliefs.astype(np.float32) / 255.0), sizes)
 
 
