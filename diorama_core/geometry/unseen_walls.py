@@ -144,6 +144,13 @@ def _pieces(
 def rectangle(
     a: Float[np.ndarray, "2"], b: Float[np.ndarray, "2"], shares: tuple[float, float], heights: tuple[float, float]
 ) -> Corners:
-    """Polygon of a wall whose foot runs from `a` to `b`, the room on its left; counter-clockwise from the room."""
+    """Polygon of a wall, counter-clockwise from the room.
+
+    Args:
+        a: Start of its foot on the floor (x, y), metres; the room is on the left of the way to `b`.
+        b: End of its foot.
+        shares: Part of the way that the polygon covers, from and to.
+        heights: Levels of its lower and upper edge, metres.
+    """
     start, end = a + shares[0] * (b - a), a + shares[1] * (b - a)
     return np.array([[*end, heights[0]], [*start, heights[0]], [*start, heights[1]], [*end, heights[1]]])
