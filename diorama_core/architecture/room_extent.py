@@ -54,7 +54,6 @@ def containing_room(
     objects_measured: bool = True,
     walls_reasoned: bool = False,
     feet_seen: Collection[str] | None = None,
-    settings: RoomExtentSettings = SETTINGS,
 ) -> Scene:
     """The scene with unseen walls moved behind what stands on the floor, the floor drawn out under it, and a ceiling
     above what hangs.
@@ -64,64 +63,60 @@ def containing_room(
         objects_measured: whether places of objects were measured: a wall before a measured one was not seen.
         walls_reasoned: whether walls were reasoned from a photo alone: they come to what stands against them.
         feet_seen: ids of the objects whose lower ends the photo shows; of all when None.
-        settings: numbers to work with.
     """
     floor = scene.architecture.floor
     if floor is None:
         return scene
     if walls_reasoned:
-        scene = _at_backs(scene, feet_seen, objects_measured, settings)
+        scene = _at_backs(scene, feet_seen, objects_measured)
         if objects_measured:
-            scene = _without_far_adherence(scene, settings)
+            scene = _without_far_adherence(scene)
     standing = [o for o in scene.objects if (edge := scene.support_of(o.id)) is not None and edge.parent == floor.id]
     if objects_measured:
-        scene = _doubted(scene, standing, settings)
+        scene = _doubted(scene, standing)
     for wall in scene.architecture.by_role("wall"):
         if not wall.seen:
-            scene = _given_way(scene, wall.id, standing, settings)
-        scene = _drawn_out(scene, wall.id, settings)
-    prints = [p for o in standing if len(p := _footprint(scene, o, settings)) >= 3]
-    return _with_ceiling(_with_floor_under(scene, prints, settings), settings)
+            scene = _given_way(scene, wall.id, standing)
+        scene = _drawn_out(scene, wall.id)
+    prints = [p for o in standing if len(p := _footprint(scene, o)) >= 3]
+    return _with_ceiling(_with_floor_under(scene, prints))
 
 
-def without_floor_behind_walls(scene: Scene, known: Plane, settings: RoomExtentSettings = SETTINGS) -> Scene:
+def without_floor_behind_walls(scene: Scene, known: Plane) -> Scene:
     """The scene without the floor that was drawn out behind seen walls under objects that are before them now.
 
     Args:
         scene: after its layout.
         known: the floor before it was drawn out.
-        settings: numbers to work with.
     """
     floor = scene.architecture.floor
     if floor is None:
         return scene
-    standing = [
-        _box_footprint(o, settings) for o in scene.objects if (s := scene.support_of(o.id)) and s.parent == floor.id
-    ]
+    standing = [_box_footprint(o) for o in scene.objects if (s := scene.support_of(o.id)) and s.parent == floor.id]
     here = _section(floor.polygon[:, :2])
     added = here - _section(known.polygon[:, :2])
     trimmed = here
     for wall in scene.architecture.by_role("wall"):
-        drawn = added ^ _behind_wall(wall, settings)
-        if wall.seen and not any((drawn ^ _section(p)).area() > settings.behind_share * _area(p) for p in standing):
+        drawn = added ^ _behind_wall(wall)
+        if wall.seen and not any((drawn ^ _section(p)).area() > SETTINGS.behind_share * _area(p) for p in standing):
             trimmed = trimmed - drawn
-    if here.area() - trimmed.area() < settings.min_area_m2:
+    if here.area() - trimmed.area() < SETTINGS.min_area_m2:
         return scene
-    outline = max(trimmed.simplify(settings.margin_m).to_polygons(), key=_signed_area)
+    outline = max(trimmed.simplify(SETTINGS.margin_m).to_polygons(), key=_signed_area)
     return _with_floor_outline(scene, floor, outline)
 
 
-def _behind_wall(wall: Plane, settings: RoomExtentSettings = SETTINGS) -> manifold3d.CrossSection:
+def _behind_wall(wall: Plane) -> manifold3d.CrossSection:
     """What a wall hides of the plan."""
     level = np.cross([0.0, 0.0, 1.0], wall.normal)
     along = wall.polygon @ level
     ends = [wall.offset * wall.normal + reach * level for reach in (float(along.min()), float(along.max()))]
-    far = [end - settings.far_m * wall.normal for end in ends]
+    far = [end - SETTINGS.far_m * wall.normal for end in ends]
     corners = np.array([*ends, far[1], far[0]])[:, :2]
     return _section(corners if _signed_area(corners) > 0.0 else corners[::-1])
 
 
-def _with_ceiling(scene: Scene, settings: RoomExtentSettings = SETTINGS) -> Scene:
+def _with_ceiling(scene: Scene) -> Scene:
     """A ceiling that was not seen is where lamps hang from it: at the walls' top as far as the lamps reach there."""
     hanging = [o for o in scene.objects if taxonomy.resolve(o.category).category.mount == "ceiling"]
     floor, top_m = scene.architecture.floor, ceiling_height(scene)
@@ -129,7 +124,7 @@ def _with_ceiling(scene: Scene, settings: RoomExtentSettings = SETTINGS) -> Scen
         return scene
     ends = [(float(o.corners_world[:, 2].min()), float(o.corners_world[:, 2].max())) for o in hanging]
     ground = float(floor.centre[2])
-    reached = min(low + settings.longest_cord * (high - low) for low, high in ends)
+    reached = min(low + SETTINGS.longest_cord * (high - low) for low, high in ends)
     level = max(min(ground + top_m, reached), max(high for _, high in ends))
     try:
         scene = replace(set_ceiling_height(scene, level - ground), objects=scene.objects)
@@ -147,12 +142,7 @@ def _with_ceiling(scene: Scene, settings: RoomExtentSettings = SETTINGS) -> Scen
     return replace(scene, architecture=Architecture((*scene.architecture.planes, ceiling)), supports=supports)
 
 
-def _at_backs(
-    scene: Scene,
-    feet_seen: Collection[str] | None,
-    objects_measured: bool,
-    settings: RoomExtentSettings = SETTINGS,
-) -> Scene:
+def _at_backs(scene: Scene, feet_seen: Collection[str] | None, objects_measured: bool) -> Scene:
     """The walls where most of what stands against them says: from a photo alone they are as uncertain as objects.
 
     Doors say it, too: their feet, which were seen on the floor, are the wall's. What stands before a wall without
@@ -174,39 +164,36 @@ def _at_backs(
             for s in edges
             if wall.id not in s.adheres_to and _behind(item := scene.object(s.child), wall, np.inf) < np.inf
         ]
-        backs, certainty = _backs(against, wall, feet_seen, settings)
-        before, before_certainty = _backs(others, wall, feet_seen, settings)
+        backs, certainty = _backs(against, wall, feet_seen)
+        before, before_certainty = _backs(others, wall, feet_seen)
         tried = np.concatenate([[0.0], backs, before]) if objects_measured else np.concatenate([[0.0], backs])
-        inward = _agreed(tried, backs, certainty, before, before_certainty, settings)
-        if abs(inward) < settings.margin_m:
+        inward = _agreed(tried, backs, certainty, before, before_certainty)
+        if abs(inward) < SETTINGS.margin_m:
             continue
         try:
-            moved = move_plane(scene, wall.id, settings.margin_m - inward)
+            moved = move_plane(scene, wall.id, SETTINGS.margin_m - inward)
         except EditRefused:
             continue
         scene = replace(moved, objects=scene.objects)
     return scene
 
 
-def _without_far_adherence(scene: Scene, settings: RoomExtentSettings) -> Scene:
+def _without_far_adherence(scene: Scene) -> Scene:
     """The scene without "against the wall" where an object was measured away from a wall that the photo shows."""
 
     def near(edge: Support) -> tuple[str, ...]:
         item = scene.object(edge.child)
-        return tuple(w for w in edge.adheres_to if abs(_back(item, scene.plane(w))) < settings.clearly_m)
+        return tuple(w for w in edge.adheres_to if abs(_back(item, scene.plane(w))) < SETTINGS.clearly_m)
 
     return replace(scene, supports=tuple(replace(s, adheres_to=near(s)) for s in scene.supports))
 
 
 def _backs(
-    items: Sequence[SceneObject],
-    wall: Plane,
-    feet_seen: Collection[str] | None,
-    settings: RoomExtentSettings = SETTINGS,
+    items: Sequence[SceneObject], wall: Plane, feet_seen: Collection[str] | None
 ) -> tuple[Float[np.ndarray, " a"], Float[np.ndarray, " a"]]:
     """Heights of objects' hindmost corners before a wall, and how certain the objects' places are."""
     hidden = [feet_seen is not None and o.id not in feet_seen for o in items]
-    certainty = [o.confidence * (settings.foot_hidden if h else 1.0) for o, h in zip(items, hidden, strict=True)]
+    certainty = [o.confidence * (SETTINGS.foot_hidden if h else 1.0) for o, h in zip(items, hidden, strict=True)]
     return np.array([_back(o, wall) for o in items]), np.array(certainty)
 
 
@@ -221,30 +208,29 @@ def _agreed(
     certainty: Float[np.ndarray, " a"],
     others: Float[np.ndarray, " b"],
     others_certainty: Float[np.ndarray, " b"],
-    settings: RoomExtentSettings = SETTINGS,
 ) -> float:
     """How far inward, of what is tried, a wall agrees best with the backs of what stands against it and before it."""
     apart = np.abs(tried[:, None] - backs) @ certainty
     past = np.maximum(tried[:, None] - others, 0.0) @ others_certainty
-    return float(tried[np.argmin(apart + past + settings.hold * np.abs(tried))])
+    return float(tried[np.argmin(apart + past + SETTINGS.hold * np.abs(tried))])
 
 
-def _doubted(scene: Scene, standing: Sequence[SceneObject], settings: RoomExtentSettings = SETTINGS) -> Scene:
+def _doubted(scene: Scene, standing: Sequence[SceneObject]) -> Scene:
     """The scene with walls as guesses behind which the middle of something that stands on the floor was measured.
 
     The front of furniture that nobody marked was taken for such a wall, or it ends before the object.
     """
-    doubted = {p.id for p in scene.architecture.planes if p.seen and any(_is_behind(o, p, settings) for o in standing)}
+    doubted = {p.id for p in scene.architecture.planes if p.seen and any(_is_behind(o, p) for o in standing)}
     if not doubted:
         return scene
-    planes = (replace(p, confidence=settings.doubted) if p.id in doubted else p for p in scene.architecture.planes)
+    planes = (replace(p, confidence=SETTINGS.doubted) if p.id in doubted else p for p in scene.architecture.planes)
     return replace(scene, architecture=Architecture(tuple(planes)))
 
 
-def _is_behind(item: SceneObject, plane: Plane, settings: RoomExtentSettings = SETTINGS) -> bool:
+def _is_behind(item: SceneObject, plane: Plane) -> bool:
     """Whether an object's middle is clearly behind a wall, between its ends."""
     ahead_m = float(item.pose.position @ plane.normal) - plane.offset
-    return plane.role == "wall" and ahead_m < -settings.clearly_m and _is_between_ends(item, plane)
+    return plane.role == "wall" and ahead_m < -SETTINGS.clearly_m and _is_between_ends(item, plane)
 
 
 def _is_between_ends(item: SceneObject, wall: Plane) -> bool:
@@ -254,9 +240,7 @@ def _is_between_ends(item: SceneObject, wall: Plane) -> bool:
     return bool(spread.min() < float(item.pose.position @ along) < spread.max())
 
 
-def _given_way(
-    scene: Scene, wall_id: str, standing: list[SceneObject], settings: RoomExtentSettings = SETTINGS
-) -> Scene:
+def _given_way(scene: Scene, wall_id: str, standing: list[SceneObject]) -> Scene:
     """The wall at the backs of what hangs on it, behind everything whose middle is in front of it; objects stay."""
     wall = scene.plane(wall_id)
     # Of what was seen, something hangs on the wall: it says where the wall is, within the room that it leaves.
@@ -266,7 +250,7 @@ def _given_way(
     if inward == 0.0 and deepest == inward:
         return scene
     try:
-        moved = move_plane(scene, wall_id, settings.margin_m - deepest if deepest < inward else -inward)
+        moved = move_plane(scene, wall_id, SETTINGS.margin_m - deepest if deepest < inward else -inward)
     except EditRefused:
         return scene
     return replace(moved, objects=scene.objects)
@@ -276,7 +260,7 @@ def _hanging(scene: Scene, wall_id: str) -> list[SceneObject]:
     return [scene.object(s.child) for s in scene.supports if s.parent == wall_id and s.relation == "mounted on"]
 
 
-def _drawn_out(scene: Scene, wall_id: str, settings: RoomExtentSettings = SETTINGS) -> Scene:
+def _drawn_out(scene: Scene, wall_id: str) -> Scene:
     """The wall long enough for what hangs on it: an end is known only where it meets another wall that was seen."""
     wall = scene.plane(wall_id)
     hanging = _hanging(scene, wall_id)
@@ -288,12 +272,12 @@ def _drawn_out(scene: Scene, wall_id: str, settings: RoomExtentSettings = SETTIN
     polygon = wall.polygon.copy()
     seen = [other for other in scene.architecture.by_role("wall") if other.seen]
     for end, reach in (
-        (along.min(), needed.min() - settings.margin_m),
-        (along.max(), needed.max() + settings.margin_m),
+        (along.min(), needed.min() - SETTINGS.margin_m),
+        (along.max(), needed.max() + SETTINGS.margin_m),
     ):
-        at_end = np.abs(along - end) < settings.joined_m
+        at_end = np.abs(along - end) < SETTINGS.joined_m
         beyond = (reach - end) * np.sign(end - along.mean())
-        if beyond > 0.0 and not _meets_a_wall(wall, wall.polygon[at_end], seen, settings.joined_m):
+        if beyond > 0.0 and not _meets_a_wall(wall, wall.polygon[at_end], seen, SETTINGS.joined_m):
             polygon[at_end] += (reach - end) * level
     if np.array_equal(polygon, wall.polygon):
         return scene
@@ -310,9 +294,9 @@ def _behind(item: SceneObject, wall: Plane, inward_m: float = 0.0) -> float:
     return min(float((item.corners_world @ wall.normal).min()) - wall.offset, inward_m)
 
 
-def _footprint(scene: Scene, item: SceneObject, settings: RoomExtentSettings = SETTINGS) -> Float[np.ndarray, "k 2"]:
+def _footprint(scene: Scene, item: SceneObject) -> Float[np.ndarray, "k 2"]:
     """What an object covers of the floor before the walls that were seen, counter-clockwise in plan."""
-    polygon = np.column_stack([_box_footprint(item, settings), np.zeros(4)])
+    polygon = np.column_stack([_box_footprint(item), np.zeros(4)])
     for wall in scene.architecture.by_role("wall"):
         if wall.seen and _behind(item, wall) < 0.0:
             level = wall.normal * [1.0, 1.0, 0.0]
@@ -320,18 +304,16 @@ def _footprint(scene: Scene, item: SceneObject, settings: RoomExtentSettings = S
     return polygon[:, :2]
 
 
-def _box_footprint(item: SceneObject, settings: RoomExtentSettings = SETTINGS) -> Float[np.ndarray, "4 2"]:
-    half = item.size_m / 2 + settings.margin_m
+def _box_footprint(item: SceneObject) -> Float[np.ndarray, "4 2"]:
+    half = item.size_m / 2 + SETTINGS.margin_m
     signs = np.array([[1, 1, -1], [-1, 1, -1], [-1, -1, -1], [1, -1, -1]])
     return np.asarray(item.pose.position + (signs * half) @ item.pose.R_world_object.T)[:, :2]
 
 
-def _with_floor_under(
-    scene: Scene, prints: list[Float[np.ndarray, "_ 2"]], settings: RoomExtentSettings = SETTINGS
-) -> Scene:
+def _with_floor_under(scene: Scene, prints: list[Float[np.ndarray, "_ 2"]]) -> Scene:
     floor = scene.architecture.floor
     assert floor is not None
-    missing = _beside_floor(floor, prints, settings)
+    missing = _beside_floor(floor, prints)
     if not missing:
         return scene
     sections = [_section(floor.polygon[:, :2]), *map(_section, missing)]
@@ -343,12 +325,10 @@ def _with_floor_under(
     return _with_floor_outline(scene, floor, outline)
 
 
-def _beside_floor(
-    floor: Plane, prints: list[Float[np.ndarray, "_ 2"]], settings: RoomExtentSettings = SETTINGS
-) -> list[Float[np.ndarray, "_ 2"]]:
+def _beside_floor(floor: Plane, prints: list[Float[np.ndarray, "_ 2"]]) -> list[Float[np.ndarray, "_ 2"]]:
     """The footprints that are not on the floor altogether."""
     here = _section(floor.polygon[:, :2])
-    return [p for p in prints if _area(p) - (_section(p) ^ here).area() > settings.min_area_m2]
+    return [p for p in prints if _area(p) - (_section(p) ^ here).area() > SETTINGS.min_area_m2]
 
 
 def _with_floor_outline(scene: Scene, floor: Plane, outline: Float[np.ndarray, "k 2"]) -> Scene:
