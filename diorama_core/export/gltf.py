@@ -236,7 +236,10 @@ class _Builder:
         return self._document.add("nodes", node)
 
     def _room_lights(self) -> list[int]:
-        """The main light, and parallel ones for the light from all sides."""
+        """The main light, and for the light from all sides parallel lights and points within the room, half of it each.
+
+        Programs without shadows show parallel lights evenly; those with shadows keep them out of a closed room.
+        """
         main, even, found = self._gathered.main_light, self._gathered.even_light, []
         if main is not None:
             about: dict[str, Any] = {"type": "directional", "color": [float(c) for c in main.colour]}
@@ -244,8 +247,14 @@ class _Builder:
             found.append(self._room_light(self._document.add_light(about), placement(main.T_world), "main light"))
         if even is not None:
             for T in even.T_world:  # three.js aims only the first of nodes that share a light
-                about = {"type": "directional", "name": "even light", "intensity": even.lux}
+                about = {"type": "directional", "name": "even light", "intensity": even.lux / 2.0}
                 found.append(self._room_light(self._document.add_light(about), placement(T), "even light"))
+            point = {"type": "point", "name": "even light", "intensity": even.candela / 2.0}
+            index = self._document.add_light(point)
+            for position in even.positions:
+                T = np.eye(4)
+                T[:3, 3] = position
+                found.append(self._room_light(index, placement(T), "even light"))
         return found
 
     def _room_light(self, light: int, place: dict[str, Any], name: str) -> int:

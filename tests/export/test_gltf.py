@@ -100,8 +100,8 @@ def test_the_tree_follows_the_supports_beside_the_architecture() -> None:
 
     lights = {name for name in below("diorama") if name.startswith("even light")}
     assert below("diorama") - lights == {"architecture", "objects", "photo camera"}
-    assert len(lights) == 4
-    assert len({node(document, name)["extensions"]["KHR_lights_punctual"]["light"] for name in lights}) == 4
+    assert len(lights) == 8  # four parallel ones, four points
+    assert len({node(document, name)["extensions"]["KHR_lights_punctual"]["light"] for name in lights}) == 5
     assert below("architecture") == {"floor", "ceiling", "wall back", "wall left", "wall right", "wall front"}
     assert below("table (t)") == {"ball (b)"}
     assert "ball (b)" not in below("objects")
