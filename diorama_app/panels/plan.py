@@ -20,7 +20,8 @@ from diorama_app.session.client import Client
 from diorama_app.session.units import Unit, format_length, parse_length
 from diorama_app.strings import _, plural
 from diorama_app.web.html import Action, LiveHtml, run_once
-from diorama_core.editing.plan_edits import corners, draw_room, move_corner, set_wall_length, split_wall, wall_feet
+from diorama_core.editing.homes import draw_room_of_home
+from diorama_core.editing.plan_edits import corners, move_corner, set_wall_length, split_wall, wall_feet
 from diorama_core.errors import EditRefused, LibraryError
 from diorama_core.export.footprints import Outline, outline
 from diorama_core.export.plan import OVERHEAD_M, UNNAMED, RoomLines, drawing_order, room_lines
@@ -107,11 +108,15 @@ class Plan:
 
     def _seen(self) -> Scene:
         """The scene; of a home the storey of what is shown, the lowest where everything is."""
-        scene, shown = self._client.session.scene, self._client.rooms
+        scene = self._client.session.scene
         if not scene.rooms:
             return scene
-        storeys = {r.storey for r in scene.rooms if r.id in shown} or {min(r.storey for r in scene.rooms)}
-        return part_of_home(scene, {r.id for r in scene.rooms if r.storey in storeys})
+        return part_of_home(scene, {r.id for r in scene.rooms if r.storey in self._storeys()})
+
+    def _storeys(self) -> set[int]:
+        """The storeys of the rooms that are shown, the lowest where everything is."""
+        rooms, shown = self._client.session.scene.rooms, self._client.rooms
+        return {r.storey for r in rooms if r.id in shown} or {min((r.storey for r in rooms), default=0)}
 
     def _everything(self) -> list[list[float]]:
         scene = self._seen()
@@ -201,8 +206,8 @@ class Plan:
                 case "picture":
                     self._picture.placed(arg)
                 case "room":
-                    outline = np.array(arg, dtype=np.float64).reshape(-1, 2)
-                    session.edit(_("draw the room"), lambda s: draw_room(s, outline), by=client)
+                    outline, storey = np.array(arg, dtype=np.float64).reshape(-1, 2), min(self._storeys())
+                    session.edit(_("draw the room"), lambda s: draw_room_of_home(s, outline, storey), by=client)
         except (KeyError, TypeError, IndexError, json.JSONDecodeError) as error:
             raise EditRefused("that is no longer in the plan") from error
         finally:

@@ -1,4 +1,4 @@
-"""Rooms joined to a home at a door that both of them show."""
+"""Rooms of a home: joined at a door that both of them show, and drawn beside one another."""
 
 from __future__ import annotations
 
@@ -6,11 +6,13 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
+import shapely
 from jaxtyping import Float, UInt8
 
+from diorama_core.editing.plan_edits import draw_room
 from diorama_core.errors import EditRefused
 from diorama_core.geometry.openings import DOOR, wall_of
-from diorama_core.geometry.rooms import rooms_of_objects
+from diorama_core.geometry.rooms import part_of_home, rooms_of_objects
 from diorama_core.multiview.one_scene import moved_to_room
 from diorama_core.project.storage import Project
 from diorama_core.scene import edits
@@ -19,6 +21,9 @@ from diorama_core.scene.types import Architecture, HomeRoom, Plane, Scene, Suppo
 
 USUAL_WALL_M = 0.12
 """Thickness of a wall between two rooms where nobody says another: brick and plaster."""
+
+DRAWN_OVER = 0.1
+"""Share of the smaller of two outlines that they have in common: less is a touch."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -126,6 +131,63 @@ def join_project(
     if other.shapes_folder.is_dir():
         project.take_shapes(other)
     return made.scene, {made.textures[name]: picture for name, picture in other.textures(added).items()}
+
+
+def draw_room_of_home(scene: Scene, outline: Float[np.ndarray, "n 2"], storey: int = 0) -> Scene:
+    """A room drawn in the plan: a new one beside the others, or another outline of the one that it is drawn over.
+
+    A new room is as high as the others of its storey. A scene that is one room becomes a home when a room is drawn
+    beside it.
+
+    Args:
+        scene: a home, or one room.
+        outline: corners on the floor, in order (world x and y).
+        storey: on which it is drawn.
+
+    Raises:
+        EditRefused: the corners are no room, it is drawn over several rooms, or the storey has no room.
+    """
+    if scene.architecture.floor is None:
+        return draw_room(scene, outline)
+    home = _as_home(scene, "room")
+    beside = [r for r in home.rooms if r.storey == storey]
+    if not beside:
+        raise EditRefused(f"storey {storey} has no room; draw on a storey that has one")
+    part = replace(part_of_home(home, {r.id for r in beside}), objects=(), supports=(), rooms=())
+    drawn = draw_room(part, outline)
+    over = [r for r in beside if _share(drawn.plane("floor"), home.plane(r.floor)) > DRAWN_OVER]
+    if len(over) > 1:
+        names = " and ".join(r.name for r in over)
+        raise EditRefused(f"that would lie over {names}; draw beside the rooms, or over one of them")
+    if over and not scene.rooms:
+        return draw_room(scene, outline)
+    if over:
+        part = part_of_home(home, {over[0].id})
+        drawn = draw_room(replace(part, rooms=()), outline)
+    gone = {p.id for p in part.architecture.planes} if over else set()
+    taken = set(_ids(home)) - gone
+    ids = {p.id: _free(p.id, taken) for p in drawn.architecture.planes} | {o.id: o.id for o in drawn.objects}
+    planes = (*home.architecture.planes, *(replace(p, id=ids[p.id]) for p in drawn.architecture.planes))
+    kept = tuple(p for k, p in enumerate(planes) if k >= len(home.architecture.planes) or p.id not in gone)
+    held = {s.child: _support(s, ids) for s in drawn.supports}
+    room = (
+        over[0]
+        if over
+        else HomeRoom(_free("room-2", taken), _free("room", {r.name for r in home.rooms}, " "), "", storey)
+    )
+    room = replace(room, floor=ids["floor"])
+    return replace(
+        home,
+        architecture=Architecture(kept),
+        supports=tuple(held.get(s.child, s) for s in home.supports),
+        rooms=tuple(room if r.id == room.id else r for r in home.rooms) if over else (*home.rooms, room),
+    )
+
+
+def _share(drawn: Plane, floor: Plane) -> float:
+    """Area that two floors have in common, of the smaller one."""
+    first, second = (shapely.make_valid(shapely.Polygon(p.polygon[:, :2])) for p in (drawn, floor))
+    return float(first.intersection(second).area / max(min(first.area, second.area), 1e-9))
 
 
 @dataclass(frozen=True)

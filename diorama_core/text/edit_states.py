@@ -10,8 +10,8 @@ from dataclasses import replace
 import numpy as np
 
 from diorama_core.editing.aligning import align, distribute, widest_axis
+from diorama_core.editing.homes import draw_room_of_home
 from diorama_core.editing.placing import against_wall, seated
-from diorama_core.editing.plan_edits import draw_room
 from diorama_core.editing.positioning import Positioner
 from diorama_core.editing.relations import Relation
 from diorama_core.editing.sunlight import set_light, switch_lamp
@@ -112,7 +112,9 @@ def wall_moved(scene: Scene, edit: MoveWall) -> Done:
 
 def outlined(scene: Scene, edit: DrawRoom) -> Done:
     """The room over another outline."""
-    return Done(draw_room(scene, np.array(edit.corners)), (f"draw the room again with {len(edit.corners)} corners",))
+    return Done(
+        draw_room_of_home(scene, np.array(edit.corners)), (f"draw the room again with {len(edit.corners)} corners",)
+    )
 
 
 _AXES = {"depth": 0, "width": 1, "height": 2}

@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from diorama_core.editing.homes import joined
+from diorama_core.editing.homes import draw_room_of_home, joined
 from diorama_core.errors import EditRefused
 from diorama_core.geometry.rooms import doorways, rooms_of_objects, rooms_of_planes
 from diorama_core.multiview.one_scene import moved_to_room
@@ -109,3 +109,38 @@ def test_what_cannot_be_joined_says_why(home: Scene, turned: Scene) -> None:
     free = edits.detach(edits.move(home, "door", Pose.upright((0.0, 0.0, 1.0))), "door")
     with pytest.raises(EditRefused, match="in no wall"):
         joined(free, turned, "door", "way-in")
+
+
+def square(x: float, y: float, side: float = 3.0) -> np.ndarray:
+    return np.array([[x, y], [x + side, y], [x + side, y + side], [x, y + side]])
+
+
+def test_a_room_drawn_beside_others_is_one_more_and_over_one_another_outline_of_it(home: Scene) -> None:
+    low, high = home.plane("floor").polygon.min(axis=0), home.plane("floor").polygon.max(axis=0)
+    two = draw_room_of_home(home, square(high[0] + 0.1, low[1]))
+    check_scene(two)
+    assert scene_from_json(scene_to_json(two)) == two
+    assert [r.name for r in two.rooms] == ["room", "room 2"]
+    assert two.objects == home.objects
+    assert two.supports == home.supports
+    assert set(rooms_of_objects(two).values()) == {two.rooms[0].id}
+    assert np.isclose(two.plane("ceiling-2").centre[2], home.plane("ceiling").centre[2])
+
+    wider = draw_room_of_home(two, square(high[0] + 0.1, low[1], 4.0))
+    check_scene(wider)
+    assert [r.id for r in wider.rooms] == [r.id for r in two.rooms]
+    assert len(wider.architecture.planes) == len(two.architecture.planes)
+    assert np.ptp(wider.plane(wider.rooms[1].floor).polygon[:, 0]) == pytest.approx(4.0)
+    around = np.array(
+        [low[:2] - 0.2, [high[0] + 0.05, low[1] - 0.2], high[:2] + np.array([0.05, 0.2]), [low[0] - 0.2, high[1] + 0.2]]
+    )
+    first = draw_room_of_home(two, around)
+    check_scene(first)
+    assert set(rooms_of_objects(first).values()) == {two.rooms[0].id}
+    assert len(first.supports) == len(two.supports)
+    assert draw_room_of_home(home, around).rooms == ()  # one room stays one
+
+    with pytest.raises(EditRefused, match="over room and room 2"):
+        draw_room_of_home(two, square(high[0] - 1.5, low[1]))
+    with pytest.raises(EditRefused, match="storey 1 has no room"):
+        draw_room_of_home(two, square(high[0] + 8.0, low[1]), storey=1)
