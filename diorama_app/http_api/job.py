@@ -14,6 +14,7 @@ from pydantic import Field, FiniteFloat, TypeAdapter
 from diorama_core.errors import DioramaError, ProjectError
 from diorama_core.io.bounded import shortened
 from diorama_core.io.text import clean_text, file_label
+from diorama_core.layout.settings import RecipeName
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.models.store import ModelStore
 from diorama_core.pipeline.presets import Profile
@@ -24,7 +25,6 @@ from diorama_core.project.storage import Project
 log = logging.getLogger(__name__)
 
 State = Literal["queued", "running", "done", "failed", "cancelled"]
-Recipe = Literal["feasible", "paper", "all-in-one"]
 JOB = "job"
 """The entry of `project.json` that a job is kept in."""
 MAX_LINE = 2000
@@ -40,7 +40,7 @@ class Job:
     created: Annotated[str, Field(max_length=100)]
     """Local time, ISO 8601."""
     profile: Profile = "auto"
-    recipe: Recipe = "feasible"
+    recipe: RecipeName = "feasible"
     state: State = "queued"
     tries: int = 0
     seconds: FiniteFloat | None = None

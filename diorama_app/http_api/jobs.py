@@ -18,11 +18,12 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Literal
 
-from diorama_app.http_api.job import Job, Recipe, State, build_job, line_of, note_job, noted_jobs
+from diorama_app.http_api.job import Job, State, build_job, line_of, note_job, noted_jobs
 from diorama_app.projects.begin import begin_project
 from diorama_core.errors import Cancelled, DioramaError, ProjectError
 from diorama_core.io.bounded import shortened
 from diorama_core.io.limited import LimitedProcess
+from diorama_core.layout.settings import RecipeName
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.perception.inputs import ReadInputs
 from diorama_core.pipeline.presets import Profile
@@ -102,7 +103,7 @@ class JobQueue:
         read: ReadInputs,
         uploads: Mapping[Upload, bytes],
         profile: Profile,
-        recipe: Recipe,
+        recipe: RecipeName,
     ) -> Job:
         """Queue a build.
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import asyncio
 from pathlib import Path
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any
 
 from fastapi import APIRouter, FastAPI, Form, HTTPException, Query, Request, Response
 from fastapi.exceptions import RequestValidationError
@@ -37,6 +37,8 @@ from diorama_app.web.visitors import Visitors
 from diorama_core.errors import DioramaError, ProjectError
 from diorama_core.export.gathering import ExportOptions
 from diorama_core.io.bounded import read_json
+from diorama_core.layout.settings import RecipeName
+from diorama_core.pipeline.presets import Profile
 
 ABOUT = """Photos of rooms become 3D scenes. Send a photo to `/v1/jobs`, ask for the job until its state is `done`, and
 fetch its scene, a picture or a file for other programs. Lengths are metres and +Z is up, if a format does not say
@@ -46,8 +48,6 @@ MAX_AT_ONCE = 2
 MAX_WAIT_S = 60.0
 router = APIRouter(prefix="/v1", responses=documented())
 format_router = APIRouter(prefix="/v1", responses=documented())
-Profile = Literal["auto", "embedded", "foundation"]
-Recipe = Literal["feasible", "paper", "all-in-one"]
 
 
 @router.post("/jobs", status_code=202, operation_id="create_job", responses=documented(400, 408, 413, 422, 429, 503))
@@ -55,7 +55,7 @@ def create_job(
     request: Request,
     form: PhotoForm,
     profile: Annotated[Profile, Form(description="Which networks are used.")] = "auto",
-    recipe: Annotated[Recipe, Form(description="The layout optimiser.")] = "feasible",
+    recipe: Annotated[RecipeName, Form(description="The layout optimiser.")] = "feasible",
 ) -> JobAnswer:
     """Send a photo, with what is known of it, and queue its build."""
     queue = _queue(request)

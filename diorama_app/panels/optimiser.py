@@ -13,10 +13,9 @@ from diorama_app.panels.fields import QUIET_COLOUR, enable, on_change, on_press,
 from diorama_app.panels.layout_report import COSTS, WEIGHTS, report_html
 from diorama_app.session.client import Client
 from diorama_app.session.layout_run import LayoutRun
-from diorama_app.session.preferences import RecipeName
 from diorama_app.strings import N_, _, plural
 from diorama_app.web.html import Action, LiveHtml, button, library_text, text
-from diorama_core.layout.settings import Weights, weighted_costs
+from diorama_core.layout.settings import RecipeName, Weights, weighted_costs
 from diorama_core.layout.what_got_worse import in_words, resized_in_words
 from diorama_core.scene.types import Scene
 

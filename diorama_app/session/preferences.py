@@ -13,12 +13,12 @@ import viser
 from pydantic import TypeAdapter, ValidationError
 
 from diorama_app.session.units import Unit
+from diorama_core.layout.settings import RecipeName
 
 log = logging.getLogger(__name__)
 
 SizeMode = Literal["as found", "same box", "in proportion", "catalogue"]
 GizmoMode = Literal["floor", "free", "size"]
-RecipeName = Literal["feasible", "paper", "all-in-one"]
 
 KEY = "diorama-settings"
 ANSWER_WITHIN_S = 20.0

@@ -6,10 +6,11 @@ import logging
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING
 
 from diorama_core.api.reconstruction import Reconstruction, open_library
 from diorama_core.errors import InputError
+from diorama_core.layout.settings import RecipeName
 
 if TYPE_CHECKING:
     from diorama_core.artefacts import Inputs
@@ -28,7 +29,6 @@ log = logging.getLogger(__name__)
 
 CAMERA_HEIGHTS_M = (0.1, 20.0)
 """From a camera on the floor to one on a gallery of a hall."""
-Recipe = Literal["feasible", "paper", "all-in-one"]
 
 
 def build(
@@ -47,7 +47,7 @@ def build(
     half_turn: bool = False,
     profile: Profile = "auto",
     networks: NetworkChoice | None = None,
-    recipe: Recipe = "feasible",
+    recipe: RecipeName = "feasible",
     library: str | ShapeLibrary = "built-in",
     stages: Callable[[Stages], Stages] | None = None,
     output: Path | str | None = None,
@@ -126,7 +126,7 @@ def build_from_text(
     *,
     seed: int = 0,
     profile: Profile = "auto",
-    recipe: Recipe = "feasible",
+    recipe: RecipeName = "feasible",
     library: str | ShapeLibrary = "built-in",
     stages: Callable[[Stages], Stages] | None = None,
     output: Path | str | None = None,

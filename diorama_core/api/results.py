@@ -6,13 +6,13 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from diorama_core.api.building import Recipe
 from diorama_core.api.reconstruction import Reconstruction
 from diorama_core.errors import InputError
 
 if TYPE_CHECKING:
     from diorama_core.export import Format
     from diorama_core.export.gathering import ExportOptions, ExportScene
+    from diorama_core.layout.settings import RecipeName
     from diorama_core.perception.inputs.arrays import Picture
     from diorama_core.progress import Progress
     from diorama_core.protocols import LayoutStage, Preview
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 def optimise(
     reconstruction: Reconstruction,
     *,
-    recipe: Recipe | LayoutStage = "feasible",
+    recipe: RecipeName | LayoutStage = "feasible",
     progress: Progress | None = None,
     preview: Preview | None = None,
 ) -> Reconstruction:

@@ -5,10 +5,13 @@ person may set it.
 from __future__ import annotations
 
 from dataclasses import dataclass, fields
+from typing import Literal
 
 import numpy as np
 
 from diorama_core.errors import InputError
+
+RecipeName = Literal["feasible", "paper", "all-in-one"]
 
 
 @dataclass(frozen=True)
