@@ -108,11 +108,6 @@ class RoomMethod(StrEnum):
     ACDC = "acdc"
     """A plane for each segment, as ACDC has them."""
 
-    @property
-    def is_reasoned(self) -> bool:
-        """Whether places of walls were reasoned from a photo alone: they may be moved to what stands against them."""
-        return self in (RoomMethod.PHOTO_CUES, RoomMethod.USUAL_SIZES)
-
 
 @dataclass(frozen=True)
 class RoomSource:

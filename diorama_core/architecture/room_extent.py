@@ -15,7 +15,7 @@ import numpy as np
 from jaxtyping import Float
 
 from diorama_core.errors import EditRefused
-from diorama_core.geometry.planes import clip_polygon, in_polygon
+from diorama_core.geometry.planes import clip_polygon, in_polygon, signed_area
 from diorama_core.library import taxonomy
 from diorama_core.scene.room_edits import ceiling_height, move_plane, set_ceiling_height
 from diorama_core.scene.types import Architecture, Plane, Scene, SceneObject, Support
@@ -48,31 +48,22 @@ class RoomExtentSettings:
 SETTINGS = RoomExtentSettings()
 
 
-def containing_room(
-    scene: Scene,
-    *,
-    objects_measured: bool = True,
-    walls_reasoned: bool = False,
-    feet_seen: Collection[str] | None = None,
-) -> Scene:
+def containing_room(scene: Scene, *, reasoned: bool = False, feet_seen: Collection[str] | None = None) -> Scene:
     """The scene with unseen walls moved behind what stands on the floor, the floor drawn out under it, and a ceiling
     above what hangs.
 
     Args:
         scene: as observed.
-        objects_measured: whether places of objects were measured: a wall before a measured one was not seen.
-        walls_reasoned: whether walls were reasoned from a photo alone: they come to what stands against them.
+        reasoned: whether distances were reasoned from a photo alone: walls then come to what stands against them.
         feet_seen: ids of the objects whose lower ends the photo shows; of all when None.
     """
     floor = scene.architecture.floor
     if floor is None:
         return scene
-    if walls_reasoned:
-        scene = _at_backs(scene, feet_seen, objects_measured)
-        if objects_measured:
-            scene = _without_far_adherence(scene)
+    if reasoned:
+        scene = _at_backs(scene, feet_seen)
     standing = [o for o in scene.objects if (edge := scene.support_of(o.id)) is not None and edge.parent == floor.id]
-    if objects_measured:
+    if not reasoned:
         scene = _doubted(scene, standing)
     for wall in scene.architecture.by_role("wall"):
         if not wall.seen:
@@ -102,7 +93,7 @@ def without_floor_behind_walls(scene: Scene, known: Plane) -> Scene:
             trimmed = trimmed - drawn
     if here.area() - trimmed.area() < SETTINGS.min_area_m2:
         return scene
-    outline = max(trimmed.simplify(SETTINGS.margin_m).to_polygons(), key=_signed_area)
+    outline = max(trimmed.simplify(SETTINGS.margin_m).to_polygons(), key=signed_area)
     return _with_floor_outline(scene, floor, outline)
 
 
@@ -113,7 +104,7 @@ def _behind_wall(wall: Plane) -> manifold3d.CrossSection:
     ends = [wall.offset * wall.normal + reach * level for reach in (float(along.min()), float(along.max()))]
     far = [end - SETTINGS.far_m * wall.normal for end in ends]
     corners = np.array([*ends, far[1], far[0]])[:, :2]
-    return _section(corners if _signed_area(corners) > 0.0 else corners[::-1])
+    return _section(corners if signed_area(corners) > 0.0 else corners[::-1])
 
 
 def _with_ceiling(scene: Scene) -> Scene:
@@ -142,32 +133,23 @@ def _with_ceiling(scene: Scene) -> Scene:
     return replace(scene, architecture=Architecture((*scene.architecture.planes, ceiling)), supports=supports)
 
 
-def _at_backs(scene: Scene, feet_seen: Collection[str] | None, objects_measured: bool) -> Scene:
+def _at_backs(scene: Scene, feet_seen: Collection[str] | None) -> Scene:
     """The walls where most of what stands against them says: from a photo alone they are as uncertain as objects.
 
     Doors say it, too: their feet, which were seen on the floor, are the wall's. What stands before a wall without
-    touching it resists a wall that would come past its back. Each counts as much as its place is certain. What hangs on
-    walls and what lies on furniture counts where its place was measured: otherwise it follows from walls and furniture.
+    touching it resists a wall that would come past its back. Each counts as much as its place is certain.
     """
     floor = scene.architecture.floor
-    walls = {p.id for p in scene.architecture.planes if p.role != "floor"}
-    edges = [
-        s
-        for s in scene.supports
-        if floor is not None and (s.parent not in walls if objects_measured else s.parent == floor.id)
-    ]
+    edges = [s for s in scene.supports if floor is not None and s.parent == floor.id]
     for wall in scene.architecture.by_role("wall"):
         against = [scene.object(s.child) for s in edges if wall.id in s.adheres_to]
-        against += [o for o in _hanging(scene, wall.id) if objects_measured or o.category == "door"]
+        against += [o for o in _hanging(scene, wall.id) if o.category == "door"]
         others = [
             item
             for s in edges
             if wall.id not in s.adheres_to and _behind(item := scene.object(s.child), wall, np.inf) < np.inf
         ]
-        backs, certainty = _backs(against, wall, feet_seen)
-        before, before_certainty = _backs(others, wall, feet_seen)
-        tried = np.concatenate([[0.0], backs, before]) if objects_measured else np.concatenate([[0.0], backs])
-        inward = _agreed(tried, backs, certainty, before, before_certainty)
+        inward = _agreed(*_backs(against, wall, feet_seen), *_backs(others, wall, feet_seen))
         if abs(inward) < SETTINGS.margin_m:
             continue
         try:
@@ -176,16 +158,6 @@ def _at_backs(scene: Scene, feet_seen: Collection[str] | None, objects_measured:
             continue
         scene = replace(moved, objects=scene.objects)
     return scene
-
-
-def _without_far_adherence(scene: Scene) -> Scene:
-    """The scene without "against the wall" where an object was measured away from a wall that the photo shows."""
-
-    def near(edge: Support) -> tuple[str, ...]:
-        item = scene.object(edge.child)
-        return tuple(w for w in edge.adheres_to if abs(_back(item, scene.plane(w))) < SETTINGS.clearly_m)
-
-    return replace(scene, supports=tuple(replace(s, adheres_to=near(s)) for s in scene.supports))
 
 
 def _backs(
@@ -203,13 +175,15 @@ def _back(item: SceneObject, wall: Plane) -> float:
 
 
 def _agreed(
-    tried: Float[np.ndarray, " t"],
     backs: Float[np.ndarray, " a"],
     certainty: Float[np.ndarray, " a"],
     others: Float[np.ndarray, " b"],
     others_certainty: Float[np.ndarray, " b"],
 ) -> float:
-    """How far inward, of what is tried, a wall agrees best with the backs of what stands against it and before it."""
+    """How far inward a wall agrees best with the backs of what stands against it and of what stands before it."""
+    if not len(backs):
+        return 0.0
+    tried = np.concatenate([[0.0], backs])
     apart = np.abs(tried[:, None] - backs) @ certainty
     past = np.maximum(tried[:, None] - others, 0.0) @ others_certainty
     return float(tried[np.argmin(apart + past + SETTINGS.hold * np.abs(tried))])
@@ -319,7 +293,7 @@ def _with_floor_under(scene: Scene, prints: list[Float[np.ndarray, "_ 2"]]) -> S
     sections = [_section(floor.polygon[:, :2]), *map(_section, missing)]
     union = manifold3d.CrossSection.batch_boolean(sections, manifold3d.OpType.Add)
     outlines = union.to_polygons()
-    outer = [o for o in outlines if _signed_area(o) > 0]
+    outer = [o for o in outlines if signed_area(o) > 0]
     # Footprints away from the floor are reached by the hull of both.
     outline = outer[0] if len(outer) == 1 else union.hull().to_polygons()[0]
     return _with_floor_outline(scene, floor, outline)
@@ -344,12 +318,7 @@ def _section(polygon: Float[np.ndarray, "k 2"]) -> manifold3d.CrossSection:
 
 
 def _area(polygon: Float[np.ndarray, "k 2"]) -> float:
-    return abs(_signed_area(polygon))
-
-
-def _signed_area(polygon: Float[np.ndarray, "k 2"]) -> float:
-    x, y = polygon[:, 0], polygon[:, 1]
-    return 0.5 * float(x @ np.roll(y, -1) - np.roll(x, -1) @ y)
+    return abs(signed_area(polygon))
 
 
 def _meets_a_wall(wall: Plane, corners: Float[np.ndarray, "k 3"], walls: Sequence[Plane], within_m: float) -> bool:
