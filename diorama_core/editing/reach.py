@@ -24,7 +24,7 @@ WAYS_M = (1.2, 1.0, 0.9, 0.8, 0.7, 0.6, 0.5)
 
 @dataclass(frozen=True)
 class RoomUse:
-    """What a room is good for."""
+    """Area of a room, room to turn in it, and ways through it."""
 
     room: HomeRoom
     area_m2: float
@@ -54,7 +54,7 @@ def uses_of(scene: Scene) -> tuple[RoomUse, ...]:
 
 
 def _entries(scene: Scene) -> dict[str, list[tuple[Float[np.ndarray, "2"], Float[np.ndarray, "2"]]]]:
-    """By room, where it is entered: a point in each doorway, and the direction into the room."""
+    """Entries of each room: a point in each doorway, and the direction into the room."""
     found: dict[str, list[tuple[np.ndarray, np.ndarray]]] = {}
     inner = set()
     for way in doorways(scene):

@@ -99,7 +99,7 @@ def _furniture(scene: Scene) -> Iterator[Polygon]:
 
 
 def _passage(scene: Scene, way: Doorway) -> Float[np.ndarray, "4 2"]:
-    """What a bare opening covers of the floor between its two faces."""
+    """Floor that a bare opening covers between its two faces."""
     out = scene.plane(way.walls[0]).normal[:2]
     along = np.array([-out[1], out[0]]) * (way.opening.to_m - way.opening.from_m) / 2
     deep = out * max(way.depth_m, DOOR_SIDE_M) / 2

@@ -53,12 +53,12 @@ def add_physics(stage: Usd.Stage, gathered: ExportScene, physical: PhysicalScene
 
 
 def object_path(item: ExportObject) -> str:
-    """Where an object's prim is."""
+    """Path of an object's prim."""
     return "/".join((ROOT, "Objects", *item.group, item.slug))
 
 
 def plane_path(slab: ExportPlane) -> str:
-    """Where the prim of a plane is."""
+    """Path of a plane's prim."""
     return "/".join((ROOT, "Architecture", *slab.group, slab.slug))
 
 

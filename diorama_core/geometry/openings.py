@@ -32,7 +32,7 @@ Contour = Float[np.ndarray, "_ 2"]
 
 @dataclass(frozen=True)
 class HomeSettings:
-    """What counts as one wall, as an opening of it, and as being in a room."""
+    """Distances within which faces are one wall, openings go through it, and objects are in a room."""
 
     thickest_m: float = 0.5
     """Two faces that look away from each other are one wall's up to this distance: a wall of stone."""
@@ -83,7 +83,7 @@ def faces_behind(wall: Plane, point: Float[np.ndarray, "3"], walls: Sequence[Pla
 
 
 def walls_cut_by(fills: Iterable[SceneObject], walls: Sequence[Plane], scene: Scene) -> Mapping[str, tuple[Plane, ...]]:
-    """By the id of each door and window the faces that it cuts: its wall's first, then those behind it."""
+    """Faces that each door and window cuts, by its id: its wall's first, then those behind it."""
     cut = {}
     for item in fills:
         wall = wall_of(item, walls, scene)

@@ -47,7 +47,7 @@ _SURFACES: Mapping[str, OpeningKind] = {f"{kind}s": kind for kind in get_args(Op
 
 
 def read_room_plan(path: Path) -> MeasuredRoom | None:
-    """What RoomPlan measured; None for a file, or a folder of files, that is not from it.
+    """The room or home that RoomPlan measured; None for a file, or a folder of files, that is not from it.
 
     Raises:
         InputError: it cannot be read, or makes no sense.
@@ -125,7 +125,7 @@ def _placed_together(rooms: Mapping[Path, Mapping[str, Any]]) -> Mapping[str, An
 
 
 def _section_name(row: Mapping[str, Any]) -> str:
-    """What RoomPlan takes a part of the floor for; empty where it does not know."""
+    """The name that RoomPlan gives a part of the floor; empty where it knows none."""
     label = _word(row.get("label") or "")
     return "" if label == "unidentified" else shortened(spoken(label), 60)
 
