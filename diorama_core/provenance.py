@@ -101,12 +101,19 @@ class RoomMethod(StrEnum):
     """Lines, edges and colours of the photo, and the objects."""
     USUAL_SIZES = "usual sizes"
     """The objects and usual room sizes; the photo shows few lines."""
+    SEVERAL_VIEWS = "several views"
+    """All photos of the room, or the whole of a 360 degree one."""
     PLAINRECON = "plainrecon"
     """PlainRecon as published."""
     RENDER_AND_COMPARE = "render and compare"
     """A discrete search after Stekovic et al. 2020."""
     ACDC = "acdc"
     """A plane for each segment, as ACDC has them."""
+
+    @property
+    def is_reasoned(self) -> bool:
+        """Whether places of walls were reasoned from a photo alone: they may be moved to what stands against them."""
+        return self in (RoomMethod.PHOTO_CUES, RoomMethod.USUAL_SIZES)
 
 
 @dataclass(frozen=True)

@@ -48,22 +48,31 @@ class RoomExtentSettings:
 SETTINGS = RoomExtentSettings()
 
 
-def containing_room(scene: Scene, *, reasoned: bool = False, feet_seen: Collection[str] | None = None) -> Scene:
+def containing_room(
+    scene: Scene,
+    *,
+    objects_measured: bool = True,
+    walls_reasoned: bool = False,
+    feet_seen: Collection[str] | None = None,
+) -> Scene:
     """The scene with unseen walls moved behind what stands on the floor, the floor drawn out under it, and a ceiling
     above what hangs.
 
     Args:
         scene: as observed.
-        reasoned: whether distances were reasoned from a photo alone: walls then come to what stands against them.
+        objects_measured: whether places of objects were measured: a wall before a measured one was not seen.
+        walls_reasoned: whether walls were reasoned from a photo alone: they come to what stands against them.
         feet_seen: ids of the objects whose lower ends the photo shows; of all when None.
     """
     floor = scene.architecture.floor
     if floor is None:
         return scene
-    if reasoned:
-        scene = _at_backs(scene, feet_seen)
+    if walls_reasoned:
+        scene = _at_backs(scene, feet_seen, objects_measured)
+        if objects_measured:
+            scene = _without_far_adherence(scene)
     standing = [o for o in scene.objects if (edge := scene.support_of(o.id)) is not None and edge.parent == floor.id]
-    if not reasoned:
+    if objects_measured:
         scene = _doubted(scene, standing)
     for wall in scene.architecture.by_role("wall"):
         if not wall.seen:
@@ -133,23 +142,32 @@ def _with_ceiling(scene: Scene) -> Scene:
     return replace(scene, architecture=Architecture((*scene.architecture.planes, ceiling)), supports=supports)
 
 
-def _at_backs(scene: Scene, feet_seen: Collection[str] | None) -> Scene:
+def _at_backs(scene: Scene, feet_seen: Collection[str] | None, objects_measured: bool) -> Scene:
     """The walls where most of what stands against them says: from a photo alone they are as uncertain as objects.
 
     Doors say it, too: their feet, which were seen on the floor, are the wall's. What stands before a wall without
-    touching it resists a wall that would come past its back. Each counts as much as its place is certain.
+    touching it resists a wall that would come past its back. Each counts as much as its place is certain. What hangs on
+    walls and what lies on furniture counts where its place was measured: otherwise it follows from walls and furniture.
     """
     floor = scene.architecture.floor
-    edges = [s for s in scene.supports if floor is not None and s.parent == floor.id]
+    walls = {p.id for p in scene.architecture.planes if p.role != "floor"}
+    edges = [
+        s
+        for s in scene.supports
+        if floor is not None and (s.parent not in walls if objects_measured else s.parent == floor.id)
+    ]
     for wall in scene.architecture.by_role("wall"):
         against = [scene.object(s.child) for s in edges if wall.id in s.adheres_to]
-        against += [o for o in _hanging(scene, wall.id) if o.category == "door"]
+        against += [o for o in _hanging(scene, wall.id) if objects_measured or o.category == "door"]
         others = [
             item
             for s in edges
             if wall.id not in s.adheres_to and _behind(item := scene.object(s.child), wall, np.inf) < np.inf
         ]
-        inward = _agreed(*_backs(against, wall, feet_seen), *_backs(others, wall, feet_seen))
+        backs, certainty = _backs(against, wall, feet_seen)
+        before, before_certainty = _backs(others, wall, feet_seen)
+        tried = np.concatenate([[0.0], backs, before]) if objects_measured else np.concatenate([[0.0], backs])
+        inward = _agreed(tried, backs, certainty, before, before_certainty)
         if abs(inward) < SETTINGS.margin_m:
             continue
         try:
@@ -158,6 +176,16 @@ def _at_backs(scene: Scene, feet_seen: Collection[str] | None) -> Scene:
             continue
         scene = replace(moved, objects=scene.objects)
     return scene
+
+
+def _without_far_adherence(scene: Scene) -> Scene:
+    """The scene without "against the wall" where an object was measured away from a wall that the photo shows."""
+
+    def near(edge: Support) -> tuple[str, ...]:
+        item = scene.object(edge.child)
+        return tuple(w for w in edge.adheres_to if abs(_back(item, scene.plane(w))) < SETTINGS.clearly_m)
+
+    return replace(scene, supports=tuple(replace(s, adheres_to=near(s)) for s in scene.supports))
 
 
 def _backs(
@@ -175,15 +203,13 @@ def _back(item: SceneObject, wall: Plane) -> float:
 
 
 def _agreed(
+    tried: Float[np.ndarray, " t"],
     backs: Float[np.ndarray, " a"],
     certainty: Float[np.ndarray, " a"],
     others: Float[np.ndarray, " b"],
     others_certainty: Float[np.ndarray, " b"],
 ) -> float:
-    """How far inward a wall agrees best with the backs of what stands against it and of what stands before it."""
-    if not len(backs):
-        return 0.0
-    tried = np.concatenate([[0.0], backs])
+    """How far inward, of what is tried, a wall agrees best with the backs of what stands against it and before it."""
     apart = np.abs(tried[:, None] - backs) @ certainty
     past = np.maximum(tried[:, None] - others, 0.0) @ others_certainty
     return float(tried[np.argmin(apart + past + SETTINGS.hold * np.abs(tried))])

@@ -177,6 +177,7 @@ def _room_source(source: RoomSource, words: _Words) -> str:
         RoomMethod.DEPTH_PLANES: f"planes of the {words.depth}: {_closed_room(source, words)}",
         RoomMethod.PHOTO_CUES: f"{count} from lines, edges and colours of the photo and the objects",
         RoomMethod.USUAL_SIZES: f"{count} from the objects and usual room sizes; few lines were seen",
+        RoomMethod.SEVERAL_VIEWS: f"{count} from all views together",
         RoomMethod.PLAINRECON: f"PlainRecon as published: {clusters}",
         RoomMethod.RENDER_AND_COMPARE: f"render and compare: {floor} and {source.walls_found} walls by discrete search",
         RoomMethod.ACDC: f"as ACDC: {floor} and {source.walls_found} walls, a rectangle for each segment",

@@ -81,7 +81,7 @@ class GivenCuboids:
 
 @dataclass(frozen=True, eq=False)
 class GivenRoom:
-    """A room that is known, as the stage that finds it."""
+    """A room that several views told, as the stage that finds it."""
 
     architecture: Architecture
     openings: tuple[str, ...] = ()
@@ -100,7 +100,7 @@ class GivenRoom:
         """
         walls = self.architecture.by_role("wall")
         seen = sum(w.seen for w in walls)
-        source = RoomSource(RoomMethod.PHOTO_CUES, walls_found=seen, walls_assumed=len(walls) - seen)
+        source = RoomSource(RoomMethod.SEVERAL_VIEWS, walls_found=seen, walls_assumed=len(walls) - seen)
         sure = float(np.mean([w.confidence for w in walls])) if walls else 0.0
         supports = resolve_supports(geometry, self.architecture)
         return ArchitectureEstimate(self.architecture, supports, sure, source, self.openings)

@@ -123,7 +123,7 @@ PLAN: tuple[Step, ...] = (
     ),
     Correction(
         in_containing_room,
-        ("on_near_supports", "library", "noise", "geometry"),
+        ("on_near_supports", "library", "noise", "geometry", "architecture"),
         "corrected",
         "the room is around everything",
     ),

@@ -120,7 +120,9 @@ def _of_support(object_id: str, choice: SupportChoice) -> Iterator[Reason]:
             yield Reason(object_id, "support", term, nats, "nats", sentence)
 
 
-def in_containing_room(scene: Scene, library: ShapeLibrary, noise: ObservationNoise, geometry: ObjectGeometry) -> Scene:
+def in_containing_room(
+    scene: Scene, library: ShapeLibrary, noise: ObservationNoise, geometry: ObjectGeometry, room: ArchitectureEstimate
+) -> Scene:
     """The scene in a room around all of its objects.
 
     Args:
@@ -128,9 +130,12 @@ def in_containing_room(scene: Scene, library: ShapeLibrary, noise: ObservationNo
         library: where shapes come from.
         noise: of the observed positions.
         geometry: says whose lower ends the photo shows.
+        room: says how walls were found.
     """
     feet_seen = frozenset(c.object_id for c in geometry.cuboids if c.foot_seen)
-    return containing_room(scene, reasoned=not noise.measured, feet_seen=feet_seen)
+    return containing_room(
+        scene, objects_measured=noise.measured, walls_reasoned=room.source.method.is_reasoned, feet_seen=feet_seen
+    )
 
 
 def on_floor(room: ArchitectureEstimate) -> frozenset[str]:

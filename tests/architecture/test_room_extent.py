@@ -1,5 +1,6 @@
 from __future__ import annotations
 
+from collections.abc import Collection
 from dataclasses import replace
 
 import numpy as np
@@ -55,7 +56,7 @@ def test_with_measured_depth_a_wall_that_has_something_behind_it_pushes_nothing(
     room.put("box_24", (1.6, 2.7, 0.15))  # beside its end
     observed = room.scene(architecture=sliver(0.95), camera=looking_north(5.0))
     for reasoned in (False, True):
-        scene = containing_room(observed, reasoned=reasoned)
+        scene = containing_room(observed, objects_measured=not reasoned)
         assert scene.plane("wall_1").seen == reasoned
     measured = containing_room(observed)
     settled = FeasibleRecipe(LIBRARY, depth_measured=True).optimise(measured, Progress())[0]
@@ -158,13 +159,18 @@ def standing_against_the_wall(*gaps_m: float, before_m: float | None = None) -> 
     return room, room.scene(architecture=sliver(), camera=looking_north(5.0))
 
 
+def by_photo(scene: Scene, feet_seen: Collection[str] | None = None) -> Scene:
+    """The room around objects whose places a photo alone tells."""
+    return containing_room(scene, objects_measured=False, walls_reasoned=True, feet_seen=feet_seen)
+
+
 def wall_y(scene: Scene) -> float:
     return float(scene.plane("wall_1").polygon[:, 1].mean())
 
 
 def test_from_a_photo_alone_a_wall_comes_to_what_stands_against_it() -> None:
     _, scene = standing_against_the_wall(0.3, 0.3)
-    near = containing_room(scene, reasoned=True)
+    near = by_photo(scene)
     assert wall_y(near) == pytest.approx(2.5 - 0.3, abs=0.02)
     assert wall_y(containing_room(scene)) == pytest.approx(2.5)
     assert near.objects == scene.objects
@@ -174,20 +180,18 @@ def test_from_a_photo_alone_a_wall_comes_to_what_stands_against_it() -> None:
 
 
 def test_a_wall_goes_outward_too_and_follows_most_of_what_stands_against_it() -> None:
-    assert wall_y(containing_room(standing_against_the_wall(-0.2, -0.2)[1], reasoned=True)) > 2.6
-    assert wall_y(containing_room(standing_against_the_wall(0.1, 0.1, 0.4)[1], reasoned=True)) == pytest.approx(
-        2.4, abs=0.02
-    )
+    assert wall_y(by_photo(standing_against_the_wall(-0.2, -0.2)[1])) > 2.6
+    assert wall_y(by_photo(standing_against_the_wall(0.1, 0.1, 0.4)[1])) == pytest.approx(2.4, abs=0.02)
 
 
 def test_a_wall_does_not_come_past_what_stands_before_it() -> None:
     _, scene = standing_against_the_wall(0.3, before_m=0.1)
-    assert wall_y(containing_room(scene, reasoned=True)) > 2.5 - 0.3 + 0.1
+    assert wall_y(by_photo(scene)) > 2.5 - 0.3 + 0.1
 
 
 def test_a_wall_without_anything_against_it_stays() -> None:
     _, scene = standing_against_the_wall(before_m=0.1)
-    assert wall_y(containing_room(scene, reasoned=True)) == pytest.approx(2.5)
+    assert wall_y(by_photo(scene)) == pytest.approx(2.5)
 
 
 def test_from_a_photo_alone_a_wall_is_at_the_foot_of_its_door() -> None:
@@ -195,17 +199,27 @@ def test_from_a_photo_alone_a_wall_is_at_the_foot_of_its_door() -> None:
     half = LIBRARY.shape("wardrobe_12").size_m[0] / 2
     room.put("wardrobe_12", (0.0, 2.2 - half, 1.1), yaw=-np.pi / 2, on="wall_1", relation="mounted on")
     scene = room.scene(architecture=sliver(), camera=looking_north(5.0))
-    assert wall_y(containing_room(scene, reasoned=True)) == pytest.approx(2.5)
+    assert wall_y(by_photo(scene)) == pytest.approx(2.5)
     scene = replace(scene, objects=(replace(scene.objects[0], category="door"),))
-    assert wall_y(containing_room(scene, reasoned=True)) == pytest.approx(2.2, abs=0.02)
+    assert wall_y(by_photo(scene)) == pytest.approx(2.2, abs=0.02)
 
 
 def test_what_shows_its_foot_says_more_of_a_wall_than_what_does_not() -> None:
     _, scene = standing_against_the_wall(0.3, before_m=-0.1)
     against, before = scene.objects
-    assert wall_y(containing_room(scene, reasoned=True)) == pytest.approx(2.5)
-    assert wall_y(containing_room(scene, reasoned=True, feet_seen={against.id})) == pytest.approx(2.2, abs=0.02)
-    assert wall_y(containing_room(scene, reasoned=True, feet_seen={before.id})) == pytest.approx(2.5)
+    assert wall_y(by_photo(scene)) == pytest.approx(2.5)
+    assert wall_y(by_photo(scene, feet_seen={against.id})) == pytest.approx(2.2, abs=0.02)
+    assert wall_y(by_photo(scene, feet_seen={before.id})) == pytest.approx(2.5)
+
+
+def test_a_wall_of_the_photo_yields_to_what_was_measured_and_pulls_nothing_to_it() -> None:
+    _, behind = standing_against_the_wall(before_m=-0.1)
+    assert wall_y(containing_room(behind, walls_reasoned=True)) == pytest.approx(2.6, abs=0.02)
+    assert wall_y(by_photo(behind)) == pytest.approx(2.5)
+    _, away = standing_against_the_wall(0.0, 0.0, 0.3)
+    kept = containing_room(away, walls_reasoned=True)
+    assert [kept.support_of(o.id).adheres_to for o in kept.objects] == [("wall_1",), ("wall_1",), ()]
+    assert all(by_photo(away).support_of(o.id).adheres_to for o in away.objects)
 
 
 def test_floor_drawn_out_behind_a_wall_goes_when_nothing_stands_on_it_any_more() -> None:
@@ -213,7 +227,7 @@ def test_floor_drawn_out_behind_a_wall_goes_when_nothing_stands_on_it_any_more()
     behind = room.put("box_24", (0.2, 3.2, 0.15))
     known = sliver(0.95).floor
     assert known is not None
-    drawn = containing_room(room.scene(architecture=sliver(0.95), camera=looking_north(5.0)), reasoned=True)
+    drawn = by_photo(room.scene(architecture=sliver(0.95), camera=looking_north(5.0)))
     assert drawn.architecture.floor.polygon[:, 1].max() > 3.0
     assert without_floor_behind_walls(drawn, known) is drawn  # it still stands there
 
