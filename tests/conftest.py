@@ -27,7 +27,7 @@ from diorama_core.artefacts import Inputs
 from diorama_core.io.text import clean_text
 from diorama_core.library import catalogue
 from diorama_core.perception.inputs import ReadInputs, read_inputs
-from tests import shared_solids
+from tests import kept_readers, shared_solids
 
 gc.disable()  # until all tests are collected: what is imported stays
 
@@ -37,9 +37,9 @@ settings.load_profile("deterministic")
 UNCHECKED_FOLDERS = frozenset()
 """Folders whose newest tests still pass values that annotations do not allow; take one out after mending its tests."""
 
-FULL_PICTURES = ("architecture", "texture")
-"""Whose tests ask about the pictures of planes themselves. In others those have a quarter of the texels a side: to make
-full ones takes four tenths of a build from a small photo."""
+LARGER_PICTURES = ("architecture", "texture")
+"""Whose tests ask about the pictures of planes themselves, and get half the texels a side. In others those have a
+quarter: to make full ones takes four tenths of a build from a small photo."""
 FULL_PX = {name: getattr(plane_textures, name) for name in ("MAX_SIDE_PX", "MAX_CEILING_PX")}
 
 UNTIL = float(os.environ.get("DIORAMA_TEST_UNTIL", "inf"))
@@ -131,16 +131,19 @@ def derived_files(tmp_path_factory: pytest.TempPathFactory) -> Path:
 def _own_folders(tmp_path_factory: pytest.TempPathFactory) -> Iterator[None]:
     """Caches and libraries of this run go to temporary folders, and no file waits until it has reached the disk: what
     is written need not outlast the machine's power. That it is asked for is tested in `tests/io/test_atomic.py`.
-    Solids of built-in shapes, which most tests need, are built once for all processes.
+    Solids of built-in shapes, which most tests need, are built once for all processes, and processes that read files
+    are kept.
     """
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(os, "fsync", lambda descriptor: None)
         patch.setattr(catalogue, "built_once", shared_solids.built_once)
+        kept_readers.keep(patch)
         patch.setenv("DIORAMA_CACHE", str(derived_files(tmp_path_factory)))
         patch.setenv("DIORAMA_LIBRARIES", str(tmp_path_factory.mktemp("libraries")))
         if "PYTEST_XDIST_WORKER" in os.environ:
             patch.setenv(made_once.FOLDER, str(tmp_path_factory.getbasetemp().parent / "made"))
         yield
+        kept_readers.end_all()
 
 
 @pytest.hookimpl(trylast=True)
@@ -168,7 +171,7 @@ def pytest_runtest_setup(item: pytest.Item) -> None:
         pytest.skip("sends signals or makes links")
     folders = item.path.relative_to(Path(__file__).parent).parts
     for name, side_px in FULL_PX.items():
-        setattr(plane_textures, name, side_px if folders[:2] == FULL_PICTURES else side_px // 4)
+        setattr(plane_textures, name, side_px // (2 if folders[:2] == LARGER_PICTURES else 4))
     unchecked = folders[0] in UNCHECKED_FOLDERS or item.get_closest_marker("unchecked") is not None
     typechecking.begin_test(unchecked=unchecked)
 

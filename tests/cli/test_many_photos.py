@@ -16,7 +16,7 @@ from tests.few_shapes import stored_seats
 def test_a_folder_becomes_projects_and_a_report(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     photos, output = tmp_path / "photos", tmp_path / "out"
     photos.mkdir()
-    _, boxes = write_room(photos)
+    _, boxes = write_room(photos, marked=1)
     boxes.rename(photos / "room.boxes.json")
     (photos / "broken.jpg").write_text("no picture")
     command = ["build", str(photos), "--out", str(output), "--workers", "1", "--profile", "embedded"]

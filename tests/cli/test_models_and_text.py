@@ -11,6 +11,8 @@ from diorama_core.models.manifest import network
 from diorama_core.models.network import Network
 from diorama_core.models.store import ModelStore
 from diorama_core.project.storage import Project
+from tests.cli.room_photo import write_room
+from tests.few_shapes import stored_seats
 
 
 @pytest.fixture(autouse=True)
@@ -85,8 +87,6 @@ def test_failures_are_one_clear_line(arguments: list[str], capsys: pytest.Captur
 def test_failing_networks_and_language_models_leave_the_project_as_it_was(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    from tests.cli.room_photo import write_room
-
     def fails(*more: str) -> str:
         """The one line that is said; the scene is what it was."""
         capsys.readouterr()
@@ -96,8 +96,8 @@ def test_failing_networks_and_language_models_leave_the_project_as_it_was(
         assert (tmp_path / "room" / "scene.json").read_bytes() == before
         return lines[0]
 
-    photo, boxes = write_room(tmp_path)
-    arguments = ["build", str(photo), "--boxes", str(boxes), "-o", str(tmp_path / "room")]
+    photo, boxes = write_room(tmp_path, marked=1)
+    arguments = ["build", str(photo), "--boxes", str(boxes), "-o", str(tmp_path / "room"), "--library", stored_seats()]
     assert main(arguments) == 0
     before = (tmp_path / "room" / "scene.json").read_bytes()
     monkeypatch.setenv("DIORAMA_LMM_BASE_URL", "http://127.0.0.1:9/v1")

@@ -42,7 +42,7 @@ def png(width: int, height: int, bits: int, colour: int, channels: int) -> bytes
 
 def stage_zip(entries: dict[str, bytes]) -> bytes:
     buffer = io.BytesIO()
-    with zipfile.ZipFile(buffer, "w", zipfile.ZIP_DEFLATED, compresslevel=9) as archive:
+    with zipfile.ZipFile(buffer, "w", zipfile.ZIP_DEFLATED, compresslevel=1) as archive:
         for name, content in entries.items():
             archive.writestr(name, content)
     return buffer.getvalue()
@@ -76,7 +76,6 @@ def read_stage(data: bytes) -> None:
 
 BOMBS: dict[str, tuple[Callable[[bytes], None], Callable[[], bytes]]] = {
     "photo of 118 megapixels": (read_photo_bytes, lambda: png(12_000, 9_800, 8, 2, 3)),
-    "photo of 63 megapixels": (read_photo_bytes, lambda: png(9_000, 7_000, 8, 2, 3)),
     "photo of 63 megapixels, transparent": (read_photo_bytes, lambda: png(9_000, 7_000, 8, 6, 4)),
     "photo of 63 megapixels, 16 bits": (read_photo_bytes, lambda: png(9_000, 7_000, 16, 0, 1)),
     "depth of 118 megapixels": (read_depth_bytes, lambda: png(12_800, 9_600, 16, 0, 1)),

@@ -18,6 +18,7 @@ from diorama_core.progress import CancelToken, Progress
 from diorama_core.project.lock import OWNER
 from diorama_core.workers import LocalWorkers
 from tests.cli.room_photo import BOXES, write_room
+from tests.few_shapes import SEATS, stored_seats
 from tests.waiting import until
 
 
@@ -85,12 +86,13 @@ def test_a_camera_that_makes_no_sense_is_one_line(tmp_path: Path, text: str) -> 
     assert read_camera(path) == (None, 60.0)
 
 
-OPTIONS = BuildOptions(profile="embedded")
+OPTIONS = BuildOptions(profile="embedded", library=SEATS)
 
 
 @pytest.fixture
 def folder(tmp_path: Path) -> Path:
-    """Two photos with boxes."""
+    """Two photos with boxes, and the library of the builds."""
+    stored_seats()
     photo, boxes = write_room(tmp_path, marked=1)
     photos = tmp_path / "photos"
     photos.mkdir()

@@ -35,6 +35,7 @@ def test_whoever_caused_it_is_drawn_at_once_and_the_others_soon(ui_thread) -> No
     redraws = Redraws(ui_thread, lambda i: True)
     redraws.ask(people, people[1])
     assert [len(p.drawn) for p in people] == [0, 1, 0]
+    until(lambda: all(p.drawn for p in people))
     time.sleep(2 * EVERY_S)  # in which anybody would be drawn a second time
     assert ui_thread.wait(60.0)
     assert [len(p.drawn) for p in people] == [1, 1, 1]

@@ -6,6 +6,7 @@ A wall whose foot is hidden all along is not told from the one beside it: the fu
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import cache
 
 import numpy as np
 import pytest
@@ -26,6 +27,13 @@ FURNITURE = (cuboid("cabinet", (-0.6, 2.5, 0), (0.6, 0.8, 0.8)), cuboid("stand",
 
 def reconstruct(shot, geometry=None):
     return PhotoRoom().reconstruct(shot.inputs, shot.objects, geometry or shot.geometry, Progress())
+
+
+@cache
+def usual():
+    """A shot of a furnished box room, and what is found in it."""
+    shot = shoot(look(20, 15), box_room(-2.0, 2.0, 4.0, 2.6), FURNITURE)
+    return shot, reconstruct(shot)
 
 
 def wall_facing(estimate, normal):
@@ -55,8 +63,7 @@ def test_finds_the_ceiling_when_it_is_in_view():
 
 
 def test_planes_face_the_room_and_share_their_corners():
-    shot = shoot(look(20, 15), box_room(-2.0, 2.0, 4.0, 2.6), FURNITURE)
-    architecture = reconstruct(shot).architecture
+    architecture = usual()[1].architecture
     inside = np.array([0.0, 1.0, 1.0])
     for plane in architecture.planes:
         assert plane.normal @ inside > plane.offset
@@ -67,8 +74,7 @@ def test_planes_face_the_room_and_share_their_corners():
 
 
 def test_ids_and_colours():
-    shot = shoot(look(20, 15), box_room(-2.0, 2.0, 4.0, 2.6), FURNITURE)
-    architecture = reconstruct(shot).architecture
+    architecture = usual()[1].architecture
     assert [p.id for p in architecture.planes][:2] == ["floor", "wall_1"]
     np.testing.assert_allclose(architecture.floor.colour, np.array([150, 110, 80]) / 255, atol=0.03)
 
@@ -209,16 +215,16 @@ def test_a_slanted_wall_is_found_slanted():
 
 
 def test_confidence_is_higher_where_more_is_seen():
-    plain = shoot(look(20, 18), box_room(-2.5, 1.5, 3.5, 2.5), FURNITURE)
+    plain, estimate = usual()
     blank = replace(
         plain, inputs=replace(plain.inputs, photo=Photo(np.full((480, 640, 3), 128, np.uint8), "", (640, 480)))
     )
-    assert reconstruct(plain).confidence > reconstruct(blank).confidence + 0.2
+    assert estimate.confidence > reconstruct(blank).confidence + 0.2
 
 
 def test_is_deterministic():
-    shot = shoot(look(20, 15), box_room(-2.0, 2.0, 4.0, 2.6), FURNITURE)
-    assert reconstruct(shot) == reconstruct(shot)
+    shot, estimate = usual()
+    assert reconstruct(shot) == estimate
 
 
 def test_stops_when_asked():

@@ -2,21 +2,28 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 from functools import cache
 
+import numpy as np
 import pytest
+from jaxtyping import Float
 
+from diorama_core.artefacts import LabelledBox
 from diorama_core.evaluation.benchmarks import views
 from diorama_core.evaluation.benchmarks.cases import Case, LeftOut, recipe
 from diorama_core.evaluation.benchmarks.views import ALONE, SPHERE, RoomView, ViewsBench, ViewsResult, photographed, run
 from diorama_core.evaluation.metrics.pose import Alignment
 from diorama_core.library.catalogue import built_in_library
 from diorama_core.library.record import ShapeLibrary
+from diorama_core.scene.types import SceneObject
+from diorama_core.synthesis.sphere import SphereTruth, sphere_photo
 from diorama_core.synthesis.splits import split_library
+from diorama_core.synthesis.truth import Studio
 from tests.few_marked import few_marked
 from tests.few_shapes import few_shapes
-from tests.multiview.two_photos import SMALL
+from tests.multiview.two_photos import SMALL, AsItIs
 
 
 def result(case: str, way: str, acc: float, count: int, failure: str = "") -> ViewsResult:
@@ -69,9 +76,24 @@ def marked(case: Case, library: ShapeLibrary, count: int) -> tuple[RoomView, ...
     return tuple(few(v) for v in pictures())
 
 
+@dataclass(frozen=True, eq=False)
+class FewMarked(SphereTruth):
+    """A 360 degree photo in which few objects are marked."""
+
+    def marked(self, objects: Sequence[SceneObject]) -> dict[int, LabelledBox]:
+        return dict(list(super().marked(objects).items())[:MARKED])
+
+
+def marked_sphere(studio: Studio, T_world_sphere: Float[np.ndarray, "4 4"]) -> FewMarked:
+    seen = sphere_photo(studio, T_world_sphere, 1024)
+    return FewMarked(seen.rgb, seen.object_ids, seen.T_world_sphere)
+
+
 @pytest.mark.slow
 def test_a_room_is_built_from_two_photos(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(views, "photographed", marked)
+    monkeypatch.setattr(views, "sphere_photo", marked_sphere)
+    monkeypatch.setattr(views, "layout_recipe", lambda *given, **more: AsItIs())
     monkeypatch.setattr(
         views, "split_library", lambda whole, *of: few_shapes(of_a_kind=2) if len(of) > 1 else split_library(whole, *of)
     )
