@@ -173,7 +173,7 @@ def _objects(session: EditorSession) -> tuple[Command, ...]:
         scene, heads = (
             pasted(here, clip, free_offset(here, clip))
             if original
-            else pasted_at(here, clip, client.view.camera.point_on_level(floor_height(here)))
+            else pasted_at(here, clip, client.view.camera.point_on_level(floor_height(client.room())))
         )
         label = _("paste {names}").format(names=editing.names_of(scene, heads))
         session.commit(label, scene, by=client, selection=heads)

@@ -30,6 +30,7 @@ from diorama_core.errors import EditRefused
 from diorama_core.library.record import Shape
 from diorama_core.library.taxonomy import broad, resolve
 from diorama_core.scene import edits
+from diorama_core.scene.room_edits import floor_height
 from diorama_core.scene.types import Pose, Scene, SceneObject, Support
 
 MAX_RECENT = 24
@@ -66,9 +67,9 @@ def insert_shape(client: Client, shape_id: str) -> None:
             session.edit(_inserting(shape.category), lambda scene: on_it, by=client, selection=(new_id,))
             _used(client, shape_id)
             return
-    floor = scene.architecture.floor
-    height = 0.0 if floor is None else float(floor.offset / max(floor.normal[2], 1e-6))
-    x, y = free_spot(scene, shape, client.view.camera.target_point)
+    room = client.room()
+    floor, height = room.architecture.floor, floor_height(room)
+    x, y = free_spot(room, shape, client.view.camera.target_point)
     pose = Pose.upright((x, y, height + shape.size_m[2] / 2), facing(scene, x, y))
     item = SceneObject(new_id, shape.category, shape.category, shape.id, shape.size_m, pose)
     edge = None if floor is None else Support(new_id, floor.id)
@@ -97,12 +98,12 @@ def _on(client: Client, shape: Shape, new_id: str, parent: SceneObject) -> Scene
 def _hang_in_view(client: Client, shape_id: str) -> bool:
     """Hang a shape where the view meets a wall or the ceiling; False in a room without."""
     session, camera = client.session, client.view.camera
-    shape, scene = session.library.shape(shape_id), session.scene
+    shape, scene = session.library.shape(shape_id), client.room()
     on_ceiling = resolve(shape.category).category.mount == "ceiling"
     hit = spot_in_view(scene, shape, camera.position, camera.target_point - camera.position, on_ceiling=on_ceiling)
     if hit is None:
         return False
-    new_id = edits.fresh_id(scene, shape.category)
+    new_id = edits.fresh_id(session.scene, shape.category)
     item, edge = insertion(scene, shape, new_id, hit, 0.0)
     session.edit(_inserting(shape.category), lambda s: edits.insert(s, item, edge), by=client, selection=(new_id,))
     _used(client, shape_id)

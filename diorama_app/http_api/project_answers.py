@@ -17,6 +17,7 @@ from diorama_core.editing.collisions import Collisions
 from diorama_core.editing.free_space import free_space
 from diorama_core.editing.room_frame import RoomFrame
 from diorama_core.evaluation.metrics.text_scene import Asked, access_shares, measure
+from diorama_core.geometry.rooms import part_of_home
 from diorama_core.library.record import ShapeLibrary, record_of
 from diorama_core.scene.types import Plane, Scene, SceneObject
 
@@ -265,10 +266,10 @@ def detail_answer(
 
 
 def free_floor_answer(scene: Scene, width_m: float, depth_m: float) -> FreeFloorAnswer:
-    """Where the floor is free for something so large."""
-    space = free_space(scene)
-    spots = [(round(x, 2), round(y, 2)) for x, y in space.spots(width_m, depth_m)]
-    return FreeFloorAnswer(free_m2=round(space.free_m2, 2), spots=spots)
+    """Where the floor of any room is free for something so large."""
+    spaces = [free_space(part_of_home(scene, [r.id])) for r in scene.rooms] or [free_space(scene)]
+    spots = [(round(x, 2), round(y, 2)) for space in spaces for x, y in space.spots(width_m, depth_m)]
+    return FreeFloorAnswer(free_m2=round(sum(s.free_m2 for s in spaces), 2), spots=spots)
 
 
 def check_answer(scene: Scene, library: ShapeLibrary) -> CheckAnswer:

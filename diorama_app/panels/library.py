@@ -21,7 +21,7 @@ from diorama_core.library.record import Shape
 from diorama_core.library.search import search
 from diorama_core.library.taxonomy import ROOMS
 from diorama_core.library.user_library import UserLibrary
-from diorama_core.scene.types import Scene
+from diorama_core.scene.types import HomeRoom, Scene
 
 if TYPE_CHECKING:
     from diorama_core.editing.free_space import FreeSpace
@@ -69,11 +69,10 @@ class LibraryPanel:
         self._where = LiveHtml(gui)
         self._html = LiveHtml(gui, self._act)
         self._drawn: tuple[object, ...] = ()
-        self._drawn_of: Scene | None = None
-        """The scene whose free space the tiles tell of."""
-        self._free_of: Scene | None = None
+        self._drawn_of: tuple[Scene | None, tuple[HomeRoom, ...]] = (None, ())
+        """The scene and the room whose free space the tiles tell of."""
         self._free: FreeSpace | None = None
-        """Free space of that scene."""
+        """Free space of that room; None while it is not measured."""
         self._without_place: dict[str, bool] = {}
 
     def refresh(self) -> None:
@@ -86,12 +85,13 @@ class LibraryPanel:
         self._where.show(f'<p class="dim">{where.format(label=label)}</p>')
         words, shapes = self._words.value.strip(), self._client.session.library.shapes()
         scene = self._client.session.scene if self._filters.any or words else None
+        rooms = () if scene is None else self._client.room().rooms
         recent = preferences.recent if self._filters.shelf == "recent" else ()
         mine = self._mine.models
         drawn = (words, preferences.unit, shapes, self._filters, self._most, preferences.favourites, recent, mine)
-        if drawn == self._drawn and scene is self._drawn_of:
+        if drawn == self._drawn and scene is self._drawn_of[0] and rooms == self._drawn_of[1]:
             return  # a hundred tiles, the same as before
-        self._drawn, self._drawn_of = drawn, scene
+        self._drawn, self._drawn_of, self._free = drawn, (scene, rooms), None
         self._choices.show(self._drawn_choices(shapes))
         matches = self._found(words, shapes)
         on_own_shelf = self._filters.shelf == "own"
@@ -158,13 +158,11 @@ class LibraryPanel:
 
     def _has_place(self, shape: Shape) -> bool:
         """Whether a shape finds a place in the room as it is now."""
-        scene = self._client.session.scene
-        if scene is not self._free_of:
+        if self._free is None:
             from diorama_core.editing.free_space import free_space  # OpenCV; opening a project does without it
 
-            self._free_of, self._free, self._without_place = scene, free_space(scene), {}
+            self._free, self._without_place = free_space(self._client.room()), {}
         if shape.id not in self._without_place:
-            assert self._free is not None
             self._without_place[shape.id] = not self._free.has_place_for(shape)
         return not self._without_place[shape.id]
 

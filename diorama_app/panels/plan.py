@@ -24,7 +24,7 @@ from diorama_core.editing.homes import draw_room_of_home
 from diorama_core.editing.plan_edits import corners, move_corner, set_wall_length, split_wall, wall_feet
 from diorama_core.errors import EditRefused, LibraryError
 from diorama_core.export.footprints import Outline, outline
-from diorama_core.export.plan import OVERHEAD_M, UNNAMED, RoomLines, drawing_order, room_lines
+from diorama_core.export.plan import OVERHEAD_M, UNNAMED, RoomLines, drawing_order, freest_places, room_lines
 from diorama_core.geometry.openings import OPENING_CATEGORIES, faces_behind, wall_of
 from diorama_core.geometry.rooms import part_of_home
 from diorama_core.library.record import ShapeLibrary
@@ -145,7 +145,7 @@ class Plan:
             "walls": _walls(scene, client.surface, unit),
             "corners": [{"walls": [c.first, c.second], "at": _flat(c.at)} for c in corners(scene)],
             "pieces": pieces,
-            "rooms": [{"at": _flat(scene.plane(r.floor).centre[:2]), "name": r.name} for r in scene.rooms],
+            "rooms": _names(scene, pieces),
             **_doubts(scene),
         }
 
@@ -248,6 +248,14 @@ def _rectangle(item: SceneObject, half: np.ndarray) -> Outline:
     """A rectangle around an object, turned as it is."""
     signs = np.array([[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]])
     return np.asarray((signs * half) @ item.pose.R_world_object[:2, :2].T + item.pose.position[:2])
+
+
+def _names(scene: Scene, pieces: list[dict[str, Any]]) -> list[dict[str, Any]]:
+    """Names of rooms, each where the most of its floor is free."""
+    taken = [np.reshape(o, (-1, 2)) for p in pieces if not p["overhead"] for o in p["outlines"]] if scene.rooms else []
+    floors = [scene.plane(r.floor).polygon[:, :2] for r in scene.rooms]
+    places = freest_places(floors, taken, [r.name for r in scene.rooms])
+    return [{"at": _flat(at), "name": room.name} for room, at in zip(scene.rooms, places, strict=True)]
 
 
 def _walls(scene: Scene, chosen: str | None, unit: Unit) -> list[dict[str, Any]]:

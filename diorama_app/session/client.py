@@ -253,6 +253,15 @@ class Client:
         else:
             self.failing.pop(name, None)
 
+    def room(self) -> Scene:
+        """The room that this person looks at, of those that are shown; the scene where it is one room."""
+        scene = self.session.scene
+        if not scene.rooms:
+            return scene
+        from diorama_core.geometry.rooms import room_around  # shapely; a room opens without it
+
+        return room_around(scene, self.view.camera.target_point, self.rooms)
+
     def show_marks(self, scene: Scene | None = None) -> None:
         """Outlines, name tags and the others' cursors; around a preview where one is given."""
         session, shown = self.session, scene or self.session.scene

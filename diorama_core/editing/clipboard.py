@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from jaxtyping import Float
 
+from diorama_core.geometry.rooms import room_around
 from diorama_core.scene import edits
 from diorama_core.scene.support import descendants
 from diorama_core.scene.types import Scene, SceneObject, Support
@@ -52,7 +53,7 @@ def pasted_at(scene: Scene, clip: Clip, target_world: Float[np.ndarray, "3"]) ->
     """
     corners = np.concatenate([o.corners_world for o in clip.objects])
     low, high = corners.min(axis=0), corners.max(axis=0)
-    floor = scene.architecture.floor
+    floor = room_around(scene, target_world).architecture.floor
     level, place = 0.0, np.asarray(target_world[:2], dtype=np.float64)
     if floor is not None:
         level = float(floor.offset / max(floor.normal[2], 1e-6))
@@ -136,8 +137,8 @@ def _extent_below(
     parent = parents.pop() if len(parents) == 1 else None
     if parent is not None and scene.has_object(parent):
         corners = scene.object(parent).corners_world
-    elif scene.architecture.floor is not None:
-        corners = scene.architecture.floor.polygon
+    elif (floor := room_around(scene, heads[0].pose.position).architecture.floor) is not None:
+        corners = floor.polygon
     else:
         return None
     return corners[:, :2].min(axis=0), corners[:, :2].max(axis=0)
@@ -153,7 +154,6 @@ def pasted(scene: Scene, clip: Clip, offset_world: object = BESIDE_M) -> tuple[S
     """
     shift = np.asarray(offset_world, dtype=np.float64)
     names: dict[str, str] = {}
-    floor = scene.architecture.floor
     for item in clip.objects:
         names[item.id] = edits.fresh_id(scene, item.category)
         copy = replace(
@@ -167,7 +167,7 @@ def pasted(scene: Scene, clip: Clip, offset_world: object = BESIDE_M) -> tuple[S
             continue
         known = scene.has_object(edge.parent) or scene.has_plane(edge.parent)
         parent = names.get(edge.parent) or (edge.parent if known else None)
-        if parent is None and floor is not None:
+        if parent is None and (floor := room_around(scene, item.pose.position + shift).architecture.floor) is not None:
             parent, edge = floor.id, replace(edge, parent_surface=None, child_face=None, relation="placed on")
         if parent is not None:
             adheres = tuple(w for w in edge.adheres_to if scene.has_plane(w))

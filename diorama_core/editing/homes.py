@@ -63,12 +63,8 @@ def joined(
     if not 0.0 <= wall_m <= 1.0:
         raise EditRefused(f"a wall cannot be {wall_m:g} m thick; give 0 to 1 m")
     home, other = _as_home(home, names[0]), _as_home(other, names[1])
+    T = placed_at_door(home, other, door, other_door, wall_m=wall_m)
     wall, there = _wall_of_door(home, door), _wall_of_door(other, other_door)
-    yaw = np.arctan2(*-wall.normal[[1, 0]]) - np.arctan2(*there.normal[[1, 0]])
-    T = np.eye(4)
-    T[:3, :3] = yaw_rotation(float(yaw))
-    target = _foot(home, door, wall) - wall_m * wall.normal
-    T[:3, 3] = target - T[:3, :3] @ _foot(other, other_door, there)
     storeys = _storey(home, door) - _storey(other, other_door)
     moved = moved_to_room(edits.remove(other, [other_door]), T)
     called = _new_names(home, moved)
@@ -100,6 +96,19 @@ def joined(
         rooms=_counted_from_lowest((*home.rooms, *rooms)),
     )
     return JoinedHome(scene, textures)
+
+
+def placed_at_door(
+    home: Scene, other: Scene, door: str, other_door: str, *, wall_m: float = USUAL_WALL_M
+) -> Float[np.ndarray, "4 4"]:
+    """`T_home_other` that makes two doors one: back to back in a wall, feet at one height; arguments as of `joined`."""
+    wall, there = _wall_of_door(home, door), _wall_of_door(other, other_door)
+    yaw = np.arctan2(*-wall.normal[[1, 0]]) - np.arctan2(*there.normal[[1, 0]])
+    T = np.eye(4)
+    T[:3, :3] = yaw_rotation(float(yaw))
+    target = _foot(home, door, wall) - wall_m * wall.normal
+    T[:3, 3] = target - T[:3, :3] @ _foot(other, other_door, there)
+    return T
 
 
 def join_project(

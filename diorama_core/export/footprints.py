@@ -1,4 +1,4 @@
-"""What objects cover on the floor: outlines of their meshes seen from above."""
+"""What objects cover on the floor, or of a wall: outlines of their meshes seen from above, or from before it."""
 
 from __future__ import annotations
 
@@ -22,6 +22,13 @@ AT_ONCE = 500
 """Triangles united at once."""
 
 
+def silhouette(scene: ExportScene, item: ExportObject, axes: Float[np.ndarray, "2 3"]) -> tuple[Outline, ...]:
+    """Outlines of an object along two axes of the world; holes are left out."""
+    matrix = item.T_world.copy()
+    matrix[:3, :3] = matrix[:3, :3] * item.scale
+    return outline(_flat(scene.meshes[item.mesh], axes @ matrix[:3]))
+
+
 def footprints(scene: ExportScene) -> dict[str, tuple[Outline, ...]]:
     """Outlines of every object in the world's x and y, by object id; holes are left out."""
     shapes: dict[str, tuple[Outline, ...]] = {}
@@ -29,12 +36,10 @@ def footprints(scene: ExportScene) -> dict[str, tuple[Outline, ...]]:
     for item in scene.objects:
         if item.T_world[2, 2] > UPRIGHT:
             if item.mesh not in shapes:
-                shapes[item.mesh] = outline(_flat(scene.meshes[item.mesh], np.eye(4)))
+                shapes[item.mesh] = outline(_flat(scene.meshes[item.mesh], np.eye(2, 4)))
             outlines[item.id] = tuple(_placed(o, item) for o in shapes[item.mesh])
         else:
-            matrix = item.T_world.copy()
-            matrix[:3, :3] = matrix[:3, :3] * item.scale
-            outlines[item.id] = outline(_flat(scene.meshes[item.mesh], matrix))
+            outlines[item.id] = silhouette(scene, item, np.eye(2, 3))
     return outlines
 
 
@@ -77,8 +82,8 @@ def _is_closed(cells: Int[np.ndarray, "n 3 2"]) -> bool:
     return np.array_equal(np.sort(start * across**2 + end, axis=None), np.sort(end * across**2 + start, axis=None))
 
 
-def _flat(mesh: ExportMesh, matrix: Float[np.ndarray, "4 4"]) -> Float[np.ndarray, "n 3 2"]:
-    linear, offset = matrix[:2, :3], matrix[:2, 3]
+def _flat(mesh: ExportMesh, matrix: Float[np.ndarray, "2 4"]) -> Float[np.ndarray, "n 3 2"]:
+    linear, offset = matrix[:, :3], matrix[:, 3]
     return np.concatenate([(s.vertices @ linear.T + offset)[s.faces] for s in mesh.surfaces])
 
 

@@ -31,6 +31,8 @@ DIMENSION_GAP_M = 0.3
 ARC_POINTS = 13
 MIN_AREA_M2 = 0.5
 """Smaller pieces of floor are niches and thresholds."""
+LETTER = 0.56
+"""Mean width of a letter, in text heights."""
 FINE_M = 0.05
 """How exactly the freest place is found."""
 LEVEL_M = 0.05
@@ -54,6 +56,13 @@ class Piece:
     on_floor: bool
     """Whether it stands on the floor, rather than on other furniture or on a wall."""
     bottom_m: float
+    upright: bool = False
+    """Whether it is seen from before, rather than from above."""
+
+    @property
+    def drawn_m(self) -> tuple[float, float]:
+        """Width, and depth or height, whichever is seen."""
+        return self.size_m[1], self.height_m if self.upright else self.size_m[0]
 
 
 @dataclass(frozen=True, eq=False)
@@ -108,6 +117,7 @@ class FloorPlan:
     dimensions: tuple[Dimension, ...]
     rooms: tuple[tuple[str, Outline], ...] = ()
     """Names and floors of the rooms of a home."""
+    kind: str = "Floor plan"
 
     def moved(self, by: Float[np.ndarray, "2"]) -> FloorPlan:
         """The plan elsewhere (m), as storeys lie beside each other on one sheet."""
@@ -129,14 +139,14 @@ class FloorPlan:
     @property
     def areas(self) -> tuple[Area, ...]:
         """Each floor's area, to be written where the most floor is free."""
-        taken = shapely.union_all([_polygon(o) for p in self.pieces for o in p.outlines if len(o) > 2])
         named_areas = []
         for floor in map(_polygon, self.floors):
-            free = floor.difference(taken)
-            circle = shapely.maximum_inscribed_circle(floor if free.is_empty else free, tolerance=FINE_M)
-            at = np.asarray(circle.coords[0])
-            named = (name for name, outline in self.rooms if _polygon(outline).covers(shapely.Point(at)))
-            named_areas.append(Area(at, floor.area, next(named, "")))
+            inside = floor.representative_point()
+            named = (name for name, outline in self.rooms if _polygon(outline).covers(inside))
+            named_areas.append(Area(np.asarray(inside.coords[0]), floor.area, next(named, "")))
+        taken = [o for p in self.pieces for o in p.outlines]
+        places = freest_places(self.floors, taken, [a.text for a in named_areas])
+        named_areas = [replace(area, at=at) for area, at in zip(named_areas, places, strict=True)]
         return tuple(area for area in named_areas if area.area_m2 >= MIN_AREA_M2)
 
     @property
@@ -211,6 +221,27 @@ def floor_plan(scene: ExportScene) -> FloorPlan:
         dimensions=_dimensions(room.lines, room.floors),
         rooms=tuple((r.name, scene.scene.plane(r.floor).polygon[:, :2]) for r in scene.scene.rooms),
     )
+
+
+def freest_places(
+    floors: Sequence[Outline], taken: Sequence[Outline], texts: Sequence[str]
+) -> list[Float[np.ndarray, "2"]]:
+    """Where each floor has the most room for its text that nothing else covers.
+
+    Args:
+        floors: outlines.
+        taken: outlines of what covers them.
+        texts: one a floor.
+    """
+    covered, places = shapely.union_all([_polygon(o) for o in taken if len(o) > 2]), []
+    for floor, text in zip(map(_polygon, floors), texts, strict=True):
+        free = floor.difference(covered)
+        wide = np.array([max(1.0, LETTER * len(text)), 1.0])
+        # The largest ellipse as wide as the text is the largest circle where x is so much shorter.
+        narrowed = shapely.transform(floor if free.is_empty else free, lambda points, wide=wide: points / wide)
+        circle = shapely.maximum_inscribed_circle(narrowed, tolerance=FINE_M / wide[0])
+        places.append(np.asarray(circle.coords[0]) * wide)
+    return places
 
 
 def drawing_order(item: SceneObject) -> tuple[int, float]:

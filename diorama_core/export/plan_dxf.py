@@ -1,19 +1,15 @@
-"""The floor plan as DXF (R2010) in millimetres at full size, by ezdxf: layers, real dimensions, a block per object."""
+"""Floor plans and elevations as DXF (R2010, millimetres, full size), by ezdxf: layers, dimensions, blocks."""
 
 from __future__ import annotations
 
 import io
 import re
 from collections.abc import Sequence
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from diorama_core.export.files import write_whole
-from diorama_core.export.gathering import ExportScene
-from diorama_core.export.plan import Dimension, FloorPlan, Piece, floor_plans
-from diorama_core.progress import Progress
+from diorama_core.export.plan import Dimension, FloorPlan, Piece
 
 MM_PER_M = 1000.0
 LAYERS = {
@@ -29,15 +25,8 @@ LAYERS = {
 """Layers with their colours (AutoCAD colour index)."""
 TEXT_MM = 90.0
 STYLE = "DIORAMA"
-
-
-def write_dxf(scene: ExportScene, path: Path, progress: Progress | None = None) -> None:
-    """Write the plan; raises `ExportError` when it cannot be written."""
-    progress = progress or Progress()
-    progress.report(0.1, "drawing the plan")
-    content = dxf_text(floor_plans(scene))
-    progress.check()
-    write_whole(Path(path), content.encode())
+APART_M = 0.5
+"""Between drawings beside each other."""
 
 
 def dxf_text(plans: Sequence[FloorPlan]) -> str:
@@ -56,7 +45,10 @@ def dxf_text(plans: Sequence[FloorPlan]) -> str:
     for plan in plans:
         low, high = plan.bounds
         _draw(document, space, plan.moved(np.array([right - low[0], 0.0])), taken)
-        right += float(high[0] - low[0])
+        if len(plans) > 1:
+            name = space.add_text(plan.name, height=TEXT_MM, dxfattribs={"layer": "LABELS"})
+            name.set_placement((right * MM_PER_M, low[1] * MM_PER_M - 2 * TEXT_MM))
+        right += float(high[0] - low[0]) + APART_M * (len(plans) > 1)
     low, high = plans[0].bounds * MM_PER_M
     document.set_modelspace_vport(height=float(1.2 * max(high - low)), center=tuple((low + high) / 2))
     stream = io.StringIO()
@@ -101,7 +93,7 @@ def _add_piece(document: Any, space: Any, piece: Piece, taken: set[str]) -> None
     for outline in piece.outlines:
         block.add_lwpolyline((outline - middle) * MM_PER_M, close=True, dxfattribs={"layer": "0"})
     insert = space.add_blockref(name, middle * MM_PER_M, dxfattribs={"layer": layer})
-    size = f"{piece.size_m[1]:.2f} x {piece.size_m[0]:.2f} m"
+    size = "{:.2f} x {:.2f} m".format(*piece.drawn_m)
     for tag, text in (("ID", piece.id), ("NAME", piece.label), ("SIZE", size)):
         attribute = insert.add_attrib(
             tag, " ".join(text.split()), middle * MM_PER_M, {"layer": layer, "height": TEXT_MM}

@@ -1,33 +1,19 @@
-"""The floor plan as PDF, in scale on its page, by ReportLab."""
+"""Floor plans and elevations as PDF, in scale on its page, by ReportLab."""
 
 from __future__ import annotations
 
 import io
 from collections.abc import Sequence
-from pathlib import Path
 from typing import Any
 
-from diorama_core.export.files import write_whole
-from diorama_core.export.gathering import ExportScene
-from diorama_core.export.plan import floor_plans
-from diorama_core.export.plan_sheet import PlanSheet, SheetLine, Text, plan_sheet
-from diorama_core.progress import Progress
+from diorama_core.export.plan_sheet import PlanSheet, SheetLine, Text
 
 POINTS_PER_MM = 72.0 / 25.4
 LATIN, EAST_ASIAN = "Vera", "STSong-Light"
 """A font that comes with ReportLab and is embedded; and the one that PDF readers bring for other scripts."""
 
 
-def write_pdf(scene: ExportScene, path: Path, progress: Progress | None = None) -> None:
-    """Write the plan; raises `ExportError` when it cannot be written."""
-    progress = progress or Progress()
-    progress.report(0.1, "drawing the plan")
-    content = pdf_bytes([plan_sheet(p) for p in floor_plans(scene)])
-    progress.check()
-    write_whole(Path(path), content)
-
-
-def pdf_bytes(sheets: Sequence[PlanSheet]) -> bytes:
+def pdf_bytes(sheets: Sequence[PlanSheet], title: str) -> bytes:
     """Sheets as a PDF document, a page each."""
     from reportlab.pdfbase import pdfmetrics
     from reportlab.pdfbase.cidfonts import UnicodeCIDFont
@@ -39,7 +25,7 @@ def pdf_bytes(sheets: Sequence[PlanSheet]) -> bytes:
     known = frozenset(pdfmetrics.getFont(LATIN).face.charToGlyph)
     buffer = io.BytesIO()
     canvas = Canvas(buffer, invariant=True)
-    canvas.setTitle(sheets[0].title)
+    canvas.setTitle(title)
     canvas.setCreator("Diorama")
     for sheet in sheets:
         canvas.setPageSize((sheet.width_mm * POINTS_PER_MM, sheet.height_mm * POINTS_PER_MM))

@@ -10,7 +10,7 @@ import numpy as np
 from jaxtyping import Float
 
 from diorama_core.errors import ExportError
-from diorama_core.export.plan import Dimension, FloorPlan, Piece
+from diorama_core.export.plan import LETTER, Dimension, FloorPlan, Piece
 
 A4, A3 = (297.0, 210.0), (420.0, 297.0)
 CHOICES = ((20, A4), (25, A4), (50, A4), (50, A3), (100, A4), (100, A3), (200, A4), (200, A3), (500, A3), (1000, A3))
@@ -20,8 +20,6 @@ TEXT_MM, SMALL_MM, TICK_MM = 2.5, 2.0, 1.4
 SCHEDULE_MM, ROW_MM = 78.0, 4.0
 COLUMNS_MM = (0.0, 5.0, 46.0)
 """Where the columns of the schedule begin: number, name, size."""
-LETTER = 0.56
-"""Mean width of a letter, in text heights."""
 
 Grey = float
 
@@ -64,6 +62,7 @@ class PlanSheet:
     width_mm: float
     height_mm: float
     marks: tuple[SheetLine | Text, ...]
+    kind: str = "Floor plan"
 
 
 def plan_sheet(plan: FloorPlan) -> PlanSheet:
@@ -92,7 +91,9 @@ def plan_sheet(plan: FloorPlan) -> PlanSheet:
     marks += [_text(a.text, to_page(a.at), TEXT_MM, 0.0) for a in plan.areas]
     marks += _schedule_marks(rows, width - MARGIN_MM - SCHEDULE_MM, height - MARGIN_MM)
     marks += _title_marks(plan.name, scale, width)
-    return PlanSheet(plan.name, scale, width, height, tuple(m for m in marks if isinstance(m, Text) or m.points))
+    return PlanSheet(
+        plan.name, scale, width, height, tuple(m for m in marks if isinstance(m, Text) or m.points), plan.kind
+    )
 
 
 @dataclass(frozen=True, eq=False)
@@ -136,7 +137,7 @@ def _label_marks(piece: Piece, to_page: _ToPage) -> list[SheetLine | Text]:
         return []
     middle, turn = (low + high) / 2, 0.0 if lengthwise else 90.0
     up = np.array([0.0, 1.0]) if lengthwise else np.array([-1.0, 0.0])
-    size = f"{piece.size_m[1]:.2f} × {piece.size_m[0]:.2f}"
+    size = "{:.2f} × {:.2f}".format(*piece.drawn_m)
     if across < 2.8 * SMALL_MM or along < LETTER * SMALL_MM * len(size):
         return [_text(piece.label, middle, SMALL_MM, turn)]
     gap = 0.65 * SMALL_MM * up

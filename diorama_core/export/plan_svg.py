@@ -1,30 +1,16 @@
-"""The floor plan as SVG, in millimetres on its page."""
+"""Floor plans and elevations as SVG, in millimetres on its page."""
 
 from __future__ import annotations
 
 import xml.etree.ElementTree as ET
 from collections.abc import Sequence
-from pathlib import Path
 
 import numpy as np
 from jaxtyping import Float
 
-from diorama_core.export.files import write_whole
-from diorama_core.export.gathering import ExportScene
-from diorama_core.export.plan import floor_plans
-from diorama_core.export.plan_sheet import PlanSheet, SheetLine, Text, plan_sheet
-from diorama_core.progress import Progress
+from diorama_core.export.plan_sheet import PlanSheet, SheetLine, Text
 
 NAMESPACE = "http://www.w3.org/2000/svg"
-
-
-def write_svg(scene: ExportScene, path: Path, progress: Progress | None = None) -> None:
-    """Write the plan; raises `ExportError` when it cannot be written."""
-    progress = progress or Progress()
-    progress.report(0.1, "drawing the plan")
-    content = svg_text([plan_sheet(p) for p in floor_plans(scene)])
-    progress.check()
-    write_whole(Path(path), content)
 
 
 def svg_text(sheets: Sequence[PlanSheet]) -> bytes:
@@ -54,7 +40,7 @@ def _size(width_mm: float, height_mm: float) -> dict[str, str]:
 def _page(sheet: PlanSheet) -> ET.Element:
     root = ET.Element(_tag("svg"), _size(sheet.width_mm, sheet.height_mm))
     ET.SubElement(root, _tag("title")).text = sheet.title
-    ET.SubElement(root, _tag("desc")).text = f"Floor plan, 1 : {sheet.scale}, one user unit is a millimetre on paper"
+    ET.SubElement(root, _tag("desc")).text = f"{sheet.kind}, 1 : {sheet.scale}, one user unit is a millimetre on paper"
     ET.SubElement(root, _tag("rect"), {"width": "100%", "height": "100%", "fill": "#ffffff"})
     group, name = root, ""
     for mark in sheet.marks:

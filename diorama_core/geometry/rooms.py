@@ -93,6 +93,24 @@ def part_of_home(scene: Scene, room_ids: Collection[str]) -> Scene:
     return replace(scene, architecture=Architecture(planes), objects=objects, supports=supports, rooms=rooms)
 
 
+def room_around(scene: Scene, point: Float[np.ndarray, "3"], among: Collection[str] = ()) -> Scene:
+    """The room of a home that a point is in, or nearest to, as a scene; a scene without rooms as it is.
+
+    Args:
+        scene: a home, or one room.
+        point: world, m.
+        among: ids of the rooms to choose from; none: all.
+    """
+    rooms = [r for r in scene.rooms if r.id in among] or list(scene.rooms)
+    if not rooms:
+        return scene
+    floors = [scene.plane(r.floor) for r in rooms]
+    heights = [float(p.centre[2]) for p in floors]
+    feet = np.array([[*point[:2], max(float(point[2]), min(heights))]])
+    (number,) = floor_under(feet, [p.polygon[:, :2] for p in floors], heights)
+    return part_of_home(scene, [rooms[number or 0].id])
+
+
 def storeys_of(scene: Scene) -> Mapping[int, tuple[HomeRoom, ...]]:
     """The rooms of each storey, the lowest first."""
     return {n: tuple(r for r in scene.rooms if r.storey == n) for n in sorted({r.storey for r in scene.rooms})}

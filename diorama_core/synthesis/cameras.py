@@ -10,6 +10,7 @@ from jaxtyping import Float
 
 from diorama_core.errors import SceneError
 from diorama_core.geometry.planes import in_polygon
+from diorama_core.geometry.rooms import room_around
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.render.raycast import MeshCaster
 from diorama_core.render.slabs import plane_surfaces
@@ -97,20 +98,22 @@ def _plane_mesh(plane: Plane) -> trimesh.Trimesh:
 
 
 def _candidate(scene: Scene, rng: np.random.Generator, size: tuple[int, int], how: CameraRanges) -> Camera | None:
-    floor = scene.architecture.floor
-    if floor is None:
+    floors = scene.architecture.by_role("floor")
+    if not floors:
         raise ValueError("a room without a floor cannot be photographed")
+    floor = floors[int(rng.integers(len(floors))) if len(floors) > 1 else 0]
     outline = floor.polygon[:, :2]
     low, high = outline.min(axis=0), outline.max(axis=0)
     position = rng.uniform(low, high)
     target = rng.normal((low + high) / 2, (high - low) / 6)
-    height = rng.uniform(*how.height_m)
+    height = float(floor.centre[2]) + rng.uniform(*how.height_m)
     pitch, fov = rng.uniform(*how.pitch_rad), rng.uniform(*how.fov_rad)
     roll = rng.normal(0.0, how.roll_rad)
     if not _inside(position, outline, how.clearance_m) or np.linalg.norm(target - position) < 1.0:
         return None
     eye = np.array([*position, height])
-    if any(p.normal @ eye - p.offset < UNDER_CEILING_M for p in scene.architecture.by_role("ceiling")):
+    ceilings = room_around(scene, eye).architecture.by_role("ceiling")
+    if any(p.normal @ eye - p.offset < UNDER_CEILING_M for p in ceilings):
         return None
     for item in scene.objects:
         local = (eye - item.pose.position) @ item.pose.R_world_object

@@ -6,6 +6,7 @@ floors keep a wall apart; an open room has a wide passage in place of the door.
 
 from __future__ import annotations
 
+import itertools
 import re
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
@@ -13,16 +14,19 @@ from dataclasses import dataclass
 import numpy as np
 import shapely
 
+from diorama_core.editing.free_space import FLAT_M
 from diorama_core.editing.homes import joined
 from diorama_core.editing.opening_insertion import with_opening
 from diorama_core.editing.plan_edits import wall_feet
+from diorama_core.editing.room_frame import SWING_M
 from diorama_core.errors import EditRefused, InputError
-from diorama_core.geometry.openings import DOOR, WINDOW, faces_behind, wall_of, with_hole
+from diorama_core.geometry.openings import DOOR, OPENING_CATEGORIES, WINDOW, faces_behind, wall_of, with_hole
 from diorama_core.geometry.rooms import doorways
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.progress import Progress
 from diorama_core.scene import edits
-from diorama_core.scene.types import Scene
+from diorama_core.scene.support import descendants
+from diorama_core.scene.types import Scene, SceneObject
 from diorama_core.text.compose import composed_room
 from diorama_core.text.phrases import NUMBERS
 from diorama_core.text.prompt import ROOMS
@@ -34,6 +38,8 @@ SAYS_HOME = 3
 MAX_ROOMS = 12
 PASSAGE_M = (1.8, 2.1)
 """Width and height of the passage to an open room; narrower where the wall is."""
+TRIED = (0.5, 0.2, 0.8)
+"""Shares of a wall's length where the way into it is tried."""
 APART_M = 0.1
 """Floors are at least a thin wall apart."""
 SHORT = {"bath": "bathroom", "bed room": "bedroom", "wc": "bathroom", "living": "living room", "dining": "dining room"}
@@ -92,38 +98,62 @@ def composed_home(
             home = room.scene
             continue
         names = (asked[0].name, one.name)
-        fits = list(_places(home, room.scene, library, names))
+        fits = list(_places(home, room.scene, library, names, is_open=one.is_open))
         if not fits:
             notes.append(f"the {one.name} found no place in the home and was left out")
             continue
-        _, home, door = min(fits, key=lambda fit: fit[0])
-        home = _opened(home, door) if one.is_open else home
+        home = min(fits, key=lambda fit: fit[0])[1]
     between = {d.opening.object_id for d in doorways(home)}
     return edits.remove(home, [o.id for o in home.objects if o.category == WINDOW and o.id in between]), tuple(notes)
 
 
 def _places(
-    home: Scene, room: Scene, library: ShapeLibrary, names: tuple[str, str]
-) -> Iterator[tuple[float, Scene, str]]:
-    """Every way in which a room joins: area of the whole's bounds, the home, and the id of the door between."""
+    home: Scene, room: Scene, library: ShapeLibrary, names: tuple[str, str], *, is_open: bool
+) -> Iterator[tuple[tuple[float, float], Scene]]:
+    """Ways in which a room joins: floor of what has to go (m²), area of the whole's bounds (m²), and the home."""
     own = next(o for o in room.objects if o.category == DOOR)
     walls = home.architecture.by_role("wall")
-    for foot in wall_feet(home):
+    for foot, share in itertools.product(wall_feet(home), TRIED):
         if faces_behind(home.plane(foot.id), home.plane(foot.id).centre, walls):
             continue
         try:
-            opened, door = with_opening(home, library, DOOR, foot.id, (foot.start + foot.end) / 2)
+            opened, door = with_opening(home, library, DOOR, foot.id, foot.start + share * (foot.end - foot.start))
             made = joined(opened, room, door, own.id, names=names).scene
         except EditRefused:
             continue
         floors = [shapely.Polygon(made.plane(r.floor).polygon[:, :2]) for r in made.rooms]
         if all(floors[-1].distance(f) > APART_M for f in floors[:-1]):
             low_x, low_y, high_x, high_y = shapely.union_all(floors).bounds
-            yield (high_x - low_x) * (high_y - low_y), made, door
+            between = made.object(door)
+            made, half = _opened(made, door) if is_open else (made, float(between.size_m[1]) / 2)
+            gone = _in_the_way(made, between, half)
+            lost_m2 = sum(float(np.prod(made.object(i).size_m[:2])) for i in gone)
+            yield (round(lost_m2, 1), (high_x - low_x) * (high_y - low_y)), edits.remove(made, gone)
 
 
-def _opened(home: Scene, door: str) -> Scene:
-    """The home with a passage in place of a door, as wide as both faces let it be."""
+def _in_the_way(home: Scene, door: SceneObject, half_m: float) -> set[str]:
+    """What hangs or stands in a new way between two rooms, with what stands on it.
+
+    Args:
+        home: the rooms joined.
+        door: that was put in, its front away from the wall.
+        half_m: half the width of the way.
+    """
+    ahead = door.pose.R_world_object[:, 0]
+    axes = np.stack([np.cross([0.0, 0.0, 1.0], ahead), ahead, [0.0, 0.0, 1.0]], axis=1)
+    half = np.array([half_m, SWING_M, door.size_m[2] / 2])
+    gone = set[str]()
+    for item in home.objects:
+        local = (item.corners_world - door.pose.position) @ axes
+        low, high = local.min(axis=0), local.max(axis=0)
+        is_flat = high[2] < FLAT_M - half[2]
+        if item.category not in OPENING_CATEGORIES and not is_flat and (low < half).all() and (high > -half).all():
+            gone |= {item.id, *descendants(home, item.id)}
+    return gone
+
+
+def _opened(home: Scene, door: str) -> tuple[Scene, float]:
+    """The home with a passage in place of a door, as wide as both faces let it be; and half its width."""
     item, walls = home.object(door), home.architecture.by_role("wall")
     wall = wall_of(item, walls, home)
     assert wall is not None, "it was put there"
@@ -141,7 +171,8 @@ def _opened(home: Scene, door: str) -> Scene:
         ]
     )
     cut = {f.id: with_hole(f, corners) for f in faces}
-    return edits.set_planes(edits.remove(home, [door]), [cut.get(p.id, p) for p in home.architecture.planes])
+    planes = [cut.get(p.id, p) for p in home.architecture.planes]
+    return edits.set_planes(edits.remove(home, [door]), planes), half
 
 
 def _room_name(words: str) -> str | None:

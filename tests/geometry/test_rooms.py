@@ -7,23 +7,28 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from shapely.geometry import Polygon
+from shapely.geometry import Point, Polygon
 
+from diorama_core.editing.clipboard import copied, pasted_at
+from diorama_core.editing.placing import free_spot
 from diorama_core.errors import EditRefused, SceneError
 from diorama_core.geometry.openings import with_openings
 from diorama_core.geometry.rooms import (
     doorways,
     floor_under,
     part_of_home,
+    room_around,
     rooms_of_objects,
     rooms_of_planes,
     storeys_of,
 )
 from diorama_core.importing.scene_import import import_scene
+from diorama_core.library.catalogue import built_in_library
 from diorama_core.scene import edits
 from diorama_core.scene.history import Entry, History, moved_last
 from diorama_core.scene.schema import scene_from_json, scene_to_json
 from diorama_core.scene.types import Scene
+from diorama_core.synthesis import sample_cameras
 from tests.app.small_room import furnished_scene
 from tests.importing.home_files import THICK_M, MadeHome, made_home, write_rooms, write_structure
 
@@ -97,6 +102,27 @@ def test_a_part_of_a_home_is_a_scene_of_its_own(home: tuple[MadeHome, Scene]) ->
     assert set(rooms_of_objects(part).values()) == {r.id for r in ground}
     both = sum(len(part_of_home(scene, [r.id]).architecture.planes) for r in scene.rooms)
     assert both == len(scene.architecture.planes)
+
+
+def test_what_is_put_into_a_home_comes_to_the_room_looked_at(home: tuple[MadeHome, Scene]) -> None:
+    _, scene = home
+    library = built_in_library()
+    table = next(o for o in scene.objects if o.category not in ("door", "window"))
+    for room in scene.rooms:
+        floor = scene.plane(room.floor)
+        seen = floor.centre + np.array([0.0, 0.0, 1.0])
+        part = room_around(scene, seen)
+        assert part.rooms == (room,)
+        assert room_around(scene, seen, {r.id for r in scene.rooms if r != room}).rooms != (room,)
+        after, heads = pasted_at(scene, copied(scene, [table.id]), seen)
+        assert {rooms_of_objects(after)[i] for i in heads} == {room.id}
+        assert {after.support_of(i).parent for i in heads} == {room.floor}  # type: ignore[union-attr]
+        lowest = min(float(after.object(i).corners_world[:, 2].min()) for i in heads)
+        assert lowest == pytest.approx(float(floor.centre[2]), abs=1e-6)
+        x, y = free_spot(part, library.shape(table.shape_id), seen)
+        assert Polygon(floor.polygon[:, :2]).contains(Point(x, y))
+    storeys = {room_around(scene, c.position).rooms[0].storey for c in sample_cameras(scene, library, 1, 6, (64, 48))}
+    assert storeys == set(storeys_of(scene))
 
 
 def test_a_door_opens_both_faces_of_its_wall(home: tuple[MadeHome, Scene]) -> None:
