@@ -62,10 +62,11 @@ def _elevation(scene: ExportScene, wall: DrawnWall, name: str, items: Iterable[E
     whole = shapely.union_all([shapely.make_valid(shapely.Polygon(face)), *holes])
     frame = [shapely.orient_polygons(whole.buffer(wide, join_style="mitre")).exterior for wide in (FRAME_M, 0.0)]
     outer, inner = (np.asarray(ring.coords)[:-1] for ring in frame)
+    nothing: list[Float[np.ndarray, "2 2"]] = []
     chains = (
         (0, low, high, openings, things),
-        (1, low, high, openings, []),
-        (1, high, low, [], things),
+        (1, low, high, openings, nothing),
+        (1, high, low, nothing, things),
     )
     return FloorPlan(
         name=name,
