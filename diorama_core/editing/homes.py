@@ -101,7 +101,11 @@ def joined(
 def placed_at_door(
     home: Scene, other: Scene, door: str, other_door: str, *, wall_m: float = USUAL_WALL_M
 ) -> Float[np.ndarray, "4 4"]:
-    """`T_home_other` that makes two doors one: back to back in a wall, feet at one height; arguments as of `joined`."""
+    """`T_home_other` that makes two doors one: back to back in a wall, feet at one height.
+
+    Args:
+        home, other, door, other_door, wall_m: as of `joined`.
+    """
     wall, there = _wall_of_door(home, door), _wall_of_door(other, other_door)
     yaw = np.arctan2(*-wall.normal[[1, 0]]) - np.arctan2(*there.normal[[1, 0]])
     T = np.eye(4)
