@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from functools import cache
+from functools import cache, partial
 
 import numpy as np
 import pytest
@@ -13,13 +13,17 @@ from diorama_core.architecture.plainrecon.stage import PlainRecon
 from diorama_core.architecture.single_view.stage import PhotoRoom
 from diorama_core.progress import Progress
 from diorama_core.provenance import RoomSource
-from tests.synthetic_rooms import box_room, cuboid, look, shoot
+from tests import synthetic_rooms
+from tests.synthetic_rooms import box_room, cuboid, shoot
 
 SOLVERS = {"closed": PlanarRoom(), "plainrecon": PlainRecon(), "photo": PhotoRoom()}
 CASES = (
     "no floor seen", "one plane", "corridor", "mirror", "all masked", "empty depth", "fifty points",
     "not a number", "a wall before the nose",
 )  # fmt: skip
+
+
+look = partial(synthetic_rooms.look, size=(320, 240))
 
 
 @cache
@@ -40,9 +44,9 @@ def seen(case):
     if case == "a wall before the nose":
         return shoot(look(0, 5), box_room(-2.0, 2.0, 0.6, 2.6))
     if case == "one plane":
-        return _measured(shot, np.where((rows < 150) & (np.abs(columns - 320) < 60), depth, 0))
+        return _measured(shot, np.where((rows < 75) & (np.abs(columns - 160) < 30), depth, 0))
     if case == "mirror":
-        deep = (np.abs(columns - 320) < 70) & (rows > 90) & (rows < 200)
+        deep = (np.abs(columns - 160) < 35) & (rows > 45) & (rows < 100)
         return _measured(shot, np.where(deep, 2.0 * depth, depth))
     if case == "all masked":
         return replace(shot, objects=tuple(replace(o, mask=np.ones_like(o.mask)) for o in shot.objects))
@@ -50,7 +54,7 @@ def seen(case):
         return _measured(shot, np.zeros_like(depth))
     if case == "not a number":
         return _measured(shot, np.where(rows % 7 == 0, np.nan, np.where(rows % 11 == 0, np.inf, depth)))
-    return _measured(shot, np.where((rows % 96 == 0) & (columns % 64 == 0), depth, 0))
+    return _measured(shot, np.where((rows % 48 == 0) & (columns % 32 == 0), depth, 0))
 
 
 def _measured(shot, depth):

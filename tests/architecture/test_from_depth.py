@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import itertools
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 import pytest
@@ -11,8 +12,10 @@ import pytest
 from diorama_core.architecture.from_depth import PlanarRoom
 from diorama_core.progress import Progress
 from diorama_core.provenance import RoomMethod
-from tests.synthetic_rooms import box_room, cuboid, floor, look, shoot, wall
+from tests import synthetic_rooms
+from tests.synthetic_rooms import box_room, cuboid, floor, shoot, wall
 
+look = partial(synthetic_rooms.look, size=(400, 300))
 FURNITURE = (
     cuboid("cabinet", (-1.0, 2.5, 0), (0.6, 1.0, 0.8)),
     cuboid("stand", (0.8, 2.2, 0), (0.5, 0.5, 0.9)),
@@ -107,9 +110,9 @@ def test_degenerate_depth_gives_what_is_known(case):
     rows, columns = np.indices(shot.inputs.depth_m.shape)
     keep = {
         "empty": rows < 0,
-        "fifty points": (rows % 96 == 0) & (columns % 64 == 0),
-        "floor only": rows > 400,
-        "one wall": (rows < 150) & (np.abs(columns - 320) < 60),
+        "fifty points": (rows % 60 == 0) & (columns % 40 == 0),
+        "floor only": rows > 250,
+        "one wall": (rows < 94) & (np.abs(columns - 200) < 38),
         "all masked": rows >= 0,
     }[case]
     shot = _only(shot, keep)

@@ -165,6 +165,7 @@ def newest_photo(running: Running) -> Photo | None:
 def test_a_large_picture_is_decoded_while_others_go_on(running: Running) -> None:
     """A picture of 63 megapixels in 0.2 MB takes seconds to decode; nobody else waits for that."""
     page, session = WirePage(running.port), running.session
+    sent = time.monotonic()
     page.upload(page.element("Upload a photo", "UploadButton"), "large.png", png(9_000, 7_000, 8, 2, 3))
     waits_s: list[float] = []
 
@@ -176,7 +177,7 @@ def test_a_large_picture_is_decoded_while_others_go_on(running: Running) -> None
         return photo is not None and photo.name == "large.png"
 
     until(read, "the picture is read", seconds=60.0)
-    assert max(waits_s) < 1.5, "the thread that serves everybody was kept"
+    assert max(waits_s) < 0.5 * (time.monotonic() - sent), "the thread that serves everybody was kept"
     photo = newest_photo(running)
     assert photo is not None
     assert photo.width == 1600
