@@ -7,6 +7,7 @@ import shutil
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import TypeVar
 from urllib.parse import parse_qs, urlsplit
 
 import numpy as np
@@ -16,6 +17,7 @@ from diorama_app.serve import Running
 from diorama_app.session.client import Client
 from diorama_app.session.session import EditorSession
 
+T = TypeVar("T")
 FLAGS = (
     "--no-sandbox",
     "--enable-unsafe-swiftshader",
@@ -172,6 +174,17 @@ class EditorPage:
                 return
             self.page.wait_for_timeout(50)
         raise AssertionError(f"did not come about: {what or holds}")
+
+    def still(self, read: Callable[[], T], apart_ms: int = 400) -> T:
+        """A value of the page, once it is the same twice in a row: beside other work the page is slow."""
+        before = read()
+        for _ in range(50):
+            self.page.wait_for_timeout(apart_ms)
+            now = read()
+            if now == before:
+                return now
+            before = now
+        raise AssertionError(f"does not come to rest: {before}")
 
     def dismiss_notices(self) -> None:
         """Close what covers the canvas (the warning of software WebGL at the start, too)."""

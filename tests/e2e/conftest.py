@@ -70,6 +70,7 @@ def context(driver, program: str, tmp_path_factory: pytest.TempPathFactory) -> I
         accept_downloads=True,
         args=FLAGS,
     )
+    context.set_default_timeout(PATIENCE_MS)
     yield context
     context.close()
 

@@ -28,7 +28,7 @@ def test_software_webgl_draws_few_frames_without_smoothing(editor: EditorPage) -
     renderer = "window.__viserMutable.scene.__r3f.root.getState().gl.getContext()"
     assert editor.page.evaluate(f"{renderer}.getContextAttributes().antialias") is False
     editor.settle()
-    editor.page.wait_for_timeout(700)
+    editor.still(lambda: editor.page.evaluate(FRAME), apart_ms=700)
     # One for the request, one when all is quiet, perhaps one of the heartbeat; viser's own pace is sixty a second.
     frames = editor.page.evaluate(FRAMES_AFTER_A_REQUEST)
     assert 1 <= frames <= 3
@@ -36,10 +36,7 @@ def test_software_webgl_draws_few_frames_without_smoothing(editor: EditorPage) -
 
 def test_a_page_at_rest_draws_nothing(editor: EditorPage) -> None:
     editor.settle()
-    editor.page.wait_for_timeout(1000)
-    before = editor.page.evaluate(FRAME)
-    editor.page.wait_for_timeout(2500)
-    assert editor.page.evaluate(FRAME) - before <= 1  # every ten seconds one, lest something was forgotten
+    editor.still(lambda: editor.page.evaluate(FRAME), apart_ms=2500)  # every ten seconds one is drawn
 
 
 def test_what_moves_is_drawn_with_fewer_pixels_until_it_rests(editor: EditorPage) -> None:
@@ -55,15 +52,9 @@ def test_what_moves_is_drawn_with_fewer_pixels_until_it_rests(editor: EditorPage
 
 
 def pixels_at_rest(editor: EditorPage) -> float:
-    """`PIXELS` of a whole picture, once they are the same twice in a row: beside other work the page is slow."""
-    before = 0.0
-    for _ in range(20):
-        editor.page.wait_for_timeout(900)
-        count = float(editor.page.evaluate(PIXELS))
-        if 0.0 < count == before:
-            return count
-        before = count
-    raise AssertionError(f"the picture does not come to rest: {count} pixels for one of the page")
+    """`PIXELS` of a whole picture."""
+    editor.page.wait_for_function(f"{PIXELS} > 0")
+    return editor.still(lambda: float(editor.page.evaluate(PIXELS)), apart_ms=900)
 
 
 PICTURE = "window.__viserMutable.canvas.toDataURL()"
@@ -71,16 +62,14 @@ CALLS = "window.__viserTestpoints.rendererInfo.render.calls"
 
 
 def calls_at_rest(editor: EditorPage) -> int:
-    """Draw calls of a whole picture, once two in a row have as many: beside other work, shapes and marks come late."""
-    before = -1
-    for _ in range(20):
+    """Draw calls of a whole picture: beside other work, shapes and marks come late."""
+
+    def calls() -> int:
         editor.page.evaluate("window.__viserMutable.requestRender()")
         editor.page.wait_for_timeout(900)
-        calls = int(editor.page.evaluate(CALLS))
-        if calls == before:
-            return calls
-        before = calls
-    raise AssertionError(f"the picture does not come to rest: {calls} draw calls")
+        return int(editor.page.evaluate(CALLS))
+
+    return editor.still(calls, apart_ms=0)
 
 
 def pixels(page: EditorPage) -> np.ndarray:
@@ -114,8 +103,7 @@ def test_of_a_moved_object_only_its_part_of_the_picture_is_drawn(editor: EditorP
         assert calls_at_rest(watching) == calls
         assert np.abs(pixels(watching) - partly).max() <= 2, "it is the picture that drawing everything gives"
         session.ui_thread.post(session.refresh)
-        watching.page.wait_for_timeout(600)
-        assert np.abs(pixels(watching) - partly).max() > 40, "the lamp was seen to move"
+        watching.until(lambda: np.abs(pixels(watching) - partly).max() > 40, "the lamp was seen to move")
     finally:
         watching.page.close()
         editor.page.bring_to_front()

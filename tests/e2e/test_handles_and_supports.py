@@ -24,16 +24,15 @@ from tests.e2e.conftest import keep_picture
 pytestmark = pytest.mark.browser
 
 
+LIFTED = """() => { let lifted = false; window.__viserMutable.nodeRefFromName['/gizmo']?.traverse((o) => {
+    lifted ||= Boolean(o.isMesh && o.userData.dioLifted); }); return lifted; }"""
+"""Handles are there, and above bodies."""
+
+
 def at_rest(editor: EditorPage, point: np.ndarray) -> None:
     """Wait until the camera has come to rest and the handles have followed it."""
-    before = (0.0, 0.0)
-    for _ in range(50):
-        now = editor.place_of(point)
-        if np.allclose(now, before, atol=0.1):
-            return
-        before = now
-        editor.page.wait_for_timeout(400)
-    pytest.fail("the camera does not come to rest")
+    editor.settle()
+    editor.still(lambda: np.round(editor.place_of(point), 1).tolist())
 
 
 def test_the_rotation_arc_turns_where_it_lies_over_the_body(editor: EditorPage) -> None:
@@ -48,8 +47,7 @@ def test_the_rotation_arc_turns_where_it_lies_over_the_body(editor: EditorPage) 
     assert gestures._gizmo_key is not None
     scale = gestures._gizmo_key[2]
     # The first handles of a page take a while on a slow machine.
-    editor.page.wait_for_function("window.__viserMutable.nodeRefFromName['/gizmo']")
-    editor.page.wait_for_timeout(300)  # until they are lifted above bodies
+    editor.page.wait_for_function(LIFTED)
     # The arc between the x and y arms, in the object's frame, two thirds out.
     at = 0.6 * scale
     start, end = (

@@ -22,6 +22,13 @@ from tests.ports import lasting_port
 pytestmark = pytest.mark.browser
 
 FOREIGN = ("Inactive", "ws://", "WorldAxes", "Viser", "Dev Settings", "Software WebGL")
+ROOM_ABOVE_SHEET = """() => {
+    const room = window.__viserMutable.canvas.getBoundingClientRect();
+    const sheet = document.querySelector('#root .mantine-Paper-root[style*="position: fixed"]').getBoundingClientRect();
+    return room.width === 390 && room.bottom > 300 && sheet.left === 0 && sheet.width === 390
+        && Math.abs(room.bottom - sheet.top) <= 2;
+}"""
+"""On a screen 390 pixels wide; nothing of the room is under the sheet."""
 SEEN_TEXT = "document.body.innerText"
 
 
@@ -87,7 +94,7 @@ def test_tabs_stay_while_what_is_below_them_scrolls(editor: EditorPage, resized:
     viewport = resized.locator(".mantine-ScrollArea-viewport", has=resized.get_by_role("tab", name="Scene", exact=True))
     viewport.first.hover()
     resized.mouse.wheel(0, 3000)
-    resized.wait_for_function("(element) => element.scrollTop > 40", arg=viewport.first.element_handle(), timeout=5000)
+    resized.wait_for_function("(element) => element.scrollTop > 40", arg=viewport.first.element_handle())
     editor.tab("Arrange")
     top = viewport.first.bounding_box()
     tab = resized.get_by_role("tab", name="Arrange", exact=True).bounding_box()
@@ -110,17 +117,7 @@ def test_on_a_phone_the_panel_is_a_sheet_and_the_room_above_it(
     page.set_viewport_size({"width": 390, "height": 844})
     page.goto(f"http://127.0.0.1:{running.port}/{QUERY}")
     page.wait_for_selector("html.dio-ready.dio-phone")
-    page.wait_for_timeout(700)
-    canvas = page.evaluate("(({width, bottom}) => [width, bottom])(__viserMutable.canvas.getBoundingClientRect())")
-    sheet = page.evaluate(
-        "(({left, top, width}) => [left, top, width])(document.querySelector('#root .mantine-Paper-root"
-        '[style*="position: fixed"]\').getBoundingClientRect())'
-    )
-    assert canvas[0] == 390
-    assert sheet[0] == 0
-    assert sheet[2] == 390
-    assert abs(canvas[1] - sheet[1]) <= 2, "nothing of the room is under the sheet"
-    assert canvas[1] > 300
+    page.wait_for_function(ROOM_ABOVE_SHEET)
     for name in ("Scene", "Photo", "Arrange", "Project", "Object", "Library", "Export"):
         expect(page.get_by_role("tab", name=name, exact=True)).to_have_count(1)
     page.get_by_role("tab", name="Library", exact=True).click()
@@ -151,10 +148,9 @@ def test_the_whole_room_is_seen_at_first_and_after_the_window_changed(
     page.set_viewport_size({"width": width, "height": height})
     page.goto(f"http://127.0.0.1:{running.port}/{QUERY}")
     page.wait_for_selector("html.dio-ready")
-    page.wait_for_timeout(2500)
-    assert page.evaluate(in_view, corners)
+    page.wait_for_function(in_view, arg=corners)
     page.set_viewport_size({"width": 900, "height": height})
-    page.wait_for_function(in_view, arg=corners, timeout=5000)
+    page.wait_for_function(in_view, arg=corners)
     page.close()
 
 

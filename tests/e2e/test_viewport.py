@@ -49,9 +49,9 @@ def test_outlines_lie_over_the_photo_and_the_selected_one_is_orange(editor: Edit
     editor.row("dining table").click()
     editor.until(lambda: editor.selection == ("table_1",))
     editor.settle()
-    editor.page.wait_for_timeout(300)
+    differs = "the tint of the selected outline differs"
+    editor.until(lambda: np.abs(editor.mean_colour(inside) - plain).max() > 12, differs)
     orange = editor.mean_colour(inside)
-    assert np.abs(orange - plain).max() > 12, "the tint of the selected outline differs"
     assert orange[0] > orange[2] + 40, "and is orange"
     editor.page.keyboard.press("o")
     editor.page.wait_for_function(GONE)

@@ -19,8 +19,7 @@ def test_one_walks_by_keys_past_furniture_and_comes_back(editor: EditorPage) -> 
     page, scene = editor.page, editor.session.scene
     page.keyboard.press("r")
     editor.settle()
-    page.wait_for_timeout(1000)
-    before = page.evaluate(EYE)
+    before = editor.still(lambda: page.evaluate(EYE))
     editor.menu_tool("Walk").click()
     page.wait_for_function("!!window.__dioWalk.place()")
     page.evaluate(f"({TRACED})()")
@@ -35,8 +34,7 @@ def test_one_walks_by_keys_past_furniture_and_comes_back(editor: EditorPage) -> 
     np.testing.assert_allclose(page.evaluate(EYE)[:2], trace[-1], atol=0.02)
     page.keyboard.press("Escape")
     expect(page.locator("#dio-walk")).to_have_count(0)
-    page.wait_for_timeout(500)
-    np.testing.assert_allclose(page.evaluate(EYE), before, atol=0.05)
+    editor.until(lambda: np.allclose(page.evaluate(EYE), before, atol=0.05), "back where one looked from")
     assert editor.session.scene is scene, "no key was a command"
     outline = Polygon(scene.architecture.by_role("floor")[0].polygon[:, :2])
     stands = [Polygon(footprint_of(o)) for o in scene.objects if o.category in ("table", "chair")]
