@@ -22,6 +22,12 @@ from diorama_core.scene.types import Architecture, HomeRoom, Plane, Scene, Suppo
 USUAL_WALL_M = 0.12
 """Thickness of a wall between two rooms where nobody says another: brick and plaster."""
 
+CUT_PX = 2.0
+"""Boxes that come nearer to the picture's border are cut off by it: as far as people draw them."""
+
+NARROWED = 0.1
+"""Share of its width that a door seems to lose where each photo shows all of it: by the scales of two rooms."""
+
 DRAWN_OVER = 0.1
 """Share of the smaller of two outlines that they have in common: less is a touch."""
 
@@ -63,6 +69,7 @@ def joined(
     if not 0.0 <= wall_m <= 1.0:
         raise EditRefused(f"a wall cannot be {wall_m:g} m thick; give 0 to 1 m")
     home, other = _as_home(home, names[0]), _as_home(other, names[1])
+    home, other = as_one_door(home, other, door, other_door)
     T = placed_at_door(home, other, door, other_door, wall_m=wall_m)
     wall, there = _wall_of_door(home, door), _wall_of_door(other, other_door)
     storeys = _storey(home, door) - _storey(other, other_door)
@@ -96,6 +103,22 @@ def joined(
         rooms=_counted_from_lowest((*home.rooms, *rooms)),
     )
     return JoinedHome(scene, textures)
+
+
+def as_one_door(home: Scene, other: Scene, door: str, other_door: str) -> tuple[Scene, Scene]:
+    """Both scenes with the door where their photos show its edges, as wide as the photo that shows more of it says.
+
+    Args:
+        home, other, door, other_door: as of `joined`.
+    """
+    sides = ((home, door), (other, other_door))
+    edges = [_seen_edges(scene, name, _wall_of_door(scene, name)) for scene, name in sides]
+    # What hides a door, and the border of the picture, make it narrower than it is.
+    width = max(right - left for left, right, _ in edges)
+    if not np.isfinite(width):
+        return home, other
+    first, second = (_with_edges(*side, *seen, width) for side, seen in zip(sides, edges, strict=True))
+    return first, second
 
 
 def placed_at_door(
@@ -274,6 +297,53 @@ def _wall_of_door(scene: Scene, door: str) -> Plane:
     if wall is None:
         raise EditRefused(f"the door {door!r} is in no wall; move it to one first")
     return wall
+
+
+def _with_edges(scene: Scene, door: str, left: float, right: float, cut: tuple[bool, bool], width: float) -> Scene:
+    """The scene with a door of a width between the edges that its photo shows, or at the one that it does not cut off.
+
+    Args:
+        scene: of the door's room.
+        door: its id.
+        left, right: edges along its wall (m).
+        cut: whether the picture cuts the edges off.
+        width: of the door (m).
+    """
+    item, wall = scene.object(door), _wall_of_door(scene, door)
+    if right - left > (1.0 - NARROWED) * width:
+        middle = (left + right) / 2
+    elif cut[0] != cut[1]:
+        middle = right - width / 2 if cut[0] else left + width / 2
+    else:
+        return scene
+    along = np.cross([0.0, 0.0, 1.0], wall.normal)
+    moved = item.pose.moved((middle - float(item.pose.position @ along)) * along)
+    depth, across, high = moved.scale
+    pose = replace(moved, scale=(depth, across * width / float(item.size_m[1]), high))
+    return replace(scene, objects=tuple(replace(o, pose=pose) if o is item else o for o in scene.objects))
+
+
+def _seen_edges(scene: Scene, door: str, wall: Plane) -> tuple[float, float, tuple[bool, bool]]:
+    """Where a door's left and right edge are along its wall (m) by its box, and whether the picture cuts them off.
+
+    Infinitely wide where there is no photo, or somebody placed the door since.
+    """
+    camera, item = scene.camera, scene.object(door)
+    box = item.box_px
+    if camera is None or box is None or item.by_hand:
+        return -np.inf, np.inf, (False, False)
+    along, foot = np.cross([0.0, 0.0, 1.0], wall.normal), float(wall.polygon[:, 2].min())
+    found = []
+    # An upright edge is aslant in the picture: only one of its ends, or of what is seen of it, is at the box's side.
+    for column, innermost in ((box[0], np.max), (box[2], np.min)):
+        rays = camera.rays(np.array([[column, box[3]], [column, box[1]]]))
+        facing = rays @ wall.normal
+        away = (wall.offset - float(wall.normal @ camera.position)) / np.where(facing < 0.0, facing, np.nan)
+        points = camera.position + away[:, None] * rays
+        ends = np.interp([foot, foot + float(item.size_m[2])], points[:, 2], points @ along)
+        found.append(float(innermost(ends)))
+    cut = box[0] < CUT_PX, box[2] > camera.intrinsics.width - CUT_PX
+    return (found[0], found[1], cut) if np.isfinite(found).all() else (-np.inf, np.inf, (False, False))
 
 
 def _foot(scene: Scene, door: str, wall: Plane) -> Float[np.ndarray, "3"]:

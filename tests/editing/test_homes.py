@@ -7,14 +7,15 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from diorama_core.editing.homes import draw_room_of_home, joined
+from diorama_core.editing.homes import as_one_door, draw_room_of_home, joined
 from diorama_core.errors import EditRefused
 from diorama_core.geometry.rooms import doorways, rooms_of_objects, rooms_of_planes
 from diorama_core.multiview.one_scene import moved_to_room
 from diorama_core.scene import edits
 from diorama_core.scene.schema import scene_from_json, scene_to_json
 from diorama_core.scene.support import check_scene
-from diorama_core.scene.types import Pose, Scene, SceneObject, Support, yaw_rotation
+from diorama_core.scene.types import Camera, Intrinsics, Pose, Scene, SceneObject, Support, yaw_rotation
+from diorama_core.synthesis.cameras import level_pose
 from tests.app.small_room import furnished_scene
 
 
@@ -66,6 +67,39 @@ def test_the_two_sides_of_the_door_are_one(home: Scene, turned: Scene) -> None:
     along = np.cross([0.0, 0.0, 1.0], behind.normal)
     here = (made.object("door").pose.position - behind.centre) @ along
     assert here == pytest.approx(-0.3), "where the other room has it"
+
+
+def photographed(scene: Scene, door: str, wall_id: str, aside_rad: float) -> Scene:
+    """The room with a photo of a door from 2.5 m before it, the view turned aside, and the door's box in it."""
+    wall, item = scene.plane(wall_id), scene.object(door)
+    yaw = float(np.arctan2(-wall.normal[1], -wall.normal[0])) + aside_rad
+    eye = item.pose.position * (1, 1, 0) + 2.5 * wall.normal + (0, 0, 1.5)
+    camera = Camera(Intrinsics(640, 480, 320.0, 320.0, 320.0, 240.0), level_pose(eye, yaw, 0.3))
+    corners = item.corners_world
+    on_wall = corners - np.outer(corners @ wall.normal - wall.offset, wall.normal)
+    px = camera.project(on_wall).clip(0, (640, 480))
+    box = (float(px[:, 0].min()), float(px[:, 1].min()), float(px[:, 0].max()), float(px[:, 1].max()))
+    return replace(
+        scene, camera=camera, objects=tuple(replace(o, box_px=box if o is item else None) for o in scene.objects)
+    )
+
+
+@pytest.mark.parametrize("aside_rad", [0.9, -0.9])
+def test_a_door_that_one_photo_cuts_off_is_as_the_other_shows_it(home: Scene, aside_rad: float) -> None:
+    cut = photographed(home, "door", "wall_3", aside_rad)
+    whole = photographed(with_door(furnished_scene(), "way-in", "wall_2", -0.3), "way-in", "wall_2", 0.0)
+    true, box = cut.object("door"), cut.object("door").box_px
+    assert box is not None
+    assert (box[0] == 0.0) != (box[2] == 640.0)
+    badly = replace(true, pose=replace(true.pose.moved((0.1, 0.1, 0.0)), scale=(1.0, 0.6, 1.0)))
+    built = replace(cut, objects=tuple(badly if o is true else o for o in cut.objects))
+    first, second = as_one_door(built, whole, "door", "way-in")
+    assert first.object("door").size_m[1] == pytest.approx(0.9, abs=0.01)
+    along = np.cross([0.0, 0.0, 1.0], home.plane("wall_3").normal)
+    assert (first.object("door").pose.position - true.pose.position) @ along == pytest.approx(0.0, abs=0.01)
+    np.testing.assert_allclose(second.object("way-in").pose.position, whole.object("way-in").pose.position, atol=0.01)
+    placed = replace(built, objects=tuple(replace(o, by_hand=True) for o in built.objects))
+    assert as_one_door(placed, whole, "door", "way-in")[0] is placed, "somebody knows better"
 
 
 def test_names_are_apart_and_everything_keeps_its_room(home: Scene, turned: Scene) -> None:
