@@ -18,6 +18,7 @@ from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
+from jaxtyping import Float
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 
@@ -131,11 +132,15 @@ def measured(first: Room, second: Room) -> tuple[float, float, float]:
     off = sum(wall_error(r, s, s.object(n)) for r, s, n in zip((first, second), scenes, names, strict=True))
     made = placed_at_door(*scenes, *names)
     true = placed_at_door(first[0].scene, second[0].scene, first[1].id, second[1].id)
-    cameras = [made @ second[2].camera.T_world_camera, true @ second[0].camera.T_world_camera]
-    views = [c.T_world_camera for c in (first[2].camera, first[0].camera)]
-    cameras = [np.linalg.inv(a) @ b for a, b in zip(views, cameras, strict=True)]
+    seen = ((first[2], made, second[2]), (first[0].scene, true, second[0].scene))
+    cameras = [np.linalg.inv(view_of(a)) @ T @ view_of(b) for a, T, b in seen]
     turn = np.degrees(np.arccos(np.clip((np.trace(cameras[0][:3, :3].T @ cameras[1][:3, :3]) - 1) / 2, -1, 1)))
     return off, float(turn), float(np.linalg.norm(cameras[0][:3, 3] - cameras[1][:3, 3]))
+
+
+def view_of(scene: Scene) -> Float[np.ndarray, "4 4"]:
+    assert scene.camera is not None
+    return scene.camera.T_world_camera
 
 
 def built_door(view: TruthView, door: SceneObject, built: Scene) -> SceneObject | None:

@@ -13,6 +13,7 @@ from diorama_app.strings import _
 from diorama_app.web.html import Action, LiveHtml, button, text
 from diorama_core.errors import EditRefused
 from diorama_core.geometry.openings import DOOR
+from diorama_core.library.user_library import ProjectShapes
 from diorama_core.project.storage import Project
 from diorama_core.scene.edits import set_room
 from diorama_core.scene.types import Scene
@@ -106,11 +107,9 @@ class HomePanel:
         if session.project is None or self._joining is None:
             raise EditRefused(_("choose a project to join first"))
         other = Project.open(self._joining)
-        if other.shapes_folder.is_dir():
-            raise EditRefused(
-                _("{name} brings models of its own; join it with diorama project join").format(name=other.name)
-            )
         scene, pictures = join_project(session.project, session.scene, other, door, self._door)
+        if isinstance(session.library, ProjectShapes):
+            session.library.show(session.project.shapes_folder)
         session.add_textures(dict(pictures))
         session.edit(_("join {name}").format(name=other.name), lambda s: scene, by=client)
         self._joining, self._door = None, ""

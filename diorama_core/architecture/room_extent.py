@@ -14,7 +14,6 @@ import manifold3d
 import numpy as np
 from jaxtyping import Float
 
-from diorama_core.architecture.walls.closed_room import GUESS_CONFIDENCE
 from diorama_core.errors import EditRefused
 from diorama_core.geometry.planes import clip_polygon, in_polygon, signed_area
 from diorama_core.library import taxonomy
@@ -76,8 +75,7 @@ def containing_room(
     if objects_measured:
         scene = _doubted(scene, standing)
     for wall in scene.architecture.by_role("wall"):
-        is_seen = wall.seen or (walls_reasoned and not objects_measured and _is_in_photo(wall))
-        if not is_seen:
+        if not wall.seen:
             scene = _given_way(scene, wall.id, standing)
         scene = _drawn_out(scene, wall.id)
     prints = [p for o in standing if len(p := _footprint(scene, o)) >= 3]
@@ -150,58 +148,34 @@ def _at_backs(scene: Scene, feet_seen: Collection[str] | None, objects_measured:
     Doors say it, too: their feet, which were seen on the floor, are the wall's. What stands before a wall without
     touching it resists a wall that would come past its back. Each counts as much as its place is certain. What hangs on
     walls and what lies on furniture counts where its place was measured: otherwise it follows from walls and furniture.
-    Then walls that meet move in proportion to their distances from the camera: their corner stays where it was seen.
     """
     floor = scene.architecture.floor
-    planes = {p.id for p in scene.architecture.planes if p.role != "floor"}
+    walls = {p.id for p in scene.architecture.planes if p.role != "floor"}
     edges = [
         s
         for s in scene.supports
-        if floor is not None and (s.parent not in planes if objects_measured else s.parent == floor.id)
+        if floor is not None and (s.parent not in walls if objects_measured else s.parent == floor.id)
     ]
-    eye = np.zeros(3) if scene.camera is None else scene.camera.position
-    every = scene.architecture.by_role("wall")
-    for walls in [[w] for w in every] if objects_measured else _meeting(every):
-        said = []
-        for wall in walls:
-            against = [scene.object(s.child) for s in edges if wall.id in s.adheres_to]
-            against += [o for o in _hanging(scene, wall.id) if objects_measured or o.category == "door"]
-            others = [
-                item
-                for s in edges
-                if wall.id not in s.adheres_to and _behind(item := scene.object(s.child), wall, np.inf) < np.inf
-            ]
-            away = max(float(wall.normal @ eye) - wall.offset, SETTINGS.margin_m)
-            said.append(_Said(away, *_backs(against, wall, feet_seen), *_backs(others, wall, feet_seen)))
-        nearer = _agreed(said, before_too=objects_measured)
-        for wall, one in zip(walls, said, strict=True):
-            if abs(nearer * one.away_m) < SETTINGS.margin_m:
-                continue
-            try:
-                moved = move_plane(scene, wall.id, SETTINGS.margin_m - nearer * one.away_m)
-            except EditRefused:
-                continue
-            scene = replace(moved, objects=scene.objects)
+    for wall in scene.architecture.by_role("wall"):
+        against = [scene.object(s.child) for s in edges if wall.id in s.adheres_to]
+        against += [o for o in _hanging(scene, wall.id) if objects_measured or o.category == "door"]
+        others = [
+            item
+            for s in edges
+            if wall.id not in s.adheres_to and _behind(item := scene.object(s.child), wall, np.inf) < np.inf
+        ]
+        backs, certainty = _backs(against, wall, feet_seen)
+        before, before_certainty = _backs(others, wall, feet_seen)
+        tried = np.concatenate([[0.0], backs, before]) if objects_measured else np.concatenate([[0.0], backs])
+        inward = _agreed(tried, backs, certainty, before, before_certainty)
+        if abs(inward) < SETTINGS.margin_m:
+            continue
+        try:
+            moved = move_plane(scene, wall.id, SETTINGS.margin_m - inward)
+        except EditRefused:
+            continue
+        scene = replace(moved, objects=scene.objects)
     return scene
-
-
-def _meeting(walls: Sequence[Plane]) -> list[list[Plane]]:
-    """Walls in the photo that meet in corners, together; each other wall alone."""
-    groups: list[list[Plane]] = []
-    for wall in walls:
-        near = [g for g in groups if any(_share_corner(wall, other) for other in g)]
-        groups = [g for g in groups if g not in near] + [[*(w for g in near for w in g), wall]]
-    return groups
-
-
-def _share_corner(wall: Plane, other: Plane) -> bool:
-    apart = np.linalg.norm(wall.polygon[:, None] - other.polygon[None], axis=2)
-    return _is_in_photo(wall) and _is_in_photo(other) and bool(apart.min() < SETTINGS.joined_m)
-
-
-def _is_in_photo(wall: Plane) -> bool:
-    """Whether a wall was read from the photo, however surely, rather than added to close the room."""
-    return wall.confidence > GUESS_CONFIDENCE
 
 
 def _without_far_adherence(scene: Scene) -> Scene:
@@ -228,36 +202,17 @@ def _back(item: SceneObject, wall: Plane) -> float:
     return float((item.corners_world @ wall.normal).min()) - wall.offset
 
 
-@dataclass(frozen=True, eq=False)
-class _Said:
-    """What objects say of a wall."""
-
-    away_m: float
-    """Of the wall from the camera."""
-    backs: Float[np.ndarray, "_"]
-    """Heights before it of what stands against it."""
-    certainty: Float[np.ndarray, "_"]
-    others: Float[np.ndarray, "_"]
-    """Heights of what stands before it without touching it."""
-    others_certainty: Float[np.ndarray, "_"]
-
-    def cost(self, inward: Float[np.ndarray, "t"]) -> Float[np.ndarray, "t"]:
-        """How badly each move inward (m) agrees."""
-        apart = np.abs(inward[:, None] - self.backs) @ self.certainty
-        past = np.maximum(inward[:, None] - self.others, 0.0) @ self.others_certainty
-        return np.asarray(apart + past + SETTINGS.hold * np.abs(inward))
-
-
-def _agreed(said: Sequence[_Said], *, before_too: bool) -> float:
-    """By which share of their distances walls come nearer to agree best with what objects say.
-
-    Args:
-        said: of each wall.
-        before_too: whether what only stands before a wall suggests a place, too.
-    """
-    shares = [np.concatenate([s.backs, s.others if before_too else s.backs[:0]]) / s.away_m for s in said]
-    tried = np.concatenate([[0.0], *shares])
-    return float(tried[np.argmin(sum(s.cost(tried * s.away_m) for s in said))])
+def _agreed(
+    tried: Float[np.ndarray, " t"],
+    backs: Float[np.ndarray, " a"],
+    certainty: Float[np.ndarray, " a"],
+    others: Float[np.ndarray, " b"],
+    others_certainty: Float[np.ndarray, " b"],
+) -> float:
+    """How far inward, of what is tried, a wall agrees best with the backs of what stands against it and before it."""
+    apart = np.abs(tried[:, None] - backs) @ certainty
+    past = np.maximum(tried[:, None] - others, 0.0) @ others_certainty
+    return float(tried[np.argmin(apart + past + SETTINGS.hold * np.abs(tried))])
 
 
 def _doubted(scene: Scene, standing: Sequence[SceneObject]) -> Scene:

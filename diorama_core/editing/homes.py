@@ -117,7 +117,7 @@ def as_one_door(home: Scene, other: Scene, door: str, other_door: str) -> tuple[
     width = max(right - left for left, right, _ in edges)
     if not np.isfinite(width):
         return home, other
-    first, second = (_with_edges(*side, *seen, width) for side, seen in zip(sides, edges, strict=True))
+    first, second = (_with_edges(s, n, *seen, width=width) for (s, n), seen in zip(sides, edges, strict=True))
     return first, second
 
 
@@ -299,7 +299,7 @@ def _wall_of_door(scene: Scene, door: str) -> Plane:
     return wall
 
 
-def _with_edges(scene: Scene, door: str, left: float, right: float, cut: tuple[bool, bool], width: float) -> Scene:
+def _with_edges(scene: Scene, door: str, left: float, right: float, cut: tuple[bool, bool], *, width: float) -> Scene:
     """The scene with a door of a width between the edges that its photo shows, or at the one that it does not cut off.
 
     Args:
@@ -318,8 +318,7 @@ def _with_edges(scene: Scene, door: str, left: float, right: float, cut: tuple[b
         return scene
     along = np.cross([0.0, 0.0, 1.0], wall.normal)
     moved = item.pose.moved((middle - float(item.pose.position @ along)) * along)
-    depth, across, high = moved.scale
-    pose = replace(moved, scale=(depth, across * width / float(item.size_m[1]), high))
+    pose = replace(moved, scale=moved.scale * (1.0, width / float(item.size_m[1]), 1.0))
     return replace(scene, objects=tuple(replace(o, pose=pose) if o is item else o for o in scene.objects))
 
 

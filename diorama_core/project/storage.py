@@ -171,8 +171,25 @@ class Project:
         return (self.stages_folder / "inputs.zip").exists()
 
     def take_shapes(self, other: Project) -> None:
-        """Use another project's library, with a copy of the shapes that belong to it alone."""
-        if other.shapes_folder.is_dir():
+        """Use another project's library, with a copy of the shapes that belong to it alone beside one's own.
+
+        Raises:
+            ProjectError: both have a shape of one name that are not the same.
+        """
+        if all((p.shapes_folder / "library.sqlite").exists() for p in (self, other)):
+            from diorama_core.library.ingest.sink import Ingested
+            from diorama_core.library.store.stored import StoredLibrary
+
+            mine, theirs = StoredLibrary(self.shapes_folder), StoredLibrary(other.shapes_folder)
+            known, shapes = {s.id: s.content_hash for s in mine.shapes()}, theirs.shapes()
+            if clash := next((s.id for s in shapes if known.get(s.id, s.content_hash) != s.content_hash), None):
+                raise ProjectError(f"both projects brought another model called {clash!r}; import one of them again")
+            mine.add_all(
+                Ingested(s, theirs.glb(s.id), theirs.thumbnail(s.id), theirs.source_key(s.id), theirs.warnings(s.id))
+                for s in shapes
+                if s.id not in known
+            )
+        elif other.shapes_folder.is_dir():
             shutil.copytree(other.shapes_folder, self.shapes_folder, dirs_exist_ok=True)
         self.update_info(library="+".join(other._library_parts()))
 

@@ -11,11 +11,13 @@ import pytest
 from diorama_core.artefacts import Inputs, Photo
 from diorama_core.errors import ProjectError, SceneError
 from diorama_core.library.library_names import BUILT_IN
+from diorama_core.library.store import StoredLibrary
 from diorama_core.pipeline import codec
 from diorama_core.pipeline.runner import StageRun
 from diorama_core.project import backups, storage
 from diorama_core.project.storage import Project
 from diorama_core.scene.types import Architecture, PhotoMaterial, Plane, Scene
+from tests.library.store.test_stored import ingested
 from tests.pipeline.test_codec import example_inputs
 from tests.scene.test_edits import _stack
 
@@ -154,6 +156,19 @@ def test_another_projects_library_is_taken_with_its_own_shapes(tmp_path: Path) -
     assert taker.library_name == str(taker.folder.resolve() / "shapes")
     taker.take_shapes(plain)
     assert taker.library_name == BUILT_IN
+
+
+def test_shapes_of_two_projects_come_together(tmp_path: Path) -> None:
+    first, second = Project.create(tmp_path / "first"), Project.create(tmp_path / "second")
+    for project, names in ((first, ("chair", "lamp")), (second, ("chair", "table"))):
+        StoredLibrary(project.shapes_folder, create=True).add_all(ingested(name) for name in names)
+        project.update_info(library=storage.OWN_SHAPES)
+    first.take_shapes(second)
+    assert {s.id for s in StoredLibrary(first.shapes_folder).shapes()} == {"chair", "lamp", "table"}
+    assert StoredLibrary(first.shapes_folder).glb("table") == StoredLibrary(second.shapes_folder).glb("table")
+    StoredLibrary(second.shapes_folder).add(ingested("lamp", height=2.0))
+    with pytest.raises(ProjectError, match="'lamp'"):
+        first.take_shapes(second)
 
 
 def test_uploads_are_kept_as_they_came_until_they_are_taken_back(tmp_path: Path) -> None:
