@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import os
 import subprocess
+import sys
+import threading
 from typing import Any
 
 import pytest
@@ -17,34 +19,43 @@ OWN = "PYTEST_CURRENT_TEST"
 Key = tuple[Any, ...]
 _idle: list[tuple[Key, subprocess.Popen[bytes], limited._Messages]] = []
 """The latest last."""
+_keys: dict[int, Key] = {}
+"""By a process's id."""
+_one_at_a_time = threading.Lock()
 _started, _close, _end = LimitedProcess._started, LimitedProcess.close, LimitedProcess._end
 
 
 def _key(process: LimitedProcess) -> Key:
-    """Memory and environment, with which a process was started."""
-    return process._memory, tuple(sorted((k, v) for k, v in os.environ.items() if k != OWN))
+    """What a process was started with: its memory, folder, modules and environment."""
+    environment = tuple(sorted((k, v) for k, v in os.environ.items() if k != OWN))
+    return process._memory, os.getcwd(), tuple(sys.path), environment
 
 
 def started(self: LimitedProcess) -> limited._Messages:
     """In place of `LimitedProcess._started`: an idle process of the same environment, or a new one."""
-    if self._process is None:
-        for k, (key, process, messages) in enumerate(_idle):
-            if key == _key(self) and process.poll() is None:
-                self._process, self._messages = process, messages
-                del _idle[k]
-                break
-    return _started(self)
+    with _one_at_a_time:
+        if self._process is None:
+            for k, (key, process, messages) in enumerate(_idle):
+                if key == _key(self) and process.poll() is None:
+                    self._process, self._messages = process, messages
+                    del _idle[k]
+                    break
+        before = self._process
+        messages = _started(self)
+        if self._process is not None and self._process is not before:
+            _keys[self._process.pid] = _key(self)
+        return messages
 
 
 def close(self: LimitedProcess) -> None:
     """In place of `LimitedProcess.close`: what it read with waits for the next."""
-    with self._lock:
+    with self._lock, _one_at_a_time:
         if self._process is None or self._messages is None:
             return
-        _idle.append((_key(self), self._process, self._messages))
+        _idle.append((_keys[self._process.pid], self._process, self._messages))
         self._process = self._messages = None
-    if len(_idle) > MAX_IDLE:
-        end(_idle.pop(0))
+        if len(_idle) > MAX_IDLE:
+            end(_idle.pop(0))
 
 
 def keep(patch: pytest.MonkeyPatch, *, kept: bool = True) -> None:
