@@ -11,8 +11,9 @@ from diorama_app.session.client import Client, Measuring, Placing, Playing
 from diorama_app.strings import _
 from diorama_app.web.html import Action, LiveHtml, button, text
 
-SHOWN_S, OFFERED_S = 6.0, 15.0
-"""As long as the page's own fading takes (`.dio-toast` in `web/html.py`)."""
+SHOWN_S = 30.0
+"""A page fades a message 6 or 15 s after it has drawn it (`.dio-toast` in `static/panels.css`). The server ends it
+later: a slow page that still loads draws it late, and would never show what ended before."""
 
 
 class Toasts:
@@ -30,7 +31,7 @@ class Toasts:
     def say(self, message: str, undo: bool) -> None:
         """Show a message, in place of the one before."""
         again = button(_("Undo"), "undo") if undo else ""
-        self._show(f'<div class="dio-toast"><span>{text(_(message))}</span>{again}</div>', SHOWN_S)
+        self._show(f'<div class="dio-toast"><span>{text(_(message))}</span>{again}</div>')
 
     def offer(self, message: str, label: str, do: Callable[[], None]) -> None:
         """Show a message with a button that does something; it stays longer than others.
@@ -44,9 +45,9 @@ class Toasts:
         self._client.to_say = None  # the line of the step itself comes later, and would take the offer's place
         action = button(text(label), "offered")
         line = f'<div class="dio-toast long" role="alert"><span>{text(_(message))}</span>{action}</div>'
-        self._show(line, OFFERED_S)
+        self._show(line)
 
-    def _show(self, line: str, seconds: float) -> None:
+    def _show(self, line: str) -> None:
         """Show a line for some seconds; a page that is drawn anew later does not show it again."""
         self._said = number = self._said + 1
         self._html.show(line, again=True)
@@ -56,7 +57,7 @@ class Toasts:
                 self._html.show("")
 
         client = self._client
-        client.session.ui_thread.post(end, client_id=client.id, after_s=seconds, awaited=False)
+        client.session.ui_thread.post(end, client_id=client.id, after_s=SHOWN_S, awaited=False)
 
     def refresh(self) -> None:
         """Say what a click in the view does now."""
