@@ -5,6 +5,7 @@ from __future__ import annotations
 import pytest
 import shapely
 
+from diorama_core.editing.collisions import Collisions
 from diorama_core.errors import InputError
 from diorama_core.geometry.rooms import doorways, rooms_of_objects
 from diorama_core.library.catalogue import built_in_library
@@ -49,3 +50,5 @@ def test_rooms_join_at_doors_and_share_no_floor() -> None:
     assert all(way.opening.is_door for way in ways)
     assert set(rooms_of_objects(scene).values()) == {r.id for r in scene.rooms}
     assert "a home of 3 rooms" in made.notes[0]
+    doors = {o.id for o in scene.objects if o.category == "door"}
+    assert not any(doors & set(pair) for pair in Collisions(built_in_library()).of(scene, sorted(doors)))
