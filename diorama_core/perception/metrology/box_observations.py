@@ -51,8 +51,6 @@ class BoxObservations:
     """Share of the outer side of edge e of object i that is object j's mask."""
     ends_seen: Float[np.ndarray, "n"]
     """Share of the mask's columns that end within the picture and on nothing that is marked: there its foot is seen."""
-    fill: Float[np.ndarray, "n"]
-    """Share of the box that the user's own mask fills; 1 where there is only a guess."""
     meanings: tuple[tuple[tuple[str, float], ...], ...]
     """`DetectedObject.meanings` of every object."""
     settings: MetrologySettings
@@ -129,8 +127,6 @@ def gather(
     trust = trust * np.where(exact, 1.0, settings.observed.guessed_trust)[:, None]
     weight = np.column_stack([np.where(unseen[:, e].any(axis=1), 0.0, 1.0) for e in CORNER_EDGES]) * trust
     reach = np.array([mask_reach(o, b, settings.observed) for o, b in zip(objects, boxes, strict=True)]).reshape(-1, 4)
-    area = np.array([float(o.mask.sum()) for o in objects]) / (boxes[:, 2:] - boxes[:, :2]).prod(axis=1)
-    fill = np.where(exact, np.minimum(area, 1.0), 1.0)
     in_front, before = _bottom_lower(boxes, height, settings.observed), _before(objects, boxes, settings.observed)
     meanings = tuple(o.meanings for o in objects)
     return BoxObservations(
@@ -146,7 +142,6 @@ def gather(
         before,
         _beside(objects, boxes, settings.observed),
         _ends_seen(objects, settings.observed),
-        fill,
         meanings,
         settings,
     )

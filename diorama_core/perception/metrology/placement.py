@@ -327,8 +327,6 @@ def _supported_rows(
         if category.name in _SCREENS
         else _held_cost(observations, index, "wall", settings.placement)
     )
-    if category is UNKNOWN and observations.fill[index] < settings.placement.min_flat_fill:
-        on_wall += settings.placement.not_flat_cost
     if category.mount == "surface" and (parents or _small_carrier(observations, index, settings.placement) is not None):
         on_wall += settings.placement.beside_its_supporter_cost
     if category.name not in _NEVER_ON_OBJECTS or category.name in _FIXED_TO_WALLS:
@@ -379,11 +377,7 @@ def _averted_costs(
 
 def _floor_cost(observations: BoxObservations, index: int, settings: PlacementSettings) -> float:
     category = observations.categories[index]
-    cost = (
-        settings.screen_on_floor_cost
-        if category.name in _SCREENS
-        else _held_cost(observations, index, "floor", settings)
-    )
+    cost = _held_cost(observations, index, "floor", settings)
     parents = _carriers(observations, index, settings)
     if category.mount == "surface" and parents:
         cost += settings.beside_its_supporter_cost

@@ -33,8 +33,6 @@ class BoxObservationSettings:
     empty_sigma: float = 0.35
     min_confidence: float = 0.5
     max_outline_cost: float = 10.0
-    unseen_cost: float = 1.0
-    """Per corner, of cuboids that reach behind the camera and whose corners cannot be compared."""
     guessed_trust: float = 0.5
     """Trust in a mask that is not the user's own, at full agreement of its starts."""
     samples: int = 9
@@ -83,11 +81,7 @@ class PlacementSettings:
 
     hardly: float = 1e-4
     """How likely a thing without a name is held as no kind is that it may be of."""
-    min_flat_fill: float = 0.7
-    not_flat_cost: float = 6.0
-    """For an unnamed thing on a wall whose mask leaves much of its box empty: pictures and boards do not."""
     screen_on_wall_cost: float = 3.0
-    screen_on_floor_cost: float = 12.0
     beside_its_supporter_cost: float = 20.0
     """For a thing on the floor, or on a wall, that belongs on something its box rests in."""
     at_carrier_cost: float = 4.0

@@ -68,8 +68,7 @@ def corner_costs(
     beyond_sigma = np.where(exact[item], settings.beyond_sigma, settings.beyond_sigma_guessed)[:, None]
     sigmas = np.where(excess < 0, -excess / beyond_sigma, excess / empty_sigma)
     costs = np.minimum(np.nan_to_num(sigmas) ** 2, settings.max_outline_cost) * weight[item]
-    unseen = settings.unseen_cost * weight[item].sum(axis=1)
-    return np.where(usable, np.minimum(costs.sum(axis=1), settings.max_outline_cost), unseen)
+    return np.where(usable, np.minimum(costs.sum(axis=1), settings.max_outline_cost), weight[item].sum(axis=1))
 
 
 def _normalised(pixels: Float[np.ndarray, "n p 2"], box: Float[np.ndarray, "n 4"]) -> Float[np.ndarray, "n p 2"]:

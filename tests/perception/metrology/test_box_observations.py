@@ -61,14 +61,12 @@ def test_sigmas_grow_with_the_box_and_the_picture() -> None:
     assert double.edge_sigma_px[0] == pytest.approx([12.0, 18.0, 12.0, 18.0])
 
 
-def test_own_masks_are_trusted_wholly_and_their_fill_counts() -> None:
+def test_own_masks_are_trusted_wholly() -> None:
     own = gather((masked((100, 100, 200, 300), 0.5),), 640, 480)
     guessed = gather((masked((100, 100, 200, 300), 0.5, 0.8),), 640, 480)
     assert (own.mask_exact[0], guessed.mask_exact[0]) == (True, False)
     assert own.corner_weight[0] == pytest.approx([1.0] * 4)
     assert guessed.corner_weight[0] == pytest.approx([0.32] * 4)
-    assert own.fill[0] == pytest.approx(0.5)
-    assert guessed.fill[0] == 1.0
     # The mask's right edge is the box's middle: it reaches the left corners only.
     assert own.mask_reach[0] == pytest.approx([2.0, 1.0, 2.0, 1.0])
 
