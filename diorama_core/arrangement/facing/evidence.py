@@ -95,6 +95,10 @@ class FacingRoom(ArrayValue):
         best = min(candidates, default=None)
         return best[2] if best is not None and best[0] < reach_m else None
 
+    def loads(self, i: int, kinds: frozenset[str]) -> list[int]:
+        """Objects of some kinds that lie on an object."""
+        return [j for j, o in enumerate(self.objects) if o.carrier == i and o.kind in kinds]
+
 
 def yaws_of(R_world_object: Float[np.ndarray, "*n 3 3"]) -> Float[np.ndarray, "*n"]:
     """Directions of fronts seen from above, from +X on."""

@@ -30,8 +30,10 @@ class FacingWeights:
     shown_seats: float
     shown_sofas: float
     shown_storage: float
+    shown_screens: float
     shown_others: float
     at_table: float
+    at_user: float
     back_at_wall: float
     back_at_wall_others: float
     out_of_wall: float
@@ -60,6 +62,7 @@ LOUNGE = with_kin("sofa", "armchair")
 LOW_TABLES = with_kin("coffee table")
 TABLES = having("legroom") - LOW_TABLES | with_kin("piano")
 SCREENS = having("screen") | with_kin("laptop")
+INPUTS = frozenset({"keyboard", "mouse"})
 STORAGE = having("stores")
 BEDS = with_kin("bed")
 SHOWN = frozenset({"towel", "trash can"})
@@ -68,6 +71,8 @@ NO_FRONT = having("no_front") - with_kin("pillow") - SHOWN
 """Set down any way round."""
 AT_TABLE_M, AT_LOW_TABLE_M = 0.9, 1.6
 """Gaps within which a seat is drawn up to a table, as people pull chairs out and legs need room."""
+COMPANY_M = 4.0
+"""Within which a television has its viewers: across a living room."""
 BESIDE_M = 0.5
 """Gaps within which things stand side by side."""
 WALL_REACH_M, WALL_BESIDE_M, WALL_FADES_M = 0.7, 3.0, 0.4
@@ -96,7 +101,7 @@ def shown(kinds: frozenset[str] | None) -> Callable[[FacingRoom, int], Agreement
 
     def one(room: FacingRoom, i: int) -> Agreement | None:
         kind = room.objects[i].kind
-        if kind not in kinds if kinds is not None else kind in SEATS | STORAGE | LOUNGE | NO_FRONT:
+        if kind not in kinds if kinds is not None else kind in SEATS | STORAGE | SCREENS | LOUNGE | NO_FRONT:
             return None
         cosine = toward(room, i, room.toward_camera(i))
         return 0.25 * cosine + 0.75 * np.minimum(cosine, 0.0)
@@ -126,6 +131,19 @@ def square_to(room: FacingRoom, i: int, table: int) -> Float[np.ndarray, "2"]:
         share = np.abs(local) / np.maximum(other.size_m[:2], 1e-6)
         beyond = np.where(share == share.max(), local, 0.0)
     return unit(beyond @ other.axes[:2])
+
+
+def at_user(room: FacingRoom, i: int) -> Agreement | None:
+    """A screen faces the keyboard before it, or the nearest seat."""
+    item = room.objects[i]
+    if item.kind not in SCREENS or item.carrier is None:
+        return None
+    keyboards = room.loads(item.carrier, INPUTS) or room.loads(i, INPUTS)
+    user = min(keyboards, key=lambda j: float(np.linalg.norm(room.objects[j].centre - item.centre)), default=None)
+    if user is None:
+        seats = LOUNGE | BEDS if item.kind == "television" else SEATS
+        user = room.nearest(i, seats, COMPANY_M if item.kind == "television" else AT_LOW_TABLE_M)
+    return None if user is None else toward(room, i, unit(room.objects[user].centre[:2] - item.centre[:2]))
 
 
 def back_at_wall(kinds: frozenset[str] | None) -> Callable[[FacingRoom, int], Agreement | None]:
@@ -204,8 +222,10 @@ TERMS: tuple[Term, ...] = (
     Term("shown_seats", "photos show fronts of seats", shown(SEATS)),
     Term("shown_sofas", "photos show fronts of sofas and armchairs", shown(LOUNGE)),
     Term("shown_storage", "photos show fronts of cupboards", shown(STORAGE)),
+    Term("shown_screens", "screens face who looks at them", shown(SCREENS)),
     Term("shown_others", "photos show fronts", shown(None)),
     Term("at_table", "seats face the table that they are drawn up to", at_table),
+    Term("at_user", "screens face the keyboard or seat that uses them", at_user),
     Term("back_at_wall", "cupboards and beds turn their backs to a wall", back_at_wall(STORAGE | BEDS)),
     Term("back_at_wall_others", "backs are at walls", back_at_wall(None)),
     Term("out_of_wall", "what hangs on a wall looks out of it", out_of_wall),

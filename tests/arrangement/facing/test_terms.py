@@ -42,7 +42,7 @@ def test_every_term_has_a_weight_and_every_weight_but_the_picture_s_a_term() -> 
 
 @pytest.mark.parametrize("name", [n for n in BY_NAME if n.startswith("shown")])
 def test_only_one_of_the_terms_of_showing_speaks_of_each_kind(name: str) -> None:
-    kinds = ("chair", "sofa", "dresser", "monitor", "plant")
+    kinds = ("chair", "sofa", "dresser", "monitor", "bed", "plant")
     speaking = [k for k in kinds if BY_NAME[name].one(room(thing(k, 0.0, 3.0)), 0) is not None]
     assert len(speaking) == 1
     assert best_deg(name, room(thing(speaking[0], 0.0, 3.0))) == -90
@@ -57,6 +57,14 @@ def test_a_chair_faces_the_side_of_the_table_where_it_stands(x: float, y: float,
 
 def test_a_chair_far_from_any_table_faces_none() -> None:
     assert best_deg("at_table", room(thing("chair", 3.0, 3.0), thing("table", 0.0, 3.0))) is None
+
+
+def test_a_monitor_faces_its_keyboard_or_else_the_seat() -> None:
+    desk, seat = thing("desk", 0.0, 3.0, (0.7, 1.4, 0.75), 90.0), thing("office chair", 0.0, 3.8)
+    monitor = thing("monitor", 0.0, 2.8, (0.2, 0.5, 0.4), carrier=1)
+    keyboard = thing("keyboard", 0.3, 2.8, (0.15, 0.4, 0.02), carrier=1)
+    assert best_deg("at_user", room(monitor, desk, seat)) == 90
+    assert best_deg("at_user", room(monitor, desk, seat, keyboard)) == 0
 
 
 def test_storage_turns_its_back_to_the_wall_that_is_near() -> None:
